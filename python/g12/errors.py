@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The one exception of the package: a block, a section or a setting that is refused."""
+
+LONGEST_MESSAGE = 255  # LinuxCNC cuts an operator message there
+
+
+class Refusal(ValueError):
+    """A refused block: nothing has moved and nothing has changed.
+
+    The message names the code, the word, the rule and the value, in that spirit:
+    ``G12: I0.125 must be greater than the tool radius 0.125 (D1)``.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message[:LONGEST_MESSAGE])
+
+    @property
+    def message(self) -> str:
+        """The text for the operator, at most 255 characters."""
+        return self.args[0]
+
+
+def number(value: float) -> str:
+    """Return ``value`` as an operator would write it: at most six decimals, no trailing zeros."""
+    text = f"{value:.6f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
