@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Counts of rings and of spiral half turns: decided here once, never rounded again in NGC.
+
+All lengths of one call are in one unit.
+"""
+
+from __future__ import annotations
+
+import math
+
+
+def steps_between(first: float, last: float, step: float, tolerance: float) -> int:
+    """Return how many steps, none longer than ``step``, lead from ``first`` to ``last``.
+
+    A rest shorter than ``tolerance`` is rounding, not a step of its own.
+    """
+    return max(0, math.ceil((last - first - tolerance) / step))
+
+
+def ring_radii(first: float, last: float, step: float, tolerance: float) -> list[float]:
+    """Return the radii first, first + step, … with ``last`` exactly at the end."""
+    count = steps_between(first, last, step, tolerance)
+    if count == 0:
+        return [last]
+    return [first + index * step for index in range(count)] + [last]

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12/G13 circular pocket, dialect haas: words and modes in, one checked pocket out.
+
+Source: Haas Mill Operator's Manual, "G12 Circular Pocket Milling CW / G13 CCW".
+
+The motions of `ngc/g12_haas.ngc`, per level:
+
+1. with X or Y in the block: rapid to the centre at the present Z (before the first level)
+2. feed to the level's Z in the centre
+3. half circle from the centre to (+b, 0), turning the way of the cut, tangent to the ring
+4. full circle of radius b
+5. for each further ring: a tangent link outward, then its full circle; the last is K exactly
+6. tangent half circle back to the centre; Z stays at depth after the last level
+
+A tool-centre radius b is the programmed radius less the tool radius.
+
+Rules, in the order of the checks: G17, no G93, no G41/G42, feed above 0; every word known;
+I, Z required; K and Q together; Q > 0; L whole, from 1; D whole, from 0, in the tool table;
+I greater than the tool radius; I less than K.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from .context import XY, Context, Tool
+from .errors import number
+from .geometry import steps_between
+from .words import Words
+
+KNOWN_WORDS = "X Y Z I K Q L D F"
+SMALLEST_RING_MM = 0.00254  # its half circles have the smallest radius LinuxCNC accepts
+ROUNDING_MM = 1e-6  # lengths closer than this are equal
+MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
+
+
+class Pocket(NamedTuple):
+    """A pocket that is fit to cut. Lengths in program units, radii of the tool centre."""
+
+    x: float
+    y: float
+    move_to_centre: bool
+    z: float  # depth of the first level
+    z_step: float  # signed distance to each further level
+    levels: int
+    first_radius: float
+    last_radius: float
+    links: int  # from ring to ring, or half turns of the spiral; the last ends at last_radius
+    first_grow: float  # by how much the first link grows
+    shrink: float  # by which share of that the last one is shorter
+    spiral: bool
+    cutter_radius: float
+    message: str | None  # for the operator, never a refusal
+
+
+def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pocket:
+    """Return the pocket of one G12/G13 block, or raise `Refusal`."""
+    check_modes(words, context)
+    first = words.require("I", "the radius of the first circle")
+    outward = words.take_pair("K", "Q")
+    levels = words.take_whole("L", least=1, default=1)
+    centre_word = "X" in words or "Y" in words
+    x = coordinate(words.take("X"), context.x, context)
+    y = coordinate(words.take("Y"), context.y, context)
+    depth = words.require("Z", "the depth of the pocket")
+    cutter, source = choose_cutter(words, context)
+    words.finish(KNOWN_WORDS)
+    check_radii(words, context, first, outward, cutter, source)
+
+    finished, stepover = outward or (first, first)
+    growth = stepover / 2 if clearing == "spiral" else stepover
+    links = steps_between(first, finished, growth, context.length(ROUNDING_MM))
+    check_count(words, stepover, (links + 1) * levels)
+    last_grow = finished - first - growth * (links - 1)
+    return Pocket(
+        x=x,
+        y=y,
+        move_to_centre=centre_word,
+        z=coordinate(depth, context.z, context),
+        z_step=depth if context.incremental else 0.0,
+        levels=levels,
+        first_radius=first - cutter.radius,
+        last_radius=finished - cutter.radius,
+        links=links,
+        first_grow=min(growth, finished - first),
+        shrink=1 - last_grow / growth if links > 1 else 0.0,
+        spiral=clearing == "spiral",
+        cutter_radius=cutter.radius,
+        message=left_material(words, outward, first, cutter, context),
+    )
+
+
+def check_modes(words: Words, context: Context) -> None:
+    """Refuse the modes in which no pocket can be cut."""
+    if context.plane != XY:
+        raise words.refuse(f"needs the XY plane G17, but {context.plane} is active")
+    if context.inverse_time:
+        raise words.refuse("needs feed per minute or revolution (G94, G95), but G93 is active")
+    if context.compensated:
+        raise words.refuse("brings its own cutter compensation: program G40 first")
+    if not context.feed > 0:
+        raise words.refuse(f"F{number(context.feed)} must be greater than 0")
+
+
+def coordinate(word: float | None, present: float, context: Context) -> float:
+    """Return the absolute coordinate of a word in G90 or G91; without it, the present one."""
+    if word is None:
+        return present
+    return present + word if context.incremental else word
+
+
+def choose_cutter(words: Words, context: Context) -> tuple[Tool, str]:
+    """Return the cutter of the block and where it comes from, for messages.
+
+    D in the block, else the D last commanded, else the tool in the spindle.
+    """
+    tool_number = words.take_whole("D", least=0)
+    if tool_number is not None:
+        return tool_of_number(words, context, tool_number), f"D{tool_number}"
+    if context.last_radius is not None:
+        return Tool(0, context.last_radius), "the D last commanded"
+    if context.spindle_tool is None:
+        raise words.refuse("D is missing, none was commanded before and no tool is loaded")
+    return context.spindle_tool, f"T{context.spindle_tool.number} in the spindle"
+
+
+def tool_of_number(words: Words, context: Context, tool_number: int) -> Tool:
+    """Return the tool that D names; D0 is a cutter without size."""
+    if tool_number == 0:
+        return Tool(0, 0.0)
+    tool = context.tool_in_table(tool_number)
+    if tool is None:
+        raise words.refuse(f"D{tool_number} is not in the tool table")
+    if tool.radius < 0:
+        raise words.refuse(
+            f"D{tool_number} has the negative diameter {number(2 * tool.radius)} in the tool table"
+        )
+    return tool
+
+
+def check_radii(
+    words: Words,
+    context: Context,
+    first: float,
+    outward: tuple[float, float] | None,
+    cutter: Tool,
+    source: str,
+) -> None:
+    """Refuse circles that the cutter cannot mill, or that do not grow."""
+    rounding = context.length(ROUNDING_MM)
+    if first <= rounding:
+        raise words.refuse(f"I{number(first)} must be greater than 0")
+    if first <= cutter.radius + rounding:
+        raise words.refuse(
+            f"I{number(first)} must be greater than the tool radius"
+            f" {number(cutter.radius)} ({source})"
+        )
+    smallest = context.length(SMALLEST_RING_MM)
+    if first - cutter.radius < smallest:
+        raise words.refuse(
+            f"I{number(first)} must exceed the tool radius {number(cutter.radius)} ({source})"
+            f" by at least {number(smallest)}"
+        )
+    if outward and outward[0] <= first + rounding:
+        raise words.refuse(f"I{number(first)} must be less than K{number(outward[0])}")
+
+
+def check_count(words: Words, stepover: float, circles: int) -> None:
+    """Refuse a stepover so small that the block would never end."""
+    if circles > MOST_CIRCLES:
+        raise words.refuse(
+            f"Q{number(stepover)} and L make {circles} circles, the most is {MOST_CIRCLES}"
+        )
+
+
+def left_material(
+    words: Words,
+    outward: tuple[float, float] | None,
+    first: float,
+    cutter: Tool,
+    context: Context,
+) -> str | None:
+    """Return the operator message of a pocket that leaves material standing, or None.
+
+    The control's own sample programs do this, so it is no error. With D0 the cutter's size
+    is not known, and a single circle may well finish a bored hole: no message then.
+    """
+    if outward is None or cutter.radius == 0:
+        return None
+    stepover, rounding = outward[1], context.length(ROUNDING_MM)
+    if stepover > 2 * cutter.radius + rounding:
+        return (
+            f"{words.code}: Q{number(stepover)} is greater than the tool diameter"
+            f" {number(2 * cutter.radius)}: material is left between the rings"
+        )
+    # the plunge clears the tool radius, the first ring begins at I - 2 tool radii
+    if first > 3 * cutter.radius + rounding:
+        return (
+            f"{words.code}: I{number(first)} is greater than 1.5 x the tool diameter"
+            f" {number(2 * cutter.radius)}: a core is left in the centre"
+        )
+    return None

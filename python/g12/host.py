@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The interpreter, touched here: snapshot, hand-over to NGC, refusals.
+
+(`section` reads on with it for polar interpolation; nothing else imports LinuxCNC.)
+Facts about the interpreter that the code relies on stand beside the line that does.
+"""
+
+from __future__ import annotations
+
+import functools
+
+import emccanon
+from interpreter import INTERP_ERROR, INTERP_OK
+
+from .context import MM_PER_INCH, XY, XZ, YZ, Context, Tool
+from .errors import Refusal
+from .settings import settings_from_environment
+from .words import Words
+
+SETTINGS = settings_from_environment()
+
+MODAL_0, DIAMETER = 0, 15  # indices into a block's g_modes
+DIAMETER_ACTIVE = 15  # index into active_g_codes
+G7 = 70
+INCREMENTAL = 1  # distance_mode and ijk_distance_mode: 0 absolute, 1 incremental
+INVERSE_TIME = 1  # feed_mode
+INCH = 1  # length_units
+PLANES = {1: XY, 2: YZ, 3: XZ}
+
+# every word a block can carry besides F, S, T, N, M and O, which the interpreter deals with
+LETTERS = "ABCDEHIJKPQRUVWXYZ"
+WORD_FIELDS = [
+    (
+        letter,
+        f"{letter.lower()}_flag",
+        "d_number_float" if letter == "D" else f"{letter.lower()}_number",
+    )
+    for letter in LETTERS
+]
+NO_L = -1  # a block's l_number without an L word
+
+
+class CycleState:
+    """What the package remembers of one interpreter; it lives on the interpreter object.
+
+    ``modes`` are those a cycle found and has to put back; ``zero_radius_commanded`` tells D0
+    from no D at all, which the interpreter's own last compensation radius cannot.
+    """
+
+    def __init__(self) -> None:
+        self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
+        self.zero_radius_commanded = False
+
+
+def state_of(interp: object) -> CycleState:
+    """Return the package's state of this interpreter."""
+    try:
+        return interp.g12_state
+    except AttributeError:
+        interp.g12_state = CycleState()
+        return interp.g12_state
+
+
+def handler(function):
+    """Turn a `Refusal` of a remap handler into the operator's message.
+
+    Raising or returning a string would not do: LinuxCNC overwrites a prolog's text.
+    """
+
+    @functools.wraps(function)
+    def guarded(self, **words):
+        try:
+            return function(self, **words)
+        except Refusal as refusal:
+            self.set_errormsg(refusal.message)
+            return INTERP_ERROR
+
+    return guarded
+
+
+def code_of_block(interp: object) -> str:
+    """Return the remapped code as the operator wrote it: ``G12``, ``G12.2``."""
+    return interp.blocks[interp.remap_level].executing_remap.name.upper()
+
+
+def words_of_block(interp: object) -> Words:
+    """Return the words of the block being remapped; refuse a second G code that moves axes."""
+    block = interp.blocks[interp.remap_level]
+    values = {
+        letter: getattr(block, field) for letter, flag, field in WORD_FIELDS if getattr(block, flag)
+    }
+    if block.l_number != NO_L:
+        values["L"] = block.l_number
+    if block.radius_flag:
+        values["@"] = block.radius
+    if block.theta_flag:
+        values["^"] = block.theta
+    words = Words(block.executing_remap.name.upper(), values)
+    other = block.g_modes[MODAL_0]
+    if other != -1:
+        raise words.refuse(f"G{other / 10:g} cannot stand in the same block")
+    return words
+
+
+def program_units_per_machine_unit(interp: object) -> float:
+    """Return the factor from INI file and tool table lengths to the program's."""
+    millimetres = 1 / emccanon.GET_EXTERNAL_LENGTH_UNITS()
+    return millimetres / MM_PER_INCH if interp.length_units == INCH else millimetres
+
+
+def tool_from_entry(interp: object, entry: object) -> Tool:
+    """Return a tool table entry's number and radius in program units."""
+    return Tool(entry.toolno, entry.diameter / 2 * program_units_per_machine_unit(interp))
+
+
+def tool_in_spindle(interp: object) -> Tool | None:
+    """Return the loaded tool, None if there is none."""
+    entry = interp.tool_table[0]
+    return tool_from_entry(interp, entry) if entry.toolno > 0 else None
+
+
+def tool_in_table(interp: object, tool_number: int) -> Tool | None:
+    """Return the tool of that number from the tool table, None if it is not there."""
+    status, pocket = interp.find_tool_pocket(tool_number)
+    return tool_from_entry(interp, interp.tool_table[pocket]) if status == INTERP_OK else None
+
+
+def last_radius(interp: object) -> float | None:
+    """Return the cutter radius of the last D commanded, by a cycle or by G41/G42.
+
+    The interpreter keeps its compensation radius after G40 and converts it with G20/G21, and
+    the cycles store their D there too: one register, as on the control.
+    """
+    radius = interp.cutter_comp_radius
+    return radius if radius > 0 or state_of(interp).zero_radius_commanded else None
+
+
+def remember_radius(interp: object, radius: float) -> None:
+    """Store the cutter radius of a D word as the last commanded."""
+    interp.cutter_comp_radius = radius
+    state_of(interp).zero_radius_commanded = radius == 0
+
+
+def snapshot(interp: object) -> Context:
+    """Return what the block finds: modes, units, position, tools."""
+    return Context(
+        inch=interp.length_units == INCH,
+        x=interp.current_x,
+        y=interp.current_y,
+        z=interp.current_z,
+        incremental=interp.distance_mode == INCREMENTAL,
+        plane=PLANES.get(interp.plane, "G17.1, G18.1 or G19.1"),
+        inverse_time=interp.feed_mode == INVERSE_TIME,
+        feed=interp.feed_rate,
+        compensated=interp.cutter_comp_side != 0,
+        spindle_tool=tool_in_spindle(interp),
+        last_radius=last_radius(interp),
+        tool_in_table=functools.partial(tool_in_table, interp),
+    )
+
+
+def diameter_mode(interp: object) -> bool:
+    """Tell whether G7 is active (the active codes are those before this block)."""
+    commanded = interp.blocks[interp.remap_level].g_modes[DIAMETER]
+    return (interp.active_g_codes[DIAMETER_ACTIVE] if commanded == -1 else commanded) == G7
+
+
+def hand_over(interp: object, **locals_: float) -> None:
+    """Set the named locals of the NGC sub that is about to run, and note the modes it finds."""
+    params = interp.params
+    for name, value in locals_.items():
+        params[name] = value
+    state_of(interp).modes = (
+        interp.motion_mode,
+        interp.distance_mode,
+        interp.ijk_distance_mode,
+        diameter_mode(interp),
+    )
+
+
+def restore_modes(interp: object) -> None:
+    """Put back the modes the block found: motion, G90/G91, G90.1/G91.1, G7/G8."""
+    motion, distance, centre, diameter = state_of(interp).modes
+    codes = [
+        code
+        for code, wanted in (("G91", distance), ("G90.1", not centre), ("G7", diameter))
+        if wanted
+    ]
+    if codes:
+        interp.execute(" ".join(codes))
+    interp.motion_mode = motion
+
+
+def message(text: str) -> None:
+    """Show the operator a message that is no error."""
+    emccanon.MESSAGE(text)

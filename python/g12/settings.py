@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Section ``[G12]`` of the INI file: one table of key, default and legal values.
+
+Read once, when the handlers load. A key that is not in the table, or a value that is not
+legal, is a start-up error: a misspelt setting never runs a machine with the default.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from .errors import Refusal
+
+SECTION = "G12"
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A setting that is one of a few words."""
+
+    default: str
+    words: tuple[str, ...]
+
+    def read(self, text: str) -> str:
+        """Return the word in lower case, or raise ValueError."""
+        if text.lower() not in self.words:
+            raise ValueError(text)
+        return text.lower()
+
+    @property
+    def legal(self) -> str:
+        """The legal values, for the start-up error."""
+        return " or ".join(self.words)
+
+
+@dataclass(frozen=True)
+class Number:
+    """A setting that is a finite number, at least (or above) zero."""
+
+    default: float | None
+    zero_allowed: bool
+
+    def read(self, text: str) -> float:
+        """Return the number, or raise ValueError."""
+        value = float(text)
+        if not math.isfinite(value) or value < 0 or (value == 0 and not self.zero_allowed):
+            raise ValueError(text)
+        return value
+
+    @property
+    def legal(self) -> str:
+        """The legal values, for the start-up error."""
+        return "a number from 0" if self.zero_allowed else "a number above 0"
+
+
+TABLE: dict[str, Choice | Number] = {
+    "CLEARING": Choice("rings", ("rings", "spiral")),
+    "YASNAC_TRAVERSE": Number(0.0, zero_allowed=True),
+    "POLAR_X": Choice("inherit", ("inherit", "diameter", "radius")),
+    "POLAR_Z": Choice("refuse", ("refuse", "allow")),
+    "POLAR_G0": Choice("refuse", ("refuse", "feed")),
+    "POLAR_G0_FEED": Number(None, zero_allowed=False),
+    "POLAR_TOLERANCE": Number(None, zero_allowed=False),
+    "POLAR_POLE": Choice("rotate", ("rotate", "refuse")),
+}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The settings of section ``[G12]``.
+
+    Lengths and feeds are in machine units (per minute). ``None`` means that the default
+    depends on the machine: a tolerance of 0.005 mm or 0.0002 in.
+    """
+
+    clearing: str = TABLE["CLEARING"].default
+    yasnac_traverse: float = TABLE["YASNAC_TRAVERSE"].default
+    polar_x: str = TABLE["POLAR_X"].default
+    polar_z: str = TABLE["POLAR_Z"].default
+    polar_g0: str = TABLE["POLAR_G0"].default
+    polar_g0_feed: float | None = TABLE["POLAR_G0_FEED"].default
+    polar_tolerance: float | None = TABLE["POLAR_TOLERANCE"].default
+    polar_pole: str = TABLE["POLAR_POLE"].default
+
+
+def section_entries(text: str, section: str) -> list[tuple[str, str]]:
+    """Return the (key, value) pairs of the first section of that name, as LinuxCNC 2.9 reads it."""
+    entries: list[tuple[str, str]] = []
+    inside = seen = False
+    for line in map(str.strip, text.splitlines()):
+        if line.startswith("["):
+            inside = not seen and line.split("]")[0] == f"[{section}"
+            seen = seen or inside
+        elif inside and line and line[0] not in "#;":
+            key, _, value = line.partition("=")
+            entries.append((key.strip(), value.strip()))
+    return entries
+
+
+def settings_from_entries(entries: list[tuple[str, str]]) -> Settings:
+    """Return the settings of (key, value) pairs; raise `Refusal` on a bad key or value."""
+    values = {}
+    for key, text in entries:
+        if key not in TABLE:
+            raise Refusal(f"[{SECTION}] {key} is not a setting. Known: {', '.join(TABLE)}")
+        try:
+            values[key.lower()] = TABLE[key].read(text)
+        except ValueError:
+            raise Refusal(f"[{SECTION}] {key} = {text}: must be {TABLE[key].legal}") from None
+    settings = Settings(**values)
+    if settings.polar_g0 == "feed" and settings.polar_g0_feed is None:
+        raise Refusal(f"[{SECTION}] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0")
+    return settings
+
+
+def settings_from_ini(path: str | os.PathLike[str] | None) -> Settings:
+    """Return the settings of an (expanded) INI file; the defaults if there is no file."""
+    if not path:
+        return Settings()
+    text = Path(path).read_text(encoding="utf-8", errors="replace")
+    return settings_from_entries(section_entries(text, SECTION))
+
+
+def settings_from_environment() -> Settings:
+    """Return the settings of the INI file that LinuxCNC names in ``INI_FILE_NAME``."""
+    return settings_from_ini(os.environ.get("INI_FILE_NAME"))
