@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Machine INI files read the way LinuxCNC reads them.
+
+``#INCLUDE`` lines are expanded as the ``linuxcnc`` script does it: one level deep, relative to
+the INI's directory.  A value is looked up in the first section of its name only, as LinuxCNC
+2.9 does; 2.10 reads all of them.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Mapping, Sequence, Union
+
+INCLUDE = re.compile(r"\s*#INCLUDE\s+(\S.*)")
+ENTRY = re.compile(r"\s*([^\s=#;\[][^\s=]*)\s*=\s*(.*?)\s*$")
+ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
+
+Value = Union[str, int, float, None, Sequence]
+Overrides = Mapping[str, Mapping[str, Value]]
+
+
+class IniError(ValueError):
+    """An INI file that cannot be read as LinuxCNC would read it."""
+
+
+@dataclass(frozen=True)
+class Ini:
+    """An expanded INI: ``directory`` is where LinuxCNC runs, ``lines`` are without newlines."""
+
+    path: Path
+    lines: tuple[str, ...]
+
+    @property
+    def directory(self) -> Path:
+        """Directory of the INI file, which relative names in it are relative to."""
+        return self.path.parent
+
+    @property
+    def text(self) -> str:
+        """The expanded file."""
+        return "\n".join(self.lines) + "\n"
+
+    def all(self, section: str, key: str) -> list[str]:
+        """Return every value of a repeated key, in order."""
+        first, last = self._extent(section)
+        entries = (ENTRY.match(line) for line in _joined(self.lines[first:last]))
+        return [entry.group(2) for entry in entries if entry and entry.group(1) == key]
+
+    def get(self, section: str, key: str, default: str | None = None) -> str | None:
+        """Return the value LinuxCNC finds: the first one."""
+        return next(iter(self.all(section, key)), default)
+
+    def number(self, section: str, key: str, default: float) -> float:
+        """Return a value as a number."""
+        return float(self.get(section, key, str(default)))
+
+    def file(self, section: str, key: str) -> Path | None:
+        """Return a file name of the INI as an absolute path."""
+        name = self.get(section, key)
+        return self.directory / os.path.expanduser(name) if name else None
+
+    def words(self, section: str, key: str, default: str = "") -> list[str]:
+        """Return a value split at blanks."""
+        return self.get(section, key, default).split()
+
+    def replaced(self, overrides: Overrides) -> Ini:
+        """Return an INI with values replaced or added.
+
+        ``overrides`` maps section to key to value; a list or tuple gives one line of the key
+        per item, None takes the key out.
+        """
+        ini = self
+        for section, values in overrides.items():
+            for key, value in values.items():
+                ini = ini._with(section, key, value)
+        return ini
+
+    def _with(self, section: str, key: str, value: Value) -> Ini:
+        first, last = self._extent(section)
+        head, body, tail = self.lines[:first], self.lines[first:last], self.lines[last:]
+        if not first:
+            head, body, tail = (*self.lines, f"[{section}]"), (), ()
+        kept = tuple(line for line in _joined(body) if not _is_entry_of(line, key))
+        return Ini(self.path, (*head, *_entries(key, value), *kept, *tail))
+
+    def _extent(self, section: str) -> tuple[int, int]:
+        """First and past-the-last line index of a section's body; (0, 0) if there is none."""
+        first = last = 0
+        for index, line in enumerate(self.lines, start=1):
+            if first and line.lstrip().startswith("["):
+                return first, index - 1
+            if not first and line.lstrip().startswith(f"[{section}]"):
+                first = index
+            last = index
+        return (first, last) if first else (0, 0)
+
+
+def read_ini(path: str | os.PathLike) -> Ini:
+    """Return the INI file with its includes expanded."""
+    path = Path(path).absolute()
+    try:
+        lines = path.read_text(**ENCODING).splitlines()
+        return Ini(path, tuple(_expanded(lines, path.parent)))
+    except OSError as error:
+        raise IniError(f"{error.filename}: {error.strerror}") from error
+
+
+def _expanded(lines: list[str], directory: Path):
+    for line in lines:
+        include = INCLUDE.match(line)
+        if include:
+            name = os.path.expandvars(os.path.expanduser(include.group(1).strip()))
+            yield from (directory / name).read_text(**ENCODING).splitlines()
+        else:
+            yield line
+
+
+def _joined(lines: Sequence[str]):
+    """Lines with backslash continuations put together."""
+    start = ""
+    for line in lines:
+        if line.endswith("\\"):
+            start += line[:-1]
+        else:
+            yield start + line
+            start = ""
+
+
+def _is_entry_of(line: str, key: str) -> bool:
+    entry = ENTRY.match(line)
+    return bool(entry) and entry.group(1) == key
+
+
+def _entries(key: str, value: Value) -> list[str]:
+    if value is None:
+        return []
+    values = value if isinstance(value, (list, tuple)) else [value]
+    return [f"{key} = {item}" for item in values]

@@ -1,0 +1,348 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The process behind ``trace.Tracer``: LinuxCNC's preview interpreter on a pipe.
+
+It stands alone, outside the package, because the machine's INI decides which copy of ``g12``
+the interpreter imports.  A request is a dict with ``program``, ``setup``, ``parameter_file`` and
+``ask``; the answer is a dict that ``trace`` makes a Trace of.  Every program gets a new
+interpreter object, as in a GUI that opens a program again.
+"""
+
+from __future__ import annotations
+
+import bisect
+import ctypes
+import math
+import os
+import re
+import time
+import traceback
+from multiprocessing.connection import Connection
+
+MM = 25.4  # the preview reports inches
+START = "G12 TRACE STARTS HERE"
+EMPTY = (-1, *[0.0] * 12, 0)
+NO_OFFSET = (0.0,) * 9
+LINEAR = (0, 1, 2, 6, 7, 8)
+METRIC = 2
+PLANES = {1: 17, 2: 19, 3: 18}
+ARC_AXES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis
+CALL_OF_REMAP = 4  # call_type of a remap's frame
+STATE = (
+    "motion_mode", "plane", "length_units", "distance_mode", "ijk_distance_mode", "feed_mode",
+    "feed_rate", "retract_mode", "cutter_comp_side", "cutter_comp_radius", "origin_index",
+    "rotation_xy", "current_x", "current_y", "current_z", "AA_current", "BB_current",
+    "CC_current", "current_tool", "call_level", "remap_level",
+)  # fmt: skip
+FEED_MODES = ("G94", "G93", "G95")
+
+
+class ToolEntry(ctypes.Structure):
+    """LinuxCNC's record of one tool, with room for what later versions append to it."""
+
+    _fields_ = (
+        ("number", ctypes.c_int),
+        ("pocket", ctypes.c_int),
+        ("offset", ctypes.c_double * 9),
+        ("diameter", ctypes.c_double),
+        ("angles", ctypes.c_double * 2),
+        ("orientation", ctypes.c_int),
+        ("reserve", ctypes.c_char * 512),
+    )
+
+    def for_canon(self) -> tuple:
+        """Return the record as the preview asks for it."""
+        return (self.number, *self.offset, self.diameter, *self.angles, self.orientation)
+
+
+class Tools:
+    """The tool table in LinuxCNC's shared form, which the interpreter looks tools up in."""
+
+    def __init__(self, table: str, random: bool) -> None:
+        library = ctypes.CDLL("libtooldata.so.0")
+        library._Z13tooldata_initb(ctypes.c_bool(random))
+        library._Z17tool_mmap_creatorPK13EMC_TOOL_STATi(None, int(random))
+        library._Z14tooldata_resetv()
+        if library._Z13tooldata_loadPKcPPc(table.encode(), None):
+            raise ValueError(f"{table}: LinuxCNC cannot read this tool table")
+        self._get = library._Z12tooldata_getP16CANON_TOOL_TABLEi
+        last = library._Z23tooldata_last_index_getv()
+        self._entries = [self._read(index) for index in range(last + 1)]
+
+    def _read(self, index: int) -> tuple:
+        entry = ToolEntry()
+        self._get(ctypes.byref(entry), index)
+        return entry.for_canon()
+
+    def at(self, index: int) -> tuple:
+        """Return the record at an index of the table; index 0 is the spindle."""
+        return self._entries[index] if 0 <= index < len(self._entries) else EMPTY
+
+
+class Lines:
+    """Finds the line of the program itself that is being executed, however deep in calls."""
+
+    def __init__(self, program: str) -> None:
+        with open(program, "rb") as file:
+            self._ends = [match.start() for match in re.finditer(b"\n", file.read())]
+
+    def now(self) -> int:
+        """Return the program's line during execution."""
+        this = interpreter_object()
+        if not this.call_level:
+            return this.sequence_number
+        if this.sub_context[1].call_type == CALL_OF_REMAP:
+            return self._of_remap(this)
+        return this.sub_context[0].sequence_number
+
+    def of_error(self) -> int:
+        """Return the program's line after the interpreter gave up and left all calls.
+
+        A remap in progress leaves its mark in block 1; the interpreter loses the line of a
+        remap, but not the place in the file where it was read.
+        """
+        this = interpreter_object()
+        in_remap = this.blocks[1].executing_remap is not None
+        if in_remap and this.sub_context[1].call_type == CALL_OF_REMAP:
+            return self._of_remap(this)
+        return this.sequence_number
+
+    def _of_remap(self, this) -> int:
+        return bisect.bisect_left(self._ends, this.blocks[1].offset) + 1
+
+
+class Canon:
+    """Records what the interpreter asks the machine to do, in mm and machine coordinates."""
+
+    def __init__(self, machine: dict, tools: Tools, request: dict) -> None:
+        self.machine, self.tools = machine, tools
+        self.parameter_file = request["parameter_file"]
+        self.lines = Lines(request["program"])
+        self.started = False
+        self.moves: list[tuple] = []
+        self.messages: list[tuple] = []
+        self.line = 0
+        self.tip = self.position = NO_OFFSET  # in program and in machine coordinates
+        self.work = self.g92 = self.length = NO_OFFSET
+        self.rotation, self.cos, self.sin = 0.0, 1.0, 0.0
+        self.plane = 17
+        self.feed = self.program_feed = 0.0
+        self.spindle = EMPTY
+
+    # Questions of the interpreter.
+
+    def get_external_angular_units(self) -> float:
+        return 1.0
+
+    def get_external_length_units(self) -> float:
+        return self.machine["units"]
+
+    def get_axis_mask(self) -> int:
+        return self.machine["axis_mask"]
+
+    def get_block_delete(self) -> bool:
+        return True
+
+    def check_abort(self) -> bool:
+        return False
+
+    def get_tool(self, index: int) -> tuple:
+        return self.tools.at(index) if index else self.spindle
+
+    # State it reports.
+
+    def next_line(self, state) -> None:
+        self.line = state.sequence_number
+
+    def comment(self, text: str) -> None:
+        if text == START:
+            self.started = True
+            self.moves.clear()
+            self.messages.clear()
+
+    def message(self, text: str) -> None:
+        self.messages.append((self.lines.now(), text))
+
+    def set_g5x_offset(self, _index: int, *offset: float) -> None:
+        self.work = in_mm(offset)
+
+    def set_g92_offset(self, *offset: float) -> None:
+        self.g92 = in_mm(offset)
+
+    def tool_offset(self, *offset: float) -> None:
+        self.length = in_mm(offset)
+
+    def set_xy_rotation(self, degrees: float) -> None:
+        self.rotation = degrees
+        self.cos, self.sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+
+    def set_plane(self, plane: int) -> None:
+        self.plane = PLANES[plane]
+
+    def set_feed_rate(self, rate: float) -> None:
+        metric = interpreter_object().length_units == METRIC
+        self.feed = rate * MM
+        self.program_feed = rate * MM if metric else rate
+
+    def change_tool(self, index: int) -> None:
+        self.spindle = self.tools.at(index) if index else EMPTY
+
+    def ignore(self, *_args) -> None:
+        """Anything else that has no part in the path."""
+
+    set_traverse_rate = dwell = user_defined_function = ignore
+
+    # Moves.
+
+    def straight_traverse(self, *target: float) -> None:
+        self._move("rapid", in_mm(target), 0.0)
+
+    def straight_feed(self, *target: float) -> None:
+        self._move("feed", in_mm(target), self._rate(target))
+
+    def straight_probe(self, *target: float) -> None:
+        self._move("probe", in_mm(target), self._rate(target))
+
+    def rigid_tap(self, x: float, y: float, z: float) -> None:
+        back = self.tip
+        self._move("feed", (*in_mm((x, y, z)), *back[3:]), self.feed)
+        self._move("feed", back, self.feed)
+
+    def arc_feed(self, first: float, second: float, first_centre: float, second_centre: float,
+                 turns: int, third: float, *others: float) -> None:  # fmt: skip
+        target, centre = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+        one, two, three = ARC_AXES[self.plane]
+        target[one], target[two], target[three] = first, second, third
+        centre[one], centre[two] = first_centre, second_centre
+        centre[three] = self.tip[three] / MM
+        resolved = self._resolved(in_mm((*centre, *NO_OFFSET[3:])))
+        self._move("arc", in_mm((*target, *others)), self.feed, resolved[:3], turns)
+
+    def _rate(self, target: tuple) -> float:
+        """Feed of a straight move: degrees per minute if only rotary axes move."""
+        tip = in_mm(target)
+        still = all(tip[axis] == self.tip[axis] for axis in LINEAR)
+        return self.program_feed if still else self.feed
+
+    def _move(self, kind: str, tip: tuple, feed: float, centre=None, turns=0) -> None:
+        start, self.tip, self.position = self.position, tip, self._resolved(tip)
+        mode = FEED_MODES[interpreter_object().feed_mode] if feed else ""
+        self.moves.append(
+            (kind, self.line, self.lines.now(), start, self.position, feed, mode, self.plane,
+             self.spindle[0], self.length, centre, turns, self.rotation)  # fmt: skip
+        )
+
+    def _resolved(self, tip: tuple) -> tuple:
+        """Machine coordinates of a point in program coordinates, both in mm."""
+        x, y, *rest = map(float.__add__, tip, self.g92)
+        turned = (x * self.cos - y * self.sin, x * self.sin + y * self.cos, *rest)
+        return tuple(map(float.__add__, turned, self.work))
+
+
+def in_mm(position) -> tuple:
+    """Return the preview's X Y Z U V W, inches, in mm; degrees stay."""
+    x, y, z, a, b, c, u, v, w = (*position, *NO_OFFSET[len(position):])
+    return (x * MM, y * MM, z * MM, a, b, c, u * MM, v * MM, w * MM)
+
+
+def interpreter_object():
+    """Return the interpreter at work, as Python remaps see it."""
+    import interpreter
+
+    return interpreter.this
+
+
+def record_errors_of_handlers() -> None:
+    """Report CANON_ERROR of Python handlers as a message, which the preview drops."""
+    import emccanon
+
+    emccanon.CANON_ERROR = lambda text, *_args: emccanon.MESSAGE(text)
+
+
+def interpret(machine: dict, tools: Tools, request: dict) -> dict:
+    """Interpret one program and return everything it did."""
+    import gcode
+
+    canon = Canon(machine, tools, request)
+    setup = ["G49", *machine["setup"], *request["setup"], f"({START})"]
+    started = time.perf_counter()
+    result, _ = gcode.parse(request["program"], canon, setup)
+    seconds = time.perf_counter() - started
+    error = None
+    if result > gcode.MIN_ERROR:
+        error = (gcode.strerror(result), canon.lines.of_error() if canon.started else 0)
+    answer = {"moves": canon.moves, "messages": canon.messages, "error": error}
+    return {**answer, "position": canon.position, "seconds": seconds, **left_behind(request)}
+
+
+def left_behind(request: dict) -> dict:
+    """Return the interpreter's state behind the program."""
+    this = interpreter_object()
+    names = set(this.params.globals()) - set(request.get("known_globals", ()))
+    return {
+        "gcodes": list(this.active_g_codes)[1:],
+        "mcodes": list(this.active_m_codes)[1:],
+        "settings": list(this.active_settings)[1:],
+        "globals": {name: this.params[name] for name in sorted(names)},
+        "numbered": {number: this.params[number] for number in request["ask"]},
+        "state": {name: getattr(this, name) for name in STATE},
+    }
+
+
+def printed(path: str) -> str:
+    """Return and forget what was printed."""
+    with open(path, "r+", encoding="utf-8", errors="replace") as file:
+        text = file.read()
+        file.truncate(0)
+    return text
+
+
+def blank(directory: str) -> dict:
+    """A request for a program that does nothing."""
+    files = {name: os.path.join(directory, name) for name in ("blank.ngc", "blank.var")}
+    for name in files.values():
+        with open(name, "w", encoding="ascii") as file:
+            file.write("%\n%\n")
+    return {
+        "program": files["blank.ngc"],
+        "parameter_file": files["blank.var"],
+        "setup": [],
+        "ask": [],
+    }
+
+
+def answered(machine: dict, tools: Tools, request: dict) -> dict:
+    """Interpret one program; ``failure`` in the answer is a fault of this process."""
+    try:
+        return interpret(machine, tools, request)
+    except Exception:
+        return {"failure": traceback.format_exc()}
+
+
+def start(machine: dict, tools: Tools) -> dict:
+    """Load the machine's Python modules and return its answer to a blank program.
+
+    The interpreter's own modules exist from the first parse on, with an INI that says nothing,
+    and so can be adjusted before the machine's modules import them.
+    """
+    request = blank(os.path.dirname(machine["output"]))
+    os.environ["INI_FILE_NAME"] = request["parameter_file"]
+    interpret({**machine, "setup": []}, tools, request)
+    record_errors_of_handlers()
+    os.environ["INI_FILE_NAME"] = machine["ini"]
+    return answered(machine, tools, request)
+
+
+def serve(descriptor: int) -> None:
+    """Answer requests until the other end closes."""
+    connection = Connection(descriptor)
+    machine = connection.recv()
+    tools = Tools(machine["tool_table"], machine["random"])
+    answer = start(machine, tools)
+    known = tuple(answer.get("globals", ()))
+    while True:
+        connection.send({**answer, "printed": printed(machine["output"])})
+        try:
+            request = connection.recv()
+        except EOFError:
+            return
+        answer = answered(machine, tools, {**request, "known_globals": known})
