@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+PYTHON := /usr/bin/python3
+RUFF_VERSION := 0.17.5
+RUFF := build/venv/bin/ruff
+JOBS := $(shell nproc)
+
+.PHONY: help setup demo test lint bench clean
+
+help:
+	@echo "make demo   run the manuals' programs in headless LinuxCNC, pictures in build/demo"
+	@echo "make test   run every test"
+	@echo "make lint   check the style of the code"
+	@echo "make bench  measure the figures the project promises"
+	@echo "make clean  remove what the others made"
+
+setup:
+	@sh .ci/setup
+
+demo: setup
+	@echo "demo: running the manuals' programs in headless LinuxCNC"
+	@$(PYTHON) python/g12 demo --output build/demo
+
+test: setup
+	@echo "test: every test, on $(JOBS) cores"
+	@$(PYTHON) -m pytest -n $(JOBS) --dist loadfile
+
+lint: setup $(RUFF)-$(RUFF_VERSION)
+	@echo "lint: ruff $(RUFF_VERSION)"
+	@$(RUFF) check --quiet
+	@$(RUFF) format --check --quiet
+
+bench: setup
+	@echo "bench: figures as ratios, each measured side by side in one run"
+	@PYTHONPATH=python:tests $(PYTHON) -m bench
+
+clean:
+	@echo "clean: removing build"
+	@rm -rf build .pytest_cache .ruff_cache .hypothesis
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(RUFF)-$(RUFF_VERSION):
+	@echo "lint: fetching ruff $(RUFF_VERSION)"
+	@$(PYTHON) -m venv --clear build/venv
+	@build/venv/bin/pip install --quiet --disable-pip-version-check ruff==$(RUFF_VERSION)
+	@touch $@
