@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Start a command in namespaces of its own; run by ``headless`` as a program.
+
+The command sees its own processes, shared memory, network and /tmp, so nothing of a LinuxCNC
+outside can reach it or be reached.  Files outside keep their names; directories named in the
+job are replaced by copies that take all writing.  Everything ends with this process, and this
+process ends when its standard input is closed.
+
+The job is a JSON object on the command line: ``command``, ``environment`` and ``copies``, a map
+of directory to the files that stand in it in place of the real ones.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import select
+import signal
+import stat
+import sys
+
+CLONE_NEWNS, CLONE_NEWIPC = 0x00020000, 0x08000000
+CLONE_NEWUSER, CLONE_NEWPID, CLONE_NEWNET = 0x10000000, 0x20000000, 0x40000000
+MS_BIND, MS_REC, MS_PRIVATE = 4096, 16384, 1 << 18
+PR_SET_PDEATHSIG = 1
+LARGEST_COPY = 1 << 20  # bytes; larger files are shared with the real directory
+PRIVATE_IN_TMP = "linuxcnc."  # LinuxCNC's lock and log files
+
+libc = ctypes.CDLL(None, use_errno=True)
+
+
+class IsolationError(OSError):
+    """The kernel refuses a namespace or a mount."""
+
+
+def check(result: int, action: str) -> None:
+    """Raise with the kernel's reason if a call failed."""
+    if result:
+        raise IsolationError(f"{action}: {os.strerror(ctypes.get_errno())}")
+
+
+def unshare() -> None:
+    """Enter new namespaces; an ordinary user gets a user namespace with the same user."""
+    uid, gid = os.geteuid(), os.getegid()
+    flags = CLONE_NEWNS | CLONE_NEWIPC | CLONE_NEWPID | CLONE_NEWNET
+    if uid == 0:
+        check(libc.unshare(flags), "new namespaces")
+        return
+    check(libc.unshare(flags | CLONE_NEWUSER), "new namespaces as an ordinary user")
+    write("/proc/self/setgroups", "deny")
+    write("/proc/self/uid_map", f"{uid} {uid} 1")
+    write("/proc/self/gid_map", f"{gid} {gid} 1")
+
+
+def write(path: str, text: str) -> None:
+    """Write a file in one go."""
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def mount(source: str, target: str, kind: str | None, flags: int, options: str = "") -> None:
+    """Mount ``source`` on ``target``; paths, file system type, flags and options as mount(2)."""
+    arguments = [text.encode() if text is not None else None for text in (source, target, kind)]
+    check(libc.mount(*arguments, flags, options.encode()), f"mounting {target}")
+
+
+def bind(source: str, target: str) -> None:
+    """Let ``target`` be another name of ``source``."""
+    mount(source, target, None, MS_BIND | MS_REC)
+
+
+def mirror(directory: str, files: dict[str, str], copy: bool) -> None:
+    """Replace a directory by a private one with the same entries.
+
+    ``files`` are texts that replace entries.  With ``copy`` ordinary files are copies, else the
+    files themselves; subdirectories are always the real ones.
+    """
+    real = os.open(directory, os.O_PATH)
+    mode = stat.S_IMODE(os.fstat(real).st_mode)
+    mount("private", directory, "tmpfs", 0, f"mode={mode:o}")
+    for entry in os.scandir(f"/proc/self/fd/{real}"):
+        target = os.path.join(directory, entry.name)
+        if entry.name in files or entry.name.startswith(PRIVATE_IN_TMP):
+            continue
+        place(entry, target, copy)
+    for name, text in files.items():
+        write(os.path.join(directory, name), text)
+
+
+def place(entry: os.DirEntry, target: str, copy: bool) -> None:
+    """Let an entry of the real directory appear in the private one, unless it cannot be read."""
+    if entry.is_symlink():
+        os.symlink(os.readlink(entry.path), target)
+    elif entry.is_dir():
+        os.mkdir(target)
+        bind(entry.path, target)
+    elif copy and entry.is_file() and entry.stat().st_size <= LARGEST_COPY:
+        copy_file(entry.path, target)
+    else:
+        write(target, "")
+        bind(entry.path, target)
+
+
+def copy_file(source: str, target: str) -> None:
+    """Copy contents and permissions; a file that cannot be read is left out."""
+    if not os.access(source, os.R_OK):
+        return
+    with open(source, "rb") as original, open(target, "wb") as copied:
+        copied.write(original.read())
+    os.chmod(target, stat.S_IMODE(os.stat(source).st_mode))
+
+
+def prepare(job: dict) -> None:
+    """Set up the mounts that the command sees."""
+    mount("none", "/", None, MS_REC | MS_PRIVATE)
+    mount("proc", "/proc", "proc", 0)
+    mirror("/tmp", {}, copy=False)
+    for directory, files in job["copies"].items():
+        mirror(directory, files, copy=True)
+
+
+def first_process(job: dict) -> int:
+    """Run the command as process 1 of its namespace; the end of it is the end of all."""
+    libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    prepare(job)
+    child = os.posix_spawnp(job["command"][0], job["command"], job["environment"])
+    while True:
+        pid, status = os.wait()
+        if pid == child:
+            return os.waitstatus_to_exitcode(status)
+
+
+def supervise(child: int) -> int:
+    """Wait for process 1, and end it when standard input is closed."""
+    descriptor = os.pidfd_open(child)
+    ready, _, _ = select.select([descriptor, sys.stdin], [], [])
+    if descriptor not in ready:
+        os.kill(child, signal.SIGKILL)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+
+def main() -> int:
+    """Run the job named on the command line and return its exit code."""
+    job = json.loads(sys.argv[1])
+    unshare()
+    child = os.fork()
+    if child:
+        return supervise(child)
+    try:
+        code = first_process(job)
+    except OSError as error:
+        print(f"isolation failed: {error}", file=sys.stderr)
+        code = 125
+    sys.stderr.flush()
+    os._exit(code & 0xFF)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

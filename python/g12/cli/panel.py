@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The operator's side of a running LinuxCNC: enable, home, MDI, cycle start and the rest.
+
+Used inside a LinuxCNC session, by the headless screen and by the headless runner's driver.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Callable
+
+import linuxcnc
+
+TICK = 0.01  # s, between looks at the status
+GRACE = 5.0  # s, for the machine to react to a command
+ERRORS = (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR)
+TASK_MODES = {
+    linuxcnc.MODE_MANUAL: "manual",
+    linuxcnc.MODE_AUTO: "auto",
+    linuxcnc.MODE_MDI: "mdi",
+}
+INTERPRETER = {
+    linuxcnc.INTERP_IDLE: "idle",
+    linuxcnc.INTERP_READING: "reading",
+    linuxcnc.INTERP_PAUSED: "paused",
+    linuxcnc.INTERP_WAITING: "waiting",
+}
+
+
+class PanelError(RuntimeError):
+    """LinuxCNC did not do what the operator asked."""
+
+
+class PanelTimeout(PanelError):
+    """LinuxCNC did not get there in time."""
+
+
+class Panel:
+    """One operator.  ``tick`` is called while waiting; errors and messages are collected."""
+
+    def __init__(self, tick: Callable[[], None] = lambda: None) -> None:
+        self._command = linuxcnc.command()
+        self._stat = linuxcnc.stat()
+        self._channel = linuxcnc.error_channel()
+        self._tick = tick
+        self._errors: list[tuple[str, int]] = []
+        self._messages: list[tuple[str, int]] = []
+
+    # Looking.
+
+    def look(self):
+        """Return LinuxCNC's present status and collect what it says to the operator."""
+        self._stat.poll()
+        said = self._channel.poll()
+        while said:
+            kind, text = said
+            heard = self._errors if kind in ERRORS else self._messages
+            heard.append((text.strip(), self._stat.read_line))
+            said = self._channel.poll()
+        return self._stat
+
+    def errors(self) -> list[tuple[str, int]]:
+        """Return the errors since the last call: text and the line read at that time."""
+        self.look()
+        said, self._errors = self._errors, []
+        return said
+
+    def messages(self) -> list[tuple[str, int]]:
+        """Return the messages since the last call: text and the line read at that time."""
+        self.look()
+        said, self._messages = self._messages, []
+        return said
+
+    def wait(self, condition: Callable[[object], bool], timeout: float, what: str) -> None:
+        """Wait up to ``timeout`` seconds until ``condition`` of the status holds."""
+        end = time.monotonic() + timeout
+        while not condition(self.look()):
+            self._tick()
+            if time.monotonic() > end:
+                raise PanelTimeout(f"no {what} within {timeout:g} s{self._complaints()}")
+            time.sleep(TICK)
+
+    def _complaints(self) -> str:
+        return "".join(f"; {text}" for text, _ in self._errors)
+
+    # Getting ready.
+
+    def enable(self) -> None:
+        """Leave e-stop and switch the machine on."""
+        self._do(self._command.state, linuxcnc.STATE_ESTOP_RESET)
+        self.wait(lambda stat: not stat.estop, GRACE, "release of e-stop")
+        self._do(self._command.state, linuxcnc.STATE_ON)
+        self.wait(lambda stat: stat.enabled, GRACE, "machine power")
+
+    def home(self, timeout: float = 60.0) -> None:
+        """Home all joints, in the INI's sequence where there is one."""
+        self._mode(linuxcnc.MODE_MANUAL)
+        self._do(self._command.teleop_enable, 0)
+        self._do(self._command.home, -1)
+        try:
+            self.wait(self._homed, GRACE, "homing")
+        except PanelTimeout:
+            self._home_one_by_one(timeout)
+
+    def _home_one_by_one(self, timeout: float) -> None:
+        for joint in range(self.look().joints):
+            if not self._stat.homed[joint]:
+                self._do(self._command.home, joint)
+                self.wait(lambda stat, j=joint: stat.homed[j], timeout, f"homing of joint {joint}")
+
+    def _homed(self, stat) -> bool:
+        return all(stat.homed[: stat.joints])
+
+    # Running.
+
+    def mdi(self, text: str) -> None:
+        """Start one block of MDI."""
+        self._mode(linuxcnc.MODE_MDI)
+        self._do(self._command.mdi, text)
+
+    def open(self, program: str) -> None:
+        """Load a program file."""
+        self._mode(linuxcnc.MODE_AUTO)
+        self._do(self._command.program_open, program)
+        self.wait(lambda stat: stat.file == program, GRACE, f"opening of {program}")
+
+    def start(self, line: int = 0) -> None:
+        """Cycle start, or run from ``line``."""
+        self._mode(linuxcnc.MODE_AUTO)
+        self._do(self._command.auto, linuxcnc.AUTO_RUN, line)
+
+    def step(self) -> None:
+        """Run one block and pause."""
+        self._mode(linuxcnc.MODE_AUTO)
+        self._do(self._command.auto, linuxcnc.AUTO_STEP)
+
+    def pause(self) -> None:
+        """Feed hold."""
+        self._do(self._command.auto, linuxcnc.AUTO_PAUSE)
+
+    def resume(self) -> None:
+        """Go on after a pause."""
+        self._do(self._command.auto, linuxcnc.AUTO_RESUME)
+
+    def abort(self) -> None:
+        """Stop everything and wait until it stands."""
+        self._do(self._command.abort)
+        self.wait_idle(GRACE)
+
+    def feed_override(self, scale: float) -> None:
+        """Set the feed override; 1 is 100 %."""
+        self._do(self._command.feedrate, scale)
+
+    def optional_stop(self, on: bool) -> None:
+        """Let M1 stop the program."""
+        self._do(self._command.set_optional_stop, on)
+
+    def block_delete(self, on: bool) -> None:
+        """Let blocks that begin with / be skipped."""
+        self._do(self._command.set_block_delete, on)
+
+    def wait_idle(self, timeout: float) -> None:
+        """Wait until the interpreter is done and the axes stand."""
+        self.wait(self.is_idle, timeout, "end of motion")
+
+    @staticmethod
+    def is_idle(stat) -> bool:
+        """Tell whether the interpreter is done and the axes stand."""
+        done = stat.interp_state == linuxcnc.INTERP_IDLE and not stat.queue
+        return done and stat.inpos and stat.exec_state in (linuxcnc.EXEC_DONE, linuxcnc.EXEC_ERROR)
+
+    def _mode(self, mode: int) -> None:
+        if self.look().task_mode != mode:
+            self._do(self._command.mode, mode)
+            self.wait(lambda stat: stat.task_mode == mode, GRACE, f"{TASK_MODES[mode]} mode")
+
+    def _do(self, action: Callable, *arguments) -> None:
+        """Send a command and wait until LinuxCNC has taken it."""
+        action(*arguments)
+        serial = self._command.serial
+        taken = lambda stat: stat.echo_serial_number >= serial  # noqa: E731
+        self.wait(taken, GRACE, "answer from LinuxCNC")
