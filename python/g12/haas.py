@@ -41,7 +41,7 @@ class Pocket(NamedTuple):
     y: float
     move_to_centre: bool
     z: float  # depth of the first level
-    z_step: float  # signed distance to each further level
+    z_step: float  # signed distance to each further level, 0 for spring passes
     levels: int
     first_radius: float
     last_radius: float

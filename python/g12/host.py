@@ -181,14 +181,9 @@ def hand_over(interp: object, **locals_: float) -> None:
 def restore_modes(interp: object) -> None:
     """Put back the modes the block found: motion, G90/G91, G90.1/G91.1, G7/G8."""
     motion, distance, centre, diameter = state_of(interp).modes
-    codes = [
-        code
-        for code, wanted in (("G91", distance), ("G90.1", not centre), ("G7", diameter))
-        if wanted
-    ]
-    if codes:
-        interp.execute(" ".join(codes))
     interp.motion_mode = motion
+    # a block after the assignment, or the active codes shown would still be the cycle's
+    interp.execute(f"G{90 + distance} G{90 + centre}.1 G{7 if diameter else 8}")
 
 
 def message(text: str) -> None:

@@ -1,0 +1,530 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12/G13 of the Haas dialect on the stock interpreter: geometry, modes, refusals."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import proof
+from g12.cli.trace import Tracer
+from machines import SIM
+
+INCH = 25.4
+TOOLS = {1: 0.25, 2: 0.5, 3: -0.25}
+FIRST = "G20 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F10"
+
+
+@pytest.fixture(scope="module")
+def inch():
+    with Tracer(SIM / "mill_inch.ini", tools=TOOLS) as tracer:
+        yield tracer
+
+
+@pytest.fixture(scope="module")
+def metric():
+    tools = {number: diameter * INCH for number, diameter in TOOLS.items()}
+    with Tracer(SIM / "mill_mm.ini", tools=tools) as tracer:
+        yield tracer
+
+
+@pytest.fixture(scope="module")
+def spiral():
+    with Tracer(
+        SIM / "mill_inch.ini", tools=TOOLS, overrides={"G12": {"CLEARING": "spiral"}}
+    ) as tracer:
+        yield tracer
+
+
+def cut(tracer, *blocks):
+    """Trace blocks that all must be good."""
+    traced = tracer.trace_text([FIRST, *blocks])
+    assert traced.error is None, traced.error
+    return traced
+
+
+# ---------------------------------------------------------------- golden cases
+
+
+GOLDEN = [
+    ("G12 I0.75 Z-1.2 D1", [0.625], None),
+    ("G12 I0.3 K1.5 Q1. Z-1.2 D1", [0.175, 1.175, 1.375], "Q1"),
+    ("G13 I0.3 K1.5 Q0.3 Z-1.2 D1", [0.175, 0.475, 0.775, 1.075, 1.375], "Q0.3"),
+    ("G13 I.3 K1.5 Q.3 Z-1.2 D0", [0.3, 0.6, 0.9, 1.2, 1.5], None),
+    ("G12 I.3 K1. Q.4 Z-1.2 D1", [0.175, 0.575, 0.875], "Q0.4"),
+    ("G12 I.1 K.7 Q.1 Z-1.2 D0", [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], None),
+]
+
+
+@pytest.mark.parametrize(("block", "expected", "left"), GOLDEN)
+def test_golden_rings(inch, metric, block, expected, left):
+    for tracer in (inch, metric):
+        traced = cut(tracer, "G0 Z.1", block)
+        circles = proof.full_circles(traced.moves)
+        assert [circle.radius / INCH for circle in circles] == pytest.approx(expected, abs=1e-9)
+        assert {circle.turns for circle in circles} == {-1 if block.startswith("G12") else 1}
+        assert proof.levels(traced.moves) == pytest.approx([-1.2 * INCH])
+        assert [message.text[: len(f"G12: {left} ")] for message in traced.messages] == (
+            [f"{block[:3]}: {left} "] if left else []
+        )
+
+
+def test_golden_incremental_levels(inch):
+    traced = cut(inch, "G0 Z.1", "G13 G91 Z-.5 I.4 K2. Q.4 L4 D2")
+    circles = proof.full_circles(traced.moves)
+    rings = [0.15, 0.55, 0.95, 1.35, 1.75]
+    assert [c.radius / INCH for c in circles] == pytest.approx(rings * 4)
+    assert [c.z / INCH for c in circles] == pytest.approx(
+        np.repeat([-0.4, -0.9, -1.4, -1.9], len(rings))
+    )
+    assert traced.position[2] / INCH == pytest.approx(-1.9)
+    assert "G91" in traced.modes.gcodes
+
+
+def test_golden_d_of_another_tool_than_the_loaded_one(inch):
+    traced = cut(inch, "T1 M6", "G0 Z.1", "G12 I.75 Z-1 D2", "G12 I.75 Z-1")
+    assert [r / INCH for r in proof.radii(traced.moves)] == pytest.approx([0.5, 0.5])
+
+
+def test_golden_trace_of_one_pocket(inch):
+    """Clockwise, I.3 K1 Q.4 with a .25 cutter: plunge, lead-in, ring, links and rings, lead-out."""
+    traced = cut(inch, "G0 Z.1", "G12 I.3 K1. Q.4 Z-1.2 D1")
+    moves = [
+        (move.kind, *(round(value / INCH, 9) + 0.0 for value in move.end[:2]))
+        for move in proof.cutting(traced.moves)
+    ]
+    assert moves == [
+        ("feed", 0, 0),
+        ("arc", 0.175, 0),
+        ("arc", 0.175, 0),
+        ("feed", 0.175, -0.4),
+        ("arc", 0, -0.575),
+        ("arc", 0, -0.575),
+        ("feed", -0.3, -0.575),
+        ("arc", -0.875, 0),
+        ("arc", -0.875, 0),
+        ("arc", 0, 0),
+    ]
+
+
+# ---------------------------------------------------------------- what every pocket obeys
+
+
+def assert_pocket(moves, *, centre, first, last, step, levels, turns):
+    """Prove one pocket from its moves: ``first``, ``last``, ``step`` of the tool centre, mm."""
+    (span,) = proof.spans(moves)
+    circles = proof.full_circles(span)
+    assert {circle.turns for circle in circles} == {turns}
+    for circle in circles:
+        assert (circle.x, circle.y) == pytest.approx(centre, abs=1e-6)
+    assert proof.levels(span) == pytest.approx(sorted(set(levels), reverse=True), abs=1e-6)
+    points = proof.dense_points(proof.in_plane(span), step=1.0)
+    distance = np.hypot(points[:, 0] - centre[0], points[:, 1] - centre[1])
+    assert distance.max() <= last + 1e-6
+    assert (span[0].start[:2], span[-1].end[:2]) == (
+        pytest.approx(centre, abs=1e-6),
+        pytest.approx(centre, abs=1e-6),
+    )
+    per_level = len(circles) // len(levels)
+    assert len(circles) == per_level * len(levels)
+    for index, level in enumerate(levels):
+        rings = circles[index * per_level : (index + 1) * per_level]
+        assert [ring.z for ring in rings] == pytest.approx([level] * per_level, abs=1e-6)
+        assert rings[0].radius == pytest.approx(first, abs=1e-6)
+        assert rings[-1].radius == pytest.approx(last, abs=1e-6)
+        assert rings[0].radius <= rings[-1].radius
+        if step is not None:
+            assert np.diff([ring.radius for ring in rings]).max(initial=0) <= step + 1e-5
+            assert np.diff([ring.radius for ring in rings]).min(initial=1) > 0
+    for sideways in sideways_stretches(span):
+        assert proof.largest_jump(sideways) <= 0.01  # degrees; the figure to reach is 1
+
+
+def sideways_stretches(span):
+    """The motion of each level, from the end of its plunge (or of the level before)."""
+    stretches = [[]]
+    for move in span:
+        if abs(move.tangent(0.5)[2]) > 0.5:
+            stretches.append([])
+        else:
+            stretches[-1].append(move)
+    return [stretch for stretch in stretches if stretch]
+
+
+CUTTERS = st.sampled_from([(0, 0.0), (1, 0.125), (2, 0.25)])
+ROUNDED = st.decimals(min_value="0.001", max_value="3", places=4).map(float)
+
+
+@st.composite
+def pockets(draw):
+    """A valid block in inches with its numbers."""
+    number, radius = draw(CUTTERS)
+    first = radius + draw(ROUNDED)
+    outward = draw(st.booleans())
+    stepover = draw(st.decimals(min_value="0.02", max_value="1.5", places=4).map(float))
+    finished = first + draw(ROUNDED) if outward else first
+    code, levels = draw(st.sampled_from(["G12", "G13"])), draw(st.integers(1, 3))
+    incremental = draw(st.booleans())
+    words = [f"I{first:.6f}", f"Z{-0.2 if incremental else -0.4:.6f}", f"D{number}"]
+    if outward:
+        words += [f"K{finished:.6f}", f"Q{stepover:.6f}"]
+    if levels > 1 or draw(st.booleans()):
+        words.append(f"L{levels}")
+    centre = draw(st.sampled_from([None, (1.25, -0.5)]))
+    if centre:
+        words += [f"X{centre[0]}", f"Y{centre[1]}"]
+    block = " ".join([code, *draw(st.permutations(words))])
+    depths = [0.1 - 0.2 * (level + 1) for level in range(levels)] if incremental else [-0.4]
+    return {
+        "blocks": ["G91" if incremental else "G90", block],
+        "centre": [INCH * value for value in centre or (0, 0)],
+        "first": INCH * (first - radius),
+        "last": INCH * (finished - radius),
+        "step": INCH * stepover,
+        "levels": [INCH * depth for depth in depths] * (1 if incremental else levels),
+        "turns": -1 if code == "G12" else 1,
+    }
+
+
+def check_any_pocket(tracer, pocket, step):
+    traced = cut(tracer, "G0 X0 Y0 Z.1", *pocket["blocks"])
+    assert_pocket(
+        traced.moves,
+        centre=pocket["centre"],
+        first=pocket["first"],
+        last=pocket["last"],
+        step=step,
+        levels=pocket["levels"],
+        turns=pocket["turns"],
+    )
+
+
+@settings(max_examples=150, deadline=None)
+@given(pocket=pockets())
+def test_any_valid_block_cuts_its_pocket_in_rings(inch, pocket):
+    check_any_pocket(inch, pocket, pocket["step"])
+
+
+@settings(max_examples=100, deadline=None)
+@given(pocket=pockets())
+def test_any_valid_block_cuts_its_pocket_in_a_spiral(spiral, pocket):
+    check_any_pocket(spiral, pocket, None)
+
+
+@settings(max_examples=40, deadline=None)
+@given(pocket=pockets())
+def test_the_spiral_s_arcs_grow_by_half_the_increment(spiral, pocket):
+    traced = cut(spiral, "G0 X0 Y0 Z.1", *pocket["blocks"])
+    x, y = pocket["centre"]
+    ends = [
+        math.hypot(move.end[0] - x, move.end[1] - y)
+        for move in proof.in_plane(proof.cutting(traced.moves))
+    ]
+    growth = np.diff(ends[: len(ends) // len(pocket["levels"])][:-1])
+    assert growth.max(initial=0) <= pocket["step"] / 2 + 1e-5
+
+
+@pytest.mark.parametrize("clearing", ["rings", "spiral"])
+@pytest.mark.parametrize("code", ["G12", "G13"])
+@pytest.mark.parametrize("words", ["I.2 K1.3 Q.249", "I.3 K1.31 Q.2", "I.126 K.2 Q.249", "I.3"])
+def test_swept_area_is_the_finished_disc(inch, spiral, clearing, code, words):
+    tracer = {"rings": inch, "spiral": spiral}[clearing]
+    traced = cut(tracer, "G0 X1 Y2 Z.1", f"{code} {words} Z-.5 D1")
+    area = proof.swept(proof.cutting(traced.moves), 0.125 * INCH)
+    numbers = {word[0]: float(word[1:]) for word in words.split()}
+    finished = proof.disc(1 * INCH, 2 * INCH, numbers.get("K", numbers["I"]) * INCH)
+    assert area.difference(finished.buffer(0.001)).area == pytest.approx(0, abs=1e-6)
+    assert finished.buffer(-0.001).difference(area).area == pytest.approx(0, abs=1e-3)
+
+
+def test_a_stepover_above_the_tool_diameter_leaves_what_the_message_says(inch):
+    traced = cut(inch, "G0 Z.1", "G13 I.3 K1.5 Q.3 Z-.5 D1")
+    area = proof.swept(proof.cutting(traced.moves), 0.125 * INCH)
+    assert proof.disc(0, 0, 1.499 * INCH).difference(area).area > 1.0
+    assert len(traced.messages) == 1
+
+
+def test_rings_cost_at_most_a_quarter_more_than_their_circles(inch):
+    traced = cut(inch, "G0 Z.1", "G13 I.3 K1.5 Q.3 Z-.5 D1")
+    sideways = proof.in_plane(proof.cutting(traced.moves))
+    circles = sum(2 * math.pi * radius for radius in proof.radii(traced.moves))
+    leads = math.pi / 2 * (0.175 + 1.375) * INCH
+    assert proof.path_length(sideways) / (circles + leads) <= 1.25
+
+
+def test_links_stay_inside_the_larger_ring(inch):
+    traced = cut(inch, "G0 Z.1", "G13 I.3 K1.5 Q1. Z-.5 D1")
+    reached = 0.0
+    for move in reversed(proof.in_plane(proof.cutting(traced.moves))[:-1]):
+        points = proof.dense_points([move])
+        distance = np.hypot(points[:, 0], points[:, 1])
+        if move.kind == "arc" and math.dist(move.start, move.end) < proof.SAME_POINT:
+            reached = move.radius
+        assert distance.max() <= reached + 1e-6
+
+
+# ---------------------------------------------------------------- modes, units, work offsets
+
+
+POCKET = "G13 X{x} Y{y} I{i} K{k} Q{q} Z{z} D1 L2 F{f}"
+INCHES = dict(x=1.5, y=-0.75, i=0.2, k=0.9, q=0.22, z=-0.3, f=12.0)
+ABSOLUTE_START = (0.5, 0.25, 0.1)
+
+
+def matrix_program(units, distance, centres, feed, path):
+    """Return the blocks before the pocket, and the pocket, for one combination of modes."""
+    scale = 1.0 if units == "G20" else INCH
+    numbers = dict(INCHES)
+    start = " ".join(f"{axis}{v * scale:.10f}" for axis, v in zip("XYZ", ABSOLUTE_START))
+    if distance == "G91":
+        numbers["x"] -= ABSOLUTE_START[0]
+        numbers["y"] -= ABSOLUTE_START[1]
+        numbers["z"] = (numbers["z"] - ABSOLUTE_START[2]) / 2
+    block = POCKET.format(**{name: f"{value * scale:.10f}" for name, value in numbers.items()})
+    return [
+        f"{units} G90 G0 {start}",
+        "S1000 M3",
+        f"{distance} {centres} {feed} {path} F{5 * scale}",
+    ], block
+
+
+COORDINATES = {
+    "plain": {},
+    "shifted": {5221: 3.0, 5222: -2.0, 5223: 0.5},
+    "rotated": {5221: 3.0, 5222: -2.0, 5223: 0.5, 5230: 30.0},
+    "G92": {5211: 0.25, 5212: 0.125, 5213: -0.0625, 5210: 1.0, 5230: -12.5},
+    "far": {5221: 900.0, 5222: -900.0, 5230: 45.0},
+}
+
+
+def machine_path(traced):
+    # the last levels differ between G90 (spring pass) and G91 (deeper), so compare in XY
+    return proof.dense_points(proof.in_plane(proof.cutting(traced.moves)), step=5.0)[:, :2]
+
+
+@pytest.mark.parametrize("coordinates", COORDINATES)
+def test_every_combination_of_modes_makes_the_same_machine_path(inch, metric, coordinates):
+    reference = None
+    for tracer, unit in ((inch, 1.0), (metric, INCH)):
+        parameters = {
+            key: value * (1 if key in (5210, 5230) else unit)
+            for key, value in COORDINATES[coordinates].items()
+        }
+        for modes in itertools.product(
+            ("G20", "G21"),
+            ("G90", "G91"),
+            ("G90.1", "G91.1"),
+            ("G94", "G95"),
+            ("G61", "G64", "G64 P0.01"),
+        ):
+            before, block = matrix_program(*modes)
+            path = check_modes_are_restored(tracer, parameters, before, block)
+            reference = path if reference is None else reference
+            assert path == pytest.approx(reference, abs=1e-6), modes
+
+
+def check_modes_are_restored(tracer, parameters, before, block):
+    found = tracer.trace_text(before, parameters=parameters)
+    after = tracer.trace_text([*before, block], parameters=parameters)
+    assert after.error is None, after.error
+    assert after.modes.gcodes == found.modes.gcodes
+    assert after.modes.mcodes == found.modes.mcodes
+    assert after.modes.blending == found.modes.blending
+    assert after.globals == found.globals
+    return machine_path(after)
+
+
+@pytest.mark.parametrize("coordinates", ["shifted", "rotated"])
+def test_a_work_offset_moves_and_turns_the_pocket(inch, coordinates):
+    parameters = COORDINATES[coordinates]
+    before, block = matrix_program("G20", "G90", "G91.1", "G94", "G64")
+    plain = machine_path(inch.trace_text([*before, block]))
+    moved = machine_path(inch.trace_text([*before, block], parameters=parameters))
+    angle = math.radians(parameters.get(5230, 0.0))
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    offset = np.array([parameters[5221], parameters[5222]]) * INCH
+    assert moved == pytest.approx(plain @ turn.T + offset, abs=1e-6)
+
+
+@pytest.mark.parametrize("motion", ["G0", "G1", "G2", "G3", "G80"])
+def test_the_motion_mode_is_what_it_was(inch, motion):
+    first = {"G2": "G2 I.1", "G3": "G3 I.1", "G80": "G80"}.get(motion, f"{motion} X0")
+    traced = cut(inch, first, "G12 I.3 Z-.1 D1")
+    assert motion in traced.modes.gcodes
+
+
+def test_a_bare_word_after_the_cycle_moves_in_the_mode_before_it(inch):
+    traced = cut(inch, "G0 Z.1", "G12 I.3 Z-.1 D1", "Z.1", "X5.")
+    assert [move.kind for move in traced.moves[-2:]] == ["rapid", "rapid"]
+    assert traced.position[0] == pytest.approx(5 * INCH)
+
+
+def test_a_g91_in_the_block_stays(inch):
+    assert "G91" in cut(inch, "G12 G91 I.3 Z-.1 D1").modes.gcodes
+
+
+def test_g7_reads_x_as_a_diameter_and_nothing_else(inch):
+    plain = cut(inch, "G12 X1 Y.5 I.3 K.6 Q.2 Z-.1 D1")
+    diameter = cut(inch, "G7", "G12 X2 Y.5 I.3 K.6 Q.2 Z-.1 D1")
+    same_block = cut(inch, "G7 G12 X2 Y.5 I.3 K.6 Q.2 Z-.1 D1")
+    for traced in (diameter, same_block):
+        assert machine_path(traced) == pytest.approx(machine_path(plain))
+        assert "G7" in traced.modes.gcodes
+
+
+def test_the_block_s_feed_is_the_feed_of_the_cut_and_stays(inch):
+    traced = cut(inch, "G12 I.3 K.6 Q.2 Z-.1 D1 F7.5")
+    feeds = [move.feed for move in proof.cutting(traced.moves)]
+    assert feeds == pytest.approx([7.5 * INCH] * len(feeds))
+    assert traced.modes.feed == 7.5
+
+
+def test_expressions_parameters_and_case_are_the_interpreter_s(inch):
+    plain = cut(inch, "G13 I.3 K.6 Q.2 Z-.1 D1 L2")
+    written = cut(inch, "#1=.1", "#<r>=.3", "g13i#<r>k[2*#<r>]q[#1*2]z-#1d[3-2]l2")
+    assert machine_path(written) == pytest.approx(machine_path(plain))
+
+
+def test_a_tool_length_offset_does_not_move_the_path(inch):
+    with_offset = cut(inch, "G43.1 Z.5", "G12 I.3 Z-.1 D1")
+    assert proof.levels(with_offset.moves) == pytest.approx([-0.1 * INCH])
+
+
+# ---------------------------------------------------------------- the D last commanded
+
+
+@pytest.mark.parametrize(
+    ("blocks", "radius"),
+    [
+        (["T2 M6"], 0.25),
+        (["T2 M6", "G12 I.6 Z-.1 D1"], 0.125),
+        (["T2 M6", "G12 I.6 Z-.1 D0"], 0.0),
+        (["T2 M6", "G41 D1", "G40"], 0.125),
+        (["T2 M6", "G41", "G40"], 0.25),
+        (["G12 I.6 Z-.1 D2", "G42 D1", "G40"], 0.125),
+        (["G42 D1", "G40", "G12 I.6 Z-.1 D2"], 0.25),
+        (["G12 I.6 Z-.1 D0", "G42 D1", "G40"], 0.125),
+        (["G42 D1", "G40", "G12 I.6 Z-.1 D0"], 0.0),
+        (["G12 I.6 Z-.1 D1", "G21", "G20"], 0.125),
+    ],
+)
+def test_without_d_the_last_commanded_one_counts(inch, blocks, radius):
+    traced = cut(inch, *blocks, "G0 X0 Y0", "G13 I.75 Z-.1")
+    assert proof.radii(traced.moves)[-1] / INCH == pytest.approx(0.75 - radius)
+
+
+def test_without_d_the_last_one_follows_the_units(inch):
+    traced = cut(inch, "G12 I.6 Z-.1 D1", "G21", "G12 I20 Z-2 F200")
+    assert proof.radii(traced.moves)[-1] == pytest.approx(20 - 0.125 * INCH)
+
+
+def test_a_refused_block_stores_no_d(inch):
+    traced = inch.trace_text([FIRST, "G12 I.6 Z-.1 D1", "G12 I.6 Z-.1 K.3 Q.1 D2"])
+    assert traced.error
+    assert traced.state["cutter_comp_radius"] == pytest.approx(0.125)
+
+
+# ---------------------------------------------------------------- refusals
+
+
+REFUSED = [
+    ("G12 Z-1 D1", "G12: I is missing: the radius of the first circle"),
+    ("G12 I.5 D1", "G12: Z is missing: the depth of the pocket"),
+    ("G13 I.125 Z-1 D1", "G13: I0.125 must be greater than the tool radius 0.125 (D1)"),
+    ("G12 I-.5 Z-1 D1", "G12: I-0.5 must be greater than 0"),
+    ("G12 I.5 K1 Z-1 D1", "G12: K1 needs Q as well"),
+    ("G12 I.5 Q1 Z-1 D1", "G12: Q1 needs K as well"),
+    ("G12 I.5 K.5 Q.1 Z-1 D1", "G12: I0.5 must be less than K0.5"),
+    ("G12 I.5 K1 Q0 Z-1 D1", "G12: Q0 must be greater than 0"),
+    ("G12 I.5 Z-1 L0 D1", "G12: L0 must be at least 1"),
+    ("G12 I.5 Z-1 D9", "G12: D9 is not in the tool table"),
+    ("G12 I.5 Z-1 D1.5", "G12: D1.5 must be a whole number"),
+    ("G12 I.5 Z-1 D-1", "G12: D-1 must be at least 0"),
+    ("G12 I.5 Z-1 D3", "G12: D3 has the negative diameter -0.25 in the tool table"),
+    (
+        "G12 I.5 Z-1",
+        "G12: D is missing, none was commanded before and no tool is loaded",
+    ),
+    ("G12 I.5 Z-1 D1 F0", "G12: F0 must be greater than 0"),
+    ("G12 I.5 Z-1 D1 G4 P1", "G12: G4 cannot stand in the same block"),
+    ("G93 G12 I.5 Z-1 D1 F1", "G12: needs feed per minute or revolution (G94, G95), but G93"),
+    ("G18 G12 I.5 Z-1 D1", "G12: needs the XY plane G17, but G18 is active"),
+    ("G19 G13 I.5 Z-1 D1", "G13: needs the XY plane G17, but G19 is active"),
+    ("G41 D1 G12 I.5 Z-1", "G12: brings its own cutter compensation: program G40 first"),
+    *(
+        (f"G12 I.5 Z-1 D1 {word}", f"G12: {word} is not a word of this cycle, which knows X Y Z")
+        for word in ("E1", "H1", "J1", "P1", "R1", "@1", "^1")
+    ),
+]
+
+
+def assert_refused(tracer, before, block, message):
+    """The block moves nothing, changes nothing and says what is wrong."""
+    found = tracer.trace_text(before)
+    assert found.error is None, found.error
+    refused = tracer.trace_text([*before, block])
+    assert refused.error is not None
+    assert refused.error.line == len(before) + 1
+    assert refused.error.text.startswith(message)
+    assert len(refused.error.text) <= 255
+    assert proof.moving(refused.moves) == proof.moving(found.moves)
+    assert refused.messages == found.messages
+    assert refused.modes.gcodes == found.modes.gcodes
+    assert refused.globals == found.globals
+    assert refused.state["motion_mode"] == found.state["motion_mode"]
+
+
+@pytest.mark.parametrize(("block", "message"), REFUSED)
+def test_a_refused_block_names_word_rule_and_value(inch, block, message):
+    assert_refused(inch, [FIRST, "G1 X1 Y1 Z.1"], block, message)
+
+
+def test_a_refused_block_keeps_the_radius_of_the_last_d(inch):
+    for block, _ in REFUSED:
+        if "G41" not in block:
+            traced = inch.trace_text([FIRST, "G12 I.6 Z-.1 D2", block])
+            assert traced.state["cutter_comp_radius"] == pytest.approx(0.25)
+
+
+BREAKING = st.sampled_from(
+    [
+        lambda words: {**words, "I": 0.1},
+        lambda words: {**words, "I": -words["I"]},
+        lambda words: {**words, "K": words["I"] * 0.99, "Q": 0.1},
+        lambda words: {**words, "K": words["I"]} | {"Q": 0.1},
+        lambda words: {**words, "K": words["I"] + 1},
+        lambda words: {**words, "Q": 0.25},
+        lambda words: {**words, "L": 0},
+        lambda words: {**words, "D": 1.25},
+        lambda words: {**words, "D": 8},
+        lambda words: {**words, "F": 0},
+        lambda words: {**words, "R": 0.5},
+        lambda words: {**words, "J": 0.5},
+        lambda words: {letter: value for letter, value in words.items() if letter != "I"},
+        lambda words: {letter: value for letter, value in words.items() if letter != "Z"},
+    ]
+)
+
+
+@settings(max_examples=120, deadline=None)
+@given(
+    code=st.sampled_from(["G12", "G13"]),
+    first=st.floats(0.2, 2.0),
+    depth=st.floats(-2.0, 2.0),
+    breaking=BREAKING,
+    mode=st.sampled_from(["G90", "G91", "G91 G61", "G90.1", "G95 S100 M3 F.1", "G7"]),
+)
+def test_any_bad_block_is_refused(inch, code, first, depth, breaking, mode):
+    words = breaking({"I": first, "Z": depth, "D": 1})
+    block = " ".join([code, *(f"{letter}{value:.6f}" for letter, value in words.items())])
+    block = block.replace("L0.000000", "L0")
+    assert_refused(inch, [FIRST, mode, "G1 X1 Z.1"], block, f"{code}: ")
+
+
+def test_the_program_goes_on_after_an_operator_message(inch):
+    traced = cut(inch, "G12 I.3 K1 Q.4 Z-.1 D1", "G0 Z1")
+    assert traced.position[2] == pytest.approx(INCH)
+    assert [message.line for message in traced.messages] == [2]

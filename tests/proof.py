@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Independent geometry: what was cut, derived from emitted moves alone.
+
+Nothing here knows the planners. Lengths are mm, as in a trace.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from shapely.geometry import LineString, Point
+from shapely.ops import unary_union
+
+SAME_POINT = 1e-6  # mm
+CHORD_ERROR = 1e-4  # mm, of the polylines that stand for arcs
+
+
+class Circle(NamedTuple):
+    """A full circle that was cut; ``turns`` counts positive counterclockwise."""
+
+    x: float
+    y: float
+    z: float
+    radius: float
+    turns: int
+
+
+def moving(moves):
+    """Return the moves that go anywhere at all."""
+    return [move for move in moves if move.length > SAME_POINT]
+
+
+def cutting(moves):
+    """Return the moves at feed that go anywhere."""
+    return [move for move in moving(moves) if move.kind != "rapid"]
+
+
+def full_circles(moves):
+    """Return the full circles in the order they were cut."""
+    return [
+        Circle(*move.centre[:2], move.end[2], move.radius, move.turns)
+        for move in moves
+        if move.kind == "arc" and math.dist(move.start[:3], move.end[:3]) < SAME_POINT
+    ]
+
+
+def radii(moves):
+    """Return the radii of the full circles in the order they were cut."""
+    return [circle.radius for circle in full_circles(moves)]
+
+
+def spans(moves):
+    """Return the moves at feed, one list per stretch between two rapids."""
+    found = [[]]
+    for move in moving(moves):
+        if move.kind == "rapid":
+            found.append([])
+        else:
+            found[-1].append(move)
+    return [span for span in found if span]
+
+
+def in_plane(moves):
+    """Return the moves that go sideways (not the plunge)."""
+    return [move for move in moves if math.hypot(*move.tangent(0.5)[:2]) > 0.5]
+
+
+def largest_jump(moves):
+    """Return the largest change of direction between consecutive moves, in degrees."""
+    jumps = [
+        math.degrees(math.acos(np.clip(np.dot(before.tangent(1.0), after.tangent(0.0)), -1, 1)))
+        for before, after in zip(moves, moves[1:])
+    ]
+    return max(jumps, default=0.0)
+
+
+def path_length(moves):
+    """Return the length of the path."""
+    return sum(move.length for move in moves)
+
+
+def polyline(move):
+    """Return points along a move, close enough for `CHORD_ERROR`."""
+    pieces = 1
+    if move.kind == "arc":
+        step = 2 * math.acos(max(0.0, 1 - CHORD_ERROR / max(move.radius, CHORD_ERROR)))
+        pieces = max(8, math.ceil(abs(move.sweep) / step))
+    return [move.point(index / pieces)[:2] for index in range(pieces + 1)]
+
+
+def swept(moves, cutter_radius):
+    """Return the area in XY that a cutter of that radius sweeps (shapely)."""
+    return unary_union([LineString(polyline(move)).buffer(cutter_radius, 64) for move in moves])
+
+
+def disc(x, y, radius):
+    """Return the full disc (shapely)."""
+    return Point(x, y).buffer(radius, 512)
+
+
+def levels(moves):
+    """Return the distinct Z of sideways motion, from the top down."""
+    depths = {round(move.end[2], 6) + 0.0 for move in in_plane(cutting(moves))}
+    return sorted(depths, reverse=True)
+
+
+def dense_points(moves, step=0.2):
+    """Return points (n, 3) along the moves, at most ``step`` apart, ends included."""
+    points = []
+    for move in moves:
+        count = max(2, math.ceil(move.length / step) + 1)
+        points += [move.point(fraction)[:3] for fraction in np.linspace(0, 1, count)]
+    return np.array(points)

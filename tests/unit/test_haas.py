@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The Haas planner by itself: rules, counts and messages, without LinuxCNC."""
+
+import math
+
+import pytest
+
+from g12.context import Context, Tool
+from g12.errors import Refusal
+from g12.haas import plan_pocket
+from g12.words import Words
+
+TABLE = {1: Tool(1, 0.125), 2: Tool(2, 0.25), 3: Tool(3, -0.125), 4: Tool(4, 0.0)}
+FOUND = Context(
+    inch=True,
+    x=0.0,
+    y=0.0,
+    z=0.1,
+    incremental=False,
+    plane="G17",
+    inverse_time=False,
+    feed=10.0,
+    compensated=False,
+    spindle_tool=TABLE[1],
+    last_radius=None,
+    tool_in_table=TABLE.get,
+)
+
+
+def plan(clearing="rings", found=FOUND, **values):
+    return plan_pocket(Words("G12", values), found, clearing)
+
+
+def ring_radii(pocket):
+    """Walk the links as the NGC body does."""
+    radii, grow = [pocket.first_radius], pocket.first_grow
+    for left in range(pocket.links, 0, -1):
+        radii.append(radii[-1] + grow)
+        if left == 2:
+            grow *= 1 - pocket.shrink
+    return radii
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (dict(I=0.75, Z=-1.2, D=1), [0.625]),
+        (dict(I=0.3, K=1.5, Q=1.0, Z=-1.2, D=1), [0.175, 1.175, 1.375]),
+        (dict(I=0.3, K=1.5, Q=0.3, Z=-1.2, D=1), [0.175, 0.475, 0.775, 1.075, 1.375]),
+        (dict(I=0.4, K=2.0, Q=0.4, Z=-0.5, D=2), [0.15, 0.55, 0.95, 1.35, 1.75]),
+        (dict(I=0.3, K=1.5, Q=0.3, Z=-1.2, D=0), [0.3, 0.6, 0.9, 1.2, 1.5]),
+        (dict(I=0.3, K=1.0, Q=0.4, Z=-1.2, D=1), [0.175, 0.575, 0.875]),
+        (dict(I=0.1, K=0.7, Q=0.1, Z=-1.2, D=0), [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]),
+        (dict(I=0.3, K=0.35, Q=0.3, Z=-1.2, D=1), [0.175, 0.225]),
+    ],
+)
+def test_rings_end_at_the_finished_radius(words, expected):
+    assert ring_radii(plan(**words)) == pytest.approx(expected, abs=1e-12)
+
+
+def test_spiral_grows_by_half_the_increment_each_half_turn():
+    pocket = plan("spiral", I=0.3, K=0.7, Q=0.2, Z=-1.0, D=1)
+    assert ring_radii(pocket) == pytest.approx([0.175, 0.275, 0.375, 0.475, 0.575])
+    clamped = plan("spiral", I=0.3, K=0.65, Q=0.2, Z=-1.0, D=1)
+    assert ring_radii(clamped) == pytest.approx([0.175, 0.275, 0.375, 0.475, 0.525])
+
+
+def test_rounding_of_the_increment_makes_no_sliver():
+    third = plan(I=1 / 3, K=1.0, Q=1 / 3, Z=-1.0, D=1)
+    assert third.links == 2
+    millimetres = FOUND._replace(inch=False, spindle_tool=None, last_radius=0.0)
+    assert plan(found=millimetres, I=2.54, K=17.78, Q=2.54, Z=-1.0).links == 6
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (dict(Z=-1.0, D=1), "G12: I is missing: the radius of the first circle"),
+        (dict(I=0.5, D=1), "G12: Z is missing: the depth of the pocket"),
+        (dict(I=0.125, Z=-1.0, D=1), "G12: I0.125 must be greater than the tool radius 0.125 (D1)"),
+        (dict(I=0.0, Z=-1.0, D=0), "G12: I0 must be greater than 0"),
+        (dict(I=-0.5, Z=-1.0, D=0), "G12: I-0.5 must be greater than 0"),
+        (
+            dict(I=0.12505, Z=-1.0, D=1),
+            "G12: I0.12505 must exceed the tool radius 0.125 (D1) by at least 0.0001",
+        ),
+        (dict(I=0.5, K=1.0, Z=-1.0, D=1), "G12: K1 needs Q as well"),
+        (dict(I=0.5, Q=0.2, Z=-1.0, D=1), "G12: Q0.2 needs K as well"),
+        (dict(I=0.5, K=1.0, Q=0.0, Z=-1.0, D=1), "G12: Q0 must be greater than 0"),
+        (dict(I=0.5, K=1.0, Q=-0.1, Z=-1.0, D=1), "G12: Q-0.1 must be greater than 0"),
+        (dict(I=0.5, K=0.5, Q=0.1, Z=-1.0, D=1), "G12: I0.5 must be less than K0.5"),
+        (dict(I=0.5, K=0.4, Q=0.1, Z=-1.0, D=1), "G12: I0.5 must be less than K0.4"),
+        (dict(I=0.5, Z=-1.0, L=0, D=1), "G12: L0 must be at least 1"),
+        (dict(I=0.5, Z=-1.0, D=-1), "G12: D-1 must be at least 0"),
+        (dict(I=0.5, Z=-1.0, D=1.5), "G12: D1.5 must be a whole number"),
+        (dict(I=0.5, Z=-1.0, D=77), "G12: D77 is not in the tool table"),
+        (
+            dict(I=0.5, Z=-1.0, D=3),
+            "G12: D3 has the negative diameter -0.25 in the tool table",
+        ),
+        (
+            dict(I=0.5, Z=-1.0, D=1, R=0.1),
+            "G12: R0.1 is not a word of this cycle, which knows X Y Z I K Q L D F",
+        ),
+        (
+            dict(I=0.3, K=10.0, Q=0.00001, Z=-1.0, D=1),
+            "G12: Q0.00001 and L make 970001 circles, the most is 100000",
+        ),
+    ],
+)
+def test_a_bad_block_is_refused_by_name(words, message):
+    with pytest.raises(Refusal) as refused:
+        plan(**words)
+    assert refused.value.message == message
+
+
+@pytest.mark.parametrize(
+    ("modes", "message"),
+    [
+        (dict(plane="G18"), "G12: needs the XY plane G17, but G18 is active"),
+        (
+            dict(inverse_time=True),
+            "G12: needs feed per minute or revolution (G94, G95), but G93 is active",
+        ),
+        (
+            dict(compensated=True),
+            "G12: brings its own cutter compensation: program G40 first",
+        ),
+        (dict(feed=0.0), "G12: F0 must be greater than 0"),
+        (
+            dict(spindle_tool=None),
+            "G12: D is missing, none was commanded before and no tool is loaded",
+        ),
+    ],
+)
+def test_a_mode_that_cannot_work_is_refused(modes, message):
+    with pytest.raises(Refusal) as refused:
+        plan(found=FOUND._replace(**modes), I=0.75, Z=-1.0)
+    assert refused.value.message == message
+
+
+def test_the_cutter_is_the_block_s_then_the_last_commanded_then_the_loaded_one():
+    assert plan(I=0.75, Z=-1.0, D=2).cutter_radius == 0.25
+    assert plan(found=FOUND._replace(last_radius=0.2), I=0.75, Z=-1.0).cutter_radius == 0.2
+    assert plan(found=FOUND._replace(last_radius=0.0), I=0.75, Z=-1.0).cutter_radius == 0.0
+    assert plan(I=0.75, Z=-1.0).cutter_radius == 0.125
+    assert plan(I=0.75, Z=-1.0, D=0).cutter_radius == 0.0
+
+
+def test_levels_repeat_in_g90_and_go_deeper_in_g91():
+    absolute = plan(I=0.75, Z=-1.0, L=3, D=1)
+    assert (absolute.z, absolute.z_step, absolute.levels) == (-1.0, 0.0, 3)
+    incremental = plan(found=FOUND._replace(incremental=True), I=0.75, Z=-0.5, L=4, D=1)
+    assert incremental.z == pytest.approx(-0.4)
+    assert (incremental.z_step, incremental.levels) == (-0.5, 4)
+
+
+def test_x_and_y_name_the_centre():
+    found = FOUND._replace(x=1.0, y=2.0)
+    here = plan(found=found, I=0.75, Z=-1.0)
+    assert (here.x, here.y, here.move_to_centre) == (1.0, 2.0, False)
+    absolute = plan(found=found, X=5.0, I=0.75, Z=-1.0)
+    assert (absolute.x, absolute.y, absolute.move_to_centre) == (5.0, 2.0, True)
+    incremental = plan(found=found._replace(incremental=True), Y=5.0, I=0.75, Z=-1.0)
+    assert (incremental.x, incremental.y) == (1.0, 7.0)
+
+
+def test_material_left_is_a_message_not_an_error():
+    between = plan(I=0.3, K=1.5, Q=0.3, Z=-1.0, D=1).message
+    assert between == (
+        "G12: Q0.3 is greater than the tool diameter 0.25: material is left between the rings"
+    )
+    core = plan(I=0.4, K=1.5, Q=0.25, Z=-1.0, D=1).message
+    assert core == (
+        "G12: I0.4 is greater than 1.5 x the tool diameter 0.25: a core is left in the centre"
+    )
+    assert plan(I=0.3, K=1.5, Q=0.25, Z=-1.0, D=1).message is None
+    assert plan(I=0.75, Z=-1.0, D=1).message is None
+    assert plan(I=0.3, K=1.5, Q=0.3, Z=-1.0, D=0).message is None
+
+
+def test_a_table_diameter_with_conversion_noise_changes_nothing():
+    noisy = FOUND._replace(tool_in_table=lambda number: Tool(number, 0.125 + 1e-11))
+    assert plan(found=noisy, I=0.375, K=1.5, Q=0.25, Z=-1.0, D=1).message is None
+    with pytest.raises(Refusal, match="greater than the tool radius"):
+        plan(found=noisy, I=0.125, Z=-1.0, D=1)
+    assert math.isclose(plan(found=noisy, I=0.3, K=1.0, Q=0.4, Z=-1.0, D=1).links, 2)

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Section [G12]: read once, refused by name."""
+
+from dataclasses import fields
+
+import pytest
+
+from g12.errors import Refusal
+from g12.settings import TABLE, Settings, section_entries, settings_from_entries, settings_from_ini
+
+
+def test_every_key_of_the_table_is_a_setting():
+    assert [field.name.upper() for field in fields(Settings)] == list(TABLE)
+
+
+def test_without_a_section_every_default_holds(tmp_path):
+    ini = tmp_path / "machine.ini"
+    ini.write_text("[EMC]\nMACHINE = x\n")
+    assert settings_from_ini(ini) == settings_from_ini(None) == Settings()
+
+
+def test_a_section_is_read(tmp_path):
+    ini = tmp_path / "machine.ini"
+    ini.write_text("[G12]\n# a comment\nCLEARING = Spiral\n\nPOLAR_TOLERANCE=0.01\n[EMC]\nX=1\n")
+    settings = settings_from_ini(ini)
+    assert settings.clearing == "spiral"
+    assert settings.polar_tolerance == 0.01
+
+
+def test_only_the_first_section_of_the_name_counts():
+    text = "[G12]\nCLEARING = spiral\n[A]\n[G12]\nCLEARING = rings\n"
+    assert section_entries(text, "G12") == [("CLEARING", "spiral")]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("CLEARING", "zigzag", "[G12] CLEARING = zigzag: must be rings or spiral"),
+        ("POLAR_TOLERANCE", "0", "[G12] POLAR_TOLERANCE = 0: must be a number above 0"),
+        ("POLAR_TOLERANCE", "nan", "[G12] POLAR_TOLERANCE = nan: must be a number above 0"),
+        ("YASNAC_TRAVERSE", "-1", "[G12] YASNAC_TRAVERSE = -1: must be a number from 0"),
+        ("YASNAC_TRAVERSE", "fast", "[G12] YASNAC_TRAVERSE = fast: must be a number from 0"),
+        ("POLAR_G0", "feed", "[G12] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0"),
+    ],
+)
+def test_an_illegal_value_names_key_and_legal_values(key, value, message):
+    with pytest.raises(Refusal) as refused:
+        settings_from_entries([(key, value)])
+    assert refused.value.message == message
+
+
+def test_an_unknown_key_names_the_known_ones():
+    with pytest.raises(Refusal) as refused:
+        settings_from_entries([("CLERING", "rings")])
+    assert refused.value.message.startswith("[G12] CLERING is not a setting. Known: CLEARING, ")
+    assert len(refused.value.message) <= 255
