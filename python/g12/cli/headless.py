@@ -388,15 +388,18 @@ class Machine:
             "command": ["linuxcnc", "-r", str(path)],
             "environment": self._environment(),
             "copies": {str(path.parent): {path.name: self.ini.text}},
+            "scratch": str(self._folder),
         }
         with open(self._folder / "log.txt", "wb") as log:
             self._process = subprocess.Popen(
-                [PYTHON, str(ISOLATE), json.dumps(job)],
+                [PYTHON, str(ISOLATE)],
                 stdin=subprocess.PIPE,
                 stdout=log,
                 stderr=log,
                 start_new_session=True,
             )
+        self._process.stdin.write(json.dumps(job).encode() + b"\n")
+        self._process.stdin.flush()
 
     def _environment(self) -> dict[str, str]:
         kept = {key: value for key, value in os.environ.items() if key not in NO_SCREEN}

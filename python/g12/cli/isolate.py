@@ -6,8 +6,9 @@ outside can reach it or be reached.  Files outside keep their names; directories
 job are replaced by copies that take all writing.  Everything ends with this process, and this
 process ends when its standard input is closed.
 
-The job is a JSON object on the command line: ``command``, ``environment`` and ``copies``, a map
-of directory to the files that stand in it in place of the real ones.
+The job is a line of JSON on standard input: ``command``, ``environment``, ``copies``, a map of
+directory to the files that stand in it in place of the real ones, and ``scratch``, a directory
+to be removed if the other end of standard input goes away.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import ctypes
 import json
 import os
 import select
+import shutil
 import signal
 import stat
 import sys
@@ -43,7 +45,7 @@ def check(result: int, action: str) -> None:
 def unshare() -> None:
     """Enter new namespaces; an ordinary user gets a user namespace with the same user."""
     uid, gid = os.geteuid(), os.getegid()
-    flags = CLONE_NEWNS | CLONE_NEWIPC | CLONE_NEWPID | CLONE_NEWNET
+    flags = CLONE_NEWIPC | CLONE_NEWPID | CLONE_NEWNET
     if uid == 0:
         check(libc.unshare(flags), "new namespaces")
         return
@@ -112,7 +114,8 @@ def copy_file(source: str, target: str) -> None:
 
 
 def prepare(job: dict) -> None:
-    """Set up the mounts that the command sees."""
+    """Set up the mounts that the command sees; the supervising process keeps the real ones."""
+    check(libc.unshare(CLONE_NEWNS), "new mount namespace")
     mount("none", "/", None, MS_REC | MS_PRIVATE)
     mount("proc", "/proc", "proc", 0)
     mirror("/tmp", {}, copy=False)
@@ -131,22 +134,25 @@ def first_process(job: dict) -> int:
             return os.waitstatus_to_exitcode(status)
 
 
-def supervise(child: int) -> int:
+def supervise(child: int, scratch: str) -> int:
     """Wait for process 1, and end it when standard input is closed."""
     descriptor = os.pidfd_open(child)
     ready, _, _ = select.select([descriptor, sys.stdin], [], [])
     if descriptor not in ready:
         os.kill(child, signal.SIGKILL)
-    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    if descriptor not in ready:
+        shutil.rmtree(scratch, ignore_errors=True)
+    return code
 
 
 def main() -> int:
-    """Run the job named on the command line and return its exit code."""
-    job = json.loads(sys.argv[1])
+    """Run the job and return its exit code."""
+    job = json.loads(sys.stdin.readline())
     unshare()
     child = os.fork()
     if child:
-        return supervise(child)
+        return supervise(child, job["scratch"])
     try:
         code = first_process(job)
     except OSError as error:

@@ -34,6 +34,7 @@ LAUNCH = (
 )
 MM_PER_INCH = 25.4
 SAME_POINT = 1e-6  # mm; an arc whose ends are nearer is a full circle, as in motion
+START_BLOCKS = {1.0: "G21 G64 P0.0254 Q0", MM_PER_INCH: "G20 G64 P0.001 Q0"}  # as task starts
 NO_END = "File ended with no percent sign or program end"
 AXES = "XYZABCUVW"
 THIRD_AXIS = {17: 2, 18: 1, 19: 0}
@@ -396,7 +397,7 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
         "random": ini.get("EMCIO", "RANDOM_TOOLCHANGER", "0") not in ("0", ""),
         "units": 1.0 / unit,
         "axis_mask": sum(1 << AXES.index(letter) for letter in set(letters)),
-        "setup": [f"G{20 if unit == MM_PER_INCH else 21} G64", *([startup] if startup else [])],
+        "setup": [START_BLOCKS[unit], *([startup] if startup else [])],
     }
 
 
