@@ -23,15 +23,21 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from .context import XY, Context, Tool
+from .context import Context, Tool
+from .cycle import (
+    ROUNDING_MM,
+    SMALLEST_RING_MM,
+    check_count,
+    check_modes,
+    commanded_tool,
+    coordinate,
+    sound_tool,
+)
 from .errors import number
 from .geometry import steps_between
 from .words import Words
 
 KNOWN_WORDS = "X Y Z I K Q L D F"
-SMALLEST_RING_MM = 0.00254  # its half circles have the smallest radius LinuxCNC accepts
-ROUNDING_MM = 1e-6  # lengths closer than this are equal
-MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
 
 
 class Pocket(NamedTuple):
@@ -70,7 +76,7 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
     finished, stepover = outward or (first, first)
     growth = stepover / 2 if clearing == "spiral" else stepover
     links = steps_between(first, finished, growth, context.length(ROUNDING_MM))
-    check_count(words, stepover, (links + 1) * levels)
+    check_count(words, (links + 1) * levels, f"Q{number(stepover)} and L make")
     last_grow = finished - first - growth * (links - 1)
     return Pocket(
         x=x,
@@ -90,52 +96,19 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
     )
 
 
-def check_modes(words: Words, context: Context) -> None:
-    """Refuse the modes in which no pocket can be cut."""
-    if context.plane != XY:
-        raise words.refuse(f"needs the XY plane G17, but {context.plane} is active")
-    if context.inverse_time:
-        raise words.refuse("needs feed per minute or revolution (G94, G95), but G93 is active")
-    if context.compensated:
-        raise words.refuse("brings its own cutter compensation: program G40 first")
-    if not context.feed > 0:
-        raise words.refuse(f"F{number(context.feed)} must be greater than 0")
-
-
-def coordinate(word: float | None, present: float, context: Context) -> float:
-    """Return the absolute coordinate of a word in G90 or G91; without it, the present one."""
-    if word is None:
-        return present
-    return present + word if context.incremental else word
-
-
 def choose_cutter(words: Words, context: Context) -> tuple[Tool, str]:
     """Return the cutter of the block and where it comes from, for messages.
 
     D in the block, else the D last commanded, else the tool in the spindle.
     """
-    tool_number = words.take_whole("D", least=0)
-    if tool_number is not None:
-        return tool_of_number(words, context, tool_number), f"D{tool_number}"
+    tool = commanded_tool(words, context)
+    if tool is not None:
+        return sound_tool(words, tool), f"D{tool.number}"
     if context.last_radius is not None:
         return Tool(0, context.last_radius), "the D last commanded"
     if context.spindle_tool is None:
         raise words.refuse("D is missing, none was commanded before and no tool is loaded")
     return context.spindle_tool, f"T{context.spindle_tool.number} in the spindle"
-
-
-def tool_of_number(words: Words, context: Context, tool_number: int) -> Tool:
-    """Return the tool that D names; D0 is a cutter without size."""
-    if tool_number == 0:
-        return Tool(0, 0.0)
-    tool = context.tool_in_table(tool_number)
-    if tool is None:
-        raise words.refuse(f"D{tool_number} is not in the tool table")
-    if tool.radius < 0:
-        raise words.refuse(
-            f"D{tool_number} has the negative diameter {number(2 * tool.radius)} in the tool table"
-        )
-    return tool
 
 
 def check_radii(
@@ -163,14 +136,6 @@ def check_radii(
         )
     if outward and outward[0] <= first + rounding:
         raise words.refuse(f"I{number(first)} must be less than K{number(outward[0])}")
-
-
-def check_count(words: Words, stepover: float, circles: int) -> None:
-    """Refuse a stepover so small that the block would never end."""
-    if circles > MOST_CIRCLES:
-        raise words.refuse(
-            f"Q{number(stepover)} and L make {circles} circles, the most is {MOST_CIRCLES}"
-        )
 
 
 def left_material(

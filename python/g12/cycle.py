@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the cycles of every dialect have in common: modes, coordinates, the tool that D names.
+
+Lengths are in program units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from .context import XY, Context, Tool
+from .errors import number
+from .words import Words
+
+SMALLEST_RING_MM = 0.00254  # its half circles have the smallest radius LinuxCNC accepts
+ROUNDING_MM = 1e-6  # lengths closer than this are equal
+MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
+
+
+def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,)) -> None:
+    """Refuse the modes in which no circle can be cut."""
+    if context.plane not in planes:
+        wanted = "the XY plane G17" if len(planes) == 1 else f"plane {', '.join(planes)}"
+        raise words.refuse(f"needs {wanted}, but {context.plane} is active")
+    if context.inverse_time:
+        raise words.refuse("needs feed per minute or revolution (G94, G95), but G93 is active")
+    if context.compensated:
+        raise words.refuse("brings its own cutter compensation: program G40 first")
+    if not context.feed > 0:
+        raise words.refuse(f"F{number(context.feed)} must be greater than 0")
+
+
+def coordinate(word: float | None, present: float, context: Context) -> float:
+    """Return the absolute coordinate of a word in G90 or G91; without it, the present one."""
+    if word is None:
+        return present
+    return present + word if context.incremental else word
+
+
+def commanded_tool(words: Words, context: Context) -> Tool | None:
+    """Return the tool that D names, None without D; D0 is a cutter without size."""
+    tool_number = words.take_whole("D", least=0)
+    if tool_number is None:
+        return None
+    if tool_number == 0:
+        return Tool(0, 0.0)
+    tool = context.tool_in_table(tool_number)
+    if tool is None:
+        raise words.refuse(f"D{tool_number} is not in the tool table")
+    return tool
+
+
+def sound_tool(words: Words, tool: Tool) -> Tool:
+    """Return the tool; refuse a negative diameter."""
+    if tool.radius < 0:
+        raise words.refuse(
+            f"D{tool.number} has the negative diameter {number(2 * tool.radius)} in the tool table"
+        )
+    return tool
+
+
+def check_count(words: Words, circles: int, cause: str) -> None:
+    """Refuse steps so small that the block would never end; ``cause`` names their words."""
+    if circles > MOST_CIRCLES:
+        raise words.refuse(f"{cause} {circles} circles, the most is {MOST_CIRCLES}")
