@@ -25,7 +25,6 @@ def prepare_haas(interp: object, counterclockwise: bool) -> int:
         growth=pocket.first_grow / pocket.first_radius,
         shrink=pocket.shrink,
         keep=0.0 if pocket.z_step else pocket.first_radius / pocket.last_radius,
-        restart=pocket.first_radius if pocket.z_step else 0.0,
         rings=not pocket.spiral,
         arc=3 if counterclockwise else 2,
         hand=1 if counterclockwise else -1,

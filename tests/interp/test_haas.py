@@ -144,7 +144,7 @@ def assert_pocket(moves, *, centre, first, last, step, levels, turns):
 
 
 def sideways_stretches(span):
-    """The motion of each level, from the end of its plunge (or of the level before)."""
+    """Return the motion of each level, from the end of its plunge (or of the level before)."""
     stretches = [[]]
     for move in span:
         if abs(move.tangent(0.5)[2]) > 0.5:
@@ -160,7 +160,7 @@ ROUNDED = st.decimals(min_value="0.001", max_value="3", places=4).map(float)
 
 @st.composite
 def pockets(draw):
-    """A valid block in inches with its numbers."""
+    """Return a valid block in inches with its numbers."""
     number, radius = draw(CUTTERS)
     first = radius + draw(ROUNDED)
     outward = draw(st.booleans())
@@ -462,7 +462,7 @@ REFUSED = [
 
 
 def assert_refused(tracer, before, block, message):
-    """The block moves nothing, changes nothing and says what is wrong."""
+    """Check that the block moves nothing, changes nothing and says what is wrong."""
     found = tracer.trace_text(before)
     assert found.error is None, found.error
     refused = tracer.trace_text([*before, block])
