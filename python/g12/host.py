@@ -23,7 +23,7 @@ MODAL_0, DIAMETER = 0, 15  # indices into a block's g_modes
 DIAMETER_ACTIVE = 15  # index into active_g_codes
 G7 = 70
 INCREMENTAL = 1  # distance_mode and ijk_distance_mode: 0 absolute, 1 incremental
-INVERSE_TIME = 1  # feed_mode
+INVERSE_TIME, PER_REVOLUTION = 1, 2  # feed_mode
 INCH = 1  # length_units
 PLANES = {1: XY, 2: YZ, 3: XZ}
 
@@ -44,12 +44,14 @@ class CycleState:
     """What the package remembers of one interpreter; it lives on the interpreter object.
 
     ``modes`` are those a cycle found and has to put back; ``zero_radius_commanded`` tells D0
-    from no D at all, which the interpreter's own last compensation radius cannot.
+    from no D at all, which the interpreter's own last compensation radius cannot. ``first_plane``
+    is the circle mill's modal reference plane in mm and the program that commanded it.
     """
 
     def __init__(self) -> None:
         self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
         self.zero_radius_commanded = False
+        self.first_plane: tuple[float, str | None] | None = None
 
 
 def state_of(interp: object) -> CycleState:
@@ -102,6 +104,16 @@ def words_of_block(interp: object) -> Words:
     return words
 
 
+def entries_of_call(interp: object, sub: str, count: int) -> list[float] | None:
+    """Return the entries of ``o<sub> call`` if the code stands alone in that sub, else None.
+
+    The frame of the remap is on top of the sub's; #1 to #30 are still the sub's in a prolog.
+    """
+    if interp.sub_context[interp.call_level - 1].subname != sub:
+        return None
+    return [interp.params[index] for index in range(1, count + 1)]
+
+
 def program_units_per_machine_unit(interp: object) -> float:
     """Return the factor from INI file and tool table lengths to the program's."""
     millimetres = 1 / emccanon.GET_EXTERNAL_LENGTH_UNITS()
@@ -141,6 +153,33 @@ def remember_radius(interp: object, radius: float) -> None:
     state_of(interp).zero_radius_commanded = radius == 0
 
 
+def main_program(interp: object) -> str | None:
+    """Return the file at the bottom of the call stack; in MDI the one that is open, if any."""
+    return interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
+
+
+def millimetres_per_unit(interp: object) -> float:
+    """Return the program's unit in mm."""
+    return MM_PER_INCH if interp.length_units == INCH else 1.0
+
+
+def first_plane(interp: object) -> float | None:
+    """Return the circle mill's first reference plane as last commanded by this program.
+
+    Another program's would send the tool to a height that this one never mentions.
+    """
+    plane = state_of(interp).first_plane
+    if plane is None or plane[1] != main_program(interp):
+        return None
+    return plane[0] / millimetres_per_unit(interp)
+
+
+def remember_first_plane(interp: object, height: float) -> None:
+    """Store the first reference plane as the last commanded."""
+    plane = height * millimetres_per_unit(interp), main_program(interp)
+    state_of(interp).first_plane = plane
+
+
 def snapshot(interp: object) -> Context:
     """Return what the block finds: modes, units, position, tools."""
     return Context(
@@ -157,6 +196,16 @@ def snapshot(interp: object) -> Context:
         last_radius=last_radius(interp),
         tool_in_table=functools.partial(tool_in_table, interp),
     )
+
+
+def per_revolution(interp: object) -> bool:
+    """Tell whether feeds are per revolution (G95)."""
+    return interp.feed_mode == PER_REVOLUTION
+
+
+def traverse_feed(interp: object) -> float:
+    """Return the feed per minute of Yasnac's fast moves in program units, 0 for rapids."""
+    return SETTINGS.yasnac_traverse * program_units_per_machine_unit(interp)
 
 
 def diameter_mode(interp: object) -> bool:

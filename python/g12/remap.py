@@ -5,8 +5,11 @@ from __future__ import annotations
 
 from interpreter import INTERP_OK
 
-from . import host
+from . import circle_mill, host, mitsubishi, yasnac
 from .haas import plan_pocket
+from .words import Words
+
+CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
 
 
 def prepare_haas(interp: object, counterclockwise: bool) -> int:
@@ -45,6 +48,84 @@ def g12_haas(self, **words):
 def g13_haas(self, **words):
     """Prolog of G13, counterclockwise circular pocket."""
     return prepare_haas(self, counterclockwise=True)
+
+
+def prepare_yasnac(interp: object, arc: int) -> int:
+    """Check a Yasnac G12/G13 block and hand its circle to `ngc/g12_yasnac.ngc`."""
+    circle = yasnac.plan_circle(host.words_of_block(interp), host.snapshot(interp))
+    host.hand_over(
+        interp,
+        **circle._asdict(),
+        arc=arc,
+        traverse=host.traverse_feed(interp),
+        feed=interp.feed_rate,
+        per_revolution=host.per_revolution(interp),
+    )
+    return INTERP_OK
+
+
+@host.handler
+def g12_yasnac(self, **words):
+    """Prolog of G12, clockwise circle cutting."""
+    return prepare_yasnac(self, CLOCKWISE)
+
+
+@host.handler
+def g13_yasnac(self, **words):
+    """Prolog of G13, counterclockwise circle cutting."""
+    return prepare_yasnac(self, COUNTERCLOCKWISE)
+
+
+def prepare_mitsubishi(interp: object, arc: int) -> int:
+    """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_circle.ngc`."""
+    circle = mitsubishi.plan_circle(host.words_of_block(interp), host.snapshot(interp))
+    host.hand_over(interp, **circle._asdict(), arc=arc)
+    return INTERP_OK
+
+
+@host.handler
+def g12_mitsubishi(self, **words):
+    """Prolog of G12, clockwise circular cutting."""
+    return prepare_mitsubishi(self, CLOCKWISE)
+
+
+@host.handler
+def g13_mitsubishi(self, **words):
+    """Prolog of G13, counterclockwise circular cutting."""
+    return prepare_mitsubishi(self, COUNTERCLOCKWISE)
+
+
+def planned_event(interp: object, pocket: bool) -> circle_mill.Event:
+    """Return the event of a code block, or of the call if the code stands in o<circle_mill>."""
+    words, context = host.words_of_block(interp), host.snapshot(interp)
+    plane = host.first_plane(interp)
+    entries = host.entries_of_call(interp, "circle_mill", len(circle_mill.ENTRIES))
+    if entries is None:
+        return circle_mill.plan_code(words, context, plane, pocket)
+    call = Words("circle_mill", circle_mill.entries_of_call(entries))
+    return circle_mill.plan_call(call, context, plane)
+
+
+def prepare_circle_mill(interp: object, pocket: bool) -> int:
+    """Check a circle mill event and hand it to `ngc/g12_circle_mill.ngc`."""
+    event = planned_event(interp, pocket)
+    host.hand_over(interp, **event.locals())
+    host.remember_first_plane(interp, event.place.first_plane)
+    if event.message:
+        host.message(event.message)
+    return INTERP_OK
+
+
+@host.handler
+def circle_mill_perimeter(self, **words):
+    """Prolog of G12.2, and of the event's subroutine form."""
+    return prepare_circle_mill(self, pocket=False)
+
+
+@host.handler
+def circle_mill_pocket(self, **words):
+    """Prolog of G13.2."""
+    return prepare_circle_mill(self, pocket=True)
 
 
 @host.handler

@@ -50,8 +50,16 @@ class Words:
             raise self.refuse(f"{letter}{number(value)} must be greater than 0")
         return value
 
-    def take_whole(self, letter: str, least: int, default: int | None = None) -> int | None:
-        """Return the word's value, a whole number from ``least``, or the default."""
+    def require_positive(self, letter: str, meaning: str) -> float:
+        """Return the word's value, above zero; refuse a block without it."""
+        if letter not in self._left:
+            raise self.refuse(f"{letter} is missing: {meaning}")
+        return self.take_positive(letter)
+
+    def take_whole(
+        self, letter: str, least: int, default: int | None = None, most: int | None = None
+    ) -> int | None:
+        """Return the word's value, a whole number from ``least`` (to ``most``), or the default."""
         value = self.take(letter)
         if value is None:
             return default
@@ -59,14 +67,20 @@ class Words:
             raise self.refuse(f"{letter}{number(value)} must be a whole number")
         if round(value) < least:
             raise self.refuse(f"{letter}{number(value)} must be at least {least}")
+        if most is not None and round(value) > most:
+            raise self.refuse(f"{letter}{number(value)} must be at most {most}")
         return round(value)
 
-    def take_pair(self, first: str, second: str) -> tuple[float, float] | None:
-        """Return two positive words that need each other, or None if both are absent."""
+    def has_pair(self, first: str, second: str) -> bool:
+        """Tell whether two words are in the block; refuse one without the other."""
         if (first in self) != (second in self):
             present, absent = (first, second) if first in self else (second, first)
             raise self.refuse(f"{present}{number(self._left[present])} needs {absent} as well")
-        if first not in self:
+        return first in self
+
+    def take_pair(self, first: str, second: str) -> tuple[float, float] | None:
+        """Return two positive words that need each other, or None if both are absent."""
+        if not self.has_pair(first, second):
             return None
         return self.take_positive(first), self.take_positive(second)
 
