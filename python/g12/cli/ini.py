@@ -108,14 +108,22 @@ def read_ini(path: str | os.PathLike) -> Ini:
         raise IniError(f"{error.filename}: {error.strerror}") from error
 
 
+def included_file(line: str, directory: Path) -> Path | None:
+    """Return the file that a line of an INI in ``directory`` includes, if it includes one."""
+    include = INCLUDE.match(line)
+    if not include:
+        return None
+    return directory / os.path.expandvars(os.path.expanduser(include.group(1).strip()))
+
+
 def _expanded(lines: list[str], directory: Path):
+    """As the script does, a file that cannot be read is left out."""
     for line in lines:
-        include = INCLUDE.match(line)
-        if include:
-            name = os.path.expandvars(os.path.expanduser(include.group(1).strip()))
-            yield from (directory / name).read_text(**ENCODING).splitlines()
-        else:
+        included = included_file(line, directory)
+        if not included:
             yield line
+        elif os.access(included, os.R_OK):
+            yield from included.read_text(**ENCODING).splitlines()
 
 
 def _joined(lines: Sequence[str]):
