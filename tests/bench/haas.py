@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12/G13, dialect haas: interpreting time, path length and smoothness."""
+
+import math
+import os
+import resource
+import statistics
+import subprocess
+import tempfile
+from pathlib import Path
+
+import proof
+from bench import Figure
+from g12.cli.ini import read_ini
+from g12.cli.trace import Tracer
+from machines import SIM
+
+INI = SIM / "mill_inch.ini"
+TOOLS = {1: 0.25}
+MM_PER_INCH = 25.4
+POCKETS, PAIRS = 1000, 9
+FIRST = "G20 G17 G40 G54 G64 G90 G91.1 G94 F10"
+SAMPLE = "G13 I.3 K1.5 Q.3 Z-.5 D1"
+TEN_RINGS = "G13 I.3 K2.1 Q.2 Z-.5 D1"
+
+
+def figures():
+    """Yield the G12 rows of the promised figures."""
+    yield interpreting()
+    with Tracer(INI, tools=TOOLS) as tracer:
+        yield length_ratio(tracer)
+        yield direction_jump(tracer)
+
+
+def interpreting():
+    """Compare 1,000 pockets with the same moves as plain G-code, in the stock interpreter."""
+    with tempfile.TemporaryDirectory() as folder:
+        scratch = Path(folder)
+        cycle, plain, empty = (scratch / f"{name}.ngc" for name in ("cycle", "plain", "empty"))
+        cycle.write_text("\n".join([FIRST, *starts(TEN_RINGS), "M2\n"]))
+        plain.write_text("\n".join([FIRST, *expanded(), "M2\n"]))
+        empty.write_text("M2\n")
+        (scratch / "machine.ini").write_text(read_ini(INI).text)
+        (scratch / "tool.tbl").write_text("T1 P1 D0.25\n")
+        times = [
+            [cpu_seconds(scratch, program) for program in (cycle, plain, empty)]
+            for _ in range(PAIRS)
+        ]
+    start_up = statistics.median(time[2] for time in times)
+    ratios = sorted((time[0] - start_up) / (time[1] - start_up) for time in times)
+    return Figure(
+        "G12: interpreting 1,000 pockets of 10 rings, against the same moves as plain G-code",
+        statistics.median(ratios),
+        2.0,
+        "",
+        f"CPU time of rs274 less its start-up, median of {PAIRS} pairs"
+        f" ({ratios[0]:.2f} to {ratios[-1]:.2f})",
+    )
+
+
+def starts(block):
+    """Yield a block at each of the pocket positions, with the rapids there."""
+    for index in range(POCKETS):
+        yield f"G0 Z.1\nG0 X{index % 40} Y{index // 40}\n{block}"
+
+
+def expanded():
+    """Yield the moves of `starts` as plain G-code, taken from a trace of one pocket."""
+    with Tracer(INI, tools=TOOLS) as tracer:
+        moves = proof.cutting(tracer.trace_text([FIRST, "G0 Z.1", TEN_RINGS]).moves)
+    for index in range(POCKETS):
+        x, y = index % 40, index // 40
+        yield f"G0 Z.1\nG0 X{x} Y{y}"
+        for move in moves:
+            yield plain_block(move, x, y)
+
+
+def plain_block(move, x, y):
+    """Return a move as a block of plain G-code, shifted by (x, y) inches."""
+    end = [value / MM_PER_INCH for value in move.end[:3]]
+    if move.kind == "arc":
+        i, j = ((move.centre[axis] - move.start[axis]) / MM_PER_INCH for axis in (0, 1))
+        whole = math.dist(move.start[:2], move.end[:2]) < proof.SAME_POINT
+        target = "" if whole else f"X{end[0] + x:.6f} Y{end[1] + y:.6f} "
+        return f"G3 {target}I{i:.6f} J{j:.6f}"
+    if move.tangent(0)[2]:
+        return f"G1 Z{end[2]:.6f}"
+    return f"G1 X{end[0] + x:.6f} Y{end[1] + y:.6f}"
+
+
+def cpu_seconds(scratch, program):
+    """Return the CPU seconds of rs274 for a program, run where the machine's paths resolve."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(
+        ["rs274", "-g", "-i", scratch / "machine.ini", "-t", scratch / "tool.tbl", program],
+        cwd=INI.parent,
+        env={**os.environ, "HOME": str(scratch), "INI_FILE_NAME": str(scratch / "machine.ini")},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        check=True,
+    )
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def length_ratio(tracer):
+    """Compare the path with its circles, lead-in and lead-out."""
+    moves = tracer.trace_text([FIRST, "G0 Z.1", SAMPLE]).moves
+    sideways = proof.in_plane(proof.cutting(moves))
+    rings = proof.radii(moves)
+    ideal = sum(2 * math.pi * radius for radius in rings) + math.pi / 2 * (rings[0] + rings[-1])
+    return Figure(
+        "G12: path length against the circles, lead-in and lead-out, I.3 K1.5 Q.3, cutter .25",
+        proof.path_length(sideways) / ideal,
+        1.25,
+        "",
+        f"{proof.path_length(sideways):.1f} mm against {ideal:.1f} mm",
+    )
+
+
+def direction_jump(tracer):
+    """Find the largest change of direction between plunge and retract."""
+    moves = tracer.trace_text([FIRST, "G0 Z.1", f"{SAMPLE} L3"]).moves
+    sideways = proof.in_plane(proof.cutting(moves))
+    return Figure(
+        "G12: direction jump anywhere between the plunge and the retract",
+        proof.largest_jump(sideways),
+        1.0,
+        " degrees",
+        "three spring passes of I.3 K1.5 Q.3, cutter .25",
+    )
