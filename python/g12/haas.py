@@ -58,6 +58,24 @@ class Pocket(NamedTuple):
     cutter_radius: float
     message: str | None  # for the operator, never a refusal
 
+    def locals(self) -> dict[str, float]:
+        """Return the named locals of `ngc/g12_haas.ngc`, but for the direction."""
+        spring = not self.z_step
+        return {
+            "x": self.x,
+            "y": self.y,
+            "move_to_centre": self.move_to_centre,
+            "z": self.z,
+            "z_step": self.z_step,
+            "levels": self.levels,
+            "first_radius": self.first_radius,
+            "links": self.links,
+            "growth": self.first_grow / self.first_radius,
+            "shrink": self.shrink,
+            "keep": self.first_radius / self.last_radius if spring else 0.0,
+            "rings": not self.spiral,
+        }
+
 
 def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pocket:
     """Return the pocket of one G12/G13 block, or raise `Refusal`."""

@@ -12,26 +12,11 @@ from .words import Words
 CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
 
 
-def prepare_haas(interp: object, counterclockwise: bool) -> int:
+def prepare_haas(interp: object, arc: int) -> int:
     """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
     pocket = plan_pocket(host.words_of_block(interp), host.snapshot(interp), host.SETTINGS.clearing)
-    host.hand_over(
-        interp,
-        x=pocket.x,
-        y=pocket.y,
-        move_to_centre=pocket.move_to_centre,
-        z=pocket.z,
-        z_step=pocket.z_step,
-        levels=pocket.levels,
-        first_radius=pocket.first_radius,
-        links=pocket.links,
-        growth=pocket.first_grow / pocket.first_radius,
-        shrink=pocket.shrink,
-        keep=0.0 if pocket.z_step else pocket.first_radius / pocket.last_radius,
-        rings=not pocket.spiral,
-        arc=3 if counterclockwise else 2,
-        hand=1 if counterclockwise else -1,
-    )
+    hand = 1 if arc == COUNTERCLOCKWISE else -1
+    host.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
     host.remember_radius(interp, pocket.cutter_radius)
     if pocket.message:
         host.message(pocket.message)
@@ -41,13 +26,13 @@ def prepare_haas(interp: object, counterclockwise: bool) -> int:
 @host.handler
 def g12_haas(self, **words):
     """Prolog of G12, clockwise circular pocket."""
-    return prepare_haas(self, counterclockwise=False)
+    return prepare_haas(self, CLOCKWISE)
 
 
 @host.handler
 def g13_haas(self, **words):
     """Prolog of G13, counterclockwise circular pocket."""
-    return prepare_haas(self, counterclockwise=True)
+    return prepare_haas(self, COUNTERCLOCKWISE)
 
 
 def prepare_yasnac(interp: object, arc: int) -> int:
