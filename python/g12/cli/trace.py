@@ -210,14 +210,16 @@ class Tracer:
     gives several lines of one key, None takes the key out.  ``tools`` is a tool table file or
     ``{tool number: diameter in machine units}`` in place of the INI's table.  Settings are read
     when LinuxCNC's Python modules load, so other overrides or tools need another Tracer.
+    ``printed`` is what the interpreter and the machine's modules said while loading.
     """
 
     def __init__(
-        self, ini: Program, *, overrides: Overrides | None = None, tools: Tools = None
+        self, ini: Program | Ini, *, overrides: Overrides | None = None, tools: Tools = None
     ) -> None:
         self._scratch = tempfile.TemporaryDirectory(prefix="g12-trace-")
         self._folder = Path(self._scratch.name)
-        self.ini = read_ini(ini).replaced(overrides or {})
+        ini = ini if isinstance(ini, Ini) else read_ini(ini)
+        self.ini = ini.replaced(overrides or {})
         self._machine = _machine(self.ini, tools, self._folder)
         self._start()
 
@@ -288,6 +290,7 @@ class Tracer:
         if answer["error"]:
             self.close()
             raise TraceFailure(f"{self.ini.path}: {answer['printed']}{answer['error'][0]}")
+        self.printed = answer["printed"]
 
     def _stop(self) -> None:
         if self._process:
