@@ -1,63 +1,181 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Polar coordinate interpolation: a contour in the flat X-C plane becomes moves of an X slide and a C axis.
+"""Polar coordinate interpolation: a contour in the flat X-C plane becomes moves of an X slide and
+a C axis.
 
-A section is collected in a :class:`~g12.polar.contour.Contour`, then planned as a whole by :func:`plan`;
-what cannot be cut is refused there, before anything moves. Lengths are in program units throughout.
+A section is collected in a :class:`~g12.polar.contour.Contour`, then planned as a whole by
+:func:`plan`; what cannot be cut is refused there, before anything moves. Lengths are in program
+units throughout.
+
+1. ``contour``: blocks become lines and arcs, in the flat plane.
+2. ``offset``: cutter compensation makes them the path of the tool's centre.
+3. ``pole``: moves that touch the spindle's centre end there.
+4. ``corners``: where the tool must stop, because LinuxCNC's blending would cut the corner.
+5. ``pieces``: the fewest straight moves in X and C that stay within the tolerance.
+6. ``feed``: their F words.
+
+LinuxCNC forces the shape of it: with a rotary axis in motion its planner looks ahead by one move
+only, so short pieces cost speed; F is meant for the linear axes; and the P of G64 does not limit
+the blending.
 """
 
 from __future__ import annotations
 
+from copy import copy
+from math import copysign, degrees, hypot, pi, radians, remainder
 from typing import NamedTuple
 
-from g12.polar.contour import Contour
+from g12.polar.contour import Arc, Contour, Line, Mark, Plunge, is_move
+from g12.polar.corners import stops
+from g12.polar.feed import Place, pieces_with_feed
+from g12.polar.offset import tool_path
+from g12.polar.pieces import Law, split
+from g12.polar.pole import POLE, through_pole
+
+CHORD_SHARE = 0.92  # of the tolerance: what the estimate of the deviation lacks in the worst case
+ROUNDING_SHARE = (
+    0.7  # of the tolerance: the servo period adds to the distance at which a corner is passed
+)
+POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
+SAME_ANGLE = 1e-9  # radians
+RIPPLE = 0.01  # by so much may the speed differ from F inside a piece
 
 
 class Settings(NamedTuple):
     """What the machine and its owner want of a section; lengths in program units."""
 
-    chord: float  # deviation of the pieces from the contour; see shares()
-    least_x: float  # 0.001 mm: no piece changes X by less, other than not at all
-    pole_feed: float  # deg/min of a turn in place at X0: the C axis's MAX_VELOCITY
+    tolerance: float  # POLAR_TOLERANCE
+    least_x: float  # 0.001 mm: no piece with a turn of C changes X by less, other than not at all
+    x_acceleration: float  # per second squared
+    c_acceleration: float  # degrees per second squared
+    c_speed: float  # degrees per minute, for a turn in place at X0
     pole_refused: bool = False  # POLAR_POLE = refuse
 
 
 class Run(NamedTuple):
-    """Moves of one block: G1 moves in ``axes``, one after the other, all in G90 G94.
+    """G1 moves of one block, one after the other, all in G90 and G94.
 
-    ``axes`` is "XC", "XCZ" or "Z". Each piece is ``(x, c, z, feed)``: X radius value, C in degrees, continuous
-    over the section (it may leave 0..360), F as G94 wants it: for the X and Z part of the move, or in degrees
-    per minute where neither changes. A piece that keeps X repeats the same number.
+    ``axes`` is "XC", "XCZ" or "Z": the words to write. Each piece is ``(x, c, z, feed)``: X radius
+    value, C in degrees, continuous over the section (it may leave 0..360), and F as G94 wants it:
+    for the X and Z part of the move, or in degrees per minute where neither changes; it may be
+    small, so write it with six significant digits. A piece that keeps X repeats the same number.
+    With ``stop`` the last piece must end in an exact stop (G61), because LinuxCNC would round the
+    corner by more than the tolerance.
     """
 
     line: int
     axes: str
     pieces: list[tuple[float, float, float, float]]
+    stop: bool
 
 
 class Plan(NamedTuple):
     """The moves of a section: ``steps`` holds each :class:`Run`, and each mark's action, in order.
 
-    ``c`` is the C axis in degrees at the end.
+    ``place`` is where the machine stands in the end.
     """
 
-    steps: list[Run | object]
-    c: float
-
-
-def shares(tolerance: float) -> tuple[float, float]:
-    """Return the parts of a deviation that are left to the chords and to the blending (the P of G64)."""
+    steps: list
+    place: Place
+    angle: float  # of the C axis in the plane, radians
 
 
 def plan(contour: Contour, settings: Settings, *, c: float) -> Plan:
-    """Return the moves of a whole section that starts with the C axis at ``c`` degrees.
+    """Return the moves of a whole section whose plane has its zero angle where the C axis shows
+    ``c`` degrees.
 
     Raises Refusal, naming the blocks by their lines, when the contour cannot be cut as programmed.
     """
+    tolerance = settings.tolerance
+    path = tool_path(contour, tolerance)
+    path = through_pole(contour, path, POLE_SHARE * tolerance, settings.pole_refused)
+    stopping = stops(
+        path, ROUNDING_SHARE * tolerance, settings.x_acceleration, radians(settings.c_acceleration)
+    )
+    machine = _Machine(contour, settings, c)
+    for element, stop in zip(path, stopping):
+        if isinstance(element, Mark):
+            machine.steps.append(element.action)
+        elif isinstance(element, Plunge):
+            machine.plunge(element, stop)
+        else:
+            machine.cut(element, stop)
+    machine.finish(path)
+    return Plan(machine.steps, machine.place, machine.angle)
 
 
-def resume(contour: Contour) -> Contour:
+def resume(contour: Contour, planned: Plan) -> Contour:
     """Return an empty contour that goes on where a planned one ended, compensation included.
 
-    For a section that is cut in two by a block that waits for the machine. Plan it with ``c`` of the first
-    part's plan.
+    For a section that is cut in two by a block that waits for the machine. Plan it with the same
+    ``c``.
     """
+    moves = [element for element in contour.elements if is_move(element) and element.offset]
+    following = copy(contour)
+    following.elements = []
+    following.start = (planned.place.x, planned.angle, planned.place.z)
+    following.previous = None
+    if contour.side != 40:
+        following.previous = moves[-1] if moves else contour.previous
+    return following
+
+
+class _Machine:
+    """The X slide and the C axis, making one element after the other."""
+
+    def __init__(self, contour: Contour, settings: Settings, c: float) -> None:
+        x, self.angle, z = contour.start
+        self.steps: list = []
+        self.place = Place(x, c + degrees(self.angle), z)
+        self._settings, self._entry = settings, c
+        self._laws: dict[float, Law] = {}
+
+    def cut(self, move: Line | Arc, stop: bool) -> None:
+        """Add the pieces of a move in the plane."""
+        parts = split(move, self._law(move.feed))
+        if (move.x0, move.c0) == POLE:
+            self._turn(move, parts.angles[0])
+        turns = round((self.angle - parts.angles[0]) / (2 * pi))
+        entry = self._entry + 360.0 * turns
+        pieces = pieces_with_feed(parts, self.place, move, entry, self._settings.least_x)
+        self.angle = parts.angles[-1] + 2 * pi * turns
+        self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", pieces, stop)
+
+    def plunge(self, move: Plunge, stop: bool) -> None:
+        """Add a move of Z alone."""
+        self._run(move.line, "Z", [(self.place.x, self.place.c, move.z1, move.feed)], stop)
+
+    def finish(self, path: list) -> None:
+        """Add what the last piece left over of X."""
+        moves = [element for element in path if is_move(element)]
+        radius = hypot(moves[-1].x1, moves[-1].c1) if moves else self.place.x
+        if radius != self.place.x:
+            self._run(moves[-1].line, "XC", [(radius, *self.place[1:], moves[-1].feed)], True)
+
+    def _turn(self, move: Line | Arc, angle: float) -> None:
+        """Add a turn in place, the shorter way; of two equal ways the one that unwinds C."""
+        turn = remainder(angle - self.angle, 2 * pi)
+        if abs(abs(turn) - pi) < SAME_ANGLE:
+            turn = copysign(pi, -self.angle)
+        self.angle += turn
+        if abs(turn) > SAME_ANGLE:
+            x, _, z = self.place
+            piece = (x, self._entry + degrees(self.angle), z, self._settings.c_speed)
+            self._run(move.line, "XC", [piece], True)
+
+    def _run(self, line: int, axes: str, pieces: list, stop: bool) -> None:
+        if pieces:
+            self.steps.append(Run(line, axes, pieces, stop))
+            self.place = Place(*pieces[-1][:3])
+
+    def _law(self, feed: float) -> Law:
+        law = self._laws.get(feed)
+        if law is None:
+            settings = self._settings
+            hold = 0.5 / (feed / 60.0) ** 2
+            law = self._laws[feed] = Law(
+                CHORD_SHARE * settings.tolerance,
+                RIPPLE,
+                hold * settings.x_acceleration,
+                hold * radians(settings.c_acceleration),
+            )
+        return law

@@ -1,22 +1,28 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The programmed contour: lines and arcs in the flat X-C plane, each with the block it comes from.
 
-X is the distance from the spindle's centre line (a radius value, whatever the X words meant), C the length
-at right angles to it; both and Z in program units, with their origin in the spindle's centre. An angle grows
-from +X to +C; a positive sweep is counterclockwise (G3).
+X is the distance from the spindle's centre line (a radius value, whatever the X words meant), C
+the length at right angles to it; both and Z in program units, with their origin in the spindle's
+centre. An angle grows from +X to +C; a positive sweep is counterclockwise (G3), in radians.
 """
 
 from __future__ import annotations
 
+from math import atan2, copysign, hypot, pi, sqrt
 from typing import NamedTuple
+
+from g12.errors import Refusal, number
+
+SAME_PLACE = 1e-9  # program units: closer points are one point
+CLOSING_RATIO = 0.001  # of the radius: the mismatch LinuxCNC allows any arc
 
 
 class Line(NamedTuple):
-    """A straight move of the programmed point; with equal X and C at both ends it is a move of Z alone.
+    """A straight move in the plane, with Z from ``z0`` to ``z1``.
 
-    ``offset`` is the compensation in force: the tool's radius, above zero with the tool on the left of the
-    path (G41), below zero on its right (G42), 0 without. ``feed`` is the tool centre's speed in program
-    units per minute.
+    ``offset`` is the compensation in force: the tool's radius, above zero with the tool on the
+    left of the path (G41), below zero on its right (G42), 0 without. ``feed`` is the tool centre's
+    speed in program units per minute.
     """
 
     line: int
@@ -31,9 +37,8 @@ class Line(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """A circular move of the programmed point about (``cx``, ``cc``); ``sweep`` in radians, signed.
-
-    ``z0`` and ``z1`` differ on a helix. The other members are those of :class:`Line`.
+    """A circular move about (``cx``, ``cc``) by the signed angle ``sweep``; the rest as in
+    :class:`Line`.
     """
 
     line: int
@@ -50,44 +55,262 @@ class Arc(NamedTuple):
     sweep: float
 
 
+class Plunge(NamedTuple):
+    """A move of Z alone."""
+
+    line: int
+    feed: float
+    z0: float
+    z1: float
+
+
 class Mark(NamedTuple):
-    """A block without motion; ``action`` is the caller's, and comes back from the plan in its place."""
+    """A block without motion; ``action`` is the caller's, and comes back from the plan in its
+    place.
+    """
 
     line: int
     action: object
 
 
+def is_move(element: Line | Arc | Plunge | Mark) -> bool:
+    """Return whether an element moves in the plane."""
+    return isinstance(element, (Line, Arc))
+
+
 class Contour:
     """Collects the blocks of one section, in order, and refuses those that cannot be a contour.
 
-    ``x`` (radius value, above zero), ``c`` and ``z`` are the programmed position, readable at any time; a
-    section starts at C0, wherever the C axis stands. ``code`` names the section in messages; ``diameter``
-    tells whether the program's X words are diameters: the values passed in are always radius values, but a
-    message has to say which reading was meant.
+    ``x`` (radius value, above zero), ``c`` and ``z`` are the programmed position, readable at any
+    time; a section starts at C0, wherever the C axis stands. ``code`` names the section in
+    messages. ``diameter`` tells whether the program's X words are diameters: the values passed in
+    are always radius values, but a message has to say which reading was meant. ``closing`` is the
+    radius mismatch of an arc that is forgiven, in program units.
     """
 
-    def __init__(self, x: float, z: float, *, code: str = "G12.1", diameter: bool = False) -> None: ...
+    def __init__(
+        self,
+        x: float,
+        z: float,
+        *,
+        code: str = "G12.1",
+        diameter: bool = False,
+        closing: float = 0.0,
+    ) -> None:
+        self.x, self.c, self.z = x, 0.0, z
+        self.code, self.diameter, self.closing = code, diameter, closing
+        self.elements: list[Line | Arc | Plunge | Mark] = []
+        self.start = (
+            x,
+            0.0,
+            z,
+        )  # radius, angle of the C axis in the plane, Z; where the tool stands
+        self.previous: Line | Arc | None = (
+            None  # cut under compensation before a section was cut in two
+        )
+        self.side = 40
+        self._offset = 0.0
+        self._switch: int | None = None  # line of the G40, G41 or G42 that waits for its G1
+        self._switched_on = 0
 
-    @property
-    def side(self) -> int:
-        """The compensation in force: 40, 41 or 42."""
+    def refuse(self, line: int, reason: str) -> None:
+        """Raise the refusal of a block of this section."""
+        raise Refusal(f"{self.code} line {line}: {reason}")
 
-    def line(self, x=None, c=None, z=None, *, line: int, feed: float) -> None:
+    def line(
+        self,
+        x: float | None = None,
+        c: float | None = None,
+        z: float | None = None,
+        *,
+        line: int,
+        feed: float,
+    ) -> None:
         """Add a G1 to the absolute point given; a coordinate left out stays."""
+        x0, c0, z0 = self.x, self.c, self.z
+        x1 = x0 if x is None else x
+        c1 = c0 if c is None else c
+        z1 = z0 if z is None else z
+        if feed <= 0.0:
+            self.refuse(line, f"F{number(feed)} must be above zero (no feed commanded?)")
+        self._check_switch(line, hypot(x1 - x0, c1 - c0))
+        if x1 != x0 or c1 != c0:
+            self.elements.append(Line(line, feed, self._offset, x0, c0, z0, x1, c1, z1))
+        elif z1 != z0:
+            self.elements.append(Plunge(line, feed, z0, z1))
+        self.x, self.c, self.z = x1, c1, z1
 
-    def arc(self, turn: int, x=None, c=None, z=None, *, i=None, j=None, radius=None,
-            line: int, feed: float) -> None:
+    def arc(
+        self,
+        turn: int,
+        x: float | None = None,
+        c: float | None = None,
+        z: float | None = None,
+        *,
+        i: float | None = None,
+        j: float | None = None,
+        radius: float | None = None,
+        line: int,
+        feed: float,
+    ) -> None:
         """Add a G2 (``turn`` -1) or G3 (``turn`` +1) to the absolute point given.
 
-        Either ``i`` and/or ``j``: the centre from the arc's start, or ``radius``: negative for the arc over
-        a half turn. The start as end point, or no end point, is a full circle with ``i``/``j``.
+        Either ``i`` and/or ``j``: the centre from the arc's start, or ``radius``: negative for the
+        arc over a half turn. The start as end point, or no end point, is a full circle with
+        ``i``/``j``.
         """
+        self._check_arc(turn, i, j, radius, line, feed)
+        end = (self.x if x is None else x, self.c if c is None else c)
+        if radius is None:
+            centre, sweep = self._about_centre(turn, end, i or 0.0, j or 0.0, line)
+        else:
+            centre, sweep = self._with_radius(turn, end, radius, line)
+        z1 = self.z if z is None else z
+        self.elements.append(
+            Arc(line, feed, self._offset, self.x, self.c, self.z, *end, z1, *centre, sweep)
+        )
+        self.x, self.c, self.z = *end, z1
 
     def compensation(self, side: int, radius: float, *, line: int) -> None:
         """Switch to G40, G41 or G42 (``side`` 40, 41, 42) with the next block, which must be a G1.
 
         Call it before the :meth:`line` of the same block. ``radius`` is the tool's, and may be 0.
         """
+        self._check_waiting()
+        if side == self.side:
+            return
+        if 40 not in (side, self.side):
+            self.refuse(
+                line, f"G{side}: cancel G{self.side} of line {self._switched_on} with G40 first"
+            )
+        self._radius = radius if side != 40 else abs(self._offset)
+        self._offset = {40: 0.0, 41: radius, 42: -radius}[side]
+        self._switched_on = line
+        self._switch = line
+        self.side = side
 
     def mark(self, action: object, *, line: int) -> None:
         """Add a block without motion."""
+        self._check_waiting()
+        self.elements.append(Mark(line, action))
+
+    def close(self, *, line: int) -> None:
+        """Check that the section may end here: compensation is off."""
+        self._check_waiting()
+        if self.side != 40:
+            self.refuse(
+                line, f"G{self.side} of line {self._switched_on} is still on: G40 is missing"
+            )
+
+    def _check_waiting(self) -> None:
+        if self._switch is not None:
+            self.refuse(self._switch, f"G{self.side} needs a G1 with X or C in its own block")
+
+    def _check_switch(self, line: int, length: float) -> None:
+        """Check the G1 that switches compensation on or off."""
+        if self._switch is None:
+            return
+        if self._switch != line or length <= SAME_PLACE:
+            self._check_waiting()
+        if length < self._radius - 1e-6:
+            self.refuse(
+                line,
+                f"the G1 with G{self.side} is {number(length)} long: it must be at least the tool radius "
+                f"{number(self._radius)}",
+            )
+        self._switch = None
+
+    def _check_arc(self, turn, i, j, radius, line, feed) -> None:
+        name = _name(turn)
+        if feed <= 0.0:
+            self.refuse(line, f"F{number(feed)} must be above zero (no feed commanded?)")
+        if self._switch is not None:
+            self.refuse(line, f"G{self.side} with {name}: compensation is switched by a G1 only")
+        if radius is not None and (i is not None or j is not None):
+            self.refuse(line, f"{name}: either R or I and J, not both")
+        if radius is None and not i and not j:
+            self.refuse(line, f"{name} needs R, or the centre in I and J")
+
+    def _about_centre(self, turn, end, i, j, line):
+        """Return centre and sweep of an arc with I and J, its centre moved to be as far from both
+        ends.
+        """
+        start, centre = (self.x, self.c), (self.x + i, self.c + j)
+        if hypot(end[0] - start[0], end[1] - start[1]) <= SAME_PLACE:
+            return centre, turn * 2 * pi
+        from_start, from_end = hypot(i, j), hypot(end[0] - centre[0], end[1] - centre[1])
+        if not self._closes(from_start, from_end):
+            self.refuse(
+                line,
+                f"{_name(turn)} does not close: its centre is {number(from_start)} from the start, "
+                f"{number(from_end)} from the end{self._hint(self._centre_closes, end, i, j)}",
+            )
+        centre = recentred(start, end, centre)
+        return centre, sweep_between(start, end, centre, turn)
+
+    def _with_radius(self, turn, end, radius, line):
+        """Return centre and sweep of an arc with R."""
+        start = (self.x, self.c)
+        half = 0.5 * hypot(end[0] - start[0], end[1] - start[1])
+        if 2.0 * half <= SAME_PLACE:
+            self.refuse(
+                line, f"{_name(turn)} R{number(radius)}: a full circle needs I and J, not R"
+            )
+        if not self._spans(half, radius):
+            self.refuse(
+                line,
+                f"{_name(turn)} R{number(radius)} does not close: the ends are {number(2 * half)} apart, R "
+                f"must be at least {number(half)}{self._hint(self._radius_closes, end, radius)}",
+            )
+        height = (
+            sqrt(max(0.0, radius * radius - half * half))
+            * copysign(turn, turn * radius)
+            / (2 * half)
+        )
+        centre = (
+            0.5 * (start[0] + end[0]) - height * (end[1] - start[1]),
+            0.5 * (start[1] + end[1]) + height * (end[0] - start[0]),
+        )
+        return centre, sweep_between(start, end, centre, turn)
+
+    def _closes(self, from_start: float, from_end: float) -> bool:
+        return abs(from_start - from_end) <= max(self.closing, CLOSING_RATIO * from_start)
+
+    def _spans(self, half: float, radius: float) -> bool:
+        return half - abs(radius) <= max(0.5 * self.closing, CLOSING_RATIO * half)
+
+    def _centre_closes(self, x0, x1, c1, i, j) -> bool:
+        return self._closes(hypot(i, j), hypot(x1 - x0 - i, c1 - self.c - j))
+
+    def _radius_closes(self, x0, x1, c1, radius) -> bool:
+        return self._spans(0.5 * hypot(x1 - x0, c1 - self.c), radius)
+
+    def _hint(self, closes, end, *words) -> str:
+        """Return which other reading of the X words, if any, would close the arc."""
+        other, ratio = ("radius", 2.0) if self.diameter else ("diameter", 0.5)
+        for x0 in (self.x * ratio, self.x):
+            if closes(x0, end[0] * ratio, end[1], *words):
+                return f"; it would close with X read as a {other}"
+        return ""
+
+
+def recentred(start, end, centre):
+    """Return the point nearest to ``centre`` that is equally far from ``start`` and ``end``."""
+    ux, uc = end[0] - start[0], end[1] - start[1]
+    mx, mc = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
+    along = ((centre[0] - mx) * ux + (centre[1] - mc) * uc) / (ux * ux + uc * uc)
+    return centre[0] - along * ux, centre[1] - along * uc
+
+
+def sweep_between(start, end, centre, turn: int) -> float:
+    """Return the signed angle from ``start`` to ``end`` about ``centre``, turning ``turn`` (+1,
+    -1).
+    """
+    ax, ac = start[0] - centre[0], start[1] - centre[1]
+    bx, bc = end[0] - centre[0], end[1] - centre[1]
+    angle = turn * atan2(ax * bc - ac * bx, ax * bx + ac * bc)
+    return turn * (angle if angle > 0.0 else angle + 2 * pi)
+
+
+def _name(turn: int) -> str:
+    return "G3" if turn > 0 else "G2"
