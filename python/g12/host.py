@@ -8,16 +8,32 @@ Facts about the interpreter that the code relies on stand beside the line that d
 from __future__ import annotations
 
 import functools
+import sys
 
 import emccanon
 from interpreter import INTERP_ERROR, INTERP_OK
 
 from .context import MM_PER_INCH, XY, XZ, YZ, Context, Tool
 from .errors import Refusal
-from .settings import settings_from_environment
+from .settings import Settings, settings_from_environment
 from .words import Words
 
-SETTINGS = settings_from_environment()
+
+def settings_at_start() -> tuple[Settings, Refusal | None]:
+    """Return section [G12], and the start-up error if it cannot be used.
+
+    The operator sees the error when LinuxCNC comes up, and every code of the package refuses
+    with it. (An exception here would stop LinuxCNC with an empty message on the screen.)
+    """
+    try:
+        return settings_from_environment(), None
+    except Refusal as refusal:
+        print(f"g12: {refusal}", file=sys.stderr)
+        emccanon.CANON_ERROR(f"g12: {refusal}")
+        return Settings(), refusal
+
+
+SETTINGS, START_ERROR = settings_at_start()
 
 MODAL_0, DIAMETER = 0, 15  # indices into a block's g_modes
 DIAMETER_ACTIVE = 15  # index into active_g_codes
@@ -72,6 +88,8 @@ def handler(function):
     @functools.wraps(function)
     def guarded(self, **words):
         try:
+            if START_ERROR:
+                raise START_ERROR
             return function(self, **words)
         except Refusal as refusal:
             self.set_errormsg(refusal.message)
