@@ -7,6 +7,7 @@ from interpreter import INTERP_OK
 
 from . import circle_mill, host, mitsubishi, yasnac
 from .haas import plan_pocket
+from .polar_remap import polar_off, polar_on  # noqa: F401 - the handlers of polar interpolation
 from .words import Words
 
 CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes

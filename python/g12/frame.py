@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The call frame of a remap handler that goes on reading the program itself.
+
+To the interpreter such a handler is a sub: the caller's local parameters and loop labels are hidden from
+the lines it reads, the line number starts at 0, and both are lost when it returns. Here they are handed
+over and back, and the handler can wait for the machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from interpreter import INTERP_EXECUTE_FINISH
+
+NO_O_WORD = 0  # o_type
+NOT_CALLED, CALLED_AS_REMAP = 0, 4  # call_type
+NO_CODE = -1
+MOTION = 1  # modal group
+
+
+class Frame:
+    """The frame of the handler at work, and of its caller."""
+
+    def __init__(self, interp: object) -> None:
+        self.interp = interp
+        self.level, self.remap_level = interp.call_level, interp.remap_level
+        block = interp.blocks[self.remap_level]
+        self._remap, self._phase = block.executing_remap, block.phase
+        # the interpreter keeps no copy of the name: it must live as long as the frame
+        self._name = interp.sub_context[self.level - 1].subname or ""
+
+    def enter(self) -> None:
+        """Show the caller's local parameters and labels to the lines that follow."""
+        self.interp.sub_context[self.level].subname = self._name
+        self._found = self._locals(self.level - 1)
+        self._set_locals(self.level, self._found)
+
+    def leave(self, line: int) -> None:
+        """Give local parameters back to the caller, and the number of the line that was read last."""
+        changed = self._locals(self.level).items() - self._found.items()
+        self._set_locals(self.level - 1, dict(changed))
+        self._renumber(line)
+        self._set_line(line)
+
+    def give_up(self, line: int) -> None:
+        """Let an error of ``line`` be reported there: unwinding takes the number from the frames."""
+        self._set_line(line)
+
+    def wait(self) -> Iterator[int]:
+        """Yield until the machine has done everything before; it may be in a sub of the section."""
+        interp = self.interp
+        level, remap_level = interp.call_level, interp.remap_level
+        interp.call_level, interp.remap_level = self.level, self.remap_level
+        interp.read(f"O <{self._remap.remap_py}> call")
+        interp.blocks[0].call_type = CALLED_AS_REMAP
+        yield INTERP_EXECUTE_FINISH
+        interp.blocks[0].o_type, interp.blocks[0].call_type = NO_O_WORD, NOT_CALLED
+        interp.call_level, interp.remap_level = level, remap_level
+
+    def _set_line(self, line: int) -> None:
+        self.interp.sub_context[self.level - 1].sequence_number = line
+        self.interp.sequence_number = line
+
+    def _locals(self, level: int) -> dict[str, float]:
+        """The local parameters of a call level; those of level 0 stand among the global ones."""
+        interp, found = self.interp, self.interp.call_level
+        interp.call_level = level
+        params = interp.params
+        values = {name: params[name] for name in params.locals() if name[0] != "_"}
+        interp.call_level = found
+        return values
+
+    def _set_locals(self, level: int, values: dict[str, float]) -> None:
+        interp, found = self.interp, self.interp.call_level
+        interp.call_level = level
+        params = interp.params
+        for name, value in values.items():
+            params[name] = value
+        interp.call_level = found
+
+    def _renumber(self, line: int) -> None:
+        """Make the remapped block end on ``line``.
+
+        A remapped block remembers the line where it was found and goes back to it. That memory can
+        only be written by starting a remap, so the block is started again, as done but for its end.
+        """
+        interp, level = self.interp, self.remap_level
+        interp.read(self._remap.name)
+        interp.remap_level = level - 1
+        interp.sequence_number = line
+        interp.execute("", line)
+        interp.remap_level = level
+        block = interp.blocks[level]
+        block.executing_remap, block.phase = self._remap, self._phase
+        block.motion_to_be = block.g_modes[MOTION] = NO_CODE
