@@ -308,20 +308,29 @@ def loaded_tool(block: Block) -> Tool:
 
 
 def roughing_of(block: Block, circle: Circle, tool: Tool, width: float | None) -> Roughing:
-    """Return the circles of one level; refuse a tool or a finish that has no room."""
+    """Return the circles of one level."""
     radius = circle.radius + circle.side * (tool.radius + block.finish)
-    if radius < block.context.length(SMALLEST_RING_MM):
-        finish = f" + {block.spelling.finish}{number(block.finish)}" if block.finish else ""
-        raise block.refuse(
-            f"R{number(circle.radius)} must be greater than the tool radius"
-            f" {number(tool.radius)} (T{tool.number}){finish}"
-        )
+    check_room(block, circle, tool, radius)
     if not block.pocket:
         if width is not None:
             raise block.refuse(f"J{number(width)} is the roughing width of a pocket")
         return Roughing(False, radius, 1, 0.0, radius, circle.rough_arc)
     rings = rings_of(block, radius, tool, width)
     return Roughing(True, 0.0, rings, radius / rings, radius, circle.rough_arc)
+
+
+def check_room(block: Block, circle: Circle, tool: Tool, radius: float) -> None:
+    """Refuse a circle too small for its tool and finish: ``radius`` is the tool centre's."""
+    smallest = block.context.length(SMALLEST_RING_MM)
+    if radius >= smallest:
+        return
+    if circle.side == CENTRE:
+        raise block.refuse(f"R{number(circle.radius)} must be at least {number(smallest)}")
+    finish = f" + {block.spelling.finish}{number(block.finish)}" if block.finish else ""
+    raise block.refuse(
+        f"R{number(circle.radius)} must be greater than the tool radius"
+        f" {number(tool.radius)} (T{tool.number}){finish}"
+    )
 
 
 def rings_of(block: Block, outermost: float, tool: Tool, width: float | None) -> int:

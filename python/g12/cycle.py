@@ -20,7 +20,8 @@ MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the
 def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,)) -> None:
     """Refuse the modes in which no circle can be cut."""
     if context.plane not in planes:
-        wanted = "the XY plane G17" if len(planes) == 1 else f"plane {', '.join(planes)}"
+        *others, last = planes
+        wanted = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"
         raise words.refuse(f"needs {wanted}, but {context.plane} is active")
     if context.inverse_time:
         raise words.refuse("needs feed per minute or revolution (G94, G95), but G93 is active")

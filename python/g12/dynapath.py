@@ -42,7 +42,7 @@ def calls_of_events(text: str) -> Iterator[str]:
     """Yield one block of G-code for each event."""
     modal: dict[str, Entry] = {}
     for line, row in enumerate(text.upper().splitlines(), start=1):
-        for event in re.findall(r"[^$]+\$?", re.sub(r"\s", "", row)):
+        for event in re.findall(r"[^$]*\$|[^$]+", re.sub(r"\s", "", row)):
             yield call_of_event(event, modal, line)
 
 

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The converter of Dynapath event text, and its command."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from g12.dynapath import program_from_events
+from g12.errors import Refusal
+from machines import PROGRAMS, ROOT
+
+EXAMPLE = "N1800(4)G7X1.5Y2.Z-.5W.1O.5R1.5D0C2K.2J.3L.02P5F20V15$"
+COMMAND = [sys.executable, str(ROOT / "python" / "g12"), "dynapath"]
+
+
+def calls(*lines):
+    """Return the arguments of each call."""
+    program = program_from_events("\n".join(lines)).splitlines()
+    assert (program[0], program[-1]) == ("G17 G40 G90 G94", "M2")
+    return [re.findall(r"\[(.*?)\]", block) for block in program[1:-1]]
+
+
+def test_one_event_is_one_call():
+    program = program_from_events(EXAMPLE + "\n")
+    assert program.splitlines()[1] == (
+        "N1800 o<circle_mill> call [7] [1.5] [2] [-0.5] [0.1] [0.5] [1.5] [0] [2]"
+        " [0.2] [0.3] [0.02] [5] [20] [15]"
+    )
+
+
+def test_what_an_event_leaves_out_the_call_leaves_out():
+    (values,) = calls("N1(4)X0Y0Z-1W.1R1C2F20$")
+    out = "-9999"
+    assert values == [out, "0", "0", "-1", "0.1", out, "1", out, "2", *[out] * 4, "20", out]
+
+
+def test_incremental_entries():
+    (values,) = calls("N1(4)G7X/1.5Y/-2.Z/-.6W.1R1C2L/.02F20$")
+    assert values[1:4] == ["#<_x> + 1.5", "#<_y> + -2", "-0.5"]
+    assert values[11] == "-0.02"
+
+
+def test_w_and_f_are_carried_from_event_to_event():
+    first, second, third = calls(
+        "N1(4)X0Y0Z-1W.1R1C2F20P5O.5$", "N2(4)X5Y0Z/-1R1C2$", "N3(4)X9Y0Z/-1W.2R1C2F30$"
+    )
+    assert (first[4], first[13]) == ("0.1", "20")
+    assert (second[3], second[4], second[13]) == ("-0.9", "0.1", "20")
+    assert (third[3], third[4], third[13]) == ("-0.8", "0.2", "30")
+    assert second[5] == second[12] == "-9999"
+
+
+def test_empty_lines_blanks_and_lower_case_do_not_matter():
+    spaced = EXAMPLE.lower().replace("x", " x ")
+    assert calls("", spaced, "  ", EXAMPLE.replace("N1800", "N1810") + EXAMPLE) == calls(
+        *[EXAMPLE] * 3
+    )
+
+
+def test_the_units_of_the_text_can_be_given():
+    assert program_from_events(EXAMPLE, "inch").startswith("G20 G17 G40 G90 G94\n")
+    assert program_from_events(EXAMPLE, "mm").startswith("G21 G17 G40 G90 G94\n")
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ([""], "there is no event in the file"),
+        ([EXAMPLE, "N2(1)X1Y1$"], "line 2: event type 1 is not the circle mill event, 4"),
+        (["", "N2(E)G0X1$"], "line 2: event type E is not the circle mill event, 4"),
+        (["DEMOPART"], "line 1: DEMOPART is not an event: N…(4)…$"),
+        ([EXAMPLE[:-1]], f"line 1: {EXAMPLE[:40]} is not an event: N…(4)…$"),
+        (["$"], "line 1: $ is not an event: N…(4)…$"),
+        (["(4)X1Y1$"], "line 1: (4)X1Y1$ is not an event: N…(4)…$"),
+        (["N1(4)X0Y0Z-1W.1R1C2F20M3$"], "line 1: M3 does not start with an entry"),
+        (["N1(4)X0Y0Z-1W.1RC2F20$"], "line 1: RC2F20 does not start with an entry"),
+        (["N1(4)X0Y0Z--1W.1R1C2F20$"], "line 1: Z--1W.1R1C2F20 does not start with an entry"),
+        (["N1(4)X0X1Y0Z-1W.1R1C2F20$"], "line 1: X stands twice"),
+        (["N1(4)Y0Z-1W.1R1C2F20$"], "line 1: X is missing"),
+        (["N1(4)X0Z-1W.1R1C2F20$"], "line 1: Y is missing"),
+        (["N1(4)X0Y0W.1R1C2F20$"], "line 1: Z is missing"),
+        (["N1(4)X0Y0Z-1W.1C2F20$"], "line 1: R is missing"),
+        ([EXAMPLE, "N1(4)X0Y0Z-1R1$"], "line 2: C is missing"),
+        (["N1(4)X0Y0Z-1R1C2F20$"], "line 1: W is missing, and no event before has it"),
+        (["N1(4)X0Y0Z-1W.1R1C2$"], "line 1: F is missing, and no event before has it"),
+        (["N1(4)X0Y0Z-1W/.1R1C2F20$"], "line 1: W/ cannot be incremental"),
+        (["N1(4)X0Y0Z-1W.1R/1C2F20$"], "line 1: R/ cannot be incremental"),
+        (
+            ["N1(4)X0Y0Z-1W.1R1C2F20L-.02$"],
+            "line 1: L-0.02 must not be negative; L/ is the side only",
+        ),
+    ],
+)
+def test_a_bad_file_is_refused_with_its_line(lines, message):
+    with pytest.raises(Refusal) as refused:
+        program_from_events("\n".join(lines))
+    assert refused.value.message == message
+
+
+@given(text=st.text(st.sampled_from("NXYZWORDCKJLPFVG0123456789.-/()$ \n")))
+def test_any_text_is_a_program_or_a_refusal(text):
+    try:
+        program = program_from_events(text)
+    except Refusal as refusal:
+        assert refusal.message
+    else:
+        assert program.count("o<circle_mill>") == text.count("$")
+
+
+def test_the_command_prints_the_program():
+    file = PROGRAMS / "dynapath" / "flange.dyn"
+    done = subprocess.run([*COMMAND, str(file), "--units", "inch"], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == file.with_suffix(".ngc").read_text()
+
+
+def test_the_command_prints_nothing_of_a_file_with_an_error(tmp_path):
+    file = tmp_path / "bad.dyn"
+    file.write_text(EXAMPLE + "\nN2(1)X1Y1$\n")
+    done = subprocess.run([*COMMAND, str(file)], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == (
+        f"g12 dynapath: {file}: line 2: event type 1 is not the circle mill event, 4\n"
+    )
