@@ -28,6 +28,7 @@ import numpy as np
 
 from g12.cli.ini import Ini, Overrides, read_ini
 from g12.cli.trace import (
+    AXES,
     PYTHON,
     Error,
     Message,
@@ -50,6 +51,7 @@ NS_PER_S = 1e9
 LOG_LINES = 60
 NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "INI_FILE_NAME")
 
+TOOL_CHANGE_DIALOGUE = "hal_manualtoolchange"
 # Stands in for the screen's tool change dialogue: whoever asks for a tool has it.
 TOOL_CHANGE = """\
 import hal, time
@@ -175,11 +177,11 @@ class Machine:
         try:
             self.ini = self._private_ini(read_ini(ini).replaced(overrides or {}), tools, parameters)
             self.mm = mm_per_unit(self.ini)
-            self.axes = "".join(self.ini.words("TRAJ", "COORDINATES", "XYZ")).upper()
+            letters = "".join(self.ini.words("TRAJ", "COORDINATES", "XYZ")).upper()
+            self.axes = "".join(dict.fromkeys(letters))
             self._start(timeout)
             if home:
-                self._ask("enable")
-                self._ask("home")
+                self._get_ready()
         except BaseException:
             self.close()
             raise
@@ -288,12 +290,12 @@ class Machine:
     # Whole programs.
 
     def run(self, program: Program, timeout: float = 600.0) -> Run:
-        """Run a program file to its end or its error."""
+        """Run a program file to its end or its error, passing over M0 and M1."""
         self.open(program)
         return self._run(timeout)
 
     def run_text(self, text: str | Iterable[str], timeout: float = 600.0) -> Run:
-        """Run a program given as text or as lines to its end or its error."""
+        """Run a program given as text or as lines; see ``run``."""
         self.open_text(text)
         return self._run(timeout)
 
@@ -314,7 +316,7 @@ class Machine:
         self.errors(), self.messages()
         self.sample()
         self.start()
-        self.wait_idle(timeout)
+        self._ask("finish", timeout, timeout=timeout)
         samples, status, errors = self.samples(), self.stat(), self.errors()
         moving = samples.time[samples.moving()]
         return Run(
@@ -366,7 +368,7 @@ class Machine:
         address = str(self._folder / "run" / "socket")
         driver = DRIVER.format(package=str(PACKAGE), address=address, axes=self.axes)
         self._install("g12-driver", driver)
-        self._install("hal_manualtoolchange", TOOL_CHANGE)
+        self._install(TOOL_CHANGE_DIALOGUE, TOOL_CHANGE)
         with socket.socket(socket.AF_UNIX) as listener:
             listener.bind(address)
             listener.listen(1)
@@ -388,6 +390,7 @@ class Machine:
             "command": ["linuxcnc", "-r", str(path)],
             "environment": self._environment(),
             "copies": {str(path.parent): {path.name: self.ini.text}},
+            "covers": self._covers(),
             "scratch": str(self._folder),
         }
         with open(self._folder / "log.txt", "wb") as log:
@@ -400,6 +403,17 @@ class Machine:
             )
         self._process.stdin.write(json.dumps(job).encode() + b"\n")
         self._process.stdin.flush()
+
+    def _covers(self) -> dict[str, str]:
+        dialogue = shutil.which(TOOL_CHANGE_DIALOGUE)
+        return {dialogue: str(self._folder / "bin" / TOOL_CHANGE_DIALOGUE)} if dialogue else {}
+
+    def _get_ready(self) -> None:
+        try:
+            self._ask("enable")
+            self._ask("home")
+        except MachineError as error:
+            raise self._startup_error(str(error)) from error
 
     def _environment(self) -> dict[str, str]:
         kept = {key: value for key, value in os.environ.items() if key not in NO_SCREEN}

@@ -7,8 +7,9 @@ job are replaced by copies that take all writing.  Everything ends with this pro
 process ends when its standard input is closed.
 
 The job is a line of JSON on standard input: ``command``, ``environment``, ``copies``, a map of
-directory to the files that stand in it in place of the real ones, and ``scratch``, a directory
-to be removed if the other end of standard input goes away.
+directory to the files that stand in it in place of the real ones, ``covers``, a map of file to
+the file to be seen in its place, and ``scratch``, a directory to be removed if the other end of
+standard input goes away.
 """
 
 from __future__ import annotations
@@ -121,6 +122,8 @@ def prepare(job: dict) -> None:
     mirror("/tmp", {}, copy=False)
     for directory, files in job["copies"].items():
         mirror(directory, files, copy=True)
+    for covered, file in job["covers"].items():
+        bind(file, covered)
 
 
 def first_process(job: dict) -> int:

@@ -163,6 +163,15 @@ class Panel:
         """Wait until the interpreter is done and the axes stand."""
         self.wait(self.is_idle, timeout, "end of motion")
 
+    def finish(self, timeout: float) -> None:
+        """Wait until the program is done, passing over program stops (M0, M1)."""
+        self.wait(lambda stat: self.is_idle(stat) or self._pass_stop(stat), timeout, "end")
+
+    def _pass_stop(self, stat) -> bool:
+        if stat.interp_state == linuxcnc.INTERP_PAUSED:
+            self.resume()
+        return False
+
     @staticmethod
     def is_idle(stat) -> bool:
         """Tell whether the interpreter is done and the axes stand."""

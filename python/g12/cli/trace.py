@@ -32,6 +32,7 @@ LAUNCH = (
     "import sys; sys.path[0] = {folder!r}; import trace_worker; sys.path.pop(0); "
     "trace_worker.serve({descriptor})"
 )
+LEAVE_NO_TRACE = {"PYTHONDONTWRITEBYTECODE": "1"}  # nothing is written beside the INI
 MM_PER_INCH = 25.4
 SAME_POINT = 1e-6  # mm; an arc whose ends are nearer is a full circle, as in motion
 START_BLOCKS = {1.0: "G21 G64 P0.0254 Q0", MM_PER_INCH: "G20 G64 P0.001 Q0"}  # as task starts
@@ -278,7 +279,7 @@ class Tracer:
             self._process = subprocess.Popen(
                 [PYTHON, "-c", launch],
                 cwd=self.ini.directory,
-                env={**os.environ, "HOME": str(self._folder), "LC_ALL": "C"},
+                env={**os.environ, "HOME": str(self._folder), "LC_ALL": "C", **LEAVE_NO_TRACE},
                 pass_fds=[there.fileno()],
                 stdin=subprocess.DEVNULL,
                 stdout=output,

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The commands of ``python3 python/g12``: one line each, loaded when called.
+
+A command is a module with ``main(arguments) -> exit code``.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+
+COMMANDS = {
+    "run": ("g12.cli.run", "run a program on a headless LinuxCNC"),
+    "dynapath": ("g12.cli.dynapath", "print Dynapath circle mill events as a LinuxCNC program"),
+    "trace": ("g12.cli.moves", "list the moves of a program"),
+}
+
+
+def usage() -> str:
+    """Return the list of commands."""
+    lines = (f"  {name:10} {summary}" for name, (_, summary) in COMMANDS.items())
+    return "\n".join(["usage: python3 python/g12 COMMAND [-h] …", "", *lines])
+
+
+def main(arguments: list[str]) -> int:
+    """Run the command named first; return its exit code."""
+    name, *rest = arguments or ["--help"]
+    if name in ("-h", "--help"):
+        print(usage())
+        return 0
+    if name not in COMMANDS:
+        print(f"g12: no command {name!r}\n{usage()}", file=sys.stderr)
+        return 2
+    return import_module(COMMANDS[name][0]).main(rest)
