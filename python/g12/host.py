@@ -11,7 +11,7 @@ import functools
 import sys
 
 import emccanon
-from interpreter import INTERP_ERROR, INTERP_OK
+from interpreter import INTERP_ERROR
 
 from .context import MM_PER_INCH, XY, XZ, YZ, Context, Tool
 from .errors import Refusal
@@ -150,9 +150,17 @@ def tool_in_spindle(interp: object) -> Tool | None:
 
 
 def tool_in_table(interp: object, tool_number: int) -> Tool | None:
-    """Return the tool of that number from the tool table, None if it is not there."""
-    status, pocket = interp.find_tool_pocket(tool_number)
-    return tool_from_entry(interp, interp.tool_table[pocket]) if status == INTERP_OK else None
+    """Return the tool of that number from the tool table, None if it is not there.
+
+    The table is in the order of the tool file; `find_tool_pocket` would give the pocket, which
+    is another number. Place 0 is the spindle, with a random tool changer the tool's only place.
+    """
+    table = interp.tool_table
+    for place in itertools.chain(range(1, len(table)), (0,)):
+        entry = table[place]
+        if entry.toolno == tool_number:
+            return tool_from_entry(interp, entry)
+    return None
 
 
 def last_radius(interp: object) -> float | None:
