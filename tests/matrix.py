@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One cycle in every combination of modes and coordinate systems: the same machine path.
+
+A ``Case`` writes its block for a scale (25.4 for a program in mm) and for G90 or G91.
+"""
+
+import itertools
+from typing import Callable, NamedTuple
+
+import numpy as np
+import pytest
+
+import proof
+
+INCH = 25.4
+MODES = list(
+    itertools.product(
+        ("G20", "G21"),
+        ("G90", "G91"),
+        ("G90.1", "G91.1"),
+        ("G94", "G95"),
+        ("G61", "G64", "G64 P0.01"),
+    )
+)
+COORDINATES = {  # parameters in inches and degrees
+    "plain": {},
+    "shifted": {5221: 3.0, 5222: -2.0, 5223: 0.5},
+    "rotated": {5221: 3.0, 5222: -2.0, 5223: 0.5, 5230: 30.0},
+    "G92": {5211: 0.25, 5212: 0.125, 5213: -0.0625, 5210: 1.0, 5230: -12.5},
+    "far": {5221: 900.0, 5222: -900.0, 5230: 45.0},
+}
+UNSCALED = (5210, 5230)  # G92 is on, the rotation
+
+
+class Case(NamedTuple):
+    """A cycle from ``start``, an absolute point in inches; ``block(scale, incremental)``."""
+
+    block: Callable[[float, bool], str]
+    start: tuple = (0.5, 0.25, 0.1)
+    feed: float = 5.0
+
+    def program(self, units, distance, centres, feed, path):
+        """Return the blocks before the cycle, and the cycle's."""
+        scale = 1.0 if units == "G20" else INCH
+        start = " ".join(f"{axis}{v * scale:.10f}" for axis, v in zip("XYZ", self.start))
+        modes = f"{distance} {centres} {feed} {path} F{self.feed * scale:.10f}"
+        before = [f"{units} G90 G0 {start}", "T1 M6", "S1000 M3", modes]
+        return before, self.block(scale, distance == "G91")
+
+
+def words(scale, **values):
+    """Return scaled words: ``words(25.4, X=1.0)`` is ``X25.4``."""
+    return " ".join(f"{letter}{value * scale:.10f}" for letter, value in values.items())
+
+
+def path_of(traced):
+    """Return points along all that moves, and each move's kind and feed."""
+    moves = proof.moving(traced.moves)
+    return proof.dense_points(moves, step=2.0), [(move.kind, round(move.feed, 6)) for move in moves]
+
+
+def check_same_path(inch, metric, coordinates, case):
+    """Check that all modes on both machines make one path and give every mode back.
+
+    Under G95 the feed is per revolution, so kinds and feeds are compared for each of the two.
+    """
+    points, feeds = None, {}
+    for tracer, unit in ((inch, 1.0), (metric, INCH)):
+        parameters = {
+            key: value * (1.0 if key in UNSCALED else unit)
+            for key, value in COORDINATES[coordinates].items()
+        }
+        for modes in MODES:
+            before, block = case.program(*modes)
+            found = tracer.trace_text(before, parameters=parameters)
+            after = tracer.trace_text([*before, block], parameters=parameters)
+            check_modes(found, after)
+            path, kinds = path_of(after)
+            points = path if points is None else points
+            assert path.shape == points.shape, modes
+            assert np.abs(path - points).max() < 1e-6, modes
+            assert kinds == feeds.setdefault("G95" in modes, kinds), modes
+
+
+def check_modes(found, after):
+    """Check that a good block left the modes as it found them."""
+    assert after.error is None, after.error
+    assert after.modes == found.modes
+    assert after.globals == found.globals
+
+
+def check_refused(tracer, before, block, message):
+    """Check that a block is refused with that text, moves nothing and changes nothing."""
+    found = tracer.trace_text(before)
+    after = tracer.trace_text([*before, block])
+    assert after.error is not None, block
+    assert after.error.text == message
+    assert len(message) <= 255
+    assert after.moves == found.moves
+    assert after.modes == found.modes
+    assert after.state == found.state
+    assert after.globals == found.globals
+    assert after.messages == found.messages
+
+
+def remaps(include):
+    """Return the REMAP lines of a file of `configs/include`, for an INI override."""
+    lines = include.read_text().splitlines()
+    return [line.partition("=")[2].strip() for line in lines if line.startswith("REMAP")]
+
+
+any_coordinates = pytest.mark.parametrize("coordinates", COORDINATES)
