@@ -8,6 +8,7 @@ Facts about the interpreter that the code relies on stand beside the line that d
 from __future__ import annotations
 
 import functools
+import itertools
 import sys
 
 import emccanon
