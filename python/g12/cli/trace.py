@@ -53,6 +53,18 @@ class Message(NamedTuple):
     text: str
 
 
+class Event(NamedTuple):
+    """What the program does between two moves, as text: ``tool 1``, ``M3 S1000``, ``dwell 0.5``.
+
+    ``at`` is the index of the move that follows, ``line`` the program's line.  LinuxCNC tells
+    of spindle, coolant, work offset and path mode when the next line starts.
+    """
+
+    at: int
+    line: int
+    text: str
+
+
 class Error(NamedTuple):
     """The interpreter's own text for the block that was refused, and that block's line."""
 
@@ -81,7 +93,8 @@ class Move(NamedTuple):
 
     ``kind`` is ``rapid``, ``feed``, ``arc`` or ``probe``.  ``line`` is what the interpreter says
     and a GUI highlights: in a subroutine that subroutine's line, in a Python remap 0 unless the
-    remap sets it.  ``block`` is the line of the program itself whose block makes the move.
+    remap sets it.  ``block`` is the line of the program itself whose block makes the move; in a
+    G12.1 section that is the contour's block.
 
     ``feed`` is mm/min under ``feed_mode`` G94 and G93 (the interpreter resolves inverse time),
     mm/rev under G95; degrees for a straight move of rotary axes alone; 0 for a rapid.
@@ -185,11 +198,12 @@ class Trace:
     the refused block if there was one (motion_mode, plane, feed_rate …, program units).
     ``printed`` is the text of ``(print, …)`` and of Python, ``position`` where the last move
     ended, ``globals`` the global named parameters that the program left, ``numbered`` the
-    parameters asked for, ``seconds`` the interpreter's time.
+    parameters asked for, ``seconds`` the interpreter's time.  ``events`` holds the messages too.
     """
 
     moves: list[Move]
     messages: list[Message]
+    events: list[Event]
     error: Error | None
     modes: Modes
     state: dict[str, float]
@@ -409,6 +423,7 @@ def _trace(answer: dict) -> Trace:
     return Trace(
         moves=[Move._make(move) for move in answer["moves"]],
         messages=[Message._make(message) for message in answer["messages"]],
+        events=[Event._make(event) for event in answer["events"]],
         error=Error._make(answer["error"]) if answer["error"] else None,
         modes=modes(answer["gcodes"], answer["mcodes"], answer["settings"]),
         **{key: answer[key] for key in ("state", "printed", "position", "seconds")},

@@ -33,6 +33,7 @@ STATE = (
     "rotation_xy", "current_x", "current_y", "current_z", "AA_current", "BB_current",
     "CC_current", "current_tool", "call_level", "remap_level",
 )  # fmt: skip
+SPINDLE_MODE = 13  # place of G96, G97 in the active G codes
 FEED_MODES = ("G94", "G93", "G95")
 
 
@@ -82,6 +83,7 @@ class Lines:
     """Finds the line of the program itself that is being executed, however deep in calls."""
 
     def __init__(self, program: str) -> None:
+        self._program = program
         with open(program, "rb") as file:
             self._ends = [match.start() for match in re.finditer(b"\n", file.read())]
 
@@ -91,7 +93,8 @@ class Lines:
         if not this.call_level:
             return this.sequence_number
         if this.sub_context[1].call_type == CALL_OF_REMAP:
-            return self._of_remap(this)
+            own = this.filename == self._program and this.sequence_number  # a remap may set it
+            return own or self._of_remap(this)
         return this.sub_context[0].sequence_number
 
     def of_error(self) -> int:
@@ -120,6 +123,8 @@ class Canon:
         self.started = False
         self.moves: list[tuple] = []
         self.messages: list[tuple] = []
+        self.events: list[tuple] = []
+        self.in_force: tuple = ()
         self.line = 0
         self.tip = self.position = NO_OFFSET  # in program and in machine coordinates
         self.work = self.g92 = self.length = NO_OFFSET
@@ -152,15 +157,19 @@ class Canon:
 
     def next_line(self, state) -> None:
         self.line = state.sequence_number
+        if self.started:
+            self._note_conditions(state)
 
     def comment(self, text: str) -> None:
         if text == START:
             self.started = True
             self.moves.clear()
             self.messages.clear()
+            self.events.clear()
 
     def message(self, text: str) -> None:
         self.messages.append((self.lines.now(), text))
+        self._note(f"message {text}")
 
     def set_g5x_offset(self, _index: int, *offset: float) -> None:
         self.work = in_mm(offset)
@@ -185,11 +194,26 @@ class Canon:
 
     def change_tool(self, index: int) -> None:
         self.spindle = self.tools.at(index) if index else EMPTY
+        self._note(f"tool {self.spindle[0]}")
 
-    def ignore(self, *_args) -> None:
-        """Anything else that has no part in the path."""
+    def dwell(self, seconds: float) -> None:
+        self._note(f"dwell {seconds:.10g}")
 
-    set_traverse_rate = dwell = user_defined_function = ignore
+    def user_defined_function(self, number: int, first: float, second: float) -> None:
+        self._note(f"M{100 + number} P{first:.10g} Q{second:.10g}")
+
+    def set_traverse_rate(self, _rate: float) -> None:
+        """Rapids have no feed."""
+
+    def _note(self, text: str) -> None:
+        self.events.append((len(self.moves), self.lines.now(), text))
+
+    def _note_conditions(self, state) -> None:
+        """What the moves from here on run under, as far as it is new."""
+        words = conditions(state)
+        if words != self.in_force:
+            known, self.in_force = self.in_force, words
+            self._note(" ".join(word for word in words if word not in known))
 
     # Moves.
 
@@ -238,6 +262,27 @@ class Canon:
         return tuple(map(float.__add__, turned, self.work))
 
 
+def conditions(state) -> tuple:
+    """Return what has no part in the path, as words; ``state`` is the modal state of a line.
+
+    LinuxCNC brings that state up to date at the end of a block.
+    """
+    this = interpreter_object()
+    blending = this.active_settings
+    path = f"G{state.path_mode / 10:g}"
+    return (
+        f"G{state.origin / 10:g}",
+        f"G{state.tool_length_offset / 10:g}",
+        f"{path} P{blending[3]:.10g} Q{blending[4]:.10g}" if path == "G64" else path,
+        f"G{state.gcodes[SPINDLE_MODE] / 10:g}",
+        f"M{state.spindle}",
+        f"S{state.speed:.10g}",
+        "M7 on" if this.mist else "M7 off",
+        "M8 on" if this.flood else "M8 off",
+        f"M{state.overrides}",
+    )
+
+
 def in_mm(position) -> tuple:
     """Return the preview's X Y Z U V W, inches, in mm; degrees stay."""
     x, y, z, a, b, c, u, v, w = (*position, *NO_OFFSET[len(position):])
@@ -270,7 +315,8 @@ def interpret(machine: dict, tools: Tools, request: dict) -> dict:
     error = None
     if result > gcode.MIN_ERROR:
         error = (gcode.strerror(result), canon.lines.of_error() if canon.started else 0)
-    answer = {"moves": canon.moves, "messages": canon.messages, "error": error}
+    answer = {"moves": canon.moves, "messages": canon.messages, "events": canon.events}
+    answer["error"] = error
     return {**answer, "position": canon.position, "seconds": seconds, **left_behind(request)}
 
 
