@@ -128,7 +128,7 @@ class Emission:
         """Execute a block in its place."""
         self.interp.sequence_number = action.line
         if action.modes is None:
-            self.interp.execute(action.text)
+            self._execute(action)
             return
         self.release(action.modes)
         status = self._execute(action)

@@ -40,11 +40,24 @@ class Frame:
         changed = self._locals(self.level).items() - self._found.items()
         self._set_locals(self.level - 1, dict(changed))
         self._renumber(line)
-        self._set_line(line)
+        self.interp.sub_context[self.level - 1].sequence_number = line
+        self.interp.sequence_number = line
 
-    def give_up(self, line: int) -> None:
-        """Let an error of ``line`` be reported there: unwinding takes the number from the frames."""
-        self._set_line(line)
+    def give_up(self, line: int, *, called: bool, home: str) -> None:
+        """Let an error be that of ``line``: unwinding takes the number from the frames.
+
+        What counts is the main program's line. In a file that the section calls (``called``), or for
+        a section that is itself in another file (``home`` is the section's), it is the calling line.
+        """
+        frames = self.interp.sub_context
+        if called:
+            line = frames[self.level].sequence_number
+        if frames[0].filename not in ("", home):
+            line = frames[0].sequence_number
+        for level in range(self.level):
+            frames[level].sequence_number = line
+        self.interp.sequence_number = line
+        self.interp.blocks[self.remap_level].executing_remap = None
 
     def wait(self) -> Iterator[int]:
         """Yield until the machine has done everything before; it may be in a sub of the section."""
@@ -56,10 +69,6 @@ class Frame:
         yield INTERP_EXECUTE_FINISH
         interp.blocks[0].o_type, interp.blocks[0].call_type = NO_O_WORD, NOT_CALLED
         interp.call_level, interp.remap_level = level, remap_level
-
-    def _set_line(self, line: int) -> None:
-        self.interp.sub_context[self.level - 1].sequence_number = line
-        self.interp.sequence_number = line
 
     def _locals(self, level: int) -> dict[str, float]:
         """The local parameters of a call level; those of level 0 stand among the global ones."""

@@ -17,7 +17,7 @@ from . import host, polar
 from .context import YZ
 from .errors import Refusal, number
 from .frame import Frame
-from .polar.block import Place, alone
+from .polar.block import Place, alone, line_named
 from .program import Program
 from .section import Section, Setup, block_of
 from .settings import section_entries
@@ -60,7 +60,8 @@ def refuse_owned_codes(parameters: Sequence[str], remaps: dict[str, dict[str, st
         )
 
 
-refuse_owned_codes(interpreter.this.params.globals(), REMAPS)
+if hasattr(interpreter, "this"):  # milltask loads this module before its interpreter exists
+    refuse_owned_codes(interpreter.this.params.globals(), REMAPS)
 
 
 def polar_on(self, **words) -> Iterator[int]:
@@ -82,8 +83,9 @@ def run_section(interp: object, frame: Frame, program: Program) -> Iterator[int]
     try:
         setup = setup_of_section(interp, Place(host.code_of_block(interp), program.place))
         yield from Section(interp, setup, frame, program).run()
-    except Refusal:
-        frame.give_up(program.line)
+    except Refusal as refusal:
+        line = line_named(refusal)
+        frame.give_up(line or program.line, called=program.in_sub_file and not line, home=program.home)
         raise
 
 

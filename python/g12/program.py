@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The program behind a block being remapped: its lines seen before the interpreter parses them.
+"""The program behind a block being remapped: its lines, read here and parsed by the interpreter.
 
-The interpreter parses the next line of its file with ``read(None)``. A line that its parser would choke
-on must not get there: it is parsed as a string instead, and the file is moved past it when the
-interpreter has to read from the file again (O-words move its place themselves).
+Lines are handed to the interpreter's parser as strings, since it would choke on some of them.
+O-words too: they are told their place in the file, so that loops come back to it. Where they
+lead, the interpreter moves on in its file; it is moved past the lines read here when it has to
+come back to them, from a sub or behind the section.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from itertools import accumulate
 from typing import NamedTuple
 
 NO_MOTION = -1
+MOVING = ("call", "endsub", "return")  # O-words that always move the interpreter in its file
+SHORT = 200  # characters: every LinuxCNC reads longer lines than that
 SKIPPED_OVER = "g12_skipped_over"  # the name of a sub that never exists in a file
 
 
@@ -39,6 +42,20 @@ def read_source(filename: str, known: Source | None = None) -> Source:
     return Source(version, [line.decode("utf-8", "replace") for line in lines], starts)
 
 
+class LineOfFile(int):
+    """The number of a line in another file than the section's: ``3 of flat.ngc``."""
+
+    def __new__(cls, line: int, file: str) -> LineOfFile:
+        """Return the number, with the file's name for messages."""
+        number = super().__new__(cls, line)
+        number.file = file
+        return number
+
+    def __format__(self, spec: str) -> str:
+        """Return the number and the file."""
+        return f"{int(self)} of {self.file}"
+
+
 class Program:
     """The lines that follow the block being remapped.
 
@@ -54,12 +71,16 @@ class Program:
         interp.sequence_number = self.line
 
     @property
-    def place(self) -> str:
-        """The line taken last, for an operator."""
-        filename = self.source.version[0]
-        return str(self.line) + (
-            "" if filename == self.home else f" of {os.path.basename(filename)}"
-        )
+    def in_sub_file(self) -> bool:
+        """Tell whether the line taken last is in another file than the block being remapped."""
+        return self.source.version[0] != self.home
+
+    @property
+    def place(self) -> int:
+        """The number of the line taken last, which an operator reads with its file's name."""
+        if not self.in_sub_file:
+            return self.line
+        return LineOfFile(self.line, os.path.basename(self.source.version[0]))
 
     def take(self) -> str | None:
         """Return the next line and count it as read; None at the end of the file."""
@@ -70,46 +91,42 @@ class Program:
 
     def parse(self, text: str | None = None) -> None:
         """Let the interpreter parse the line taken, or ``text`` in its place."""
-        interp = self.interp
-        if text is None and self._in_file == self.line - 1:
-            interp.read(None)
-            self._in_file = self.line
-        else:
-            interp.sequence_number = self.line
-            interp.read(self.source.lines[self.line - 1] if text is None else text)
+        interp, raw = self.interp, self.source.lines[self.line - 1]
+        interp.sequence_number = self.line
+        if text is not None and len(raw) > SHORT:
+            interp.read(" " * len(raw))  # refused if the line is longer than a line may be
+        interp.read(raw if text is None else text)
 
-    def pass_by(self, *, harmless: bool = True) -> None:
-        """Leave out the line taken; ``harmless`` tells that the parser could read it."""
-        if harmless and self._in_file == self.line - 1:
-            self.parse()
+    def control(self, kind: str) -> int:
+        """Let the interpreter obey the line taken, an O-word, and go on where it leads.
 
-    def control(self) -> int:
-        """Let the interpreter read and obey the line taken, an O-word; return its status.
-
-        It may go on elsewhere, even in another file.
+        ``kind`` is the O-word's keyword. Returns the interpreter's status.
         """
-        self.catch_up(self.line - 1)
+        if kind == "call":
+            self.catch_up()
+        interp, line = self.interp, self.line
         self.parse()
-        return self.follow()
-
-    def follow(self) -> int:
-        """Execute the block parsed last and go on wherever that leads; return its status."""
-        interp = self.interp
+        interp.blocks[0].offset = self.source.starts[line - 1]
         status = interp.execute(None)
-        if interp.filename != self.source.version[0]:
-            self.source = read_source(interp.filename)
-        interp.read("")
-        self.line = bisect_right(self.source.starts, interp.blocks[0].offset - 1)
-        self._in_file = interp.sequence_number = self.line
+        if kind in MOVING or interp.sequence_number != line:
+            self._locate()
         return status
 
-    def catch_up(self, line: int | None = None) -> None:
-        """Make the interpreter read on behind ``line`` (default: the line taken) of its file.
+    def call(self, text: str) -> int:
+        """Let the interpreter execute a block that is remapped to a sub; return its status."""
+        self.catch_up()
+        self.interp.read(text)
+        status = self.interp.execute(None)
+        self._locate()
+        return status
 
-        Nothing but the return from a sub moves its place: so call an empty one, whose lines need not
-        be in any file, and change where it returns to.
+    def catch_up(self) -> None:
+        """Make the interpreter read on behind the line taken.
+
+        Nothing but the return from a sub moves its place in a file: so call an empty one, whose
+        lines need not be in any file, and change where it returns to.
         """
-        interp, line = self.interp, self.line if line is None else line
+        interp, line = self.interp, self.line
         if self._in_file != line:
             interp.read(f"o<{SKIPPED_OVER}> call")
             interp.execute(None)
@@ -125,3 +142,12 @@ class Program:
         """Tell whether the interpreter skips lines: a false if, or on the way to a sub."""
         self.interp.read("G1")
         return self.interp.blocks[0].motion_to_be == NO_MOTION
+
+    def _locate(self) -> None:
+        """Go on where the interpreter stands in its file."""
+        interp = self.interp
+        if interp.filename != self.source.version[0]:
+            self.source = read_source(interp.filename)
+        interp.read("")
+        self.line = bisect_right(self.source.starts, interp.blocks[0].offset - 1)
+        self._in_file = interp.sequence_number = self.line

@@ -54,7 +54,7 @@ from .polar.block import (
     stop_text,
 )
 from .polar.contour import Contour
-from .program import Program
+from .program import MOVING, Program
 from .travel import Travel
 
 PER_MINUTE, PER_REVOLUTION = 0, 2  # feed_mode
@@ -117,6 +117,7 @@ class Section:
         self.saved: dict[int, Modes] = {}  # by M70 and M73, at each call level
         self.restored_on_return: set[int] = set()
         self.skipping = self.finished = False
+        self.skipped_for = ""
 
     def run(self) -> Iterator[int]:
         """Read, plan and move the section; yield where the interpreter has to wait for the machine."""
@@ -146,16 +147,14 @@ class Section:
         raw = self.program.take()
         if raw is None:
             self._end_of_file()
-        elif is_plain(raw):
-            self._plain_line()
-        else:
+        elif not is_plain(raw):
             yield from self._line(split_line(raw))
+        elif not self.skipping:
+            self._plain_line()
 
     def _plain_line(self) -> None:
         """A line of nothing but numbers behind G1 to G3, F and the words of a move."""
         self.program.parse()
-        if self.skipping:
-            return
         has_f, f, motion, has_x, x, has_c, c, has_z, z, has_i, i, has_j, j, has_r, r = plain_words(
             self.block
         )
@@ -175,16 +174,13 @@ class Section:
 
     def _line(self, line: Line) -> Iterator[int]:
         if line.deletable and emccanon.GET_BLOCK_DELETE():
-            self.program.pass_by(harmless=True)
-        elif line.control:
-            self._control(line.control)
-        elif self.skipping:
-            self.program.pass_by(harmless=not line.rewritten)
-        elif line.empty:
+            return
+        if line.control:
+            self._control(line)
+        elif not self.skipping:
             self._comment(line)
-            self.program.pass_by(harmless=True)
-        else:
-            yield from self._words(line)
+            if not line.empty:
+                yield from self._words(line)
 
     def _words(self, line: Line) -> Iterator[int]:
         if line.text == "%":
@@ -194,25 +190,33 @@ class Section:
             self._show_plane()
         self.program.parse(line.text if line.rewritten else None)
         block = block_of(self.block)
-        self._comment(line)
         if block.g[MOTION] == self.setup.off:
             yield from self._finish(block)
         else:
             self._check(block)
             yield from self._obey(line, block)
 
-    def _control(self, kind: str) -> None:
-        """An O-word: the interpreter obeys it at once, and may go on elsewhere."""
-        level = self.interp.call_level
+    def _control(self, line: Line) -> None:
+        """Let the interpreter obey an O-word; it may go on elsewhere."""
+        kind, level = line.control, self.interp.call_level
+        if self.skipping and kind in MOVING:
+            return
         if not self.skipping and level == self.frame.level:
             self._check_level(kind)
         self._show_plane()
-        self._check_done(self.program.control())
+        self._check_done(self.program.control(kind))
         for left in sorted(self.restored_on_return, reverse=True):
             if left > self.interp.call_level:
                 self._restore(left)
                 self.restored_on_return.discard(left)
-        self.skipping = self.program.skipping()
+        self._see_skipping(line)
+
+    def _see_skipping(self, line: Line) -> None:
+        """Note whether the lines that follow are skipped, and what that began with."""
+        skipping = self.program.skipping()
+        if skipping and not self.skipping:
+            self.skipped_for = line.text
+        self.skipping = skipping
 
     def _check_level(self, kind: str) -> None:
         if kind in ("endsub", "return"):
@@ -231,7 +235,7 @@ class Section:
 
     def _end_of_file(self) -> None:
         if self.skipping:
-            self.interp.read(None)  # the interpreter says what it was looking for
+            raise self.place.refuse(f"the program ends before what belongs to {self.skipped_for}")
         self._missing_off("the program ends before it")
 
     def _missing_off(self, what: str) -> None:
@@ -291,11 +295,11 @@ class Section:
             raise self.place.refuse(
                 f"G{side} needs a tool in the spindle: its radius is compensated"
             )
-        self.contour.compensation(side, radius, line=self.program.line)
+        self.contour.compensation(side, radius, line=self.program.place)
 
     def _move(self, motion, x, c, z, i=None, j=None, r=None, relative="") -> None:
         """Add a move to the contour; the words are the program's, None where there is none."""
-        contour, modes, line = self.contour, self.modes, self.program.line
+        contour, modes, line = self.contour, self.modes, self.program.place
         if x is not None:
             x *= self.setup.x_scale
             if modes.incremental or "X" in relative:
@@ -336,7 +340,7 @@ class Section:
     def _mark(self, text: str) -> None:
         """Keep a block for its place between the moves."""
         if text:
-            line = self.program.line
+            line = self.program.place
             self.contour.mark(Action(line, text, self.modes), line=line)
 
     def _comment(self, line: Line) -> None:
@@ -346,7 +350,7 @@ class Section:
                 self._show_plane()
                 self.interp.read("")  # which renews #5420
             text = comment_text(comment, self._parameter)
-            self.contour.mark(Action(self.program.line, text, None), line=self.program.line)
+            self.contour.mark(Action(self.program.place, text, None), line=self.program.place)
 
     def _parameter(self, name: str) -> float | None:
         params = self.interp.params
@@ -372,23 +376,21 @@ class Section:
             self.restored_on_return.add(level)
         text = f"M{FORGET if code == FORGET else SAVE}"
         self.contour.mark(
-            Action(self.program.line, text, self.modes, level), line=self.program.line
+            Action(self.program.place, text, self.modes, level), line=self.program.place
         )
 
     def _restore(self, level: int) -> None:
         if level not in self.saved:
             raise self.place.refuse("M72: no modes were saved in this section")
-        action = Action(self.program.line, f"M{RESTORE}", self.modes, level)
-        self.contour.mark(action, line=self.program.line)
+        action = Action(self.program.place, f"M{RESTORE}", self.modes, level)
+        self.contour.mark(action, line=self.program.place)
         self._set_modes(self.saved[level])
 
     def _call_remapped(self, line: Line) -> None:
-        """An M code remapped to a sub: its lines are lines of the section."""
+        """Let the interpreter call a sub for an M code: its lines are lines of the section."""
         self._show_plane()
-        self.program.catch_up()
-        self.interp.read(line.text)
-        self._check_done(self.program.follow())
-        self.skipping = self.program.skipping()
+        self._check_done(self.program.call(line.text))
+        self._see_skipping(line)
 
     # Motion.
 

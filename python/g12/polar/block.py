@@ -83,7 +83,7 @@ REASON_OF_WORD = {
 
 _NUMBER = r"[-+]?[\d.]+"
 is_plain: Callable[[str], object] = re.compile(
-    rf"(?:[Nn]\d+)?[ \t]*(?:(?:[XCZIJRFxczijrf]{_NUMBER}|[Gg]0?[123](?![\d.]))[ \t]*)*\r?", re.ASCII
+    rf"(?:[Nn]\d+)?[ \t]*(?:(?:[XCZIJRFxczijrf]{_NUMBER}|[Gg]0?[123](?![\d.]))[ \t]*)+\r?", re.ASCII
 ).fullmatch
 
 _COMMENT = re.compile(r"\(([^()]*)\)|;.*")
@@ -94,22 +94,29 @@ _SIGNS = re.compile(r"[-+]*")
 _FUNCTION = re.compile(r"[a-z]+(?=\[)")
 _NAME = re.compile(r"<[^>]*>?")
 _DIGITS = re.compile(r"[\d.]*")
-_NINE = re.compile(r"0*9\.?0*")
+_NINE = re.compile(r"0*9(?:\.0*)?")
 _IN_REPORT = re.compile(r"%(d|f|\.\df)|#(\d+|<[^>]*>)")
+_LINE_NAMED = re.compile(r" line (\d+):")
 _REPORTS = ("debug,", "print,", "log,", "abort,")
 
 FOREIGN = {"u": "x", "h": "c", "y": "c"}  # what the parser is given instead
 
 
 class Place(NamedTuple):
-    """Where something is refused: the section's code, and the line as the operator is to read it."""
+    """Where something is refused: the section's code, and the line."""
 
     code: str
-    line: str
+    line: int
 
     def refuse(self, reason: str) -> Refusal:
         """Return the refusal of this line."""
         return Refusal(f"{self.code} line {self.line}: {reason}")
+
+
+def line_named(refusal: Refusal) -> int | None:
+    """Return the line of the section's file that a refusal names, None if it names none."""
+    named = _LINE_NAMED.search(refusal.message)
+    return int(named[1]) if named else None
 
 
 class Line(NamedTuple):
@@ -181,6 +188,8 @@ def split_line(raw: str) -> Line:
     if control:
         kind = {"98": "call", "99": "return"}.get(control[2]) or control[1] or "program"
         return Line(bare, comments, kind)
+    if "(" in bare:  # an unclosed or nested comment: the parser says so
+        return Line(bare)
     words = list(split_words(bare.lstrip("/")))
     letters = tuple(letter.upper() for letter, _ in words)
     kept = [word for word in words if not _is_exact_stop(word)]
@@ -344,4 +353,5 @@ def comment_text(comment: str, value_of: Callable[[str], float | None]) -> str:
         value = value_of("".join(match[2].split()).strip("<>").lower())
         return "######" if value is None else f"{value:.{decimals}f}"
 
-    return f"({_IN_REPORT.sub(filled, comment)})"
+    text = _IN_REPORT.sub(filled, comment)
+    return f"({text} )" if text.endswith("#") else f"({text})"  # no parameter may begin there

@@ -1,0 +1,382 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12.1 on the stock interpreter: whatever may stand in a program may stand in a section."""
+
+import pytest
+
+from g12.cli.trace import Tracer
+from lathe import FIRST, START, ends, feed_moves, lines, section, texts, tracer
+from machines import SIM
+
+
+@pytest.fixture(scope="module")
+def lathe():
+    with tracer() as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def subs(tmp_path_factory):
+    """A lathe with subs and remapped codes in files of their own."""
+    directory = tmp_path_factory.mktemp("subs")
+    files = {
+        "flat": "o<flat> sub\nG1 X#1\n#<depth>=[#2 * 2]\nC#<depth>\no<flat> endsub [#<depth>]\n",
+        "outer": "o<outer> sub\no<flat> call [#1] [1]\nU1\no<outer> endsub\n",
+        "round": "o<round> sub\nG12.1\no<flat> call [11] [2]\nG13.1\no<round> endsub\nM2\n",
+        "m410": "o<m410> sub\nG1 X#<p>\nH1\no<m410> endsub\n",
+        "200": "O200\nG1 X15\nM99\n",
+    }
+    for name, text in files.items():
+        (directory / f"{name}.ngc").write_text(text)
+    remaps = ("G12.1 modalgroup=1 python=polar_on", "G13.1 modalgroup=1 python=polar_off")
+    overrides = {
+        "RS274NGC": {
+            "SUBROUTINE_PATH": f"{directory}:../../ngc:subs",
+            "REMAP": (*remaps, "M410 modalgroup=10 argspec=P ngc=m410"),
+        }
+    }
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as opened:
+        yield opened
+
+
+def cut(lathe, *body, **around):
+    return lathe.trace_text(section(*body, **around))
+
+
+# ---------------------------------------------------------------- words, values, parameters
+
+
+def test_expressions_and_functions_are_values(lathe):
+    traced = cut(lathe, "G1 X[10 + 2] C[sin[30] * 4]", "X-[3]C-#1", "Xatan[1]/[1] C+1", before=["#1=7"])
+    assert ends(traced) == [(12, 2), (-3, -7), (45, 1)]
+
+
+def test_lower_case_and_no_blanks(lathe):
+    assert ends(cut(lathe, "g01x14c3", "n7x 1 0 c-2.", "G1X+8C.5")) == [(14, 3), (10, -2), (8, 0.5)]
+
+
+def test_numbered_and_global_parameters_go_in_and_out(lathe):
+    body = ["G1 X#1", "#1=9", "X#1", "#<_deep>=3", "C#<_deep>", "#2=[#1 + #<_deep>]"]
+    traced = lathe.trace_text(section(*body, before=["#1=12"], after=["X#2"]), ask=[1, 2])
+    assert ends(traced)[:3] == [(12, 0), (9, 0), (9, 3)]
+    assert traced.numbered == {1: 9, 2: 12}
+    assert traced.globals["_deep"] == 3
+
+
+def test_the_callers_local_parameters_go_in_and_out(lathe):
+    traced = cut(
+        lathe,
+        "G1 X#<a>", "#<a>=[#<a> - 2]", "X#<a>", "#<new>=4",
+        before=["#<a>=12", "#<b>=1"], after=["(DEBUG,#<a> #<b> #<new>)"],
+    )  # fmt: skip
+    assert ends(traced) == [(12, 0), (10, 0)]
+    assert texts(traced) == ["10.000000 1.000000 4.000000"]
+
+
+def test_local_parameters_of_a_sub_that_holds_a_section(lathe):
+    program = [
+        FIRST, "o<s> sub", "#<a>=#1", "G12.1", "G1 F100 X#<a>", "#<a>=[#<a> + 1]", "G13.1",
+        "(DEBUG,#<a> #1)", "o<s> endsub", START, "#<a>=5", "o<s> call [9]", "(DEBUG,#<a>)", "M2",
+    ]  # fmt: skip
+    traced = lathe.trace_text(program)
+    assert ends(traced) == [(9, 0)]
+    assert texts(traced) == ["10.000000 9.000000", "5.000000"]
+
+
+def test_assignments_on_a_motion_line_act_behind_it(lathe):
+    traced = cut(lathe, "#1=8 G1 X#1 #<a>=2", "X#1 C#<a>", before=["#1=12", "#<a>=0"])
+    assert ends(traced) == [(12, 0), (8, 2)]
+
+
+def test_assignments_on_a_line_that_has_to_be_rewritten(lathe):
+    traced = cut(lathe, "#1=8 G1 U[#1-16]", "X#1 Y[2*#1]", before=["#1=12"])
+    assert ends(traced) == [(16, 0), (8, 16)]
+
+
+@pytest.mark.parametrize("name", ["#5420", "#<_x>"])
+def test_position_parameters_show_the_plane(lathe, name):
+    c = {"#5420": "#5425", "#<_x>": "#<_c>"}[name]
+    traced = cut(lathe, "G1 X-12 C3", f"X[{name} - 1] C[{c} + 1]", f"(DEBUG,{name} {c} #5422)", "Z-2",
+                 "(DEBUG,#<_z>)")  # fmt: skip
+    assert ends(traced)[1] == (-13, 4)
+    assert texts(traced) == ["-13.000000 4.000000 5.000000", "-2.000000"]
+
+
+def test_position_parameters_show_the_machine_again_behind_the_section(lathe):
+    traced = cut(lathe, "G1 C20", after=["(DEBUG,%.3f#5420 #5425)"])
+    assert texts(traced) == ["28.284 45.000"]
+
+
+def test_a_parameter_that_does_not_exist_is_refused_on_its_line(lathe):
+    traced = cut(lathe, "G1 X10", "X#<nowhere>")
+    assert traced.error.text == "G12.1 line 7: Named parameter #<nowhere> not defined"
+    assert traced.error.line == 7
+    assert not [move for move in traced.moves if move.kind == "feed"]
+
+
+# ---------------------------------------------------------------- letters the parser does not know
+
+
+def test_u_and_h_are_incremental(lathe):
+    assert ends(cut(lathe, "G1 U-8 H3", "U2", "H-1.5")) == [(12, 3), (14, 3), (14, 1.5)]
+
+
+def test_u_and_h_stay_incremental_in_g91(lathe):
+    assert ends(cut(lathe, "G91 G1 U-8 H3", "X2 C1")) == [(12, 3), (14, 4)]
+
+
+def test_u_and_absolute_c_in_one_block(lathe):
+    assert ends(cut(lathe, "G1 X12 C5", "U-2 C1", "X4 H2")) == [(12, 5), (10, 1), (4, 3)]
+
+
+def test_y_is_c(lathe):
+    assert ends(cut(lathe, "G1 X12 Y5", "G3 X8 Y1 R4")) == [(12, 5), (8, 1)]
+
+
+def test_letters_inside_expressions_and_names_are_left_alone(lathe):
+    before = ["#<yh u>=3", "#<_hy>=2"]
+    traced = cut(lathe, "G1 Ufup[#<yhu>-12.5]Y[#<_hy>+round[1.2]]", "H#<yh u>", before=before)
+    assert ends(traced) == [(11, 3), (11, 6)]
+
+
+def test_g9_is_taken(lathe):
+    assert ends(cut(lathe, "G9 G1 X12", "G1 G09 X10", "G9", "G90 X8")) == [(12, 0), (10, 0), (8, 0)]
+
+
+def test_rewritten_lines_between_o_words(lathe):
+    body = ["G1 X10", "U1", "o1 repeat [3]", "U1", "H1 (one)", "/U9", "", "o1 endrepeat", "U-1"]
+    assert ends(cut(lathe, *body))[-1] == (13, 3)
+
+
+# ---------------------------------------------------------------- control flow
+
+
+CONTROL = {
+    "if": (["o1 if [#1 EQ 1]", "G1 X12", "o1 else", "G1 X99", "H-3", "o1 endif", "C1"], [(12, 0), (12, 1)]),
+    "else": (["o1 if [#1 EQ 2]", "G1 X99 U3", "M9", "o1 else", "G1 X12", "o1 endif"], [(12, 0)]),
+    "elseif": (
+        ["o1 if [0]", "U1", "o1 elseif [#1]", "G1 X12", "o1 elseif [1]", "G1 X99", "o1 endif"],
+        [(12, 0)],
+    ),
+    "while": (["#2=3", "o1 while [#2 GT 0]", "G1 U-1", "#2=[#2-1]", "o1 endwhile"], [(17, 0)]),
+    "do": (["#2=3", "o1 do", "G1 X[10+#2]", "#2=[#2-1]", "H1", "o1 while [#2 GT 1]"], [(13, 0), (13, 1), (12, 1), (12, 2)]),
+    "repeat": (["o1 repeat [2]", "G1 X12", "X13", "o1 endrepeat"], [(12, 0), (13, 0)] * 2),
+    "repeat none": (["o1 repeat [0]", "G1 X12", "U1", "#<a>=1", "o1 endrepeat", "G1 C1"], [(20, 1)]),
+    "break": (
+        ["o1 while [1]", "G1 U-1", "o2 if [#5420 LT 18]", "o1 break", "o2 endif", "C3", "C0", "o1 endwhile"],
+        [(19, 0), (19, 3), (19, 0), (18, 0), (18, 3), (18, 0), (17, 0)],
+    ),
+    "continue": (
+        ["#2=0", "o1 while [#2 LT 2]", "#2=[#2+1]", "G1 U-1", "o2 if [#2 EQ 1]", "o1 continue", "o2 endif",
+         "C3", "o1 endwhile"],
+        [(18, 0), (18, 3)],
+    ),
+    "nested": (
+        ["o1 repeat [2]", "o2 if [#1 EQ 1]", "G1 X11", "o2 else", "G1 X12", "o2 endif", "#1=[#1+1]",
+         "o1 endrepeat"],
+        [(11, 0), (12, 0)],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CONTROL)
+def test_o_words(lathe, name):
+    body, expected = CONTROL[name]
+    assert ends(cut(lathe, *body, before=["#1=1"])) == expected
+
+
+def test_a_section_inside_a_loop_and_a_loop_inside_it(lathe):
+    body = ["G1 X[10+#1]", "o2 repeat [2]", "U-1", "U-1", "o2 endrepeat"]
+    program = section(
+        *body, before=["#1=0", "o1 while [#1 LT 2]"], after=["#1=[#1+1]", "o1 endwhile", "X30"]
+    )
+    points = [(10, 0), (9, 0), (8, 0), (7, 0), (6, 0), (11, 0), (10, 0), (9, 0), (8, 0), (7, 0), (30, 0)]
+    assert ends(lathe.trace_text(program)) == points
+
+
+def test_labels_are_those_of_the_program_around(lathe):
+    one = ["o1 if [1]", "G1 X11", "o1 endif"]
+    program = [
+        FIRST, "o<s> sub", "G12.1", "G1 F100", *one, "G13.1", "o<s> endsub", START, "o<s> call", "G12.1", *one,
+        "G13.1", "M2",
+    ]  # fmt: skip
+    assert ends(lathe.trace_text(program)) == [(11, 0)]
+
+
+SUB = ["o<flat> sub", "G1 X#1", "U-1 C[#2]", "o<flat> endsub [#1 + 1]"]
+
+
+def test_subs_of_the_same_file(lathe):
+    body = ["o<flat> call [12] [3]", "C#<_value>", "o<flat> call [8] [1]"]
+    traced = lathe.trace_text([*SUB, *section(*body)])
+    assert ends(traced) == [(12, 0), (11, 3), (11, 13), (8, 13), (7, 1)]
+    assert lines(traced) == [2, 3, 11, 2, 3]
+
+
+def test_a_sub_that_is_defined_further_down(lathe):
+    traced = lathe.trace_text([*section("G1 X12", "o<flat> call [10] [2]", "C0"), *SUB])
+    assert ends(traced) == [(12, 0), (10, 0), (9, 2), (9, 0)]
+
+
+def test_a_sub_that_is_nowhere_is_named(lathe):
+    traced = lathe.trace_text(section("G1 X12", "o<nowhere> call"))
+    assert "nowhere" in traced.error.text
+    assert not [move for move in traced.moves if move.kind == "feed"]
+
+
+def test_subs_of_other_files(subs):
+    traced = subs.trace_text(section("o<outer> call [12]", "C0", "o<flat> call [9] [3]"))
+    assert ends(traced) == [(12, 0), (12, 2), (13, 2), (13, 0), (9, 0), (9, 6)]
+
+
+def test_return_and_recursion(lathe):
+    sub = [
+        "o<down> sub", "G1 U-1", "o1 if [#1 LE 1]", "o<down> return", "o1 endif", "o<down> call [#1 - 1]",
+        "H1", "o<down> endsub",
+    ]  # fmt: skip
+    traced = lathe.trace_text([*sub, *section("o<down> call [3]", "X5")])
+    assert ends(traced) == [(17, 0), (17, 1), (17, 2), (5, 2)] or ends(traced)[-1] == (5, 2)
+
+
+def test_parameters_of_a_sub_do_not_touch_the_sections(lathe):
+    traced = lathe.trace_text([*SUB, *section("#1=15", "o<flat> call [12] [3]", "X#1")])
+    assert ends(traced)[-1] == (15, 3)
+
+
+def test_fanuc_subs_with_repeats(lathe):
+    traced = lathe.trace_text([*section("M98 P100 L2", "U1"), "O100", "G1 U-2", "G91 C1", "G90", "M99"])
+    assert ends(traced) == [(18, 0), (18, 1), (16, 1), (16, 2), (17, 2)]
+
+
+def test_fanuc_subs_of_other_files(subs):
+    assert ends(subs.trace_text(section("M98 P200", "C1"))) == [(15, 0), (15, 1)]
+
+
+def test_codes_remapped_to_subs(subs):
+    assert ends(subs.trace_text(section("M410 P12", "X9", "U1", "M410 P8"))) == [
+        (12, 0), (12, 1), (9, 1), (10, 1), (8, 1), (8, 2),
+    ]  # fmt: skip
+
+
+def test_a_section_in_a_sub_of_another_file(subs):
+    traced = subs.trace_text([FIRST, START, "F100", "o<round> call", "C0", "M2"])
+    assert ends(traced)[:2] == [(11, 0), (11, 4)]
+    assert traced.moves[-1].line == 5
+
+
+# ---------------------------------------------------------------- comments, files
+
+
+def test_messages_reports_and_comments(lathe):
+    body = ["(MSG, one)", "#3=4 (DEBUG,three #3 %d#3 %.1f#3 #9999999)", "(DEBUG,#3)", "; (MSG, no)", "G1 X9 (x)"]
+    traced = cut(lathe, *body, before=["#3=1"])
+    assert texts(traced) == ["one", "three 1.000000 1 1.0 ######", "4.000000"]
+
+
+def test_reports_print(lathe):
+    assert cut(lathe, "#3=4", "(PRINT,a #3)", "(print, b %d#3)").printed == "a 4.000000\n b 4\n"
+
+
+def test_python_comments_act_in_their_place(lathe):
+    traced = cut(lathe, "(py,this.params[7] = 5)", "G1 X9", after=["(DEBUG,#7)"])
+    assert texts(traced) == ["5.000000"]
+
+
+def test_block_delete(lathe):
+    body = ["G1 X12", "/G1 X99", "/ U3", "/o1 if [1]", "/M30", " / H1", "C3", "/", "/(MSG, no)"]
+    assert ends(cut(lathe, *body)) == [(12, 0), (12, 3)]
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\n\n", " \t\n"])
+def test_line_ends(lathe, end):
+    traced = lathe.trace_text(end.join([*section("G1 X12", "U-2", "o1 repeat [2]", "H1", "o1 endrepeat"), ""]))
+    assert ends(traced)[-1] == (10, 2)
+
+
+def test_percent_files(lathe):
+    traced = lathe.trace_text(["%", *section("G1 X12", "U-2", after=["X30"]), "%"])
+    assert ends(traced) == [(12, 0), (10, 0), (30, 0)]
+    assert lines(traced) == [7, 8, 10]
+
+
+def test_a_file_without_a_last_newline(lathe, tmp_path):
+    program = tmp_path / "cut.ngc"
+    program.write_text("\n".join(section("G1 X12", "U-2")))
+    assert ends(lathe.trace(program)) == [(12, 0), (10, 0)]
+
+
+def test_a_program_that_is_not_utf8(lathe, tmp_path):
+    program = tmp_path / "cut.ngc"
+    program.write_bytes("\n".join(section("(Fläche \xb0)", "G1 X12 (ä)", "U-2")).encode("latin-1"))
+    assert ends(lathe.trace(program)) == [(12, 0), (10, 0)]
+
+
+@pytest.mark.parametrize("word", ["X12", "U-8"])
+def test_lines_as_long_as_the_parser_reads(lathe, word):
+    assert ends(cut(lathe, f"G1 {word}".ljust(252), "C1")) == [(12, 0), (12, 1)]
+    traced = cut(lathe, f"G1 {word}".ljust(300), "C1")
+    assert traced.error.text == "G12.1 line 6: Command too long"
+    assert traced.error.line == 6
+
+
+# ---------------------------------------------------------------- line numbers
+
+
+def test_line_numbers_inside_and_behind(lathe):
+    body = ["G1 X12", "(one)", "U-1", "", "H2 (two)", "o1 if [1]", "X8", "o1 endif"]
+    traced = cut(lathe, *body, after=["X31", "(MSG, x)", "X32"])
+    assert lines(traced) == [6, 8, 10, 12, 15, 17]
+
+
+def test_line_numbers_behind_a_section_that_ends_on_a_rewritten_line(lathe):
+    assert lines(cut(lathe, "G1 X12", "U-1", "", after=["X31"])) == [6, 7, 10]
+
+
+def test_line_numbers_behind_two_sections(lathe):
+    traced = cut(lathe, "G1 X12", "U-1", after=["G0 X20 C0", "G12.1", "G1 X9", "G13.1", "X30"])
+    assert lines(traced) == [6, 7, 11, 13]
+
+
+def test_an_error_behind_a_section_is_on_its_line(lathe):
+    traced = cut(lathe, "G1 X12", "U-1", after=["X31", "X32 R3"])
+    assert traced.error.line == 10
+
+
+def test_off_outside_the_mode_does_nothing(lathe):
+    traced = lathe.trace_text([FIRST, "G13.1", START, "F100", "G1 X15", "G13.1", "M2"])
+    assert ends(traced) == [(15, 0)]
+
+
+# ---------------------------------------------------------------- saved modes
+
+
+def test_modes_saved_and_restored(lathe):
+    body = ["G1 X12", "M70", "G91 F50", "X1", "M72", "X9", "M71"]
+    traced = cut(lathe, *body)
+    assert ends(traced) == [(12, 0), (13, 0), (9, 0)]
+    assert [round(move.feed) for move in feed_moves(traced)] == [100, 50, 100]
+
+
+def test_modes_restored_when_a_sub_returns(lathe):
+    sub = ["o<s> sub", "M73", "G91 G1 U1 F50", "X1", "o<s> endsub"]
+    traced = lathe.trace_text([*sub, *section("G1 X12", "o<s> call", "X9")])
+    assert ends(traced) == [(12, 0), (13, 0), (14, 0), (9, 0)]
+
+
+# ---------------------------------------------------------------- waiting for the machine
+
+
+def test_waiting_for_an_input_cuts_the_section_in_two(lathe):
+    body = ["G1 X12", "M66 P0 L0", "#1=[10 - #5399]", "X#1 C2", "M66 E0 L0 X9", "C0"]
+    assert ends(cut(lathe, *body, after=["X30"])) == [(12, 0), (10, 2), (9, 2), (9, 0), (30, 0)]
+
+
+def test_waiting_inside_subs_and_loops(lathe):
+    sub = ["o<s> sub", "G1 U-1", "M66 P0 L0", "H1", "o<s> endsub"]
+    body = ["o1 repeat [2]", "o<s> call", "M66 P0 L0", "o1 endrepeat", "X5"]
+    traced = lathe.trace_text([*sub, *section(*body, after=["X30"])])
+    assert ends(traced)[:5] == [(19, 0), (19, 1), (18, 1), (18, 2), (5, 2)]
+    assert traced.moves[-1].line == 17
+
+
+def test_stops_act_behind_their_motion(lathe):
+    assert ends(cut(lathe, "G1 X12 M0", "M1", "X9", "M60")) == [(12, 0), (9, 0)]

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Polar sections for tests: programs around them, and their moves seen in the plane again."""
+
+import math
+from itertools import groupby
+
+from g12.cli.trace import Tracer
+from machines import SIM
+
+FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
+START = "G0 X20 Z5 C0"
+X, Z, C = 0, 2, 5
+
+
+def section(*body, before=(), after=(), first=FIRST, start=START, feed="F100"):
+    """Return a program whose section holds ``body``; its first line is line 6, with ``before`` more."""
+    return [first, start, "T1 M6", feed, *before, "G12.1", *body, "G13.1", *after, "M2"]
+
+
+def tracer(**overrides):
+    """Return a Tracer of the millimetre lathe; ``overrides`` are settings of [G12]."""
+    return Tracer(SIM / "lathe_mm.ini", overrides={"G12": overrides} if overrides else None)
+
+
+def in_plane(position, zero=0.0):
+    """Return (x, c, z) of a machine position in the plane whose zero angle is at C ``zero``."""
+    angle = math.radians(position[C] - zero)
+    return position[X] * math.cos(angle), position[X] * math.sin(angle), position[Z]
+
+
+def feed_moves(traced):
+    """Return the moves that are no rapids of a program that ran to its end."""
+    assert traced.error is None, traced.error
+    return [move for move in traced.moves if move.kind != "rapid"]
+
+
+def ends(traced, zero=0.0):
+    """Return the plane point (x, c) at the end of each block that moved at a feed."""
+    blocks = groupby(feed_moves(traced), key=lambda move: move.line)
+    points = [in_plane(list(moves)[-1].end, zero) for _, moves in blocks]
+    return [(round(x, 6) + 0.0, round(c, 6) + 0.0) for x, c, _ in points]
+
+
+def lines(traced):
+    """Return the line of each block that moved at a feed."""
+    return [line for line, _ in groupby(feed_moves(traced), key=lambda move: move.line)]
+
+
+def texts(traced):
+    """Return the operator's messages, without blanks around them."""
+    assert traced.error is None, traced.error
+    return [message.text.strip() for message in traced.messages]
