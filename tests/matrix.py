@@ -29,6 +29,7 @@ COORDINATES = {  # parameters in inches and degrees
     "G92": {5211: 0.25, 5212: 0.125, 5213: -0.0625, 5210: 1.0, 5230: -12.5},
     "far": {5221: 900.0, 5222: -900.0, 5230: 45.0},
 }
+FRACTIONS = (0.0, 0.3, 0.5, 0.8, 1.0)  # of each move: enough to tell an arc from any other
 UNSCALED = (5210, 5230)  # G92 is on, the rotation
 
 
@@ -56,7 +57,8 @@ def words(scale, **values):
 def path_of(traced):
     """Return points along all that moves, and each move's kind and feed."""
     moves = proof.moving(traced.moves)
-    return proof.dense_points(moves, step=2.0), [(move.kind, round(move.feed, 6)) for move in moves]
+    points = [move.point(fraction)[:3] for move in moves for fraction in FRACTIONS]
+    return np.array(points), [(move.kind, round(move.feed, 6)) for move in moves]
 
 
 def check_same_path(inch, metric, coordinates, case):
