@@ -11,25 +11,21 @@ rotary axes; sampled positions are those of the axes, tool length included.
 
 from __future__ import annotations
 
-import json
-import os
-import shlex
 import shutil
 import socket
 import subprocess
-import tempfile
 import time
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Callable, Iterable
 
 import numpy as np
 
 from g12.cli.ini import Ini, Overrides, read_ini
+from g12.cli.isolated import Isolated
 from g12.cli.trace import (
-    AXES,
-    PYTHON,
+    START_BLOCKS,
     Error,
     Message,
     Modes,
@@ -44,12 +40,9 @@ from g12.cli.trace import (
 )
 
 PACKAGE = Path(__file__).resolve().parents[2]  # the directory that holds the package g12
-ISOLATE = Path(__file__).with_name("isolate.py")
-NOBODY = "65534"  # LinuxCNC's realtime part refuses to be plain root
 MARGIN = 10.0  # s that an answer may take beyond the timeout asked for
 NS_PER_S = 1e9
 LOG_LINES = 60
-NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "INI_FILE_NAME")
 
 TOOL_CHANGE_DIALOGUE = "hal_manualtoolchange"
 # Stands in for the screen's tool change dialogue: whoever asks for a tool has it.
@@ -171,9 +164,9 @@ class Machine:
         home: bool = True,
         timeout: float = 60.0,
     ) -> None:
-        self._folder = Path(tempfile.mkdtemp(prefix="g12-"))
+        self._isolated = Isolated()
+        self._folder = self._isolated.folder
         self._connection: Connection | None = None
-        self._process: subprocess.Popen | None = None
         try:
             self.ini = self._private_ini(read_ini(ini).replaced(overrides or {}), tools, parameters)
             self.mm = mm_per_unit(self.ini)
@@ -299,18 +292,29 @@ class Machine:
         self.open_text(text)
         return self._run(timeout)
 
+    def reset(self) -> None:
+        """Go back to how the machine came up: modes, G54, no tool, override, axes at 0, silence."""
+        self.abort()
+        self.feed_override(1.0)
+        zero = " ".join(f"{axis}0" for axis in self.axes)
+        turn = " R0" if {"X", "Y"} <= set(self.axes) else ""
+        modes_at_start = f"{START_BLOCKS[self.mm]} G40 G49 G8 G91.1 G97"
+        up = ["G53 G0 Z0"] if "Z" in self.axes else []
+        away = ["T0 M6"] if self.stat().tool else []
+        offsets = ["G92.1", f"G10 L2 P1 {zero}{turn}"]
+        for block in ("M2", modes_at_start, *offsets, *away, *up, f"G53 G0 {zero}", "M2"):
+            self.mdi(block)
+        self.errors(), self.messages()
+
     def close(self) -> None:
         """End LinuxCNC and everything it started, at once."""
         if self._connection:
             self._connection.close()
-        if self._process:
-            self._process.stdin.close()
-            self._process.wait()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._isolated.close()
 
     def log(self) -> str:
         """Return what LinuxCNC has printed so far."""
-        return (self._folder / "log.txt").read_text(encoding="utf-8", errors="replace")
+        return self._isolated.log()
 
     def _run(self, timeout: float) -> Run:
         self.errors(), self.messages()
@@ -345,11 +349,7 @@ class Machine:
     # Starting.
 
     def _private_ini(self, ini: Ini, tools: Tools, parameters: Parameters) -> Ini:
-        """The INI with this machine's own screen and files; writes those files."""
-        for name in ("bin", "home", "programs", "run"):
-            (self._folder / name).mkdir()
-        self._folder.chmod(0o711)
-        (self._folder / "run").chmod(0o777)
+        """Return the INI with this machine's own screen and files, which it writes."""
         return ini.replaced(
             {
                 "DISPLAY": {"DISPLAY": "g12-driver", "INTRO_GRAPHIC": None, "OPEN_FILE": None},
@@ -367,46 +367,20 @@ class Machine:
     def _start(self, timeout: float) -> None:
         address = str(self._folder / "run" / "socket")
         driver = DRIVER.format(package=str(PACKAGE), address=address, axes=self.axes)
-        self._install("g12-driver", driver)
-        self._install(TOOL_CHANGE_DIALOGUE, TOOL_CHANGE)
+        self._isolated.install("g12-driver", driver)
+        dialogue = self._isolated.install(TOOL_CHANGE_DIALOGUE, TOOL_CHANGE)
+        real_dialogue = shutil.which(TOOL_CHANGE_DIALOGUE)
+        path = self.ini.path
         with socket.socket(socket.AF_UNIX) as listener:
             listener.bind(address)
             listener.listen(1)
-            self._launch()
+            self._isolated.launch(
+                ["linuxcnc", "-r", str(path)],
+                copies={path.parent: {path.name: self.ini.text}},
+                covers={real_dialogue: dialogue} if real_dialogue else None,
+            )
             self._connection = self._accept(listener, time.monotonic() + timeout)
         self._receive(timeout)
-
-    def _install(self, name: str, code: str) -> None:
-        script = self._folder / "bin" / f"{name}.py"
-        script.write_text(code, encoding="utf-8")
-        program = self._folder / "bin" / name
-        command = f"#!/bin/sh\nexec {PYTHON} {shlex.quote(str(script))}\n"
-        program.write_text(command, encoding="utf-8")
-        program.chmod(0o755)
-
-    def _launch(self) -> None:
-        path = self.ini.path
-        job = {
-            "command": ["linuxcnc", "-r", str(path)],
-            "environment": self._environment(),
-            "copies": {str(path.parent): {path.name: self.ini.text}},
-            "covers": self._covers(),
-            "scratch": str(self._folder),
-        }
-        with open(self._folder / "log.txt", "wb") as log:
-            self._process = subprocess.Popen(
-                [PYTHON, str(ISOLATE)],
-                stdin=subprocess.PIPE,
-                stdout=log,
-                stderr=log,
-                start_new_session=True,
-            )
-        self._process.stdin.write(json.dumps(job).encode() + b"\n")
-        self._process.stdin.flush()
-
-    def _covers(self) -> dict[str, str]:
-        dialogue = shutil.which(TOOL_CHANGE_DIALOGUE)
-        return {dialogue: str(self._folder / "bin" / TOOL_CHANGE_DIALOGUE)} if dialogue else {}
 
     def _get_ready(self) -> None:
         try:
@@ -415,23 +389,13 @@ class Machine:
         except MachineError as error:
             raise self._startup_error(str(error)) from error
 
-    def _environment(self) -> dict[str, str]:
-        kept = {key: value for key, value in os.environ.items() if key not in NO_SCREEN}
-        private = {
-            "HOME": str(self._folder / "home"),
-            "PATH": f"{self._folder / 'bin'}:{os.environ.get('PATH', os.defpath)}",
-            "RTAPI_FIFO_PATH": str(self._folder / "run" / "rtapi"),
-            "TMPDIR": "/tmp",
-        }
-        return {**kept, **private, **({"RTAPI_UID": NOBODY} if os.geteuid() == 0 else {})}
-
     def _accept(self, listener: socket.socket, end: float) -> Connection:
         listener.settimeout(0.2)
         while time.monotonic() < end:
             try:
                 return Connection(listener.accept()[0].detach())
             except TimeoutError:
-                if self._process.poll() is not None:
+                if self._isolated.exit_code() is not None:
                     raise self._startup_error("LinuxCNC ended") from None
         raise self._startup_error("LinuxCNC did not come up in time")
 
@@ -472,3 +436,18 @@ def run(
     """Run one program file on a machine of its own; see ``Machine``."""
     with Machine(ini, overrides=overrides, tools=tools, parameters=parameters) as machine:
         return machine.run(program, timeout)
+
+
+def smoke(ini: Program, program: Program | None = None, timeout: float = 600.0) -> tuple[int, str]:
+    """Run ``linuxcnc -r INI [PROGRAM]`` as it stands, isolated; return its exit code and log."""
+    path = Path(ini).absolute()
+    command = ["linuxcnc", "-r", str(path)]
+    isolated = Isolated()
+    try:
+        named = [str(Path(program).absolute())] if program else []
+        isolated.launch([*command, *named], copies={path.parent: {}})
+        return isolated.wait(timeout), isolated.log()
+    except subprocess.TimeoutExpired as error:
+        raise Timeout(f"{path}: no end within {timeout:g} s\n{isolated.log()}") from error
+    finally:
+        isolated.close()

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Mapping, Sequence, Union
+from typing import Union
 
 INCLUDE = re.compile(r"\s*#INCLUDE\s+(\S.*)")
 ENTRY = re.compile(r"\s*([^\s=#;\[][^\s=]*)\s*=\s*(.*?)\s*$")

@@ -63,7 +63,7 @@ def write(path: str, text: str) -> None:
 
 
 def mount(source: str, target: str, kind: str | None, flags: int, options: str = "") -> None:
-    """Mount ``source`` on ``target``; paths, file system type, flags and options as mount(2)."""
+    """Mount ``source`` on ``target``, with the arguments of the system call."""
     arguments = [text.encode() if text is not None else None for text in (source, target, kind)]
     check(libc.mount(*arguments, flags, options.encode()), f"mounting {target}")
 

@@ -6,7 +6,8 @@ from __future__ import annotations
 import argparse
 import sys
 
-from g12.cli.headless import AXES, MachineError, Run, StartupError, run
+from g12.cli.headless import MachineError, Run, StartupError, run
+from g12.cli.trace import AXES
 
 
 def report(result: Run) -> None:

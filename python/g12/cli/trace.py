@@ -19,14 +19,15 @@ import shutil
 import socket
 import subprocess
 import tempfile
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Iterable, Mapping, NamedTuple, Sequence, Union
+from typing import NamedTuple, Union
 
 from g12.cli.ini import Ini, Overrides, read_ini
+from g12.cli.isolated import PYTHON
 
-PYTHON = "/usr/bin/python3"  # LinuxCNC's Python modules belong to the system's Python
 WORKER = Path(__file__).with_name("trace_worker.py")
 LAUNCH = (
     "import sys; sys.path[0] = {folder!r}; import trace_worker; sys.path.pop(0); "
@@ -145,7 +146,7 @@ class Move(NamedTuple):
         return math.hypot(self.radius * self.sweep, rise)
 
     def point(self, fraction: float) -> Position:
-        """Position after ``fraction`` (0 to 1) of the move."""
+        """Return the position after ``fraction`` (0 to 1) of the move."""
         straight = tuple(a + (b - a) * fraction for a, b in zip(self.start, self.end))
         if self.kind != "arc":
             return straight
@@ -158,7 +159,7 @@ class Move(NamedTuple):
         return (*self._out_of_plane((*turned, level)), *straight[3:])
 
     def tangent(self, fraction: float) -> tuple[float, float, float]:
-        """Unit direction in X, Y, Z after ``fraction`` of the move; zeros if they stand still."""
+        """Return the unit direction in X, Y, Z after ``fraction``; zeros if they stand still."""
         if self.kind == "arc":
             direction = self._arc_direction(fraction)
         else:
@@ -167,7 +168,7 @@ class Move(NamedTuple):
         return tuple(value / size if size else 0.0 for value in direction)
 
     def _arc_direction(self, fraction: float) -> list[float]:
-        one, two, three = self._in_plane(self.point(fraction))
+        one, two, _ = self._in_plane(self.point(fraction))
         rise = (self._in_plane(self.end)[2] - self._in_plane(self.start)[2]) / self.sweep
         around = math.copysign(1.0, self.sweep)
         velocity = (-two * around, one * around, rise * around)
@@ -402,7 +403,7 @@ def mm_per_unit(ini: Ini) -> float:
 
 
 def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
-    """What the worker needs to know of the machine; writes its files to ``folder``."""
+    """Return what the worker needs to know of the machine; its files go to ``folder``."""
     expanded = folder / "machine.ini"
     expanded.write_text(ini.text, encoding="utf-8", errors="surrogateescape")
     unit = mm_per_unit(ini)

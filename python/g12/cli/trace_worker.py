@@ -136,31 +136,39 @@ class Canon:
     # Questions of the interpreter.
 
     def get_external_angular_units(self) -> float:
+        """Return the machine's angular units per degree."""
         return 1.0
 
     def get_external_length_units(self) -> float:
+        """Return the machine's units per mm."""
         return self.machine["units"]
 
     def get_axis_mask(self) -> int:
+        """Return one bit for each axis the machine has, X the lowest."""
         return self.machine["axis_mask"]
 
     def get_block_delete(self) -> bool:
+        """Return True: blocks that begin with / are skipped, as a fresh LinuxCNC does."""
         return True
 
     def check_abort(self) -> bool:
+        """Return False: nobody stops the parse from within."""
         return False
 
     def get_tool(self, index: int) -> tuple:
+        """Return a record of the tool table; index 0 is the spindle."""
         return self.tools.at(index) if index else self.spindle
 
     # State it reports.
 
     def next_line(self, state) -> None:
+        """Note the line that the following calls belong to."""
         self.line = state.sequence_number
         if self.started:
             self._note_conditions(state)
 
     def comment(self, text: str) -> None:
+        """Forget the set-up when the program itself starts."""
         if text == START:
             self.started = True
             self.moves.clear()
@@ -168,38 +176,48 @@ class Canon:
             self.events.clear()
 
     def message(self, text: str) -> None:
+        """Note a message to the operator."""
         self.messages.append((self.lines.now(), text))
         self._note(f"message {text}")
 
     def set_g5x_offset(self, _index: int, *offset: float) -> None:
+        """Note the work offset, inches."""
         self.work = in_mm(offset)
 
     def set_g92_offset(self, *offset: float) -> None:
+        """Note the G92 offset, inches."""
         self.g92 = in_mm(offset)
 
     def tool_offset(self, *offset: float) -> None:
+        """Note the tool length offset, inches."""
         self.length = in_mm(offset)
 
     def set_xy_rotation(self, degrees: float) -> None:
+        """Note the rotation of the work coordinate system."""
         self.rotation = degrees
         self.cos, self.sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
 
     def set_plane(self, plane: int) -> None:
+        """Note the plane."""
         self.plane = PLANES[plane]
 
     def set_feed_rate(self, rate: float) -> None:
+        """Note the feed, inches per minute or revolution if the program is metric."""
         metric = interpreter_object().length_units == METRIC
         self.feed = rate * MM
         self.program_feed = rate * MM if metric else rate
 
     def change_tool(self, index: int) -> None:
+        """Note the tool in the spindle."""
         self.spindle = self.tools.at(index) if index else EMPTY
         self._note(f"tool {self.spindle[0]}")
 
     def dwell(self, seconds: float) -> None:
+        """Note a pause."""
         self._note(f"dwell {seconds:.10g}")
 
     def user_defined_function(self, number: int, first: float, second: float) -> None:
+        """Note a user's M code."""
         self._note(f"M{100 + number} P{first:.10g} Q{second:.10g}")
 
     def set_traverse_rate(self, _rate: float) -> None:
@@ -209,7 +227,7 @@ class Canon:
         self.events.append((len(self.moves), self.lines.now(), text))
 
     def _note_conditions(self, state) -> None:
-        """What the moves from here on run under, as far as it is new."""
+        """Note what the moves from here on run under, as far as it is new."""
         words = conditions(state)
         if words != self.in_force:
             known, self.in_force = self.in_force, words
@@ -218,21 +236,26 @@ class Canon:
     # Moves.
 
     def straight_traverse(self, *target: float) -> None:
+        """Record a rapid."""
         self._move("rapid", in_mm(target), 0.0)
 
     def straight_feed(self, *target: float) -> None:
+        """Record a straight feed move."""
         self._move("feed", in_mm(target), self._rate(target))
 
     def straight_probe(self, *target: float) -> None:
+        """Record a probing move, as if nothing was touched."""
         self._move("probe", in_mm(target), self._rate(target))
 
     def rigid_tap(self, x: float, y: float, z: float) -> None:
+        """Record the way down and back up."""
         back = self.tip
         self._move("feed", (*in_mm((x, y, z)), *back[3:]), self.feed)
         self._move("feed", back, self.feed)
 
     def arc_feed(self, first: float, second: float, first_centre: float, second_centre: float,
                  turns: int, third: float, *others: float) -> None:  # fmt: skip
+        """Record an arc: end and centre on the plane's axes, then the others."""
         target, centre = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
         one, two, three = ARC_AXES[self.plane]
         target[one], target[two], target[three] = first, second, third
@@ -250,10 +273,9 @@ class Canon:
     def _move(self, kind: str, tip: tuple, feed: float, centre=None, turns=0) -> None:
         start, self.tip, self.position = self.position, tip, self._resolved(tip)
         mode = FEED_MODES[interpreter_object().feed_mode] if feed else ""
-        self.moves.append(
-            (kind, self.line, self.lines.now(), start, self.position, feed, mode, self.plane,
-             self.spindle[0], self.length, centre, turns, self.rotation)  # fmt: skip
-        )
+        state = (self.plane, self.spindle[0], self.length)
+        place = (kind, self.line, self.lines.now(), start, self.position)
+        self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation))
 
     def _resolved(self, tip: tuple) -> tuple:
         """Machine coordinates of a point in program coordinates, both in mm."""
@@ -285,7 +307,7 @@ def conditions(state) -> tuple:
 
 def in_mm(position) -> tuple:
     """Return the preview's X Y Z U V W, inches, in mm; degrees stay."""
-    x, y, z, a, b, c, u, v, w = (*position, *NO_OFFSET[len(position):])
+    x, y, z, a, b, c, u, v, w = (*position, *NO_OFFSET[len(position) :])
     return (x * MM, y * MM, z * MM, a, b, c, u * MM, v * MM, w * MM)
 
 
@@ -343,7 +365,7 @@ def printed(path: str) -> str:
 
 
 def blank(directory: str) -> dict:
-    """A request for a program that does nothing."""
+    """Return a request for a program that does nothing."""
     files = {name: os.path.join(directory, name) for name in ("blank.ngc", "blank.var")}
     for name in files.values():
         with open(name, "w", encoding="ascii") as file:
