@@ -187,21 +187,32 @@ def plan_code(words: Words, context: Context, plane: float | None, pocket: bool)
 
 def plan_call(words: Words, context: Context, plane: float | None) -> Event:
     """Return the event of one ``o<circle_mill> call``, or raise `Refusal`."""
+    finish_feed = finish_feed_of_call(words)
     context = context._replace(feed=words.take_positive("F") or context.feed)
     check_modes(words, context)
     cycle = words.take("G") or PERIMETER_CYCLE
     if cycle not in (PERIMETER_CYCLE, POCKET_CYCLE):
         raise words.refuse(f"G{number(cycle)} must be 0 (perimeter) or 7 (pocket)")
+    pocket = cycle == POCKET_CYCLE
     finish, bottom = finish_of_call(words)
-    feed = words.take_positive("V") or context.feed
-    return plan_event(
-        Block(words, CALL, context, plane, cycle == POCKET_CYCLE, finish, bottom, finish_feed=feed)
-    )
+    feed = finish_feed or context.feed
+    return plan_event(Block(words, CALL, context, plane, pocket, finish, bottom, finish_feed=feed))
 
 
 def entries_of_call(values: list[float]) -> dict[str, float]:
     """Return a call's entries by letter, without those that are left out."""
     return {letter: value for letter, value in zip(ENTRIES, values) if value != LEFT_OUT}
+
+
+def finish_feed_of_call(words: Words) -> float | None:
+    """Return V, the last entry: LinuxCNC makes it 0 if the call is too short."""
+    feed = words.take("V")
+    if feed is not None and feed <= 0:
+        raise words.refuse(
+            f"V{number(feed)} must be greater than 0 (a call has {len(ENTRIES)} entries,"
+            f" {number(LEFT_OUT)} leaves one out)"
+        )
+    return feed
 
 
 def finish_of_code(words: Words) -> tuple[float, bool]:
