@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Polar coordinate interpolation: a contour in the flat X-C plane becomes moves of an X slide and
-a C axis.
+"""Polar coordinate interpolation: a flat X-C contour becomes moves of an X slide and a C axis.
 
 A section is collected in a :class:`~g12.polar.contour.Contour`, then planned as a whole by
 :func:`plan`; what cannot be cut is refused there, before anything moves. Lengths are in program
@@ -24,17 +23,15 @@ from copy import copy
 from math import copysign, degrees, hypot, pi, radians, remainder
 from typing import NamedTuple
 
-from g12.polar.contour import Arc, Contour, Line, Mark, Plunge, is_move
+from g12.polar.contour import Arc, Contour, Line, Mark, Plunge, Start, is_move
 from g12.polar.corners import stops
 from g12.polar.feed import Place, pieces_with_feed
 from g12.polar.offset import tool_path
 from g12.polar.pieces import Law, split
 from g12.polar.pole import POLE, through_pole
 
-CHORD_SHARE = 0.92  # of the tolerance: what the estimate of the deviation lacks in the worst case
-ROUNDING_SHARE = (
-    0.7  # of the tolerance: the servo period adds to the distance at which a corner is passed
-)
+CHORD_SHARE = 0.92  # of the tolerance: the rest is what the estimate of it may lack
+ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the pieces' own deviation
 POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
 SAME_ANGLE = 1e-9  # radians
 RIPPLE = 0.01  # by so much may the speed differ from F inside a piece
@@ -80,10 +77,10 @@ class Plan(NamedTuple):
 
 
 def plan(contour: Contour, settings: Settings, *, c: float) -> Plan:
-    """Return the moves of a whole section whose plane has its zero angle where the C axis shows
-    ``c`` degrees.
+    """Return the moves of a whole section.
 
-    Raises Refusal, naming the blocks by their lines, when the contour cannot be cut as programmed.
+    ``c`` is the C axis in degrees at the plane's zero angle. Raises Refusal, naming the blocks by
+    their lines, when the contour cannot be cut as programmed.
     """
     tolerance = settings.tolerance
     path = tool_path(contour, tolerance)
@@ -112,7 +109,7 @@ def resume(contour: Contour, planned: Plan) -> Contour:
     moves = [element for element in contour.elements if is_move(element) and element.offset]
     following = copy(contour)
     following.elements = []
-    following.start = (planned.place.x, planned.angle, planned.place.z)
+    following.start = Start(planned.place.x, planned.angle, planned.place.z)
     following.previous = None
     if contour.side != 40:
         following.previous = moves[-1] if moves else contour.previous

@@ -9,10 +9,11 @@ centre. An angle grows from +X to +C; a positive sweep is counterclockwise (G3),
 from __future__ import annotations
 
 from math import atan2, copysign, hypot, pi, sqrt
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 from g12.errors import Refusal, number
 
+Point = tuple  # (x, c)
 SAME_PLACE = 1e-9  # program units: closer points are one point
 CLOSING_RATIO = 0.001  # of the radius: the mismatch LinuxCNC allows any arc
 
@@ -37,8 +38,9 @@ class Line(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """A circular move about (``cx``, ``cc``) by the signed angle ``sweep``; the rest as in
-    :class:`Line`.
+    """A circular move about (``cx``, ``cc``) by the signed angle ``sweep``.
+
+    The other members are those of :class:`Line`.
     """
 
     line: int
@@ -65,17 +67,74 @@ class Plunge(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """A block without motion; ``action`` is the caller's, and comes back from the plan in its
-    place.
-    """
+    """A block without motion; the plan gives the caller's ``action`` back in its place."""
 
     line: int
     action: object
 
 
+class Start(NamedTuple):
+    """Where the machine stands: X radius value, angle of C in the plane in radians, Z."""
+
+    x: float
+    angle: float
+    z: float
+
+
 def is_move(element: Line | Arc | Plunge | Mark) -> bool:
     """Return whether an element moves in the plane."""
     return isinstance(element, (Line, Arc))
+
+
+def arc_radius(move: Arc) -> float:
+    """Return an arc's radius."""
+    return hypot(move.x0 - move.cx, move.c0 - move.cc)
+
+
+def path_length(move: Line | Arc) -> float:
+    """Return the length of a move in the plane."""
+    if isinstance(move, Line):
+        return hypot(move.x1 - move.x0, move.c1 - move.c0)
+    return abs(move.sweep) * arc_radius(move)
+
+
+def start_direction(move: Line | Arc) -> Point:
+    """Return the unit vector of the motion in the plane at the move's start."""
+    return _direction(move, move.x0, move.c0)
+
+
+def end_direction(move: Line | Arc) -> Point:
+    """Return the unit vector of the motion in the plane at the move's end."""
+    return _direction(move, move.x1, move.c1)
+
+
+def _direction(move: Line | Arc, x: float, c: float) -> Point:
+    if isinstance(move, Line):
+        tx, tc = move.x1 - move.x0, move.c1 - move.c0
+    else:
+        turn = 1.0 if move.sweep > 0.0 else -1.0
+        tx, tc = turn * (move.cc - c), turn * (x - move.cx)
+    length = hypot(tx, tc)
+    return tx / length, tc / length
+
+
+def recentred(start: Point, end: Point, centre: Point) -> Point:
+    """Return the point nearest to ``centre`` that is equally far from ``start`` and ``end``."""
+    ux, uc = end[0] - start[0], end[1] - start[1]
+    mx, mc = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
+    along = ((centre[0] - mx) * ux + (centre[1] - mc) * uc) / (ux * ux + uc * uc)
+    return centre[0] - along * ux, centre[1] - along * uc
+
+
+def sweep_between(start: Point, end: Point, centre: Point, turn: int) -> float:
+    """Return the signed angle from one point to another about a third.
+
+    ``turn``: +1 counterclockwise, -1 clockwise. A full turn where the angle is none.
+    """
+    ax, ac = start[0] - centre[0], start[1] - centre[1]
+    bx, bc = end[0] - centre[0], end[1] - centre[1]
+    angle = turn * atan2(ax * bc - ac * bx, ax * bx + ac * bc)
+    return turn * (angle if angle > 0.0 else angle + 2 * pi)
 
 
 class Contour:
@@ -86,6 +145,10 @@ class Contour:
     messages. ``diameter`` tells whether the program's X words are diameters: the values passed in
     are always radius values, but a message has to say which reading was meant. ``closing`` is the
     radius mismatch of an arc that is forgiven, in program units.
+
+    ``side`` is the compensation in force: 40, 41 or 42. For a section that goes on where another
+    was cut in two, ``start`` is where the machine stands, and ``previous`` what it has cut last
+    under compensation.
     """
 
     def __init__(
@@ -100,20 +163,14 @@ class Contour:
         self.x, self.c, self.z = x, 0.0, z
         self.code, self.diameter, self.closing = code, diameter, closing
         self.elements: list[Line | Arc | Plunge | Mark] = []
-        self.start = (
-            x,
-            0.0,
-            z,
-        )  # radius, angle of the C axis in the plane, Z; where the tool stands
-        self.previous: Line | Arc | None = (
-            None  # cut under compensation before a section was cut in two
-        )
         self.side = 40
-        self._offset = 0.0
+        self.start = Start(x, 0.0, z)
+        self.previous: Line | Arc | None = None
+        self._offset = self._radius = 0.0
         self._switch: int | None = None  # line of the G40, G41 or G42 that waits for its G1
         self._switched_on = 0
 
-    def refuse(self, line: int, reason: str) -> None:
+    def refuse(self, line: int, reason: str) -> NoReturn:
         """Raise the refusal of a block of this section."""
         raise Refusal(f"{self.code} line {line}: {reason}")
 
@@ -131,8 +188,7 @@ class Contour:
         x1 = x0 if x is None else x
         c1 = c0 if c is None else c
         z1 = z0 if z is None else z
-        if feed <= 0.0:
-            self.refuse(line, f"F{number(feed)} must be above zero (no feed commanded?)")
+        self._check_feed(feed, line)
         self._check_switch(line, hypot(x1 - x0, c1 - c0))
         if x1 != x0 or c1 != c0:
             self.elements.append(Line(line, feed, self._offset, x0, c0, z0, x1, c1, z1))
@@ -202,6 +258,10 @@ class Contour:
                 line, f"G{self.side} of line {self._switched_on} is still on: G40 is missing"
             )
 
+    def _check_feed(self, feed: float, line: int) -> None:
+        if feed <= 0.0:
+            self.refuse(line, f"F{number(feed)} must be above zero (no feed commanded?)")
+
     def _check_waiting(self) -> None:
         if self._switch is not None:
             self.refuse(self._switch, f"G{self.side} needs a G1 with X or C in its own block")
@@ -215,15 +275,14 @@ class Contour:
         if length < self._radius - 1e-6:
             self.refuse(
                 line,
-                f"the G1 with G{self.side} is {number(length)} long: it must be at least the tool radius "
-                f"{number(self._radius)}",
+                f"the G1 with G{self.side} is {number(length)} long: it must be at least "
+                f"the tool radius {number(self._radius)}",
             )
         self._switch = None
 
     def _check_arc(self, turn, i, j, radius, line, feed) -> None:
         name = _name(turn)
-        if feed <= 0.0:
-            self.refuse(line, f"F{number(feed)} must be above zero (no feed commanded?)")
+        self._check_feed(feed, line)
         if self._switch is not None:
             self.refuse(line, f"G{self.side} with {name}: compensation is switched by a G1 only")
         if radius is not None and (i is not None or j is not None):
@@ -232,9 +291,7 @@ class Contour:
             self.refuse(line, f"{name} needs R, or the centre in I and J")
 
     def _about_centre(self, turn, end, i, j, line):
-        """Return centre and sweep of an arc with I and J, its centre moved to be as far from both
-        ends.
-        """
+        """Return centre and sweep of an arc with I and J, the centre equally far from both ends."""
         start, centre = (self.x, self.c), (self.x + i, self.c + j)
         if hypot(end[0] - start[0], end[1] - start[1]) <= SAME_PLACE:
             return centre, turn * 2 * pi
@@ -252,21 +309,17 @@ class Contour:
         """Return centre and sweep of an arc with R."""
         start = (self.x, self.c)
         half = 0.5 * hypot(end[0] - start[0], end[1] - start[1])
+        name = f"{_name(turn)} R{number(radius)}"
         if 2.0 * half <= SAME_PLACE:
-            self.refuse(
-                line, f"{_name(turn)} R{number(radius)}: a full circle needs I and J, not R"
-            )
+            self.refuse(line, f"{name}: a full circle needs I and J, not R")
         if not self._spans(half, radius):
             self.refuse(
                 line,
-                f"{_name(turn)} R{number(radius)} does not close: the ends are {number(2 * half)} apart, R "
-                f"must be at least {number(half)}{self._hint(self._radius_closes, end, radius)}",
+                f"{name} does not close: the ends are {number(2 * half)} apart, R must be at least "
+                f"{number(half)}{self._hint(self._radius_closes, end, radius)}",
             )
-        height = (
-            sqrt(max(0.0, radius * radius - half * half))
-            * copysign(turn, turn * radius)
-            / (2 * half)
-        )
+        height = sqrt(max(0.0, radius * radius - half * half)) / (2 * half)
+        height *= copysign(turn, turn * radius)
         centre = (
             0.5 * (start[0] + end[0]) - height * (end[1] - start[1]),
             0.5 * (start[1] + end[1]) + height * (end[0] - start[0]),
@@ -290,26 +343,8 @@ class Contour:
         other, ratio = ("radius", 2.0) if self.diameter else ("diameter", 0.5)
         for x0 in (self.x * ratio, self.x):
             if closes(x0, end[0] * ratio, end[1], *words):
-                return f"; it would close with X read as a {other}"
+                return f"; it would close with X read as a {other} (POLAR_X = {other})"
         return ""
-
-
-def recentred(start, end, centre):
-    """Return the point nearest to ``centre`` that is equally far from ``start`` and ``end``."""
-    ux, uc = end[0] - start[0], end[1] - start[1]
-    mx, mc = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
-    along = ((centre[0] - mx) * ux + (centre[1] - mc) * uc) / (ux * ux + uc * uc)
-    return centre[0] - along * ux, centre[1] - along * uc
-
-
-def sweep_between(start, end, centre, turn: int) -> float:
-    """Return the signed angle from ``start`` to ``end`` about ``centre``, turning ``turn`` (+1,
-    -1).
-    """
-    ax, ac = start[0] - centre[0], start[1] - centre[1]
-    bx, bc = end[0] - centre[0], end[1] - centre[1]
-    angle = turn * atan2(ax * bc - ac * bx, ax * bx + ac * bc)
-    return turn * (angle if angle > 0.0 else angle + 2 * pi)
 
 
 def _name(turn: int) -> str:

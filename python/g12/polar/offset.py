@@ -14,14 +14,24 @@ What the tool cannot reach is refused; only neighbours are tested against each o
 
 from __future__ import annotations
 
-from math import atan2, copysign, hypot, pi, sqrt
+from collections.abc import Iterator
+from math import copysign, hypot
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.polar.contour import Arc, Contour, Line, Plunge, is_move, sweep_between
-
-REACH = 1e-6  # program units: as exact as a program is written
-TANGENT = 1e-9  # sine of an angle that is none
+from g12.polar.contour import (
+    Arc,
+    Contour,
+    Line,
+    Plunge,
+    Point,
+    arc_radius,
+    end_direction,
+    is_move,
+    start_direction,
+    sweep_between,
+)
+from g12.polar.crossing import PARALLEL, REACH, along_end, along_start, crossing
 
 
 class _Step(NamedTuple):
@@ -34,18 +44,15 @@ class _Step(NamedTuple):
 
 
 class _Joint(NamedTuple):
-    """Where the tool's centre leaves one move and meets the next; between them, the corner it
-    turns about.
-    """
+    """Where the tool's centre leaves one move and meets the next, turning about a corner."""
 
-    leave: tuple[float, float]
-    meet: tuple[float, float]
-    corner: tuple[float, float] | None = None
+    leave: Point
+    meet: Point
+    corner: Point | None = None
 
 
 def tool_path(contour: Contour, smooth: float) -> list:
-    """Return the contour's elements with the tool centre's coordinates, marks and plunges in their
-    places.
+    """Return the contour's elements as the tool's centre makes them, all in their places.
 
     Where the parallels of two elements are no farther apart than ``smooth`` (program units), they
     are joined without an arc: that moves the path by less than a hundredth of it.
@@ -61,7 +68,7 @@ def tool_path(contour: Contour, smooth: float) -> list:
     return path
 
 
-def _centred(contour: Contour, moves: list, smooth: float):
+def _centred(contour: Contour, moves: list, smooth: float) -> Iterator[tuple]:
     """Yield for each move the moves of the tool's centre."""
     steps = _steps(contour, moves)
     before = _before(contour)
@@ -96,18 +103,17 @@ def _before(contour: Contour) -> _Step | None:
 
 
 def _check_going_on(contour: Contour, before: _Step, joint: _Joint, smooth: float) -> None:
-    """Check that the tool, which stands square to the end of ``before``, has not gone too far
-    already.
-    """
+    """Check that the tool, square to the end of ``before``, has not gone too far already."""
     stands = _end(before.parallel)
     if hypot(joint.leave[0] - stands[0], joint.leave[1] - stands[1]) > smooth:
         contour.refuse(
             before.move.line,
-            "an inside corner under cutter compensation cannot follow a block that waits for the machine",
+            "an inside corner under cutter compensation cannot follow a block that waits "
+            "for the machine",
         )
 
 
-def _last_place(contour: Contour, steps: list[_Step]) -> tuple[float, float]:
+def _last_place(contour: Contour, steps: list[_Step]) -> Point:
     """Return where the tool's centre ends."""
     step = steps[-1]
     if step.ramp:
@@ -144,9 +150,9 @@ def _corner(contour: Contour, a: _Step, b: _Step, smooth: float) -> _Joint:
     if cosine > 0.0 and gap <= smooth and gap * abs(sine) <= 0.1 * smooth:
         place = _mitre(leave, meet, corner, cosine)
         return _Joint(place, place)
-    if sine * offset <= TANGENT * abs(offset):
+    if sine * offset <= PARALLEL * abs(offset):
         return _Joint(leave, meet, corner)
-    place = _crossing(a.parallel, b.parallel)
+    place = crossing(a.parallel, b.parallel)
     if place is None:
         contour.refuse(
             b.move.line,
@@ -160,10 +166,8 @@ def _code(move: Line | Arc) -> str:
     return "G41" if move.offset > 0.0 else "G42"
 
 
-def _mitre(leave, meet, corner, cosine: float) -> tuple[float, float]:
-    """Return where the tangents at the ends of two parallels cross; ``cosine`` of the angle
-    between them.
-    """
+def _mitre(leave: Point, meet: Point, corner: Point, cosine: float) -> Point:
+    """Return where the end tangents of two parallels cross; ``cosine`` of their angle."""
     scale = 1.0 / (1.0 + cosine)
     return (
         corner[0] + (leave[0] + meet[0] - 2 * corner[0]) * scale,
@@ -218,18 +222,16 @@ def _neighbours(contour: Contour, move: Line | Arc) -> str:
     return f"between lines {lines[max(k - 1, 0)]} and {lines[min(k + 1, len(lines) - 1)]}"
 
 
-def _trimmed(contour: Contour, steps: list[_Step], k: int, start, end) -> tuple:
-    """Return the parallel of a step from one place to another, or refuse it when they have changed
-    order.
-    """
+def _trimmed(contour: Contour, steps: list[_Step], k: int, start: Point, end: Point) -> tuple:
+    """Return the parallel of a step from one place on it to another that must lie behind."""
     move, parallel = steps[k].move, steps[k].parallel
-    first, last = _along_start(parallel, start), _along_end(parallel, end)
+    first, last = along_start(parallel, start), along_end(parallel, end)
     if last - first < -REACH:
         lines = [steps[n].move.line for n in (k - 1, k + 1) if 0 <= n < len(steps)]
         contour.refuse(
             move.line,
-            f"too short for the tool radius {number(abs(move.offset))} between its inside corners with "
-            f"lines {' and '.join(map(str, lines))}",
+            f"too short for the tool radius {number(abs(move.offset))} between its inside corners "
+            f"with lines {' and '.join(map(str, lines))}",
         )
     if last - first <= REACH:
         return () if move.z0 == move.z1 else (Plunge(move.line, move.feed, move.z0, move.z1),)
@@ -239,7 +241,7 @@ def _trimmed(contour: Contour, steps: list[_Step], k: int, start, end) -> tuple:
     return (_placed(move, start, end, sweep),)
 
 
-def _placed(move: Line | Arc, start, end, sweep: float | None = None) -> Line | Arc:
+def _placed(move: Line | Arc, start: Point, end: Point, sweep: float | None = None) -> Line | Arc:
     """Return the move with other end points."""
     places = (*start, move.z0, *end, move.z1)
     if isinstance(move, Line):
@@ -248,124 +250,9 @@ def _placed(move: Line | Arc, start, end, sweep: float | None = None) -> Line | 
     return Arc(move.line, move.feed, move.offset, *places, move.cx, move.cc, sweep)
 
 
-def _start(move: Line | Arc) -> tuple[float, float]:
+def _start(move: Line | Arc) -> Point:
     return move.x0, move.c0
 
 
-def _end(move: Line | Arc) -> tuple[float, float]:
+def _end(move: Line | Arc) -> Point:
     return move.x1, move.c1
-
-
-def arc_radius(move: Arc) -> float:
-    """Return an arc's radius."""
-    return hypot(move.x0 - move.cx, move.c0 - move.cc)
-
-
-def path_length(move: Line | Arc) -> float:
-    """Return the length of a move in the plane."""
-    if isinstance(move, Line):
-        return hypot(move.x1 - move.x0, move.c1 - move.c0)
-    return abs(move.sweep) * arc_radius(move)
-
-
-def start_direction(move: Line | Arc) -> tuple[float, float]:
-    """Return the unit vector of the motion in the plane at the move's start."""
-    return _direction(move, move.x0, move.c0)
-
-
-def end_direction(move: Line | Arc) -> tuple[float, float]:
-    """Return the unit vector of the motion in the plane at the move's end."""
-    return _direction(move, move.x1, move.c1)
-
-
-def _direction(move: Line | Arc, x: float, c: float) -> tuple[float, float]:
-    if isinstance(move, Line):
-        tx, tc = move.x1 - move.x0, move.c1 - move.c0
-    else:
-        turn = 1.0 if move.sweep > 0.0 else -1.0
-        tx, tc = turn * (move.cc - c), turn * (x - move.cx)
-    length = hypot(tx, tc)
-    return tx / length, tc / length
-
-
-def _along_start(move: Line | Arc, place) -> float:
-    """Return how far along a move a place near its start lies; below zero in front of it."""
-    if isinstance(move, Line):
-        tx, tc = start_direction(move)
-        return (place[0] - move.x0) * tx + (place[1] - move.c0) * tc
-    angle = _arc_angle(move, place)
-    before = max(pi - 0.5 * abs(move.sweep), 0.5)
-    return arc_radius(move) * (angle if angle < 2 * pi - before else angle - 2 * pi)
-
-
-def _along_end(move: Line | Arc, place) -> float:
-    """Return how far along a move a place near its end lies; more than its length beyond it."""
-    if isinstance(move, Line):
-        return _along_start(move, place)
-    behind = abs(move.sweep) + max(pi - 0.5 * abs(move.sweep), 0.5)
-    return arc_radius(move) * (behind - (behind - _arc_angle(move, place)) % (2 * pi))
-
-
-def _arc_angle(move: Arc, place) -> float:
-    """Return the angle from an arc's start to a place, in its sense of turning, 0 to a full turn."""
-    ax, ac = move.x0 - move.cx, move.c0 - move.cc
-    bx, bc = place[0] - move.cx, place[1] - move.cc
-    angle = atan2(ax * bc - ac * bx, ax * bx + ac * bc)
-    return (angle if move.sweep > 0.0 else -angle) % (2 * pi)
-
-
-def _crossing(a: Line | Arc, b: Line | Arc) -> tuple[float, float] | None:
-    """Return where ``a`` is left for ``b``: their crossing nearest to the corner, if there is one."""
-    length, best, nearest = path_length(a), None, 0.0
-    for place in _crossings(a, b):
-        leave, meet = _along_end(a, place), _along_start(b, place)
-        on_both = -REACH <= leave <= length + REACH and -REACH <= meet <= path_length(b) + REACH
-        if on_both and (best is None or length - leave + meet < nearest):
-            best, nearest = place, length - leave + meet
-    return best
-
-
-def _crossings(a: Line | Arc, b: Line | Arc) -> list[tuple[float, float]]:
-    """Return the places common to the lines or circles that two moves lie on."""
-    if isinstance(a, Arc):
-        return _circle_circle(a, b) if isinstance(b, Arc) else _line_circle(b, a)
-    return _line_circle(a, b) if isinstance(b, Arc) else _line_line(a, b)
-
-
-def _line_line(a: Line, b: Line) -> list[tuple[float, float]]:
-    ax, ac = start_direction(a)
-    bx, bc = start_direction(b)
-    sine = ax * bc - ac * bx
-    if abs(sine) <= TANGENT:
-        return []
-    along = ((b.x0 - a.x0) * bc - (b.c0 - a.c0) * bx) / sine
-    return [(a.x0 + along * ax, a.c0 + along * ac)]
-
-
-def _line_circle(line: Line, arc: Arc) -> list[tuple[float, float]]:
-    tx, tc = start_direction(line)
-    along = (arc.cx - line.x0) * tx + (arc.cc - line.c0) * tc
-    foot = (line.x0 + along * tx, line.c0 + along * tc)
-    half = _half_chord(hypot(arc.cx - foot[0], arc.cc - foot[1]), arc_radius(arc))
-    return [(foot[0] + h * tx, foot[1] + h * tc) for h in half]
-
-
-def _circle_circle(a: Arc, b: Arc) -> list[tuple[float, float]]:
-    distance = hypot(b.cx - a.cx, b.cc - a.cc)
-    if distance <= REACH:
-        return []
-    ux, uc = (b.cx - a.cx) / distance, (b.cc - a.cc) / distance
-    radius = arc_radius(a)
-    along = 0.5 * (distance + (radius - arc_radius(b)) * (radius + arc_radius(b)) / distance)
-    half = _half_chord(abs(along), radius)
-    return [(a.cx + along * ux - h * uc, a.cc + along * uc + h * ux) for h in half]
-
-
-def _half_chord(distance: float, radius: float) -> tuple[float, ...]:
-    """Return half the chord at a distance from a circle's centre, both signs; none beside the
-    circle.
-    """
-    if distance > radius + REACH:
-        return ()
-    half = sqrt(max(0.0, (radius - distance) * (radius + distance)))
-    return (half, -half)

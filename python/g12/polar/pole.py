@@ -10,23 +10,32 @@ from __future__ import annotations
 
 from math import copysign, hypot, pi
 
-from g12.polar.contour import Arc, Contour, Line, Plunge, is_move, recentred, sweep_between
-from g12.polar.offset import arc_radius, path_length
+from g12.polar.contour import (
+    Arc,
+    Contour,
+    Line,
+    Plunge,
+    Point,
+    arc_radius,
+    is_move,
+    path_length,
+    recentred,
+    sweep_between,
+)
 
 POLE = (0.0, 0.0)
 
 
 def through_pole(contour: Contour, path: list, reach: float, refused: bool) -> list:
-    """Return the path with each move that comes within ``reach`` of the pole ending or split
-    there.
-    """
+    """Return the path with each move that comes within ``reach`` of the pole led into it."""
     led = []
     for move in path:
         if is_move(move) and _passes(move, reach):
             if refused:
                 contour.refuse(
                     move.line,
-                    "the path of the tool's centre runs through the spindle's centre (POLAR_POLE = refuse)",
+                    "the path of the tool's centre runs through the spindle's centre "
+                    "(POLAR_POLE = refuse)",
                 )
             led.extend(_led(move, reach))
         else:
@@ -43,9 +52,7 @@ def _passes(move: Line | Arc, reach: float) -> bool:
 
 
 def _closest(move: Line | Arc, reach: float) -> float | None:
-    """Return the fraction of a move at which it passes the pole within ``reach``, between its
-    ends.
-    """
+    """Return the fraction of a move at which it passes the pole, if it does within ``reach``."""
     if isinstance(move, Line):
         dx, dc = move.x1 - move.x0, move.c1 - move.c0
         square = dx * dx + dc * dc
@@ -72,11 +79,11 @@ def _led(move: Line | Arc, reach: float) -> list:
     ]
 
 
-def _snapped(x: float, c: float, reach: float) -> tuple[float, float]:
+def _snapped(x: float, c: float, reach: float) -> Point:
     return POLE if hypot(x, c) <= reach else (x, c)
 
 
-def _between(move: Line | Arc, start, end, z0: float, z1: float, part: float) -> list:
+def _between(move: Line | Arc, start: Point, end: Point, z0: float, z1: float, part: float) -> list:
     """Return ``part`` of a move with new ends: one move, or none where nothing is left of it."""
     if isinstance(move, Line):
         if start != end:
@@ -88,7 +95,7 @@ def _between(move: Line | Arc, start, end, z0: float, z1: float, part: float) ->
     return [] if z0 == z1 else [Plunge(move.line, move.feed, z0, z1)]
 
 
-def _arc_between(move: Arc, start, end, z0: float, z1: float, sweep: float) -> Arc:
+def _arc_between(move: Arc, start: Point, end: Point, z0: float, z1: float, sweep: float) -> Arc:
     """Return an arc with new ends, its centre moved as little as that needs."""
     centre = (move.cx, move.cc)
     if start != end:

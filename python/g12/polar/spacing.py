@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Spacing: the fewest pieces along an element, with its deviation shared equally.
+
+An element is described by one parameter, its place, and by a density: how many pieces of full
+length fit into a unit of it. The integral of the density, rounded up, is the number of pieces;
+equal steps of that integral give them equal deviations.
+
+The inner ends of pieces are moved off the path by the deviation, to the side that the pieces do not
+bulge to. That lets the pieces bulge by more than the deviation, and so be longer. How much more is
+limited by LinuxCNC's blending, which cuts the corners between pieces: where they are too short for
+the programmed speed, it cuts by up to 4/3 of the bulge (measured), so the bulge may be 3/2 of the
+deviation, and less where an end of an element is exactly on the path.
+
+An element is cut into parts at its apsides, the points nearest to the pole and farthest from it,
+which are ends of pieces: X turns round there, and a piece across would move C alone, or hardly any
+X. It is cut also at its inflections, where path and pieces have the same curvature. No piece ends
+there: the bulge changes sides inside a piece that may be longer than others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil, sqrt
+from typing import NamedTuple
+
+BULGE = 1.5  # deviations: of a piece between two ends moved off the path
+WHOLE_BULGE = 0.75  # deviations: of a piece with both ends exactly on the path
+WHOLE = sqrt(WHOLE_BULGE / BULGE)  # pieces: the longest element that is left in one
+LOSS = 0.18  # pieces: what is lost where an element ends exactly on the path
+GAIN = 0.8  # pieces: what is gained on either side of an inflection
+WORTH_A_CUT = 0.5  # pieces: an apsis nearer to an end of the element is left alone
+
+Density = Callable[[float], "tuple[float, float]"]
+
+
+class Stretch(NamedTuple):
+    """The places of an element: its ends, and the apsides and inflections between them.
+
+    ``nearness`` tells which of two places is nearer to the pole. ``fine`` is the number of steps in
+    a piece that the integral of the density needs to be exact.
+    """
+
+    start: float
+    end: float
+    apsides: list[float]
+    inflections: list[float]
+    nearness: Callable[[float], float]
+    fine: int
+
+
+class _Part(NamedTuple):
+    """A part of an element between two cuts, and one step after the other along it.
+
+    ``places`` begin at the end nearer to the pole, and end beyond the other; ``count`` pieces would
+    do. ``losses`` are those at the start and at the end of the part, ``cut`` is its start.
+    """
+
+    cut: float
+    places: list[float]
+    shares: list[float]
+    count: float
+    backwards: bool
+    losses: tuple[float, float]
+
+
+def spaced(stretch: Stretch, density: Density) -> tuple[list[float], list[float]]:
+    """Return the places of the ends of an element's pieces, and how far each is off the path.
+
+    ``density`` gives for a place the pieces per unit, and the part of the deviation, with the sign
+    of the side, that they use. The distances are returned as parts of the deviation, too.
+    """
+    parts = _parts(stretch, density)
+    if sum(part.count for part in parts) <= WHOLE:
+        return [stretch.start, stretch.end], [0.0, 0.0]
+    ends, before = [(stretch.start, 0.0)], 0.0
+    for part in parts:
+        lost = sum(part.losses)
+        pieces = max(0 if -GAIN in part.losses else 1, ceil(part.count + lost - 1e-9))
+        length = part.count / (pieces - lost)
+        if part.losses[0] == 0.0:
+            ends.append((part.cut, max(before, length) ** 2 * density(part.cut)[1]))
+        ends.extend(_inner_ends(part, pieces, length, stretch.fine))
+        before = length
+    places, shares = zip(*ends, (stretch.end, 0.0))
+    return list(places), list(shares)
+
+
+def _parts(stretch: Stretch, density: Density) -> list[_Part]:
+    start, end = stretch.start, stretch.end
+    losses = dict.fromkeys(stretch.inflections, -GAIN)
+    for apsis in stretch.apsides:
+        if min(apsis - start, end - apsis) * density(apsis)[0] > WORTH_A_CUT:
+            losses[apsis] = 0.0
+    losses[start] = losses[end] = LOSS
+    cuts = sorted(losses)
+    return [_part(a, b, (losses[a], losses[b]), stretch, density) for a, b in zip(cuts, cuts[1:])]
+
+
+def _part(a: float, b: float, losses: tuple[float, float], stretch: Stretch, density) -> _Part:
+    """Return the part between two cuts, measured in steps from its end nearer to the pole.
+
+    The step in front of one tells where its middle will be. Near the pole the steps are shortest:
+    measured from there they grow, and the middle is never taken too far out.
+    """
+    backwards = stretch.nearness(b) < stretch.nearness(a)
+    place, far = (b, a) if backwards else (a, b)
+    unit = (1.0 if far > place else -1.0) / stretch.fine
+    places, shares = [place], []
+    step = unit / density(place)[0]
+    while (far - place) * unit > 0.0:
+        pieces, share = density(place + 0.5 * step)
+        step = unit / pieces
+        place += step
+        places.append(place)
+        shares.append(share)
+    count = (len(shares) - (place - far) / step) / stretch.fine
+    return _Part(a, places, shares, count, backwards, losses)
+
+
+def _inner_ends(part: _Part, pieces: int, length: float, fine: int) -> list[tuple[float, float]]:
+    """Return the ends of pieces inside a part, in the sense of the motion.
+
+    ``length`` is that of each piece, in pieces of full length; the deviation goes with its square.
+    """
+    table, square = part.places, length * length
+    near, far = part.losses[::-1] if part.backwards else part.losses
+    ends = []
+    for k in range(near >= 0.0, pieces + (far < 0.0)):
+        steps = fine * length * (k - near)
+        j = int(steps)
+        place = table[j] + (steps - j) * (table[j + 1] - table[j])
+        ends.append((place, square * part.shares[j]))
+    return ends[::-1] if part.backwards else ends
