@@ -12,6 +12,7 @@ from importlib import import_module
 COMMANDS = {
     "run": ("g12.cli.run", "run a program on a headless LinuxCNC"),
     "dynapath": ("g12.cli.dynapath", "print Dynapath circle mill events as a LinuxCNC program"),
+    "plot": ("g12.cli.plot", "draw a picture of what a program cuts"),
     "trace": ("g12.cli.moves", "list the moves of a program"),
 }
 

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The window on the largest deviation of a run: programmed path, real motion, the gap between."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from g12.cli import pictures
+from g12.cli.motion import Worst, worst_of
+from g12.cli.part import paths
+from g12.cli.pictures import Unit
+from g12.cli.scene import Scene
+
+SIZE = 1.9  # inches, the window's sides
+NEIGHBOURS = 3  # moves before and after that are drawn
+WINDOW = 6.0  # half the window's side, in deviations
+LEAST_WINDOW = 1e-4  # mm
+AXES_OF_PART = "XYZ"
+
+
+def describe(worst: Worst, unit: Unit) -> str:
+    """Return the size and place of the largest deviation in words."""
+    where = " ".join(
+        f"{letter}{unit.text(value)}" for letter, value in zip(AXES_OF_PART, worst.nearest)
+    )
+    return f"{unit.fine(worst.deviation)} {unit.name} at {where} (line {worst.move.block})"
+
+
+def draw_window(figure: Figure, corner: tuple[float, float], scene: Scene) -> None:
+    """Draw the window with its lower left corner (inches) there."""
+    worst = worst_of(scene.real, scene.moves)
+    if worst is not None:
+        _draw(pictures.add_axes(figure, *corner, SIZE, SIZE), scene, worst)
+
+
+def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
+    real, moves, unit = scene.real, scene.moves, scene.unit
+    half = max(WINDOW * worst.deviation, LEAST_WINDOW)
+    pair = most_telling(real.points[_near(real.points, worst.point, half)])
+    origin = worst.nearest[pair]
+    around = moves[max(0, real.move[worst.index] - NEIGHBOURS) :][: 2 * NEIGHBOURS + 1]
+    programmed = [line[:, pair] - origin for line in paths(scene.path.part, around, half / 500)]
+    sampled = _stretch(real.points, worst, half)[:, pair] - origin
+    pictures.draw(axes, programmed, pictures.PATH, 2.6)
+    pictures.draw(axes, [sampled], pictures.REAL, 1.0, 3.5)
+    axes.plot(*sampled.T, ".", color=pictures.REAL, markersize=3, zorder=3.5)
+    gap = np.array([[0.0, 0.0], worst.point[pair] - origin])
+    pictures.draw(axes, [gap], pictures.WORST, 1.8, 4.0)
+    axes.set(xlim=(-half, half), ylim=(-half, half), xticks=[], yticks=[])
+    for spine in axes.spines.values():
+        spine.set(visible=True, color=pictures.WORST, linewidth=0.9)
+    pictures.caption(axes, "Largest deviation")
+    letters = " and ".join(AXES_OF_PART[axis] for axis in pair)
+    text = f"{unit.fine(worst.deviation)} {unit.name}, line {worst.move.block}, in {letters}"
+    axes.set_xlabel(text, size=8, color=pictures.WORST, labelpad=4, loc="left")
+    _scale_bar(axes, half, unit)
+
+
+def most_telling(points: np.ndarray) -> list[int]:
+    """Return the two axes of the part along which points spread most, in order."""
+    spread = np.ptp(points, axis=0)
+    return sorted(np.argsort(spread, kind="stable")[1:].tolist())
+
+
+def _near(points: np.ndarray, centre: np.ndarray, half: float) -> np.ndarray:
+    return np.all(np.abs(points - centre) <= 2 * half, axis=1)
+
+
+def _stretch(points: np.ndarray, worst: Worst, half: float) -> np.ndarray:
+    """Return the samples in sequence about the worst one, as far as the window shows them."""
+    away = np.max(np.abs(points - worst.point), axis=1) > 3 * half
+    before = np.flatnonzero(away[: worst.index])
+    after = np.flatnonzero(away[worst.index :])
+    first = before[-1] if len(before) else 0
+    last = worst.index + after[0] if len(after) else len(points) - 1
+    return points[first : last + 1]
+
+
+def _scale_bar(axes: Axes, half: float, unit: Unit) -> None:
+    """Draw a bar of a round length in the window's corner."""
+    shown = half / unit.mm
+    length = 10.0 ** math.floor(math.log10(shown))
+    length = max(step * length for step in (0.2, 0.5, 1.0) if step * length <= shown)
+    place = axes.transAxes
+    share = length / shown / 2
+    bar = {"transform": place, "color": pictures.INK, "linewidth": 1.4, "zorder": 5}
+    axes.plot([0.06, 0.06 + share], [0.06, 0.06], solid_capstyle="butt", **bar)
+    text = f"{length:g} {unit.name}"
+    axes.text(0.06, 0.09, text, transform=place, size=7.5, color=pictures.INK)

@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Paths in time, programmed and real: one dense polyline for the moves, and what a run made of it.
+
+Lengths are millimetres, angles of rotary axes degrees, times seconds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from g12.cli.headless import Samples
+from g12.cli.ini import Ini
+from g12.cli.part import CHORD_ERROR, Part
+from g12.cli.trace import AXES, Move, mm_per_unit
+
+LINEAR = [AXES.index(letter) for letter in "XYZUVW"]
+ROTARY = [AXES.index(letter) for letter in "ABC"]
+SLACK = 0.25  # mm that a run may be ahead of the path, where it cuts a corner
+UNLIMITED = math.inf
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Greatest speeds: per axis (mm/s or degrees/s, in the order of AXES) and along the path."""
+
+    axes: tuple[float, ...]
+    path: float
+
+
+@dataclass(frozen=True)
+class Track:
+    """Moves as one polyline: per vertex the machine position, part point, move and time.
+
+    ``positions`` (n, 9) are those of the controlled point, ``offsets`` (n, 9) the tool length
+    offset in force, ``move`` (n,) the index of the move that ends at or passes the vertex.
+    ``time`` supposes that every move runs at its feed, as far as the axes' speeds allow.
+    """
+
+    part: Part
+    positions: np.ndarray
+    offsets: np.ndarray
+    move: np.ndarray
+    time: np.ndarray
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Part points (n, 3)."""
+        return self.part.points(self.positions)
+
+    @cached_property
+    def axis_points(self) -> np.ndarray:
+        """Part points (n, 3) as the axes stand, tool length offset included."""
+        return self.part.points(self.positions + self.offsets)
+
+    def part_length(self, index: int) -> float:
+        """Return the length along the part of a move, mm."""
+        first, last = np.searchsorted(self.move, (index, index + 1))
+        points = self.points[max(0, first - 1) : last]
+        return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
+    def part_feed(self, index: int) -> float:
+        """Return the speed along the part of a move, mm/min."""
+        first, last = np.searchsorted(self.move, (index, index + 1))
+        seconds = self.time[last - 1] - self.time[max(0, first - 1)]
+        return self.part_length(index) / seconds * 60.0 if seconds else 0.0
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Samples of a run laid on the programmed path, arrays of one entry per sample.
+
+    ``positions`` (n, 9) are those of the controlled point, ``points`` (n, 3) the part's;
+    ``move`` is the index of the move being made, ``nearest`` (n, 3) the programmed point next
+    to the sample and ``deviation`` the distance to it, ``time`` in seconds.
+    """
+
+    time: np.ndarray
+    positions: np.ndarray
+    points: np.ndarray
+    move: np.ndarray
+    nearest: np.ndarray
+    deviation: np.ndarray
+
+    def part_speed(self) -> np.ndarray:
+        """Return the speed along the part, mm/s, of each sample."""
+        return speed(self.points, self.time)
+
+    def worst(self, among: np.ndarray) -> int:
+        """Return the index of the largest deviation among the samples of a mask."""
+        return int(np.flatnonzero(among)[np.argmax(self.deviation[among])])
+
+
+class Worst(NamedTuple):
+    """The largest deviation of a run from the moves at feed, mm."""
+
+    index: int  # of the sample
+    deviation: float
+    point: np.ndarray
+    nearest: np.ndarray
+    move: Move
+
+
+def worst_of(real: Followed, moves: Sequence[Move]) -> Worst | None:
+    """Return where a run is farthest from its moves at feed; None without such motion."""
+    at_feed = np.array([move.kind != "rapid" for move in moves], bool)[real.move]
+    if not at_feed.any():
+        return None
+    index = real.worst(at_feed)
+    return Worst(
+        index,
+        float(real.deviation[index]),
+        real.points[index],
+        real.nearest[index],
+        moves[real.move[index]],
+    )
+
+
+def limits_of(ini: Ini) -> Limits:
+    """Return the greatest speeds that an INI allows."""
+    unit = mm_per_unit(ini)
+    scale = [unit if index in LINEAR else 1.0 for index in range(len(AXES))]
+    axes = [ini.number(f"AXIS_{letter}", "MAX_VELOCITY", UNLIMITED) for letter in AXES]
+    path = ini.number("TRAJ", "MAX_LINEAR_VELOCITY", UNLIMITED) * unit
+    return Limits(tuple(map(float.__mul__, axes, scale)), path)
+
+
+def duration(move: Move, limits: Limits, spindle_speed: float = 0.0) -> float:
+    """Return the seconds a move takes at its feed, axis speeds permitting, without acceleration.
+
+    ``spindle_speed`` in revolutions per minute is for moves in G95.
+    """
+    changes = [abs(end - start) for start, end in zip(move.start, move.end)]
+    if move.kind == "arc":
+        return move.length / min(rate(move, spindle_speed) or limits.path, limits.path)
+    needed = max(change / limit for change, limit in zip(changes, limits.axes))
+    needed = max(needed, move.length / limits.path)
+    wanted = rate(move, spindle_speed)
+    return max(needed, feed_length(move) / wanted) if wanted else needed
+
+
+def rate(move: Move, spindle_speed: float) -> float:
+    """Return the programmed speed of a move in mm/s or degrees/s; 0 is as fast as it may."""
+    per_minute = move.feed * spindle_speed if move.feed_mode == "G95" else move.feed
+    return per_minute / 60.0
+
+
+def feed_length(move: Move) -> float:
+    """Return the length that a move's feed is for: of X Y Z, else of U V W, else degrees."""
+    change = np.subtract(move.end, move.start)
+    lengths = (math.hypot(*change[:3]), math.hypot(*change[6:]), math.hypot(*change[3:6]))
+    return next((length for length in lengths if length > 1e-9), 0.0)
+
+
+def track(
+    part: Part,
+    moves: Sequence[Move],
+    limits: Limits,
+    spindle_speed: float = 0.0,
+    chord_error: float = CHORD_ERROR,
+) -> Track:
+    """Return the polyline of moves."""
+    positions, offsets, owner, times = [], [], [], [0.0]
+    before = (0.0,) * 9
+    for index, move in enumerate(moves):
+        points = part.machine_points(move, chord_error)
+        skip = 1 if index else 0
+        share = np.linspace(0.0, 1.0, len(points))[:, None]
+        positions.append(points[skip:])
+        offsets.append((np.array(before) * (1 - share) + np.array(move.tool_offset) * share)[skip:])
+        owner.append(np.full(len(points) - skip, index))
+        start, seconds = times[-1], duration(move, limits, spindle_speed)
+        times.extend(start + seconds * share[1:, 0])
+        before = move.tool_offset
+    return Track(
+        part,
+        np.concatenate(positions or [np.zeros((1, 9))]),
+        np.concatenate(offsets or [np.zeros((1, 9))]),
+        np.concatenate(owner or [np.zeros(1, int)]),
+        np.array(times),
+    )
+
+
+def follow(path: Track, samples: Samples, unit: float) -> Followed:
+    """Lay the samples in motion on the path; ``unit`` is one machine unit in mm."""
+    moving = samples.moving()
+    axes = _positions(samples, unit)[moving]
+    segment = _segments(path.axis_points, path.part.points(axes))
+    last = len(path.move) - 1
+    following = np.minimum(segment + 1, last)
+    positions = axes - path.offsets[following]
+    points = path.part.points(positions)
+    nearest, deviation = _nearest(path.points, points, segment)
+    return Followed(
+        samples.time[moving], positions, points, path.move[following], nearest, deviation
+    )
+
+
+def speed(points: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Return the speed along points (n, 3) at given times; ends repeat their neighbour."""
+    if len(points) < 2:
+        return np.zeros(len(points))
+    return np.linalg.norm(np.gradient(points, time, axis=0), axis=1)
+
+
+def _positions(samples: Samples, unit: float) -> np.ndarray:
+    """Axis positions (n, 9) of samples, mm and degrees."""
+    positions = np.zeros((len(samples.time), len(AXES)))
+    for letter, values in samples.axes.items():
+        index = AXES.index(letter)
+        positions[:, index] = values * (unit if index in LINEAR else 1.0)
+    return positions
+
+
+def _segments(path: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Index of the segment of the path that each point is on, never going back.
+
+    The nearest segment is looked for only as far ahead as the tool can have come since the
+    last sample: a path may cross or repeat itself, but the tool cannot jump along it.
+    """
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+    travelled = np.linalg.norm(np.diff(points, axis=0, prepend=points[:1]), axis=1)
+    found = np.zeros(len(points), int)
+    first, reached, last = 0, 0.0, max(0, len(path) - 2)
+    for index, point in enumerate(points):
+        ahead = np.searchsorted(along, reached + 2 * travelled[index] + SLACK)
+        window = slice(first, min(int(ahead), last) + 1)
+        near, distance = _project(path, window, point)
+        best = int(np.argmin(distance))
+        first += best
+        reached = max(reached, along[first] + math.dist(near[best], path[first]))
+        found[index] = first
+    return found
+
+
+def _project(path: np.ndarray, window: slice, point: np.ndarray):
+    """Nearest points of some segments to one point, and the distances."""
+    start = path[window]
+    along = path[window.start + 1 : window.stop + 1] - start
+    return _nearest_on(start[: len(along)], along, point)
+
+
+def _nearest_on(start: np.ndarray, along: np.ndarray, point: np.ndarray):
+    """Nearest points on segments and their distances, row by row."""
+    square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
+    share = np.clip(np.einsum("ij,ij->i", point - start, along) / square, 0.0, 1.0)
+    near = start + along * share[:, None]
+    return near, np.linalg.norm(point - near, axis=1)
+
+
+def _nearest(path: np.ndarray, points: np.ndarray, segment: np.ndarray):
+    """Nearest point and distance of each point to the path close to its segment."""
+    last = max(0, len(path) - 2)
+    near, distance = points.copy(), np.full(len(points), np.inf)
+    for shift in (-2, -1, 0, 1, 2):
+        index = np.clip(segment + shift, 0, last)
+        following = np.minimum(index + 1, len(path) - 1)
+        found, away = _nearest_on(path[index], path[following] - path[index], points)
+        better = away < distance
+        near[better], distance[better] = found[better], away[better]
+    return near, distance

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The one look of every picture: colours, lines, axes, legends, files; for paper and light pages.
+
+Lengths given to the drawing functions are in the units shown; sizes of figures in inches.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import numpy as np
+from matplotlib import colors
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path as Outline
+from shapely.geometry.base import BaseGeometry
+from shapely.geometry.polygon import orient
+
+FORMATS = ("png", "svg", "pdf")
+INK, MUTED, FAINT = "#1f2933", "#64707d", "#e4e8ec"
+PATH = "#5fa8d3"
+RAPID = "#8d99a6"
+REAL = "#e8590c"
+WORST = "#c2255c"
+LIMIT = "#c2255c"
+CONTOUR = "#1f2933"
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8.5,
+    "text.color": INK,
+    "axes.edgecolor": MUTED,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "grid.color": FAINT,
+    "grid.linewidth": 0.6,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "legend.frameon": False,
+    "lines.solid_capstyle": "round",
+    "svg.hashsalt": "g12",
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+}
+matplotlib.rcParams.update(STYLE)
+DEPTHS = colors.LinearSegmentedColormap.from_list(
+    "depth", ["#58b4d1", "#2f86bd", "#1f5c9e", "#173f83", "#1b1f5e"]
+)
+FLOORS = colors.LinearSegmentedColormap.from_list(
+    "floor", ["#e4f4f7", "#c3e1ef", "#a3cbe8", "#86aedd", "#93a9da"]
+)
+FEEDS = colors.LinearSegmentedColormap.from_list(
+    "feed", ["#2b8a3e", "#94b82c", "#f2b705", "#e8590c", "#a61e4d"]
+)
+DPI = 150
+MARGIN = 0.75  # inches left of titles and axes
+SAVE = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
+
+
+class Unit(NamedTuple):
+    """The unit of length shown: its name, its size in mm and the decimals worth showing."""
+
+    name: str
+    mm: float
+    decimals: int
+
+    def text(self, length: float) -> str:
+        """Return a length in mm as text in this unit, without trailing zeros."""
+        return plain(length / self.mm, self.decimals)
+
+    def fine(self, length: float) -> str:
+        """Return a small length in mm as text in this unit, with two digits that count."""
+        value = length / self.mm
+        first = math.floor(math.log10(abs(value))) if value else 0
+        return plain(value, max(self.decimals, 1 - first) if abs(value) > 1e-7 else 1)
+
+
+UNITS = {"mm": Unit("mm", 1.0, 3), "inch": Unit("in", 25.4, 4)}
+
+
+class PictureError(ValueError):
+    """A picture that cannot be written as asked."""
+
+
+def check_format(path: Path) -> None:
+    """Refuse a file whose suffix is no picture format, before any work is done."""
+    if path.suffix.lower().lstrip(".") not in FORMATS:
+        known = ", ".join(f".{name}" for name in FORMATS)
+        raise PictureError(f"{path}: the suffix must be one of {known}")
+    if not path.parent.is_dir():
+        raise PictureError(f"{path.parent}: no such directory")
+
+
+def plain(value: float, decimals: int) -> str:
+    """Return a number without trailing zeros, with a real minus sign."""
+    text = f"{value:.{decimals}f}"
+    text = text.rstrip("0").rstrip(".") if "." in text else text
+    return "0" if text == "-0" else text.replace("-", "−")
+
+
+def new_figure(width: float, height: float, title: str, subtitle: str) -> Figure:
+    """Return a page with its title; sizes in inches."""
+    figure = Figure(figsize=(width, height), facecolor="white")
+    left, top = MARGIN / width, 1 - 0.16 / height
+    figure.text(left, top, title, size=13, weight="bold", va="top")
+    figure.text(left, top - 0.28 / height, subtitle, size=8.5, color=MUTED, va="top")
+    return figure
+
+
+def add_axes(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
+    """Return axes placed in inches from the page's lower left corner."""
+    across, up = figure.get_size_inches()
+    axes = figure.add_axes([left / across, bottom / up, width / across, height / up])
+    axes.spines["top"].set_visible(False)
+    axes.spines["right"].set_visible(False)
+    return axes
+
+
+def caption(axes: Axes, text: str) -> None:
+    """Write the heading of one panel."""
+    axes.set_title(text, loc="left", size=9, color=INK, pad=5)
+
+
+def fill(axes: Axes, area: BaseGeometry, face, edge=None, order: float = 1.0, **style) -> None:
+    """Draw an area of shapely's as a filled shape, holes included."""
+    outline = outline_of(area)
+    if outline is not None:
+        line = {"edgecolor": edge, "linewidth": 0.7} if edge is not None else {"linewidth": 0}
+        axes.add_patch(PathPatch(outline, facecolor=face, zorder=order, **line, **style))
+
+
+def outline_of(area: BaseGeometry) -> Outline | None:
+    """Return the outline of an area, holes included; None if it is empty."""
+    polygons = [part for part in getattr(area, "geoms", [area]) if part.geom_type == "Polygon"]
+    rings = [
+        np.asarray(ring.coords)
+        for polygon in map(orient, (part for part in polygons if not part.is_empty))
+        for ring in (polygon.exterior, *polygon.interiors)
+    ]
+    return Outline.make_compound_path(*map(_closed, rings)) if rings else None
+
+
+def _closed(ring: np.ndarray) -> Outline:
+    codes = np.full(len(ring), Outline.LINETO, dtype=Outline.code_type)
+    codes[0], codes[-1] = Outline.MOVETO, Outline.CLOSEPOLY
+    return Outline(ring[:, :2], codes)
+
+
+def draw(axes: Axes, lines: Sequence[np.ndarray], colour, width=1.1, order=3.0, **style) -> None:
+    """Draw polylines (n, 2)."""
+    lines = [line for line in lines if len(line) > 1]
+    style = {"capstyle": "round", "joinstyle": "round", **style}
+    axes.add_collection(
+        LineCollection(lines, colors=[colour], linewidths=width, zorder=order, **style),
+        autolim=False,
+    )
+
+
+def draw_rapids(axes: Axes, lines: Sequence[np.ndarray], order: float = 2.5) -> None:
+    """Draw polylines (n, 2) the way rapids look."""
+    draw(axes, lines, RAPID, 0.8, order, linestyle=(0, (4, 3)), capstyle="butt")
+
+
+def draw_arrow(axes: Axes, line: np.ndarray, colour, order: float = 4.0) -> None:
+    """Draw an arrowhead at the middle of a polyline (n, 2), pointing along it."""
+    steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
+    index = int(np.searchsorted(np.cumsum(steps), steps.sum() / 2))
+    start, end = line[index], line[index + 1]
+    tail = end - (end - start) * 1e-3
+    head = {"arrowstyle": "-|>,head_width=0.2,head_length=0.45", "mutation_scale": 13}
+    axes.annotate("", end, tail, arrowprops={**head, "color": colour, "lw": 0}, zorder=order)
+
+
+def tint(colour, share: float = 0.72) -> tuple[float, float, float]:
+    """Return a colour mixed with a share of white."""
+    return tuple(1 - (1 - value) * (1 - share) for value in colors.to_rgb(colour))
+
+
+class Shade(NamedTuple):
+    """The colours of one depth: of its paths, and of the floor that the cutter leaves."""
+
+    line: tuple
+    floor: tuple
+
+
+def shades(count: int) -> list[Shade]:
+    """Return the colours of some depths, from the shallowest to the deepest."""
+    shares = np.linspace(0.0, 1.0, count) if count > 1 else [0.35]
+    return [Shade(DEPTHS(share), FLOORS(share)) for share in shares]
+
+
+def feed_colours(count: int) -> list[tuple]:
+    """Return colours from the slowest to the fastest of some feeds."""
+    return [FEEDS(share) for share in np.linspace(0, 1, count)] if count > 1 else [FEEDS(0.0)]
+
+
+def grey(colour) -> tuple[float, float, float]:
+    """Return the light grey that stands for a floor where colours mean something else."""
+    return (0.45 + 0.5 * float(np.mean(colors.to_rgb(colour))),) * 3
+
+
+def swatch(face, edge, text: str) -> Patch:
+    """Return the legend's entry of a depth: floor and outline."""
+    return Patch(facecolor=face, edgecolor=edge, linewidth=1.1, label=text)
+
+
+def stroke(colour, text: str, width: float = 1.3, dashed: bool = False) -> Line2D:
+    """Return the legend's entry of a line."""
+    style = (0, (4, 3)) if dashed else "-"
+    return Line2D([], [], color=colour, linewidth=width, linestyle=style, label=text)
+
+
+def marker(colour, text: str, size: float = 4.0, hollow: bool = False) -> Line2D:
+    """Return the legend's entry of a marked point."""
+    style = "none" if hollow else "full"
+    return Line2D([], [], ls="", marker="o", color=colour, ms=size, fillstyle=style, label=text)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write the picture; the suffix decides the format."""
+    kind = path.suffix.lower().lstrip(".")
+    figure.savefig(path, format=kind, dpi=DPI, metadata=SAVE[kind])

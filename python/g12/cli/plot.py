@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 plot``: a picture of what a program cuts, for any LinuxCNC program and machine.
+
+A mill program is shown from above and from the side, with the area its cutters sweep; a program
+for a lathe with a C axis on the face of the part, and over time.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from g12.cli import pictures
+from g12.cli.command import (
+    GOOD,
+    ProgramError,
+    UsageError,
+    add_program,
+    add_run,
+    checked_ini,
+    one_line,
+    progress,
+    run_program,
+    traced,
+)
+from g12.cli.face_picture import draw_face
+from g12.cli.mill_picture import draw_mill
+from g12.cli.pictures import UNITS
+from g12.cli.scene import Scene, scene_of, with_run
+
+EXAMPLES = """\
+examples:
+  g12 plot pocket.ngc --ini mill.ini -o pocket.png
+  g12 plot pocket.ngc --ini mill.ini -o pocket.pdf --run --override 500
+  g12 plot flats.ngc --ini lathe.ini -o flats.svg --units inch
+
+exit code: 0 the picture is there, 1 the program has an error, 2 wrong use
+"""
+
+
+def draw(scene: Scene) -> Figure:
+    """Return the picture that fits the machine."""
+    return draw_face(scene) if scene.path.part.turning else draw_mill(scene)
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the command's words."""
+    words = argparse.ArgumentParser(
+        prog="g12 plot",
+        description=__doc__,
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_program(words)
+    words.add_argument("-o", "--output", type=Path, required=True, help="a .png, .svg or .pdf")
+    words.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
+    words.add_argument("--feeds", action="store_true", help="colour paths by feed, not by depth")
+    add_run(words, "run the program headless and draw its real motion over the programmed path")
+    return words
+
+
+@one_line("plot")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    asked = parser().parse_args(arguments)
+    ini = checked_ini(asked.program, asked.ini, asked.tools)
+    try:
+        pictures.check_format(asked.output)
+    except pictures.PictureError as problem:
+        raise UsageError(str(problem)) from None
+    trace = traced(asked.program, asked.ini, asked.tools)
+    if not trace.moves:
+        raise ProgramError(f"{asked.program}: moves nothing, so there is nothing to draw")
+    chosen = {"tools": asked.tools, "units": asked.units, "feed_colours": asked.feeds}
+    scene = scene_of(asked.program, ini, trace, **chosen)
+    if asked.run:
+        with progress(f"running {asked.program.name}, real time"):
+            run = run_program(asked.program, asked.ini, asked.tools, asked.override)
+        scene = with_run(scene, run)
+    pictures.save(draw(scene), asked.output)
+    return GOOD
