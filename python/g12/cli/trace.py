@@ -99,7 +99,8 @@ class Move(NamedTuple):
 
     ``feed`` is mm/min under ``feed_mode`` G94 and G93 (the interpreter resolves inverse time),
     mm/rev under G95; degrees for a straight move of rotary axes alone; 0 for a rapid.
-    ``plane`` is 17, 18 or 19, ``tool`` the number of the tool in the spindle, -1 for none.
+    ``plane`` is 17, 18 or 19, ``tool`` the number of the tool in the spindle, 0 or less for
+    none.
 
     Of an arc, ``centre`` is the centre (x, y, z) at the level of the start, ``turns`` the
     interpreter's count (positive counterclockwise seen from the plane's positive third axis,
@@ -416,7 +417,7 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
         "random": ini.get("EMCIO", "RANDOM_TOOLCHANGER", "0") not in ("0", ""),
         "units": 1.0 / unit,
         "axis_mask": sum(1 << AXES.index(letter) for letter in set(letters)),
-        "setup": [START_BLOCKS[unit], *([startup] if startup else [])],
+        "setup": [START_BLOCKS[unit], "F0", *([startup] if startup else [])],
     }
 
 

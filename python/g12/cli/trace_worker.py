@@ -20,7 +20,8 @@ from multiprocessing.connection import Connection
 
 MM = 25.4  # the preview reports inches
 START = "G12 TRACE STARTS HERE"
-EMPTY = (-1, *[0.0] * 12, 0)
+EMPTY = (-1, *[0.0] * 12, 0)  # no tool yet
+UNLOADED = (0, *[0.0] * 12, 0)  # after T0 M6
 NO_OFFSET = (0.0,) * 9
 LINEAR = (0, 1, 2, 6, 7, 8)
 METRIC = 2
@@ -209,7 +210,7 @@ class Canon:
 
     def change_tool(self, index: int) -> None:
         """Note the tool in the spindle."""
-        self.spindle = self.tools.at(index) if index else EMPTY
+        self.spindle = self.tools.at(index) if index else UNLOADED
         self._note(f"tool {self.spindle[0]}")
 
     def dwell(self, seconds: float) -> None:
