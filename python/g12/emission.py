@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The moves and actions of a planned section, handed to the machine in order.
 
-While pieces go out the interpreter is in G90 G94 with C unwrapped, and in G64 with the tolerance that is
-left for blending; `Emission.release` puts everything back to what the program commanded.
+While pieces go out the interpreter is in G90 G94 with C unwrapped, and blends them in G64.
+`Emission.release` puts everything back to what the program commanded; so it is wherever the
+program can see it, or the machine waits.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
-
-from interpreter import MODE_ABSOLUTE
 
 from .polar import Run
 from .polar.block import G1, Modes, Place, decimal
@@ -41,29 +40,69 @@ class Action(NamedTuple):
     level: int | None = None
 
 
-def path_of(interp: object) -> str:
-    """Return the path control in force as a block: G61, G61.1, or G64 with its tolerances."""
-    code = interp.active_g_codes[PATH_ACTIVE]
-    if code != G64:
-        return f"G{code / 10:g}"
-    settings = interp.active_settings
-    if settings[TOLERANCE] == settings[MERGING] == 0:
-        return "G64"
-    return f"G64P{decimal(settings[TOLERANCE])}Q{decimal(settings[MERGING])}"
+class PathControl:
+    """G61, G61.1 or G64 as the program commanded it, and as the pieces of a section need it.
+
+    Between the pieces of one block the path is blended, with ``smooth`` if the program gave no
+    tolerance; at the end of a block it is what the program commanded.
+    """
+
+    def __init__(self, interp: object, smooth: str) -> None:
+        self.interp, self.smooth = interp, smooth
+        self.find()
+
+    def find(self) -> None:
+        """Take what is in force for what the program commanded."""
+        settings, code = self.interp.active_settings, self.interp.active_g_codes[PATH_ACTIVE]
+        self._tolerances = f"G64P{decimal(settings[TOLERANCE])}Q{decimal(settings[MERGING])}"
+        self._commanded = self._tolerances if code == G64 else f"G{code / 10:g}"
+        own_tolerance = code == G64 and settings[TOLERANCE] > 0
+        self._within = self._commanded if own_tolerance else self.smooth
+        self._in_force, self._blending = self._commanded, self._tolerances
+
+    def inside(self) -> None:
+        """Set what blends the pieces of one block."""
+        self._set(self._within)
+
+    def at_end(self, stop: bool, exact_stop: bool, block_ends: bool) -> None:
+        """Set what the last piece of a run ends in.
+
+        ``stop`` is asked for by the planner, ``exact_stop`` by G9.
+        """
+        if block_ends and exact_stop:
+            self._set(EXACT_STOP)
+        elif block_ends and self._commanded in EXACT_PATHS:
+            self._set(self._commanded)
+        elif stop:
+            self._set(EXACT_PATH)
+
+    def give_back(self) -> None:
+        """Set what the program commanded."""
+        if self._blending != self._tolerances:
+            self._set(self._tolerances)
+        self._set(self._commanded)
+
+    def _set(self, path: str) -> None:
+        if path != self._in_force:
+            self.interp.execute(path)
+            self._in_force = path
+            self._blending = self._blending if path in EXACT_PATHS else path
 
 
 class Emission:
     """Hands steps to the interpreter.
 
-    ``x_factor`` turns a radius value into an X word (2 under G7); ``blending`` is in program units.
+    ``code`` names the section in refusals. ``x_factor`` turns a radius value into an X word (2
+    under G7); ``blending`` is in program units. ``absolute`` is the interpreter's name of G90.
     """
 
-    def __init__(self, interp: object, code: str, x_factor: float, blending: float) -> None:
+    def __init__(
+        self, interp: object, code: str, *, x_factor: float, blending: float, absolute: object
+    ) -> None:
         self.interp, self.code = interp, code
-        self.x_factor = x_factor
-        self.smooth = f"G64P{decimal(blending)}Q0"
-        self.exact_lines: set[int] = set()
-        self.path = self._in_force = path_of(interp)
+        self.x_factor, self.absolute = x_factor, absolute
+        self.path = PathControl(interp, f"G64P{decimal(blending)}Q0")
+        self.exact_lines: set[int] = set()  # of G9
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
 
@@ -72,7 +111,8 @@ class Emission:
         self._take_over()
         for step, following in zip(steps, [*steps[1:], None]):
             if isinstance(step, Run):
-                self._moves(step, following)
+                block_ends = not isinstance(following, Run) or following.line != step.line
+                self._moves(step, block_ends)
             else:
                 yield from self._act(step)
         self.release(modes)
@@ -81,7 +121,7 @@ class Emission:
         """Put the interpreter into the modes that the program commanded."""
         interp = self.interp
         interp.c_axis_wrapped = self._wrapped
-        self._set_path(self.path)
+        self.path.give_back()
         self._per_revolution = modes.per_revolution
         interp.execute("G95" * modes.per_revolution + f"F{decimal(modes.feed)}")
         interp.execute("G91" if modes.incremental else "G90")
@@ -90,39 +130,21 @@ class Emission:
     def _take_over(self) -> None:
         interp = self.interp
         interp.c_axis_wrapped = False
-        interp.distance_mode = MODE_ABSOLUTE
+        interp.distance_mode = self.absolute
         if self._per_revolution:
             interp.execute("G94")
         interp.motion_mode = G1
 
-    def _moves(self, run: Run, following: Run | Action | None) -> None:
+    def _moves(self, run: Run, block_ends: bool) -> None:
         interp, factor = self.interp, self.x_factor
         execute, piece = interp.execute, PIECE[run.axes].format
         interp.sequence_number = run.line
-        self._set_path(self._path_within())
+        self.path.inside()
         *pieces, (last_x, last_c, last_z, last_feed) = run.pieces
         for x, c, z, feed in pieces:
             execute(piece(x * factor, c, z, feed))
-        self._set_path(self._path_at_end(run, following))
+        self.path.at_end(run.stop, run.line in self.exact_lines, block_ends)
         execute(piece(last_x * factor, last_c, last_z, last_feed))
-
-    def _path_within(self) -> str:
-        """The path control between the pieces of one block: they are one curve."""
-        return self.path if self.path.startswith("G64P") else self.smooth
-
-    def _path_at_end(self, run: Run, following: Run | Action | None) -> str:
-        """The path control of a run's last piece: what was programmed for the end of its block."""
-        block_goes_on = isinstance(following, Run) and following.line == run.line
-        if not block_goes_on and run.line in self.exact_lines:
-            return EXACT_STOP
-        if not block_goes_on and self.path in EXACT_PATHS:
-            return self.path
-        return EXACT_PATH if run.stop else self._path_within()
-
-    def _set_path(self, path: str) -> None:
-        if path != self._in_force:
-            self.interp.execute(path)
-            self._in_force = path
 
     def _act(self, action: Action) -> Iterator[int]:
         """Execute a block in its place."""
@@ -134,18 +156,18 @@ class Emission:
         status = self._execute(action)
         if status:
             yield status
-        self.path = self._in_force = path_of(self.interp)
+        self.path.find()
         self._take_over()
 
     def _execute(self, action: Action) -> int:
         """Execute the block as one of the program, which a remapped code must be."""
-        interp, place = self.interp, Place(self.code, str(action.line))
+        interp, place = self.interp, Place(self.code, action.line)
         level = interp.call_level
         interp.call_level = level if action.level is None else action.level
         try:
             interp.read(action.text)
             status = interp.execute(None)
-        except SystemError:
+        except SystemError:  # how LinuxCNC hands a failed read or execute to Python
             raise place.refuse(interp.get_errormsg()) from None
         if action.level is None and interp.call_level != level:
             raise place.refuse(f"{action.text} waits for the machine in its handler")

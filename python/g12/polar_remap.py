@@ -85,7 +85,9 @@ def run_section(interp: object, frame: Frame, program: Program) -> Iterator[int]
         yield from Section(interp, setup, frame, program).run()
     except Refusal as refusal:
         line = line_named(refusal)
-        frame.give_up(line or program.line, called=program.in_sub_file and not line, home=program.home)
+        frame.give_up(
+            line or program.line, called=program.in_sub_file and not line, home=program.home
+        )
         raise
 
 

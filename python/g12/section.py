@@ -113,7 +113,13 @@ class Section:
             interp.current_x, interp.current_z, code=setup.code, diameter=setup.diameter,
             closing=setup.closing,
         )  # fmt: skip
-        self.emission = Emission(interp, setup.code, setup.x_factor, setup.blending)
+        self.emission = Emission(
+            interp,
+            setup.code,
+            x_factor=setup.x_factor,
+            blending=setup.blending,
+            absolute=MODE_ABSOLUTE,
+        )
         self.saved: dict[int, Modes] = {}  # by M70 and M73, at each call level
         self.restored_on_return: set[int] = set()
         self.skipping = self.finished = False
@@ -202,7 +208,7 @@ class Section:
         if self.skipping and kind in MOVING:
             return
         if not self.skipping and level == self.frame.level:
-            self._check_level(kind)
+            self._check_level(line)
         self._show_plane()
         self._check_done(self.program.control(kind))
         for left in sorted(self.restored_on_return, reverse=True):
@@ -218,10 +224,10 @@ class Section:
             self.skipped_for = line.text
         self.skipping = skipping
 
-    def _check_level(self, kind: str) -> None:
-        if kind in ("endsub", "return"):
-            self._missing_off(f"{kind} comes before it")
-        if kind == "sub":
+    def _check_level(self, line: Line) -> None:
+        if line.control in ("endsub", "return"):
+            self._missing_off(f"{line.control if 'o' in line.text else 'M99'} comes before it")
+        if line.control == "sub":
             raise self.place.refuse("a sub cannot be defined inside the section")
 
     def _check_done(self, status: int) -> None:

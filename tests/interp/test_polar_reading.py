@@ -46,7 +46,9 @@ def cut(lathe, *body, **around):
 
 
 def test_expressions_and_functions_are_values(lathe):
-    traced = cut(lathe, "G1 X[10 + 2] C[sin[30] * 4]", "X-[3]C-#1", "Xatan[1]/[1] C+1", before=["#1=7"])
+    traced = cut(
+        lathe, "G1 X[10 + 2] C[sin[30] * 4]", "X-[3]C-#1", "Xatan[1]/[1] C+1", before=["#1=7"]
+    )
     assert ends(traced) == [(12, 2), (-3, -7), (45, 1)]
 
 
@@ -189,7 +191,19 @@ def test_a_section_inside_a_loop_and_a_loop_inside_it(lathe):
     program = section(
         *body, before=["#1=0", "o1 while [#1 LT 2]"], after=["#1=[#1+1]", "o1 endwhile", "X30"]
     )
-    points = [(10, 0), (9, 0), (8, 0), (7, 0), (6, 0), (11, 0), (10, 0), (9, 0), (8, 0), (7, 0), (30, 0)]
+    points = [
+        (10, 0),
+        (9, 0),
+        (8, 0),
+        (7, 0),
+        (6, 0),
+        (11, 0),
+        (10, 0),
+        (9, 0),
+        (8, 0),
+        (7, 0),
+        (30, 0),
+    ]
     assert ends(lathe.trace_text(program)) == points
 
 
@@ -243,7 +257,9 @@ def test_parameters_of_a_sub_do_not_touch_the_sections(lathe):
 
 
 def test_fanuc_subs_with_repeats(lathe):
-    traced = lathe.trace_text([*section("M98 P100 L2", "U1"), "O100", "G1 U-2", "G91 C1", "G90", "M99"])
+    traced = lathe.trace_text(
+        [*section("M98 P100 L2", "U1"), "O100", "G1 U-2", "G91 C1", "G90", "M99"]
+    )
     assert ends(traced) == [(18, 0), (18, 1), (16, 1), (16, 2), (17, 2)]
 
 
@@ -267,7 +283,13 @@ def test_a_section_in_a_sub_of_another_file(subs):
 
 
 def test_messages_reports_and_comments(lathe):
-    body = ["(MSG, one)", "#3=4 (DEBUG,three #3 %d#3 %.1f#3 #9999999)", "(DEBUG,#3)", "; (MSG, no)", "G1 X9 (x)"]
+    body = [
+        "(MSG, one)",
+        "#3=4 (DEBUG,three #3 %d#3 %.1f#3 #9999999)",
+        "(DEBUG,#3)",
+        "; (MSG, no)",
+        "G1 X9 (x)",
+    ]
     traced = cut(lathe, *body, before=["#3=1"])
     assert texts(traced) == ["one", "three 1.000000 1 1.0 ######", "4.000000"]
 
@@ -288,7 +310,9 @@ def test_block_delete(lathe):
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\n\n", " \t\n"])
 def test_line_ends(lathe, end):
-    traced = lathe.trace_text(end.join([*section("G1 X12", "U-2", "o1 repeat [2]", "H1", "o1 endrepeat"), ""]))
+    traced = lathe.trace_text(
+        end.join([*section("G1 X12", "U-2", "o1 repeat [2]", "H1", "o1 endrepeat"), ""])
+    )
     assert ends(traced)[-1] == (10, 2)
 
 

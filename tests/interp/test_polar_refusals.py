@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12.1 on the stock interpreter: every refusal, with its line, before anything of the section moves."""
+
+import pytest
+
+from g12.cli.trace import Tracer
+from lathe import FIRST, feed_moves, section, tracer
+from machines import SIM
+
+REFERENCE = "the reference point is not in the plane"
+ORIGIN = "the origin must stay in the spindle's centre"
+ONLY = "only G1, G2 and G3 move inside the section"
+UNITS = "the units cannot change inside the section"
+OFFSETS = "offsets cannot change inside the section"
+LENGTH = "the tool length offset cannot change inside the section"
+TOOL = "the tool cannot change inside the section"
+DIAMETER = "X cannot change between diameter and radius inside the section"
+AXES = "the section's words are X, C (or Y), Z, U and H"
+
+
+@pytest.fixture(scope="module")
+def lathe():
+    with tracer() as opened:
+        yield opened
+
+
+def refused(lathe, program):
+    """Return text and line of the refusal; nothing of the section may have moved."""
+    traced = lathe.trace_text(program)
+    assert traced.error is not None
+    assert [move.kind for move in traced.moves] == ["rapid"], "the section moved"
+    assert len(traced.error.text) <= 255
+    return traced.error.text, traced.error.line
+
+
+# ---------------------------------------------------------------- codes and words inside
+
+
+INSIDE = [
+    ("G0 X12", "G0 is refused: a rapid leaves the contour; use G1 with a high F, or set [G12] POLAR_G0 = feed"),
+    ("G10 L2 P1 X1", f"G10 is refused: {OFFSETS}"),
+    ("G17.1", "G17.1 is refused: the section's plane is X-C"),
+    ("G19", "G19 is refused: the section's plane is X-C"),
+    ("G20", f"G20 is refused: {UNITS}"),
+    ("G21", f"G21 is refused: {UNITS}"),
+    ("G28 U0 W0", f"W is refused: {AXES}"),
+    ("G28 H0", f"G28 is refused: {REFERENCE}"),
+    ("G28.1", f"G28.1 is refused: {REFERENCE}"),
+    ("G30", f"G30 is refused: {REFERENCE}"),
+    ("G33 Z-1 K1", "K is refused: the centre of an arc in the X-C plane is I and J"),
+    ("G38.2 X5", f"G38.2 is refused: {ONLY}"),
+    ("G38.5 X5", f"G38.5 is refused: {ONLY}"),
+    ("G41.1 D3", "D is refused: the radius is that of the loaded tool"),
+    ("G42.1 X5", "G42.1 is refused: the radius is that of the loaded tool: G41 or G42 without D"),
+    ("G43 H1", f"G43 is refused: {LENGTH}"),
+    ("G43.1 Z2", f"G43.1 is refused: {LENGTH}"),
+    ("G49", f"G49 is refused: {LENGTH}"),
+    ("G5 X2 Z1 I1 J1 P1 Q1", f"G5 is refused: {ONLY}"),
+    ("G52 X1", f"G52 is refused: {ORIGIN}"),
+    ("G53 G1 X5", "G53 is refused: machine coordinates are not those of the plane"),
+    ("G54", f"G54 is refused: {ORIGIN}"),
+    ("G59.3", f"G59.3 is refused: {ORIGIN}"),
+    ("G7", f"G7 is refused: {DIAMETER}"),
+    ("G8", f"G8 is refused: {DIAMETER}"),
+    ("G73 X1 Z1 R2 Q1", f"G73 is refused: {ONLY}"),
+    ("G80", f"G80 is refused: {ONLY}"),
+    ("G81 X1 Z1 R2", f"G81 is refused: {ONLY}"),
+    ("G89 X1 Z1 R2 P1", f"G89 is refused: {ONLY}"),
+    ("G90.1", "G90.1 is refused: I and J are always incremental inside the section"),
+    ("G92 X1", f"G92 is refused: {ORIGIN}"),
+    ("G92.1", f"G92.1 is refused: {ORIGIN}"),
+    ("G93 F1", "G93 is refused: the feed of a section is G94 or G95 (G98 or G99)"),
+    ("G96 S200", "G96 is refused: the spindle keeps its speed inside the section (G97)"),
+    ("T2", f"T is refused: {TOOL}"),
+    ("M6", f"M6 is refused: {TOOL}"),
+    ("M61 Q1", f"M61 is refused: {TOOL}"),
+    ("G1 G41 X5 D1", "D is refused: the radius is that of the loaded tool"),
+    ("G12.1", "G12.1 is already on"),
+    ("M2", "G13.1 is missing: M2 comes before it"),
+    ("M30", "G13.1 is missing: M30 comes before it"),
+    ("G1 A5", f"A is refused: {AXES}"),
+    ("G1 B5", f"B is refused: {AXES}"),
+    ("G1 V5", f"V is refused: {AXES}"),
+    ("G1 @5 ^3", f"@ is refused: {AXES}"),
+    ("G1 X12 U3", "X and U both move X: only one of them"),
+    ("G1 C12 Y3", "C and Y both move C: only one of them"),
+    ("G1 C12 H3", "C and H both move C: only one of them"),
+    ("G1 Y12 H3", "Y and H both move C: only one of them"),
+    ("G1 X12 Z3", "Z needs a block of its own, or [G12] POLAR_Z = allow"),
+    ("G1 H1 Z3", "Z needs a block of its own, or [G12] POLAR_Z = allow"),
+    ("G2 I-5 Z3", "Z needs a block of its own, or [G12] POLAR_Z = allow"),
+    ("G94 G99 F5", "G94 and G98 are feed per minute, G95 and G99 per revolution: not both"),
+    ("G99 F5 X12", "feed per revolution (G95, G99) needs the spindle speed S"),
+    ("G2 X12 R20 P2", "P is refused: an arc inside the section has no turns"),
+    ("G13.1 M9", "G13.1 stands alone in its block"),
+    ("G13.1 X5", "G13.1 stands alone in its block"),
+    ("G13.1 F50", "G13.1 stands alone in its block"),
+    ("M33 M8", "M33 is remapped: inside a section it needs a block of its own"),
+    ("M33 X5", "M33 is remapped: inside a section it needs a block of its own"),
+    ("M72", "M72: no modes were saved in this section"),
+    ("o<s> sub", "a sub cannot be defined inside the section"),
+    ("o<s> endsub", "G13.1 is missing: endsub comes before it"),
+    ("o<s> return", "G13.1 is missing: return comes before it"),
+    ("M99", "G13.1 is missing: M99 comes before it"),
+    ("%", "G13.1 is missing: the program ends before it"),
+    ("o<nowhere> call", "the program ends before what belongs to o<nowhere>call"),
+    ("o1 if [0]", "the program ends before what belongs to o1if[0]"),
+    # the interpreter's own words
+    ("G1 X5 X6", "Multiple x words on one line"),
+    ("G1 U5 U6", "Multiple x words on one line"),
+    ("G1 G2 X5", "Two g codes used from same modal group"),
+    ("G1 X5 R3", "R word with no g code that uses it"),
+    ("G1 X5 P3", "P word with no G2 G3 G4 G10 G64 G5 G5.2 G76 G82 G86 G88 G89 or M50 M51 M52 M53 M62 M63 M64 "
+                 "M65 M66 M98 or user M code to use it"),
+    ("G1 X[1/0]", "Attempt to divide by zero"),
+    ("G4", "Dwell time missing with g4"),
+    ("G1 X#<a>", "Named parameter #<a> not defined"),
+    ("G12.7", "Unknown g code used"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("block", "reason"), INSIDE)
+def test_refused_inside(lathe, block, reason):
+    line = 8
+    ends_at = {"o<nowhere> call": 11, "o1 if [0]": 11}.get(block, line)
+    text, shown = refused(lathe, section("G1 X15", "(x)", block, "G1 X10"))
+    assert text == f"G12.1 line {ends_at}: {reason}"
+    assert shown == ends_at
+
+
+def test_missing_off_code_at_the_end_of_the_file(lathe):
+    program = section("G1 X15")[:-2]
+    assert refused(lathe, program) == (
+        "G12.1 line 6: G13.1 is missing: the program ends before it",
+        6,
+    )
+
+
+def test_off_code_in_a_sub_that_the_section_calls(lathe):
+    program = ["o<s> sub", "G13.1", "o<s> endsub", *section("G1 X15", "o<s> call")]
+    text, _ = refused(lathe, program)
+    assert text.startswith("G12.1 line 2: G13.1 is missing: the sub that is called here has one")
+
+
+def test_a_section_that_ends_behind_its_sub(lathe):
+    program = ["o<s> sub", "G12.1", "G1 X15", "o<s> endsub", FIRST, "G0 X20 Z5 C0", "F100", "o<s> call",
+               "G13.1", "M2"]  # fmt: skip
+    text, line = refused(lathe, program)
+    assert (text, line) == ("G12.1 line 4: G13.1 is missing: endsub comes before it", 4)
+
+
+def test_an_error_in_a_called_sub(lathe):
+    program = ["o<s> sub", "G1 X9", "X8 K3", "o<s> endsub", *section("G1 X15", "o<s> call")]
+    text, line = refused(lathe, program)
+    assert text == "G12.1 line 3: K is refused: the centre of an arc in the X-C plane is I and J"
+    assert line == 3
+
+
+# ---------------------------------------------------------------- entry
+
+
+ENTRY = [
+    ("G93", "G12.1", "G12.1 needs G94 or G95, not G93"),
+    ("G19", "G12.1", "G12.1 needs G18 or G17, not G19"),
+    ("G42 D1", "G12.1", "G12.1 needs G40: compensation is switched on inside"),
+    ("G10 L2 P1 R5", "G12.1", "G12.1 needs an unrotated work offset (G10 L2 R0)"),
+    ("G92 X0", "G12.1", "G12.1 needs the tool at X above zero, not at 0 (radius)"),
+    ("G92 X-3", "G12.1", "G12.1 needs the tool at X above zero, not at -3 (radius)"),
+    *[
+        ("", f"G12.1 {word}", "G12.1 stands alone in its block")
+        for word in ("X5", "P3", "G90", "M8", "F50", "S100", "G4 P1", "T1", "G40", "C1 Z2")
+    ],
+]
+
+
+@pytest.mark.parametrize(("before", "block", "reason"), ENTRY)
+def test_refused_entry(lathe, before, block, reason):
+    program = [line if line != "G12.1" else block for line in section("G1 X12", before=[before])]
+    traced = lathe.trace_text(program)
+    assert traced.error.text == f"G12.1 line 6: {reason}"
+    assert traced.error.line == 6
+    assert not [move for move in traced.moves if move.line > 5]
+
+
+def test_a_comment_beside_the_codes_is_no_word(lathe):
+    program = ["G12.1 (on)" if line == "G12.1" else line for line in section("G1 X12")]
+    program = ["N9 G13.1 (off)" if line == "G13.1" else line for line in program]
+    assert len(feed_moves(lathe.trace_text(program))) == 1
+
+
+# ---------------------------------------------------------------- contour
+
+
+CONTOUR = [
+    (
+        ["G1 X12", "G3 X-12 R5"],
+        7,
+        "G3 R5 does not close: the ends are 24 apart, R must be at least 12",
+    ),
+    (
+        ["G1 X12", "G3 X4 C4 I-3 J0"],
+        7,
+        "G3 does not close: its centre is 3 from the start, 6.403124 from the end",
+    ),
+    (["G1 X12", "G3 X5"], 7, "G3 needs R, or the centre in I and J"),
+    (["G3 X5 R9 I2"], 6, "G3: either R or I and J, not both"),
+    (["G41 G1 X19"], 6, "the G1 with G41 is 1 long: it must be at least the tool radius 6"),
+    (["G41"], None, "G41 needs a G1 with X or C in its own block"),
+    (["G41 G3 X0 C20 R20"], 6, "G41 with G3: compensation is switched by a G1 only"),
+    (["G1 G41 X12", "C-9"], 8, "G41 of line 6 is still on: G40 is missing"),
+    (["G1 G41 X12", "G42 C-9"], 7, "G42: cancel G41 of line 6 with G40 first"),
+]
+
+
+@pytest.mark.parametrize(("body", "line", "reason"), CONTOUR)
+def test_refused_contours(lathe, body, line, reason):
+    text, shown = refused(lathe, section(*body))
+    assert reason in text
+    assert text.startswith("G12.1 line ")
+    assert line is None or (shown == line and text.startswith(f"G12.1 line {line}: "))
+
+
+def test_an_arc_that_would_close_with_the_other_reading_of_x(lathe):
+    text, _ = refused(lathe, section("G1 X8.306 C4.153", "G2 X-8.306 R6.5"))
+    assert "closes" in text or "close with X read as a diameter" in text
+
+
+def test_no_feed(lathe):
+    text, line = refused(lathe, section("G1 X12", feed="(no F)"))
+    assert (text, line) == ("G12.1 line 6: F0 must be above zero (no feed commanded?)", 6)
+
+
+def test_too_tight_names_both_lines(lathe):
+    body = ["G1 C30", "G41 X12", "C2", "X9", "C-9", "G40 X30"]
+    text, _ = refused(lathe, section(*body, start="G0 X40 Z5 C0"))
+    assert "line" in text.split(":", 1)[1]
+
+
+def test_beyond_the_travel_of_x(lathe):
+    text, line = refused(lathe, section("G1 X30", "X310", "X20"))
+    assert text.startswith("G12.1 line 7: the X axis would go to 310, beyond its limit 300")
+    assert line == 7
+
+
+def test_c_in_degrees_by_mistake(lathe):
+    text, _ = refused(lathe, section("G1 X30", "C360"))
+    assert "C and H are lengths here, not degrees" in text
+
+
+def test_beyond_the_travel_of_z(lathe):
+    text, _ = refused(lathe, section("G1 X15", "Z-501"))
+    assert text == "G12.1 line 7: the Z axis would go to -501, beyond its limit -500"
+
+
+def test_beyond_the_travel_of_c():
+    with Tracer(SIM / "lathe_mm.ini", overrides={"AXIS_C": {"MAX_LIMIT": 400}}) as lathe:
+        assert feed_moves(lathe.trace_text(section("G1 X12", "G3 I-12")))
+        text, line = refused(lathe, section("G1 X12", "G3 I-12", "G3 X0 C12 R12"))
+    assert text.startswith("G12.1 line 8: the C axis would go to 4")
+    assert text.endswith("beyond its limit 400")
+    assert line == 8
+
+
+def test_through_the_centre_where_that_is_refused():
+    with tracer(POLAR_POLE="refuse") as lathe:
+        text, line = refused(lathe, section("G1 X-5"))
+    assert text.startswith("G12.1 line 6: ")
+    assert line == 6
+
+
+def test_compensation_without_a_tool(lathe):
+    program = [line for line in section("G1 G41 X12") if line != "T1 M6"]
+    text, _ = refused(lathe, program)
+    assert text == "G12.1 line 5: G41 needs a tool in the spindle: its radius is compensated"
+
+
+# ---------------------------------------------------------------- afterwards
+
+
+def test_a_refused_section_changes_nothing(lathe):
+    before = lathe.trace_text(section("G1 X12", before=["G91 G61 S200"])[:5]).modes
+    refused_ = lathe.trace_text(
+        section("G90 G95 F3 S5 M8 G64 P.1", "G1 X12", "G3 X5", before=["G91 G61 S200"])
+    )
+    assert refused_.error
+    assert refused_.modes == before
+
+
+def test_the_next_program_runs(lathe):
+    for _ in range(3):
+        refused(lathe, section("G1 X15", "o1 repeat [2]", "U3 Z5", "o1 endrepeat"))
+        assert feed_moves(lathe.trace_text(section("G1 X15", "U-1")))
