@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What holds for all tests: which of them this system can run, and that they stay in their place."""
+
+from __future__ import annotations
+
+import functools
+import shutil
+
+import pytest
+from hypothesis import settings
+
+NEED_LINUXCNC = ("interp", "sim")
+
+settings.register_profile("g12", deadline=None, derandomize=True, database=None)
+settings.load_profile("g12")
+
+
+@functools.lru_cache(maxsize=None)
+def missing(folder):
+    """Return what this system lacks for the tests of a folder, None if nothing."""
+    if folder not in NEED_LINUXCNC:
+        return None
+    if not shutil.which("linuxcnc"):
+        return "LinuxCNC is not installed"
+    if folder == "sim":
+        from g12.cli.isolated import obstacle
+
+        why = obstacle()
+        return why and f"LinuxCNC cannot be isolated here: {why}"
+    return None
+
+
+def pytest_collection_modifyitems(items):
+    for item in items:
+        why = missing(item.path.parent.name)
+        if why:
+            item.add_marker(pytest.mark.skip(reason=why))
+
+
+@pytest.fixture(autouse=True, scope="session")
+def scratch_home(tmp_path_factory):
+    """Nothing that a test starts finds or leaves anything in the user's home."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("HOME", str(tmp_path_factory.mktemp("home")))
+        yield

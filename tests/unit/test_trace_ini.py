@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""INI files as LinuxCNC reads them."""
+
+import pytest
+
+from g12.cli.ini import IniError, read_ini
+
+
+@pytest.fixture
+def ini(tmp_path):
+    def written(text, **others):
+        for name, content in others.items():
+            (tmp_path / f"{name}.inc").write_text(content)
+        path = tmp_path / "machine.ini"
+        path.write_text(text)
+        return read_ini(path)
+
+    return written
+
+
+def test_the_first_value_counts_and_repeated_keys_are_all_there(ini):
+    machine = ini("[RS274NGC]\nREMAP = G12 ngc=a\nREMAP=G13 ngc=b\n")
+    assert machine.get("RS274NGC", "REMAP") == "G12 ngc=a"
+    assert machine.all("RS274NGC", "REMAP") == ["G12 ngc=a", "G13 ngc=b"]
+
+
+def test_only_the_first_section_of_a_name_is_read(ini):
+    machine = ini("[A]\nX = 1\n[B]\nX = 2\n[A]\nX = 3\nY = 4\n")
+    assert machine.all("A", "X") == ["1"]
+    assert machine.get("A", "Y") is None
+
+
+def test_comments_and_keys_that_only_begin_alike_are_not_the_key(ini):
+    machine = ini("[A]\n# X = 1\n; X = 2\nXX = 3\n  X = 4  \n")
+    assert machine.all("A", "X") == ["4"]
+
+
+def test_a_backslash_continues_a_line(ini):
+    assert ini("[A]\nX = 1 \\\n2\n").get("A", "X") == "1 2"
+
+
+def test_an_include_goes_into_the_section_it_stands_in(ini):
+    machine = ini("[A]\nX = 1\n#INCLUDE more.inc\n[B]\n", more="Y = 2\n")
+    assert machine.get("A", "Y") == "2"
+    assert "#INCLUDE" not in machine.text
+
+
+def test_includes_of_an_include_stay_comments(ini):
+    machine = ini("[A]\n#INCLUDE one.inc\n", one="X = 1\n#INCLUDE two.inc\n", two="Y = 2\n")
+    assert machine.get("A", "X") == "1"
+    assert machine.get("A", "Y") is None
+
+
+def test_replacing_adds_replaces_and_takes_out(ini):
+    machine = ini("[A]\nX = 1\nX = 2\nY = 3\nZ = 4\n[B]\n").replaced(
+        {"A": {"X": [5, 6], "Y": None, "Z": 7}, "C": {"NEW": "yes"}}
+    )
+    assert machine.all("A", "X") == ["5", "6"]
+    assert machine.get("A", "Y") is None
+    assert machine.get("A", "Z") == "7"
+    assert machine.get("C", "NEW") == "yes"
+
+
+def test_files_are_relative_to_the_ini(ini, tmp_path):
+    machine = ini("[EMCIO]\nTOOL_TABLE = tools/t.tbl\n")
+    assert machine.file("EMCIO", "TOOL_TABLE") == tmp_path / "tools" / "t.tbl"
+    assert machine.file("EMCIO", "NOTHING") is None
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(IniError, match=r"nothing\.ini: No such file"):
+        read_ini(tmp_path / "nothing.ini")

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Geometry of a traced move, against complex numbers and finite differences."""
+
+import cmath
+import math
+
+import pytest
+
+from g12.cli.trace import Move
+
+REST = (0.0,) * 6
+PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis
+
+
+def arc(start, end, centre, turns, plane=17, rotation=0.0):
+    return Move(
+        *("arc", 1, 1, (*start, *REST), (*end, *REST), 100.0, "G94", plane, 1, (0.0,) * 9),
+        centre=centre,
+        turns=turns,
+        rotation=rotation,
+    )
+
+
+def straight(start, end):
+    return Move("feed", 1, 1, start, end, 100.0, "G94", 17, 1, (0.0,) * 9)
+
+
+def near(values):
+    return pytest.approx(values, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("end", "turns", "degrees"),
+    [
+        ((0.0, 1.0, 0.0), 1, 90),
+        ((0.0, 1.0, 0.0), -1, -270),
+        ((0.0, -1.0, 0.0), 1, 270),
+        ((0.0, -1.0, 0.0), -1, -90),
+        ((-1.0, 0.0, 0.0), 1, 180),
+        ((-1.0, 0.0, 0.0), -1, -180),
+        ((1.0, 0.0, 0.0), 1, 360),
+        ((1.0, 0.0, 0.0), -1, -360),
+        ((1.0, 1e-9, 0.0), 1, 360),
+        ((1.0, 1e-9, 0.0), -1, -360),
+        ((0.0, 1.0, 3.0), 3, 810),
+        ((1.0, 0.0, 3.0), -2, -720),
+    ],
+)
+def test_sweep_of_an_arc_about_the_origin(end, turns, degrees):
+    move = arc((1.0, 0.0, 0.0), end, (0.0, 0.0, 0.0), turns)
+    assert math.degrees(move.sweep) == pytest.approx(degrees, abs=1e-6)
+
+
+@pytest.mark.parametrize("plane", PLANES)
+@pytest.mark.parametrize("turns", [1, -1])
+def test_points_of_a_helix_lie_on_the_circle_of_its_plane(plane, turns):
+    one, two, three = PLANES[plane]
+    start, end, centre = [0.0] * 3, [0.0] * 3, [0.0] * 3
+    centre[one], centre[two], centre[three] = 5.0, -3.0, 1.0
+    start[one], start[two], start[three] = 7.0, -3.0, 1.0
+    end[one], end[two], end[three] = 5.0, -1.0, 2.0
+    move = arc(start, end, tuple(centre), turns, plane)
+    angle = math.pi / 2 if turns > 0 else -1.5 * math.pi
+    for fraction in (0.0, 0.25, 0.5, 0.9, 1.0):
+        expected = complex(5.0, -3.0) + 2.0 * cmath.exp(1j * angle * fraction)
+        point = move.point(fraction)
+        assert complex(point[one], point[two]) == near(expected)
+        assert point[three] == near(1.0 + fraction)
+    assert move.length == near(math.hypot(2.0 * angle, 1.0))
+
+
+@pytest.mark.parametrize("plane", PLANES)
+@pytest.mark.parametrize("rotation", [0.0, 30.0, 90.0])
+def test_tangent_is_the_direction_of_neighbouring_points(plane, rotation):
+    one, two, _ = PLANES[plane]
+    start, end = [0.0] * 3, [0.0] * 3
+    start[one], end[two] = 1.0, 1.0
+    move = arc(turned(start, rotation), turned(end, rotation), (0.0, 0.0, 0.0), 1, plane, rotation)
+    for fraction in (0.1, 0.5, 0.8):
+        before, after = move.point(fraction - 1e-6)[:3], move.point(fraction + 1e-6)[:3]
+        distance = math.dist(before, after)
+        expected = [(b - a) / distance for a, b in zip(before, after)]
+        assert move.tangent(fraction) == pytest.approx(expected, abs=1e-6)
+
+
+def turned(point, degrees):
+    x, y, z = point
+    rotated = complex(x, y) * cmath.exp(1j * math.radians(degrees))
+    return rotated.real, rotated.imag, z
+
+
+def test_an_arc_whose_radius_grows_ends_where_it_should():
+    move = arc((1.0, 0.0, 0.0), (0.0, 1.001, 0.0), (0.0, 0.0, 0.0), 1)
+    assert move.radius == near(1.0)
+    assert move.point(1.0)[:3] == near((0.0, 1.001, 0.0))
+
+
+def test_a_straight_move_takes_all_axes_along():
+    move = straight((0.0,) * 9, (3.0, 4.0, 12.0, 0.0, 0.0, 90.0, 0.0, 0.0, 0.0))
+    assert move.length == near(13.0)
+    assert move.point(0.5) == near((1.5, 2.0, 6.0, 0.0, 0.0, 45.0, 0.0, 0.0, 0.0))
+    assert move.tangent(0.5) == near((3 / 13, 4 / 13, 12 / 13))
+
+
+def test_a_move_of_a_rotary_axis_alone_has_no_direction():
+    move = straight((0.0,) * 9, (0.0, 0.0, 0.0, 0.0, 0.0, 90.0, 0.0, 0.0, 0.0))
+    assert move.tangent(0.5) == (0.0, 0.0, 0.0)
+    assert move.length == 0.0
