@@ -9,6 +9,9 @@ Positions are those of the controlled point in machine coordinates: work offsets
 rotation of the work coordinate system are resolved.  The tool length offset is not added, so
 with no work offset they are the program's positions.  (A real machine's axes stand at the
 position plus ``Move.tool_offset``.)
+
+The preview differs from a real machine in one thing that programs can see: when the units
+change, it forgets F and G64's tolerances (it takes 1 and 0.1) where the machine converts them.
 """
 
 from __future__ import annotations

@@ -1,0 +1,295 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Exact traces: positions, feeds, errors with text and line, and a clean start for each program."""
+
+import math
+import textwrap
+
+import pytest
+
+from g12.cli.trace import TraceFailure, Tracer, trace_text
+
+INI = """\
+[EMC]
+VERSION = 1.1
+[RS274NGC]
+PARAMETER_FILE = machine.var
+SUBROUTINE_PATH = subs
+REMAP = G88.5 modalgroup=1 prolog=check ngc=body argspec=I
+REMAP = G88.6 modalgroup=1 python=straight argspec=I
+[PYTHON]
+TOPLEVEL = code/toplevel.py
+PATH_PREPEND = code
+[G12]
+WORD = plain
+[EMCIO]
+EMCIO = io
+TOOL_TABLE = tool.tbl
+[TRAJ]
+COORDINATES = X Y Z C
+LINEAR_UNITS = mm
+"""
+REMAP = """\
+import os, re
+from emccanon import CANON_ERROR, MESSAGE
+from interpreter import INTERP_ERROR, INTERP_OK
+
+def refused(self, words):
+    if words["i"] > 5:
+        self.set_errormsg(f"I{words['i']:g} is too much")
+    return words["i"] > 5
+
+def check(self, **words):
+    MESSAGE("checking")
+    return INTERP_ERROR if refused(self, words) else INTERP_OK
+
+def straight(self, **words):
+    if refused(self, words):
+        return INTERP_ERROR
+    with open(os.environ["INI_FILE_NAME"]) as ini:
+        MESSAGE(re.search("WORD = (.*)", ini.read()).group(1))
+    CANON_ERROR("not that bad")
+    self.execute(f"G1 X{words['i']} F10")
+    return INTERP_OK
+"""
+FILES = {
+    "machine.ini": INI,
+    "tool.tbl": "T1 P1 D6 Z10\nT2 P2 D8 Z20\n",
+    "code/toplevel.py": "import remap\n",
+    "code/remap.py": REMAP,
+    "subs/body.ngc": "o<body> sub\n(first a comment)\nG1 X#<i> F100\nG1 Y1\no<body> endsub\n",
+    "subs/sub.ngc": "o<sub> sub\nG1 X9 F100\nG88.5 I#1\no<sub> endsub\n",
+}
+
+
+@pytest.fixture(scope="module")
+def ini(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("machine")
+    for name, text in FILES.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
+    return folder / "machine.ini"
+
+
+@pytest.fixture(scope="module")
+def mill(ini):
+    with Tracer(ini) as tracer:
+        yield tracer
+
+
+def near(values):
+    return pytest.approx(values, abs=1e-9)
+
+
+def ends(traced):
+    assert traced.error is None
+    return [move.end[:3] for move in traced.moves]
+
+
+# Positions and feeds.
+
+
+def test_positions_are_mm_whatever_the_program_uses(mill):
+    metric = mill.trace_text("G21\nG1 X25.4 Y-12.7 F254\nG2 X50.8 I12.7")
+    inch = mill.trace_text("G20\nG1 X1 Y-.5 F10\nG2 X2 I.5")
+    for one, other in zip(metric.moves, inch.moves):
+        assert one.end == near(other.end)
+        assert one.feed == near(other.feed) == near(254.0)
+    assert metric.moves[1].centre == near((38.1, -12.7, 0.0))
+    assert metric.moves[1].turns == -1
+
+
+def test_an_inch_machine_gives_the_same(ini, mill):
+    blocks = "G21 G1 X10 F100\nG20 X1\nG3 X2 R.5"
+    inch = trace_text(blocks, ini, overrides={"TRAJ": {"LINEAR_UNITS": "inch"}})
+    for one, other in zip(mill.trace_text(blocks).moves, inch.moves):
+        assert one.end == near(other.end)
+
+
+def test_work_offset_g92_and_rotation_are_resolved(mill):
+    offsets = {5221: 100.0, 5222: 50.0, 5230: 90.0}
+    assert ends(mill.trace_text("G1 X10 Y5 F100", parameters=offsets)) == [near((95.0, 60.0, 0.0))]
+    shifted = mill.trace_text("G0 X1\nG92 X0 Y0\nG1 X10 F100", parameters=offsets)
+    assert shifted.moves[-1].end[:3] == near((100.0, 61.0, 0.0))
+
+
+def test_an_arc_is_turned_with_the_work_coordinates(mill):
+    (_, arc) = mill.trace_text("G18 G0 X1\nG3 X0 Z1 I-1 F10", parameters={5230: 90.0}).moves
+    assert arc.start[:3] == near((0.0, 1.0, 0.0))
+    assert arc.end[:3] == near((0.0, 0.0, 1.0))
+    assert math.degrees(arc.sweep) == near(270.0)
+
+
+def test_tool_length_is_told_beside_the_position(mill):
+    (move,) = mill.trace_text("T2 M6\nG43\nG1 Z5 F100").moves
+    assert move.end[2] == near(5.0)
+    assert move.tool_offset[2] == near(20.0)
+    assert move.tool == 2
+
+
+def test_tools_can_be_given_by_diameter(ini):
+    blocks = "T7 M6\nG41.1 D#5410\nG1 X10 Y0 F100\nX20\nM2"
+    traced = trace_text(blocks, ini, tools={7: 4.0})
+    assert traced.error is None
+    assert traced.moves[-1].end[1] == near(2.0)
+    assert traced.moves[-1].tool == 7
+
+
+@pytest.mark.parametrize(
+    ("block", "feed", "mode"),
+    [
+        ("G21\nG94 G1 X60 F300", 300.0, "G94"),
+        ("G20\nG94 G1 X1 F10", 254.0, "G94"),
+        ("G21\nG93 G1 X60 F2", 120.0, "G93"),
+        ("G21\nG95 G1 X60 F.2", 0.2, "G95"),
+        ("G21\nG94 G1 C90 F45", 45.0, "G94"),
+        ("G20\nG94 G1 C90 F45", 45.0, "G94"),
+    ],
+)
+def test_feed_is_in_mm_or_degrees_per_minute(mill, block, feed, mode):
+    (move,) = mill.trace_text(f"S1000 M3\n{block}").moves
+    assert move.feed == near(feed)
+    assert move.feed_mode == mode
+
+
+def test_a_rapid_has_no_feed(mill):
+    (move,) = mill.trace_text("G0 X1").moves
+    assert (move.kind, move.feed) == ("rapid", 0.0)
+
+
+# Lines.
+
+
+def test_block_is_the_line_of_the_program_however_deep(mill):
+    blocks = "G1 X0 F100\n\nG88.5 I2\nG1 X7\nG88.6 I3\nG1 X8\no<sub> call [2]\nG1 X1\n"
+    moves = mill.trace_text(blocks).moves
+    assert [move.block for move in moves] == [1, 3, 3, 4, 5, 6, 7, 7, 7, 8]
+    assert [move.line for move in moves] == [1, 3, 4, 4, 0, 6, 2, 3, 4, 8]
+
+
+@pytest.mark.parametrize(
+    ("block", "text"),
+    [
+        ("G88.5 I6", "I6 is too much"),
+        ("G88.6 I6", "I6 is too much"),
+        ("o<sub> call [7]", "I7 is too much"),
+        ("G88.5", "user-defined G88.5: missing: I"),
+        ("G1 Q", "No characters found in reading real value"),
+        ("T9 M6", "Requested tool 9 not found in the tool table"),
+    ],
+)
+def test_an_error_has_the_interpreters_text_and_the_line(mill, block, text):
+    before = "G1 X0 F100\nG88.5 I1\no<sub> call [2]\n\nG88.6 I1\n"
+    error = mill.trace_text(f"{before}{block}\nG1 X5\nM2").error
+    assert error.text == text
+    assert error.line == 6
+
+
+def test_an_error_in_a_subroutine_is_at_the_line_that_called_it(mill):
+    bad = "o<bad> sub\nG0 X1\nG2 X5 Y5 I.1 F10\no<bad> endsub\n"
+    error = mill.trace_text(f"{bad}G0 X0\no<bad> call\nM2").error
+    assert error.text.startswith("Radius to end of arc differs")
+    assert error.line == 6
+
+
+def test_messages_come_with_their_line(mill):
+    traced = mill.trace_text("G88.5 I1\n(MSG, hello)\n\nG88.6 I1")
+    expected = [(1, "checking"), (2, " hello"), (4, "plain"), (4, "not that bad")]
+    assert traced.messages == expected
+
+
+def test_what_is_printed_is_kept_apart(mill):
+    assert mill.trace_text("(print,one #<_metric>)").printed == "one 1.000000\n"
+    assert mill.trace_text("G1 X1 F1").printed == ""
+
+
+# State.
+
+
+def test_modes_and_variables_behind_the_program(mill):
+    traced = mill.trace_text("G20\nG91 G18 G61 G95 F.1 S500\nG0 X1")
+    for code in ("G0", "G20", "G91", "G18", "G61", "G95"):
+        assert code in traced.modes.gcodes
+    assert (traced.modes.feed, traced.modes.speed) == (0.1, 500.0)
+    assert traced.state["distance_mode"] == 1
+    assert traced.position[0] == near(25.4)
+
+
+def test_m2_resets_the_modes(mill):
+    assert "G90" in mill.trace_text("G91 G0 X1\nM2").modes.gcodes
+
+
+def test_parameters_are_reported(mill):
+    traced = mill.trace_text("#<_mine> = 3\n#100 = 4", ask=[100, 5221], parameters={5221: 7.0})
+    assert traced.globals == {"_mine": 3.0}
+    assert traced.numbered == {100: 4.0, 5221: 7.0}
+
+
+def test_setup_comes_first_and_is_not_reported(mill):
+    traced = mill.trace_text("G1 Y1 F100", setup=["G0 X5", "(MSG, setting up)", "G91"])
+    assert [move.end[:3] for move in traced.moves] == [near((5.0, 1.0, 0.0))]
+    assert traced.messages == []
+    assert "G91" in traced.modes.gcodes
+
+
+def test_an_error_in_setup_is_at_line_0(mill):
+    assert mill.trace_text("G0 X1", setup=["G1 Q"]).error.line == 0
+
+
+def test_every_program_starts_clean(mill):
+    fresh = mill.trace_text("G1 X1 F10")
+    dirty = "T1 M6\nG20\nG43 G91 G61 G18 F99 S9\nG92 X5\nG10 L2 P1 X3 R30\n#<_left> = 1\n#5 = 5"
+    assert mill.trace_text(dirty).error is None
+    again = mill.trace_text("G1 X1 F10", ask=[5])
+    assert again.moves == fresh.moves
+    assert again.modes == fresh.modes
+    assert again.state == fresh.state
+    assert again.globals == {}
+    assert again.numbered == {5: 0.0}
+
+
+def test_a_program_without_an_end_is_an_error_only_as_a_file(mill, tmp_path):
+    program = tmp_path / "open.ngc"
+    program.write_text("G0 X1\n")
+    assert mill.trace_text("G0 X1\n").error is None
+    assert "no percent sign" in mill.trace(program).error.text
+
+
+# The machine.
+
+
+def test_overrides_reach_the_handlers(ini):
+    traced = trace_text("G88.6 I1", ini, overrides={"G12": {"WORD": "fancy"}})
+    assert traced.messages[0].text == "fancy"
+
+
+def test_nothing_is_written_beside_the_ini(ini):
+    before = contents(ini.parent)
+    trace_text("T1 M6\nG10 L2 P1 X5\nG10 L1 P1 Z3\nM2", ini)
+    assert contents(ini.parent) == before
+
+
+def contents(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_a_program_without_end_times_out_and_the_next_one_runs(mill):
+    with pytest.raises(TraceFailure, match=r"no end within 0\.5 s"):
+        mill.trace_text("o1 while [1]\no1 endwhile", timeout=0.5)
+    assert ends(mill.trace_text("G1 X1 F1")) == [near((1.0, 0.0, 0.0))]
+
+
+def test_a_machine_whose_python_does_not_load_says_so(ini, tmp_path):
+    broken = tmp_path / "toplevel.py"
+    broken.write_text("import nothing_of_that_name\n")
+    with pytest.raises(TraceFailure, match="nothing_of_that_name"):
+        Tracer(ini, overrides={"PYTHON": {"TOPLEVEL": str(broken)}})
+
+
+def test_a_crash_of_the_interpreter_is_no_word_about_the_program(ini, tmp_path):
+    code = "import os\nfrom interpreter import *\ndef straight(self, **words): os.abort()\n"
+    code += "check = straight\n"
+    (tmp_path / "remap.py").write_text(textwrap.dedent(code))
+    with Tracer(ini, overrides={"PYTHON": {"PATH_PREPEND": str(tmp_path)}}) as tracer:
+        with pytest.raises(TraceFailure, match="died"):
+            tracer.trace_text("G88.6 I1")
+        assert ends(tracer.trace_text("G1 X1 F1")) == [near((1.0, 0.0, 0.0))]
