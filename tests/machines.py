@@ -6,3 +6,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 SIM = ROOT / "configs" / "sim"
 PROGRAMS = ROOT / "tests" / "programs"
+
+BRISK = {  # overrides for a simulated mill in mm: real runs in a fraction of the time
+    section: {"MAX_ACCELERATION": 20000, "MAX_VELOCITY": 250}
+    for section in ("JOINT_0", "JOINT_1", "JOINT_2", "AXIS_X", "AXIS_Y", "AXIS_Z")
+}

@@ -42,7 +42,7 @@ def cut(tracer, *blocks, **options):
 
 def event_of(traced):
     """Return the moves behind the approach of BEFORE, in inches."""
-    return [move for move in proof.moving(traced.moves)[1:]]
+    return proof.moving(traced.moves)[1:]
 
 
 def described(moves):
