@@ -9,6 +9,7 @@ from typing import Callable, NamedTuple
 
 import numpy as np
 import pytest
+from hypothesis import strategies as st
 
 import proof
 
@@ -103,6 +104,33 @@ def check_refused(tracer, before, block, message):
     assert after.state == found.state
     assert after.globals == found.globals
     assert after.messages == found.messages
+
+
+OF_THE_PARSER = ("Non integer value for integer", "Negative h word used", "Negative l word used")
+VALUES = st.sampled_from(
+    [-9999, -2, -1, -0.5, -0.001, 0, 0.00005, 0.02, 0.1, 0.25, 0.3, 0.5, 1, 2, 3, 7, 10, 50, 1e6]
+)
+
+
+def blocks(code, letters):
+    """Return a strategy of blocks with any of the letters and any odd values."""
+    entries = st.dictionaries(st.sampled_from(letters), VALUES, max_size=len(letters))
+    return entries.map(
+        lambda values: " ".join([code, *(f"{letter}{values[letter]:.5f}" for letter in values)])
+    )
+
+
+def check_cut_or_refused(tracer, before, block, name):
+    """Check that any block either cuts or is refused in words, without a move or a change."""
+    found = tracer.trace_text(before)
+    after = tracer.trace_text([*before, block])
+    assert after.printed == ""
+    if after.error is None:
+        assert len(after.moves) > len(found.moves)
+        assert after.modes == found.modes
+    else:
+        assert after.error.text.startswith((f"{name}: ", *OF_THE_PARSER))
+        assert (after.moves, after.modes) == (found.moves, found.modes)
 
 
 def remaps(include):

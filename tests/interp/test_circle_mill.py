@@ -648,3 +648,17 @@ def test_a_second_motion_code_in_the_block_is_refused(inch):
     traced = inch.trace_text([*BEFORE, f"G13.2 G4 P1 {PLACE} H2"])
     assert traced.error is not None
     assert len(traced.moves) == 1
+
+
+@settings(max_examples=150, deadline=None)
+@given(block=matrix.blocks("G13.2", "IERDHKJQLP").map(lambda block: f"{block} X1 Y2 Z-3"))
+def test_any_block_cuts_or_is_refused_in_words(inch, block):
+    matrix.check_cut_or_refused(inch, BEFORE, block, "G13.2")
+
+
+@settings(max_examples=80, deadline=None)
+@given(values=st.dictionaries(st.sampled_from("gworkjlpvdc"), matrix.VALUES))
+def test_any_call_cuts_or_is_refused_in_words(inch, values):
+    texts = {letter: f"{value:.5f}" for letter, value in values.items()}
+    block = call(**{"x": 1, "y": 2, "z": -3, "r": 1, "c": 2, "w": 0.1, **texts})
+    matrix.check_cut_or_refused(inch, BEFORE, block, "circle_mill")

@@ -165,3 +165,9 @@ def test_a_mode_that_cannot_work_is_refused(metric, mode, message):
     traced = metric.trace_text([FIRST, "G0 X3", mode, block])
     assert traced.error.text == message
     assert len(traced.moves) == 1
+
+
+@settings(max_examples=60, deadline=None)
+@given(block=matrix.blocks("G13", "IDQ"))
+def test_any_block_cuts_or_is_refused_in_words(metric, block):
+    matrix.check_cut_or_refused(metric, [FIRST, "G91 G0 X3 G19"], block, "G13")

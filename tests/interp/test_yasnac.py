@@ -323,3 +323,9 @@ def test_a_mode_that_cannot_work_is_refused(metric, mode, message):
     traced = metric.trace_text([FIRST, "G0 X3", mode, block])
     assert traced.error.text == message
     assert len(traced.moves) == 1
+
+
+@settings(max_examples=100, deadline=None)
+@given(block=matrix.blocks("G13", "IRJKQLDX"))
+def test_any_block_cuts_or_is_refused_in_words(metric, block):
+    matrix.check_cut_or_refused(metric, [FIRST, "G91 G0 X3"], block, "G13")

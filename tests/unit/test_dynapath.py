@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from g12.cli.ini import read_ini
 from g12.dynapath import program_from_events
 from g12.errors import Refusal
-from machines import PROGRAMS, ROOT
+from machines import PROGRAMS, ROOT, SIM
 
 EXAMPLE = "N1800(4)G7X1.5Y2.Z-.5W.1O.5R1.5D0C2K.2J.3L.02P5F20V15$"
 COMMAND = [sys.executable, str(ROOT / "python" / "g12"), "dynapath"]
@@ -116,6 +117,17 @@ def test_the_command_prints_the_program():
     done = subprocess.run([*COMMAND, str(file), "--units", "inch"], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout == file.with_suffix(".ngc").read_text()
+
+
+@pytest.mark.parametrize("ini", sorted(SIM.glob("mill_*.ini")), ids=lambda ini: ini.stem)
+def test_the_filter_of_every_simulated_mill_reads_events(ini):
+    machine = read_ini(ini)
+    assert machine.get("FILTER", "PROGRAM_EXTENSION").split()[0] == ".dyn"
+    events = PROGRAMS / "dynapath" / "flange.dyn"
+    command = f"{machine.get('FILTER', 'dyn')} '{events}'"
+    done = subprocess.run(["sh", "-c", command], cwd=SIM, capture_output=True, text=True)
+    expected = program_from_events(events.read_text(), machine.get("TRAJ", "LINEAR_UNITS"))
+    assert (done.returncode, done.stdout) == (0, expected)
 
 
 def test_the_command_prints_nothing_of_a_file_with_an_error(tmp_path):
