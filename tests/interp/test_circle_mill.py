@@ -313,6 +313,25 @@ def test_the_converted_events_run(inch):
     assert [round(value / INCH, 6) for value in traced.position[:3]] == [-3, -3, 0.1]
 
 
+def test_the_sample_program():
+    with Tracer(SIM / "mill_mm.ini") as tracer:
+        traced = tracer.trace(PROGRAMS / "circle_mill" / "sample.ngc")
+    assert (traced.error, traced.messages) == (None, [])
+    circles = [
+        [round(value, 6) for value in circle[:4]] for circle in proof.full_circles(traced.moves)
+    ]
+    rings = [11.233333, 22.466667, 33.7]
+    assert circles == [
+        *([0, 0, z, radius] for z in (-1, -4, -5.7, -6) for radius in rings),
+        [0, 0, -6, 34],
+        *([100, 0, z, radius] for z in (-1, -4, -6) for radius in rings),
+        [100, 0, -6, 34],
+        [0, 100, -3, 36.3],
+        [0, 100, -3, 36],
+        [100, 100, -1, 30],
+    ]
+
+
 # ---------------------------------------------------------------- any valid event
 
 ROUGH_TURNS = {0: -1, 1: 1, 2: -1, 3: 1}
