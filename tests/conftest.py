@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What holds for all tests: which of them this system can run, and that they stay in their place."""
+"""What holds for all tests: which of them this system can run, and a scratch home."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ settings.register_profile("g12", deadline=None, derandomize=True, database=None)
 settings.load_profile("g12")
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def missing(folder):
     """Return what this system lacks for the tests of a folder, None if nothing."""
     if folder not in NEED_LINUXCNC:

@@ -44,6 +44,8 @@ MARGIN = 10.0  # s that an answer may take beyond the timeout asked for
 NS_PER_S = 1e9
 LOG_LINES = 60
 
+SCREEN = {"DISPLAY": "g12-driver", "MAX_FEED_OVERRIDE": 100}
+
 TOOL_CHANGE_DIALOGUE = "hal_manualtoolchange"
 # Stands in for the screen's tool change dialogue: whoever asks for a tool has it.
 TOOL_CHANGE = """\
@@ -165,7 +167,6 @@ class Machine:
         timeout: float = 60.0,
     ) -> None:
         self._isolated = Isolated()
-        self._folder = self._isolated.folder
         self._connection: Connection | None = None
         try:
             self.ini = self._private_ini(read_ini(ini).replaced(overrides or {}), tools, parameters)
@@ -185,6 +186,11 @@ class Machine:
     def __exit__(self, *_exception: object) -> None:
         self.close()
 
+    @property
+    def folder(self) -> Path:
+        """The machine's scratch directory: HOME, programs, tool table, log."""
+        return self._isolated.folder
+
     # Operating.
 
     def mdi(self, text: str, *, wait: bool = True, timeout: float = 60.0) -> None:
@@ -195,13 +201,13 @@ class Machine:
 
     def open(self, program: Program) -> None:
         """Load a program file; LinuxCNC works on a copy of it."""
-        copy = self._folder / "programs" / Path(program).name
+        copy = self.folder / "programs" / Path(program).name
         shutil.copyfile(program, copy)
         self._ask("open", str(copy))
 
     def open_text(self, text: str | Iterable[str]) -> None:
         """Load a program given as text or as lines."""
-        path = self._folder / "programs" / "program.ngc"
+        path = self.folder / "programs" / "program.ngc"
         self._ask("open", str(write_program(text, path)))
 
     def start(self, line: int = 0) -> None:
@@ -225,7 +231,7 @@ class Machine:
         self._ask("abort")
 
     def feed_override(self, scale: float) -> None:
-        """Set the feed override; 1 is 100 %."""
+        """Set the feed override; 1 is 100 %, and the INI's limit does not hold here."""
         self._ask("feed_override", scale)
 
     def optional_stop(self, on: bool) -> None:
@@ -352,20 +358,20 @@ class Machine:
         """Return the INI with this machine's own screen and files, which it writes."""
         return ini.replaced(
             {
-                "DISPLAY": {"DISPLAY": "g12-driver", "INTRO_GRAPHIC": None, "OPEN_FILE": None},
+                "DISPLAY": {**SCREEN, "INTRO_GRAPHIC": None, "OPEN_FILE": None},
                 "APPLICATIONS": {"APP": None},
                 "EMCIO": {
-                    "TOOL_TABLE": write_tools(tools, ini, self._folder / "tool.tbl"),
+                    "TOOL_TABLE": write_tools(tools, ini, self.folder / "tool.tbl"),
                     "DB_PROGRAM": None,
                 },
                 "RS274NGC": {
-                    "PARAMETER_FILE": write_parameters(parameters, self._folder / "machine.var")
+                    "PARAMETER_FILE": write_parameters(parameters, self.folder / "machine.var")
                 },
             }
         )
 
     def _start(self, timeout: float) -> None:
-        address = str(self._folder / "run" / "socket")
+        address = str(self.folder / "run" / "socket")
         driver = DRIVER.format(package=str(PACKAGE), address=address, axes=self.axes)
         self._isolated.install("g12-driver", driver)
         dialogue = self._isolated.install(TOOL_CHANGE_DIALOGUE, TOOL_CHANGE)

@@ -12,6 +12,7 @@ from typing import Callable
 import linuxcnc
 
 TICK = 0.01  # s, between looks at the status
+QUIET_LOOKS = 20  # without a joint homing: there was nothing to home, or it is done
 GRACE = 5.0  # s, for the machine to react to a command
 ERRORS = (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR)
 TASK_MODES = {
@@ -93,20 +94,27 @@ class Panel:
         self.wait(lambda stat: stat.enabled, GRACE, "machine power")
 
     def home(self, timeout: float = 60.0) -> None:
-        """Home all joints, in the INI's sequence where there is one."""
+        """Home all joints: in the INI's sequence, and then those that have none."""
         self._mode(linuxcnc.MODE_MANUAL)
         self._do(self._command.teleop_enable, 0)
-        self._do(self._command.home, -1)
-        try:
-            self.wait(self._homed, GRACE, "homing")
-        except PanelTimeout:
-            self._home_one_by_one(timeout)
-
-    def _home_one_by_one(self, timeout: float) -> None:
+        self._home(-1, timeout)
         for joint in range(self.look().joints):
             if not self._stat.homed[joint]:
-                self._do(self._command.home, joint)
-                self.wait(lambda stat, j=joint: stat.homed[j], timeout, f"homing of joint {joint}")
+                self._home(joint, timeout)
+        self.wait(self._homed, GRACE, "homing of every joint")
+
+    def _home(self, joint: int, timeout: float) -> None:
+        """Home a joint, or all with -1, as far as LinuxCNC does."""
+        self._do(self._command.home, joint)
+        quiet = 0
+
+        def over(stat) -> bool:
+            nonlocal quiet
+            homing = any(one["homing"] for one in stat.joint[: stat.joints])
+            quiet = 0 if homing else quiet + 1
+            return self._homed(stat) or quiet > QUIET_LOOKS
+
+        self.wait(over, timeout, "end of homing")
 
     def _homed(self, stat) -> bool:
         return all(stat.homed[: stat.joints])

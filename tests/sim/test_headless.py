@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The headless runner itself: control, samples, isolation, clean-up, other people's INIs."""
+
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from g12.cli.headless import Machine, StartupError, Timeout, run
+from g12.cli.isolated import PYTHON
+from g12.cli.trace import trace_text
+from machines import ROOT, SIM
+
+EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
+NOBODY = 65534
+LINES = [f"G1 X{10 * (number % 2)}" for number in range(1, 20)]
+BACK_AND_FORTH = ["G21 G90 G64 F4000", *LINES, "M2"]  # line n+1 moves to LINES[n-1]
+
+
+@pytest.fixture(scope="module")
+def running():
+    with Machine(SIM / "mill_mm.ini") as machine:
+        yield machine
+
+
+@pytest.fixture
+def machine(running):
+    running.reset()
+    return running
+
+
+# Whole programs.
+
+
+def test_real_motion_follows_the_trace(machine):
+    program = ["G21 G90 G61 F1000", "G1 X10 Y5", "G3 X20 Y15 I0 J10", "G2 I5", "G0 Z3", "M2"]
+    result = machine.run_text(program)
+    assert result.error is None
+    assert result.samples.lost == 0
+    moves = trace_text(program, SIM / "mill_mm.ini").moves
+    path = np.array([move.point(f)[:3] for move in moves for f in np.linspace(0, 1, 400)])
+    real = np.column_stack([result.samples.axes[axis] for axis in "XYZ"])
+    for point in real[::20]:
+        assert np.min(np.hypot(*(path - point).T[:2])) < 0.06
+    assert result.position[:3] == pytest.approx(moves[-1].end[:3], abs=1e-9)
+
+
+def test_samples_tell_line_speed_and_kind_at_the_servo_rate(machine):
+    samples = machine.run_text(["G21 G90 G61", "G1 X20 F1200", "G0 Y20", "G4 P.2", "M2"]).samples
+    assert samples.time[1] == pytest.approx(0.001)
+    feeding = samples.line == 2
+    assert np.max(samples.velocity[feeding]) == pytest.approx(20.0, rel=0.01)
+    assert set(samples.kind[feeding]) == {2}
+    assert set(samples.kind[samples.line == 3]) == {1}
+    speed = np.diff(samples.axes["X"]) / 0.001
+    assert np.max(speed) == pytest.approx(20.0, rel=0.01)
+
+
+def test_seconds_are_machine_time(machine):
+    result = machine.run_text(["G21 G90 G61", "G1 X20 F1200", "M2"])
+    assert result.seconds == pytest.approx(1.0, abs=0.1)
+
+
+def test_modes_behind_a_real_run_are_those_of_the_trace(machine):
+    program = "G91 G18 G64 P.01 G95 F.1 S500\nT1 M6\nG43 G0 X.1"
+    real = machine.run_text(f"%\n{program}\n%").modes
+    assert real == trace_text(program, SIM / "mill_mm.ini").modes
+
+
+def test_messages_and_errors_of_a_program(machine):
+    result = machine.run_text(["(MSG, hello)", "G1 X1 F1000", "G1 Q", "M2"])
+    assert [message.text for message in result.messages] == ["hello"]
+    assert result.error.text == "No characters found in reading real value"
+    assert machine.run_text(["G21 G1 X2 F1000", "M2"]).error is None
+
+
+def test_program_stops_are_passed_over(machine):
+    result = machine.run_text(["G21 G0 X1", "M0", "G0 X2", "M1", "G0 X3", "M2"])
+    assert result.position[0] == pytest.approx(3.0)
+
+
+def test_tools_and_parameters_are_the_ones_given(tmp_path):
+    program = tmp_path / "program.ngc"
+    program.write_text("G21 T7 M6\n(DEBUG, #5410)\nG0 X1\nM2\n")
+    result = run(program, SIM / "mill_mm.ini", tools={7: 3.5}, parameters={5221: 10.0})
+    assert result.error is None
+    assert result.messages[0].text == "3.500000"
+    assert result.position[0] == pytest.approx(11.0)
+
+
+# Control.
+
+
+def test_pause_holds_and_resume_goes_on(machine):
+    machine.open_text(BACK_AND_FORTH)
+    machine.start()
+    machine.wait_for(lambda status: status.motion_line == 4)
+    machine.pause()
+    held = machine.wait_for(lambda status: status.paused and machine.get("motion.current-vel") == 0)
+    time.sleep(0.1)
+    assert machine.stat().position == held.position
+    assert not held.idle
+    machine.resume()
+    machine.wait_idle()
+    assert machine.stat().position[0] == pytest.approx(10.0)
+
+
+def test_step_runs_block_by_block(machine):
+    machine.open_text(BACK_AND_FORTH)
+    seen = []
+    while len(seen) < 3:
+        machine.step()
+        time.sleep(0.05)
+        seen += [machine.wait_for(standing).position[0]] if machine.stat().motion_line else []
+    assert seen == pytest.approx([10.0, 0.0, 10.0], abs=1e-6)
+    machine.abort()
+
+
+def standing(status):
+    return status.in_position and not status.queue
+
+
+def test_abort_stops_and_another_program_runs(machine):
+    machine.open_text(BACK_AND_FORTH)
+    machine.start()
+    machine.wait_for(lambda status: status.motion_line == 3)
+    machine.abort()
+    assert machine.stat().idle
+    machine.mdi("G53 G0 X4")
+    assert machine.stat().position[0] == pytest.approx(4.0)
+    assert machine.run_text(BACK_AND_FORTH).error is None
+
+
+def test_run_from_line(machine):
+    machine.open_text(BACK_AND_FORTH)
+    machine.sample()
+    machine.start(18)
+    machine.wait_idle()
+    assert min(set(machine.samples().line) - {0}) >= 18
+
+
+def test_feed_override_scales_the_speed(machine):
+    machine.feed_override(0.5)
+    samples = machine.run_text(["G21 G90 G61", "G1 X10 F1200", "M2"]).samples
+    assert np.max(samples.velocity) == pytest.approx(10.0, rel=0.01)
+
+
+def test_block_delete_and_optional_stop(machine):
+    machine.block_delete(False)
+    assert machine.run_text(["G21 G0 X1", "/G0 X2", "M2"]).position[0] == pytest.approx(2.0)
+    machine.block_delete(True)
+    assert machine.run_text(["G21 G0 X1", "/G0 X2", "M2"]).position[0] == pytest.approx(1.0)
+    machine.optional_stop(True)
+    machine.open_text(["G21 G0 X3", "M1", "G0 X4", "M2"])
+    machine.start()
+    machine.wait_for(lambda status: status.interp == "paused")
+    machine.optional_stop(False)
+    machine.abort()
+
+
+def test_hal_pins_are_read_and_set(machine):
+    machine.open_text(["M66 P0 L3 Q5", "(DEBUG, #5399)", "M2"])
+    machine.start()
+    machine.set("motion.digital-in-00", True)
+    machine.wait_idle()
+    assert machine.messages()[0].text == "1.000000"
+    machine.set("motion.digital-in-00", False)
+    assert machine.get("motion.digital-in-00") is False
+
+
+def test_a_program_without_end_times_out(machine):
+    machine.open_text(["o1 while [1]", "o1 endwhile", "M2"])
+    machine.start()
+    with pytest.raises(Timeout):
+        machine.wait_idle(0.5)
+
+
+def test_mdi_refusals_are_errors(machine):
+    machine.mdi("G1 X1 F0")
+    assert "zero feed rate" in machine.errors()[0].text
+    assert machine.errors() == []
+
+
+# Isolation.
+
+
+def test_machines_side_by_side_do_not_touch_each_other(machine):
+    with Machine(SIM / "mill_inch.ini") as other:
+        machine.mdi("G21 G0 X5")
+        other.mdi("G20 G0 X1 Y2")
+        assert machine.stat().position[:2] == pytest.approx((5.0, 0.0))
+        assert other.stat().position[:2] == pytest.approx((1.0, 2.0))
+
+
+def test_nothing_shared_with_the_system(machine):
+    segments = subprocess.run(["ipcs", "-m"], capture_output=True, text=True).stdout
+    assert "0x48414c32" not in segments
+    assert not Path("/tmp/linuxcnc.lock").exists()
+
+
+def test_the_machines_directory_is_never_written(tmp_path):
+    folder = copy_of_the_package(tmp_path)
+    ini = folder / "configs" / "sim" / "mill_mm.ini"
+    (ini.parent / "mill_mm.var").write_text("5221\t7.0\n")
+    before = contents(folder)
+    with Machine(ini) as machine:
+        machine.mdi("G10 L1 P1 Z5")
+        machine.mdi("G10 L2 P1 X3")
+        machine.mdi("M2")
+    assert contents(folder) == before
+
+
+def copy_of_the_package(folder):
+    for name in ("configs", "ngc", "python"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+def contents(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def processes_of(folder):
+    """Return the processes of the system that a machine in ``folder`` started."""
+    found = []
+    for status in Path("/proc").glob("[0-9]*"):
+        try:
+            if str(folder).encode() in (status / "environ").read_bytes():
+                found.append(status.name)
+        except OSError:
+            continue
+    return found
+
+
+def test_nothing_is_left_after_close_or_failure():
+    with Machine(SIM / "mill_mm.ini") as machine:
+        folder = machine.folder
+        assert processes_of(folder)
+    assert not processes_of(folder)
+    assert not folder.exists()
+    with pytest.raises(ZeroDivisionError), Machine(SIM / "mill_mm.ini") as machine:
+        folder = machine.folder
+        raise ZeroDivisionError
+    assert not processes_of(folder)
+
+
+def test_nothing_is_left_when_the_runner_is_killed():
+    code = (
+        "import os, sys; from g12.cli.headless import Machine; machine = Machine(sys.argv[1]);"
+        "print(machine.folder, flush=True); os.kill(os.getpid(), 9)"
+    )
+    killed = subprocess.run(
+        [PYTHON, "-c", code, str(SIM / "mill_mm.ini")],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "python")},
+    )
+    folder = Path(killed.stdout.strip())
+    end = time.monotonic() + 10
+    while folder.exists() or processes_of(folder):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
+def test_a_machine_that_does_not_start_says_why():
+    with pytest.raises(StartupError, match="CANNOT FIND FILE FOR:nothing.hal"):
+        Machine(SIM / "mill_mm.ini", overrides={"HAL": {"HALFILE": "nothing.hal"}})
+
+
+def test_a_machine_that_cannot_be_switched_on_says_why():
+    with pytest.raises(StartupError, match="release of e-stop"):
+        Machine(
+            SIM / "mill_mm.ini", overrides={"HAL": {"HALCMD": "unlinkp iocontrol.0.emc-enable-in"}}
+        )
+
+
+# Other people's machines, and other people.
+
+
+@pytest.mark.parametrize("name", ["axis/axis_mm.ini", "axis/lathe.ini", "touchy/touchy.ini"])
+def test_linuxcncs_own_examples_run(name):
+    if not (EXAMPLES / name).exists():
+        pytest.skip("LinuxCNC's examples are not installed")
+    with Machine(EXAMPLES / name) as machine:
+        result = machine.run_text(["G21 G90 G94", "T1 M6", "G1 X2 F3000", "M2"])
+        assert result.error is None
+        assert result.position[0] * machine.mm == pytest.approx(2.0, abs=1e-6)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can become someone else")
+def test_an_ordinary_user_can_run_it_from_anywhere():
+    folder = Path(tempfile.mkdtemp(prefix="g12-elsewhere-"))
+    try:
+        copy_of_the_package(folder)
+        folder.chmod(0o755)
+        (folder / "program.ngc").write_text("G21 T1 M6\nG1 X2 F3000\n(MSG, there)\nM2\n")
+        done = subprocess.run(
+            [PYTHON, "python/g12", "run", "configs/sim/mill_mm.ini", "program.ngc"],
+            cwd=folder,
+            user=NOBODY,
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+        assert "message: there" in done.stdout
+        assert "X2 " in done.stdout
+    finally:
+        shutil.rmtree(folder)

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every INI that ships: starts, runs a program to its end, and is twin to its twin."""
+
+import shutil
+import subprocess
+import time
+
+import pytest
+
+from g12.cli.headless import Machine, smoke
+from g12.cli.ini import read_ini
+from g12.cli.isolated import Isolated
+from machines import SIM
+
+INIS = sorted(SIM.glob("*.ini"))
+HEADLESS = [ini for ini in INIS if ini.stem.endswith("_headless")]
+DESKTOP = [ini for ini in INIS if ini not in HEADLESS]
+QUICK = "G21 G90\n(MSG, hello)\nG1 X2 F3000\nM0\nG0 Z1\nM2\n"
+XVFB_START = 60.0  # s for AXIS to come up
+
+
+def name(ini):
+    return ini.stem
+
+
+def sample(ini):
+    return read_ini(ini).file("DISPLAY", "OPEN_FILE")
+
+
+def test_each_desktop_machine_has_a_headless_twin():
+    assert [f"{ini.stem}_headless" for ini in DESKTOP] == [ini.stem for ini in HEADLESS]
+
+
+@pytest.mark.parametrize("ini", DESKTOP, ids=name)
+def test_twins_differ_in_their_screen_only(ini):
+    one = read_ini(ini)
+    other = read_ini(ini.with_name(f"{ini.stem}_headless.ini"))
+    assert without_screen(one) == without_screen(other)
+    assert sample(one.path) == sample(other.path)
+
+
+def without_screen(ini):
+    """Return the INI's lines outside [DISPLAY] that are no comments."""
+    lines, section = [], None
+    for line in ini.lines:
+        section = line if line.startswith("[") else section
+        if section != "[DISPLAY]" and line and not line.startswith("#"):
+            lines.append(line)
+    return lines
+
+
+@pytest.mark.parametrize("ini", DESKTOP, ids=name)
+def test_every_machine_runs_its_sample_to_the_end(ini):
+    with Machine(ini) as machine:
+        machine.feed_override(10.0)
+        result = machine.run(sample(ini), timeout=120)
+        assert result.error is None
+        assert result.samples.lost == 0
+        assert result.seconds > 0.5
+
+
+@pytest.mark.parametrize("ini", HEADLESS, ids=name)
+def test_linuxcnc_runs_a_program_without_a_screen_and_exits_with_0(ini, tmp_path):
+    program = tmp_path / "quick.ngc"
+    program.write_text(QUICK)
+    code, log = smoke(ini, program, timeout=60)
+    assert code == 0, log
+    assert "message: hello" in log
+    assert f"{program}: done" in log
+
+
+def test_linuxcnc_exits_with_1_if_the_program_has_an_error(tmp_path):
+    program = tmp_path / "bad.ngc"
+    program.write_text("G21\nG1 X2 Q\nM2\n")
+    code, log = smoke(HEADLESS[0], program, timeout=60)
+    assert code == 1
+    assert "error: No characters found in reading real value" in log
+    assert f"{program}: FAILED" in log
+
+
+def test_linuxcnc_runs_the_sample_if_no_program_is_named():
+    code, log = smoke(SIM / "mill_mitsubishi_mm_headless.ini", timeout=120)
+    assert code == 0, log
+    assert "samples/mill_mitsubishi_mm.ngc: done" in log
+
+
+@pytest.fixture(scope="module")
+def screen():
+    """An X server on a display of its own, with a picture of it on demand."""
+    if not shutil.which("Xvfb"):
+        pytest.skip("Xvfb is not installed")
+    with subprocess.Popen(
+        ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    ) as server:
+        yield f":{server.stdout.readline().strip()}"
+        server.terminate()
+
+
+@pytest.mark.parametrize("ini", DESKTOP, ids=name)
+def test_axis_comes_up_with_the_sample_previewed(ini, screen):
+    started = "until halcmd -s show comp axisui | grep -q axisui; do sleep 0.2; done"
+    isolated = Isolated()
+    try:
+        isolated.launch(
+            ["sh", "-c", f"linuxcnc -r {ini} & {started}; sleep 3; echo up; wait"],
+            copies={ini.parent: {}},
+            environment={"DISPLAY": screen, "LIBGL_ALWAYS_SOFTWARE": "1"},
+        )
+        end = time.monotonic() + XVFB_START
+        while "up\n" not in isolated.log() and isolated.exit_code() is None:
+            assert time.monotonic() < end, isolated.log()
+            time.sleep(0.2)
+        assert isolated.exit_code() is None, isolated.log()
+        assert "rror" not in isolated.log(), isolated.log()
+    finally:
+        isolated.close()
