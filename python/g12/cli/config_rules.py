@@ -27,6 +27,7 @@ LINE_FOR_REMAP = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 TOOL = re.compile(r"T(\d+)", re.IGNORECASE)
 DIAMETER = re.compile(r"D([-+.\d]+)", re.IGNORECASE)
+AFTERMATH = "Bad character 'g' used"  # of an interpreter that never came up
 STOPPING = {  # kinds that keep LinuxCNC itself from loading the config
     "taken",
     "wrong-line",
@@ -314,7 +315,7 @@ def no_toplevel(config: Config, codes: list[Code]) -> Iterator[Finding]:
 
 
 def python_fails(config: Config, _codes: list[Code]) -> Iterator[Finding]:
-    """Find Python modules that stop with an error: LinuxCNC does not start, or not with the codes."""
+    """Find Python modules that stop with an error: LinuxCNC does not start."""
     error = config.python.error if config.python else None
     if error and not any(no_toplevel(config, codes_of(config.remaps))):
         cure = "correct the module named"
@@ -324,7 +325,7 @@ def python_fails(config: Config, _codes: list[Code]) -> Iterator[Finding]:
 
 
 def handlers_missing(config: Config, codes: list[Code]) -> Iterator[Finding]:
-    """Find handlers that the REMAP lines name and LinuxCNC does not find; it starts all the same."""
+    """Find handlers that are missing: LinuxCNC starts, and the code fails when it is used."""
     python = config.python
     if not codes or not python or python.error or any(no_toplevel(config, codes)):
         return
@@ -446,13 +447,15 @@ def findings_of(config: Config) -> list[Finding]:
         found.append(
             problem(
                 "does-not-load",
-                f"LinuxCNC does not load this config: {first_line(config.failure)}",
+                f"LinuxCNC does not load this config: {last_words(config.failure)}",
                 "correct the config until LinuxCNC starts",
             )
         )
     return found
 
 
-def first_line(text: str) -> str:
-    """Return the first line of a text that says something."""
-    return next(line.strip() for line in text.splitlines() if line.strip())
+def last_words(failure: str) -> str:
+    """Return what the interpreter said last before it gave up, in one line."""
+    lines = [line.strip() for line in failure.splitlines() if line.strip()]
+    told = [line for line in lines if line != AFTERMATH] or lines
+    return "; ".join(told[-2:])

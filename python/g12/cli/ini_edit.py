@@ -64,9 +64,21 @@ def is_entry(text: str) -> bool:
     return bool(text.strip()) and text.lstrip()[0] not in "#;"
 
 
+def belongs(text: str) -> bool:
+    """Tell whether a line belongs to the section in front of it; comments may not."""
+    return is_entry(text) or text.startswith(END)
+
+
 def opens_section(text: str, section: str) -> bool:
     """Tell whether LinuxCNC takes the line for the header of that section."""
     return text.lstrip().startswith(f"[{section}]")
+
+
+def without(lines: Sequence[str], doomed: set[int]) -> list[str]:
+    """Return lines without those at the indices; a last line without an end stays one."""
+    kept = [line for index, line in enumerate(lines) if index not in doomed]
+    unended = lines and not lines[-1].endswith("\n") and len(lines) - 1 in doomed
+    return [*kept[:-1], kept[-1].rstrip("\r\n")] if unended and kept else kept
 
 
 class IniText:
@@ -139,9 +151,9 @@ class IniText:
         own = [
             line
             for line in self._own_lines()
-            if after[line.index] in inside and (is_entry(line.text) or after[line.index] != line)
+            if after[line.index] in inside and (belongs(line.text) or after[line.index] != line)
         ]
-        last = own[-1] if own else [line for line in found if is_entry(line.text)][-1]
+        last = own[-1] if own else [line for line in found if belongs(line.text)][-1]
         return Place(last.file, self._behind(last.file, last.index))
 
     def _behind(self, file: Path, index: int) -> int:
@@ -172,6 +184,12 @@ class IniText:
         body = lines[index].rstrip()
         lines[index] = body + text + lines[index][len(body) :]
 
+    def remove_from_value(self, line: Line, entry: str) -> None:
+        """Take an entry out of the list, separated by colons, that begins at ``line``."""
+        lines = self.files[line.file]
+        for index in range(line.index, self._behind(line.file, line.index)):
+            lines[index] = re.sub(rf":{re.escape(entry)}(?=[:\s]|$)", "", lines[index])
+
     def blocks(self) -> list[list[Line]]:
         """Return the marked blocks, markers included, of the INI and of what it includes."""
         blocks: list[list[Line]] = []
@@ -191,11 +209,5 @@ class IniText:
     def remove(self, doomed: Sequence[Line]) -> None:
         """Take lines out."""
         for file in {line.file for line in doomed}:
-            self._remove(self.files[file], {line.index for line in doomed if line.file == file})
-
-    @staticmethod
-    def _remove(lines: list[str], doomed: set[int]) -> None:
-        unended = lines and not lines[-1].endswith("\n") and len(lines) - 1 in doomed
-        lines[:] = [line for index, line in enumerate(lines) if index not in doomed]
-        if unended and lines:
-            lines[-1] = lines[-1].rstrip("\r\n")
+            indices = {line.index for line in doomed if line.file == file}
+            self.files[file] = without(self.files[file], indices)

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Changing a user's files: the difference shown, the old file kept, the new one there at once."""
+
+from __future__ import annotations
+
+import contextlib
+import difflib
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+BACKUP = ".before-g12"
+
+
+def shown(content: bytes) -> list[str]:
+    """Return a file's lines for showing them."""
+    return content.decode("utf-8", "replace").splitlines()
+
+
+def difference(path: Path, content: bytes) -> Iterator[str]:
+    """Yield the lines of a unified diff from the file as it is to its new content."""
+    old = path.read_bytes() if path.exists() else b""
+    return difflib.unified_diff(
+        shown(old), shown(content), str(path), f"{path} (new)", lineterm="", n=2
+    )
+
+
+def write(path: Path, content: bytes) -> None:
+    """Write a file so that there is never half of it; mode and owner stay."""
+    path = path.resolve()  # a link stays a link
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        take_after(Path(name), path)
+        os.replace(name, path)
+    except BaseException:
+        os.unlink(name)
+        raise
+
+
+def take_after(new: Path, path: Path) -> None:
+    """Give a new file mode and owner of the one at ``path``, or the owner of its folder."""
+    if path.exists():
+        shutil.copymode(path, new)
+    else:
+        new.chmod(0o755 if new.is_dir() else 0o644)
+    owner = (path if path.exists() else path.parent).stat()
+    with contextlib.suppress(PermissionError):
+        os.chown(new, owner.st_uid, owner.st_gid)
+
+
+def write_all(changes: Mapping[Path, bytes]) -> None:
+    """Write several files; if one cannot be written, the others are again what they were."""
+    written: dict[Path, bytes] = {}
+    try:
+        for path, content in changes.items():
+            old = path.read_bytes()
+            write(path, content)
+            written[path] = old
+    except BaseException:
+        for path, old in written.items():
+            write(path, old)
+        raise
+
+
+def backups_of(path: Path) -> list[Path]:
+    """Return the kept old versions of a file."""
+    return sorted(path.parent.glob(f"{path.name}{BACKUP}*"))
+
+
+def back_up(path: Path) -> Path:
+    """Keep the file as it is now under another name, and return that."""
+    content = path.read_bytes()
+    for kept in backups_of(path):
+        if kept.read_bytes() == content:
+            return kept
+    number = len(backups_of(path))
+    kept = path.with_name(f"{path.name}{BACKUP}{f'.{number + 1}' if number else ''}")
+    shutil.copy2(path, kept)
+    take_after(kept, path)
+    return kept
+
+
+def drop_backup(path: Path) -> list[Path]:
+    """Delete the kept version that the file is equal to again; return those still kept."""
+    content = path.read_bytes()
+    for kept in backups_of(path):
+        if kept.read_bytes() == content:
+            kept.unlink()
+    return backups_of(path)

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 uninstall INI``: take out of a machine config what `install` put in, and nothing else.
+
+What several INIs of a folder share (the copy of the package, lines in the user's own modules and
+in included files) stays until the last of them is done.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+from g12.cli import package_copy
+from g12.cli.check import readable
+from g12.cli.command import GOOD, one_line
+from g12.cli.features import model_of, remap_from_value
+from g12.cli.ini import ENTRY
+from g12.cli.ini_edit import BEGIN, END, IniText, Line, is_entry, read_lines, to_bytes, without
+from g12.cli.install_plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE
+from g12.cli.safe_write import difference, drop_backup, write_all
+
+OWN_ENDS = {
+    "SUBROUTINE_PATH": "/ngc",
+    "TOPLEVEL": "/python/toplevel.py",
+    "PATH_PREPEND": "/python",
+    "PATH_APPEND": "/python",
+}
+HEADER = "[PYTHON]"
+EXAMPLES = """\
+example:
+  python3 python/g12 uninstall ~/linuxcnc/configs/mill/mill.ini
+
+exit code: 0 done or nothing to do, 2 wrong use"""
+
+
+def is_ours(line: Line) -> bool:
+    """Tell whether a line between the markers is one that `install` puts there."""
+    entry = ENTRY.match(line.text)
+    if entry and entry[1] == "REMAP":
+        return model_of(remap_from_value(entry[2])) is not None
+    if entry:
+        return ":" not in entry[2] and entry[2].endswith(OWN_ENDS.get(entry[1], "\n"))
+    return line.text.startswith((BEGIN, NOTE, END))
+
+
+def notes_in(blocks: list[list[Line]]) -> list[str]:
+    """Return what the blocks say was put elsewhere."""
+    lines = (line.text for block in blocks for line in block)
+    return [text[len(NOTE) :] for text in lines if text.startswith(NOTE)]
+
+
+def take_out_blocks(text: IniText, blocks: list[list[Line]]) -> list[Line]:
+    """Take the blocks out; return the lines of the user's between the markers, which stay."""
+    doomed = [line for block in blocks for line in block if is_ours(line)]
+    headers = [line for block in blocks for line in block if line.text == HEADER]
+    others = (line for line in text.section("PYTHON") if line not in (*doomed, *headers))
+    if not any(is_entry(line.text) for line in others):
+        doomed += headers
+    stay = [line for block in blocks for line in block if line not in (*doomed, *headers)]
+    text.remove(doomed)
+    return stay
+
+
+def take_out_path(text: IniText, entry: str, shared: bool) -> None:
+    """Take the package's folder out of SUBROUTINE_PATH, unless an include is still shared."""
+    for line, _ in text.entries("RS274NGC", "SUBROUTINE_PATH")[:1]:
+        if not shared or line.file == text.path:
+            text.remove_from_value(line, entry)
+
+
+def still_installed(text: IniText) -> bool:
+    """Tell whether another INI of the folder has the package by `install`."""
+    for path in sorted(text.path.parent.glob("*.ini")):
+        if path != text.path and path.is_file():
+            other = IniText(path)
+            other.files.update(
+                {file: text.files[file] for file in text.files if file in other.files}
+            )
+            if other.blocks():
+                return True
+    return False
+
+
+def without_imports(path: Path) -> bytes:
+    """Return a module's content without the lines that `install` put at its end."""
+    lines = read_lines(path)
+    ours = {index for index, line in enumerate(lines) if line.rstrip().endswith(MARK)}
+    return to_bytes(without(lines, ours))
+
+
+def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
+    """Take the package out of a machine config; yield what is shown."""
+    blocks = text.blocks()
+    if not blocks:
+        yield f"{text.path}: nothing that install put in"
+        return
+    folder, notes = text.path.parent, notes_in(blocks)
+    stay = take_out_blocks(text, blocks)
+    shared = still_installed(text)
+    changes = {}
+    for note in notes:
+        if note.endswith(PATH_NOTE):
+            take_out_path(text, note.removesuffix(PATH_NOTE), shared)
+        elif not shared and (folder / note.removeprefix(MODULE_NOTE)).is_file():
+            module = folder / note.removeprefix(MODULE_NOTE)
+            changes[module] = without_imports(module)
+    inis = {path: to_bytes(lines) for path, lines in text.files.items()}
+    changes = {path: new for path, new in {**inis, **changes}.items() if new != path.read_bytes()}
+    for path, content in changes.items():
+        yield from difference(path, content)
+    for line in stay:
+        yield f"{line.place}: stays, it is not by install: {line.text}"
+    if dry_run:
+        yield "dry run: nothing was written"
+        return
+    write_all(changes)
+    for path in changes:
+        yield from after_change(path)
+    yield from after_all(folder / package_copy.NAME, shared)
+
+
+def after_change(path: Path) -> Iterator[str]:
+    """Drop the old version if the file is that again; yield what was done."""
+    kept = ", ".join(backup.name for backup in drop_backup(path))
+    yield f"{path}: changed" + (f"; you changed it since, so {kept} stays" if kept else "")
+
+
+def after_all(copy: Path, shared: bool) -> Iterator[str]:
+    """Take the copy of the package away if nobody uses it; yield what was done."""
+    if shared:
+        yield f"{copy}: stays, another INI of this folder uses it"
+    elif package_copy.is_copy(copy):
+        left = package_copy.remove_copy(copy)
+        yield f"{copy}: " + (f"taken away but for what you changed: {', '.join(left)}"
+                             if left else "taken away")  # fmt: skip
+
+
+@one_line("uninstall")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    parser = argparse.ArgumentParser(
+        prog="g12 uninstall",
+        description="Take out of a machine config what install put in, and nothing else.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("ini", type=Path, help="INI file of the machine")
+    parser.add_argument("--dry-run", action="store_true", help="show the changes only")
+    asked = parser.parse_args(arguments)
+    for line in uninstall(readable(asked.ini), asked.dry_run):
+        print(line)
+    return GOOD
