@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Recordings made and compared in several processes, each with an interpreter of its own."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import signal
+import subprocess
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from multiprocessing import util
+from pathlib import Path
+
+from g12.cli.baseline import Baseline
+from g12.cli.command import UsageError
+from g12.cli.difference import Difference, differences, lines_of
+from g12.cli.edits import Tolerance
+from g12.cli.ini import read_ini
+from g12.cli.part import part_of
+from g12.cli.trace import PYTHON, Move, TraceFailure, Tracer, mm_per_unit
+from g12.cli.trace_text import (
+    Recording,
+    TraceTextError,
+    read_recording,
+    recording_of,
+    split,
+    text_of,
+)
+
+SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
+HASH_DIGITS = 16
+UNITS = {1.0: "mm", 25.4: "inch"}
+ASK_VERSION = "import linuxcnc; print(linuxcnc.version)"
+
+
+@dataclass(frozen=True)
+class Machine:
+    """What programs are traced on; ``timeout`` is in seconds for each program."""
+
+    ini: Path
+    tools: Path | None
+    parameters: Path | None
+    linuxcnc: str
+    timeout: float
+
+
+@dataclass(frozen=True)
+class Job:
+    """One program to trace and to compare with its recording.
+
+    ``keep`` makes the trace the recording; ``pictures`` is a folder for a picture of changes.
+    """
+
+    baseline: Baseline
+    machine: Machine
+    name: str
+    program: Path
+    tolerance: Tolerance
+    keep: bool = False
+    pictures: Path | None = None
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A difference together with the lines of the program that it is about.
+
+    ``block`` is the text of the first line; ``by`` is in machine units or degrees.
+    """
+
+    kind: str
+    text: str
+    lines: list[int] = field(default_factory=list)
+    recorded_lines: list[int] = field(default_factory=list)
+    moves: int = 0
+    axis: str = ""
+    by: float = 0.0
+    block: str = ""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What became of one program.
+
+    ``summary`` says what it does now; ``notes`` with what else than now it was recorded.
+    """
+
+    program: str
+    verdict: str
+    findings: list[Finding] = field(default_factory=list)
+    summary: str = ""
+    notes: tuple[str, ...] = ()
+    picture: str | None = None
+
+
+class Recorder:
+    """A running interpreter that makes recordings on one machine."""
+
+    def __init__(self, machine: Machine) -> None:
+        ini = read_ini(machine.ini)
+        self._machine = machine
+        self._tracer = Tracer(ini, tools=machine.tools)
+        self.part = part_of(ini)
+        self._facts = {
+            "machine": f"{ini.path.name} {hash_of(ini.text.encode(errors='surrogateescape'))}",
+            "linuxcnc": machine.linuxcnc,
+            "units": UNITS[mm_per_unit(ini)],
+        }
+        util.Finalize(self, self._tracer.close, exitpriority=1)
+
+    def text(self, name: str, program: Path) -> str:
+        """Return the recording of a program as text."""
+        facts = {"program": f"{name} {hash_of(program.read_bytes())}", **self._facts}
+        options = {"parameters": self._machine.parameters, "timeout": self._machine.timeout}
+        return text_of(recording_of(self._tracer.trace(program, **options), program, facts))
+
+
+@functools.lru_cache(maxsize=4)
+def recorder_of(machine: Machine, _process: int) -> Recorder:
+    """Return this process's recorder for a machine; a forked process must not use its parent's."""
+    return Recorder(machine)
+
+
+@functools.lru_cache(maxsize=1)
+def linuxcnc_version() -> str:
+    """Return the version of the LinuxCNC that traces come from."""
+    asked = subprocess.run([PYTHON, "-c", ASK_VERSION], capture_output=True, text=True, check=False)
+    return asked.stdout.strip() or "unknown"
+
+
+def hash_of(content: bytes) -> str:
+    """Return a short hash to tell two versions of a file apart."""
+    return f"sha256:{hashlib.sha256(content).hexdigest()[:HASH_DIGITS]}"
+
+
+def do(job: Job) -> Result:
+    """Trace a program, compare it with its recording, and keep the trace if that is the job."""
+    recorder = recorder_of(job.machine, os.getpid())
+    try:
+        now = recorder.text(job.name, job.program)
+    except TraceFailure as failure:
+        text = f"LinuxCNC's interpreter: {str(failure).splitlines()[0]}"
+        return Result(job.name, FAILED, [Finding("failed", text)])
+    result = _compared(job, now, recorder)
+    if job.keep:
+        job.baseline.keep(job.name, now)
+    return result
+
+
+def _compared(job: Job, now: str, recorder: Recorder) -> Result:
+    path = job.baseline.trace_file(job.name)
+    if not path.exists():
+        return Result(job.name, NEW, summary=_summary(read_recording(now)))
+    try:
+        was = path.read_text(encoding="utf-8")
+        facts, body = split(was)
+        new_facts, new_body = split(now)
+        notes = tuple(_notes(facts, new_facts))
+        if body == new_body:
+            return Result(job.name, SAME, notes=notes)
+        recordings = read_recording(was), read_recording(now)
+    except (TraceTextError, UnicodeDecodeError) as problem:
+        raise UsageError(f"{path}: not a trace, or one that was edited: {problem}") from None
+    found = differences(*recordings, job.tolerance, recorder.part)
+    findings = [_finding(difference, *recordings) for difference in found]
+    verdict = CHANGED if found else SAME
+    picture = _picture(job, *recordings, found, recorder) if found and job.pictures else None
+    return Result(job.name, verdict, findings, _summary(recordings[1]), notes, picture)
+
+
+def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
+    """Yield what else is different since the recording."""
+    if was["linuxcnc"] != now["linuxcnc"]:
+        yield f"LinuxCNC {was['linuxcnc']} when recorded, {now['linuxcnc']} now"
+    if was["machine"] != now["machine"]:
+        yield f"{now['machine'].rpartition(' ')[0]} has changed since the recording"
+    if was["units"] != now["units"]:
+        yield f"machine units {was['units']} when recorded, {now['units']} now"
+
+
+def _finding(difference: Difference, was: Recording, now: Recording) -> Finding:
+    lines = lines_of(now, difference.now) or [difference.line] * bool(difference.line)
+    recorded = lines_of(was, difference.was)
+    block = now.blocks.get(lines[0], "") if lines else was.blocks.get((recorded or [0])[0], "")
+    shared = ("kind", "text", "moves", "axis", "by")
+    values = {name: getattr(difference, name) for name in shared}
+    return Finding(lines=lines, recorded_lines=recorded, block=block, **values)
+
+
+def _summary(recording: Recording) -> str:
+    moves = sum(isinstance(step, Move) for step in recording.steps)
+    error = recording.error
+    return f"refused at line {error.line}: {error.text}" if error else f"{moves} moves"
+
+
+def _picture(job: Job, was: Recording, now: Recording, found, recorder: Recorder) -> str:
+    """Draw what changed; matplotlib takes a while to load."""
+    from g12.cli.pictures import save
+    from g12.cli.regress_picture import draw_overlay, picture_file
+
+    path = picture_file(job.pictures, job.name)
+    save(draw_overlay(was, now, found, recorder.part), path)
+    return str(path)
+
+
+def results(jobs: Sequence[Job], processes: int, report: Callable[[int, str], None]):
+    """Return the results of jobs in their order; ``report`` hears how many are done.
+
+    More than one process is only worth its start with more than one job.
+    """
+    processes = min(processes, len(jobs))
+    if processes <= 1:
+        return [_reported(do(job), done, report) for done, job in enumerate(jobs, start=1)]
+    pool = ProcessPoolExecutor(processes, initializer=_ignore_interrupts)
+    try:
+        futures = {pool.submit(do, job): index for index, job in enumerate(jobs)}
+        found: list = [None] * len(jobs)
+        for done, future in enumerate(as_completed(futures), start=1):
+            found[futures[future]] = _reported(future.result(), done, report)
+        return found
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _reported(result: Result, done: int, report: Callable[[int, str], None]) -> Result:
+    report(done, result.program)
+    return result
+
+
+def _ignore_interrupts() -> None:
+    """Leave it to the parent process to stop the others."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The picture of what changed in a program: the recorded path, the present one, where they part.
+
+Lengths are millimetres until they are drawn; those of the layout are inches on the page.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from g12.cli import pictures
+from g12.cli.deviation_picture import most_telling
+from g12.cli.difference import Difference
+from g12.cli.gap import Gap, gap_between
+from g12.cli.part import Part, paths
+from g12.cli.trace import AXES, Move
+from g12.cli.trace_text import Recording
+
+CHORD_ERROR = 0.005
+LEFT, RIGHT, TOP, BETWEEN, BOTTOM = pictures.MARGIN, 0.3, 1.0, 0.65, 0.55
+PLAN, MOST_HIGH, LEAST_HIGH = 7.0, 5.6, 1.4  # width of the larger view, heights
+SIDE = 1.5  # height of the side view
+LEGEND, ROWS = 2.9, 1.6
+WINDOW = 2.0  # sides of the window on the largest gap
+REACH, LEAST_REACH = 4.0, 1e-3  # half the window's side: in gaps, in mm
+VISIBLE = 0.08  # of the picture's size: a larger gap needs no window
+MARGIN = 0.05
+FLAT = 1e-6  # an axis that moves less is not shown
+LONGEST_SUBTITLE = 130
+
+
+class Paths(NamedTuple):
+    """Polylines (n, 3) on the part: as recorded and still so, only recorded, only now."""
+
+    same: list[np.ndarray]
+    was: list[np.ndarray]
+    now: list[np.ndarray]
+
+
+class Drawn(NamedTuple):
+    """What is drawn of two recordings: moves at feed, rapids, and where they part the most."""
+
+    feeds: Paths
+    rapids: Paths
+    gap: Gap | None
+
+    @property
+    def points(self) -> np.ndarray:
+        """Return every point (n, 3)."""
+        lines = [line for paths_ in (self.feeds, self.rapids) for some in paths_ for line in some]
+        return np.concatenate(lines) if lines else np.zeros((1, 3))
+
+
+class View:
+    """Which axes are shown where on the page, and in which unit."""
+
+    def __init__(self, points: np.ndarray, unit: pictures.Unit, turning: bool) -> None:
+        self.unit = unit
+        self.low, self.high = points.min(axis=0), points.max(axis=0)
+        spread = self.high - self.low
+        lathe = spread[1] < FLAT and not turning
+        self.pairs = [[2, 0]] if lathe else [[0, 1]] + [[0, 2]] * bool(spread[2] > FLAT)
+        self.size = max(*spread, FLAT)
+        self.low, self.high = self.low - MARGIN * self.size, self.high + MARGIN * self.size
+        across, up = (self.high - self.low)[self.pairs[0]]
+        scale = min(PLAN / across, MOST_HIGH / up)
+        self.plan = (across * scale, max(LEAST_HIGH, up * scale))
+        views = self.plan[1] + (BETWEEN + SIDE) * (len(self.pairs) > 1)
+        self.height = max(TOP + views + BOTTOM, TOP + ROWS + WINDOW + BOTTOM)
+        self.width = LEFT + self.plan[0] + LEGEND + RIGHT
+
+    def panels(self, figure: Figure) -> Iterator[tuple[Axes, list[int]]]:
+        """Yield the axes of each view with the part's two axes it shows."""
+        bottom = self.height - TOP - self.plan[1]
+        for pair, height in zip(self.pairs, (self.plan[1], SIDE)):
+            axes = pictures.add_axes(figure, LEFT, bottom, self.plan[0], height)
+            yield self._framed(axes, pair), pair
+            bottom -= BETWEEN + SIDE
+
+    def _framed(self, axes: Axes, pair: list[int]) -> Axes:
+        (left, low), (right, high) = (edge[pair] / self.unit.mm for edge in (self.low, self.high))
+        axes.set(xlim=(left, right), ylim=(low, high))
+        for name, axis in (("x", pair[0]), ("y", pair[1])):
+            axes.set(**{f"{name}label": f"{AXES[axis]}, {self.unit.name}"})
+        if pair == self.pairs[0]:
+            axes.set_aspect("equal", adjustable="datalim")
+        else:
+            pictures.caption(axes, "Side, not to scale")
+        return axes
+
+    @property
+    def beside(self) -> tuple[float, float]:
+        """Where the legend is, and below it the window: left and top in inches."""
+        return LEFT + self.plan[0] + 0.35, self.height - TOP + 0.08
+
+
+def picture_file(folder: Path, program: str) -> Path:
+    """Return where the picture of a program goes."""
+    path = folder / f"{program}.png"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Figure:
+    """Return the picture of a program's differences."""
+    drawn = drawn_of(was, now, found, part)
+    view = View(drawn.points, pictures.UNITS[now.facts["units"]], part.turning)
+    name = now.facts["program"].rpartition(" ")[0]
+    figure = pictures.new_figure(view.width, view.height, name, subtitle(found))
+    for axes, pair in view.panels(figure):
+        draw_paths(axes, drawn, pair, view.unit.mm)
+        if drawn.gap:
+            at = drawn.gap.point[pair] / view.unit.mm
+            axes.plot(*at, "o", color=pictures.WORST, markersize=9, fillstyle="none", zorder=6)
+    left, top = view.beside
+    place = {"loc": "upper left", "bbox_to_anchor": (left / view.width, top / view.height)}
+    figure.legend(handles=entries(drawn, view.unit), borderaxespad=0.0, **place)
+    if drawn.gap and drawn.gap.size < VISIBLE * view.size:
+        axes = pictures.add_axes(figure, left, top - ROWS - WINDOW, WINDOW, WINDOW)
+        draw_window(axes, drawn, view.unit)
+    return figure
+
+
+def drawn_of(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Drawn:
+    """Return what to draw of two recordings."""
+    old = {index for difference in found for index in difference.was}
+    new = {index for difference in found for index in difference.now}
+    moves = (_moves(now, new, False), _moves(was, old, True), _moves(now, new, True))
+    feeds, rapids = (
+        Paths(*(paths(part, _rapid(some, fast), CHORD_ERROR) for some in moves))
+        for fast in (False, True)
+    )
+    return Drawn(feeds, rapids, gap_of(was, now, found, part))
+
+
+def _moves(recording: Recording, changed: set[int], among: bool) -> list[Move]:
+    steps = enumerate(recording.steps)
+    return [step for i, step in steps if (i in changed) is among and isinstance(step, Move)]
+
+
+def _rapid(moves: Iterable[Move], fast: bool) -> list[Move]:
+    return [move for move in moves if (move.kind == "rapid") is fast]
+
+
+def gap_of(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Gap | None:
+    """Return where moved or replaced moves are farthest from what they were."""
+    gaps = []
+    for difference in found:
+        if difference.kind in ("moved", "replaced"):
+            before = _moves(was, set(difference.was), True)
+            after = _moves(now, set(difference.now), True)
+            gaps.append(gap_between(part, before, after) if before and after else None)
+    return max(filter(None, gaps), key=lambda gap: gap.size, default=None)
+
+
+def subtitle(found: Sequence[Difference]) -> str:
+    """Return the first difference in words, and how many there are."""
+    text = found[0].text if len(found) == 1 else f"{len(found)} differences: {found[0].text}"
+    return text if len(text) <= LONGEST_SUBTITLE else f"{text[:LONGEST_SUBTITLE]}…"
+
+
+def draw_paths(axes: Axes, drawn: Drawn, pair: list[int], unit: float) -> None:
+    """Draw the paths in two of the part's axes; ``unit`` is the unit shown in mm."""
+    styles = ((pictures.RAPID, 0.8, 2.5), (pictures.PATH, 3.0, 3.0), (pictures.REAL, 1.2, 3.5))
+    for lines, rapids, (colour, width, order) in zip(drawn.feeds, drawn.rapids, styles):
+        pictures.draw(axes, [line[:, pair] / unit for line in lines], colour, width, order)
+        dashes = {"linestyle": (0, (4, 3)), "capstyle": "butt"}
+        dashed = [line[:, pair] / unit for line in rapids]
+        pictures.draw(axes, dashed, colour, 0.5 * width, order, **dashes)
+
+
+def draw_window(axes: Axes, drawn: Drawn, unit: pictures.Unit) -> None:
+    """Draw the surroundings of the largest gap."""
+    gap = drawn.gap
+    half = max(REACH * gap.size, LEAST_REACH)
+    pair = most_telling(np.array([gap.point, gap.nearest, *_near(drawn, gap.point, half)]))
+    draw_paths(axes, drawn, pair, unit.mm)
+    ends = np.array([gap.nearest[pair], gap.point[pair]]) / unit.mm
+    pictures.draw(axes, [ends], pictures.WORST, 1.8, 4.0)
+    (x, y), reach = ends.mean(axis=0), half / unit.mm
+    axes.set(xlim=(x - reach, x + reach), ylim=(y - reach, y + reach), xticks=[], yticks=[])
+    for spine in axes.spines.values():
+        spine.set(visible=True, color=pictures.WORST, linewidth=0.9)
+    letters = " and ".join(AXES[axis] for axis in pair)
+    pictures.caption(axes, f"Largest gap, in {letters}")
+    text = f"{unit.fine(gap.size)} {unit.name}; the window is {unit.fine(2 * half)} wide"
+    axes.set_xlabel(text, size=8, color=pictures.WORST, loc="left")
+
+
+def _near(drawn: Drawn, point: np.ndarray, half: float) -> np.ndarray:
+    points = drawn.points
+    return points[np.all(np.abs(points - point) <= half, axis=1)]
+
+
+def entries(drawn: Drawn, unit: pictures.Unit) -> list:
+    """Return the legend."""
+    listed = [
+        pictures.stroke(pictures.RAPID, "as recorded", 0.8),
+        pictures.stroke(pictures.PATH, "recorded, not so any more", 3.0),
+        pictures.stroke(pictures.REAL, "now", 1.2),
+    ]
+    if any(drawn.rapids):
+        listed.append(pictures.stroke(pictures.INK, "dashed: rapid", 0.6, dashed=True))
+    if drawn.gap:
+        text = f"farthest apart, {unit.fine(drawn.gap.size)} {unit.name}"
+        listed.append(pictures.marker(pictures.WORST, text, 7, hollow=True))
+    return listed
