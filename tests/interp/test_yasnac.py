@@ -78,10 +78,10 @@ def test_golden_circle_with_a_traverse_section(metric):
 def test_the_manual_s_example(metric):
     traced = metric.trace(PROGRAMS / "yasnac" / "example.ngc")
     assert traced.error is None
-    (down,) = [index for index, move in enumerate(traced.moves) if move.end[2] == 10.0][:1]
+    (down,) = [index for index, move in enumerate(traced.moves) if move.end[2] == -10.0][:1]
     assert described(traced)[down + 1 : -1] == GOLDEN
-    assert {move.end[2] for move in traced.moves[down:-1]} == {10.0}
-    assert traced.position[:3] == (0, 0, 50)
+    assert {move.end[2] for move in traced.moves[down:-1]} == {-10.0}
+    assert traced.position[:3] == (0, 0, 30)
 
 
 def test_golden_circle_on_the_other_side_is_turned_by_half(metric):

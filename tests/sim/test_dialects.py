@@ -35,12 +35,14 @@ def test_the_sample_program_s_real_motion_is_the_traced_one(mill):
     assert traced.error is None
     run = machine.run_text(text)
     assert (run.error, run.messages) == (None, [])
-    programmed = proof.dense_points(proof.moving(traced.moves), step=0.1)
-    moving = run.samples.moving()
-    real = np.column_stack([run.samples.axes[axis][moving] for axis in "XYZ"])[::10]
+    cutting = proof.cutting(traced.moves)
+    programmed = proof.dense_points(cutting, step=0.1) + cutting[0].tool_offset[:3]
+    circles = run.samples.kind == 3
+    real = np.column_stack([run.samples.axes[axis][circles] for axis in "XYZ"])[::10]
     distances = [np.linalg.norm(programmed - point, axis=1).min() for point in real]
     assert max(distances) < DEVIATION + 0.05  # half the spacing of the programmed points
-    assert run.position[:3] == pytest.approx(traced.position[:3], abs=1e-6)
+    end = np.add(traced.position[:3], cutting[0].tool_offset[:3])
+    assert run.position[:3] == pytest.approx(end, abs=1e-6)
 
 
 def test_a_refused_block_moves_nothing_and_says_why(mill):
@@ -61,7 +63,7 @@ def test_a_refused_block_moves_nothing_and_says_why(mill):
 
 def test_mdi_then_abort_then_mdi_again(mill):
     _, machine = mill
-    machine.mdi("G21 G17 G90 G94 G64 P0.01 F12000 G0 X0 Y0 Z0")
+    machine.mdi("G21 G17 G90 G94 G49 G64 P0.01 F12000 G0 X0 Y0 Z0")
     before = machine.stat()
     machine.mdi("G12 I50 D10", wait=False)
     machine.wait_for(lambda status: status.position[0] > 20)
