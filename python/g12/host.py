@@ -36,6 +36,13 @@ def settings_at_start() -> tuple[Settings, Refusal | None]:
 
 SETTINGS, START_ERROR = settings_at_start()
 
+
+def refuse_start_error() -> None:
+    """Refuse every code after a start-up error, with its message."""
+    if START_ERROR:
+        raise Refusal(START_ERROR.message)
+
+
 MODAL_0, DIAMETER = 0, 15  # indices into a block's g_modes
 DIAMETER_ACTIVE = 15  # index into active_g_codes
 G7 = 70
@@ -89,8 +96,7 @@ def handler(function):
     @functools.wraps(function)
     def guarded(self, **words):
         try:
-            if START_ERROR:
-                raise START_ERROR
+            refuse_start_error()
             return function(self, **words)
         except Refusal as refusal:
             self.set_errormsg(refusal.message)

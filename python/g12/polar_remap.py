@@ -67,6 +67,7 @@ if hasattr(interpreter, "this"):  # milltask loads this module before its interp
 def polar_on(self, **words) -> Iterator[int]:
     """Handler of G12.1: a generator, since a section may have to wait for the machine."""
     try:
+        host.refuse_start_error()
         if in_mdi(self):
             raise Refusal(
                 f"{host.code_of_block(self)} is not possible in MDI: it needs the lines behind it"

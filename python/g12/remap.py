@@ -7,8 +7,22 @@ from interpreter import INTERP_OK
 
 from . import circle_mill, host, mitsubishi, yasnac
 from .haas import plan_pocket
-from .polar_remap import polar_off, polar_on  # noqa: F401 - the handlers of polar interpolation
+from .polar_remap import polar_off, polar_on
 from .words import Words
+
+__all__ = [  # what `from g12.remap import *` brings into a user's own module remap
+    "circle_mill_perimeter",
+    "circle_mill_pocket",
+    "cycle_done",
+    "g12_haas",
+    "g12_mitsubishi",
+    "g12_yasnac",
+    "g13_haas",
+    "g13_mitsubishi",
+    "g13_yasnac",
+    "polar_off",
+    "polar_on",
+]
 
 CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
 
