@@ -10,6 +10,9 @@ import sys
 from importlib import import_module
 
 COMMANDS = {
+    "check": ("g12.cli.check", "check how the package is set up in a machine config"),
+    "install": ("g12.cli.install", "put the package into a machine config"),
+    "uninstall": ("g12.cli.uninstall", "take it out again"),
     "run": ("g12.cli.run", "run a program on a headless LinuxCNC"),
     "dynapath": ("g12.cli.dynapath", "print Dynapath circle mill events as a LinuxCNC program"),
     "plot": ("g12.cli.plot", "draw a picture of what a program cuts"),
