@@ -33,6 +33,7 @@ from g12.polar.pole import POLE, through_pole
 CHORD_SHARE = 0.92  # of the tolerance: the rest is what the estimate of it may lack
 ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the pieces' own deviation
 POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
+LEFT_OVER = 1e-3  # of the least step in X: less than that is rounding
 SAME_ANGLE = 1e-9  # radians
 RIPPLE = 0.01  # by so much may the speed differ from F inside a piece
 
@@ -145,7 +146,7 @@ class _Machine:
         """Add what the last piece left over of X."""
         moves = [element for element in path if is_move(element)]
         radius = hypot(moves[-1].x1, moves[-1].c1) if moves else self.place.x
-        if radius != self.place.x:
+        if abs(radius - self.place.x) > LEFT_OVER * self._settings.least_x:
             self._run(moves[-1].line, "XC", [(radius, *self.place[1:], moves[-1].feed)], True)
 
     def _turn(self, move: Line | Arc, angle: float) -> None:

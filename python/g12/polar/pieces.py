@@ -8,6 +8,7 @@ unit of length are sqrt(|difference| / (8 bulge)). Near the pole they bulge more
 longest piece across the foot of a line turns by 4 atan(sqrt(deviation / distance)).
 
 The speed along the part is not constant inside a piece: it changes by the part sin(p)**2 dr / r.
+And where r grows by more than e times, none of this is true any more: pieces end before.
 
 Line: its place is u, the tangent of the angle from the foot of the perpendicular d to the pole;
 along it s = d u and r = d sqrt(m) with m = 1 + u**2, and the curvature of the spirals is
@@ -25,12 +26,10 @@ from math import acos, atan, atan2, ceil, copysign, cos, floor, hypot, pi, sin, 
 from typing import NamedTuple
 
 from g12.polar.contour import Arc, Line, arc_radius
-from g12.polar.pole import POLE
 from g12.polar.spacing import BULGE, WHOLE_BULGE, Density, Stretch, spaced
 
 RADIAL = 1e-9  # program units: a line that close to the pole is a radius
-AT_POLE = 0.5  # of the deviation is left for an arc that was led into the pole
-NEAR_CENTRIC = 64.0  # deviations: with its centre that near to the pole an arc has few pieces
+NEAR_CENTRIC = 400.0  # deviations: with its centre that near to the pole an arc has few pieces
 
 
 class Law(NamedTuple):
@@ -83,10 +82,13 @@ def _split_line(move: Line, law: Law) -> Split:
     apsides = [0.0] if u0 < 0.0 < u1 else []
     density = _line_density(distance, deviation, law)
     places, shares = spaced(Stretch(u0, u1, apsides, [], abs, 1), density)
-    radii = [(distance - deviation * share) * sqrt(1.0 + u * u) for u, share in zip(places, shares)]
+    moved = [distance - deviation * share for share in shares]
+    radii = [d * sqrt(1.0 + u * u) for d, u in zip(moved, places)]
     radii[0], radii[-1] = r0, r1
     return Split(
-        radii, [foot + turn * atan(u) for u in places], [distance * (u - u0) for u in places]
+        radii,
+        [foot + turn * atan(u) for u in places],
+        [d * u - distance * u0 for d, u in zip(moved, places)],
     )
 
 
@@ -115,8 +117,9 @@ def _line_density(distance: float, deviation: float, law: Law) -> Density:
         v = u * u
         m = 1.0 + v
         wanted = bulging * sqrt(m + v) / m
-        pieces = wanted
-        smooth = even * abs(u) / (m * m)
+        growth = abs(u) / m
+        pieces = max(wanted, growth)
+        smooth = even * growth / m
         if smooth > pieces:
             pieces = max(pieces, min(smooth, x_hold, c_hold * sqrt(m)))
         return pieces, (wanted / pieces) ** 2
@@ -135,34 +138,28 @@ def _bulging(radius: float, deviation: float, nearest: float) -> float:
 
 def _split_arc(move: Arc, law: Law) -> Split:
     radius, away = arc_radius(move), hypot(move.cx, move.cc)
-    start, end = (move.x0, move.c0), (move.x1, move.c1)
-    deviation = law.deviation
-    if POLE in (start, end):
-        away = radius
-        deviation *= AT_POLE
     turn = 1.0 if move.sweep > 0.0 else -1.0
     outward = atan2(move.cc, move.cx)
     a0 = turn * (atan2(move.c0 - move.cc, move.x0 - move.cx) - outward)
-    a0 = -pi if start == POLE else (a0 + pi) % (2 * pi) - pi
-    a1 = pi if end == POLE else a0 + abs(move.sweep)
-    deviation = min(deviation, 0.5 * (abs(radius - away) or radius))
-    places, shares = _arc_places(a0, a1, radius, away, deviation, law)
+    a0 = (a0 + pi) % (2 * pi) - pi
+    a1 = a0 + abs(move.sweep)
+    r0, r1 = hypot(move.x0, move.c0), hypot(move.x1, move.c1)
+    nearest = abs(radius - away) if a0 <= pi <= a1 else min(r0, r1)
+    deviation = min(law.deviation, 0.5 * nearest)
+    places, shares = [a0, a1], [0.0, 0.0]
+    if 2.0 * away > deviation:
+        e = away / radius
+        density, flat = _arc_density(radius, e, nearest, deviation, law)
+        inflections = [a for a in _inflections(a0, a1, e) if density(a)[0] == flat]
+        apsides = [k * pi for k in range(floor(a0 / pi) + 1, ceil(a1 / pi))]
+        fine = 3 if away < NEAR_CENTRIC * deviation else 1
+        stretch = Stretch(a0, a1, apsides, inflections, cos, fine)
+        places, shares = spaced(stretch, density)
     radii, angles = _arc_polar(radius, away, deviation, places, shares)
-    radii[0], radii[-1] = hypot(*start), hypot(*end)
+    radii[0], radii[-1] = r0, r1
     return Split(
         radii, [outward + turn * angle for angle in angles], [radius * (a - a0) for a in places]
     )
-
-
-def _arc_places(a0: float, a1: float, radius: float, away: float, deviation: float, law: Law):
-    """Return the places of the ends of an arc's pieces, and how far they are off the arc."""
-    if 2.0 * away <= deviation:
-        return [a0, a1], [0.0, 0.0]
-    e = away / radius
-    apsides = [k * pi for k in range(floor(a0 / pi) + 1, ceil(a1 / pi))]
-    fine = 3 if away < NEAR_CENTRIC * deviation else 1
-    stretch = Stretch(a0, a1, apsides, _inflections(a0, a1, e), cos, fine)
-    return spaced(stretch, _arc_density(radius, e, deviation, law))
 
 
 def _inflections(a0: float, a1: float, e: float) -> list[float]:
@@ -186,14 +183,14 @@ def _curvature_difference(q: float, e: float) -> float:
     return e * e * e + q * (1.0 + 2.0 * e * e + e * q * (3.0 + e * q))
 
 
-def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density:
+def _arc_density(radius: float, e: float, nearest: float, deviation: float, law: Law):
     """Return the pieces per radian, and the part of the deviation they use, above zero outside.
 
-    At an inflection they have the length of one that begins there.
+    And their density at an inflection: that of a piece which begins there.
     """
-    bulging = _bulging(radius, deviation, radius * (abs(1.0 - e) or 1.0))
+    bulging = _bulging(radius, deviation, nearest)
     flat = (min(e, 1.0) * radius / (18.0 * BULGE * deviation)) ** (1.0 / 3.0)
-    even = 0.5 * e / law.ripple
+    even = 0.5 / law.ripple
     x_hold, c_hold = law.x_hold * radius, law.c_hold * radius * radius
     m0 = 1.0 + e * e
 
@@ -202,13 +199,14 @@ def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density
         m = max(m0 + 2.0 * e * q, 1e-12)
         p = e * _curvature_difference(q, e)
         wanted = bulging * sqrt(abs(p)) / m
-        pieces = max(wanted, flat)
-        smooth = even * abs(sin(a)) * (1.0 + e * q) ** 2 / (m * m)
+        growth = e * abs(sin(a)) / m
+        pieces = max(wanted, growth, flat)
+        smooth = even * growth * (1.0 + e * q) ** 2 / m
         if smooth > pieces:
             pieces = max(pieces, min(smooth, x_hold, c_hold * sqrt(m)))
         return pieces, copysign((wanted / pieces) ** 2, p)
 
-    return density
+    return density, flat
 
 
 def _arc_polar(radius: float, away: float, deviation: float, places, shares):
@@ -220,8 +218,6 @@ def _arc_polar(radius: float, away: float, deviation: float, places, shares):
         radii.append(hypot(away + x, c))
         if away < radius:
             angles.append(a - atan2(away * sin(a), moved + away * cos(a)))
-        elif away == radius and abs(a) == pi:
-            angles.append(0.5 * a)
         else:
             angles.append(atan2(c, away + x))
     return radii, angles

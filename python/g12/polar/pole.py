@@ -2,13 +2,13 @@
 """The pole: the spindle's centre, where the C axis has no angle of its own.
 
 A path that comes closer to the pole than ``reach`` is led through it exactly: in along a radius, a
-turn of the C axis in place, out along another. Every move that touches the pole has an end there,
-at exactly (0, 0).
+turn of the C axis in place, out along another. A line is such a radius nearly; of an arc the part
+beside the pole is replaced that a radius leaves by no more than a fifth of ``reach``.
 """
 
 from __future__ import annotations
 
-from math import copysign, hypot, pi
+from math import asin, cos, hypot, sin, sqrt
 
 from g12.polar.contour import (
     Arc,
@@ -19,89 +19,113 @@ from g12.polar.contour import (
     arc_radius,
     is_move,
     path_length,
-    recentred,
     sweep_between,
 )
 
 POLE = (0.0, 0.0)
+FLAT_SHARE = 0.2  # of the reach: how far the radii that replace an arc may be from it
 
 
 def through_pole(contour: Contour, path: list, reach: float, refused: bool) -> list:
     """Return the path with each move that comes within ``reach`` of the pole led into it."""
     led = []
     for move in path:
-        if is_move(move) and _passes(move, reach):
-            if refused:
-                contour.refuse(
-                    move.line,
-                    "the path of the tool's centre runs through the spindle's centre "
-                    "(POLAR_POLE = refuse)",
-                )
-            led.extend(_led(move, reach))
-        else:
+        parts = _led(move, reach) if is_move(move) else None
+        if parts is None:
             led.append(move)
+        elif refused:
+            contour.refuse(
+                move.line,
+                "the path of the tool's centre runs through the spindle's centre "
+                "(POLAR_POLE = refuse)",
+            )
+        else:
+            led.extend(parts)
     return led
 
 
-def _passes(move: Line | Arc, reach: float) -> bool:
-    """Return whether a move comes within ``reach`` of the pole."""
+def _led(move: Line | Arc, reach: float) -> list | None:
+    """Return what replaces a move that comes within ``reach`` of the pole, None for others."""
     r0, r1 = hypot(move.x0, move.c0), hypot(move.x1, move.c1)
     if r0 + r1 - path_length(move) > 2.0 * reach:
-        return False
-    return r0 <= reach or r1 <= reach or _closest(move, reach) is not None
-
-
-def _closest(move: Line | Arc, reach: float) -> float | None:
-    """Return the fraction of a move at which it passes the pole, if it does within ``reach``."""
+        return None
+    ends = [float(k) for k, radius in enumerate((r0, r1)) if radius <= reach]
     if isinstance(move, Line):
-        dx, dc = move.x1 - move.x0, move.c1 - move.c0
-        square = dx * dx + dc * dc
-        fraction = -(move.x0 * dx + move.c0 * dc) / square
-        distance = abs(move.x0 * dc - move.c0 * dx) / square**0.5
-    else:
-        centre = (move.cx, move.cc)
-        turn = 1 if move.sweep > 0.0 else -1
-        fraction = sweep_between((move.x0, move.c0), POLE, centre, turn) / move.sweep
-        distance = abs(hypot(*centre) - arc_radius(move))
-    return fraction if 0.0 < fraction < 1.0 and distance <= reach else None
-
-
-def _led(move: Line | Arc, reach: float) -> list:
-    """Return the move, or its two halves, with the ends near the pole moved into it."""
-    start, end = _snapped(move.x0, move.c0, reach), _snapped(move.x1, move.c1, reach)
-    fraction = None if POLE in (start, end) else _closest(move, reach)
-    if fraction is None:
-        return _between(move, start, end, move.z0, move.z1, 1.0)
-    z = move.z0 + fraction * (move.z1 - move.z0)
-    return [
-        *_between(move, start, POLE, move.z0, z, fraction),
-        *_between(move, POLE, end, z, move.z1, 1.0 - fraction),
+        return _replaced(move, ends[:1] or _line_passes(move, reach), 1.0, reach)
+    radius = arc_radius(move)
+    half = 2.0 * asin(min(0.5, sqrt(2.0 * FLAT_SHARE * reach / radius))) / abs(move.sweep)
+    inside = [
+        part
+        for part in _arc_passes(move, radius, reach)
+        if all(abs(part - end) > half for end in ends)
     ]
+    return _replaced(move, sorted(ends + inside), half, reach)
 
 
-def _snapped(x: float, c: float, reach: float) -> Point:
-    return POLE if hypot(x, c) <= reach else (x, c)
+def _line_passes(move: Line, reach: float) -> list[float]:
+    """Return the part of a line at which it passes the pole, if it does within ``reach``."""
+    dx, dc = move.x1 - move.x0, move.c1 - move.c0
+    length = hypot(dx, dc)
+    part = -(move.x0 * dx + move.c0 * dc) / (length * length)
+    distance = abs(move.x0 * dc - move.c0 * dx) / length
+    return [part] if 0.0 < part < 1.0 and distance <= reach else []
 
 
-def _between(move: Line | Arc, start: Point, end: Point, z0: float, z1: float, part: float) -> list:
-    """Return ``part`` of a move with new ends: one move, or none where nothing is left of it."""
-    if isinstance(move, Line):
-        if start != end:
-            return [Line(move.line, move.feed, move.offset, *start, z0, *end, z1)]
-    else:
-        sweep = part * move.sweep
-        if start != end or abs(sweep) > pi:
-            return [_arc_between(move, start, end, z0, z1, sweep)]
-    return [] if z0 == z1 else [Plunge(move.line, move.feed, z0, z1)]
+def _arc_passes(move: Arc, radius: float, reach: float) -> list[float]:
+    """Return the part of an arc at which it passes the pole, if it does within ``reach``."""
+    centre, turn = (move.cx, move.cc), 1 if move.sweep > 0.0 else -1
+    if abs(hypot(*centre) - radius) > reach:
+        return []
+    part = sweep_between((move.x0, move.c0), POLE, centre, turn) / move.sweep
+    return [part] if part < 1.0 else []
 
 
-def _arc_between(move: Arc, start: Point, end: Point, z0: float, z1: float, sweep: float) -> Arc:
-    """Return an arc with new ends, its centre moved as little as that needs."""
-    centre = (move.cx, move.cc)
-    if start != end:
-        centre = recentred(start, end, centre)
-        exact = sweep_between(start, end, centre, 1 if sweep > 0.0 else -1)
-        if abs(exact - sweep) > pi:
-            exact += copysign(2 * pi, sweep - exact)
-        sweep = exact
-    return Arc(move.line, move.feed, move.offset, *start, z0, *end, z1, *centre, sweep)
+def _replaced(move: Line | Arc, passes: list[float], half: float, reach: float) -> list | None:
+    """Return the move with its parts up to ``half`` beside each pass replaced by radii."""
+    if not passes:
+        return None
+    moves, done = [], 0.0
+    for part in passes:
+        if part - half > done:
+            moves.append(_part(move, done, part - half))
+            done = part - half
+        moves.extend(_radius(move, done, part, reach))
+        done = min(part + half, 1.0)
+        moves.extend(_radius(move, done, part, reach, outwards=True))
+    if done < 1.0:
+        moves.append(_part(move, done, 1.0))
+    return moves
+
+
+def _radius(move: Line | Arc, part: float, at_pole: float, reach: float, outwards=False) -> list:
+    """Return the radius between a place of a move and the pole: nothing where it is there."""
+    place, height, pole_height = _place(move, part), _height(move, part), _height(move, at_pole)
+    ends = (*place, height, *POLE, pole_height)
+    if outwards:
+        ends = (*POLE, pole_height, *place, height)
+    if hypot(*place) > reach:
+        return [Line(move.line, move.feed, move.offset, *ends)]
+    return [] if height == pole_height else [Plunge(move.line, move.feed, ends[2], ends[5])]
+
+
+def _place(move: Line | Arc, part: float) -> Point:
+    """Return the place at a part of a move."""
+    if part in (0.0, 1.0):
+        return (move.x1, move.c1) if part else (move.x0, move.c0)
+    angle = part * move.sweep
+    x, c = move.x0 - move.cx, move.c0 - move.cc
+    return (
+        move.cx + x * cos(angle) - c * sin(angle),
+        move.cc + x * sin(angle) + c * cos(angle),
+    )
+
+
+def _height(move: Line | Arc, part: float) -> float:
+    return move.z0 + part * (move.z1 - move.z0)
+
+
+def _part(move: Arc, first: float, last: float) -> Arc:
+    """Return an arc from one part of another to a later one."""
+    places = (*_place(move, first), _height(move, first), *_place(move, last), _height(move, last))
+    sweep = (last - first) * move.sweep
+    return Arc(move.line, move.feed, move.offset, *places, move.cx, move.cc, sweep)

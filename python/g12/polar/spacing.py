@@ -51,8 +51,9 @@ class Stretch(NamedTuple):
 class _Part(NamedTuple):
     """A part of an element between two cuts, and one step after the other along it.
 
-    ``places`` begin at the end nearer to the pole, and end beyond the other; ``count`` pieces would
-    do. ``losses`` are those at the start and at the end of the part, ``cut`` is its start.
+    ``places`` begin at the end nearer to the pole, and end beyond the other; ``shares`` are those
+    between two of them. ``count`` pieces would do. ``losses`` are those at the start and at the end
+    of the part, ``cut`` is its start.
     """
 
     cut: float
@@ -99,8 +100,8 @@ def _parts(stretch: Stretch, density: Density) -> list[_Part]:
 def _part(a: float, b: float, losses: tuple[float, float], stretch: Stretch, density) -> _Part:
     """Return the part between two cuts, measured in steps from its end nearer to the pole.
 
-    The step in front of one tells where its middle will be. Near the pole the steps are shortest:
-    measured from there they grow, and the middle is never taken too far out.
+    The step in front of one tells where its middle will be, unless they turn out too different.
+    Near the pole the steps are shortest: measured from there they grow, none is skipped.
     """
     backwards = stretch.nearness(b) < stretch.nearness(a)
     place, far = (b, a) if backwards else (a, b)
@@ -109,6 +110,8 @@ def _part(a: float, b: float, losses: tuple[float, float], stretch: Stretch, den
     step = unit / density(place)[0]
     while (far - place) * unit > 0.0:
         pieces, share = density(place + 0.5 * step)
+        if not 0.8 < step * pieces / unit < 1.25:
+            pieces, share = density(place + 0.5 * unit / pieces)
         step = unit / pieces
         place += step
         places.append(place)
@@ -123,11 +126,14 @@ def _inner_ends(part: _Part, pieces: int, length: float, fine: int) -> list[tupl
     ``length`` is that of each piece, in pieces of full length; the deviation goes with its square.
     """
     table, square = part.places, length * length
+    shares = [part.shares[0], *part.shares, part.shares[-1]]
     near, far = part.losses[::-1] if part.backwards else part.losses
     ends = []
     for k in range(near >= 0.0, pieces + (far < 0.0)):
         steps = fine * length * (k - near)
         j = int(steps)
         place = table[j] + (steps - j) * (table[j + 1] - table[j])
-        ends.append((place, square * part.shares[j]))
+        middle = int(steps + 0.5)
+        share = shares[middle] + (steps + 0.5 - middle) * (shares[middle + 1] - shares[middle])
+        ends.append((place, square * share))
     return ends[::-1] if part.backwards else ends

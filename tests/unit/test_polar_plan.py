@@ -1,0 +1,366 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Polar planning, whole sections: the contour is cut, at its feed, in as few pieces as can be."""
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+
+from g12.errors import Refusal
+from g12.polar import Run, Settings, plan, resume
+from g12.polar.contour import Contour
+from plane import (
+    SAGITTA,
+    Round,
+    Straight,
+    cuts,
+    distance,
+    distance_from_path,
+    path,
+    programmed,
+)
+
+TOLERANCE = 0.005
+LATHE = Settings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
+EXACT = LATHE._replace(least_x=1e-9)  # nothing is handed on, so that all of the deviation is seen
+DRIVEN = EXACT._replace(x_acceleration=1e-3, c_acceleration=1e-3)  # no pieces for an even speed
+
+coordinate = st.floats(-30.0, 30.0) | st.sampled_from([0.0, 1e-9, 0.001, -0.004, 0.02, 1.0, -7.0])
+point = st.builds(complex, coordinate, coordinate)
+sweep = st.floats(0.05, 6.28) | st.sampled_from([math.pi, 2 * math.pi])
+arc = st.tuples(point, st.builds(math.copysign, sweep, st.sampled_from([1, -1])))
+
+
+@st.composite
+def drawings(draw, most=5):
+    """Shapes one after the other, from X above zero on: lines to points, arcs about centres."""
+    at = complex(draw(st.floats(0.1, 30.0)), 0.0)
+    shapes = []
+    for element in draw(st.lists(point | arc, min_size=1, max_size=most)):
+        shape = Straight(at, element) if isinstance(element, complex) else Round(at, *element)
+        assume(shape.length > 0.01 and (isinstance(element, complex) or shape.radius > 0.02))
+        shapes.append(shape)
+        at = shape.end
+    return shapes
+
+
+def runs(planned):
+    return [step for step in planned.steps if isinstance(step, Run)]
+
+
+def number_of_pieces(planned):
+    return sum(len(run.pieces) for run in runs(planned))
+
+
+# What is cut is the contour.
+
+
+@settings(max_examples=150, deadline=None)
+@given(drawings(), st.floats(-400.0, 400.0))
+@example([Straight(10 + 0j, -10 + 0j)], 0.0)
+@example([Straight(10 + 0j, -10 + 0.004j)], 30.0)
+@example([Round(10 + 0j, 5 + 0j, 2 * math.pi)], 0.0)
+@example([Round(10 + 0j, 5.0008 + 0j, -2 * math.pi)], 0.0)
+@example(
+    [Straight(5 + 0j, 0j), Straight(0j, 3j), Round(3j, 1.5j, math.pi), Straight(0j, 4 + 4j)], 0.0
+)
+def test_stays_within_the_tolerance_of_the_contour_both_ways(shapes, c):
+    contour = programmed(shapes)
+    made = path(cuts(contour, plan(contour, EXACT, c=c), c))
+    assert distance(made, shapes).max() <= TOLERANCE + 1e-9
+    drawn = np.concatenate([shape.points(40) for shape in shapes])
+    assert distance_from_path(drawn, made).max() <= TOLERANCE + SAGITTA
+
+
+@settings(max_examples=80, deadline=None)
+@given(drawings(), st.sampled_from([0.0005, 0.002, 0.02]))
+def test_keeps_any_tolerance(shapes, tolerance):
+    contour = programmed(shapes)
+    made = path(cuts(contour, plan(contour, EXACT._replace(tolerance=tolerance), c=0.0)))
+    assert distance(made, shapes).max() <= tolerance + 1e-9
+
+
+@settings(max_examples=80, deadline=None)
+@given(drawings())
+def test_moves_x_by_the_least_step_or_not_at_all(shapes):
+    contour = programmed(shapes)
+    made = cuts(contour, plan(contour, LATHE, c=0.0))
+    for cut in made:
+        step = abs(cut.radius[1] - cut.radius[0])
+        assert step == 0.0 or step >= LATHE.least_x or abs(cut.angle[1] - cut.angle[0]) < 1e-12
+    assert distance(path(made), shapes).max() <= TOLERANCE + LATHE.least_x
+    assert made[-1].radius[1] == pytest.approx(abs(shapes[-1].end), abs=0.51 * TOLERANCE)
+
+
+@settings(max_examples=80, deadline=None)
+@given(drawings())
+def test_turns_without_a_jump_and_never_to_negative_x(shapes):
+    contour = programmed(shapes)
+    made = cuts(contour, plan(contour, EXACT, c=0.0))
+    assert all(min(cut.radius) >= 0.0 for cut in made)
+    length = sum(cut.length for cut in made)
+    assert length == pytest.approx(sum(shape.length for shape in shapes), rel=5e-3, abs=0.05)
+
+
+def test_winds_on_turn_after_turn():
+    circle = Round(12 + 0j, 2 + 0j, 2 * math.pi)
+    contour = programmed([circle] * 50)
+    assert plan(contour, LATHE, c=90.0).place.c == pytest.approx(90.0 + 50 * 360.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("by_radius", [False, True])
+def test_arcs_by_centre_and_by_radius_are_the_same(by_radius):
+    quarter = Round(20 + 0j, 10 + 0j, math.pi / 2)
+    more = Round(quarter.end, 10 + 20j, 4.0)
+    contour = programmed([quarter, more], by_radius=by_radius)
+    made = path(cuts(contour, plan(contour, LATHE, c=0.0)))
+    assert distance(made, [quarter, more]).max() <= TOLERANCE
+
+
+# At its feed.
+
+
+def is_small(shape):
+    """Say whether the tolerance alone makes more than half a percent of an arc."""
+    return isinstance(shape, Round) and shape.radius < 200 * TOLERANCE
+
+
+@settings(max_examples=100, deadline=None)
+@given(drawings(), st.floats(20.0, 2000.0))
+def test_every_piece_lasts_as_long_as_its_path_at_the_feed(shapes, feed):
+    contour = programmed(shapes, feed=feed)
+    for cut in cuts(contour, plan(contour, EXACT, c=0.0)):
+        if min(cut.radius) > 0.5 and not is_small(shapes[cut.line - 1]):
+            assert 60.0 * cut.length / cut.seconds == pytest.approx(feed, rel=0.01)
+
+
+@settings(max_examples=100, deadline=None)
+@given(drawings())
+def test_the_feed_is_even_inside_a_piece_where_the_machine_can_hold_it(shapes):
+    contour = programmed(shapes, feed=100.0)
+    for cut in cuts(contour, plan(contour, EXACT, c=0.0)):
+        if min(cut.radius) > 2.0 and not is_small(shapes[cut.line - 1]):
+            assert all(speed == pytest.approx(100.0, rel=0.02) for speed in cut.speeds)
+
+
+def test_a_helix_has_its_feed_in_space():
+    contour = Contour(10.0, 0.0)
+    contour.arc(1, z=-20.0, i=-10.0, line=1, feed=300.0)
+    contour.line(20.0, 0.0, -22.0, line=2, feed=300.0)
+    planned = plan(contour, LATHE, c=0.0)
+    assert [run.axes for run in runs(planned)] == ["XCZ", "XCZ"]
+    for cut in cuts(contour, planned):
+        assert 60.0 * cut.length / cut.seconds == pytest.approx(300.0, rel=0.01)
+    assert planned.place.z == -22.0
+
+
+# In as few pieces as can be.
+
+
+def fewest(shape, bulge):
+    """Count the longest pieces with both ends on the shape that bulge by no more than that."""
+    points, start, count = shape.points(4001), 0, 0
+    radius, angle = abs(points), np.unwrap(np.angle(points))
+    while start < 4000:
+        low, high = start + 1, 4000
+        while low < high:
+            middle = (low + high + 1) // 2
+            part = np.linspace(0.0, 1.0, 41)
+            spiral = (radius[start] + (radius[middle] - radius[start]) * part) * np.exp(
+                1j * (angle[start] + (angle[middle] - angle[start]) * part)
+            )
+            if shape.distance(spiral).max() <= bulge:
+                low = middle
+            else:
+                high = middle - 1
+        start, count = low, count + 1
+    return count
+
+
+@settings(max_examples=40, deadline=None)
+@given(drawings(most=1))
+def test_no_splitting_needs_many_pieces_less(shapes):
+    """No path within the tolerance on both sides has pieces that bulge by more than twice of it.
+
+    Three quarters of that are left by the blending, the share of the tolerance takes the rest.
+    """
+    assume(distance(np.array([0j]), shapes)[0] > 0.5)
+    planned = plan(programmed(shapes), DRIVEN, c=0.0)
+    assert number_of_pieces(planned) <= 1.21 * fewest(shapes[0], 2 * TOLERANCE) + 5
+
+
+def bulge(x):
+    return x[len(x) // 2] - (x[0] + x[-1]) / 2
+
+
+def test_pieces_of_a_line_share_the_deviation():
+    side = Straight(20 - 12j, 20 + 12j)
+    contour = programmed([Straight(abs(side.start) + 0j, side.start), side])
+    made = [cut for cut in cuts(contour, plan(contour, DRIVEN, c=0.0)) if cut.line == 2]
+    bulges = [bulge(cut.points.real) for cut in made[1:-1]]
+    assert max(bulges) / min(bulges) < 1.1
+
+
+@pytest.mark.parametrize(("feed", "most"), [(1000.0, 168), (250.0, 168)])
+def test_hexagon_needs_fewer_pieces_than_the_longest_piece_that_fits(feed, most):
+    """27 mm across flats, 12 mm cutter: the longest pieces of half the deviation are 246."""
+    planned = plan(hexagon(feed), LATHE, c=0.0)
+    cut = [run for run in runs(planned) if 4 <= run.line <= 10]
+    assert sum(len(run.pieces) for run in cut) <= most
+
+
+def hexagon(feed, flat=13.5, tool=6.0):
+    """From the middle of a flat once round, clockwise, tool on the left."""
+    contour = Contour(40.0, 5.0)
+    corners = [
+        cmath.rect(flat / math.cos(math.pi / 6), math.pi / 6 - k * math.pi / 3) for k in range(7)
+    ]
+    contour.line(30.0, 12.0, line=1, feed=feed)
+    contour.compensation(41, tool, line=2)
+    contour.line(flat, 0.0, line=2, feed=feed)
+    contour.line(z=-1.0, line=3, feed=feed)
+    for line, corner in enumerate(corners[1:], 4):
+        contour.line(corner.real, corner.imag, line=line, feed=feed)
+    contour.line(flat, 0.0, line=10, feed=feed)
+    contour.compensation(40, 0.0, line=11)
+    contour.line(30.0, -12.0, line=11, feed=feed)
+    contour.close(line=12)
+    return contour
+
+
+def test_a_circle_about_the_spindle_is_one_piece():
+    contour = programmed([Round(10 + 0j, 0j, -2 * math.pi)], feed=300.0)
+    (run,) = runs(plan(contour, LATHE, c=15.0))
+    ((x, c, z, feed),) = run.pieces
+    assert (x, z) == (10.0, 0.0)
+    assert c == pytest.approx(-345.0)
+    assert feed == pytest.approx(300.0 / 10.0 * 180.0 / math.pi)
+
+
+def test_a_radius_is_one_piece():
+    contour = programmed([Straight(10 + 0j, 25 + 0j)], feed=300.0)
+    assert runs(plan(contour, LATHE, c=0.0)) == [Run(1, "XC", [(25.0, 0.0, 0.0, 300.0)], True)]
+
+
+def test_repeated_points_are_harmless():
+    contour = Contour(10.0, 0.0)
+    for line, x in enumerate([10.0, 20.0, 20.0, 20.0], 1):
+        contour.line(x, 0.0, line=line, feed=100.0)
+    assert [run.line for run in runs(plan(contour, LATHE, c=0.0))] == [2]
+
+
+# The pole.
+
+
+def test_through_the_pole_c_turns_in_place_as_fast_as_it_may():
+    contour = programmed([Straight(10 + 0j, -8 + 0j)], feed=300.0)
+    assert runs(plan(contour, LATHE, c=0.0)) == [
+        Run(1, "XC", [(0.0, 0.0, 0.0, 300.0)], True),
+        Run(1, "XC", [(0.0, -180.0, 0.0, 21600.0)], True),
+        Run(1, "XC", [(8.0, -180.0, 0.0, 300.0)], True),
+    ]
+
+
+def test_a_slot_through_the_pole_does_not_wind_c_up():
+    slot = [Straight(10 + 0j, -10 + 0j), Straight(-10 + 0j, 10 + 0j)]
+    assert plan(programmed(slot * 5), LATHE, c=45.0).place.c == 45.0
+
+
+def test_turns_the_shorter_way_at_the_pole():
+    bent = [Straight(10 + 0j, 0j), Straight(0j, 0 - 5j)]
+    planned = plan(programmed(bent), LATHE, c=0.0)
+    assert runs(planned)[1].pieces == [(0.0, -90.0, 0.0, 21600.0)]
+
+
+def test_reverses_at_the_pole_without_a_turn():
+    bent = [Straight(10 + 0j, 0j), Straight(0j, 5 + 0j)]
+    planned = plan(programmed(bent), LATHE, c=0.0)
+    assert [run.pieces[-1][:2] for run in runs(planned)] == [(0.0, 0.0), (5.0, 0.0)]
+
+
+def test_a_circle_through_the_pole_turns_half_a_turn_there():
+    planned = plan(programmed([Round(10 + 0j, 5 + 0j, 2 * math.pi)]), LATHE, c=0.0)
+    (turn,) = [run for run in runs(planned) if run.pieces[0][3] == LATHE.c_speed]
+    half, last = runs(planned).index(turn), runs(planned)[-1]
+    assert runs(planned)[half - 1].pieces[-1][:2] == pytest.approx((0.0, 90.0), abs=1.0)
+    assert turn.pieces[0][1] - runs(planned)[half - 1].pieces[-1][1] == pytest.approx(
+        -180.0, abs=2.0
+    )
+    assert last.pieces[-1][:2] == pytest.approx((10.0, 0.0))
+
+
+@pytest.mark.parametrize("shape", [Straight(9 + 0j, -9 + 0.003j), Round(9 + 0j, 4.501 + 0j, 5.0)])
+def test_a_path_through_the_pole_is_refused_on_demand(shape):
+    careful = LATHE._replace(pole_refused=True)
+    with pytest.raises(
+        Refusal, match=r"^G12\.1 line 1: .*spindle's centre \(POLAR_POLE = refuse\)$"
+    ):
+        plan(programmed([shape]), careful, c=0.0)
+
+
+def test_a_path_beside_the_pole_is_not_refused():
+    careful = LATHE._replace(pole_refused=True)
+    shape = Straight(9 + 0j, -9 + 0.2j)
+    contour = programmed([shape])
+    assert distance(path(cuts(contour, plan(contour, careful, c=0.0))), [shape]).max() < TOLERANCE
+
+
+# Corners, marks, sections cut in two.
+
+
+def stopping_lines(shapes, feed):
+    return [run.line for run in runs(plan(programmed(shapes, feed=feed), LATHE, c=0.0)) if run.stop]
+
+
+CORNER = [Straight(20 + 0j, 20 + 5j), Straight(20 + 5j, 30 + 5j)]
+SMOOTH = [Round(20 + 0j, 15 + 0j, math.pi / 2), Straight(15 + 5j, 0 + 5j)]
+
+
+@pytest.mark.parametrize(
+    ("shapes", "feed", "lines"),
+    [(CORNER, 1000.0, [1, 2]), (CORNER, 60.0, [2]), (SMOOTH, 1000.0, [2])],
+)
+def test_stops_where_blending_would_cut_the_corner(shapes, feed, lines):
+    assert stopping_lines(shapes, feed) == lines
+
+
+def test_marks_keep_their_place_and_pieces_their_lines():
+    contour = Contour(10.0, 2.0)
+    contour.mark("M8", line=1)
+    contour.line(12.0, 0.0, line=2, feed=100.0)
+    contour.line(z=-1.0, line=3, feed=50.0)
+    contour.mark("S500", line=4)
+    contour.line(12.0, 3.0, line=5, feed=100.0)
+    contour.mark("M9", line=6)
+    steps = plan(contour, LATHE, c=0.0).steps
+    assert [step.line if isinstance(step, Run) else step for step in steps] == [
+        "M8",
+        2,
+        3,
+        "S500",
+        5,
+        "M9",
+    ]
+    assert steps[2] == Run(3, "Z", [(12.0, 0.0, -1.0, 50.0)], False)
+
+
+def test_goes_on_after_a_block_that_waits_for_the_machine():
+    whole = [Straight(20 + 0j, 5 + 10j), Round(5 + 10j, 0j, 3.0)]
+    first = programmed(whole[:1])
+    planned = plan(first, LATHE, c=30.0)
+    second = resume(first, planned)
+    assert (second.x, second.c) == (5.0, 10.0)
+    end = whole[1].end
+    second.arc(1, end.real, end.imag, i=-5.0, j=-10.0, line=2, feed=250.0)
+    after = plan(second, LATHE, c=30.0)
+    assert distance(path(cuts(second, after, 30.0)), whole[1:]).max() <= TOLERANCE
+    assert after.place.c == pytest.approx(plan(programmed(whole), LATHE, c=30.0).place.c)
+
+
+def test_a_plan_without_motion_is_its_marks():
+    contour = Contour(10.0, 0.0)
+    contour.mark("M8", line=1)
+    assert plan(contour, LATHE, c=12.0).steps == ["M8"]
