@@ -66,7 +66,13 @@ def test_the_offset_s_sign_reduces_or_enlarges(metric, offset, radius):
     assert proof.radii(cut(metric, f"G13 I50 {offset}").moves) == pytest.approx([radius])
 
 
-def test_the_sample_program(metric):
+def test_the_sample_circle(metric):
+    traced = metric.trace(PROGRAMS / "mitsubishi" / "circle.ngc")
+    assert traced.error is None
+    assert proof.full_circles(traced.moves) == [pytest.approx((0, 0, -5, 40, -1))]
+
+
+def test_the_sample_of_every_plane(metric):
     traced = metric.trace(PROGRAMS / "mitsubishi" / "planes.ngc")
     assert traced.error is None
     circles = [move for move in traced.moves if move.kind == "arc"]
