@@ -268,7 +268,7 @@ def test_nothing_is_left_when_the_runner_is_killed():
 
 
 def test_a_machine_that_does_not_start_says_why():
-    with pytest.raises(StartupError, match="CANNOT FIND FILE FOR:nothing.hal"):
+    with pytest.raises(StartupError, match=r"CANNOT FIND FILE FOR:nothing\.hal"):
         Machine(SIM / "mill_mm.ini", overrides={"HAL": {"HALFILE": "nothing.hal"}})
 
 

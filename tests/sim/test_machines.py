@@ -86,7 +86,7 @@ def test_linuxcnc_runs_the_sample_if_no_program_is_named():
 
 @pytest.fixture(scope="module")
 def screen():
-    """An X server on a display of its own, with a picture of it on demand."""
+    """Yield the name of an X display of our own."""
     if not shutil.which("Xvfb"):
         pytest.skip("Xvfb is not installed")
     with subprocess.Popen(
