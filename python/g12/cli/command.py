@@ -80,7 +80,11 @@ def checked_ini(program: Path, ini: Path, tools: Path | None) -> Ini:
 
 def traced(program: Path, ini: Path, tools: Tools = None) -> Trace:
     """Return the trace of a program that comes to its end, or raise ProgramError."""
-    result = trace(program, ini, tools=tools)
+    return ended(program, trace(program, ini, tools=tools))
+
+
+def ended(program: Path, result: Trace) -> Trace:
+    """Return a trace that came to its end, or raise ProgramError."""
     if result.error:
         raise ProgramError(f"{program}:{result.error.line}: {result.error.text}")
     return result

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from g12.cli import pictures
 from g12.cli.motion import Worst, worst_of
 from g12.cli.part import paths
-from g12.cli.pictures import Unit
 from g12.cli.scene import Scene
+from g12.cli.units import Unit
 
 SIZE = 1.9  # inches, the window's sides
 NEIGHBOURS = 3  # moves before and after that are drawn

@@ -17,8 +17,10 @@ from g12.cli.deviation_picture import SIZE, draw_window
 from g12.cli.motion import limits_of
 from g12.cli.plan_view import bounds_of, draw_plan, entries, levels_of, mark_worst
 from g12.cli.scene import Scene
+from g12.cli.units import plain
 
 WIDTH, HEIGHT = 11.6, 7.9
+HIGHER = 0.75  # with the window on the largest deviation
 LEFT, TOP = pictures.MARGIN, 0.95
 FACE = 5.0  # the side of the face's view
 PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
@@ -45,11 +47,12 @@ class History(NamedTuple):
 def draw_face(scene: Scene) -> Figure:
     """Return the picture of a lathe program with C."""
     levels = levels_of(scene)
-    figure = pictures.new_figure(WIDTH, HEIGHT, scene.title, scene.subtitle)
-    face = pictures.add_axes(figure, LEFT, HEIGHT - TOP - FACE, FACE, FACE)
+    height = HEIGHT if scene.real is None else HEIGHT + HIGHER
+    figure = pictures.new_figure(WIDTH, height, scene.title, scene.subtitle)
+    face = pictures.add_axes(figure, LEFT, height - TOP - FACE, FACE, FACE)
     frame(face, scene, levels)
     draw_plan(face, scene, levels)
-    under = (HEIGHT - TOP - FACE - 0.5) / HEIGHT
+    under = (height - TOP - FACE - 0.5) / height
     figure.legend(
         handles=entries(scene, levels),
         loc="upper left",
@@ -93,7 +96,7 @@ def draw_panels(figure: Figure, scene: Scene) -> None:
     pictures.caption(c, "C, degrees")
     c_speed.plot(history.time, history.c_speed, drawstyle="steps-pre", **style)
     limit = limits_of(scene.ini).axes[C]
-    draw_limit(c_speed, limit, f"limit {pictures.plain(limit, 1)}")
+    draw_limit(c_speed, limit, f"limit {plain(limit, 1)}")
     pictures.caption(c_speed, "Speed of C, degrees/s")
     draw_feed(feed, history, scene, style)
     pictures.caption(feed, f"Feed along the part, {name}/min")
@@ -106,8 +109,10 @@ def draw_panels(figure: Figure, scene: Scene) -> None:
 
 def panel_axes(figure: Figure, row: int) -> Axes:
     """Return the axes of one panel over time, from the top."""
-    bottom = HEIGHT - TOP - PANEL - row * (PANEL + GAP)
-    return pictures.add_axes(figure, PANELS_LEFT, bottom, PANELS_WIDTH, PANEL)
+    height = figure.get_figheight()
+    panel = PANEL + (height - HEIGHT) / 4
+    bottom = height - TOP - panel - row * (panel + GAP)
+    return pictures.add_axes(figure, PANELS_LEFT, bottom, PANELS_WIDTH, panel)
 
 
 def programmed_history(scene: Scene) -> History:

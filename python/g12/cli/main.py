@@ -16,6 +16,8 @@ COMMANDS = {
     "run": ("g12.cli.run", "run a program on a headless LinuxCNC"),
     "dynapath": ("g12.cli.dynapath", "print Dynapath circle mill events as a LinuxCNC program"),
     "plot": ("g12.cli.plot", "draw a picture of what a program cuts"),
+    "verify": ("g12.cli.verify", "prove that pockets and polar sections come out as programmed"),
+    "regress": ("g12.cli.regress", "keep what programs do, and tell what changed"),
     "trace": ("g12.cli.moves", "list the moves of a program"),
 }
 

@@ -15,7 +15,6 @@ from shapely.geometry import box
 
 from g12.cli import pictures
 from g12.cli.deviation_picture import SIZE, draw_window
-from g12.cli.pictures import Unit, plain
 from g12.cli.plan_view import (
     Level,
     bounds_of,
@@ -27,6 +26,7 @@ from g12.cli.plan_view import (
     mark_worst,
 )
 from g12.cli.scene import Scene
+from g12.cli.units import Unit, plain
 
 PAGE = 11.0  # wide
 WIDE = 2.0  # plans wider than this times their height have the legend below

@@ -16,7 +16,7 @@ import numpy as np
 
 from g12.cli.headless import Samples
 from g12.cli.ini import Ini
-from g12.cli.part import CHORD_ERROR, Part
+from g12.cli.part import CHORD_ERROR, Part, plane_axes
 from g12.cli.trace import AXES, Move, mm_per_unit
 
 LINEAR = [AXES.index(letter) for letter in "XYZUVW"]
@@ -58,16 +58,24 @@ class Track:
         """Part points (n, 3) as the axes stand, tool length offset included."""
         return self.part.points(self.positions + self.offsets)
 
+    def vertices(self, index: int) -> slice:
+        """Return the vertices of a move, its start included."""
+        first, last = np.searchsorted(self.move, (index, index + 1))
+        return slice(max(0, first - (1 if index else 0)), last)
+
     def part_length(self, index: int) -> float:
         """Return the length along the part of a move, mm."""
-        first, last = np.searchsorted(self.move, (index, index + 1))
-        points = self.points[max(0, first - 1) : last]
+        points = self.points[self.vertices(index)]
         return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
+    def seconds(self, index: int) -> float:
+        """Return the time of a move."""
+        time = self.time[self.vertices(index)]
+        return float(time[-1] - time[0])
 
     def part_feed(self, index: int) -> float:
         """Return the speed along the part of a move, mm/min."""
-        first, last = np.searchsorted(self.move, (index, index + 1))
-        seconds = self.time[last - 1] - self.time[max(0, first - 1)]
+        seconds = self.seconds(index)
         return self.part_length(index) / seconds * 60.0 if seconds else 0.0
 
 
@@ -90,6 +98,10 @@ class Followed:
     def part_speed(self) -> np.ndarray:
         """Return the speed along the part, mm/s, of each sample."""
         return speed(self.points, self.time)
+
+    def largest(self, moves: Sequence[int]) -> float:
+        """Return the largest deviation from some moves, given by their indices."""
+        return float(self.deviation[np.isin(self.move, moves)].max(initial=0.0))
 
     def worst(self, among: np.ndarray) -> int:
         """Return the index of the largest deviation among the samples of a mask."""
@@ -186,8 +198,8 @@ def track(
     )
 
 
-def follow(path: Track, samples: Samples, unit: float) -> Followed:
-    """Lay the samples in motion on the path; ``unit`` is one machine unit in mm."""
+def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) -> Followed:
+    """Lay the samples in motion on the path of moves; ``unit`` is one machine unit in mm."""
     moving = samples.moving()
     axes = _positions(samples, unit)[moving]
     segment = _segments(path.axis_points, path.part.points(axes))
@@ -195,10 +207,39 @@ def follow(path: Track, samples: Samples, unit: float) -> Followed:
     following = np.minimum(segment + 1, last)
     positions = axes - path.offsets[following]
     points = path.part.points(positions)
-    nearest, deviation = _nearest(path.points, points, segment)
-    return Followed(
-        samples.time[moving], positions, points, path.move[following], nearest, deviation
-    )
+    nearest = _nearest(path.points, points, segment)
+    move = path.move[following]
+    for index in np.unique(move) if not path.part.turning else ():
+        if is_plain_arc(moves[index]):
+            own = move == index
+            nearest[own] = on_arc(moves[index], points[own], nearest[own])
+    deviation = np.linalg.norm(points - nearest, axis=1)
+    return Followed(samples.time[moving], positions, points, move, nearest, deviation)
+
+
+def is_plain_arc(move: Move) -> bool:
+    """Tell whether a move is an arc of one radius in its plane."""
+    if move.kind != "arc":
+        return False
+    ends = (np.array([move.start[:3], move.end[:3]]) - move.centre) @ plane_axes(move).T
+    radius = np.hypot(ends[:, 0], ends[:, 1])
+    return bool(abs(radius[1] - radius[0]) < 1e-6 and abs(ends[1, 2] - ends[0, 2]) < 1e-6)
+
+
+def on_arc(move: Move, points: np.ndarray, nearest: np.ndarray) -> np.ndarray:
+    """Return the points of an arc next to points, given the nearest ones of its chords.
+
+    A nearest point that is an end of the arc stays.
+    """
+    axes = plane_axes(move)
+    local = (points - move.centre) @ axes.T
+    radius = np.maximum(np.hypot(local[:, 0], local[:, 1]), 1e-9)
+    local[:, :2] *= (move.radius / radius)[:, None]
+    local[:, 2] = 0.0
+    exact = local @ axes + move.centre
+    ends = np.array([move.start[:3], move.end[:3]])
+    at_end = np.min(np.linalg.norm(nearest[:, None] - ends, axis=2), axis=1) < 1e-9
+    return np.where(at_end[:, None], nearest, exact)
 
 
 def speed(points: np.ndarray, time: np.ndarray) -> np.ndarray:
@@ -209,7 +250,7 @@ def speed(points: np.ndarray, time: np.ndarray) -> np.ndarray:
 
 
 def _positions(samples: Samples, unit: float) -> np.ndarray:
-    """Axis positions (n, 9) of samples, mm and degrees."""
+    """Return axis positions (n, 9) of samples, mm and degrees."""
     positions = np.zeros((len(samples.time), len(AXES)))
     for letter, values in samples.axes.items():
         index = AXES.index(letter)
@@ -218,7 +259,7 @@ def _positions(samples: Samples, unit: float) -> np.ndarray:
 
 
 def _segments(path: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Index of the segment of the path that each point is on, never going back.
+    """Return the index of the segment of the path that each point is on, never going back.
 
     The nearest segment is looked for only as far ahead as the tool can have come since the
     last sample: a path may cross or repeat itself, but the tool cannot jump along it.
@@ -239,22 +280,22 @@ def _segments(path: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def _project(path: np.ndarray, window: slice, point: np.ndarray):
-    """Nearest points of some segments to one point, and the distances."""
+    """Return nearest points of some segments to one point, and the distances."""
     start = path[window]
     along = path[window.start + 1 : window.stop + 1] - start
     return _nearest_on(start[: len(along)], along, point)
 
 
 def _nearest_on(start: np.ndarray, along: np.ndarray, point: np.ndarray):
-    """Nearest points on segments and their distances, row by row."""
+    """Return nearest points on segments and their distances, row by row."""
     square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
     share = np.clip(np.einsum("ij,ij->i", point - start, along) / square, 0.0, 1.0)
     near = start + along * share[:, None]
     return near, np.linalg.norm(point - near, axis=1)
 
 
-def _nearest(path: np.ndarray, points: np.ndarray, segment: np.ndarray):
-    """Nearest point and distance of each point to the path close to its segment."""
+def _nearest(path: np.ndarray, points: np.ndarray, segment: np.ndarray) -> np.ndarray:
+    """Return the nearest point of the path to each point, close to its segment."""
     last = max(0, len(path) - 2)
     near, distance = points.copy(), np.full(len(points), np.inf)
     for shift in (-2, -1, 0, 1, 2):
@@ -263,4 +304,4 @@ def _nearest(path: np.ndarray, points: np.ndarray, segment: np.ndarray):
         found, away = _nearest_on(path[index], path[following] - path[index], points)
         better = away < distance
         near[better], distance[better] = found[better], away[better]
-    return near, distance
+    return near

@@ -17,12 +17,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from shapely.geometry import LineString, MultiPoint, Point
+from shapely.geometry import LineString, Point
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.cli.ini import Ini
-from g12.cli.trace import Move, Tools, mm_per_unit
+from g12.cli.trace import THIRD_AXIS, Move, Tools, mm_per_unit
 
 CHORD_ERROR = 2e-4  # of the polylines that stand for curves
 LONGEST_ARC_CHORD = math.radians(10)
@@ -124,6 +124,13 @@ def is_sideways(move: Move) -> bool:
     return any(abs(move.end[axis] - move.start[axis]) > 1e-6 for axis in (X, Y, C))
 
 
+def plane_axes(move: Move) -> np.ndarray:
+    """Return the directions of a move's plane: first, second and third axis, as rows."""
+    cos, sin = np.cos(np.radians(move.rotation)), np.sin(np.radians(move.rotation))
+    turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return np.roll(turned, 2 - THIRD_AXIS[move.plane], axis=0)
+
+
 def tool_diameters(ini: Ini, tools: Tools = None) -> dict[int, float]:
     """Return each tool's diameter in mm: the INI's table, another file, or a mapping.
 
@@ -142,8 +149,3 @@ def read_tool_table(path: Path) -> dict[int, float]:
     entries = filter(None, map(TOOL_LINE.match, lines))
     diameters = ((int(entry.group(1)), DIAMETER.search(entry.group(2))) for entry in entries)
     return {number: float(found.group(1)) if found else 0.0 for number, found in diameters}
-
-
-def extent(points: np.ndarray) -> tuple[float, float, float, float]:
-    """Return least X, least Y, greatest X, greatest Y of points."""
-    return MultiPoint(points[:, :2]).bounds

@@ -6,7 +6,6 @@ Lengths given to the drawing functions are in the units shown; sizes of figures 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -72,27 +71,6 @@ MARGIN = 0.75  # inches left of titles and axes
 SAVE = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
-class Unit(NamedTuple):
-    """The unit of length shown: its name, its size in mm and the decimals worth showing."""
-
-    name: str
-    mm: float
-    decimals: int
-
-    def text(self, length: float) -> str:
-        """Return a length in mm as text in this unit, without trailing zeros."""
-        return plain(length / self.mm, self.decimals)
-
-    def fine(self, length: float) -> str:
-        """Return a small length in mm as text in this unit, with two digits that count."""
-        value = length / self.mm
-        first = math.floor(math.log10(abs(value))) if value else 0
-        return plain(value, max(self.decimals, 1 - first) if abs(value) > 1e-7 else 1)
-
-
-UNITS = {"mm": Unit("mm", 1.0, 3), "inch": Unit("in", 25.4, 4)}
-
-
 class PictureError(ValueError):
     """A picture that cannot be written as asked."""
 
@@ -104,13 +82,6 @@ def check_format(path: Path) -> None:
         raise PictureError(f"{path}: the suffix must be one of {known}")
     if not path.parent.is_dir():
         raise PictureError(f"{path.parent}: no such directory")
-
-
-def plain(value: float, decimals: int) -> str:
-    """Return a number without trailing zeros, with a real minus sign."""
-    text = f"{value:.{decimals}f}"
-    text = text.rstrip("0").rstrip(".") if "." in text else text
-    return "0" if text == "-0" else text.replace("-", "−")
 
 
 def new_figure(width: float, height: float, title: str, subtitle: str) -> Figure:

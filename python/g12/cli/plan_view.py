@@ -23,6 +23,7 @@ from g12.cli.part import Part, is_sideways, paths, swept
 from g12.cli.pictures import Shade
 from g12.cli.scene import Scene
 from g12.cli.trace import Move
+from g12.cli.units import plain
 
 PICTURE_CHORD = 0.01
 SAME_DEPTH = 1e-3
@@ -217,7 +218,7 @@ def feed_entries(scene: Scene) -> list:
     """Return the legend's entries of the feeds."""
     unit = scene.unit
     return [
-        pictures.stroke(colour, f"{pictures.plain(feed / unit.mm, 1)} {unit.name}/min")
+        pictures.stroke(colour, f"{plain(feed / unit.mm, 1)} {unit.name}/min")
         for feed, colour, _ in feed_bands(scene)
     ]
 

@@ -27,8 +27,8 @@ from g12.cli.command import (
 )
 from g12.cli.face_picture import draw_face
 from g12.cli.mill_picture import draw_mill
-from g12.cli.pictures import UNITS
 from g12.cli.scene import Scene, scene_of, with_run
+from g12.cli.units import UNITS
 
 EXAMPLES = """\
 examples:

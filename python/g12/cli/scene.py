@@ -12,8 +12,8 @@ from g12.cli.headless import Run
 from g12.cli.ini import Ini
 from g12.cli.motion import Followed, Track, follow, limits_of, track
 from g12.cli.part import part_of, tool_diameters
-from g12.cli.pictures import UNITS, Unit, plain
 from g12.cli.trace import Move, Tools, Trace, mm_per_unit
+from g12.cli.units import Unit, plain, unit_of
 
 HEAD_COMMENT = re.compile(r"\(([^()]*)\)|;\s*(.+)")
 LONGEST_HEADING = 70
@@ -67,20 +67,21 @@ def scene_of(
 ) -> Scene:
     """Return what to show of a traced program; without ``units`` lengths as the program's."""
     path = track(part_of(ini), trace.moves, limits_of(ini), trace.modes.speed)
-    unit = UNITS[units or ("inch" if "G20" in trace.modes.gcodes else "mm")]
+    unit = unit_of(trace.modes, units)
     return Scene(program, ini, trace, tool_diameters(ini, tools), unit, path, feed_colours)
 
 
 def with_run(scene: Scene, run: Run) -> Scene:
     """Return the same scene with the real motion of a run."""
-    return replace(scene, real=follow(scene.path, run.samples, mm_per_unit(scene.ini)))
+    real = follow(scene.path, scene.moves, run.samples, mm_per_unit(scene.ini))
+    return replace(scene, real=real)
 
 
 def heading(program: Path) -> str:
-    """Return the first comment at the top of a program."""
-    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()[:3]
-    found = next(filter(None, map(HEAD_COMMENT.search, lines)), None)
-    return (found.group(1) or found.group(2)).strip()[:LONGEST_HEADING] if found else ""
+    """Return the first comment at the top of a program, licence lines aside."""
+    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()[:5]
+    found = (match[1] or match[2] for line in lines if (match := HEAD_COMMENT.search(line)))
+    return next((text.strip() for text in found if "SPDX" not in text), "")[:LONGEST_HEADING]
 
 
 def clock(seconds: float) -> str:

@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How well a circle was cut: size, walls, what is left or gouged, from the emitted or real motion.
+
+Lengths are millimetres, areas square millimetres, angles degrees, feeds mm/min, times seconds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from shapely.geometry.base import BaseGeometry
+
+from g12.cli.motion import Followed, Track
+from g12.cli.pace import Pace, pace_of
+from g12.cli.part import disc, swept
+from g12.cli.programmed import Target
+from g12.cli.trace import Move
+
+SECTORS = 720  # directions in which the wall is looked at
+SAME_LEVEL = 1e-3
+FINE = 1e-5  # chord error of the polylines that stand for arcs
+NEAR_CENTRE = 0.02  # of a move's own reach
+
+
+@dataclass(frozen=True)
+class PocketFacts:
+    """What was measured of one pocket.
+
+    ``reached`` is the radius of the wall, ``deviation`` the wall's greatest distance from the
+    programmed circle, all round; ``left`` and ``gouge`` are areas beyond the tolerance;
+    ``rings`` the radii of the tool centre's full circles; ``stepover`` None with one ring only.
+    ``off_path`` and ``off_rings`` are the real motion's largest deviations, None without a run.
+    """
+
+    target: Target
+    reached: float
+    deviation: float
+    left: float
+    gouge: float
+    stepover: float | None
+    jump: float
+    rings: tuple[float, ...]
+    depths: tuple[float, ...]
+    turns: tuple[int, ...]
+    shortest: float
+    longest: float
+    pace: Pace
+    off_path: float | None
+    off_rings: float | None
+
+
+def measure_pocket(
+    target: Target,
+    first: int,
+    last: int,
+    path: Track,
+    moves: Sequence[Move],
+    tolerance: float,
+    real: Followed | None = None,
+) -> PocketFacts:
+    """Return the facts of the pocket that moves ``first`` to ``last`` - 1 cut."""
+    own = moves[first:last]
+    lines = real_lines(target, first, own, real) if real else emitted_lines(target, own, path)
+    levels = sorted(lines, reverse=True)
+    deepest = lines[levels[-1]] if levels else []
+    points = np.concatenate(deepest) if deepest else np.zeros((0, 3))
+    wall = wall_of(points, target)
+    floor = swept(deepest, target.cutter)
+    every = swept([line for level in lines.values() for line in level], target.cutter)
+    reached = (wall.max() if target.inside else wall.min()) if len(points) else 0.0
+    circles = [move for move in own if is_full_circle(move)]
+    cutting = [move for move in own if is_cutting(move, target)]
+    cutters = [index for index in range(first, last) if is_cutting(moves[index], target)]
+    rings = [index for index in range(first, last) if is_full_circle(moves[index])]
+    pace = pace_of(range(first, last), cutters, path, real)
+    lengths = [move.length for move in cutting] or [0.0]
+    return PocketFacts(
+        target,
+        reached=float(reached),
+        deviation=float(np.abs(wall - target.radius).max()),
+        left=left_of(target, floor, tolerance).area,
+        gouge=gouge_of(target, every, tolerance).area,
+        stepover=stepover_of(deepest),
+        jump=largest_jump(own, target),
+        rings=tuple(dict.fromkeys(round(move.radius, 6) for move in circles)),
+        depths=tuple(levels),
+        turns=tuple(sorted({int(math.copysign(1, move.turns)) for move in circles})),
+        shortest=min(lengths),
+        longest=max(lengths),
+        pace=pace,
+        off_path=real.largest(cutters) if real else None,
+        off_rings=real.largest(rings) if real else None,
+    )
+
+
+def is_full_circle(move: Move) -> bool:
+    """Tell whether a move is a full circle."""
+    return move.kind == "arc" and abs(move.sweep) > 2 * math.pi - 1e-9
+
+
+def is_cutting(move: Move, target: Target) -> bool:
+    """Tell whether a move feeds across the target's plane."""
+    across = target.axes[:2] @ np.array(move.tangent(0.5))
+    return move.kind != "rapid" and bool(np.hypot(*across) > 1e-6)
+
+
+def emitted_lines(
+    target: Target, moves: Sequence[Move], path: Track
+) -> dict[float, list[np.ndarray]]:
+    """Return the tool's path (n, 3) across the plane at each depth, as emitted."""
+    lines = {}
+    for move in moves:
+        if is_cutting(move, target):
+            line = target.local(path.part.polyline(move, FINE))
+            lines.setdefault(level_of(line), []).append(line)
+    return lines
+
+
+def real_lines(
+    target: Target, first: int, moves: Sequence[Move], real: Followed
+) -> dict[float, list[np.ndarray]]:
+    """Return the tool's path (n, 3) across the plane at each depth, as it was."""
+    lines = {}
+    for index, move in enumerate(moves, start=first):
+        points = real.points[real.move == index]
+        if is_cutting(move, target) and len(points):
+            depth = level_of(target.local(np.array(move.end)))
+            lines.setdefault(depth, []).append(densified(target.local(points)))
+    return lines
+
+
+def densified(line: np.ndarray) -> np.ndarray:
+    """Return a polyline with points so close together that every sector gets one."""
+    most = np.pi / SECTORS * max(np.hypot(*line[:, :2].T).max(), SAME_LEVEL)
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    places = np.union1d(along, np.linspace(0.0, along[-1], int(along[-1] / most) + 2))
+    return np.stack([np.interp(places, along, axis) for axis in line.T], axis=1)
+
+
+def level_of(line: np.ndarray) -> float:
+    """Return the depth of a path, rounded so that equal depths are equal."""
+    return round(float(line[-1, 2]) / SAME_LEVEL) * SAME_LEVEL + 0.0
+
+
+def wall_of(points: np.ndarray, target: Target) -> np.ndarray:
+    """Return the wall's radius in each direction: where the cutter reaches farthest.
+
+    Where nothing was cut it is 0 (and infinite for a wall cut from outside).
+    """
+    far = np.zeros(SECTORS) if target.inside else np.full(SECTORS, np.inf)
+    if len(points):
+        gather = np.maximum if target.inside else np.minimum
+        gather.at(far, *polar(points))
+    return far + target.cutter if target.inside else far - target.cutter
+
+
+def polar(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the sector about the centre and the distance from it of points."""
+    turn = np.arctan2(points[:, 1], points[:, 0]) / (2 * np.pi) % 1.0
+    sector = np.minimum((turn * SECTORS).astype(int), SECTORS - 1)
+    return sector, np.hypot(points[:, 0], points[:, 1])
+
+
+def left_of(target: Target, floor: BaseGeometry, tolerance: float) -> BaseGeometry:
+    """Return what is left standing at the deepest level, beyond the tolerance."""
+    if target.inside:
+        wanted = ring(target.cleared + tolerance, target.radius - tolerance)
+    else:
+        wanted = ring(target.radius + tolerance, target.radius + 2 * target.cutter - tolerance)
+    return wanted.difference(floor)
+
+
+def gouge_of(target: Target, area: BaseGeometry, tolerance: float) -> BaseGeometry:
+    """Return what is cut beyond the wall and the tolerance."""
+    if target.inside:
+        return area.difference(disc((0, 0), target.radius + tolerance, FINE))
+    return area.intersection(disc((0, 0), target.radius - tolerance, FINE))
+
+
+def ring(inner: float, outer: float) -> BaseGeometry:
+    """Return the area between two circles about the centre."""
+    area = disc((0, 0), outer, FINE)
+    return area.difference(disc((0, 0), inner, FINE)) if inner > 0.01 else area
+
+
+def stepover_of(lines: Sequence[np.ndarray]) -> float | None:
+    """Return the largest distance between two neighbouring passes, in any direction.
+
+    Moves through the centre, which lead to the first ring and from the last, are no passes.
+    """
+    passes = [line for line in lines if is_pass(line)]
+    if not passes:
+        return None
+    sector, radius = polar(np.concatenate(passes))
+    order = np.lexsort((radius, sector))
+    gap = np.diff(radius[order])[np.diff(sector[order]) == 0]
+    largest = float(gap.max(initial=0.0))
+    return largest if largest > SAME_LEVEL else None
+
+
+def is_pass(line: np.ndarray) -> bool:
+    """Tell whether a path leaves the centre out."""
+    radius = np.hypot(line[:, 0], line[:, 1])
+    return bool(radius.min() > NEAR_CENTRE * radius.max())
+
+
+def largest_jump(moves: Sequence[Move], target: Target) -> float:
+    """Return the largest change of direction between cutting moves that follow each other."""
+    jumps = [
+        angle_between(before.tangent(1.0), after.tangent(0.0))
+        for before, after in zip(moves, moves[1:])
+        if is_cutting(before, target) and is_cutting(after, target)
+    ]
+    return max(jumps, default=0.0)
+
+
+def angle_between(one: Sequence[float], other: Sequence[float]) -> float:
+    """Return the angle between two directions, degrees."""
+    across = np.linalg.norm(np.cross(one, other))
+    return math.degrees(math.atan2(across, np.dot(one, other)))

@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What circle a cycle's block asks for: its words read once more, apart from the planners.
+
+One reader per dialect. Lengths are millimetres in machine coordinates; ``Target`` has axes of its
+own, so that a pocket in any plane of a turned work coordinate system looks the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from g12.cli.blocks import Block, Text
+from g12.cli.features import Remap, model_of, remap_from_value
+from g12.cli.ini import Ini
+from g12.cli.part import plane_axes
+from g12.cli.trace import MM_PER_INCH, Move
+
+CALL = "circle_mill"
+ENTRIES = "GXYZWORDCKJLPFV"
+LEFT_OUT = -9999.0
+POCKET = "circle_mill_pocket"  # the handler of the event's pocket
+CENTRE_ON_CIRCLE = "the tool's centre goes round on the circle, the wall is a tool radius farther"
+COMPENSATION = (41.0, 42.0, 41.1, 42.1)
+TURNS = {"G12": -1, "G13": 1}
+
+
+@dataclass(frozen=True)
+class Target:
+    """A circle to be cut. ``inside`` says that the cutter works inside its wall.
+
+    ``origin`` (3,) is the centre at the height where the block began, the rows of ``axes`` are
+    the plane's first, second and third axis. ``radius`` is that of the wall, ``cutter`` that of
+    the cutter. Between ``cleared`` and ``radius`` nothing may be left. ``deepest`` is the depth
+    along the third axis, None where the block does not say. ``smooth`` is for cycles that turn
+    no corner, ``turn`` is -1 for clockwise and +1 for counterclockwise, 0 if not checked.
+    """
+
+    line: int
+    code: str
+    dialect: str
+    origin: np.ndarray
+    axes: np.ndarray
+    radius: float
+    cutter: float
+    cleared: float
+    inside: bool = True
+    deepest: float | None = None
+    smooth: bool = True
+    turn: int = 0
+    note: str = ""
+
+    def local(self, points: np.ndarray) -> np.ndarray:
+        """Return points (n, 3) as seen from the centre along the plane's axes."""
+        return (np.atleast_2d(points)[:, :3] - self.origin) @ self.axes.T
+
+    def height(self, depth: float) -> float:
+        """Return the machine coordinate of a depth as seen from where the block began."""
+        return depth + float(self.origin @ self.axes[2])
+
+
+class Codes:
+    """Which codes of a machine are cycles, by its REMAP lines."""
+
+    def __init__(self, ini: Ini) -> None:
+        remaps = map(remap_from_value, ini.all("RS274NGC", "REMAP"))
+        found = ((remap, model_of(remap)) for remap in remaps)
+        self._known = {
+            remap.number[1] / 10: (model[0], model[1]) for remap, model in found if model
+        }
+
+    def cycle_of(self, text: Text) -> tuple[str, Remap | None] | None:
+        """Return the dialect of the cycle that a line calls and its REMAP line."""
+        if text.call == CALL:
+            return "circle-mill", None
+        known = (self._known.get(code) for code in text.codes)
+        return next((found for found in known if found and not is_polar(found[0])), None)
+
+    def polar(self, text: Text) -> str:
+        """Return ``on``, ``off`` or nothing: what a line does to polar interpolation."""
+        for code in text.codes:
+            feature, model = self._known.get(code, ("", None))
+            if is_polar(feature):
+                return model.keywords["python"].rsplit("_", 1)[1]
+        return ""
+
+    def wanted(self, text: Text) -> bool:
+        """Tell whether a line's words matter for what is programmed."""
+        compensation = any(code in COMPENSATION for code in text.codes)
+        return bool(compensation or self.cycle_of(text) or self.polar(text))
+
+
+def is_polar(feature: str) -> bool:
+    """Tell whether a feature is polar interpolation."""
+    return feature.startswith("polar")
+
+
+@dataclass
+class Reader:
+    """Reads blocks in the order of execution; remembers D and W as the control does."""
+
+    codes: Codes
+    moves: Sequence[Move]
+    diameters: Mapping[int, float]
+    offset: float | None = None  # radius of the D last commanded, mm
+    plane: float | None = None  # W last commanded, mm in program coordinates
+
+    def targets(self, blocks: Sequence[Block]) -> Iterator[tuple[Block, Target]]:
+        """Yield each block that cuts a circle with what it asks for."""
+        for block in blocks:
+            cycle = self.codes.cycle_of(block.text)
+            if cycle and block.end > block.at:
+                yield block, self._target(block, *cycle)
+            elif any(code in COMPENSATION for code in block.codes):
+                self._remember(block)
+
+    def _target(self, block: Block, dialect: str, remap: Remap | None) -> Target:
+        view = View(block, self.moves[block.at])
+        if dialect == "circle-mill":
+            target = self._circle_mill(view, remap)
+        else:
+            target = getattr(self, f"_{dialect}")(view)
+        code = next((f"G{code:g}" for code in block.codes if code in self.codes._known), CALL)
+        turn = TURNS.get(code, 0)
+        return replace(target, line=block.text.number, code=code, dialect=dialect, turn=turn)
+
+    def _haas(self, view: View) -> Target:
+        words = view.words
+        if "D" in words:
+            self.offset = self._radius(words["D"])
+        loaded = self._radius(view.tool)
+        offset = loaded if self.offset is None else self.offset
+        finished = view.length("K") if "K" in words else view.length("I")
+        target = self._inside(view, finished, offset, loaded)
+        cleared = 0.0 if "K" in words else max(0.0, target.radius - 2 * target.cutter)
+        count = 1 if view.absolute else int(words.get("L", 1))
+        return replace(
+            target,
+            origin=view.centre(),
+            cleared=cleared,
+            deepest=view.height("Z", count) - view.start[2],
+        )
+
+    def _yasnac(self, view: View) -> Target:
+        words = view.words
+        offset = self._radius(words["D"]) if "D" in words else 0.0
+        target = self._inside(view, abs(view.length("I")), offset, self._radius(view.tool))
+        bore = abs(view.length("R") or view.length("J"))
+        core = 0.0 if "K" in words else max(0.0, target.radius - 2 * target.cutter)
+        return replace(target, cleared=bore or core)
+
+    def _mitsubishi(self, view: View) -> Target:
+        offset = self._radius(view.words["D"])
+        target = self._inside(view, abs(view.length("I")), offset, self._radius(view.tool))
+        return replace(target, cleared=max(0.0, target.radius - 2 * target.cutter))
+
+    def _inside(self, view: View, circle: float, offset: float, loaded: float) -> Target:
+        """Return a pocket; without an offset the tool's centre goes round on the circle."""
+        cutter = offset or loaded
+        note = "" if offset else CENTRE_ON_CIRCLE
+        if offset and abs(offset - loaded) > 1e-6:
+            note = f"the tool loaded has the diameter {2 * loaded:g} mm, D has {2 * offset:g} mm"
+        wall = circle if offset else circle + loaded
+        return Target(0, "", "", view.start, view.axes, wall, cutter, 0.0, note=note)
+
+    def _circle_mill(self, view: View, remap: Remap | None) -> Target:
+        event = entries_of_call(view) if remap is None else entries_of_code(view, remap)
+        if "W" in event:
+            self.plane = event["W"]
+        loaded, wall = self._radius(view.tool), event["R"]
+        depth = event["Z"] if remap is None or view.absolute else event["Z"] + (self.plane or 0.0)
+        side = side_of(event.get("D", 0.0), event["C"])
+        inner = wall - abs(event.get("L", 0.0)) - 2 * loaded
+        if side == 0:
+            wall, inner = wall + loaded, wall - loaded
+        pocket = event.get("G", 0.0) == 7.0
+        return Target(
+            0,
+            "",
+            "",
+            view.centre(),
+            view.axes,
+            wall,
+            loaded,
+            0.0 if pocket else max(0.0, inner),
+            inside=side <= 0,
+            deepest=depth - view.present("z"),
+            smooth=False,
+            note="" if side else CENTRE_ON_CIRCLE,
+        )
+
+    def _remember(self, block: Block) -> None:
+        """Note the D of a block that switches cutter compensation on."""
+        view = View(block, self.moves[min(block.at, len(self.moves) - 1)])
+        dynamic = any(code in (41.1, 42.1) for code in block.codes)
+        if dynamic:
+            self.offset = view.length("D") / 2
+        else:
+            self.offset = self._radius(block.words.get("D", view.tool))
+
+    def _radius(self, tool: float) -> float:
+        return self.diameters.get(round(tool), 0.0) / 2
+
+
+class View:
+    """A block's words in mm, and where the tool is when it begins."""
+
+    def __init__(self, block: Block, first: Move) -> None:
+        self.words = block.words
+        self.arguments = block.arguments
+        self.tool = first.tool
+        self.start = np.array(first.start[:3])
+        self.axes = plane_axes(first)
+        self._state = block.state
+        metric = block.state["_metric"] if not {20.0, 21.0} & set(block.codes) else 0.0
+        self.unit = 1.0 if metric or 21.0 in block.codes else MM_PER_INCH
+        absolute = bool(block.state["_absolute"])
+        self.absolute = (absolute or 90.0 in block.codes) and 91.0 not in block.codes
+        self._first = first
+
+    def length(self, letter: str) -> float:
+        """Return a length word in mm, 0 without it."""
+        return self.words.get(letter, 0.0) * self.unit
+
+    def present(self, axis: str) -> float:
+        """Return where the tool stands in program coordinates, mm."""
+        return self._state[f"_{axis}"] * self.unit
+
+    def centre(self) -> np.ndarray:
+        """Return the centre in machine coordinates: X and Y words, else where the tool stands."""
+        turn = np.radians(self._first.rotation)
+        move = [self._way(axis) for axis in "xy"]
+        across = move[0] * np.cos(turn) - move[1] * np.sin(turn)
+        up = move[0] * np.sin(turn) + move[1] * np.cos(turn)
+        return self.start + np.array([across, up, 0.0])
+
+    def height(self, letter: str, times: int) -> float:
+        """Return the height in machine coordinates that a Z word leads to, ``times`` over."""
+        if self.absolute:
+            return self.start[2] + self.length(letter) - self.present("z")
+        return self.start[2] + times * self.length(letter)
+
+    def _way(self, axis: str) -> float:
+        if axis.upper() not in self.words:
+            return 0.0
+        word = self.length(axis.upper())
+        return word - self.present(axis) if self.absolute else word
+
+
+def entries_of_call(view: View) -> dict[str, float]:
+    """Return the entries of ``o<circle_mill> call``, mm; X and Y go where the words would."""
+    given = dict(zip(ENTRIES, view.arguments))
+    entries = {
+        letter: value * (1.0 if letter in "GDC" else view.unit)
+        for letter, value in given.items()
+        if value != LEFT_OUT
+    }
+    view.words = {letter: given[letter] for letter in "XY"}
+    view.absolute = True
+    return entries
+
+
+def entries_of_code(view: View, remap: Remap) -> dict[str, float]:
+    """Return the entries of a G12.2 or G13.2 block, mm."""
+    letters = {"R": "R", "Z": "Z", "W": "I", "L": "Q"}
+    entries = {entry: view.length(word) for entry, word in letters.items() if word in view.words}
+    entries["D"], entries["C"] = view.words.get("D", 0.0), view.words["H"]
+    entries["G"] = 7.0 if POCKET in remap.handlers else 0.0
+    return entries
+
+
+def side_of(direction: float, compensation: float) -> int:
+    """Return where the cutter works: -1 inside the wall, +1 outside, 0 on the circle."""
+    left_is = 1 if int(direction) in (0, 2) else -1  # clockwise has the outside on its left
+    return {0: 0, 1: left_is, 2: -left_is}[int(compensation)]

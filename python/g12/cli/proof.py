@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Everything a program's pockets and polar sections can be held to, in one value.
+
+What is asked for is read from the program's words, what is cut is measured from the motion that
+LinuxCNC makes of it; the cycles' own planning has no part in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from g12.cli.blocks import executed
+from g12.cli.command import ended
+from g12.cli.contour_words import sections
+from g12.cli.headless import Run
+from g12.cli.ini import Ini
+from g12.cli.measure_pocket import PocketFacts, measure_pocket
+from g12.cli.measure_section import SectionFacts, measure_section
+from g12.cli.motion import Followed, Track, follow, limits_of, track
+from g12.cli.part import C, part_of, tool_diameters
+from g12.cli.programmed import Codes, Reader
+from g12.cli.trace import MM_PER_INCH, Tools, Trace, Tracer, mm_per_unit
+from g12.cli.units import MM, Unit
+
+POCKET_TOLERANCE = 0.005  # mm
+POLAR_TOLERANCE = {1.0: 0.005, MM_PER_INCH: 0.0002}  # by machine unit, in that unit
+RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE
+SAME_AREA = 0.01  # mm², less is rounding
+MOST_JUMP = 1.0  # degree
+SAME_SPEED = 1.001
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A program on a machine, as traced: ``path`` is its track, ``real`` the motion of a run."""
+
+    program: Path
+    ini: Ini
+    trace: Trace
+    path: Track
+    real: Followed | None = None
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What was measured; tolerances are in mm."""
+
+    subject: Subject
+    pockets: list[PocketFacts]
+    sections: list[SectionFacts]
+    pocket_tolerance: float
+    polar_tolerance: float
+
+    @property
+    def findings(self) -> list[tuple[int, str]]:
+        """Return everything that is not as programmed: the line, and what is wrong."""
+        told = [
+            (facts.target.line, text)
+            for facts in self.pockets
+            for text in pocket_findings(facts, self.pocket_tolerance)
+        ]
+        return told + [
+            (facts.section.line, text)
+            for facts in self.sections
+            for text in section_findings(facts, self.polar_tolerance)
+        ]
+
+
+def prove(
+    program: Path,
+    ini: Ini,
+    *,
+    tools: Tools = None,
+    run: Run | None = None,
+    tolerance: float | None = None,
+) -> Proof:
+    """Return the proof of a program, of its real motion if there is a run.
+
+    ``tolerance`` in mm replaces both that of pockets and that of polar sections.
+    """
+    limits, diameters, codes = limits_of(ini), tool_diameters(ini, tools), Codes(ini)
+    polar = tolerance or polar_tolerance(ini) + (RUN_ALLOWANCE if run else 0.0)
+    plain = tolerance or POCKET_TOLERANCE
+    with Tracer(ini, tools=tools) as tracer:
+        trace = ended(program, tracer.trace(program))
+        blocks = executed(tracer, program, codes.wanted)
+        reading = ini.get("G12", "POLAR_X", "inherit").lower()
+        polars = sections(tracer, program, codes, reading, blocks)
+    moves = trace.moves
+    path = track(part_of(ini), moves, limits, trace.modes.speed)
+    real = follow(path, moves, run.samples, mm_per_unit(ini)) if run else None
+    asked = Reader(codes, moves, diameters).targets(blocks)
+    return Proof(
+        Subject(program, ini, trace, path, real),
+        [measure_pocket(t, b.at, b.end, path, moves, plain, real) for b, t in asked],
+        [
+            measure_section(each, path, moves, diameters, limits.axes[C], polar, real)
+            for each in polars
+        ],
+        plain,
+        polar,
+    )
+
+
+def polar_tolerance(ini: Ini) -> float:
+    """Return [G12] POLAR_TOLERANCE in mm."""
+    unit = mm_per_unit(ini)
+    return ini.number("G12", "POLAR_TOLERANCE", POLAR_TOLERANCE[unit]) * unit
+
+
+def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:
+    """Yield what is wrong with a pocket."""
+    target = facts.target
+    if facts.deviation > tolerance:
+        yield f"the wall is {unit.fine(facts.deviation)} {unit.name} off the programmed circle"
+    if facts.gouge > SAME_AREA:
+        yield f"{unit.area(facts.gouge)} are gouged beyond the wall"
+    if facts.left > SAME_AREA:
+        yield f"{unit.area(facts.left)} of material are left standing"
+    if target.smooth and facts.jump > MOST_JUMP:
+        yield f"the direction jumps by {facts.jump:.3g} degrees"
+    too_high = facts.depths[-1] - target.deepest if target.deepest is not None else 0.0
+    if abs(too_high) > tolerance:
+        yield f"the depth is off by {unit.fine(too_high)} {unit.name}"
+    if target.turn and facts.turns and set(facts.turns) != {target.turn}:
+        yield "it turns the wrong way"
+
+
+def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:
+    """Yield what is wrong with a polar section."""
+    if facts.section.doubt:
+        yield f"the contour cannot be read from the words: {facts.section.doubt}"
+        return
+    if facts.deviation > tolerance:
+        yield f"the path is {unit.fine(facts.deviation)} {unit.name} off the contour"
+    if facts.gouge > SAME_AREA:
+        yield f"{unit.area(facts.gouge)} are gouged beyond the contour"
+    if facts.left > SAME_AREA:
+        yield f"{unit.area(facts.left)} of material are left standing"
+    if facts.c_speed > facts.c_limit * SAME_SPEED:
+        yield f"C turns at {facts.c_speed:.4g} degrees/s, its limit is {facts.c_limit:.4g}"

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 verify``: prove that a program's pockets and polar sections come out as programmed.
+
+What is asked for is read from the program's words, what is cut is measured from the motion that
+LinuxCNC makes of it, or with --run from the real motion of a headless run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+
+from g12.cli.command import (
+    FINDING,
+    GOOD,
+    UsageError,
+    add_program,
+    add_run,
+    checked_ini,
+    one_line,
+    progress,
+    run_program,
+)
+from g12.cli.measure_pocket import PocketFacts
+from g12.cli.measure_section import SectionFacts
+from g12.cli.pace import Pace
+from g12.cli.proof import Proof, pocket_findings, prove, section_findings
+from g12.cli.units import UNITS, Unit, plain, unit_of
+
+EXAMPLES = """\
+examples:
+  g12 verify pocket.ngc --ini mill.ini
+  g12 verify flats.ngc --ini lathe.ini --run
+  g12 verify pocket.ngc --ini mill.ini --json
+
+exit code: 0 everything is as programmed, 1 something is not, 2 wrong use
+"""
+GAP = 14  # columns of a row's name
+TURNS = {-1: "clockwise", 1: "counterclockwise"}
+SIDES = {-1: "on the right", 1: "on the left", 0: "on the contour"}
+
+
+def report(proof: Proof, unit: Unit) -> str:
+    """Return the proof as text, one paragraph per pocket and section, and the verdict."""
+    pockets = [pocket_text(facts, proof, unit) for facts in proof.pockets]
+    sections = [section_text(facts, proof, unit) for facts in proof.sections]
+    count = len(proof.findings)
+    verdict = "verdict: good, everything is as programmed"
+    if count:
+        verdict = f"verdict: {count} finding{'s' if count > 1 else ''}"
+    return "\n\n".join([*pockets, *sections, verdict])
+
+
+def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
+    """Return the paragraph of one pocket."""
+    target = facts.target
+    turns = " and ".join(TURNS[turn] for turn in facts.turns) or "no full circle"
+    x, y, _ = target.origin
+    stepover = unit.text(facts.stepover) if facts.stepover else "one ring"
+    rows = [
+        ("centre", f"X{unit.text(x)} Y{unit.text(y)}, cutter ⌀ {unit.text(2 * target.cutter)}"),
+        ("radius", sizes((target.radius,), (facts.reached,), unit)),
+        ("deviation", f"{unit.fine(facts.deviation)} {unit.name} (allowed {allowed(proof, unit)})"),
+        ("left inside", unit.area(facts.left)),
+        ("gouged outside", unit.area(facts.gouge)),
+        ("rings", f"{', '.join(unit.text(ring) for ring in facts.rings)} (tool centre), {turns}"),
+        ("stepover", f"{stepover}, direction jump {plain(facts.jump, 2)}°"),
+        ("depth", ", ".join(unit.text(target.height(depth)) for depth in facts.depths)),
+        ("moves", spread(facts.shortest, facts.longest, unit)),
+        ("lowest feed", slowest(facts.pace, proof, unit)),
+        *real_rows(facts, unit),
+        ("time", f"{plain(facts.pace.seconds, 1)} s"),
+    ]
+    found = list(pocket_findings(facts, proof.pocket_tolerance, unit))
+    title = f"line {target.line}: {target.code} ({target.dialect})"
+    return paragraph(title, rows, [*([target.note] if target.note else [])], found)
+
+
+def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
+    """Return the paragraph of one polar section."""
+    section = facts.section
+    sides = ", ".join(SIDES[side] for side in facts.sides)
+    tolerance = unit.fine(proof.polar_tolerance)
+    limit = f"limit {plain(facts.c_limit, 1)}"
+    rows = [
+        ("cutter", f"⌀ {unit.text(2 * facts.tool)}, {sides}"),
+        ("from centre", sizes(facts.wanted, facts.reached, unit)),
+        ("deviation", f"{unit.fine(facts.deviation)} {unit.name} (allowed {tolerance})"),
+        ("left", unit.area(facts.left)),
+        ("gouged", unit.area(facts.gouge)),
+        ("pieces", f"{facts.pieces}, {spread(facts.shortest, facts.longest, unit)}"),
+        ("direction jump", f"{plain(facts.jump, 2)}° from piece to piece"),
+        ("lowest feed", slowest(facts.pace, proof, unit)),
+        ("speed of C", f"{plain(facts.c_speed, 1)} degrees/s at most, {limit}"),
+        ("time", f"{plain(facts.pace.seconds, 1)} s"),
+    ]
+    found = list(section_findings(facts, proof.polar_tolerance, unit))
+    return paragraph(f"lines {section.line} to {section.last}: {section.code}", rows, [], found)
+
+
+def paragraph(title: str, rows: Sequence, notes: Sequence[str], found: Sequence[str]) -> str:
+    """Return a titled table with its notes and findings."""
+    lines = [f"  {name:{GAP}}  {text}" for name, text in rows]
+    lines += [f"  {'note':{GAP}}  {text}" for text in notes]
+    lines += [f"  {'FINDING':{GAP}}  {text}" for text in found] or [f"  {'good':{GAP}}"]
+    return "\n".join([title, *(line.rstrip() for line in lines)])
+
+
+def sizes(wanted: Sequence[float], reached: Sequence[float], unit: Unit) -> str:
+    """Return programmed and reached sizes in words."""
+    asked, got = (" to ".join(unit.text(size) for size in both) for both in (wanted, reached))
+    return f"programmed {asked}, reached {got} {unit.name}"
+
+
+def allowed(proof: Proof, unit: Unit) -> str:
+    """Return the tolerance of pockets."""
+    return unit.fine(proof.pocket_tolerance)
+
+
+def spread(shortest: float, longest: float, unit: Unit) -> str:
+    """Return lengths from the shortest to the longest in words."""
+    return f"{unit.text(shortest)} to {unit.text(longest)} {unit.name} long"
+
+
+def slowest(pace: Pace, proof: Proof, unit: Unit) -> str:
+    """Return the lowest feed and where it is in words."""
+    where = " ".join(f"{letter}{unit.text(at)}" for letter, at in zip("XYZ", pace.point))
+    line = proof.subject.trace.moves[pace.move].block
+    return f"{plain(pace.lowest / unit.mm, 1)} {unit.name}/min at {where} (line {line})"
+
+
+def real_rows(facts: PocketFacts, unit: Unit) -> list[tuple[str, str]]:
+    """Return the rows that only a run has."""
+    if facts.off_path is None:
+        return []
+    text = f"{unit.fine(facts.off_rings)} off the circles, {unit.fine(facts.off_path)} off the path"
+    return [("real motion", f"{text}, {unit.name}")]
+
+
+def as_json(proof: Proof) -> str:
+    """Return the proof for a program to read: lengths in mm, areas in mm², feeds in mm/min."""
+    return json.dumps(
+        {
+            "program": str(proof.subject.program),
+            "ini": str(proof.subject.ini.path),
+            "real": proof.subject.real is not None,
+            "pockets": [pocket_json(facts, proof) for facts in proof.pockets],
+            "sections": [section_json(facts, proof) for facts in proof.sections],
+            "good": not proof.findings,
+        },
+        indent=2,
+    )
+
+
+def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
+    """Return one pocket as plain values."""
+    target = facts.target
+    return {
+        "line": target.line,
+        "code": target.code,
+        "dialect": target.dialect,
+        "centre": [float(value) for value in target.origin[:2]],
+        "cutter": 2 * target.cutter,
+        "radius": target.radius,
+        "reached": facts.reached,
+        "deviation": finite(facts.deviation),
+        "left": facts.left,
+        "gouge": facts.gouge,
+        "rings": list(facts.rings),
+        "depths": [target.height(depth) for depth in facts.depths],
+        "stepover": facts.stepover,
+        "direction_jump": facts.jump,
+        "shortest": facts.shortest,
+        "longest": facts.longest,
+        "off_circles": facts.off_rings,
+        "off_path": facts.off_path,
+        **pace_json(facts.pace, proof),
+        "findings": list(pocket_findings(facts, proof.pocket_tolerance)),
+    }
+
+
+def section_json(facts: SectionFacts, proof: Proof) -> dict:
+    """Return one polar section as plain values."""
+    return {
+        "lines": [facts.section.line, facts.section.last],
+        "code": facts.section.code,
+        "cutter": 2 * facts.tool,
+        "radii": list(facts.wanted),
+        "reached": list(facts.reached),
+        "deviation": finite(facts.deviation),
+        "left": facts.left,
+        "gouge": facts.gouge,
+        "direction_jump": facts.jump,
+        "pieces": facts.pieces,
+        "shortest": facts.shortest,
+        "longest": facts.longest,
+        "c_speed": facts.c_speed,
+        "c_limit": finite(facts.c_limit),
+        **pace_json(facts.pace, proof),
+        "findings": list(section_findings(facts, proof.polar_tolerance)),
+    }
+
+
+def pace_json(pace: Pace, proof: Proof) -> dict:
+    """Return feed and time as plain values."""
+    return {
+        "lowest_feed": pace.lowest,
+        "lowest_feed_at": [float(value) for value in pace.point],
+        "lowest_feed_line": proof.subject.trace.moves[pace.move].block,
+        "seconds": pace.seconds,
+    }
+
+
+def finite(value: float) -> float | None:
+    """Return a number that JSON has."""
+    return value if abs(value) < float("inf") else None
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the command's words."""
+    words = argparse.ArgumentParser(
+        prog="g12 verify",
+        description=__doc__,
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_program(words)
+    words.add_argument("--tolerance", type=float, metavar="MM", help="in place of the usual ones")
+    words.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
+    words.add_argument("--json", action="store_true", help="print values in mm for a program")
+    add_run(words, "measure the real motion of a headless run")
+    return words
+
+
+@one_line("verify")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    asked = parser().parse_args(arguments)
+    ini = checked_ini(asked.program, asked.ini, asked.tools)
+    run = None
+    if asked.run:
+        with progress(f"running {asked.program.name}, real time"):
+            run = run_program(asked.program, asked.ini, asked.tools, asked.override)
+    proof = prove(asked.program, ini, tools=asked.tools, run=run, tolerance=asked.tolerance)
+    if not proof.pockets and not proof.sections:
+        raise UsageError(f"{asked.program}: has no pocket and no polar section to verify")
+    unit = unit_of(proof.subject.trace.modes, asked.units)
+    print(as_json(proof) if asked.json else report(proof, unit))
+    return FINDING if proof.findings else GOOD
