@@ -18,9 +18,9 @@ from g12.cli.gap import gap_between
 from g12.cli.part import Part
 from g12.cli.trace import AXES, Move
 from g12.cli.trace_text import Recording, Step, number
+from g12.cli.units import UNITS
 
 DECIMALS = 6  # shown, where they tell two numbers apart
-UNIT_NAMES = {"mm": "mm", "inch": "in"}
 LONG_RUN = 10  # edits; fewer are told together however they differ
 DIGITS = ".4g"
 MOVED = (*AXES, "radius")
@@ -111,7 +111,7 @@ class Words:
 
     def __init__(self, was: Recording, now: Recording, part: Part) -> None:
         self._was, self._now, self._part = was.steps, now.steps, part
-        self._unit, self._name = now.unit, UNIT_NAMES[now.facts["units"]]
+        self._unit, self._name = now.unit, UNITS[now.facts["units"]].name
 
     def of_run(self, run: list[Edit]) -> Difference:
         """Return the difference that a run of edits makes."""

@@ -29,10 +29,12 @@ from g12.cli.trace_text import (
     split,
     text_of,
 )
+from g12.cli.units import UNITS
 
 SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
 HASH_DIGITS = 16
-UNITS = {1.0: "mm", 25.4: "inch"}
+UNIT_NAMES = {unit.mm: name for name, unit in UNITS.items()}
+Report = Callable[[int, int, str], None]  # hears of programs done, of how many, the last one
 ASK_VERSION = "import linuxcnc; print(linuxcnc.version)"
 
 
@@ -106,7 +108,7 @@ class Recorder:
         self._facts = {
             "machine": f"{ini.path.name} {hash_of(ini.text.encode(errors='surrogateescape'))}",
             "linuxcnc": machine.linuxcnc,
-            "units": UNITS[mm_per_unit(ini)],
+            "units": UNIT_NAMES[mm_per_unit(ini)],
         }
         util.Finalize(self, self._tracer.close, exitpriority=1)
 
@@ -162,6 +164,8 @@ def _compared(job: Job, now: str, recorder: Recorder) -> Result:
             return Result(job.name, SAME, notes=notes)
         recordings = read_recording(was), read_recording(now)
     except (TraceTextError, UnicodeDecodeError) as problem:
+        if job.keep:
+            return Result(job.name, NEW, summary=_summary(read_recording(now)))
         raise UsageError(f"{path}: not a trace, or one that was edited: {problem}") from None
     found = differences(*recordings, job.tolerance, recorder.part)
     findings = [_finding(difference, *recordings) for difference in found]
@@ -205,27 +209,24 @@ def _picture(job: Job, was: Recording, now: Recording, found, recorder: Recorder
     return str(path)
 
 
-def results(jobs: Sequence[Job], processes: int, report: Callable[[int, str], None]):
-    """Return the results of jobs in their order; ``report`` hears how many are done.
-
-    More than one process is only worth its start with more than one job.
-    """
+def results(jobs: Sequence[Job], processes: int, report: Report) -> list[Result]:
+    """Return the results of jobs in their order, done by so many processes at once."""
     processes = min(processes, len(jobs))
     if processes <= 1:
-        return [_reported(do(job), done, report) for done, job in enumerate(jobs, start=1)]
+        return [_reported(do(job), done, jobs, report) for done, job in enumerate(jobs, start=1)]
     pool = ProcessPoolExecutor(processes, initializer=_ignore_interrupts)
     try:
         futures = {pool.submit(do, job): index for index, job in enumerate(jobs)}
-        found: list = [None] * len(jobs)
+        found = {}
         for done, future in enumerate(as_completed(futures), start=1):
-            found[futures[future]] = _reported(future.result(), done, report)
-        return found
+            found[futures[future]] = _reported(future.result(), done, jobs, report)
+        return [found[index] for index in range(len(jobs))]
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _reported(result: Result, done: int, report: Callable[[int, str], None]) -> Result:
-    report(done, result.program)
+def _reported(result: Result, done: int, jobs: Sequence[Job], report: Report) -> Result:
+    report(done, len(jobs), result.program)
     return result
 
 

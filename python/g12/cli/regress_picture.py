@@ -6,6 +6,7 @@ Lengths are millimetres until they are drawn; those of the layout are inches on 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -15,16 +16,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from g12.cli import pictures
-from g12.cli.deviation_picture import most_telling
 from g12.cli.difference import Difference
 from g12.cli.gap import Gap, gap_between
 from g12.cli.part import Part, paths
-from g12.cli.trace import AXES, Move
+from g12.cli.trace import Move
 from g12.cli.trace_text import Recording
+from g12.cli.units import UNITS, Unit
 
 CHORD_ERROR = 0.005
 LEFT, RIGHT, TOP, BETWEEN, BOTTOM = pictures.MARGIN, 0.3, 1.0, 0.65, 0.55
-PLAN, MOST_HIGH, LEAST_HIGH = 7.0, 5.6, 1.4  # width of the larger view, heights
+PLAN, MOST_HIGH = 7.0, 5.6  # inches of the larger view
+LEAST_WIDE, LEAST_HIGH = 3.0, 1.4
 SIDE = 1.5  # height of the side view
 LEGEND, ROWS = 2.9, 1.6
 WINDOW = 2.0  # sides of the window on the largest gap
@@ -33,6 +35,12 @@ VISIBLE = 0.08  # of the picture's size: a larger gap needs no window
 MARGIN = 0.05
 FLAT = 1e-6  # an axis that moves less is not shown
 LONGEST_SUBTITLE = 130
+LEAST_CHORD_ERROR = 1e-6
+STYLES = (  # colour, width, order of what is same, was, now
+    (pictures.RAPID, 0.8, 2.5),
+    (pictures.PATH, 3.0, 3.0),
+    (pictures.REAL, 1.2, 3.5),
+)
 
 
 class Paths(NamedTuple):
@@ -44,11 +52,15 @@ class Paths(NamedTuple):
 
 
 class Drawn(NamedTuple):
-    """What is drawn of two recordings: moves at feed, rapids, and where they part the most."""
+    """What is drawn of two recordings: moves at feed, rapids, and where they part the most.
+
+    ``around`` are the moves near there again, fine enough to look at closely.
+    """
 
     feeds: Paths
     rapids: Paths
     gap: Gap | None
+    around: Paths
 
     @property
     def points(self) -> np.ndarray:
@@ -60,20 +72,29 @@ class Drawn(NamedTuple):
 class View:
     """Which axes are shown where on the page, and in which unit."""
 
-    def __init__(self, points: np.ndarray, unit: pictures.Unit, turning: bool) -> None:
+    def __init__(self, points: np.ndarray, unit: Unit, turning: bool) -> None:
         self.unit = unit
         self.low, self.high = points.min(axis=0), points.max(axis=0)
         spread = self.high - self.low
-        lathe = spread[1] < FLAT and not turning
-        self.pairs = [[2, 0]] if lathe else [[0, 1]] + [[0, 2]] * bool(spread[2] > FLAT)
+        self.letters = ("towards C0", "towards C90", "Z") if turning else "XYZ"
+        profile = spread[1] < FLAT < spread[2]
+        self.pairs = [[2, 0]] if profile else [[0, 1]] + [[0, 2]] * bool(spread[2] > FLAT)
         self.size = max(*spread, FLAT)
         self.low, self.high = self.low - MARGIN * self.size, self.high + MARGIN * self.size
+        first, second = self.pairs[0]
         across, up = (self.high - self.low)[self.pairs[0]]
         scale = min(PLAN / across, MOST_HIGH / up)
-        self.plan = (across * scale, max(LEAST_HIGH, up * scale))
+        self._widen(first, LEAST_WIDE / scale)
+        self._widen(second, LEAST_HIGH / scale)
+        self.plan = tuple((self.high - self.low)[self.pairs[0]] * scale)
         views = self.plan[1] + (BETWEEN + SIDE) * (len(self.pairs) > 1)
         self.height = max(TOP + views + BOTTOM, TOP + ROWS + WINDOW + BOTTOM)
         self.width = LEFT + self.plan[0] + LEGEND + RIGHT
+
+    def _widen(self, axis: int, least: float) -> None:
+        """Show at least so much of an axis."""
+        more = max(0.0, least - (self.high[axis] - self.low[axis])) / 2
+        self.low[axis], self.high[axis] = self.low[axis] - more, self.high[axis] + more
 
     def panels(self, figure: Figure) -> Iterator[tuple[Axes, list[int]]]:
         """Yield the axes of each view with the part's two axes it shows."""
@@ -87,11 +108,9 @@ class View:
         (left, low), (right, high) = (edge[pair] / self.unit.mm for edge in (self.low, self.high))
         axes.set(xlim=(left, right), ylim=(low, high))
         for name, axis in (("x", pair[0]), ("y", pair[1])):
-            axes.set(**{f"{name}label": f"{AXES[axis]}, {self.unit.name}"})
-        if pair == self.pairs[0]:
-            axes.set_aspect("equal", adjustable="datalim")
-        else:
-            pictures.caption(axes, "Side, not to scale")
+            axes.set(**{f"{name}label": f"{self.letters[axis]}, {self.unit.name}"})
+        heading = "The part" if pair == self.pairs[0] else "Side, not to scale"
+        pictures.caption(axes, heading)
         return axes
 
     @property
@@ -110,7 +129,7 @@ def picture_file(folder: Path, program: str) -> Path:
 def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Figure:
     """Return the picture of a program's differences."""
     drawn = drawn_of(was, now, found, part)
-    view = View(drawn.points, pictures.UNITS[now.facts["units"]], part.turning)
+    view = View(drawn.points, UNITS[now.facts["units"]], part.turning)
     name = now.facts["program"].rpartition(" ")[0]
     figure = pictures.new_figure(view.width, view.height, name, subtitle(found))
     for axes, pair in view.panels(figure):
@@ -123,7 +142,7 @@ def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], pa
     figure.legend(handles=entries(drawn, view.unit), borderaxespad=0.0, **place)
     if drawn.gap and drawn.gap.size < VISIBLE * view.size:
         axes = pictures.add_axes(figure, left, top - ROWS - WINDOW, WINDOW, WINDOW)
-        draw_window(axes, drawn, view.unit)
+        draw_window(axes, drawn, view)
     return figure
 
 
@@ -136,7 +155,26 @@ def drawn_of(was: Recording, now: Recording, found: Sequence[Difference], part: 
         Paths(*(paths(part, _rapid(some, fast), CHORD_ERROR) for some in moves))
         for fast in (False, True)
     )
-    return Drawn(feeds, rapids, gap_of(was, now, found, part))
+    gap = gap_of(was, now, found, part)
+    near = (_near(part, some, gap) if gap else [] for some in moves)
+    return Drawn(feeds, rapids, gap, Paths(*near))
+
+
+def _reach(gap: Gap) -> float:
+    return max(REACH * gap.size, LEAST_REACH)
+
+
+def _near(part: Part, moves: Sequence[Move], gap: Gap) -> list[np.ndarray]:
+    """Return moves that come near a gap as polylines that are fine at its size."""
+    margin = 2 * _reach(gap) + CHORD_ERROR
+    lines = (part.polyline(move, CHORD_ERROR) for move in moves)
+    near = [move for move, line in zip(moves, lines) if _is_near(line, gap.point, margin)]
+    return paths(part, near, max(_reach(gap) / 500, LEAST_CHORD_ERROR))
+
+
+def _is_near(line: np.ndarray, point: np.ndarray, margin: float) -> bool:
+    low, high = line.min(axis=0) - margin, line.max(axis=0) + margin
+    return bool(np.all((low <= point) & (point <= high)))
 
 
 def _moves(recording: Recording, changed: set[int], among: bool) -> list[Move]:
@@ -160,45 +198,42 @@ def gap_of(was: Recording, now: Recording, found: Sequence[Difference], part: Pa
 
 
 def subtitle(found: Sequence[Difference]) -> str:
-    """Return the first difference in words, and how many there are."""
-    text = found[0].text if len(found) == 1 else f"{len(found)} differences: {found[0].text}"
+    """Return the first difference of the path in words, and how many there are."""
+    first = next((one for one in found if one.moves), found[0]).text
+    text = first if len(found) == 1 else f"{len(found)} differences, such as {first}"
     return text if len(text) <= LONGEST_SUBTITLE else f"{text[:LONGEST_SUBTITLE]}…"
 
 
 def draw_paths(axes: Axes, drawn: Drawn, pair: list[int], unit: float) -> None:
     """Draw the paths in two of the part's axes; ``unit`` is the unit shown in mm."""
-    styles = ((pictures.RAPID, 0.8, 2.5), (pictures.PATH, 3.0, 3.0), (pictures.REAL, 1.2, 3.5))
-    for lines, rapids, (colour, width, order) in zip(drawn.feeds, drawn.rapids, styles):
-        pictures.draw(axes, [line[:, pair] / unit for line in lines], colour, width, order)
-        dashes = {"linestyle": (0, (4, 3)), "capstyle": "butt"}
-        dashed = [line[:, pair] / unit for line in rapids]
-        pictures.draw(axes, dashed, colour, 0.5 * width, order, **dashes)
+    _draw_styled(axes, drawn.feeds, pair, unit)
+    _draw_styled(axes, drawn.rapids, pair, unit, 0.6, linestyle=(0, (4, 3)), capstyle="butt")
 
 
-def draw_window(axes: Axes, drawn: Drawn, unit: pictures.Unit) -> None:
-    """Draw the surroundings of the largest gap."""
-    gap = drawn.gap
-    half = max(REACH * gap.size, LEAST_REACH)
-    pair = most_telling(np.array([gap.point, gap.nearest, *_near(drawn, gap.point, half)]))
-    draw_paths(axes, drawn, pair, unit.mm)
+def _draw_styled(axes, drawn: Paths, pair: list[int], unit: float, share=1.0, **style) -> None:
+    for lines, (colour, width, order) in zip(drawn, STYLES):
+        shown = [line[:, pair] / unit for line in lines]
+        pictures.draw(axes, shown, colour, share * width, order, **style)
+
+
+def draw_window(axes: Axes, drawn: Drawn, view: View) -> None:
+    """Draw the surroundings of the largest gap, in the view that shows most of it."""
+    gap, unit = drawn.gap, view.unit
+    half = _reach(gap)
+    pair = max(view.pairs, key=lambda pair: round(math.dist(gap.point[pair], gap.nearest[pair]), 9))
+    _draw_styled(axes, drawn.around, pair, unit.mm)
     ends = np.array([gap.nearest[pair], gap.point[pair]]) / unit.mm
     pictures.draw(axes, [ends], pictures.WORST, 1.8, 4.0)
     (x, y), reach = ends.mean(axis=0), half / unit.mm
     axes.set(xlim=(x - reach, x + reach), ylim=(y - reach, y + reach), xticks=[], yticks=[])
     for spine in axes.spines.values():
         spine.set(visible=True, color=pictures.WORST, linewidth=0.9)
-    letters = " and ".join(AXES[axis] for axis in pair)
-    pictures.caption(axes, f"Largest gap, in {letters}")
+    pictures.caption(axes, f"Largest gap{', from the side' if pair != view.pairs[0] else ''}")
     text = f"{unit.fine(gap.size)} {unit.name}; the window is {unit.fine(2 * half)} wide"
     axes.set_xlabel(text, size=8, color=pictures.WORST, loc="left")
 
 
-def _near(drawn: Drawn, point: np.ndarray, half: float) -> np.ndarray:
-    points = drawn.points
-    return points[np.all(np.abs(points - point) <= half, axis=1)]
-
-
-def entries(drawn: Drawn, unit: pictures.Unit) -> list:
+def entries(drawn: Drawn, unit: Unit) -> list:
     """Return the legend."""
     listed = [
         pictures.stroke(pictures.RAPID, "as recorded", 0.8),

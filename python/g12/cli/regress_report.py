@@ -29,15 +29,15 @@ PROGRESS_SECONDS = 10.0  # between lines, where no terminal shows every program
 class Progress:
     """Says on standard error how far a long work is."""
 
-    def __init__(self, total: int) -> None:
-        self._total, self._said = total, time.monotonic()
+    def __init__(self) -> None:
+        self._said = time.monotonic()
         self._terminal = sys.stderr.isatty()
 
-    def __call__(self, done: int, program: str) -> None:
+    def __call__(self, done: int, total: int, program: str) -> None:
         """Say that so many programs are done, the last of them ``program``."""
-        text = f"{done} of {self._total}: {program}"
+        text = f"{done} of {total}: {program}"
         if self._terminal:
-            end = HIDDEN if done == self._total else ""
+            end = HIDDEN if done == total else ""
             print(f"{HIDDEN}{text}{end}", end="", file=sys.stderr, flush=True)
         elif time.monotonic() > self._said + PROGRESS_SECONDS:
             self._said = time.monotonic()
@@ -104,13 +104,3 @@ def _as_json(result: Result) -> dict:
     values = asdict(result)
     values.pop("notes")
     return values
-
-
-def common_notes(results: Sequence[Result]) -> list[str]:
-    """Return what else changed since the recordings, with the number of programs if not all."""
-    compared = [result for result in results if result.verdict in (SAME, CHANGED)]
-    counts = Counter(note for result in compared for note in result.notes)
-    return [
-        note if count == len(compared) else f"{note} ({_counted(count, 'program')})"
-        for note, count in counts.items()
-    ]

@@ -34,10 +34,10 @@ from pathlib import Path
 from typing import NamedTuple, Union
 
 from g12.cli.trace import AXES, Error, Modes, Move, Position, Trace
+from g12.cli.units import UNITS
 
 HEAD = "g12 trace 1"
 FACTS = ("program", "machine", "linuxcnc", "units")
-UNITS = {"mm": 1.0, "inch": 25.4}
 LINEAR = (1, 1, 1, 0, 0, 0, 1, 1, 1)  # which of AXES are lengths
 FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/:'\"<>()]+/)+")
 BLOCK = re.compile(r"(\d+):(?: (.*))?")
@@ -82,12 +82,12 @@ class Recording:
     @property
     def unit(self) -> float:
         """Return the machine unit in mm."""
-        return UNITS[self.facts["units"]]
+        return UNITS[self.facts["units"]].mm
 
 
 def recording_of(trace: Trace, program: Path, facts: dict[str, str]) -> Recording:
     """Return the recording of a program's trace."""
-    steps = list(_steps(trace, UNITS[facts["units"]]))
+    steps = list(_steps(trace, UNITS[facts["units"]].mm))
     lines = program.read_text(encoding="utf-8", errors="replace").split("\n")
     numbers = {step.block for step in steps} | ({trace.error.line} if trace.error else set())
     blocks = {line: lines[line - 1].strip() for line in numbers if 0 < line <= len(lines)}
@@ -263,7 +263,7 @@ def read_recording(text: str) -> Recording:
     """Return the recording that a text holds, or raise TraceTextError with the line."""
     facts, body = split(text)
     steps, blocks = [], {}
-    reader, block = Reader(UNITS[facts["units"]]), 0
+    reader, block = Reader(UNITS[facts["units"]].mm), 0
     for number_of_line, line in enumerate(body.split("\n"), start=len(FACTS) + 2):
         start = BLOCK.fullmatch(line)
         if start:

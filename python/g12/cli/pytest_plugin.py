@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A pytest plugin for programs that must do what they did: the fixture ``gcode_regression``.
+
+::
+
+    # conftest.py, with the package's folder on the Python path; or: pytest -p g12.cli.pytest_plugin
+    pytest_plugins = ["g12.cli.pytest_plugin"]
+
+    # test_programs.py
+    from g12.cli.pytest_plugin import recorded_programs
+
+    @pytest.mark.parametrize("program", recorded_programs("regress"))
+    def test_program(gcode_regression, program):
+        gcode_regression("regress", program)
+
+``regress`` is a directory that ``g12 regress record`` made.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from g12.cli.baseline import load
+from g12.cli.recorder import SAME
+from g12.cli.regress_report import text_report
+from g12.cli.regression import Terms, check
+
+
+def recorded_programs(directory: str | os.PathLike) -> list[str]:
+    """Return the names of the programs recorded in a directory."""
+    return load(Path(directory).absolute()).names()
+
+
+@pytest.fixture
+def gcode_regression(request: pytest.FixtureRequest) -> Callable[..., None]:
+    """Compare programs with their recordings; the test fails with what changed.
+
+    ``gcode_regression(directory, *programs, tolerance=, feed_tolerance=, programs_in=)``: the
+    directory is relative to the test's file, without programs all are compared; tolerances as of
+    ``g12 regress check``; ``programs_in`` is a folder with other versions of the programs.
+    """
+    here = request.path.parent
+
+    def compare(
+        directory: str | os.PathLike,
+        *programs: str,
+        tolerance: float = Terms.ends,
+        feed_tolerance: float = Terms.feeds,
+        programs_in: str | os.PathLike | None = None,
+    ) -> None:
+        folder = here / programs_in if programs_in else None
+        terms = Terms(tolerance, feed_tolerance)
+        results, notes = check(here / directory, programs, programs=folder, terms=terms)
+        if any(result.verdict != SAME for result in results):
+            advice = f"if that is right: g12 regress record -d {directory}"
+            pytest.fail("\n".join([*text_report(results, notes), advice]), pytrace=False)
+
+    return compare
