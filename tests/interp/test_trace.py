@@ -2,11 +2,17 @@
 """Exact traces: positions, feeds, errors with text and line, and a clean start for each program."""
 
 import math
+import os
+import subprocess
 import textwrap
+import time
+from pathlib import Path
 
 import pytest
 
+from g12.cli.isolated import PYTHON
 from g12.cli.trace import TraceFailure, Tracer, trace_text
+from machines import ROOT
 
 INI = """\
 [EMC]
@@ -247,6 +253,11 @@ def test_every_program_starts_clean(mill):
     assert again.numbered == {5: 0.0}
 
 
+def test_a_tool_length_does_not_live_on_in_the_next_program(mill):
+    assert mill.trace_text("T2 M6\nG43 Z1 G1 F100").error is None
+    assert mill.trace_text("G20\nG53 G0 Z0").position[2] == near(0.0)
+
+
 def test_a_program_without_an_end_is_an_error_only_as_a_file(mill, tmp_path):
     program = tmp_path / "open.ngc"
     program.write_text("G0 X1\n")
@@ -283,6 +294,24 @@ def test_a_machine_whose_python_does_not_load_says_so(ini, tmp_path):
     broken.write_text("import nothing_of_that_name\n")
     with pytest.raises(TraceFailure, match="nothing_of_that_name"):
         Tracer(ini, overrides={"PYTHON": {"TOPLEVEL": str(broken)}})
+
+
+def test_nothing_is_left_when_the_caller_is_killed(ini):
+    code = (
+        "import os, sys; from g12.cli.trace import Tracer; tracer = Tracer(sys.argv[1]);"
+        "print(tracer.folder, flush=True); os.kill(os.getpid(), 9)"
+    )
+    killed = subprocess.run(
+        [PYTHON, "-c", code, str(ini)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "python")},
+    )
+    folder = Path(killed.stdout.strip())
+    end = time.monotonic() + 10
+    while folder.exists():
+        assert time.monotonic() < end
+        time.sleep(0.02)
 
 
 def test_a_crash_of_the_interpreter_is_no_word_about_the_program(ini, tmp_path):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from g12.cli.headless import Machine, StartupError, Timeout, run
-from g12.cli.isolated import PYTHON
+from g12.cli.isolated import PYTHON, Isolated
 from g12.cli.trace import trace_text
 from machines import ROOT, SIM
 
@@ -247,6 +247,17 @@ def test_nothing_is_left_after_close_or_failure():
         folder = machine.folder
         raise ZeroDivisionError
     assert not processes_of(folder)
+
+
+def test_close_ends_what_hangs():
+    isolated = Isolated()
+    isolated.launch(["sh", "-c", "trap '' TERM INT HUP; sleep 1000 & sleep 1000"], {})
+    while not processes_of(isolated.folder):
+        time.sleep(0.05)
+    started = time.monotonic()
+    isolated.close()
+    assert time.monotonic() - started < 5.0
+    assert not processes_of(isolated.folder)
 
 
 def test_nothing_is_left_when_the_runner_is_killed():

@@ -136,6 +136,9 @@ class Samples:
 class Run:
     """A program run from its start; ``error`` is None if it came to its end.
 
+    LinuxCNC does not tell lines with errors and messages: theirs is the line last read, 0 if
+    that was gone.  ``trace`` has the exact ones.
+
     ``seconds`` is machine time from the first to the last sample in motion, ``position`` where
     the axes stood at the end.
     """

@@ -230,6 +230,7 @@ class Tracer:
     gives several lines of one key, None takes the key out.  ``tools`` is a tool table file or
     ``{tool number: diameter in machine units}`` in place of the INI's table.  Settings are read
     when LinuxCNC's Python modules load, so other overrides or tools need another Tracer.
+    ``folder`` is its scratch directory.
     ``printed`` is what the interpreter and the machine's modules said while loading.
     """
 
@@ -237,10 +238,10 @@ class Tracer:
         self, ini: Program | Ini, *, overrides: Overrides | None = None, tools: Tools = None
     ) -> None:
         self._scratch = tempfile.TemporaryDirectory(prefix="g12-trace-")
-        self._folder = Path(self._scratch.name)
+        self.folder = Path(self._scratch.name)
         ini = ini if isinstance(ini, Ini) else read_ini(ini)
         self.ini = ini.replaced(overrides or {})
-        self._machine = _machine(self.ini, tools, self._folder)
+        self._machine = _machine(self.ini, tools, self.folder)
         self._start()
 
     def __enter__(self) -> Tracer:
@@ -267,7 +268,7 @@ class Tracer:
         """
         request = {
             "program": str(Path(program).absolute()),
-            "parameter_file": str(write_parameters(parameters, self._folder / "trace.var")),
+            "parameter_file": str(write_parameters(parameters, self.folder / "trace.var")),
             "setup": list(setup),
             "ask": list(ask),
         }
@@ -281,7 +282,7 @@ class Tracer:
 
         Here a program need not end in M2 or %; without M2 the modal state stays as it is.
         """
-        program = write_program(text, self._folder / "program.ngc")
+        program = write_program(text, self.folder / "program.ngc")
         traced = self.trace(program, **options)
         unended = traced.error and traced.error.text == NO_END
         return replace(traced, error=None) if unended else traced
@@ -298,7 +299,7 @@ class Tracer:
             self._process = subprocess.Popen(
                 [PYTHON, "-c", launch],
                 cwd=self.ini.directory,
-                env={**os.environ, "HOME": str(self._folder), "LC_ALL": "C", **LEAVE_NO_TRACE},
+                env={**os.environ, "HOME": str(self.folder), "LC_ALL": "C", **LEAVE_NO_TRACE},
                 pass_fds=[there.fileno()],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
@@ -314,9 +315,9 @@ class Tracer:
 
     def _stop(self) -> None:
         if self._process:
-            self._connection.close()
             self._process.kill()
             self._process.wait()
+            self._connection.close()
             self._process = None
 
     def _answer(self, timeout: float) -> dict:

@@ -14,6 +14,7 @@ import ctypes
 import math
 import os
 import re
+import shutil
 import time
 import traceback
 from multiprocessing.connection import Connection
@@ -412,6 +413,7 @@ def serve(descriptor: int) -> None:
         connection.send({**answer, "printed": printed(machine["output"])})
         try:
             request = connection.recv()
-        except EOFError:
+        except EOFError:  # the other end died, or it would have ended this one
+            shutil.rmtree(os.path.dirname(machine["output"]), ignore_errors=True)
             return
         answer = answered(machine, tools, {**request, "known_globals": known})
