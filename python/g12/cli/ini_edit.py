@@ -74,6 +74,17 @@ def opens_section(text: str, section: str) -> bool:
     return text.lstrip().startswith(f"[{section}]")
 
 
+def joined(lines: Sequence[Line]) -> Iterator[tuple[Line, str]]:
+    """Yield the text of every entry with its first line, broken lines put together."""
+    first, text = None, ""
+    for line in lines:
+        first = first or line
+        text += line.text.removesuffix("\\")
+        if not line.text.endswith("\\"):
+            yield first, text
+            first, text = None, ""
+
+
 def without(lines: Sequence[str], doomed: set[int]) -> list[str]:
     """Return lines without those at the indices; a last line without an end stays one."""
     kept = [line for index, line in enumerate(lines) if index not in doomed]
@@ -137,8 +148,8 @@ class IniText:
         return found
 
     def entries(self, section: str, key: str) -> list[tuple[Line, str]]:
-        """Return every line of a key in the section LinuxCNC reads, with its value."""
-        matches = ((line, ENTRY.match(line.text)) for line in self.section(section))
+        """Return the values of a key in the section LinuxCNC reads, with their first lines."""
+        matches = [(line, ENTRY.match(text)) for line, text in joined(self.section(section))]
         return [(line, match[2]) for line, match in matches if match and match[1] == key]
 
     def end_of_section(self, section: str) -> Place | None:

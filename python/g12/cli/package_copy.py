@@ -8,7 +8,7 @@ import shutil
 from pathlib import Path
 
 from g12.cli.features import ROOT
-from g12.cli.safe_write import take_after, write
+from g12.cli.safe_write import take_owner
 
 NAME = "g12"  # of the folder in the config's folder
 MANIFEST = "MANIFEST"  # as sha256sum writes and checks it
@@ -70,11 +70,12 @@ def write_copy(folder: Path) -> list[str]:
     files = package_files()
     for name in stale(folder):
         make_folder((folder / name).parent, folder.parent)
-        write(folder / name, files[name])
+        (folder / name).write_bytes(files[name])
+        take_owner(folder / name)
     for name in set(old) - set(files):
         (folder / name).unlink(missing_ok=True)
     lines = [f"{digest(content)}  {name}\n" for name, content in files.items()]
-    write(folder / MANIFEST, "".join(lines).encode())
+    (folder / MANIFEST).write_text("".join(lines), encoding="utf-8")
     return aside
 
 
@@ -83,7 +84,7 @@ def make_folder(folder: Path, above: Path) -> None:
     below = [path for path in (folder, *folder.parents) if above in path.parents]
     for path in reversed([path for path in below if not path.exists()]):
         path.mkdir()
-        take_after(path, path / "..")
+        take_owner(path)
 
 
 def remove_copy(folder: Path) -> list[str]:

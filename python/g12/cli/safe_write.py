@@ -44,12 +44,18 @@ def write(path: Path, content: bytes) -> None:
 
 
 def take_after(new: Path, path: Path) -> None:
-    """Give a new file mode and owner of the one at ``path``, or the owner of its folder."""
+    """Give a new file the mode and owner of the one at ``path``, if there is one."""
     if path.exists():
         shutil.copymode(path, new)
+        take_owner(new, path)
     else:
-        new.chmod(0o755 if new.is_dir() else 0o644)
-    owner = (path if path.exists() else path.parent).stat()
+        new.chmod(0o644)
+        take_owner(new)
+
+
+def take_owner(new: Path, model: Path | None = None) -> None:
+    """Give a new file the owner of another, or of the folder it is in: root may be at work."""
+    owner = (model or new.parent).stat()
     with contextlib.suppress(PermissionError):
         os.chown(new, owner.st_uid, owner.st_gid)
 

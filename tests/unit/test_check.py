@@ -1,0 +1,295 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What `check` finds in a config, rule by rule; no LinuxCNC is asked."""
+
+import json
+
+import pytest
+
+from configs import HAAS, LATHE, MILL, config_of, with_lines, write_config
+from g12.cli import check, features
+from g12.cli.config import python_error
+from g12.cli.config_rules import PROBLEM, WARNING, findings_of, last_words
+
+HANDLERS = {name: "g12.remap" for f in features.FILES for name in features.handlers_of(f)}
+PYTHON = "[PYTHON]\nTOPLEVEL = toplevel.py\n"
+GOOD = with_lines(MILL, "RS274NGC", f"SUBROUTINE_PATH = ngc\n{HAAS}") + PYTHON
+
+
+@pytest.fixture
+def found(tmp_path):
+    """Return a function: the findings about an INI with everything else in order."""
+
+    def find(text, remap=HANDLERS, remap_file="remap.py", files=(), **facts):
+        subs = {f"ngc__{name}_ngc": "" for name in ("g12_haas", "g12_circle_mill", "circle_mill")}
+        ini = write_config(tmp_path, text, toplevel_py="", **subs, **dict(files))
+        package = tmp_path / "python" / "g12"
+        config = config_of(ini, remap=remap, remap_file=remap_file, package=package, **facts)
+        return findings_of(config)
+
+    return find
+
+
+def lines_of(feature):
+    return "".join(f"REMAP = {remap.text}\n" for remap in features.remaps_of(feature))
+
+
+def kinds(findings):
+    return [finding.kind for finding in findings]
+
+
+def test_nothing_is_found_in_a_good_config(found):
+    assert found(GOOD) == []
+
+
+def test_every_finding_has_a_cure_and_a_level(found):
+    text = GOOD.replace("prolog=g12_haas", "prolog=g12_hass") + "[G12]\nCLEARNIG = rings\n"
+    findings = found(text, remap={}, remap_file=None)
+    assert len(findings) == 3
+    assert all(finding.cure and finding.level in (PROBLEM, WARNING) for finding in findings)
+
+
+def test_a_config_without_the_package(found):
+    assert kinds(found(MILL)) == ["no-codes"]
+
+
+def test_the_same_code_twice(found):
+    (taken,) = found(with_lines(GOOD, "RS274NGC", "REMAP = g13 modalgroup=1 ngc=mine\n"))
+    assert taken.kind == "taken"
+    assert "mill.ini:5: G13 is remapped here already: REMAP = g13 modalgroup=1 ngc=mine" in (
+        taken.text
+    )
+    assert "mill.ini:8" in taken.cure
+
+
+def test_the_same_line_twice_is_one_finding(found):
+    assert kinds(found(with_lines(GOOD, "RS274NGC", HAAS.splitlines()[0] + "\n"))) == ["taken"]
+
+
+def test_a_code_that_linuxcnc_owns(found):
+    polar = (
+        "REMAP = G12.1 modalgroup=1 python=polar_on\nREMAP = G13.1 modalgroup=1 python=polar_off\n"
+    )
+    text = with_lines(LATHE, "RS274NGC", polar) + PYTHON
+    (owned,) = found(text, owned={"G12.1"})
+    assert owned.kind == "owned"
+    assert "polar-g12.3" in owned.cure
+
+
+def test_any_code_pair_may_be_given_to_polar_interpolation(found):
+    polar = "REMAP = G7.1 modalgroup=1 python=polar_on\nREMAP = G7.2 modalgroup=1 py=polar_off\n"
+    assert found(with_lines(LATHE, "RS274NGC", polar) + PYTHON) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (("prolog=g12_haas", "prolog=g12_hass"), "should have prolog=g12_haas"),
+        (("epilog=cycle_done", ""), "should have epilog=cycle_done"),
+        (("modalgroup=1", "modalgroup=5"), "should have modalgroup=1"),
+        (("modalgroup=1", "modalgroup=1 argspec=I"), "should have no argspec="),
+        (("ngc=g12_haas", "ngc=g12_has"), "should have ngc=g12_haas"),
+    ],
+)
+def test_a_line_that_is_nearly_right(found, change, says):
+    first = HAAS.splitlines()[0]
+    (wrong,) = found(GOOD.replace(first, first.replace(*change)))
+    assert wrong.kind == "wrong-line"
+    assert says in wrong.text
+    assert wrong.cure == first
+
+
+def test_half_a_pair(found):
+    (half,) = found(GOOD.replace(HAAS.splitlines()[1] + "\n", ""))
+    assert half.kind == "half"
+    assert half.text == "haas: G13 is missing, though its other code is there"
+    assert HAAS.splitlines()[1] in half.cure
+
+
+def test_half_a_pair_whose_other_code_is_the_users(found):
+    (half,) = found(GOOD.replace(HAAS.splitlines()[1], "REMAP = G13 modalgroup=1 python=mine"))
+    assert "G13 means something else here (REMAP = G13 modalgroup=1 python=mine)" in half.text
+
+
+def test_a_sub_that_is_nowhere(found):
+    (missing,) = found(GOOD.replace("SUBROUTINE_PATH = ngc\n", ""))
+    assert missing.kind == "no-sub"
+    assert "g12_haas.ngc" in missing.text
+
+
+def test_only_the_first_ten_folders_count(found, tmp_path):
+    for number in range(10):
+        (tmp_path / f"f{number}").mkdir()
+    ten = ":".join(f"f{number}" for number in range(10))
+    assert kinds(found(GOOD.replace("= ngc\n", f"= {ten}:ngc\n"))) == ["no-sub"]
+    nine = f"nowhere:{ten[3:]}"
+    assert kinds(found(GOOD.replace("= ngc\n", f"= {nine}:ngc\n"))) == []
+
+
+@pytest.mark.parametrize("place", ["g12_haas_ngc", "programs__g12_haas_ngc"])
+def test_another_file_of_a_subs_name_in_front_of_it(found, place):
+    text = GOOD + "[DISPLAY]\nPROGRAM_PREFIX = programs\n"
+    (shadowed,) = found(text, files={place: "o<g12_haas> sub\n"})
+    assert shadowed.kind == "shadowed"
+    assert "before the package's g12_haas.ngc" in shadowed.text
+
+
+def test_a_blank_in_the_path_of_the_subs(found):
+    text = GOOD.replace("= ngc\n", "= my subs\n")
+    (blank,) = found(text, files={"my subs__g12_haas_ngc": ""})
+    assert blank.kind == "blank-in-path"
+    assert "' '" in blank.text
+
+
+def test_a_python_oword_shadows_what_programs_call(found):
+    text = with_lines(GOOD, "RS274NGC", lines_of("circle-mill"))
+    (shadowed,) = found(text, oword={"circle_mill": "oword", "g12_haas": "oword"})
+    assert shadowed.kind == "shadowed"
+    assert "o<circle_mill>" in shadowed.text
+
+
+def test_no_python(found):
+    (missing,) = found(GOOD.replace(PYTHON, ""), remap={}, remap_file=None)
+    assert missing.kind == "no-python"
+    (wrong,) = found(GOOD.replace("= toplevel.py", "= typo.py"), error="can't resolve path")
+    assert wrong.kind == "no-python"
+    assert "typo.py: there is no such file" in wrong.text
+
+
+def test_python_that_stops(found):
+    (stops,) = found(GOOD, error="ModuleNotFoundError: No module named 'g12' (remap.py:1)")
+    assert stops.kind == "python-fails"
+    assert "remap.py:1" in stops.text
+    assert "PATH_APPEND" in stops.cure
+
+
+def test_a_toplevel_without_remap(found):
+    (missing,) = found(GOOD, remap={}, remap_file=None)
+    assert missing.kind == "no-remap-module"
+    assert "import remap" in missing.cure
+
+
+def test_a_users_remap_without_our_import(found):
+    (missing,) = found(GOOD, remap={"mine": "remap"}, remap_file="/machine/remap.py")
+    assert missing.kind == "no-import"
+    assert missing.text == "/machine/remap.py has no cycle_done, g12_haas, g13_haas"
+    assert "from g12.remap import *" in missing.cure
+
+
+def test_a_users_function_of_a_handlers_name(found):
+    (hidden,) = found(GOOD, remap={**HANDLERS, "cycle_done": "remap"})
+    assert hidden.kind == "hidden"
+    assert "cycle_done" in hidden.text
+
+
+def test_a_wrong_setting(found):
+    (setting,) = found(GOOD + "[G12]\nCLEARING = squares\n")
+    assert setting.text == "[G12] CLEARING = squares: must be rings or spiral"
+
+
+def test_a_lathe_without_c_and_a_mill_without_y(found):
+    (axis,) = found(GOOD.replace("X Y Z", "X Z"))
+    assert axis.text == "haas needs axis Y; [TRAJ] COORDINATES has X Z"
+    (axis,) = found(with_lines(MILL, "RS274NGC", lines_of("polar")) + PYTHON)
+    assert axis.text == "polar needs axis C; [TRAJ] COORDINATES has X Y Z"
+
+
+@pytest.mark.parametrize("table", ["T1 P1\nT2 P2 Z1\n", "T1P1D0\n", "T1 P1 ;D6\n"])
+def test_tools_without_diameters(found, table):
+    (tools,) = found(GOOD, files={"mill_tbl": table})
+    assert (tools.level, tools.kind) == (WARNING, "no-diameters")
+
+
+@pytest.mark.parametrize("table", ["", "T1P1D6\n", "T1 P1\nT2 P2 d+.25 ;x\n"])
+def test_tools_with_diameters(found, table):
+    expected = [] if table else ["no-diameters"]
+    assert kinds(found(GOOD, files={"mill_tbl": table})) == expected
+
+
+@pytest.mark.parametrize(
+    ("version", "expected"),
+    [("2.8.4", ["too-old"]), ("2.9.0~pre1+git", []), ("2.10.0", []), ("", ["no-linuxcnc"])],
+)
+def test_versions(found, version, expected):
+    assert kinds(found(GOOD, version=version)) == expected
+
+
+def test_lines_that_linuxcnc_does_not_read(found):
+    second = MILL + f"[RS274NGC]\n{HAAS}"
+    assert kinds(found(second)) == ["no-codes", "not-read", "not-read"]
+    assert kinds(found(GOOD + "[G12]\nCLEARING = rings\n[G12]\nPOLAR_Z = allow\n")) == ["not-read"]
+
+
+def test_a_line_too_long_to_be_read(found):
+    (long_line,) = found(GOOD.replace("= ngc\n", f"= ngc:{'x' * 250}\n"))
+    assert long_line.kind == "long-line"
+
+
+def test_includes(found):
+    text = GOOD + "#INCLUDE nowhere.inc\n#INCLUDE more.inc\n"
+    unreadable, nested = found(text, files={"more_inc": "#INCLUDE deeper.inc\n"})
+    assert "nowhere.inc: LinuxCNC cannot read this file" in unreadable.text
+    assert nested.text.startswith("more.inc:1")
+
+
+def test_linuxcncs_own_word_only_where_nothing_else_explains_it(found):
+    said = "toplevel here\n'x' is no function - 10:REMAP = M6\nBad character 'g' used\n"
+    (failure,) = found(GOOD, failure=said)
+    assert failure.kind == "does-not-load"
+    assert "'x' is no function - 10:REMAP = M6" in failure.text
+    assert kinds(found(GOOD.replace("= ngc\n", "= typo\n"), failure=said)) == ["no-sub"]
+
+
+def test_last_words_are_never_empty():
+    assert last_words("Bad character 'g' used\n") == "Bad character 'g' used"
+
+
+def test_python_errors_name_the_module_and_its_line():
+    printed = (
+        "initialize: module '/m/toplevel.py' init failed: \nTraceback (most recent call last):\n\n"
+        '  File "/m/toplevel.py", line 4, in <module>\n    import remap\n\n'
+        "ModuleNotFoundError: No module named 'remap'\n\n"
+        "Python plugin configure() failed, status = -11\nPython plugin required for prolog=\n"
+    )
+    assert python_error(printed) == ("ModuleNotFoundError: No module named 'remap' (toplevel.py:4)")
+    assert python_error("hello from toplevel\n") is None
+
+
+def test_shortened_keywords_and_comments_in_remap_lines():
+    remap = features.remap_from_value("g88.1 modal=1 py=involute ngc=  # mine prolog=x")
+    assert remap.code == "G88.1"
+    assert remap.number == ("G", 881)
+    assert remap.keywords == {"modalgroup": "1", "python": "involute", "ngc": ""}
+    assert features.remap_from_value("").number == ("", 0)
+
+
+def test_every_handler_of_the_remap_lines_comes_with_the_star_import():
+    source = (features.ROOT / "python" / "g12" / "remap.py").read_text(encoding="utf-8")
+    exported = source.split("__all__ = [")[1].split("]")[0]
+    assert all(f'"{name}"' in exported for name in HANDLERS)
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [("nowhere.ini", "no such file"), ("", "no such file"), ("mill.tbl", "no [RS274NGC]")],
+)
+def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
+    write_config(tmp_path)
+    assert check.main([str(tmp_path / name)]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("g12 check: ")
+    assert says in error
+    assert error.count("\n") == 1
+
+
+def test_the_report_for_programs_says_what_the_one_for_people_says(tmp_path):
+    text = with_lines(GOOD, "RS274NGC", "REMAP = M400 modalgroup=10 ngc=m400\n")
+    config = config_of(write_config(tmp_path, text + "[G12]\nCLEARING = spiral\n"))
+    said = check.report(config, findings_of(config))
+    assert json.loads(json.dumps(said)) == said
+    assert said["codes"][0] == {"code": "G12", "feature": "haas", "line": "mill.ini:7"}
+    assert said["other_remaps"] == {"M400": "M400 modalgroup=10 ngc=m400"}
+    assert said["settings"] == {"CLEARING": "spiral"}
+    lines = "\n".join(check.lines_of(said))
+    assert all(
+        finding["text"] in lines and finding["cure"] in lines for finding in said["findings"]
+    )

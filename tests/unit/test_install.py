@@ -1,0 +1,518 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What `install` writes and `uninstall` takes out; no LinuxCNC is asked."""
+
+import os
+import stat
+import subprocess
+
+import pytest
+from hypothesis import HealthCheck, given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
+
+from configs import MILL, config_of, content_of, with_lines, write_config
+from g12.cli import features, install, package_copy, safe_write, uninstall
+from g12.cli.ini_edit import BEGIN, END, IniError, IniText, read_lines, to_bytes
+from g12.cli.install_plan import Refused, make_plan
+
+MODULES = {f"python/{name}.py" for name in ("toplevel", "remap")}
+PACKAGE = {
+    "ngc/g12_haas.ngc": b"(one)\n",
+    "python/g12/__init__.py": b"",
+    **{name: (features.ROOT / name).read_bytes() for name in MODULES},
+}
+OWN_PYTHON = "[PYTHON]\nPATH_PREPEND = python\nTOPLEVEL = python/toplevel.py\n"
+
+
+@pytest.fixture(autouse=True)
+def small_package(monkeypatch):
+    monkeypatch.setattr(package_copy, "package_files", lambda: dict(PACKAGE))
+
+
+def put_in(ini, *wanted, **python):
+    """Install without asking LinuxCNC; return what was said."""
+    config = config_of(ini, **python)
+    return install.carry_out(make_plan(config, wanted or ["haas"]), config.folder)
+
+
+def take_out(ini):
+    return list(uninstall.uninstall(IniText(ini), dry_run=False))
+
+
+def own_python(folder):
+    return {"remap": {"mine": "remap"}, "remap_file": str(folder / "python" / "remap.py")}
+
+
+# INI files.
+
+
+def test_the_lines_stand_at_the_end_of_their_section(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    text = ini.read_text()
+    section = text[text.index("[RS274NGC]") : text.index("[TRAJ]")]
+    assert section == (
+        "[RS274NGC]\nPARAMETER_FILE = mill.var\n"
+        f"{BEGIN} (g12 uninstall takes these lines out again)\n"
+        "SUBROUTINE_PATH = g12/ngc\n"
+        "REMAP = G12 modalgroup=1 prolog=g12_haas ngc=g12_haas epilog=cycle_done\n"
+        "REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done\n"
+        f"{END}\n\n"
+    )
+    assert text.endswith(
+        f"[PYTHON]\nTOPLEVEL = g12/python/toplevel.py\nPATH_PREPEND = g12/python\n{END}\n"
+    )
+
+
+def test_an_existing_path_gets_longer(tmp_path):
+    ini = write_config(tmp_path, with_lines(MILL, "RS274NGC", "SUBROUTINE_PATH = a:~/b  \n"))
+    put_in(ini)
+    assert "\nSUBROUTINE_PATH = a:~/b:g12/ngc  \n" in ini.read_text()
+    assert IniText(ini).ini().get("RS274NGC", "SUBROUTINE_PATH") == "a:~/b:g12/ngc"
+
+
+def test_a_path_broken_with_backslashes_gets_longer(tmp_path):
+    ini = write_config(tmp_path, with_lines(MILL, "RS274NGC", "SUBROUTINE_PATH = a:\\\nb\nX = 1\n"))
+    before = ini.read_bytes()
+    put_in(ini)
+    assert IniText(ini).ini().get("RS274NGC", "SUBROUTINE_PATH") == "a:b:g12/ngc"
+    take_out(ini)
+    assert ini.read_bytes() == before
+
+
+def test_polar_alone_needs_no_subs(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini, "polar")
+    assert "SUBROUTINE_PATH" not in ini.read_text()
+
+
+def test_a_second_feature_joins_the_first(tmp_path):
+    ini = write_config(tmp_path)
+    before = content_of(tmp_path)
+    put_in(ini, "haas")
+    put_in(ini, "circle-mill", remap={}, package=tmp_path / "g12" / "python" / "g12")
+    lines = [line for line in ini.read_text().splitlines() if line.startswith("REMAP")]
+    assert [line.split()[2] for line in lines] == ["G12", "G13", "G12.2", "G13.2"]
+    assert [block[0].text.startswith(BEGIN) for block in IniText(ini).blocks()] == [True] * 3
+    take_out(ini)
+    assert content_of(tmp_path) == before
+
+
+def test_python_without_a_toplevel_keeps_its_path_and_ours_comes_first(tmp_path):
+    ini = write_config(tmp_path, MILL + "[PYTHON]\nPATH_PREPEND = mine\n\n; end\n")
+    put_in(ini)
+    found = IniText(ini).ini()
+    assert found.all("PYTHON", "PATH_PREPEND") == ["mine", "g12/python"]
+    assert found.get("PYTHON", "TOPLEVEL") == "g12/python/toplevel.py"
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize("tail", ["", "\n", "\n\n", " ", "\n# the end"])
+def test_line_ends_and_the_files_end_survive(tmp_path, end, tail):
+    text = (MILL.rstrip("\n") + tail).replace("\n", end)
+    ini = write_config(tmp_path, text)
+    before = content_of(tmp_path)
+    put_in(ini)
+    assert ini.read_bytes().count(b"\r\n") == (ini.read_bytes().count(b"\n") if "\r" in end else 0)
+    assert ini.read_bytes().endswith(b"\n") == text.endswith("\n")
+    take_out(ini)
+    assert content_of(tmp_path) == before
+
+
+VALUES = st.sampled_from(["", " ", "a", "a:b", "a = b", "\xe9", "\udce9", "x \\\n y", "[y]"])
+LINES = st.one_of(
+    st.sampled_from(["", " ", "\t", "# note", "; note", "#REMAP = G12", "#INCLUDE more.inc"]),
+    st.builds("{} = {}".format, st.sampled_from(["A", "  B", "DEBUG"]), VALUES),
+    st.builds("SUBROUTINE_PATH = {}".format, st.sampled_from(["a", "a:b", "../x:~/y "])),
+    st.sampled_from(["[RS274NGC]", "[PYTHON]", "[TRAJ]", " [EMC]", "[RS274NGC] "]),
+)
+
+
+@given(
+    st.lists(LINES, max_size=12),
+    st.lists(LINES, max_size=8),
+    st.lists(LINES, max_size=6),
+    st.sampled_from(["\n", "\r\n"]),
+    st.booleans(),
+)
+@hypothesis_settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_whatever_the_ini_uninstall_is_the_reverse_of_install(
+    tmp_path_factory, first, last, included, end, ended
+):
+    folder = tmp_path_factory.mktemp("config")
+    more = end.join(included)
+    text = end.join([*first, "[RS274NGC]", *last]) + (end if ended else "")
+    ini = write_config(folder, text, more_inc=more.encode("utf-8", "surrogateescape").decode(
+        "utf-8", "replace"))  # fmt: skip
+    before = content_of(folder)
+    put_in(ini, "haas")
+    found = IniText(ini).ini()
+    assert "g12/ngc" in found.get("RS274NGC", "SUBROUTINE_PATH")
+    assert len([line for line in found.all("RS274NGC", "REMAP") if "g12_haas" in line]) == 2
+    assert found.get("PYTHON", "TOPLEVEL") == "g12/python/toplevel.py"
+    assert put_in(ini, "haas", package=folder / "g12" / "python" / "g12") == []
+    take_out(ini)
+    assert content_of(folder) == before
+
+
+def test_edits_elsewhere_survive_uninstall(tmp_path):
+    ini = write_config(tmp_path, with_lines(MILL, "RS274NGC", "SUBROUTINE_PATH = a\n"))
+    put_in(ini)
+    changed = ini.read_text().replace("mill.var", "other.var").replace("a:g12/ngc", "a:g12/ngc:b")
+    ini.write_text(changed.replace(END, f"{END}\nREMAP = M400 modalgroup=10 ngc=m400", 1))
+    said = take_out(ini)
+    expected = MILL.replace("mill.var\n", "other.var\nREMAP = M400 modalgroup=10 ngc=m400\n")
+    assert ini.read_text() == with_lines(expected, "RS274NGC", "SUBROUTINE_PATH = a:b\n")
+    assert any("mill.ini.before-g12 stays" in line for line in said)
+    assert (tmp_path / "mill.ini.before-g12").exists()
+
+
+def test_the_users_lines_between_the_markers_stay(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    own = "REMAP = M400 modalgroup=10 ngc=m400"
+    ini.write_text(ini.read_text().replace(END, f"{own}\n{END}", 1))
+    said = take_out(ini)
+    assert ini.read_text() == MILL.replace("mill.var\n", f"mill.var\n{own}\n")
+    assert any(own in line and "stays" in line for line in said)
+
+
+def test_the_users_python_lines_keep_their_section(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    ini.write_text(ini.read_text() + "LOG_LEVEL = 8\n")
+    take_out(ini)
+    assert ini.read_text() == f"{MILL}[PYTHON]\nLOG_LEVEL = 8\n"
+
+
+def test_a_marker_without_its_end_is_refused(tmp_path, capsys):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    ini.write_text(ini.read_text().replace(END, "# gone"))
+    before = content_of(tmp_path)
+    with pytest.raises(IniError, match=END):
+        take_out(ini)
+    assert uninstall.main([str(ini)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert content_of(tmp_path) == before
+
+
+# Included files.
+
+
+def test_lines_go_behind_the_include_if_its_section_goes_on(tmp_path):
+    text = MILL.replace("[RS274NGC]\nPARAMETER_FILE = mill.var\n", "#INCLUDE rs.inc\n")
+    ini = write_config(tmp_path, text, rs_inc="[RS274NGC]\nPARAMETER_FILE = mill.var\n")
+    before = content_of(tmp_path)
+    put_in(ini)
+    assert f"#INCLUDE rs.inc\n{BEGIN}" in ini.read_text()
+    assert (tmp_path / "rs.inc").read_bytes() == before["rs.inc"]
+    assert len(IniText(ini).ini().all("RS274NGC", "REMAP")) == 2
+    take_out(ini)
+    assert content_of(tmp_path) == before
+
+
+def test_lines_go_into_the_include_if_its_section_ends_there(tmp_path):
+    base = "[EMC]\nVERSION = 1.1\n[RS274NGC]\nPARAMETER_FILE = mill.var\n[TRAJ]\n"
+    ini = write_config(tmp_path, "#INCLUDE base.inc\nCOORDINATES = X Y Z\n", base_inc=base)
+    before = content_of(tmp_path)
+    put_in(ini)
+    assert ini.read_bytes() == before["mill.ini"]
+    found = IniText(ini).ini()
+    assert found.get("PYTHON", "TOPLEVEL") == "g12/python/toplevel.py"
+    assert found.get("TRAJ", "COORDINATES") == "X Y Z"
+    assert found.get("EMC", "VERSION") == "1.1"
+    take_out(ini)
+    assert content_of(tmp_path) == before
+
+
+def test_a_file_outside_the_folder_is_never_touched(tmp_path):
+    outside, inside = tmp_path / "outside", tmp_path / "inside"
+    outside.mkdir(), inside.mkdir()
+    (outside / "base.inc").write_text("[RS274NGC]\nPARAMETER_FILE = x\n[TRAJ]\n")
+    ini = write_config(inside, "#INCLUDE ../outside/base.inc\nCOORDINATES = X Y Z\n")
+    with pytest.raises(Refused) as refused:
+        put_in(ini)
+    assert refused.value.args[0].kind == "outside"
+    (inside / "base.inc").symlink_to(outside / "base.inc")
+    ini.write_text("#INCLUDE base.inc\n")
+    with pytest.raises(Refused):
+        put_in(ini)
+
+
+# The user's own modules.
+
+
+def own_config(folder, toplevel="import remap\n", remap="def mine(self): pass\n", **python):
+    ini = write_config(
+        folder, MILL + OWN_PYTHON, python__toplevel_py=toplevel, python__remap_py=remap
+    )
+    return ini, {**own_python(folder), **python}
+
+
+@pytest.mark.parametrize("remap", ["def mine(self): pass\n", "x = 1", "", "x = 1\r\n", "# \xe9"])
+def test_a_users_remap_gets_one_line_and_loses_it_again(tmp_path, remap):
+    ini, python = own_config(tmp_path, remap=remap)
+    before = content_of(tmp_path)
+    said = put_in(ini, **python)
+    after = content_of(tmp_path)
+    assert after["python/remap.py"].startswith(before["python/remap.py"])
+    added = after["python/remap.py"][len(before["python/remap.py"]) :].decode().strip()
+    assert added == (
+        'import sys; sys.path.append("g12/python"); from g12.remap import *  # by g12 install'
+    )
+    assert after["python/toplevel.py"] == before["python/toplevel.py"]
+    assert IniText(ini).ini().all("PYTHON", "PATH_PREPEND") == ["python"]
+    assert any("remap.py.before-g12" in line for line in said)
+    take_out(ini)
+    assert content_of(tmp_path) == before
+
+
+def test_a_toplevel_without_remap_gets_the_import(tmp_path):
+    ini, _ = own_config(tmp_path, toplevel="import oword\n")
+    (tmp_path / "python" / "remap.py").unlink()
+    before = content_of(tmp_path)
+    put_in(ini, oword={"mine": "oword"})
+    added = (tmp_path / "python" / "toplevel.py").read_text().splitlines()[1]
+    assert added == 'import sys; sys.path.append("g12/python"); import remap  # by g12 install'
+    take_out(ini)
+    assert content_of(tmp_path) == before
+
+
+def test_a_remap_that_the_toplevel_does_not_import_yet(tmp_path):
+    ini, _ = own_config(tmp_path, toplevel="import oword\n")
+    before = content_of(tmp_path)
+    put_in(ini)
+    changed = {
+        name for name, content in content_of(tmp_path).items() if before.get(name) != content
+    }
+    assert {"python/toplevel.py", "python/remap.py"} <= changed
+    take_out(ini)
+    assert content_of(tmp_path) == before
+
+
+def test_a_hand_made_import_is_enough(tmp_path):
+    ini, python = own_config(tmp_path)
+    ours = dict.fromkeys(features.handlers_of("haas"), "g12.remap")
+    put_in(ini, **{**python, "remap": ours, "package": tmp_path / "tools" / "python" / "g12"})
+    assert "by g12 install" not in (tmp_path / "python" / "remap.py").read_text()
+    assert "SUBROUTINE_PATH = tools/ngc" in ini.read_text()
+    assert not (tmp_path / "g12").exists()
+
+
+@pytest.mark.parametrize(
+    ("python", "kind"),
+    [
+        ({"remap": {"cycle_done": "remap"}}, "hidden"),
+        ({"remap_file": None}, "remap-module"),
+        ({"remap_file": os.__file__}, "outside"),
+    ],
+)
+def test_what_cannot_be_done_to_a_users_modules_is_refused(tmp_path, python, kind):
+    ini, own = own_config(tmp_path)
+    before = content_of(tmp_path)
+    with pytest.raises(Refused) as refused:
+        make_plan(config_of(ini, **{**own, **python}), ["haas"])
+    assert refused.value.args[0].kind == kind
+    assert content_of(tmp_path) == before
+
+
+def test_two_machines_share_the_copy_and_the_import(tmp_path):
+    ini, python = own_config(tmp_path)
+    other = write_config(tmp_path, MILL + OWN_PYTHON, "other.ini")
+    before = content_of(tmp_path)
+    put_in(ini, **python)
+    put_in(other, **{**python, "remap": dict.fromkeys(python["remap"], "g12.remap")})
+    said = take_out(ini)
+    assert any("another INI of this folder uses it" in line for line in said)
+    assert "by g12 install" in (tmp_path / "python" / "remap.py").read_text()
+    assert (tmp_path / "g12" / package_copy.MANIFEST).exists()
+    take_out(other)
+    assert content_of(tmp_path) == before
+
+
+# The copy of the package.
+
+
+def test_the_copy_is_checked_by_sha256sum(tmp_path):
+    put_in(write_config(tmp_path))
+    copy = tmp_path / "g12"
+    subprocess.run(["sha256sum", "--check", "--strict", "MANIFEST"], cwd=copy, check=True)
+    assert content_of(copy).keys() == {*PACKAGE, "MANIFEST"}
+
+
+def test_a_newer_package_replaces_the_copy_and_keeps_what_was_edited(tmp_path, monkeypatch):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    copy = tmp_path / "g12"
+    (copy / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
+    assert install.bring_copy_up_to_date(copy) == []
+    newer = {"ngc/g12_haas.ngc": b"(two)\n", "ngc/new.ngc": b"", "python/g12/__init__.py": b""}
+    monkeypatch.setattr(package_copy, "package_files", lambda: newer)
+    assert any("g12_haas.ngc.edited" in line for line in install.bring_copy_up_to_date(copy))
+    assert content_of(copy).keys() == {*newer, "MANIFEST", "ngc/g12_haas.ngc.edited"}
+    assert (copy / "ngc" / "g12_haas.ngc").read_bytes() == b"(two)\n"
+    assert (copy / "ngc" / "g12_haas.ngc.edited").read_text() == "(mine)\n"
+
+
+def test_edited_files_of_the_copy_survive_uninstall(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
+    (tmp_path / "g12" / "python" / "__pycache__").mkdir()
+    said = take_out(ini)
+    assert content_of(tmp_path / "g12") == {"ngc/g12_haas.ngc": b"(mine)\n"}
+    assert any("but for what you changed: ngc/g12_haas.ngc" in line for line in said)
+
+
+def test_a_folder_of_the_users_own_is_not_overwritten(tmp_path):
+    ini = write_config(tmp_path, g12__notes_txt="mine\n")
+    with pytest.raises(Refused) as refused:
+        put_in(ini)
+    assert refused.value.args[0].kind == "folder"
+
+
+def test_a_package_put_there_by_hand_is_used_and_stays(tmp_path):
+    ini = write_config(
+        tmp_path, g12__python__g12____init___py="", g12__ngc__g12_haas_ngc="(by hand)\n"
+    )
+    (tmp_path / "g12" / "python" / "g12").mkdir(parents=True, exist_ok=True)
+    (tmp_path / "g12" / "python" / "g12" / "__init__.py").write_text("")
+    before = content_of(tmp_path)
+    put_in(ini)
+    assert "TOPLEVEL = g12/python/toplevel.py" in ini.read_text()
+    assert not (tmp_path / "g12" / package_copy.MANIFEST).exists()
+    take_out(ini)
+    assert content_of(tmp_path) == before
+
+
+def test_the_real_package_has_what_a_machine_needs(monkeypatch):
+    monkeypatch.undo()
+    names = package_copy.package_files()
+    assert {"python/toplevel.py", "python/remap.py", "python/g12/__main__.py"} <= names.keys()
+    assert {f"configs/include/{name}" for name in features.FILES.values()} <= names.keys()
+    subs = {f"ngc/{sub}.ngc" for f in features.FILES for sub in features.names_of(f)}
+    assert subs <= names.keys()
+    assert not any("__pycache__" in name or name.startswith("tests") for name in names)
+
+
+# Writing.
+
+
+def test_writing_keeps_mode_and_links(tmp_path):
+    target, link = tmp_path / "real.ini", tmp_path / "link.ini"
+    target.write_text("old\n")
+    target.chmod(0o640)
+    link.symlink_to(target)
+    safe_write.write(link, b"new\n")
+    assert link.is_symlink()
+    assert target.read_text() == "new\n"
+    assert stat.S_IMODE(target.stat().st_mode) == 0o640
+    assert [path.name for path in tmp_path.iterdir()] != []
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_write_that_fails_leaves_every_file_as_it_was(tmp_path, monkeypatch):
+    first, second = tmp_path / "first", tmp_path / "second"
+    first.write_text("one\n"), second.write_text("two\n")
+    before = content_of(tmp_path)
+    real = os.replace
+
+    def fails_on_second(source, target):
+        if str(target).endswith("second"):
+            raise OSError("disk full")
+        real(source, target)
+
+    monkeypatch.setattr(os, "replace", fails_on_second)
+    with pytest.raises(OSError, match="disk full"):
+        safe_write.write_all({first: b"new\n", second: b"new\n"})
+    assert content_of(tmp_path) == before
+
+
+def test_a_failed_installation_leaves_no_old_versions_behind(tmp_path, monkeypatch):
+    ini = write_config(tmp_path)
+    before = content_of(tmp_path)
+
+    def fails(_changes):
+        raise OSError("disk full")
+
+    monkeypatch.setattr(install, "write_all", fails)
+    with pytest.raises(OSError, match="disk full"):
+        put_in(ini)
+    after = content_of(tmp_path)
+    assert {name: after[name] for name in after if not name.startswith("g12/")} == before
+
+
+def test_old_versions_are_never_overwritten(tmp_path):
+    path = tmp_path / "mill.ini"
+    path.write_text("one\n")
+    assert safe_write.back_up(path).name == "mill.ini.before-g12"
+    assert safe_write.back_up(path).name == "mill.ini.before-g12"
+    path.write_text("two\n")
+    assert safe_write.back_up(path).name == "mill.ini.before-g12.2"
+    assert safe_write.drop_backup(path) == [tmp_path / "mill.ini.before-g12"]
+
+
+@given(st.binary(max_size=200))
+def test_reading_lines_loses_no_byte(tmp_path_factory, content):
+    path = tmp_path_factory.mktemp("lines") / "any.ini"
+    path.write_bytes(content)
+    assert to_bytes(read_lines(path)) == content
+
+
+# The command line.
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [[], ["mill.ini"], ["mill.ini", "--with"], ["mill.ini", "--with", "heidenhain"]],
+)
+def test_wrong_use_of_install(arguments, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        install.main(arguments)
+    assert stopped.value.code == 2
+    assert "usage: g12 install" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", [install, uninstall])
+@pytest.mark.parametrize(
+    ("name", "says"), [("nowhere.ini", "no such file"), ("mill.tbl", "no [RS274NGC]")]
+)
+def test_wrong_files(command, name, says, tmp_path, capsys):
+    write_config(tmp_path)
+    rest = ["--with", "haas"] if command is install else []
+    assert command.main([str(tmp_path / name), *rest]) == 2
+    error = capsys.readouterr().err
+    assert says in error
+    assert error.count("\n") == 1
+
+
+def test_two_dialects_at_once(tmp_path, capsys):
+    ini = write_config(tmp_path)
+    assert install.main([str(ini), "--with", "haas", "yasnac"]) == 2
+    assert "haas and yasnac exclude each other" in capsys.readouterr().err
+
+
+def test_uninstall_where_nothing_is_installed(tmp_path, capsys):
+    ini = write_config(tmp_path)
+    before = content_of(tmp_path)
+    assert uninstall.main([str(ini)]) == 0
+    assert "nothing that install put in" in capsys.readouterr().out
+    assert content_of(tmp_path) == before
+
+
+def test_a_dry_run_of_uninstall_shows_and_writes_nothing(tmp_path, capsys):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    before = content_of(tmp_path)
+    assert uninstall.main([str(ini), "--dry-run"]) == 0
+    assert "-REMAP = G12 " in capsys.readouterr().out
+    assert content_of(tmp_path) == before
+
+
+@pytest.mark.parametrize("command", [install, uninstall])
+def test_help_has_examples(command, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        command.main(["--help"])
+    assert stopped.value.code == 0
+    assert "example" in capsys.readouterr().out
