@@ -58,7 +58,7 @@ class Message(NamedTuple):
 
 
 class Event(NamedTuple):
-    """What the program does between two moves, as text: ``tool 1``, ``M3 S1000``, ``dwell 0.5``.
+    """What the program does between two moves, as text: ``tool 1``, ``S1000``, ``M8 on``.
 
     ``at`` is the index of the move that follows, ``line`` the program's line.  LinuxCNC tells
     of spindle, coolant, work offset and path mode when the next line starts.

@@ -230,10 +230,10 @@ class Canon:
 
     def _note_conditions(self, state) -> None:
         """Note what the moves from here on run under, as far as it is new."""
-        words = conditions(state)
-        if words != self.in_force:
-            known, self.in_force = self.in_force, words
-            self._note(" ".join(word for word in words if word not in known))
+        known, self.in_force = self.in_force, conditions(state)
+        for word in self.in_force:
+            if word not in known:
+                self._note(word)
 
     # Moves.
 
