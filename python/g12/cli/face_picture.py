@@ -20,7 +20,7 @@ from g12.cli.scene import Scene
 from g12.cli.units import plain
 
 WIDTH, HEIGHT = 11.6, 7.9
-HIGHER = 0.75  # with the window on the largest deviation
+HIGHER = 1.05  # with the window on the largest deviation
 LEFT, TOP = pictures.MARGIN, 0.95
 FACE = 5.0  # the side of the face's view
 PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
@@ -136,7 +136,7 @@ def real_history(scene: Scene) -> History:
     c_speed = np.abs(np.gradient(real.positions[:, C], time))
     rapid = np.array([move.kind == "rapid" for move in scene.moves])[real.move]
     feeds = np.array([scene.path.part_feed(index) for index in range(len(scene.moves))])
-    wanted = np.where(rapid, np.nan, feeds[real.move])
+    wanted = np.where(rapid, np.nan, feeds[real.move]) * scene.override / 100.0
     x, c = real.positions[:, X], real.positions[:, C]
     return History(time, x, c, c_speed, real.part_speed() * 60, wanted, rapid)
 

@@ -18,6 +18,7 @@ COMMANDS = {
     "plot": ("g12.cli.plot", "draw a picture of what a program cuts"),
     "verify": ("g12.cli.verify", "prove that pockets and polar sections come out as programmed"),
     "regress": ("g12.cli.regress", "keep what programs do, and tell what changed"),
+    "demo": ("g12.cli.demo", "run, draw and measure the manuals' programs"),
     "trace": ("g12.cli.moves", "list the moves of a program"),
 }
 

@@ -165,7 +165,8 @@ def measure_section(
     tool = diameters.get(moves[section.at].tool, 0.0) / 2
     ways = Ways([(moves[i].block, plane.line(i, path, real)) for i in across])
     runs = runs_of(section)
-    found = [measure_run(run, ways, tool, tolerance) for run in runs]
+    leads = leads_of(section, tool)
+    found = [measure_run(run, leads, ways, tool, tolerance) for run in runs]
     shaping = [facts for run, facts in zip(runs, found) if run[0].side] or found
     lengths = [path.part_length(index) for index in across] or [0.0]
     return SectionFacts(
@@ -218,6 +219,23 @@ def runs_of(section: Section) -> list[list[Element]]:
     return [list(run) for (_, ramp), run in groups if not ramp]
 
 
+def leads_of(section: Section, tool: float) -> Shape:
+    """Return the ways on which compensation is switched on and off.
+
+    They end square to the element that follows, one tool radius away from it, and begin square
+    to the one before.
+    """
+    longer = [element for element in section.elements if element.length > SAME]
+    leads = []
+    for before, ramp, after in zip([None, *longer], longer, [*longer[1:], None]):
+        if ramp.ramp:
+            away = before.normal(1.0) * before.side * tool if before else 0.0
+            beside = after.normal(0.0) * ramp.side * tool if after else 0.0
+            start, end = ramp.start + away, ramp.end + beside
+            leads.append(Element(ramp.line, start, end, 0, True, ramp.depth))
+    return Shape(leads)
+
+
 class Ways:
     """The tool centre's ways during a section, each with the line of its block."""
 
@@ -251,8 +269,10 @@ class RunFacts:
     reached: np.ndarray
 
 
-def measure_run(run: Sequence[Element], ways: Ways, tool: float, tolerance: float) -> RunFacts:
-    """Return the facts of a stretch of contour."""
+def measure_run(
+    run: Sequence[Element], leads: Shape, ways: Ways, tool: float, tolerance: float
+) -> RunFacts:
+    """Return the facts of a stretch of contour; on the leads to and from it all is well."""
     nothing = np.zeros(0)
     if not ways.of({element.line for element in run}):
         return RunFacts(float("inf"), 0.0, 0.0, nothing, nothing)
@@ -261,6 +281,9 @@ def measure_run(run: Sequence[Element], ways: Ways, tool: float, tolerance: floa
     points, nearest, left_of, steps = laid_along(run, ways)
     away = np.abs(points - nearest)
     off = np.where(left_of * side < -SAME, -away, away) - radius
+    if leads.elements:
+        beside = leads.distances(points)
+        off = np.where(beside < np.abs(off), beside, off)
     missed, lengths = missed_by(Shape(run), side, radius, ways.shape)
     deviation = float(max(np.abs(off).max(), missed.max(initial=0.0)))
     wall = points + (nearest - points) * radius / np.maximum(away, 1e-12) if side else points

@@ -24,6 +24,7 @@ from g12.cli.plan_view import (
     floor,
     levels_of,
     mark_worst,
+    top_of,
 )
 from g12.cli.scene import Scene
 from g12.cli.units import Unit, plain
@@ -117,13 +118,6 @@ def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float)
     draw_paths(axes, scene, levels, [0, 2])
     true = abs(stretch - 1) < 0.02
     pictures.caption(axes, "Side" if true else f"Side, heights drawn {plain(stretch, 2)} : 1")
-
-
-def top_of(scene: Scene) -> float:
-    """Return the top of the part: Z0 if the tool feeds through it, else where it feeds from."""
-    cutting = [move for move in scene.moves if move.kind != "rapid"]
-    heights = [z for move in cutting for z in (move.start[2], move.end[2])] or [0.0]
-    return 0.0 if min(heights) < 0 < max(heights) else max(heights)
 
 
 def frame(axes: Axes, unit: Unit, low: np.ndarray, high: np.ndarray, pair: list[int]) -> None:

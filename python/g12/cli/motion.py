@@ -202,10 +202,10 @@ def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) ->
     """Lay the samples in motion on the path of moves; ``unit`` is one machine unit in mm."""
     moving = samples.moving()
     axes = _positions(samples, unit)[moving]
-    segment = _segments(path.axis_points, path.part.points(axes))
-    last = len(path.move) - 1
-    following = np.minimum(segment + 1, last)
-    positions = axes - path.offsets[following]
+    there = path.part.points(axes)
+    segment = _segments(path.axis_points, there)
+    following = np.minimum(segment + 1, len(path.move) - 1)
+    positions = axes - _offsets(path, there, segment, following)
     points = path.part.points(positions)
     nearest = _nearest(path.points, points, segment)
     move = path.move[following]
@@ -258,6 +258,19 @@ def _positions(samples: Samples, unit: float) -> np.ndarray:
     return positions
 
 
+def _offsets(path: Track, there: np.ndarray, segment: np.ndarray, following: np.ndarray):
+    """Return the tool length offsets (n, 9) of axis points: a move with G43 brings it in."""
+    start = path.axis_points[segment]
+    share = _share(start, path.axis_points[following] - start, there)[:, None]
+    return path.offsets[segment] * (1 - share) + path.offsets[following] * share
+
+
+def _share(start: np.ndarray, along: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """Return how far along segments points are, from 0 to 1, row by row."""
+    square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
+    return np.clip(np.einsum("ij,ij->i", point - start, along) / square, 0.0, 1.0)
+
+
 def _segments(path: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return the index of the segment of the path that each point is on, never going back.
 
@@ -288,9 +301,7 @@ def _project(path: np.ndarray, window: slice, point: np.ndarray):
 
 def _nearest_on(start: np.ndarray, along: np.ndarray, point: np.ndarray):
     """Return nearest points on segments and their distances, row by row."""
-    square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
-    share = np.clip(np.einsum("ij,ij->i", point - start, along) / square, 0.0, 1.0)
-    near = start + along * share[:, None]
+    near = start + along * _share(start, along, point)[:, None]
     return near, np.linalg.norm(point - near, axis=1)
 
 

@@ -18,21 +18,24 @@ LEAST_LENGTH = 1e-3  # mm, shorter moves have no feed worth telling
 
 
 class Pace(NamedTuple):
-    """The lowest feed of some moves, the part point (mm) and move where, and their time."""
+    """The lowest feed of some moves, the part point (mm) and move where, and their time.
+
+    ``expected`` is the time at the programmed feeds; without a run ``seconds`` is the same.
+    """
 
     lowest: float
     point: tuple[float, float, float]
     move: int
     seconds: float
+    expected: float
 
 
 def pace_of(
     every: Sequence[int], cutting: Sequence[int], path: Track, real: Followed | None = None
 ) -> Pace:
     """Return the pace of moves: the time of ``every``, the lowest feed of those ``cutting``."""
-    if real is None:
-        return programmed_pace(every, cutting, path)
-    return real_pace(every, cutting, path, real)
+    programmed = programmed_pace(every, cutting, path)
+    return programmed if real is None else real_pace(every, cutting, path, real, programmed)
 
 
 def programmed_pace(every: Sequence[int], cutting: Sequence[int], path: Track) -> Pace:
@@ -41,10 +44,12 @@ def programmed_pace(every: Sequence[int], cutting: Sequence[int], path: Track) -
     feeds = [(path.part_feed(i), i) for i in cutting if path.part_length(i) > LEAST_LENGTH]
     lowest, index = min(feeds, default=(0.0, every[0]))
     point = path.points[np.searchsorted(path.move, index + 1) - 1]
-    return Pace(lowest, tuple(point), index, seconds)
+    return Pace(lowest, tuple(point), index, seconds, seconds)
 
 
-def real_pace(every: Sequence[int], cutting: Sequence[int], path: Track, real: Followed) -> Pace:
+def real_pace(
+    every: Sequence[int], cutting: Sequence[int], path: Track, real: Followed, programmed: Pace
+) -> Pace:
     """Return the pace of a run.
 
     A stretch of cutting counts from when it first is up to speed to when it last is: to come
@@ -58,10 +63,10 @@ def real_pace(every: Sequence[int], cutting: Sequence[int], path: Track, real: F
         for stretch in up_to_speed(np.isin(real.move, cutting), speed, path, real)
     ]
     if not found:
-        return Pace(0.0, (0.0, 0.0, 0.0), every[0], seconds)
+        return programmed._replace(lowest=0.0, seconds=seconds)
     slowest = min(found, key=lambda index: speed[index])
     point = tuple(real.points[slowest])
-    return Pace(float(speed[slowest]), point, int(real.move[slowest]), seconds)
+    return Pace(float(speed[slowest]), point, int(real.move[slowest]), seconds, programmed.expected)
 
 
 def up_to_speed(cutting: np.ndarray, speed: np.ndarray, path: Track, real: Followed) -> list:

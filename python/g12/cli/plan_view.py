@@ -81,10 +81,21 @@ def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.nda
     for level in levels:
         bounds = level.area.bounds
         low[:2], high[:2] = np.minimum(low[:2], bounds[:2]), np.maximum(high[:2], bounds[2:])
+    high[2] = max(high[2], top_of(scene))
     size = high - low
     margin = np.clip(MARGIN * max(size[:2]), PICTURE_CHORD, np.maximum(0.15 * size, PICTURE_CHORD))
     margin[2] = max(0.12 * size[2], 0.2 * min(margin[:2]))
     return low - margin, high + margin
+
+
+def top_of(scene: Scene) -> float:
+    """Return the top of the part: Z0 if the tool goes down through it, else where it feeds from."""
+    cutting = [move for move in scene.moves if move.kind != "rapid"] or scene.moves
+    lowest = min(min(move.start[2], move.end[2]) for move in cutting)
+    highest = max(max(move.start[2], move.end[2]) for move in scene.moves)
+    if lowest < 0 < highest:
+        return 0.0
+    return max(max(move.start[2], move.end[2]) for move in cutting)
 
 
 def draw_plan(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:

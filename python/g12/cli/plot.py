@@ -78,6 +78,6 @@ def main(arguments: list[str]) -> int:
     if asked.run:
         with progress(f"running {asked.program.name}, real time"):
             run = run_program(asked.program, asked.ini, asked.tools, asked.override)
-        scene = with_run(scene, run)
+        scene = with_run(scene, run, asked.override)
     pictures.save(draw(scene), asked.output)
     return GOOD

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,16 +13,20 @@ from g12.cli.headless import Run
 from g12.cli.ini import Ini
 from g12.cli.motion import Followed, Track, follow, limits_of, track
 from g12.cli.part import part_of, tool_diameters
+from g12.cli.proof import Proof
 from g12.cli.trace import Move, Tools, Trace, mm_per_unit
 from g12.cli.units import Unit, plain, unit_of
 
 HEAD_COMMENT = re.compile(r"\(([^()]*)\)|;\s*(.+)")
-LONGEST_HEADING = 70
+LONGEST_HEADING = 60
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A traced program on its machine; ``diameters`` of the tools in mm, ``unit`` is shown."""
+    """A traced program on its machine; ``diameters`` of the tools in mm, ``unit`` is shown.
+
+    ``override`` is the feed override of the run in per cent.
+    """
 
     program: Path
     ini: Ini
@@ -31,6 +36,7 @@ class Scene:
     path: Track
     feed_colours: bool = False
     real: Followed | None = None
+    override: float = 100.0
 
     @property
     def moves(self) -> Sequence[Move]:
@@ -53,6 +59,8 @@ class Scene:
             f"cutting path {plain(length / self.unit.mm, 1)} {self.unit.name}",
             f"{clock(self.path.time[-1])} at the programmed feeds",
         ]
+        if self.real is not None and self.override != 100:
+            facts.append(f"run at {self.override:g} %")
         return " · ".join(filter(None, facts))
 
 
@@ -71,17 +79,27 @@ def scene_of(
     return Scene(program, ini, trace, tool_diameters(ini, tools), unit, path, feed_colours)
 
 
-def with_run(scene: Scene, run: Run) -> Scene:
-    """Return the same scene with the real motion of a run."""
+def scene_of_proof(proof: Proof, tools: Tools = None, override: float = 100.0) -> Scene:
+    """Return what to show of a program that was measured, its real motion included."""
+    subject = proof.subject
+    unit = unit_of(subject.trace.modes)
+    diameters = tool_diameters(subject.ini, tools)
+    about = (subject.program, subject.ini, subject.trace, diameters, unit, subject.path)
+    return Scene(*about, real=subject.real, override=override)
+
+
+def with_run(scene: Scene, run: Run, override: float = 100.0) -> Scene:
+    """Return the same scene with the real motion of a run at a feed override in per cent."""
     real = follow(scene.path, scene.moves, run.samples, mm_per_unit(scene.ini))
-    return replace(scene, real=real)
+    return replace(scene, real=real, override=override)
 
 
 def heading(program: Path) -> str:
     """Return the first comment at the top of a program, licence lines aside."""
     lines = program.read_text(encoding="utf-8", errors="replace").splitlines()[:5]
     found = (match[1] or match[2] for line in lines if (match := HEAD_COMMENT.search(line)))
-    return next((text.strip() for text in found if "SPDX" not in text), "")[:LONGEST_HEADING]
+    text = next((text for text in found if "SPDX" not in text), "")
+    return textwrap.shorten(text, LONGEST_HEADING, placeholder=" …")
 
 
 def clock(seconds: float) -> str:

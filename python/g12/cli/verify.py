@@ -70,7 +70,7 @@ def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
         ("moves", spread(facts.shortest, facts.longest, unit)),
         ("lowest feed", slowest(facts.pace, proof, unit)),
         *real_rows(facts, unit),
-        ("time", f"{plain(facts.pace.seconds, 1)} s"),
+        ("time", duration(facts.pace)),
     ]
     found = list(pocket_findings(facts, proof.pocket_tolerance, unit))
     title = f"line {target.line}: {target.code} ({target.dialect})"
@@ -93,7 +93,7 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
         ("direction jump", f"{plain(facts.jump, 2)}° from piece to piece"),
         ("lowest feed", slowest(facts.pace, proof, unit)),
         ("speed of C", f"{plain(facts.c_speed, 1)} degrees/s at most, {limit}"),
-        ("time", f"{plain(facts.pace.seconds, 1)} s"),
+        ("time", duration(facts.pace)),
     ]
     found = list(section_findings(facts, proof.polar_tolerance, unit))
     return paragraph(f"lines {section.line} to {section.last}: {section.code}", rows, [], found)
@@ -128,6 +128,13 @@ def slowest(pace: Pace, proof: Proof, unit: Unit) -> str:
     where = " ".join(f"{letter}{unit.text(at)}" for letter, at in zip("XYZ", pace.point))
     line = proof.subject.trace.moves[pace.move].block
     return f"{plain(pace.lowest / unit.mm, 1)} {unit.name}/min at {where} (line {line})"
+
+
+def duration(pace: Pace) -> str:
+    """Return the time in words."""
+    text = f"{plain(pace.seconds, 1)} s"
+    same = pace.seconds == pace.expected
+    return text if same else f"{text}, {plain(pace.expected, 1)} s at the programmed feeds"
 
 
 def real_rows(facts: PocketFacts, unit: Unit) -> list[tuple[str, str]]:
@@ -209,6 +216,7 @@ def pace_json(pace: Pace, proof: Proof) -> dict:
         "lowest_feed_at": [float(value) for value in pace.point],
         "lowest_feed_line": proof.subject.trace.moves[pace.move].block,
         "seconds": pace.seconds,
+        "seconds_programmed": pace.expected,
     }
 
 

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 demo``: run the manuals' programs in headless LinuxCNC, draw and measure what they cut."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from pathlib import Path
+from typing import NamedTuple
+
+from g12.cli import pictures
+from g12.cli.command import FINDING, GOOD, UsageError, one_line, run_program
+from g12.cli.features import ROOT
+from g12.cli.headless import Run
+from g12.cli.ini import read_ini
+from g12.cli.measure_pocket import PocketFacts
+from g12.cli.measure_section import SectionFacts
+from g12.cli.plot import draw
+from g12.cli.proof import Proof, prove
+from g12.cli.scene import Scene, clock, scene_of_proof
+from g12.cli.units import Unit, plain
+
+PROGRAMS = ROOT / "tests" / "programs"
+MACHINES = ROOT / "configs" / "sim"
+
+
+class Sample(NamedTuple):
+    """A program to show: its file, its machine, and the feed override (%) of its run.
+
+    The manuals' feeds are low: the runs are sped up to save time. ``own_tools`` maps numbers to
+    diameters in machine units where the machine's tool table has others.
+    """
+
+    program: str
+    machine: str
+    override: float = 100.0
+    own_tools: Mapping[int, float] | None = None
+
+    @property
+    def path(self) -> Path:
+        """Return the program's file."""
+        return PROGRAMS / self.program
+
+    @property
+    def ini(self) -> Path:
+        """Return the machine's INI file."""
+        return MACHINES / f"{self.machine}_headless.ini"
+
+    @property
+    def tools(self) -> Mapping[int, float] | None:
+        """Return the program's own tools: those given, or in the file beside the program."""
+        beside = self.path.with_suffix(".json")
+        if self.own_tools or not beside.exists():
+            return self.own_tools
+        tools = json.loads(beside.read_text(encoding="utf-8"))["tools"]
+        return {int(number): diameter for number, diameter in tools.items()}
+
+
+SAMPLES = (
+    Sample("haas/O60121.ngc", "mill_inch", 3000.0),
+    Sample("haas/O60131.ngc", "mill_inch", 3000.0),
+    Sample("circle_mill/sample.ngc", "mill_mm", 2000.0),
+    Sample("polar/manual_a.ngc", "lathe_inch", 200.0),
+    Sample("polar/manual_b.ngc", "lathe_inch", 200.0),
+    Sample("polar/manual_sample.ngc", "lathe_inch", 200.0, {8: 0.0}),
+    Sample("polar/hexagon.ngc", "lathe_mm"),
+    Sample("polar/slot.ngc", "lathe_mm"),
+    Sample("yasnac/example.ngc", "mill_yasnac_mm", 1500.0),
+)
+POCKET_HEADS = (
+    "line",
+    "code",
+    "centre",
+    "radius",
+    "rings, tool centre",
+    "Z",
+    "off circles",
+    "time",
+)
+SECTION_HEADS = ("lines", "pieces", "off contour", "allowed", "lowest feed", "C at most", "time")
+
+
+def runs(samples: Sequence[Sample], workers: int) -> Iterator[tuple[Sample, Run]]:
+    """Yield each sample with its run, as they come to their end."""
+    with ThreadPoolExecutor(workers) as pool:
+        jobs: dict[Future, Sample] = {
+            pool.submit(run_program, sample.path, sample.ini, sample.tools, sample.override): sample
+            for sample in samples
+        }
+        for job in as_completed(jobs):
+            yield jobs[job], job.result()
+
+
+def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
+    """Draw a sample; return its table and whether its circles and contours came out right."""
+    ini = read_ini(sample.ini)
+    proof = prove(sample.path, ini, tools=sample.tools, run=run)
+    scene = scene_of_proof(proof, sample.tools, sample.override)
+    picture = output / f"{sample.path.parent.name}_{sample.path.stem}.png"
+    pictures.save(draw(scene), picture)
+    return describe(sample, run, proof, scene, picture), is_sound(proof)
+
+
+def is_sound(proof: Proof) -> bool:
+    """Tell whether every circle and contour came out right; the manuals leave material in some."""
+    off = [facts.deviation > proof.pocket_tolerance for facts in proof.pockets]
+    off += [facts.deviation > proof.polar_tolerance for facts in proof.sections]
+    return not any(off) and not any(facts.gouge for facts in (*proof.pockets, *proof.sections))
+
+
+def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
+    """Return what is told of a program: its table, what LinuxCNC said, where the picture is."""
+    faster = f" at {sample.override:g} % feed" if sample.override != 100 else ""
+    title = f"{scene.title}: {clock(run.seconds)} on {sample.machine}{faster}, {picture}"
+    unit = scene.unit
+    lines = [title, *(f"  LinuxCNC said: {message.text}" for message in run.messages)]
+    if proof.pockets:
+        lines += table(POCKET_HEADS, [pocket_row(facts, unit) for facts in proof.pockets])
+    if proof.sections:
+        allowed = proof.polar_tolerance
+        rows = [section_row(facts, allowed, unit) for facts in proof.sections]
+        lines += table(SECTION_HEADS, rows)
+    lines += [f"  line {line}: {text}" for line, text in proof.findings]
+    return "\n".join(lines)
+
+
+def pocket_row(facts: PocketFacts, unit: Unit) -> tuple[str, ...]:
+    """Return a pocket's row of the table; its time is that at the programmed feed."""
+    x, y, _ = facts.target.origin
+    return (
+        str(facts.target.line),
+        facts.target.code,
+        f"X{unit.text(x)} Y{unit.text(y)}",
+        unit.text(facts.target.radius),
+        " ".join(unit.text(ring) for ring in facts.rings),
+        unit.text(facts.target.height(facts.depths[-1])),
+        f"{unit.fine(facts.off_rings)} {unit.name}",
+        f"{plain(facts.pace.expected, 1)} s",
+    )
+
+
+def section_row(facts: SectionFacts, allowed: float, unit: Unit) -> tuple[str, ...]:
+    """Return a polar section's row of the table."""
+    return (
+        f"{facts.section.line}-{facts.section.last}",
+        str(facts.pieces),
+        f"{unit.fine(facts.deviation)} {unit.name}",
+        f"{unit.fine(allowed)} {unit.name}",
+        f"{plain(facts.pace.lowest / unit.mm, 1)} {unit.name}/min",
+        f"{plain(facts.c_speed, 1)} of {plain(facts.c_limit, 1)} °/s",
+        f"{plain(facts.pace.expected, 1)} s",
+    )
+
+
+def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return a table as lines, columns as wide as needed."""
+    widths = [max(map(len, column)) for column in zip(heads, *rows)]
+    return [
+        "  " + "  ".join(f"{text:{width}}" for text, width in zip(row, widths)).rstrip()
+        for row in (heads, *rows)
+    ]
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the command's words."""
+    words = argparse.ArgumentParser(prog="g12 demo", description=__doc__)
+    words.add_argument("--output", type=Path, default=Path("build/demo"), help="folder of pictures")
+    return words
+
+
+@one_line("demo")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    asked = parser().parse_args(arguments)
+    if not PROGRAMS.is_dir():
+        raise UsageError(f"{PROGRAMS}: the sample programs are not there")
+    asked.output.mkdir(parents=True, exist_ok=True)
+    good = True
+    for count, (sample, run) in enumerate(runs(SAMPLES, os.cpu_count() or 1), start=1):
+        text, sound = show(sample, run, asked.output)
+        good = good and sound
+        print(f"[{count} of {len(SAMPLES)}] {text}\n", flush=True)
+    print("every circle and contour came out right" if good else "NOT everything came out right")
+    return GOOD if good else FINDING
