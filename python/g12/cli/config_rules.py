@@ -331,7 +331,7 @@ def handlers_missing(config: Config, codes: list[Code]) -> Iterator[Finding]:
         return
     needed = {name for code in codes for name in code.model.handlers}
     missing = sorted(needed - set(python.remap))
-    if missing and not python.remap:
+    if missing and not python.remap and not python.remap_file:
         toplevel = config.ini.get("PYTHON", "TOPLEVEL")
         yield problem(
             "no-remap-module",

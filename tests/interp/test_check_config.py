@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""`check` and `install` with the stock interpreter: what it loads, refuses and says."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from configs import HAAS, LATHE, MILL, content_of, with_lines, write_config
+from g12.cli import check, features, install, uninstall
+from g12.cli.trace import Tracer, trace_text
+from machines import ROOT, SIM
+
+REFERRED = f"SUBROUTINE_PATH = {ROOT}/ngc\n{HAAS}"
+PYTHON = f"[PYTHON]\nTOPLEVEL = {ROOT}/python/toplevel.py\nPATH_PREPEND = {ROOT}/python\n"
+GOOD = with_lines(MILL, "RS274NGC", REFERRED) + PYTHON
+POCKET = ["G21 G17 G90 G94 G61 F600", "G13 I5 K9 Q3 Z-1 D1", "M2"]
+SECTION = ["G21 G8 G90 F600", "G0 X20 Z5", "G12.1", "G1 X15 C0", "G1 X20 C0", "G13.1", "M2"]
+OWN = "[PYTHON]\nPATH_PREPEND = mine\nTOPLEVEL = mine/toplevel.py\n"
+TEN_FOLDERS = [f"f{number}" for number in range(10)]
+
+
+def kinds(ini, capsys):
+    """Return what check finds, and that its exit code says so."""
+    code = check.main([str(ini), "--json"])
+    said = json.loads(capsys.readouterr().out)
+    assert code == (1 if said["findings"] else 0)
+    return [finding["kind"] for finding in said["findings"]]
+
+
+# Configs set up by hand.
+
+
+def test_a_good_config_is_good_and_left_alone(tmp_path, capsys):
+    ini = write_config(tmp_path, GOOD)
+    before = content_of(tmp_path)
+    assert check.main([str(ini)]) == 0
+    said = capsys.readouterr().out
+    assert "loads in LinuxCNC 2." in said
+    assert "G12    haas" in said
+    assert said.endswith("nothing found\n")
+    assert content_of(tmp_path) == before
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in SIM.glob("*.ini")))
+def test_every_machine_that_comes_with_the_package_is_good(name, capsys):
+    assert kinds(SIM / name, capsys) == []
+
+
+def remap(text):
+    return {"mine__toplevel_py": "import remap\n", "mine__remap_py": text}
+
+
+@pytest.mark.parametrize(
+    ("change", "files", "expected"),
+    [
+        ((f"PATH_PREPEND = {ROOT}/python\n", ""), {}, ["python-fails"]),
+        (("TOPLEVEL = ", "TOPLEVEL = /nowhere"), {}, ["no-python"]),
+        ((PYTHON, ""), {}, ["no-python"]),
+        ((f"SUBROUTINE_PATH = {ROOT}/ngc\n", ""), {}, ["no-sub"]),
+        (("prolog=g12_haas", "prolog=g12_hass"), {}, ["wrong-line"]),
+        (("REMAP = G13", "REMAP = G33.1"), {}, ["owned"]),
+        ((HAAS, HAAS + "REMAP = G13 modalgroup=1 python=mine\n"), {}, ["taken"]),
+        ((HAAS, HAAS + "REMAP = M400 modalgroup=10 python=mine\n"), {}, ["does-not-load"]),
+        ((PYTHON, OWN), remap("from nowhere import x\n"), ["python-fails"]),
+        ((PYTHON, OWN), remap("def f(:\n"), ["python-fails"]),
+        ((PYTHON, OWN), remap("x = 1\n"), ["no-import"]),
+        ((PYTHON, OWN), {"mine__toplevel_py": "import os\n"}, ["no-remap-module"]),
+        ((PYTHON, PYTHON + "[G12]\nPOLAR_Z = perhaps\n"), {}, ["setting"]),
+        (("X Y Z", "X Z"), {}, ["no-axis"]),
+    ],
+)
+def test_what_is_wrong_is_found_and_linuxcnc_agrees(tmp_path, capsys, change, files, expected):
+    assert change[0] in GOOD
+    ini = write_config(tmp_path, GOOD.replace(*change), **files)
+    found = kinds(ini, capsys)
+    assert found == expected
+
+
+def test_another_file_in_front_of_the_sub(tmp_path, capsys):
+    prefix = "[DISPLAY]\nPROGRAM_PREFIX = programs\n"
+    other = "o<g12_haas> sub\nG0 X99\no<g12_haas> endsub\n"
+    ini = write_config(tmp_path, GOOD + prefix, programs__g12_haas_ngc=other)
+    assert kinds(ini, capsys) == ["shadowed"]
+    assert trace_text(POCKET, ini).moves[0].end[0] == 99
+
+
+def test_a_python_oword_in_front_of_the_event(tmp_path, capsys):
+    event = "".join(f"REMAP = {line.text}\n" for line in features.remaps_of("circle-mill"))
+    own = "PATH_PREPEND = mine\n"
+    text = with_lines(with_lines(GOOD, "RS274NGC", event), "PYTHON", own)
+    ini = write_config(
+        tmp_path,
+        text.replace(f"{ROOT}/python/toplevel.py", "mine/toplevel.py"),
+        mine__toplevel_py="import remap, oword\n",
+        mine__oword_py="def circle_mill(self, *entries):\n    return 0.0\n",
+    )
+    assert kinds(ini, capsys) == ["shadowed"]
+    assert trace_text(["F100", "o<circle_mill> call [7]", "M2"], ini).moves == []
+
+
+def test_linuxcnc_finds_no_subs_below_a_blank(tmp_path, capsys):
+    folder = tmp_path / "my mill"
+    folder.mkdir()
+    ini = write_config(folder, GOOD.replace(f"{ROOT}/ngc", "ngc"), ngc__g12_haas_ngc="")
+    assert kinds(ini, capsys) == ["blank-in-path"]
+
+
+# The start-up error.
+
+
+def test_a_wrong_setting_is_said_at_the_start_and_by_every_code():
+    overrides = {"G12": {"CLEARNIG": "rings"}}
+    with Tracer(SIM / "mill_mm.ini", overrides=overrides) as tracer:
+        assert tracer.printed.startswith("g12: [G12] CLEARNIG is not a setting. Known: CLEARING, ")
+        refused = tracer.trace_text(POCKET)
+        assert refused.error.text.startswith("[G12] CLEARNIG is not a setting")
+        assert refused.moves == []
+        assert tracer.trace_text(["F100", "G1 X5"]).error is None
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as tracer:
+        refused = tracer.trace_text(SECTION)
+        assert refused.error.text.startswith("[G12] CLEARNIG is not a setting")
+
+
+# Installing.
+
+
+def installed(ini, *arguments):
+    return install.main([str(ini), "--with", *arguments])
+
+
+@pytest.mark.parametrize("feature", features.FILES)
+def test_every_feature_installs_runs_and_goes(tmp_path, capsys, feature):
+    polar = feature in features.POLAR
+    ini = write_config(tmp_path, LATHE if polar else MILL)
+    before = content_of(tmp_path)
+    assert installed(ini, feature) == 0
+    assert "+REMAP = " in capsys.readouterr().out
+    assert kinds(ini, capsys) == []
+    settled = content_of(tmp_path)
+    assert installed(ini, feature) == 0
+    assert "nothing to do" in capsys.readouterr().out
+    assert content_of(tmp_path) == settled
+    assert uninstall.main([str(ini)]) == 0
+    assert content_of(tmp_path) == before
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_an_installed_pocket_is_that_of_the_simulated_mill(tmp_path, own):
+    text = MILL + (OWN if own else "")
+    files = remap("def mine(self, **words):\n    pass\n") if own else {}
+    ini = write_config(tmp_path, text, **files)
+    assert installed(ini, "haas") == 0
+    tools = {1: 6.0}
+    ends = [move.end for move in trace_text(POCKET, ini, tools=tools).moves]
+    assert len(ends) > 5
+    assert ends == [move.end for move in trace_text(POCKET, SIM / "mill_mm.ini", tools=tools).moves]
+
+
+def test_an_installed_section_is_that_of_the_simulated_lathe(tmp_path):
+    axis = "[AXIS_{}]\nMAX_VELOCITY = 100\nMAX_ACCELERATION = 1000\n"
+    text = LATHE + "".join(axis.format(letter) for letter in "XZC")
+    ini = write_config(tmp_path, text)
+    assert installed(ini, "polar") == 0
+    traced = trace_text(SECTION, ini)
+    assert traced.error is None
+    assert traced.moves[-1].end[0] == pytest.approx(20)
+
+
+def test_a_bad_setting_does_not_hinder_uninstall(tmp_path, capsys):
+    ini = write_config(tmp_path)
+    before = content_of(tmp_path)
+    installed(ini, "haas")
+    wrong = ini.read_text() + "[G12]\nNONSENSE = 1\n"
+    ini.write_text(wrong)
+    capsys.readouterr()
+    assert kinds(ini, capsys) == ["setting"]
+    assert uninstall.main([str(ini)]) == 0
+    ini.write_text(ini.read_text().removesuffix("[G12]\nNONSENSE = 1\n"))
+    assert ini.read_bytes() == before["mill.ini"]
+
+
+@pytest.mark.parametrize(
+    ("text", "files", "wanted", "says"),
+    [
+        (
+            with_lines(MILL, "RS274NGC", "REMAP = g13 modalgroup=1 ngc=mine\n"),
+            {"mine_ngc": "o<mine> sub\no<mine> endsub\n"},
+            "haas",
+            "G13 is remapped here already",
+        ),
+        (MILL, {"g12_haas_ngc": "o<g12_haas> sub\n"}, "haas", "found before the package's"),
+        (MILL, {}, "polar", "polar needs axis C"),
+        (LATHE, {}, "haas", "haas needs axis Y"),
+        (MILL + OWN, remap("import nowhere\n"), "haas", "No module named 'nowhere'"),
+        (MILL + OWN, {}, "haas", "mine/toplevel.py"),
+        (MILL + OWN, remap("def g12_haas(self): pass\n"), "haas", "has a function g12_haas"),
+        (MILL + OWN, {"mine__toplevel_py": "class remap: f = len\n"}, "haas", "is no module"),
+        (MILL + "[G12]\nCLEARING = maybe\n", {}, "haas", "must be rings or spiral"),
+        (
+            with_lines(MILL, "RS274NGC", f"SUBROUTINE_PATH = {':'.join(TEN_FOLDERS)}\n"),
+            {f"{folder}__x_ngc": "" for folder in TEN_FOLDERS},
+            "haas",
+            "g12_haas.ngc is in none of the folders",
+        ),
+        (with_lines(MILL, "RS274NGC", "REMAP = M400 python=x\n"), {}, "haas", "does not load"),
+        (
+            with_lines(MILL, "RS274NGC", f"SUBROUTINE_PATH = {'a' * 230}\n"),
+            {},
+            "haas",
+            "characters; LinuxCNC reads 254",
+        ),
+    ],
+)  # fmt: skip
+def test_what_check_calls_a_problem_is_refused_and_nothing_is_touched(
+    tmp_path, capsys, text, files, wanted, says
+):
+    ini = write_config(tmp_path, text, **files)
+    before = content_of(tmp_path)
+    assert installed(ini, wanted) == 1
+    error = capsys.readouterr().err
+    assert says in error
+    assert all(line.startswith("g12 install: ") for line in error.splitlines())
+    assert "; cure: " in error
+    assert content_of(tmp_path) == before
+
+
+def test_a_code_of_linuxcncs_own_is_refused(tmp_path, capsys, monkeypatch):
+    lines = (features.INCLUDES / "polar.inc").read_text().replace("G12.1", "G33.1")
+    (tmp_path / "includes").mkdir()
+    for name in features.FILES.values():
+        content = lines if name == "polar.inc" else (features.INCLUDES / name).read_text()
+        (tmp_path / "includes" / name).write_text(content)
+    monkeypatch.setattr(features, "INCLUDES", tmp_path / "includes")
+    features.remaps_of.cache_clear()
+    (tmp_path / "machine").mkdir()
+    try:
+        assert installed(write_config(tmp_path / "machine", LATHE), "polar") == 1
+    finally:
+        features.remaps_of.cache_clear()
+    error = capsys.readouterr().err
+    assert "G33.1 is LinuxCNC's own code" in error
+    assert "polar-g12.3" in error
+
+
+def test_a_dialect_in_place_of_another_is_refused(tmp_path, capsys):
+    ini = write_config(tmp_path)
+    assert installed(ini, "haas") == 0
+    before = content_of(tmp_path)
+    capsys.readouterr()
+    assert installed(ini, "mitsubishi") == 1
+    assert "haas and mitsubishi exclude each other; cure: uninstall first" in (
+        capsys.readouterr().err
+    )
+    assert content_of(tmp_path) == before
+
+
+def test_a_dry_run_shows_everything_and_writes_nothing(tmp_path, capsys):
+    ini = write_config(tmp_path, MILL + OWN, **remap("x = 1\n"))
+    before = content_of(tmp_path)
+    assert installed(ini, "haas", "--dry-run") == 0
+    said = capsys.readouterr().out
+    assert "+REMAP = G13 " in said
+    assert "from g12.remap import *" in said
+    assert said.endswith("dry run: nothing was written\n")
+    assert content_of(tmp_path) == before
+
+
+def test_a_shared_include_is_tried_with_every_machine_that_has_it(tmp_path, capsys):
+    base = "[RS274NGC]\nPARAMETER_FILE = x.var\n[EMCIO]\nTOOL_TABLE = mill.tbl\n[TRAJ]\n"
+    text = "#INCLUDE base.inc\nCOORDINATES = X Y Z\n"
+    ini = write_config(tmp_path, text, base_inc=base)
+    other = write_config(tmp_path, text, "other.ini")
+    assert installed(ini, "haas") == 0
+    capsys.readouterr()
+    assert kinds(other, capsys) == []
+    assert uninstall.main([str(ini)]) == 0
+    other.write_text(text.replace("X Y Z", "X Z"))
+    before = content_of(tmp_path)
+    assert installed(ini, "haas") == 1
+    assert "haas needs axis Y" in capsys.readouterr().err
+    assert content_of(tmp_path) == before
+
+
+def test_machines_that_share_a_module_remap_still_load(tmp_path, capsys):
+    ini = write_config(tmp_path, MILL + OWN, **remap("def mine(self, **words):\n    return 0\n"))
+    own = "REMAP = M400 modalgroup=10 python=mine\n"
+    other = write_config(tmp_path, with_lines(MILL + OWN, "RS274NGC", own), "other.ini")
+    assert installed(ini, "haas") == 0
+    assert trace_text(["M400", "M2"], other).error is None
+    capsys.readouterr()
+    assert kinds(other, capsys) == ["no-codes"]
+
+
+def test_the_installed_copy_checks_and_uninstalls_itself(tmp_path):
+    ini = write_config(tmp_path)
+    before = content_of(tmp_path)
+    assert installed(ini, "haas") == 0
+    environment = {**os.environ, "HOME": str(tmp_path)}
+    for command in ("check", "uninstall"):
+        call = [sys.executable, "g12/python/g12", command, "mill.ini"]
+        done = subprocess.run(
+            call, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert content_of(tmp_path) == before
