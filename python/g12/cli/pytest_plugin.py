@@ -6,14 +6,12 @@
     # conftest.py, with the package's folder on the Python path; or: pytest -p g12.cli.pytest_plugin
     pytest_plugins = ["g12.cli.pytest_plugin"]
 
-    # test_programs.py
-    from g12.cli.pytest_plugin import recorded_programs
+    # test_programs.py, with: from g12.cli.pytest_plugin import recorded_programs
+    REGRESS = Path(__file__).with_name("regress")  # what g12 regress record made
 
-    @pytest.mark.parametrize("program", recorded_programs("regress"))
+    @pytest.mark.parametrize("program", recorded_programs(REGRESS))
     def test_program(gcode_regression, program):
-        gcode_regression("regress", program)
-
-``regress`` is a directory that ``g12 regress record`` made.
+        gcode_regression(REGRESS, program)
 """
 
 from __future__ import annotations

@@ -7,7 +7,6 @@ import functools
 import hashlib
 import os
 import signal
-import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
@@ -16,11 +15,12 @@ from pathlib import Path
 
 from g12.cli.baseline import Baseline
 from g12.cli.command import UsageError
+from g12.cli.config import linuxcnc_version, python_error
 from g12.cli.difference import Difference, differences, lines_of
 from g12.cli.edits import Tolerance
-from g12.cli.ini import read_ini
+from g12.cli.ini import Ini, read_ini
 from g12.cli.part import part_of
-from g12.cli.trace import PYTHON, Move, TraceFailure, Tracer, mm_per_unit
+from g12.cli.trace import Move, TraceFailure, Tracer, mm_per_unit
 from g12.cli.trace_text import (
     Recording,
     TraceTextError,
@@ -35,18 +35,21 @@ SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", 
 HASH_DIGITS = 16
 UNIT_NAMES = {unit.mm: name for name, unit in UNITS.items()}
 Report = Callable[[int, int, str], None]  # hears of programs done, of how many, the last one
-ASK_VERSION = "import linuxcnc; print(linuxcnc.version)"
 
 
 @dataclass(frozen=True)
 class Machine:
-    """What programs are traced on; ``timeout`` is in seconds for each program."""
+    """What programs are traced on; ``timeout`` is in seconds for each program.
+
+    ``contents`` is a hash of INI and tool table: changed files need another interpreter.
+    """
 
     ini: Path
     tools: Path | None
     parameters: Path | None
-    linuxcnc: str
     timeout: float
+    linuxcnc: str
+    contents: str
 
 
 @dataclass(frozen=True)
@@ -97,6 +100,17 @@ class Result:
     picture: str | None = None
 
 
+def machine_of(ini: Path, tools: Path | None, parameters: Path | None, timeout: float) -> Machine:
+    """Return the machine as its files are now."""
+    contents = text_bytes(read_ini(ini)) + (tools.read_bytes() if tools else b"")
+    return Machine(ini, tools, parameters, timeout, linuxcnc_version(), hash_of(contents))
+
+
+def text_bytes(ini: Ini) -> bytes:
+    """Return the expanded INI as it is in its files."""
+    return ini.text.encode(errors="surrogateescape")
+
+
 class Recorder:
     """A running interpreter that makes recordings on one machine."""
 
@@ -104,13 +118,21 @@ class Recorder:
         ini = read_ini(machine.ini)
         self._machine = machine
         self._tracer = Tracer(ini, tools=machine.tools)
+        self._check_python()
         self.part = part_of(ini)
         self._facts = {
-            "machine": f"{ini.path.name} {hash_of(ini.text.encode(errors='surrogateescape'))}",
+            "machine": f"{ini.path.name} {hash_of(text_bytes(ini))}",
             "linuxcnc": machine.linuxcnc,
             "units": UNIT_NAMES[mm_per_unit(ini)],
         }
         util.Finalize(self, self._tracer.close, exitpriority=1)
+
+    def _check_python(self) -> None:
+        """Refuse a machine without its Python modules: it would only trace other errors."""
+        error = python_error(self._tracer.printed)
+        if error:
+            self._tracer.close()
+            raise TraceFailure(f"{self._machine.ini}: its Python modules do not load: {error}")
 
     def text(self, name: str, program: Path) -> str:
         """Return the recording of a program as text."""
@@ -123,13 +145,6 @@ class Recorder:
 def recorder_of(machine: Machine, _process: int) -> Recorder:
     """Return this process's recorder for a machine; a forked process must not use its parent's."""
     return Recorder(machine)
-
-
-@functools.lru_cache(maxsize=1)
-def linuxcnc_version() -> str:
-    """Return the version of the LinuxCNC that traces come from."""
-    asked = subprocess.run([PYTHON, "-c", ASK_VERSION], capture_output=True, text=True, check=False)
-    return asked.stdout.strip() or "unknown"
 
 
 def hash_of(content: bytes) -> str:

@@ -26,10 +26,9 @@ from g12.cli.recorder import (
     MISSING,
     SAME,
     Job,
-    Machine,
     Report,
     Result,
-    linuxcnc_version,
+    machine_of,
     results,
 )
 from g12.cli.trace import mm_per_unit
@@ -77,7 +76,7 @@ def record(directory: Path, asked: Asked, terms: Terms) -> list[Result]:
     baseline = _with(start(directory.absolute(), asked, named), asked, named)
     names = _names(baseline, named)
     tools, parameters = _sources(baseline, asked, everything=not (known and named))
-    machine = Machine(baseline.ini, tools, parameters, linuxcnc_version(), terms.timeout)
+    machine = machine_of(baseline.ini, tools, parameters, terms.timeout)
     found = _done(baseline, names, baseline.programs, machine, terms, keep=True)
     baseline.take_copies(tools, parameters)
     baseline.save()
@@ -104,8 +103,8 @@ def check(
     if not recorded:
         raise UsageError(f"{directory}: no program is recorded there")
     table = _existing(tools) if tools else baseline.tools
-    version, parameters = linuxcnc_version(), baseline.parameters
-    machine = Machine(_existing(ini or baseline.ini), table, parameters, version, terms.timeout)
+    ini = _existing(ini or baseline.ini)
+    machine = machine_of(ini, table, baseline.parameters, terms.timeout)
     there = [name for name in recorded if (folder / name).is_file()]
     found = _done(baseline, there, folder, machine, terms)
     found += [Result(name, MISSING) for name in recorded if name not in there]
