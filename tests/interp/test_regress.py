@@ -1,0 +1,490 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 regress`` as a shop uses it: record, change something, check; and every wrong use."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from g12.cli import main as command_line
+from g12.cli.recorder import hash_of
+from machines import PROGRAMS, ROOT, SIM
+
+INI = SIM / "mill_inch.ini"
+TABLE = SIM / "mill_inch.tbl"
+POCKET = """\
+G20 G17 G40 G49 G54 G80 G90 G94
+T1 M6
+S1000 M3
+M8
+G0 X1 Y2 Z.1
+G12 I.3 K1.5 Q.2 Z-.5 D1 F10
+G0 Z.1
+X5
+M9
+M2
+"""
+PLAIN = "G21 G90 F300\nG0 X0 Y0\nG1 X10\nG1 Y10\nG1 X0\nG1 Y0\nM2\n"
+MACHINE = """\
+[EMC]
+VERSION = 1.1
+[DISPLAY]
+DISPLAY = dummy
+[RS274NGC]
+PARAMETER_FILE = own.var
+[EMCIO]
+TOOL_TABLE = own.tbl
+[TRAJ]
+COORDINATES = X Y Z
+LINEAR_UNITS = mm
+[KINS]
+JOINTS = 3
+"""
+
+
+class Shop:
+    """A folder with programs, a directory for recordings, and the command."""
+
+    def __init__(self, folder, capsys):
+        self.folder, self._capsys = folder, capsys
+        self.programs, self.recordings = folder / "nc", folder / "regress"
+        self.programs.mkdir()
+
+    def write(self, name, text, folder=None):
+        path = (folder or self.programs) / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def change(self, name, old, new):
+        path = self.programs / name
+        text = path.read_text(encoding="utf-8")
+        assert old in text
+        path.write_text(text.replace(old, new), encoding="utf-8")
+
+    def run(self, action, *words, jobs=1):
+        """Run the command; return its exit code, its lines and its errors."""
+        words = [action, *map(str, words), "-d", str(self.recordings), "--jobs", str(jobs)]
+        self._capsys.readouterr()
+        code = command_line.main(["regress", *words])
+        said = self._capsys.readouterr()
+        return code, said.out.splitlines(), said.err.splitlines()
+
+    def record(self, *words, ini=INI):
+        code, lines, errors = self.run("record", self.programs, "--ini", ini, *words)
+        assert (code, errors) == (0, [])
+        return lines
+
+    def check(self, *words, **options):
+        code, lines, errors = self.run("check", *words, **options)
+        assert errors == []
+        return code, lines
+
+    def trace(self, name):
+        return self.recordings / f"{name}.trace"
+
+
+@pytest.fixture
+def shop(tmp_path, capsys):
+    return Shop(tmp_path, capsys)
+
+
+@pytest.fixture
+def pocket(shop):
+    shop.write("pocket.ngc", POCKET)
+    shop.write("sub/plain.ngc", PLAIN)
+    shop.record()
+    return shop
+
+
+# ---------------------------------------------------------------- record, check, record
+
+
+def test_what_was_recorded_is_as_recorded(shop):
+    shop.write("pocket.ngc", POCKET)
+    shop.write("sub/plain.ngc", PLAIN)
+    lines = shop.record()
+    assert lines == [
+        "pocket.ngc: new, 25 moves",
+        "sub/plain.ngc: new, 5 moves",
+        "2 programs: 2 new",
+    ]
+    assert shop.check() == (0, ["2 programs: 2 as recorded"])
+    assert shop.check(jobs=2) == (0, ["2 programs: 2 as recorded"])
+
+
+def test_a_recording_names_files_and_versions_but_no_folders(pocket):
+    text = pocket.trace("pocket.ngc").read_text(encoding="utf-8")
+    head = text.split("\n")[:5]
+    assert head[0] == "g12 trace 1"
+    assert head[1] == f"program pocket.ngc {hash_of(POCKET.encode())}"
+    assert head[2].startswith("machine mill_inch.ini sha256:")
+    assert head[3].startswith("linuxcnc 2.")
+    assert head[4] == "units inch"
+    assert str(ROOT) not in text
+    assert str(pocket.folder) not in text
+    assert "\n6: G12 I.3 K1.5 Q.2 Z-.5 D1 F10\n  feed Z-0.5 F10\n" in text
+
+
+def test_recording_again_changes_no_file(pocket):
+    files = [path for path in pocket.recordings.rglob("*") if path.is_file()]
+    before = {path: path.read_bytes() for path in files}
+    pocket.record()
+    assert {path: path.read_bytes() for path in files} == before
+
+
+def test_a_change_names_program_line_and_amount(pocket):
+    pocket.change("pocket.ngc", "Z-.5", "Z-.505")
+    code, lines = pocket.check()
+    assert code == 1
+    assert lines == [
+        "pocket.ngc:6: 22 moves: Z-0.5 → Z-0.505 (-0.005 in)",
+        "    G12 I.3 K1.5 Q.2 Z-.505 D1 F10",
+        "2 programs: 1 as recorded, 1 changed",
+    ]
+
+
+def test_a_finding_for_other_programs_is_json(pocket):
+    pocket.change("pocket.ngc", "X5", "X5.25")
+    code, lines = pocket.check("--json")
+    report = json.loads("\n".join(lines))
+    assert (code, report["good"]) == (1, False)
+    changed, same = report["programs"]
+    assert (same["program"], same["verdict"], same["findings"]) == ("sub/plain.ngc", "same", [])
+    (finding,) = changed["findings"]
+    assert finding["lines"] == finding["recorded_lines"] == [8]
+    assert (finding["kind"], finding["axis"], finding["by"]) == ("moved", "X", 0.25)
+    assert finding["block"] == "X5.25"
+
+
+def test_an_inserted_block_is_one_finding(pocket):
+    pocket.change("sub/plain.ngc", "G1 Y10\n", "G1 Y10\nG1 X5\n")
+    code, lines = pocket.check()
+    assert code == 1
+    assert lines[:2] == ["sub/plain.ngc:5: 1 move added, X0.19685 to 0.393701", "    G1 X5"]
+    assert len(lines) == 3
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "finding"),
+    [
+        ("M8\n", "", "pocket.ngc:5 as recorded: missing: M8 on"),
+        ("S1000 M3", "S1200 M3", "pocket.ngc:5: S1000 → S1200"),
+        ("S1000 M3", "S1000 M4", "pocket.ngc:5: M3 → M4"),
+        ("T1 M6", "T1 M6 G43", "pocket.ngc:5: new: G43"),
+        ("G54", "G55", "pocket.ngc:2: new: G55"),
+        ("M9\n", "M9\nG4 P.5\n", "pocket.ngc:10: new: dwell 0.5"),
+        ("F10", "F12", "pocket.ngc:6: 22 moves: F10 → F12"),
+        ("X5", "(MSG, here)\nX5", "pocket.ngc:8: new: message here"),
+        ("G0 X1", "G64 P.01\nG0 X1", "pocket.ngc:6: new: G64 P0.01 Q0.01"),
+        ("M2", "M30", "pocket.ngc: modal state at the end: M2 → M30"),
+    ],
+)
+def test_what_is_no_move_is_compared_too(pocket, old, new, finding):
+    pocket.change("pocket.ngc", old, new)
+    code, lines = pocket.check("pocket.ngc")
+    assert code == 1
+    assert lines[0].startswith(finding)
+
+
+def test_comments_and_line_numbers_are_no_change(pocket):
+    text = (pocket.programs / "pocket.ngc").read_text(encoding="utf-8")
+    lines = [f"N{10 * i} {line}" for i, line in enumerate(text.split("\n")[:-1], start=1)]
+    pocket.write("pocket.ngc", "(a heading)\n" + "\n".join(lines) + "\n")
+    assert pocket.check("pocket.ngc") == (0, ["1 program: 1 as recorded"])
+
+
+def test_the_tolerance_is_in_machine_units(pocket):
+    pocket.change("pocket.ngc", "X5", "X5.0005")
+    assert pocket.check()[0] == 1
+    assert pocket.check("--tolerance", "0.0006")[0] == 0
+    assert pocket.check("--tolerance", "0.0004")[0] == 1
+
+
+# ---------------------------------------------------------------- refused, added, gone, failed
+
+
+def test_a_program_that_is_refused_now(pocket):
+    pocket.change("pocket.ngc", "I.3", "I-.3")
+    code, lines = pocket.check()
+    assert code == 1
+    assert lines[0].startswith("pocket.ngc:6: refused: G12: I-0.3")
+    assert lines[0].endswith("moves are missing")
+    assert lines[1] == "    G12 I-.3 K1.5 Q.2 Z-.5 D1 F10"
+
+
+def test_a_refusal_can_be_what_is_expected(shop):
+    shop.write("refused.ngc", POCKET.replace("I.3", "I-.3"))
+    lines = shop.record()
+    assert lines[0].startswith("refused.ngc: new, refused at line 6: G12: I-0.3")
+    assert shop.check() == (0, ["1 program: 1 as recorded"])
+    shop.write("refused.ngc", POCKET)
+    code, lines = shop.check()
+    assert code == 1
+    assert any("no longer refused, was at line 6: G12: I-0.3" in line for line in lines)
+
+
+def test_programs_added_and_gone(pocket):
+    (pocket.programs / "pocket.ngc").rename(pocket.programs / "other.ngc")
+    code, lines = pocket.check()
+    assert code == 1
+    assert lines == [
+        "other.ngc: added, it is not recorded",
+        "pocket.ngc: gone, it was recorded",
+        "3 programs: 1 as recorded, 1 added, 1 gone",
+    ]
+    code, lines, _ = pocket.run("record")
+    assert code == 0
+    assert lines[:2] == ["other.ngc: new, 25 moves", "pocket.ngc: gone, it was recorded"]
+    assert not pocket.trace("pocket.ngc").exists()
+    assert pocket.check() == (0, ["2 programs: 2 as recorded"])
+
+
+def test_of_programs_named_one_by_one_others_are_not_missed(shop):
+    path = shop.write("pocket.ngc", POCKET)
+    shop.write("plain.ngc", PLAIN)
+    assert shop.run("record", path, "--ini", INI)[0] == 0
+    assert shop.check() == (0, ["1 program: 1 as recorded"])
+    assert shop.run("record", shop.programs / "plain.ngc")[1][0] == "plain.ngc: new, 5 moves"
+    assert shop.check("plain.ngc") == (0, ["1 program: 1 as recorded"])
+    assert shop.check(shop.programs / "plain.ngc") == (0, ["1 program: 1 as recorded"])
+
+
+def test_a_program_without_an_end_fails_and_the_others_are_checked(pocket):
+    pocket.write("endless.ngc", "o1 while [1]\no1 endwhile\nM2\n")
+    code, lines, _ = pocket.run("record", "--timeout", "1")
+    assert code == 1
+    assert lines[0] == "endless.ngc: LinuxCNC's interpreter: no end within 1 s"
+    assert lines[-1] == "3 programs: 2 as recorded, 1 failed"
+    assert not pocket.trace("endless.ngc").exists()
+
+
+def test_recording_again_shows_what_changed_and_accepts_it(pocket):
+    pocket.change("pocket.ngc", "X5", "X6")
+    code, lines, _ = pocket.run("record")
+    assert code == 0
+    assert lines[0] == "pocket.ngc:8: 1 move: X5 → X6 (+1 in)"
+    assert pocket.check()[0] == 0
+
+
+# ---------------------------------------------------------------- other versions of things
+
+
+def test_new_versions_of_the_programs_in_another_folder(pocket):
+    new = pocket.folder / "post"
+    pocket.write("pocket.ngc", POCKET.replace("K1.5", "K1.6"), new)
+    pocket.write("more.ngc", PLAIN, new)
+    code, lines = pocket.check("--programs", new)
+    assert code == 1
+    assert lines[0] == "more.ngc: added, it is not recorded"
+    assert lines[1].startswith("pocket.ngc:6: ")
+    assert "sub/plain.ngc: gone, it was recorded" in lines
+    assert pocket.check()[0] == 0
+
+
+def test_a_tool_that_wears_changes_no_recording_until_asked(shop):
+    ini = shop.write("own.ini", MACHINE, shop.folder)
+    table = shop.write("own.tbl", "T1 P1 D6 Z10\n", shop.folder)
+    comped = "G21 T1 M6\nG43\nG41.1 D6\nG1 X20 F100\nY20\nX40\nG40\nX50\nM2\n"
+    shop.write("comped.ngc", comped.replace("G41.1 D6", "G41 D1"))
+    shop.record(ini=ini)
+    table.write_text("T1 P1 D5.9 Z10.5\n", encoding="utf-8")
+    note = "note: own.tbl has changed since the recording, its recorded copy is used"
+    assert shop.check() == (0, [note, "1 program: 1 as recorded"])
+    code, lines = shop.check("--tools", table)
+    assert code == 1
+    assert any("tool offset Z10 → tool offset Z10.5" in line for line in lines)
+    assert any("0.05 mm" in line for line in lines)
+    assert shop.run("record")[0] == 0
+    assert shop.check() == (0, ["1 program: 1 as recorded"])
+
+
+def test_parameters_are_the_recorded_ones(shop):
+    ini = shop.write("own.ini", MACHINE, shop.folder)
+    var = shop.write("own.var", "100\t7.0\n5221\t3.0\n", shop.folder)
+    shop.write("shift.ngc", "G21 G90 G54\nG0 X#100\nM2\n")
+    shop.record("--var", var, ini=ini)
+    assert "\n  rapid X10\n" in shop.trace("shift.ngc").read_text(encoding="utf-8")
+    var.write_text("100\t8.0\n", encoding="utf-8")
+    code, lines = shop.check()
+    assert (code, lines[0]) == (
+        0,
+        "note: own.var has changed since the recording, its recorded copy is used",
+    )
+
+
+def test_another_version_of_linuxcnc_is_noted(pocket):
+    path = pocket.trace("pocket.ngc")
+    text = path.read_text(encoding="utf-8")
+    version = text.split("\n")[3]
+    path.write_text(text.replace(version, "linuxcnc 2.8.0"), encoding="utf-8")
+    code, lines = pocket.check()
+    assert code == 0
+    now = version.partition(" ")[2]
+    assert lines[0] == f"note: LinuxCNC 2.8.0 when recorded, {now} now (1 of 2 programs)"
+
+
+def test_a_changed_ini_is_noted_and_its_effect_found(shop):
+    ini = shop.write("own.ini", MACHINE, shop.folder)
+    shop.write("plain.ngc", PLAIN.replace("G21", ""))
+    shop.record(ini=ini)
+    started = "[RS274NGC]\nRS274NGC_STARTUP_CODE = G20\n"
+    ini.write_text(MACHINE.replace("[RS274NGC]\n", started), encoding="utf-8")
+    code, lines = shop.check()
+    assert code == 1
+    assert lines[0] == "note: own.ini has changed since the recording"
+    assert any("X10 → X254 (+244 mm)" in line or "X by up to +244 mm" in line for line in lines)
+
+
+def test_a_picture_of_each_change(pocket):
+    pocket.change("pocket.ngc", "Q.2", "Q.25")
+    pictures = pocket.folder / "changes"
+    code, lines = pocket.check("--picture", pictures)
+    assert code == 1
+    picture = pictures / "pocket.ngc.png"
+    assert f"pocket.ngc: see {picture}" in lines
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert [path.name for path in pictures.iterdir()] == ["pocket.ngc.png"]
+
+
+# ---------------------------------------------------------------- wrong uses
+
+
+def wrong(shop, *words):
+    code, lines, errors = shop.run(*words)
+    assert (code, lines, len(errors)) == (2, [], 1), (code, lines, errors)
+    assert errors[0].startswith("g12 regress: ")
+    return errors[0][len("g12 regress: ") :]
+
+
+def test_wrong_uses_of_an_empty_directory(shop):
+    program = shop.write("plain.ngc", PLAIN)
+    empty = shop.programs / "empty"
+    empty.mkdir()
+    where = f"{shop.recordings}: nothing is recorded there"
+    assert wrong(shop, "check") == f"{where} (no regress.json)"
+    assert wrong(shop, "record", "--ini", INI) == f"{where}; name the programs"
+    assert wrong(shop, "record", program) == f"{where}; name the machine, --ini"
+    assert wrong(shop, "record", "no.ngc", "--ini", INI) == "no.ngc: no such file"
+    assert wrong(shop, "record", program, "--ini", "no.ini") == "no.ini: no such file"
+    assert wrong(shop, "record", empty, "--ini", INI) == (
+        f"{empty}: no programs in this folder (.ngc, .nc, .tap, .gcode)"
+    )
+    assert wrong(shop, "record", program, "--ini", INI, "--tools", "no.tbl") == (
+        "no.tbl: no such file"
+    )
+    assert not shop.recordings.exists()
+    shop.recordings.write_text("a file")
+    assert wrong(shop, "record", program, "--ini", INI) == f"{shop.recordings}: not a directory"
+
+
+def test_wrong_uses_of_a_recorded_directory(pocket):
+    elsewhere = pocket.write("other.ngc", PLAIN, pocket.folder / "elsewhere")
+    assert "use another -d" in wrong(pocket, "record", elsewhere)
+    program = pocket.programs / "pocket.ngc"
+    assert "is recorded on" in wrong(pocket, "record", program, "--ini", SIM / "mill_mm.ini")
+    assert wrong(pocket, "check", "no.ngc") == f"no.ngc: not recorded in {pocket.recordings}"
+    assert wrong(pocket, "check", "--programs", "no") == "no: no such folder"
+    assert wrong(pocket, "check", "--tools", "no.tbl") == "no.tbl: no such file"
+    assert wrong(pocket, "check", "--ini", "no.ini") == "no.ini: no such file"
+    about = pocket.recordings / "regress.json"
+    text = about.read_text(encoding="utf-8")
+    about.write_text(text.replace('"format": 1', '"format": 2'), encoding="utf-8")
+    assert wrong(pocket, "check") == f"{about}: written by another version of g12"
+    about.write_text("<<<<<<<", encoding="utf-8")
+    assert wrong(pocket, "check") == f"{about}: not a file of g12 regress"
+
+
+def test_a_damaged_recording_is_named_and_can_be_recorded_again(pocket):
+    path = pocket.trace("pocket.ngc")
+    path.write_text("<<<<<<< mine\n", encoding="utf-8")
+    assert wrong(pocket, "check") == (
+        f"{path}: not a trace, or one that was edited: line 1: not 'g12 trace 1'"
+    )
+    assert pocket.run("record")[0] == 0
+    assert pocket.check()[0] == 0
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        [],
+        ["verify"],
+        ["check"],
+        ["check", "-d", "x", "--tolerance", "-1"],
+        ["check", "-d", "x", "--tolerance", "much"],
+        ["check", "-d", "x", "--jobs", "0"],
+    ],
+)
+def test_words_that_are_wrong_are_told_with_the_usage(words, capsys):
+    with pytest.raises(SystemExit) as raised:
+        command_line.main(["regress", *words])
+    assert raised.value.code == 2
+    assert capsys.readouterr().err.startswith("usage: g12 regress")
+
+
+def test_a_machine_that_does_not_load_is_one_line(shop):
+    ini = shop.write("own.ini", MACHINE + "[PYTHON]\nTOPLEVEL = own.py\n", shop.folder)
+    shop.write("own.py", "import nothing_of_this_name\n", shop.folder)
+    shop.write("plain.ngc", PLAIN)
+    for jobs in (1, 2):
+        shop.write(f"plain{jobs}.ngc", PLAIN)
+        code, lines, errors = shop.run("record", shop.programs, "--ini", ini, jobs=jobs)
+        assert (code, lines, len(errors)) == (1, [], 1)
+        assert "No module named 'nothing_of_this_name' (own.py:1)" in errors[0]
+
+
+# ---------------------------------------------------------------- pytest
+
+
+TEST = """\
+from pathlib import Path
+
+import pytest
+
+from g12.cli.pytest_plugin import recorded_programs
+
+REGRESS = Path(__file__).with_name("regress")
+
+
+@pytest.mark.parametrize("program", recorded_programs(REGRESS))
+def test_program(gcode_regression, program):
+    gcode_regression(REGRESS, program)
+
+
+def test_all(gcode_regression):
+    gcode_regression("regress", tolerance=1e-4)
+"""
+
+
+def test_the_fixture_of_the_plugin(pocket):
+    pocket.write("test_programs.py", TEST, pocket.folder)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "g12.cli.pytest_plugin"]
+    options = {
+        "cwd": pocket.folder,
+        "env": {**os.environ, "PYTHONPATH": str(ROOT / "python")},
+        "capture_output": True,
+        "text": True,
+        "check": False,
+    }
+    good = subprocess.run([*command, "-p", "no:cacheprovider"], **options)
+    assert "3 passed" in good.stdout
+    pocket.change("pocket.ngc", "X5", "X5.0002")
+    bad = subprocess.run([*command, "-p", "no:cacheprovider"], **options)
+    assert "2 failed, 1 passed" in bad.stdout
+    assert "pocket.ngc:8: 1 move: X5 → X5.0002 (+0.0002 in)" in bad.stdout
+    assert "if that is right: g12 regress record -d" in bad.stdout
+
+
+# ---------------------------------------------------------------- the project's own recordings
+
+pytest_plugins = ["g12.cli.pytest_plugin"]
+OWN = sorted(path.parent.relative_to(PROGRAMS) for path in PROGRAMS.glob("*/regress/regress.json"))
+
+
+@pytest.mark.parametrize("directory", OWN, ids=lambda path: path.parts[0])
+def test_the_manuals_programs_do_what_they_did(gcode_regression, directory):
+    gcode_regression(Path(PROGRAMS, directory))

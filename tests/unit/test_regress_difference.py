@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which differences are found between two recordings, and how they are told."""
+
+import math
+import random
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from g12.cli.align import pairs
+from g12.cli.difference import differences, lines_of
+from g12.cli.edits import Tolerance
+from g12.cli.part import Part
+from g12.cli.trace import Error, Move
+from g12.cli.trace_text import Note, Recording
+
+STILL = (0.0,) * 9
+FACTS = {"program": "a.ngc sha256:1", "machine": "m", "linuxcnc": "2.9.4", "units": "mm"}
+FINE = Tolerance(1e-6, 1e-6, 1e-4)
+MILL, LATHE = Part(turning=False), Part(turning=True)
+
+
+def recording(*steps, error=None, end="M2", **facts):
+    """Chain (kind, (x, y, z), feed) and texts into a recording; each step is a line."""
+    at, made = STILL, []
+    for line, step in enumerate(steps, start=1):
+        if isinstance(step, str):
+            made.append(Note(line, step))
+            continue
+        kind, target, *more = step
+        more = dict(more[0]) if more else {}
+        target = (*target, *STILL[len(target) :])
+        mode = "" if kind == "rapid" else "G94"
+        feed = 0.0 if kind == "rapid" else 100.0
+        plain = Move(kind, line, line, at, target, feed, mode, 17, -1, STILL)
+        made.append(plain._replace(**more))
+        at = target
+    return Recording({**FACTS, **facts}, made, error=error, end=end)
+
+
+def found(was, now, tolerance=FINE, part=MILL):
+    return differences(was, now, tolerance, part)
+
+
+def told(was, now, **options):
+    return [(d.kind, d.text) for d in found(was, now, **options)]
+
+
+SQUARE = [
+    ("rapid", (0, 0, 5)),
+    ("feed", (0, 0, -1)),
+    ("feed", (10, 0, -1)),
+    ("feed", (10, 10, -1)),
+    ("feed", (0, 10, -1)),
+    ("feed", (0, 0, -1)),
+    ("rapid", (0, 0, 5)),
+]
+
+
+def circle(radius, turns=-1, **more):
+    """Return a full circle from (0, 0, -1) with its centre on X."""
+    return ("arc", (0, 0, -1), {"centre": (radius, 0.0, -1.0), "turns": turns, **more})
+
+
+def test_the_same_is_no_difference():
+    assert found(recording(*SQUARE), recording(*SQUARE)) == []
+
+
+def test_an_inserted_block_is_one_difference():
+    now = [*SQUARE[:3], ("feed", (10, 5, -1)), ("feed", (11, 5, -1)), *SQUARE[3:]]
+    (difference,) = found(recording(*SQUARE), recording(*now))
+    assert difference.kind == "added"
+    assert difference.text == "2 moves added, X10 to 11 Y0 to 5"
+    assert lines_of(recording(*now), difference.now) == [4, 5]
+
+
+def test_a_removed_block_is_one_difference():
+    was = recording(*SQUARE)
+    (difference,) = found(was, recording(*SQUARE[:3], *SQUARE[4:]))
+    assert (difference.kind, difference.moves) == ("missing", 1)
+    assert difference.text == "1 move missing, Y0 to 10"
+    assert lines_of(was, difference.was) == [4]
+
+
+def test_a_changed_depth_is_one_difference_with_its_amount():
+    now = [(kind, (x, y, -1.25 if z == -1 else z)) for kind, (x, y, z) in SQUARE]
+    (difference,) = found(recording(*SQUARE), recording(*now))
+    assert difference.text == "Z-1 → Z-1.25 (-0.25 mm)"
+    assert (difference.axis, difference.by, difference.moves) == ("Z", -0.25, 5)
+
+
+def test_lengths_are_told_in_machine_units():
+    was = recording(("feed", (25.4,)), units="inch")
+    now = recording(("feed", (25.654,)), units="inch")
+    assert told(was, now) == [("moved", "X1 → X1.01 (+0.01 in)")]
+    assert found(was, now)[0].by == pytest.approx(0.01)
+
+
+def test_degrees_are_degrees_on_an_inch_machine():
+    was, now = (
+        recording(("feed", (0, 0, 0, angle)), ("feed", (1, 0, 0, angle)), units="inch")
+        for angle in (10, 12)
+    )
+    assert told(was, now) == [("moved", "A10 → A12 (+2 degrees)")]
+
+
+def test_a_path_that_is_shifted_is_one_difference():
+    now = [(kind, (x + 0.5, y, z)) for kind, (x, y, z) in SQUARE]
+    (difference,) = found(recording(*SQUARE), recording(*now))
+    assert (difference.text, difference.moves) == ("X by +0.5 mm", 7)
+
+
+def test_a_path_that_is_shifted_with_a_block_more_is_told_as_these():
+    points = random.Random(1).sample(range(10_000), 200)
+    was = [("feed", (x, x % 7, -1)) for x in points]
+    now = [(kind, (x, y + 2, z)) for kind, (x, y, z) in was]
+    now.insert(100, ("feed", (-5, 3, -1)))
+    result = found(recording(*was), recording(*now))
+    assert [(d.kind, d.moves) for d in result] == [("moved", 199), ("replaced", 2)]
+    assert result[0].text == "Y by +2 mm"
+
+
+def test_one_move_that_is_wrong_within_a_shifted_path_is_told_apart():
+    was = [("feed", (x, x % 7, -1)) for x in range(40)]
+    now = [(kind, (x, y + 2, z)) for kind, (x, y, z) in was]
+    now[20] = ("feed", (20, 60, -1))
+    texts = [d.text for d in found(recording(*was), recording(*now))]
+    assert texts == ["Y by +2 mm", "Y6 → Y60 (+54 mm)"]
+
+
+def test_a_tolerance_is_kept_on_both_sides():
+    was = recording(("feed", (1, 0, 0)), ("feed", (1, 0, 0, 5)))
+    for size, expected in ((0.9e-3, 0), (1.1e-3, 1)):
+        now = recording(("feed", (1 + size, 0, 0)), ("feed", (1 + size, 0, 0, 5)))
+        assert len(found(was, now, tolerance=Tolerance(1e-3, 1e-3, 1e-4))) == expected
+
+
+def test_a_feed_is_told_with_both_values_and_only_outside_its_tolerance():
+    was = recording(("feed", (1, 0, 0), {"feed": 100.0}))
+    assert told(was, recording(("feed", (1, 0, 0), {"feed": 100.009}))) == []
+    now = recording(("feed", (1, 0, 0), {"feed": 120.0}))
+    assert told(was, now) == [("changed", "F100 → F120")]
+    per_turn = recording(("feed", (1, 0, 0), {"feed_mode": "G95"}))
+    assert told(was, per_turn) == [("changed", "G94 → G95")]
+
+
+def test_a_rapid_in_place_of_a_feed_is_told():
+    now = [*SQUARE[:3], ("rapid", SQUARE[3][1]), *SQUARE[4:]]
+    assert told(recording(*SQUARE), recording(*now)) == [("changed", "feed → rapid")]
+
+
+def test_arcs_are_compared_by_where_they_go():
+    start = ("feed", (0, 0, -1))
+    was = recording(start, circle(5.0))
+    texts = [d.text for d in found(was, recording(start, circle(5.01)))]
+    assert texts == ["radius 5 → 5.01 (middle of the arc 0.02 mm off)"]
+    assert told(was, recording(start, circle(5.0, 1))) == [
+        ("changed", "clockwise → counterclockwise")
+    ]
+    turned = recording(start, circle(5.0, plane=18))
+    assert told(was, turned) == [("changed", "G17 → G18")]
+
+
+def test_the_centre_of_a_flat_arc_may_be_anywhere():
+    """With 10 m of radius a change of the centre by 1 mm moves the arc by 50 nm."""
+
+    def flat(radius):
+        centre = (0.5, -math.sqrt(radius**2 - 0.25), 0.0)
+        return recording(("arc", (1, 0, 0), {"centre": centre, "turns": -1}))
+
+    assert found(flat(10_000.0), flat(10_001.0)) == []
+    assert len(found(flat(100.0), flat(101.0))) == 1
+
+
+def test_a_move_that_became_others_is_told_with_how_far_they_go_astray():
+    was = recording(("feed", (10, 0, 0)), ("feed", (10, 10, 0)))
+    now = recording(("feed", (5, 0.25, 0)), ("feed", (9, 0, 0)), ("feed", (10, 10, 0)))
+    (difference,) = found(was, now)
+    assert difference.text == "1 move became 2, up to 1 mm apart"
+
+
+def test_apart_is_measured_on_the_part_that_turns():
+    """On the machine X moves by 0.1 and C by 0.01: the part is what counts."""
+    quarter = recording(("rapid", (10,)), ("feed", (10, 0, 0, 0, 0, 90)))
+    bent = [("feed", (10.1, 0, 0, 0, 0, 45)), ("feed", (10, 0, 0, 0, 0, 90.01))]
+    (difference,) = found(quarter, recording(("rapid", (10,)), *bent), part=LATHE)
+    assert difference.text == "1 move became 2, up to 0.1002 mm apart"
+
+
+def test_notes_that_go_come_and_change_are_told():
+    was = recording("M8 on", *SQUARE, "M8 off")
+    assert told(was, recording(*SQUARE, "M8 off")) == [("missing", "missing: M8 on")]
+    assert told(recording(*SQUARE), recording(*SQUARE, "dwell 2")) == [("added", "new: dwell 2")]
+    assert told(was, recording("M7 on", *SQUARE, "M8 off")) == [("changed", "M8 on → M7 on")]
+
+
+def test_the_same_difference_in_several_places_is_one():
+    was, now = [], []
+    for x in range(0, 50, 10):
+        was += [("rapid", (x, 0, 5)), ("feed", (x, 0, -2))]
+        now += [("rapid", (x, 0, 5)), ("feed", (x, 0, -3))]
+    (difference,) = found(recording(*was), recording(*now))
+    assert (difference.text, difference.moves) == ("Z-2 → Z-3 (-1 mm)", 5)
+    assert lines_of(recording(*now), difference.now) == [2, 4, 6, 8, 10]
+
+
+def test_a_program_that_is_refused_now_is_one_difference():
+    now = recording(*SQUARE[:4], error=Error("G12: no I", 5))
+    (difference,) = found(recording(*SQUARE, "M5"), now)
+    assert (difference.kind, difference.line) == ("refused", 5)
+    assert difference.text == "refused: G12: no I; 3 moves are missing"
+
+
+def test_a_program_that_is_no_longer_refused_is_told():
+    was = recording(*SQUARE, error=Error("G12: no I", 8))
+    assert told(was, recording(*SQUARE)) == [
+        ("accepted", "no longer refused, was at line 8: G12: no I")
+    ]
+
+
+def test_the_same_refusal_is_no_difference_where_lines_moved():
+    was = recording(error=Error("G12: no I", 5))
+    assert found(was, recording(error=Error("G12: no I", 5))) == []
+    moved = recording(error=Error("G12: no I", 6))
+    assert [d.kind for d in found(was, moved)] == ["refused"]
+    edited = recording(error=Error("G12: no I", 6), program="a.ngc sha256:2")
+    assert found(was, edited) == []
+
+
+def test_the_modal_state_at_the_end_is_compared():
+    was, now = recording(end="G17 G90 M2"), recording(end="G17 G91 M2")
+    assert told(was, now) == [("end", "modal state at the end: G90 → G91")]
+
+
+coordinates = st.integers(-50, 50)
+paths = st.lists(st.tuples(coordinates, coordinates, coordinates), min_size=1, max_size=40)
+
+
+@given(paths, st.data())
+def test_inserted_blocks_are_all_that_is_found(points, data):
+    """Whatever the program: blocks inserted anywhere are added moves and nothing else."""
+    was = [("feed", point) for point in points]
+    now = list(was)
+    places = data.draw(st.lists(st.integers(0, len(was)), min_size=1, max_size=4, unique=True))
+    for count, place in enumerate(sorted(places, reverse=True)):
+        now.insert(place, ("feed", (1000 + count, 0, 0)))
+    result = found(recording(*was), recording(*now))
+    assert {difference.kind for difference in result} == {"added"}
+    assert sum(difference.moves for difference in result) == len(places)
+
+
+@given(paths, paths)
+def test_nothing_is_found_only_between_equal_paths(points, others):
+    was, now = ([("feed", point) for point in some] for some in (points, others))
+    result = found(recording(*was), recording(*now))
+    assert (not result) == (points == others)
+
+
+items = st.lists(st.integers(0, 6), max_size=30)
+
+
+@given(items, items)
+def test_paired_items_are_equal_and_in_order(one, other):
+    result = pairs(one, other)
+    assert all(one[i] == other[j] for i, j in result)
+    assert all(a[0] < b[0] and a[1] < b[1] for a, b in zip(result, result[1:]))
+
+
+@given(st.lists(st.integers(), unique=True, max_size=30), st.data())
+def test_what_is_left_after_removals_is_all_paired(one, data):
+    kept = data.draw(st.lists(st.booleans(), min_size=len(one), max_size=len(one)))
+    other = [item for item, keep in zip(one, kept) if keep]
+    assert [one[i] for i, _ in pairs(one, other)] == other
+
+
+def test_pairing_long_sequences_does_not_take_the_square_of_their_length():
+    one = random.Random(2).choices(range(10**9), k=50_000)
+    other = [item if index % 9 else -index for index, item in enumerate(one)]
+    started = time.perf_counter()
+    assert len(pairs(one, other)) == sum(a == b for a, b in zip(one, other))
+    assert time.perf_counter() - started < 10
