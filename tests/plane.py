@@ -29,6 +29,12 @@ class Straight(NamedTuple):
     def points(self, count):
         return self.start + (self.end - self.start) * np.linspace(0.0, 1.0, count)
 
+    def turned(self, by):
+        return Straight(self.start * by, self.end * by)
+
+    def between(self, first, last):
+        return Straight(*(self.start + (self.end - self.start) * part for part in (first, last)))
+
     def distance(self, points):
         along = self.end - self.start
         part = np.clip(((points - self.start) * np.conj(along)).real / abs(along) ** 2, 0.0, 1.0)
@@ -58,6 +64,13 @@ class Round(NamedTuple):
         angles = self.sweep * np.linspace(0.0, 1.0, count)
         return self.centre + (self.start - self.centre) * np.exp(1j * angles)
 
+    def turned(self, by):
+        return Round(self.start * by, self.centre * by, self.sweep)
+
+    def between(self, first, last):
+        start = self.centre + (self.start - self.centre) * np.exp(1j * self.sweep * first)
+        return Round(start, self.centre, self.sweep * (last - first))
+
     def distance(self, points):
         arm = (points - self.centre) / (self.start - self.centre)
         angle = np.angle(arm) * math.copysign(1.0, self.sweep) % (2 * math.pi)
@@ -85,21 +98,31 @@ def programmed(shapes, *, feed=250.0, by_radius=False):
     """Return the contour of a program that cuts the shapes, which begin on the positive X axis."""
     contour = Contour(shapes[0].start.real, 0.0)
     for line, shape in enumerate(shapes, 1):
-        end = shape.end
-        if isinstance(shape, Straight):
-            contour.line(end.real, end.imag, line=line, feed=feed)
-            continue
-        words = dict(i=(shape.centre - shape.start).real, j=(shape.centre - shape.start).imag)
-        if by_radius:
-            words = dict(radius=math.copysign(shape.radius, math.pi - abs(shape.sweep)))
-        turn = 1 if shape.sweep > 0.0 else -1
-        contour.arc(turn, end.real, end.imag, line=line, feed=feed, **words)
+        add(contour, shape, line=line, feed=feed, by_radius=by_radius)
     return contour
 
 
-class Cut(NamedTuple):
-    """One piece as the machine makes it: radius, angle in radians and Z at its ends, seconds."""
+def add(contour, shape, *, line, feed, by_radius=False):
+    """Add a shape that begins where the contour stands."""
+    end = shape.end
+    if isinstance(shape, Straight):
+        contour.line(end.real, end.imag, line=line, feed=feed)
+        return
+    arm = shape.centre - shape.start
+    words = dict(i=arm.real, j=arm.imag)
+    if by_radius:
+        words = dict(radius=math.copysign(shape.radius, math.pi - abs(shape.sweep)))
+    turn = 1 if shape.sweep > 0.0 else -1
+    contour.arc(turn, end.real, end.imag, line=line, feed=feed, **words)
 
+
+class Cut(NamedTuple):
+    """One piece as the machine makes it: radius, angle in radians and Z at its ends, seconds.
+
+    ``run`` counts the runs of the plan.
+    """
+
+    run: int
     line: int
     radius: tuple
     angle: tuple
@@ -139,13 +162,13 @@ def cuts(contour, plan, c=0.0):
     """Return the pieces of a plan whose plane has its zero angle at ``c`` degrees."""
     x, angle, z = contour.start
     degrees, made = c + math.degrees(angle), []
-    for run in (step for step in plan.steps if isinstance(step, Run)):
+    for count, run in enumerate(step for step in plan.steps if isinstance(step, Run)):
         for to_x, to_c, to_z, feed in run.pieces:
             assert "X" in run.axes or (to_x == x and to_c == degrees)
             assert "Z" in run.axes or to_z == z
             ends = (math.radians(degrees - c), math.radians(to_c - c))
             time = seconds(to_x - x, to_z - z, to_c - degrees, feed)
-            made.append(Cut(run.line, (x, to_x), ends, (z, to_z), time))
+            made.append(Cut(count, run.line, (x, to_x), ends, (z, to_z), time))
             x, degrees, z = to_x, to_c, to_z
     return made
 

@@ -31,6 +31,7 @@ from g12.polar.pieces import Law, split
 from g12.polar.pole import POLE, through_pole
 
 CHORD_SHARE = 0.92  # of the tolerance: the rest is what the estimate of it may lack
+STOP_SHARE = 0.7  # of the tolerance: a move that stops starts quicker, and cuts deeper into the path
 ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the pieces' own deviation
 POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
 LEFT_OVER = 1e-3  # of the least step in X: less than that is rounding
@@ -125,11 +126,11 @@ class _Machine:
         self.steps: list = []
         self.place = Place(x, c + degrees(self.angle), z)
         self._settings, self._entry = settings, c
-        self._laws: dict[float, Law] = {}
+        self._laws: dict[tuple[float, bool], Law] = {}
 
     def cut(self, move: Line | Arc, stop: bool) -> None:
         """Add the pieces of a move in the plane."""
-        parts = split(move, self._law(move.feed))
+        parts = split(move, self._law(move.feed, stop))
         if (move.x0, move.c0) == POLE:
             self._turn(move, parts.angles[0])
         turns = round((self.angle - parts.angles[0]) / (2 * pi))
@@ -165,13 +166,13 @@ class _Machine:
             self.steps.append(Run(line, axes, pieces, stop))
             self.place = Place(*pieces[-1][:3])
 
-    def _law(self, feed: float) -> Law:
-        law = self._laws.get(feed)
+    def _law(self, feed: float, stop: bool) -> Law:
+        law = self._laws.get((feed, stop))
         if law is None:
             settings = self._settings
             hold = 0.5 / (feed / 60.0) ** 2
-            law = self._laws[feed] = Law(
-                CHORD_SHARE * settings.tolerance,
+            law = self._laws[feed, stop] = Law(
+                (STOP_SHARE if stop else CHORD_SHARE) * settings.tolerance,
                 RIPPLE,
                 hold * settings.x_acceleration,
                 hold * radians(settings.c_acceleration),

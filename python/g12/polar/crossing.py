@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from math import atan2, hypot, pi, sqrt
+from math import atan2, cos, hypot, pi, sin, sqrt
 
 from g12.polar.contour import Arc, Line, Point, arc_radius, path_length, start_direction
 
@@ -20,6 +20,35 @@ def crossing(a: Line | Arc, b: Line | Arc) -> Point | None:
         if on_both and (best is None or length - leave + meet < nearest):
             best, nearest = place, length - leave + meet
     return best
+
+
+def cross_inside(a: Line | Arc, b: Line | Arc, margin: float) -> bool:
+    """Return whether two moves cross farther than ``margin`` from the ends of both."""
+    return any(
+        all(margin < along_start(move, place) < path_length(move) - margin for move in (a, b))
+        for place in _crossings(a, b)
+    )
+
+
+def place_at(move: Line | Arc, part: float) -> Point:
+    """Return the place at a part of a move, 0 at its start and 1 at its end."""
+    if isinstance(move, Line):
+        return move.x0 + part * (move.x1 - move.x0), move.c0 + part * (move.c1 - move.c0)
+    angle = part * move.sweep
+    x, c = move.x0 - move.cx, move.c0 - move.cc
+    sine, cosine = sin(angle), cos(angle)
+    return move.cx + x * cosine - c * sine, move.cc + x * sine + c * cosine
+
+
+def distance_from(move: Line | Arc, place: Point) -> float:
+    """Return the distance of a place from a move."""
+    along, length = along_start(move, place), path_length(move)
+    if not 0.0 <= along <= length:
+        to_start = hypot(place[0] - move.x0, place[1] - move.c0)
+        return min(to_start, hypot(place[0] - move.x1, place[1] - move.c1))
+    if isinstance(move, Arc):
+        return abs(hypot(place[0] - move.cx, place[1] - move.cc) - arc_radius(move))
+    return sqrt(max(0.0, (place[0] - move.x0) ** 2 + (place[1] - move.c0) ** 2 - along * along))
 
 
 def along_start(move: Line | Arc, place: Point) -> float:

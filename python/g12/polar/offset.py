@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import copysign, hypot
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 from g12.errors import number
 from g12.polar.contour import (
@@ -28,10 +28,22 @@ from g12.polar.contour import (
     arc_radius,
     end_direction,
     is_move,
+    path_length,
     start_direction,
     sweep_between,
 )
-from g12.polar.crossing import PARALLEL, REACH, along_end, along_start, crossing
+from g12.polar.crossing import (
+    PARALLEL,
+    REACH,
+    along_end,
+    along_start,
+    cross_inside,
+    crossing,
+    distance_from,
+    place_at,
+)
+
+PROBES = 8  # places beside an outside corner of an arc where the tool's distance is checked
 
 
 class _Step(NamedTuple):
@@ -76,13 +88,18 @@ def _centred(contour: Contour, moves: list, smooth: float) -> Iterator[tuple]:
     if before is not None:
         _check_going_on(contour, before, joints[0], smooth)
     joints.append(_Joint(_last_place(contour, steps), (0.0, 0.0)))
+    before = ()
     for k, step in enumerate(steps):
         start, end = joints[k].meet, joints[k + 1].leave
-        turned = () if joints[k].corner is None else (_corner_arc(step.move, joints[k]),)
-        if step.cut:
-            yield (*turned, *_trimmed(contour, steps, k, start, end))
-        else:
+        if not step.cut:
+            before = ()
             yield (_placed(step.move, start, end),)
+            continue
+        trimmed = _trimmed(contour, steps, k, start, end)
+        _check_apart(contour, before, trimmed, smooth)
+        before = trimmed
+        turned = () if joints[k].corner is None else (_corner_arc(step.move, joints[k]),)
+        yield (*turned, *trimmed)
 
 
 def _steps(contour: Contour, moves: list) -> list[_Step]:
@@ -111,6 +128,18 @@ def _check_going_on(contour: Contour, before: _Step, joint: _Joint, smooth: floa
             "an inside corner under cutter compensation cannot follow a block that waits "
             "for the machine",
         )
+
+
+def _check_apart(contour: Contour, before: tuple, trimmed: tuple, smooth: float) -> None:
+    """Check that the paths beside two elements in a row meet nowhere but at their joint."""
+    for a, b in zip(filter(is_move, before), filter(is_move, trimmed)):
+        curved = isinstance(a, Arc) or isinstance(b, Arc)
+        if curved and cross_inside(a, b, 4.0 * smooth):
+            contour.refuse(
+                b.line,
+                f"the tool of radius {number(abs(b.offset))} cannot follow both lines {a.line} and "
+                f"{b.line}: beside one of them it cuts into the other",
+            )
 
 
 def _last_place(contour: Contour, steps: list[_Step]) -> Point:
@@ -151,15 +180,34 @@ def _corner(contour: Contour, a: _Step, b: _Step, smooth: float) -> _Joint:
         place = _mitre(leave, meet, corner, cosine)
         return _Joint(place, place)
     if sine * offset <= PARALLEL * abs(offset):
+        if not _clear(a, b, smooth):
+            _refuse_tight(contour, a, b)
         return _Joint(leave, meet, corner)
     place = crossing(a.parallel, b.parallel)
     if place is None:
-        contour.refuse(
-            b.move.line,
-            f"the tool of radius {number(abs(offset))} cannot reach both lines {a.move.line} and "
-            f"{b.move.line}: their inside corner is too tight",
-        )
+        _refuse_tight(contour, a, b)
     return _Joint(place, place)
+
+
+def _clear(a: _Step, b: _Step, smooth: float) -> bool:
+    """Return whether the tool beside either element of an outside corner stays off the other."""
+    if isinstance(a.move, Line) and isinstance(b.move, Line):
+        return True
+    offset = abs(b.move.offset)
+    for path, other, from_end in ((a.parallel, b.move, True), (b.parallel, a.move, False)):
+        step = min(1.0, 2.0 * offset / max(path_length(path), REACH)) / PROBES
+        parts = (1.0 - k * step if from_end else k * step for k in range(PROBES + 1))
+        if any(distance_from(other, place_at(path, part)) < offset - smooth for part in parts):
+            return False
+    return True
+
+
+def _refuse_tight(contour: Contour, a: _Step, b: _Step) -> NoReturn:
+    contour.refuse(
+        b.move.line,
+        f"the tool of radius {number(abs(b.move.offset))} cannot reach both lines {a.move.line} "
+        f"and {b.move.line}: their corner is too tight",
+    )
 
 
 def _code(move: Line | Arc) -> str:

@@ -8,7 +8,7 @@ beside the pole is replaced that a radius leaves by no more than a fifth of ``re
 
 from __future__ import annotations
 
-from math import asin, cos, hypot, sin, sqrt
+from math import asin, hypot, sqrt
 
 from g12.polar.contour import (
     Arc,
@@ -21,6 +21,7 @@ from g12.polar.contour import (
     path_length,
     sweep_between,
 )
+from g12.polar.crossing import place_at
 
 POLE = (0.0, 0.0)
 FLAT_SHARE = 0.2  # of the reach: how far the radii that replace an arc may be from it
@@ -109,15 +110,10 @@ def _radius(move: Line | Arc, part: float, at_pole: float, reach: float, outward
 
 
 def _place(move: Line | Arc, part: float) -> Point:
-    """Return the place at a part of a move."""
+    """Return the place at a part of a move, its very ends where it is at these."""
     if part in (0.0, 1.0):
         return (move.x1, move.c1) if part else (move.x0, move.c0)
-    angle = part * move.sweep
-    x, c = move.x0 - move.cx, move.c0 - move.cc
-    return (
-        move.cx + x * cos(angle) - c * sin(angle),
-        move.cc + x * sin(angle) + c * cos(angle),
-    )
+    return place_at(move, part)
 
 
 def _height(move: Line | Arc, part: float) -> float:
