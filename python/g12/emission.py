@@ -8,7 +8,7 @@ program can see it, or the machine waits.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from .polar import Run
@@ -106,15 +106,15 @@ class Emission:
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
 
-    def run(self, steps: Sequence[Run | Action], modes: Modes) -> Iterator[int]:
-        """Hand over all steps; yield the status of a block that makes the machine wait."""
+    def run(self, steps: Sequence[Run | Action], modes: Modes) -> None:
+        """Hand over all steps, and release the interpreter in ``modes``."""
         self._take_over()
         for step, following in zip(steps, [*steps[1:], None]):
             if isinstance(step, Run):
                 block_ends = not isinstance(following, Run) or following.line != step.line
                 self._moves(step, block_ends)
             else:
-                yield from self._act(step)
+                self._act(step)
         self.release(modes)
 
     def release(self, modes: Modes) -> None:
@@ -146,20 +146,18 @@ class Emission:
         self.path.at_end(run.stop, run.line in self.exact_lines, block_ends)
         execute(piece(last_x * factor, last_c, last_z, last_feed))
 
-    def _act(self, action: Action) -> Iterator[int]:
+    def _act(self, action: Action) -> None:
         """Execute a block in its place."""
         self.interp.sequence_number = action.line
         if action.modes is None:
             self._execute(action)
             return
         self.release(action.modes)
-        status = self._execute(action)
-        if status:
-            yield status
+        self._execute(action)
         self.path.find()
         self._take_over()
 
-    def _execute(self, action: Action) -> int:
+    def _execute(self, action: Action) -> None:
         """Execute the block as one of the program, which a remapped code must be."""
         interp, place = self.interp, Place(self.code, action.line)
         level = interp.call_level
@@ -169,7 +167,6 @@ class Emission:
             status = interp.execute(None)
         except SystemError:  # how LinuxCNC hands a failed read or execute to Python
             raise place.refuse(interp.get_errormsg()) from None
-        if action.level is None and interp.call_level != level:
-            raise place.refuse(f"{action.text} waits for the machine in its handler")
+        if status:
+            raise place.refuse(f"{action.text} waits for the machine: not inside a section")
         interp.call_level = level
-        return status

@@ -59,16 +59,21 @@ class Frame:
         self.interp.sequence_number = line
         self.interp.blocks[self.remap_level].executing_remap = None
 
-    def wait(self) -> Iterator[int]:
-        """Yield until the machine has done everything before; it may be in a sub of the section."""
+    def execute_and_wait(self, text: str) -> Iterator[int]:
+        """Execute a block, and yield until the machine has done what it waits for.
+
+        The block may stand in a sub of the section. Between it and the yield nothing may be read:
+        the interpreter would take the input at once.
+        """
         interp = self.interp
         level, remap_level = interp.call_level, interp.remap_level
-        interp.call_level, interp.remap_level = self.level, self.remap_level
         interp.read(f"O <{self._remap.remap_py}> call")
         interp.blocks[0].call_type = CALLED_AS_REMAP
-        yield INTERP_EXECUTE_FINISH
+        if interp.execute(text):
+            interp.call_level, interp.remap_level = self.level, self.remap_level
+            yield INTERP_EXECUTE_FINISH
+            interp.call_level, interp.remap_level = level, remap_level
         interp.blocks[0].o_type, interp.blocks[0].call_type = NO_O_WORD, NOT_CALLED
-        interp.call_level, interp.remap_level = level, remap_level
 
     def _locals(self, level: int) -> dict[str, float]:
         """The local parameters of a call level; those of level 0 stand among the global ones."""

@@ -11,7 +11,7 @@ from #5420 or #<_x>; before anything moves it gets the machine's position back.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Iterator
 from operator import attrgetter
 from typing import NamedTuple
 
@@ -197,7 +197,7 @@ class Section:
         self.program.parse(line.text if line.rewritten else None)
         block = block_of(self.block)
         if block.g[MOTION] == self.setup.off:
-            yield from self._finish(block)
+            self._finish(block)
         else:
             self._check(block)
             yield from self._obey(line, block)
@@ -402,33 +402,30 @@ class Section:
 
     def _wait_for_input(self, text: str) -> Iterator[int]:
         """M66: everything before it has to happen before the lines behind it can be read."""
-        planned = yield from self._emit()
-        self.interp.read(text)
-        if self.interp.execute(None):
-            yield from self.frame.wait()
+        planned = self._emit()
+        yield from self.frame.execute_and_wait(text)
         self._remember_machine()
         self.contour = polar.resume(self.contour, planned)
 
-    def _finish(self, block: Block) -> Iterator[int]:
-        """The block that switches off."""
+    def _finish(self, block: Block) -> None:
+        """End the section at the block that switches off."""
         off = self.setup.off_code
         if not alone(block):
             raise self.place.refuse(f"{off} stands alone in its block")
         if self.interp.call_level != self.frame.level:
-            self._missing_off(f"the sub that is called here has one, but not the {self.setup.code}")
+            self._missing_off("the sub called here has one, but not the code that it ends")
         self.contour.close(line=self.program.line)
-        yield from self._emit()
+        self._emit()
         self.program.catch_up()
         self.frame.leave(self.program.line)
         self.finished = True
 
-    def _emit(self) -> Generator[int, None, polar.Plan]:
+    def _emit(self) -> polar.Plan:
         """Plan what was read, and hand it over; return the plan."""
         plan = polar.plan(self.contour, self.setup.plan, c=self.c)
         self._check_travel(plan)
         self._show_machine()
-        for _status in self.emission.run(plan.steps, self.modes):
-            yield from self.frame.wait()
+        self.emission.run(plan.steps, self.modes)
         self._remember_machine()
         self._modes_found = self.modes
         return plan

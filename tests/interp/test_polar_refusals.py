@@ -139,7 +139,7 @@ def test_missing_off_code_at_the_end_of_the_file(lathe):
 def test_off_code_in_a_sub_that_the_section_calls(lathe):
     program = ["o<s> sub", "G13.1", "o<s> endsub", *section("G1 X15", "o<s> call")]
     text, _ = refused(lathe, program)
-    assert text.startswith("G12.1 line 2: G13.1 is missing: the sub that is called here has one")
+    assert text.startswith("G12.1 line 2: G13.1 is missing: the sub called here has one")
 
 
 def test_a_section_that_ends_behind_its_sub(lathe):

@@ -1,0 +1,333 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12.1 in a headless LinuxCNC: the sample programs' real motion, and everything an operator does."""
+
+import math
+
+import numpy as np
+import pytest
+
+from drawings import INCHES, MILLIMETRES
+from g12.cli.headless import Machine
+from lathe import FIRST, section
+from machines import PROGRAMS, SIM
+from outline import deviation, distances, fitted_circle, fitted_line, lines
+
+INCH = 25.4
+TOLERANCE = {"mm": 0.005, "inch": 0.0002}  # the default of POLAR_TOLERANCE
+SAMPLING = {"mm": 0.001, "inch": 0.001 / INCH}
+FEED, STANDSTILL = 2, 0
+MANUAL_TOOLS = {1: 0.5, 8: 0.0}
+C_SPEED, C_ACCELERATION = 360, 3600
+
+
+@pytest.fixture(scope="module")
+def metric():
+    with Machine(SIM / "lathe_mm.ini") as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def inch():
+    with Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as running:
+        yield running
+
+
+@pytest.fixture
+def lathe(metric):
+    metric.feed_override(1.0)
+    metric.mdi("G21 G90 G94 G40 G8 G64")
+    metric.mdi("G0 Z5")
+    metric.mdi("G0 X20 C0")
+    metric.errors(), metric.messages()
+    return metric
+
+
+class Cut:
+    """The part of a run that was cut at a feed, in the plane."""
+
+    def __init__(self, run_or_samples, zero=0.0):
+        samples = getattr(run_or_samples, "samples", run_or_samples)
+        cutting = samples.kind == FEED
+        angles = np.radians(samples.axes["C"] - zero)
+        points = np.column_stack([np.cos(angles), np.sin(angles)]) * samples.axes["X"][:, None]
+        self.all_points, self.points = points, points[cutting]
+        self.z, self.lines = samples.axes["Z"][cutting], samples.line[cutting]
+        steps = np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)
+        self.speeds = steps[cutting] / 0.001 * 60
+        self.c, self.x = samples.axes["C"], samples.axes["X"]
+
+    def of(self, line, ends=0.15):
+        """Return the points of a block without its two ends (a share of its samples)."""
+        return self._inner(self.points, line, ends)
+
+    def speed(self, line):
+        """Return the speed along the part in the middle of a block, per minute."""
+        return np.median(self._inner(self.speeds, line, 0.3))
+
+    def _inner(self, values, line, ends):
+        chosen = values[self.lines == line]
+        cut = int(len(chosen) * ends)
+        return chosen[cut : len(chosen) - cut]
+
+
+def run_sample(machine, name, override=1.0):
+    machine.feed_override(override)
+    run = machine.run(PROGRAMS / "polar" / f"{name}.ngc")
+    assert run.error is None
+    assert run.samples.lost == 0
+    return Cut(run)
+
+
+@pytest.fixture(scope="module")
+def cuts(metric, inch):
+    """Every sample program, run once when it is asked for."""
+    done = {}
+
+    def cut(name):
+        if name not in done:
+            done[name] = run_sample(metric, name) if name in MILLIMETRES else run_sample(inch, name, 2)
+        return done[name]
+
+    return cut
+
+
+# ---------------------------------------------------------------- sample programs
+
+
+@pytest.mark.parametrize("name", [*MILLIMETRES, *INCHES])
+def test_every_sample_is_on_the_contour(cuts, name):
+    units, drawing = ("mm", MILLIMETRES) if name in MILLIMETRES else ("inch", INCHES)
+    points = cuts(name).points
+    limit = TOLERANCE[units] + SAMPLING[units]
+    there, back = deviation(drawing[name].pieces, points, step=20 * TOLERANCE[units])
+    assert there <= limit
+    assert back <= limit
+    assert cuts(name).x.min() >= -1e-9
+
+
+@pytest.mark.parametrize("name", [*MILLIMETRES])
+def test_feed_is_as_programmed(cuts, name):
+    feeds = {"slot": 800, "circles": 600}
+    blocks = {"slot": [7], "circles": [7, 9]}.get(name, range(10, 15))
+    assert [cuts(name).speed(line) for line in blocks] == pytest.approx(
+        [feeds.get(name, 1000)] * len(blocks), rel=0.01
+    )
+
+
+def test_hexagon_across_flats_and_angles(cuts):
+    flats = [fitted_line(cuts("hexagon").of(line, ends=0.3)) for line in range(10, 16)]
+    across = [one[1] + other[1] - 12 for one, other in zip(flats[:3], flats[3:])]
+    assert across == pytest.approx([27, 27, 27], abs=0.01)
+    assert [angle for angle, _ in flats] == pytest.approx([90, 30, 150] * 2, abs=0.05)
+
+
+def test_square_across_flats_and_corner_radii(cuts):
+    cut = cuts("square")
+    flats = [fitted_line(cut.of(line)) for line in (9, 11, 13, 15)]
+    assert [2 * (distance - 5) for _, distance in flats] == pytest.approx([30] * 4, abs=0.01)
+    corners = [fitted_circle(cut.of(line)) for line in (10, 12, 14, 16)]
+    assert [radius - 5 for _, radius in corners] == pytest.approx([5] * 4, abs=0.006)
+    centres = [value for centre, _ in corners for value in centre]
+    assert centres == pytest.approx([10, -10, -10, -10, -10, 10, 10, 10], abs=0.006)
+
+
+def test_slots_are_straight_and_where_they_belong(cuts):
+    through, beside = (fitted_line(cuts("slot").of(line)) for line in (7, 9))
+    assert [through[1], beside[1]] == pytest.approx([0, 1], abs=0.006)
+    assert [(angle + 90) % 180 for angle, _ in (through, beside)] == pytest.approx([90, 90], abs=0.02)
+
+
+def test_circles_around_and_beside_the_centre(cuts):
+    around, beside = (fitted_circle(cuts("circles").of(line, ends=0)) for line in (7, 9))
+    assert (*around[0], around[1]) == pytest.approx((4, 0, 10), abs=0.003)
+    assert (*beside[0], beside[1]) == pytest.approx((19, -5, 5), abs=0.003)
+
+
+def test_cam_radii(cuts):
+    cut = cuts("cam")
+    nose = np.concatenate([cut.of(10, ends=0), cut.of(14, ends=0)])
+    arcs = [(nose, (16, 0), 5), (cut.of(11), (-1.40625, 17.94499), 30), (cut.of(12), (0, 0), 12),
+            (cut.of(13), (-1.40625, -17.94499), 30)]  # fmt: skip
+    for points, centre, radius in arcs:
+        reach = np.hypot(*(points - centre).T) - 6
+        assert (reach.min(), reach.max()) == pytest.approx((radius, radius), abs=0.006)
+    assert fitted_circle(nose)[1] - 6 == pytest.approx(5, abs=0.006)
+
+
+def test_the_manuals_flats_are_an_inch_apart(cuts):
+    flats = [("manual_a", 14, 0.25), ("manual_a", 23, 0.25), ("manual_b", 14, 0.25), ("manual_b", 16, 0.25),
+             ("manual_sample", 15, 0.375), ("manual_sample", 17, 0.375)]  # fmt: skip
+    for name, line, cutter in flats:
+        points = cuts(name).of(line, ends=0)
+        angle, distance = fitted_line(points[np.abs(points[:, 1]) < 0.4])
+        assert 2 * (distance - cutter) == pytest.approx(1, abs=4e-4)
+        assert angle == pytest.approx(90, abs=0.05)
+
+
+@pytest.mark.parametrize("name", ["slot", "circles"])
+def test_c_keeps_its_limits_near_the_centre(cuts, name):
+    c = cuts(name).c
+    assert np.abs(np.diff(c)).max() * 1000 <= C_SPEED * 1.001
+    assert np.abs(np.diff(c, 2)).max() * 1e6 <= C_ACCELERATION * 1.01
+
+
+# ---------------------------------------------------------------- what an operator does
+
+
+PART = ["G1 X12", "C5", "G3 X-5 C12 I-12 J-5", "G1 X-12 C0", "X15 C0"]
+OUTLINE = [
+    *lines((20, 0), (12, 0), (12, 5)), *lines((-5, 12), (-12, 0)), *lines((-12, 0), (15, 0)),
+]  # fmt: skip
+
+
+def part(feed="F1500", **around):
+    return section(*PART, feed=feed, **around)
+
+
+def on_the_part(samples):
+    """Tell whether every sample lies on the straight blocks or the arc of the part."""
+    points = Cut(samples).points
+    off = distances(OUTLINE, points)
+    return np.minimum(off, np.abs(np.hypot(*points.T) - 13)).max() < 0.006
+
+
+def test_auto(lathe):
+    run = lathe.run_text(part())
+    assert run.error is None
+    assert on_the_part(run.samples)
+    assert set(run.samples.line[run.samples.kind == FEED].tolist()) == {6, 7, 8, 9, 10}
+
+
+def test_pause_and_resume(lathe):
+    lathe.open_text(part())
+    lathe.sample()
+    lathe.start()
+    lathe.wait_for(lambda status: status.motion_line == 8)
+    lathe.pause()
+    lathe.wait_for(lambda status: status.paused and status.actual == status.position)
+    held = lathe.stat().position
+    lathe.resume()
+    lathe.wait_idle()
+    samples = lathe.samples()
+    assert on_the_part(samples)
+    assert Cut(samples).points[-1] == pytest.approx((15, 0), abs=1e-6)
+    assert math.hypot(held[0] - 15, held[5]) > 1
+
+
+def test_single_step_goes_block_by_block(lathe):
+    lathe.open_text(part())
+    lathe.sample()
+    seen = []
+    for _ in range(40):
+        lathe.step()
+        status = lathe.wait_for(lambda status: status.in_position or status.interp == "idle")
+        seen.append(status.motion_line)
+        if status.interp == "idle":
+            break
+    lathe.wait_idle()
+    assert on_the_part(lathe.samples())
+    assert {6, 7, 8, 9, 10} <= set(seen)
+
+
+def test_feed_override(lathe):
+    full = lathe.run_text(part(feed="F600")).seconds
+    lathe.feed_override(0.5)
+    half = lathe.run_text(part(feed="F600"))
+    assert half.seconds == pytest.approx(2 * full, rel=0.1)
+    assert on_the_part(half.samples)
+
+
+def test_abort_then_mdi_then_the_program_again(lathe):
+    lathe.open_text(part())
+    lathe.start()
+    lathe.wait_for(lambda status: status.motion_line == 8)
+    lathe.abort()
+    lathe.wait_idle()
+    modes = lathe.stat().modes
+    assert {"G90", "G94", "G64", "G40"} <= set(modes.gcodes)
+    assert modes.feed != 0 or "G94" in modes.gcodes
+    lathe.mdi("G0 X25")
+    assert lathe.stat().position[0] == pytest.approx(25)
+    lathe.mdi("G0 X20 C0")
+    assert lathe.errors() == []
+    again = lathe.run_text(part())
+    assert again.error is None
+    assert on_the_part(again.samples)
+
+
+@pytest.mark.parametrize(("start", "cut"), [(5, {5, 7, 8}), (6, {7, 8}), (10, {11, 13}), (14, {15})])
+def test_run_from_a_line_before_and_behind_a_section(lathe, start, cut):
+    program = [FIRST, "G0 X20 Z5 C0", "T1 M6", "F1500", "G1 X19", "G12.1", "X15", "C3", "G13.1",
+               "G0 X20 C0", "G1 X19", "G12.1", "X15", "G13.1", "G1 X17", "M2"]  # fmt: skip
+    lathe.open_text(program)
+    lathe.sample()
+    lathe.start(start)
+    lathe.wait_idle()
+    assert lathe.errors() == []
+    seen = set(Cut(lathe.samples()).lines.tolist())
+    assert cut <= seen
+    assert seen <= set(range(start, 17))
+
+
+def test_nothing_of_a_refused_section_moves(lathe):
+    for body, line in ((["G1 X15", "X12", "G28 H0"], 8), (["G1 X15", "X12", "X11 X10"], 8), (["G1 X15", "X400"], 7)):
+        run = lathe.run_text(section(*body, feed="F1500"))
+        assert run.error.text.startswith(f"G12.1 line {line}: ")
+        assert not (run.samples.kind == FEED).any()
+    assert lathe.run_text(part()).error is None
+
+
+def test_mdi_is_refused(lathe):
+    lathe.run_text(part())
+    lathe.mdi("G12.1")
+    assert [error.text for error in lathe.errors()] == [
+        "G12.1 is not possible in MDI: it needs the lines behind it"
+    ]
+    lathe.mdi("G13.1")
+    assert lathe.errors() == []
+
+
+def test_waiting_for_an_input(lathe):
+    body = ["G1 X12", "M66 P0 L3 Q5", "o1 if [#5399 EQ 1]", "X10", "o1 else", "X14", "o1 endif", "C3", "M66 P0 L0",
+            "C[3 + 2 * #5399]"]  # fmt: skip
+    lathe.set("motion.digital-in-00", False)
+    lathe.open_text(section(*body, feed="F3000"))
+    lathe.sample()
+    lathe.start()
+    lathe.wait_for(lambda status: status.in_position and abs(status.position[0] - 12) < 1e-4)
+    lathe.set("motion.digital-in-00", True)
+    lathe.wait_idle()
+    assert lathe.errors() == []
+    assert Cut(lathe.samples()).points[-1] == pytest.approx((10, 5), abs=1e-4)
+
+
+def test_program_stops_inside(lathe):
+    lathe.open_text(section("G1 X12", "M0", "C3", feed="F3000"))
+    lathe.start()
+    lathe.wait_for(lambda status: status.paused)
+    assert lathe.stat().position[0] == pytest.approx(12)
+    lathe.resume()
+    lathe.wait_idle()
+    assert lathe.stat().position[0] == pytest.approx(math.hypot(12, 3), abs=1e-4)
+
+
+def test_actions_happen_when_the_tool_gets_there(lathe):
+    lathe.open_text(section("G1 X12", "M8", "X8", "M9", "X6", feed="F600"))
+    lathe.start()
+    flood = []
+    for x in (14, 9, 7):
+        lathe.wait_for(lambda status, x=x: status.position[0] < x)
+        flood.append(lathe.get("iocontrol.0.coolant-flood"))
+    lathe.wait_idle()
+    assert flood == [False, True, False]
+
+
+def test_a_wrapped_axis_winds():
+    overrides = {"AXIS_C": {"WRAPPED_ROTARY": 1}}
+    with Machine(SIM / "lathe_mm.ini", overrides=overrides) as wrapped:
+        run = wrapped.run_text(section("G1 X15", "G3 I-15", "I-15", after=["G0 C350"], feed="F6000"))
+    assert run.error is None
+    cut = Cut(run)
+    assert cut.points[-1] == pytest.approx((15, 0), abs=1e-3)
+    assert np.abs(np.hypot(*cut.points[cut.lines > 6].T) - 15).max() < 0.006
+    assert run.position[5] == pytest.approx(720 + 350)
