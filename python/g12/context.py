@@ -22,6 +22,8 @@ class Context(NamedTuple):
     """The interpreter's state in front of a block. Lengths are in program units.
 
     Position is in the active work coordinate system, tool offset applied, X as a radius.
+    ``speed`` is the commanded spindle speed in rpm. ``offset_pending`` tells that G40 came after
+    the last move: the tool is still beside the programmed point by its radius.
     ``last_radius`` is the cutter radius of the last D commanded (None: none ever was),
     ``tool_in_table(n)`` gives tool n or None.
     """
@@ -33,8 +35,11 @@ class Context(NamedTuple):
     incremental: bool
     plane: str
     inverse_time: bool
+    per_revolution: bool
+    speed: float
     feed: float
     compensated: bool
+    offset_pending: bool
     spindle_tool: Tool | None
     last_radius: float | None
     tool_in_table: Callable[[int], Tool | None]

@@ -12,7 +12,7 @@ from .context import XY, Context, Tool
 from .errors import number
 from .words import Words
 
-SMALLEST_RING_MM = 0.00254  # its half circles have the smallest radius LinuxCNC accepts
+SMALLEST_RING_MM = 0.00508  # 0.0002 in: its half circles are twice what LinuxCNC needs
 ROUNDING_MM = 1e-6  # lengths closer than this are equal
 MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
 
@@ -25,10 +25,18 @@ def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,))
         raise words.refuse(f"needs {wanted}, but {context.plane} is active")
     if context.inverse_time:
         raise words.refuse("needs feed per minute or revolution (G94, G95), but G93 is active")
+    if context.per_revolution and context.speed == 0:
+        raise words.refuse("needs a spindle speed for feed per revolution (G95), but S is 0")
     if context.compensated:
         raise words.refuse("brings its own cutter compensation: program G40 first")
     if not context.feed > 0:
         raise words.refuse(f"F{number(context.feed)} must be greater than 0")
+
+
+def check_start(words: Words, context: Context) -> None:
+    """Refuse to begin where the tool stands if G40 has left it beside the programmed point."""
+    if context.offset_pending:
+        raise words.refuse("the tool still stands offset: after G40 move in X or Y first")
 
 
 def coordinate(word: float | None, present: float, context: Context) -> float:
@@ -51,11 +59,11 @@ def commanded_tool(words: Words, context: Context) -> Tool | None:
     return tool
 
 
-def sound_tool(words: Words, tool: Tool) -> Tool:
-    """Return the tool; refuse a negative diameter."""
+def sound_tool(words: Words, tool: Tool, source: str) -> Tool:
+    """Return the tool; refuse a negative diameter. ``source`` names the tool: ``D1``."""
     if tool.radius < 0:
         raise words.refuse(
-            f"D{tool.number} has the negative diameter {number(2 * tool.radius)} in the tool table"
+            f"{source} has the negative diameter {number(2 * tool.radius)} in the tool table"
         )
     return tool
 

@@ -21,6 +21,10 @@ class Refusal(ValueError):
 
 
 def number(value: float) -> str:
-    """Return ``value`` as an operator would write it: at most six decimals, no trailing zeros."""
-    text = f"{value:.6f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
+    """Return ``value`` as an operator would write it: six decimals at most, no trailing zeros.
+
+    What six decimals cannot show is written with an exponent: 1e-07, 1e+300.
+    """
+    if value and not 5e-7 <= abs(value) < 1e15:
+        return f"{value:.6g}"
+    return f"{value:.6f}".rstrip("0").rstrip(".")

@@ -29,6 +29,7 @@ from .cycle import (
     SMALLEST_RING_MM,
     check_count,
     check_modes,
+    check_start,
     commanded_tool,
     coordinate,
     sound_tool,
@@ -55,7 +56,7 @@ class Pocket(NamedTuple):
     first_grow: float  # by how much the first link grows
     shrink: float  # by which share of that the last one is shorter
     spiral: bool
-    cutter_radius: float
+    commanded_radius: float | None  # of the cutter that D names, None without D
     message: str | None  # for the operator, never a refusal
 
     def locals(self) -> dict[str, float]:
@@ -87,6 +88,9 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
     x = coordinate(words.take("X"), context.x, context)
     y = coordinate(words.take("Y"), context.y, context)
     depth = words.require("Z", "the depth of the pocket")
+    if not centre_word:
+        check_start(words, context)
+    with_d = "D" in words
     cutter, source = choose_cutter(words, context)
     words.finish(KNOWN_WORDS)
     check_radii(words, context, first, outward, cutter, source)
@@ -94,7 +98,7 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
     finished, stepover = outward or (first, first)
     growth = stepover / 2 if clearing == "spiral" else stepover
     links = steps_between(first, finished, growth, context.length(ROUNDING_MM))
-    check_count(words, (links + 1) * levels, f"Q{number(stepover)} and L make")
+    check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
     last_grow = finished - first - growth * (links - 1)
     return Pocket(
         x=x,
@@ -109,7 +113,7 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
         first_grow=min(growth, finished - first),
         shrink=1 - last_grow / growth if links > 1 else 0.0,
         spiral=clearing == "spiral",
-        cutter_radius=cutter.radius,
+        commanded_radius=cutter.radius if with_d else None,
         message=left_material(words, outward, first, cutter, context),
     )
 
@@ -121,12 +125,13 @@ def choose_cutter(words: Words, context: Context) -> tuple[Tool, str]:
     """
     tool = commanded_tool(words, context)
     if tool is not None:
-        return sound_tool(words, tool), f"D{tool.number}"
+        return sound_tool(words, tool, f"D{tool.number}"), f"D{tool.number}"
     if context.last_radius is not None:
         return Tool(0, context.last_radius), "the D last commanded"
     if context.spindle_tool is None:
         raise words.refuse("D is missing, none was commanded before and no tool is loaded")
-    return context.spindle_tool, f"T{context.spindle_tool.number} in the spindle"
+    source = f"T{context.spindle_tool.number} in the spindle"
+    return sound_tool(words, context.spindle_tool, source), source
 
 
 def check_radii(
@@ -147,7 +152,7 @@ def check_radii(
             f" {number(cutter.radius)} ({source})"
         )
     smallest = context.length(SMALLEST_RING_MM)
-    if first - cutter.radius < smallest:
+    if first - cutter.radius < smallest - rounding:
         raise words.refuse(
             f"I{number(first)} must exceed the tool radius {number(cutter.radius)} ({source})"
             f" by at least {number(smallest)}"
@@ -170,8 +175,8 @@ def left_material(
     """
     if outward is None or cutter.radius == 0:
         return None
-    stepover, rounding = outward[1], context.length(ROUNDING_MM)
-    if stepover > 2 * cutter.radius + rounding:
+    (finished, stepover), rounding = outward, context.length(ROUNDING_MM)
+    if min(stepover, finished - first) > 2 * cutter.radius + rounding:
         return (
             f"{words.code}: Q{number(stepover)} is greater than the tool diameter"
             f" {number(2 * cutter.radius)}: material is left between the rings"

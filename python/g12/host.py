@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import itertools
 import sys
+from collections.abc import Sequence
 
 import emccanon
 from interpreter import INTERP_ERROR
@@ -43,7 +44,10 @@ def refuse_start_error() -> None:
         raise Refusal(START_ERROR.message)
 
 
-MODAL_0, DIAMETER = 0, 15  # indices into a block's g_modes
+# indices into a block's g_modes
+MODAL_0, TOOL_LENGTH, PATH_CONTROL, SPINDLE, DIAMETER = 0, 8, 13, 14, 15
+G43_1, G43_2, G64, G96 = 431, 432, 640, 960
+NO_CODE = -1
 DIAMETER_ACTIVE = 15  # index into active_g_codes
 G7 = 70
 INCREMENTAL = 1  # distance_mode and ijk_distance_mode: 0 absolute, 1 incremental
@@ -111,7 +115,7 @@ def code_of_block(interp: object) -> str:
 
 
 def words_of_block(interp: object) -> Words:
-    """Return the words of the block being remapped; refuse a second G code that moves axes."""
+    """Return the words of the block being remapped; refuse a second code that reads them."""
     block = interp.blocks[interp.remap_level]
     values = {
         letter: getattr(block, field) for letter, flag, field in WORD_FIELDS if getattr(block, flag)
@@ -123,10 +127,23 @@ def words_of_block(interp: object) -> Words:
     if block.theta_flag:
         values["^"] = block.theta
     words = Words(block.executing_remap.name.upper(), values)
-    other = block.g_modes[MODAL_0]
-    if other != -1:
+    other = code_sharing_words(block.g_modes, words)
+    if other != NO_CODE:
         raise words.refuse(f"G{other / 10:g} cannot stand in the same block")
     return words
+
+
+def code_sharing_words(g_modes: Sequence[int], words: Words) -> int:
+    """Return a code of the block that would read one of the cycle's words too, or NO_CODE."""
+    if g_modes[MODAL_0] != NO_CODE:
+        return g_modes[MODAL_0]
+    if g_modes[TOOL_LENGTH] in (G43_1, G43_2):
+        return g_modes[TOOL_LENGTH]
+    if g_modes[PATH_CONTROL] == G64 and "Q" in words:
+        return G64
+    if g_modes[SPINDLE] == G96 and "D" in words:
+        return G96
+    return NO_CODE
 
 
 def entries_of_call(interp: object, sub: str, count: int) -> list[float] | None:
@@ -223,8 +240,11 @@ def snapshot(interp: object) -> Context:
         incremental=interp.distance_mode == INCREMENTAL,
         plane=PLANES.get(interp.plane, "G17.1, G18.1 or G19.1"),
         inverse_time=interp.feed_mode == INVERSE_TIME,
+        per_revolution=per_revolution(interp),
+        speed=interp.speed[interp.active_spindle],
         feed=interp.feed_rate,
         compensated=interp.cutter_comp_side != 0,
+        offset_pending=bool(interp.arc_not_allowed),
         spindle_tool=tool_in_spindle(interp),
         last_radius=last_radius(interp),
         tool_in_table=functools.partial(tool_in_table, interp),

@@ -18,7 +18,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from .context import XY, XZ, YZ, Context, Tool
-from .cycle import SMALLEST_RING_MM, check_modes, commanded_tool
+from .cycle import SMALLEST_RING_MM, check_modes, check_start, commanded_tool
 from .errors import number
 from .words import Words
 
@@ -41,6 +41,7 @@ class Circle(NamedTuple):
 def plan_circle(words: Words, context: Context) -> Circle:
     """Return the circle of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context, planes=tuple(FIRST_AXIS))
+    check_start(words, context)
     wanted = words.require("I", "the radius of the circle")
     if "D" not in words:
         raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")

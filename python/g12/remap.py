@@ -32,7 +32,8 @@ def prepare_haas(interp: object, arc: int) -> int:
     pocket = plan_pocket(host.words_of_block(interp), host.snapshot(interp), host.SETTINGS.clearing)
     hand = 1 if arc == COUNTERCLOCKWISE else -1
     host.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
-    host.remember_radius(interp, pocket.cutter_radius)
+    if pocket.commanded_radius is not None:
+        host.remember_radius(interp, pocket.commanded_radius)
     if pocket.message:
         host.message(pocket.message)
     return INTERP_OK

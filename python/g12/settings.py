@@ -45,7 +45,7 @@ class Number:
 
     def read(self, text: str) -> float:
         """Return the number, or raise ValueError."""
-        value = float(text)
+        value = float(text.replace("_", " "))  # Python alone would take 1_0 for 10
         if not math.isfinite(value) or value < 0 or (value == 0 and not self.zero_allowed):
             raise ValueError(text)
         return value
@@ -105,11 +105,14 @@ def settings_from_entries(entries: list[tuple[str, str]]) -> Settings:
     values = {}
     for key, text in entries:
         if key not in TABLE:
-            raise Refusal(f"[{SECTION}] {key} is not a setting. Known: {', '.join(TABLE)}")
+            raise Refusal(f"[{SECTION}] {key:.40} is not a setting. Known: {', '.join(TABLE)}")
+        if key.lower() in values:
+            raise Refusal(f"[{SECTION}] {key} stands there twice")
         try:
             values[key.lower()] = TABLE[key].read(text)
         except ValueError:
-            raise Refusal(f"[{SECTION}] {key} = {text}: must be {TABLE[key].legal}") from None
+            rule = f"must be {TABLE[key].legal}"
+            raise Refusal(f"[{SECTION}] {key} = {text:.40}: {rule}") from None
     settings = Settings(**values)
     if settings.polar_g0 == "feed" and settings.polar_g0_feed is None:
         raise Refusal(f"[{SECTION}] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0")
@@ -121,7 +124,19 @@ def settings_from_ini(path: str | os.PathLike[str] | None) -> Settings:
     if not path:
         return Settings()
     text = Path(path).read_text(encoding="utf-8", errors="replace")
+    check_section(text)
     return settings_from_entries(section_entries(text, SECTION))
+
+
+def check_section(text: str) -> None:
+    """Refuse a section that LinuxCNC would not read: in lower case, or a second one."""
+    lines = [line for line in map(str.strip, text.splitlines()) if line.startswith("[")]
+    names = [line.split("]")[0][1:] for line in lines]
+    found = [name for name in names if name.upper() == SECTION]
+    if any(name != SECTION for name in found):
+        raise Refusal(f"[{min(set(found) - {SECTION})}] must be written [{SECTION}]")
+    if len(found) > 1:
+        raise Refusal(f"[{SECTION}] stands there twice: LinuxCNC reads the first one only")
 
 
 def settings_from_environment() -> Settings:

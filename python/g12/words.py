@@ -7,23 +7,26 @@ the rule and the value in the same way.
 
 from __future__ import annotations
 
-import math
-
 from .errors import Refusal, number
 
 WHOLE = 1e-4  # LinuxCNC's own tolerance for "close to an integer"
+LARGEST = 1e6  # in inches or mm more than any machine; sums and squares stay exact enough
 
 
 class Words:
     """The words of a block, to be taken one by one.
 
     ``code`` names the block in messages (``G12``), ``values`` maps upper-case letters to
-    numbers as the parser gave them: program units, expressions already resolved.
+    numbers as the parser gave them: program units, expressions already resolved. A number beyond
+    any machine is refused at once.
     """
 
     def __init__(self, code: str, values: dict[str, float]) -> None:
         self.code = code
         self._left = dict(values)
+        for letter, value in values.items():
+            if not abs(value) <= LARGEST:
+                raise self.refuse(f"{letter}{number(value)} is beyond {number(LARGEST)}")
 
     def __contains__(self, letter: str) -> bool:
         """Tell whether the word is in the block and not yet taken."""
@@ -46,7 +49,7 @@ class Words:
     def take_positive(self, letter: str) -> float | None:
         """Return the word's value, which must be above zero, or None."""
         value = self.take(letter)
-        if value is not None and not 0 < value < math.inf:
+        if value is not None and not value > 0:
             raise self.refuse(f"{letter}{number(value)} must be greater than 0")
         return value
 

@@ -32,6 +32,7 @@ from .cycle import (
     SMALLEST_RING_MM,
     check_count,
     check_modes,
+    check_start,
     commanded_tool,
     sound_tool,
 )
@@ -88,13 +89,14 @@ class Reach(NamedTuple):
 def plan_circle(words: Words, context: Context) -> Circle:
     """Return the circle of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context)
+    check_start(words, context)
     finished = words.require("I", "the radius of the finished circle")
     traverse = take_traverse(words)
     spiral = take_spiral(words)
     circles = words.take_whole("L", least=1, default=1)
     tool = commanded_tool(words, context) or Tool(0, 0.0)
     words.finish(KNOWN_WORDS)
-    reach = reach_of(words, context, finished, sound_tool(words, tool))
+    reach = reach_of(words, context, finished, sound_tool(words, tool, f"D{tool.number}"))
 
     radius = reach.position(finished)
     approach = approach_of(reach, traverse, finished)

@@ -400,6 +400,8 @@ def test_a_tool_length_offset_does_not_move_the_path(inch):
     ("blocks", "radius"),
     [
         (["T2 M6"], 0.25),
+        (["T1 M6", "G12 I.6 Z-.1", "T2 M6"], 0.25),
+        (["G12 I.6 Z-.1 D1", "T2 M6", "G12 I.6 Z-.1"], 0.125),
         (["T2 M6", "G12 I.6 Z-.1 D1"], 0.125),
         (["T2 M6", "G12 I.6 Z-.1 D0"], 0.0),
         (["T2 M6", "G41 D1", "G40"], 0.125),
@@ -453,6 +455,11 @@ REFUSED = [
     ("G93 G12 I.5 Z-1 D1 F1", "G12: needs feed per minute or revolution (G94, G95), but G93"),
     ("G18 G12 I.5 Z-1 D1", "G12: needs the XY plane G17, but G18 is active"),
     ("G19 G13 I.5 Z-1 D1", "G13: needs the XY plane G17, but G19 is active"),
+    ("G95 S0 F.1 G12 I.5 Z-1 D1", "G12: needs a spindle speed for feed per revolution (G95)"),
+    ("G43.1 Z1 G12 I.5 D1", "G12: G43.1 cannot stand in the same block"),
+    ("G64 G12 I.5 K1 Q.1 Z-1 D1", "G12: G64 cannot stand in the same block"),
+    ("G96 S100 G12 I.5 Z-1 D1", "G12: G96 cannot stand in the same block"),
+    ("G12 I[10**300] Z-1 D1", "G12: I1e+300 is beyond 1000000"),
     ("G41 D1 G12 I.5 Z-1", "G12: brings its own cutter compensation: program G40 first"),
     *(
         (f"G12 I.5 Z-1 D1 {word}", f"G12: {word} is not a word of this cycle, which knows X Y Z")
@@ -480,6 +487,25 @@ def assert_refused(tracer, before, block, message):
 @pytest.mark.parametrize(("block", "message"), REFUSED)
 def test_a_refused_block_names_word_rule_and_value(inch, block, message):
     assert_refused(inch, [FIRST, "G1 X1 Y1 Z.1"], block, message)
+
+
+def test_without_a_tool_a_cycle_before_does_not_count_as_a_d(inch):
+    traced = inch.trace_text([FIRST, "T1 M6", "G12 I.6 Z-.1", "T0 M6", "G12 I.6 Z-.1"])
+    assert traced.error.text.startswith("G12: D is missing")
+
+
+def test_a_negative_diameter_in_the_spindle_is_refused(inch):
+    message = "G12: T3 in the spindle has the negative diameter -0.25 in the tool table"
+    assert_refused(inch, [FIRST, "T3 M6"], "G12 I.75 Z-.1", message)
+
+
+def test_right_after_g40_the_plunge_must_not_slant(inch):
+    offset = [FIRST, "T2 M6", "G41", "G1 X1", "Y1"]
+    message = "G12: the tool still stands offset: after G40 move in X or Y first"
+    assert_refused(inch, [*offset, "G40"], "G12 I.26 Z-1", message)
+    moved = inch.trace_text([*offset, "G40", "G12 X1 Y1 I.26 Z-1"])
+    (plunge,) = [move for move in proof.cutting(moved.moves) if abs(move.tangent(0.5)[2]) > 0.1]
+    assert plunge.start[:2] == pytest.approx(plunge.end[:2])
 
 
 def test_a_refused_block_keeps_the_radius_of_the_last_d(inch):

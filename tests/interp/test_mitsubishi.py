@@ -87,11 +87,11 @@ def test_the_sample_of_every_plane(metric):
     plane=st.sampled_from(sorted(AXES)),
     code=st.sampled_from([("G12", -1), ("G13", 1)]),
     offset=st.sampled_from([("D0", 0.0), ("D1", 3.0), ("D10", 10.0), ("D3", -2.0)]),
-    room=st.floats(0.003, 90.0).map(lambda value: round(value, 4)),
+    room=st.floats(0.0052, 90.0).map(lambda value: round(value, 4)),
     sign=st.sampled_from([1, -1]),
 )
 def test_any_valid_block_cuts_its_circle(metric, plane, code, offset, room, sign):
-    radius = max(room, 0.003 - offset[1])
+    radius = max(room, 0.0052 - offset[1])
     wanted = sign * (radius + offset[1])
     traced = cut(metric, f"G0 X3 Y-4 Z5 {plane}", f"{code[0]} I{wanted:.4f} {offset[0]}")
     lead_in, circle, lead_out = traced.moves[-3:]
@@ -133,11 +133,11 @@ REFUSED = [
     ("G12 I50", "G12: D is missing: the tool whose radius reduces the circle, D0 for none"),
     (
         "G13 I10 D10",
-        "G13: I10 must be greater than the tool radius 10 (D10) by at least 0.00254",
+        "G13: I10 must be greater than the tool radius 10 (D10) by at least 0.00508",
     ),
     (
         "G13 I-9.5 D10",
-        "G13: I-9.5 must be greater than the tool radius 10 (D10) by at least 0.00254",
+        "G13: I-9.5 must be greater than the tool radius 10 (D10) by at least 0.00508",
     ),
     ("G12 I50 D77", "G12: D77 is not in the tool table"),
     *(

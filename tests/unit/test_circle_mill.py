@@ -278,11 +278,11 @@ KNOWN = "X Y Z I E R D H K J Q L P F"
         (dict(NEEDED, H=2, K=0.0), "K0 must be greater than 0"),
         (dict(NEEDED, H=2, K=-0.1), "K-0.1 must be greater than 0"),
         (dict(NEEDED, H=2, J=0.0), "J0 must be greater than 0"),
-        (dict(NEEDED, H=2, J=0.00005), "J0.00005 must be at least 0.0001"),
+        (dict(NEEDED, H=2, J=0.00005), "J0.00005 must be at least 0.0002"),
         (dict(NEEDED, H=2, P=0.0), "P0 must be greater than 0"),
         (dict(NEEDED, H=2, Q=-0.02), "Q-0.02 must be greater than 0"),
         (dict(NEEDED, H=2, Q=0.0), "Q0 must be greater than 0"),
-        (dict(NEEDED, H=2, Q=0.00005), "Q0.00005 must be at least 0.0001"),
+        (dict(NEEDED, H=2, Q=0.00005), "Q0.00005 must be at least 0.0002"),
         (dict(NEEDED, H=2, L=1), "L needs Q as well: the finish dimension"),
         (dict(NEEDED, H=2, Q=0.02, L=2), "L2 must be at most 1"),
         (
@@ -328,7 +328,7 @@ def test_a_bad_pocket_is_refused_by_name(words, rule):
             "Q0.02: there is no finish pass with the tool centre on the circle (H0)",
         ),
         (dict(NEEDED, H=2, R=0.2), "R0.2 must be greater than the tool radius 0.25 (T1)"),
-        (dict(NEEDED, H=0, R=0.00005), "R0.00005 must be at least 0.0001"),
+        (dict(NEEDED, H=0, R=0.00005), "R0.00005 must be at least 0.0002"),
     ],
 )
 def test_a_bad_perimeter_is_refused_by_name(words, rule):

@@ -19,8 +19,11 @@ FOUND = Context(
     incremental=False,
     plane="G17",
     inverse_time=False,
+    per_revolution=False,
+    speed=0.0,
     feed=10.0,
     compensated=False,
+    offset_pending=False,
     spindle_tool=TABLE[1],
     last_radius=None,
     tool_in_table=TABLE.get,
@@ -82,7 +85,7 @@ def test_rounding_of_the_increment_makes_no_sliver():
         (dict(I=-0.5, Z=-1.0, D=0), "G12: I-0.5 must be greater than 0"),
         (
             dict(I=0.12505, Z=-1.0, D=1),
-            "G12: I0.12505 must exceed the tool radius 0.125 (D1) by at least 0.0001",
+            "G12: I0.12505 must exceed the tool radius 0.125 (D1) by at least 0.0002",
         ),
         (dict(I=0.5, K=1.0, Z=-1.0, D=1), "G12: K1 needs Q as well"),
         (dict(I=0.5, Q=0.2, Z=-1.0, D=1), "G12: Q0.2 needs K as well"),
@@ -104,7 +107,7 @@ def test_rounding_of_the_increment_makes_no_sliver():
         ),
         (
             dict(I=0.3, K=10.0, Q=0.00001, Z=-1.0, D=1),
-            "G12: Q0.00001 and L make 970001 circles, the most is 100000",
+            "G12: Q0.00001 makes 970001 circles, the most is 100000",
         ),
     ],
 )
@@ -128,6 +131,18 @@ def test_a_bad_block_is_refused_by_name(words, message):
         ),
         (dict(feed=0.0), "G12: F0 must be greater than 0"),
         (
+            dict(per_revolution=True),
+            "G12: needs a spindle speed for feed per revolution (G95), but S is 0",
+        ),
+        (
+            dict(offset_pending=True),
+            "G12: the tool still stands offset: after G40 move in X or Y first",
+        ),
+        (
+            dict(spindle_tool=TABLE[3]),
+            "G12: T3 in the spindle has the negative diameter -0.25 in the tool table",
+        ),
+        (
             dict(spindle_tool=None),
             "G12: D is missing, none was commanded before and no tool is loaded",
         ),
@@ -139,12 +154,56 @@ def test_a_mode_that_cannot_work_is_refused(modes, message):
     assert refused.value.message == message
 
 
+def test_x_or_y_in_the_block_ends_a_pending_offset():
+    assert plan(found=FOUND._replace(offset_pending=True), X=1.0, I=0.75, Z=-1.0, D=1)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (dict(I=1e7, Z=-1.0, D=1), "G12: I10000000 is beyond 1000000"),
+        (dict(I=1e300, Z=-1.0, D=1), "G12: I1e+300 is beyond 1000000"),
+        (dict(I=0.5, Z=-math.inf, D=1), "G12: Z-inf is beyond 1000000"),
+        (dict(I=0.5, Z=math.nan, D=1), "G12: Znan is beyond 1000000"),
+        (
+            dict(I=0.5, K=1.0, Q=1e-7, Z=-1.0, D=1),
+            "G12: Q1e-07 makes 5000001 circles, the most is 100000",
+        ),
+        (
+            dict(I=0.5, K=1.0, Q=1e-320, Z=-1.0, D=1),
+            "G12: Q9.99989e-321 makes 1000000001 circles, the most is 100000",
+        ),
+        (
+            dict(I=0.5, L=200000, Z=-1.0, D=1),
+            "G12: L makes 200000 circles, the most is 100000",
+        ),
+    ],
+)
+def test_absurd_numbers_are_refused_in_words(words, message):
+    with pytest.raises(Refusal) as refused:
+        plan(**words)
+    assert refused.value.message == message
+
+
+def test_the_smallest_ring_is_accepted_in_both_units():
+    assert plan(I=0.1252, Z=-1.0, D=1).first_radius == pytest.approx(0.0002)
+    millimetres = FOUND._replace(inch=False)
+    assert plan(found=millimetres, I=0.00508, Z=-1.0, D=0).first_radius == 0.00508
+
+
 def test_the_cutter_is_the_block_s_then_the_last_commanded_then_the_loaded_one():
-    assert plan(I=0.75, Z=-1.0, D=2).cutter_radius == 0.25
-    assert plan(found=FOUND._replace(last_radius=0.2), I=0.75, Z=-1.0).cutter_radius == 0.2
-    assert plan(found=FOUND._replace(last_radius=0.0), I=0.75, Z=-1.0).cutter_radius == 0.0
-    assert plan(I=0.75, Z=-1.0).cutter_radius == 0.125
-    assert plan(I=0.75, Z=-1.0, D=0).cutter_radius == 0.0
+    last = FOUND._replace(last_radius=0.2)
+    assert plan(I=0.75, Z=-1.0, D=2).first_radius == 0.5
+    assert plan(found=last, I=0.75, Z=-1.0).first_radius == pytest.approx(0.55)
+    assert plan(found=FOUND._replace(last_radius=0.0), I=0.75, Z=-1.0).first_radius == 0.75
+    assert plan(I=0.75, Z=-1.0).first_radius == 0.625
+    assert plan(I=0.75, Z=-1.0, D=0).first_radius == 0.75
+
+
+def test_only_a_d_in_the_block_is_a_d_commanded():
+    assert plan(I=0.75, Z=-1.0, D=2).commanded_radius == 0.25
+    assert plan(I=0.75, Z=-1.0, D=0).commanded_radius == 0.0
+    assert plan(I=0.75, Z=-1.0).commanded_radius is None
 
 
 def test_levels_repeat_in_g90_and_go_deeper_in_g91():
@@ -175,6 +234,7 @@ def test_material_left_is_a_message_not_an_error():
         "G12: I0.4 is greater than 1.5 x the tool diameter 0.25: a core is left in the centre"
     )
     assert plan(I=0.3, K=1.5, Q=0.25, Z=-1.0, D=1).message is None
+    assert plan(I=0.3, K=0.4, Q=0.5, Z=-1.0, D=1).message is None
     assert plan(I=0.75, Z=-1.0, D=1).message is None
     assert plan(I=0.3, K=1.5, Q=0.3, Z=-1.0, D=0).message is None
 

@@ -52,15 +52,15 @@ def test_a_positive_offset_reduces_the_circle(words, radius):
         ),
         (
             dict(I=10.0, D=2),
-            "G13: I10 must be greater than the tool radius 10 (D2) by at least 0.00254",
+            "G13: I10 must be greater than the tool radius 10 (D2) by at least 0.00508",
         ),
         (
             dict(I=-5.0, D=2),
-            "G13: I-5 must be greater than the tool radius 10 (D2) by at least 0.00254",
+            "G13: I-5 must be greater than the tool radius 10 (D2) by at least 0.00508",
         ),
         (
             dict(I=0.0, D=0),
-            "G13: I0 must be greater than the tool radius 0 (D0) by at least 0.00254",
+            "G13: I0 must be greater than the tool radius 0 (D0) by at least 0.00508",
         ),
         (dict(I=50.0, D=-2), "G13: D-2 must be at least 0"),
         (dict(I=50.0, D=1.5), "G13: D1.5 must be a whole number"),

@@ -49,6 +49,35 @@ def test_an_illegal_value_names_key_and_legal_values(key, value, message):
     assert refused.value.message == message
 
 
+def test_a_number_is_written_as_in_an_ini():
+    with pytest.raises(Refusal, match="must be a number above 0"):
+        settings_from_entries([("POLAR_TOLERANCE", "1_0")])
+
+
+def test_a_key_stands_there_once():
+    with pytest.raises(Refusal) as refused:
+        settings_from_entries([("CLEARING", "rings"), ("CLEARING", "spiral")])
+    assert refused.value.message == "[G12] CLEARING stands there twice"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[g12]\nCLEARING = spiral\n", "[g12] must be written [G12]"),
+        (
+            "[G12]\nCLEARING = spiral\n[EMC]\n[G12]\n",
+            "[G12] stands there twice: LinuxCNC reads the first one only",
+        ),
+    ],
+)
+def test_a_section_that_linuxcnc_would_not_read_is_refused(tmp_path, text, message):
+    ini = tmp_path / "machine.ini"
+    ini.write_text(text)
+    with pytest.raises(Refusal) as refused:
+        settings_from_ini(ini)
+    assert refused.value.message == message
+
+
 def test_an_unknown_key_names_the_known_ones():
     with pytest.raises(Refusal) as refused:
         settings_from_entries([("CLERING", "rings")])
