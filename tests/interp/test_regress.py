@@ -257,9 +257,65 @@ def test_a_program_without_an_end_fails_and_the_others_are_checked(pocket):
     pocket.write("endless.ngc", "o1 while [1]\no1 endwhile\nM2\n")
     code, lines, _ = pocket.run("record", "--timeout", "1")
     assert code == 1
-    assert lines[0] == "endless.ngc: LinuxCNC's interpreter: no end within 1 s"
+    assert lines[0] == "endless.ngc: no trace: no end within 1 s"
     assert lines[-1] == "3 programs: 2 as recorded, 1 failed"
     assert not pocket.trace("endless.ngc").exists()
+
+
+FORGETFUL = """\
+import os
+import signal
+
+
+class remap:
+    times = 0
+
+    @staticmethod
+    def again(self, **words):
+        remap.times += 1
+        self.execute(f"G0 X{remap.times}")
+        return 0
+
+    @staticmethod
+    def die(self, **words):
+        os.kill(os.getpid(), signal.SIGSEGV)
+"""
+REMAPS = """\
+[PYTHON]
+TOPLEVEL = own.py
+"""
+
+
+def remapping(shop):
+    """Return a machine whose Python keeps state from one program to the next, or dies."""
+    remaps = "REMAP = M400 modalgroup=10 python=again\nREMAP = M401 modalgroup=10 python=die\n"
+    shop.write("own.py", FORGETFUL, shop.folder)
+    text = MACHINE.replace("PARAMETER_FILE", f"{remaps}PARAMETER_FILE")
+    return shop.write("own.ini", text + REMAPS, shop.folder)
+
+
+def test_no_program_leaves_anything_to_the_next(shop):
+    for name in ("a.ngc", "b.ngc"):
+        shop.write(name, "G21\nM400\nM400\nM2\n")
+    shop.record(ini=remapping(shop))
+    for name in ("a.ngc", "b.ngc"):
+        text = shop.trace(name).read_text(encoding="utf-8")
+        assert "\n  rapid X1\n" in text
+        assert "\n  rapid X2\n" in text
+        assert "\n  rapid X3\n" not in text
+
+
+def test_a_program_that_kills_the_interpreter_fails_and_the_others_are_checked(shop):
+    shop.write("a.ngc", "G21\nM401\nM2\n")
+    shop.write("b.ngc", PLAIN)
+    ini = remapping(shop)
+    code, lines, _ = shop.run("record", shop.programs, "--ini", ini)
+    assert code == 1
+    assert lines == [
+        "a.ngc: no trace: the interpreter died",
+        "b.ngc: new, 5 moves",
+        "2 programs: 1 new, 1 failed",
+    ]
 
 
 def test_recording_again_shows_what_changed_and_accepts_it(pocket):

@@ -137,7 +137,8 @@ class Recorder:
     def text(self, name: str, program: Path) -> str:
         """Return the recording of a program as text."""
         facts = {"program": f"{name} {hash_of(program.read_bytes())}", **self._facts}
-        options = {"parameters": self._machine.parameters, "timeout": self._machine.timeout}
+        machine = self._machine
+        options = {"parameters": machine.parameters, "timeout": machine.timeout, "alone": True}
         return text_of(recording_of(self._tracer.trace(program, **options), program, facts))
 
 
@@ -158,7 +159,7 @@ def do(job: Job) -> Result:
     try:
         now = recorder.text(job.name, job.program)
     except TraceFailure as failure:
-        text = f"LinuxCNC's interpreter: {str(failure).splitlines()[0]}"
+        text = f"no trace: {str(failure).splitlines()[0]}"
         return Result(job.name, FAILED, [Finding("failed", text)])
     result = _compared(job, now, recorder)
     if job.keep:
@@ -171,7 +172,7 @@ def _compared(job: Job, now: str, recorder: Recorder) -> Result:
     if not path.exists():
         return Result(job.name, NEW, summary=_summary(read_recording(now)))
     try:
-        was = path.read_text(encoding="utf-8")
+        was = path.read_bytes().decode()
         facts, body = split(was)
         new_facts, new_body = split(now)
         notes = tuple(_notes(facts, new_facts))
@@ -229,13 +230,14 @@ def results(jobs: Sequence[Job], processes: int, report: Report) -> list[Result]
     processes = min(processes, len(jobs))
     if processes <= 1:
         return [_reported(do(job), done, jobs, report) for done, job in enumerate(jobs, start=1)]
+    largest_first = sorted(jobs, key=lambda job: -job.program.stat().st_size)
     pool = ProcessPoolExecutor(processes, initializer=_ignore_interrupts)
     try:
-        futures = {pool.submit(do, job): index for index, job in enumerate(jobs)}
+        futures = {pool.submit(do, job): job.name for job in largest_first}
         found = {}
         for done, future in enumerate(as_completed(futures), start=1):
             found[futures[future]] = _reported(future.result(), done, jobs, report)
-        return [found[index] for index in range(len(jobs))]
+        return [found[job.name] for job in jobs]
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 

@@ -258,19 +258,22 @@ class Tracer:
         parameters: Parameters = None,
         ask: Iterable[int] = (),
         timeout: float = 60.0,
+        alone: bool = False,
     ) -> Trace:
         """Trace the file ``program``.
 
         ``setup`` holds blocks executed before it whose moves are not reported.  ``parameters``
         are numbered parameters as the var file holds them (``{5221: 10.0}`` is G54 X10 in
         machine units) or a var file; without them all are 0.  ``ask`` names numbered parameters
-        to report back.  ``timeout`` is in seconds.
+        to report back.  ``timeout`` is in seconds.  ``alone`` makes sure that nothing is left
+        of the program in Python modules of the machine that keep state between programs.
         """
         request = {
             "program": str(Path(program).absolute()),
             "parameter_file": str(write_parameters(parameters, self.folder / "trace.var")),
             "setup": list(setup),
             "ask": list(ask),
+            "alone": alone,
         }
         if not self._process:
             self._start()

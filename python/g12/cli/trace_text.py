@@ -88,7 +88,7 @@ class Recording:
 def recording_of(trace: Trace, program: Path, facts: dict[str, str]) -> Recording:
     """Return the recording of a program's trace."""
     steps = list(_steps(trace, UNITS[facts["units"]].mm))
-    lines = program.read_text(encoding="utf-8", errors="replace").split("\n")
+    lines = program.read_bytes().decode(errors="replace").split("\n")
     numbers = {step.block for step in steps} | ({trace.error.line} if trace.error else set())
     blocks = {line: lines[line - 1].strip() for line in numbers if 0 < line <= len(lines)}
     if trace.error:

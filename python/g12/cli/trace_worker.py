@@ -15,6 +15,7 @@ import math
 import os
 import re
 import shutil
+import signal
 import time
 import traceback
 from multiprocessing.connection import Connection
@@ -28,6 +29,7 @@ LINEAR = (0, 1, 2, 6, 7, 8)
 METRIC = 2
 PLANES = {1: 17, 2: 19, 3: 18}
 ARC_AXES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis
+PR_SET_PDEATHSIG = 1  # of Linux: the signal a process gets when its parent dies
 CALL_OF_REMAP = 4  # call_type of a remap's frame
 STATE = (
     "motion_mode", "plane", "length_units", "distance_mode", "ijk_distance_mode", "feed_mode",
@@ -402,6 +404,24 @@ def start(machine: dict, tools: Tools) -> dict:
     return answered(machine, tools, request)
 
 
+def reply(connection: Connection, machine: dict, answer: dict) -> None:
+    """Send an answer with what was printed meanwhile."""
+    connection.send({**answer, "printed": printed(machine["output"])})
+
+
+def reply_alone(connection: Connection, machine: dict, tools: Tools, request: dict) -> None:
+    """Answer from a copy of this process, so that what the machine's modules keep is forgotten."""
+    copy = os.fork()
+    if copy:
+        _, status = os.waitpid(copy, 0)
+        if status:
+            connection.send({"failure": "the interpreter died"})
+        return
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    reply(connection, machine, answered(machine, tools, request))
+    os._exit(0)
+
+
 def serve(descriptor: int) -> None:
     """Answer requests until the other end closes."""
     connection = Connection(descriptor)
@@ -409,11 +429,14 @@ def serve(descriptor: int) -> None:
     tools = Tools(machine["tool_table"], machine["random"])
     answer = start(machine, tools)
     known = tuple(answer.get("globals", ()))
+    reply(connection, machine, answer)
     while True:
-        connection.send({**answer, "printed": printed(machine["output"])})
         try:
-            request = connection.recv()
+            request = {**connection.recv(), "known_globals": known}
         except EOFError:  # the other end died, or it would have ended this one
             shutil.rmtree(os.path.dirname(machine["output"]), ignore_errors=True)
             return
-        answer = answered(machine, tools, {**request, "known_globals": known})
+        if request["alone"]:
+            reply_alone(connection, machine, tools, request)
+        else:
+            reply(connection, machine, answered(machine, tools, request))
