@@ -205,6 +205,10 @@ def test_tools_with_diameters(found, table):
     assert kinds(found(GOOD, files={"mill_tbl": table})) == expected
 
 
+def test_another_interpreter(found):
+    assert kinds(found(GOOD + "[TASK]\nINTERPRETER = libcanterp.so\n")) == ["interpreter"]
+
+
 @pytest.mark.parametrize(
     ("version", "expected"),
     [("2.8.4", ["too-old"]), ("2.9.0~pre1+git", []), ("2.10.0", []), ("", ["no-linuxcnc"])],
@@ -270,10 +274,16 @@ def test_every_handler_of_the_remap_lines_comes_with_the_star_import():
 
 @pytest.mark.parametrize(
     ("name", "says"),
-    [("nowhere.ini", "no such file"), ("", "no such file"), ("mill.tbl", "no [RS274NGC]")],
+    [
+        ("nowhere.ini", "no such file"),
+        ("", "no such file"),
+        ("mill.tbl", "no [RS274NGC]"),
+        ("mill.ini.expanded", "name mill.ini"),
+    ],
 )
 def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
     write_config(tmp_path)
+    (tmp_path / "mill.ini.expanded").write_text(MILL)
     assert check.main([str(tmp_path / name)]) == 2
     error = capsys.readouterr().err
     assert error.startswith("g12 check: ")

@@ -331,6 +331,29 @@ def test_two_machines_share_the_copy_and_the_import(tmp_path):
     assert content_of(tmp_path) == before
 
 
+def test_two_machines_share_an_included_path(tmp_path):
+    text = MILL.replace("[RS274NGC]\n", "#INCLUDE rs.inc\n")
+    ini = write_config(tmp_path, text, rs_inc="[RS274NGC]\nSUBROUTINE_PATH = a\n")
+    other = write_config(tmp_path, text, "other.ini")
+    before = content_of(tmp_path)
+    put_in(ini)
+    put_in(other)
+    take_out(ini)
+    assert IniText(other).ini().get("RS274NGC", "SUBROUTINE_PATH") == "a:g12/ngc"
+    take_out(other)
+    assert content_of(tmp_path) == before
+
+
+def test_a_users_remap_gets_its_line_once(tmp_path):
+    ini, python = own_config(tmp_path)
+    put_in(ini, **python)
+    after = (tmp_path / "python" / "remap.py").read_bytes()
+    put_in(ini, "circle-mill", **python)
+    assert (tmp_path / "python" / "remap.py").read_bytes() == after
+    notes = [line for line in ini.read_text().splitlines() if line.endswith("python/remap.py")]
+    assert len(notes) == 1
+
+
 # The copy of the package.
 
 
@@ -427,6 +450,21 @@ def test_a_write_that_fails_leaves_every_file_as_it_was(tmp_path, monkeypatch):
     with pytest.raises(OSError, match="disk full"):
         safe_write.write_all({first: b"new\n", second: b"new\n"})
     assert content_of(tmp_path) == before
+
+
+def test_a_protected_file_stops_everything(tmp_path, monkeypatch):
+    ini = write_config(tmp_path)
+    before = content_of(tmp_path)
+
+    def protected(paths):
+        raise PermissionError(13, "Permission denied", str(*paths))
+
+    monkeypatch.setattr(install, "require_writable", protected)
+    with pytest.raises(PermissionError):
+        put_in(ini)
+    assert content_of(tmp_path) == before
+    with pytest.raises(OSError):
+        safe_write.require_writable([tmp_path])
 
 
 def test_a_failed_installation_leaves_no_old_versions_behind(tmp_path, monkeypatch):

@@ -85,6 +85,8 @@ def readable(ini: Path) -> IniText:
     """Return the INI, or refuse what is no INI file."""
     if not ini.is_file():
         raise UsageError(f"{ini}: no such file")
+    if ini.suffix == ".expanded":
+        raise UsageError(f"{ini}: LinuxCNC makes this file anew at every start; name {ini.stem}")
     text = IniText(ini)
     if not text.section("RS274NGC"):
         raise UsageError(f"{ini}: no [RS274NGC] section: this is no machine's INI file")

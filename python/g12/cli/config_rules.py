@@ -155,6 +155,17 @@ def wrong_version(config: Config, _codes: list[Code]) -> Iterator[Finding]:
         )
 
 
+def other_interpreter(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find a machine that does not read G-code with LinuxCNC's interpreter."""
+    name = config.ini.get("TASK", "INTERPRETER")
+    if name:
+        yield problem(
+            "interpreter",
+            f"[TASK] INTERPRETER = {name}: REMAP lines are for LinuxCNC's own interpreter",
+            "take that line out to use the package",
+        )
+
+
 # The codes.
 
 
@@ -258,7 +269,7 @@ def shadowed_subs(config: Config, codes: list[Code]) -> Iterator[Finding]:
     for name in needed_subs(codes):
         first, *others = subs_named(config.ini, name) or [None]
         own = package_sub(config, name)
-        if others and own in [other.resolve() for other in others]:
+        if own in [other.resolve() for other in others]:
             yield problem(
                 "shadowed",
                 f"{first} is found before the package's {name}.ngc",
@@ -416,6 +427,7 @@ def tool_diameters(config: Config) -> dict[int, float] | None:
 
 RULES: tuple[Rule, ...] = (
     wrong_version,
+    other_interpreter,
     codes_missing,
     unreadable_includes,
     nested_includes,

@@ -23,7 +23,7 @@ from g12.cli.config_rules import PROBLEM, Finding, codes_of, findings_of
 from g12.cli.ini import Overrides
 from g12.cli.ini_edit import IniText
 from g12.cli.install_plan import Plan, Refused, make_plan, refuse
-from g12.cli.safe_write import back_up, difference, drop_backup, write_all
+from g12.cli.safe_write import back_up, difference, drop_backup, require_writable, write_all
 
 BEFORE = {"no-linuxcnc", "python-fails", "does-not-load"}  # what keeps a config from being read
 EXAMPLES = """\
@@ -123,6 +123,7 @@ def try_out(plan: Plan) -> list[Finding]:
 def carry_out(plan: Plan, folder: Path) -> list[str]:
     """Write everything; return what was done, a line each."""
     changes, copy = plan.changes(), folder / package_copy.NAME
+    require_writable(changes)
     done = bring_copy_up_to_date(copy) if plan.copied else []
     kept = {path: back_up(path) for path in changes if not is_marked(path)}
     try:

@@ -8,7 +8,7 @@ import difflib
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 BACKUP = ".before-g12"
@@ -41,6 +41,13 @@ def write(path: Path, content: bytes) -> None:
     except BaseException:
         os.unlink(name)
         raise
+
+
+def require_writable(paths: Iterable[Path]) -> None:
+    """Raise OSError for the first file that its owner protects from being changed."""
+    for path in paths:
+        with open(path, "r+b"):
+            pass
 
 
 def take_after(new: Path, path: Path) -> None:

@@ -18,7 +18,7 @@ from g12.cli.features import model_of, remap_from_value
 from g12.cli.ini import ENTRY
 from g12.cli.ini_edit import BEGIN, END, IniText, Line, is_entry, read_lines, to_bytes, without
 from g12.cli.install_plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE
-from g12.cli.safe_write import difference, drop_backup, write_all
+from g12.cli.safe_write import difference, drop_backup, require_writable, write_all
 
 OWN_ENDS = {
     "SUBROUTINE_PATH": "/ngc",
@@ -114,6 +114,7 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     if dry_run:
         yield "dry run: nothing was written"
         return
+    require_writable(changes)
     write_all(changes)
     for path in changes:
         yield from after_change(path)
