@@ -266,6 +266,11 @@ def test_shortened_keywords_and_comments_in_remap_lines():
     assert features.remap_from_value("").number == ("", 0)
 
 
+def test_a_users_own_cycle_may_use_our_epilog():
+    remap = features.remap_from_value("G88.1 modalgroup=1 ngc=mine epilog=cycle_done")
+    assert features.model_of(remap) is None
+
+
 def test_every_handler_of_the_remap_lines_comes_with_the_star_import():
     source = (features.ROOT / "python" / "g12" / "remap.py").read_text(encoding="utf-8")
     exported = source.split("__all__ = [")[1].split("]")[0]

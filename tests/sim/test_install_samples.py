@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The sample configs that LinuxCNC ships: installed, run headless, and again what they were."""
+
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shapely.geometry import LineString, Point
+
+from configs import with_lines
+from g12.cli import check, install, uninstall
+from g12.cli.config_rules import PROBLEM
+from g12.cli.headless import Machine
+from g12.cli.ini_edit import IniText
+
+SAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs")
+NC_FILES = Path("/usr/share/linuxcnc/ncfiles")
+MILLS = [
+    "axis/axis.ini",
+    "gmoccapy/gmoccapy.ini",
+    "qtdragon/qtdragon_xyz/qtdragon_metric.ini",
+    "axis/remap/extend-builtins/extend-builtins.ini",  # own TOPLEVEL and remaps
+    "axis/corexy/corexy_by_hal.ini",  # [RS274NGC] in an included file that two machines share
+    "axis/ini_with_includes/includes_demo.ini",  # [RS274NGC] goes on behind an #INCLUDE
+]
+LATHE = "gmoccapy/lathe_configs/lathe_C.ini"
+RADIUS = 2.0
+POCKET = ["G21 G17 G91 G94 G61 F1200", f"G13 I{RADIUS} Z-.5 D0", "M2"]
+SECTION = ["G21 G18 G8 G90 G94 G61 F1800", "G0 X20", "G12.1", "G1 X15 C0", "G3 X0 C15 R15",
+           "G1 X20 C0", "G13.1", "M2"]  # fmt: skip
+DEVIATION = 0.02  # mm
+
+pytestmark = pytest.mark.skipif(not SAMPLES.is_dir(), reason="no sample configs here")
+
+
+@pytest.fixture(scope="module")
+def sim(tmp_path_factory):
+    """Return a copy of the samples, with their ways to the NGC files."""
+    base = tmp_path_factory.mktemp("samples")
+    shutil.copytree(SAMPLES / "sim", base / "sample-configs" / "sim", symlinks=True)
+    for folder in (base, base / "sample-configs"):
+        (folder / "nc_files").symlink_to(NC_FILES)
+    return base / "sample-configs" / "sim"
+
+
+def tree(folder):
+    """Return every file and link below a folder, with content, target and mode."""
+    paths = [path for path in sorted(folder.rglob("*")) if path.is_symlink() or path.is_file()]
+    return {
+        path: (os.readlink(path) if path.is_symlink() else path.read_bytes(), path.lstat().st_mode)
+        for path in paths
+    }
+
+
+def run_installed(ini, feature, program):
+    """Install, check, run headless, uninstall; return the run and the size of a unit in mm."""
+    before = tree(ini.parent)
+    assert install.main([str(ini), "--with", feature]) == 0
+    _, found = check.check(IniText(ini))
+    assert [finding for finding in found if finding.level == PROBLEM] == []
+    with Machine(ini) as machine:
+        run, unit = machine.run_text(program, timeout=60), machine.mm
+    assert uninstall.main([str(ini)]) == 0
+    assert tree(ini.parent) == before
+    return run, unit
+
+
+@pytest.mark.parametrize("name", MILLS)
+def test_a_pocket_on_a_sample_mill(sim, name):
+    run, unit = run_installed(sim / name, "haas", POCKET)
+    assert run.error is None
+    own = ["in setfeed feed=1200.000000"] if "extend-builtins" in name else []
+    assert [message.text for message in run.messages] == own  # the user's remaps go on working
+    path = {axis: values * unit for axis, values in run.samples.axes.items()}
+    x, y, z = (path[axis] - path[axis][0] for axis in "XYZ")
+    assert z.min() == pytest.approx(-0.5, abs=1e-6)
+    assert np.hypot(x, y).max() == pytest.approx(RADIUS, abs=DEVIATION)
+    assert [x.min(), y.min()] == pytest.approx([-RADIUS, -RADIUS], abs=DEVIATION)
+
+
+def test_a_section_on_a_sample_lathe(sim):
+    run, _ = run_installed(sim / LATHE, "polar", SECTION)
+    assert run.error is None
+    feeding = run.samples.kind == 2
+    angle = np.radians(run.samples.axes["C"][feeding])
+    x = run.samples.axes["X"][feeding]
+    arc = [(15 * np.cos(a), 15 * np.sin(a)) for a in np.linspace(0, np.pi / 2, 2000)]
+    contour = LineString([(20, 0), *arc, (20, 0)])
+    points = zip(x * np.cos(angle), x * np.sin(angle))
+    assert max(contour.distance(Point(point)) for point in points) < DEVIATION
+    assert np.degrees(angle).max() == pytest.approx(90, abs=0.1)
+
+
+def test_a_sample_that_remaps_g13_is_refused_and_left_alone(sim, capsys):
+    ini = sim / "axis" / "axis_mm.ini"
+    own = "SUBROUTINE_PATH = mine\nREMAP = G13 modalgroup=1 ngc=mine\n"
+    ini.write_text(with_lines(ini.read_text(), "RS274NGC", own))
+    (ini.parent / "mine").mkdir()
+    (ini.parent / "mine" / "mine.ngc").write_text("o<mine> sub\nG4 P0\no<mine> endsub\n")
+    before = tree(ini.parent)
+    assert install.main([str(ini), "--with", "haas"]) == 1
+    assert "G13 is remapped here already: REMAP = G13 modalgroup=1 ngc=mine" in (
+        capsys.readouterr().err
+    )
+    assert tree(ini.parent) == before
+    assert install.main([str(ini), "--with", "circle-mill"]) == 0
+    assert uninstall.main([str(ini)]) == 0
+    assert tree(ini.parent) == before
+
+
+@pytest.mark.parametrize("name", ["axis/lathe.ini", "axis/lathe-fanucy/lathe-fanucy.ini"])
+def test_a_lathe_without_c_is_refused(sim, capsys, name):
+    before = tree((sim / name).parent)
+    assert install.main([str(sim / name), "--with", "polar"]) == 1
+    assert "polar needs axis C; [TRAJ] COORDINATES has X Z" in capsys.readouterr().err
+    assert tree((sim / name).parent) == before
