@@ -132,8 +132,10 @@ def test_a_recording_names_files_and_versions_but_no_folders(pocket):
 def test_recording_again_changes_no_file(pocket):
     files = [path for path in pocket.recordings.rglob("*") if path.is_file()]
     before = {path: path.read_bytes() for path in files}
+    times = {path: path.stat().st_mtime_ns for path in files if path.suffix == ".trace"}
     pocket.record()
     assert {path: path.read_bytes() for path in files} == before
+    assert {path: path.stat().st_mtime_ns for path in times} == times
 
 
 def test_a_change_names_program_line_and_amount(pocket):
@@ -262,34 +264,34 @@ def test_a_program_without_an_end_fails_and_the_others_are_checked(pocket):
     assert not pocket.trace("endless.ngc").exists()
 
 
-FORGETFUL = """\
+REMAP = """\
 import os
 import signal
 
+times = []
 
-class remap:
-    times = 0
 
-    @staticmethod
-    def again(self, **words):
-        remap.times += 1
-        self.execute(f"G0 X{remap.times}")
-        return 0
+def again(self, **words):
+    times.append(1)
+    self.execute(f"G0 X{len(times)}")
+    return 0
 
-    @staticmethod
-    def die(self, **words):
-        os.kill(os.getpid(), signal.SIGSEGV)
+
+def die(self, **words):
+    os.kill(os.getpid(), signal.SIGSEGV)
 """
 REMAPS = """\
 [PYTHON]
 TOPLEVEL = own.py
+PATH_PREPEND = .
 """
 
 
 def remapping(shop):
     """Return a machine whose Python keeps state from one program to the next, or dies."""
     remaps = "REMAP = M400 modalgroup=10 python=again\nREMAP = M401 modalgroup=10 python=die\n"
-    shop.write("own.py", FORGETFUL, shop.folder)
+    shop.write("own.py", "import remap\n", shop.folder)
+    shop.write("remap.py", REMAP, shop.folder)
     text = MACHINE.replace("PARAMETER_FILE", f"{remaps}PARAMETER_FILE")
     return shop.write("own.ini", text + REMAPS, shop.folder)
 
