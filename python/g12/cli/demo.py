@@ -19,7 +19,7 @@ from g12.cli.ini import read_ini
 from g12.cli.measure_pocket import PocketFacts
 from g12.cli.measure_section import SectionFacts
 from g12.cli.plot import draw
-from g12.cli.proof import Proof, prove
+from g12.cli.proof import SAME_AREA, Proof, prove
 from g12.cli.scene import Scene, clock, scene_of_proof
 from g12.cli.units import Unit, plain
 
@@ -70,16 +70,7 @@ SAMPLES = (
     Sample("polar/slot.ngc", "lathe_mm"),
     Sample("yasnac/example.ngc", "mill_yasnac_mm", 1500.0),
 )
-POCKET_HEADS = (
-    "line",
-    "code",
-    "centre",
-    "radius",
-    "rings, tool centre",
-    "Z",
-    "off circles",
-    "time",
-)
+POCKET_HEADS = ("line", "code", "centre", "radius", "tool-centre rings", "Z", "off circles", "time")
 SECTION_HEADS = ("lines", "pieces", "off contour", "allowed", "lowest feed", "C at most", "time")
 
 
@@ -90,8 +81,11 @@ def runs(samples: Sequence[Sample], workers: int) -> Iterator[tuple[Sample, Run]
             pool.submit(run_program, sample.path, sample.ini, sample.tools, sample.override): sample
             for sample in samples
         }
-        for job in as_completed(jobs):
-            yield jobs[job], job.result()
+        try:
+            for job in as_completed(jobs):
+                yield jobs[job], job.result()
+        finally:
+            pool.shutdown(cancel_futures=True)
 
 
 def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
@@ -108,7 +102,9 @@ def is_sound(proof: Proof) -> bool:
     """Tell whether every circle and contour came out right; the manuals leave material in some."""
     off = [facts.deviation > proof.pocket_tolerance for facts in proof.pockets]
     off += [facts.deviation > proof.polar_tolerance for facts in proof.sections]
-    return not any(off) and not any(facts.gouge for facts in (*proof.pockets, *proof.sections))
+    return not any(off) and not any(
+        facts.gouge > SAME_AREA for facts in (*proof.pockets, *proof.sections)
+    )
 
 
 def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
@@ -123,7 +119,7 @@ def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path
         allowed = proof.polar_tolerance
         rows = [section_row(facts, allowed, unit) for facts in proof.sections]
         lines += table(SECTION_HEADS, rows)
-    lines += [f"  line {line}: {text}" for line, text in proof.findings]
+    lines += [f"  line {line}: {text}" for line, text in proof.findings_in(unit)]
     return "\n".join(lines)
 
 
@@ -178,8 +174,9 @@ def main(arguments: list[str]) -> int:
     if not PROGRAMS.is_dir():
         raise UsageError(f"{PROGRAMS}: the sample programs are not there")
     asked.output.mkdir(parents=True, exist_ok=True)
-    good = True
-    for count, (sample, run) in enumerate(runs(SAMPLES, os.cpu_count() or 1), start=1):
+    workers, good = os.cpu_count() or 1, True
+    print(f"running {len(SAMPLES)} programs, {workers} at a time, in real time\n", flush=True)
+    for count, (sample, run) in enumerate(runs(SAMPLES, workers), start=1):
         text, sound = show(sample, run, asked.output)
         good = good and sound
         print(f"[{count} of {len(SAMPLES)}] {text}\n", flush=True)

@@ -125,7 +125,7 @@ def real_lines(
     """Return the tool's path (n, 3) across the plane at each depth, as it was."""
     lines = {}
     for index, move in enumerate(moves, start=first):
-        points = real.points[real.move == index]
+        points = real.points[real.during(index)]
         if is_cutting(move, target) and len(points):
             depth = level_of(target.local(np.array(move.end)))
             lines.setdefault(depth, []).append(densified(target.local(points)))

@@ -12,7 +12,7 @@ what it could have reached, each an integral of the excess along the way.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby, product
@@ -135,7 +135,9 @@ class Shape:
         way = points[:, None] - centre
         turn = np.angle(way / np.where(start == 0, 1.0, start)) * np.sign(sweep)
         on = np.where(turn < 0, turn + 2 * np.pi, turn) <= np.abs(sweep)
-        ring = centre + way / np.maximum(np.abs(way), 1e-30) * np.abs(start)
+        away = np.abs(way)
+        towards = np.where(away > SAME, way / np.maximum(away, SAME), start / np.abs(start + 1e-30))
+        ring = centre + towards * np.abs(start)
         ends = np.stack(np.broadcast_arrays(self.start[near], self.end[near]))
         closer = np.abs(points[:, None] - ends[0]) < np.abs(points[:, None] - ends[1])
         return np.where(on, ring, np.where(closer, ends[0], ends[1]))
@@ -163,7 +165,10 @@ def measure_section(
     cutting = [i for i in own if moves[i].kind != "rapid" and path.part_length(i) > TINY_PIECE]
     across = [index for index in cutting if goes_across(moves[index])]
     tool = diameters.get(moves[section.at].tool, 0.0) / 2
-    ways = Ways([(moves[i].block, plane.line(i, path, real)) for i in across])
+    ways = Ways(
+        (block, joined([plane.line(index, path, real) for index in stretch]))
+        for block, stretch in groupby(across, key=lambda index: moves[index].block)
+    )
     runs = runs_of(section)
     leads = leads_of(section, tool)
     found = [measure_run(run, leads, ways, tool, tolerance) for run in runs]
@@ -203,7 +208,7 @@ class Plane:
     def line(self, index: int, path: Track, real: Followed | None) -> np.ndarray:
         """Return the tool centre's way during a move: emitted, or as it was."""
         if real is not None:
-            return self.points(real.positions[real.move == index])
+            return self.points(real.positions[real.during(index)])
         return self.points(path.positions[path.vertices(index)])
 
 
@@ -239,17 +244,26 @@ def leads_of(section: Section, tool: float) -> Shape:
 class Ways:
     """The tool centre's ways during a section, each with the line of its block."""
 
-    def __init__(self, ways: Sequence[tuple[int, np.ndarray]]) -> None:
-        self._ways = [(line, way) for line, way in ways if len(way) > 1]
+    def __init__(self, ways: Iterable[tuple[int, np.ndarray]]) -> None:
+        self._ways: dict[int, list[np.ndarray]] = {}
+        for line, way in ways:
+            if len(way) > 1:
+                self._ways.setdefault(line, []).append(way)
 
-    def of(self, lines: set[int]) -> list[np.ndarray]:
-        """Return the ways of some lines."""
-        return [way for line, way in self._ways if line in lines]
+    def of(self, line: int) -> list[np.ndarray]:
+        """Return the ways of a line."""
+        return self._ways.get(line, [])
 
     @cached_property
     def shape(self) -> Shape:
         """Return all of them, to measure distances from."""
-        return shape_of_ways([way for _, way in self._ways])
+        return shape_of_ways([way for ways in self._ways.values() for way in ways])
+
+
+def joined(lines: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the ways of moves that follow each other as one."""
+    points = np.concatenate(lines)
+    return points[np.append(True, np.abs(np.diff(points)) > 0.0)] if len(points) else points
 
 
 def shape_of_ways(ways: Sequence[np.ndarray]) -> Shape:
@@ -274,13 +288,14 @@ def measure_run(
 ) -> RunFacts:
     """Return the facts of a stretch of contour; on the leads to and from it all is well."""
     nothing = np.zeros(0)
-    if not ways.of({element.line for element in run}):
+    if not any(ways.of(element.line) for element in run):
         return RunFacts(float("inf"), 0.0, 0.0, nothing, nothing)
     side = run[0].side
     radius = tool if side else 0.0
     points, nearest, left_of, steps = laid_along(run, ways)
     away = np.abs(points - nearest)
-    off = np.where(left_of * side < -SAME, -away, away) - radius
+    wrong = left_of * side < -SAME
+    off = np.where(wrong, -away, away) - radius
     if leads.elements:
         beside = leads.distances(points)
         off = np.where(beside < np.abs(off), beside, off)
@@ -290,8 +305,8 @@ def measure_run(
     if not side:
         return RunFacts(deviation, 0.0, 0.0, np.abs(nearest), np.abs(wall))
     left = float(np.maximum(0.0, missed - tolerance) @ lengths)
-    astray = float(np.maximum(0.0, -off - tolerance) @ steps)
-    gouge = max(astray, bitten(run, radius, ways, tolerance))
+    across = float(np.where(wrong, np.maximum(0.0, -off - tolerance), 0.0) @ steps)
+    gouge = across + bitten(run, radius, ways, tolerance)
     return RunFacts(deviation, left, gouge, np.abs(nearest), np.abs(wall))
 
 
@@ -302,12 +317,20 @@ def laid_along(run: Sequence[Element], ways: Ways) -> tuple[np.ndarray, ...]:
     cross the lead-in's extension.
     """
     columns = []
-    for line in dict.fromkeys(element.line for element in run):
-        near = {i + k for i, e in enumerate(run) if e.line == line for k in (-1, 0, 1)}
-        shape = Shape([run[i] for i in sorted(near) if 0 <= i < len(run)])
-        for way in ways.of({line}):
-            columns.append((way, *shape.nearest(way), np.abs(np.gradient(way))))
+    near: dict[int, set[int]] = {}
+    for index, element in enumerate(run):
+        near.setdefault(element.line, set()).update((index - 1, index, index + 1))
+    for line, indices in near.items():
+        shape = Shape([run[index] for index in sorted(indices) if 0 <= index < len(run)])
+        for way in ways.of(line):
+            columns.append((way, *shape.nearest(way), shares_of(way)))
     return tuple(np.concatenate(column) for column in zip(*columns))
+
+
+def shares_of(way: np.ndarray) -> np.ndarray:
+    """Return the length of a polyline that each of its points stands for."""
+    steps = np.abs(np.diff(way)) / 2
+    return np.append(steps, 0.0) + np.insert(steps, 0, 0.0)
 
 
 def missed_by(shape: Shape, side: int, wanted: float, way: Shape) -> tuple[np.ndarray, np.ndarray]:

@@ -95,6 +95,11 @@ class Followed:
     nearest: np.ndarray
     deviation: np.ndarray
 
+    def during(self, move: int) -> slice:
+        """Return the samples of a move, and the one before, so that stretches join."""
+        first, last = np.searchsorted(self.move, (move, move + 1))
+        return slice(max(0, first - 1) if last > first else first, last)
+
     def part_speed(self) -> np.ndarray:
         """Return the speed along the part, mm/s, of each sample."""
         return speed(self.points, self.time)
@@ -274,29 +279,25 @@ def _share(start: np.ndarray, along: np.ndarray, point: np.ndarray) -> np.ndarra
 def _segments(path: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return the index of the segment of the path that each point is on, never going back.
 
-    The nearest segment is looked for only as far ahead as the tool can have come since the
-    last sample: a path may cross or repeat itself, but the tool cannot jump along it.
+    The nearest place is looked for only as far ahead as the tool can have come since the last
+    sample, and not behind where it was: a path may cross, repeat or retrace itself, but the
+    tool cannot jump along it.
     """
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
     travelled = np.linalg.norm(np.diff(points, axis=0, prepend=points[:1]), axis=1)
     found = np.zeros(len(points), int)
-    first, reached, last = 0, 0.0, max(0, len(path) - 2)
+    first, reached, here, last = 0, 0.0, path[0], max(0, len(path) - 2)
     for index, point in enumerate(points):
-        ahead = np.searchsorted(along, reached + 2 * travelled[index] + SLACK)
-        window = slice(first, min(int(ahead), last) + 1)
-        near, distance = _project(path, window, point)
+        ahead = int(np.searchsorted(along, reached + 2 * travelled[index] + SLACK))
+        starts = path[first : min(ahead, last) + 1].copy()
+        ends = path[first + 1 : first + 1 + len(starts)]
+        starts[0] = here
+        near, distance = _nearest_on(starts[: len(ends)], ends - starts[: len(ends)], point)
         best = int(np.argmin(distance))
-        first += best
-        reached = max(reached, along[first] + math.dist(near[best], path[first]))
+        first, here = first + best, near[best]
+        reached = along[first] + math.dist(here, path[first])
         found[index] = first
     return found
-
-
-def _project(path: np.ndarray, window: slice, point: np.ndarray):
-    """Return nearest points of some segments to one point, and the distances."""
-    start = path[window]
-    along = path[window.start + 1 : window.stop + 1] - start
-    return _nearest_on(start[: len(along)], along, point)
 
 
 def _nearest_on(start: np.ndarray, along: np.ndarray, point: np.ndarray):

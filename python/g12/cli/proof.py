@@ -56,15 +56,19 @@ class Proof:
     @property
     def findings(self) -> list[tuple[int, str]]:
         """Return everything that is not as programmed: the line, and what is wrong."""
+        return self.findings_in(MM)
+
+    def findings_in(self, unit: Unit) -> list[tuple[int, str]]:
+        """Return the findings with their sizes in another unit."""
         told = [
             (facts.target.line, text)
             for facts in self.pockets
-            for text in pocket_findings(facts, self.pocket_tolerance)
+            for text in pocket_findings(facts, self.pocket_tolerance, unit)
         ]
         return told + [
             (facts.section.line, text)
             for facts in self.sections
-            for text in section_findings(facts, self.polar_tolerance)
+            for text in section_findings(facts, self.polar_tolerance, unit)
         ]
 
 

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Paths in time, and real motion laid on them: made-up samples with known faults."""
+
+import math
+
+import numpy as np
+import pytest
+
+from g12.cli.headless import Samples
+from g12.cli.motion import duration, follow, speed, track, worst_of
+from g12.cli.pace import pace_of
+from g12.cli.part import Part
+from handmade import HOME, LIMITS, Hand, samples_of
+
+MILL, FACE = Part(turning=False), Part(turning=True)
+
+
+@pytest.mark.parametrize(
+    ("hand", "seconds"),
+    [
+        (Hand(feed=600).line(x=100), 10.0),
+        (Hand(feed=60000).line(x=120), 1.2),  # X allows 100 mm/s
+        (Hand().rapid(x=100, y=100), math.sqrt(2) * 100 / 120),  # the path 120 mm/s
+        (Hand().rapid(z=-100), 2.0),
+        (Hand(feed=3600).line(c=90), 1.5),  # degrees per minute
+        (Hand(feed=36000).line(c=720), 2.0),
+        (Hand(feed=600).rapid(x=10).arc(1, 0, 0), 2 * math.pi),
+    ],
+)
+def test_a_move_takes_as_long_as_feed_and_axes_ask(hand, seconds):
+    assert duration(hand.moves[-1], LIMITS) == pytest.approx(seconds)
+
+
+def test_feed_per_revolution_needs_the_spindle():
+    move = Hand(feed=0.5).line(x=10).moves[0]._replace(feed_mode="G95")
+    assert duration(move, LIMITS, spindle_speed=600) == pytest.approx(2.0)
+
+
+def test_a_track_tells_length_time_and_feed_of_each_move():
+    path = track(MILL, Hand(feed=600).rapid(x=10).arc(1, 0, 0).moves, LIMITS)
+    assert path.part_length(1) == pytest.approx(20 * math.pi, rel=1e-4)
+    assert path.seconds(1) == pytest.approx(2 * math.pi)
+    assert path.part_feed(1) == pytest.approx(600, rel=1e-4)
+
+
+def test_feed_on_the_face_is_that_along_the_part():
+    path = track(FACE, Hand(feed=3600).rapid(x=10).line(c=90).moves, LIMITS)
+    assert path.part_feed(1) == pytest.approx(math.radians(60) * 10 * 60, rel=1e-3)
+
+
+def test_motion_beside_the_path_is_measured():
+    moves = Hand().line(x=100).moves
+    path = track(MILL, moves, LIMITS)
+    real = follow(path, moves, samples_of(path, shift=0.025), 1.0)
+    assert np.allclose(real.deviation, 0.025)
+    assert worst_of(real, moves).deviation == pytest.approx(0.025)
+
+
+def test_an_arc_is_followed_exactly_not_by_its_chords():
+    moves = Hand().rapid(x=50).arc(-1, 0, 0).moves
+    path = track(MILL, moves, LIMITS, chord_error=0.05)
+    samples = samples_of(path, 3000)
+    angle = -np.linspace(0, 2 * math.pi, 3000)
+    samples.axes.update(X=50.003 * np.cos(angle), Y=50.003 * np.sin(angle))
+    samples.kind[:] = 3
+    real = follow(path, moves, samples, 1.0)
+    inner = real.deviation[50:-50]
+    assert np.allclose(inner, 0.003, atol=1e-9)
+
+
+def test_a_path_that_crosses_and_repeats_itself_is_followed_in_order():
+    hand = Hand().rapid(x=10)
+    for _ in range(3):
+        hand.arc(1, 0, 0)
+    hand.line(x=-10).line(y=10).line(x=0, y=-10)
+    path = track(MILL, hand.moves, LIMITS)
+    real = follow(path, hand.moves, samples_of(path, 20000), 1.0)
+    assert (np.diff(real.move) >= 0).all()
+    assert set(real.move) == set(range(7))
+    assert real.deviation.max() < 1e-3
+    spent = np.bincount(real.move)[1:4]
+    assert spent.min() > 0.9 * spent.max()  # each of the three circles has its share
+
+
+def test_a_path_that_retraces_itself_is_followed_back():
+    hand = Hand().rapid(x=40)
+    for _ in range(3):
+        hand.line(z=-10).rapid(z=0)
+    hand.line(x=20).rapid(x=40)
+    path = track(MILL, hand.moves, LIMITS)
+    real = follow(path, hand.moves, samples_of(path, 5000, shift=0.04), 1.0)
+    assert set(real.move) == set(range(9))
+    assert np.allclose(real.deviation, 0.04, atol=1e-6)
+
+
+def test_the_tool_length_offset_is_taken_off():
+    hand = Hand().line(x=20)
+    hand.offset = (0, 0, 30.0, *HOME[3:])
+    hand.line(z=5).line(x=40)
+    path = track(MILL, hand.moves, LIMITS)
+    samples = samples_of(path, 4000)
+    assert samples.axes["Z"].max() == pytest.approx(35)
+    real = follow(path, hand.moves, samples, 1.0)
+    assert real.points[:, 2].max() == pytest.approx(5)
+    assert real.deviation.max() < 1e-6
+
+
+def test_machine_units_are_converted():
+    moves = Hand().line(x=25.4).moves
+    path = track(MILL, moves, LIMITS)
+    samples = samples_of(path)
+    inches = {letter: values / 25.4 for letter, values in samples.axes.items()}
+    samples.axes.update(inches)
+    assert follow(path, moves, samples, 25.4).points[-1][0] == pytest.approx(25.4)
+
+
+def test_standstill_is_left_out():
+    moves = Hand().line(x=100).moves
+    path = track(MILL, moves, LIMITS)
+    samples = samples_of(path)
+    samples.kind[:500] = 0
+    assert len(follow(path, moves, samples, 1.0).time) == 1500
+
+
+def test_the_largest_deviation_is_looked_for_in_cuts_only():
+    moves = Hand().rapid(x=100).line(x=200).moves
+    path = track(MILL, moves, LIMITS)
+    samples = samples_of(path, 4000)
+    samples.axes["Y"][samples.axes["X"] < 50] += 3.0
+    samples.axes["Y"][samples.axes["X"] > 150] += 0.01
+    real = follow(path, moves, samples, 1.0)
+    worst = worst_of(real, moves)
+    assert worst.deviation == pytest.approx(0.01)
+    assert worst.move is moves[1]
+    assert worst.point[0] > 150
+
+
+def test_speed_is_that_along_the_points():
+    times = np.linspace(0, 1, 11)
+    points = np.stack([30 * times, 40 * times, 0 * times], axis=1)
+    assert np.allclose(speed(points, times), 50)
+
+
+def test_the_lowest_real_feed_leaves_out_starting_and_stopping():
+    moves = Hand(feed=600).line(x=100).moves
+    path = track(MILL, moves, LIMITS)
+    times = np.linspace(0, 10, 10001)
+    way = np.full(len(times), 10.0)  # mm/s
+    way[:200] = np.linspace(0, 10, 200)
+    way[-200:] = np.linspace(10, 0, 200)
+    way[5000:5100] = 4.0
+    place = np.concatenate([[0.0], np.cumsum(way[:-1]) * 1e-3])
+    samples = samples_of(path, len(times))
+    samples.axes.update(X=place)
+    samples = Samples(times, *list(vars(samples).values())[1:])
+    pace = pace_of([0], [0], path, follow(path, moves, samples, 1.0))
+    assert pace.lowest == pytest.approx(240, rel=0.01)
+    assert 45 < pace.point[0] < 55
+    assert pace.expected == pytest.approx(10)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The part's view of a path: points, polylines, swept areas, tool tables."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from g12.cli import part
+from g12.cli.part import Part
+from handmade import Hand
+
+MILL, FACE = Part(turning=False), Part(turning=True)
+
+
+def position(x=0.0, y=0.0, z=0.0, c=0.0):
+    return np.array([[x, y, z, 0, 0, c, 0, 0, 0]], float)
+
+
+def test_a_mill_shows_machine_positions():
+    assert np.allclose(MILL.points(position(1, 2, 3, 90)), [[1, 2, 3]])
+
+
+def test_the_face_turns_counterclockwise_with_c():
+    assert np.allclose(FACE.points(position(x=10, z=-5, c=90)), [[0, 10, -5]])
+    assert np.allclose(FACE.points(position(x=10, c=-30)), [[10 * math.cos(math.pi / 6), -5, 0]])
+
+
+@given(radius=st.floats(0.01, 500), sweep=st.floats(0.01, 2 * math.pi), error=st.floats(1e-5, 0.1))
+def test_chords_of_an_arc_stay_within_the_error(radius, sweep, error):
+    pieces = part.arc_pieces(radius, sweep, error)
+    sagitta = radius * (1 - math.cos(sweep / pieces / 2))
+    assert sagitta <= error * (1 + 1e-6)
+
+
+def test_a_circle_becomes_a_closed_polyline_on_the_circle():
+    line = MILL.polyline(Hand().rapid(x=10).arc(-1, 0, 0).moves[1])
+    assert np.allclose(np.hypot(*line[:, :2].T), 10)
+    assert np.allclose(line[0], line[-1])
+    assert line[1][1] < 0  # clockwise
+
+
+def test_a_turn_of_c_is_an_arc_on_the_face():
+    line = FACE.polyline(Hand().rapid(x=10).line(c=180).moves[1])
+    assert np.allclose(np.hypot(*line[:, :2].T), 10)
+    middle = line[len(line) // 2]
+    assert np.hypot(*(middle[:2] - [0, 10])) < 0.7
+
+
+def test_paths_join_moves_and_break_at_gaps():
+    hand = Hand().line(x=10).line(x=10, y=10).rapid(x=50).line(x=60)
+    cutting = [move for move in hand.moves if move.kind != "rapid"]
+    found = part.paths(MILL, cutting)
+    assert [len(line) for line in found] == [3, 2]
+
+
+def test_a_straight_cut_sweeps_a_slot():
+    area = part.swept([np.array([[0, 0, 0], [100, 0, 0]])], 5).area
+    assert area == pytest.approx(100 * 10 + math.pi * 25, rel=1e-4)
+
+
+def test_a_ring_sweeps_an_annulus():
+    ring = Hand().rapid(x=20).arc(1, 0, 0).moves[1]
+    area = part.swept([MILL.polyline(ring)], 3).area
+    assert area == pytest.approx(math.pi * (23**2 - 17**2), rel=1e-4)
+
+
+def test_a_still_tool_sweeps_its_own_disc():
+    area = part.swept([np.array([[7, 7, 0], [7, 7, -5.0]])], 2).area
+    assert area == pytest.approx(math.pi * 4, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("hand", "sideways"),
+    [
+        (Hand().line(z=-5), False),
+        (Hand().line(x=1), True),
+        (Hand().line(c=1), True),
+        (Hand().rapid(x=3).arc(1, 0, 0), True),
+    ],
+)
+def test_only_motion_across_the_tool_is_sideways(hand, sideways):
+    assert part.is_sideways(hand.moves[-1]) is sideways
+
+
+def test_a_tool_table_gives_diameters(tmp_path):
+    table = tmp_path / "tool.tbl"
+    table.write_text(
+        "; T9 P9 D99 is no tool\nT1 P1 D0.25 Z1.0 ;1/4 D8 end mill\nt2 p7 z3\n T3 P3 Z-1 d+12.5;x\n"
+    )
+    assert part.read_tool_table(table) == {1: 0.25, 2: 0.0, 3: 12.5}
+
+
+@pytest.mark.parametrize(("plane", "third"), [(17, [0, 0, 1]), (18, [0, 1, 0]), (19, [1, 0, 0])])
+def test_the_axes_of_each_plane_are_right_handed(plane, third):
+    move = Hand().arc(1, 5, 0, plane=plane).moves[0]
+    axes = part.plane_axes(move)
+    assert np.allclose(axes[2], third)
+    assert np.allclose(np.cross(axes[0], axes[1]), axes[2])

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The geometry that pictures show, and that a picture of every kind comes out in every format."""
+
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from shapely.geometry import Point
+
+from g12.cli import pictures, plan_view
+from g12.cli.deviation_picture import describe, most_telling
+from g12.cli.face_picture import programmed_history
+from g12.cli.ini import Ini
+from g12.cli.mill_picture import Layout
+from g12.cli.motion import follow, worst_of
+from g12.cli.plot import draw
+from g12.cli.scene import Scene, clock, heading, scene_of
+from g12.cli.units import MM, UNITS, plain
+from handmade import Hand, samples_of
+
+MILL = Ini(Path("mill.ini"), ("[TRAJ]", "COORDINATES = X Y Z"))
+LATHE = Ini(Path("lathe.ini"), ("[TRAJ]", "COORDINATES = XZC", "[AXIS_C]", "MAX_VELOCITY = 360"))
+PROGRAM = Path(__file__)
+
+
+def scene(hand, ini=MILL, **options):
+    return scene_of(PROGRAM, ini, hand.trace(), tools={1: 6.0, 2: 10.0}, **options)
+
+
+def pocket():
+    hand = Hand().rapid(z=5).rapid(x=50).pocket([5, 10], depth=-2)
+    return hand.pocket([5, 10], depth=-4).rapid(z=5)
+
+
+def flats():
+    points = [complex(20, y) for y in (0, 5, 10)] + [complex(x, 10) for x in (10, 0, -10, -20)]
+    return Hand().rapid(z=2).rapid(x=20).line(z=-3).polar(points).rapid(z=2)
+
+
+# ---------------------------------------------------------------- numbers as text
+
+
+@pytest.mark.parametrize(
+    ("value", "decimals", "text"),
+    [(1.5, 3, "1.5"), (-2.0, 3, "−2"), (-0.0001, 3, "0"), (10, 0, "10"), (1234.5678, 2, "1234.57")],
+)
+def test_numbers_have_no_needless_zeros(value, decimals, text):
+    assert plain(value, decimals) == text
+
+
+@pytest.mark.parametrize(
+    ("length", "text"), [(0.0, "0"), (0.0048, "0.0048"), (0.00033, "0.00033"), (1.23456, "1.235")]
+)
+def test_small_lengths_keep_two_digits(length, text):
+    assert MM.fine(length) == text
+
+
+def test_inches_are_shown_as_inches():
+    assert UNITS["inch"].text(25.4) == "1"
+    assert UNITS["inch"].area(25.4**2 / 2) == "0.5 in²"
+
+
+def test_the_heading_is_the_first_comment_that_is_no_licence(tmp_path):
+    program = tmp_path / "a.ngc"
+    program.write_text("; SPDX-License-Identifier: X\n%\nO1 (Two flats)\n(other)\n")
+    assert heading(program) == "Two flats"
+    program.write_text("G0 X1\n" * 9 + "(too late)\n")
+    assert heading(program) == ""
+
+
+def test_times_are_told_in_minutes():
+    assert (clock(9.96), clock(125.4)) == ("10.0 s", "2 min 5 s")
+
+
+# ---------------------------------------------------------------- what is shown
+
+
+def test_levels_go_down_and_each_has_the_area_swept():
+    levels = plan_view.levels_of(scene(pocket()))
+    assert [level.z for level in levels] == pytest.approx([-2, -4])
+    for level in levels:
+        assert level.area.bounds == pytest.approx((37, -13, 63, 13), abs=0.02)
+        assert level.area.contains(Point(50 + 12.9, 0))
+    assert levels[0].shade != levels[1].shade
+
+
+def test_each_tool_sweeps_with_its_own_diameter():
+    hand = Hand().line(x=100)
+    hand.tool = 2
+    hand.rapid(y=50).line(x=0)
+    area = plan_view.levels_of(scene(hand))[0].area
+    assert not area.contains(Point(50, 4)) and area.contains(Point(50, 2.9))
+    assert area.contains(Point(50, 54)) and not area.contains(Point(50, 56))
+
+
+def test_many_depths_become_bands():
+    hand = Hand()
+    for step in range(100):
+        hand.line(x=100 * (step % 2), z=-step / 10)
+    levels = plan_view.levels_of(scene(hand))
+    assert len(levels) <= plan_view.BANDS
+    assert len(plan_view.few(levels)) == plan_view.MOST_LEVELS
+
+
+def test_the_view_holds_all_that_is_cut_but_not_far_rapids():
+    low, high = plan_view.bounds_of(*both(pocket().rapid(x=900)))
+    assert low[0] < 37 and high[0] > 63 and high[0] < 100
+    assert low[2] < -4 and high[2] > 5
+
+
+def both(hand, ini=MILL):
+    shown = scene(hand, ini)
+    return shown, plan_view.levels_of(shown)
+
+
+def test_the_top_of_the_part_is_z0_if_the_tool_goes_through_it():
+    assert plan_view.top_of(scene(pocket())) == 0.0
+    assert plan_view.top_of(scene(Hand().rapid(z=-1).line(z=-3).line(x=5))) == -1.0
+
+
+def test_plunges_are_found_once():
+    assert plan_view.plunges_of(scene(pocket())) == [((50.0, 0.0), 1)]
+
+
+def test_plunges_on_the_face_are_where_the_part_is():
+    hand = Hand().rapid(z=2).rapid(x=20, c=90).line(z=-3)
+    (((x, y), tool),) = plan_view.plunges_of(scene(hand, LATHE))
+    assert (x, y, tool) == (pytest.approx(0, abs=1e-6), pytest.approx(20), 1)
+
+
+def test_pieces_of_one_block_are_one_element_of_the_face():
+    hand = flats()
+    hand.block = 7
+    hand.line(z=-3).polar([complex(-20, y) for y in (8, 4, 0)])
+    assert len(plan_view.elements(scene(hand, LATHE))) == 2
+
+
+def test_feeds_are_those_along_the_part():
+    hand = Hand(feed=100).line(x=10)
+    hand.feed = 250
+    hand.line(y=10).line(x=0)
+    bands = plan_view.feed_bands(scene(hand, feed_colours=True))
+    assert [(round(feed), len(moves)) for feed, _, moves in bands] == [(100, 1), (250, 2)]
+
+
+def test_the_history_of_c_obeys_its_limit():
+    hand = Hand(feed=100000).rapid(x=10).line(c=360).line(c=0)
+    history = programmed_history(scene(hand, LATHE))
+    assert history.c_speed.max() == pytest.approx(360)
+    assert history.time[-1] == pytest.approx(2.0)
+    assert history.feed[-1] == pytest.approx(2 * np.pi * 10 * 60, rel=1e-3)
+
+
+def test_holes_in_an_area_stay_holes():
+    outline = pictures.outline_of(Point(0, 0).buffer(10).difference(Point(0, 0).buffer(5)))
+    assert outline.contains_point((7, 0))
+    assert len(outline.to_polygons()) == 2
+    assert pictures.outline_of(Point(0, 0).buffer(0)) is None
+
+
+# ---------------------------------------------------------------- layout
+
+
+@pytest.mark.parametrize("size", [(10, 10, 5), (300, 20, 10), (5, 200, 3), (1, 1, 40), (9, 9, 0.1)])
+@pytest.mark.parametrize("window", [False, True])
+def test_nothing_leaves_the_page_or_overlaps(size, window):
+    layout = Layout(np.array(size, float), 8, window)
+    figure = Figure(figsize=(layout.width, layout.height))
+    plan, side = (axes.get_position() for axes in layout.axes(figure))
+    assert 0 < side.y0 < side.y1 < plan.y0 < plan.y1 < 1
+    assert 0 < plan.x0 < plan.x1 < 1
+    assert (plan.x0, plan.x1) == (side.x0, side.x1)
+    x, y = layout.window_corner()
+    if window and layout.below:
+        assert y > 0 and y + 1.9 < side.y0 * layout.height
+    elif window:
+        assert x > plan.x1 * layout.width
+
+
+# ---------------------------------------------------------------- deviations
+
+
+def with_real_motion(hand, ini, aside):
+    """Return a scene whose real motion is the path, moved aside by a vector at one place."""
+    shown = scene(hand, ini)
+    axes = "XZC" if ini is LATHE else "XYZ"
+    samples = samples_of(shown.path, 4000, axes=axes)
+    middle = slice(1900, 2100)
+    for letter, value in aside.items():
+        samples.axes[letter][middle] += value
+    real = follow(shown.path, shown.moves, samples, 1.0)
+    return Scene(**{**vars(shown), "real": real})
+
+
+def test_the_window_shows_the_axes_in_which_the_motion_strays():
+    corner = np.array([[0, 0, z] for z in (0, -0.5, -1)] + [[0, y, -1] for y in (0.5, 1.0)])
+    assert most_telling(corner) == [1, 2]
+
+
+def test_the_largest_deviation_is_told_with_its_line():
+    shown = with_real_motion(Hand().line(x=100), MILL, {"Y": 0.0123})
+    text = describe(worst_of(shown.real, shown.moves), MM)
+    assert text.startswith("0.012 mm at X") and text.endswith("(line 1)")
+
+
+# ---------------------------------------------------------------- files
+
+
+SCENES = {
+    "mill": lambda: scene(pocket()),
+    "mill by feed": lambda: scene(pocket(), feed_colours=True, units="inch"),
+    "mill run": lambda: with_real_motion(pocket(), MILL, {"Y": 0.01}),
+    "rapids only": lambda: scene(Hand().rapid(x=10).rapid(z=5)),
+    "one point": lambda: scene(Hand().line(z=-1)),
+    "face": lambda: scene(flats(), LATHE),
+    "face by feed": lambda: scene(flats(), LATHE, feed_colours=True),
+    "face run": lambda: with_real_motion(flats(), LATHE, {"X": 0.01}),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_kind_of_picture_is_drawn(name, tmp_path):
+    path = tmp_path / "picture.png"
+    pictures.save(draw(SCENES[name]()), path)
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(("suffix", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
+def test_formats_are_told_by_the_suffix(suffix, start, tmp_path):
+    path = tmp_path / f"picture.{suffix}"
+    pictures.save(draw(scene(pocket())), path)
+    assert path.read_bytes().startswith(start)
+
+
+def test_an_svg_is_the_same_file_every_time(tmp_path):
+    one, other = tmp_path / "one.svg", tmp_path / "other.SVG"
+    for path in (one, other):
+        pictures.save(draw(scene(pocket())), path)
+    assert ET.parse(one).getroot().tag.endswith("svg")
+    assert one.read_bytes() == other.read_bytes()
+
+
+@pytest.mark.parametrize("name", ["picture", "picture.bmp", "picture.jpeg"])
+def test_other_suffixes_are_refused_by_name(name, tmp_path):
+    with pytest.raises(pictures.PictureError, match=r"\.png, \.svg, \.pdf"):
+        pictures.check_format(tmp_path / name)
+
+
+def test_a_folder_that_is_not_there_is_refused(tmp_path):
+    with pytest.raises(pictures.PictureError, match="no such directory"):
+        pictures.check_format(tmp_path / "nowhere" / "picture.png")

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pockets made by hand, right and wrong, and what is measured of them."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from g12.cli.measure_pocket import measure_pocket
+from g12.cli.motion import follow, track
+from g12.cli.part import Part
+from g12.cli.programmed import Target
+from g12.cli.proof import pocket_findings
+from handmade import LIMITS, Hand, samples_of
+
+TOLERANCE = 0.005
+MILL = Part(turning=False)
+
+
+def target(radius=20.0, **changes):
+    wanted = {"cutter": 3.0, "cleared": 0.0, "deepest": -1.0, "turn": -1, **changes}
+    return Target(1, "G12", "haas", np.array([50.0, 0, 0]), np.eye(3), radius, **wanted)
+
+
+def measure(hand, wanted, real_shift=None):
+    path = track(MILL, hand.moves, LIMITS)
+    real = None
+    if real_shift is not None:
+        samples = samples_of(path, 8000, shift=real_shift)
+        real = follow(path, hand.moves, samples, 1.0)
+    last = len(hand.moves)
+    return measure_pocket(wanted, 1, last, path, hand.moves, TOLERANCE, real)
+
+
+def cut(rings, **options):
+    return Hand().rapid(x=50).pocket(rings, **options)
+
+
+def findings(facts):
+    return " | ".join(pocket_findings(facts, TOLERANCE))
+
+
+def test_a_good_pocket_has_no_findings():
+    facts = measure(cut([4, 8, 12, 17]), target(), None)
+    assert facts.reached == pytest.approx(20)
+    assert facts.deviation < 1e-9
+    assert (facts.left, facts.gouge) == (0, 0)
+    assert facts.rings == (4, 8, 12, 17)
+    assert facts.stepover == pytest.approx(5, abs=1e-6)
+    assert facts.depths == pytest.approx((-1,))
+    assert facts.turns == (-1,)
+    assert findings(facts) == "the direction jumps by 90 degrees"  # these links are no tangents
+
+
+def test_one_ring_is_smooth_and_leaves_its_core():
+    facts = measure(cut([17]), target(cleared=14.0))
+    assert facts.jump < 1e-6 and facts.stepover is None
+    assert findings(facts) == ""
+
+
+@pytest.mark.parametrize(("ring", "gouged"), [(17.02, True), (16.98, False)])
+def test_a_wrong_size_is_found(ring, gouged):
+    facts = measure(cut([ring]), target(cleared=14.1))
+    assert facts.deviation == pytest.approx(0.02)
+    assert facts.reached == pytest.approx(ring + 3)
+    band = 2 * math.pi * 20 * (0.02 - TOLERANCE)
+    assert (facts.gouge if gouged else facts.left) == pytest.approx(band, rel=0.01)
+    assert "the wall is 0.02 mm off" in findings(facts)
+
+
+@settings(max_examples=8, deadline=None)
+@given(step=st.floats(6.1, 12.0))
+def test_too_wide_a_stepover_leaves_the_area_between_the_rings(step):
+    inner, outer = 30.0, 30.0 + step
+    hand = cut([inner, outer], lead=False)
+    facts = measure(hand, target(outer + 3, cleared=inner))
+    between = math.pi * ((outer - 3 - 2 * TOLERANCE) ** 2 - (inner + 3) ** 2)
+    link, lead_out = 6 * (step - 6), 6 * (step - 6)  # cut through the band, about
+    assert facts.left == pytest.approx(between - link - lead_out, rel=0.15, abs=3)
+    assert facts.stepover == pytest.approx(step, abs=1e-3)
+
+
+def test_a_missing_piece_of_the_wall_is_found():
+    hand = cut([17])
+    half = hand.moves[3]._replace(end=(33.0, *hand.moves[3].end[1:]))
+    hand.moves[3] = half
+    facts = measure(hand, target(cleared=14.0))
+    assert facts.deviation > 10
+    assert "left standing" in findings(facts)
+
+
+def test_the_wrong_turn_is_found():
+    assert findings(measure(cut([17], turns=1), target(cleared=14))) == "it turns the wrong way"
+
+
+def test_a_wrong_depth_is_found():
+    facts = measure(cut([17], depth=-0.9), target(cleared=14))
+    assert findings(facts) == "the depth is off by 0.1 mm"
+
+
+def test_an_eccentric_circle_is_found():
+    hand = Hand().rapid(x=50.03).pocket([17])
+    facts = measure(hand, target(cleared=14.1))
+    assert facts.deviation == pytest.approx(0.03, rel=1e-3)
+
+
+def test_a_deeper_level_clears_the_ones_above():
+    hand = cut([10], depth=-1).line(x=50, y=0).pocket([4, 8, 12, 17], depth=-2)
+    assert measure(hand, target(deepest=-2.0)).left == 0
+
+
+def test_a_wall_cut_from_outside():
+    hand = Hand().rapid(x=50, y=-26).rapid(x=50, y=-23).line(z=-1).arc(-1, 50, 0)
+    wanted = target(inside=False, smooth=False)
+    facts = measure(hand, wanted)
+    assert facts.reached == pytest.approx(20) and findings(facts) == ""
+    closer = Hand().rapid(x=50, y=-22.9).line(z=-1).arc(-1, 50, 0)
+    facts = measure(closer, wanted)
+    ring = 2 * math.pi * 20 * (0.1 - TOLERANCE)
+    assert facts.gouge == pytest.approx(ring, rel=0.02)
+
+
+def test_another_plane_is_measured_the_same():
+    axes = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]], float)  # G18
+    hand = Hand().rapid(x=0, z=17)
+    hand.arc(1, 0, 0, plane=18)
+    hand.moves[-1] = hand.moves[-1]._replace(centre=(0.0, 0.0, 0.0))
+    wanted = Target(1, "G13", "x", np.zeros(3), axes, 20.0, 3.0, 14.0, turn=1)
+    facts = measure(hand, wanted)
+    assert facts.deviation < 1e-9 and facts.left == 0 and findings(facts) == ""
+
+
+def test_real_motion_beside_the_path_is_found():
+    facts = measure(cut([17]), target(cleared=14.1), real_shift=0.03)
+    assert facts.off_rings == pytest.approx(0.03, rel=0.01)
+    assert facts.deviation == pytest.approx(0.03, rel=0.02)
+    assert facts.gouge > 0
+    exact = measure(cut([17]), target(cleared=14.1), real_shift=0.0)
+    assert exact.deviation < 1e-3 and exact.gouge == 0

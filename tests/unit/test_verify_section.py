@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Polar sections made by hand, right and wrong, and what is measured of them."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from g12.cli.contour_words import Element, Section
+from g12.cli.measure_section import Shape, measure_section
+from g12.cli.motion import follow, track
+from g12.cli.part import Part
+from g12.cli.proof import section_findings
+from handmade import LIMITS, Hand, samples_of
+
+FACE = Part(turning=True)
+TOLERANCE = 0.006
+TOOL = 6.0
+CORNERS = [20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j, 20 + 0j]  # counterclockwise from 20+0j
+
+
+def line(number, start, end, side=0, ramp=False):
+    return Element(number, start, end, side, ramp, -1.0)
+
+
+def square(side):
+    """Return a square of 40 mm, counterclockwise, with leads along X."""
+    ends = [20 + 0j, *CORNERS]
+    walls = [line(2 + i, a, b, side) for i, (a, b) in enumerate(zip(ends, ends[1:]))]
+    return [line(1, 40 + 0j, 20 + 0j, side, True), *walls, line(9, 20 + 0j, 40 + 0j, 0, True)]
+
+
+def section(elements, x=40.0, end=None, doubt=""):
+    return Section(1, 9, 1, end, "G12.1", x, tuple(elements), doubt)
+
+
+def dense(points, step=0.05):
+    """Return points (complex) along a polyline."""
+    found = [points[0]]
+    for start, end in zip(points, points[1:]):
+        count = max(1, round(abs(end - start) / step))
+        found += [start + (end - start) * k / count for k in range(1, count + 1)]
+    return found
+
+
+def around(radius):
+    """Return the tool centre's way round the square on its outside, one list per wall."""
+    ways, corner = [], [0, 1, 2, 3]
+    at = complex(20 + radius, 0)
+    for index in corner:
+        turn = 1j**index
+        first = complex(20 + radius, 20) * turn
+        arc = [
+            (20 + 20j) * turn + radius * turn * complex(math.cos(a), math.sin(a))
+            for a in np.linspace(0, math.pi / 2, 200)
+        ]
+        ways.append([*dense([at, first]), *arc])
+        at = arc[-1]
+    return [*ways, dense([at, complex(20 + radius, 0)])]
+
+
+def cut(ways, first=40 + 0j, last=40 + 0j):
+    """Return a hand that went those ways, one block each, with straight leads."""
+    hand = Hand().rapid(x=40.0)
+    hand.polar(dense([first, ways[0][0]])[1:])
+    for way in ways:
+        hand.next_block().polar(way[1:])
+    hand.block = 9
+    return hand.polar(dense([ways[-1][-1], last])[1:])
+
+
+def measure(hand, elements, real=None, **options):
+    path = track(FACE, hand.moves, LIMITS)
+    found = section(elements, end=len(hand.moves), **options)
+    run = follow(path, hand.moves, real(path), 1.0) if real else None
+    return measure_section(found, path, hand.moves, {1: 2 * TOOL}, 360.0, TOLERANCE, run)
+
+
+def findings(facts):
+    return " | ".join(section_findings(facts, TOLERANCE))
+
+
+# ---------------------------------------------------------------- distances
+
+
+def test_the_left_of_a_line_is_positive():
+    shape = Shape([line(1, 0j, 10 + 0j)])
+    assert shape.distances(np.array([5 + 3j, 5 - 4j, 13 + 4j])) == pytest.approx([3, 4, 5])
+    _, side = shape.nearest(np.array([5 + 3j, 5 - 4j]))
+    assert side[0] > 0 > side[1]
+
+
+def test_the_left_of_a_counterclockwise_arc_is_inside():
+    arc = Element(1, 10 + 0j, 10j, 0, False, 0.0, 0j, math.pi / 2)
+    shape = Shape([arc])
+    near, side = shape.nearest(np.array([7 + 7j, 8 + 8j, -3 + 12j]))
+    assert abs(near[0]) == pytest.approx(10) and near[2] == 10j
+    assert side[0] > 0 > side[1]
+
+
+@given(
+    x=st.floats(-40, 40),
+    y=st.floats(-40, 40),
+    sweep=st.floats(-6.2, 6.2).filter(lambda s: abs(s) > 0.1),
+)
+def test_distances_to_arcs_agree_with_many_points(x, y, sweep):
+    start = 10 * np.exp(0.7j)
+    arc = Element(1, start, start * np.exp(1j * sweep), 0, False, 0.0, 0j, sweep)
+    points = np.array([arc.point(share) for share in np.linspace(0, 1, 2000)])
+    exact = Shape([arc]).distances(np.array([complex(x, y)]))[0]
+    assert exact == pytest.approx(np.abs(points - complex(x, y)).min(), abs=0.02)
+
+
+# ---------------------------------------------------------------- sections
+
+
+def test_a_good_section_has_no_findings():
+    facts = measure(cut(around(TOOL)), square(-1))
+    assert facts.deviation < 1e-3
+    assert (facts.left, facts.gouge) == (0, 0)
+    assert facts.wanted == pytest.approx((20, 20 * math.sqrt(2)), abs=1e-3)
+    assert facts.reached == pytest.approx(facts.wanted, abs=1e-3)
+    assert facts.sides == (-1,)
+    assert findings(facts) == ""
+
+
+@pytest.mark.parametrize("wrong", [-0.02, 0.02])
+def test_a_wrong_offset_is_found(wrong):
+    facts = measure(cut(around(TOOL + wrong)), square(-1))
+    assert facts.deviation == pytest.approx(0.02, rel=0.02)
+    band = 160 * (0.02 - TOLERANCE)
+    found, other = (facts.gouge, facts.left) if wrong < 0 else (facts.left, facts.gouge)
+    assert found == pytest.approx(band, rel=0.1)
+    assert other == 0
+
+
+def test_the_wrong_side_is_found():
+    facts = measure(cut(around(TOOL)), square(+1))
+    assert facts.deviation == pytest.approx(2 * TOOL, rel=0.01)
+    assert facts.gouge > 1000
+
+
+def test_a_wall_that_is_left_out_is_found():
+    ways = around(TOOL)
+    skipped = [*ways[:1], dense([ways[0][-1], ways[2][0]]), *ways[2:]]
+    facts = measure(cut(skipped), square(-1))
+    assert facts.deviation > 5
+    assert "off the contour" in findings(facts)
+
+
+def test_a_cut_through_the_contour_is_a_gouge():
+    ways = around(TOOL)
+    ways[-1] = [*ways[-1], complex(20 + TOOL - 3, 0), complex(20 + TOOL, 0)]
+    facts = measure(cut(ways), square(-1))
+    assert facts.deviation == pytest.approx(3, rel=0.01) and facts.gouge > 1
+
+
+def test_a_later_pass_may_cross_the_extension_of_the_lead_in():
+    elements = square(-1)
+    elements[:2] = [line(1, 40 - 15j, 20 - 15j, -1, True), line(2, 20 - 15j, 20 + 20j, -1)]
+    elements[-2] = line(6, 20 - 20j, 20 - 5j, -1)  # ends on the first wall
+    elements[-1] = line(9, 20 - 5j, 40 - 5j, 0, True)
+    start = complex(20 + TOOL, -15)
+    ways = around(TOOL)
+    ways[0] = [*dense([start, ways[0][0]]), *ways[0]]
+    ways[-1] = dense([ways[-1][0], complex(20 + TOOL, -5)])
+    facts = measure(cut(ways, 40 - 15j, 40 - 5j), elements, x=abs(40 - 15j))
+    assert facts.gouge == 0
+
+
+def test_the_tool_centre_on_the_contour():
+    elements = [line(2, 40 + 0j, 40 + 20j), line(3, 40 + 20j, 0 + 20j)]
+    hand = Hand().rapid(x=40.0).next_block().polar(dense([40, 40 + 20j])[1:])
+    hand.next_block().polar(dense([40 + 20j, 20j])[1:])
+    facts = measure(hand, elements)
+    assert facts.deviation < 1e-3 and findings(facts) == ""
+    assert facts.reached[0] == pytest.approx(20, abs=1e-3)
+
+
+def test_coarse_pieces_stray_from_the_contour():
+    turn = np.exp(1j * math.pi / 4)  # the plane turns with the part, which begins at C-45
+    hand = Hand().rapid(x=abs(20 - 20j), c=-45.0).next_block().polar([20 + 5j, 20 + 20j])
+    wall = line(2, (20 - 20j) * turn, (20 + 20j) * turn)
+    facts = measure(hand, [wall], x=abs(20 - 20j))
+    assert facts.deviation > 0.5
+    assert facts.pieces == 2 and facts.longest > facts.shortest > 10
+
+
+def test_an_unread_contour_is_no_proof():
+    facts = measure(cut(around(TOOL)), square(-1), doubt="line 3 calls o<x>")
+    assert findings(facts) == "the contour cannot be read from the words: line 3 calls o<x>"
+
+
+def test_real_motion_is_measured():
+    def aside(path):
+        return samples_of(path, 6000, shift=0.05, axes="XZC")
+
+    facts = measure(cut(around(TOOL)), square(-1), real=aside)
+    assert facts.deviation == pytest.approx(0.05, rel=0.1)
+    assert facts.left > 0 and facts.gouge == 0
+
+
+def test_the_speed_of_c_is_told_with_its_limit():
+    hand = Hand(feed=1e6).rapid(x=1.0).next_block().line(c=90.0)
+    facts = measure(hand, [line(2, 1 + 0j, 1j)], x=1.0)
+    assert facts.c_speed == pytest.approx(360) and facts.c_limit == 360

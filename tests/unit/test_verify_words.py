@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a program's text says: words as LinuxCNC reads them, targets and contours from words."""
+
+import cmath
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from g12.cli import contour_words, programmed
+from g12.cli.blocks import STATE, TAG, Block, after, before, blocks_in, read_line
+from g12.cli.contour_words import Pen
+from g12.cli.ini import Ini
+from g12.cli.programmed import Codes, Reader
+from g12.cli.trace import Event
+from handmade import Hand
+
+REMAPS = (
+    "[RS274NGC]",
+    "REMAP = G12 modalgroup=1 prolog=g12_haas ngc=g12_haas epilog=cycle_done",
+    "REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done",
+    "REMAP = G12.1 modalgroup=1 python=polar_on",
+    "REMAP = G13.1 modalgroup=1 python=polar_off",
+    "REMAP = M6 modalgroup=6 ngc=change",
+)
+CODES = Codes(Ini(Path("x.ini"), REMAPS))
+
+
+# ---------------------------------------------------------------- words
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("G1 X1.5Y-2 F100", "G1 X1.5 Y-2 F100"),
+        ("n10g12i.5 z - 1. (a comment X9) d01; Y9", "N10 G12 I.5 Z-1. D01"),
+        ("X[#1+[2*3]] Y#<a b> Z-#2", "X[#1+[2*3]] Y#<ab> Z-#2"),
+        ("X sin[30] Y-atan[1]/[2]Z##3", "Xsin[30] Y-atan[1]/[2] Z##3"),
+        ("/G0 X#[1+2]", "G0 X#[1+2]"),
+        ("(only a comment)", ""),
+        ("%", ""),
+    ],
+)
+def test_words_are_read_as_linuxcnc_reads_them(line, words):
+    assert " ".join(letter + value for letter, value in read_line(1, line).words) == words
+
+
+def test_assignments_are_no_words():
+    text = read_line(3, "G1 X#1 #1=[2+#2] #<k>=-3")
+    assert text.words == (("G", "1"), ("X", "#1"))
+    assert text.assignments == ("#1=[2+#2]", "#<k>=-3")
+
+
+@pytest.mark.parametrize(
+    "line", ["o100 while [#1 LT 5]", "N5 o<sub> call [1]", "O60121(x)", "/o1 if"]
+)
+def test_control_lines_are_told(line):
+    assert read_line(1, line).control
+
+
+def test_a_call_has_its_arguments():
+    text = read_line(1, "N9 o<circle_mill> call [7] [#1*[2]] [-9999]")
+    assert text.call == "circle_mill"
+    assert [value for _, value in text.words] == ["[7]", "[#1*[2]]", "[-9999]"]
+
+
+def test_only_expressions_are_asked_of_linuxcnc():
+    lines = list(before(read_line(4, "G12 I.5 K[#1] Z-1 D#2")))
+    assert [line for line in lines if "=" in line] == [
+        "#<g12_verify_value> = [#1]",
+        "#<g12_verify_value> = [#2]",
+    ]
+    assert all(line.startswith("/") for line in before(read_line(4, "/G12 I#1")))
+
+
+def told(texts, *lines):
+    """Return the blocks of a trace whose messages are those, one move after each."""
+    events = [Event(at, 0, f"message {TAG} {line}") for at, line in enumerate(lines)]
+    trace = Hand().trace()
+    return blocks_in(type(trace)(**{**vars(trace), "events": events}), texts)
+
+
+def test_blocks_are_put_together_from_messages():
+    state = "1 2 3 0 1 1 0"
+    (block,) = told([read_line(1, "G12 I#1 Z-1")], f"begin 1 {state}", "value 1 0.75", "end 1 0")
+    assert (block.words, block.codes) == ({"I": 0.75, "Z": -1.0}, (12.0,))
+    assert (block.at, block.end) == (0, 2)
+    assert block.state == dict(zip(STATE, map(float, state.split())))
+
+
+def test_a_block_that_never_ends_is_none():
+    assert told([read_line(1, "G12 I1")], "begin 1 0 0 0 0 1 1 0") == []
+
+
+def test_after_tells_the_same_number():
+    assert list(after(read_line(12, "G12 I1"))) == [f"(DEBUG,{TAG} end 12 0)"]
+
+
+# ---------------------------------------------------------------- targets
+
+
+def block(line, number=1, at=1, end=2, **state):
+    """Return an executed block with plain numbers, metric and absolute unless told otherwise."""
+    text = read_line(number, line)
+    values = [(letter, float(value)) for letter, value in text.words]
+    found = {"_x": 0, "_y": 0, "_z": 0, "_c": 0, "_metric": 1, "_absolute": 1}
+    return Block(
+        text,
+        {letter: value for letter, value in values if letter != "G"},
+        tuple(value for letter, value in values if letter == "G"),
+        (),
+        {**found, "_lathe_diameter_mode": 0, **state},
+        at,
+        end,
+    )
+
+
+def target(line, moves=None, **state):
+    moves = moves or Hand().rapid(x=3, y=4, z=5).line(z=4).moves
+    reader = Reader(CODES, moves, {1: 6.0, 2: 10.0})
+    return next(found for _, found in reader.targets([block(line, **state)]))
+
+
+HERE = {"_x": 3, "_y": 4, "_z": 5}
+
+
+def test_haas_words_tell_wall_core_and_depth():
+    found = target("G12 I4 K20 Q3 Z-2 D2", **HERE)
+    assert (found.radius, found.cutter, found.cleared) == (20, 5, 0)
+    assert np.allclose(found.origin, [3, 4, 5])
+    assert found.deepest == pytest.approx(-7)
+    assert (found.turn, found.inside, found.smooth) == (-1, True, True)
+    assert "D has 10 mm" in found.note
+
+
+def test_one_ring_leaves_its_core_by_design():
+    assert target("G13 I30 Z-2 D1", **HERE).cleared == pytest.approx(24)
+
+
+def test_d0_puts_the_tool_centre_on_the_circle():
+    found = target("G12 I4 Z-2 D0", **HERE)
+    assert (found.radius, found.cutter) == (7, 3)
+
+
+def test_incremental_words_count_from_the_tool():
+    found = target("G13 G91 I4 Z-.5 L4 X1 Y-2 D1", **HERE)
+    assert np.allclose(found.origin, [4, 2, 5])
+    assert found.deepest == pytest.approx(-2)
+
+
+def test_inch_words_become_millimetres():
+    found = target("G20 G12 I1 Z-1 D1", **HERE)
+    assert (found.radius, found.deepest) == (pytest.approx(25.4), pytest.approx(-25.4 - 5 * 25.4))
+
+
+def test_the_last_d_is_remembered():
+    moves = Hand().rapid(z=5).line(z=4).line(z=3).moves
+    reader = Reader(CODES, moves, {1: 6.0, 2: 10.0})
+    again = block("G12 I9 Z-1", at=2, end=3)
+    blocks = [block("G41 D2 X1", at=0, end=1), block("G12 I9 Z-1"), block("G12 I9 Z-1 D1")]
+    cutters = [found.cutter for _, found in reader.targets([*blocks, again])]
+    assert cutters == [5, 3, 3]
+
+
+def test_a_centre_word_turns_with_the_work_coordinates():
+    moves = [move._replace(rotation=90.0) for move in Hand().rapid(x=3, y=4).line(z=-1).moves]
+    found = target("G12 X10 Y0 I5 Z-1 D1", moves)
+    assert np.allclose(found.origin, [3, 14, 0])
+
+
+def test_codes_know_cycles_and_sections_by_their_handlers():
+    assert CODES.cycle_of(read_line(1, "G12 I1"))[0] == "haas"
+    assert CODES.cycle_of(read_line(1, "G1 X1")) is None
+    assert CODES.polar(read_line(1, "G12.1")) == "on"
+    assert CODES.polar(read_line(1, "N5 G13.1")) == "off"
+    assert not CODES.wanted(read_line(1, "T1 M6"))
+
+
+@pytest.mark.parametrize(
+    ("direction", "compensation", "side"),
+    [(0, 0, 0), (0, 1, 1), (0, 2, -1), (1, 1, -1), (1, 2, 1), (2, 2, -1), (3, 1, -1)],
+)
+def test_the_event_puts_the_cutter_where_the_manual_says(direction, compensation, side):
+    assert programmed.side_of(direction, compensation) == side
+
+
+# ---------------------------------------------------------------- contours
+
+
+def drawn(*lines, reading="inherit", **state):
+    """Return the elements that lines inside a section describe; it begins at X20."""
+    pen = Pen(block("G12.1", **{"_x": 20, **state}), reading)
+    return [e for number, line in enumerate(lines, 2) for e in pen.draw(block(line, number))]
+
+
+def test_bare_words_repeat_the_motion_and_coordinates_stay():
+    one, two, three = drawn("G1 C5", "X10", "U-2 H1")
+    assert (one.end, two.end, three.end) == (20 + 5j, 10 + 5j, 8 + 6j)
+
+
+def test_x_is_halved_in_diameter_mode_only():
+    assert drawn("X10", _lathe_diameter_mode=1)[0].end == 5
+    assert drawn("X10", reading="diameter")[0].end == 5
+    assert drawn("X10", reading="radius", _lathe_diameter_mode=1)[0].end == 10
+
+
+def test_an_arc_by_its_centre():
+    (arc,) = drawn("G3 X0 C20 I-20")
+    assert arc.centre == 0 and arc.sweep == pytest.approx(math.pi / 2)
+    assert abs(arc.point(0.5) - cmath.rect(20, math.pi / 4)) < 1e-12
+
+
+def test_a_full_circle_has_no_end():
+    (circle,) = drawn("G2 I-5")
+    assert circle.sweep == pytest.approx(-2 * math.pi) and circle.centre == 15
+
+
+@pytest.mark.parametrize(("radius", "sweep"), [(20, math.pi / 2), (-20, 1.5 * math.pi)])
+def test_an_arc_by_its_radius(radius, sweep):
+    (arc,) = drawn(f"G3 X0 C20 R{radius}")
+    assert arc.sweep == pytest.approx(sweep)
+    assert abs(arc.centre) == pytest.approx(0 if radius > 0 else abs(20 + 20j))
+
+
+def test_ramps_are_where_compensation_changes():
+    found = drawn("G1 C5", "G41 X10", "C0", "Z-1", "G40 X20")
+    assert [(e.side, e.ramp) for e in found] == [(0, False), (1, True), (1, False), (0, True)]
+
+
+def test_incremental_mode_holds_for_both_axes():
+    assert drawn("G91 G1 X-5 C2", "C2")[-1].end == 15 + 4j
+
+
+def test_left_is_left():
+    (line,) = drawn("C5")
+    assert line.normal(0.3) == -1
+    (arc,) = drawn("G3 X0 C20 I-20")
+    assert arc.normal(0) == pytest.approx(-1)  # towards the centre
+
+
+@pytest.mark.parametrize(
+    ("line", "why"), [("o<flat> call", "calls o<flat>"), ("X[#<_x>+1]", "asks for a position")]
+)
+def test_what_cannot_be_followed_is_a_doubt(line, why):
+    lines = ["G12.1", "G1 C5", line, "G13.1"]
+    texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
+    assert why in contour_words.doubts_of(texts, CODES, lines)[1]
+
+
+def test_motion_is_taken_out_of_the_copy_and_control_stays():
+    lines = [
+        "G0 X5",
+        "G12.1",
+        "#1=2",
+        "o1 while [#1]",
+        "X#1 #1=[#1-1]",
+        "o1 endwhile",
+        "G13.1",
+        "G0 X9",
+    ]
+    texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
+    flat = [line for way in contour_words.flattened(texts, CODES, lines) for line in way]
+    kept = [line for line in flat if "DEBUG" not in line and "verify" not in line]
+    assert kept == ["G0 X5", "#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile", "G0 X9"]
