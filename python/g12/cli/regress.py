@@ -18,6 +18,7 @@ from g12.cli.recorder import FAILED, SAME, Result
 from g12.cli.regress_report import Progress, json_report, text_report
 from g12.cli.regression import Asked, Terms, check, record
 
+DESCRIPTION = __doc__.partition("\n\n")[2].replace("`", "")
 RECORD_EXAMPLES = """\
 examples:
   g12 regress record nc/ --ini mill.ini -d regress      a folder of programs, for the first time
@@ -40,7 +41,7 @@ exit code: 0 as recorded, 1 something changed, 2 wrong use
 
 def parser() -> argparse.ArgumentParser:
     """Return the command's words."""
-    words = argparse.ArgumentParser(prog="g12 regress", description=__doc__.partition("\n\n")[2])
+    words = argparse.ArgumentParser(prog="g12 regress", description=DESCRIPTION)
     actions = words.add_subparsers(dest="action", required=True, metavar="record | check")
     _record_words(actions)
     _check_words(actions)
