@@ -13,7 +13,6 @@ def first_error(machine):
     """Return the first thing the operator is told."""
     end = time.monotonic() + SECONDS
     while time.monotonic() < end:
-        machine.stat()
         for error in machine.errors():
             return error.text
         time.sleep(0.1)
