@@ -192,6 +192,14 @@ def test_what_is_no_move_is_compared_too(pocket, old, new, finding):
     assert lines[0].startswith(finding)
 
 
+def test_the_pitch_of_a_thread_is_compared(shop):
+    shop.write("thread.ngc", "G21 G18\nM3 S100\nG0 X10 Z5\nG33 Z-1 K1.5\nG33 Z-2 K1.5\nM2\n")
+    shop.record(ini=SIM / "lathe_mm.ini")
+    shop.change("thread.ngc", "K1.5", "K1.25")
+    code, lines = shop.check()
+    assert (code, lines[0]) == (1, "thread.ngc:4: pitch 1.5 mm → pitch 1.25 mm")
+
+
 def test_comments_and_line_numbers_are_no_change(pocket):
     text = (pocket.programs / "pocket.ngc").read_text(encoding="utf-8")
     lines = [f"N{10 * i} {line}" for i, line in enumerate(text.split("\n")[:-1], start=1)]

@@ -38,6 +38,7 @@ STATE = (
     "CC_current", "current_tool", "call_level", "remap_level",
 )  # fmt: skip
 SPINDLE_MODE = 13  # place of G96, G97 in the active G codes
+PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 FEED_MODES = ("G94", "G93", "G95")
 
 
@@ -129,6 +130,7 @@ class Canon:
         self.messages: list[tuple] = []
         self.events: list[tuple] = []
         self.in_force: tuple = ()
+        self.pitch = ""
         self.line = 0
         self.tip = self.position = NO_OFFSET  # in program and in machine coordinates
         self.work = self.g92 = self.length = NO_OFFSET
@@ -227,6 +229,17 @@ class Canon:
     def set_traverse_rate(self, _rate: float) -> None:
         """Rapids have no feed."""
 
+    def _note_pitch(self) -> None:
+        """Keep the pitch of a thread, which is its feed in place of F."""
+        this = interpreter_object()
+        word = PITCH_WORD.get(this.motion_mode)
+        if word:
+            unit = 1.0 if this.length_units == METRIC else MM
+            pitch = f"pitch {getattr(this.blocks[this.remap_level], word) * unit:.10g} mm"
+            known, self.pitch = self.pitch, pitch
+            if pitch != known:
+                self._note(pitch)
+
     def _note(self, text: str) -> None:
         self.events.append((len(self.moves), self.lines.now(), text))
 
@@ -245,6 +258,7 @@ class Canon:
 
     def straight_feed(self, *target: float) -> None:
         """Record a straight feed move."""
+        self._note_pitch()
         self._move("feed", in_mm(target), self._rate(target))
 
     def straight_probe(self, *target: float) -> None:
@@ -253,6 +267,7 @@ class Canon:
 
     def rigid_tap(self, x: float, y: float, z: float) -> None:
         """Record the way down and back up."""
+        self._note_pitch()
         back = self.tip
         self._move("feed", (*in_mm((x, y, z)), *back[3:]), self.feed)
         self._move("feed", back, self.feed)
