@@ -138,6 +138,8 @@ def ask_python(tracer: Tracer) -> Python:
         question.write_text(QUESTION, encoding="utf-8")
         printed = tracer.trace_text([f"(pyrun,{question})"]).printed
     answers = [line for line in printed.splitlines() if line.startswith(ANSWER)]
+    if not answers:
+        return Python(error="the modules loaded, but the interpreter's Python gives no answer")
     found = json.loads(answers[-1][len(ANSWER) :])
     package = found.pop("package")
     here = tracer.ini.directory

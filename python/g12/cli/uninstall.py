@@ -89,24 +89,29 @@ def without_imports(path: Path) -> bytes:
     return to_bytes(without(lines, ours))
 
 
+def take_out_elsewhere(text: IniText, notes: list[str], shared: bool) -> dict[Path, bytes]:
+    """Take out what the notes say; return the user's modules that change."""
+    modules = {}
+    for note in notes:
+        module = text.path.parent / note.removeprefix(MODULE_NOTE)
+        if note.endswith(PATH_NOTE):
+            take_out_path(text, note.removesuffix(PATH_NOTE), shared)
+        elif not shared and module.is_file():
+            modules[module] = without_imports(module)
+    return modules
+
+
 def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     """Take the package out of a machine config; yield what is shown."""
     blocks = text.blocks()
     if not blocks:
         yield f"{text.path}: nothing that install put in"
         return
-    folder, notes = text.path.parent, notes_in(blocks)
     stay = take_out_blocks(text, blocks)
     shared = still_installed(text)
-    changes = {}
-    for note in notes:
-        if note.endswith(PATH_NOTE):
-            take_out_path(text, note.removesuffix(PATH_NOTE), shared)
-        elif not shared and (folder / note.removeprefix(MODULE_NOTE)).is_file():
-            module = folder / note.removeprefix(MODULE_NOTE)
-            changes[module] = without_imports(module)
+    modules = take_out_elsewhere(text, notes_in(blocks), shared)
     inis = {path: to_bytes(lines) for path, lines in text.files.items()}
-    changes = {path: new for path, new in {**inis, **changes}.items() if new != path.read_bytes()}
+    changes = {path: new for path, new in {**inis, **modules}.items() if new != path.read_bytes()}
     for path, content in changes.items():
         yield from difference(path, content)
     for line in stay:
@@ -118,7 +123,7 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     write_all(changes)
     for path in changes:
         yield from after_change(path)
-    yield from after_all(folder / package_copy.NAME, shared)
+    yield from after_all(text.path.parent / package_copy.NAME, shared)
 
 
 def after_change(path: Path) -> Iterator[str]:
