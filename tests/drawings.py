@@ -48,7 +48,9 @@ SQUARE = [
     Arc((-10, -10), 5, -90, -90), Line((-15, -10), (-15, 10)), Arc((-10, 10), 5, 180, -90),
     Line((-10, 15), (10, 15)), Arc((10, 10), 5, 90, -90), Line((15, 10), (15, 0)),
 ]  # fmt: skip
-NOSE, BASE = (math.degrees(math.atan2(c, x)) for x, c in ((0.69625, -0.7177996), (0.078125, -0.996943)))
+NOSE, BASE = (
+    math.degrees(math.atan2(c, x)) for x, c in ((0.69625, -0.7177996), (0.078125, -0.996943))
+)
 CAM = [
     Arc((16, 0), 5, 0, NOSE), Arc((-1.40625, 17.94499), 30, NOSE, BASE - NOSE),
     Arc((0, 0), 12, BASE, -360 - 2 * BASE), Arc((-1.40625, -17.94499), 30, -BASE, BASE - NOSE),
@@ -79,10 +81,16 @@ def _turned(path):
 
 SECOND_START = math.hypot(0.9, 0.4153)  # where the first flat leaves the X slide
 SLOT = {7: lines((18, 0), (-18, 0)), 8: lines((-18, 0), (-18, 1)), 9: lines((-18, 1), (18, 1))}
-CIRCLES = {7: [Arc((4, 0), 10, 0, 360)], 8: lines((14, 0), (19, 0)), 9: [Arc((19, -5), 5, 90, -360)]}
+CIRCLES = {
+    7: [Arc((4, 0), 10, 0, 360)],
+    8: lines((14, 0), (19, 0)),
+    9: [Arc((19, -5), 5, 90, -360)],
+}
 
 MILLIMETRES = {
-    "hexagon": Drawing(_compensated(10, HEXAGON, 6, {7: (30, 0), 8: (30, 12)}, (16, (30, 7.7942))), 6),
+    "hexagon": Drawing(
+        _compensated(10, HEXAGON, 6, {7: (30, 0), 8: (30, 12)}, (16, (30, 7.7942))), 6
+    ),
     "square": Drawing(_compensated(9, SQUARE, 5, {6: (30, 0), 7: (30, 5)}, (18, (30, 0))), 5),
     "slot": Drawing(SLOT, 3),
     "circles": Drawing(CIRCLES, 0),
@@ -94,6 +102,7 @@ INCHES = {
         _compensated(14, FLATS, 0.25, {11: (0.9, 0), 12: (0.9, 0.4153)}, (17, (-0.9, 0.4153))), 0.25
     ),
     "manual_sample": Drawing(
-        _compensated(15, CENTRES, 0, {12: (1.075, 0), 13: (1.075, 0.5339)}, (18, (-1.075, 0.5339))), 0.375
+        _compensated(15, CENTRES, 0, {12: (1.075, 0), 13: (1.075, 0.5339)}, (18, (-1.075, 0.5339))),
+        0.375,
     ),
 }

@@ -13,7 +13,7 @@ X, Z, C = 0, 2, 5
 
 
 def section(*body, before=(), after=(), first=FIRST, start=START, feed="F100"):
-    """Return a program whose section holds ``body``; its first line is line 6, with ``before`` more."""
+    """Return a program whose section holds ``body``, from line 6 on (``before`` adds lines)."""
     return [first, start, "T1 M6", feed, *before, "G12.1", *body, "G13.1", *after, "M2"]
 
 

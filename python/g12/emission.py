@@ -8,7 +8,7 @@ program can see it, or the machine waits.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from typing import NamedTuple
 
 from .polar import Run
@@ -20,11 +20,7 @@ G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 
-PIECE = {
-    "XC": "X{0:.9f}C{1:.9f}F{3:.9f}",
-    "XCZ": "X{0:.9f}C{1:.9f}Z{2:.9f}F{3:.9f}",
-    "Z": "Z{2:.9f}F{3:.9f}",
-}
+XC_PIECE, XCZ_PIECE, Z_PIECE = "X%.9fC%.9fF%.9f", "X%.9fC%.9fZ%.9fF%.9f", "Z%.9fF%.9f"
 
 
 class Action(NamedTuple):
@@ -62,27 +58,33 @@ class PathControl:
 
     def inside(self) -> None:
         """Set what blends the pieces of one block."""
-        self._set(self._within)
+        self.set(self._within)
+
+    @property
+    def exact(self) -> bool:
+        """Tell whether blocks end in an exact path or stop."""
+        return self._commanded in EXACT_PATHS
 
     def at_end(self, stop: bool, exact_stop: bool, block_ends: bool) -> None:
-        """Set what the last piece of a run ends in.
+        """Set what the last piece of a run must end in.
 
         ``stop`` is asked for by the planner, ``exact_stop`` by G9.
         """
         if block_ends and exact_stop:
-            self._set(EXACT_STOP)
-        elif block_ends and self._commanded in EXACT_PATHS:
-            self._set(self._commanded)
+            self.set(EXACT_STOP)
+        elif block_ends and self.exact:
+            self.set(self._commanded)
         elif stop:
-            self._set(EXACT_PATH)
+            self.set(EXACT_PATH)
 
     def give_back(self) -> None:
         """Set what the program commanded."""
         if self._blending != self._tolerances:
-            self._set(self._tolerances)
-        self._set(self._commanded)
+            self.set(self._tolerances)
+        self.set(self._commanded)
 
-    def _set(self, path: str) -> None:
+    def set(self, path: str) -> None:
+        """Set a path control; `give_back` undoes it."""
         if path != self._in_force:
             self.interp.execute(path)
             self._in_force = path
@@ -102,19 +104,22 @@ class Emission:
         self.interp, self.code = interp, code
         self.x_factor, self.absolute = x_factor, absolute
         self.path = PathControl(interp, f"G64P{decimal(blending)}Q0")
-        self.exact_lines: set[int] = set()  # of G9
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
 
-    def run(self, steps: Sequence[Run | Action], modes: Modes) -> None:
-        """Hand over all steps, and release the interpreter in ``modes``."""
+    def run(self, steps: Sequence[Run | Action], modes: Modes, exact_lines: Container[int]) -> None:
+        """Hand over all steps, and release the interpreter in ``modes``.
+
+        ``exact_lines`` are those of blocks with G9.
+        """
         self._take_over()
         for step, following in zip(steps, [*steps[1:], None]):
-            if isinstance(step, Run):
-                block_ends = not isinstance(following, Run) or following.line != step.line
-                self._moves(step, block_ends)
-            else:
+            if isinstance(step, Action):
                 self._act(step)
+            elif step.stop or exact_lines or self.path.exact:
+                self._moves_to_an_end(step, following, step.line in exact_lines)
+            else:
+                self._moves(step.line, step.axes, step.pieces)
         self.release(modes)
 
     def release(self, modes: Modes) -> None:
@@ -135,16 +140,29 @@ class Emission:
             interp.execute("G94")
         interp.motion_mode = G1
 
-    def _moves(self, run: Run, block_ends: bool) -> None:
-        interp, factor = self.interp, self.x_factor
-        execute, piece = interp.execute, PIECE[run.axes].format
-        interp.sequence_number = run.line
+    def _moves_to_an_end(self, run: Run, following: object, exact_stop: bool) -> None:
+        """Hand over moves of which the last ends in another path control."""
+        block_ends = not isinstance(following, Run) or following.line != run.line
+        self._moves(run.line, run.axes, run.pieces[:-1])
+        self.path.at_end(run.stop, exact_stop, block_ends)
+        self._pieces(run.axes, run.pieces[-1:])
+
+    def _moves(self, line: int, axes: str, pieces: list[tuple[float, ...]]) -> None:
+        self.interp.sequence_number = line
         self.path.inside()
-        *pieces, (last_x, last_c, last_z, last_feed) = run.pieces
-        for x, c, z, feed in pieces:
-            execute(piece(x * factor, c, z, feed))
-        self.path.at_end(run.stop, run.line in self.exact_lines, block_ends)
-        execute(piece(last_x * factor, last_c, last_z, last_feed))
+        self._pieces(axes, pieces)
+
+    def _pieces(self, axes: str, pieces: list[tuple[float, float, float, float]]) -> None:
+        execute, factor = self.interp.execute, self.x_factor
+        if axes == "XC":
+            for x, c, _, feed in pieces:
+                execute(XC_PIECE % (x * factor, c, feed))
+        elif axes == "Z":
+            for _, _, z, feed in pieces:
+                execute(Z_PIECE % (z, feed))
+        else:
+            for x, c, z, feed in pieces:
+                execute(XCZ_PIECE % (x * factor, c, z, feed))
 
     def _act(self, action: Action) -> None:
         """Execute a block in its place."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The call frame of a remap handler that goes on reading the program itself.
 
-To the interpreter such a handler is a sub: the caller's local parameters and loop labels are hidden from
-the lines it reads, the line number starts at 0, and both are lost when it returns. Here they are handed
-over and back, and the handler can wait for the machine.
+To the interpreter such a handler is a sub: the caller's local parameters and loop labels are
+hidden from the lines it reads, the line number starts at 0, and both are lost when it returns.
+Here they are handed over and back, and the handler can wait for the machine.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Frame:
         self._set_locals(self.level, self._found)
 
     def leave(self, line: int) -> None:
-        """Give local parameters back to the caller, and the number of the line that was read last."""
+        """Give local parameters back to the caller, and the number of the line read last."""
         changed = self._locals(self.level).items() - self._found.items()
         self._set_locals(self.level - 1, dict(changed))
         self._renumber(line)
@@ -46,8 +46,8 @@ class Frame:
     def give_up(self, line: int, *, called: bool, home: str) -> None:
         """Let an error be that of ``line``: unwinding takes the number from the frames.
 
-        What counts is the main program's line. In a file that the section calls (``called``), or for
-        a section that is itself in another file (``home`` is the section's), it is the calling line.
+        What counts is the main program's line. In a file that the section calls (``called``), or
+        for a section that is itself in another file (``home``), it is the line that calls.
         """
         frames = self.interp.sub_context
         if called:
@@ -76,7 +76,7 @@ class Frame:
         interp.blocks[0].o_type, interp.blocks[0].call_type = NO_O_WORD, NOT_CALLED
 
     def _locals(self, level: int) -> dict[str, float]:
-        """The local parameters of a call level; those of level 0 stand among the global ones."""
+        """Return the local parameters of a call level; level 0 has the global ones too."""
         interp, found = self.interp, self.interp.call_level
         interp.call_level = level
         params = interp.params

@@ -5,30 +5,31 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator
 from pathlib import Path
 
-import emccanon
 import interpreter
 import linuxcnc
-from interpreter import INTERP_ERROR, INTERP_OK
+from interpreter import INTERP_ERROR, INTERP_OK, MODE_ABSOLUTE
 
 from . import host, polar
-from .context import YZ
+from .collector import Rules, block_of
+from .context import MM_PER_INCH, YZ
+from .emission import Emission
 from .errors import Refusal, number
 from .frame import Frame
+from .machine import axes_of, millimetres_of, remaps_of
 from .polar.block import Place, alone, line_named
 from .program import Program
-from .section import Section, Setup, block_of
-from .settings import section_entries
-from .travel import Axis, Scale, Travel, axes_from_ini
+from .section import Section, Setup
+from .travel import Scale, Travel
 
 SWITCHED_OFF_BY = "polar_off"  # the handler's name in a REMAP line
 DEFAULT_TOLERANCE_MM, DEFAULT_TOLERANCE_INCH = 0.005, 0.0002
 LEAST_X_MM = 0.001  # a smaller part in X makes LinuxCNC 2.9 get the feed of a piece wrong
 CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
 OTHER_WORDS = "abdhktuvwy"
-OWNED_SINCE_KINS = "_kins_type"  # a LinuxCNC with this parameter has a G12.1 of its own
+OWNS_G12_1 = "_kins_type"  # a LinuxCNC with this parameter has a G12.1 of its own
 
 
 def ini_text() -> str:
@@ -37,26 +38,17 @@ def ini_text() -> str:
     return Path(path).read_text(encoding="utf-8", errors="replace") if path else ""
 
 
-def remaps_from_ini(text: str) -> dict[str, dict[str, str]]:
-    """Return the REMAP lines of an INI file: code in upper case, then its options."""
-    lines = [value.split() for key, value in section_entries(text, "RS274NGC") if key == "REMAP"]
-    return {
-        code.upper(): dict(option.split("=", 1) for option in options if "=" in option)
-        for code, *options in lines
-    }
+INI = ini_text()
+REMAPS, AXES, MILLIMETRES = remaps_of(INI), axes_of(INI), millimetres_of(INI)
 
 
-REMAPS = remaps_from_ini(ini_text())
-AXES = axes_from_ini(ini_text())
-
-
-def refuse_owned_codes(parameters: Sequence[str], remaps: dict[str, dict[str, str]]) -> None:
-    """Refuse a REMAP of G12.1 where the interpreter has that code itself, and ignores the line."""
-    owned = {"G12.1", "G13.1"} & remaps.keys()
-    if owned and OWNED_SINCE_KINS in parameters:
+def refuse_owned_codes(parameters: Container[str], remaps: Container[str]) -> None:
+    """Refuse a REMAP of G12.1 where the interpreter has that code itself and ignores the line."""
+    owned = [code for code in ("G12.1", "G13.1") if code in remaps]
+    if owned and OWNS_G12_1 in parameters:
         raise Refusal(
-            f"REMAP = {min(owned)}: this LinuxCNC has a G12.1 of its own (kinematics selection). "
-            "Use configs/include/polar_g12_3.inc and write G12.3 and G13.3 in programs"
+            f"REMAP = {owned[0]}: this LinuxCNC has a G12.1 of its own (kinematics selection). "
+            "Use configs/include/polar_g12_3.inc, and G12.3 and G13.3 in programs"
         )
 
 
@@ -65,90 +57,53 @@ if hasattr(interpreter, "this"):  # milltask loads this module before its interp
 
 
 def polar_on(self, **words) -> Iterator[int]:
-    """Handler of G12.1: a generator, since a section may have to wait for the machine."""
+    """Read, plan and move a section: the handler of G12.1, which may have to wait."""
     try:
         host.refuse_start_error()
         if in_mdi(self):
-            raise Refusal(
-                f"{host.code_of_block(self)} is not possible in MDI: it needs the lines behind it"
-            )
-        yield from run_section(self, Frame(self), Program(self))
+            code = host.code_of_block(self)
+            raise Refusal(f"{code} is not possible in MDI: it needs the lines behind it")
+        program = Program(self, getattr(self, "g12_source", None))
+        self.g12_source = program.home
+        yield from run_section(self, Frame(self), program)
     except Refusal as refusal:
         self.set_errormsg(refusal.message)
         yield INTERP_ERROR
     yield INTERP_OK
 
 
-def run_section(interp: object, frame: Frame, program: Program) -> Iterator[int]:
-    """Run the section that begins with the block being remapped."""
-    try:
-        setup = setup_of_section(interp, Place(host.code_of_block(interp), program.place))
-        yield from Section(interp, setup, frame, program).run()
-    except Refusal as refusal:
-        line = line_named(refusal)
-        frame.give_up(
-            line or program.line, called=program.in_sub_file and not line, home=program.home
-        )
-        raise
-
-
 @host.handler
 def polar_off(self, **words) -> int:
-    """Handler of G13.1 outside a section, where it is a safety line; inside, it is never called."""
+    """Do nothing: the handler of G13.1 outside a section, where it is a safety line."""
     return INTERP_OK
 
 
-def setup_of_section(interp: object, place: Place) -> Setup:
-    """Check that a section may begin here, and return what it needs to know."""
-    code = place.code
-    check_start(interp, place)
-    settings, units = host.SETTINGS, host.program_units_per_machine_unit(interp)
-    millimetre = host.snapshot(interp).length(1.0)
-    tolerance = tolerance_of(settings) * units
-    g7 = host.diameter_mode(interp)
-    diameter = g7 if settings.polar_x == "inherit" else settings.polar_x == "diameter"
-    off_code = code_switching_off(code)
-    return Setup(
-        code=code,
-        off_code=off_code,
-        on=number_of_code(code),
-        off=number_of_code(off_code),
-        diameter=diameter,
-        x_scale=(0.5 if diameter else 1.0) / (0.5 if g7 else 1.0),
-        x_factor=2.0 if g7 else 1.0,
-        z_with_x=settings.polar_z == "allow",
-        rapid_feed=settings.polar_g0_feed * units if settings.polar_g0 == "feed" else None,
-        closing=CLOSING_MM * millimetre,
-        blending=tolerance / 2,
-        plan=polar.Settings(
-            tolerance=tolerance,
-            least_x=LEAST_X_MM * millimetre,
-            x_acceleration=AXES["X"].acceleration * units,
-            c_acceleration=AXES["C"].acceleration,
-            c_speed=AXES["C"].velocity * 60,
-            pole_refused=settings.polar_pole == "refuse",
-        ),
-        travel=Travel(AXES, scales_of_axes(interp, units)),
-        remapped={
-            int(name[1:]): "ngc" in options for name, options in REMAPS.items() if name[0] == "M"
-        },
-        tool_radius=functools.partial(tool_radius, interp),
-    )
+def run_section(interp: object, frame: Frame, program: Program) -> Iterator[int]:
+    """Run the section that begins with the block being remapped."""
+    try:
+        place = Place(host.code_of_block(interp), program.place)
+        check_start(interp, place)
+        setup = setup_of_section(interp, place.code)
+        emission = emission_of_section(interp, place.code)
+        yield from Section(interp, setup, frame, program, emission).run()
+    except Refusal as refusal:
+        line = line_named(refusal)
+        called = program.source is not program.home and not line
+        frame.give_up(line or program.line, called=called, home=program.home.filename)
+        raise
 
 
 def check_start(interp: object, place: Place) -> None:
     """Refuse to begin a section where it cannot."""
-    found = host.snapshot(interp)
+    code, found = place.code, host.snapshot(interp)
+    above = f"{code} needs the tool at X above zero, not at {number(found.x)} (radius)"
     rules = (
-        (stands_alone(interp), f"{place.code} stands alone in its block"),
-        (not found.compensated, f"{place.code} needs G40: compensation is switched on inside"),
-        (not found.inverse_time, f"{place.code} needs G94 or G95, not G93"),
-        (found.plane != YZ, f"{place.code} needs G18 or G17, not G19"),
-        (interp.rotation_xy == 0, f"{place.code} needs an unrotated work offset (G10 L2 R0)"),
-        (
-            found.x > 0,
-            f"{place.code} needs the tool at X above zero, not at {number(found.x)} (radius)",
-        ),
+        (stands_alone(interp), f"{code} stands alone in its block"),
+        (not found.compensated, f"{code} needs G40: compensation is switched on inside"),
+        (not found.inverse_time, f"{code} needs G94 or G95, not G93"),
+        (found.plane != YZ, f"{code} needs G18 or G17, not G19"),
+        (interp.rotation_xy == 0, f"{code} needs an unrotated work offset (G10 L2 R0)"),
+        (found.x > 0, above),
     )
     for holds, rule in rules:
         if not holds:
@@ -156,7 +111,7 @@ def check_start(interp: object, place: Place) -> None:
 
 
 def in_mdi(interp: object) -> bool:
-    """Tell whether the block comes from MDI, where the next line could be that of an old program."""
+    """Tell whether the block comes from MDI, where the next line could be an old program's."""
     if not interp.task:
         return False
     status = linuxcnc.stat()
@@ -167,17 +122,71 @@ def in_mdi(interp: object) -> bool:
 def stands_alone(interp: object) -> bool:
     """Tell whether the block holds nothing but the code."""
     block = interp.blocks[interp.remap_level]
-    return alone(block_of(block)) and not any(
-        getattr(block, f"{word}_flag") for word in OTHER_WORDS
+    others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
+    return alone(block_of(block)) and not others
+
+
+def setup_of_section(interp: object, code: str) -> Setup:
+    """Return what a section needs to know that begins with the block being remapped."""
+    units, off_code = program_units(interp), code_switching_off(code)
+    return Setup(
+        rules=rules_of_section(interp, code),
+        off_code=off_code,
+        on=number_of_code(code),
+        off=number_of_code(off_code),
+        c=interp.CC_current,
+        plan=polar.Settings(
+            tolerance=tolerance() * units,
+            least_x=LEAST_X_MM * units / MILLIMETRES,
+            x_acceleration=AXES["X"].acceleration * units,
+            c_acceleration=AXES["C"].acceleration,
+            c_speed=AXES["C"].velocity * 60,
+            pole_refused=host.SETTINGS.polar_pole == "refuse",
+        ),
+        travel=Travel(AXES, scales_of_axes(interp)),
+        remapped={
+            int(name[1:]): "ngc" in options for name, options in REMAPS.items() if name[0] == "M"
+        },
     )
 
 
-def tolerance_of(settings: object) -> float:
+def rules_of_section(interp: object, code: str) -> Rules:
+    """Return how a section reads its words."""
+    settings, units = host.SETTINGS, program_units(interp)
+    g7 = host.diameter_mode(interp)
+    diameter = g7 if settings.polar_x == "inherit" else settings.polar_x == "diameter"
+    return Rules(
+        code=code,
+        level=interp.call_level,
+        diameter=diameter,
+        x_scale=(0.5 if diameter else 1.0) / (0.5 if g7 else 1.0),  # G7 has halved it already
+        z_with_x=settings.polar_z == "allow",
+        rapid_feed=settings.polar_g0_feed * units if settings.polar_g0 == "feed" else None,
+        closing=CLOSING_MM * units / MILLIMETRES,
+        tool_radius=functools.partial(tool_radius, interp),
+    )
+
+
+def emission_of_section(interp: object, code: str) -> Emission:
+    """Return what hands the moves of a section over."""
+    return Emission(
+        interp,
+        code,
+        x_factor=2.0 if host.diameter_mode(interp) else 1.0,
+        blending=tolerance() / 2 * program_units(interp),
+        absolute=MODE_ABSOLUTE,
+    )
+
+
+def program_units(interp: object) -> float:
+    """Return the factor from lengths of the INI file to the program's units."""
+    return MILLIMETRES / MM_PER_INCH if host.snapshot(interp).inch else MILLIMETRES
+
+
+def tolerance() -> float:
     """Return POLAR_TOLERANCE in machine units."""
-    if settings.polar_tolerance:
-        return settings.polar_tolerance
-    metric = emccanon.GET_EXTERNAL_LENGTH_UNITS() > 0.5  # machine units per mm
-    return DEFAULT_TOLERANCE_MM if metric else DEFAULT_TOLERANCE_INCH
+    default = DEFAULT_TOLERANCE_MM if MILLIMETRES == 1 else DEFAULT_TOLERANCE_INCH
+    return host.SETTINGS.polar_tolerance or default
 
 
 def tool_radius(interp: object) -> float | None:
@@ -199,10 +208,10 @@ def number_of_code(code: str) -> int:
     return round(float(code[1:]) * 10)
 
 
-def scales_of_axes(interp: object, units: float) -> dict[str, Scale]:
-    """Return how the program's X, Z and C become machine coordinates; ``units`` per machine unit."""
-    offset = interp.tool_offset
-    x = interp.origin_offset_x + interp.axis_offset_x + offset.x
-    z = interp.origin_offset_z + interp.axis_offset_z + offset.z
-    c = interp.CC_origin_offset + interp.CC_axis_offset + offset.c
-    return {"X": Scale(1 / units, x / units), "Z": Scale(1 / units, z / units), "C": Scale(1.0, c)}
+def scales_of_axes(interp: object) -> dict[str, Scale]:
+    """Return how the program's X, Z and C become machine coordinates."""
+    factor, tool = 1 / program_units(interp), interp.tool_offset
+    x = interp.origin_offset_x + interp.axis_offset_x + tool.x
+    z = interp.origin_offset_z + interp.axis_offset_z + tool.z
+    c = interp.CC_origin_offset + interp.CC_axis_offset + tool.c
+    return {"X": Scale(factor, x * factor), "Z": Scale(factor, z * factor), "C": Scale(1.0, c)}

@@ -21,25 +21,27 @@ SKIPPED_OVER = "g12_skipped_over"  # the name of a sub that never exists in a fi
 
 
 class Source(NamedTuple):
-    """A program file: its lines, and the byte at which each begins."""
+    """A program file: its lines, the byte at which each begins, and when it was written."""
 
-    version: tuple
+    filename: str
     lines: list[str]
     starts: list[int]
+    version: tuple[int, int]
 
 
 def read_source(filename: str, known: Source | None = None) -> Source:
-    """Return the lines of a program file; ``known`` again if the file has not changed since."""
+    """Return the lines of a program file; ``known`` again if that is the file, unchanged."""
     status = os.stat(filename)
-    version = (filename, status.st_mtime_ns, status.st_size)
-    if known and known.version == version:
+    version = (status.st_mtime_ns, status.st_size)
+    if known and (known.filename, known.version) == (filename, version):
         return known
     with open(filename, "rb") as file:
         lines = file.read().split(b"\n")
     if not lines[-1]:
         lines.pop()
     starts = list(accumulate((len(line) + 1 for line in lines), initial=0))
-    return Source(version, [line.decode("utf-8", "replace") for line in lines], starts)
+    text = [line.decode("utf-8", "replace") for line in lines]
+    return Source(filename, text, starts, version)
 
 
 class LineOfFile(int):
@@ -59,43 +61,44 @@ class LineOfFile(int):
 class Program:
     """The lines that follow the block being remapped.
 
-    ``line`` is the number of the line taken last, counted from 1 as an editor does.
+    ``line`` is the number of the line taken last, counted from 1 as an editor does; ``place`` is
+    the same number, and tells the file in messages if that is another one. ``known`` is the source
+    of an earlier section, which may be in the same file.
     """
 
     def __init__(self, interp: object, known: Source | None = None) -> None:
         self.interp = interp
-        self.home = interp.filename
-        self.source = read_source(self.home, known)
+        self.home = self.source = read_source(interp.filename, known)
         self.line = bisect_right(self.source.starts, interp.blocks[interp.remap_level].offset)
         self._in_file = self.line  # how far the interpreter has read its file
         interp.sequence_number = self.line
 
     @property
-    def in_sub_file(self) -> bool:
-        """Tell whether the line taken last is in another file than the block being remapped."""
-        return self.source.version[0] != self.home
-
-    @property
     def place(self) -> int:
-        """The number of the line taken last, which an operator reads with its file's name."""
-        if not self.in_sub_file:
+        """The number of the line taken last, for the operator."""
+        if self.source is self.home:
             return self.line
-        return LineOfFile(self.line, os.path.basename(self.source.version[0]))
+        return LineOfFile(self.line, os.path.basename(self.source.filename))
 
     def take(self) -> str | None:
         """Return the next line and count it as read; None at the end of the file."""
-        if self.line == len(self.source.lines):
+        line, lines = self.line, self.source.lines
+        if line == len(lines):
             return None
-        self.line += 1
-        return self.source.lines[self.line - 1]
+        self.line = line + 1
+        return lines[line]
 
     def parse(self, text: str | None = None) -> None:
         """Let the interpreter parse the line taken, or ``text`` in its place."""
-        interp, raw = self.interp, self.source.lines[self.line - 1]
-        interp.sequence_number = self.line
-        if text is not None and len(raw) > SHORT:
-            interp.read(" " * len(raw))  # refused if the line is longer than a line may be
-        interp.read(raw if text is None else text)
+        self.interp.sequence_number = self.line
+        self.interp.read(self.source.lines[self.line - 1] if text is None else text)
+
+    def parse_rewritten(self, text: str) -> None:
+        """Let the interpreter parse the line taken, rewritten; refuse it if it is too long."""
+        length = len(self.source.lines[self.line - 1])
+        if length > SHORT:
+            self.parse(" " * length)
+        self.parse(text)
 
     def control(self, kind: str) -> int:
         """Let the interpreter obey the line taken, an O-word, and go on where it leads.
@@ -146,8 +149,9 @@ class Program:
     def _locate(self) -> None:
         """Go on where the interpreter stands in its file."""
         interp = self.interp
-        if interp.filename != self.source.version[0]:
-            self.source = read_source(interp.filename)
+        if interp.filename != self.source.filename:
+            at_home = interp.filename == self.home.filename
+            self.source = self.home if at_home else read_source(interp.filename)
         interp.read("")
         self.line = bisect_right(self.source.starts, interp.blocks[0].offset - 1)
         self._in_file = interp.sequence_number = self.line

@@ -1,25 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the axes of a machine can do, from its INI file, and whether moves stay within it."""
+"""Whether planned moves stay within the travel of the machine's axes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from typing import NamedTuple
 
+from .machine import Axis
 from .polar import Run
-from .settings import section_entries
-
-NO_LIMIT = 1e99
-DEFAULT_SPEED = 1.0  # of an axis without MAX_VELOCITY or MAX_ACCELERATION
-
-
-class Axis(NamedTuple):
-    """One axis in machine units (degrees for C) and seconds: where it may go, and how fast."""
-
-    low: float
-    high: float
-    velocity: float
-    acceleration: float
 
 
 class Scale(NamedTuple):
@@ -54,38 +42,23 @@ class Travel:
         ]
         self._scales = scales
 
-    def beyond(self, runs: Iterable[Run]) -> Beyond | None:
+    def beyond(self, steps: Iterable[Run | object]) -> Beyond | None:
         """Return the first move that leaves the travel of an axis, None if all stay within."""
-        for run in runs:
-            for (letter, limits), positions in zip(self._ranges, zip(*run.pieces)):
-                if (
-                    letter in run.axes
-                    and not limits[0] <= min(positions) <= max(positions) <= limits[1]
-                ):
-                    return self._first(run, letter, limits, positions)
+        runs = [step for step in steps if isinstance(step, Run)]
+        columns = zip(*(piece for run in runs for piece in run.pieces))
+        for (letter, limits), positions in zip(self._ranges, columns):
+            if min(positions) < limits[0] or limits[1] < max(positions):
+                return self._first(runs, letter, limits)
         return None
 
-    def _first(
-        self, run: Run, letter: str, limits: list[float], positions: Sequence[float]
-    ) -> Beyond:
-        position = next(
-            position for position in positions if not limits[0] <= position <= limits[1]
+    def _first(self, runs: list[Run], letter: str, limits: list[float]) -> Beyond:
+        at = "XCZ".index(letter)
+        line, position = next(
+            (run.line, piece[at])
+            for run in runs
+            for piece in run.pieces
+            if not limits[0] <= piece[at] <= limits[1]
         )
         limit = limits[0] if position < limits[0] else limits[1]
         factor, offset = self._scales[letter]
-        return Beyond(run.line, letter, position * factor + offset, limit * factor + offset)
-
-
-def axes_from_ini(text: str) -> dict[str, Axis]:
-    """Return the axes X, Z and C of an (expanded) INI file."""
-    return {letter: _axis(dict(section_entries(text, f"AXIS_{letter}"))) for letter in "XZC"}
-
-
-def _axis(entries: Mapping[str, str]) -> Axis:
-    keys = (
-        ("MIN_LIMIT", -NO_LIMIT),
-        ("MAX_LIMIT", NO_LIMIT),
-        ("MAX_VELOCITY", DEFAULT_SPEED),
-        ("MAX_ACCELERATION", DEFAULT_SPEED),
-    )
-    return Axis(*(float(entries.get(key, f"{default}").split()[0]) for key, default in keys))
+        return Beyond(line, letter, position * factor + offset, limit * factor + offset)

@@ -16,7 +16,7 @@ def lathe():
 
 @pytest.fixture(scope="module")
 def subs(tmp_path_factory):
-    """A lathe with subs and remapped codes in files of their own."""
+    """Open a lathe with subs and remapped codes in files of their own."""
     directory = tmp_path_factory.mktemp("subs")
     files = {
         "flat": "o<flat> sub\nG1 X#1\n#<depth>=[#2 * 2]\nC#<depth>\no<flat> endsub [#<depth>]\n",
@@ -97,8 +97,14 @@ def test_assignments_on_a_line_that_has_to_be_rewritten(lathe):
 @pytest.mark.parametrize("name", ["#5420", "#<_x>"])
 def test_position_parameters_show_the_plane(lathe, name):
     c = {"#5420": "#5425", "#<_x>": "#<_c>"}[name]
-    traced = cut(lathe, "G1 X-12 C3", f"X[{name} - 1] C[{c} + 1]", f"(DEBUG,{name} {c} #5422)", "Z-2",
-                 "(DEBUG,#<_z>)")  # fmt: skip
+    traced = cut(
+        lathe,
+        "G1 X-12 C3",
+        f"X[{name} - 1] C[{c} + 1]",
+        f"(DEBUG,{name} {c} #5422)",
+        "Z-2",
+        "(DEBUG,#<_z>)",
+    )
     assert ends(traced)[1] == (-13, 4)
     assert texts(traced) == ["-13.000000 4.000000 5.000000", "-2.000000"]
 
@@ -153,28 +159,44 @@ def test_rewritten_lines_between_o_words(lathe):
 
 
 CONTROL = {
-    "if": (["o1 if [#1 EQ 1]", "G1 X12", "o1 else", "G1 X99", "H-3", "o1 endif", "C1"], [(12, 0), (12, 1)]),
-    "else": (["o1 if [#1 EQ 2]", "G1 X99 U3", "M9", "o1 else", "G1 X12", "o1 endif"], [(12, 0)]),
+    "if": (
+        ["o1 if [#1 EQ 1]", "G1 X12", "o1 else", "G1 X99", "H-3", "o1 endif", "C1"],
+        [(12, 0), (12, 1)],
+    ),
+    "else": (
+        ["o1 if [#1 EQ 2]", "G1 X99 U3", "M9", "o1 else", "G1 X12", "o1 endif"],
+        [(12, 0)],
+    ),
     "elseif": (
         ["o1 if [0]", "U1", "o1 elseif [#1]", "G1 X12", "o1 elseif [1]", "G1 X99", "o1 endif"],
         [(12, 0)],
     ),
-    "while": (["#2=3", "o1 while [#2 GT 0]", "G1 U-1", "#2=[#2-1]", "o1 endwhile"], [(17, 0)]),
-    "do": (["#2=3", "o1 do", "G1 X[10+#2]", "#2=[#2-1]", "H1", "o1 while [#2 GT 1]"], [(13, 0), (13, 1), (12, 1), (12, 2)]),
+    "while": (
+        ["#2=3", "o1 while [#2 GT 0]", "G1 U-1", "#2=[#2-1]", "o1 endwhile"],
+        [(17, 0)],
+    ),
+    "do": (
+        ["#2=3", "o1 do", "G1 X[10+#2]", "#2=[#2-1]", "H1", "o1 while [#2 GT 1]"],
+        [(13, 0), (13, 1), (12, 1), (12, 2)],
+    ),
     "repeat": (["o1 repeat [2]", "G1 X12", "X13", "o1 endrepeat"], [(12, 0), (13, 0)] * 2),
-    "repeat none": (["o1 repeat [0]", "G1 X12", "U1", "#<a>=1", "o1 endrepeat", "G1 C1"], [(20, 1)]),
+    "repeat none": (
+        ["o1 repeat [0]", "G1 X12", "U1", "#<a>=1", "o1 endrepeat", "G1 C1"],
+        [(20, 1)],
+    ),
     "break": (
-        ["o1 while [1]", "G1 U-1", "o2 if [#5420 LT 18]", "o1 break", "o2 endif", "C3", "C0", "o1 endwhile"],
+        ["o1 while [1]", "G1 U-1", "o2 if [#5420 LT 18]", "o1 break", "o2 endif", "C3", "C0",
+         "o1 endwhile"],
         [(19, 0), (19, 3), (19, 0), (18, 0), (18, 3), (18, 0), (17, 0)],
     ),
     "continue": (
-        ["#2=0", "o1 while [#2 LT 2]", "#2=[#2+1]", "G1 U-1", "o2 if [#2 EQ 1]", "o1 continue", "o2 endif",
-         "C3", "o1 endwhile"],
+        ["#2=0", "o1 while [#2 LT 2]", "#2=[#2+1]", "G1 U-1", "o2 if [#2 EQ 1]", "o1 continue",
+         "o2 endif", "C3", "o1 endwhile"],
         [(18, 0), (18, 3)],
     ),
     "nested": (
-        ["o1 repeat [2]", "o2 if [#1 EQ 1]", "G1 X11", "o2 else", "G1 X12", "o2 endif", "#1=[#1+1]",
-         "o1 endrepeat"],
+        ["o1 repeat [2]", "o2 if [#1 EQ 1]", "G1 X11", "o2 else", "G1 X12", "o2 endif",
+         "#1=[#1+1]", "o1 endrepeat"],
         [(11, 0), (12, 0)],
     ),
 }  # fmt: skip
@@ -210,9 +232,20 @@ def test_a_section_inside_a_loop_and_a_loop_inside_it(lathe):
 def test_labels_are_those_of_the_program_around(lathe):
     one = ["o1 if [1]", "G1 X11", "o1 endif"]
     program = [
-        FIRST, "o<s> sub", "G12.1", "G1 F100", *one, "G13.1", "o<s> endsub", START, "o<s> call", "G12.1", *one,
-        "G13.1", "M2",
-    ]  # fmt: skip
+        FIRST,
+        "o<s> sub",
+        "G12.1",
+        "G1 F100",
+        *one,
+        "G13.1",
+        "o<s> endsub",
+        START,
+        "o<s> call",
+        "G12.1",
+        *one,
+        "G13.1",
+        "M2",
+    ]
     assert ends(lathe.trace_text(program)) == [(11, 0)]
 
 
@@ -244,9 +277,15 @@ def test_subs_of_other_files(subs):
 
 def test_return_and_recursion(lathe):
     sub = [
-        "o<down> sub", "G1 U-1", "o1 if [#1 LE 1]", "o<down> return", "o1 endif", "o<down> call [#1 - 1]",
-        "H1", "o<down> endsub",
-    ]  # fmt: skip
+        "o<down> sub",
+        "G1 U-1",
+        "o1 if [#1 LE 1]",
+        "o<down> return",
+        "o1 endif",
+        "o<down> call [#1 - 1]",
+        "H1",
+        "o<down> endsub",
+    ]
     traced = lathe.trace_text([*sub, *section("o<down> call [3]", "X5")])
     assert ends(traced) == [(17, 0), (17, 1), (17, 2), (5, 2)] or ends(traced)[-1] == (5, 2)
 
@@ -330,7 +369,8 @@ def test_a_file_without_a_last_newline(lathe, tmp_path):
 
 def test_a_program_that_is_not_utf8(lathe, tmp_path):
     program = tmp_path / "cut.ngc"
-    program.write_bytes("\n".join(section("(Fläche \xb0)", "G1 X12 (ä)", "U-2")).encode("latin-1"))
+    text = "\n".join(section("(Fläche \xb0)", "G1 X12 (ä)", "U-2"))
+    program.write_bytes(text.encode("latin-1"))
     assert ends(lathe.trace(program)) == [(12, 0), (10, 0)]
 
 

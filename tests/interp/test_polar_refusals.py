@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G12.1 on the stock interpreter: every refusal, with its line, before anything of the section moves."""
+"""G12.1 on the stock interpreter: every refusal, with its line, before anything moves."""
 
 import pytest
 
@@ -37,7 +37,11 @@ def refused(lathe, program):
 
 
 INSIDE = [
-    ("G0 X12", "G0 is refused: a rapid leaves the contour; use G1 with a high F, or set [G12] POLAR_G0 = feed"),
+    (
+        "G0 X12",
+        "G0 is refused: a rapid leaves the contour; use G1 with a high F, "
+        "or set [G12] POLAR_G0 = feed",
+    ),
     ("G10 L2 P1 X1", f"G10 is refused: {OFFSETS}"),
     ("G17.1", "G17.1 is refused: the section's plane is X-C"),
     ("G19", "G19 is refused: the section's plane is X-C"),
@@ -110,13 +114,17 @@ INSIDE = [
     ("G1 U5 U6", "Multiple x words on one line"),
     ("G1 G2 X5", "Two g codes used from same modal group"),
     ("G1 X5 R3", "R word with no g code that uses it"),
-    ("G1 X5 P3", "P word with no G2 G3 G4 G10 G64 G5 G5.2 G76 G82 G86 G88 G89 or M50 M51 M52 M53 M62 M63 M64 "
-                 "M65 M66 M98 or user M code to use it"),
+    (
+        "G1 X5 P3",
+        "P word with no G2 G3 G4 G10 G64 G5 G5.2 G76 G82 G86 G88 G89 or M50 M51 M52 M53 "
+        "M62 M63 M64 "
+        "M65 M66 M98 or user M code to use it",
+    ),
     ("G1 X[1/0]", "Attempt to divide by zero"),
     ("G4", "Dwell time missing with g4"),
     ("G1 X#<a>", "Named parameter #<a> not defined"),
     ("G12.7", "Unknown g code used"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("block", "reason"), INSIDE)
@@ -143,8 +151,18 @@ def test_off_code_in_a_sub_that_the_section_calls(lathe):
 
 
 def test_a_section_that_ends_behind_its_sub(lathe):
-    program = ["o<s> sub", "G12.1", "G1 X15", "o<s> endsub", FIRST, "G0 X20 Z5 C0", "F100", "o<s> call",
-               "G13.1", "M2"]  # fmt: skip
+    program = [
+        "o<s> sub",
+        "G12.1",
+        "G1 X15",
+        "o<s> endsub",
+        FIRST,
+        "G0 X20 Z5 C0",
+        "F100",
+        "o<s> call",
+        "G13.1",
+        "M2",
+    ]
     text, line = refused(lathe, program)
     assert (text, line) == ("G12.1 line 4: G13.1 is missing: endsub comes before it", 4)
 

@@ -198,10 +198,21 @@ def test_offset_zero_is_legal():
 def test_actions_between_the_blocks_of_a_compensated_corner(lathe):
     plain = ["G1 C9", "G41 X12", "C-9", "G2 X-12 R15", "G1 C9", "G40 X-20"]
     busy = [
-        "G1 C9", "M8", "(MSG, x)", "G41 X12 (ramp)", "Z-2", "S500", "C-9", "M9", "G2 X-12 R15", "#1=2", "G1 C9",
-        "Z5", "G40 X-20",
-    ]  # fmt: skip
-    points = [{point for point in ends(cut(lathe, *body))} for body in (plain, busy)]
+        "G1 C9",
+        "M8",
+        "(MSG, x)",
+        "G41 X12 (ramp)",
+        "Z-2",
+        "S500",
+        "C-9",
+        "M9",
+        "G2 X-12 R15",
+        "#1=2",
+        "G1 C9",
+        "Z5",
+        "G40 X-20",
+    ]
+    points = [set(ends(cut(lathe, *body))) for body in (plain, busy)]
     assert points[0] == points[1]
 
 

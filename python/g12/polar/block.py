@@ -151,9 +151,7 @@ class Line(NamedTuple):
 
 
 class Block(NamedTuple):
-    """What the parser made of a line: codes by modal group (-1 is none), motion to be, word
-    values.
-    """
+    """What the parser made of a line: codes by modal group, -1 is none, and word values."""
 
     g: tuple[int, ...]
     m: tuple[int, ...]
@@ -266,7 +264,7 @@ def check_block(block: Block, rapid_allowed: bool, place: Place) -> None:
     """Refuse codes that have no place in a section, each with its reason."""
     for group, code in enumerate(block.g):
         if code != NO_CODE and (
-            code not in KNOWN_G.get(group, ()) or code == G0 and not rapid_allowed
+            code not in KNOWN_G.get(group, ()) or (code == G0 and not rapid_allowed)
         ):
             reason = REASON_OF_G.get(code, REASON_OF_GROUP.get(group, "it is not known here"))
             raise place.refuse(f"G{code / 10:g} is refused: {reason}")
@@ -280,14 +278,12 @@ def check_block(block: Block, rapid_allowed: bool, place: Place) -> None:
 
 
 def _feed_modes(block: Block) -> set[bool]:
-    """The feed modes that a block commands; True is per revolution."""
+    """Return the feed modes that a block commands; True is per revolution."""
     return {FEED_MODES[code] for code in (block.g[FEED], block.g[RETRACT]) if code in FEED_MODES}
 
 
 def alone(block: Block, m_code: int = NO_CODE) -> bool:
-    """Tell whether the block holds a motion code and nothing else, or ``m_code`` and its
-    arguments.
-    """
+    """Tell whether the block holds only a motion code, or ``m_code`` and its arguments."""
     if m_code == NO_CODE:
         others = [*block.g[:MOTION], *block.g[MOTION + 1 :], *block.m]
         return not block.words and max(others) == NO_CODE
@@ -311,9 +307,7 @@ def modes_after(modes: Modes, block: Block) -> Modes:
 
 
 def action_text(block: Block, line: Line) -> str:
-    """Return the block for what the machine does besides motion, with every value read; "" if
-    nothing.
-    """
+    """Return the block without its motion, every value read; "" if nothing is left."""
     codes = [f"G{block.g[group] / 10:g}" for group in PASSED_ON if block.g[group] != NO_CODE]
     codes += [
         f"M{code}"

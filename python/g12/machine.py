@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a machine's INI file says of its units, its axes X, Z and C, and its remapped codes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from .context import MM_PER_INCH
+from .settings import section_entries
+
+NO_LIMIT = 1e99
+DEFAULT_SPEED = 1.0  # of an axis without MAX_VELOCITY or MAX_ACCELERATION
+INCHES = ("in", "inch", "imperial")
+
+
+class Axis(NamedTuple):
+    """One axis in machine units (degrees for C) and seconds: where it may go, and how fast."""
+
+    low: float
+    high: float
+    velocity: float
+    acceleration: float
+
+
+def millimetres_of(text: str) -> float:
+    """Return the length of a machine unit in mm."""
+    unit = dict(section_entries(text, "TRAJ")).get("LINEAR_UNITS", "mm").split()[0].lower()
+    return MM_PER_INCH if unit in INCHES else 1.0
+
+
+def axes_of(text: str) -> dict[str, Axis]:
+    """Return the axes X, Z and C."""
+    return {letter: _axis(dict(section_entries(text, f"AXIS_{letter}"))) for letter in "XZC"}
+
+
+def _axis(entries: Mapping[str, str]) -> Axis:
+    keys = (
+        ("MIN_LIMIT", -NO_LIMIT),
+        ("MAX_LIMIT", NO_LIMIT),
+        ("MAX_VELOCITY", DEFAULT_SPEED),
+        ("MAX_ACCELERATION", DEFAULT_SPEED),
+    )
+    return Axis(*(float(entries.get(key, f"{default}").split()[0]) for key, default in keys))
+
+
+def remaps_of(text: str) -> dict[str, dict[str, str]]:
+    """Return the REMAP lines: code in upper case, then its options."""
+    lines = [value.split() for key, value in section_entries(text, "RS274NGC") if key == "REMAP"]
+    return {
+        code.upper(): dict(option.split("=", 1) for option in options if "=" in option)
+        for code, *options in lines
+    }

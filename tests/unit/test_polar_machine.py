@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the INI file says of a machine, and the travel of its axes."""
+
+import pytest
+
+from g12.machine import Axis, axes_of, millimetres_of, remaps_of
+from g12.polar import Run
+from g12.travel import Beyond, Scale, Travel
+
+INI = """
+[RS274NGC]
+REMAP = G12.1 modalgroup=1 python=polar_on
+REMAP=m410 modalgroup=10 argspec=P ngc=m410
+[TRAJ]
+LINEAR_UNITS = {units}
+[AXIS_X]
+MIN_LIMIT = -10 ; comment
+MAX_LIMIT = 300
+MAX_VELOCITY = 150
+MAX_ACCELERATION = 1000
+[AXIS_C]
+MAX_VELOCITY = 360
+"""
+
+
+def test_axes():
+    axes = axes_of(INI)
+    assert axes["X"] == Axis(-10, 300, 150, 1000)
+    assert axes["C"] == Axis(-1e99, 1e99, 360, 1)
+    assert axes["Z"] == Axis(-1e99, 1e99, 1, 1)
+
+
+@pytest.mark.parametrize(
+    ("units", "length"),
+    [("mm", 1), ("metric", 1), ("inch", 25.4), ("in", 25.4), ("IMPERIAL", 25.4)],
+)
+def test_units(units, length):
+    assert millimetres_of(INI.format(units=units)) == length
+    assert millimetres_of("") == 1
+
+
+def test_remaps():
+    assert remaps_of(INI) == {
+        "G12.1": {"modalgroup": "1", "python": "polar_on"},
+        "M410": {"modalgroup": "10", "argspec": "P", "ngc": "m410"},
+    }
+
+
+def travel(offset=0.0):
+    axes = axes_of(INI)
+    scale = {"X": Scale(1.0, offset), "Z": Scale(1.0, 0.0), "C": Scale(1.0, 0.0)}
+    return Travel(axes, scale)
+
+
+def test_moves_within_the_travel():
+    steps = [Run(3, "XC", [(0, 0, 0, 1), (300, 1e6, 0, 1)], False), "an action"]
+    assert travel().beyond(steps) is None
+    assert travel().beyond([]) is None
+
+
+def test_the_first_move_beyond_is_named_in_machine_coordinates():
+    steps = [
+        Run(3, "XC", [(290, 0, 0, 1)], False),
+        Run(4, "XC", [(20, 0, 0, 1), (301, 0, 0, 1)], False),
+    ]
+    assert travel().beyond(steps) == Beyond(4, "X", 301, 300)
+    assert travel(offset=20).beyond(steps) == Beyond(3, "X", 310, 300)
+
+
+def test_inches_on_a_metric_machine():
+    scales = {"X": Scale(25.4, -1.0), "Z": Scale(25.4, 0.0), "C": Scale(1.0, 0.0)}
+    beyond = Travel(axes_of(INI), scales).beyond([Run(3, "XC", [(12, 0, 0, 1)], False)])
+    assert beyond.position == pytest.approx(12 * 25.4 - 1)
+    assert beyond.limit == pytest.approx(300)
