@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from shapely.geometry import MultiLineString, Point
 from shapely.geometry.base import BaseGeometry
 
 from g12.cli.motion import Followed, Track
@@ -187,18 +188,32 @@ def ring(inner: float, outer: float) -> BaseGeometry:
 
 
 def stepover_of(lines: Sequence[np.ndarray]) -> float | None:
-    """Return the largest distance between two neighbouring passes, in any direction.
+    """Return the largest distance between neighbouring passes, None if there is but one.
 
-    Moves through the centre, which lead to the first ring and from the last, are no passes.
+    It is twice the distance from the middle of a gap between passes to the nearest path. Moves
+    through the centre, which lead to the first ring and from the last, bound no gap.
     """
     passes = [line for line in lines if is_pass(line)]
-    if not passes:
-        return None
-    sector, radius = polar(np.concatenate(passes))
+    gaps = gaps_between(np.concatenate(passes)) if passes else ()
+    ways = MultiLineString([line[:, :2] for line in lines])
+    return max((2 * ways.distance(Point(gap)) for gap in gaps), default=None)
+
+
+def gaps_between(points: np.ndarray) -> np.ndarray:
+    """Return the middle (n, 2) of the widest gap between passes in each direction."""
+    sector, radius = polar(points)
     order = np.lexsort((radius, sector))
-    gap = np.diff(radius[order])[np.diff(sector[order]) == 0]
-    largest = float(gap.max(initial=0.0))
-    return largest if largest > SAME_LEVEL else None
+    sector, radius = sector[order], radius[order]
+    gap = np.where(np.diff(sector) == 0, np.diff(radius), 0.0)
+    middles = []
+    for first, last in zip(*(np.searchsorted(sector, range(k, k + SECTORS)) for k in (0, 1))):
+        if last - first > 1:
+            index = first + int(np.argmax(gap[first : last - 1]))
+            if gap[index] > SAME_LEVEL:
+                angle = (sector[index] + 0.5) / SECTORS * 2 * np.pi
+                half = (radius[index] + radius[index + 1]) / 2
+                middles.append((half * np.cos(angle), half * np.sin(angle)))
+    return np.array(middles).reshape(-1, 2)
 
 
 def is_pass(line: np.ndarray) -> bool:

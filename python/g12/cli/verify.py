@@ -21,6 +21,7 @@ from g12.cli.command import (
     one_line,
     progress,
     run_program,
+    traced,
 )
 from g12.cli.measure_pocket import PocketFacts
 from g12.cli.measure_section import SectionFacts
@@ -248,6 +249,7 @@ def main(arguments: list[str]) -> int:
     ini = checked_ini(asked.program, asked.ini, asked.tools)
     run = None
     if asked.run:
+        traced(asked.program, asked.ini, asked.tools)
         with progress(f"running {asked.program.name}, real time"):
             run = run_program(asked.program, asked.ini, asked.tools, asked.override)
     proof = prove(asked.program, ini, tools=asked.tools, run=run, tolerance=asked.tolerance)

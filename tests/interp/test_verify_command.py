@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The commands plot and verify as they are called: output, exit codes, wrong uses."""
+
+import json
+
+import pytest
+
+from g12.cli.main import main
+from machines import PROGRAMS, SIM
+
+MILL = str(SIM / "mill_mm_headless.ini")
+LATHE = str(SIM / "lathe_mm_headless.ini")
+HEAD = "G21 G17 G40 G49 G54 G80 G90 G94 F600\nT4 M6\nG0 X0 Y0 Z1\n"
+GOOD = HEAD + "G12 I7 K20 Q6 Z-3 D4\nM2\n"
+WIDE = HEAD + "G12 I7 K40 Q15 Z-3 D4\nM2\n"
+PLAIN = HEAD + "G1 X50 Y20 F300\nM2\n"
+WRONG = HEAD + "G12 I4 Z-3 D4\nM2\n"
+STILL = "G21\nM2\n"
+
+
+@pytest.fixture
+def written(tmp_path):
+    def write(text):
+        path = tmp_path / "program.ngc"
+        path.write_text(text)
+        return str(path)
+
+    return write
+
+
+def verify(capsys, *arguments):
+    code = main(["verify", *arguments])
+    said = capsys.readouterr()
+    return code, said.out, said.err
+
+
+def test_a_good_pocket_ends_with_0(written, capsys):
+    code, out, err = verify(capsys, written(GOOD), "--ini", MILL)
+    assert (code, err) == (0, "")
+    assert "programmed 20, reached 20 mm" in out
+    assert out.endswith("verdict: good, everything is as programmed\n")
+
+
+def test_a_finding_ends_with_1_and_is_told(written, capsys):
+    code, out, _ = verify(capsys, written(WIDE), "--ini", MILL)
+    assert code == 1
+    assert "FINDING" in out and "left standing" in out and out.endswith("verdict: 1 finding\n")
+
+
+def test_json_has_the_same_in_millimetres(written, capsys):
+    code, out, _ = verify(capsys, written(WIDE), "--ini", MILL, "--json", "--units", "inch")
+    told = json.loads(out)
+    (pocket,) = told["pockets"]
+    assert (code, told["good"], told["real"], told["sections"]) == (1, False, False, [])
+    assert pocket["radius"] == pytest.approx(40) and pocket["reached"] == pytest.approx(40)
+    assert pocket["stepover"] == pytest.approx(15, abs=0.01) and pocket["left"] > 100
+    assert pocket["findings"]
+
+
+def test_json_of_a_polar_section(capsys):
+    program = str(PROGRAMS / "polar" / "hexagon.ngc")
+    code, out, _ = verify(capsys, program, "--ini", LATHE, "--json")
+    (section,) = json.loads(out)["sections"]
+    assert code == 0
+    assert section["radii"][0] == pytest.approx(13.5)
+    assert 0 < section["deviation"] < 0.005 and section["c_speed"] < section["c_limit"] == 360
+    assert section["pieces"] > 20 and section["shortest"] <= section["longest"]
+
+
+def test_a_tolerance_of_ones_own(written, capsys):
+    program = str(PROGRAMS / "polar" / "hexagon.ngc")
+    code, out, _ = verify(capsys, program, "--ini", LATHE, "--tolerance", "0.001")
+    assert code == 1 and "off the contour" in out
+
+
+def test_lengths_are_shown_in_inches_on_demand(written, capsys):
+    _, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--units", "inch")
+    assert "programmed 0.7874, reached 0.7874 in" in out
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "said"),
+    [
+        (WRONG, 1, "program.ngc:4: G12: I4 must be greater than the tool radius 5"),
+        (PLAIN, 2, "has no pocket and no polar section to verify"),
+    ],
+)
+def test_verify_says_in_one_line_why_it_cannot(text, code, said, written, capsys):
+    found, out, err = verify(capsys, written(text), "--ini", MILL)
+    assert (found, out) == (code, "")
+    assert err.startswith("g12 verify: ") and said in err and err.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["verify", "plot"])
+@pytest.mark.parametrize("missing", ["program", "ini", "tools"])
+def test_missing_files_are_named(command, missing, written, tmp_path, capsys):
+    names = {"program": written(GOOD), "ini": MILL, "tools": str(SIM / "mill_mm.tbl")}
+    names[missing] = str(tmp_path / "nothing")
+    arguments = [command, names["program"], "--ini", names["ini"], "--tools", names["tools"]]
+    arguments += ["-o", str(tmp_path / "x.png")] if command == "plot" else []
+    assert main(arguments) == 2
+    assert capsys.readouterr().err == f"g12 {command}: {names[missing]}: no such file\n"
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+@pytest.mark.parametrize("extra", [[], ["--feeds"]])
+def test_plot_writes_the_picture_asked_for(suffix, extra, written, tmp_path, capsys):
+    path = tmp_path / f"picture.{suffix}"
+    assert main(["plot", written(GOOD), "--ini", MILL, "-o", str(path), *extra]) == 0
+    assert path.stat().st_size > 5000
+    assert capsys.readouterr().err == ""
+
+
+def test_plot_draws_any_program_and_a_lathe_with_c(written, tmp_path):
+    for program, ini in ((written(PLAIN), MILL), (PROGRAMS / "polar" / "square.ngc", LATHE)):
+        path = tmp_path / "picture.png"
+        path.unlink(missing_ok=True)
+        assert main(["plot", str(program), "--ini", ini, "-o", str(path)]) == 0
+        assert path.exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "code", "said"),
+    [
+        (GOOD, "x.bmp", 2, "x.bmp: the suffix must be one of .png, .svg, .pdf"),
+        (GOOD, "nowhere/x.png", 2, "nowhere: no such directory"),
+        (WRONG, "x.png", 1, "program.ngc:4: G12: I4 must be greater"),
+        (STILL, "x.png", 1, "moves nothing, so there is nothing to draw"),
+    ],
+)
+def test_plot_says_in_one_line_why_it_cannot(text, name, code, said, written, tmp_path, capsys):
+    path = tmp_path / name
+    assert main(["plot", written(text), "--ini", MILL, "-o", str(path)]) == code
+    err = capsys.readouterr().err
+    assert err.startswith("g12 plot: ") and said in err and err.count("\n") == 1
+    assert not path.exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["verify"],
+        ["verify", "x.ngc"],
+        ["plot", "x.ngc", "--ini", MILL],
+        ["plot", "x.ngc", "--ini", MILL, "-o", "x.png", "--units", "feet"],
+        ["verify", "x.ngc", "--ini", MILL, "--run", "--override", "0"],
+    ],
+)
+def test_wrong_words_end_with_2(arguments, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(arguments)
+    assert end.value.code == 2
+    assert "usage: g12" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["verify", "plot", "demo"])
+def test_help_tells_of_the_command(command, capsys):
+    with pytest.raises(SystemExit) as end:
+        main([command, "--help"])
+    assert end.value.code == 0
+    out = capsys.readouterr().out
+    assert command == "demo" or ("examples:" in out and "exit code" in out)

@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""verify on sample programs of every dialect, on words with expressions, on sabotaged cycles."""
+
+import json
+import math
+import shutil
+
+import pytest
+
+from g12.cli.ini import read_ini
+from g12.cli.proof import prove
+from machines import PROGRAMS, ROOT, SIM
+
+INCH = 25.4
+
+
+def ini(name):
+    return read_ini(SIM / f"{name}_headless.ini")
+
+
+def proof_of(program, machine, **options):
+    return prove(PROGRAMS / program, ini(machine), **options)
+
+
+def proof_of_text(tmp_path, lines, machine="mill_mm", **options):
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join(lines) + "\n")
+    return prove(program, ini(machine), **options)
+
+
+MM = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6"]  # a 10 mm cutter
+
+
+# ---------------------------------------------------------------- the manual's pockets
+
+
+@pytest.fixture(scope="module", params=["O60121", "O60131"])
+def manual(request):
+    wanted = json.loads((PROGRAMS / "haas" / f"{request.param}.json").read_text())
+    tools = {int(tool): size for tool, size in wanted["tools"].items()}
+    return wanted, proof_of(f"haas/{request.param}.ngc", "mill_inch", tools=tools)
+
+
+def test_every_pocket_is_found_and_comes_out_as_printed(manual):
+    wanted, proof = manual
+    assert len(proof.pockets) == len(wanted["pockets"])
+    for asked, facts in zip(wanted["pockets"], proof.pockets):
+        assert facts.target.line == asked["line"]
+        assert facts.target.code == asked["code"]
+        assert facts.reached == pytest.approx(asked["finished"] * INCH, abs=1e-6)
+        assert facts.rings == pytest.approx([ring * INCH for ring in asked["rings"]], abs=1e-5)
+        depths = [facts.target.height(depth) / INCH for depth in facts.depths]
+        assert depths == pytest.approx(asked["depths"], abs=1e-4)
+        assert facts.target.origin[:2] / INCH == pytest.approx(asked["centre"])
+        assert facts.deviation < 1e-6 and facts.gouge == 0
+
+
+def test_what_is_left_is_what_linuxcnc_warned_of(manual):
+    wanted, proof = manual
+    warned = [asked["line"] for asked in wanted["pockets"] if asked["message"]]
+    assert [line for line, text in proof.findings] == warned
+    assert all("left standing" in text for _, text in proof.findings)
+
+
+def test_the_area_left_between_wide_rings():
+    facts = proof_of("haas/O60121.ngc", "mill_inch").pockets[1]
+    gap = math.pi * ((1.05 * INCH) ** 2 - (0.3 * INCH) ** 2)  # between rings .175 and 1.175
+    assert 0.8 * gap < facts.left < gap  # the links and leads cut some of it
+
+
+# ---------------------------------------------------------------- other dialects
+
+
+@pytest.mark.parametrize(
+    ("program", "machine", "radii"),
+    [
+        ("yasnac/example.ngc", "mill_yasnac_mm", [50]),
+        ("mitsubishi/planes.ngc", "mill_mitsubishi_mm", [50, 50, 50]),
+        ("circle_mill/sample.ngc", "mill_mm", [40, 40, 30, 36]),
+    ],
+)
+def test_samples_of_every_dialect_are_good(program, machine, radii):
+    proof = proof_of(program, machine)
+    assert [facts.target.radius for facts in proof.pockets] == pytest.approx(radii)
+    assert proof.findings == []
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        "G12 I50. R40. D10",
+        "G13 I-50. R-40. D10",
+        "G12 I50. D10",
+        "G13 I30. K15. Q8. D10 L2",
+        "G12 I30. R20. K25. Q5. D10",
+        "G12 I30.",
+    ],
+)
+def test_yasnac_circles(block, tmp_path):
+    lines = ["G21 G17 G40 G49 G90 F600", "T10 M6", "G0 X3 Y4 Z-5", block, "M2"]
+    proof = proof_of_text(tmp_path, lines, "mill_yasnac_mm")
+    assert proof.findings == [] and len(proof.pockets) == 1
+
+
+@pytest.mark.parametrize("mode", ["rings", "spiral"])
+def test_both_ways_of_clearing_come_out_right(mode, tmp_path):
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*MM, "G0 X0 Y0 Z1", "G13 I7 K40 Q6 Z-3 D4", "M2", ""]))
+    machine = ini("mill_mm").replaced({"G12": {"CLEARING": mode}})
+    proof = prove(program, machine)
+    (facts,) = proof.pockets
+    assert proof.findings == []
+    assert facts.stepover == pytest.approx(6, abs=1e-3)
+
+
+# ---------------------------------------------------------------- words and modes
+
+
+def test_expressions_loops_and_skipped_blocks(tmp_path):
+    lines = [
+        *MM,
+        "#<r> = 12 #2 = 0",
+        "o100 while [#2 LT 3]",
+        "G0 X[#2 * 60] Y[0 - #2] Z1",
+        "N5 G12 I[#<r> + #2] Z-[1 + 1] D4 (X99 Y99)",
+        "/G13 I8 Z-2 D4",
+        "#2 = [#2 + 1]",
+        "o100 endwhile",
+        "M2",
+    ]
+    proof = proof_of_text(tmp_path, lines)
+    assert [facts.target.radius for facts in proof.pockets] == pytest.approx([12, 13, 14])
+    assert [facts.target.origin[0] for facts in proof.pockets] == pytest.approx([0, 60, 120])
+    assert {facts.target.line for facts in proof.pockets} == {6}
+    assert proof.findings == []
+
+
+def test_a_pocket_in_a_subroutine_of_the_program(tmp_path):
+    lines = [
+        "o<hole> sub",
+        "G0 Z1",
+        "G12 I#1 Z#2 D4",
+        "G0 Z1",
+        "o<hole> endsub",
+        *MM,
+        "o<hole> call [9] [-2]",
+        "G0 X40",
+        "o<hole> call [11] [-3]",
+        "M2",
+    ]
+    proof = proof_of_text(tmp_path, lines)
+    assert [facts.target.radius for facts in proof.pockets] == pytest.approx([9, 11])
+    assert proof.findings == []
+
+
+@pytest.mark.parametrize("modes", ["G20", "G91", "G20 G91", "G90.1", "G64 P0.1"])
+@pytest.mark.parametrize("offset", ["", "G10 L2 P1 X7 Y-3 Z2 R30", "G92 X4 Y5 Z1"])
+def test_modes_and_work_coordinates_do_not_matter(modes, offset, tmp_path):
+    unit = INCH if "G20" in modes else 1.0
+    depth = -3 / unit if "G91" in modes else -2 / unit
+    lines = [
+        *MM,
+        offset,
+        "G0 X10 Y20 Z1",
+        modes,
+        f"G13 X{5 / unit:.9f} Y{-2 / unit:.9f} I{7 / unit:.9f} K{20 / unit:.9f} Q{5 / unit:.9f}"
+        f" Z{depth:.9f} D4 F{600 / unit}",
+        "M2",
+    ]
+    proof = proof_of_text(tmp_path, lines)
+    (facts,) = proof.pockets
+    assert proof.findings == []
+    assert facts.target.radius == pytest.approx(20, abs=1e-6)
+
+
+def test_another_tool_than_d_names_is_noted(tmp_path):
+    proof = proof_of_text(tmp_path, [*MM, "G0 Z1", "G12 I20 Z-1 D6", "M2"])
+    assert "the tool loaded has the diameter 10 mm" in proof.pockets[0].target.note
+
+
+# ---------------------------------------------------------------- polar sections
+
+
+@pytest.mark.parametrize(
+    ("program", "machine", "tools", "count"),
+    [
+        ("manual_a", "lathe_inch", None, 2),
+        ("manual_b", "lathe_inch", None, 1),
+        ("manual_sample", "lathe_inch", {8: 0.0}, 1),
+        ("hexagon", "lathe_mm", None, 1),
+        ("square", "lathe_mm", None, 1),
+        ("slot", "lathe_mm", None, 1),
+        ("circles", "lathe_mm", None, 1),
+        ("cam", "lathe_mm", None, 1),
+    ],
+)
+def test_polar_programs_follow_their_contours(program, machine, tools, count):
+    proof = proof_of(f"polar/{program}.ngc", machine, tools=tools)
+    assert len(proof.sections) == count and proof.findings == []
+    assert all(0 < facts.deviation < proof.polar_tolerance for facts in proof.sections)
+
+
+def test_the_size_of_the_hexagon():
+    (facts,) = proof_of("polar/hexagon.ngc", "lathe_mm").sections
+    assert facts.wanted[0] == pytest.approx(13.5) and facts.tool == 6
+    assert facts.reached[0] == pytest.approx(13.5, abs=0.005)
+
+
+def test_a_section_with_expressions_and_a_loop(tmp_path):
+    lines = [
+        "G21 G18 G8 G40 G90 G94",
+        "T3 M6",
+        "G0 X30 Z2 C40",
+        "G12.1",
+        "G1 X20 F500",
+        "#1 = 0",
+        "o1 while [#1 LT 4]",
+        "#1 = [#1 + 1]",
+        "X[20 * cos[#1 * 90]] C[20 * sin[#1 * 90]]",
+        "o1 endwhile",
+        "G13.1",
+        "M2",
+    ]
+    proof = proof_of_text(tmp_path, lines, "lathe_mm")
+    (facts,) = proof.sections
+    assert len(facts.section.elements) == 5 and proof.findings == []
+    assert facts.wanted[0] == pytest.approx(20 / math.sqrt(2), abs=1e-3)
+
+
+def test_what_cannot_be_followed_is_a_finding(tmp_path):
+    lines = [
+        "G21 G18 G8 G40 G90 G94",
+        "T3 M6",
+        "G0 X30 Z2 C0",
+        "G12.1",
+        "G1 X[#<_x> - 5] F500",
+        "G13.1",
+        "M2",
+    ]
+    ((line, text),) = proof_of_text(tmp_path, lines, "lathe_mm").findings
+    assert (line, "line 5 asks for a position" in text) == (4, True)
+
+
+# ---------------------------------------------------------------- it must be able to fail
+
+
+@pytest.fixture
+def sabotaged(tmp_path):
+    """Return a machine whose haas pocket has one piece of NGC replaced by another."""
+
+    def machine(good, bad):
+        folder = tmp_path / "ngc"
+        shutil.copytree(ROOT / "ngc", folder)
+        body = folder / "g12_haas.ngc"
+        text = body.read_text()
+        assert good in text
+        body.write_text(text.replace(good, bad))
+        return ini("mill_mm").replaced({"RS274NGC": {"SUBROUTINE_PATH": str(folder)}})
+
+    return machine
+
+
+def broken(sabotaged, tmp_path, good, bad):
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*MM, "G0 X0 Y0 Z1", "G13 I7 K20 Q6 Z-3 D4", "M2", ""]))
+    return [text for _, text in prove(program, sabotaged(good, bad)).findings]
+
+
+def test_a_cycle_that_cuts_too_large_is_found(sabotaged, tmp_path):
+    found = broken(sabotaged, tmp_path, "#<u> = #<first_radius>", "#<u> = [#<first_radius> + 0.02]")
+    assert any("off the programmed circle" in text for text in found)
+    assert any("gouged" in text for text in found)
+
+
+def test_a_cycle_that_cuts_too_shallow_is_found(sabotaged, tmp_path):
+    found = broken(sabotaged, tmp_path, "G1 Z#<z>", "G1 Z[#<z> + 0.1]")
+    assert found == ["the depth is off by 0.1 mm"]
+
+
+def test_a_cycle_that_turns_the_wrong_way_is_found(sabotaged, tmp_path):
+    found = broken(sabotaged, tmp_path, "G#<arc>", "G[5 - #<arc>]")
+    assert "it turns the wrong way" in found

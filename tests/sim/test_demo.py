@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The demo, and plot and verify of real motion, on short programs in headless LinuxCNC."""
+
+import json
+
+import pytest
+
+from g12.cli import demo
+from g12.cli.main import main
+from machines import SIM
+
+POCKET = """\
+G21 G17 G40 G49 G54 G64 P0.01 G80 G90 G94 F2000
+T4 M6
+G0 G43 H4 Z2
+G0 X10 Y0
+G12 I7 K16 Q5 Z-3 D4
+G0 Z2
+M2
+"""
+
+
+@pytest.fixture
+def pocket(tmp_path):
+    path = tmp_path / "pocket.ngc"
+    path.write_text(POCKET)
+    return str(path)
+
+
+MILL = str(SIM / "mill_mm_headless.ini")
+
+
+def test_verify_measures_real_motion(pocket, capsys):
+    assert main(["verify", pocket, "--ini", MILL, "--run", "--json"]) == 0
+    said = capsys.readouterr()
+    told = json.loads(said.out)
+    (facts,) = told["pockets"]
+    assert told["real"] and facts["off_circles"] < 0.005 and facts["off_path"] < 0.05
+    assert facts["rings"] == pytest.approx([2, 7, 11], abs=1e-6)
+    assert facts["depths"] == pytest.approx([-3])
+    assert facts["seconds"] == pytest.approx(facts["seconds_programmed"], rel=0.15)
+    assert "running pocket.ngc" in said.err
+
+
+def test_plot_draws_real_motion(pocket, tmp_path):
+    path = tmp_path / "run.png"
+    words = ["plot", pocket, "--ini", MILL, "-o", str(path), "--run", "--override", "300"]
+    assert main(words) == 0
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_demo_tells_and_draws_every_program(tmp_path, monkeypatch, capsys):
+    samples = [sample for sample in demo.SAMPLES if "example" in sample.program]
+    samples.append(next(sample for sample in demo.SAMPLES if "slot" in sample.program))
+    monkeypatch.setattr(demo, "SAMPLES", tuple(samples))
+    assert main(["demo", "--output", str(tmp_path / "new" / "demo")]) == 0
+    out = capsys.readouterr().out
+    assert "[1 of 2]" in out and "[2 of 2]" in out
+    assert "tool-centre rings" in out and "off contour" in out
+    assert out.endswith("every circle and contour came out right\n")
+    drawn = sorted(path.name for path in (tmp_path / "new" / "demo").iterdir())
+    assert drawn == ["polar_slot.png", "yasnac_example.png"]
+
+
+def test_every_sample_of_the_demo_is_there():
+    for sample in demo.SAMPLES:
+        assert sample.path.is_file() and sample.ini.is_file()
+    assert {"haas/O60121.ngc", "haas/O60131.ngc"} <= {sample.program for sample in demo.SAMPLES}
+
+
+def test_the_manuals_pockets_have_their_own_tools():
+    tools = {sample.program: sample.tools for sample in demo.SAMPLES}
+    assert tools["haas/O60121.ngc"] == {1: 0.25}
+    assert tools["haas/O60131.ngc"] == {1: 0.5}
