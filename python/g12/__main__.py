@@ -1,11 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The command line: ``python3 python/g12 COMMAND``."""
 
+import os
 import sys
+from importlib.util import find_spec
 from pathlib import Path
+
+SYSTEM_PYTHON = "/usr/bin/python3"  # the one whose modules LinuxCNC and Debian's python3-* are
 
 if __package__ in (None, ""):
     sys.path[0] = str(Path(__file__).resolve().parents[1])
+    if not find_spec("linuxcnc") and os.path.realpath(sys.executable) != os.path.realpath(
+        SYSTEM_PYTHON
+    ):
+        os.execv(SYSTEM_PYTHON, [SYSTEM_PYTHON, *sys.argv])
 
 from g12.cli.main import main
 
