@@ -50,6 +50,7 @@ G43_1, G43_2, G64, G96 = 431, 432, 640, 960
 NO_CODE = -1
 DIAMETER_ACTIVE = 15  # index into active_g_codes
 G7 = 70
+SPINDLES = 8  # most that LinuxCNC has
 INCREMENTAL = 1  # distance_mode and ijk_distance_mode: 0 absolute, 1 incremental
 INVERSE_TIME, PER_REVOLUTION = 1, 2  # feed_mode
 INCH = 1  # length_units
@@ -241,7 +242,7 @@ def snapshot(interp: object) -> Context:
         plane=PLANES.get(interp.plane, "G17.1, G18.1 or G19.1"),
         inverse_time=interp.feed_mode == INVERSE_TIME,
         per_revolution=per_revolution(interp),
-        speed=interp.speed[interp.active_spindle],
+        speed=spindle_speed(interp),
         feed=interp.feed_rate,
         compensated=interp.cutter_comp_side != 0,
         offset_pending=bool(interp.arc_not_allowed),
@@ -249,6 +250,15 @@ def snapshot(interp: object) -> Context:
         last_radius=last_radius(interp),
         tool_in_table=functools.partial(tool_in_table, interp),
     )
+
+
+def spindle_speed(interp: object) -> float:
+    """Return the commanded speed of the spindle in use.
+
+    LinuxCNC leaves the number of that spindle unset until a block names one with $.
+    """
+    spindle = interp.active_spindle
+    return interp.speed[spindle if 0 <= spindle < SPINDLES else 0]
 
 
 def per_revolution(interp: object) -> bool:

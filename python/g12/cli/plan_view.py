@@ -30,6 +30,7 @@ SAME_DEPTH = 1e-3
 MOST_LEVELS = 10  # with more, depths and feeds are shown in bands
 BANDS = 24
 MOST_ARROWS = 80
+MANY = 20_000  # moves
 LONG = 0.12  # of the view's smaller side: shorter moves get no arrow
 MARGIN = 0.05  # of the view's greater side
 PLUNGE, CUTTER = 3.5, 8.0  # points
@@ -126,9 +127,14 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
     for lines, colour in coloured_paths(scene, levels):
         lines = [line[:, pair] / unit for line in lines]
         shade = pictures.tint(colour, 0.4) if wide else colour
-        pictures.draw(axes, lines, shade, 2.6 if wide else 1.1)
+        pictures.draw(axes, lines, shade, 2.6 if wide else width_for(scene))
     if scene.real is not None:
         pictures.draw(axes, [scene.real.points[:, pair] / unit], pictures.REAL, 0.7, 3.5)
+
+
+def width_for(scene: Scene) -> float:
+    """Return the width of paths in points: finer where there are very many."""
+    return 1.1 if len(scene.moves) < MANY else 0.5
 
 
 def coloured_paths(scene: Scene, levels: Sequence[Level]) -> list:
