@@ -15,7 +15,7 @@ if __package__ in (None, ""):
     ):
         os.execv(SYSTEM_PYTHON, [SYSTEM_PYTHON, *sys.argv])
 
-from g12.cli.main import main
+from g12.cli.main import main  # noqa: E402 - the path has to be set first
 
 if __name__ == "__main__":
     sys.exit(main(sys.argv[1:]))
