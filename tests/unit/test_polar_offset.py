@@ -197,7 +197,7 @@ def near_sides(shapes, index, radius, with_next):
     """Yield the neighbours of a shape, without their far ends: beyond these others begin."""
     for at, first, last in ((index - 1, 1.0, 0.0), (index + 1, 0.0, 1.0)):
         if 0 <= at < len(shapes) and (with_next or at < index):
-            far = 2.5 * radius / shapes[at].length
+            far = 5.0 * radius / shapes[at].length
             if far < 1.0:
                 yield shapes[at].between(first * far, 1.0 - last * far)
 

@@ -30,8 +30,10 @@ from g12.polar.offset import tool_path
 from g12.polar.pieces import Law, split
 from g12.polar.pole import POLE, through_pole
 
-CHORD_SHARE = 0.92  # of the tolerance: the rest is what the estimate of it may lack
-STOP_SHARE = 0.7  # of the tolerance: a move that stops starts quicker, and cuts deeper into the path
+CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
+STOP_SHARE = (
+    0.7  # of the tolerance: a move that stops starts quicker, and cuts deeper into the path
+)
 ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the pieces' own deviation
 POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
 LEFT_OVER = 1e-3  # of the least step in X: less than that is rounding

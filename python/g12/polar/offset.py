@@ -43,6 +43,8 @@ from g12.polar.crossing import (
     place_at,
 )
 
+JOINED = 0.04  # tolerances: moved by no more, parallels are joined without an arc
+BESIDE = 2.0  # tolerances: places so near to each other are one corner
 PROBES = 8  # places beside an outside corner of an arc where the tool's distance is checked
 
 
@@ -63,30 +65,29 @@ class _Joint(NamedTuple):
     corner: Point | None = None
 
 
-def tool_path(contour: Contour, smooth: float) -> list:
+def tool_path(contour: Contour, tolerance: float) -> list:
     """Return the contour's elements as the tool's centre makes them, all in their places.
 
-    Where the parallels of two elements are no farther apart than ``smooth`` (program units), they
-    are joined without an arc: that moves the path by less than a hundredth of it.
+    ``tolerance`` in program units: a small part of it is what the path may be off.
     """
     elements = contour.elements
     moves = [e for e in elements if is_move(e)]
     if not moves or (contour.previous is None and not any(e.offset for e in moves)):
         return elements
-    centred = iter(_centred(contour, moves, smooth))
+    centred = iter(_centred(contour, moves, tolerance))
     path = []
     for element in elements:
         path.extend(next(centred) if is_move(element) else (element,))
     return path
 
 
-def _centred(contour: Contour, moves: list, smooth: float) -> Iterator[tuple]:
+def _centred(contour: Contour, moves: list, tolerance: float) -> Iterator[tuple]:
     """Yield for each move the moves of the tool's centre."""
     steps = _steps(contour, moves)
     before = _before(contour)
-    joints = [_joint(contour, a, b, smooth) for a, b in zip([before, *steps], steps)]
+    joints = [_joint(contour, a, b, tolerance) for a, b in zip([before, *steps], steps)]
     if before is not None:
-        _check_going_on(contour, before, joints[0], smooth)
+        _check_going_on(contour, before, joints[0], tolerance)
     joints.append(_Joint(_last_place(contour, steps), (0.0, 0.0)))
     before = ()
     for k, step in enumerate(steps):
@@ -96,7 +97,7 @@ def _centred(contour: Contour, moves: list, smooth: float) -> Iterator[tuple]:
             yield (_placed(step.move, start, end),)
             continue
         trimmed = _trimmed(contour, steps, k, start, end)
-        _check_apart(contour, before, trimmed, smooth)
+        _check_apart(contour, before, trimmed, tolerance)
         before = trimmed
         turned = () if joints[k].corner is None else (_corner_arc(step.move, joints[k]),)
         yield (*turned, *trimmed)
@@ -119,10 +120,10 @@ def _before(contour: Contour) -> _Step | None:
     return None if move is None else _Step(move, _parallel(contour, move), True, False)
 
 
-def _check_going_on(contour: Contour, before: _Step, joint: _Joint, smooth: float) -> None:
+def _check_going_on(contour: Contour, before: _Step, joint: _Joint, tolerance: float) -> None:
     """Check that the tool, square to the end of ``before``, has not gone too far already."""
     stands = _end(before.parallel)
-    if hypot(joint.leave[0] - stands[0], joint.leave[1] - stands[1]) > smooth:
+    if hypot(joint.leave[0] - stands[0], joint.leave[1] - stands[1]) > BESIDE * tolerance:
         contour.refuse(
             before.move.line,
             "an inside corner under cutter compensation cannot follow a block that waits "
@@ -130,11 +131,11 @@ def _check_going_on(contour: Contour, before: _Step, joint: _Joint, smooth: floa
         )
 
 
-def _check_apart(contour: Contour, before: tuple, trimmed: tuple, smooth: float) -> None:
+def _check_apart(contour: Contour, before: tuple, trimmed: tuple, tolerance: float) -> None:
     """Check that the paths beside two elements in a row meet nowhere but at their joint."""
     for a, b in zip(filter(is_move, before), filter(is_move, trimmed)):
         curved = isinstance(a, Arc) or isinstance(b, Arc)
-        if curved and cross_inside(a, b, 4.0 * smooth):
+        if curved and cross_inside(a, b, BESIDE * tolerance):
             contour.refuse(
                 b.line,
                 f"the tool of radius {number(abs(b.offset))} cannot follow both lines {a.line} and "
@@ -152,7 +153,7 @@ def _last_place(contour: Contour, steps: list[_Step]) -> Point:
     return _end(step.parallel)
 
 
-def _joint(contour: Contour, a: _Step | None, b: _Step, smooth: float) -> _Joint:
+def _joint(contour: Contour, a: _Step | None, b: _Step, tolerance: float) -> _Joint:
     """Return the joint between two moves that follow each other in the plane."""
     if a is not None and a.ramp and not b.cut:
         contour.refuse(
@@ -165,10 +166,10 @@ def _joint(contour: Contour, a: _Step | None, b: _Step, smooth: float) -> _Joint
     if not b.cut:
         place = _end(a.parallel)
         return _Joint(place, place)
-    return _corner(contour, a, b, smooth)
+    return _corner(contour, a, b, tolerance)
 
 
-def _corner(contour: Contour, a: _Step, b: _Step, smooth: float) -> _Joint:
+def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:
     """Return the joint between two elements under compensation."""
     ax, ac = end_direction(a.move)
     bx, bc = start_direction(b.move)
@@ -176,11 +177,11 @@ def _corner(contour: Contour, a: _Step, b: _Step, smooth: float) -> _Joint:
     leave, meet = _end(a.parallel), _start(b.parallel)
     corner, offset = (b.move.x0, b.move.c0), b.move.offset
     gap = hypot(meet[0] - leave[0], meet[1] - leave[1])
-    if cosine > 0.0 and gap <= smooth and gap * abs(sine) <= 0.1 * smooth:
-        place = _mitre(leave, meet, corner, cosine)
+    if cosine > 0.0 and _is_joined(a, b, gap, abs(sine), tolerance):
+        place = (0.5 * (leave[0] + meet[0]), 0.5 * (leave[1] + meet[1]))
         return _Joint(place, place)
     if sine * offset <= PARALLEL * abs(offset):
-        if not _clear(a, b, smooth):
+        if not _clear(a, b, tolerance):
             _refuse_tight(contour, a, b)
         return _Joint(leave, meet, corner)
     place = crossing(a.parallel, b.parallel)
@@ -189,7 +190,14 @@ def _corner(contour: Contour, a: _Step, b: _Step, smooth: float) -> _Joint:
     return _Joint(place, place)
 
 
-def _clear(a: _Step, b: _Step, smooth: float) -> bool:
+def _is_joined(a: _Step, b: _Step, gap: float, sine: float, tolerance: float) -> bool:
+    """Return whether two parallels need no arc between them: it would be a very short piece."""
+    straight = isinstance(a.move, Line) and isinstance(b.move, Line)
+    moved = gap * sine / 8.0
+    return moved <= JOINED * tolerance and (straight or gap <= BESIDE * tolerance)
+
+
+def _clear(a: _Step, b: _Step, tolerance: float) -> bool:
     """Return whether the tool beside either element of an outside corner stays off the other."""
     if isinstance(a.move, Line) and isinstance(b.move, Line):
         return True
@@ -197,7 +205,7 @@ def _clear(a: _Step, b: _Step, smooth: float) -> bool:
     for path, other, from_end in ((a.parallel, b.move, True), (b.parallel, a.move, False)):
         step = min(1.0, 2.0 * offset / max(path_length(path), REACH)) / PROBES
         parts = (1.0 - k * step if from_end else k * step for k in range(PROBES + 1))
-        if any(distance_from(other, place_at(path, part)) < offset - smooth for part in parts):
+        if any(distance_from(other, place_at(path, part)) < offset - tolerance for part in parts):
             return False
     return True
 
@@ -212,15 +220,6 @@ def _refuse_tight(contour: Contour, a: _Step, b: _Step) -> NoReturn:
 
 def _code(move: Line | Arc) -> str:
     return "G41" if move.offset > 0.0 else "G42"
-
-
-def _mitre(leave: Point, meet: Point, corner: Point, cosine: float) -> Point:
-    """Return where the end tangents of two parallels cross; ``cosine`` of their angle."""
-    scale = 1.0 / (1.0 + cosine)
-    return (
-        corner[0] + (leave[0] + meet[0] - 2 * corner[0]) * scale,
-        corner[1] + (leave[1] + meet[1] - 2 * corner[1]) * scale,
-    )
 
 
 def _corner_arc(move: Line | Arc, joint: _Joint) -> Arc:
@@ -254,7 +253,6 @@ def _parallel(contour: Contour, move: Line | Arc) -> Line | Arc:
             f"the arc of radius {number(radius)} is smaller than the tool radius "
             f"{number(abs(move.offset))} ({_neighbours(contour, move)})",
         )
-    scale = max(scale, 0.0)
     cx, cc = move.cx, move.cc
     return _placed(
         move,

@@ -22,7 +22,7 @@ sense of the motion, 0 where it is farthest from the pole; r = R sqrt(m) with m 
 
 from __future__ import annotations
 
-from math import acos, atan, atan2, ceil, copysign, cos, floor, hypot, pi, sin, sqrt
+from math import atan, atan2, ceil, copysign, cos, floor, hypot, pi, sin, sqrt
 from typing import NamedTuple
 
 from g12.polar.contour import Arc, Line, arc_radius
@@ -81,7 +81,7 @@ def _split_line(move: Line, law: Law) -> Split:
         return Split([r0, r1], [foot + turn * atan(u0), foot + turn * atan(u1)], [0.0, length])
     apsides = [0.0] if u0 < 0.0 < u1 else []
     density = _line_density(distance, deviation, law)
-    places, shares = spaced(Stretch(u0, u1, apsides, [], abs, 1), density)
+    places, shares = spaced(Stretch(u0, u1, apsides, abs, 1), density)
     moved = [distance - deviation * share for share in shares]
     radii = [d * sqrt(1.0 + u * u) for d, u in zip(moved, places)]
     radii[0], radii[-1] = r0, r1
@@ -149,11 +149,10 @@ def _split_arc(move: Arc, law: Law) -> Split:
     places, shares = [a0, a1], [0.0, 0.0]
     if 2.0 * away > deviation:
         e = away / radius
-        density, flat = _arc_density(radius, e, nearest, deviation, law)
-        inflections = [a for a in _inflections(a0, a1, e) if density(a)[0] == flat]
+        density = _arc_density(radius, e, nearest, deviation, law)
         apsides = [k * pi for k in range(floor(a0 / pi) + 1, ceil(a1 / pi))]
         fine = 3 if away < NEAR_CENTRIC * deviation else 1
-        stretch = Stretch(a0, a1, apsides, inflections, cos, fine)
+        stretch = Stretch(a0, a1, apsides, cos, fine)
         places, shares = spaced(stretch, density)
     radii, angles = _arc_polar(radius, away, deviation, places, shares)
     radii[0], radii[-1] = r0, r1
@@ -162,28 +161,12 @@ def _split_arc(move: Arc, law: Law) -> Split:
     )
 
 
-def _inflections(a0: float, a1: float, e: float) -> list[float]:
-    """Return the places of an arc between two others where the spirals have its curvature."""
-    if e >= 1.0:
-        return []
-    low, high = -1.0, 0.0
-    while high - low > 1e-3:
-        q = 0.5 * (low + high)
-        if _curvature_difference(q, e) < 0.0:
-            low = q
-        else:
-            high = q
-    angle = acos(high)
-    places = (turn + sign * angle for turn in (-2 * pi, 0.0, 2 * pi) for sign in (-1, 1))
-    return [a for a in places if a0 < a < a1]
-
-
 def _curvature_difference(q: float, e: float) -> float:
     """Return p / e at the place a with cos a = ``q``."""
     return e * e * e + q * (1.0 + 2.0 * e * e + e * q * (3.0 + e * q))
 
 
-def _arc_density(radius: float, e: float, nearest: float, deviation: float, law: Law):
+def _arc_density(radius: float, e: float, nearest: float, deviation: float, law: Law) -> Density:
     """Return the pieces per radian, and the part of the deviation they use, above zero outside.
 
     And their density at an inflection: that of a piece which begins there.
@@ -206,7 +189,7 @@ def _arc_density(radius: float, e: float, nearest: float, deviation: float, law:
             pieces = max(pieces, min(smooth, x_hold, c_hold * sqrt(m)))
         return pieces, copysign((wanted / pieces) ** 2, p)
 
-    return density, flat
+    return density
 
 
 def _arc_polar(radius: float, away: float, deviation: float, places, shares):

@@ -13,8 +13,7 @@ deviation, and less where an end of an element is exactly on the path.
 
 An element is cut into parts at its apsides, the points nearest to the pole and farthest from it,
 which are ends of pieces: X turns round there, and a piece across would move C alone, or hardly any
-X. It is cut also at its inflections, where path and pieces have the same curvature. No piece ends
-there: the bulge changes sides inside a piece that may be longer than others.
+X.
 """
 
 from __future__ import annotations
@@ -27,14 +26,13 @@ BULGE = 1.5  # deviations: of a piece between two ends moved off the path
 WHOLE_BULGE = 0.75  # deviations: of a piece with both ends exactly on the path
 WHOLE = sqrt(WHOLE_BULGE / BULGE)  # pieces: the longest element that is left in one
 LOSS = 0.18  # pieces: what is lost where an element ends exactly on the path
-GAIN = 0.8  # pieces: what is gained on either side of an inflection
 WORTH_A_CUT = 0.5  # pieces: an apsis nearer to an end of the element is left alone
 
 Density = Callable[[float], "tuple[float, float]"]
 
 
 class Stretch(NamedTuple):
-    """The places of an element: its ends, and the apsides and inflections between them.
+    """The places of an element: its ends, and the apsides between them.
 
     ``nearness`` tells which of two places is nearer to the pole. ``fine`` is the number of steps in
     a piece that the integral of the density needs to be exact.
@@ -43,7 +41,6 @@ class Stretch(NamedTuple):
     start: float
     end: float
     apsides: list[float]
-    inflections: list[float]
     nearness: Callable[[float], float]
     fine: int
 
@@ -76,7 +73,7 @@ def spaced(stretch: Stretch, density: Density) -> tuple[list[float], list[float]
     ends, before = [(stretch.start, 0.0)], 0.0
     for part in parts:
         lost = sum(part.losses)
-        pieces = max(0 if -GAIN in part.losses else 1, ceil(part.count + lost - 1e-9))
+        pieces = max(1, ceil(part.count + lost - 1e-9))
         length = part.count / (pieces - lost)
         if part.losses[0] == 0.0:
             ends.append((part.cut, max(before, length) ** 2 * density(part.cut)[1]))
@@ -88,13 +85,17 @@ def spaced(stretch: Stretch, density: Density) -> tuple[list[float], list[float]
 
 def _parts(stretch: Stretch, density: Density) -> list[_Part]:
     start, end = stretch.start, stretch.end
-    losses = dict.fromkeys(stretch.inflections, -GAIN)
-    for apsis in stretch.apsides:
-        if min(apsis - start, end - apsis) * density(apsis)[0] > WORTH_A_CUT:
-            losses[apsis] = 0.0
-    losses[start] = losses[end] = LOSS
-    cuts = sorted(losses)
-    return [_part(a, b, (losses[a], losses[b]), stretch, density) for a, b in zip(cuts, cuts[1:])]
+    apsides = [
+        apsis
+        for apsis in stretch.apsides
+        if min(apsis - start, end - apsis) * density(apsis)[0] > WORTH_A_CUT
+    ]
+    cuts = [start, *apsides, end]
+    losses = [LOSS, *(0.0 for _ in apsides), LOSS]
+    return [
+        _part(cuts[k], cuts[k + 1], (losses[k], losses[k + 1]), stretch, density)
+        for k in range(len(cuts) - 1)
+    ]
 
 
 def _part(a: float, b: float, losses: tuple[float, float], stretch: Stretch, density) -> _Part:
@@ -127,9 +128,9 @@ def _inner_ends(part: _Part, pieces: int, length: float, fine: int) -> list[tupl
     """
     table, square = part.places, length * length
     shares = [part.shares[0], *part.shares, part.shares[-1]]
-    near, far = part.losses[::-1] if part.backwards else part.losses
+    near = part.losses[1 if part.backwards else 0]
     ends = []
-    for k in range(near >= 0.0, pieces + (far < 0.0)):
+    for k in range(1, pieces):
         steps = fine * length * (k - near)
         j = int(steps)
         place = table[j] + (steps - j) * (table[j + 1] - table[j])
