@@ -287,6 +287,18 @@ def test_a_hardly_bent_line_gets_no_corner_arc():
     assert [step.line for step in steps] == [1, 2, 3, 4]
 
 
+def test_a_line_hardly_beside_its_tangent_gets_no_corner_arc():
+    contour = Contour(10.0, 0.0)
+    contour.compensation(42, 2.0, line=1)
+    contour.line(10.0, 5.0, line=1, feed=100.0)
+    contour.line(20.0, 5.0, line=2, feed=100.0)
+    contour.arc(1, 25.0, 10.0, i=-0.001, j=5.0, line=3, feed=100.0)
+    contour.compensation(40, 0.0, line=4)
+    contour.line(30.0, 10.0, line=4, feed=100.0)
+    steps = plan(contour, LATHE, c=0.0).steps
+    assert [step.line for step in steps] == [1, 2, 3, 4]
+
+
 def test_the_feed_is_that_of_the_tools_centre():
     contour, _ = compensated(pillow(15.0, 1), OUTSIDE, 6.0)
     for cut in cuts(contour, plan(contour, EXACT, c=0.0)):
@@ -355,6 +367,11 @@ def round_to(turn, x, c, radius):
         ),
         (
             [to(20, 5), round_to(1, 18, 8, 3.0), to(10, 8)],
+            "line 3: the tool of radius 2 cannot reach both lines 2 and 3: their corner is too "
+            "tight",
+        ),
+        (
+            [to(20, 5), round_to(1, 18, 6.5, 2.6), to(10, 12)],
             "line 3: the tool of radius 2 cannot reach both lines 2 and 3: their corner is too "
             "tight",
         ),

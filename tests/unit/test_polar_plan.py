@@ -101,6 +101,50 @@ def test_turns_without_a_jump_and_never_to_negative_x(shapes):
     assert length == pytest.approx(sum(shape.length for shape in shapes), rel=5e-3, abs=0.05)
 
 
+def deviation(shape, settings=EXACT, feed=250.0):
+    """Return how far the pieces are off a shape that begins anywhere."""
+    start = abs(shape.start)
+    shape = shape.turned(start / shape.start)
+    contour = programmed([shape], feed=feed)
+    return distance(path(cuts(contour, plan(contour, settings, c=0.0))), [shape]).max()
+
+
+BESIDE = [0.0026, 0.003, 0.005, 0.007, 0.01, 0.015, 0.025, 0.05, 0.1, 0.3, 1.0]
+
+
+@pytest.mark.parametrize("beside", BESIDE)
+@pytest.mark.parametrize("start", [0.02, 0.3, 4.0, 25.0])
+def test_lines_beside_the_pole(beside, start):
+    there = Straight(start - 1j * beside, -9.0 - 1j * beside)
+    assert deviation(there) <= TOLERANCE
+    assert deviation(Straight(there.start, -1j * beside)) <= TOLERANCE
+
+
+@pytest.mark.parametrize("beside", [*BESIDE, *(-gap for gap in BESIDE)])
+@pytest.mark.parametrize("radius", [1.3, 6.0, 40.0])
+def test_arcs_beside_the_pole(beside, radius):
+    for sweep in (0.01, 1.0, 5.0, 2 * math.pi):
+        around = Round(radius * cmath.exp(2j), 0j, sweep)
+        centre = radius + beside
+        arc = Round(around.start - centre, complex(-centre), sweep)
+        assert deviation(arc) <= TOLERANCE
+
+
+@pytest.mark.parametrize("away", [0.0023, 0.003, 0.006, 0.02, 0.05, 0.1, 0.25, 0.6, 1.5])
+@pytest.mark.parametrize("radius", [2.0, 15.0, 60.0])
+@pytest.mark.parametrize("sweep", [2.0, -4.0, 2 * math.pi])
+def test_arcs_nearly_about_the_spindle(away, radius, sweep):
+    for first in (0.0, 0.4, 1.5, 3.0):
+        centre = complex(away)
+        assert deviation(Round(centre + cmath.rect(radius, first), centre, sweep)) <= TOLERANCE
+
+
+@pytest.mark.parametrize("length", [0.1 * count for count in range(1, 40)])
+def test_short_lines(length):
+    assert deviation(Straight(20 + 0j, 20 + 1j * length), DRIVEN) <= TOLERANCE
+    assert deviation(Straight(20 + 0j, 20 + (0.7 + 0.7j) * length), DRIVEN) <= TOLERANCE
+
+
 def test_winds_on_turn_after_turn():
     circle = Round(12 + 0j, 2 + 0j, 2 * math.pi)
     contour = programmed([circle] * 50)
@@ -242,6 +286,22 @@ def test_a_circle_about_the_spindle_is_one_piece():
 def test_a_radius_is_one_piece():
     contour = programmed([Straight(10 + 0j, 25 + 0j)], feed=300.0)
     assert runs(plan(contour, LATHE, c=0.0)) == [Run(1, "XC", [(25.0, 0.0, 0.0, 300.0)], True)]
+
+
+def test_a_radius_does_not_turn_c_by_rounding():
+    third = cmath.rect(10.0, math.pi / 3)
+    shapes = [Round(10 + 0j, 0j, math.pi / 3), Straight(third, 2 * third)]
+    around, outwards = runs(plan(programmed(shapes), LATHE, c=0.1))
+    assert [piece[1] for piece in outwards.pieces] == [around.pieces[-1][1]]
+
+
+def test_what_x_was_left_over_is_made_up_at_the_end():
+    contour = programmed([Round(10 + 0j, 0.0004 + 0j, math.pi / 2)])
+    around, rest = runs(plan(contour, LATHE, c=0.0))
+    (end,) = rest.pieces
+    assert around.pieces[-1][0] == 10.0
+    assert end[0] == math.hypot(contour.x, contour.c)
+    assert end[1] == around.pieces[-1][1]
 
 
 def test_repeated_points_are_harmless():
