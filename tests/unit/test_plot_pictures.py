@@ -194,9 +194,17 @@ def with_real_motion(hand, ini, aside):
     return Scene(**{**vars(shown), "real": real})
 
 
-def test_the_window_shows_the_axes_in_which_the_motion_strays():
-    corner = np.array([[0, 0, z] for z in (0, -0.5, -1)] + [[0, y, -1] for y in (0.5, 1.0)])
-    assert most_telling(corner) == [1, 2]
+@pytest.mark.parametrize(
+    ("away", "way", "axes"),
+    [
+        ((0, 0.1, -0.1), (0, -1, -1), [1, 2]),  # a plunge rounded into Y
+        ((0, 0, -0.01), (3, 0, 0), [0, 2]),
+        ((0, 0.02, 0), (1, 0.1, 0), [0, 1]),
+        ((0, 0, 0), (1, 0, 0), [0, 1]),
+    ],
+)
+def test_the_window_shows_the_axes_in_which_the_motion_strays(away, way, axes):
+    assert most_telling(np.array(away, float), np.array(way, float)) == axes
 
 
 def test_the_largest_deviation_is_told_with_its_line():

@@ -60,8 +60,8 @@ class Sample(NamedTuple):
 
 
 SAMPLES = (
-    Sample("haas/O60121.ngc", "mill_inch", 3000.0),
-    Sample("haas/O60131.ngc", "mill_inch", 3000.0),
+    Sample("haas/O60121.ngc", "mill_inch", 1500.0),
+    Sample("haas/O60131.ngc", "mill_inch", 1500.0),
     Sample("circle_mill/sample.ngc", "mill_mm", 2000.0),
     Sample("polar/manual_a.ngc", "lathe_inch", 200.0),
     Sample("polar/manual_b.ngc", "lathe_inch", 200.0),
@@ -109,7 +109,8 @@ def is_sound(proof: Proof) -> bool:
 
 def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
     """Return what is told of a program: its table, what LinuxCNC said, where the picture is."""
-    faster = f" at {sample.override:g} % feed" if sample.override != 100 else ""
+    slow = clock(scene.path.time[-1])
+    faster = f" at {sample.override:g} % feed ({slow} at 100 %)" if sample.override != 100 else ""
     title = f"{scene.title}: {clock(run.seconds)} on {sample.machine}{faster}, {picture}"
     unit = scene.unit
     lines = [title, *(f"  LinuxCNC said: {message.text}" for message in run.messages)]

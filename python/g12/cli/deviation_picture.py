@@ -27,7 +27,13 @@ def describe(worst: Worst, unit: Unit) -> str:
     where = " ".join(
         f"{letter}{unit.text(value)}" for letter, value in zip(AXES_OF_PART, worst.nearest)
     )
-    return f"{unit.fine(worst.deviation)} {unit.name} at {where} (line {worst.move.block})"
+    return f"{size_of(worst, unit)} at {where} (line {worst.move.block})"
+
+
+def size_of(worst: Worst, unit: Unit) -> str:
+    """Return the size of the largest deviation in words."""
+    least = "below " if worst.deviation < LEAST_WINDOW else ""
+    return f"{least}{unit.fine(max(worst.deviation, LEAST_WINDOW))} {unit.name}"
 
 
 def draw_window(figure: Figure, corner: tuple[float, float], scene: Scene) -> None:
@@ -40,7 +46,8 @@ def draw_window(figure: Figure, corner: tuple[float, float], scene: Scene) -> No
 def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
     real, moves, unit = scene.real, scene.moves, scene.unit
     half = max(WINDOW * worst.deviation, LEAST_WINDOW)
-    pair = most_telling(real.points[_near(real.points, worst.point, half)])
+    before, after = real.points[max(0, worst.index - 1) : worst.index + 2][[0, -1]]
+    pair = most_telling(worst.point - worst.nearest, after - before)
     origin = worst.nearest[pair]
     around = moves[max(0, real.move[worst.index] - NEIGHBOURS) :][: 2 * NEIGHBOURS + 1]
     programmed = [line[:, pair] - origin for line in paths(scene.path.part, around, half / 500)]
@@ -55,19 +62,15 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
         spine.set(visible=True, color=pictures.WORST, linewidth=0.9)
     pictures.caption(axes, "Largest deviation")
     letters = " and ".join(AXES_OF_PART[axis] for axis in pair)
-    text = f"{unit.fine(worst.deviation)} {unit.name}, line {worst.move.block}, in {letters}"
+    text = f"{size_of(worst, unit)}, line {worst.move.block}, in {letters}"
     axes.set_xlabel(text, size=8, color=pictures.WORST, labelpad=4, loc="left")
     _scale_bar(axes, half, unit)
 
 
-def most_telling(points: np.ndarray) -> list[int]:
-    """Return the two axes of the part along which points spread most, in order."""
-    spread = np.ptp(points, axis=0)
-    return sorted(np.argsort(spread, kind="stable")[1:].tolist())
-
-
-def _near(points: np.ndarray, centre: np.ndarray, half: float) -> np.ndarray:
-    return np.all(np.abs(points - centre) <= 2 * half, axis=1)
+def most_telling(away: np.ndarray, way: np.ndarray) -> list[int]:
+    """Return the two axes of the part, in order, that show a deviation and the way there best."""
+    score = sum(vector**2 / max(vector @ vector, 1e-30) for vector in (away, way))
+    return sorted(np.argsort(-score, kind="stable")[:2].tolist())
 
 
 def _stretch(points: np.ndarray, worst: Worst, half: float) -> np.ndarray:

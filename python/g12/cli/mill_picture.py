@@ -31,7 +31,7 @@ from g12.cli.units import Unit, plain
 
 PAGE = 11.0  # wide
 WIDE = 2.0  # plans wider than this times their height have the legend below
-LEFT, RIGHT, TOP, BETWEEN, BOTTOM = pictures.MARGIN, 0.3, 0.95, 0.5, 0.55
+LEFT, RIGHT, TOP, BETWEEN, BOTTOM = pictures.MARGIN, 0.3, 1.05, 0.5, 0.55
 LEGEND = 2.35  # wide
 MOST_PLAN, LEAST_PLAN = 5.6, 1.2  # high
 MOST_SIDE, LEAST_SIDE = 3.2, 0.8

@@ -6,6 +6,7 @@ Lengths given to the drawing functions are in the units shown; sizes of figures 
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -67,6 +68,7 @@ FEEDS = colors.LinearSegmentedColormap.from_list(
     "feed", ["#2b8a3e", "#94b82c", "#f2b705", "#e8590c", "#a61e4d"]
 )
 DPI = 150
+LETTERS = 14.0  # of the subtitle to an inch
 MARGIN = 0.75  # inches left of titles and axes
 SAVE = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
@@ -89,7 +91,8 @@ def new_figure(width: float, height: float, title: str, subtitle: str) -> Figure
     figure = Figure(figsize=(width, height), facecolor="white")
     left, top = MARGIN / width, 1 - 0.16 / height
     figure.text(left, top, title, size=13, weight="bold", va="top")
-    figure.text(left, top - 0.28 / height, subtitle, size=8.5, color=MUTED, va="top")
+    lines = "\n".join(textwrap.wrap(subtitle, int((width - MARGIN - 0.3) * LETTERS)))
+    figure.text(left, top - 0.28 / height, lines, size=8.5, color=MUTED, va="top")
     return figure
 
 

@@ -18,7 +18,7 @@ from g12.cli.trace import Move, Tools, Trace, mm_per_unit
 from g12.cli.units import Unit, plain, unit_of
 
 HEAD_COMMENT = re.compile(r"\(([^()]*)\)|;\s*(.+)")
-LONGEST_HEADING = 60
+LONGEST_HEADING = 72
 
 
 @dataclass(frozen=True)
