@@ -29,7 +29,6 @@ from g12.polar.contour import Arc, Line, arc_radius
 from g12.polar.spacing import BULGE, WHOLE_BULGE, Density, Stretch, spaced
 
 RADIAL = 1e-9  # program units: a line that close to the pole is a radius
-NEAR_CENTRIC = 400.0  # deviations: with its centre that near to the pole an arc has few pieces
 
 
 class Law(NamedTuple):
@@ -81,7 +80,7 @@ def _split_line(move: Line, law: Law) -> Split:
         return Split([r0, r1], [foot + turn * atan(u0), foot + turn * atan(u1)], [0.0, length])
     apsides = [0.0] if u0 < 0.0 < u1 else []
     density = _line_density(distance, deviation, law)
-    places, shares = spaced(Stretch(u0, u1, apsides, abs, 1), density)
+    places, shares = spaced(Stretch(u0, u1, apsides, abs), density)
     moved = [distance - deviation * share for share in shares]
     radii = [d * sqrt(1.0 + u * u) for d, u in zip(moved, places)]
     radii[0], radii[-1] = r0, r1
@@ -151,8 +150,7 @@ def _split_arc(move: Arc, law: Law) -> Split:
         e = away / radius
         density = _arc_density(radius, e, nearest, deviation, law)
         apsides = [k * pi for k in range(floor(a0 / pi) + 1, ceil(a1 / pi))]
-        fine = 3 if away < NEAR_CENTRIC * deviation else 1
-        stretch = Stretch(a0, a1, apsides, cos, fine)
+        stretch = Stretch(a0, a1, apsides, cos)
         places, shares = spaced(stretch, density)
     radii, angles = _arc_polar(radius, away, deviation, places, shares)
     radii[0], radii[-1] = r0, r1
@@ -179,7 +177,7 @@ def _arc_density(radius: float, e: float, nearest: float, deviation: float, law:
 
     def density(a: float) -> tuple[float, float]:
         q = cos(a)
-        m = max(m0 + 2.0 * e * q, 1e-12)
+        m = m0 + 2.0 * e * q
         p = e * _curvature_difference(q, e)
         wanted = bulging * sqrt(abs(p)) / m
         growth = e * abs(sin(a)) / m

@@ -19,12 +19,11 @@ X.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil, sqrt
+from math import ceil
 from typing import NamedTuple
 
 BULGE = 1.5  # deviations: of a piece between two ends moved off the path
 WHOLE_BULGE = 0.75  # deviations: of a piece with both ends exactly on the path
-WHOLE = sqrt(WHOLE_BULGE / BULGE)  # pieces: the longest element that is left in one
 LOSS = 0.18  # pieces: what is lost where an element ends exactly on the path
 WORTH_A_CUT = 0.5  # pieces: an apsis nearer to an end of the element is left alone
 
@@ -34,15 +33,13 @@ Density = Callable[[float], "tuple[float, float]"]
 class Stretch(NamedTuple):
     """The places of an element: its ends, and the apsides between them.
 
-    ``nearness`` tells which of two places is nearer to the pole. ``fine`` is the number of steps in
-    a piece that the integral of the density needs to be exact.
+    ``nearness`` tells which of two places is nearer to the pole.
     """
 
     start: float
     end: float
     apsides: list[float]
     nearness: Callable[[float], float]
-    fine: int
 
 
 class _Part(NamedTuple):
@@ -68,17 +65,14 @@ def spaced(stretch: Stretch, density: Density) -> tuple[list[float], list[float]
     of the side, that they use. The distances are returned as parts of the deviation, too.
     """
     parts = _parts(stretch, density)
-    if sum(part.count for part in parts) <= WHOLE:
-        return [stretch.start, stretch.end], [0.0, 0.0]
-    ends, before = [(stretch.start, 0.0)], 0.0
+    ends = [(stretch.start, 0.0)]
     for part in parts:
         lost = sum(part.losses)
         pieces = max(1, ceil(part.count + lost - 1e-9))
         length = part.count / (pieces - lost)
         if part.losses[0] == 0.0:
-            ends.append((part.cut, max(before, length) ** 2 * density(part.cut)[1]))
-        ends.extend(_inner_ends(part, pieces, length, stretch.fine))
-        before = length
+            ends.append((part.cut, length**2 * density(part.cut)[1]))
+        ends.extend(_inner_ends(part, pieces, length))
     places, shares = zip(*ends, (stretch.end, 0.0))
     return list(places), list(shares)
 
@@ -101,27 +95,25 @@ def _parts(stretch: Stretch, density: Density) -> list[_Part]:
 def _part(a: float, b: float, losses: tuple[float, float], stretch: Stretch, density) -> _Part:
     """Return the part between two cuts, measured in steps from its end nearer to the pole.
 
-    The step in front of one tells where its middle will be, unless they turn out too different.
-    Near the pole the steps are shortest: measured from there they grow, none is skipped.
+    The step in front of one tells where its middle will be. Near the pole the steps are shortest:
+    measured from there they grow, and none is taken too far.
     """
     backwards = stretch.nearness(b) < stretch.nearness(a)
     place, far = (b, a) if backwards else (a, b)
-    unit = (1.0 if far > place else -1.0) / stretch.fine
+    unit = 1.0 if far > place else -1.0
     places, shares = [place], []
     step = unit / density(place)[0]
     while (far - place) * unit > 0.0:
         pieces, share = density(place + 0.5 * step)
-        if not 0.8 < step * pieces / unit < 1.25:
-            pieces, share = density(place + 0.5 * unit / pieces)
         step = unit / pieces
         place += step
         places.append(place)
         shares.append(share)
-    count = (len(shares) - (place - far) / step) / stretch.fine
+    count = len(shares) - (place - far) / step
     return _Part(a, places, shares, count, backwards, losses)
 
 
-def _inner_ends(part: _Part, pieces: int, length: float, fine: int) -> list[tuple[float, float]]:
+def _inner_ends(part: _Part, pieces: int, length: float) -> list[tuple[float, float]]:
     """Return the ends of pieces inside a part, in the sense of the motion.
 
     ``length`` is that of each piece, in pieces of full length; the deviation goes with its square.
@@ -131,7 +123,7 @@ def _inner_ends(part: _Part, pieces: int, length: float, fine: int) -> list[tupl
     near = part.losses[1 if part.backwards else 0]
     ends = []
     for k in range(1, pieces):
-        steps = fine * length * (k - near)
+        steps = length * (k - near)
         j = int(steps)
         place = table[j] + (steps - j) * (table[j + 1] - table[j])
         middle = int(steps + 0.5)
