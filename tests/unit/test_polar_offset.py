@@ -382,6 +382,20 @@ def test_too_tight_names_both_lines(blocks, message):
     assert refusal(*blocks) == f"G12.1 {message}"
 
 
+def test_a_cusp_that_curls_back_onto_the_tool_is_too_tight():
+    curl = [Straight(-3j, 0j), Round(0j, -1 + 0j, -1.0)]
+    with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* reach both lines 3 and 4: their corner"):
+        along_the_part(curl, 41, 1.0)
+
+
+def test_a_small_arc_inside_a_big_tool_is_not_joined_beside_its_end():
+    bend = cmath.exp(0.004j)
+    nearly = [Straight(-40 + 0j, 0j), Round(0j, 51j * bend, 1.0)]
+    made, (_, arc_shape) = along_the_part(nearly, 41, 50.0)
+    points = path([cut for cut in made if cut.line == 4])
+    assert abs(arc_shape.distance(points) - 50.0).max() <= TOLERANCE
+
+
 def test_a_ramp_alone_cannot_be_cut():
     contour = Contour(10.0, 0.0)
     contour.compensation(41, 2.0, line=1)

@@ -4,8 +4,7 @@
 A straight move of X and C draws a spiral r = r0 + k (angle - angle0) in the plane. Where the path
 makes the angle p with the radius, the spiral has the curvature sin p (1 + cos(p)**2) / r. A piece
 of length L bulges from a path of another curvature by |difference| L**2 / 8: so many pieces per
-unit of length are sqrt(|difference| / (8 bulge)). Near the pole they bulge more than that; the
-longest piece across the foot of a line turns by 4 atan(sqrt(deviation / distance)).
+unit of length are sqrt(|difference| / (8 bulge)).
 
 The speed along the part is not constant inside a piece: it changes by the part sin(p)**2 dr / r.
 And where r grows by more than e times, none of this is true any more: pieces end before.
@@ -72,7 +71,7 @@ def _split_line(move: Line, law: Law) -> Split:
         return Split([r0, r1], [angle, angle], [0.0, length])
     turn = 1.0 if distance > 0.0 else -1.0
     distance = abs(distance)
-    deviation = min(law.deviation, 0.5 * distance)
+    deviation = min(law.deviation, 0.5 * distance)  # never off the path by so much as to the pole
     u0 = (x0 * tx + c0 * tc) / distance
     u1 = u0 + length / distance
     foot = atan2(c0, x0) - turn * atan(u0)
@@ -101,14 +100,13 @@ def _is_one_piece(u0, u1, distance: float, deviation: float, rise: float, ripple
     span = u1 - u0
     return (
         span * span * distance * (2.0 * m - 1.0) <= m * m * 8.0 * WHOLE_BULGE * deviation
-        and span <= 0.6 * m
         and rise <= m * ripple
     )
 
 
 def _line_density(distance: float, deviation: float, law: Law) -> Density:
     """Return the pieces per unit of u, and the part of the deviation they use."""
-    bulging = _bulging(distance, deviation, distance)
+    bulging = sqrt(distance / (8.0 * BULGE * deviation))
     even = 0.5 / law.ripple
     x_hold, c_hold = law.x_hold * distance, law.c_hold * distance * distance
 
@@ -126,15 +124,6 @@ def _line_density(distance: float, deviation: float, law: Law) -> Density:
     return density
 
 
-def _bulging(radius: float, deviation: float, nearest: float) -> float:
-    """Return the pieces per radian of an arc of that radius by its curvature alone.
-
-    More of them where the path comes as near to the pole as ``nearest``.
-    """
-    excess = sqrt(deviation / max(nearest, deviation))
-    return sqrt(radius / (8.0 * BULGE * deviation)) * excess / atan(excess)
-
-
 def _split_arc(move: Arc, law: Law) -> Split:
     radius, away = arc_radius(move), hypot(move.cx, move.cc)
     turn = 1.0 if move.sweep > 0.0 else -1.0
@@ -148,7 +137,7 @@ def _split_arc(move: Arc, law: Law) -> Split:
     places, shares = [a0, a1], [0.0, 0.0]
     if 2.0 * away > deviation:
         e = away / radius
-        density = _arc_density(radius, e, nearest, deviation, law)
+        density = _arc_density(radius, e, deviation, law)
         apsides = [k * pi for k in range(floor(a0 / pi) + 1, ceil(a1 / pi))]
         stretch = Stretch(a0, a1, apsides, cos)
         places, shares = spaced(stretch, density)
@@ -164,12 +153,12 @@ def _curvature_difference(q: float, e: float) -> float:
     return e * e * e + q * (1.0 + 2.0 * e * e + e * q * (3.0 + e * q))
 
 
-def _arc_density(radius: float, e: float, nearest: float, deviation: float, law: Law) -> Density:
+def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density:
     """Return the pieces per radian, and the part of the deviation they use, above zero outside.
 
-    And their density at an inflection: that of a piece which begins there.
+    Where the curvatures are the same they have the length of a piece that begins there.
     """
-    bulging = _bulging(radius, deviation, nearest)
+    bulging = sqrt(radius / (8.0 * BULGE * deviation))
     flat = (min(e, 1.0) * radius / (18.0 * BULGE * deviation)) ** (1.0 / 3.0)
     even = 0.5 / law.ripple
     x_hold, c_hold = law.x_hold * radius, law.c_hold * radius * radius

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""F words: a piece lasts as long as its path at the feed, and X moves enough or not at all."""
+
+import math
+
+import pytest
+
+from g12.polar.contour import Line
+from g12.polar.feed import Place, pieces_with_feed
+from g12.polar.pieces import Split
+
+START = Place(10.0, 0.0, 0.0)
+LEAST = 0.001
+
+
+def move(z1=0.0):
+    """Return a move at F120; its split is what counts."""
+    return Line(1, 120.0, 0.0, 10.0, 0.0, 0.0, 0.0, 0.0, z1)
+
+
+def pieces(*ends, z1=0.0, entry=0.0):
+    """Return the pieces of a split whose ends are (radius, degrees, length)."""
+    radii, degrees, lengths = zip((10.0, 0.0, 0.0), *ends)
+    angles = [math.radians(angle) for angle in degrees]
+    return pieces_with_feed(
+        Split(list(radii), angles, list(lengths)), START, move(z1), entry, LEAST
+    )
+
+
+def test_f_is_for_x_where_x_moves():
+    """2 of X in a path of 5 at F120."""
+    assert pieces((12.0, 25.0, 5.0)) == [(12.0, pytest.approx(25.0), 0.0, pytest.approx(48.0))]
+
+
+def test_f_is_degrees_per_minute_where_x_stays():
+    """30 degrees in a path of 5 at F120, a 24th of a minute."""
+    assert pieces((10.0, 30.0, 5.0)) == [(10.0, pytest.approx(30.0), 0.0, pytest.approx(720.0))]
+
+
+def test_f_is_for_x_and_z_on_a_helix():
+    """3 of X and 4 of Z: 5 in a path of hypot(12, 4) at F120."""
+    ((_, _, z, feed),) = pieces((13.0, 60.0, 12.0), z1=-4.0)
+    assert z == -4.0
+    assert feed == pytest.approx(5.0 * 120.0 / math.hypot(12.0, 4.0))
+
+
+def test_what_x_would_move_too_little_goes_to_the_next_piece():
+    made = pieces((10.0006, 5.0, 1.0), (10.0012, 10.0, 2.0))
+    assert [piece[0] for piece in made] == [10.0, 10.0012]
+    assert made[0][3] == pytest.approx(5.0 * 120.0)
+    assert made[1][3] == pytest.approx(0.0012 * 120.0)
+
+
+def test_x_alone_may_move_as_little_as_it_likes():
+    assert pieces((10.0002, 0.0, 0.0002)) == [(10.0002, 0.0, 0.0, pytest.approx(120.0))]
+
+
+def test_a_turn_by_rounding_is_none():
+    assert pieces((10.0002, 1e-12, 0.0002)) == [(10.0002, 0.0, 0.0, pytest.approx(120.0))]
+
+
+def test_a_piece_to_nowhere_leaves_its_time_to_the_next():
+    assert pieces((10.0, 0.0, 1.0), (12.0, 0.0, 2.0)) == [(12.0, 0.0, 0.0, pytest.approx(120.0))]
+
+
+def test_c_counts_from_where_it_stood_at_entry():
+    ((_, c, _, _),) = pieces_with_feed(
+        Split([10.0, 12.0], [0.0, 1.0], [0.0, 5.0]), Place(10.0, 90.0, 0.0), move(), 90.0, LEAST
+    )
+    assert c == pytest.approx(90.0 + math.degrees(1.0))
