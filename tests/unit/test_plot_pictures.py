@@ -86,6 +86,13 @@ def test_levels_go_down_and_each_has_the_area_swept():
     assert levels[0].shade != levels[1].shade
 
 
+def test_many_moves_at_one_depth_are_one_level():
+    hand = Hand().rapid(x=50).pocket([4, 8, 12, 16, 20, 24], depth=-2.5)
+    (level,) = plan_view.levels_of(scene(hand))
+    assert level.z == pytest.approx(-2.5)
+    assert level.shade == pictures.shades(1)[0]
+
+
 def test_each_tool_sweeps_with_its_own_diameter():
     hand = Hand().line(x=100)
     hand.tool = 2

@@ -223,6 +223,11 @@ def test_an_arc_by_its_radius(radius, sweep):
     assert abs(arc.centre) == pytest.approx(0 if radius > 0 else abs(20 + 20j))
 
 
+def test_a_clockwise_arc_by_its_radius_has_its_centre_on_the_right():
+    (arc,) = drawn("G2 X0 C-20 R20")
+    assert abs(arc.centre) < 1e-12 and arc.sweep == pytest.approx(-math.pi / 2)
+
+
 def test_ramps_are_where_compensation_changes():
     found = drawn("G1 C5", "G41 X10", "C0", "Z-1", "G40 X20")
     assert [(e.side, e.ramp) for e in found] == [(0, False), (1, True), (1, False), (0, True)]
