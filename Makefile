@@ -24,7 +24,7 @@ test: setup
 	@echo "test: every test, on $(JOBS) cores"
 	@$(PYTHON) -m pytest -n $(JOBS) --dist loadfile
 
-lint: setup $(RUFF)-$(RUFF_VERSION)
+lint: $(RUFF)-$(RUFF_VERSION)
 	@echo "lint: ruff $(RUFF_VERSION)"
 	@$(RUFF) check --quiet
 	@$(RUFF) format --check --quiet
@@ -39,6 +39,7 @@ clean:
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(RUFF)-$(RUFF_VERSION):
+	@sh .ci/setup python3-venv
 	@echo "lint: fetching ruff $(RUFF_VERSION)"
 	@$(PYTHON) -m venv --clear build/venv
 	@build/venv/bin/pip install --quiet --disable-pip-version-check ruff==$(RUFF_VERSION)

@@ -9,5 +9,3 @@ Data flow of one block, one way only::
 The planners (`haas`, `geometry`, `polar`) are pure: numbers in, values out, no LinuxCNC.
 Lengths are in program units unless a docstring says otherwise, angles in radians.
 """
-
-__version__ = "0.1.0"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The interpreter, touched here: snapshot, hand-over to NGC, refusals.
 
-(`section` reads on with it for polar interpolation; nothing else imports LinuxCNC.)
+(Cycles go through it alone. `section` and its neighbours read on for polar interpolation.)
 Facts about the interpreter that the code relies on stand beside the line that does.
 """
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import itertools
 import sys
-from collections.abc import Sequence
+from pathlib import Path
 
 import emccanon
 from interpreter import INTERP_ERROR
@@ -46,8 +46,16 @@ def refuse_start_error() -> None:
 
 # indices into a block's g_modes
 MODAL_0, TOOL_LENGTH, PATH_CONTROL, SPINDLE, DIAMETER = 0, 8, 13, 14, 15
-G43_1, G43_2, G64, G96 = 431, 432, 640, 960
 NO_CODE = -1
+READING_WORDS = (
+    (TOOL_LENGTH, 430, "H"),
+    (TOOL_LENGTH, 431, "XYZABCUVW"),
+    (TOOL_LENGTH, 432, "HXYZABCUVW"),
+    (PATH_CONTROL, 640, "PQ"),
+    (SPINDLE, 960, "D"),
+)
+M_GROUPS = 11
+HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
 DIAMETER_ACTIVE = 15  # index into active_g_codes
 G7 = 70
 SPINDLES = 8  # most that LinuxCNC has
@@ -72,15 +80,16 @@ NO_L = -1  # a block's l_number without an L word
 class CycleState:
     """What the package remembers of one interpreter; it lives on the interpreter object.
 
-    ``modes`` are those a cycle found and has to put back; ``zero_radius_commanded`` tells D0
-    from no D at all, which the interpreter's own last compensation radius cannot. ``first_plane``
-    is the circle mill's modal reference plane in mm and the program that commanded it.
+    ``modes`` are those a cycle found and has to put back; ``radius_commanded`` tells a D of
+    radius 0 from no D at all, which the interpreter's own last compensation radius cannot.
+    ``first_plane`` is the circle mill's modal reference plane in mm and the program that
+    commanded it, as it was then.
     """
 
     def __init__(self) -> None:
         self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
-        self.zero_radius_commanded = False
-        self.first_plane: tuple[float, str | None] | None = None
+        self.radius_commanded = False
+        self.first_plane: tuple[float, tuple[str, int] | None] | None = None
 
 
 def state_of(interp: object) -> CycleState:
@@ -127,24 +136,29 @@ def words_of_block(interp: object) -> Words:
         values["@"] = block.radius
     if block.theta_flag:
         values["^"] = block.theta
-    words = Words(block.executing_remap.name.upper(), values)
-    other = code_sharing_words(block.g_modes, words)
-    if other != NO_CODE:
-        raise words.refuse(f"G{other / 10:g} cannot stand in the same block")
+    words = Words(code_of_block(interp), values)
+    other = code_reading_words(block, words)
+    if other:
+        raise words.refuse(f"{other} cannot stand in the same block")
     return words
 
 
-def code_sharing_words(g_modes: Sequence[int], words: Words) -> int:
-    """Return a code of the block that would read one of the cycle's words too, or NO_CODE."""
+def code_reading_words(block: object, words: Words) -> str | None:
+    """Return a code of the block that would read a word of the cycle too, or change its tool.
+
+    (The interpreter knows the tool that M6 brings only behind the block.)
+    """
+    g_modes = block.g_modes
     if g_modes[MODAL_0] != NO_CODE:
-        return g_modes[MODAL_0]
-    if g_modes[TOOL_LENGTH] in (G43_1, G43_2):
-        return g_modes[TOOL_LENGTH]
-    if g_modes[PATH_CONTROL] == G64 and "Q" in words:
-        return G64
-    if g_modes[SPINDLE] == G96 and "D" in words:
-        return G96
-    return NO_CODE
+        return f"G{g_modes[MODAL_0] / 10:g}"
+    for group, code, letters in READING_WORDS:
+        if g_modes[group] == code and any(letter in words for letter in letters):
+            return f"G{code / 10:g}"
+    if block.m_count:
+        for group in range(M_GROUPS):
+            if block.m_modes[group] not in HARMLESS_M:
+                return f"M{block.m_modes[group]}"
+    return None
 
 
 def entries_of_call(interp: object, sub: str, count: int) -> list[float] | None:
@@ -194,19 +208,27 @@ def last_radius(interp: object) -> float | None:
     The interpreter keeps its compensation radius after G40 and converts it with G20/G21, and
     the cycles store their D there too: one register, as on the control.
     """
-    radius = interp.cutter_comp_radius
-    return radius if radius > 0 or state_of(interp).zero_radius_commanded else None
+    state, radius = state_of(interp), interp.cutter_comp_radius
+    state.radius_commanded = state.radius_commanded or radius > 0
+    return radius if state.radius_commanded else None
 
 
 def remember_radius(interp: object, radius: float) -> None:
     """Store the cutter radius of a D word as the last commanded."""
     interp.cutter_comp_radius = radius
-    state_of(interp).zero_radius_commanded = radius == 0
+    state_of(interp).radius_commanded = True
 
 
-def main_program(interp: object) -> str | None:
-    """Return the file at the bottom of the call stack; in MDI the one that is open, if any."""
-    return interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
+def main_program(interp: object) -> tuple[str, int] | None:
+    """Return the file at the bottom of the call stack and when it was last written.
+
+    In MDI it is the one that is open, if any.
+    """
+    name = interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
+    try:
+        return name, Path(name).stat().st_mtime_ns
+    except (OSError, TypeError):
+        return None
 
 
 def millimetres_per_unit(interp: object) -> float:
@@ -217,7 +239,8 @@ def millimetres_per_unit(interp: object) -> float:
 def first_plane(interp: object) -> float | None:
     """Return the circle mill's first reference plane as last commanded by this program.
 
-    Another program's would send the tool to a height that this one never mentions.
+    Another program's, or that of a text since edited, would send the tool to a height that this
+    one never mentions.
     """
     plane = state_of(interp).first_plane
     if plane is None or plane[1] != main_program(interp):

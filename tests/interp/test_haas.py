@@ -14,7 +14,7 @@ from g12.cli.trace import Tracer
 from machines import SIM
 
 INCH = 25.4
-TOOLS = {1: 0.25, 2: 0.5, 3: -0.25}
+TOOLS = {1: 0.25, 2: 0.5, 3: -0.25, 4: 0.0}
 FIRST = "G20 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F10"
 
 
@@ -407,6 +407,7 @@ def test_a_tool_length_offset_does_not_move_the_path(inch):
         (["T2 M6", "G41 D1", "G40"], 0.125),
         (["T2 M6", "G41", "G40"], 0.25),
         (["G12 I.6 Z-.1 D2", "G42 D1", "G40"], 0.125),
+        (["T2 M6", "G12 I.6 Z-.1 D1", "G41 D4", "G40"], 0.0),
         (["G42 D1", "G40", "G12 I.6 Z-.1 D2"], 0.25),
         (["G12 I.6 Z-.1 D0", "G42 D1", "G40"], 0.125),
         (["G42 D1", "G40", "G12 I.6 Z-.1 D0"], 0.0),
@@ -457,6 +458,13 @@ REFUSED = [
     ("G19 G13 I.5 Z-1 D1", "G13: needs the XY plane G17, but G19 is active"),
     ("G95 S0 F.1 G12 I.5 Z-1 D1", "G12: needs a spindle speed for feed per revolution (G95)"),
     ("G43.1 Z1 G12 I.5 D1", "G12: G43.1 cannot stand in the same block"),
+    ("G64 P.1 G12 I.5 Z-1 D1", "G12: G64 cannot stand in the same block"),
+    ("G43 G12 I.5 Z-1 D1 H2", "G12: G43 cannot stand in the same block"),
+    ("G12 I.5 Z-1 T2 M6", "G12: M6 cannot stand in the same block"),
+    ("M61 Q2 G12 I.5 K1 Z-1 D1", "G12: M61 cannot stand in the same block"),
+    ("M68 E1 Q.1 G12 I.5 K1 Z-1 D1", "G12: M68 cannot stand in the same block"),
+    ("M19 R1 G12 I.5 Z-1 D1", "G12: M19 cannot stand in the same block"),
+    ("M62 P5 G12 I.5 Z-1 D1", "G12: M62 cannot stand in the same block"),
     ("G64 G12 I.5 K1 Q.1 Z-1 D1", "G12: G64 cannot stand in the same block"),
     ("G96 S100 G12 I.5 Z-1 D1", "G12: G96 cannot stand in the same block"),
     ("G12 I[10**300] Z-1 D1", "G12: I1e+300 is beyond 1000000"),
@@ -548,6 +556,12 @@ def test_any_bad_block_is_refused(inch, code, first, depth, breaking, mode):
     block = " ".join([code, *(f"{letter}{value:.6f}" for letter, value in words.items())])
     block = block.replace("L0.000000", "L0")
     assert_refused(inch, [FIRST, mode, "G1 X1 Z.1"], block, f"{code}: ")
+
+
+@pytest.mark.parametrize("code", ["M8", "M3 S100", "M9", "M48", "S200", "T2"])
+def test_spindle_coolant_and_tool_preparation_may_stand_in_the_block(inch, code):
+    traced = cut(inch, "G0 Z.1", f"G12 I.5 Z-.1 D1 {code}")
+    assert [r / INCH for r in proof.radii(traced.moves)] == pytest.approx([0.375])
 
 
 def test_the_program_goes_on_after_an_operator_message(inch):
