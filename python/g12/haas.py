@@ -114,7 +114,8 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
         shrink=1 - last_grow / growth if links > 1 else 0.0,
         spiral=clearing == "spiral",
         commanded_radius=cutter.radius if with_d else None,
-        message=left_material(words, outward, first, cutter, context),
+        message=upward(words, depth, context)
+        or left_material(words, outward, first, cutter, context),
     )
 
 
@@ -159,6 +160,20 @@ def check_radii(
         )
     if outward and outward[0] <= first + rounding:
         raise words.refuse(f"I{number(first)} must be less than K{number(outward[0])}")
+
+
+def upward(words: Words, depth: float, context: Context) -> str | None:
+    """Return the operator message of a pocket that begins above the tool, or None.
+
+    A lost minus sign looks like this; the control would go up and cut there, too.
+    """
+    first = coordinate(depth, context.z, context)
+    if first <= context.z + context.length(ROUNDING_MM):
+        return None
+    return (
+        f"{words.code}: Z{number(depth)} is up from the tool at Z{number(context.z)}:"
+        " has it lost its minus sign?"
+    )
 
 
 def left_material(

@@ -224,6 +224,14 @@ def test_x_and_y_name_the_centre():
     assert (incremental.x, incremental.y) == (1.0, 7.0)
 
 
+def test_a_depth_above_the_tool_is_a_message():
+    lost = plan(I=0.3, Z=0.5, D=1).message
+    assert lost == "G12: Z0.5 is up from the tool at Z0.1: has it lost its minus sign?"
+    incremental = FOUND._replace(incremental=True)
+    assert plan(found=incremental, I=0.3, Z=0.5, D=1).message.startswith("G12: Z0.5 is up")
+    assert plan(I=0.3, Z=0.1, D=1).message is None
+
+
 def test_material_left_is_a_message_not_an_error():
     between = plan(I=0.3, K=1.5, Q=0.3, Z=-1.0, D=1).message
     assert between == (
