@@ -4,12 +4,15 @@
 import math
 from itertools import groupby
 
+import numpy as np
+
 from g12.cli.trace import Tracer
 from machines import SIM
 
 FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 START = "G0 X20 Z5 C0"
 X, Z, C = 0, 2, 5
+FEED = 2  # kind of a sampled move
 
 
 def section(*body, before=(), after=(), first=FIRST, start=START, feed="F100"):
@@ -50,3 +53,31 @@ def texts(traced):
     """Return the operator's messages, without blanks around them."""
     assert traced.error is None, traced.error
     return [message.text.strip() for message in traced.messages]
+
+
+class Cut:
+    """The part of a run that was cut at a feed, in the plane."""
+
+    def __init__(self, run_or_samples):
+        samples = getattr(run_or_samples, "samples", run_or_samples)
+        cutting = samples.kind == FEED
+        angles = np.radians(samples.axes["C"])
+        points = np.column_stack([np.cos(angles), np.sin(angles)]) * samples.axes["X"][:, None]
+        self.all_points, self.points = points, points[cutting]
+        self.z, self.lines = samples.axes["Z"][cutting], samples.line[cutting]
+        steps = np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)
+        self.speeds = steps[cutting] / 0.001 * 60
+        self.c, self.x = samples.axes["C"], samples.axes["X"]
+
+    def of(self, line, ends=0.15):
+        """Return the points of a block without its two ends (a share of its samples)."""
+        return self._inner(self.points, line, ends)
+
+    def speed(self, line):
+        """Return the speed along the part in the middle of a block, per minute."""
+        return np.median(self._inner(self.speeds, line, 0.3))
+
+    def _inner(self, values, line, ends):
+        chosen = values[self.lines == line]
+        cut = int(len(chosen) * ends)
+        return chosen[cut : len(chosen) - cut]

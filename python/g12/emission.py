@@ -20,8 +20,6 @@ G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 
-XC_PIECE, XCZ_PIECE, Z_PIECE = "X%.9fC%.9fF%.9f", "X%.9fC%.9fZ%.9fF%.9f", "Z%.9fF%.9f"
-
 
 class Action(NamedTuple):
     """A block that is no motion, in its place between the moves.
@@ -95,14 +93,22 @@ class Emission:
     """Hands steps to the interpreter.
 
     ``code`` names the section in refusals. ``x_factor`` turns a radius value into an X word (2
-    under G7); ``blending`` is in program units. ``absolute`` is the interpreter's name of G90.
+    under G7); ``blending`` is in program units. ``absolute`` is the interpreter's name of G90,
+    ``canon`` its canonical functions.
     """
 
     def __init__(
-        self, interp: object, code: str, *, x_factor: float, blending: float, absolute: object
+        self,
+        interp: object,
+        code: str,
+        *,
+        x_factor: float,
+        blending: float,
+        absolute: object,
+        canon: object,
     ) -> None:
         self.interp, self.code = interp, code
-        self.x_factor, self.absolute = x_factor, absolute
+        self.x_factor, self.absolute, self.canon = x_factor, absolute, canon
         self.path = PathControl(interp, f"G64P{decimal(blending)}Q0")
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
@@ -143,26 +149,33 @@ class Emission:
     def _moves_to_an_end(self, run: Run, following: object, exact_stop: bool) -> None:
         """Hand over moves of which the last ends in another path control."""
         block_ends = not isinstance(following, Run) or following.line != run.line
-        self._moves(run.line, run.axes, run.pieces[:-1])
+        if len(run.pieces) > 1:
+            self._moves(run.line, run.axes, run.pieces[:-1])
+        self.interp.sequence_number = run.line
         self.path.at_end(run.stop, exact_stop, block_ends)
-        self._pieces(run.axes, run.pieces[-1:])
+        self._block(run.axes, *run.pieces[-1])
 
     def _moves(self, line: int, axes: str, pieces: list[tuple[float, ...]]) -> None:
-        self.interp.sequence_number = line
-        self.path.inside()
-        self._pieces(axes, pieces)
+        """Hand over moves of one block.
 
-    def _pieces(self, axes: str, pieces: list[tuple[float, float, float, float]]) -> None:
-        execute, factor = self.interp.execute, self.x_factor
-        if axes == "XC":
-            for x, c, _, feed in pieces:
-                execute(XC_PIECE % (x * factor, c, feed))
-        elif axes == "Z":
-            for _, _, z, feed in pieces:
-                execute(Z_PIECE % (z, feed))
-        else:
-            for x, c, z, feed in pieces:
-                execute(XCZ_PIECE % (x * factor, c, z, feed))
+        The first is a block to the interpreter, which tells the machine the line and the modes.
+        The others are what it would make of their blocks, at a third of the time.
+        """
+        interp = self.interp
+        interp.sequence_number = line
+        self.path.inside()
+        self._block(axes, *pieces[0])
+        y, a, b = interp.current_y, interp.AA_current, interp.BB_current
+        u, v, w = interp.u_current, interp.v_current, interp.w_current
+        set_feed, move = self.canon.SET_FEED_RATE, self.canon.STRAIGHT_FEED
+        for x, c, z, feed in pieces[1:]:
+            set_feed(feed)
+            move(line, x, y, z, a, b, c, u, v, w)
+        interp.current_x, interp.CC_current, interp.current_z, _ = pieces[-1]
+
+    def _block(self, axes: str, x: float, c: float, z: float, feed: float) -> None:
+        values = {"X": x * self.x_factor, "C": c, "Z": z, "F": feed}
+        self.interp.execute("".join(f"{word}{values[word]:.9f}" for word in (*axes, "F")))
 
     def _act(self, action: Action) -> None:
         """Execute a block in its place."""

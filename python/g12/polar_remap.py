@@ -8,6 +8,7 @@ import os
 from collections.abc import Container, Iterator
 from pathlib import Path
 
+import emccanon
 import interpreter
 import linuxcnc
 from interpreter import INTERP_ERROR, INTERP_OK, MODE_ABSOLUTE
@@ -175,6 +176,7 @@ def emission_of_section(interp: object, code: str) -> Emission:
         x_factor=2.0 if host.diameter_mode(interp) else 1.0,
         blending=tolerance() / 2 * program_units(interp),
         absolute=MODE_ABSOLUTE,
+        canon=emccanon,
     )
 
 

@@ -8,14 +8,13 @@ import pytest
 
 from drawings import INCHES, MILLIMETRES
 from g12.cli.headless import Machine
-from lathe import FIRST, section
+from lathe import FEED, FIRST, Cut, section
 from machines import PROGRAMS, SIM
 from outline import deviation, distances, fitted_circle, fitted_line, lines
 
 INCH = 25.4
 TOLERANCE = {"mm": 0.005, "inch": 0.0002}  # the default of POLAR_TOLERANCE
 SAMPLING = {"mm": 0.001, "inch": 0.001 / INCH}
-FEED, STANDSTILL = 2, 0
 MANUAL_TOOLS = {1: 0.5, 8: 0.0}
 OVERRIDE = {"manual_a": 3, "manual_b": 2, "manual_sample": 3}  # they cut at 5 inches a minute
 C_SPEED, C_ACCELERATION = 360, 3600
@@ -42,34 +41,6 @@ def lathe(metric):
     metric.mdi("G0 X20 C0")
     metric.errors(), metric.messages()
     return metric
-
-
-class Cut:
-    """The part of a run that was cut at a feed, in the plane."""
-
-    def __init__(self, run_or_samples, zero=0.0):
-        samples = getattr(run_or_samples, "samples", run_or_samples)
-        cutting = samples.kind == FEED
-        angles = np.radians(samples.axes["C"] - zero)
-        points = np.column_stack([np.cos(angles), np.sin(angles)]) * samples.axes["X"][:, None]
-        self.all_points, self.points = points, points[cutting]
-        self.z, self.lines = samples.axes["Z"][cutting], samples.line[cutting]
-        steps = np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)
-        self.speeds = steps[cutting] / 0.001 * 60
-        self.c, self.x = samples.axes["C"], samples.axes["X"]
-
-    def of(self, line, ends=0.15):
-        """Return the points of a block without its two ends (a share of its samples)."""
-        return self._inner(self.points, line, ends)
-
-    def speed(self, line):
-        """Return the speed along the part in the middle of a block, per minute."""
-        return np.median(self._inner(self.speeds, line, 0.3))
-
-    def _inner(self, values, line, ends):
-        chosen = values[self.lines == line]
-        cut = int(len(chosen) * ends)
-        return chosen[cut : len(chosen) - cut]
 
 
 def run_sample(machine, name, override=1.0):

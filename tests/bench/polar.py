@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12.1: real deviation, section times, interpreting time."""
+
+import math
+import statistics
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from bench import Figure
+from bench.haas import cpu_seconds
+from drawings import HEXAGON, INCHES, MILLIMETRES
+from g12.cli.headless import Machine
+from g12.cli.ini import read_ini
+from g12.cli.trace import Tracer
+from lathe import Cut, feed_moves
+from machines import PROGRAMS, SIM
+from outline import Arc, deviation, outward
+
+MM_PER_INCH = 25.4
+SAMPLES = PROGRAMS / "polar"
+MANUAL_TOOLS = {1: 0.5, 8: 0.0}
+TOLERANCE = {"mm": 0.005, "inch": 0.0002 * MM_PER_INCH}
+LINES, PAIRS = 10000, 7
+HEXAGON_BLOCKS, FLAT_BLOCKS = range(10, 16), (14, 15, 16)
+
+
+def figures():
+    """Yield the polar rows of the promised figures."""
+    yield interpreting()
+    with Machine(SIM / "lathe_mm.ini") as lathe:
+        for name in MILLIMETRES:
+            yield real_deviation(lathe, name, "mm", MILLIMETRES[name])
+        yield against_ideal(lathe, "hexagon", 1.0, "F250", HEXAGON_BLOCKS, MILLIMETRES)
+        yield against_equal_angles(lathe)
+    with Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as lathe:
+        for name in INCHES:
+            yield real_deviation(lathe, name, "inch", INCHES[name])
+        feed = f"F{250 / MM_PER_INCH:.6f}"
+        yield against_ideal(lathe, "manual_b", MM_PER_INCH, feed, FLAT_BLOCKS, INCHES)
+
+
+def real_deviation(lathe, name, units, drawing):
+    """Compare the motion of a sample program, sampled at 1 kHz, with its drawing."""
+    scale = 1 if units == "mm" else MM_PER_INCH
+    cut = Cut(lathe.run(SAMPLES / f"{name}.ngc"))
+    worst = scale * max(deviation(drawing.pieces, cut.points, 0.1 / scale))
+    return Figure(
+        f"polar: real motion against the programmed contour, {name}",
+        worst,
+        TOLERANCE[units] + 0.001,
+        " mm",
+        f"{len(cut.points)} samples, and the contour against them",
+    )
+
+
+def against_ideal(lathe, name, scale, feed, blocks, drawings):
+    """Compare the time of a contour at F250 with its length over the feed."""
+    program = _at_feed((SAMPLES / f"{name}.ngc").read_text(), feed, blocks)
+    seconds = seconds_in(lathe.run_text(program), blocks)
+    length = scale * sum(_length(piece) for block in blocks for piece in drawings[name].path[block])
+    return Figure(
+        f"polar: section time against the ideal at F250, {name}",
+        seconds / (length / 250 * 60),
+        1.05,
+        "",
+        f"{seconds:.2f} s for {length:.1f} mm",
+    )
+
+
+def against_equal_angles(lathe):
+    """Compare the hexagon at F1000 with the coarsest equal angles of the same tolerance."""
+    text = (SAMPLES / "hexagon.ngc").read_text()
+    ours = seconds_in(lathe.run_text(_at_feed(text, "F1000", HEXAGON_BLOCKS)), HEXAGON_BLOCKS)
+    pieces = [piece for group in outward(HEXAGON, 6) for piece in group]
+    points = np.concatenate([equal_angles(piece) for piece in pieces])
+    lathe.mdi("G21 G90 G94 G8 G0 Z5")
+    theirs = lathe.run_text(blocks_of(points, 1000))
+    seconds = seconds_in(theirs, range(5, 5 + len(points)))
+    return Figure(
+        "polar: section time against equal angles of the same tolerance, F1000, hexagon",
+        ours / seconds,
+        1.0,
+        "",
+        f"{ours:.2f} s against {seconds:.2f} s for {len(points)} equal angles "
+        f"(which leave the contour by {deviation(pieces, Cut(theirs).points, 0.1)[0]:.4f} mm)",
+    )
+
+
+def equal_angles(piece, tolerance=TOLERANCE["mm"]):
+    """Return the fewest points on a piece, at equal C angles, whose X-C moves stay near it."""
+    fine = piece.points(0.002)
+    radii, angles = np.hypot(*fine.T), np.unwrap(np.arctan2(fine[:, 1], fine[:, 0]))
+    if angles[-1] < angles[0]:
+        radii, angles = radii[::-1], angles[::-1]
+    for count in range(1, 10000):
+        at = np.linspace(angles[0], angles[-1], count + 1)
+        straight = np.interp(angles, at, np.interp(at, angles, radii))
+        moved = np.column_stack([straight * np.cos(angles), straight * np.sin(angles)])
+        if piece.distances(moved).max() <= tolerance:
+            break
+    x = np.interp(at, angles, radii)
+    if piece.points(1)[0] @ [np.cos(at[0]), np.sin(at[0])] < x[0] - 1e-6:
+        x, at = x[::-1], at[::-1]
+    return np.column_stack([x[1:], at[1:]])
+
+
+def blocks_of(points, feed):
+    """Return a program of straight X-C moves, each with the F that makes ``feed`` on the part."""
+    angles = np.degrees(np.unwrap(points[:, 1]))
+    start = (19.5**2 + 12**2) ** 0.5, math.degrees(math.atan2(12, 19.5))
+    blocks, before = [], start
+    for x, c in zip(points[:, 0], angles):
+        plane = [
+            (r * math.cos(math.radians(a)), r * math.sin(math.radians(a)))
+            for r, a in ((x, c), before)
+        ]
+        minutes = math.dist(*plane) / feed
+        dx = abs(x - before[0])
+        rate = dx / minutes if dx > 0.001 else abs(c - before[1]) / minutes
+        blocks.append(f"G1 X{x if dx > 0.001 else before[0]:.6f} C{c:.6f} F{rate:.6f}")
+        before = (x if dx > 0.001 else before[0], c)
+    head = ["G21 G18 G8 G90 G94 G64 P0.0025", f"G0 X{start[0]:.6f} C{start[1]:.6f}", "Z2", "(cut)"]
+    return [*head, *blocks, "M2"]
+
+
+def interpreting():
+    """Compare a section of 10,000 lines with the blocks it becomes, in the stock interpreter."""
+    section = [
+        "G21 G18 G8 G40 G64 G90 G94 F1000",
+        "G0 X30 Z0 C0",
+        "G12.1",
+        *hexagons(),
+        "G13.1",
+        "M2",
+    ]
+    with Tracer(SIM / "lathe_mm.ini") as tracer, tempfile.TemporaryDirectory() as folder:
+        moves = feed_moves(tracer.trace_text(section))
+        plain = [f"G1 X{move.end[0]:.6f} C{move.end[5]:.6f} F{move.feed:.4f}" for move in moves]
+        scratch = Path(folder)
+        programs = {"section": section, "plain": [*section[:2], *plain, "M2"], "empty": ["M2"]}
+        for name, lines in programs.items():
+            (scratch / f"{name}.ngc").write_text("\n".join([*lines, ""]))
+        ini = SIM / "lathe_mm.ini"
+        (scratch / "machine.ini").write_text(read_ini(ini).text)
+        (scratch / "tool.tbl").write_text("T1 P1 D12\n")
+        times = [
+            [cpu_seconds(scratch, scratch / f"{name}.ngc") for name in programs]
+            for _ in range(PAIRS)
+        ]
+    start_up = statistics.median(time[2] for time in times)
+    ratios = sorted((time[0] - start_up) / (time[1] - start_up) for time in times)
+    return Figure(
+        "polar: interpreting a 10,000-line section against the same path expanded",
+        statistics.median(ratios),
+        2.0,
+        "",
+        f"{len(plain)} moves; CPU time of rs274 less its start-up, median of {PAIRS} pairs "
+        f"({ratios[0]:.2f} to {ratios[-1]:.2f})",
+    )
+
+
+def hexagons():
+    """Return the lines of hexagons of growing size, to and fro, so that C does not run away."""
+    lines = ["G1 X16 C9"]
+    for turn in range(LINES // 6):
+        radius = 16 + turn % 100 * 0.01
+        for corner in range(6) if turn % 2 else range(6, 0, -1):
+            angle = math.radians(30 - 60 * corner)
+            lines.append(f"X{radius * math.cos(angle):.4f} C{radius * math.sin(angle):.4f}")
+    return lines
+
+
+def seconds_in(run, blocks):
+    """Return the time a run spent in blocks."""
+    assert run.error is None, run.error
+    return np.isin(run.samples.line, list(blocks)).sum() * 0.001
+
+
+def _at_feed(text, feed, blocks):
+    """Return a sample program whose blocks run at another feed."""
+    lines = text.splitlines()
+    for block in blocks:
+        words = [word for word in lines[block - 1].split() if word[0] != "F"]
+        lines[block - 1] = " ".join([*words, feed])
+    return lines
+
+
+def _length(piece):
+    if isinstance(piece, Arc):
+        return piece.radius * abs(piece.sweep)
+    return float(np.hypot(*(piece.end - piece.start)))
