@@ -141,7 +141,7 @@ def test_arcs_nearly_about_the_spindle(away, radius, sweep):
 
 
 def test_a_short_line_is_split_for_an_even_feed():
-    contour = programmed([Straight(5 + 0j, 5.6 + 0.6j)], feed=100.0)
+    contour = programmed([Straight(2 + 0j, 2.13 + 0.13j)], feed=100.0)
     made = cuts(contour, plan(contour, EXACT, c=0.0))
     assert len(made) > 1
     assert all(speed == pytest.approx(100.0, rel=0.011) for cut in made for speed in cut.speeds)
