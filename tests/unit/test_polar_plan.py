@@ -168,6 +168,25 @@ def test_arcs_by_centre_and_by_radius_are_the_same(by_radius):
     assert distance(made, [quarter, more]).max() <= TOLERANCE
 
 
+def test_inches_make_the_same_moves():
+    metric = [Straight(30 + 0j, 8 + 12j), Round(8 + 12j, 1 + 2j, 3.0)]
+    metric.append(Round(metric[1].end, 1j, -1.0))
+    lengths = ("tolerance", "least_x", "x_acceleration")
+    inch = LATHE._replace(**{name: getattr(LATHE, name) / 25.4 for name in lengths})
+    small = [
+        Straight(shape.start / 25.4, shape.end / 25.4)
+        if isinstance(shape, Straight)
+        else Round(shape.start / 25.4, shape.centre / 25.4, shape.sweep)
+        for shape in metric
+    ]
+    in_mm = runs(plan(programmed(metric, feed=254.0), LATHE, c=0.0))
+    in_inches = runs(plan(programmed(small, feed=10.0), inch, c=0.0))
+    for one, other in zip(in_mm, in_inches):
+        assert len(one.pieces) == len(other.pieces)
+        for (x, c, _, _), (x_inch, c_inch, _, _) in zip(one.pieces, other.pieces):
+            assert (x_inch * 25.4, c_inch) == pytest.approx((x, c), abs=1e-7)
+
+
 # At its feed.
 
 

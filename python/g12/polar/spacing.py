@@ -103,7 +103,7 @@ def _part(a: float, b: float, losses: tuple[float, float], stretch: Stretch, den
     unit = 1.0 if far > place else -1.0
     places, shares = [place], []
     step = unit / density(place)[0]
-    while (far - place) * unit > 0.0:
+    while not shares or (far - place) * unit > 0.0:
         pieces, share = density(place + 0.5 * step)
         step = unit / pieces
         place += step
