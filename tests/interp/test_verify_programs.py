@@ -153,6 +153,18 @@ def test_a_pocket_in_a_subroutine_of_the_program(tmp_path):
     assert proof.findings == []
 
 
+def test_a_sub_of_another_file_is_told_of(tmp_path):
+    folder = tmp_path / "subs"
+    folder.mkdir()
+    (folder / "hole.ngc").write_text("o<hole> sub\nG12 I9 Z-2 D4\no<hole> endsub\nM2\n")
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*MM, "G0 Z1", "o<hole> call", "M2", ""]))
+    path = f"{ROOT / 'ngc'}:{folder}"
+    machine = ini("mill_mm").replaced({"RS274NGC": {"SUBROUTINE_PATH": path}})
+    proof = prove(program, machine)
+    assert (proof.pockets, proof.unseen) == ([], [(4, "hole")])
+
+
 @pytest.mark.parametrize("modes", ["G20", "G91", "G20 G91", "G90.1", "G64 P0.1"])
 @pytest.mark.parametrize("offset", ["", "G10 L2 P1 X7 Y-3 Z2 R30", "G92 X4 Y5 Z1"])
 def test_modes_and_work_coordinates_do_not_matter(modes, offset, tmp_path):

@@ -39,6 +39,10 @@ def flats():
     return Hand().rapid(z=2).rapid(x=20).line(z=-3).polar(points).rapid(z=2)
 
 
+def turned():
+    return Hand().rapid(z=2).rapid(x=20).line(z=-30).line(x=25).rapid(z=2)
+
+
 # ---------------------------------------------------------------- numbers as text
 
 
@@ -91,6 +95,18 @@ def test_many_moves_at_one_depth_are_one_level():
     (level,) = plan_view.levels_of(scene(hand))
     assert level.z == pytest.approx(-2.5)
     assert level.shade == pictures.shades(1)[0]
+
+
+def test_drilling_sweeps_holes():
+    hand = Hand().rapid(x=9).line(z=-5).rapid(z=1).rapid(x=30).line(z=-5)
+    (level,) = plan_view.levels_of(scene(hand))
+    assert level.area.bounds == pytest.approx((6, -3, 33, 3), abs=0.01)
+    assert len(level.area.geoms) == 2
+
+
+def test_a_lathe_program_that_leaves_c_alone_is_turning():
+    assert not scene(turned(), LATHE).path.part.turning
+    assert scene(flats(), LATHE).path.part.turning
 
 
 def test_each_tool_sweeps_with_its_own_diameter():
@@ -227,6 +243,10 @@ SCENES = {
     "mill": lambda: scene(pocket()),
     "mill by feed": lambda: scene(pocket(), feed_colours=True, units="inch"),
     "mill run": lambda: with_real_motion(pocket(), MILL, {"Y": 0.01}),
+    "drilling": lambda: scene(Hand().rapid(x=9).line(z=-5).rapid(z=1).rapid(x=30).line(z=-5)),
+    "turning": lambda: scene(turned(), LATHE),
+    "turning by feed": lambda: scene(turned(), LATHE, feed_colours=True),
+    "turning run": lambda: with_real_motion(turned(), LATHE, {"X": 0.01}),
     "rapids only": lambda: scene(Hand().rapid(x=10).rapid(z=5)),
     "one point": lambda: scene(Hand().line(z=-1)),
     "face": lambda: scene(flats(), LATHE),

@@ -100,6 +100,11 @@ def test_a_wrong_depth_is_found():
     assert findings(facts) == "the depth is off by 0.1 mm"
 
 
+def test_a_block_that_cuts_nothing_is_found():
+    hand = Hand().rapid(x=50).rapid(z=-1).rapid(z=0)
+    assert findings(measure(hand, target())) == "nothing is cut"
+
+
 def test_an_eccentric_circle_is_found():
     hand = Hand().rapid(x=50.03).pocket([17])
     facts = measure(hand, target(cleared=14.1))

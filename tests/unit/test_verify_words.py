@@ -9,7 +9,16 @@ import numpy as np
 import pytest
 
 from g12.cli import contour_words, programmed
-from g12.cli.blocks import STATE, TAG, Block, after, before, blocks_in, read_line
+from g12.cli.blocks import (
+    STATE,
+    TAG,
+    Block,
+    after,
+    before,
+    blocks_in,
+    calls_elsewhere,
+    read_line,
+)
 from g12.cli.contour_words import Pen
 from g12.cli.ini import Ini
 from g12.cli.programmed import Codes, Reader
@@ -95,6 +104,14 @@ def test_a_block_that_never_ends_is_none():
 
 def test_after_tells_the_same_number():
     assert list(after(read_line(12, "G12 I1"))) == [f"(DEBUG,{TAG} end 12 0)"]
+
+
+def test_calls_of_subs_in_other_files_are_known(tmp_path):
+    program = tmp_path / "a.ngc"
+    program.write_text(
+        "o<own> sub\no<own> endsub\no<own> call\nN2 O<Far Off> CALL [1]\no<circle_mill> call\n"
+    )
+    assert calls_elsewhere(program, "circle_mill") == [(4, "faroff")]
 
 
 # ---------------------------------------------------------------- targets

@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import functools
+import re
 import sys
 import threading
 import time
@@ -20,6 +21,7 @@ from g12.cli.trace import Tools, Trace, TraceFailure, trace
 GOOD, FINDING, USAGE = 0, 1, 2
 TICK = 1.0  # s
 MOST_SECONDS = 24 * 3600.0
+RAISED = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:")  # how Python names what was raised
 HIDDEN = "\r\033[K"
 
 
@@ -137,6 +139,9 @@ def _percent(text: str) -> float:
 
 
 def _text(problem: Exception) -> str:
-    """Return the problem in one line: what went wrong, of LinuxCNC's log only its last word."""
+    """Return the problem in one line: what went wrong, of a long log only what tells most."""
     lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
-    return lines[0] if len(lines) < 2 else f"{lines[0]} … {lines[-1]}"
+    if len(lines) < 2:
+        return "".join(lines)
+    raised = [line for line in lines if RAISED.match(line)]
+    return f"{lines[0]} … {(raised or lines)[-1]}"

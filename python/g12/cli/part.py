@@ -79,6 +79,12 @@ def part_of(ini: Ini) -> Part:
     return Part(turning="C" in axes and "Y" not in axes)
 
 
+def part_of_program(ini: Ini, moves: Iterable[Move]) -> Part:
+    """Return how a program sees its part: on a lathe, C turns it if it moves at all."""
+    turned = any(move.start[C] != move.end[C] for move in moves)
+    return Part(turning=part_of(ini).turning and turned)
+
+
 def arc_pieces(radius: float, sweep: float, chord_error: float) -> int:
     """Return into how many chords an arc is cut that stay within ``chord_error``."""
     if abs(sweep) < 1e-12:

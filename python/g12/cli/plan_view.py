@@ -46,22 +46,32 @@ class Level(NamedTuple):
 
 
 def levels_of(scene: Scene) -> list[Level]:
-    """Return the depths milled sideways, from the top down; with many, in bands."""
-    milled = [move for move in scene.moves if move.kind != "rapid" and is_sideways(move)]
-    if not milled:
+    """Return the depths milled or drilled, from the top down; with many, in bands."""
+    cutting = [move for move in scene.moves if move.kind != "rapid" and removes(move)]
+    if not cutting:
         return []
-    depth = np.array([min(move.start[2], move.end[2]) for move in milled])
+    depth = np.array([min(move.start[2], move.end[2]) for move in cutting])
     found = sorted(set(np.round(depth / SAME_DEPTH) * SAME_DEPTH), reverse=True)
     if len(found) > MOST_LEVELS:
         found = list(np.linspace(depth.max(), depth.min(), BANDS))
     nearest = np.abs(np.subtract.outer(depth, found)).argmin(axis=1)
-    groups = [[milled[i] for i in np.flatnonzero(nearest == level)] for level in range(len(found))]
+    groups = [[cutting[i] for i in np.flatnonzero(nearest == level)] for level in range(len(found))]
     part = scene.path.part
     return [
-        Level(z, shade, paths(part, group, PICTURE_CHORD), swept_by(part, group, scene.diameters))
+        Level(z, shade, milled(part, group), swept_by(part, group, scene.diameters))
         for z, shade, group in zip(found, pictures.shades(len(found)), groups)
         if group
     ]
+
+
+def removes(move: Move) -> bool:
+    """Tell whether a move at feed goes sideways or down."""
+    return is_sideways(move) or move.end[2] < move.start[2]
+
+
+def milled(part: Part, moves: Sequence[Move]) -> list[np.ndarray]:
+    """Return the paths of the moves that go sideways."""
+    return paths(part, [move for move in moves if is_sideways(move)], PICTURE_CHORD)
 
 
 def swept_by(part: Part, moves: Sequence[Move], diameters: dict[int, float]) -> BaseGeometry:
@@ -183,10 +193,10 @@ def draw_plunges(axes: Axes, scene: Scene) -> None:
         axes.add_patch(circle)
 
 
-def draw_arrows(axes: Axes, scene: Scene) -> None:
+def draw_arrows(axes: Axes, scene: Scene, pair: Sequence[int] = (0, 1)) -> None:
     """Show the direction of the longer moves, once where levels repeat them."""
     least = LONG * min(np.diff(axes.get_xlim())[0], np.diff(axes.get_ylim())[0]) * scene.unit.mm
-    lines = [line[:, :2] for line in elements(scene)]
+    lines = [line[:, list(pair)] for line in elements(scene)]
     long = [line for line in lines if np.linalg.norm(np.diff(line, axis=0), axis=1).sum() > least]
     places = {tuple(np.round(line[len(line) // 2], 2)): line for line in long}
     if len(places) <= MOST_ARROWS:
@@ -197,9 +207,9 @@ def draw_arrows(axes: Axes, scene: Scene) -> None:
 def elements(scene: Scene) -> list[np.ndarray]:
     """Return the path of each cutting block (n, 3); pieces of one line of the program are one."""
     part, blocks = scene.path.part, []
-    sideways = (scene.moves[i] for i in at_feed(scene) if is_sideways(scene.moves[i]))
+    cutting = (scene.moves[index] for index in at_feed(scene))
     whole = (lambda move: (move.block, move.line)) if part.turning else id
-    for _, moves in groupby(sideways, whole):
+    for _, moves in groupby(cutting, whole):
         blocks += paths(part, moves, PICTURE_CHORD)
     return blocks
 
@@ -215,6 +225,12 @@ def entries(scene: Scene, levels: Sequence[Level]) -> list:
         listed.append(pictures.marker(pictures.INK, text, CUTTER, hollow=True))
     if plunges_of(scene):
         listed.append(pictures.marker(pictures.INK, "plunge"))
+    return listed + motion_entries(scene)
+
+
+def motion_entries(scene: Scene) -> list:
+    """Return the legend's entries of rapids and of the real motion."""
+    listed = []
     if any(move.kind == "rapid" for move in scene.moves):
         listed.append(pictures.stroke(pictures.RAPID, "rapid", 0.9, dashed=True))
     if scene.real is not None:

@@ -2,7 +2,7 @@
 """``g12 plot``: a picture of what a program cuts, for any LinuxCNC program and machine.
 
 A mill program is shown from above and from the side, with the area its cutters sweep; a program
-for a lathe with a C axis on the face of the part, and over time.
+that turns C on the face of the part, and over time; a turning program in Z and X.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from g12.cli.command import (
 from g12.cli.face_picture import draw_face
 from g12.cli.mill_picture import draw_mill
 from g12.cli.scene import Scene, scene_of, with_run
+from g12.cli.turn_picture import draw_turn
 from g12.cli.units import UNITS
 
 EXAMPLES = """\
@@ -41,8 +42,11 @@ exit code: 0 the picture is there, 1 the program has an error, 2 wrong use
 
 
 def draw(scene: Scene) -> Figure:
-    """Return the picture that fits the machine."""
-    return draw_face(scene) if scene.path.part.turning else draw_mill(scene)
+    """Return the picture that fits machine and program."""
+    if scene.path.part.turning:
+        return draw_face(scene)
+    lathe = "Y" not in "".join(scene.ini.words("TRAJ", "COORDINATES", "XYZ")).upper()
+    return draw_turn(scene) if lathe else draw_mill(scene)
 
 
 def parser() -> argparse.ArgumentParser:

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from g12.cli.blocks import executed
+from g12.cli.blocks import calls_elsewhere, executed
 from g12.cli.command import ended
 from g12.cli.contour_words import sections
 from g12.cli.headless import Run
@@ -19,8 +19,8 @@ from g12.cli.ini import Ini
 from g12.cli.measure_pocket import PocketFacts, measure_pocket
 from g12.cli.measure_section import SectionFacts, measure_section
 from g12.cli.motion import Followed, Track, follow, limits_of, track
-from g12.cli.part import C, part_of, tool_diameters
-from g12.cli.programmed import Codes, Reader
+from g12.cli.part import C, part_of_program, tool_diameters
+from g12.cli.programmed import CALL, Codes, Reader
 from g12.cli.trace import MM_PER_INCH, Tools, Trace, Tracer, mm_per_unit
 from g12.cli.units import MM, Unit
 
@@ -45,11 +45,16 @@ class Subject:
 
 @dataclass(frozen=True)
 class Proof:
-    """What was measured; tolerances are in mm."""
+    """What was measured; tolerances are in mm.
+
+    ``unseen`` are the calls, line and name, of subs in other files: what they cut with a cycle
+    is not measured.
+    """
 
     subject: Subject
     pockets: list[PocketFacts]
     sections: list[SectionFacts]
+    unseen: list[tuple[int, str]]
     pocket_tolerance: float
     polar_tolerance: float
 
@@ -93,7 +98,7 @@ def prove(
         reading = ini.get("G12", "POLAR_X", "inherit").lower()
         polars = sections(tracer, program, codes, reading, blocks)
     moves = trace.moves
-    path = track(part_of(ini), moves, limits, trace.modes.speed)
+    path = track(part_of_program(ini, moves), moves, limits, trace.modes.speed)
     real = follow(path, moves, run.samples, mm_per_unit(ini)) if run else None
     asked = Reader(codes, moves, diameters).targets(blocks)
     return Proof(
@@ -103,6 +108,7 @@ def prove(
             measure_section(each, path, moves, diameters, limits.axes[C], polar, real)
             for each in polars
         ],
+        calls_elsewhere(program, CALL),
         plain,
         polar,
     )
@@ -117,6 +123,9 @@ def polar_tolerance(ini: Ini) -> float:
 def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:
     """Yield what is wrong with a pocket."""
     target = facts.target
+    if not facts.depths:
+        yield "nothing is cut"
+        return
     if facts.deviation > tolerance:
         yield f"the wall is {unit.fine(facts.deviation)} {unit.name} off the programmed circle"
     if facts.gouge > SAME_AREA:

@@ -12,7 +12,7 @@ from pathlib import Path
 from g12.cli.headless import Run
 from g12.cli.ini import Ini
 from g12.cli.motion import Followed, Track, follow, limits_of, track
-from g12.cli.part import part_of, tool_diameters
+from g12.cli.part import part_of_program, tool_diameters
 from g12.cli.proof import Proof
 from g12.cli.trace import Move, Tools, Trace, mm_per_unit
 from g12.cli.units import Unit, plain, unit_of
@@ -74,7 +74,7 @@ def scene_of(
     feed_colours: bool = False,
 ) -> Scene:
     """Return what to show of a traced program; without ``units`` lengths as the program's."""
-    path = track(part_of(ini), trace.moves, limits_of(ini), trace.modes.speed)
+    path = track(part_of_program(ini, trace.moves), trace.moves, limits_of(ini), trace.modes.speed)
     unit = unit_of(trace.modes, units)
     return Scene(program, ini, trace, tool_diameters(ini, tools), unit, path, feed_colours)
 

@@ -50,7 +50,11 @@ def report(proof: Proof, unit: Unit) -> str:
     verdict = "verdict: good, everything is as programmed"
     if count:
         verdict = f"verdict: {count} finding{'s' if count > 1 else ''}"
-    return "\n\n".join([*pockets, *sections, verdict])
+    unseen = [
+        f"line {line} calls o<{name}> of another file: its pockets and sections are not measured"
+        for line, name in proof.unseen
+    ]
+    return "\n\n".join([*pockets, *sections, *unseen, verdict])
 
 
 def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
@@ -155,6 +159,7 @@ def as_json(proof: Proof) -> str:
             "real": proof.subject.real is not None,
             "pockets": [pocket_json(facts, proof) for facts in proof.pockets],
             "sections": [section_json(facts, proof) for facts in proof.sections],
+            "unseen": [{"line": line, "sub": name} for line, name in proof.unseen],
             "good": not proof.findings,
         },
         indent=2,
