@@ -30,9 +30,14 @@ def settings_at_start() -> tuple[Settings, Refusal | None]:
     try:
         return settings_from_environment(), None
     except Refusal as refusal:
-        print(f"g12: {refusal}", file=sys.stderr)
-        emccanon.CANON_ERROR(f"g12: {refusal}")
+        say_at_start(refusal)
         return Settings(), refusal
+
+
+def say_at_start(refusal: Refusal) -> None:
+    """Tell the operator, when LinuxCNC comes up, what cannot work."""
+    print(f"g12: {refusal}", file=sys.stderr)
+    emccanon.CANON_ERROR(f"g12: {refusal}")
 
 
 SETTINGS, START_ERROR = settings_at_start()

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import NamedTuple
 
 from .context import MM_PER_INCH
+from .errors import Refusal
 from .settings import section_entries
 
 NO_LIMIT = 1e99
@@ -27,6 +28,11 @@ def millimetres_of(text: str) -> float:
     """Return the length of a machine unit in mm."""
     unit = dict(section_entries(text, "TRAJ")).get("LINEAR_UNITS", "mm").split()[0].lower()
     return MM_PER_INCH if unit in INCHES else 1.0
+
+
+def coordinates_of(text: str) -> set[str]:
+    """Return the letters of the machine's axes."""
+    return set(dict(section_entries(text, "TRAJ")).get("COORDINATES", "").upper()) - {" "}
 
 
 def axes_of(text: str) -> dict[str, Axis]:
@@ -51,3 +57,19 @@ def remaps_of(text: str) -> dict[str, dict[str, str]]:
         code.upper(): dict(option.split("=", 1) for option in options if "=" in option)
         for code, *options in lines
     }
+
+
+def refuse_owned_codes(remaps: Container[str], owned: bool) -> None:
+    """Refuse a REMAP of G12.1 where the interpreter has that code itself, and ignores the line."""
+    codes = [code for code in ("G12.1", "G13.1") if code in remaps]
+    if owned and codes:
+        raise Refusal(
+            f"REMAP = {codes[0]}: this LinuxCNC has a G12.1 of its own (kinematics selection). "
+            "Use configs/include/polar_g12_3.inc, and G12.3 and G13.3 in programs"
+        )
+
+
+def owns_g12_1(version: str) -> bool:
+    """Tell whether a version of LinuxCNC ("2.9.10") selects kinematics by G12.1."""
+    major, minor = (int(part) for part in version.split(".")[:2])
+    return (major, minor) >= (2, 10)

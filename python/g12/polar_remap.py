@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Container, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import emccanon
@@ -19,7 +19,14 @@ from .context import MM_PER_INCH, YZ
 from .emission import Emission
 from .errors import Refusal, number
 from .frame import Frame
-from .machine import axes_of, millimetres_of, remaps_of
+from .machine import (
+    axes_of,
+    coordinates_of,
+    millimetres_of,
+    owns_g12_1,
+    refuse_owned_codes,
+    remaps_of,
+)
 from .polar.block import Place, alone, line_named
 from .program import Program
 from .section import Section, Setup
@@ -29,8 +36,8 @@ SWITCHED_OFF_BY = "polar_off"  # the handler's name in a REMAP line
 DEFAULT_TOLERANCE_MM, DEFAULT_TOLERANCE_INCH = 0.005, 0.0002
 LEAST_X_MM = 0.001  # a smaller part in X makes LinuxCNC 2.9 get the feed of a piece wrong
 CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
+KINEMATICS_PARAMETER = "_kins_type"  # an interpreter that has it has a G12.1 of its own
 OTHER_WORDS = "abdhktuvwy"
-OWNS_G12_1 = "_kins_type"  # a LinuxCNC with this parameter has a G12.1 of its own
 
 
 def ini_text() -> str:
@@ -41,20 +48,22 @@ def ini_text() -> str:
 
 INI = ini_text()
 REMAPS, AXES, MILLIMETRES = remaps_of(INI), axes_of(INI), millimetres_of(INI)
+COORDINATES = coordinates_of(INI)
 
 
-def refuse_owned_codes(parameters: Container[str], remaps: Container[str]) -> None:
-    """Refuse a REMAP of G12.1 where the interpreter has that code itself and ignores the line."""
-    owned = [code for code in ("G12.1", "G13.1") if code in remaps]
-    if owned and OWNS_G12_1 in parameters:
-        raise Refusal(
-            f"REMAP = {owned[0]}: this LinuxCNC has a G12.1 of its own (kinematics selection). "
-            "Use configs/include/polar_g12_3.inc, and G12.3 and G13.3 in programs"
-        )
+def check_at_start() -> None:
+    """Say so, when LinuxCNC comes up, if it takes G12.1 for itself."""
+    if hasattr(interpreter, "this"):
+        owned = KINEMATICS_PARAMETER in interpreter.this.params.globals()
+    else:  # milltask loads this module before its interpreter exists
+        owned = owns_g12_1(linuxcnc.version)
+    try:
+        refuse_owned_codes(REMAPS, owned)
+    except Refusal as refusal:
+        host.say_at_start(refusal)
 
 
-if hasattr(interpreter, "this"):  # milltask loads this module before its interpreter exists
-    refuse_owned_codes(interpreter.this.params.globals(), REMAPS)
+check_at_start()
 
 
 def polar_on(self, **words) -> Iterator[int]:
@@ -99,6 +108,7 @@ def check_start(interp: object, place: Place) -> None:
     code, found = place.code, host.snapshot(interp)
     above = f"{code} needs the tool at X above zero, not at {number(found.x)} (radius)"
     rules = (
+        ({"X", "C"} <= COORDINATES, f"{code} needs a machine with an X and a C axis"),
         (stands_alone(interp), f"{code} stands alone in its block"),
         (not found.compensated, f"{code} needs G40: compensation is switched on inside"),
         (not found.inverse_time, f"{code} needs G94 or G95, not G93"),

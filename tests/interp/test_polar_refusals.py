@@ -200,6 +200,13 @@ def test_refused_entry(lathe, before, block, reason):
     assert not [move for move in traced.moves if move.line > 5]
 
 
+def test_a_machine_without_a_c_axis():
+    with Tracer(SIM / "lathe_mm.ini", overrides={"TRAJ": {"COORDINATES": "X Z"}}) as lathe:
+        program = section("G1 X12", start="G0 X20 Z5")
+        text, line = refused(lathe, program)
+    assert (text, line) == ("G12.1 line 5: G12.1 needs a machine with an X and a C axis", 5)
+
+
 def test_a_comment_beside_the_codes_is_no_word(lathe):
     program = ["G12.1 (on)" if line == "G12.1" else line for line in section("G1 X12")]
     program = ["N9 G13.1 (off)" if line == "G13.1" else line for line in program]

@@ -296,6 +296,15 @@ def test_waiting_for_an_input(lathe):
     assert Cut(lathe.samples()).points[-1] == pytest.approx((10, 5), abs=1e-4)
 
 
+@pytest.mark.parametrize(("deleted", "x"), [(True, 12), (False, 8)])
+def test_block_delete(lathe, deleted, x):
+    lathe.block_delete(deleted)
+    body = ["G1 X12", "/ X10", "/U-1", "/o1 if [1]", "/ U-1", "/o1 endif"]
+    run = lathe.run_text(section(*body, feed="F3000"))
+    assert run.error is None
+    assert run.position[0] == pytest.approx(x)
+
+
 def test_program_stops_inside(lathe):
     lathe.open_text(section("G1 X12", "M0", "C3", feed="F3000"))
     lathe.start()

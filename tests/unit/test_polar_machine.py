@@ -3,7 +3,16 @@
 
 import pytest
 
-from g12.machine import Axis, axes_of, millimetres_of, remaps_of
+from g12.errors import Refusal
+from g12.machine import (
+    Axis,
+    axes_of,
+    coordinates_of,
+    millimetres_of,
+    owns_g12_1,
+    refuse_owned_codes,
+    remaps_of,
+)
 from g12.polar import Run
 from g12.travel import Beyond, Scale, Travel
 
@@ -39,6 +48,12 @@ def test_units(units, length):
     assert millimetres_of("") == 1
 
 
+def test_coordinates():
+    assert coordinates_of("[TRAJ]\nCOORDINATES = X Z C\n") == {"X", "Z", "C"}
+    assert coordinates_of("[TRAJ]\nCOORDINATES = xzc\n") == {"X", "Z", "C"}
+    assert coordinates_of("") == set()
+
+
 def test_remaps():
     assert remaps_of(INI) == {
         "G12.1": {"modalgroup": "1", "python": "polar_on"},
@@ -72,3 +87,19 @@ def test_inches_on_a_metric_machine():
     beyond = Travel(axes_of(INI), scales).beyond([Run(3, "XC", [(12, 0, 0, 1)], False)])
     assert beyond.position == pytest.approx(12 * 25.4 - 1)
     assert beyond.limit == pytest.approx(300)
+
+
+def test_a_linuxcnc_with_a_g12_1_of_its_own_is_told_at_start_up():
+    remaps = remaps_of(INI)
+    refuse_owned_codes(remaps, owned=False)
+    refuse_owned_codes({"G12.3": {}, "G13.3": {}}, owned=True)
+    with pytest.raises(Refusal, match=r"REMAP = G12\.1: .*polar_g12_3\.inc"):
+        refuse_owned_codes(remaps, owned=True)
+
+
+@pytest.mark.parametrize(
+    ("version", "owned"),
+    [("2.9.0~pre1+git1.f12", False), ("2.9.10", False), ("2.10.0~pre1", True), ("3.0", True)],
+)
+def test_versions_that_own_g12_1(version, owned):
+    assert owns_g12_1(version) == owned
