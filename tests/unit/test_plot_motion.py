@@ -93,6 +93,22 @@ def test_a_path_that_retraces_itself_is_followed_back():
     assert np.allclose(real.deviation, 0.04, atol=1e-6)
 
 
+def test_a_sharp_corner_that_is_cut_short_is_followed_by_the_lines():
+    hand = Hand().line(x=40).next_block().line(x=0, y=4)
+    path = track(MILL, hand.moves, LIMITS)
+    way = np.array([[0, 0], [30, 0], [30, 1], [0, 4.0]])  # cuts off the last 10 mm
+    places = np.linspace(0, 3, 3001)
+    x, y = (np.interp(places, range(4), axis) for axis in way.T)
+    ones = np.ones(len(x))
+    lines = np.where(places < 1.5, 1, 2)
+    axes = {"X": x, "Y": y, "Z": 0 * x}
+    samples = Samples(places, axes, ones, ones, lines, 2 * ones.astype(int), 0)
+    real = follow(path, hand.moves, samples, 1.0)
+    assert real.deviation.max() == pytest.approx(0.5, abs=0.01)  # between the legs
+    assert (real.move == lines - 1).all()
+    assert real.deviation[places > 2].max() < 1e-6
+
+
 def test_the_tool_length_offset_is_taken_off():
     hand = Hand().line(x=20)
     hand.offset = (0, 0, 30.0, *HOME[3:])

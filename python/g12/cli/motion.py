@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -204,22 +205,39 @@ def track(
 
 
 def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) -> Followed:
-    """Lay the samples in motion on the path of moves; ``unit`` is one machine unit in mm."""
+    """Lay the samples in motion on the path of moves; ``unit`` is one machine unit in mm.
+
+    Where a corner is rounded, the tool is off the line that LinuxCNC names: the distance is that
+    to this line or to those before and after it, whichever is nearer.
+    """
     moving = samples.moving()
     axes = _positions(samples, unit)[moving]
     there = path.part.points(axes)
-    segment = _segments(path.axis_points, there)
+    named, beside = stretches(path, moves, samples.line[moving])
+    segment = _segments(path.axis_points, there, named)
     following = np.minimum(segment + 1, len(path.move) - 1)
     positions = axes - _offsets(path, there, segment, following)
     points = path.part.points(positions)
-    nearest = _nearest(path.points, points, segment)
+    nearest = _programmed(path, moves, points, segment)
+    other = _programmed(path, moves, points, _segments(path.axis_points, there, beside))
+    away, other_away = (np.linalg.norm(points - near, axis=1) for near in (nearest, other))
+    nearest = np.where((other_away < away)[:, None], other, nearest)
+    deviation = np.minimum(away, other_away)
     move = path.move[following]
+    return Followed(samples.time[moving], positions, points, move, nearest, deviation)
+
+
+def _programmed(
+    path: Track, moves: Sequence[Move], points: np.ndarray, segment: np.ndarray
+) -> np.ndarray:
+    """Return the programmed points next to points: of arcs the arcs themselves."""
+    nearest = _nearest(path.points, points, segment)
+    move = path.move[np.minimum(segment + 1, len(path.move) - 1)]
     for index in np.unique(move) if not path.part.turning else ():
         if is_plain_arc(moves[index]):
             own = move == index
             nearest[own] = on_arc(moves[index], points[own], nearest[own])
-    deviation = np.linalg.norm(points - nearest, axis=1)
-    return Followed(samples.time[moving], positions, points, move, nearest, deviation)
+    return nearest
 
 
 def is_plain_arc(move: Move) -> bool:
@@ -276,26 +294,48 @@ def _share(start: np.ndarray, along: np.ndarray, point: np.ndarray) -> np.ndarra
     return np.clip(np.einsum("ij,ij->i", point - start, along) / square, 0.0, 1.0)
 
 
-def _segments(path: np.ndarray, points: np.ndarray) -> np.ndarray:
+def stretches(path: Track, moves: Sequence[Move], lines: np.ndarray):
+    """Return the first and last segment (n, 2) that each sample can be on: of its line, of more.
+
+    Samples name the line that is in motion. Where those lines come in the same order as the
+    moves', a sample is on one of its line's moves, or in a corner with those before or after;
+    else it may be anywhere.
+    """
+    going = [i for i, move in enumerate(moves) if move.start != move.end or move.kind == "arc"]
+    groups = [list(group) for _, group in groupby(going, key=lambda index: moves[index].line)]
+    runs = [run for run in np.split(lines, np.flatnonzero(np.diff(lines)) + 1) if len(run)]
+    if [moves[group[0]].line for group in groups] != [run[0] for run in runs]:
+        everywhere = np.tile([0, max(0, len(path.move) - 2)], (len(lines), 1))
+        return everywhere, everywhere
+    first = np.array([path.vertices(group[0]).start for group in groups], int)
+    last = np.array([max(0, path.vertices(group[-1]).stop - 2) for group in groups], int)
+    before, after = np.append(first[:1], first[:-1]), np.append(last[1:], last[-1:])
+    lengths = [len(run) for run in runs]
+    pairs = (np.stack(pair, axis=1) for pair in ((first, last), (before, after)))
+    return tuple(np.repeat(pair, lengths, axis=0) for pair in pairs)
+
+
+def _segments(path: np.ndarray, points: np.ndarray, within: np.ndarray) -> np.ndarray:
     """Return the index of the segment of the path that each point is on, never going back.
 
-    The nearest place is looked for only as far ahead as the tool can have come since the last
-    sample, and not behind where it was: a path may cross, repeat or retrace itself, but the
-    tool cannot jump along it.
+    The nearest place is looked for only as far ahead as the tool can have come, and not behind
+    where it was: a path may cross, repeat or retrace itself, but the tool cannot jump along it.
     """
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
-    travelled = np.linalg.norm(np.diff(points, axis=0, prepend=points[:1]), axis=1)
     found = np.zeros(len(points), int)
-    first, reached, here, last = 0, 0.0, path[0], max(0, len(path) - 2)
-    for index, point in enumerate(points):
-        ahead = int(np.searchsorted(along, reached + 2 * travelled[index] + SLACK))
-        starts = path[first : min(ahead, last) + 1].copy()
-        ends = path[first + 1 : first + 1 + len(starts)]
-        starts[0] = here
-        near, distance = _nearest_on(starts[: len(ends)], ends - starts[: len(ends)], point)
-        best = int(np.argmin(distance))
-        first, here = first + best, near[best]
+    first, here = 0, path[0]
+    for index, (point, (least, most)) in enumerate(zip(points, within)):
+        if first < least:
+            first, here = least, path[least]
         reached = along[first] + math.dist(here, path[first])
+        ahead = int(np.searchsorted(along, reached + 2 * math.dist(point, here) + SLACK))
+        starts = path[first : min(max(ahead, first + 1), most + 1)].copy()
+        ends = path[first + 1 : first + 1 + len(starts)]
+        if len(ends):
+            starts[0] = here
+            near, distance = _nearest_on(starts[: len(ends)], ends - starts[: len(ends)], point)
+            best = int(np.argmin(distance))
+            first, here = first + best, near[best]
         found[index] = first
     return found
 

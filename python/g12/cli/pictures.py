@@ -152,10 +152,11 @@ def draw_rapids(axes: Axes, lines: Sequence[np.ndarray], order: float = 2.5) -> 
 
 def draw_arrow(axes: Axes, line: np.ndarray, colour, order: float = 4.0) -> None:
     """Draw an arrowhead at the middle of a polyline (n, 2), pointing along it."""
-    steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
-    index = int(np.searchsorted(np.cumsum(steps), steps.sum() / 2))
-    start, end = line[index], line[index + 1]
-    tail = end - (end - start) * 1e-3
+    along = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1)))
+    half = along[-1] / 2
+    end = np.array([np.interp(half, along, axis) for axis in line.T])
+    index = min(int(np.searchsorted(along, half, side="right")), len(line) - 1)
+    tail = end - (line[index] - line[index - 1]) * 1e-3
     head = {"arrowstyle": "-|>,head_width=0.2,head_length=0.45", "mutation_scale": 13}
     axes.annotate("", end, tail, arrowprops={**head, "color": colour, "lw": 0}, zorder=order)
 
