@@ -174,8 +174,9 @@ class Emission:
         interp.current_x, interp.CC_current, interp.current_z, _ = pieces[-1]
 
     def _block(self, axes: str, x: float, c: float, z: float, feed: float) -> None:
+        # every digit: X must come back as the number that the moves behind this one have
         values = {"X": x * self.x_factor, "C": c, "Z": z, "F": feed}
-        self.interp.execute("".join(f"{word}{values[word]:.9f}" for word in (*axes, "F")))
+        self.interp.execute("".join(f"{word}{values[word]:.17f}" for word in (*axes, "F")))
 
     def _act(self, action: Action) -> None:
         """Execute a block in its place."""

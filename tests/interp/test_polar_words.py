@@ -21,7 +21,8 @@ def lathe():
 @pytest.fixture(scope="module")
 def inch_lathe():
     tools = {1: 12 / INCH, 2: 10 / INCH, 3: 6 / INCH}
-    with Tracer(SIM / "lathe_inch.ini", tools=tools) as opened:
+    overrides = {"G12": {"POLAR_TOLERANCE": 0.005 / INCH}}
+    with Tracer(SIM / "lathe_inch.ini", tools=tools, overrides=overrides) as opened:
         yield opened
 
 
@@ -77,6 +78,16 @@ def test_a_negative_radius_is_the_long_arc(lathe):
     assert max(move.end[0] for move in long.moves) == pytest.approx(
         12 * (1 + math.sqrt(2)), abs=0.01
     )
+
+
+@pytest.mark.parametrize("units", ["G20", "G21"])
+@pytest.mark.parametrize("mode", ["G7", "G8"])
+def test_x_stands_still_on_an_arc_about_the_centre(lathe, units, mode):
+    first = FIRST.replace("G21", units).replace("G8 ", f"{mode} ")
+    traced = cut(lathe, "G1 X1.1 C.3", "G3 I-[#5420] J-.3", first=first, start="G0 X3 Z0 C0")
+    arc = [move for move in feed_moves(traced) if move.line == 7]
+    assert len(arc) > 0
+    assert {move.end[0] for move in arc} == {arc[0].start[0]}
 
 
 def test_negative_x_turns_c(lathe):
@@ -251,6 +262,15 @@ def test_path_control_is_given_back_or_stays_as_commanded(lathe, commanded, insi
         assert traced.modes.blending == pytest.approx(blending)
 
 
+@pytest.mark.parametrize(("units", "tolerance"), [("G21", 0.0025), ("G20", 0.0025 / INCH)])
+def test_pieces_are_blended_with_half_the_tolerance(lathe, units, tolerance):
+    program = section(
+        "G1 X.8 C.1", "(py,this.params[7] = this.active_settings[3])", "X.7", "C.2",
+        first=FIRST.replace("G21", units), start="G0 X1 Z0 C0",
+    )  # fmt: skip
+    assert lathe.trace_text(program, ask=[7]).numbered[7] == pytest.approx(tolerance)
+
+
 @pytest.mark.parametrize(
     "modes", ["G18 G91.1 G8 G98", "G17 G90.1 G8 G99", "G18 G90.1 G7 G61", "G18 G91.1 G7 G98"]
 )
@@ -270,15 +290,14 @@ def test_inches_and_millimetres_make_the_same_machine_path(lathe, inch_lathe):
     paths = []
     for machine in (lathe, inch_lathe):
         for units, factor in (("G21", 1.0), ("G20", 1 / INCH)):
-            program = section(
-                *body, first=FIRST.replace("G21", units), start="G0 X{20} Z{5} C0", feed="F{100}"
-            )
-            scaled = [_scaled(line, factor) for line in program]
-            paths.append([move.end for move in feed_moves(machine.trace_text(scaled))])
-    for start in (0, 2):  # each machine has its own default tolerance
-        assert len(paths[start]) == len(paths[start + 1])
-        for one, other in zip(paths[start], paths[start + 1]):
-            assert one == pytest.approx(other, abs=1e-6)
+            first = FIRST.replace("G21", units)
+            program = section(*body, first=first, start="G0 X{20} Z{5} C0", feed="F{100}")
+            traced = machine.trace_text([_scaled(line, factor) for line in program])
+            paths.append([(*move.end, move.feed) for move in feed_moves(traced)])
+    for path in paths[1:]:
+        assert len(path) == len(paths[0])
+        for one, other in zip(paths[0], path):
+            assert one == pytest.approx(other, rel=1e-6, abs=1e-6)
 
 
 def _scaled(line, factor):

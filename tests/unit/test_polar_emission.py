@@ -10,7 +10,14 @@ from g12.polar.block import Modes
 
 MODES = Modes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
 LINE = [(10.0, 0.5, 0.0, 250.0), (11.0, 1.0, 0.0, 260.0)]
-FIRST, LAST = "X10.000000000C0.500000000F250.000000000", "X11.000000000C1.000000000F260.000000000"
+
+
+def written(**words):
+    """Return a block with every digit of its numbers."""
+    return "".join(f"{word}{value:.17f}" for word, value in words.items())
+
+
+FIRST, LAST = written(X=10, C=0.5, F=250), written(X=11, C=1, F=260)
 NEXT = [("F", 260.0), (11.0, 1.0, 0.0)]  # the last as it goes to the canonical functions
 
 
@@ -143,8 +150,8 @@ def test_c_is_not_wrapped_while_pieces_go_out():
 def test_axes_and_diameters():
     steps = [run(axes="Z", pieces=[(10.0, 0.0, -2.0, 50.0)]), run(axes="XCZ", pieces=LINE[:1])]
     assert handed_over(steps, x_factor=2.0).done[1:3] == [
-        "Z-2.000000000F50.000000000",
-        "X20.000000000C0.500000000Z0.000000000F250.000000000",
+        written(Z=-2, F=50),
+        written(X=20, C=0.5, Z=0, F=250),
     ]
 
 
