@@ -5,6 +5,7 @@ A ``Case`` writes its block for a scale (25.4 for a program in mm) and for G90 o
 """
 
 import itertools
+import re
 from typing import Callable, NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ MODES = list(
         ("G90.1", "G91.1"),
         ("G94", "G95"),
         ("G61", "G64", "G64 P0.01"),
+        ("G8", "G7"),
     )
 )
 COORDINATES = {  # parameters in inches and degrees
@@ -41,18 +43,24 @@ class Case(NamedTuple):
     start: tuple = (0.5, 0.25, 0.1)
     feed: float = 5.0
 
-    def program(self, units, distance, centres, feed, path):
+    def program(self, units, distance, centres, feed, path, diameter):
         """Return the blocks before the cycle, and the cycle's."""
         scale = 1.0 if units == "G20" else INCH
         start = " ".join(f"{axis}{v * scale:.10f}" for axis, v in zip("XYZ", self.start))
-        modes = f"{distance} {centres} {feed} {path} F{self.feed * scale:.10f}"
-        before = [f"{units} G90 G0 {start}", "T1 M6", "S1000 M3", modes]
-        return before, self.block(scale, distance == "G91")
+        modes = f"{distance} {centres} {feed} {path} {diameter} F{self.feed * scale:.10f}"
+        before = [f"{units} G90 G8 G0 {start}", "T1 M6", "S1000 M3", modes]
+        block = self.block(scale, distance == "G91")
+        return before, diameters(block) if diameter == "G7" else block
 
 
 def words(scale, **values):
     """Return scaled words: ``words(25.4, X=1.0)`` is ``X25.4``."""
     return " ".join(f"{letter}{value * scale:.10f}" for letter, value in values.items())
+
+
+def diameters(block):
+    """Return a block with its X words doubled, as G7 reads them."""
+    return re.sub(r"\bX(-?[\d.]+)", lambda word: f"X{2 * float(word[1]):.10f}", block)
 
 
 def path_of(traced):

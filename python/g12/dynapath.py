@@ -6,7 +6,9 @@ number, event type, entries, end mark. A ``/`` behind a letter marks an incremen
 becomes one ``o<circle_mill> call``; W and F are modal and carried from event to event.
 
 Rules: every line is empty or an event of type 4; no entry twice; X, Y, Z, R, C in every event,
-W and F in it or an earlier one; only X, Y, Z, L can be incremental.
+W and F in it or an earlier one; only X, Y, Z, L can be incremental; G 0 or 7, D from 0 to 3, C from
+0 to 2; R, K, J, P, F, V above 0, L not below 0 and L/ not 0; no value beyond any machine or that
+the call would take for an entry left out; no call longer than a block of LinuxCNC can be.
 """
 
 from __future__ import annotations
@@ -15,15 +17,33 @@ import re
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
 
-from .circle_mill import ENTRIES, LEFT_OUT
-from .errors import Refusal
+from .circle_mill import (
+    CLOCKWISE,
+    ENTRIES,
+    LEFT_OUT,
+    PERIMETER_CYCLE,
+    POCKET_CYCLE,
+    ROUGH_FINISH,
+    SIDES,
+)
+from .errors import Refusal, number
+from .words import LARGEST
 
-EVENT = re.compile(r"N(?P<number>\d+)\((?P<type>\w+)\)(?P<entries>.*)\$")
-ENTRY = re.compile(r"(?P<letter>[A-Z])(?P<incremental>/?)(?P<value>[+-]?(?:\d+\.?\d*|\.\d+))")
+EVENT = re.compile(r"N(?P<number>\d+)\((?P<type>\w+)\)(?P<entries>.*)\$", re.ASCII)
+ENTRY = re.compile(
+    r"(?P<letter>[A-Z])(?P<incremental>/?)(?P<value>[+-]?(?:\d+\.?\d*|\.\d+))", re.ASCII
+)
 CIRCLE_MILL = "4"
 REQUIRED = "XYZRC"
 MODAL = "WF"
 INCREMENTAL = "XYZL"
+POSITIVE = "RKJPFV"
+CHOICES = {
+    "G": (PERIMETER_CYCLE, POCKET_CYCLE),
+    "D": range(len(ROUGH_FINISH)),
+    "C": range(len(SIDES[CLOCKWISE])),
+}
+LONGEST_BLOCK = 254  # characters that LinuxCNC reads of a line
 UNIT_CODES = {"inch": "G20 ", "mm": "G21 ", None: ""}
 
 
@@ -66,7 +86,12 @@ def call_of_event(event: str, modal: dict[str, Entry], line: int) -> str:
     entries = {**modal, **entries}
     check_entries(entries, line)
     values = " ".join(f"[{argument(letter, entries)}]" for letter in ENTRIES)
-    return f"N{match['number']} o<circle_mill> call {values}"
+    call = f"N{match['number']} o<circle_mill> call {values}"
+    if len(call) > LONGEST_BLOCK:
+        raise refusal(
+            line, f"the call of the event has {len(call)} characters, the most is {LONGEST_BLOCK}"
+        )
+    return call
 
 
 def entries_of_event(text: str, line: int) -> dict[str, Entry]:
@@ -85,7 +110,7 @@ def entries_of_event(text: str, line: int) -> dict[str, Entry]:
 
 
 def check_entries(entries: Mapping[str, Entry], line: int) -> None:
-    """Refuse an event without a required entry, or with one that cannot be incremental."""
+    """Refuse an event without a required entry, or with one that no event can have."""
     for letter in REQUIRED:
         if letter not in entries:
             raise refusal(line, f"{letter} is missing")
@@ -93,24 +118,59 @@ def check_entries(entries: Mapping[str, Entry], line: int) -> None:
         if letter not in entries:
             raise refusal(line, f"{letter} is missing, and no event before has it")
     for letter, entry in entries.items():
-        if entry.incremental and letter not in INCREMENTAL:
-            raise refusal(line, f"{letter}/ cannot be incremental")
-        if letter == "L" and entry.value < 0:
-            raise refusal(line, f"L{entry.value} must not be negative; L/ is the side only")
+        rule = broken_rule(letter, entry) or unfit_for_call(letter, entries)
+        if rule:
+            raise refusal(line, rule)
+
+
+def broken_rule(letter: str, entry: Entry) -> str | None:
+    """Return the rule of its letter that an entry breaks, None if it keeps them."""
+    written = f"{letter}{number(entry.value)}"
+    if entry.incremental and letter not in INCREMENTAL:
+        return f"{letter}/ cannot be incremental"
+    if letter in CHOICES and entry.value not in CHOICES[letter]:
+        return f"{written} must be one of {', '.join(map(str, CHOICES[letter]))}"
+    if letter in POSITIVE and not float(entry.value) > 0:
+        return f"{written} must be greater than 0"
+    if letter == "L" and entry.value < 0:
+        return f"{written} must not be negative; L/ is the side only"
+    if letter == "L" and float(entry.value) == 0:
+        return f"{written} must not be 0"
+    return None
+
+
+def unfit_for_call(letter: str, entries: Mapping[str, Entry]) -> str | None:
+    """Return why the call cannot carry an entry's value, None if it can."""
+    value = float(value_in_call(letter, entries))
+    written = f"{letter}{number(value)}"
+    if abs(value) > LARGEST:
+        return f"{written} is beyond {number(LARGEST)}"
+    if value == LEFT_OUT and not from_the_tool(letter, entries[letter]):
+        return f"{written} would be left out: {number(LEFT_OUT)} in the call means no entry"
+    return None
+
+
+def value_in_call(letter: str, entries: Mapping[str, Entry]) -> Decimal:
+    """Return the number that the call gets: Z/ from W, L/ below zero."""
+    entry = entries[letter]
+    if entry.incremental and letter == "Z":
+        return entries["W"].value + entry.value
+    if entry.incremental and letter == "L":
+        return -entry.value
+    return entry.value
+
+
+def from_the_tool(letter: str, entry: Entry) -> bool:
+    """Tell whether the call has to add the entry to where the tool stands."""
+    return entry.incremental and letter in "XY"
 
 
 def argument(letter: str, entries: Mapping[str, Entry]) -> str:
     """Return one entry as an argument of the call."""
-    entry = entries.get(letter)
-    if entry is None:
+    if letter not in entries:
         return f"{LEFT_OUT:.0f}"
-    if not entry.incremental:
-        return f"{entry.value:f}"
-    if letter == "Z":
-        return f"{entries['W'].value + entry.value:f}"
-    if letter == "L":
-        return f"{-entry.value:f}"
-    return f"#<_{letter.lower()}> + {entry.value:f}"
+    value = f"{value_in_call(letter, entries):f}"
+    return f"#<_{letter.lower()}> + {value}" if from_the_tool(letter, entries[letter]) else value
 
 
 def refusal(line: int, rule: str) -> Refusal:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Counts of rings and of spiral half turns: decided here once, never rounded again in NGC.
+"""Counts of rings, levels and spiral turns: decided here once, never rounded again in NGC.
 
 All lengths of one call are in one unit.
 """
@@ -17,11 +17,3 @@ def steps_between(first: float, last: float, step: float, tolerance: float) -> i
     A rest shorter than ``tolerance`` is rounding, not a step of its own.
     """
     return max(0, math.ceil(min((last - first - tolerance) / step, COUNTLESS)))
-
-
-def ring_radii(first: float, last: float, step: float, tolerance: float) -> list[float]:
-    """Return the radii first, first + step, … with ``last`` exactly at the end."""
-    count = steps_between(first, last, step, tolerance)
-    if count == 0:
-        return [last]
-    return [first + index * step for index in range(count)] + [last]

@@ -94,12 +94,67 @@ def test_the_units_of_the_text_can_be_given():
             ["N1(4)X0Y0Z-1W.1R1C2F20L-.02$"],
             "line 1: L-0.02 must not be negative; L/ is the side only",
         ),
+        (["N1(4)X٣Y0Z-1W.1R1C2F20$"], "line 1: X٣Y0Z-1W.1R1C2F20 does not start with an entry"),
+        (["N١(4)X0$"], "line 1: N١(4)X0$ is not an event: N…(4)…$"),
+        (["N1(٤)X0$"], "line 1: N1(٤)X0$ is not an event: N…(4)…$"),
     ],
 )
 def test_a_bad_file_is_refused_with_its_line(lines, message):
     with pytest.raises(Refusal) as refused:
         program_from_events("\n".join(lines))
     assert refused.value.message == message
+
+
+LEAVES_OUT = "would be left out: -9999 in the call means no entry"
+
+
+@pytest.mark.parametrize(
+    ("entries", "rule"),
+    [
+        ("G3", "G3 must be one of 0, 7"),
+        ("G-7", "G-7 must be one of 0, 7"),
+        ("D5", "D5 must be one of 0, 1, 2, 3"),
+        ("D-1", "D-1 must be one of 0, 1, 2, 3"),
+        ("D1.5", "D1.5 must be one of 0, 1, 2, 3"),
+        ("C3", "C3 must be one of 0, 1, 2"),
+        ("C.5", "C0.5 must be one of 0, 1, 2"),
+        ("L0", "L0 must not be 0"),
+        ("L/0", "L0 must not be 0"),
+        ("L/-.02", "L-0.02 must not be negative; L/ is the side only"),
+        *((f"{letter}0", f"{letter}0 must be greater than 0") for letter in "RKJPFV"),
+        ("R-1", "R-1 must be greater than 0"),
+        ("X-9999", f"X-9999 {LEAVES_OUT}"),
+        ("Z-9999.", f"Z-9999 {LEAVES_OUT}"),
+        ("O-9999", f"O-9999 {LEAVES_OUT}"),
+        ("W-9999", f"W-9999 {LEAVES_OUT}"),
+        ("Y-9999." + "0" * 20 + "1", f"Y-9999 {LEAVES_OUT}"),
+        ("Z/-9999.1", f"Z-9999 {LEAVES_OUT}"),
+        ("L/9999", f"L-9999 {LEAVES_OUT}"),
+        ("X1" + "0" * 39, "X1e+39 is beyond 1000000"),
+        ("X/-1000000.1", "X-1000000.1 is beyond 1000000"),
+        ("Z/1000000", "Z1000000.1 is beyond 1000000"),
+        ("K1" + "0" * 400, "Kinf is beyond 1000000"),
+    ],
+)
+def test_an_entry_that_could_only_fail_on_the_machine_is_refused(entries, rule):
+    sound = {"X": "X0", "Y": "Y0", "Z": "Z-1", "W": "W.1", "R": "R1", "C": "C2", "F": "F20"}
+    event = "".join({**sound, entries[0]: entries}.values())
+    with pytest.raises(Refusal) as refused:
+        program_from_events(f"{EXAMPLE}\nN2(4){event}$")
+    assert refused.value.message == f"line 2: {rule}"
+
+
+def test_entries_at_the_edge_of_what_can_be_cut_pass():
+    (values,) = calls("N1(4)G0X1000000Y/-9999Z-9998W-.5R1D3C1.0L/.001F20$")
+    assert values[:4] == ["0", "1000000", "#<_y> + -9999", "-9998"]
+    assert (values[7], values[8], values[11]) == ("3", "1.0", "-0.001")
+
+
+def test_a_call_longer_than_a_block_can_be_is_refused():
+    with pytest.raises(Refusal) as refused:
+        program_from_events(EXAMPLE + "\n" + EXAMPLE.replace("X1.5", "X1.5" + "0" * 200))
+    rule = "the call of the event has 305 characters, the most is 254"
+    assert refused.value.message == f"line 2: {rule}"
 
 
 @given(text=st.text(st.sampled_from("NXYZWORDCKJLPFVG0123456789.-/()$ \n")))

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from found import BAD_MODES, MM
+from g12.context import Tool
 from g12.errors import Refusal
 from g12.words import Words
 from g12.yasnac import plan_circle
@@ -43,6 +44,12 @@ def test_the_circle_on_the_side_of_i(words, approach, radius):
     circle = plan(**words)
     assert (circle.approach, circle.first, circle.radius) == (approach, radius, radius)
     assert (circle.half_turns, circle.circles) == (0, 1)
+
+
+@pytest.mark.parametrize("rounding", [1e-11, -1e-11])
+def test_an_approach_that_only_misses_the_centre_by_rounding_is_no_fast_move(rounding):
+    found = MM._replace(tool_in_table={2: Tool(2, 10 + rounding)}.get)
+    assert plan(found=found, I=50.0, R=10.0, D=2).approach == 0
 
 
 def test_the_centre_is_where_the_tool_stands():

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The words of a block by themselves: whole numbers, pairs, limits, what is left over."""
+
+import math
+
+import pytest
+
+from g12.errors import Refusal
+from g12.words import LARGEST, Words
+
+
+def words(**values):
+    return Words("G12", values)
+
+
+def refusal(function, *arguments, **options):
+    """Return the message of a refused call."""
+    with pytest.raises(Refusal) as refused:
+        function(*arguments, **options)
+    return refused.value.message
+
+
+@pytest.mark.parametrize("value", [1.0, 1.00009, 0.99991])
+def test_what_linuxcnc_takes_for_a_whole_number_is_one(value):
+    assert words(L=value).take_whole("L", least=1) == 1
+
+
+@pytest.mark.parametrize(
+    ("letter", "value"), [("L", 1.001), ("D", 1.005), ("D", 0.9989), ("L", 1.00011)]
+)
+def test_what_is_not_whole_is_refused(letter, value):
+    message = f"G12: {letter}{value} must be a whole number"
+    assert refusal(words(**{letter: value}).take_whole, letter, least=0) == message
+
+
+def test_a_whole_number_keeps_its_limits():
+    assert refusal(words(D=-1.0).take_whole, "D", least=0) == "G12: D-1 must be at least 0"
+    assert refusal(words(D=4.0).take_whole, "D", least=0, most=3) == "G12: D4 must be at most 3"
+    assert words(D=3.0).take_whole("D", least=3, most=3) == 3
+    assert words().take_whole("D", least=0) is None
+    assert words().take_whole("D", least=1, default=7) == 7
+
+
+@pytest.mark.parametrize("value", [1.001e6, -1.001e6, math.inf, math.nan])
+def test_a_number_beyond_any_machine_is_refused_at_once(value):
+    assert refusal(words, X=value).endswith("is beyond 1000000")
+    assert words(X=LARGEST, Y=-LARGEST).take("Y") == -LARGEST
+
+
+@pytest.mark.parametrize("value", [0.0, -0.5])
+def test_a_positive_word_is_above_zero(value):
+    message = f"G12: R{value:g} must be greater than 0"
+    assert refusal(words(R=value).take_positive, "R") == message
+    assert refusal(words(R=value).require_positive, "R", "the radius") == message
+
+
+def test_a_missing_word_is_named_with_its_meaning():
+    for function in (words().require, words().require_positive):
+        assert refusal(function, "R", "the radius") == "G12: R is missing: the radius"
+
+
+def test_two_words_that_need_each_other():
+    assert words().take_pair("K", "Q") is None
+    assert words(K=2.0, Q=0.5).take_pair("K", "Q") == (2.0, 0.5)
+    assert refusal(words(K=2.0).take_pair, "K", "Q") == "G12: K2 needs Q as well"
+    assert refusal(words(Q=2.0).take_pair, "K", "Q") == "G12: Q2 needs K as well"
+
+
+def test_every_word_is_taken_once_and_what_is_left_is_refused():
+    block = words(I=1.0, E=2.0)
+    assert (block.take("I"), block.take("I")) == (1.0, None)
+    assert refusal(block.finish, "I") == "G12: E2 is not a word of this cycle, which knows I"
+    block.take("E")
+    block.finish("I")
