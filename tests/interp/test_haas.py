@@ -39,13 +39,6 @@ def spiral():
         yield tracer
 
 
-@pytest.fixture(scope="module")
-def random():
-    changer = {"EMCIO": {"RANDOM_TOOLCHANGER": 1}}
-    with Tracer(SIM / "mill_inch.ini", tools=TOOLS, overrides=changer) as tracer:
-        yield tracer
-
-
 def cut(tracer, *blocks):
     """Trace blocks that all must be good."""
     traced = tracer.trace_text([FIRST, *blocks])
@@ -398,13 +391,6 @@ def test_expressions_parameters_and_case_are_the_interpreter_s(inch):
 def test_a_tool_length_offset_does_not_move_the_path(inch):
     with_offset = cut(inch, "G43.1 Z.5", "G12 I.3 Z-.1 D1")
     assert proof.levels(with_offset.moves) == pytest.approx([-0.1 * INCH])
-
-
-@pytest.mark.parametrize(("offset", "radius"), [("D1", 0.625), ("D2", 0.5), ("", 0.625)])
-def test_d_with_a_random_tool_changer(random, offset, radius):
-    """The loaded tool is then in the spindle's place of the table alone."""
-    traced = cut(random, "T1 M6", "G0 Z.1", f"G12 I.75 Z-1 {offset}")
-    assert [r / INCH for r in proof.radii(traced.moves)] == pytest.approx([radius])
 
 
 # ---------------------------------------------------------------- the D last commanded

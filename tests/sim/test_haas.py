@@ -194,3 +194,16 @@ def test_modes_after_the_cycle_are_those_before_it(machine):
     after = machine.stat().modes
     assert after.gcodes == before.gcodes
     assert after.blending == before.blending
+
+
+def test_d_with_a_random_tool_changer():
+    """The loaded tool has no place in the table any more but the spindle's."""
+    changer = {**BRISK, "EMCIO": {"RANDOM_TOOLCHANGER": 1}}
+    with Machine(SIM / "mill_mm.ini", tools={1: 6.0, 2: 10.0}, overrides=changer) as machine:
+        machine.mdi("G21 G17 G40 G90 G94 F8000")
+        machine.mdi("T1 M6")
+        for offset, reach in (("D1", 6), ("D2", 4)):
+            machine.sample()
+            machine.mdi(f"G12 I9 Z-1 {offset}")
+            assert machine.samples().axes["X"].max() == pytest.approx(reach, abs=0.002)
+        assert machine.errors() == []
