@@ -10,7 +10,7 @@ from shapely.geometry import MultiLineString, Point
 import proof
 from g12.cli.headless import Machine
 from g12.cli.trace import Tracer
-from machines import SIM
+from machines import BRISK, SIM
 
 TOOLS = {1: 6.0, 2: 10.0}
 FIRST = "G21 G17 G40 G49 G54 G61 G80 G90 G91.1 G94 F4000"
