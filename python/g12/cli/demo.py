@@ -69,6 +69,7 @@ SAMPLES = (
     Sample("polar/hexagon.ngc", "lathe_mm"),
     Sample("polar/slot.ngc", "lathe_mm"),
     Sample("yasnac/example.ngc", "mill_yasnac_mm", 1500.0),
+    Sample("mitsubishi/circle.ngc", "mill_mitsubishi_mm", 1000.0),
 )
 POCKET_HEADS = ("line", "code", "centre", "radius", "tool-centre rings", "Z", "off circles", "time")
 SECTION_HEADS = ("lines", "pieces", "off contour", "allowed", "lowest feed", "C at most", "time")
