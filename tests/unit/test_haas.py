@@ -5,29 +5,14 @@ import math
 
 import pytest
 
-from g12.context import Context, Tool
+from found import INCH
+from g12.context import Tool
 from g12.errors import Refusal
 from g12.haas import plan_pocket
 from g12.words import Words
 
 TABLE = {1: Tool(1, 0.125), 2: Tool(2, 0.25), 3: Tool(3, -0.125), 4: Tool(4, 0.0)}
-FOUND = Context(
-    inch=True,
-    x=0.0,
-    y=0.0,
-    z=0.1,
-    incremental=False,
-    plane="G17",
-    inverse_time=False,
-    per_revolution=False,
-    speed=0.0,
-    feed=10.0,
-    compensated=False,
-    offset_pending=False,
-    spindle_tool=TABLE[1],
-    last_radius=None,
-    tool_in_table=TABLE.get,
-)
+FOUND = INCH._replace(z=0.1, spindle_tool=TABLE[1], tool_in_table=TABLE.get)
 
 
 def plan(clearing="rings", found=FOUND, **values):
