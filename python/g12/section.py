@@ -201,6 +201,7 @@ class Section:
 
     def _wait_for_input(self, text: str) -> Iterator[int]:
         """Obey M66: all before it has to happen before the lines behind it can be read."""
+        self.blocks.contour.wait(line=self.program.place, code=f"M{WAIT_FOR_INPUT}")
         planned = self._emit()
         yield from self.frame.execute_and_wait(text)
         self._remember_machine()

@@ -442,12 +442,10 @@ def test_waiting_inside_subs_and_loops(lathe):
     assert traced.moves[-1].line == 17
 
 
-def test_waiting_for_an_input_under_compensation(lathe):
-    ramp, around = ["G1 C9", "G41 X12", "C-9"], ["G2 X-12 R15", "G1 C9", "G40 X-20"]
-    waited = cut(lathe, *ramp, "M66 P0 L0", *around)
-    assert ends(waited) == ends(cut(lathe, *ramp, *around))
-    inside = cut(lathe, "G1 C15", "G41 X12", "C0", "M66 P0 L0", "X25", "C-9", "G40 X40")
-    assert inside.error.text.startswith("G12.1 line 8: an inside corner")
+def test_waiting_for_an_input_before_and_behind_compensation(lathe):
+    body = ["G1 C9", "G41 X12", "C-9", "G40 X20", "X15"]
+    waited = cut(lathe, body[0], "M66 P0 L0", *body[1:4], "M66 P0 L0", body[4])
+    assert ends(waited) == ends(cut(lathe, *body))
 
 
 def test_stops_act_behind_their_motion(lathe):

@@ -234,6 +234,11 @@ CONTOUR = [
     (["G41 G3 X0 C20 R20"], 6, "G41 with G3: compensation is switched by a G1 only"),
     (["G1 G41 X12", "C-9"], 8, "G41 of line 6 is still on: G40 is missing"),
     (["G1 G41 X12", "G42 C-9"], 7, "G42: cancel G41 of line 6 with G40 first"),
+    (
+        ["G1 G41 X12", "C-9", "M66 P0 L0", "X10", "G40 X20"],
+        8,
+        "M66 waits for the machine, which needs G40: G41 of line 6 is on",
+    ),
 ]
 
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString, Polygon
 
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.polar import Run, Settings, plan, resume
+from g12.polar import Run, Settings, plan
 from g12.polar.contour import Contour
 from plane import SAGITTA, Round, Straight, add, cuts, distance_from_path, path
 
@@ -306,32 +306,13 @@ def test_the_feed_is_that_of_the_tools_centre():
             assert 60.0 * cut.length / cut.seconds == pytest.approx(300.0, rel=0.01)
 
 
-# A section cut in two under compensation.
-
-
-def cut_in_two(*, then):
+def test_no_block_may_wait_for_the_machine_under_compensation():
     contour = Contour(10.0, 0.0)
-    contour.compensation(42, 2.0, line=1)
-    contour.line(10.0, 5.0, line=1, feed=100.0)
-    contour.line(20.0, 5.0, line=2, feed=100.0)
-    first = plan(contour, EXACT, c=0.0)
-    following = resume(contour, first)
-    following.line(*then, line=4, feed=100.0)
-    return first, following
-
-
-def test_goes_on_under_compensation_round_an_outside_corner():
-    first, following = cut_in_two(then=(20.0, 15.0))
-    assert first.place.x == pytest.approx(abs(20 + 3j))
-    made = cuts(following, plan(following, EXACT, c=0.0))
-    assert abs(path(made)[0] - (20 + 3j)) < 1e-9
-    assert distance_from_path(np.array([22 + 5j, 22 + 15j]), path(made)).max() <= TOLERANCE
-
-
-def test_an_inside_corner_cannot_follow_a_block_that_waits():
-    _, following = cut_in_two(then=(20.0, -15.0))
-    with pytest.raises(Refusal, match=r"^G12\.1 line 2: an inside corner .* waits for the mach"):
-        plan(following, EXACT, c=0.0)
+    contour.wait(line=1, code="M66")
+    contour.compensation(42, 2.0, line=2)
+    contour.line(10.0, 5.0, line=2, feed=100.0)
+    with pytest.raises(Refusal, match=r"^G12\.1 line 3: M66 waits .* G42 of line 2 is on$"):
+        contour.wait(line=3, code="M66")
 
 
 # What the tool cannot reach.

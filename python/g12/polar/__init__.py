@@ -105,18 +105,14 @@ def plan(contour: Contour, settings: Settings, *, c: float) -> Plan:
 
 
 def resume(contour: Contour, planned: Plan) -> Contour:
-    """Return an empty contour that goes on where a planned one ended, compensation included.
+    """Return an empty contour that goes on where a planned one ended.
 
     For a section that is cut in two by a block that waits for the machine. Plan it with the same
     ``c``.
     """
-    moves = [element for element in contour.elements if is_move(element) and element.offset]
     following = copy(contour)
     following.elements = []
     following.start = Start(planned.place.x, planned.angle, planned.place.z)
-    following.previous = None
-    if contour.side != 40:
-        following.previous = moves[-1] if moves else contour.previous
     return following
 
 

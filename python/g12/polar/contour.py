@@ -146,9 +146,8 @@ class Contour:
     are always radius values, but a message has to say which reading was meant. ``closing`` is the
     radius mismatch of an arc that is forgiven, in program units.
 
-    ``side`` is the compensation in force: 40, 41 or 42. For a section that goes on where another
-    was cut in two, ``start`` is where the machine stands, and ``previous`` what it has cut last
-    under compensation.
+    ``side`` is the compensation in force: 40, 41 or 42. ``start`` is where the machine stands,
+    which for a section that goes on where another was cut in two is not at C0.
     """
 
     def __init__(
@@ -165,7 +164,6 @@ class Contour:
         self.elements: list[Line | Arc | Plunge | Mark] = []
         self.side = 40
         self.start = Start(x, 0.0, z)
-        self.previous: Line | Arc | None = None
         self._offset = self._radius = 0.0
         self._switch: int | None = None  # line of the G40, G41 or G42 that waits for its G1
         self._switched_on = 0
@@ -256,6 +254,19 @@ class Contour:
         if self.side != 40:
             self.refuse(
                 line, f"G{self.side} of line {self._switched_on} is still on: G40 is missing"
+            )
+
+    def wait(self, *, line: int, code: str) -> None:
+        """Check that a block may wait for the machine here: compensation is off.
+
+        Where the tool has to stop under compensation is told by the block behind, which is not
+        known yet. LinuxCNC has the same rule.
+        """
+        if self.side != 40:
+            self.refuse(
+                line,
+                f"{code} waits for the machine, which needs G40: "
+                f"G{self.side} of line {self._switched_on} is on",
             )
 
     def _check_feed(self, feed: float, line: int) -> None:

@@ -72,7 +72,7 @@ def tool_path(contour: Contour, tolerance: float) -> list:
     """
     elements = contour.elements
     moves = [e for e in elements if is_move(e)]
-    if not moves or (contour.previous is None and not any(e.offset for e in moves)):
+    if not any(e.offset for e in moves):
         return elements
     centred = iter(_centred(contour, moves, tolerance))
     path = []
@@ -84,10 +84,7 @@ def tool_path(contour: Contour, tolerance: float) -> list:
 def _centred(contour: Contour, moves: list, tolerance: float) -> Iterator[tuple]:
     """Yield for each move the moves of the tool's centre."""
     steps = _steps(contour, moves)
-    before = _before(contour)
-    joints = [_joint(contour, a, b, tolerance) for a, b in zip([before, *steps], steps)]
-    if before is not None:
-        _check_going_on(contour, before, joints[0], tolerance)
+    joints = [_joint(contour, a, b, tolerance) for a, b in zip([None, *steps], steps)]
     joints.append(_Joint(_last_place(contour, steps), (0.0, 0.0)))
     before = ()
     for k, step in enumerate(steps):
@@ -105,30 +102,13 @@ def _centred(contour: Contour, moves: list, tolerance: float) -> Iterator[tuple]
 
 def _steps(contour: Contour, moves: list) -> list[_Step]:
     steps = []
-    offset = contour.previous.offset if contour.previous else 0.0
+    offset = 0.0
     for move in moves:
         ramp = bool(move.offset) and not offset
         cut = bool(move.offset) and bool(offset)
         steps.append(_Step(move, _parallel(contour, move) if cut else move, cut, ramp))
         offset = move.offset
     return steps
-
-
-def _before(contour: Contour) -> _Step | None:
-    """Return what was cut before a section that goes on under compensation."""
-    move = contour.previous
-    return None if move is None else _Step(move, _parallel(contour, move), True, False)
-
-
-def _check_going_on(contour: Contour, before: _Step, joint: _Joint, tolerance: float) -> None:
-    """Check that the tool, square to the end of ``before``, has not gone too far already."""
-    stands = _end(before.parallel)
-    if hypot(joint.leave[0] - stands[0], joint.leave[1] - stands[1]) > BESIDE * tolerance:
-        contour.refuse(
-            before.move.line,
-            "an inside corner under cutter compensation cannot follow a block that waits "
-            "for the machine",
-        )
 
 
 def _check_apart(contour: Contour, before: tuple, trimmed: tuple, tolerance: float) -> None:
