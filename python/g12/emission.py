@@ -4,6 +4,9 @@
 While pieces go out the interpreter is in G90 G94 with C unwrapped, and blends them in G64.
 `Emission.release` puts everything back to what the program commanded; so it is wherever the
 program can see it, or the machine waits.
+
+Moves in front of a section are the program's own. LinuxCNC stops between a rapid and a feed move,
+but a feed move would be blended into the first piece: a dwell of no time stops it.
 """
 
 from __future__ import annotations
@@ -12,13 +15,14 @@ from collections.abc import Container, Sequence
 from typing import NamedTuple
 
 from .polar import Run
-from .polar.block import G1, Modes, Place, decimal
+from .polar.block import G0, G1, Modes, Place, decimal
 
 PER_REVOLUTION = 2  # feed_mode
 PATH_ACTIVE = 11  # index into active_g_codes
 G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
+STOP_HERE = "G4P0"
 
 
 class Action(NamedTuple):
@@ -112,12 +116,14 @@ class Emission:
         self.path = PathControl(interp, f"G64P{decimal(blending)}Q0")
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
+        self._feeding = interp.motion_mode != G0
 
     def run(self, steps: Sequence[Run | Action], modes: Modes, exact_lines: Container[int]) -> None:
         """Hand over all steps, and release the interpreter in ``modes``.
 
         ``exact_lines`` are those of blocks with G9.
         """
+        self._stop_in_front(steps)
         self._take_over()
         for step, following in zip(steps, [*steps[1:], None]):
             if isinstance(step, Action):
@@ -137,6 +143,12 @@ class Emission:
         interp.execute("G95" * modes.per_revolution + f"F{decimal(modes.feed)}")
         interp.execute("G91" if modes.incremental else "G90")
         interp.motion_mode = modes.motion
+
+    def _stop_in_front(self, steps: Sequence[Run | Action]) -> None:
+        if steps and self._feeding and not self.path.exact:
+            self.interp.sequence_number = steps[0].line
+            self.interp.execute(STOP_HERE)
+        self._feeding = False
 
     def _take_over(self) -> None:
         interp = self.interp

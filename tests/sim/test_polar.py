@@ -210,6 +210,12 @@ def test_single_step_goes_block_by_block(lathe):
     assert len(stops) < 400
 
 
+def test_a_feed_move_in_front_of_the_section_does_not_cut_its_first_corner(lathe):
+    run = lathe.run_text(section("C10", before=["G64", "G1 X14 F3000"]))
+    assert run.error is None
+    assert np.hypot(*(Cut(run).all_points - [14, 0]).T).min() < 1e-4
+
+
 def test_feed_override(lathe):
     program = section("G1 X10", "C5", feed="F600")
     full = lathe.run_text(program).seconds

@@ -99,6 +99,15 @@ def test_pieces_run_under_g64_with_a_tolerance_and_the_old_one_comes_back():
     assert handed_over([run()]).done == [SMOOTH, FIRST, *NEXT, OLD, *RELEASED]
 
 
+def test_a_feed_move_in_front_of_the_section_is_not_blended_into_it():
+    for path, done in ((640, ["G4P0"]), (610, []), (611, [])):
+        interp = Interpreter(path=path)
+        interp.motion_mode = 10
+        expected = handed_over([run()], Interpreter(path=path)).done
+        assert handed_over([run()], interp).done == [*done, *expected]
+    assert interp.lines[0] == 7
+
+
 def test_a_programmed_tolerance_is_kept():
     interp = Interpreter(tolerance=0.1, merging=0.2)
     assert handed_over([run()], interp).done == [FIRST, *NEXT, *RELEASED]
