@@ -16,7 +16,7 @@ import emccanon
 from interpreter import INTERP_ERROR
 
 from .context import MM_PER_INCH, XY, XZ, YZ, Context, Tool
-from .errors import Refusal
+from .errors import LONGEST_MESSAGE, Refusal
 from .settings import Settings, settings_from_environment
 from .words import Words
 
@@ -106,20 +106,31 @@ def state_of(interp: object) -> CycleState:
         return interp.g12_state
 
 
-def handler(function):
-    """Turn a `Refusal` of a remap handler into the operator's message.
+def refuse_block(interp: object, error: Exception) -> int:
+    """Tell the operator why the block being remapped is not executed; return the error status.
 
-    Raising or returning a string would not do: LinuxCNC overwrites a prolog's text.
+    Raising or returning a string would not do: LinuxCNC shows "pycall(...) failed" instead. It
+    hands a failed execute over as a SystemError, whose own text stands already.
     """
+    if isinstance(error, Refusal):
+        interp.set_errormsg(error.message)
+    elif not isinstance(error, SystemError):
+        sys.excepthook(type(error), error, error.__traceback__)
+        text = f"g12: a fault of the package, please report it: {type(error).__name__}: {error}"
+        interp.set_errormsg(text[:LONGEST_MESSAGE])
+    return INTERP_ERROR
+
+
+def handler(function):
+    """Turn an exception of a remap handler into the operator's message."""
 
     @functools.wraps(function)
     def guarded(self, **words):
         try:
             refuse_start_error()
             return function(self, **words)
-        except Refusal as refusal:
-            self.set_errormsg(refusal.message)
-            return INTERP_ERROR
+        except Exception as error:
+            return refuse_block(self, error)
 
     return guarded
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import emccanon
 import interpreter
 import linuxcnc
-from interpreter import INTERP_ERROR, INTERP_OK, MODE_ABSOLUTE
+from interpreter import INTERP_OK, MODE_ABSOLUTE
 
 from . import host, polar
 from .collector import Rules, block_of
@@ -76,9 +76,8 @@ def polar_on(self, **words) -> Iterator[int]:
         program = Program(self, getattr(self, "g12_source", None))
         self.g12_source = program.home
         yield from run_section(self, Frame(self), program)
-    except Refusal as refusal:
-        self.set_errormsg(refusal.message)
-        yield INTERP_ERROR
+    except Exception as error:
+        yield host.refuse_block(self, error)
     yield INTERP_OK
 
 
@@ -96,8 +95,8 @@ def run_section(interp: object, frame: Frame, program: Program) -> Iterator[int]
         setup = setup_of_section(interp, place.code)
         emission = emission_of_section(interp, place.code)
         yield from Section(interp, setup, frame, program, emission).run()
-    except Refusal as refusal:
-        line = line_named(refusal)
+    except Exception as error:
+        line = line_named(error)
         called = program.source is not program.home and not line
         frame.give_up(line or program.line, called=called, home=program.home.filename)
         raise

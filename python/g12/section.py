@@ -79,7 +79,7 @@ class Section:
         except SystemError:  # how LinuxCNC hands a failed read or execute to Python
             self._put_back()
             raise self._place().refuse(self.interp.get_errormsg()) from None
-        except Refusal:
+        except Exception:
             self._put_back()
             raise
 

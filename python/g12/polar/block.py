@@ -113,9 +113,9 @@ class Place(NamedTuple):
         return Refusal(f"{self.code} line {self.line}: {reason}")
 
 
-def line_named(refusal: Refusal) -> int | None:
+def line_named(error: Exception) -> int | None:
     """Return the line of the section's file that a refusal names, None if it names none."""
-    named = _LINE_NAMED.search(refusal.message)
+    named = _LINE_NAMED.search(str(error))
     return int(named[1]) if named else None
 
 

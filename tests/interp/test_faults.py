@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A fault in a handler: the operator reads what it is, not "pycall(...) failed"."""
+
+import pytest
+
+from g12.cli.trace import Tracer
+from machines import SIM
+
+TOPLEVEL = """\
+import sys
+sys.path.insert(0, "{python}")
+import remap
+from g12 import polar, remap as handlers
+def broken(*_, **__):
+    raise KeyError("wire")
+handlers.plan_pocket = polar.plan = broken
+"""
+
+
+@pytest.mark.parametrize(
+    ("machine", "program"),
+    [
+        ("mill_mm", ["G0 X0 Y0", "G12 I20 D1", "M2"]),
+        ("lathe_mm", ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "G1 X15", "G13.1", "M2"]),
+    ],
+)
+def test_a_fault_in_a_handler_is_named(tmp_path, machine, program):
+    toplevel = tmp_path / "toplevel.py"
+    toplevel.write_text(TOPLEVEL.format(python=SIM.parents[1] / "python"))
+    with Tracer(
+        SIM / f"{machine}.ini", overrides={"PYTHON": {"TOPLEVEL": str(toplevel)}}
+    ) as tracer:
+        error = tracer.trace_text(program).error
+    assert error.text == "g12: a fault of the package, please report it: KeyError: 'wire'"
+    assert program[error.line - 1] in ("G12 I20 D1", "G13.1")
