@@ -315,6 +315,23 @@ def test_no_block_may_wait_for_the_machine_under_compensation():
         contour.wait(line=3, code="M66")
 
 
+@pytest.mark.parametrize("z", [None, -1.0])
+def test_a_ramp_square_to_the_contour_and_as_long_as_the_radius_is_no_way_at_all(z):
+    contour = Contour(12.0, 0.0)
+    contour.line(c=5.0, line=1, feed=100.0)
+    contour.compensation(41, 2.0, line=2)
+    contour.line(x=10.0, z=z, line=2, feed=100.0)
+    contour.line(c=-5.0, line=3, feed=100.0)
+    contour.compensation(40, 0.0, line=4)
+    contour.line(x=12.0, z=z and 0.0, line=4, feed=100.0)
+    contour.line(c=-6.0, line=5, feed=100.0)
+    steps = plan(contour, EXACT, c=0.0).steps
+    assert [step.line for step in steps] == [1, *[2] * bool(z), 3, *[4] * bool(z), 5]
+    assert {step.axes for step in steps if step.line in (2, 4)} <= {"Z"}
+    made = [cut for cut in cuts(contour, plan(contour, EXACT, c=0.0)) if cut.length]
+    assert path(made).real == pytest.approx(12.0, abs=TOLERANCE)
+
+
 # What the tool cannot reach.
 
 

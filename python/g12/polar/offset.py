@@ -91,7 +91,7 @@ def _centred(contour: Contour, moves: list, tolerance: float) -> Iterator[tuple]
         start, end = joints[k].meet, joints[k + 1].leave
         if not step.cut:
             before = ()
-            yield (_placed(step.move, start, end),)
+            yield _uncut(step.move, start, end)
             continue
         trimmed = _trimmed(contour, steps, k, start, end)
         _check_apart(contour, before, trimmed, tolerance)
@@ -260,11 +260,26 @@ def _trimmed(contour: Contour, steps: list[_Step], k: int, start: Point, end: Po
             f"with lines {' and '.join(map(str, lines))}",
         )
     if last - first <= REACH:
-        return () if move.z0 == move.z1 else (Plunge(move.line, move.feed, move.z0, move.z1),)
+        return _in_place(move)
     if isinstance(move, Line):
         return (_placed(move, start, end),)
     sweep = copysign((last - first) / arc_radius(parallel), move.sweep)
     return (_placed(move, start, end, sweep),)
+
+
+def _uncut(move: Line | Arc, start: Point, end: Point) -> tuple:
+    """Return a ramp, or a move without compensation, between the joints at its ends.
+
+    A ramp square to the contour and as long as the tool's radius is no way at all.
+    """
+    if isinstance(move, Line) and hypot(end[0] - start[0], end[1] - start[1]) <= REACH:
+        return _in_place(move)
+    return (_placed(move, start, end),)
+
+
+def _in_place(move: Line | Arc) -> tuple:
+    """Return what is left of a move whose way in the plane is none: its Z."""
+    return () if move.z0 == move.z1 else (Plunge(move.line, move.feed, move.z0, move.z1),)
 
 
 def _placed(move: Line | Arc, start: Point, end: Point, sweep: float | None = None) -> Line | Arc:
