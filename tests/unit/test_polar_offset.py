@@ -380,9 +380,16 @@ def test_too_tight_names_both_lines(blocks, message):
     assert refusal(*blocks) == f"G12.1 {message}"
 
 
+@pytest.mark.parametrize("sweep", [2 * math.pi, 1.9 * math.pi])
+def test_a_line_beside_a_circle_that_follows_it(sweep):
+    circle = Round(-3 + 6j, -1.5 + 9j, sweep)
+    with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* follow both lines 3 and 4: beside one"):
+        along_the_part([Straight(-15j, -3 + 6j), circle], 41, 3.0)
+
+
 def test_a_cusp_that_curls_back_onto_the_tool_is_too_tight():
     curl = [Straight(-3j, 0j), Round(0j, -1 + 0j, -1.0)]
-    with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* reach both lines 3 and 4: their corner"):
+    with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* follow both lines 3 and 4: beside one"):
         along_the_part(curl, 41, 1.0)
 
 

@@ -6,11 +6,12 @@ A section is collected in a :class:`~g12.polar.contour.Contour`, then planned as
 units throughout.
 
 1. ``contour``: blocks become lines and arcs, in the flat plane.
-2. ``offset``: cutter compensation makes them the path of the tool's centre.
-3. ``pole``: moves that touch the spindle's centre end there.
-4. ``corners``: where the tool must stop, because LinuxCNC's blending would cut the corner.
-5. ``pieces``: the fewest straight moves in X and C that stay within the tolerance.
-6. ``feed``: their F words.
+2. ``short_moves``: those under compensation that are only rounding are left out.
+3. ``offset``: cutter compensation makes them the path of the tool's centre; ``gouge`` tests it.
+4. ``pole``: moves that touch the spindle's centre end there.
+5. ``corners``: where the tool must stop, because LinuxCNC's blending would cut the corner.
+6. ``pieces``: the fewest straight moves in X and C that stay within the tolerance.
+7. ``feed``: their F words.
 
 LinuxCNC forces the shape of it: with a rotary axis in motion its planner looks ahead by one move
 only, so short pieces cost speed; F is meant for the linear axes; and the P of G64 does not limit
@@ -29,12 +30,14 @@ from g12.polar.feed import Place, pieces_with_feed
 from g12.polar.offset import tool_path
 from g12.polar.pieces import Law, split
 from g12.polar.pole import POLE, through_pole
+from g12.polar.short_moves import without_short_moves
 
 CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
 STOP_SHARE = (
     0.7  # of the tolerance: a move that stops starts quicker, and cuts deeper into the path
 )
 ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the pieces' own deviation
+SHORT_SHARE = 0.3  # of the tolerance: a shorter move under compensation is rounding
 POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
 LEFT_OVER = 1e-3  # of the least step in X: less than that is rounding
 SAME_ANGLE = 1e-9  # radians
@@ -86,8 +89,10 @@ def plan(contour: Contour, settings: Settings, *, c: float) -> Plan:
     ``c`` is the C axis in degrees at the plane's zero angle. Raises Refusal, naming the blocks by
     their lines, when the contour cannot be cut as programmed.
     """
-    tolerance = settings.tolerance
-    path = tool_path(contour, tolerance)
+    meant, moved = without_short_moves(contour.elements, SHORT_SHARE * settings.tolerance)
+    tolerance = settings.tolerance - moved
+    settings = settings._replace(tolerance=tolerance)
+    path = tool_path(contour, meant, tolerance)
     path = through_pole(contour, path, POLE_SHARE * tolerance, settings.pole_refused)
     stopping = stops(
         path, ROUNDING_SHARE * tolerance, settings.x_acceleration, radians(settings.c_acceleration)

@@ -14,7 +14,7 @@ from typing import NamedTuple, NoReturn
 from g12.errors import Refusal, number
 
 Point = tuple  # (x, c)
-SAME_PLACE = 1e-9  # program units: closer points are one point
+SAME_PLACE = 1e-6  # program units: closer points are one point, a shorter move is rounding
 CLOSING_RATIO = 0.001  # of the radius: the mismatch LinuxCNC allows any arc
 
 
@@ -162,6 +162,7 @@ class Contour:
         self.x, self.c, self.z = x, 0.0, z
         self.code, self.diameter, self.closing = code, diameter, closing
         self.elements: list[Line | Arc | Plunge | Mark] = []
+        self._end = (x, 0.0, z)  # of the elements; less than SAME_PLACE from the position
         self.side = 40
         self.start = Start(x, 0.0, z)
         self._offset = self._radius = 0.0
@@ -182,16 +183,19 @@ class Contour:
         feed: float,
     ) -> None:
         """Add a G1 to the absolute point given; a coordinate left out stays."""
-        x0, c0, z0 = self.x, self.c, self.z
-        x1 = x0 if x is None else x
-        c1 = c0 if c is None else c
-        z1 = z0 if z is None else z
+        x0, c0, z0 = self._end
+        x1 = self.x if x is None else x
+        c1 = self.c if c is None else c
+        z1 = self.z if z is None else z
+        length = hypot(x1 - x0, c1 - c0)
         self._check_feed(feed, line)
-        self._check_switch(line, hypot(x1 - x0, c1 - c0))
-        if x1 != x0 or c1 != c0:
+        self._check_switch(line, length)
+        if length > SAME_PLACE:
             self.elements.append(Line(line, feed, self._offset, x0, c0, z0, x1, c1, z1))
-        elif z1 != z0:
+            self._end = x1, c1, z1
+        elif abs(z1 - z0) > SAME_PLACE:
             self.elements.append(Plunge(line, feed, z0, z1))
+            self._end = x0, c0, z1
         self.x, self.c, self.z = x1, c1, z1
 
     def arc(
@@ -220,10 +224,8 @@ class Contour:
         else:
             centre, sweep = self._with_radius(turn, end, radius, line)
         z1 = self.z if z is None else z
-        self.elements.append(
-            Arc(line, feed, self._offset, self.x, self.c, self.z, *end, z1, *centre, sweep)
-        )
-        self.x, self.c, self.z = *end, z1
+        self.elements.append(Arc(line, feed, self._offset, *self._end, *end, z1, *centre, sweep))
+        self.x, self.c, self.z = self._end = (*end, z1)
 
     def compensation(self, side: int, radius: float, *, line: int) -> None:
         """Switch to G40, G41 or G42 (``side`` 40, 41, 42) with the next block, which must be a G1.
@@ -303,7 +305,7 @@ class Contour:
 
     def _about_centre(self, turn, end, i, j, line):
         """Return centre and sweep of an arc with I and J, the centre equally far from both ends."""
-        start, centre = (self.x, self.c), (self.x + i, self.c + j)
+        start, centre = self._end[:2], (self.x + i, self.c + j)
         if hypot(end[0] - start[0], end[1] - start[1]) <= SAME_PLACE:
             return centre, turn * 2 * pi
         from_start, from_end = hypot(i, j), hypot(end[0] - centre[0], end[1] - centre[1])
@@ -318,7 +320,7 @@ class Contour:
 
     def _with_radius(self, turn, end, radius, line):
         """Return centre and sweep of an arc with R."""
-        start = (self.x, self.c)
+        start = self._end[:2]
         half = 0.5 * hypot(end[0] - start[0], end[1] - start[1])
         name = f"{_name(turn)} R{number(radius)}"
         if 2.0 * half <= SAME_PLACE:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where two moves cross, and how far along a move a place lies. Program units."""
+"""Where two moves cross, how near they come, and where a place lies along one. Program units."""
 
 from __future__ import annotations
 
@@ -31,7 +31,9 @@ def cross_inside(a: Line | Arc, b: Line | Arc, margin: float) -> bool:
 
 
 def place_at(move: Line | Arc, part: float) -> Point:
-    """Return the place at a part of a move, 0 at its start and 1 at its end."""
+    """Return the place at a part of a move: 0 is its very start and 1 its very end."""
+    if part in (0.0, 1.0):
+        return (move.x1, move.c1) if part else (move.x0, move.c0)
     if isinstance(move, Line):
         return move.x0 + part * (move.x1 - move.x0), move.c0 + part * (move.c1 - move.c0)
     angle = part * move.sweep
@@ -40,15 +42,61 @@ def place_at(move: Line | Arc, part: float) -> Point:
     return move.cx + x * cosine - c * sine, move.cc + x * sine + c * cosine
 
 
+def part_of(move: Line | Arc, first: float, last: float) -> Line | Arc:
+    """Return a move from one part of it to a later one, Z included."""
+    z0, z1 = height_at(move, first), height_at(move, last)
+    (x0, c0), (x1, c1) = place_at(move, first), place_at(move, last)
+    cut = move._replace(x0=x0, c0=c0, z0=z0, x1=x1, c1=c1, z1=z1)
+    return cut if isinstance(move, Line) else cut._replace(sweep=(last - first) * move.sweep)
+
+
+def height_at(move: Line | Arc, part: float) -> float:
+    """Return Z at a part of a move."""
+    return move.z0 + part * (move.z1 - move.z0)
+
+
+def least_distance(a: Line | Arc, b: Line | Arc) -> float:
+    """Return how near two moves come to each other."""
+    if crossing(a, b) is not None:
+        return 0.0
+    ends = min(distance_from(a, end) for end in ((b.x0, b.c0), (b.x1, b.c1)))
+    places = [(a.x0, a.c0), (a.x1, a.c1), *_facing(a, b)]
+    return min(ends, *(distance_from(b, place) for place in places))
+
+
+def _facing(a: Line | Arc, b: Line | Arc) -> list[Point]:
+    """Return the places on ``a`` where its normal may be one of ``b``: square to it, or radial."""
+    if isinstance(a, Line) and isinstance(b, Line):
+        return []
+    if isinstance(a, Line):
+        tx, tc = start_direction(a)
+        along = (b.cx - a.x0) * tx + (b.cc - a.c0) * tc
+        return [(a.x0 + along * tx, a.c0 + along * tc)] if 0.0 < along < path_length(a) else []
+    if isinstance(b, Line):
+        tx, tc = start_direction(b)
+        nx, nc = -tc, tx
+    else:
+        apart = hypot(b.cx - a.cx, b.cc - a.cc) or 1.0
+        nx, nc = (b.cx - a.cx) / apart, (b.cc - a.cc) / apart
+    radius = arc_radius(a)
+    places = [(a.cx + side * nx, a.cc + side * nc) for side in (radius, -radius)]
+    return [place for place in places if _arc_angle(a, place) <= abs(a.sweep)]
+
+
 def distance_from(move: Line | Arc, place: Point) -> float:
     """Return the distance of a place from a move."""
-    along, length = along_start(move, place), path_length(move)
-    if not 0.0 <= along <= length:
-        to_start = hypot(place[0] - move.x0, place[1] - move.c0)
-        return min(to_start, hypot(place[0] - move.x1, place[1] - move.c1))
     if isinstance(move, Arc):
-        return abs(hypot(place[0] - move.cx, place[1] - move.cc) - arc_radius(move))
-    return sqrt(max(0.0, (place[0] - move.x0) ** 2 + (place[1] - move.c0) ** 2 - along * along))
+        beside = _arc_angle(move, place) <= abs(move.sweep)
+        across = abs(hypot(place[0] - move.cx, place[1] - move.cc) - arc_radius(move))
+    else:
+        along = along_start(move, place)
+        beside = 0.0 <= along <= path_length(move)
+        square = (place[0] - move.x0) ** 2 + (place[1] - move.c0) ** 2 - along * along
+        across = sqrt(max(0.0, square))
+    if beside:
+        return across
+    to_start = hypot(place[0] - move.x0, place[1] - move.c0)
+    return min(to_start, hypot(place[0] - move.x1, place[1] - move.c1))
 
 
 def along_start(move: Line | Arc, place: Point) -> float:

@@ -9,12 +9,11 @@ neighbours:
 - ramp on: ends square to the start of the next element of the contour; ramp off: starts square to
   the end of the last one. Blocks without motion in the plane are looked through.
 
-What the tool cannot reach is refused; only neighbours are tested against each other.
+What the tool cannot reach is refused; `gouge` tells how far that is looked for.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import copysign, hypot
 from typing import NamedTuple, NoReturn
 
@@ -28,7 +27,6 @@ from g12.polar.contour import (
     arc_radius,
     end_direction,
     is_move,
-    path_length,
     start_direction,
     sweep_between,
 )
@@ -37,15 +35,11 @@ from g12.polar.crossing import (
     REACH,
     along_end,
     along_start,
-    cross_inside,
     crossing,
-    distance_from,
-    place_at,
 )
+from g12.polar.gouge import BESIDE, Cut, refuse_gouges
 
 JOINED = 0.04  # tolerances: moved by no more, parallels are joined without an arc
-BESIDE = 2.0  # tolerances: places so near to each other are one corner
-PROBES = 8  # places beside an outside corner of an arc where the tool's distance is checked
 
 
 class _Step(NamedTuple):
@@ -65,12 +59,11 @@ class _Joint(NamedTuple):
     corner: Point | None = None
 
 
-def tool_path(contour: Contour, tolerance: float) -> list:
-    """Return the contour's elements as the tool's centre makes them, all in their places.
+def tool_path(contour: Contour, elements: list, tolerance: float) -> list:
+    """Return a contour's elements as the tool's centre makes them, all in their places.
 
     ``tolerance`` in program units: a small part of it is what the path may be off.
     """
-    elements = contour.elements
     moves = [e for e in elements if is_move(e)]
     if not any(e.offset for e in moves):
         return elements
@@ -81,23 +74,25 @@ def tool_path(contour: Contour, tolerance: float) -> list:
     return path
 
 
-def _centred(contour: Contour, moves: list, tolerance: float) -> Iterator[tuple]:
-    """Yield for each move the moves of the tool's centre."""
+def _centred(contour: Contour, moves: list, tolerance: float) -> list[tuple]:
+    """Return for each move the moves of the tool's centre."""
     steps = _steps(contour, moves)
     joints = [_joint(contour, a, b, tolerance) for a, b in zip([None, *steps], steps)]
     joints.append(_Joint(_last_place(contour, steps), (0.0, 0.0)))
-    before = ()
+    cuts: list[Cut | None] = []
+    paths = []
     for k, step in enumerate(steps):
-        start, end = joints[k].meet, joints[k + 1].leave
+        joint, end = joints[k], joints[k + 1].leave
         if not step.cut:
-            before = ()
-            yield _uncut(step.move, start, end)
+            cuts.append(None)
+            paths.append(_uncut(step.move, joint.meet, end))
             continue
-        trimmed = _trimmed(contour, steps, k, start, end)
-        _check_apart(contour, before, trimmed, tolerance)
-        before = trimmed
-        turned = () if joints[k].corner is None else (_corner_arc(step.move, joints[k]),)
-        yield (*turned, *trimmed)
+        corner = None if joint.corner is None else _corner_arc(step.move, joint)
+        beside = _trimmed(contour, steps, k, joint.meet, end)
+        cuts.append(Cut(step.move, corner, next(filter(is_move, beside), None)))
+        paths.append((corner, *beside) if corner else beside)
+    refuse_gouges(contour, cuts, tolerance)
+    return paths
 
 
 def _steps(contour: Contour, moves: list) -> list[_Step]:
@@ -109,18 +104,6 @@ def _steps(contour: Contour, moves: list) -> list[_Step]:
         steps.append(_Step(move, _parallel(contour, move) if cut else move, cut, ramp))
         offset = move.offset
     return steps
-
-
-def _check_apart(contour: Contour, before: tuple, trimmed: tuple, tolerance: float) -> None:
-    """Check that the paths beside two elements in a row meet nowhere but at their joint."""
-    for a, b in zip(filter(is_move, before), filter(is_move, trimmed)):
-        curved = isinstance(a, Arc) or isinstance(b, Arc)
-        if curved and cross_inside(a, b, BESIDE * tolerance):
-            contour.refuse(
-                b.line,
-                f"the tool of radius {number(abs(b.offset))} cannot follow both lines {a.line} and "
-                f"{b.line}: beside one of them it cuts into the other",
-            )
 
 
 def _last_place(contour: Contour, steps: list[_Step]) -> Point:
@@ -161,8 +144,6 @@ def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:
         place = (0.5 * (leave[0] + meet[0]), 0.5 * (leave[1] + meet[1]))
         return _Joint(place, place)
     if sine * offset <= PARALLEL * abs(offset):
-        if not _clear(a, b, tolerance):
-            _refuse_tight(contour, a, b)
         return _Joint(leave, meet, corner)
     place = crossing(a.parallel, b.parallel)
     if place is None:
@@ -175,19 +156,6 @@ def _is_joined(a: _Step, b: _Step, gap: float, sine: float, tolerance: float) ->
     straight = isinstance(a.move, Line) and isinstance(b.move, Line)
     moved = gap * sine / 8.0
     return moved <= JOINED * tolerance and (straight or gap <= BESIDE * tolerance)
-
-
-def _clear(a: _Step, b: _Step, tolerance: float) -> bool:
-    """Return whether the tool beside either element of an outside corner stays off the other."""
-    if isinstance(a.move, Line) and isinstance(b.move, Line):
-        return True
-    offset = abs(b.move.offset)
-    for path, other, from_end in ((a.parallel, b.move, True), (b.parallel, a.move, False)):
-        step = min(1.0, 2.0 * offset / max(path_length(path), REACH)) / PROBES
-        parts = (1.0 - k * step if from_end else k * step for k in range(PROBES + 1))
-        if any(distance_from(other, place_at(path, part)) < offset - tolerance for part in parts):
-            return False
-    return True
 
 
 def _refuse_tight(contour: Contour, a: _Step, b: _Step) -> NoReturn:

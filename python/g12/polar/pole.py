@@ -15,13 +15,12 @@ from g12.polar.contour import (
     Contour,
     Line,
     Plunge,
-    Point,
     arc_radius,
     is_move,
     path_length,
     sweep_between,
 )
-from g12.polar.crossing import place_at
+from g12.polar.crossing import height_at, part_of, place_at
 
 POLE = (0.0, 0.0)
 FLAT_SHARE = 0.2  # of the reach: how far the radii that replace an arc may be from it
@@ -88,40 +87,23 @@ def _replaced(move: Line | Arc, passes: list[float], half: float, reach: float) 
     moves, done = [], 0.0
     for part in passes:
         if part - half > done:
-            moves.append(_part(move, done, part - half))
+            moves.append(part_of(move, done, part - half))
             done = part - half
         moves.extend(_radius(move, done, part, reach))
         done = min(part + half, 1.0)
         moves.extend(_radius(move, done, part, reach, outwards=True))
     if done < 1.0:
-        moves.append(_part(move, done, 1.0))
+        moves.append(part_of(move, done, 1.0))
     return moves
 
 
 def _radius(move: Line | Arc, part: float, at_pole: float, reach: float, outwards=False) -> list:
     """Return the radius between a place of a move and the pole: nothing where it is there."""
-    place, height, pole_height = _place(move, part), _height(move, part), _height(move, at_pole)
+    place, height = place_at(move, part), height_at(move, part)
+    pole_height = height_at(move, at_pole)
     ends = (*place, height, *POLE, pole_height)
     if outwards:
         ends = (*POLE, pole_height, *place, height)
     if hypot(*place) > reach:
         return [Line(move.line, move.feed, move.offset, *ends)]
     return [] if height == pole_height else [Plunge(move.line, move.feed, ends[2], ends[5])]
-
-
-def _place(move: Line | Arc, part: float) -> Point:
-    """Return the place at a part of a move, its very ends where it is at these."""
-    if part in (0.0, 1.0):
-        return (move.x1, move.c1) if part else (move.x0, move.c0)
-    return place_at(move, part)
-
-
-def _height(move: Line | Arc, part: float) -> float:
-    return move.z0 + part * (move.z1 - move.z0)
-
-
-def _part(move: Arc, first: float, last: float) -> Arc:
-    """Return an arc from one part of another to a later one."""
-    places = (*_place(move, first), _height(move, first), *_place(move, last), _height(move, last))
-    sweep = (last - first) * move.sweep
-    return Arc(move.line, move.feed, move.offset, *places, move.cx, move.cc, sweep)
