@@ -3,6 +3,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 
@@ -157,6 +158,46 @@ def test_an_installed_pocket_is_that_of_the_simulated_mill(tmp_path, own):
     ends = [move.end for move in trace_text(POCKET, ini, tools=tools).moves]
     assert len(ends) > 5
     assert ends == [move.end for move in trace_text(POCKET, SIM / "mill_mm.ini", tools=tools).moves]
+
+
+def test_a_toplevel_without_any_module_remap_gets_the_packages(tmp_path, capsys):
+    files = {"mine__toplevel_py": "import os\n", "mine__other_py": ""}
+    ini = write_config(tmp_path, MILL + OWN, **files)
+    before = content_of(tmp_path)
+    assert installed(ini, "haas") == 0
+    capsys.readouterr()
+    assert kinds(ini, capsys) == []
+    assert len(trace_text(POCKET, ini, tools={1: 6.0}).moves) > 5
+    assert uninstall.main([str(ini)]) == 0
+    assert content_of(tmp_path) == before
+
+
+@pytest.mark.parametrize("own", [False, True])
+@pytest.mark.parametrize("name", ["", "ngc/g12_haas.ngc", "python/g12/haas.py"])
+def test_a_damaged_copy_is_mended(tmp_path, capsys, own, name):
+    ini = write_config(tmp_path, MILL + OWN * own, **(remap("x = 1\n") if own else {}))
+    assert installed(ini, "haas") == 0
+    whole = content_of(tmp_path)
+    lost = tmp_path / "g12" / name
+    lost.unlink() if name else shutil.rmtree(lost)
+    assert installed(ini, "haas", "--dry-run") == 0
+    assert not lost.exists()
+    capsys.readouterr()
+    assert installed(ini, "haas") == 0
+    assert "of its files are missing" in capsys.readouterr().out
+    assert content_of(tmp_path) == whole
+
+
+def test_a_path_as_long_as_linuxcnc_reads_is_installed(tmp_path, capsys):
+    value = "/".join(["a" * 75] * 3)
+    text = with_lines(MILL, "RS274NGC", f"SUBROUTINE_PATH = {value}\n")
+    (tmp_path / value).mkdir(parents=True)
+    ini = write_config(tmp_path, text)
+    assert installed(ini, "haas") == 0
+    (path,) = [line for line in ini.read_text().splitlines() if line.startswith("SUBR")]
+    assert len(path) == 253
+    capsys.readouterr()
+    assert kinds(ini, capsys) == []
 
 
 def test_an_installed_section_is_that_of_the_simulated_lathe(tmp_path):

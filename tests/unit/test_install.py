@@ -2,6 +2,7 @@
 """What `install` writes and `uninstall` takes out; no LinuxCNC is asked."""
 
 import os
+import shutil
 import stat
 import subprocess
 
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 
 from configs import MILL, config_of, content_of, with_lines, write_config
 from g12.cli import features, install, package_copy, safe_write, uninstall
+from g12.cli.command import UsageError
 from g12.cli.ini_edit import BEGIN, END, IniError, IniText, read_lines, to_bytes
 from g12.cli.install_plan import Refused, make_plan
 
@@ -417,6 +419,248 @@ def test_the_real_package_has_what_a_machine_needs(monkeypatch):
     subs = {f"ngc/{sub}.ngc" for f in features.FILES for sub in features.names_of(f)}
     assert subs <= names.keys()
     assert not any("__pycache__" in name or name.startswith("tests") for name in names)
+
+
+# Installations that were interrupted, damaged or edited.
+
+
+def test_a_folder_that_linuxcnc_cannot_read_subs_from_is_refused(tmp_path):
+    (tmp_path / "my mill").mkdir()
+    ini = write_config(tmp_path / "my mill")
+    with pytest.raises(Refused) as refused:
+        put_in(ini)
+    assert refused.value.args[0].kind == "blank-in-path"
+    put_in(ini, "polar")
+
+
+@pytest.mark.parametrize("stage", ["back_up", "write_all"])
+def test_an_interrupted_installation_leaves_everything_as_it_was(tmp_path, monkeypatch, stage):
+    ini = write_config(tmp_path)
+    before = content_of(tmp_path)
+
+    def interrupted(*_arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(install, stage, interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        put_in(ini)
+    assert content_of(tmp_path) == before
+    assert not list(tmp_path.glob(".g12*"))
+
+
+def test_a_copy_that_is_killed_half_way_is_no_folder_g12(tmp_path, monkeypatch):
+    written = []
+
+    def killed(path, content):
+        written.append(path)
+        assert not (tmp_path / "g12").exists()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(package_copy, "write", killed)
+    with pytest.raises(KeyboardInterrupt):
+        package_copy.write_copy(tmp_path / "g12")
+    assert written
+    assert list(tmp_path.iterdir()) == []
+
+
+def newer(monkeypatch, files):
+    monkeypatch.setattr(package_copy, "package_files", lambda: dict(files))
+
+
+def test_an_update_that_was_interrupted_takes_no_new_file_for_an_edited_one(tmp_path, monkeypatch):
+    put_in(write_config(tmp_path))
+    newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": b"(two)\n"})
+    (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_bytes(b"(two)\n")
+    install.bring_copy_up_to_date(tmp_path / "g12")
+    assert not list((tmp_path / "g12").rglob("*.edited*"))
+    assert package_copy.edited(tmp_path / "g12") == []
+
+
+def test_no_edit_is_ever_lost(tmp_path, monkeypatch):
+    put_in(write_config(tmp_path))
+    copy = tmp_path / "g12"
+    haas = copy / "ngc" / "g12_haas.ngc"
+    for version in ("two", "three"):
+        haas.write_text(f"(mine before {version})\n")
+        newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": f"({version})\n".encode()})
+        install.bring_copy_up_to_date(copy)
+    haas.write_text("(mine at last)\n")
+    (copy / "ngc" / "new.ngc").write_text("(my own)\n")
+    rest = {name: content for name, content in PACKAGE.items() if not name.startswith("ngc/")}
+    newer(monkeypatch, {**rest, "ngc/new.ngc": b"(theirs)\n"})
+    said = install.bring_copy_up_to_date(copy)
+    assert content_of(copy / "ngc") == {
+        "g12_haas.ngc.edited": b"(mine before two)\n",
+        "g12_haas.ngc.edited.2": b"(mine before three)\n",
+        "g12_haas.ngc.edited.3": b"(mine at last)\n",
+        "new.ngc": b"(theirs)\n",
+        "new.ngc.edited": b"(my own)\n",
+    }
+    assert sum("your version" in line for line in said) == 2
+
+
+@pytest.mark.parametrize("damage", ["gone", "empty", "all"])
+def test_a_damaged_copy_is_mended(tmp_path, damage):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    whole = content_of(tmp_path)
+    haas = tmp_path / "g12" / "ngc" / "g12_haas.ngc"
+    if damage == "gone":
+        haas.unlink()
+    elif damage == "empty":
+        haas.write_bytes(b"")
+    else:
+        shutil.rmtree(tmp_path / "g12")
+    assert install.lost_files(IniText(ini))
+    install.bring_copy_up_to_date(tmp_path / "g12")
+    assert content_of(tmp_path) == whole
+    assert not install.lost_files(IniText(ini))
+
+
+def test_the_copy_that_only_a_users_module_names_is_missed_too(tmp_path):
+    ini, python = own_config(tmp_path)
+    put_in(ini, "polar", **python)
+    shutil.rmtree(tmp_path / "g12")
+    assert install.lost_files(IniText(ini))
+
+
+def test_no_copy_is_missed_where_none_is_named(tmp_path):
+    assert install.lost_files(IniText(write_config(tmp_path))) == []
+
+
+def test_a_copy_does_not_mend_itself(tmp_path, monkeypatch):
+    put_in(write_config(tmp_path))
+    copy = tmp_path / "g12"
+    monkeypatch.setattr(features, "ROOT", copy)
+    (copy / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
+    newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": b"(mine)\n"})
+    assert install.bring_copy_up_to_date(copy) == []
+    assert package_copy.edited(copy) == ["ngc/g12_haas.ngc"]
+    (copy / "ngc" / "g12_haas.ngc").unlink()
+    with pytest.raises(UsageError, match="from the package itself"):
+        install.bring_copy_up_to_date(copy)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [f"{'0' * 64}  ../precious.ngc", f"{'0' * 64}  /tmp/precious.ngc", "<<<<<<< mine", "\xff"],
+)
+def test_a_list_with_anything_else_in_it_is_refused_first(tmp_path, line, capsys):
+    ini = write_config(tmp_path, precious_ngc="(mine)\n")
+    put_in(ini)
+    manifest = tmp_path / "g12" / package_copy.MANIFEST
+    manifest.write_bytes(manifest.read_bytes() + line.encode("latin-1") + b"\n")
+    before = content_of(tmp_path)
+    assert uninstall.main([str(ini)]) == 2
+    error = capsys.readouterr().err
+    assert "MANIFEST:5: not a line that install wrote" in error
+    assert error.count("\n") == 1
+    assert content_of(tmp_path) == before
+
+
+def test_a_copy_behind_a_link_is_not_the_configs(tmp_path):
+    put_in(write_config(tmp_path))
+    shutil.move(tmp_path / "g12" / "ngc", tmp_path / "elsewhere")
+    (tmp_path / "g12" / "ngc").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(UsageError):
+        package_copy.listed(tmp_path / "g12")
+
+
+def test_the_copy_stays_while_the_users_lines_need_it(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    text = ini.read_text()
+    remap = next(line for line in text.splitlines() if line.startswith("REMAP"))
+    moved = text.replace(f"{remap}\n", "").replace("[RS274NGC]\n", f"[RS274NGC]\n{remap}\n")
+    ini.write_text(moved)
+    said = take_out(ini)
+    assert f"mill.ini:5: still needs the package: {remap}" in said
+    assert any("run uninstall again" in line for line in said)
+    assert (tmp_path / "g12" / "ngc" / "g12_haas.ngc").exists()
+    ini.write_text(ini.read_text().replace(f"{remap}\n", ""))
+    assert any(line.endswith("g12: taken away") for line in take_out(ini))
+    assert ini.read_text() == MILL
+    assert not (tmp_path / "g12").exists()
+
+
+def test_a_path_that_the_user_made_longer_loses_only_our_folder(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    ini.write_text(ini.read_text().replace("= g12/ngc\n", "= g12/ngc:mysubs\n"))
+    take_out(ini)
+    assert ini.read_text() == with_lines(MILL, "RS274NGC", "").replace(
+        "mill.var\n", "mill.var\nSUBROUTINE_PATH = mysubs\n"
+    )
+    assert not (tmp_path / "g12").exists()
+
+
+def test_an_uninstall_that_failed_can_be_run_again(tmp_path, monkeypatch):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    real = package_copy.remove_files
+
+    def fails(folder, names):
+        real(folder, list(names)[:1])
+        raise OSError("busy")
+
+    monkeypatch.setattr(package_copy, "remove_files", fails)
+    with pytest.raises(OSError, match="busy"):
+        take_out(ini)
+    monkeypatch.setattr(package_copy, "remove_files", real)
+    take_out(ini)
+    assert ini.read_text() == MILL
+    assert not (tmp_path / "g12").exists()
+
+
+def test_a_link_to_the_ini_is_no_other_machine(tmp_path):
+    ini = write_config(tmp_path)
+    (tmp_path / "link.ini").symlink_to(ini)
+    put_in(ini)
+    text = IniText(tmp_path / "link.ini")
+    assert list(install.others_including(text, [ini.absolute()])) == []
+    take_out(tmp_path / "link.ini")
+    assert ini.read_text() == MILL
+    assert not (tmp_path / "g12").exists()
+
+
+def test_what_an_uninstall_left_is_told_from_a_folder_of_the_users(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
+    take_out(ini)
+    with pytest.raises(Refused) as refused:
+        put_in(ini)
+    assert "left from an uninstall, with files you changed: ngc/g12_haas.ngc" in (
+        refused.value.args[0].text
+    )
+
+
+def test_a_copy_whose_list_is_gone_is_told(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    (tmp_path / "g12" / package_copy.MANIFEST).unlink()
+    said = take_out(ini)
+    assert any("g12: stays, it has no list" in line for line in said)
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_marker_without_its_beginning_is_refused(tmp_path, number):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    lines = ini.read_text().splitlines(keepends=True)
+    begins = [index for index, line in enumerate(lines) if line.startswith(BEGIN)]
+    del lines[begins[number]]
+    ini.write_text("".join(lines))
+    with pytest.raises(IniError, match=f'the line "{BEGIN}"'):
+        take_out(ini)
+
+
+def test_the_first_end_marker_is_missed_at_its_own_block(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    ini.write_text(ini.read_text().replace(END, "# gone", 1))
+    with pytest.raises(IniError, match=f'mill.ini:6: the line "{END}"'):
+        take_out(ini)
 
 
 # Writing.

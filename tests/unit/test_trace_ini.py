@@ -61,6 +61,14 @@ def test_replacing_adds_replaces_and_takes_out(ini):
     assert machine.get("C", "NEW") == "yes"
 
 
+def test_replacing_makes_no_line_longer_than_linuxcnc_reads(ini):
+    half = "b" * 200
+    machine = ini(f"[A]\nX = 1\nY = {half}\\\n{half}\n").replaced({"A": {"X": "a" * 600}})
+    assert machine.get("A", "X") == "a" * 600
+    assert machine.get("A", "Y") == 2 * half
+    assert max(map(len, machine.lines)) <= 254
+
+
 def test_files_are_relative_to_the_ini(ini, tmp_path):
     machine = ini("[EMCIO]\nTOOL_TABLE = tools/t.tbl\n")
     assert machine.file("EMCIO", "TOOL_TABLE") == tmp_path / "tools" / "t.tbl"

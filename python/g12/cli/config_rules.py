@@ -255,13 +255,19 @@ def blanks_in_path(config: Config, codes: list[Code]) -> Iterator[Finding]:
     """Find a folder name that a shell would split: LinuxCNC finds no subs there."""
     first = [subs_named(config.ini, name)[:1] for name in needed_subs(codes)]
     for folder in sorted({file.parent for files in first for file in files}):
-        odd = SHELL_CHARACTERS.search(str(folder))
-        if odd and folder != config.folder:
-            yield problem(
-                "blank-in-path",
-                f"{folder}: LinuxCNC finds no NGC subs in a folder with {odd[0]!r} in its path",
-                "rename the folder: letters, digits, - and _ only",
-            )
+        if folder != config.folder:
+            yield from odd_folder(folder)
+
+
+def odd_folder(folder: Path) -> Iterator[Finding]:
+    """Find a character in a folder's path at which LinuxCNC, like a shell, gives up."""
+    odd = SHELL_CHARACTERS.search(str(folder))
+    if odd:
+        yield problem(
+            "blank-in-path",
+            f"{folder}: LinuxCNC finds no NGC subs in a folder with {odd[0]!r} in its path",
+            "rename the folder: letters, digits, - and _ only",
+        )
 
 
 def shadowed_subs(config: Config, codes: list[Code]) -> Iterator[Finding]:

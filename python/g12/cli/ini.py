@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Union
 
 INCLUDE = re.compile(r"\s*#INCLUDE\s+(\S.*)")
 ENTRY = re.compile(r"\s*([^\s=#;\[][^\s=]*)\s*=\s*(.*?)\s*$")
+LONGEST_PART = 250
 ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
 
 Value = Union[str, int, float, None, Sequence]
@@ -84,7 +85,7 @@ class Ini:
         head, body, tail = self.lines[:first], self.lines[first:last], self.lines[last:]
         if not first:
             head, body, tail = (*self.lines, f"[{section}]"), (), ()
-        kept = tuple(line for line in _joined(body) if not _is_entry_of(line, key))
+        kept = _without(body, key)
         return Ini(self.path, (*head, *_entries(key, value), *kept, *tail))
 
     def _extent(self, section: str) -> tuple[int, int]:
@@ -127,15 +128,27 @@ def _expanded(lines: list[str], directory: Path):
             yield from included.read_text(**ENCODING).splitlines()
 
 
-def _joined(lines: Sequence[str]):
-    """Lines with backslash continuations put together."""
-    start = ""
+def _broken(lines: Sequence[str]) -> Iterator[list[str]]:
+    """Yield lines together with those that a backslash continues them on."""
+    group: list[str] = []
     for line in lines:
-        if line.endswith("\\"):
-            start += line[:-1]
-        else:
-            yield start + line
-            start = ""
+        group.append(line)
+        if not line.endswith("\\"):
+            yield group
+            group = []
+
+
+def _joined(lines: Sequence[str]) -> Iterator[str]:
+    """Yield lines with backslash continuations put together."""
+    for *started, last in _broken(lines):
+        yield "".join([*(line[:-1] for line in started), last])
+
+
+def _without(lines: Sequence[str], key: str) -> Iterator[str]:
+    """Yield lines but for the entries of a key; a broken line stays broken."""
+    for group in _broken(lines):
+        if not any(_is_entry_of(line, key) for line in _joined(group)):
+            yield from group
 
 
 def _is_entry_of(line: str, key: str) -> bool:
@@ -147,4 +160,11 @@ def _entries(key: str, value: Value) -> list[str]:
     if value is None:
         return []
     values = value if isinstance(value, (list, tuple)) else [value]
-    return [f"{key} = {item}" for item in values]
+    return [part for item in values for part in _parts(f"{key} = {item}")]
+
+
+def _parts(line: str) -> list[str]:
+    """Return a line broken where it is longer than LinuxCNC reads."""
+    starts = range(0, len(line), LONGEST_PART)
+    *parts, last = (line[start : start + LONGEST_PART] for start in starts)
+    return [*(f"{part}\\" for part in parts), last]

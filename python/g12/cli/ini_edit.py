@@ -198,6 +198,7 @@ class IniText:
     def remove_from_value(self, line: Line, entry: str) -> None:
         """Take an entry out of the list, separated by colons, that begins at ``line``."""
         lines = self.files[line.file]
+        lines[line.index] = re.sub(rf"(=\s*){re.escape(entry)}:", r"\1", lines[line.index], count=1)
         for index in range(line.index, self._behind(line.file, line.index)):
             lines[index] = re.sub(rf":{re.escape(entry)}(?=[:\s]|$)", "", lines[index])
 
@@ -207,11 +208,15 @@ class IniText:
         open_ = False
         for line in self.lines():
             if line.text.startswith(BEGIN):
+                if open_:
+                    break
                 blocks.append([])
                 open_ = True
             if open_:
                 blocks[-1].append(line)
             if line.text.startswith(END):
+                if not open_:
+                    raise IniError(f'{line.place}: the line "{BEGIN}" that begins this is missing')
                 open_ = False
         if open_:
             raise IniError(f'{blocks[-1][0].place}: the line "{END}" that ends this is missing')
@@ -222,3 +227,10 @@ class IniText:
         for file in {line.file for line in doomed}:
             indices = {line.index for line in doomed if line.file == file}
             self.files[file] = without(self.files[file], indices)
+
+
+def other_inis(text: IniText) -> Iterator[IniText]:
+    """Yield the other INIs of an INI's folder; a link to it is none."""
+    for path in sorted(text.path.parent.glob("*.ini")):
+        if path.is_file() and not path.samefile(text.path):
+            yield IniText(path)

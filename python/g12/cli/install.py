@@ -12,7 +12,7 @@ import argparse
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from g12.cli import features, package_copy
@@ -21,8 +21,8 @@ from g12.cli.command import FINDING, GOOD, UsageError, one_line
 from g12.cli.config import Config, load_config, remaps_in
 from g12.cli.config_rules import PROBLEM, Finding, codes_of, findings_of
 from g12.cli.ini import Overrides
-from g12.cli.ini_edit import IniText
-from g12.cli.install_plan import Plan, Refused, make_plan, refuse
+from g12.cli.ini_edit import IniText, other_inis
+from g12.cli.install_plan import Plan, Refused, make_plan, names_copy, refuse
 from g12.cli.safe_write import back_up, difference, drop_backup, require_writable, write_all
 
 BEFORE = {"no-linuxcnc", "python-fails", "does-not-load"}  # what keeps a config from being read
@@ -62,7 +62,10 @@ def trial_values(plan: Plan, text: IniText, scratch: Path) -> Overrides:
     toplevel, subs = ini.get("PYTHON", "TOPLEVEL"), ini.get("RS274NGC", "SUBROUTINE_PATH")
     toplevel = now(toplevel) if toplevel else None
     for path in plan.modules:
-        module = put_module(path, plan.changes()[path], scratch / "own")
+        content = plan.changes()[path]
+        if plan.copied:
+            content = content.replace(f'"{plan.prefix}/'.encode(), f'"{scratch}/'.encode())
+        module = put_module(path, content, scratch / "own")
         toplevel = str(module) if path == ini.file("PYTHON", "TOPLEVEL") else toplevel
         modules.append(str(scratch / "own"))
     paths = {
@@ -102,13 +105,11 @@ def refuse_problems(findings: Sequence[Finding]) -> list[Finding]:
 
 def others_including(text: IniText, changed: Sequence[Path]) -> Iterator[IniText]:
     """Yield the folder's other INIs that include a changed file, changed as it will be."""
-    for path in sorted(text.path.parent.glob("*.ini")):
-        if path != text.path and path.is_file():
-            other = IniText(path)
-            shared = [file for file in changed if file in other.files]
-            other.files.update({file: text.files[file] for file in shared})
-            if shared:
-                yield other
+    for other in other_inis(text):
+        shared = [file for file in changed if file in other.files]
+        other.files.update({file: text.files[file] for file in shared})
+        if shared:
+            yield other
 
 
 def try_out(plan: Plan) -> list[Finding]:
@@ -124,13 +125,15 @@ def carry_out(plan: Plan, folder: Path) -> list[str]:
     """Write everything; return what was done, a line each."""
     changes, copy = plan.changes(), folder / package_copy.NAME
     require_writable(changes)
-    done = bring_copy_up_to_date(copy) if plan.copied else []
-    kept = {path: back_up(path) for path in changes if not is_marked(path)}
+    fresh, kept = plan.copied and not copy.exists(), {}
     try:
+        done = bring_copy_up_to_date(copy) if plan.copied else []
+        for path in changes:
+            if not is_marked(path):
+                kept[path] = back_up(path)
         write_all(changes)
     except BaseException:
-        for path in kept:
-            drop_backup(path)
+        take_back(kept, copy if fresh else None)
         raise
     for path in changes:
         before = f"; as it was: {kept[path].name}" if path in kept else ""
@@ -138,14 +141,39 @@ def carry_out(plan: Plan, folder: Path) -> list[str]:
     return done
 
 
+def take_back(kept: Iterable[Path], copy: Path | None) -> None:
+    """Take away what an installation that failed has written: old versions, a new copy."""
+    for path in kept:
+        drop_backup(path)
+    if copy and copy.exists():
+        shutil.rmtree(copy)
+
+
 def bring_copy_up_to_date(copy: Path) -> list[str]:
     """Write what is new of the package; return what was done, a line each."""
-    if not package_copy.stale(copy):
+    if not out_of_date(copy):
         return []
     aside = package_copy.write_copy(copy)
-    kept = [f"{copy / name}: your version is kept beside the new one as {name}{package_copy.EDITED}"
-            for name in aside]  # fmt: skip
+    kept = [f"{copy / name}: your version, kept beside the new one" for name in aside]
     return [f"{copy}: the package, {len(package_copy.package_files())} files", *kept]
+
+
+def out_of_date(copy: Path) -> bool:
+    """Tell whether a copy lacks files of this package; from inside itself it cannot be mended."""
+    if not copy.exists() or not copy.samefile(features.ROOT):
+        return bool(package_copy.stale(copy))
+    for name in package_copy.missing(copy):
+        raise UsageError(f"{copy / name}: is missing; run install from the package itself, "
+                         "not from this copy of it")  # fmt: skip
+    return False
+
+
+def lost_files(text: IniText) -> list[str]:
+    """Return what is missing of the copy that the config's lines name."""
+    copy = text.path.parent / package_copy.NAME
+    if copy.exists():
+        return package_copy.missing(copy)
+    return list(package_copy.package_files()) if names_copy(text) else []
 
 
 def is_marked(path: Path) -> bool:
@@ -162,13 +190,20 @@ def readable_config(text: IniText) -> Config:
 
 def install(text: IniText, wanted: Sequence[str], dry_run: bool) -> Iterator[str]:
     """Install features in a machine config; yield what is shown."""
+    lost = lost_files(text)
+    if lost:
+        yield f"{text.path.parent / package_copy.NAME}: {len(lost)} of its files are missing"
+        if dry_run:
+            yield "dry run: nothing was written; without these files nothing more can be told"
+            return
+        yield from bring_copy_up_to_date(text.path.parent / package_copy.NAME)
     config = readable_config(text)
     there = [code.feature for code in codes_of(config.remaps)]
     for pair in excluding([*there, *wanted]):
         raise refuse("dialects", f"{pair} exclude each other", "uninstall first")
     plan = make_plan(config, wanted)
     changes = plan.changes()
-    old_copy = plan.copied and package_copy.stale(config.folder / package_copy.NAME)
+    old_copy = plan.copied and out_of_date(config.folder / package_copy.NAME)
     if not changes and not old_copy:
         yield f"{text.path}: {', '.join(wanted)}: installed already, nothing to do"
         return

@@ -8,20 +8,22 @@ only) and import lines in the user's own modules.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from g12.cli import features, package_copy
 from g12.cli.config import Config, folder_from_ini
-from g12.cli.config_rules import problem
-from g12.cli.ini_edit import BEGIN, END, IniText, Place, line_end, read_lines, to_bytes
+from g12.cli.config_rules import odd_folder, problem
+from g12.cli.ini_edit import BEGIN, END, IniText, Line, Place, line_end, read_lines, to_bytes
 
 BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"
 NOTE = "# also by g12 install: "
 PATH_NOTE = " at the end of SUBROUTINE_PATH"
 MODULE_NOTE = "a line in "
 MARK = "  # by g12 install"
+NAMES_COPY = re.compile(rf"\s*(#INCLUDE\s+|[^\s#;].*[=:]\s*)(\./)?{package_copy.NAME}/")
 IMPORT_HANDLERS = "from g12.remap import *"
 IMPORT_REMAP = "import remap"
 
@@ -88,6 +90,17 @@ def make_plan(config: Config, wanted: Sequence[str]) -> Plan:
     return plan
 
 
+def names_copy(text: IniText) -> list[Line]:
+    """Return the lines of an INI that need the copy, be they by `install` or by hand."""
+    here = text.path.parent
+    found = [line for line in text.lines() if NAMES_COPY.match(line.text)]
+    for line in (line for block in text.blocks() for line in block):
+        module = here / line.text.removeprefix(f"{NOTE}{MODULE_NOTE}")
+        if line.text.startswith(f"{NOTE}{MODULE_NOTE}") and module.is_file():
+            found += [line] * (f'"{package_copy.NAME}/python"' in "".join(read_lines(module)))
+    return found
+
+
 def put_block(text: IniText, place: Place, lines: Sequence[str]) -> None:
     """Put lines in between the markers."""
     if lines:
@@ -123,7 +136,13 @@ def package_folder(config: Config) -> tuple[str, bool]:
         return package_copy.NAME, True
     if package_copy.is_package(own):
         return package_copy.NAME, False
-    raise refuse("folder", f"{own} is there already and is not this package", "rename that folder")
+    left = package_copy.leftovers(own)
+    what = f"left from an uninstall, with files you changed: {', '.join(left)}"
+    raise refuse(
+        "folder",
+        f"{own} is there already, {what if left else 'and is not this package'}",
+        "rename that folder" + (", and put your changes into the new one afterwards" * bool(left)),
+    )
 
 
 def name_in_ini(config: Config, folder: Path) -> str:
@@ -150,6 +169,8 @@ def subroutine_lines(plan: Plan, config: Config, wanted: Sequence[str]) -> list[
     name = f"{plan.prefix}/ngc"
     if not any(features.names_of(feature) for feature in wanted):
         return []
+    for finding in odd_folder(folder_from_ini(config.ini, name)):
+        raise Refused(finding)
     entries = plan.text.entries("RS274NGC", "SUBROUTINE_PATH")
     if not entries:
         return [f"SUBROUTINE_PATH = {name}"]

@@ -14,10 +14,22 @@ from pathlib import Path
 from g12.cli import package_copy
 from g12.cli.check import readable
 from g12.cli.command import GOOD, one_line
+from g12.cli.config import remaps_in
+from g12.cli.config_rules import codes_of
 from g12.cli.features import model_of, remap_from_value
 from g12.cli.ini import ENTRY
-from g12.cli.ini_edit import BEGIN, END, IniText, Line, is_entry, read_lines, to_bytes, without
-from g12.cli.install_plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE
+from g12.cli.ini_edit import (
+    BEGIN,
+    END,
+    IniText,
+    Line,
+    is_entry,
+    other_inis,
+    read_lines,
+    to_bytes,
+    without,
+)
+from g12.cli.install_plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE, names_copy
 from g12.cli.safe_write import difference, drop_backup, require_writable, write_all
 
 OWN_ENDS = {
@@ -63,7 +75,7 @@ def take_out_blocks(text: IniText, blocks: list[list[Line]]) -> list[Line]:
 
 
 def take_out_path(text: IniText, entry: str, shared: bool) -> None:
-    """Take the package's folder out of SUBROUTINE_PATH, unless an include is still shared."""
+    """Take a folder out of SUBROUTINE_PATH, unless it is alone or an include is still shared."""
     for line, _ in text.entries("RS274NGC", "SUBROUTINE_PATH")[:1]:
         if not shared or line.file == text.path:
             text.remove_from_value(line, entry)
@@ -71,14 +83,10 @@ def take_out_path(text: IniText, entry: str, shared: bool) -> None:
 
 def still_installed(text: IniText) -> bool:
     """Tell whether another INI of the folder has the package by `install`."""
-    for path in sorted(text.path.parent.glob("*.ini")):
-        if path != text.path and path.is_file():
-            other = IniText(path)
-            other.files.update(
-                {file: text.files[file] for file in text.files if file in other.files}
-            )
-            if other.blocks():
-                return True
+    for other in other_inis(text):
+        other.files.update({file: text.files[file] for file in text.files if file in other.files})
+        if other.blocks() or any(line.file not in text.files for line in names_copy(other)):
+            return True
     return False
 
 
@@ -103,19 +111,25 @@ def take_out_elsewhere(text: IniText, notes: list[str], shared: bool) -> dict[Pa
 
 def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     """Take the package out of a machine config; yield what is shown."""
-    blocks = text.blocks()
-    if not blocks:
-        yield f"{text.path}: nothing that install put in"
-        return
+    blocks, copy = text.blocks(), text.path.parent / package_copy.NAME
+    package_copy.listed(copy)  # refuses a damaged list before anything is written
     stay = take_out_blocks(text, blocks)
     shared = still_installed(text)
+    if not blocks and (shared or not package_copy.is_copy(copy)):
+        yield f"{text.path}: nothing that install put in"
+        return
     modules = take_out_elsewhere(text, notes_in(blocks), shared)
+    if package_copy.is_copy(copy):
+        take_out_path(text, f"{package_copy.NAME}/ngc", shared)
     inis = {path: to_bytes(lines) for path, lines in text.files.items()}
     changes = {path: new for path, new in {**inis, **modules}.items() if new != path.read_bytes()}
     for path, content in changes.items():
         yield from difference(path, content)
     for line in stay:
         yield f"{line.place}: stays, it is not by install: {line.text}"
+    needing = sorted({line.place: line for line in lines_needing_package(text)}.values())
+    for line in needing:
+        yield f"{line.place}: still needs the package: {line.text.strip()}"
     if dry_run:
         yield "dry run: nothing was written"
         return
@@ -123,7 +137,12 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     write_all(changes)
     for path in changes:
         yield from after_change(path)
-    yield from after_all(text.path.parent / package_copy.NAME, shared)
+    yield from after_all(copy, shared, bool(needing))
+
+
+def lines_needing_package(text: IniText) -> list[Line]:
+    """Return the lines of an INI without its blocks that do nothing without the package."""
+    return [*names_copy(text), *(code.line for code in codes_of(remaps_in(text)))]
 
 
 def after_change(path: Path) -> Iterator[str]:
@@ -132,10 +151,14 @@ def after_change(path: Path) -> Iterator[str]:
     yield f"{path}: changed" + (f"; you changed it since, so {kept} stays" if kept else "")
 
 
-def after_all(copy: Path, shared: bool) -> Iterator[str]:
+def after_all(copy: Path, shared: bool, needed: bool) -> Iterator[str]:
     """Take the copy of the package away if nobody uses it; yield what was done."""
     if shared:
         yield f"{copy}: stays, another INI of this folder uses it"
+    elif copy.is_dir() and not package_copy.is_copy(copy):
+        yield f"{copy}: stays, it has no list of what install copied ({package_copy.MANIFEST})"
+    elif needed:
+        yield f"{copy}: stays, lines need it that are yours; take them out and run uninstall again"
     elif package_copy.is_copy(copy):
         left = package_copy.remove_copy(copy)
         yield f"{copy}: " + (f"taken away but for what you changed: {', '.join(left)}"
