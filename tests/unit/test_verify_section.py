@@ -9,10 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.cli.contour_words import Element, Section
-from g12.cli.measure_section import Shape, measure_section
+from g12.cli.measure_section import measure_section
 from g12.cli.motion import follow, track
 from g12.cli.part import Part
 from g12.cli.proof import section_findings
+from g12.cli.shape import Shape
 from handmade import LIMITS, Hand, samples_of
 
 FACE = Part(turning=True)
@@ -32,8 +33,8 @@ def square(side):
     return [line(1, 40 + 0j, 20 + 0j, side, True), *walls, line(9, 20 + 0j, 40 + 0j, 0, True)]
 
 
-def section(elements, x=40.0, end=None, doubt=""):
-    return Section(1, 9, 1, end, "G12.1", x, tuple(elements), doubt)
+def section(elements, x=40.0, end=None, doubt="", z=0.0):
+    return Section(1, 9, 1, end, "G12.1", x, tuple(elements), doubt, z)
 
 
 def dense(points, step=0.05):
@@ -168,6 +169,62 @@ def test_a_later_pass_may_cross_the_extension_of_the_lead_in():
     ways[-1] = dense([ways[-1][0], complex(20 + TOOL, -5)])
     facts = measure(cut(ways, 40 - 15j, 40 - 5j), elements, x=abs(40 - 15j))
     assert facts.gouge == 0
+
+
+def diving(hand_ways, *, air, depth):
+    """Return a hand that goes straight across the square at a height, then round it at a depth."""
+    hand = Hand().rapid(x=40.0, z=2.0)
+    hand.line(z=air).polar([0 + 39j, -39 + 0j, 0 - 39j, 20 - 15j, 20 + 15j, 40 + 0j])
+    hand.line(z=depth).polar(dense([40 + 0j, hand_ways[0][0]])[1:])
+    for way in hand_ways:
+        hand.next_block().polar(way[1:])
+    hand.block = 9
+    return hand.polar(dense([hand_ways[-1][-1], 40 + 0j])[1:])
+
+
+@pytest.mark.parametrize(
+    ("air", "depth", "gouges"),
+    [(2.0, -3.0, False), (0.5, -3.0, False), (-1.0, -3.0, True), (-3.0, -3.0, True)],
+)
+def test_what_the_cutter_sweeps_above_the_face_is_no_gouge(air, depth, gouges):
+    facts = measure(diving(around(TOOL), air=air, depth=depth), square(-1), z=2.0)
+    assert (facts.gouge > 10) is facts.through is gouges
+    assert ("gouged" in findings(facts)) is gouges
+
+
+def test_above_a_contour_that_lies_above_z0_is_the_air():
+    facts = measure(diving(around(TOOL), air=1.0, depth=0.5), square(-1), z=2.0)
+    assert findings(facts) == ""
+
+
+def test_a_plunge_into_the_wall_is_a_gouge():
+    hand = Hand().rapid(x=40.0, z=2.0).polar([22 + 10j]).line(z=-3.0).line(z=2.0).polar([40 + 0j])
+    hand.line(z=-3.0).polar(dense([40 + 0j, 26 + 0j])[1:])
+    for way in around(TOOL):
+        hand.next_block().polar(way[1:])
+    assert measure(hand, square(-1), z=2.0).gouge > 1
+
+
+def test_a_contour_of_two_elements_that_closes_on_its_lead_in():
+    # A D: down a line at X12, back to it over a big arc about the spindle's centre.
+    start, corner, top = 12 + 30j, 12 - 16j, 12 + 16j
+    sweep = -2 * (math.pi - math.atan2(16, 12))
+    arc = Element(3, corner, top, 1, False, 0.0, 0j, sweep)
+    lead_in = line(1, 40 + 30j, start, 1, True)
+    lead_out = line(9, top, 40 + 16j, 0, True)
+    turn = np.linspace(0, np.angle(corner), 100), np.angle(corner) + np.linspace(0, sweep, 2000)
+    about = corner + 6 * np.exp(1j * turn[0])
+    ways = [[*dense([18 + 30j, 18 - 16j]), *about], list(26 * np.exp(1j * turn[1]))]
+    elements = [lead_in, line(2, start, corner, 1), arc, lead_out]
+    facts = measure(cut(ways, 40 + 30j, 40 + 16j), elements)
+    assert facts.deviation < 1e-3 and findings(facts) == ""
+
+
+def test_of_a_cut_right_through_only_a_part_is_measured():
+    ways = around(TOOL)
+    ways[-1] = [*ways[-1], 0j, complex(20 + TOOL, 0)]
+    facts = measure(cut(ways), square(-1))
+    assert facts.through and "at least" in findings(facts)
 
 
 def test_the_tool_centre_on_the_contour():

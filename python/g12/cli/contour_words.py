@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from g12.cli.blocks import Block, Text, after, before, blocks_in, read_lines
@@ -55,6 +55,11 @@ class Element:
         turn = complex(math.cos(self.sweep * fraction), math.sin(self.sweep * fraction))
         return self.centre + (self.start - self.centre) * turn
 
+    def part(self, first: float, last: float) -> Element:
+        """Return the stretch between two fractions of it."""
+        start, end = self.point(first), self.point(last)
+        return replace(self, start=start, end=end, sweep=self.sweep * (last - first))
+
     def normal(self, fraction: float) -> complex:
         """Return the direction to the left of the way at a fraction."""
         if self.centre is None:
@@ -68,8 +73,8 @@ class Element:
 class Section:
     """One run through a section: first and last line, first move and the one after it, contour.
 
-    ``x`` is where it begins, in program coordinates. ``doubt`` tells why the contour could not
-    be read from the words, if it could not.
+    ``x`` and ``z`` are where it begins, in program coordinates. ``doubt`` tells why the contour
+    could not be read from the words, if it could not. ``diameters`` says that X words are.
     """
 
     line: int
@@ -80,6 +85,8 @@ class Section:
     x: float
     elements: tuple[Element, ...]
     doubt: str = ""
+    z: float = 0.0
+    diameters: bool = False
 
 
 def sections(
@@ -151,11 +158,11 @@ def section_of(
 ) -> Section:
     """Return the section between two blocks of the program that executed blocks describe."""
     pen = Pen(first, reading)
-    x = pen.at.real
+    x, z, diameters = pen.at.real, pen.depth, pen.x_unit < pen.unit
     elements = tuple(element for block in group[1:] for element in pen.draw(block))
     code = next(f"G{code:g}" for code in first.codes if codes.polar(first.text))
     lines = first.text.number, last.text.number
-    return Section(*lines, first.at, last.end, code, x, elements, doubt)
+    return Section(*lines, first.at, last.end, code, x, elements, doubt, z, diameters)
 
 
 class Pen:

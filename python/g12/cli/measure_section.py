@@ -12,9 +12,8 @@ what it could have reached, each an integral of the excess along the way.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import groupby, product
 
 import numpy as np
@@ -24,14 +23,13 @@ from shapely.ops import nearest_points
 from g12.cli.contour_words import Element, Section
 from g12.cli.motion import Followed, Track
 from g12.cli.pace import Pace, pace_of
-from g12.cli.part import C, X
+from g12.cli.part import C
+from g12.cli.section_ways import Plane, Ways, goes_across, ways_of
+from g12.cli.shape import SAME, STEP, Shape
 from g12.cli.trace import Move
 
-STEP = 0.05  # mm between points of the contour that are looked at
-CHUNK = 256
 LEADS = 3  # elements at either end of a contour that may be there to lead in or out
 MEETS = 1e-3
-SAME = 1e-7
 TINY_PIECE = 1e-6
 
 
@@ -43,7 +41,8 @@ class SectionFacts:
     centre, where compensation is on if it is anywhere. ``deviation`` is the tool centre's
     greatest distance from where it should be, ``jump`` the greatest change of direction from
     piece to piece of one block, ``c_speed`` the highest speed of C and ``c_limit`` its limit,
-    ``tool`` the cutter's radius.
+    ``tool`` the cutter's radius. ``through`` says that the tool's centre goes beyond the contour:
+    then ``gouge`` is only what lies next to it, and there is more.
     """
 
     section: Section
@@ -54,6 +53,7 @@ class SectionFacts:
     deviation: float
     left: float
     gouge: float
+    through: bool
     jump: float
     pieces: int
     shortest: float
@@ -61,93 +61,6 @@ class SectionFacts:
     pace: Pace
     c_speed: float
     c_limit: float
-
-
-class Shape:
-    """Elements of a contour as arrays, for distances to many points at once."""
-
-    def __init__(self, elements: Sequence[Element]) -> None:
-        self.elements = [element for element in elements if element.length > SAME]
-        self.start = np.array([element.start for element in self.elements])
-        self.end = np.array([element.end for element in self.elements])
-        arcs = [element.centre is not None for element in self.elements]
-        self.arc = np.array(arcs, bool)
-        self.centre = np.array([element.centre or 0.0 for element in self.elements], complex)
-        self.sweep = np.array([element.sweep for element in self.elements])
-        radius = np.where(self.arc, np.abs(self.start - self.centre), 0.0)
-        middle = np.where(self.arc, self.centre, (self.start + self.end) / 2)
-        self.middle = middle
-        self.reach = np.where(self.arc, radius, np.abs(self.end - self.start) / 2)
-
-    @cached_property
-    def samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Points along the contour, the length each stands for, the directions to its left."""
-        points, lengths, normals = [], [], []
-        for element in self.elements:
-            count = max(2, int(element.length / STEP))
-            shares = (np.arange(count) + 0.5) / count
-            points += [element.point(share) for share in shares]
-            normals += [element.normal(share) for share in shares]
-            lengths += [element.length / count] * count
-        return np.array(points, complex), np.array(lengths), np.array(normals, complex)
-
-    def distances(self, points: np.ndarray) -> np.ndarray:
-        """Return the distance of points to the contour."""
-        return np.abs(points - self.nearest(points)[0])
-
-    def nearest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the contour's point next to each point, and the side: above 0 is left of it."""
-        found, side = np.empty(len(points), complex), np.empty(len(points))
-        for first in range(0, len(points), CHUNK):
-            part = slice(first, first + CHUNK)
-            found[part], side[part] = self._nearest(points[part])
-        return found, side
-
-    def _nearest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        near = self._near(points)
-        nearest = np.where(
-            self.arc[near], self._on_arcs(points, near), self._on_lines(points, near)
-        )
-        away = np.abs(points[:, None] - nearest)
-        first = away.argmin(axis=1)[:, None]
-        tied = away <= np.take_along_axis(away, first, axis=1) + SAME
-        side = np.where(tied, self._sides(points, nearest, near), 0.0).sum(axis=1)
-        return np.take_along_axis(nearest, first, axis=1)[:, 0], side
-
-    def _near(self, points: np.ndarray) -> np.ndarray:
-        """Return the elements that can be nearest to any of some points close together."""
-        middle = (points[0] + points[-1]) / 2
-        spread = np.abs(points - middle).max()
-        between = np.abs(self.middle - middle)
-        inner = np.maximum(0.0, between - self.reach) - spread
-        farthest = (between + self.reach).min() + spread
-        return np.flatnonzero(np.where(self.arc, 0.0, inner) <= farthest)
-
-    def _on_lines(self, points: np.ndarray, near: np.ndarray) -> np.ndarray:
-        start, along = self.start[near], self.end[near] - self.start[near]
-        square = np.maximum(np.abs(along) ** 2, 1e-30)
-        share = ((points[:, None] - start) * along.conj()).real / square
-        return start + along * np.clip(share, 0.0, 1.0)
-
-    def _on_arcs(self, points: np.ndarray, near: np.ndarray) -> np.ndarray:
-        centre, start = self.centre[near], self.start[near] - self.centre[near]
-        sweep = self.sweep[near]
-        way = points[:, None] - centre
-        turn = np.angle(way / np.where(start == 0, 1.0, start)) * np.sign(sweep)
-        on = np.where(turn < 0, turn + 2 * np.pi, turn) <= np.abs(sweep)
-        away = np.abs(way)
-        towards = np.where(away > SAME, way / np.maximum(away, SAME), start / np.abs(start + 1e-30))
-        ring = centre + towards * np.abs(start)
-        ends = np.stack(np.broadcast_arrays(self.start[near], self.end[near]))
-        closer = np.abs(points[:, None] - ends[0]) < np.abs(points[:, None] - ends[1])
-        return np.where(on, ring, np.where(closer, ends[0], ends[1]))
-
-    def _sides(self, points: np.ndarray, nearest: np.ndarray, near: np.ndarray) -> np.ndarray:
-        lines = self.end[near] - self.start[near]
-        arcs = 1j * np.sign(self.sweep[near]) * (nearest - self.centre[near])
-        along = np.where(self.arc[near], arcs, lines)
-        along = along / np.maximum(np.abs(along), 1e-30)
-        return (along.conj() * (points[:, None] - nearest)).imag
 
 
 def measure_section(
@@ -165,12 +78,9 @@ def measure_section(
     cutting = [i for i in own if moves[i].kind != "rapid" and path.part_length(i) > TINY_PIECE]
     across = [index for index in cutting if goes_across(moves[index])]
     tool = diameters.get(moves[section.at].tool, 0.0) / 2
-    ways = Ways(
-        (block, joined([plane.line(index, path, real) for index in stretch]))
-        for block, stretch in groupby(across, key=lambda index: moves[index].block)
-    )
-    runs = runs_of(section)
+    ways = ways_of(plane, cutting, moves, path, real)
     leads = leads_of(section, tool)
+    runs = runs_of(section)
     found = [measure_run(run, leads, ways, tool, tolerance) for run in runs]
     shaping = [facts for run, facts in zip(runs, found) if run[0].side] or found
     lengths = [path.part_length(index) for index in across] or [0.0]
@@ -183,6 +93,7 @@ def measure_section(
         deviation=max((facts.deviation for facts in found), default=0.0),
         left=sum(facts.left for facts in found),
         gouge=sum(facts.gouge for facts in found),
+        through=any(facts.through for facts in found),
         jump=largest_jump(across, moves, plane, path),
         pieces=len(across),
         shortest=min(lengths),
@@ -191,30 +102,6 @@ def measure_section(
         c_speed=c_speed_of(own, path, real),
         c_limit=limit,
     )
-
-
-class Plane:
-    """Turns machine positions into points of the contour's plane."""
-
-    def __init__(self, section: Section, first: Move) -> None:
-        self._shift = first.start[X] - section.x
-        self._angle = first.start[C]
-
-    def points(self, positions: np.ndarray) -> np.ndarray:
-        """Return the points (complex) of machine positions (n, 9)."""
-        angle = np.radians(positions[:, C] - self._angle)
-        return (positions[:, X] - self._shift) * np.exp(1j * angle)
-
-    def line(self, index: int, path: Track, real: Followed | None) -> np.ndarray:
-        """Return the tool centre's way during a move: emitted, or as it was."""
-        if real is not None:
-            return self.points(real.positions[real.during(index)])
-        return self.points(path.positions[path.vertices(index)])
-
-
-def goes_across(move: Move) -> bool:
-    """Tell whether a move changes X or C."""
-    return move.start[X] != move.end[X] or move.start[C] != move.end[C]
 
 
 def runs_of(section: Section) -> list[list[Element]]:
@@ -241,37 +128,6 @@ def leads_of(section: Section, tool: float) -> Shape:
     return Shape(leads)
 
 
-class Ways:
-    """The tool centre's ways during a section, each with the line of its block."""
-
-    def __init__(self, ways: Iterable[tuple[int, np.ndarray]]) -> None:
-        self._ways: dict[int, list[np.ndarray]] = {}
-        for line, way in ways:
-            if len(way) > 1:
-                self._ways.setdefault(line, []).append(way)
-
-    def of(self, line: int) -> list[np.ndarray]:
-        """Return the ways of a line."""
-        return self._ways.get(line, [])
-
-    @cached_property
-    def shape(self) -> Shape:
-        """Return all of them, to measure distances from."""
-        return shape_of_ways([way for ways in self._ways.values() for way in ways])
-
-
-def joined(lines: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the ways of moves that follow each other as one."""
-    points = np.concatenate(lines)
-    return points[np.append(True, np.abs(np.diff(points)) > 0.0)] if len(points) else points
-
-
-def shape_of_ways(ways: Sequence[np.ndarray]) -> Shape:
-    """Return polylines as a shape."""
-    pairs = (pair for way in ways for pair in zip(way, way[1:]))
-    return Shape([Element(0, start, end, 0, False, 0.0) for start, end in pairs])
-
-
 @dataclass(frozen=True)
 class RunFacts:
     """What was measured of one stretch of contour; members as those of ``SectionFacts``."""
@@ -279,6 +135,7 @@ class RunFacts:
     deviation: float
     left: float
     gouge: float
+    through: bool
     wanted: np.ndarray
     reached: np.ndarray
 
@@ -289,7 +146,7 @@ def measure_run(
     """Return the facts of a stretch of contour; on the leads to and from it all is well."""
     nothing = np.zeros(0)
     if not any(ways.of(element.line) for element in run):
-        return RunFacts(float("inf"), 0.0, 0.0, nothing, nothing)
+        return RunFacts(float("inf"), 0.0, 0.0, False, nothing, nothing)
     side = run[0].side
     radius = tool if side else 0.0
     points, nearest, left_of, steps = laid_along(run, ways)
@@ -299,29 +156,33 @@ def measure_run(
     if leads.elements:
         beside = leads.distances(points)
         off = np.where(beside < np.abs(off), beside, off)
-    missed, lengths = missed_by(Shape(run), side, radius, ways.shape)
+    missed, lengths = missed_by(Shape(run), side, radius, ways.below(np.inf))
     deviation = float(max(np.abs(off).max(), missed.max(initial=0.0)))
     wall = points + (nearest - points) * radius / np.maximum(away, 1e-12) if side else points
     if not side:
-        return RunFacts(deviation, 0.0, 0.0, np.abs(nearest), np.abs(wall))
+        return RunFacts(deviation, 0.0, 0.0, False, np.abs(nearest), np.abs(wall))
     left = float(np.maximum(0.0, missed - tolerance) @ lengths)
     across = float(np.where(wrong, np.maximum(0.0, -off - tolerance), 0.0) @ steps)
-    gouge = across + bitten(run, radius, ways, tolerance)
-    return RunFacts(deviation, left, gouge, np.abs(nearest), np.abs(wall))
+    bite, lengths = bites(run, radius, ways)
+    gouge = across + float(np.maximum(0.0, bite - tolerance) @ lengths)
+    through = bool(wrong.any() or (bite > radius - STEP).any())
+    return RunFacts(deviation, left, gouge, through, np.abs(nearest), np.abs(wall))
 
 
 def laid_along(run: Sequence[Element], ways: Ways) -> tuple[np.ndarray, ...]:
     """Return the tool centre's points, the contour's next to them, their sides, their steps.
 
-    Each block is compared with its own element and those before and after: a later pass may
-    cross the lead-in's extension.
+    Each block is compared with its own element and those before and after, as far as these are
+    part of a closed contour: a later pass may cross the lead-in's extension.
     """
+    closed = trimmed(run)
     columns = []
     near: dict[int, set[int]] = {}
     for index, element in enumerate(run):
         near.setdefault(element.line, set()).update((index - 1, index, index + 1))
     for line, indices in near.items():
-        shape = Shape([run[index] for index in sorted(indices) if 0 <= index < len(run)])
+        others = [closed[index] for index in sorted(indices) if 0 <= index < len(run)]
+        shape = Shape([*(element for element in run if element.line == line), *others])
         for way in ways.of(line):
             columns.append((way, *shape.nearest(way), shares_of(way)))
     return tuple(np.concatenate(column) for column in zip(*columns))
@@ -347,28 +208,41 @@ def span(distances: Sequence[np.ndarray]) -> tuple[float, float]:
     return (float(every.min()), float(every.max())) if len(every) else (0.0, 0.0)
 
 
-def bitten(run: Sequence[Element], tool: float, ways: Ways, tolerance: float) -> float:
-    """Return the area that the cutter takes beyond the contour, ramps and later passes included.
+def bites(run: Sequence[Element], tool: float, ways: Ways) -> tuple[np.ndarray, np.ndarray]:
+    """Return how deep the cutter goes into points of the contour, and the length of each.
 
-    Where the end of a contour meets its beginning, what sticks out beyond is no contour.
+    Ramps and later passes count. Where the end of a contour meets its beginning, what sticks out
+    beyond is no contour.
+    """
+    points, lengths, _ = Shape(trimmed(run)).samples
+    return np.maximum(0.0, tool - ways.distances(points, ways.solid(run))), lengths
+
+
+def trimmed(run: Sequence[Element]) -> list[Element]:
+    """Return a contour without what sticks out where its end meets its beginning.
+
+    Elements that stick out as a whole are there with no length.
     """
     first, last = closing(run)
-    points, lengths, _ = Shape(run).samples
-    along = np.cumsum(lengths) - lengths / 2
-    kept = (along >= first) & (along <= last)
-    away = ways.shape.distances(points[kept])
-    return float(np.maximum(0.0, tool - away - tolerance) @ lengths[kept])
+    ends = np.concatenate([[0.0], np.cumsum([element.length for element in run])])
+    return [
+        element.part(*(np.clip((first, last), start, end) - start) / (end - start))
+        for element, start, end in zip(run, ends, ends[1:])
+    ]
 
 
 def closing(run: Sequence[Element]) -> tuple[float, float]:
     """Return the lengths along a contour between which it is closed; else its whole length."""
     ends = np.concatenate([[0.0], np.cumsum([element.length for element in run])])
     for i, j in product(range(min(len(run), LEADS)), range(len(run) - 1, len(run) - 1 - LEADS, -1)):
-        if j > i + 1:
-            one, other = (as_line(run[k]) for k in (i, j))
+        if j > i:
+            # Neighbours meet where they join: the later half of the second is looked at.
+            skipped = 0.5 if j == i + 1 else 0.0
+            one, other = as_line(run[i]), as_line(run[j].part(skipped, 1.0))
             if one.distance(other) < MEETS:
                 here, there = nearest_points(one, other)
-                return ends[i] + one.project(here), ends[j] + other.project(there)
+                passed = ends[j] + skipped * run[j].length
+                return ends[i] + one.project(here), passed + other.project(there)
     return 0.0, ends[-1]
 
 
@@ -384,7 +258,7 @@ def largest_jump(across: Sequence[int], moves: Sequence[Move], plane: Plane, pat
     jumps = []
     for before, after in zip(across, across[1:]):
         if moves[before].block == moves[after].block:
-            one, other = (plane.line(index, path, None) for index in (before, after))
+            one, other = (plane.way(index, path, None).points for index in (before, after))
             turn = (other[1] - other[0]) / (one[-1] - one[-2])
             jumps.append(abs(np.degrees(np.angle(turn))))
     return float(max(jumps, default=0.0))

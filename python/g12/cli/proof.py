@@ -141,6 +141,11 @@ def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> It
         yield "it turns the wrong way"
 
 
+def gouged(facts: SectionFacts, unit: Unit) -> str:
+    """Return the gouged area of a section in words: of a deep one only a part is measured."""
+    return f"{'at least ' if facts.through else ''}{unit.area(facts.gouge)}"
+
+
 def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:
     """Yield what is wrong with a polar section."""
     if facts.section.doubt:
@@ -149,7 +154,7 @@ def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> 
     if facts.deviation > tolerance:
         yield f"the path is {unit.fine(facts.deviation)} {unit.name} off the contour"
     if facts.gouge > SAME_AREA:
-        yield f"{unit.area(facts.gouge)} are gouged beyond the contour"
+        yield f"{gouged(facts, unit)} are gouged beyond the contour"
     if facts.left > SAME_AREA:
         yield f"{unit.area(facts.left)} of material are left standing"
     if facts.c_speed > facts.c_limit * SAME_SPEED:

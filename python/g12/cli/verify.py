@@ -26,7 +26,7 @@ from g12.cli.command import (
 from g12.cli.measure_pocket import PocketFacts
 from g12.cli.measure_section import SectionFacts
 from g12.cli.pace import Pace
-from g12.cli.proof import Proof, pocket_findings, prove, section_findings
+from g12.cli.proof import Proof, gouged, pocket_findings, prove, section_findings
 from g12.cli.units import UNITS, Unit, plain, unit_of
 
 EXAMPLES = """\
@@ -93,7 +93,7 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
         ("from centre", sizes(facts.wanted, facts.reached, unit)),
         ("deviation", f"{unit.fine(facts.deviation)} {unit.name} (allowed {tolerance})"),
         ("left", unit.area(facts.left)),
-        ("gouged", unit.area(facts.gouge)),
+        ("gouged", gouged(facts, unit)),
         ("pieces", f"{facts.pieces}, {spread(facts.shortest, facts.longest, unit)}"),
         ("direction jump", f"{plain(facts.jump, 2)}° from piece to piece"),
         ("lowest feed", slowest(facts.pace, proof, unit)),
