@@ -205,19 +205,19 @@ def test_a_plunge_into_the_wall_is_a_gouge():
     assert measure(hand, square(-1), z=2.0).gouge > 1
 
 
-def test_a_contour_of_two_elements_that_closes_on_its_lead_in():
-    # A D: down a line at X12, back to it over a big arc about the spindle's centre.
+@pytest.mark.parametrize("centre", [0, 24])
+def test_a_contour_of_two_elements_that_closes_on_its_lead_in(centre):
+    # A D: down a line at X12, back to it clockwise over the long or the short arc of radius 20.
     start, corner, top = 12 + 30j, 12 - 16j, 12 + 16j
-    sweep = -2 * (math.pi - math.atan2(16, 12))
-    arc = Element(3, corner, top, 1, False, 0.0, 0j, sweep)
-    lead_in = line(1, 40 + 30j, start, 1, True)
-    lead_out = line(9, top, 40 + 16j, 0, True)
-    turn = np.linspace(0, np.angle(corner), 100), np.angle(corner) + np.linspace(0, sweep, 2000)
-    about = corner + 6 * np.exp(1j * turn[0])
-    ways = [[*dense([18 + 30j, 18 - 16j]), *about], list(26 * np.exp(1j * turn[1]))]
-    elements = [lead_in, line(2, start, corner, 1), arc, lead_out]
-    facts = measure(cut(ways, 40 + 30j, 40 + 16j), elements)
-    assert facts.deviation < 1e-3 and findings(facts) == ""
+    sweep = (np.angle(top - centre) - np.angle(corner - centre)) % (2 * math.pi) - 2 * math.pi
+    arc = Element(3, corner, top, 1, False, 0.0, complex(centre), sweep)
+    walls = [line(1, 40 + 30j, start, 1, True), line(2, start, corner, 1), arc]
+    first = (np.angle(corner - centre) + math.pi) % (2 * math.pi) - math.pi
+    about = corner + 6 * np.exp(1j * np.linspace(0, first, 200))
+    round_ = centre + 26 * np.exp(1j * (first + np.linspace(0, sweep, 2000)))
+    ways = [[*dense([18 + 30j, 18 - 16j]), *about], list(round_)]
+    facts = measure(cut(ways, 40 + 30j, 40 + 16j), [*walls, line(9, top, 40 + 16j, 0, True)])
+    assert facts.deviation < 1e-3
 
 
 def test_of_a_cut_right_through_only_a_part_is_measured():

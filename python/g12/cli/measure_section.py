@@ -181,8 +181,9 @@ def laid_along(run: Sequence[Element], ways: Ways) -> tuple[np.ndarray, ...]:
     for index, element in enumerate(run):
         near.setdefault(element.line, set()).update((index - 1, index, index + 1))
     for line, indices in near.items():
-        others = [closed[index] for index in sorted(indices) if 0 <= index < len(run)]
-        shape = Shape([*(element for element in run if element.line == line), *others])
+        own = {index for index in indices if 0 <= index < len(run) and run[index].line == line}
+        others = indices.difference(own, (-1, len(run)))
+        shape = Shape([run[index] for index in own] + [closed[index] for index in others])
         for way in ways.of(line):
             columns.append((way, *shape.nearest(way), shares_of(way)))
     return tuple(np.concatenate(column) for column in zip(*columns))
