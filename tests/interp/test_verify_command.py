@@ -67,6 +67,29 @@ def test_json_of_a_polar_section(capsys):
     assert section["pieces"] > 20 and section["shortest"] <= section["longest"]
 
 
+def test_a_polar_section_is_told_as_it_is_programmed(written, capsys):
+    lines = ["G21 G18 G7 G40 G90 G94", "T3 M6", "G0 X80 Z2 C90", "G12.1", "G1 Z-2 F500"]
+    lines += ["G42 X40 C-16", "C10 F100", "G40 X80 F600", "G13.1", "M2", ""]
+    code, out, _ = verify(capsys, written("\n".join(lines)), "--ini", LATHE)
+    assert code == 0
+    rows = dict(line.strip().split("  ", 1) for line in out.splitlines() if "  " in line.strip())
+    rows = {name: text.strip() for name, text in rows.items()}
+    assert rows["cutter"] == "⌀ 6, right of the contour (G42)"
+    assert (rows["zero line"], rows["depth"]) == ("C 90", "−2")
+    assert rows["X words"] == "diameters (G7)"
+    assert rows["lowest feed"].startswith("100 mm/min at X45.99")
+
+
+def test_a_circle_of_the_tool_centre_and_one_on_its_side_are_told(written, capsys):
+    head = HEAD.replace("T4", "T10")
+    text = head + "G12 I50 D0\nG18 G13 I50 D10\nM2\n"
+    ini = str(SIM / "mill_mitsubishi_mm_headless.ini")
+    code, out, _ = verify(capsys, written(text), "--ini", ini)
+    assert code == 0
+    assert "programmed I50 (tool centre), wall 60, reached 60 mm" in out
+    assert "plane at Y0, Z from −39 to 41" in out
+
+
 def test_a_tolerance_of_ones_own(written, capsys):
     program = str(PROGRAMS / "polar" / "hexagon.ngc")
     code, out, _ = verify(capsys, program, "--ini", LATHE, "--tolerance", "0.001")

@@ -94,6 +94,7 @@ def test_samples_of_every_dialect_are_good(program, machine, radii):
         "G13 I30. K15. Q8. D10 L2",
         "G12 I30. R20. K25. Q5. D10",
         "G12 I30.",
+        "G13 I50. K35. Q4. L2",
     ],
 )
 def test_yasnac_circles(block, tmp_path):
@@ -185,9 +186,17 @@ def test_modes_and_work_coordinates_do_not_matter(modes, offset, tmp_path):
     assert facts.target.radius == pytest.approx(20, abs=1e-6)
 
 
-def test_another_tool_than_d_names_is_noted(tmp_path):
+def test_another_tool_than_d_names_is_found(tmp_path):
     proof = proof_of_text(tmp_path, [*MM, "G0 Z1", "G12 I20 Z-1 D6", "M2"])
-    assert "the tool loaded has the diameter 10 mm" in proof.pockets[0].target.note
+    ((_, text),) = proof.findings
+    assert text == (
+        "the loaded tool T4 (⌀ 10) is not D6 (⌀ 20): the wall comes out at radius 15, not 20"
+    )
+
+
+def test_units_changed_in_the_pockets_own_block(tmp_path):
+    lines = [*MM, "G20 G0 X0 Y0 Z.1", "G21 G13 I8 K40 Q5 Z-12 D4 F500", "M2"]
+    assert proof_of_text(tmp_path, lines).findings == []
 
 
 # ---------------------------------------------------------------- polar sections

@@ -12,7 +12,8 @@ from g12.cli.measure_pocket import measure_pocket
 from g12.cli.motion import follow, track
 from g12.cli.part import Part
 from g12.cli.programmed import Target
-from g12.cli.proof import pocket_findings
+from g12.cli.proof import pocket_findings, pocket_notes
+from g12.cli.units import UNITS
 from handmade import LIMITS, Hand, samples_of
 
 TOLERANCE = 0.005
@@ -144,3 +145,31 @@ def test_real_motion_beside_the_path_is_found():
     assert facts.gouge > 0
     exact = measure(cut([17]), target(cleared=14.1), real_shift=0.0)
     assert exact.deviation < 1e-3 and exact.gouge == 0
+
+
+# ---------------------------------------------------------------- the loaded tool and D
+
+
+@pytest.mark.parametrize(
+    ("loaded", "found", "noted"),
+    [
+        (3.0, "", ""),
+        (
+            1.5,
+            "the loaded tool T1 (⌀ 3) is not D2 (⌀ 6): the wall comes out at radius 18.5, not 20",
+            "",
+        ),
+        (3.1, "", "T1 (⌀ 6.2) is not D2 (⌀ 6): measured with the cutter of D2"),
+        (0.0, "", "T1 has no diameter: measured with that of D2"),
+    ],
+)
+def test_a_tool_that_is_not_that_of_d(loaded, found, noted):
+    wanted = target(loaded=loaded, tool=1, offset=2, smooth=False)
+    facts = measure(cut([5, 11, 17]), wanted)
+    assert " | ".join(pocket_findings(facts, TOLERANCE)) == found
+    assert noted in " | ".join(pocket_notes(facts)) and bool(noted) == any(pocket_notes(facts))
+
+
+def test_sizes_of_tools_are_told_in_the_units_asked_for():
+    facts = measure(cut([5, 11, 17]), target(loaded=12.7, tool=1, offset=2))
+    assert "T1 (⌀ 1)" in next(pocket_findings(facts, TOLERANCE, UNITS["inch"]))

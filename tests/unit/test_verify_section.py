@@ -12,7 +12,7 @@ from g12.cli.contour_words import Element, Section
 from g12.cli.measure_section import measure_section
 from g12.cli.motion import follow, track
 from g12.cli.part import Part
-from g12.cli.proof import section_findings
+from g12.cli.proof import section_findings, section_notes
 from g12.cli.shape import Shape
 from handmade import LIMITS, Hand, samples_of
 
@@ -263,3 +263,30 @@ def test_the_speed_of_c_is_told_with_its_limit():
     hand = Hand(feed=1e6).rapid(x=1.0).next_block().line(c=90.0)
     facts = measure(hand, [line(2, 1 + 0j, 1j)], x=1.0)
     assert facts.c_speed == pytest.approx(360) and facts.c_limit == 360
+
+
+def test_a_section_that_never_goes_down_is_noted():
+    up, down = (
+        measure(cut(around(TOOL)), square(-1)),
+        measure(diving(around(TOOL), air=2.0, depth=-3.0), square(-1), z=2.0),
+    )
+    assert list(section_notes(up, up)) == ["no move goes below the Z of G12.1"]
+    assert list(section_notes(down, down)) == [] and down.lowest == -3.0
+
+
+@pytest.mark.parametrize(("angle", "told"), [(90.0, "turned by 90°"), (360.0, "")])
+def test_another_zero_line_than_the_first_is_noted(angle, told):
+    found = []
+    for start in (0.0, angle):
+        hand = Hand().rapid(x=40.0, z=2.0, c=start).line(z=-3.0).line(c=start + 20.0)
+        found.append(measure(hand, [line(2, 40 + 0j, 40 * np.exp(1j * math.radians(20)))], z=2.0))
+    assert (found[1].zero, found[0].zero) == (angle, 0.0)
+    assert told in "".join(section_notes(found[1], found[0])) and bool(told) == any(
+        section_notes(found[1], found[0])
+    )
+
+
+def test_the_lowest_feed_is_placed_in_the_sections_own_plane():
+    hand = Hand().rapid(x=40.0, c=90.0).next_block().line(c=120.0)
+    facts = measure(hand, [line(2, 40 + 0j, 40 * np.exp(1j * math.radians(30)))])
+    assert facts.slowest_at == pytest.approx((40 * math.cos(math.pi / 6), 20.0, 0.0), abs=0.1)

@@ -34,6 +34,7 @@ REMAPS = (
     "REMAP = M6 modalgroup=6 ngc=change",
 )
 CODES = Codes(Ini(Path("x.ini"), REMAPS))
+YASNAC = Codes(Ini(Path("x.ini"), tuple(line.replace("haas", "yasnac") for line in REMAPS)))
 
 
 # ---------------------------------------------------------------- words
@@ -148,7 +149,7 @@ def test_haas_words_tell_wall_core_and_depth():
     assert np.allclose(found.origin, [3, 4, 5])
     assert found.deepest == pytest.approx(-7)
     assert (found.turn, found.inside, found.smooth) == (-1, True, True)
-    assert "D has 10 mm" in found.note
+    assert (found.tool, found.loaded, found.offset) == (1, 3, 2)
 
 
 def test_one_ring_leaves_its_core_by_design():
@@ -158,6 +159,17 @@ def test_one_ring_leaves_its_core_by_design():
 def test_d0_puts_the_tool_centre_on_the_circle():
     found = target("G12 I4 Z-2 D0", **HERE)
     assert (found.radius, found.cutter) == (7, 3)
+    assert (found.circle, found.word) == (4, "I")
+
+
+@pytest.mark.parametrize(
+    ("words", "core", "bore"),
+    [("I50 D2", 40, 0), ("I50 K35 Q4 L2 D2", 29, 0), ("I50 K35 Q4", 36, 0), ("I50 R40 D2", 40, 40)],
+)
+def test_yasnac_leaves_the_middle_by_design(words, core, bore):
+    found = Reader(YASNAC, Hand().rapid(z=5).line(z=4).moves, {1: 6.0, 2: 10.0})
+    ((_, wanted),) = found.targets([block(f"G13 {words}")])
+    assert (wanted.cleared, wanted.bore) == (core, bore)
 
 
 def test_incremental_words_count_from_the_tool():
@@ -168,7 +180,9 @@ def test_incremental_words_count_from_the_tool():
 
 def test_inch_words_become_millimetres():
     found = target("G20 G12 I1 Z-1 D1", **HERE)
-    assert (found.radius, found.deepest) == (pytest.approx(25.4), pytest.approx(-25.4 - 5 * 25.4))
+    assert (found.radius, found.deepest) == (pytest.approx(25.4), pytest.approx(-30.4))
+    found = target("G21 G12 I8 Z-2 D1", **{**HERE, "_metric": 0})
+    assert (found.radius, found.deepest) == (8, pytest.approx(-2 - 5 * 25.4))
 
 
 def test_the_last_d_is_remembered():

@@ -23,7 +23,7 @@ from shapely.ops import nearest_points
 from g12.cli.contour_words import Element, Section
 from g12.cli.motion import Followed, Track
 from g12.cli.pace import Pace, pace_of
-from g12.cli.part import C
+from g12.cli.part import C, Z
 from g12.cli.section_ways import Plane, Ways, goes_across, ways_of
 from g12.cli.shape import SAME, STEP, Shape
 from g12.cli.trace import Move
@@ -43,6 +43,10 @@ class SectionFacts:
     piece to piece of one block, ``c_speed`` the highest speed of C and ``c_limit`` its limit,
     ``tool`` the cutter's radius. ``through`` says that the tool's centre goes beyond the contour:
     then ``gouge`` is only what lies next to it, and there is more.
+
+    ``zero`` is the angle of C where the section begins, ``start_height`` Z there, ``lowest`` the
+    lowest Z. ``slowest_at`` is the place of the lowest feed as the section's own X (a radius),
+    C and Z.
     """
 
     section: Section
@@ -61,6 +65,10 @@ class SectionFacts:
     pace: Pace
     c_speed: float
     c_limit: float
+    zero: float
+    start_height: float
+    lowest: float
+    slowest_at: tuple[float, float, float]
 
 
 def measure_section(
@@ -84,6 +92,7 @@ def measure_section(
     found = [measure_run(run, leads, ways, tool, tolerance) for run in runs]
     shaping = [facts for run, facts in zip(runs, found) if run[0].side] or found
     lengths = [path.part_length(index) for index in across] or [0.0]
+    pace = pace_of(own, across, path, real)
     return SectionFacts(
         section,
         tool,
@@ -98,9 +107,13 @@ def measure_section(
         pieces=len(across),
         shortest=min(lengths),
         longest=max(lengths),
-        pace=pace_of(own, across, path, real),
+        pace=pace,
         c_speed=c_speed_of(own, path, real),
         c_limit=limit,
+        zero=moves[section.at].start[C],
+        start_height=moves[section.at].start[Z],
+        lowest=min(moves[index].end[Z] for index in own),
+        slowest_at=plane.of_part(pace.point),
     )
 
 

@@ -22,7 +22,6 @@ CALL = "circle_mill"
 ENTRIES = "GXYZWORDCKJLPFV"
 LEFT_OUT = -9999.0
 POCKET = "circle_mill_pocket"  # the handler of the event's pocket
-CENTRE_ON_CIRCLE = "the tool's centre goes round on the circle, the wall is a tool radius farther"
 COMPENSATION = (41.0, 42.0, 41.1, 42.1)
 TURNS = {"G12": -1, "G13": 1}
 
@@ -50,7 +49,17 @@ class Target:
     deepest: float | None = None
     smooth: bool = True
     turn: int = 0
-    note: str = ""
+    circle: float = 0.0
+    word: str = ""
+    tool: int = 0
+    loaded: float = 0.0
+    offset: int | None = None
+    bore: float = 0.0
+
+    @property
+    def plane(self) -> int:
+        """Return the index of the axis (0 for X) that is square to the circle's plane."""
+        return int(np.argmax(np.abs(self.axes[2])))
 
     def local(self, points: np.ndarray) -> np.ndarray:
         """Return points (n, 3) as seen from the centre along the plane's axes."""
@@ -105,6 +114,7 @@ class Reader:
     moves: Sequence[Move]
     diameters: Mapping[int, float]
     offset: float | None = None  # radius of the D last commanded, mm
+    number: int | None = None  # the tool that it named
     plane: float | None = None  # W last commanded, mm in program coordinates
 
     def targets(self, blocks: Sequence[Block]) -> Iterator[tuple[Block, Target]]:
@@ -129,41 +139,41 @@ class Reader:
     def _haas(self, view: View) -> Target:
         words = view.words
         if "D" in words:
-            self.offset = self._radius(words["D"])
-        loaded = self._radius(view.tool)
-        offset = loaded if self.offset is None else self.offset
-        finished = view.length("K") if "K" in words else view.length("I")
-        target = self._inside(view, finished, offset, loaded)
-        cleared = 0.0 if "K" in words else max(0.0, target.radius - 2 * target.cutter)
+            self.offset, self.number = self._radius(words["D"]), round(words["D"])
+        offset = self._radius(view.tool) if self.offset is None else self.offset
+        target = self._inside(view, "K" if "K" in words else "I", offset, self.number)
         count = 1 if view.absolute else int(words.get("L", 1))
         return replace(
             target,
             origin=view.centre(),
-            cleared=cleared,
+            cleared=0.0 if "K" in words else core_of(target, target.radius),
             deepest=view.height("Z", count) - view.start[2],
         )
 
     def _yasnac(self, view: View) -> Target:
         words = view.words
         offset = self._radius(words["D"]) if "D" in words else 0.0
-        target = self._inside(view, abs(view.length("I")), offset, self._radius(view.tool))
+        target = self._inside(view, "I", offset, round(words.get("D", 0)))
         bore = abs(view.length("R") or view.length("J"))
-        core = 0.0 if "K" in words else max(0.0, target.radius - 2 * target.cutter)
-        return replace(target, cleared=bore or core)
+        # A spiral has gone all round when it has grown by Q.
+        spiral = abs(view.length("I")) - abs(view.length("K")) - view.length("Q")
+        inner = target.radius - (max(0.0, spiral) if "K" in words else 0.0)
+        return replace(target, cleared=bore or core_of(target, inner), bore=bore)
 
     def _mitsubishi(self, view: View) -> Target:
-        offset = self._radius(view.words["D"])
-        target = self._inside(view, abs(view.length("I")), offset, self._radius(view.tool))
-        return replace(target, cleared=max(0.0, target.radius - 2 * target.cutter))
+        number = view.words["D"]
+        target = self._inside(view, "I", self._radius(number), round(number))
+        return replace(target, cleared=core_of(target, target.radius))
 
-    def _inside(self, view: View, circle: float, offset: float, loaded: float) -> Target:
+    def _inside(self, view: View, word: str, offset: float, number: int | None) -> Target:
         """Return a pocket; without an offset the tool's centre goes round on the circle."""
-        cutter = offset or loaded
-        note = "" if offset else CENTRE_ON_CIRCLE
-        if offset and abs(offset - loaded) > 1e-6:
-            note = f"the tool loaded has the diameter {2 * loaded:g} mm, D has {2 * offset:g} mm"
-        wall = circle if offset else circle + loaded
-        return Target(0, "", "", view.start, view.axes, wall, cutter, 0.0, note=note)
+        circle, loaded = abs(view.length(word)), self._radius(view.tool)
+        about = {"tool": view.tool, "loaded": loaded}
+        place = (0, "", "", view.start, view.axes)
+        if not offset:
+            about |= {"circle": circle, "word": word}
+            return Target(*place, circle + loaded, loaded, 0.0, **about)
+        return Target(*place, circle, offset, 0.0, offset=number, **about)
 
     def _circle_mill(self, view: View, remap: Remap | None) -> Target:
         event = entries_of_call(view) if remap is None else entries_of_code(view, remap)
@@ -188,7 +198,10 @@ class Reader:
             inside=side <= 0,
             deepest=depth - view.present("z"),
             smooth=False,
-            note="" if side else CENTRE_ON_CIRCLE,
+            circle=0.0 if side else event["R"],
+            word="" if side else "R",
+            tool=view.tool,
+            loaded=loaded,
         )
 
     def _remember(self, block: Block) -> None:
@@ -196,9 +209,10 @@ class Reader:
         view = View(block, self.moves[min(block.at, len(self.moves) - 1)])
         dynamic = any(code in (41.1, 42.1) for code in block.codes)
         if dynamic:
-            self.offset = view.length("D") / 2
+            self.offset, self.number = view.length("D") / 2, None
         else:
-            self.offset = self._radius(block.words.get("D", view.tool))
+            self.number = round(block.words.get("D", view.tool))
+            self.offset = self._radius(self.number)
 
     def _radius(self, tool: float) -> float:
         return self.diameters.get(round(tool), 0.0) / 2
@@ -214,8 +228,10 @@ class View:
         self.start = np.array(first.start[:3])
         self.axes = plane_axes(first)
         self._state = block.state
-        metric = block.state["_metric"] if not {20.0, 21.0} & set(block.codes) else 0.0
-        self.unit = 1.0 if metric or 21.0 in block.codes else MM_PER_INCH
+        self._unit_before = 1.0 if block.state["_metric"] else MM_PER_INCH
+        commanded = {20.0: MM_PER_INCH, 21.0: 1.0}
+        changes = (commanded[code] for code in block.codes if code in commanded)
+        self.unit = next(changes, self._unit_before)
         absolute = bool(block.state["_absolute"])
         self.absolute = (absolute or 90.0 in block.codes) and 91.0 not in block.codes
         self._first = first
@@ -226,7 +242,7 @@ class View:
 
     def present(self, axis: str) -> float:
         """Return where the tool stands in program coordinates, mm."""
-        return self._state[f"_{axis}"] * self.unit
+        return self._state[f"_{axis}"] * self._unit_before
 
     def centre(self) -> np.ndarray:
         """Return the centre in machine coordinates: X and Y words, else where the tool stands."""
@@ -269,6 +285,11 @@ def entries_of_code(view: View, remap: Remap) -> dict[str, float]:
     entries["D"], entries["C"] = view.words.get("D", 0.0), view.words["H"]
     entries["G"] = 7.0 if POCKET in remap.handlers else 0.0
     return entries
+
+
+def core_of(target: Target, wall: float) -> float:
+    """Return the radius of what one ring along a wall leaves standing by design."""
+    return max(0.0, wall - 2 * target.cutter)
 
 
 def side_of(direction: float, compensation: float) -> int:

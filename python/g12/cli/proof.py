@@ -20,9 +20,9 @@ from g12.cli.measure_pocket import PocketFacts, measure_pocket
 from g12.cli.measure_section import SectionFacts, measure_section
 from g12.cli.motion import Followed, Track, follow, limits_of, track
 from g12.cli.part import C, part_of_program, tool_diameters
-from g12.cli.programmed import CALL, Codes, Reader
+from g12.cli.programmed import CALL, Codes, Reader, Target
 from g12.cli.trace import MM_PER_INCH, Tools, Trace, Tracer, mm_per_unit
-from g12.cli.units import MM, Unit
+from g12.cli.units import MM, Unit, plain
 
 POCKET_TOLERANCE = 0.005  # mm
 POLAR_TOLERANCE = {1.0: 0.005, MM_PER_INCH: 0.0002}  # by machine unit, in that unit
@@ -30,6 +30,9 @@ RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE
 SAME_AREA = 0.01  # mm², less is rounding
 MOST_JUMP = 1.0  # degree
 SAME_SPEED = 1.001
+WEAR = 0.05  # of its diameter: D differs from the loaded tool by more than an allowance for wear
+SAME_SIZE = 1e-4  # mm
+SAME_ANGLE = 1e-3  # degree
 
 
 @dataclass(frozen=True)
@@ -126,6 +129,9 @@ def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> It
     if not facts.depths:
         yield "nothing is cut"
         return
+    if is_wrong_tool(target):
+        wall, cut = (unit.text(size) for size in (target.radius, wall_of_loaded(target)))
+        yield f"{other_tool(target, unit)}: the wall comes out at radius {cut}, not {wall}"
     if facts.deviation > tolerance:
         yield f"the wall is {unit.fine(facts.deviation)} {unit.name} off the programmed circle"
     if facts.gouge > SAME_AREA:
@@ -144,6 +150,50 @@ def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> It
 def gouged(facts: SectionFacts, unit: Unit) -> str:
     """Return the gouged area of a section in words: of a deep one only a part is measured."""
     return f"{'at least ' if facts.through else ''}{unit.area(facts.gouge)}"
+
+
+def is_wrong_tool(target: Target) -> bool:
+    """Tell whether D names another cutter than the loaded one, by more than wear."""
+    known = target.offset is not None and target.loaded > 0.0
+    return known and abs(target.cutter - target.loaded) > WEAR * target.loaded
+
+
+def wall_of_loaded(target: Target) -> float:
+    """Return the radius of the wall that the loaded tool cuts."""
+    return target.radius - target.cutter + target.loaded
+
+
+def other_tool(target: Target, unit: Unit) -> str:
+    """Return in words that D is not the loaded tool."""
+    loaded, named = (unit.text(2 * size) for size in (target.loaded, target.cutter))
+    return f"the loaded tool T{target.tool} (⌀ {loaded}) is not D{target.offset} (⌀ {named})"
+
+
+def pocket_notes(facts: PocketFacts, unit: Unit = MM) -> Iterator[str]:
+    """Yield what a user should know of a pocket that is no fault."""
+    target = facts.target
+    if target.word:
+        yield "the tool's centre goes round on the circle, the wall is a tool radius farther"
+    if target.offset is None or is_wrong_tool(target):
+        return
+    if not target.loaded:
+        yield f"T{max(target.tool, 0)} has no diameter: measured with that of D{target.offset}"
+    elif abs(target.cutter - target.loaded) > SAME_SIZE:
+        yield f"{other_tool(target, unit)}: measured with the cutter of D{target.offset}"
+
+
+def section_notes(facts: SectionFacts, first: SectionFacts, unit: Unit = MM) -> Iterator[str]:
+    """Yield what a user should know of a section that is no fault; ``first`` is the program's."""
+    if facts.lowest >= facts.start_height - SAME_SIZE:
+        yield "no move goes below the Z of G12.1"
+    turned = (facts.zero - first.zero + 180.0) % 360.0 - 180.0
+    if abs(turned) > SAME_ANGLE:
+        yield (
+            f"its zero line is turned by {plain(turned, 3)}° against that of the program's first "
+            f"section (line {first.section.line})"
+        )
+    if not facts.tool and any(facts.sides):
+        yield "the tool has no diameter: only its centre is measured"
 
 
 def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:

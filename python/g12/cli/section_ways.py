@@ -7,6 +7,8 @@ the contour is cut below that; else above the highest level at which the contour
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Iterable, Sequence
 from itertools import groupby
 from typing import NamedTuple
@@ -41,6 +43,12 @@ class Plane:
         """Return the points (complex) of machine positions (n, 9)."""
         angle = np.radians(positions[:, C] - self._angle)
         return (positions[:, X] - self._shift) * np.exp(1j * angle)
+
+    def of_part(self, point: Sequence[float]) -> tuple[float, float, float]:
+        """Return X (radius), C and Z in the plane of a point of the part."""
+        radius, angle = math.hypot(*point[:2]), math.atan2(point[1], point[0])
+        there = cmath.rect(radius - self._shift, angle - math.radians(self._angle))
+        return there.real, there.imag, point[2]
 
     def way(self, index: int, path: Track, real: Followed | None) -> Way:
         """Return the tool centre's way during a move: emitted, or as it was."""

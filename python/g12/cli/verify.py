@@ -26,7 +26,15 @@ from g12.cli.command import (
 from g12.cli.measure_pocket import PocketFacts
 from g12.cli.measure_section import SectionFacts
 from g12.cli.pace import Pace
-from g12.cli.proof import Proof, gouged, pocket_findings, prove, section_findings
+from g12.cli.proof import (
+    Proof,
+    gouged,
+    pocket_findings,
+    pocket_notes,
+    prove,
+    section_findings,
+    section_notes,
+)
 from g12.cli.units import UNITS, Unit, plain, unit_of
 
 EXAMPLES = """\
@@ -39,7 +47,8 @@ exit code: 0 everything is as programmed, 1 something is not, 2 wrong use
 """
 GAP = 14  # columns of a row's name
 TURNS = {-1: "clockwise", 1: "counterclockwise"}
-SIDES = {-1: "on the right", 1: "on the left", 0: "on the contour"}
+SIDES = {1: "left of the contour (G41)", -1: "right of the contour (G42)"}
+AXES = "XYZ"
 
 
 def report(proof: Proof, unit: Unit) -> str:
@@ -65,43 +74,49 @@ def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
     stepover = unit.text(facts.stepover) if facts.stepover else "one ring"
     rows = [
         ("centre", f"X{unit.text(x)} Y{unit.text(y)}, cutter ⌀ {unit.text(2 * target.cutter)}"),
-        ("radius", sizes((target.radius,), (facts.reached,), unit)),
+        ("radius", radius(facts, unit)),
         ("deviation", f"{unit.fine(facts.deviation)} {unit.name} (allowed {allowed(proof, unit)})"),
         ("left inside", unit.area(facts.left)),
         ("gouged outside", unit.area(facts.gouge)),
         ("rings", f"{', '.join(unit.text(ring) for ring in facts.rings)} (tool centre), {turns}"),
         ("stepover", f"{stepover}, direction jump {plain(facts.jump, 2)}°"),
-        ("depth", ", ".join(unit.text(target.height(depth)) for depth in facts.depths)),
+        ("depth", depth(facts, unit)),
         ("moves", spread(facts.shortest, facts.longest, unit)),
-        ("lowest feed", slowest(facts.pace, proof, unit)),
+        ("lowest feed", slowest(facts.pace, place("XYZ", facts.pace.point, unit), proof, unit)),
         *real_rows(facts, unit),
         ("time", duration(facts.pace)),
     ]
     found = list(pocket_findings(facts, proof.pocket_tolerance, unit))
     title = f"line {target.line}: {target.code} ({target.dialect})"
-    return paragraph(title, rows, [*([target.note] if target.note else [])], found)
+    return paragraph(title, rows, list(pocket_notes(facts, unit)), found)
 
 
 def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
     """Return the paragraph of one polar section."""
     section = facts.section
-    sides = ", ".join(SIDES[side] for side in facts.sides)
+    sides = " and ".join(SIDES[side] for side in facts.sides if side) or "on the contour"
+    x, c, z = facts.slowest_at
+    slow = place("XCZ", (2 * x if section.diameters else x, c, z), unit)
     tolerance = unit.fine(proof.polar_tolerance)
     limit = f"limit {plain(facts.c_limit, 1)}"
     rows = [
         ("cutter", f"⌀ {unit.text(2 * facts.tool)}, {sides}"),
+        ("zero line", f"C {plain(facts.zero, 3)}"),
+        ("X words", x_words(facts, proof)),
+        ("depth", unit.text(facts.lowest)),
         ("from centre", sizes(facts.wanted, facts.reached, unit)),
         ("deviation", f"{unit.fine(facts.deviation)} {unit.name} (allowed {tolerance})"),
         ("left", unit.area(facts.left)),
         ("gouged", gouged(facts, unit)),
         ("pieces", f"{facts.pieces}, {spread(facts.shortest, facts.longest, unit)}"),
         ("direction jump", f"{plain(facts.jump, 2)}° from piece to piece"),
-        ("lowest feed", slowest(facts.pace, proof, unit)),
+        ("lowest feed", slowest(facts.pace, slow, proof, unit)),
         ("speed of C", f"{plain(facts.c_speed, 1)} degrees/s at most, {limit}"),
         ("time", duration(facts.pace)),
     ]
     found = list(section_findings(facts, proof.polar_tolerance, unit))
-    return paragraph(f"lines {section.line} to {section.last}: {section.code}", rows, [], found)
+    notes = list(section_notes(facts, proof.sections[0], unit))
+    return paragraph(f"lines {section.line} to {section.last}: {section.code}", rows, notes, found)
 
 
 def paragraph(title: str, rows: Sequence, notes: Sequence[str], found: Sequence[str]) -> str:
@@ -128,9 +143,41 @@ def spread(shortest: float, longest: float, unit: Unit) -> str:
     return f"{unit.text(shortest)} to {unit.text(longest)} {unit.name} long"
 
 
-def slowest(pace: Pace, proof: Proof, unit: Unit) -> str:
+def radius(facts: PocketFacts, unit: Unit) -> str:
+    """Return the radius as programmed and reached in words."""
+    target, reached = facts.target, f"reached {unit.text(facts.reached)} {unit.name}"
+    wall = unit.text(target.radius)
+    if target.word:
+        word = f"{target.word}{unit.text(target.circle)}"
+        return f"programmed {word} (tool centre), wall {wall}, {reached}"
+    return f"programmed {wall}, {reached}"
+
+
+def depth(facts: PocketFacts, unit: Unit) -> str:
+    """Return the depths in words: of a circle in another plane than XY where it stands."""
+    target = facts.target
+    heights = [unit.text(target.height(depth)) for depth in facts.depths]
+    if AXES[target.plane] == "Z":
+        return ", ".join(heights)
+    reach = max(facts.rings, default=0.0)
+    low, high = (unit.text(target.origin[2] + way) for way in (-reach, reach))
+    return f"plane at {AXES[target.plane]}{', '.join(heights)}, Z from {low} to {high}"
+
+
+def x_words(facts: SectionFacts, proof: Proof) -> str:
+    """Return what X words are in a section, and what decides it."""
+    reading = proof.subject.ini.get("G12", "POLAR_X", "inherit").lower()
+    kind, modal = ("diameters", "G7") if facts.section.diameters else ("radii", "G8")
+    return f"{kind} ({modal if reading == 'inherit' else f'POLAR_X = {reading}'})"
+
+
+def place(letters: str, point: Sequence[float], unit: Unit) -> str:
+    """Return a point in words."""
+    return " ".join(f"{letter}{unit.text(at)}" for letter, at in zip(letters, point))
+
+
+def slowest(pace: Pace, where: str, proof: Proof, unit: Unit) -> str:
     """Return the lowest feed and where it is in words."""
-    where = " ".join(f"{letter}{unit.text(at)}" for letter, at in zip("XYZ", pace.point))
     line = proof.subject.trace.moves[pace.move].block
     return f"{plain(pace.lowest / unit.mm, 1)} {unit.name}/min at {where} (line {line})"
 
@@ -181,6 +228,7 @@ def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
         "left": facts.left,
         "gouge": facts.gouge,
         "rings": list(facts.rings),
+        "square_to": AXES[target.plane],
         "depths": [target.height(depth) for depth in facts.depths],
         "stepover": facts.stepover,
         "direction_jump": facts.jump,
@@ -189,6 +237,7 @@ def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
         "off_circles": facts.off_rings,
         "off_path": facts.off_path,
         **pace_json(facts.pace, proof),
+        "notes": list(pocket_notes(facts)),
         "findings": list(pocket_findings(facts, proof.pocket_tolerance)),
     }
 
@@ -199,11 +248,15 @@ def section_json(facts: SectionFacts, proof: Proof) -> dict:
         "lines": [facts.section.line, facts.section.last],
         "code": facts.section.code,
         "cutter": 2 * facts.tool,
+        "zero_line": facts.zero,
+        "x_words": "diameters" if facts.section.diameters else "radii",
+        "lowest": facts.lowest,
         "radii": list(facts.wanted),
         "reached": list(facts.reached),
         "deviation": finite(facts.deviation),
         "left": facts.left,
         "gouge": facts.gouge,
+        "gouge_is_least": facts.through,
         "direction_jump": facts.jump,
         "pieces": facts.pieces,
         "shortest": facts.shortest,
@@ -211,6 +264,7 @@ def section_json(facts: SectionFacts, proof: Proof) -> dict:
         "c_speed": facts.c_speed,
         "c_limit": finite(facts.c_limit),
         **pace_json(facts.pace, proof),
+        "notes": list(section_notes(facts, proof.sections[0])),
         "findings": list(section_findings(facts, proof.polar_tolerance)),
     }
 
