@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """``g12 regress`` as a shop uses it: record, change something, check; and every wrong use."""
 
+import contextlib
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -315,6 +318,34 @@ def test_no_program_leaves_anything_to_the_next(shop):
         assert "\n  rapid X3\n" not in text
 
 
+def living(session):
+    """Return the processes of a session that still run."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            state, _, _, its = path.read_text().rpartition(")")[2].split()[:4]
+            found += [path.parent.name] if its == str(session) and state != "Z" else []
+    return found
+
+
+def test_an_interrupted_recording_ends_at_once(shop):
+    for name in ("a.ngc", "b.ngc", "c.ngc"):
+        shop.write(name, "o1 while [1]\no1 endwhile\nM2\n")
+    words = ["regress", "record", "nc", "--ini", str(INI), "-d", "regress", "--jobs", "2"]
+    command = [sys.executable, str(ROOT / "python" / "g12"), *words]
+    process = subprocess.Popen(
+        command, cwd=shop.folder, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    time.sleep(3)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+    try:
+        _, said = process.communicate(timeout=10)
+    finally:
+        os.killpg(process.pid, signal.SIGKILL) if process.poll() is None else None
+    assert (process.returncode, said) == (130, "g12 regress: interrupted\n")
+    assert living(process.pid) == []
+
+
 def test_a_program_that_kills_the_interpreter_fails_and_the_others_are_checked(shop):
     shop.write("a.ngc", "G21\nM401\nM2\n")
     shop.write("b.ngc", PLAIN)
@@ -485,11 +516,13 @@ def test_a_damaged_recording_is_named_and_can_be_recorded_again(pocket):
         ["check", "-d", "x", "--jobs", "0"],
     ],
 )
-def test_words_that_are_wrong_are_told_with_the_usage(words, capsys):
+def test_words_that_are_wrong_are_told_in_one_line(words, capsys):
     with pytest.raises(SystemExit) as raised:
         command_line.main(["regress", *words])
     assert raised.value.code == 2
-    assert capsys.readouterr().err.startswith("usage: g12 regress")
+    said = capsys.readouterr().err
+    assert said.startswith("g12 regress")
+    assert said.count("\n") == 1
 
 
 def test_a_machine_that_does_not_load_is_one_line(shop):

@@ -313,7 +313,7 @@ def test_an_ordinary_user_can_run_it_from_anywhere():
         folder.chmod(0o755)
         (folder / "program.ngc").write_text("G21 T1 M6\nG1 X2 F3000\n(MSG, there)\nM2\n")
         done = subprocess.run(
-            [PYTHON, "python/g12", "run", "configs/sim/mill_mm.ini", "program.ngc"],
+            [PYTHON, "python/g12", "run", "program.ngc", "--ini", "configs/sim/mill_mm.ini"],
             cwd=folder,
             user=NOBODY,
             capture_output=True,

@@ -8,7 +8,7 @@ import pytest
 from configs import HAAS, LATHE, MILL, config_of, with_lines, write_config
 from g12.cli import check, features
 from g12.cli.config import python_error
-from g12.cli.config_rules import PROBLEM, WARNING, findings_of, last_words
+from g12.cli.config_rules import NOTE, PROBLEM, WARNING, Finding, findings_of, last_words
 
 HANDLERS = {name: "g12.remap" for f in features.FILES for name in features.handlers_of(f)}
 PYTHON = "[PYTHON]\nTOPLEVEL = toplevel.py\n"
@@ -281,7 +281,7 @@ def test_every_handler_of_the_remap_lines_comes_with_the_star_import():
     ("name", "says"),
     [
         ("nowhere.ini", "no such file"),
-        ("", "no such file"),
+        ("", "is a folder"),
         ("mill.tbl", "no [RS274NGC]"),
         ("mill.ini.expanded", "name mill.ini"),
     ],
@@ -294,6 +294,36 @@ def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
     assert error.startswith("g12 check: ")
     assert says in error
     assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("line", "kind", "says"),
+    [
+        ("TOOL_TABLE = no.tbl\n", "no-tool-table", "TOOL_TABLE = no.tbl: there is no such file"),
+        ("TOOL_TABLE = ngc\n", "no-tool-table", "TOOL_TABLE = ngc: there is no such file"),
+        ("", "no-tool-table", "TOOL_TABLE is missing"),
+        ("DB_PROGRAM = ./tools\n", "tool-database", "DB_PROGRAM = ./tools: the tools of that"),
+        ("DB_PROGRAM = x\nTOOL_TABLE = empty.tbl\n", "tool-database", "were not looked at"),
+    ],
+)
+def test_a_machine_whose_tools_are_not_there(found, line, kind, says):
+    text = GOOD.replace("TOOL_TABLE = mill.tbl\n", line)
+    (finding,) = found(text, files={"empty_tbl": ""})
+    assert finding.kind == kind
+    assert says in finding.text
+
+
+def test_a_note_is_no_reason_to_fail_and_every_finding_shows_its_name(
+    tmp_path, capsys, monkeypatch
+):
+    ini = write_config(tmp_path, GOOD)
+    said = {}
+    for level, code in ((NOTE, 0), (WARNING, 1), (PROBLEM, 1)):
+        finding = Finding(level, "some-name", "something", "a cure")
+        monkeypatch.setattr(check, "check", lambda text, f=finding: (config_of(ini), [f]))
+        assert check.main([str(ini)]) == code
+        said[level] = capsys.readouterr().out
+    assert all(f"{level} [some-name]: something\n" in text for level, text in said.items())
 
 
 def test_the_report_for_programs_says_what_the_one_for_people_says(tmp_path):

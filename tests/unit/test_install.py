@@ -5,6 +5,7 @@ import os
 import shutil
 import stat
 import subprocess
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given
@@ -746,14 +747,38 @@ def test_reading_lines_loses_no_byte(tmp_path_factory, content):
 
 
 @pytest.mark.parametrize(
-    "arguments",
-    [[], ["mill.ini"], ["mill.ini", "--with"], ["mill.ini", "--with", "heidenhain"]],
+    ("arguments", "says"),
+    [
+        ([], "--with"),
+        (["mill.ini"], "--with"),
+        (["mill.ini", "--with"], "expected at least one argument"),
+        (["mill.ini", "--with", "heidenhain"], "'heidenhain' is none of haas, yasnac,"),
+        (["--with", "haas"], "the INI is missing"),
+    ],
 )
-def test_wrong_use_of_install(arguments, capsys):
+def test_wrong_use_of_install(arguments, says, capsys):
     with pytest.raises(SystemExit) as stopped:
         install.main(arguments)
     assert stopped.value.code == 2
-    assert "usage: g12 install" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert said.startswith("g12 install: ")
+    assert says in said
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["mill.ini", "--with", "haas", "circle-mill"],
+        ["--with", "haas", "circle-mill", "mill.ini"],
+        ["--with", "Haas,circle-mill", "mill.ini"],
+        ["mill.ini", "--with", "haas", "CIRCLE-MILL,haas"],
+    ],
+)
+def test_the_ways_to_name_features(words):
+    asked = install.parser().parse_args(words)
+    found = install.named(asked.ini, asked.wanted)
+    assert found == (Path("mill.ini"), ["haas", "circle-mill"])
 
 
 @pytest.mark.parametrize("command", [install, uninstall])

@@ -69,6 +69,23 @@ def test_replacing_makes_no_line_longer_than_linuxcnc_reads(ini):
     assert max(map(len, machine.lines)) <= 254
 
 
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("20", 20), ("20 # mm/s", 20), ("-.5e1mm", -5), ("2.", 2), ("1e", 1)],
+)
+def test_a_number_is_read_as_far_as_it_goes_as_linuxcnc_does(ini, text, value):
+    assert ini(f"[A]\nX = {text}\n").number("A", "X", 7) == value
+    assert ini("[A]\nY = 1\n").number("A", "X", 7) == 7
+
+
+@pytest.mark.parametrize(
+    ("section", "text"), [("A", "abc"), ("A", ""), ("A", "# 5"), ("G12", "0.005 mm"), ("G12", "x")]
+)
+def test_what_is_no_number_is_named(ini, section, text):
+    with pytest.raises(IniError, match=rf"machine.ini: \[{section}\] X = {text}: not a number"):
+        ini(f"[{section}]\nX = {text}\n").number(section, "X", 7)
+
+
 def test_files_are_relative_to_the_ini(ini, tmp_path):
     machine = ini("[EMCIO]\nTOOL_TABLE = tools/t.tbl\n")
     assert machine.file("EMCIO", "TOOL_TABLE") == tmp_path / "tools" / "t.tbl"

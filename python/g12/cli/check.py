@@ -6,16 +6,15 @@ The config is read the way LinuxCNC reads it and loaded in the stock interpreter
 
 from __future__ import annotations
 
-import argparse
 import json
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 
 from g12.cli import features
-from g12.cli.command import FINDING, GOOD, UsageError, one_line
+from g12.cli.command import FINDING, GOOD, Parser, UsageError, existing, one_line
 from g12.cli.config import Config, load_config, remaps_in
-from g12.cli.config_rules import Finding, codes_of, coordinates, findings_of
+from g12.cli.config_rules import NOTE, Finding, codes_of, coordinates, findings_of
 from g12.cli.ini_edit import IniText
 from g12.settings import SECTION, TABLE, section_entries
 
@@ -75,7 +74,7 @@ def lines_of(said: dict) -> Iterator[str]:
     for key, value in said["settings"].items():
         yield f"  [{SECTION}] {key} = {value}"
     for finding in said["findings"]:
-        yield f"{finding['level']}: {finding['text']}"
+        yield f"{finding['level']} [{finding['kind']}]: {finding['text']}"
         yield f"  cure: {finding['cure']}"
     if not said["findings"]:
         yield "nothing found"
@@ -83,8 +82,7 @@ def lines_of(said: dict) -> Iterator[str]:
 
 def readable(ini: Path) -> IniText:
     """Return the INI, or refuse what is no INI file."""
-    if not ini.is_file():
-        raise UsageError(f"{ini}: no such file")
+    existing(ini)
     if ini.suffix == ".expanded":
         raise UsageError(f"{ini}: LinuxCNC makes this file anew at every start; name {ini.stem}")
     text = IniText(ini)
@@ -96,11 +94,10 @@ def readable(ini: Path) -> IniText:
 @one_line("check")
 def main(arguments: list[str]) -> int:
     """Run the command."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="g12 check",
         description="Check whether and how the package is set up in a machine config.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("ini", type=Path, help="INI file of the machine")
     parser.add_argument("--json", action="store_true", help="the report as JSON")
@@ -108,4 +105,4 @@ def main(arguments: list[str]) -> int:
     config, found = check(readable(asked.ini))
     said = report(config, found)
     print(json.dumps(said, indent=2) if asked.json else "\n".join(lines_of(said)))
-    return FINDING if found else GOOD
+    return FINDING if any(finding.level != NOTE for finding in found) else GOOD

@@ -20,7 +20,7 @@ from g12.cli.ini_edit import Line
 from g12.errors import Refusal
 from g12.settings import SECTION, section_entries, settings_from_entries
 
-PROBLEM, WARNING = "problem", "warning"
+PROBLEM, WARNING, NOTE = "problem", "warning", "note"
 OLDEST = (2, 9)
 LONGEST_LINE = 254  # LinuxCNC 2.9 reads no more of a line
 LINE_FOR_REMAP = "from g12.remap import *"
@@ -76,6 +76,11 @@ def codes_of(remaps: list[tuple[Line, Remap]]) -> list[Code]:
     """Return the REMAP lines that are the package's."""
     found = ((line, remap, features.model_of(remap)) for line, remap in remaps)
     return [Code(line, remap, *model) for line, remap, model in found if model]
+
+
+def note(kind: str, text: str, cure: str) -> Finding:
+    """Return a finding that is as it may be, but that the owner should know of."""
+    return Finding(NOTE, kind, text, cure)
 
 
 # The INI's lines.
@@ -402,6 +407,28 @@ def missing_axes(config: Config, codes: list[Code]) -> Iterator[Finding]:
             )
 
 
+def no_tool_table(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find a machine without a tool table: it starts, and has no tool."""
+    name, database = (config.ini.get("EMCIO", key) for key in ("TOOL_TABLE", "DB_PROGRAM"))
+    path = config.ini.file("EMCIO", "TOOL_TABLE")
+    if not codes or (path and path.is_file() and not database):
+        return
+    if database:
+        yield note(
+            "tool-database",
+            f"[EMCIO] DB_PROGRAM = {database}: the tools of that program were not looked at",
+            "look yourself whether the cutters have diameters",
+        )
+        return
+    yield warning(
+        "no-tool-table",
+        f"[EMCIO] TOOL_TABLE = {name}: there is no such file"
+        if name
+        else "[EMCIO] TOOL_TABLE is missing: this machine knows no tool",
+        f"name a tool table that is there; it is relative to {config.folder}",
+    )
+
+
 def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[Finding]:
     """Find a tool table that cannot tell any cutter's radius."""
     tools = tool_diameters(config)
@@ -423,7 +450,7 @@ def coordinates(config: Config) -> list[str]:
 def tool_diameters(config: Config) -> dict[int, float] | None:
     """Return tool number to diameter in machine units; None without a tool table file."""
     path = config.ini.file("EMCIO", "TOOL_TABLE")
-    if not path or not path.is_file():
+    if not path or not path.is_file() or config.ini.get("EMCIO", "DB_PROGRAM"):
         return None
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     entries = (line.split(";")[0] for line in lines)
@@ -453,6 +480,7 @@ RULES: tuple[Rule, ...] = (
     handlers_hidden,
     bad_settings,
     missing_axes,
+    no_tool_table,
     tools_without_diameter,
 )
 

@@ -17,6 +17,8 @@ from typing import Union
 
 INCLUDE = re.compile(r"\s*#INCLUDE\s+(\S.*)")
 ENTRY = re.compile(r"\s*([^\s=#;\[][^\s=]*)\s*=\s*(.*?)\s*$")
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+PACKAGE = "G12"  # the section of the package's settings
 LONGEST_PART = 250
 ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
 
@@ -56,8 +58,18 @@ class Ini:
         return next(iter(self.all(section, key)), default)
 
     def number(self, section: str, key: str, default: float) -> float:
-        """Return a value as a number."""
-        return float(self.get(section, key, str(default)))
+        """Return a value as a number.
+
+        LinuxCNC reads its own as far as they are one (``20 # mm`` is 20); of section [G12], which
+        is the package's, a value is all number or an error.
+        """
+        text = self.get(section, key)
+        found = NUMBER.match(text or "")
+        if text is None:
+            return default
+        if not found or (section == PACKAGE and found[0] != text):
+            raise IniError(f"{self.path}: [{section}] {key} = {text}: not a number")
+        return float(found[0])
 
     def file(self, section: str, key: str) -> Path | None:
         """Return a file name of the INI as an absolute path."""

@@ -8,7 +8,6 @@ new config is loaded in the stock interpreter before anything of the user's is c
 
 from __future__ import annotations
 
-import argparse
 import shutil
 import sys
 import tempfile
@@ -17,7 +16,7 @@ from pathlib import Path
 
 from g12.cli import features, package_copy
 from g12.cli.check import readable
-from g12.cli.command import FINDING, GOOD, UsageError, one_line
+from g12.cli.command import FINDING, GOOD, Parser, UsageError, one_line
 from g12.cli.config import Config, load_config, remaps_in
 from g12.cli.config_rules import PROBLEM, Finding, codes_of, findings_of
 from g12.cli.ini import Overrides
@@ -215,7 +214,7 @@ def install(text: IniText, wanted: Sequence[str], dry_run: bool) -> Iterator[str
         return
     yield from carry_out(plan, config.folder)
     for warning in warnings:
-        yield f"warning: {warning.text}; cure: {warning.cure}"
+        yield f"{warning.level} [{warning.kind}]: {warning.text}; cure: {warning.cure}"
 
 
 def excluding(names: Sequence[str]) -> Iterator[str]:
@@ -226,23 +225,21 @@ def excluding(names: Sequence[str]) -> Iterator[str]:
             yield " and ".join(chosen)
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """Return the command line's parser."""
     listed = "\n".join(f"  {name:12} {meaning}" for name, meaning in features.MEANING.items())
-    result = argparse.ArgumentParser(
+    result = Parser(
         prog="g12 install",
         description="Put the package into a machine config: a copy in the folder g12 beside the "
         "INI, and the lines that name it. Shows what changes; keeps the old files.",
         epilog=EXAMPLES.format(features=listed),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    result.add_argument("ini", type=Path, help="INI file of the machine")
+    result.add_argument("ini", nargs="?", type=Path, help="INI file of the machine")
     result.add_argument(
         "--with",
         dest="wanted",
         nargs="+",
         required=True,
-        choices=features.FILES,
         metavar="FEATURE",
         help="what to install (see below)",
     )
@@ -250,17 +247,33 @@ def parser() -> argparse.ArgumentParser:
     return result
 
 
+def named(ini: Path | None, words: Sequence[str]) -> tuple[Path | None, list[str]]:
+    """Return the INI, which may stand behind the features, and the features, each once."""
+    if not ini and len(words) > 1:
+        *words, last = words
+        ini = Path(last)
+    features_named = [name for word in words for name in word.lower().split(",") if name]
+    return ini, list(dict.fromkeys(features_named))
+
+
 @one_line("install")
 def main(arguments: list[str]) -> int:
     """Run the command."""
-    asked = parser().parse_args(arguments)
-    for pair in excluding(asked.wanted):
+    words = parser()
+    asked = words.parse_args(arguments)
+    ini, wanted = named(asked.ini, asked.wanted)
+    unknown = [name for name in wanted if name not in features.FILES]
+    if not ini or unknown:
+        known = f"{unknown[0]!r} is none of {', '.join(features.FILES)}" if unknown else ""
+        words.error(known or "the INI is missing")
+    for pair in excluding(wanted):
         raise UsageError(f"{pair} exclude each other: choose one")
     try:
-        for line in install(readable(asked.ini), asked.wanted, asked.dry_run):
+        for line in install(readable(ini), wanted, asked.dry_run):
             print(line)
     except Refused as refused:
         for finding in refused.args:
-            print(f"g12 install: {finding.text}; cure: {finding.cure}", file=sys.stderr)
+            said = f"[{finding.kind}] {finding.text}; cure: {finding.cure}"
+            print(f"g12 install: {said}", file=sys.stderr)
         return FINDING
     return GOOD

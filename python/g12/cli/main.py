@@ -6,8 +6,13 @@ A command is a module with ``main(arguments) -> exit code``.
 
 from __future__ import annotations
 
+import os
+import select
 import sys
 from importlib import import_module
+
+FAILED = 1
+INTERRUPTED, UNREAD = 130, 141  # as a shell says of a program ended by SIGINT, SIGPIPE
 
 COMMANDS = {
     "check": ("g12.cli.check", "check how the package is set up in a machine config"),
@@ -32,10 +37,40 @@ def usage() -> str:
 def main(arguments: list[str]) -> int:
     """Run the command named first; return its exit code."""
     name, *rest = arguments or ["--help"]
+    try:
+        return flushed(name, rest)
+    except KeyboardInterrupt:
+        print(f"g12 {name}: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError as problem:
+        if not nobody_reads():
+            print(f"g12 {name}: {problem}", file=sys.stderr)
+            return FAILED
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return UNREAD
+
+
+def command(name: str, arguments: list[str]) -> int:
+    """Run a command; return its exit code."""
     if name in ("-h", "--help"):
         print(usage())
         return 0
     if name not in COMMANDS:
-        print(f"g12: no command {name!r}\n{usage()}", file=sys.stderr)
+        print(f"g12: no command {name!r} (see g12 --help)", file=sys.stderr)
         return 2
-    return import_module(COMMANDS[name][0]).main(rest)
+    return import_module(COMMANDS[name][0]).main(arguments)
+
+
+def flushed(name: str, arguments: list[str]) -> int:
+    """Run a command until all its output is written; return its exit code."""
+    try:
+        return command(name, arguments)
+    finally:
+        print(end="", flush=True)
+
+
+def nobody_reads() -> bool:
+    """Tell whether whoever read the standard output has closed it, as ``| head`` does."""
+    output = select.poll()
+    output.register(sys.stdout, 0)
+    return bool(output.poll(0))

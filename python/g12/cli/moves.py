@@ -1,12 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``g12 trace INI PROGRAM``: list the moves of a program, one a line, in mm and degrees."""
+"""``g12 trace``: the moves of a program, one a line.
+
+The stock interpreter is asked, as a preview does; nothing moves. Lengths are mm and angles
+degrees, whatever the program and the machine use; positions are those of the controlled point
+in machine coordinates. A line begins with the program's own line number.
+"""
 
 from __future__ import annotations
 
-import argparse
-import sys
+from g12.cli.command import (
+    GOOD,
+    Parser,
+    add_program,
+    checked_ini,
+    count_from,
+    ended,
+    one_line,
+    with_axes,
+)
+from g12.cli.trace import AXES, Move, trace
 
-from g12.cli.trace import AXES, Move, TraceFailure, trace
+EXAMPLES = """\
+examples:
+  g12 trace pocket.ngc --ini mill.ini
+  g12 trace pocket.ngc --ini mill.ini --tools other.tbl --digits 10
+
+exit code: 0 the program came to its end, 1 it did not, 2 wrong use
+"""
 
 
 def line_of(move: Move, digits: int) -> str:
@@ -25,22 +45,19 @@ def _moves(move: Move, axis: str) -> bool:
     return move.start[index] != move.end[index]
 
 
+@one_line("trace")
 def main(arguments: list[str]) -> int:
-    """Run the command; the exit code is 0 if the program came to its end."""
-    parser = argparse.ArgumentParser(prog="g12 trace", description=__doc__)
-    parser.add_argument("ini", help="INI file of the machine")
-    parser.add_argument("program", help="program file")
-    parser.add_argument("--tools", help="tool table in place of the INI's")
-    parser.add_argument("--digits", type=int, default=6, help="decimals (default 6)")
+    """Run the command."""
+    parser = Parser(prog="g12 trace", description=__doc__, epilog=EXAMPLES)
+    add_program(parser)
+    digits = {"type": count_from(0), "default": 6, "metavar": "N"}
+    parser.add_argument("--digits", **digits, help="decimals (default 6)")
     asked = parser.parse_args(arguments)
-    try:
-        traced = trace(asked.program, asked.ini, tools=asked.tools)
-    except (TraceFailure, OSError, ValueError) as error:
-        print(f"g12 trace: {error}", file=sys.stderr)
-        return 1
-    print("".join(f"{line_of(move, asked.digits)}\n" for move in traced.moves), end="")
+    checked_ini(asked.program, asked.ini, asked.tools)
+    traced = with_axes(trace(asked.program, asked.ini, tools=asked.tools), asked.ini)
+    for move in traced.moves:
+        print(line_of(move, asked.digits))
     for line, text in traced.messages:
         print(f"{line:6d} message {text}")
-    if traced.error:
-        print(f"line {traced.error.line}: {traced.error.text}", file=sys.stderr)
-    return 1 if traced.error else 0
+    ended(asked.program, traced)
+    return GOOD

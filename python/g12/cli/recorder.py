@@ -10,7 +10,7 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
-from multiprocessing import util
+from multiprocessing import active_children, util
 from pathlib import Path
 
 from g12.cli.baseline import Baseline
@@ -34,6 +34,7 @@ from g12.cli.units import UNITS
 SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
 HASH_DIGITS = 16
 UNIT_NAMES = {unit.mm: name for name, unit in UNITS.items()}
+_tracers: list[Tracer] = []  # this process's
 Report = Callable[[int, int, str], None]  # hears of programs done, of how many, the last one
 
 
@@ -118,6 +119,7 @@ class Recorder:
         ini = read_ini(machine.ini)
         self._machine = machine
         self._tracer = Tracer(ini, tools=machine.tools)
+        _tracers.append(self._tracer)
         self._check_python()
         self.part = part_of(ini)
         self._facts = {
@@ -231,13 +233,18 @@ def results(jobs: Sequence[Job], processes: int, report: Report) -> list[Result]
     if processes <= 1:
         return [_reported(do(job), done, jobs, report) for done, job in enumerate(jobs, start=1)]
     largest_first = sorted(jobs, key=lambda job: -job.program.stat().st_size)
-    pool = ProcessPoolExecutor(processes, initializer=_ignore_interrupts)
+    others = {*active_children()}
+    pool = ProcessPoolExecutor(processes, initializer=_obey_the_parent)
     try:
         futures = {pool.submit(do, job): job.name for job in largest_first}
         found = {}
         for done, future in enumerate(as_completed(futures), start=1):
             found[futures[future]] = _reported(future.result(), done, jobs, report)
         return [found[job.name] for job in jobs]
+    except BaseException:
+        for process in {*active_children()} - others:
+            process.terminate()
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
@@ -247,6 +254,15 @@ def _reported(result: Result, done: int, jobs: Sequence[Job], report: Report) ->
     return result
 
 
-def _ignore_interrupts() -> None:
-    """Leave it to the parent process to stop the others."""
+def _obey_the_parent() -> None:
+    """Leave it to the parent process when to end, and its interpreters alone."""
+    _tracers.clear()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+
+
+def _leave(_signal: int, _frame: object) -> None:
+    """End this process with its interpreters, which may be far from the end of a program."""
+    for tracer in _tracers:
+        tracer.close()
+    os._exit(1)

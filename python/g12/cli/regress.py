@@ -9,11 +9,18 @@ post-processor (new programs, ``--programs``), or edits its INI, its remaps or i
 from __future__ import annotations
 
 import argparse
-import math
 import os
 from pathlib import Path
 
-from g12.cli.command import FINDING, GOOD, one_line
+from g12.cli.command import (
+    FINDING,
+    GOOD,
+    Parser,
+    count_from,
+    number_above,
+    number_from,
+    one_line,
+)
 from g12.cli.recorder import FAILED, SAME, Result
 from g12.cli.regress_report import Progress, json_report, text_report
 from g12.cli.regression import Asked, Terms, check, record
@@ -39,9 +46,9 @@ exit code: 0 as recorded, 1 something changed, 2 wrong use
 """
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """Return the command's words."""
-    words = argparse.ArgumentParser(prog="g12 regress", description=DESCRIPTION)
+    words = Parser(prog="g12 regress", description=DESCRIPTION)
     actions = words.add_subparsers(dest="action", required=True, metavar="record | check")
     _record_words(actions)
     _check_words(actions)
@@ -53,7 +60,6 @@ def _record_words(actions) -> None:
         "record",
         help="keep what programs do",
         epilog=RECORD_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     words.set_defaults(run=run_record)
     words.add_argument(
@@ -74,7 +80,6 @@ def _check_words(actions) -> None:
         "check",
         help="tell what changed",
         epilog=CHECK_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     words.set_defaults(run=run_check)
     words.add_argument("names", nargs="*", metavar="PROGRAM", help="default: all recorded")
@@ -98,24 +103,11 @@ def _common_words(words: argparse.ArgumentParser) -> None:
         ("--timeout", Terms.timeout, "SECONDS", "for each program"),
     ):
         help_ = f"{text} (default {default:g})"
-        words.add_argument(name, type=_not_negative, default=default, metavar=metavar, help=help_)
-    cores = os.cpu_count()
-    words.add_argument("--jobs", type=_count, default=cores, metavar="N", help="default: all cores")
+        read = number_above(0) if name == "--timeout" else number_from(0)
+        words.add_argument(name, type=read, default=default, metavar=metavar, help=help_)
+    jobs = {"type": count_from(1), "default": os.cpu_count(), "metavar": "N"}
+    words.add_argument("--jobs", **jobs, help="default: all cores")
     words.add_argument("--json", action="store_true", help="report as JSON")
-
-
-def _not_negative(text: str) -> float:
-    value = float(text)
-    if not 0 <= value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not a number from 0")
-    return value
-
-
-def _count(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"{text} is not a number from 1")
-    return value
 
 
 @one_line("regress")

@@ -7,13 +7,12 @@ in included files) stays until the last of them is done.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
 from g12.cli import package_copy
 from g12.cli.check import readable
-from g12.cli.command import GOOD, one_line
+from g12.cli.command import GOOD, Parser, one_line
 from g12.cli.config import remaps_in
 from g12.cli.config_rules import codes_of
 from g12.cli.features import model_of, remap_from_value
@@ -168,11 +167,10 @@ def after_all(copy: Path, shared: bool, needed: bool) -> Iterator[str]:
 @one_line("uninstall")
 def main(arguments: list[str]) -> int:
     """Run the command."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="g12 uninstall",
         description="Take out of a machine config what install put in, and nothing else.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("ini", type=Path, help="INI file of the machine")
     parser.add_argument("--dry-run", action="store_true", help="show the changes only")

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 trace`` on the stock interpreter, good and wrong uses."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from g12.cli import main
+from machines import ROOT, SIM
+
+INI = SIM / "mill_mm.ini"
+
+
+@pytest.fixture
+def told(tmp_path, capsys):
+    """Return a function: exit code, lines and errors of a command on a program."""
+
+    def tell(name, text, *words, ini=INI):
+        program = tmp_path / "part.ngc"
+        program.write_text(text)
+        code = main.main([name, str(program), "--ini", str(ini), *words])
+        said = capsys.readouterr()
+        return code, said.out.splitlines(), said.err.replace(str(program), "PROGRAM")
+
+    return tell
+
+
+def test_moves_are_listed(told):
+    text = "G20 G90\nG0 X1\nG1 Y1 F10\nG2 X2 I.5 (half)\n(MSG,there)\nM2\n"
+    code, lines, errors = told("trace", text, "--digits", "1")
+    assert (code, errors) == (0, "")
+    assert lines == [
+        "     2 rapid X25.4",
+        "     3 feed  Y25.4 F254 G94",
+        "     4 arc   X50.8 I38.1 J25.4 K0.0 turns -1 G17 F254 G94",
+        "     5 message there",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("G0 X1\nG0 Q1 X\nM2\n", "PROGRAM:2: "),
+        ("G0 X1\nG0 C1\nM2\n", "PROGRAM:2: Bad character 'c' used: this INI's machine has axes"),
+        ("", "PROGRAM:0: File ended with no percent sign or program end"),
+    ],
+)
+@pytest.mark.parametrize(("name", "words"), [("trace", []), ("plot", ["-o", "no.png"])])
+def test_a_program_with_an_error_is_named(told, name, words, text, error):
+    code, _, errors = told(name, text, *words)
+    assert code == 1
+    assert errors.startswith(f"g12 {name}: {error}")
+    assert errors.count("\n") == 1
+
+
+def test_a_machine_that_does_not_load_is_one_line(told, tmp_path):
+    ini = tmp_path / "own.ini"
+    ini.write_text("[RS274NGC]\nREMAP = G12 modalgroup=1 ngc=nowhere\n[TRAJ]\nCOORDINATES = XYZ\n")
+    code, lines, errors = told("trace", "M2\n", ini=ini)
+    assert (code, lines) == (1, [])
+    assert "nowhere" in errors
+    assert errors.count("\n") == 1
+
+
+def test_a_number_that_is_none_is_one_line(told, tmp_path):
+    ini = tmp_path / "own.ini"
+    ini.write_text("[TRAJ]\nCOORDINATES = XZC\n[AXIS_X]\nMAX_VELOCITY = fast\n")
+    words = ["-o", str(tmp_path / "no.png")]
+    code, _, errors = told("plot", "G21 G90 F100\nG1 X1 C5\nM2\n", *words, ini=ini)
+    assert code == 2
+    assert errors == f"g12 plot: {ini}: [AXIS_X] MAX_VELOCITY = fast: not a number\n"
+
+
+def test_a_list_that_nobody_reads_to_its_end_is_no_error(tmp_path):
+    program = tmp_path / "part.ngc"
+    program.write_text("G21 G90 F100\n" + "G1 X1\nX2\n" * 5000 + "M2\n")
+    read, write = os.pipe()
+    command = [sys.executable, str(ROOT / "python" / "g12"), "trace", str(program)]
+    process = subprocess.Popen(
+        [*command, "--ini", str(INI)], stdout=write, stderr=subprocess.PIPE, text=True
+    )
+    os.close(write)
+    os.read(read, 10)
+    os.close(read)
+    _, errors = process.communicate(timeout=60)
+    assert (process.returncode, errors) == (141, "")

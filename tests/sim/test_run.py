@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 run``: what it says of a program that ends, and of one that does not."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from g12.cli import main
+from machines import ROOT, SIM
+
+
+@pytest.mark.parametrize(
+    ("machine", "text", "code", "out", "error"),
+    [
+        (
+            "mill_inch.ini",
+            "G20 G90 F100\nG1 X.1 Y.25\n(MSG, there)\nM2\n",
+            0,
+            ["message: there", "ends at X0.1 Y0.25 Z0 (machine position, in)"],
+            "",
+        ),
+        ("lathe_mm.ini", "M2\n", 0, ["ends at X0 Z0 C0 (machine position, mm and degrees)"], ""),
+        (
+            "mill_mm.ini",
+            "G21 G90 F3000\nG1 C5\nM2\n",
+            1,
+            ["ends at X0 Y0 Z0 (machine position, mm)"],
+            "g12 run: PROGRAM: Bad character 'c' used: this INI's machine has axes X Y Z\n",
+        ),
+    ],
+)
+def test_what_a_run_says(tmp_path, capsys, machine, text, code, out, error):
+    program = tmp_path / "part.ngc"
+    program.write_text(text)
+    assert main.main(["run", str(program), "--ini", str(SIM / machine)]) == code
+    said = capsys.readouterr()
+    *lines, seconds = said.out.splitlines()
+    assert lines == out
+    assert seconds.endswith(" s in motion")
+    assert said.err.replace(str(program), "PROGRAM") == error
+
+
+def test_a_program_that_cannot_be_opened_is_named_as_the_user_did(tmp_path, capsys):
+    program = tmp_path / "part.ngc"
+    program.write_text("")
+    assert main.main(["run", str(program), "--ini", str(SIM / "mill_mm.ini")]) == 1
+    said = capsys.readouterr().err
+    assert f"of {program} " in said
+    assert f"can't open {program}" in said
+    assert said.count("\n") == 1
+
+
+def test_an_interrupted_run_is_one_line(tmp_path):
+    (tmp_path / "long.ngc").write_text("G21 G90 F10\nG1 X50\nM2\n")
+    words = ["run", "long.ngc", "--ini", str(SIM / "mill_mm.ini")]
+    process = subprocess.Popen(
+        [sys.executable, str(ROOT / "python" / "g12"), *words],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    time.sleep(5)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+    _, said = process.communicate(timeout=20)
+    assert (process.returncode, said) == (130, "g12 run: interrupted\n")

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the commands share: wrong words and files in one line, interrupts, closed outputs."""
+
+import os
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from configs import MILL, TOOLS, write_config
+from g12.cli import command, main
+from machines import ROOT
+
+PROGRAM = str(ROOT / "python" / "g12")
+COMMANDS = [name for name in main.COMMANDS if name not in ("demo", "plot", "verify")]
+
+
+def ends(capsys, *words):
+    """Return the exit code of a command line, and what it says on standard error."""
+    try:
+        code = main.main([*map(str, words)])
+    except SystemExit as end:
+        code = end.code
+    return code, capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_wrong_words_are_told_in_one_line(name, capsys):
+    code, said = ends(capsys, name, "--nonsense", "3")
+    assert code == 2
+    assert said.startswith(f"g12 {name}: ")
+    assert said.endswith(f"(see g12 {name} --help)\n")
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_is_plain_text_with_examples(name, capsys):
+    sub = ["record"] if name == "regress" else []
+    with pytest.raises(SystemExit) as end:
+        main.main([name, *sub, "--help"])
+    assert end.value.code == 0
+    said = capsys.readouterr().out
+    assert "example" in said
+    assert "`" not in said
+
+
+@pytest.mark.parametrize(
+    ("reader", "text", "says"),
+    [
+        (command.number_above(0), "0", "'0' is not a number above 0"),
+        (command.number_above(0), "x", "'x' is not a number above 0"),
+        (command.number_above(0), "inf", "'inf' is not a number above 0"),
+        (command.number_from(0), "-1", "'-1' is not a number from 0"),
+        (command.number_from(0), "nan", "'nan' is not a number from 0"),
+        (command.count_from(1), "0", "'0' is not a whole number from 1"),
+        (command.count_from(1), "1.5", "'1.5' is not a whole number from 1"),
+    ],
+)
+def test_numbers_of_the_command_line(reader, text, says):
+    with pytest.raises(command.argparse.ArgumentTypeError, match=f"^{says}$"):
+        reader(text)
+
+
+def test_good_numbers_of_the_command_line():
+    assert command.number_above(0)("0.5") == 0.5
+    assert command.number_from(0)("0") == 0
+    assert command.count_from(1)("1") == 1
+
+
+@pytest.fixture
+def files(tmp_path):
+    ini = write_config(tmp_path)
+    (tmp_path / "part.ngc").write_text("G21\nT1 M6\nM2\n")
+    return SimpleNamespace(folder=tmp_path, ini=ini, program=tmp_path / "part.ngc")
+
+
+@pytest.mark.parametrize("name", ["run", "trace", "verify", "plot"])
+def test_wrong_files_are_told_in_one_line(name, files, capsys):
+    rest = ["-o", "x.png"] if name == "plot" else []
+    wrong = [
+        (files.folder / "no.ngc", files.ini, (), "no.ngc: no such file"),
+        (files.folder, files.ini, (), f"{files.folder}: is a folder"),
+        (files.program, files.folder, (), f"{files.folder}: is a folder"),
+        (files.ini, files.program, (), f"{files.program}: is not a machine INI"),
+        (files.program, files.ini, ("--tools", files.ini), "mill.ini: is not a tool table"),
+        (files.program, files.ini, ("--tools", files.folder), f"{files.folder}: is a folder"),
+    ]
+    for program, ini, more, says in wrong:
+        code, said = ends(capsys, name, program, "--ini", ini, *more, *rest)
+        assert code == 2
+        assert said.startswith(f"g12 {name}: ")
+        assert says in said
+        assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize("text", ["", "; none yet\n", TOOLS, "t1 p1 z-1.5 d.25 ; drill\n", "T3\n"])
+def test_tool_tables(tmp_path, text):
+    path = tmp_path / "any.tbl"
+    path.write_text(text)
+    assert command.tool_table(path) == path
+
+
+@pytest.mark.parametrize("text", [MILL, "G21\nT1 M6\nM2\n", "P1 D6\n"])
+def test_no_tool_tables(tmp_path, text):
+    path = tmp_path / "any.tbl"
+    path.write_text(text)
+    with pytest.raises(command.UsageError, match="not a tool table"):
+        command.tool_table(path)
+
+
+def test_an_axis_that_the_machine_lacks_is_explained(files):
+    said = command.told("Bad character 'c' used", files.ini)
+    assert said == "Bad character 'c' used: this INI's machine has axes X Y Z"
+    for text in ("Bad character 'z' used", "Bad character 'q' used", "Unknown g code used"):
+        assert command.told(text, files.ini) == text
+
+
+def test_events_that_are_not_there(tmp_path, capsys):
+    assert ends(capsys, "dynapath", tmp_path / "no.dyn") == (
+        2,
+        f"g12 dynapath: {tmp_path / 'no.dyn'}: no such file\n",
+    )
+    (tmp_path / "bad.dyn").write_text("nonsense\n")
+    code, said = ends(capsys, "dynapath", tmp_path / "bad.dyn")
+    assert code == 1
+    assert said.startswith(f"g12 dynapath: {tmp_path / 'bad.dyn'}: ")
+    assert said.count("\n") == 1
+
+
+def test_an_interrupt_is_one_line(monkeypatch, capsys):
+    def interrupted(_arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(main, "import_module", lambda _name: SimpleNamespace(main=interrupted))
+    assert ends(capsys, "verify") == (130, "g12 verify: interrupted\n")
+
+
+@pytest.mark.parametrize("words", [["--help"], ["install", "--help"], ["dynapath", "events.dyn"]])
+def test_an_output_that_nobody_reads_is_no_error(tmp_path, words):
+    (tmp_path / "events.dyn").write_text(
+        "N1(4)G7X1.5Y2.Z-.5W.1O.5R1.5D0C2K.2J.3L.02P5F20V15$\n" * 3000
+    )
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, PROGRAM, *words],
+        cwd=tmp_path,
+        stdout=write,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    os.close(write)
+    assert done.stderr == ""
+    assert done.returncode == 141
+
+
+def test_a_pipe_that_breaks_elsewhere_is_told(monkeypatch, capsys):
+    def broken(_arguments):
+        raise BrokenPipeError(32, "Broken pipe")
+
+    monkeypatch.setattr(main, "import_module", lambda _name: SimpleNamespace(main=broken))
+    monkeypatch.setattr(main, "nobody_reads", lambda: False)
+    assert ends(capsys, "run") == (1, "g12 run: [Errno 32] Broken pipe\n")
