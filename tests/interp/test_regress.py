@@ -491,8 +491,30 @@ def test_wrong_uses_of_a_recorded_directory(pocket):
     text = about.read_text(encoding="utf-8")
     about.write_text(text.replace('"format": 1', '"format": 2'), encoding="utf-8")
     assert wrong(pocket, "check") == f"{about}: written by another version of g12"
-    about.write_text("<<<<<<<", encoding="utf-8")
-    assert wrong(pocket, "check") == f"{about}: not a file of g12 regress"
+    for damaged in (
+        "<<<<<<<",
+        text.replace("[", "null, ["),
+        null(text, "ini"),
+        null(text, "programs"),
+    ):
+        about.write_text(damaged, encoding="utf-8")
+        assert wrong(pocket, "check") == f"{about}: not a file of g12 regress"
+
+
+def null(text, key):
+    """Return the text of a regress.json without a value."""
+    return json.dumps({**json.loads(text), key: None})
+
+
+def test_wrong_files_of_a_machine(pocket):
+    folder, program = pocket.programs, pocket.programs / "pocket.ngc"
+    for words in (["check"], ["record"], ["record", program]):
+        assert wrong(pocket, *words, "--tools", folder) == f"{folder}: is a folder"
+        assert "is not a tool table" in wrong(pocket, *words, "--tools", INI)
+        assert "is not a machine INI" in wrong(pocket, *words, "--ini", program)
+        assert wrong(pocket, *words, "--ini", folder) == f"{folder}: is a folder"
+    assert wrong(pocket, "record", "--var", folder) == f"{folder}: is a folder"
+    assert wrong(pocket, "record", "--var", "no.var") == "no.var: no such file"
 
 
 def test_a_damaged_recording_is_named_and_can_be_recorded_again(pocket):
@@ -501,6 +523,9 @@ def test_a_damaged_recording_is_named_and_can_be_recorded_again(pocket):
     assert wrong(pocket, "check") == (
         f"{path}: not a trace, or one that was edited: line 1: not 'g12 trace 1'"
     )
+    other = pocket.trace("sub/plain.ngc")
+    other.write_text(other.read_text(encoding="utf-8") + "junk\n", encoding="utf-8")
+    assert "something behind the end" in wrong(pocket, "check", "sub/plain.ngc")
     assert pocket.run("record")[0] == 0
     assert pocket.check()[0] == 0
 

@@ -114,6 +114,8 @@ def load(directory: Path) -> Baseline:
         values = json.loads(about.read_text(encoding="utf-8"))
         known, folders = values.pop("format") == FORMAT, tuple(values.pop("folders"))
         paths = {key: _absolute(directory, value) for key, value in values.items()}
+        if not (paths["ini"] and paths["programs"] and all(isinstance(f, str) for f in folders)):
+            raise TypeError
         baseline = Baseline(directory, folders=folders, **paths)
     except (ValueError, KeyError, TypeError, AttributeError):
         raise UsageError(f"{about}: not a file of g12 regress") from None

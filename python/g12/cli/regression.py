@@ -17,7 +17,7 @@ from g12.cli.baseline import (
     load,
     program_names,
 )
-from g12.cli.command import UsageError
+from g12.cli.command import UsageError, existing, machine_ini, tool_table
 from g12.cli.edits import Tolerance
 from g12.cli.ini import read_ini
 from g12.cli.recorder import (
@@ -102,8 +102,8 @@ def check(
     recorded = [_recorded(baseline, name) for name in names] or baseline.names()
     if not recorded:
         raise UsageError(f"{directory}: no program is recorded there")
-    table = _existing(tools) if tools else baseline.tools
-    ini = _existing(ini or baseline.ini)
+    table = _absolute(tool_table(tools)) if tools else baseline.tools
+    ini = _machine(ini or baseline.ini)
     machine = machine_of(ini, table, baseline.parameters, terms.timeout)
     there = [name for name in recorded if (folder / name).is_file()]
     found = _done(baseline, there, folder, machine, terms)
@@ -139,13 +139,23 @@ def _common_notes(found: Sequence[Result]) -> list[str]:
 def _existing(path: Path) -> Path:
     if not path.exists():
         raise UsageError(f"{path}: no such file")
+    return _absolute(path)
+
+
+def _absolute(path: Path) -> Path:
     return Path(os.path.abspath(path))
+
+
+def _machine(path: Path) -> Path:
+    """Return the path of a machine's INI if it is one."""
+    machine_ini(path)
+    return _absolute(path)
 
 
 def _folder(path: Path) -> Path:
     if not path.is_dir():
         raise UsageError(f"{path}: no such folder")
-    return Path(os.path.abspath(path))
+    return _absolute(path)
 
 
 def _new(directory: Path, asked: Asked, named: list[Path]) -> Baseline:
@@ -162,7 +172,7 @@ def _new(directory: Path, asked: Asked, named: list[Path]) -> Baseline:
 def _known(directory: Path, asked: Asked, named: list[Path]) -> Baseline:
     """Return a recorded directory."""
     baseline = load(directory)
-    if asked.ini and named and _existing(asked.ini) != baseline.ini:
+    if asked.ini and named and _machine(asked.ini) != baseline.ini:
         raise UsageError(
             f"{directory} is recorded on {baseline.ini}: use another -d, or name no programs to "
             f"record all of it anew on {asked.ini}"
@@ -172,17 +182,17 @@ def _known(directory: Path, asked: Asked, named: list[Path]) -> Baseline:
 
 def _with(baseline: Baseline, asked: Asked, named: list[Path]) -> Baseline:
     """Return a directory with the machine's files and the folders asked for."""
-    ini = _existing(asked.ini or baseline.ini)
+    ini = _machine(asked.ini or baseline.ini)
     table = read_ini(ini).file("EMCIO", "TOOL_TABLE")
-    own = Path(os.path.abspath(table)) if table and table.is_file() else None
+    own = _absolute(table) if table and table.is_file() else None
     known = None if asked.ini else baseline.tool_table
     folders = [baseline.name_of(path) for path in named if path.is_dir()]
     return replace(
         baseline,
         ini=ini,
         folders=tuple(dict.fromkeys([*baseline.folders, *folders])),
-        tool_table=_existing(asked.tools) if asked.tools else known or own,
-        var_file=_existing(asked.var) if asked.var else baseline.var_file,
+        tool_table=_absolute(tool_table(asked.tools)) if asked.tools else known or own,
+        var_file=_absolute(existing(asked.var)) if asked.var else baseline.var_file,
     )
 
 

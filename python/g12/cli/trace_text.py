@@ -264,7 +264,8 @@ def read_recording(text: str) -> Recording:
     facts, body = split(text)
     steps, blocks = [], {}
     reader, block = Reader(UNITS[facts["units"]].mm), 0
-    for number_of_line, line in enumerate(body.split("\n"), start=len(FACTS) + 2):
+    lines = enumerate(body.split("\n"), start=len(FACTS) + 2)
+    for number_of_line, line in lines:
         start = BLOCK.fullmatch(line)
         if start:
             block = int(start.group(1))
@@ -272,8 +273,17 @@ def read_recording(text: str) -> Recording:
         elif line.startswith("  "):
             steps.append(_step(reader, block, line, number_of_line))
         elif line:
-            return _finished(Recording(facts, steps, blocks), line, number_of_line)
+            recording = _finished(Recording(facts, steps, blocks), line, number_of_line)
+            _require_end(lines)
+            return recording
     raise TraceTextError("the last line, end or error, is missing")
+
+
+def _require_end(lines: Iterator[tuple[int, str]]) -> None:
+    """Raise TraceTextError if there is anything behind the last line."""
+    for number_of_line, line in lines:
+        if line:
+            raise TraceTextError(f"line {number_of_line}: something behind the end")
 
 
 def _step(reader: Reader, block: int, line: str, number_of_line: int) -> Step:
