@@ -88,6 +88,7 @@ def test_any_code_pair_may_be_given_to_polar_interpolation(found):
         (("modalgroup=1", "modalgroup=5"), "should have modalgroup=1"),
         (("modalgroup=1", "modalgroup=1 argspec=I"), "should have no argspec="),
         (("ngc=g12_haas", "ngc=g12_has"), "should have ngc=g12_haas"),
+        (("prolog=g12_haas ngc=g12_haas", "prolog=g12_hass ngc=g12_has"), "have prolog=g12_haas, "),
     ],
 )
 def test_a_line_that_is_nearly_right(found, change, says):
@@ -96,6 +97,12 @@ def test_a_line_that_is_nearly_right(found, change, says):
     assert wrong.kind == "wrong-line"
     assert says in wrong.text
     assert wrong.cure == first
+
+
+@pytest.mark.parametrize("names", ["prolog=g12_mine ngc=g12_mine", "python=haas", "ngc=pocket12"])
+def test_a_line_of_the_users_is_not_taken_for_a_misspelt_one(found, names):
+    first = HAAS.splitlines()[0]
+    assert kinds(found(GOOD.replace(first, f"REMAP = G12 modalgroup=1 {names}"))) == ["half"]
 
 
 def test_half_a_pair(found):

@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
@@ -35,6 +36,7 @@ MEANING = {
 SHARED = {"cycle_done"}  # the epilog of every cycle does not tell which one it is
 SUBS = {"circle-mill": ("circle_mill",)}  # what a program calls besides the codes
 
+CLOSE = 0.8  # share of letters in common that makes a name a misspelt one
 KEYWORDS = ("modalgroup", "argspec", "prolog", "epilog", "ngc", "python")
 HANDLERS = ("prolog", "epilog", "python")
 CODE = re.compile(r"([A-Za-z])(\d*)(?:\.(\d+))?\Z")
@@ -101,7 +103,16 @@ def model_of(remap: Remap) -> tuple[str, Remap] | None:
         return len(model.own_names & remap.own_names), model.number == remap.number
 
     best = max(models, key=likeness)
-    return best if likeness(best)[0] else None
+    if likeness(best)[0]:
+        return best
+    return next((found for found in models if is_misspelt(remap, found[1])), None)
+
+
+def is_misspelt(remap: Remap, model: Remap) -> bool:
+    """Tell whether a REMAP line of the same code names nothing but what a line names, misspelt."""
+    names = remap.own_names if remap.number == model.number else ()
+    close = [get_close_matches(name, model.own_names, cutoff=CLOSE) for name in names]
+    return bool(close) and all(close)
 
 
 def names_of(feature: str) -> list[str]:
