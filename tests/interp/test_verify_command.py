@@ -80,6 +80,17 @@ def test_a_polar_section_is_told_as_it_is_programmed(written, capsys):
     assert rows["lowest feed"].startswith("100 mm/min at X45.99")
 
 
+def test_a_rapid_through_material_is_told_in_words_and_json(written, capsys):
+    text = written(HEAD + "G12 I7 K20 Q6 Z-3 D4\nG0 X60\nM2\n")
+    code, out, _ = verify(capsys, text, "--ini", MILL)
+    assert code == 1 and "line 5: rapid\n  FINDING" in out
+    code, out, _ = verify(capsys, text, "--ini", MILL, "--json")
+    told = json.loads(out)
+    (hit,) = told["rapids"]
+    assert (code, told["good"], hit["line"]) == (1, False, 5)
+    assert hit["area"] > 350 and hit["to"][0] == pytest.approx(60)
+
+
 def test_a_circle_of_the_tool_centre_and_one_on_its_side_are_told(written, capsys):
     head = HEAD.replace("T4", "T10")
     text = head + "G12 I50 D0\nG18 G13 I50 D10\nM2\n"

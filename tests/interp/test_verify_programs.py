@@ -122,7 +122,8 @@ def test_expressions_loops_and_skipped_blocks(tmp_path):
         *MM,
         "#<r> = 12 #2 = 0",
         "o100 while [#2 LT 3]",
-        "G0 X[#2 * 60] Y[0 - #2] Z1",
+        "G0 Z1",
+        "X[#2 * 60] Y[0 - #2]",
         "N5 G12 I[#<r> + #2] Z-[1 + 1] D4 (X99 Y99)",
         "/G13 I8 Z-2 D4",
         "#2 = [#2 + 1]",
@@ -132,7 +133,7 @@ def test_expressions_loops_and_skipped_blocks(tmp_path):
     proof = proof_of_text(tmp_path, lines)
     assert [facts.target.radius for facts in proof.pockets] == pytest.approx([12, 13, 14])
     assert [facts.target.origin[0] for facts in proof.pockets] == pytest.approx([0, 60, 120])
-    assert {facts.target.line for facts in proof.pockets} == {6}
+    assert {facts.target.line for facts in proof.pockets} == {7}
     assert proof.findings == []
 
 
@@ -301,3 +302,22 @@ def test_a_cycle_that_cuts_too_shallow_is_found(sabotaged, tmp_path):
 def test_a_cycle_that_turns_the_wrong_way_is_found(sabotaged, tmp_path):
     found = broken(sabotaged, tmp_path, "G#<arc>", "G[5 - #<arc>]")
     assert "it turns the wrong way" in found
+
+
+# ---------------------------------------------------------------- rapids
+
+
+def test_a_forgotten_retract_between_pockets_is_found(tmp_path):
+    lines = [*MM, "G0 X0 Y0 Z2", "G13 I7 K20 Q6 Z-3 D4", "G13 X60 I7 K20 Q6 Z-3", "G0 Z2", "M2"]
+    ((line, text),) = proof_of_text(tmp_path, lines).findings
+    assert line == 5
+    assert text.startswith("a rapid goes through ") and "not cleared before, from X15" in text
+    lines[4] = "G0 Z2\n" + lines[4]
+    assert proof_of_text(tmp_path, lines).findings == []
+
+
+def test_a_circle_cut_where_the_tool_stands_was_come_down_to(tmp_path):
+    head = ["G21 G17 G40 G49 G90 F600", "T10 M6", "G0 X0 Y0 Z5", "Z-5"]
+    lines = [*head, "G12 I30 D10", "G0 X100", "G12 I30 D10", "G0 Z5", "M2"]
+    found = proof_of_text(tmp_path, lines, "mill_mitsubishi_mm").findings
+    assert [line for line, _ in found] == [6]

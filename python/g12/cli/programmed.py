@@ -55,6 +55,7 @@ class Target:
     loaded: float = 0.0
     offset: int | None = None
     bore: float = 0.0
+    face: float = 0.0
 
     @property
     def plane(self) -> int:
@@ -133,8 +134,9 @@ class Reader:
         else:
             target = getattr(self, f"_{dialect}")(view)
         code = next((f"G{code:g}" for code in block.codes if code in self.codes._known), CALL)
-        turn = TURNS.get(code, 0)
-        return replace(target, line=block.text.number, code=code, dialect=dialect, turn=turn)
+        about = {"dialect": dialect, "turn": TURNS.get(code, 0)}
+        face = view.start[2] - view.present("z")
+        return replace(target, line=block.text.number, code=code, face=face, **about)
 
     def _haas(self, view: View) -> Target:
         words = view.words

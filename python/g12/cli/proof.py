@@ -21,6 +21,7 @@ from g12.cli.measure_section import SectionFacts, measure_section
 from g12.cli.motion import Followed, Track, follow, limits_of, track
 from g12.cli.part import C, part_of_program, tool_diameters
 from g12.cli.programmed import CALL, Codes, Reader, Target
+from g12.cli.rapids import Collision, collisions
 from g12.cli.trace import MM_PER_INCH, Tools, Trace, Tracer, mm_per_unit
 from g12.cli.units import MM, Unit, plain
 
@@ -57,6 +58,7 @@ class Proof:
     subject: Subject
     pockets: list[PocketFacts]
     sections: list[SectionFacts]
+    collisions: list[Collision]
     unseen: list[tuple[int, str]]
     pocket_tolerance: float
     polar_tolerance: float
@@ -73,11 +75,12 @@ class Proof:
             for facts in self.pockets
             for text in pocket_findings(facts, self.pocket_tolerance, unit)
         ]
-        return told + [
+        told += [
             (facts.section.line, text)
             for facts in self.sections
             for text in section_findings(facts, self.polar_tolerance, unit)
         ]
+        return told + [(hit.line, collision_text(hit, unit)) for hit in self.collisions]
 
 
 def prove(
@@ -103,7 +106,7 @@ def prove(
     moves = trace.moves
     path = track(part_of_program(ini, moves), moves, limits, trace.modes.speed)
     real = follow(path, moves, run.samples, mm_per_unit(ini)) if run else None
-    asked = Reader(codes, moves, diameters).targets(blocks)
+    asked = list(Reader(codes, moves, diameters).targets(blocks))
     return Proof(
         Subject(program, ini, trace, path, real),
         [measure_pocket(t, b.at, b.end, path, moves, plain, real) for b, t in asked],
@@ -111,10 +114,17 @@ def prove(
             measure_section(each, path, moves, diameters, limits.axes[C], polar, real)
             for each in polars
         ],
+        collisions(asked, moves, path, diameters, real),
         calls_elsewhere(program, CALL),
         plain,
         polar,
     )
+
+
+def collision_text(hit: Collision, unit: Unit = MM) -> str:
+    """Return in words what a rapid goes through."""
+    x, y, z = (unit.text(value) for value in hit.way[0])
+    return f"a rapid goes through {unit.area(hit.area)} not cleared before, from X{x} Y{y} Z{z} on"
 
 
 def polar_tolerance(ini: Ini) -> float:

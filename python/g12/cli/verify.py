@@ -28,6 +28,7 @@ from g12.cli.measure_section import SectionFacts
 from g12.cli.pace import Pace
 from g12.cli.proof import (
     Proof,
+    collision_text,
     gouged,
     pocket_findings,
     pocket_notes,
@@ -35,6 +36,7 @@ from g12.cli.proof import (
     section_findings,
     section_notes,
 )
+from g12.cli.rapids import Collision
 from g12.cli.units import UNITS, Unit, plain, unit_of
 
 EXAMPLES = """\
@@ -63,7 +65,11 @@ def report(proof: Proof, unit: Unit) -> str:
         f"line {line} calls o<{name}> of another file: its pockets and sections are not measured"
         for line, name in proof.unseen
     ]
-    return "\n\n".join([*pockets, *sections, *unseen, verdict])
+    rapids = [
+        paragraph(f"line {hit.line}: rapid", [], [], [collision_text(hit, unit)])
+        for hit in proof.collisions
+    ]
+    return "\n\n".join([*pockets, *sections, *rapids, *unseen, verdict])
 
 
 def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
@@ -206,6 +212,7 @@ def as_json(proof: Proof) -> str:
             "real": proof.subject.real is not None,
             "pockets": [pocket_json(facts, proof) for facts in proof.pockets],
             "sections": [section_json(facts, proof) for facts in proof.sections],
+            "rapids": [collision_json(hit) for hit in proof.collisions],
             "unseen": [{"line": line, "sub": name} for line, name in proof.unseen],
             "good": not proof.findings,
         },
@@ -266,6 +273,17 @@ def section_json(facts: SectionFacts, proof: Proof) -> dict:
         **pace_json(facts.pace, proof),
         "notes": list(section_notes(facts, proof.sections[0])),
         "findings": list(section_findings(facts, proof.polar_tolerance)),
+    }
+
+
+def collision_json(hit: Collision) -> dict:
+    """Return a rapid through material as plain values."""
+    return {
+        "line": hit.line,
+        "area": hit.area,
+        "from": hit.way[0].tolist(),
+        "to": hit.way[-1].tolist(),
+        "findings": [collision_text(hit)],
     }
 
 

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Rapids made by hand, through air and through material."""
+
+import numpy as np
+import pytest
+
+from g12.cli.blocks import Block
+from g12.cli.motion import follow, track
+from g12.cli.part import Part
+from g12.cli.programmed import Target
+from g12.cli.rapids import collisions
+from handmade import LIMITS, Hand, samples_of
+
+MILL = Part(turning=False)
+DIAMETERS = {1: 6.0}
+RINGS = [5, 9, 13, 17]  # of the tool's centre: the wall is at 20
+
+
+class Program(Hand):
+    """A hand that remembers which of its moves are pockets."""
+
+    def __init__(self):
+        super().__init__()
+        self.asked = []
+
+    def mill(self, rings=RINGS, depth=-3.0, **wanted):
+        first, place = len(self.moves), np.array(self.at[:3])
+        self.next_block().pocket(rings, depth)
+        about = {"radius": rings[-1] + 3.0, "cutter": 3.0, "cleared": 0.0, **wanted}
+        target = Target(self.block, "G12", "haas", place, np.eye(3), **about)
+        self.asked.append((Block(None, {}, (), (), {}, first, len(self.moves)), target))
+        return self.next_block()
+
+    def found(self, real=None):
+        path = track(MILL, self.moves, LIMITS)
+        run = follow(path, self.moves, real(path), 1.0) if real else None
+        return collisions(self.asked, self.moves, path, DIAMETERS, run)
+
+
+def start(z=2.0):
+    return Program().rapid(x=50, z=z)
+
+
+def test_a_retract_before_the_next_pocket_is_good():
+    assert start().mill().rapid(z=2).rapid(x=150).mill().rapid(z=2).found() == []
+
+
+def test_a_forgotten_retract_goes_through_the_wall():
+    program = start().mill().rapid(x=150).mill().rapid(z=2)
+    (hit,) = program.found()
+    assert hit.line == 3
+    assert hit.area == pytest.approx(6 * 80, rel=0.05)  # from one wall to beyond the other
+    assert hit.way[0] == pytest.approx((67.3, 0, -3), abs=0.6)
+
+
+def test_a_slanting_retract_through_the_wall_is_found():
+    assert [hit.line for hit in start().mill().rapid(x=150, z=2).found()] == [3]
+
+
+def test_a_rapid_inside_the_pocket_is_good():
+    assert start().mill().rapid(x=60, y=8).rapid(x=50, y=0).rapid(z=2).found() == []
+
+
+def test_a_rapid_through_the_core_is_found():
+    program = start().mill([17]).rapid(x=33).rapid(z=2)
+    (hit,) = program.found()
+    assert 6 * 8 < hit.area < 6 * 14.5  # the leads have cut some of the core
+
+
+def test_between_the_pockets_top_and_z0_there_is_air():
+    assert start(z=10).mill().rapid(z=1).rapid(x=150).found() == []
+    assert len(start(z=10).mill().rapid(z=-1).rapid(x=150).found()) == 1
+
+
+def test_a_pocket_that_is_not_below_z0_has_its_top_where_it_began():
+    program = start(z=10).mill(depth=5.0).rapid(z=7).rapid(x=150)
+    assert [hit.line for hit in program.found()] == [3]
+    assert start(z=10).mill(depth=5.0).rapid(z=10).rapid(x=150).found() == []
+
+
+def test_the_lowest_height_that_a_pocket_began_at_is_the_top():
+    program = start(z=30).mill(depth=5.0).rapid(z=10).rapid(x=150).mill(depth=5.0).rapid(z=10)
+    assert program.rapid(x=50).found() == []
+
+
+def test_going_deeper_in_the_same_place_is_good():
+    program = start().mill(depth=-2.0).mill(depth=-4.0).rapid(z=2).rapid(x=150)
+    assert program.found() == []
+
+
+def test_a_channel_that_was_cut_before_lets_a_rapid_through():
+    program = start().mill().line(x=150).mill().rapid(x=50).rapid(z=2)
+    assert program.found() == []
+
+
+@pytest.mark.parametrize(("bore", "count"), [(16.0, 0), (0.0, 1)])
+def test_a_bored_hole_is_no_material(bore, count):
+    program = Program().rapid(x=50, z=2).rapid(z=-3).mill([17], bore=bore)
+    assert len(program.rapid(x=60, y=2).found()) == count
+
+
+@pytest.mark.parametrize("shift", [{"inside": False}, {"axes": np.eye(3)[[2, 0, 1]]}])
+def test_cuts_without_a_wall_are_not_judged(shift):
+    program = start().mill().rapid(x=150)
+    program.asked = [(b, Target(**{**vars(t), **shift})) for b, t in program.asked]
+    assert program.found() == []
+
+
+def test_an_unknown_cutter_is_not_judged():
+    program = start().mill(cutter=0.0).rapid(x=150)
+    program.moves[:] = [move._replace(tool=7) for move in program.moves]
+    assert program.found() == []
+
+
+@pytest.mark.parametrize(("rings", "cuts"), [([17], True), (RINGS, False)])
+def test_a_run_that_rounds_the_corner_of_a_retract_is_found_if_it_cuts(rings, cuts):
+    program = start().mill(rings).rapid(z=2).rapid(x=150)
+
+    def rounded(path):
+        samples = samples_of(path, 6000)
+        leaving = samples.time > path.time[path.vertices(len(program.moves) - 1).start]
+        away = samples.axes["X"][leaving] - 50.0
+        samples.axes["Z"][leaving] = np.clip(-3.0 + away / 3, -3.0, 2.0)
+        return samples
+
+    assert bool(program.found(real=rounded)) is cuts
