@@ -14,12 +14,16 @@ from typing import NamedTuple
 
 from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
 
-from .emission import Action
+from . import host
+from .emission import BLOCK_END, Action
+from .errors import number
 from .polar.block import (
     COMPENSATION,
+    FEED,
     FORGET,
     G0,
     G1,
+    G2,
     G3,
     M_STATE,
     NO_CODE,
@@ -34,6 +38,7 @@ from .polar.block import (
     Place,
     action_text,
     comment_text,
+    may_fail,
     modes_after,
     stop_text,
 )
@@ -41,6 +46,9 @@ from .polar.contour import Contour
 from .program import Program
 
 PER_MINUTE, PER_REVOLUTION = 0, 2  # feed_mode
+ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
+MOTIONS = (G0, G1, G2, G3)
+MOST_FEED = 1e9  # program units per minute
 
 WORDS = [
     (letter, f"{letter.lower()}_flag", f"{letter.lower()}_number") for letter in "XCZIJRFSPQLE"
@@ -83,7 +91,7 @@ def modes_of(interp: object) -> Modes:
         incremental=interp.distance_mode == MODE_INCREMENTAL,
         per_revolution=interp.feed_mode == PER_REVOLUTION,
         feed=interp.feed_rate,
-        speed=interp.speed[0],
+        speed=host.spindle_speed(interp),
         motion=interp.motion_mode,
     )
 
@@ -95,6 +103,8 @@ class Collector:
         self.interp, self.rules, self.program = interp, rules, program
         self.parsed = interp.blocks[0]
         self.modes = modes_of(interp)
+        self._spindle = host.feed_spindle(interp)
+        self._speeds = [interp.speed[spindle] for spindle in range(interp.num_spindles)]
         self.contour = Contour(
             interp.current_x,
             interp.current_z,
@@ -103,6 +113,7 @@ class Collector:
             closing=rules.closing,
         )
         self.exact_lines: set[int] = set()  # of G9
+        self._moved = 0  # the line of the last move
         self._saved: dict[int, Modes] = {}  # by M70 and M73, at each call level
         self._restored_on_return: set[int] = set()
 
@@ -150,12 +161,32 @@ class Collector:
             self.interp.read(line.assignments)
             self.interp.execute(None)
 
-    def set_state(self, block: Block) -> None:
+    def set_state(self, line: Line, block: Block) -> None:
         """Let the modes of a block act, and those it saves or restores."""
         code = block.m[M_STATE]
         if code in STATE_CODES:
             self._state_code(code)
-        self.set_modes(modes_after(self.modes, block))
+        self.set_modes(modes_after(self.modes, block, self._speed(line, block)))
+
+    def _speed(self, line: Line, block: Block) -> float:
+        """Return the commanded speed of the spindle that feeds per revolution refer to."""
+        named = self._named_spindle(line)
+        count = self.interp.num_spindles
+        if not ALL_SPINDLES <= named < count:
+            raise self.refuse(f"${named}: this machine has {count} spindle{'s' * (count > 1)}")
+        if "S" in block.words:
+            for spindle in range(count) if named == ALL_SPINDLES else (named,):
+                self._speeds[spindle] = block.words["S"]
+        if block.g[FEED] != NO_CODE:
+            self._spindle = max(named, MAIN_SPINDLE)
+        return self._speeds[self._spindle]
+
+    def _named_spindle(self, line: Line) -> int:
+        """Return the value of a line's $ word: of the parsed block it cannot be asked."""
+        if not line.spindle:
+            return MAIN_SPINDLE
+        self.interp.read(f"C{line.spindle[1:]}")
+        return round(self.parsed.c_number)
 
     def action(self, line: Line, block: Block) -> None:
         """Keep what the block does besides motion."""
@@ -178,7 +209,9 @@ class Collector:
             if "#" in comment:
                 self.show_plane()
                 self.interp.read("")  # which renews #5420
-            self._keep(Action(self.program.place, comment_text(comment, self._parameter), None))
+            text = comment_text(comment, self._parameter)
+            modes = self.modes if may_fail(comment) else None
+            self._keep(Action(self.program.place, text, modes))
 
     def returned(self) -> None:
         """Restore what an M73 saved in subs that have ended."""
@@ -217,6 +250,9 @@ class Collector:
     ) -> None:
         """Add a move; the words are the program's, None where there is none."""
         contour, modes = self.contour, self.modes
+        if motion not in MOTIONS:
+            code = f"G{motion / 10:g}"
+            raise self.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
         if x is not None:
             x *= self.rules.x_scale
             if modes.incremental or "X" in relative:
@@ -227,11 +263,18 @@ class Collector:
             self._check_z(x, c, i, j)
             z += contour.z if modes.incremental else 0.0
         line = self.program.place
+        self._keep_apart(line)
         if G1 < motion <= G3:
             turn = 1 if motion == G3 else -1
             contour.arc(turn, x, c, z, i=i, j=j, radius=r, line=line, feed=self._feed())
         else:
             contour.line(x, c, z, line=line, feed=self._feed() if motion else self._rapid_feed())
+
+    def _keep_apart(self, line: int) -> None:
+        """Mark the end of a block where the next one, in a loop, is on the same line."""
+        if line == self._moved:
+            self._keep(Action(line, BLOCK_END, None))
+        self._moved = line
 
     def _check_z(self, *others: float | None) -> None:
         if not self.rules.z_with_x and any(other is not None for other in others):
@@ -240,6 +283,8 @@ class Collector:
     def _feed(self) -> float:
         """Return the feed along the part in program units per minute."""
         modes = self.modes
+        if modes.feed > MOST_FEED:
+            raise self.refuse(f"F{number(modes.feed)} is no feed: at most {number(MOST_FEED)}")
         if not modes.per_revolution:
             return modes.feed
         if not modes.speed:
@@ -249,7 +294,7 @@ class Collector:
     def _rapid_feed(self) -> float:
         feed = self.rules.rapid_feed
         if feed is None:
-            raise self.refuse(f"G0 is refused: {REASON_OF_G[G0]}")
+            raise self.refuse(f"G0 is refused (it is still active): {REASON_OF_G[G0]}")
         return feed
 
     def _compensate(self, side: int) -> None:

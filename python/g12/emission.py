@@ -5,8 +5,7 @@ While pieces go out the interpreter is in G90 G94 with C unwrapped, and blends t
 `Emission.release` puts everything back to what the program commanded; so it is wherever the
 program can see it, or the machine waits.
 
-Moves in front of a section are the program's own. LinuxCNC stops between a rapid and a feed move,
-but a feed move would be blended into the first piece: a dwell of no time stops it.
+A move in front of the section would be blended into its first piece: a dwell of no time stops it.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from collections.abc import Container, Sequence
 from typing import NamedTuple
 
 from .polar import Run
-from .polar.block import G0, G1, Modes, Place, decimal
+from .polar.block import G1, Modes, Place, decimal
 
 PER_REVOLUTION = 2  # feed_mode
 PATH_ACTIVE = 11  # index into active_g_codes
@@ -23,12 +22,14 @@ G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
+BLOCK_END = ""
 
 
 class Action(NamedTuple):
     """A block that is no motion, in its place between the moves.
 
-    ``modes`` are those in force when the tool gets there, None for a comment, which needs none.
+    ``modes`` are those in force when the tool gets there, None for a comment that needs none.
+    The text may be `BLOCK_END`: that is all the action tells then.
     ``level`` is the call level whose saved state an M70 to M72 means, None for other blocks.
     """
 
@@ -116,7 +117,7 @@ class Emission:
         self.path = PathControl(interp, f"G64P{decimal(blending)}Q0")
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
-        self._feeding = interp.motion_mode != G0
+        self._begun = False
 
     def run(self, steps: Sequence[Run | Action], modes: Modes, exact_lines: Container[int]) -> None:
         """Hand over all steps, and release the interpreter in ``modes``.
@@ -145,10 +146,10 @@ class Emission:
         interp.motion_mode = modes.motion
 
     def _stop_in_front(self, steps: Sequence[Run | Action]) -> None:
-        if steps and self._feeding and not self.path.exact:
+        if steps and not self._begun and not self.path.exact:
             self.interp.sequence_number = steps[0].line
             self.interp.execute(STOP_HERE)
-        self._feeding = False
+        self._begun = True
 
     def _take_over(self) -> None:
         interp = self.interp
@@ -192,6 +193,8 @@ class Emission:
 
     def _act(self, action: Action) -> None:
         """Execute a block in its place."""
+        if action.text == BLOCK_END:
+            return
         self.interp.sequence_number = action.line
         if action.modes is None:
             self._execute(action)

@@ -63,7 +63,6 @@ M_GROUPS = 11
 HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
 DIAMETER_ACTIVE = 15  # index into active_g_codes
 G7 = 70
-SPINDLES = 8  # most that LinuxCNC has
 INCREMENTAL = 1  # distance_mode and ijk_distance_mode: 0 absolute, 1 incremental
 INVERSE_TIME, PER_REVOLUTION = 1, 2  # feed_mode
 INCH = 1  # length_units
@@ -292,12 +291,17 @@ def snapshot(interp: object) -> Context:
 
 
 def spindle_speed(interp: object) -> float:
-    """Return the commanded speed of the spindle in use.
+    """Return the commanded speed of the spindle in use."""
+    return interp.speed[feed_spindle(interp)]
 
-    LinuxCNC leaves the number of that spindle unset until a block names one with $.
+
+def feed_spindle(interp: object) -> int:
+    """Return the number of the spindle in use, to which feeds per revolution refer.
+
+    LinuxCNC leaves it unset until a block names one with $.
     """
     spindle = interp.active_spindle
-    return interp.speed[spindle if 0 <= spindle < SPINDLES else 0]
+    return spindle if 0 <= spindle < interp.num_spindles else 0
 
 
 def per_revolution(interp: object) -> bool:

@@ -7,11 +7,16 @@ from collections.abc import Container, Mapping
 from typing import NamedTuple
 
 from .context import MM_PER_INCH
-from .errors import Refusal
+from .errors import Refusal, number
 from .settings import section_entries
 
 NO_LIMIT = 1e99
-DEFAULT_SPEED = 1.0  # of an axis without MAX_VELOCITY or MAX_ACCELERATION
+AXIS_KEYS = (  # with what LinuxCNC takes where there is none
+    ("MIN_LIMIT", -NO_LIMIT),
+    ("MAX_LIMIT", NO_LIMIT),
+    ("MAX_VELOCITY", 1.0),
+    ("MAX_ACCELERATION", 1.0),
+)
 INCHES = ("in", "inch", "imperial")
 
 
@@ -36,18 +41,25 @@ def coordinates_of(text: str) -> set[str]:
 
 
 def axes_of(text: str) -> dict[str, Axis]:
-    """Return the axes X, Z and C."""
-    return {letter: _axis(dict(section_entries(text, f"AXIS_{letter}"))) for letter in "XZC"}
+    """Return the axes X, Z and C; raise Refusal for a value that no axis can have."""
+    return {letter: _axis(f"AXIS_{letter}", text) for letter in "XZC"}
 
 
-def _axis(entries: Mapping[str, str]) -> Axis:
-    keys = (
-        ("MIN_LIMIT", -NO_LIMIT),
-        ("MAX_LIMIT", NO_LIMIT),
-        ("MAX_VELOCITY", DEFAULT_SPEED),
-        ("MAX_ACCELERATION", DEFAULT_SPEED),
-    )
-    return Axis(*(float(entries.get(key, f"{default}").split()[0]) for key, default in keys))
+def _axis(section: str, text: str) -> Axis:
+    entries = dict(section_entries(text, section))
+    low, high, *speeds = (_number(section, entries, *key) for key in AXIS_KEYS)
+    for (key, _), speed in zip(AXIS_KEYS[2:], speeds):
+        if speed <= 0.0:
+            raise Refusal(f"[{section}] {key} = {number(speed)}: must be above 0")
+    return Axis(low, high, *speeds)
+
+
+def _number(section: str, entries: Mapping[str, str], key: str, default: float) -> float:
+    words = entries.get(key, "").split() or [f"{default}"]
+    try:
+        return float(words[0])
+    except ValueError:
+        raise Refusal(f"[{section}] {key} = {words[0]}: must be a number") from None
 
 
 def remaps_of(text: str) -> dict[str, dict[str, str]]:

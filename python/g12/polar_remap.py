@@ -15,7 +15,7 @@ from interpreter import INTERP_OK, MODE_ABSOLUTE
 
 from . import host, polar
 from .collector import Rules, block_of
-from .context import MM_PER_INCH, YZ
+from .context import YZ
 from .emission import Emission
 from .errors import Refusal, number
 from .frame import Frame
@@ -38,6 +38,8 @@ LEAST_X_MM = 0.001  # a smaller part in X makes LinuxCNC 2.9 get the feed of a p
 CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
 KINEMATICS_PARAMETER = "_kins_type"  # an interpreter that has it has a G12.1 of its own
 OTHER_WORDS = "abdhktuvwy"
+DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could read them
+G96 = 960
 
 
 def ini_text() -> str:
@@ -47,8 +49,7 @@ def ini_text() -> str:
 
 
 INI = ini_text()
-REMAPS, AXES, MILLIMETRES = remaps_of(INI), axes_of(INI), millimetres_of(INI)
-COORDINATES = coordinates_of(INI)
+REMAPS, COORDINATES, MILLIMETRES = remaps_of(INI), coordinates_of(INI), millimetres_of(INI)
 
 
 def check_at_start() -> None:
@@ -84,6 +85,9 @@ def polar_on(self, **words) -> Iterator[int]:
 @host.handler
 def polar_off(self, **words) -> int:
     """Do nothing: the handler of G13.1 outside a section, where it is a safety line."""
+    block = self.blocks[self.remap_level]
+    if any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS):
+        raise Refusal(f"{host.code_of_block(self)} stands alone in its block")
     return INTERP_OK
 
 
@@ -112,6 +116,14 @@ def check_start(interp: object, place: Place) -> None:
         (not found.compensated, f"{code} needs G40: compensation is switched on inside"),
         (not found.inverse_time, f"{code} needs G94 or G95, not G93"),
         (found.plane != YZ, f"{code} needs G18 or G17, not G19"),
+        (
+            G96 not in interp.active_g_codes,
+            f"{code} needs G97: with G96 the speed would change with X",
+        ),
+        (
+            not found.offset_pending,
+            f"{code} needs a move after G40: the tool is still beside the programmed point",
+        ),
         (interp.rotation_xy == 0, f"{code} needs an unrotated work offset (G10 L2 R0)"),
         (found.x > 0, above),
     )
@@ -138,7 +150,8 @@ def stands_alone(interp: object) -> bool:
 
 def setup_of_section(interp: object, code: str) -> Setup:
     """Return what a section needs to know that begins with the block being remapped."""
-    units, off_code = program_units(interp), code_switching_off(code)
+    units, off_code = host.program_units_per_machine_unit(interp), code_switching_off(code)
+    axes = axes_of(INI)
     return Setup(
         rules=rules_of_section(interp, code),
         off_code=off_code,
@@ -148,12 +161,12 @@ def setup_of_section(interp: object, code: str) -> Setup:
         plan=polar.Settings(
             tolerance=tolerance() * units,
             least_x=LEAST_X_MM * units / MILLIMETRES,
-            x_acceleration=AXES["X"].acceleration * units,
-            c_acceleration=AXES["C"].acceleration,
-            c_speed=AXES["C"].velocity * 60,
+            x_acceleration=axes["X"].acceleration * units,
+            c_acceleration=axes["C"].acceleration,
+            c_speed=axes["C"].velocity * 60,
             pole_refused=host.SETTINGS.polar_pole == "refuse",
         ),
-        travel=Travel(AXES, scales_of_axes(interp)),
+        travel=Travel(axes, scales_of_axes(interp)),
         remapped={
             int(name[1:]): "ngc" in options for name, options in REMAPS.items() if name[0] == "M"
         },
@@ -162,7 +175,7 @@ def setup_of_section(interp: object, code: str) -> Setup:
 
 def rules_of_section(interp: object, code: str) -> Rules:
     """Return how a section reads its words."""
-    settings, units = host.SETTINGS, program_units(interp)
+    settings, units = host.SETTINGS, host.program_units_per_machine_unit(interp)
     g7 = host.diameter_mode(interp)
     diameter = g7 if settings.polar_x == "inherit" else settings.polar_x == "diameter"
     return Rules(
@@ -183,15 +196,10 @@ def emission_of_section(interp: object, code: str) -> Emission:
         interp,
         code,
         x_factor=2.0 if host.diameter_mode(interp) else 1.0,
-        blending=tolerance() / 2 * program_units(interp),
+        blending=tolerance() / 2 * host.program_units_per_machine_unit(interp),
         absolute=MODE_ABSOLUTE,
         canon=emccanon,
     )
-
-
-def program_units(interp: object) -> float:
-    """Return the factor from lengths of the INI file to the program's units."""
-    return MILLIMETRES / MM_PER_INCH if host.snapshot(interp).inch else MILLIMETRES
 
 
 def tolerance() -> float:
@@ -221,7 +229,7 @@ def number_of_code(code: str) -> int:
 
 def scales_of_axes(interp: object) -> dict[str, Scale]:
     """Return how the program's X, Z and C become machine coordinates."""
-    factor, tool = 1 / program_units(interp), interp.tool_offset
+    factor, tool = 1 / host.program_units_per_machine_unit(interp), interp.tool_offset
     x = interp.origin_offset_x + interp.axis_offset_x + tool.x
     z = interp.origin_offset_z + interp.axis_offset_z + tool.z
     c = interp.CC_origin_offset + interp.CC_axis_offset + tool.c

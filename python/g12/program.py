@@ -14,7 +14,9 @@ from bisect import bisect_right
 from itertools import accumulate
 from typing import NamedTuple
 
+INTERP_OK = 0
 NO_MOTION = -1
+NO_REPEATS = 0  # L of an M98
 MOVING = ("call", "endsub", "return")  # O-words that always move the interpreter in its file
 SHORT = 200  # characters: every LinuxCNC reads longer lines than that
 SKIPPED_OVER = "g12_skipped_over"  # the name of a sub that never exists in a file
@@ -109,6 +111,8 @@ class Program:
             self.catch_up()
         interp, line = self.interp, self.line
         self.parse()
+        if kind == "call" and interp.blocks[0].l_number == NO_REPEATS:
+            return INTERP_OK  # LinuxCNC 2.9 would count a level that nothing ends
         interp.blocks[0].offset = self.source.starts[line - 1]
         status = interp.execute(None)
         if kind in MOVING or interp.sequence_number != line:

@@ -23,6 +23,7 @@ from .polar.block import (
     M30,
     M_STOP,
     MOTION,
+    WAIT_FOR_INPUT,
     Block,
     Line,
     Place,
@@ -36,7 +37,8 @@ from .polar.block import (
 from .program import MOVING, Program
 from .travel import Travel
 
-WAITING_GROUP, WAIT_FOR_INPUT = 5, 66
+WAITING_GROUP = 5
+MOST_LINES = 1_000_000  # LinuxCNC is deaf to an abort while a section is read
 
 
 class Setup(NamedTuple):
@@ -68,7 +70,7 @@ class Section:
         self.blocks = Collector(interp, setup.rules, program)
         self._modes_found = self.blocks.modes
         self._remember_machine()
-        self._skipping = self._finished = False
+        self._skipping = self._finished = self._handing_over = False
         self._skipped_for = ""  # the O-word whose lines are skipped
 
     def run(self) -> Iterator[int]:
@@ -85,7 +87,9 @@ class Section:
 
     def _read(self) -> Iterator[int]:
         program, plain_line = self.program, self.blocks.plain_line
-        while not self._finished:
+        for _ in range(MOST_LINES):
+            if self._finished:
+                return
             raw = program.take()
             if raw is None:
                 self._end_of_file()
@@ -93,6 +97,9 @@ class Section:
                 yield from self._line(split_line(raw))
             elif not self._skipping:
                 plain_line(raw)
+        raise self._place().refuse(
+            f"{MOST_LINES} lines were read and {self.setup.off_code} did not come: an endless loop?"
+        )
 
     def _place(self) -> Place:
         return Place(self.setup.rules.code, self.program.place)
@@ -119,6 +126,7 @@ class Section:
             self.program.parse()
         block = block_of(self.blocks.parsed)
         if block.g[MOTION] == self.setup.off:
+            self.blocks.set_parameters(line)
             self._finish(block)
         else:
             self._check(block)
@@ -128,7 +136,7 @@ class Section:
         """Let a block act, in the order in which the interpreter executes one."""
         blocks = self.blocks
         blocks.set_parameters(line)
-        blocks.set_state(block)
+        blocks.set_state(line, block)
         if block.m[WAITING_GROUP] == WAIT_FOR_INPUT:
             yield from self._wait_for_input(action_text(block, line))
         elif any(self.setup.remapped.get(code) for code in block.m):
@@ -178,7 +186,8 @@ class Section:
 
     def _check_done(self, status: int) -> None:
         interp, contour = self.interp, self.blocks.contour
-        if status or (interp.current_x, interp.CC_current) != (contour.x, contour.c):
+        stands = interp.current_x, interp.CC_current, interp.current_z
+        if status or stands != (contour.x, contour.c, contour.z):
             raise self._place().refuse("what is called here moves or waits by itself")
 
     def _see_skipping(self, line: Line) -> None:
@@ -226,7 +235,9 @@ class Section:
         plan = polar.plan(blocks.contour, self.setup.plan, c=self.setup.c)
         self._check_travel(plan)
         self._show_machine()
+        self._handing_over = True
         self.emission.run(plan.steps, blocks.modes, blocks.exact_lines)
+        self._handing_over = False
         self._remember_machine()
         self._modes_found = blocks.modes
         return plan
@@ -243,7 +254,12 @@ class Section:
     # The interpreter's own view of the machine.
 
     def _put_back(self) -> None:
-        """Leave the interpreter as it was when the machine moved last."""
+        """Leave the interpreter as it was when the machine moved last.
+
+        A block that fails between the moves finds, and leaves, what the program commanded so far.
+        """
+        if self._handing_over:
+            return
         self._show_machine()
         self.blocks.set_modes(self._modes_found)
 

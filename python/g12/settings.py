@@ -12,7 +12,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from .errors import Refusal
+from .errors import Refusal, number
 
 SECTION = "G12"
 
@@ -38,32 +38,33 @@ class Choice:
 
 @dataclass(frozen=True)
 class Number:
-    """A setting that is a finite number, at least (or above) zero."""
+    """A setting that is a finite number, from ``least`` on; without one, above zero."""
 
     default: float | None
-    zero_allowed: bool
+    least: float | None = None
 
     def read(self, text: str) -> float:
         """Return the number, or raise ValueError."""
         value = float(text.replace("_", " "))  # Python alone would take 1_0 for 10
-        if not math.isfinite(value) or value < 0 or (value == 0 and not self.zero_allowed):
+        enough = value > 0 if self.least is None else value >= self.least
+        if not (enough and math.isfinite(value)):
             raise ValueError(text)
         return value
 
     @property
     def legal(self) -> str:
         """The legal values, for the start-up error."""
-        return "a number from 0" if self.zero_allowed else "a number above 0"
+        return "a number above 0" if self.least is None else f"a number from {number(self.least)}"
 
 
 TABLE: dict[str, Choice | Number] = {
     "CLEARING": Choice("rings", ("rings", "spiral")),
-    "YASNAC_TRAVERSE": Number(0.0, zero_allowed=True),
+    "YASNAC_TRAVERSE": Number(0.0, least=0.0),
     "POLAR_X": Choice("inherit", ("inherit", "diameter", "radius")),
     "POLAR_Z": Choice("refuse", ("refuse", "allow")),
     "POLAR_G0": Choice("refuse", ("refuse", "feed")),
-    "POLAR_G0_FEED": Number(None, zero_allowed=False),
-    "POLAR_TOLERANCE": Number(None, zero_allowed=False),
+    "POLAR_G0_FEED": Number(None),
+    "POLAR_TOLERANCE": Number(None, least=0.00001),  # less than any machine's step
     "POLAR_POLE": Choice("rotate", ("rotate", "refuse")),
 }
 

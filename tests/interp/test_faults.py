@@ -15,6 +15,17 @@ def broken(*_, **__):
     raise KeyError("wire")
 handlers.plan_pocket = polar.plan = broken
 """
+SHORT = "from g12 import section\nsection.MOST_LINES = 99\n"
+
+
+def test_an_endless_loop_ends(tmp_path):
+    toplevel = tmp_path / "toplevel.py"
+    toplevel.write_text(TOPLEVEL.format(python=SIM.parents[1] / "python") + SHORT)
+    program = ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "o1 while [1]", "o1 endwhile", "G13.1", "M2"]
+    with Tracer(SIM / "lathe_mm.ini", overrides={"PYTHON": {"TOPLEVEL": str(toplevel)}}) as tracer:
+        error = tracer.trace_text(program).error
+    assert error.text.endswith(": 99 lines were read and G13.1 did not come: an endless loop?")
+    assert error.text.startswith(f"G12.1 line {error.line}: ")
 
 
 @pytest.mark.parametrize(

@@ -413,6 +413,36 @@ def test_off_outside_the_mode_does_nothing(lathe):
 # ---------------------------------------------------------------- saved modes
 
 
+@pytest.mark.parametrize("name", ["#<n>", "[#<n>+0]", "#<_g>", "[abs[-#<n>]]", "[#<n>]"])
+def test_subs_called_by_a_computed_name(lathe, name):
+    sub = ["o100 sub", "G1 U-2", "o100 endsub", "#<n>=100", "#<_g>=100"]
+    traced = lathe.trace_text([*sub, *section("G1 X12", f"o{name} call", "C5")])
+    assert ends(traced) == [(12, 0), (10, 0), (10, 5)]
+
+
+def test_a_sub_called_no_times(lathe):
+    sub = ["o100 sub", "G1 U-2", "o100 endsub"]
+    traced = lathe.trace_text([*sub, *section("G1 X12", "M98 P100 L0", "C5", after=["G0 Z9"])])
+    assert ends(traced) == [(12, 0), (12, 5)]
+    assert traced.moves[-1].end[2] == 9
+
+
+def test_an_assignment_beside_the_code_that_ends_the_section(lathe):
+    program = ["#1=3", *section("G1 X[#1+12]", after=["G0 X[#1]"])]
+    program[program.index("G13.1")] = "G13.1 #1=4"
+    assert lathe.trace_text(program).moves[-1].end[0] == pytest.approx(4)
+
+
+def test_the_spindle_in_use_gives_the_feed_per_revolution():
+    overrides = {"TRAJ": {"SPINDLES": "2"}}
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
+        body = ["G99 F.1 G1 X15", "S3000 $1", "X14", "S50 $0", "X13"]
+        traced = lathe.trace_text(section(*body, before=["M3 S100 $0", "M3 S2000 $1"]))
+        wrong = lathe.trace_text(section("S100 $2"))
+    assert [round(move.feed) for move in feed_moves(traced)] == [10, 10, 5]
+    assert wrong.error.text == "G12.1 line 6: $2: this machine has 2 spindles"
+
+
 def test_modes_saved_and_restored(lathe):
     body = ["G1 X12", "M70", "G91 F50", "X1", "M72", "X9", "M71"]
     traced = cut(lathe, *body)

@@ -39,8 +39,8 @@ def refused(lathe, program):
 INSIDE = [
     (
         "G0 X12",
-        "G0 is refused: a rapid leaves the contour; use G1 with a high F, "
-        "or set [G12] POLAR_G0 = feed",
+        "G0 is refused: a rapid leaves the contour. Is the section's end missing above? "
+        "Else use G1 with a high F, or set [G12] POLAR_G0 = feed",
     ),
     ("G10 L2 P1 X1", f"G10 is refused: {OFFSETS}"),
     ("G17.1", "G17.1 is refused: the section's plane is X-C"),
@@ -180,6 +180,7 @@ def test_an_error_in_a_called_sub(lathe):
 ENTRY = [
     ("G93", "G12.1", "G12.1 needs G94 or G95, not G93"),
     ("G19", "G12.1", "G12.1 needs G18 or G17, not G19"),
+    ("G96 D500 S100 M3", "G12.1", "G12.1 needs G97: with G96 the speed would change with X"),
     ("G42 D1", "G12.1", "G12.1 needs G40: compensation is switched on inside"),
     ("G10 L2 P1 R5", "G12.1", "G12.1 needs an unrotated work offset (G10 L2 R0)"),
     ("G92 X0", "G12.1", "G12.1 needs the tool at X above zero, not at 0 (radius)"),
@@ -198,6 +199,44 @@ def test_refused_entry(lathe, before, block, reason):
     assert traced.error.text == f"G12.1 line 6: {reason}"
     assert traced.error.line == 6
     assert not [move for move in traced.moves if move.line > 5]
+
+
+def test_the_tool_still_beside_the_contour_after_g40(lathe):
+    before = ["G18 G0 X60 Z50", "G42 D1 G1 X30 Z50", "X30 Z5", "G40"]
+    traced = lathe.trace_text(section("G1 C12", before=before))
+    reason = "G12.1 needs a move after G40: the tool is still beside the programmed point"
+    assert traced.error.text == f"G12.1 line 9: {reason}"
+
+
+@pytest.mark.parametrize("cycle", ["G17 G81 X20 Z4 R5", "G17 G73 X20 Z4 R5 Q1", "G38.3 Z4"])
+def test_bare_words_of_a_code_that_is_no_contour(lathe, cycle):
+    traced = lathe.trace_text(section("X15", before=[cycle]))
+    code = next(word for word in cycle.split() if word in ("G81", "G73", "G38.3"))
+    assert traced.error.text == (
+        f"G12.1 line 7: {code} is active: the block needs G1, G2 or G3 of its own"
+    )
+    assert not [move for move in traced.moves if move.line > 6]
+
+
+@pytest.mark.parametrize("words", ["X7", "C90", "K3", "D5", "R2", "I1"])
+def test_words_beside_the_code_that_ends_no_section(lathe, words):
+    traced = lathe.trace_text([FIRST, f"G13.1 {words}", "M2"])
+    assert traced.error.text == "G13.1 stands alone in its block"
+
+
+@pytest.mark.parametrize(
+    ("block", "reason"),
+    [
+        ("X2000000", "X2000000 is no length: at most 1000000"),
+        ("C-1" + 180 * "0", "C-1e+180 is no length: at most 1000000"),
+        ("G2 X10 R10000000", "R10000000 is no length: at most 1000000"),
+        ("G2 I5000000", "I5000000 is no length: at most 1000000"),
+        ("X10 F" + "9" * 20, "F1e+20 is no feed: at most 1000000000"),
+    ],
+)
+def test_numbers_that_can_only_be_a_mistake(lathe, block, reason):
+    text, line = refused(lathe, section("G1 X12", block))
+    assert (text, line) == (f"G12.1 line 7: {reason}", 7)
 
 
 def test_a_machine_without_a_c_axis():

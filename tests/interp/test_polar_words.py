@@ -262,13 +262,26 @@ def test_path_control_is_given_back_or_stays_as_commanded(lathe, commanded, insi
         assert traced.modes.blending == pytest.approx(blending)
 
 
+SPY = """\
+import sys
+sys.path.insert(0, "{python}")
+import remap
+from g12.emission import PathControl
+within = PathControl.within = getattr(PathControl, "within", PathControl.inside)  # loaded twice
+def spied(self):
+    within(self)
+    self.interp.params[7] = self.interp.active_settings[3]
+PathControl.inside = spied
+"""
+
+
 @pytest.mark.parametrize(("units", "tolerance"), [("G21", 0.0025), ("G20", 0.0025 / INCH)])
-def test_pieces_are_blended_with_half_the_tolerance(lathe, units, tolerance):
-    program = section(
-        "G1 X.8 C.1", "(py,this.params[7] = this.active_settings[3])", "X.7", "C.2",
-        first=FIRST.replace("G21", units), start="G0 X1 Z0 C0",
-    )  # fmt: skip
-    assert lathe.trace_text(program, ask=[7]).numbered[7] == pytest.approx(tolerance)
+def test_pieces_are_blended_with_half_the_tolerance(tmp_path, units, tolerance):
+    toplevel = tmp_path / "toplevel.py"
+    toplevel.write_text(SPY.format(python=SIM.parents[1] / "python"))
+    program = section("G1 X7 C3", "X2 C5", first=FIRST.replace("G21", units), start="G0 X8 Z0 C0")
+    with Tracer(SIM / "lathe_mm.ini", overrides={"PYTHON": {"TOPLEVEL": str(toplevel)}}) as lathe:
+        assert lathe.trace_text(program, ask=[7]).numbered[7] == pytest.approx(tolerance)
 
 
 @pytest.mark.parametrize(

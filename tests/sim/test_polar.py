@@ -210,10 +210,24 @@ def test_single_step_goes_block_by_block(lathe):
     assert len(stops) < 400
 
 
-def test_a_feed_move_in_front_of_the_section_does_not_cut_its_first_corner(lathe):
-    run = lathe.run_text(section("C10", before=["G64", "G1 X14 F3000"]))
+@pytest.mark.parametrize("standing", ["(no)", "G0", "G0 C0"])
+def test_a_feed_move_in_front_of_the_section_does_not_cut_its_first_corner(lathe, standing):
+    run = lathe.run_text(section("G1 C10", before=["G64", "G1 X14 F3000", standing]))
     assert run.error is None
     assert np.hypot(*(Cut(run).all_points - [14, 0]).T).min() < 1e-4
+
+
+@pytest.mark.parametrize("stop", ["(abort,enough)", "(py,raise ValueError)"])
+def test_a_comment_that_stops_the_program_leaves_the_programs_modes(stop):
+    overrides = {"AXIS_C": {"WRAPPED_ROTARY": "1"}}
+    with Machine(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
+        run = lathe.run_text(section("G1 X2", "G2 I-1", stop, "G1 X3", before=["G64"], feed="F77"))
+        assert run.error is not None
+        modes = lathe.stat().modes
+        assert modes.feed == pytest.approx(77)
+        assert "G64" in modes.gcodes
+        lathe.mdi("G0 C370")
+        assert "wrapped" in lathe.errors()[0].text.lower()
 
 
 def test_feed_override(lathe):

@@ -110,6 +110,12 @@ def test_parts_of_a_line():
         ("M099", "return"),
         ("O200", "program"),
         ("o<x> return [1]", "return"),
+        ("o#<n> call", "call"),
+        ("o#<_global n> call [#<n>] [1]", "call"),
+        ("o[#<n>+1] if [1]", "if"),
+        ("o abs[#1] call", "call"),
+        ("o##1 call", "call"),
+        ("o[atan[1]/[2]] repeat [2]", "repeat"),
         ("M980", ""),
         ("M3", ""),
         ("G1 X1", ""),
@@ -158,10 +164,43 @@ def test_g0_is_accepted_where_it_is_a_feed():
         check_block(block(g={1: 0}), False, HERE)
 
 
+@pytest.mark.parametrize(
+    ("code", "words", "reason"),
+    [
+        (62, {}, "M62 needs P, the number of the output"),
+        (65, {"P": -1.0}, "M65 needs P, the number of the output"),
+        (67, {"Q": 1.0}, "M67 needs E, the number of the output"),
+        (68, {"E": -1.0, "Q": 1.0}, "M68 needs E, the number of the output"),
+        (66, {}, "M66 needs either P or E, the number of the input"),
+        (66, {"P": 0.0, "E": 0.0}, "M66 needs either P or E, the number of the input"),
+        (66, {"E": 0.0, "L": 3.0, "Q": 1.0}, "M66 needs L0 with E: only a digital input"),
+        (66, {"P": 0.0, "L": 3.0}, "M66 needs Q above zero, the longest wait in seconds"),
+        (66, {"P": 0.0, "L": 5.0, "Q": 1.0}, "M66 needs L from 0 to 4"),
+    ],
+)
+def test_arguments_are_checked_before_anything_moves(code, words, reason):
+    with pytest.raises(Refusal, match=re.escape(f"G12.1 line 7: {reason}")):
+        check_block(block(m={5: code}, **words), False, HERE)
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        (62, {"P": 0.0}),
+        (67, {"E": 0.0, "Q": -1.0}),
+        (66, {"P": 1.0}),
+        (66, {"E": 0.0, "L": 0.0}),
+        (66, {"P": 0.0, "L": 3.0, "Q": 0.5}),
+    ],
+)
+def test_arguments_that_linuxcnc_takes(code, words):
+    check_block(block(m={5: code}, **words), False, HERE)
+
+
 def test_modes_act_as_they_are_read():
-    after = modes_after(MODES, block(g={1: 20, 3: 910}, F=5.0, S=7.0))
+    after = modes_after(MODES, block(g={1: 20, 3: 910}, F=5.0), 7.0)
     assert after == Modes(True, False, 5.0, 7.0, 20)
-    assert modes_after(after, block()) == after
+    assert modes_after(after, block(), 7.0) == after
 
 
 @pytest.mark.parametrize(
@@ -174,7 +213,7 @@ def test_modes_act_as_they_are_read():
     ],
 )
 def test_feed_modes(codes, words, expected):
-    after = modes_after(MODES, block(g=codes, **words))
+    after = modes_after(MODES, block(g=codes, **words), 500.0)
     assert (after.per_revolution, after.feed) == expected
 
 
@@ -185,6 +224,8 @@ def test_feed_modes(codes, words, expected):
         ({"g": {0: 40}, "P": 0.25}, "G4P0.25"),
         ({"g": {1: 10, 13: 640}, "P": 0.01, "X": 1.0}, "G64P0.01"),
         ({"m": {7: 3, 8: 8}, "S": 1000.0}, "M3M8S1000"),
+        ({"m": {7: 19}, "R": 90.0, "Q": 1.0}, "M19Q1R90"),
+        ({"g": {1: 20}, "m": {8: 8}, "R": 9.0, "X": 1.0}, "M8"),
         ({"m": {4: 0}}, ""),
         ({"m": {7: 70}}, ""),
         ({"m": {5: 66}, "P": 1.0, "L": 3.0, "Q": 1e-5}, "M66P1Q0.00001L3"),

@@ -3,7 +3,7 @@
 
 import pytest
 
-from g12.emission import Action, Emission
+from g12.emission import BLOCK_END, STOP_HERE, Action, Emission
 from g12.errors import Refusal
 from g12.polar import Run
 from g12.polar.block import Modes
@@ -31,13 +31,16 @@ class Interpreter:
         self.call_level, self.motion_mode, self.distance_mode = 1, 0, "G91"
         self.current_y = self.AA_current = self.BB_current = 0.0
         self.u_current = self.v_current = self.w_current = 0.0
-        self.done, self.lines, self.wrapped, self.levels = [], [], [], []
+        self.done, self.lines, self.wrapped, self.levels, self.stops = [], [], [], [], []
         self.status = 0
 
     def read(self, text):
         self._read = text
 
     def execute(self, text):
+        if text == STOP_HERE:
+            self.stops.append(self.sequence_number)
+            return 0
         self.done.append(self._read if text is None else text)
         self.lines.append(getattr(self, "sequence_number", None))
         self.wrapped.append(self.c_axis_wrapped)
@@ -78,12 +81,15 @@ def is_move(what):
     return what[0] == "X" or (isinstance(what, tuple) and what[0] != "F")
 
 
-def handed_over(steps, interp=None, modes=MODES, exact=(), x_factor=1.0):
-    interp = interp or Interpreter()
-    emission = Emission(
+def emission_of(interp, x_factor=1.0):
+    return Emission(
         interp, "G12.1", x_factor=x_factor, blending=0.0025, absolute="G90", canon=Canon(interp)
     )
-    emission.run(steps, modes, exact)
+
+
+def handed_over(steps, interp=None, modes=MODES, exact=(), x_factor=1.0):
+    interp = interp or Interpreter()
+    emission_of(interp, x_factor).run(steps, modes, exact)
     return interp
 
 
@@ -99,13 +105,18 @@ def test_pieces_run_under_g64_with_a_tolerance_and_the_old_one_comes_back():
     assert handed_over([run()]).done == [SMOOTH, FIRST, *NEXT, OLD, *RELEASED]
 
 
-def test_a_feed_move_in_front_of_the_section_is_not_blended_into_it():
-    for path, done in ((640, ["G4P0"]), (610, []), (611, [])):
-        interp = Interpreter(path=path)
-        interp.motion_mode = 10
-        expected = handed_over([run()], Interpreter(path=path)).done
-        assert handed_over([run()], interp).done == [*done, *expected]
-    assert interp.lines[0] == 7
+@pytest.mark.parametrize(("path", "stops"), [(640, True), (610, False), (611, False)])
+def test_a_move_in_front_of_the_section_is_not_blended_into_it(path, stops):
+    interp = handed_over([run()], Interpreter(path=path))
+    assert interp.stops == [7] * stops
+
+
+def test_the_second_part_of_a_section_begins_without_a_stop():
+    interp = Interpreter()
+    emission = emission_of(interp)
+    for _ in range(2):
+        emission.run([run()], MODES, ())
+    assert interp.stops == [7]
 
 
 def test_a_programmed_tolerance_is_kept():
@@ -203,6 +214,13 @@ def test_saved_state_is_that_of_its_call_level():
     interp = handed_over([Action(8, "M70", MODES, level=3)])
     assert interp.levels[interp.done.index("M70")] == 3
     assert interp.call_level == 1
+
+
+def test_a_block_ends_where_it_is_marked():
+    steps = [run(pieces=LINE[:1]), Action(7, BLOCK_END, None), run(pieces=LINE[1:])]
+    done = handed_over(steps, exact={7}).done
+    assert [what for what in done if what == "G61.1"] == ["G61.1"]
+    assert done.index("G61.1") < done.index(FIRST)
 
 
 def test_an_action_that_waits_is_refused():

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the INI file says of a machine, and the travel of its axes."""
 
+import re
+
 import pytest
 
 from g12.errors import Refusal
@@ -30,6 +32,19 @@ MAX_ACCELERATION = 1000
 [AXIS_C]
 MAX_VELOCITY = 360
 """
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [
+        ("MAX_ACCELERATION = 0", "[AXIS_C] MAX_ACCELERATION = 0: must be above 0"),
+        ("MAX_VELOCITY = -5", "[AXIS_C] MAX_VELOCITY = -5: must be above 0"),
+        ("MAX_LIMIT = foo", "[AXIS_C] MAX_LIMIT = foo: must be a number"),
+    ],
+)
+def test_an_axis_that_cannot_be(line, reason):
+    with pytest.raises(Refusal, match=re.escape(reason)):
+        axes_of(f"[AXIS_C]\n{line}\n")
 
 
 def test_axes():

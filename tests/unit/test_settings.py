@@ -36,8 +36,13 @@ def test_only_the_first_section_of_the_name_counts():
     ("key", "value", "message"),
     [
         ("CLEARING", "zigzag", "[G12] CLEARING = zigzag: must be rings or spiral"),
-        ("POLAR_TOLERANCE", "0", "[G12] POLAR_TOLERANCE = 0: must be a number above 0"),
-        ("POLAR_TOLERANCE", "nan", "[G12] POLAR_TOLERANCE = nan: must be a number above 0"),
+        ("POLAR_TOLERANCE", "0", "[G12] POLAR_TOLERANCE = 0: must be a number from 0.00001"),
+        ("POLAR_TOLERANCE", "nan", "[G12] POLAR_TOLERANCE = nan: must be a number from 0.00001"),
+        (
+            "POLAR_TOLERANCE",
+            "1e-12",
+            "[G12] POLAR_TOLERANCE = 1e-12: must be a number from 0.00001",
+        ),
         ("YASNAC_TRAVERSE", "-1", "[G12] YASNAC_TRAVERSE = -1: must be a number from 0"),
         ("YASNAC_TRAVERSE", "fast", "[G12] YASNAC_TRAVERSE = fast: must be a number from 0"),
         ("POLAR_G0", "feed", "[G12] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0"),
@@ -50,7 +55,7 @@ def test_an_illegal_value_names_key_and_legal_values(key, value, message):
 
 
 def test_a_number_is_written_as_in_an_ini():
-    with pytest.raises(Refusal, match="must be a number above 0"):
+    with pytest.raises(Refusal, match=r"must be a number from 0\.00001"):
         settings_from_entries([("POLAR_TOLERANCE", "1_0")])
 
 

@@ -15,7 +15,7 @@ import re
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from g12.errors import Refusal
+from g12.errors import LONGEST_MESSAGE, Refusal
 
 NO_CODE = -1
 
@@ -65,7 +65,8 @@ REASON_OF_GROUP = {
     SHIFT: ORIGIN,
 }
 REASON_OF_G = {
-    G0: "a rapid leaves the contour; use G1 with a high F, or set [G12] POLAR_G0 = feed",
+    G0: "a rapid leaves the contour. Is the section's end missing above? "
+    "Else use G1 with a high F, or set [G12] POLAR_G0 = feed",
     100: "offsets cannot change inside the section",
     280: "the reference point is not in the plane",
     281: "the reference point is not in the plane",
@@ -74,6 +75,9 @@ REASON_OF_G = {
     530: "machine coordinates are not those of the plane",
 }
 REASON_OF_M = {6: TOOL, 61: TOOL}
+ORIENT = 19
+NEEDED_WORD = {62: "P", 63: "P", 64: "P", 65: "P", 67: "E", 68: "E"}
+WAIT_FOR_INPUT, AT_ONCE = 66, 0  # M66, and the L that does not wait
 REASON_OF_WORD = {
     **dict.fromkeys("ABVW@^", OTHER_AXES),
     "T": TOOL,
@@ -88,7 +92,8 @@ is_plain: Callable[[str], object] = re.compile(
 
 _COMMENT = re.compile(r"\(([^()]*)\)|;.*")
 _BLANKS = re.compile(r"\s+")
-_CONTROL = re.compile(r"/?(?:n[\d.]+)?(?:o(?:<[^>]*>|[^a-z<]*)([a-z]*)|m0*(98|99)(?![\d.]))")
+_CONTROL = re.compile(r"/?(?:n[\d.]+)?(?:o|m0*(98|99)(?![\d.]))")
+_KEYWORD = re.compile(r"[a-z]*")
 _BRACKET = re.compile(r"\[|\]|<[^>]*>")
 _SIGNS = re.compile(r"[-+]*")
 _FUNCTION = re.compile(r"[a-z]+(?=\[)")
@@ -167,8 +172,8 @@ class Block(NamedTuple):
 class Modes(NamedTuple):
     """The modes of a section: they act as they are read, not when the tool gets there.
 
-    ``feed`` is F in program units per minute, or per revolution; ``speed`` the S word; ``motion``
-    the code that bare words repeat.
+    ``feed`` is F in program units per minute, or per revolution; ``speed`` that of the spindle
+    which turns the latter into the former; ``motion`` the code that bare words repeat.
     """
 
     incremental: bool
@@ -184,8 +189,7 @@ def split_line(raw: str) -> Line:
     comments = tuple(match[1] for match in _COMMENT.finditer(raw) if match[1] is not None)
     control = _CONTROL.match(bare)
     if control:
-        kind = {"98": "call", "99": "return"}.get(control[2]) or control[1] or "program"
-        return Line(bare, comments, kind)
+        return Line(bare, comments, _kind(bare, control))
     if "(" in bare:  # an unclosed or nested comment: the parser says so
         return Line(bare)
     words = list(split_words(bare.lstrip("/")))
@@ -202,6 +206,15 @@ def split_line(raw: str) -> Line:
         assignments=_words_of("#", words),
         spindle=_words_of("$", words),
     )
+
+
+def _kind(bare: str, control: re.Match[str]) -> str:
+    """Return the kind of an O-word: its keyword stands behind a name, a number or an expression."""
+    if control[1]:
+        return {"98": "call", "99": "return"}[control[1]]
+    name = _NAME.match(bare, control.end())
+    behind = name.end() if name else value_end(bare, control.end())
+    return _KEYWORD.match(bare, behind)[0] or "program"
 
 
 def _words_of(wanted: str, words: list[tuple[str, str]]) -> str:
@@ -271,10 +284,35 @@ def check_block(block: Block, rapid_allowed: bool, place: Place) -> None:
     for code in block.m:
         if code in REASON_OF_M:
             raise place.refuse(f"M{code} is refused: {REASON_OF_M[code]}")
+    _check_arguments(block, place)
     if "P" in block.words and block.moves and block.motion in (G2, G3):
         raise place.refuse("P is refused: an arc inside the section has no turns")
     if len(_feed_modes(block)) > 1:
         raise place.refuse("G94 and G98 are feed per minute, G95 and G99 per revolution: not both")
+
+
+def _check_arguments(block: Block, place: Place) -> None:
+    """Refuse what LinuxCNC would find wrong with the words of an M code only between the moves."""
+    words = block.words
+    for code in block.m:
+        needed = NEEDED_WORD.get(code)
+        if needed and words.get(needed, -1.0) < 0.0:
+            raise place.refuse(f"M{code} needs {needed}, the number of the output")
+    if WAIT_FOR_INPUT in block.m:
+        _check_waiting(words, place)
+
+
+def _check_waiting(words: dict[str, float], place: Place) -> None:
+    """Refuse an M66 that LinuxCNC would refuse."""
+    waits = words.get("L", AT_ONCE) != AT_ONCE
+    for wrong, reason in (
+        (("P" in words) == ("E" in words), "either P or E, the number of the input"),
+        (waits and "E" in words, "L0 with E: only a digital input can be waited for"),
+        (waits and words.get("Q", 0.0) <= 0.0, "Q above zero, the longest wait in seconds"),
+        (words.get("L", 0.0) not in range(5), "L from 0 to 4"),
+    ):
+        if wrong:
+            raise place.refuse(f"M{WAIT_FOR_INPUT} needs {reason}")
 
 
 def _feed_modes(block: Block) -> set[bool]:
@@ -291,8 +329,8 @@ def alone(block: Block, m_code: int = NO_CODE) -> bool:
     return codes == [m_code] and set(block.words) <= set("PQLE")
 
 
-def modes_after(modes: Modes, block: Block) -> Modes:
-    """Return the modes once the codes, F and S of ``block`` have acted."""
+def modes_after(modes: Modes, block: Block, speed: float) -> Modes:
+    """Return the modes once the codes and F of ``block`` have acted, and S has made the speed."""
     words = block.words
     distance, feed_modes = block.g[DISTANCE], _feed_modes(block)
     per_revolution = feed_modes.pop() if feed_modes else modes.per_revolution
@@ -301,7 +339,7 @@ def modes_after(modes: Modes, block: Block) -> Modes:
         incremental=modes.incremental if distance == NO_CODE else distance == 910,
         per_revolution=per_revolution,
         feed=words.get("F", feed),
-        speed=words.get("S", modes.speed),
+        speed=speed,
         motion=modes.motion if block.g[MOTION] == NO_CODE else block.g[MOTION],
     )
 
@@ -314,9 +352,8 @@ def action_text(block: Block, line: Line) -> str:
         for group, code in enumerate(block.m)
         if code != NO_CODE and group != M_STOP and code not in STATE_CODES
     ]
-    codes += [
-        letter + decimal(block.words[letter]) for letter in ARGUMENTS if letter in block.words
-    ]
+    letters = (*ARGUMENTS, "R") if ORIENT in block.m else ARGUMENTS
+    codes += [letter + decimal(block.words[letter]) for letter in letters if letter in block.words]
     return "".join(codes) + line.spindle if codes else ""
 
 
@@ -328,6 +365,11 @@ def stop_text(block: Block) -> str:
 def decimal(value: float) -> str:
     """Return a value the way the parser reads one: the language has no exponents."""
     return f"{value:.10f}".rstrip("0").rstrip(".")
+
+
+def may_fail(comment: str) -> bool:
+    """Tell whether a comment may stop the program: (ABORT,), (PY,) and their like."""
+    return comment.lstrip().lower().startswith(("abort,", "py"))
 
 
 def comment_text(comment: str, value_of: Callable[[str], float | None]) -> str:
@@ -347,5 +389,5 @@ def comment_text(comment: str, value_of: Callable[[str], float | None]) -> str:
         value = value_of("".join(match[2].split()).strip("<>").lower())
         return "######" if value is None else f"{value:.{decimals}f}"
 
-    text = _IN_REPORT.sub(filled, comment)
+    text = _IN_REPORT.sub(filled, comment)[:LONGEST_MESSAGE]
     return f"({text} )" if text.endswith("#") else f"({text})"  # no parameter may begin there

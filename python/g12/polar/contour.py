@@ -15,6 +15,7 @@ from g12.errors import Refusal, number
 
 Point = tuple  # (x, c)
 SAME_PLACE = 1e-6  # program units: closer points are one point, a shorter move is rounding
+MOST_LENGTH = 1e6  # program units: more can only be a mistake, and is no longer exact
 CLOSING_RATIO = 0.001  # of the radius: the mismatch LinuxCNC allows any arc
 
 
@@ -187,6 +188,7 @@ class Contour:
         x1 = self.x if x is None else x
         c1 = self.c if c is None else c
         z1 = self.z if z is None else z
+        self._check_lengths(line, X=x1, C=c1, Z=z1)
         length = hypot(x1 - x0, c1 - c0)
         self._check_feed(feed, line)
         self._check_switch(line, length)
@@ -219,11 +221,12 @@ class Contour:
         """
         self._check_arc(turn, i, j, radius, line, feed)
         end = (self.x if x is None else x, self.c if c is None else c)
+        z1 = self.z if z is None else z
+        self._check_lengths(line, X=end[0], C=end[1], Z=z1, I=i, J=j, R=radius)
         if radius is None:
             centre, sweep = self._about_centre(turn, end, i or 0.0, j or 0.0, line)
         else:
             centre, sweep = self._with_radius(turn, end, radius, line)
-        z1 = self.z if z is None else z
         self.elements.append(Arc(line, feed, self._offset, *self._end, *end, z1, *centre, sweep))
         self.x, self.c, self.z = self._end = (*end, z1)
 
@@ -270,6 +273,12 @@ class Contour:
                 f"{code} waits for the machine, which needs G40: "
                 f"G{self.side} of line {self._switched_on} is on",
             )
+
+    def _check_lengths(self, line: int, **words: float | None) -> None:
+        for word, value in words.items():
+            if value is not None and abs(value) > MOST_LENGTH:
+                most = number(MOST_LENGTH)
+                self.refuse(line, f"{word}{number(value)} is no length: at most {most}")
 
     def _check_feed(self, feed: float, line: int) -> None:
         if feed <= 0.0:
