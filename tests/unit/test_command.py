@@ -13,7 +13,7 @@ from g12.cli import command, main
 from machines import ROOT
 
 PROGRAM = str(ROOT / "python" / "g12")
-COMMANDS = [name for name in main.COMMANDS if name not in ("demo", "plot", "verify")]
+COMMANDS = [name for name in main.COMMANDS if name not in ("demo", "verify")]
 
 
 def ends(capsys, *words):
@@ -30,7 +30,7 @@ def test_wrong_words_are_told_in_one_line(name, capsys):
     code, said = ends(capsys, name, "--nonsense", "3")
     assert code == 2
     assert said.startswith(f"g12 {name}: ")
-    assert said.endswith(f"(see g12 {name} --help)\n")
+    assert said.endswith(f"(usage: g12 {name} --help)\n")
     assert said.count("\n") == 1
 
 

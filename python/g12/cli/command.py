@@ -47,7 +47,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> None:
         """End the program: ``message`` says what is wrong with its words."""
-        self.exit(USAGE, f"{self.prog}: {message} (see {self.prog} --help)\n")
+        self.exit(USAGE, f"{self.prog}: {message} (usage: {self.prog} --help)\n")
 
 
 def number_above(least: float) -> Callable[[str], float]:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from g12.cli import pictures
-from g12.cli.command import FINDING, GOOD, UsageError, one_line, run_program
+from g12.cli.command import FINDING, GOOD, Parser, UsageError, one_line, run_program
 from g12.cli.features import ROOT
 from g12.cli.headless import Run
 from g12.cli.ini import read_ini
@@ -162,9 +161,9 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     ]
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """Return the command's words."""
-    words = argparse.ArgumentParser(prog="g12 demo", description=__doc__)
+    words = Parser(prog="g12 demo", description=__doc__)
     words.add_argument("--output", type=Path, default=Path("build/demo"), help="folder of pictures")
     return words
 

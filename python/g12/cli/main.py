@@ -56,7 +56,7 @@ def command(name: str, arguments: list[str]) -> int:
         print(usage())
         return 0
     if name not in COMMANDS:
-        print(f"g12: no command {name!r} (see g12 --help)", file=sys.stderr)
+        print(f"g12: no command {name!r} (usage: g12 --help)", file=sys.stderr)
         return 2
     return import_module(COMMANDS[name][0]).main(arguments)
 

@@ -7,7 +7,6 @@ that turns C on the face of the part, and over time; a turning program in Z and 
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure
 from g12.cli import pictures
 from g12.cli.command import (
     GOOD,
+    Parser,
     ProgramError,
     UsageError,
     add_program,
@@ -49,14 +49,9 @@ def draw(scene: Scene) -> Figure:
     return draw_turn(scene) if lathe else draw_mill(scene)
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """Return the command's words."""
-    words = argparse.ArgumentParser(
-        prog="g12 plot",
-        description=__doc__,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    words = Parser(prog="g12 plot", description=__doc__, epilog=EXAMPLES)
     add_program(words)
     words.add_argument("-o", "--output", type=Path, required=True, help="a .png, .svg or .pdf")
     words.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
