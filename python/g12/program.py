@@ -90,6 +90,11 @@ class Program:
         self.line = line + 1
         return lines[line]
 
+    def has_letter(self, place: int, letters: str) -> bool:
+        """Tell whether one of the letters is on a line of the section's own file."""
+        own = not isinstance(place, LineOfFile)
+        return own and not set(letters).isdisjoint(self.home.lines[place - 1].upper())
+
     def parse(self, text: str | None = None) -> None:
         """Let the interpreter parse the line taken, or ``text`` in its place."""
         self.interp.sequence_number = self.line

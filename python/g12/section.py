@@ -243,12 +243,14 @@ class Section:
         return plan
 
     def _check_travel(self, plan: polar.Plan) -> None:
-        beyond = self.setup.travel.beyond(plan.steps)
+        rules, beyond = self.setup.rules, self.setup.travel.beyond(plan.steps)
         if beyond:
-            hint = ": C and H are lengths here, not degrees" if beyond.axis == "X" else ""
-            raise Place(self.setup.rules.code, beyond.line).refuse(
-                f"the {beyond.axis} axis would go to {number(beyond.position)}, "
-                f"beyond its limit {number(beyond.limit)}{hint}"
+            by_c = beyond.axis == "X" and self.program.has_letter(beyond.line, "CHY")
+            raise Place(rules.code, beyond.line).refuse(
+                f"the {beyond.axis} axis would go to {number(beyond.position)}"
+                f"{' (radius)' * (beyond.axis == 'X' and rules.diameter)}, "
+                f"beyond its limit {number(beyond.limit)}"
+                f"{': C and H are lengths here, not degrees' * by_c}"
             )
 
     # The interpreter's own view of the machine.

@@ -307,8 +307,10 @@ def test_too_tight_names_both_lines(lathe):
 
 def test_beyond_the_travel_of_x(lathe):
     text, line = refused(lathe, section("G1 X30", "X310", "X20"))
-    assert text.startswith("G12.1 line 7: the X axis would go to 310, beyond its limit 300")
+    assert text == "G12.1 line 7: the X axis would go to 310, beyond its limit 300"
     assert line == 7
+    text, _ = refused(lathe, section("G1 X30", "X620", first=FIRST.replace("G8 ", "G7 ")))
+    assert text == "G12.1 line 7: the X axis would go to 310 (radius), beyond its limit 300"
 
 
 def test_c_in_degrees_by_mistake(lathe):
