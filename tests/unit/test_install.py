@@ -449,6 +449,21 @@ def test_an_interrupted_installation_leaves_everything_as_it_was(tmp_path, monke
     assert not list(tmp_path.glob(".g12*"))
 
 
+def test_of_several_old_versions_none_is_left_behind(tmp_path, monkeypatch):
+    ini, python = own_config(tmp_path)
+    before = content_of(tmp_path)
+
+    def fails_on_the_ini(path):
+        if path.suffix == ".ini":
+            raise OSError("disk full")
+        return safe_write.back_up(path)
+
+    monkeypatch.setattr(install, "back_up", fails_on_the_ini)
+    with pytest.raises(OSError, match="disk full"):
+        put_in(ini, **python)
+    assert content_of(tmp_path) == before
+
+
 def test_a_copy_that_is_killed_half_way_is_no_folder_g12(tmp_path, monkeypatch):
     written = []
 
