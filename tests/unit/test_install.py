@@ -13,6 +13,7 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from configs import MILL, config_of, content_of, with_lines, write_config
+from g12.cli import command as command_line
 from g12.cli import features, install, package_copy, safe_write, uninstall
 from g12.cli.command import UsageError
 from g12.cli.ini_edit import BEGIN, END, IniError, IniText, read_lines, to_bytes
@@ -820,6 +821,20 @@ def test_uninstall_where_nothing_is_installed(tmp_path, capsys):
     before = content_of(tmp_path)
     assert uninstall.main([str(ini)]) == 0
     assert "nothing that install put in" in capsys.readouterr().out
+    assert content_of(tmp_path) == before
+
+
+def test_what_nobody_reads_is_done_to_its_end(tmp_path, monkeypatch):
+    ini = write_config(tmp_path)
+    before = content_of(tmp_path)
+    put_in(ini)
+
+    def broken(*_arguments, **_options):
+        raise BrokenPipeError
+
+    monkeypatch.setattr(command_line, "print", broken, raising=False)
+    with pytest.raises(BrokenPipeError):
+        uninstall.main([str(ini)])
     assert content_of(tmp_path) == before
 
 

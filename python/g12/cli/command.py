@@ -11,7 +11,7 @@ import re
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Callable
@@ -95,6 +95,12 @@ def add_run(parser: argparse.ArgumentParser, what: str) -> None:
         metavar="PERCENT",
         help="feed override of --run (default 100): real time is what a run takes",
     )
+
+
+def check_run(asked: argparse.Namespace) -> None:
+    """Refuse a feed override where nothing is run."""
+    if asked.override != 100.0 and not asked.run:
+        raise UsageError("--override is the feed override of --run, which is not there")
 
 
 def one_line(name: str) -> Callable:
@@ -211,6 +217,18 @@ def run_anyhow(
         except MachineError as problem:
             copy = rf"[^\s'\"]*/{re.escape(program.name)}"
             raise type(problem)(re.sub(copy, str(program), str(problem))) from None
+
+
+def say(lines: Iterable[str]) -> None:
+    """Print what a work tells as it goes on; it is done even if nobody reads that to its end."""
+    unread = None
+    for line in lines:
+        try:
+            print(line)
+        except BrokenPipeError as problem:
+            unread = problem
+    if unread:
+        raise unread
 
 
 @contextlib.contextmanager

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from g12.cli import features, package_copy
 from g12.cli.check import readable
-from g12.cli.command import FINDING, GOOD, Parser, UsageError, one_line
+from g12.cli.command import FINDING, GOOD, Parser, UsageError, one_line, say
 from g12.cli.config import Config, load_config, remaps_in
 from g12.cli.config_rules import PROBLEM, Finding, codes_of, findings_of
 from g12.cli.ini import Overrides
@@ -269,8 +269,7 @@ def main(arguments: list[str]) -> int:
     for pair in excluding(wanted):
         raise UsageError(f"{pair} exclude each other: choose one")
     try:
-        for line in install(readable(ini), wanted, asked.dry_run):
-            print(line)
+        say(install(readable(ini), wanted, asked.dry_run))
     except Refused as refused:
         for finding in refused.args:
             said = f"[{finding.kind}] {finding.text}; cure: {finding.cure}"

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from g12.cli import package_copy
 from g12.cli.check import readable
-from g12.cli.command import GOOD, Parser, one_line
+from g12.cli.command import GOOD, Parser, one_line, say
 from g12.cli.config import remaps_in
 from g12.cli.config_rules import codes_of
 from g12.cli.features import model_of, remap_from_value
@@ -175,6 +175,5 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("ini", type=Path, help="INI file of the machine")
     parser.add_argument("--dry-run", action="store_true", help="show the changes only")
     asked = parser.parse_args(arguments)
-    for line in uninstall(readable(asked.ini), asked.dry_run):
-        print(line)
+    say(uninstall(readable(asked.ini), asked.dry_run))
     return GOOD
