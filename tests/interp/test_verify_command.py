@@ -126,6 +126,19 @@ def test_verify_says_in_one_line_why_it_cannot(text, code, said, written, capsys
 
 
 @pytest.mark.parametrize("command", ["verify", "plot"])
+def test_an_override_of_no_run_is_refused(command, written, tmp_path, capsys):
+    words = [command, written(GOOD), "--ini", MILL, "--override", "200"]
+    assert main(words + (["-o", str(tmp_path / "x.png")] if command == "plot" else [])) == 2
+    assert "--override is the feed override of --run" in capsys.readouterr().err
+
+
+def test_plot_draws_a_rapid_through_material(written, tmp_path):
+    text, path = HEAD + "G12 I7 K20 Q6 Z-3 D4\nG0 X60\nM2\n", tmp_path / "x.svg"
+    assert main(["plot", written(text), "--ini", MILL, "-o", str(path)]) == 0
+    assert "rapid through material" in path.read_text()
+
+
+@pytest.mark.parametrize("command", ["verify", "plot"])
 @pytest.mark.parametrize("missing", ["program", "ini", "tools"])
 def test_missing_files_are_named(command, missing, written, tmp_path, capsys):
     names = {"program": written(GOOD), "ini": MILL, "tools": str(SIM / "mill_mm.tbl")}
@@ -142,7 +155,7 @@ def test_plot_writes_the_picture_asked_for(suffix, extra, written, tmp_path, cap
     path = tmp_path / f"picture.{suffix}"
     assert main(["plot", written(GOOD), "--ini", MILL, "-o", str(path), *extra]) == 0
     assert path.stat().st_size > 5000
-    assert capsys.readouterr().err == ""
+    assert capsys.readouterr() == (f"{path} written\n", "")
 
 
 def test_plot_draws_any_program_and_a_lathe_with_c(written, tmp_path):
@@ -159,7 +172,7 @@ def test_plot_draws_any_program_and_a_lathe_with_c(written, tmp_path):
         (GOOD, "x.bmp", 2, "x.bmp: the suffix must be one of .png, .svg, .pdf"),
         (GOOD, "nowhere/x.png", 2, "nowhere: no such directory"),
         (WRONG, "x.png", 1, "program.ngc:4: G12: I4 must be greater"),
-        (STILL, "x.png", 1, "moves nothing, so there is nothing to draw"),
+        (STILL, "x.png", 2, "moves nothing, so there is nothing to draw"),
     ],
 )
 def test_plot_says_in_one_line_why_it_cannot(text, name, code, said, written, tmp_path, capsys):

@@ -2,6 +2,7 @@
 """The geometry that pictures show, and that a picture of every kind comes out in every format."""
 
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,12 +11,13 @@ from matplotlib.figure import Figure
 from shapely.geometry import Point
 
 from g12.cli import pictures, plan_view
-from g12.cli.deviation_picture import describe, most_telling
+from g12.cli.deviation_picture import describe, most_telling, told
 from g12.cli.face_picture import programmed_history
 from g12.cli.ini import Ini
-from g12.cli.mill_picture import Layout
+from g12.cli.mill_picture import Layout, removed_at
 from g12.cli.motion import follow, worst_of
 from g12.cli.plot import draw
+from g12.cli.rapids import Collision
 from g12.cli.scene import Scene, clock, heading, scene_of
 from g12.cli.units import MM, UNITS, plain
 from handmade import Hand, samples_of
@@ -70,7 +72,9 @@ def test_the_heading_is_the_first_comment_that_is_no_licence(tmp_path):
     program = tmp_path / "a.ngc"
     program.write_text("; SPDX-License-Identifier: X\n%\nO1 (Two flats)\n(other)\n")
     assert heading(program) == "Two flats"
-    program.write_text("G0 X1\n" * 9 + "(too late)\n")
+    program.write_text("G21 (metric)\nT1 M6\n( Flange );\nG0 X1\n")
+    assert heading(program) == "Flange"
+    program.write_text("G21 (metric)\nG0 X1 (there)\n(too late)\n")
     assert heading(program) == ""
 
 
@@ -131,6 +135,56 @@ def test_the_view_holds_all_that_is_cut_but_not_far_rapids():
     low, high = plan_view.bounds_of(*both(pocket().rapid(x=900)))
     assert low[0] < 37 and high[0] > 63 and high[0] < 100
     assert low[2] < -4 and high[2] > 5
+
+
+def test_the_view_holds_rapids_that_are_near():
+    low, high = plan_view.bounds_of(*both(pocket().rapid(x=70)))
+    assert high[0] > 70 and low[0] < 37
+
+
+def upright():
+    """Return a circle of radius 20 in the ZX plane about X0 Z0, and a rapid."""
+    return Hand().rapid(z=0).line(x=20).arc(1, 0, 0, plane=18).rapid(x=5)
+
+
+def test_the_view_and_the_depths_hold_circles_of_other_planes():
+    low, high = plan_view.bounds_of(*both(upright()))
+    assert low[2] < -20 and high[2] > 20
+    assert [round(level.z, 3) for level in both(upright())[1]] == [0.0, -20.0]
+
+
+def test_the_side_of_an_upright_circle_is_what_a_flat_cutter_removes():
+    level = both(upright())[1][-1]
+    side = removed_at(level, 30.0)
+    assert side.bounds == pytest.approx((-23, -20, 23, 30), abs=0.01)
+    assert side.contains(Point(0, -19.9)) and side.contains(Point(22.9, 5))
+    assert not side.contains(Point(19, -14)) and side.contains(Point(19, -10))
+
+
+def test_a_floor_is_removed_up_to_the_top():
+    (level,) = both(Hand().line(x=50, z=0).rapid(z=-2).line(x=60))[1][-1:]
+    assert removed_at(level, 0.0).bounds == pytest.approx((47, -2, 63, 0), abs=0.01)
+
+
+def test_a_tool_without_a_diameter_is_only_its_centre():
+    hand = Hand(tool=8).line(x=5)
+    shown = scene(hand)
+    assert plan_view.cutter_text(shown, 8) == "T8 has no diameter: tool centre only"
+    assert plan_view.cutter_text(shown, 1) == "cutter T1, ⌀ 6 mm"
+    assert plan_view.cutter_text(shown, 0) == "no tool: tool centre only"
+
+
+def test_there_and_back_again_is_drawn_once():
+    there = np.array([[0.0, 0.0], [10.0, 5.0]])
+    assert len(plan_view.once([there, there[::-1], there + 3])) == 2
+
+
+def test_a_rapid_through_material_is_in_the_legend():
+    shown = scene(pocket().rapid(x=90))
+    hit = Collision(1, 1, 5.0, np.array([[60.0, 0, -4], [90, 0, -4]]))
+    assert not any("material" in e.get_label() for e in plan_view.motion_entries(shown))
+    shown = replace(shown, collisions=(hit,))
+    assert any("through material" in e.get_label() for e in plan_view.motion_entries(shown))
 
 
 def both(hand, ini=MILL):
@@ -234,6 +288,16 @@ def test_the_largest_deviation_is_told_with_its_line():
     shown = with_real_motion(Hand().line(x=100), MILL, {"Y": 0.0123})
     text = describe(worst_of(shown.real, shown.moves), MM)
     assert text.startswith("0.012 mm at X") and text.endswith("(line 1)")
+
+
+def test_the_window_tells_the_override_and_the_contour():
+    shown = with_real_motion(flats(), LATHE, {"X": 0.0123})
+    shown = replace(shown, override=1500.0, contour=0.0025)
+    lines = list(told(worst_of(shown.real, shown.moves), shown, [0, 1]))
+    assert lines[0].endswith(" mm at 1500 % feed,")
+    assert lines[1].startswith("line ") and lines[2] == "off the contour: 0.0025 mm"
+    shown = replace(shown, override=100.0, contour=None)
+    assert "feed" not in "".join(told(worst_of(shown.real, shown.moves), shown, [0, 1]))
 
 
 # ---------------------------------------------------------------- files

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -60,11 +61,21 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
     axes.set(xlim=(-half, half), ylim=(-half, half), xticks=[], yticks=[])
     for spine in axes.spines.values():
         spine.set(visible=True, color=pictures.WORST, linewidth=0.9)
-    pictures.caption(axes, "Largest deviation")
-    letters = " and ".join(AXES_OF_PART[axis] for axis in pair)
-    text = f"{size_of(worst, unit)}, line {worst.move.block}, in {letters}"
+    of_pieces = scene.path.part.turning
+    pictures.caption(axes, f"Largest deviation{' from the pieces' if of_pieces else ''}")
+    text = "\n".join(told(worst, scene, pair))
     axes.set_xlabel(text, size=8, color=pictures.WORST, labelpad=4, loc="left")
     _scale_bar(axes, half, unit)
+
+
+def told(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
+    """Yield the lines below the window: size, place, feed; and what is off the contour itself."""
+    fast = f" at {scene.override:g} % feed" if scene.override != 100.0 else ""
+    letters = " and ".join(AXES_OF_PART[axis] for axis in pair)
+    yield f"{size_of(worst, scene.unit)}{fast},"
+    yield f"line {worst.move.block}, in {letters}"
+    if scene.contour is not None:
+        yield f"off the contour: {scene.unit.fine(scene.contour)} {scene.unit.name}"
 
 
 def most_telling(away: np.ndarray, way: np.ndarray) -> list[int]:

@@ -20,7 +20,7 @@ from g12.cli.scene import Scene
 from g12.cli.units import plain
 
 WIDTH, HEIGHT = 11.6, 8.0
-HIGHER = 1.05  # with the window on the largest deviation
+HIGHER = 1.25  # with the window on the largest deviation
 LEFT, TOP = pictures.MARGIN, 1.05
 FACE = 5.0  # the side of the face's view
 PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
@@ -53,8 +53,9 @@ def draw_face(scene: Scene) -> Figure:
     frame(face, scene, levels)
     draw_plan(face, scene, levels)
     under = (height - TOP - FACE - 0.5) / height
+    bands = [pictures.swatch(pictures.FAINT, None, "time spent in rapids")]
     figure.legend(
-        handles=entries(scene, levels),
+        handles=entries(scene, levels) + bands,
         loc="upper left",
         bbox_to_anchor=((LEFT - 0.1) / WIDTH, under),
         ncol=2 if scene.real is None else 1,
@@ -63,7 +64,7 @@ def draw_face(scene: Scene) -> Figure:
     draw_panels(figure, scene)
     if scene.real is not None:
         mark_worst(face, scene, [0, 1])
-        draw_window(figure, (LEFT + FACE - SIZE, 0.35), scene)
+        draw_window(figure, (LEFT + FACE - SIZE, 0.55), scene)
     return figure
 
 

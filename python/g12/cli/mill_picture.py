@@ -11,16 +11,21 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from shapely.geometry import box
+from shapely.affinity import scale as scaled
+from shapely.geometry import MultiPoint, box
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
 
 from g12.cli import pictures
 from g12.cli.deviation_picture import SIZE, draw_window
 from g12.cli.plan_view import (
+    SAME_DEPTH,
     Level,
     bounds_of,
     draw_paths,
     draw_plan,
     entries,
+    few,
     floor,
     levels_of,
     mark_worst,
@@ -31,12 +36,13 @@ from g12.cli.units import Unit, plain
 
 PAGE = 11.0  # wide
 WIDE = 2.0  # plans wider than this times their height have the legend below
-LEFT, RIGHT, TOP, BETWEEN, BOTTOM = pictures.MARGIN, 0.3, 1.05, 0.5, 0.55
+LEFT, RIGHT, TOP, BETWEEN, BOTTOM = pictures.MARGIN, 0.5, 1.05, 0.5, 0.55
 LEGEND = 2.35  # wide
 MOST_PLAN, LEAST_PLAN = 5.6, 1.2  # high
 MOST_SIDE, LEAST_SIDE = 3.2, 0.8
 ROW = 0.22  # a line of the legend
 COLUMNS = 4
+LETTER_HEIGHT = 0.11  # of the heights at the floors
 WINDOW = SIZE + 0.75  # the window on the largest deviation, with its texts
 
 
@@ -111,13 +117,38 @@ def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float)
     """Draw the view along Y: what is removed at each level, seen through the part."""
     unit, top = scene.unit.mm, top_of(scene)
     for order, level in enumerate(reversed(levels)):
-        for piece in getattr(level.area, "geoms", [level.area]):
-            left, _, right, _ = piece.bounds
-            shape = box(left / unit, level.z / unit, right / unit, max(top, level.z) / unit)
-            pictures.fill(axes, shape, *floor(scene, level), 1 + order / 100)
+        shape = scaled(removed_at(level, max(top, level.z)), 1 / unit, 1 / unit, origin=(0, 0))
+        pictures.fill(axes, shape, *floor(scene, level), 1 + order / 100)
+    draw_heights(axes, scene, levels)
     draw_paths(axes, scene, levels, [0, 2])
     true = abs(stretch - 1) < 0.02
     pictures.caption(axes, "Side" if true else f"Side, heights drawn {plain(stretch, 2)} : 1")
+
+
+def removed_at(level: Level, top: float) -> BaseGeometry:
+    """Return what a level removes as seen along Y: X and Z, up to the top."""
+    if all(np.ptp(line[:, 2]) < SAME_DEPTH for line in level.lines):
+        areas = getattr(level.area, "geoms", [level.area])
+        return unary_union([box(area.bounds[0], level.z, area.bounds[2], top) for area in areas])
+    ends = (pair for line in level.lines for pair in zip(line[:, [0, 2]], line[1:, [0, 2]]))
+    reach = np.array([[-level.reach, 0.0], [level.reach, 0.0]])
+    corners = (np.concatenate([start + reach, end + reach]) for start, end in ends)
+    above = (np.concatenate([bottom, bottom * (1, 0) + (0, top)]) for bottom in corners)
+    return unary_union([MultiPoint(points).convex_hull for points in above])
+
+
+def draw_heights(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
+    """Write the height of each floor beside it, as far as there is room."""
+    apart = LETTER_HEIGHT / axes.get_figure().get_figheight() / axes.get_position().height
+    low, high = axes.get_ylim()
+    written: list[float] = []
+    for level in sorted(few(levels), key=lambda level: level is not levels[-1]):
+        share = (level.z / scene.unit.mm - low) / (high - low)
+        if all(abs(share - other) > apart for other in written):
+            place = {"transform": axes.transAxes, "va": "center", "clip_on": False}
+            text = f"Z{scene.unit.text(level.z)}"
+            axes.text(1.005, share, text, size=6.5, color=pictures.INK, **place)
+            written.append(share)
 
 
 def frame(axes: Axes, unit: Unit, low: np.ndarray, high: np.ndarray, pair: list[int]) -> None:

@@ -33,6 +33,7 @@ RAPID = "#8d99a6"
 REAL = "#e8590c"
 WORST = "#c2255c"
 LIMIT = "#c2255c"
+CRASH = "#e03131"
 CONTOUR = "#1f2933"
 STYLE = {
     "font.family": "DejaVu Sans",
@@ -145,9 +146,9 @@ def draw(axes: Axes, lines: Sequence[np.ndarray], colour, width=1.1, order=3.0, 
     )
 
 
-def draw_rapids(axes: Axes, lines: Sequence[np.ndarray], order: float = 2.5) -> None:
+def draw_rapids(axes: Axes, lines: Sequence[np.ndarray], colour=RAPID, order: float = 2.5) -> None:
     """Draw polylines (n, 2) the way rapids look."""
-    draw(axes, lines, RAPID, 0.8, order, linestyle=(0, (4, 3)), capstyle="butt")
+    draw(axes, lines, colour, 0.8, order, linestyle=(0, (4, 3)), capstyle="butt")
 
 
 def draw_arrow(axes: Axes, line: np.ndarray, colour, order: float = 4.0) -> None:

@@ -30,6 +30,8 @@ SAME_DEPTH = 1e-3
 MOST_LEVELS = 10  # with more, depths and feeds are shown in bands
 BANDS = 24
 MOST_ARROWS = 80
+FLAT, ROUND = 17, 181  # the plane whose arcs keep their height, points of other arcs
+NEAR = 0.5  # of the view: rapids that end no farther outside are shown whole
 MANY = 20_000  # moves
 LONG = 0.12  # of the view's smaller side: shorter moves get no arrow
 MARGIN = 0.05  # of the view's greater side
@@ -37,12 +39,13 @@ PLUNGE, CUTTER = 3.5, 8.0  # points
 
 
 class Level(NamedTuple):
-    """What is milled at one depth: colours, paths (n, 3) and the area swept."""
+    """What is milled at one depth: colours, paths (n, 3), area swept, largest cutter's radius."""
 
     z: float
     shade: Shade
     lines: list[np.ndarray]
     area: BaseGeometry
+    reach: float = 0.0
 
 
 def levels_of(scene: Scene) -> list[Level]:
@@ -50,7 +53,7 @@ def levels_of(scene: Scene) -> list[Level]:
     cutting = [move for move in scene.moves if move.kind != "rapid" and removes(move)]
     if not cutting:
         return []
-    depth = np.array([min(move.start[2], move.end[2]) for move in cutting])
+    depth = np.array([lowest(move) for move in cutting])
     found = sorted(set(np.round(depth / SAME_DEPTH) * SAME_DEPTH), reverse=True)
     if len(found) > MOST_LEVELS:
         found = list(np.linspace(depth.max(), depth.min(), BANDS))
@@ -58,10 +61,17 @@ def levels_of(scene: Scene) -> list[Level]:
     groups = [[cutting[i] for i in np.flatnonzero(nearest == level)] for level in range(len(found))]
     part = scene.path.part
     return [
-        Level(z, shade, milled(part, group), swept_by(part, group, scene.diameters))
+        Level(z, shade, milled(part, group), *swept_by(part, group, scene.diameters))
         for z, shade, group in zip(found, pictures.shades(len(found)), groups)
         if group
     ]
+
+
+def lowest(move: Move) -> float:
+    """Return the lowest height of a move; an arc may go below its ends."""
+    bulge = move.kind == "arc" and move.plane != FLAT
+    shares = np.linspace(0, 1, ROUND) if bulge else (0.0, 1.0)
+    return min(move.point(share)[2] for share in shares)
 
 
 def removes(move: Move) -> bool:
@@ -74,29 +84,43 @@ def milled(part: Part, moves: Sequence[Move]) -> list[np.ndarray]:
     return paths(part, [move for move in moves if is_sideways(move)], PICTURE_CHORD)
 
 
-def swept_by(part: Part, moves: Sequence[Move], diameters: dict[int, float]) -> BaseGeometry:
-    """Return the area that the cutters of moves sweep."""
-    areas = []
+def swept_by(
+    part: Part, moves: Sequence[Move], diameters: dict[int, float]
+) -> tuple[BaseGeometry, float]:
+    """Return the area that the cutters of moves sweep, and the radius of the largest."""
+    areas, radii = [], []
     for tool in {move.tool for move in moves}:
         lines = paths(part, [move for move in moves if move.tool == tool], PICTURE_CHORD)
-        areas.append(swept(lines, max(diameters.get(tool, 0.0) / 2, PICTURE_CHORD)))
-    return unary_union(areas)
+        radii.append(max(diameters.get(tool, 0.0) / 2, PICTURE_CHORD))
+        areas.append(swept(lines, radii[-1]))
+    return unary_union(areas), max(radii)
 
 
 def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.ndarray]:
-    """Return least and greatest X, Y and Z of what is cut, with a margin; rapids don't count."""
-    cutting = [move for move in scene.moves if move.kind != "rapid"] or scene.moves
-    ends = np.array([point for move in cutting for point in (move.start, move.end)])
-    points = scene.path.part.points(ends)
+    """Return least and greatest X, Y, Z of what is cut, with a margin; far rapids don't count."""
+    shown = at_feed(scene) or range(len(scene.moves))
+    points = np.concatenate([scene.path.points[scene.path.vertices(index)] for index in shown])
     low, high = points.min(axis=0), points.max(axis=0)
     for level in levels:
         bounds = level.area.bounds
         low[:2], high[:2] = np.minimum(low[:2], bounds[:2]), np.maximum(high[:2], bounds[2:])
     high[2] = max(high[2], top_of(scene))
+    low[:2], high[:2] = with_near_rapids(scene, low[:2], high[:2])
     size = high - low
     margin = np.clip(MARGIN * max(size[:2]), PICTURE_CHORD, np.maximum(0.15 * size, PICTURE_CHORD))
     margin[2] = max(0.12 * size[2], 0.2 * min(margin[:2]))
     return low - margin, high + margin
+
+
+def with_near_rapids(
+    scene: Scene, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return a view's corners moved out to the ends of rapids that are not far away."""
+    ends = np.array([point for move in scene.moves for point in (move.start, move.end)])
+    points = scene.path.part.points(ends)[:, :2]
+    away = NEAR * max(high - low)
+    near = points[np.all((points > low - away) & (points < high + away), axis=1)]
+    return np.vstack([near, low]).min(axis=0), np.vstack([near, high]).max(axis=0)
 
 
 def top_of(scene: Scene) -> float:
@@ -130,16 +154,39 @@ def floor(scene: Scene, level: Level) -> tuple:
 def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int]) -> None:
     """Draw rapids, programmed path and real motion in two of the part's axes."""
     unit = scene.unit.mm
-    rapids = [move for move in scene.moves if move.kind == "rapid"]
-    lines = paths(scene.path.part, rapids, PICTURE_CHORD)
-    pictures.draw_rapids(axes, [line[:, pair] / unit for line in lines])
+    rapids = (move for move in scene.moves if move.kind == "rapid")
+    lines = (scene.path.part.polyline(move, PICTURE_CHORD) for move in rapids)
+    pictures.draw_rapids(axes, once([line[:, pair] / unit for line in lines]))
     wide = scene.real is not None
     for lines, colour in coloured_paths(scene, levels):
         lines = [line[:, pair] / unit for line in lines]
         shade = pictures.tint(colour, 0.4) if wide else colour
         pictures.draw(axes, lines, shade, 2.6 if wide else width_for(scene))
     if scene.real is not None:
-        pictures.draw(axes, [scene.real.points[:, pair] / unit], pictures.REAL, 0.7, 3.5)
+        draw_real(axes, scene, pair)
+    hit = [collision.way[:, pair] / unit for collision in scene.collisions]
+    pictures.draw(axes, hit, pictures.CRASH, 3.0, 3.8)
+
+
+def draw_real(axes: Axes, scene: Scene, pair: list[int]) -> None:
+    """Draw the real motion in two of the part's axes, rapids dashed."""
+    real, cuts, rapids = scene.real, [], []
+    edges = np.flatnonzero(np.diff(real.move)) + 1
+    for stretch in np.split(np.arange(len(real.move)), edges):
+        shown = real.points[max(0, stretch[0] - 1) : stretch[-1] + 1, pair] / scene.unit.mm
+        is_rapid = scene.moves[real.move[stretch[0]]].kind == "rapid"
+        (rapids if is_rapid else cuts).append(shown)
+    pictures.draw(axes, cuts, pictures.REAL, 0.7, 3.5)
+    pictures.draw_rapids(axes, once(rapids), pictures.REAL, 3.4)
+
+
+def once(lines: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Return polylines without those that go there and back again: two dashed lines look solid."""
+    found = {}
+    for line in lines:
+        ends = np.round(line[[0, len(line) // 2, -1]] / max(np.ptp(line, axis=0).max(), 1e-6), 2)
+        found.setdefault(frozenset(map(tuple, ends + 0.0)), line)
+    return list(found.values())
 
 
 def width_for(scene: Scene) -> float:
@@ -219,13 +266,18 @@ def entries(scene: Scene, levels: Sequence[Level]) -> list:
     listed = feed_entries(scene) if scene.feed_colours else []
     listed += level_entries(scene, levels)
     for tool in sorted({scene.moves[index].tool for index in at_feed(scene)}):
-        size = scene.unit.text(scene.diameters.get(tool, 0.0))
-        name = f"cutter T{tool}" if tool > 0 else "no tool"
-        text = f"{name}, ⌀ {size} {scene.unit.name}"
-        listed.append(pictures.marker(pictures.INK, text, CUTTER, hollow=True))
+        listed.append(pictures.marker(pictures.INK, cutter_text(scene, tool), CUTTER, hollow=True))
     if plunges_of(scene):
         listed.append(pictures.marker(pictures.INK, "plunge"))
     return listed + motion_entries(scene)
+
+
+def cutter_text(scene: Scene, tool: int) -> str:
+    """Return a cutter in words."""
+    diameter = scene.diameters.get(tool, 0.0)
+    if tool <= 0 or not diameter:
+        return f"{f'T{tool} has no diameter' if tool > 0 else 'no tool'}: tool centre only"
+    return f"cutter T{tool}, ⌀ {scene.unit.text(diameter)} {scene.unit.name}"
 
 
 def motion_entries(scene: Scene) -> list:
@@ -234,8 +286,11 @@ def motion_entries(scene: Scene) -> list:
     if any(move.kind == "rapid" for move in scene.moves):
         listed.append(pictures.stroke(pictures.RAPID, "rapid", 0.9, dashed=True))
     if scene.real is not None:
+        listed.append(pictures.stroke(pictures.PATH, "programmed path", 2.6))
         listed.append(pictures.stroke(pictures.REAL, "real motion", 0.9))
         listed.append(pictures.marker(pictures.WORST, "largest deviation", 7, hollow=True))
+    if scene.collisions:
+        listed.append(pictures.stroke(pictures.CRASH, "rapid through material", 3.0))
     return listed
 
 

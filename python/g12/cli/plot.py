@@ -7,6 +7,7 @@ that turns C on the face of the part, and over time; a turning program in Z and 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -15,10 +16,10 @@ from g12.cli import pictures
 from g12.cli.command import (
     GOOD,
     Parser,
-    ProgramError,
     UsageError,
     add_program,
     add_run,
+    check_run,
     checked_ini,
     one_line,
     progress,
@@ -27,6 +28,7 @@ from g12.cli.command import (
 )
 from g12.cli.face_picture import draw_face
 from g12.cli.mill_picture import draw_mill
+from g12.cli.proof import collisions_in
 from g12.cli.scene import Scene, scene_of, with_run
 from g12.cli.turn_picture import draw_turn
 from g12.cli.units import UNITS
@@ -64,6 +66,7 @@ def parser() -> Parser:
 def main(arguments: list[str]) -> int:
     """Run the command."""
     asked = parser().parse_args(arguments)
+    check_run(asked)
     ini = checked_ini(asked.program, asked.ini, asked.tools)
     try:
         pictures.check_format(asked.output)
@@ -71,12 +74,14 @@ def main(arguments: list[str]) -> int:
         raise UsageError(str(problem)) from None
     trace = traced(asked.program, asked.ini, asked.tools)
     if not trace.moves:
-        raise ProgramError(f"{asked.program}: moves nothing, so there is nothing to draw")
+        raise UsageError(f"{asked.program}: moves nothing, so there is nothing to draw")
     chosen = {"tools": asked.tools, "units": asked.units, "feed_colours": asked.feeds}
     scene = scene_of(asked.program, ini, trace, **chosen)
     if asked.run:
         with progress(f"running {asked.program.name}, real time"):
             run = run_program(asked.program, asked.ini, asked.tools, asked.override)
         scene = with_run(scene, run, asked.override)
-    pictures.save(draw(scene), asked.output)
+    hits = collisions_in(asked.program, ini, trace.moves, scene.path, asked.tools, scene.real)
+    pictures.save(draw(replace(scene, collisions=tuple(hits))), asked.output)
+    print(f"{asked.output} written")
     return GOOD

@@ -7,12 +7,12 @@ LinuxCNC makes of it; the cycles' own planning has no part in it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from g12.cli.blocks import calls_elsewhere, executed
-from g12.cli.command import ended
+from g12.cli.blocks import calls_elsewhere, executed, read_lines
+from g12.cli.command import ended, with_axes
 from g12.cli.contour_words import sections
 from g12.cli.headless import Run
 from g12.cli.ini import Ini
@@ -22,7 +22,7 @@ from g12.cli.motion import Followed, Track, follow, limits_of, track
 from g12.cli.part import C, part_of_program, tool_diameters
 from g12.cli.programmed import CALL, Codes, Reader, Target
 from g12.cli.rapids import Collision, collisions
-from g12.cli.trace import MM_PER_INCH, Tools, Trace, Tracer, mm_per_unit
+from g12.cli.trace import MM_PER_INCH, Move, Tools, Trace, Tracer, mm_per_unit
 from g12.cli.units import MM, Unit, plain
 
 POCKET_TOLERANCE = 0.005  # mm
@@ -99,7 +99,7 @@ def prove(
     polar = tolerance or polar_tolerance(ini) + (RUN_ALLOWANCE if run else 0.0)
     plain = tolerance or POCKET_TOLERANCE
     with Tracer(ini, tools=tools) as tracer:
-        trace = ended(program, tracer.trace(program))
+        trace = ended(program, with_axes(tracer.trace(program), ini.path))
         blocks = executed(tracer, program, codes.wanted)
         reading = ini.get("G12", "POLAR_X", "inherit").lower()
         polars = sections(tracer, program, codes, reading, blocks)
@@ -119,6 +119,24 @@ def prove(
         plain,
         polar,
     )
+
+
+def collisions_in(
+    program: Path,
+    ini: Ini,
+    moves: Sequence[Move],
+    path: Track,
+    tools: Tools = None,
+    real: Followed | None = None,
+) -> list[Collision]:
+    """Return the rapids of a program that go through material, of its run if there is one."""
+    codes, diameters = Codes(ini), tool_diameters(ini, tools)
+    if not any(map(codes.cycle_of, read_lines(program))):
+        return []
+    with Tracer(ini, tools=tools) as tracer:
+        blocks = executed(tracer, program, codes.wanted)
+    asked = list(Reader(codes, moves, diameters).targets(blocks))
+    return collisions(asked, moves, path, diameters, real)
 
 
 def collision_text(hit: Collision, unit: Unit = MM) -> str:

@@ -7,17 +7,22 @@ import re
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from pathlib import Path
 
+from g12.cli.blocks import COMMENT
 from g12.cli.headless import Run
 from g12.cli.ini import Ini
 from g12.cli.motion import Followed, Track, follow, limits_of, track
 from g12.cli.part import part_of_program, tool_diameters
 from g12.cli.proof import Proof
+from g12.cli.rapids import Collision
 from g12.cli.trace import Move, Tools, Trace, mm_per_unit
 from g12.cli.units import Unit, plain, unit_of
 
-HEAD_COMMENT = re.compile(r"\(([^()]*)\)|;\s*(.+)")
+HEAD_COMMENT = re.compile(r"\s*(?:[Oo]\d+\s*)?(?:\(([^()]*)\)|;\s*([^;]+))[\s;]*")
+MOTION = re.compile(r"[xyzabcuvw]", re.IGNORECASE)
+MOST_LINES = 20
 LONGEST_HEADING = 72
 
 
@@ -25,7 +30,9 @@ LONGEST_HEADING = 72
 class Scene:
     """A traced program on its machine; ``diameters`` of the tools in mm, ``unit`` is shown.
 
-    ``override`` is the feed override of the run in per cent.
+    ``override`` is the feed override of the run in per cent. ``collisions`` are the rapids that
+    go through material, ``contour`` the largest deviation (mm) from the programmed contours of
+    polar sections, where that was measured.
     """
 
     program: Path
@@ -37,6 +44,8 @@ class Scene:
     feed_colours: bool = False
     real: Followed | None = None
     override: float = 100.0
+    collisions: tuple[Collision, ...] = ()
+    contour: float | None = None
 
     @property
     def moves(self) -> Sequence[Move]:
@@ -50,7 +59,7 @@ class Scene:
 
     @property
     def subtitle(self) -> str:
-        """Return the program's own first comment, the machine and the time."""
+        """Return the comment that heads the program, the machine and the time."""
         cutting = (i for i, move in enumerate(self.moves) if move.kind != "rapid")
         length = sum(self.path.part_length(index) for index in cutting)
         facts = [
@@ -85,7 +94,9 @@ def scene_of_proof(proof: Proof, tools: Tools = None, override: float = 100.0) -
     unit = unit_of(subject.trace.modes)
     diameters = tool_diameters(subject.ini, tools)
     about = (subject.program, subject.ini, subject.trace, diameters, unit, subject.path)
-    return Scene(*about, real=subject.real, override=override)
+    contour = max((facts.deviation for facts in proof.sections), default=None)
+    hits = tuple(proof.collisions)
+    return Scene(*about, real=subject.real, override=override, collisions=hits, contour=contour)
 
 
 def with_run(scene: Scene, run: Run, override: float = 100.0) -> Scene:
@@ -95,10 +106,11 @@ def with_run(scene: Scene, run: Run, override: float = 100.0) -> Scene:
 
 
 def heading(program: Path) -> str:
-    """Return the first comment at the top of a program, licence lines aside."""
-    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()[:5]
-    found = (match[1] or match[2] for line in lines if (match := HEAD_COMMENT.search(line)))
-    text = next((text for text in found if "SPDX" not in text), "")
+    """Return the first comment that has a line to itself before anything moves, no licence."""
+    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()[:MOST_LINES]
+    still = takewhile(lambda line: not MOTION.search(COMMENT.sub("", line)), lines)
+    found = (match[1] or match[2] for line in still if (match := HEAD_COMMENT.fullmatch(line)))
+    text = next((text.strip() for text in found if "SPDX" not in text), "")
     return textwrap.shorten(text, LONGEST_HEADING, placeholder=" …")
 
 

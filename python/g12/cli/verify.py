@@ -7,16 +7,17 @@ LinuxCNC makes of it, or with --run from the real motion of a headless run.
 
 from __future__ import annotations
 
-import argparse
 import json
 from collections.abc import Sequence
 
 from g12.cli.command import (
     FINDING,
     GOOD,
+    Parser,
     UsageError,
     add_program,
     add_run,
+    check_run,
     checked_ini,
     one_line,
     progress,
@@ -303,14 +304,9 @@ def finite(value: float) -> float | None:
     return value if abs(value) < float("inf") else None
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """Return the command's words."""
-    words = argparse.ArgumentParser(
-        prog="g12 verify",
-        description=__doc__,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    words = Parser(prog="g12 verify", description=__doc__, epilog=EXAMPLES)
     add_program(words)
     words.add_argument("--tolerance", type=float, metavar="MM", help="in place of the usual ones")
     words.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
@@ -323,6 +319,7 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: list[str]) -> int:
     """Run the command."""
     asked = parser().parse_args(arguments)
+    check_run(asked)
     ini = checked_ini(asked.program, asked.ini, asked.tools)
     run = None
     if asked.run:
