@@ -387,6 +387,12 @@ def test_a_line_beside_a_circle_that_follows_it(sweep):
         along_the_part([Straight(-15j, -3 + 6j), circle], 41, 3.0)
 
 
+def test_the_corner_in_front_of_a_circle_beside_that_circle():
+    inside = [Straight(4 + 2j, 0j), Round(0j, 1 - 2j, -2 * math.pi)]
+    with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* follow both lines 3 and 4: beside one"):
+        along_the_part(inside, 42, 0.5)
+
+
 def test_a_cusp_that_curls_back_onto_the_tool_is_too_tight():
     curl = [Straight(-3j, 0j), Round(0j, -1 + 0j, -1.0)]
     with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* follow both lines 3 and 4: beside one"):

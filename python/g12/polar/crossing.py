@@ -57,7 +57,7 @@ def height_at(move: Line | Arc, part: float) -> float:
 
 def least_distance(a: Line | Arc, b: Line | Arc) -> float:
     """Return how near two moves come to each other."""
-    if crossing(a, b) is not None:
+    if any(_is_beside(a, place) and _is_beside(b, place) for place in _crossings(a, b)):
         return 0.0
     ends = min(distance_from(a, end) for end in ((b.x0, b.c0), (b.x1, b.c1)))
     places = [(a.x0, a.c0), (a.x1, a.c1), *_facing(a, b)]
@@ -76,27 +76,31 @@ def _facing(a: Line | Arc, b: Line | Arc) -> list[Point]:
         tx, tc = start_direction(b)
         nx, nc = -tc, tx
     else:
-        apart = hypot(b.cx - a.cx, b.cc - a.cc) or 1.0
+        apart = hypot(b.cx - a.cx, b.cc - a.cc)
+        if apart <= REACH:
+            return []
         nx, nc = (b.cx - a.cx) / apart, (b.cc - a.cc) / apart
     radius = arc_radius(a)
     places = [(a.cx + side * nx, a.cc + side * nc) for side in (radius, -radius)]
-    return [place for place in places if _arc_angle(a, place) <= abs(a.sweep)]
+    return [place for place in places if _is_beside(a, place)]
 
 
 def distance_from(move: Line | Arc, place: Point) -> float:
     """Return the distance of a place from a move."""
-    if isinstance(move, Arc):
-        beside = _arc_angle(move, place) <= abs(move.sweep)
-        across = abs(hypot(place[0] - move.cx, place[1] - move.cc) - arc_radius(move))
-    else:
-        along = along_start(move, place)
-        beside = 0.0 <= along <= path_length(move)
-        square = (place[0] - move.x0) ** 2 + (place[1] - move.c0) ** 2 - along * along
-        across = sqrt(max(0.0, square))
-    if beside:
-        return across
     to_start = hypot(place[0] - move.x0, place[1] - move.c0)
-    return min(to_start, hypot(place[0] - move.x1, place[1] - move.c1))
+    if not _is_beside(move, place):
+        return min(to_start, hypot(place[0] - move.x1, place[1] - move.c1))
+    if isinstance(move, Arc):
+        return abs(hypot(place[0] - move.cx, place[1] - move.cc) - arc_radius(move))
+    along = along_start(move, place)
+    return sqrt(max(0.0, to_start * to_start - along * along))
+
+
+def _is_beside(move: Line | Arc, place: Point) -> bool:
+    """Return whether the nearest place of a move's line or circle is on the move."""
+    if isinstance(move, Arc):
+        return _arc_angle(move, place) <= abs(move.sweep)
+    return 0.0 <= along_start(move, place) <= path_length(move)
 
 
 def along_start(move: Line | Arc, place: Point) -> float:

@@ -51,7 +51,7 @@ def _cross(a: Cut, b: Cut, tolerance: float) -> bool:
         return False
     if a.path and b.path and cross_inside(a.path, b.path, BESIDE * tolerance):
         return True
-    return _gouges(a, b, [], tolerance)
+    return _gouges(a, b, [b.corner] if b.corner else [], tolerance)
 
 
 def _gouges(a: Cut, b: Cut, corners: Sequence[Arc], tolerance: float) -> bool:
