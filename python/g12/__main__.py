@@ -2,6 +2,7 @@
 """The command line: ``python3 python/g12 COMMAND``."""
 
 import os
+import signal
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -17,5 +18,14 @@ if __package__ in (None, ""):
 
 from g12.cli.main import main  # noqa: E402 - the path has to be set first
 
+
+def end(number: int, _frame: object) -> None:
+    """Leave by way of everything that cleans up after itself."""
+    sys.exit(128 + number)
+
+
 if __name__ == "__main__":
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) != signal.SIG_IGN:  # which nohup asks for
+            signal.signal(number, end)
     sys.exit(main(sys.argv[1:]))

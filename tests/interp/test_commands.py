@@ -2,8 +2,10 @@
 """``g12 trace`` on the stock interpreter, good and wrong uses."""
 
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -71,6 +73,37 @@ def test_a_number_that_is_none_is_one_line(told, tmp_path):
     code, _, errors = told("plot", "G21 G90 F100\nG1 X1 C5\nM2\n", *words, ini=ini)
     assert code == 2
     assert errors == f"g12 plot: {ini}: [AXIS_X] MAX_VELOCITY = fast: not a number\n"
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_command_that_is_ended_leaves_nothing_behind(tmp_path, number):
+    program, scratch = tmp_path / "part.ngc", tmp_path / "tmp"
+    program.write_text("o1 while [1]\no1 endwhile\nM2\n")
+    scratch.mkdir()
+    command = [sys.executable, str(ROOT / "python" / "g12"), "trace", str(program)]
+    environment = {**os.environ, "TMPDIR": str(scratch)}
+    process = subprocess.Popen([*command, "--ini", str(INI)], env=environment)
+    deadline = time.monotonic() + 20
+    while not list(scratch.glob("*/trace.var")) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert list(scratch.iterdir())
+    process.send_signal(number)
+    assert process.wait(timeout=20) == 128 + number
+    assert list(scratch.iterdir()) == []
+
+
+def test_what_is_told_to_ignore_a_closed_terminal_ignores_it(tmp_path):
+    program = tmp_path / "part.ngc"
+    program.write_text("G4 P1\nM2\n" + "(end)\n" * 1000)
+    process = subprocess.Popen(
+        [sys.executable, str(ROOT / "python" / "g12"), "trace", str(program), "--ini", str(INI)],
+        stdout=subprocess.DEVNULL,
+        preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN),  # as nohup does
+    )
+    while process.poll() is None:
+        process.send_signal(signal.SIGHUP)
+        time.sleep(0.1)
+    assert process.returncode == 0
 
 
 def test_a_list_that_nobody_reads_to_its_end_is_no_error(tmp_path):
