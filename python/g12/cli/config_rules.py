@@ -27,6 +27,7 @@ LINE_FOR_REMAP = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 TOOL = re.compile(r"T(\d+)", re.IGNORECASE)
 DIAMETER = re.compile(r"D([-+.\d]+)", re.IGNORECASE)
+MEND = "if it was there once, run install again: it mends the folder g12"
 AFTERMATH = "Bad character 'g' used"  # of an interpreter that never came up
 STOPPING = {  # kinds that keep LinuxCNC itself from loading the config
     "taken",
@@ -252,7 +253,7 @@ def missing_subs(config: Config, codes: list[Code]) -> Iterator[Finding]:
                 "no-sub",
                 f"{name}.ngc is in none of the folders LinuxCNC looks in",
                 "add the package's folder ngc to SUBROUTINE_PATH in [RS274NGC] "
-                f"(the first such line counts, and its first {MOST_FOLDERS} folders)",
+                f"(the first such line counts, and its first {MOST_FOLDERS} folders); {MEND}",
             )
 
 
@@ -332,7 +333,7 @@ def no_toplevel(config: Config, codes: list[Code]) -> Iterator[Finding]:
         yield problem(
             "no-python",
             f"[PYTHON] TOPLEVEL = {name}: there is no such file",
-            f"correct the name; it is relative to {config.folder}",
+            f"correct the name; it is relative to {config.folder}; {MEND}",
         )
 
 
