@@ -188,7 +188,8 @@ class Contour:
         x1 = self.x if x is None else x
         c1 = self.c if c is None else c
         z1 = self.z if z is None else z
-        self._check_lengths(line, X=x1, C=c1, Z=z1)
+        if max(abs(x1), abs(c1), abs(z1)) > MOST_LENGTH:
+            self._check_lengths(line, X=x1, C=c1, Z=z1)
         length = hypot(x1 - x0, c1 - c0)
         self._check_feed(feed, line)
         self._check_switch(line, length)
