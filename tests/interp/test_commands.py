@@ -49,7 +49,9 @@ def test_moves_are_listed(told):
         ("", "PROGRAM:0: File ended with no percent sign or program end"),
     ],
 )
-@pytest.mark.parametrize(("name", "words"), [("trace", []), ("plot", ["-o", "no.png"])])
+@pytest.mark.parametrize(
+    ("name", "words"), [("trace", []), ("verify", []), ("plot", ["-o", "no.png"])]
+)
 def test_a_program_with_an_error_is_named(told, name, words, text, error):
     code, _, errors = told(name, text, *words)
     assert code == 1
