@@ -6,6 +6,7 @@ import json
 import pytest
 
 from g12.cli import demo
+from g12.cli.headless import MachineError
 from g12.cli.main import main
 from machines import SIM
 
@@ -60,6 +61,20 @@ def test_the_demo_tells_and_draws_every_program(tmp_path, monkeypatch, capsys):
     assert out.endswith("every circle and contour came out right\n")
     drawn = sorted(path.name for path in (tmp_path / "new" / "demo").iterdir())
     assert drawn == ["polar_slot.png", "yasnac_example.png"]
+
+
+def test_the_demo_goes_on_after_a_failure(tmp_path, monkeypatch, capsys):
+    samples = [s for s in demo.SAMPLES if "example" in s.program or "slot" in s.program]
+    monkeypatch.setattr(demo, "SAMPLES", tuple(samples))
+
+    def run(path, *_):
+        raise MachineError(f"{path.stem} did not come up")
+
+    monkeypatch.setattr(demo, "run_program", run)
+    assert main(["demo", "--output", str(tmp_path)]) == 1
+    out = capsys.readouterr().out
+    assert "polar/slot.ngc: FAILED: slot did not come up" in out and "[2 of 2]" in out
+    assert "NOT everything came out right: " in out and "yasnac/example.ngc" in out.splitlines()[-1]
 
 
 def test_every_sample_of_the_demo_is_there():

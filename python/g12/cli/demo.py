@@ -11,17 +11,19 @@ from pathlib import Path
 from typing import NamedTuple
 
 from g12.cli import pictures
-from g12.cli.command import FINDING, GOOD, Parser, UsageError, one_line, run_program
+from g12.cli.command import FINDING, GOOD, Parser, ProgramError, UsageError, one_line, run_program
 from g12.cli.features import ROOT
-from g12.cli.headless import Run
+from g12.cli.headless import MachineError, Run, StartupError
 from g12.cli.ini import read_ini
 from g12.cli.measure_pocket import PocketFacts
 from g12.cli.measure_section import SectionFacts
 from g12.cli.plot import draw
 from g12.cli.proof import SAME_AREA, Proof, prove
 from g12.cli.scene import Scene, clock, scene_of_proof
+from g12.cli.trace import TraceFailure
 from g12.cli.units import Unit, plain
 
+FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
 PROGRAMS = ROOT / "tests" / "programs"
 MACHINES = ROOT / "configs" / "sim"
 
@@ -74,8 +76,8 @@ POCKET_HEADS = ("line", "code", "centre", "radius", "tool-centre rings", "Z", "o
 SECTION_HEADS = ("lines", "pieces", "off contour", "allowed", "lowest feed", "C at most", "time")
 
 
-def runs(samples: Sequence[Sample], workers: int) -> Iterator[tuple[Sample, Run]]:
-    """Yield each sample with its run, as they come to their end."""
+def runs(samples: Sequence[Sample], workers: int) -> Iterator[tuple[Sample, Future]]:
+    """Yield each sample with what has its run or why there is none, as they come to their end."""
     with ThreadPoolExecutor(workers) as pool:
         jobs: dict[Future, Sample] = {
             pool.submit(run_program, sample.path, sample.ini, sample.tools, sample.override): sample
@@ -83,7 +85,7 @@ def runs(samples: Sequence[Sample], workers: int) -> Iterator[tuple[Sample, Run]
         }
         try:
             for job in as_completed(jobs):
-                yield jobs[job], job.result()
+                yield jobs[job], job
         finally:
             pool.shutdown(cancel_futures=True)
 
@@ -98,8 +100,19 @@ def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
     return describe(sample, run, proof, scene, picture), is_sound(proof)
 
 
+def told(sample: Sample, job: Future, output: Path) -> tuple[str, bool]:
+    """Draw a sample whose run has come to its end; return what is told of it, and whether good."""
+    try:
+        return show(sample, job.result(), output)
+    except FAILURES as problem:
+        return f"{sample.program}: FAILED: {problem}", False
+
+
 def is_sound(proof: Proof) -> bool:
-    """Tell whether every circle and contour came out right; the manuals leave material in some."""
+    """Tell whether every circle and contour came out right.
+
+    The manuals leave material in some and have rapids through what was left: that is told.
+    """
     off = [facts.deviation > proof.pocket_tolerance for facts in proof.pockets]
     off += [facts.deviation > proof.polar_tolerance for facts in proof.sections]
     return not any(off) and not any(
@@ -175,11 +188,13 @@ def main(arguments: list[str]) -> int:
     if not PROGRAMS.is_dir():
         raise UsageError(f"{PROGRAMS}: the sample programs are not there")
     asked.output.mkdir(parents=True, exist_ok=True)
-    workers, good = os.cpu_count() or 1, True
+    workers = os.cpu_count() or 1
     print(f"running {len(SAMPLES)} programs, {workers} at a time, in real time\n", flush=True)
-    for count, (sample, run) in enumerate(runs(SAMPLES, workers), start=1):
-        text, sound = show(sample, run, asked.output)
-        good = good and sound
+    bad = []
+    for count, (sample, job) in enumerate(runs(SAMPLES, workers), start=1):
+        text, sound = told(sample, job, asked.output)
+        bad += [] if sound else [sample.program]
         print(f"[{count} of {len(SAMPLES)}] {text}\n", flush=True)
-    print("every circle and contour came out right" if good else "NOT everything came out right")
-    return GOOD if good else FINDING
+    verdict = f"NOT everything came out right: {', '.join(bad)}"
+    print(verdict if bad else "every circle and contour came out right")
+    return FINDING if bad else GOOD

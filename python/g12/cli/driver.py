@@ -18,6 +18,7 @@ import hal
 from g12.cli.panel import INTERPRETER, TASK_MODES, Panel, PanelTimeout
 
 DEPTH = 20000  # samples in HAL's buffer: 20 s at 1 kHz
+PATIENCE = 5.0  # s, for milltask to come up
 DRAIN = 0.05  # s between looks into it
 THREAD = "servo-thread"
 MOTION = (
@@ -89,6 +90,7 @@ class Driver:
 
     def do_stat(self) -> dict:
         """Return the status as plain values."""
+        self.panel.wait(lambda stat: stat.task_mode in TASK_MODES, PATIENCE, "milltask")
         stat = self.panel.look()
         return {
             "task_mode": TASK_MODES[stat.task_mode],

@@ -86,7 +86,11 @@ def mirror(directory: str, files: dict[str, str], copy: bool) -> None:
         target = os.path.join(directory, entry.name)
         if entry.name in files or entry.name.startswith(PRIVATE_IN_TMP):
             continue
-        place(entry, target, copy)
+        try:
+            place(entry, target, copy)
+        except OSError:
+            if os.path.lexists(entry.path):  # others may remove theirs from /tmp at any time
+                raise
     for name, text in files.items():
         write(os.path.join(directory, name), text)
 

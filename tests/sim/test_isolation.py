@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The namespaces of a headless run while others use the machine too."""
+
+import subprocess
+import tempfile
+import threading
+
+import pytest
+
+from g12.cli import isolated
+from g12.cli.headless import Machine, Timeout
+from g12.cli.isolated import obstacle
+from machines import SIM
+
+
+@pytest.fixture
+def busy_tmp():
+    """Others make and remove folders in /tmp all the time."""
+    done = threading.Event()
+
+    def others():
+        while not done.is_set():
+            made = [tempfile.TemporaryDirectory(dir="/tmp") for _ in range(30)]
+            for folder in made:
+                folder.cleanup()
+
+    thread = threading.Thread(target=others)
+    thread.start()
+    yield
+    done.set()
+    thread.join()
+
+
+def test_what_others_remove_from_tmp_does_not_matter(busy_tmp):
+    assert [obstacle() for _ in range(8)] == [None] * 8
+
+
+def test_a_machine_that_is_only_slow_is_no_obstacle(monkeypatch):
+    def late(*_):
+        raise subprocess.TimeoutExpired("true", 60)
+
+    monkeypatch.setattr(isolated.Isolated, "wait", late)
+    assert obstacle() is None
+
+
+def test_a_refusal_of_the_kernel_is_an_obstacle(monkeypatch):
+    monkeypatch.setattr(isolated.Isolated, "wait", lambda *_: 125)
+    monkeypatch.setattr(isolated.Isolated, "log", lambda *_: "no namespaces\n")
+    assert obstacle() == "no namespaces"
+
+
+def test_a_milltask_that_does_not_come_up_is_named():
+    nobody = {"TASK": {"TASK": "sleep 100"}}
+    started = Machine(SIM / "mill_mm.ini", overrides=nobody, home=False)
+    with started as machine, pytest.raises(Timeout, match="no milltask within 5 s"):
+        machine.stat()
