@@ -46,6 +46,10 @@ examples:
   g12 verify flats.ngc --ini lathe.ini --run
   g12 verify pocket.ngc --ini mill.ini --json
 
+findings, beside sizes, areas and directions that are not as programmed:
+  the loaded tool's diameter differs from that of D by more than 5 % (less is a note)
+  a rapid leaves, below a pocket's top, what the program has cleared down to that height
+
 exit code: 0 everything is as programmed, 1 something is not, 2 wrong use
 """
 GAP = 14  # columns of a row's name
