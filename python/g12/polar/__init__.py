@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 from g12.polar.contour import Arc, Contour, Line, Mark, Plunge, Start, is_move
 from g12.polar.corners import stops
-from g12.polar.feed import Place, pieces_with_feed
+from g12.polar.feed import Position, pieces_with_feed
 from g12.polar.offset import tool_path
 from g12.polar.pieces import Law, split
 from g12.polar.pole import POLE, through_pole
@@ -79,7 +79,7 @@ class Plan(NamedTuple):
     """
 
     steps: list
-    place: Place
+    place: Position
     angle: float  # of the C axis in the plane, radians
 
 
@@ -127,7 +127,7 @@ class _Machine:
     def __init__(self, contour: Contour, settings: Settings, c: float) -> None:
         x, self.angle, z = contour.start
         self.steps: list = []
-        self.place = Place(x, c + degrees(self.angle), z)
+        self.place = Position(x, c + degrees(self.angle), z)
         self._settings, self._entry = settings, c
         self._laws: dict[tuple[float, bool], Law] = {}
 
@@ -167,7 +167,7 @@ class _Machine:
     def _run(self, line: int, axes: str, pieces: list, stop: bool) -> None:
         if pieces:
             self.steps.append(Run(line, axes, pieces, stop))
-            self.place = Place(*pieces[-1][:3])
+            self.place = Position(*pieces[-1][:3])
 
     def _law(self, feed: float, stop: bool) -> Law:
         law = self._laws.get((feed, stop))

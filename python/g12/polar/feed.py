@@ -20,7 +20,7 @@ from g12.polar.pieces import Split
 LEAST_TURN = 1e-9  # degrees: no turn at all
 
 
-class Place(NamedTuple):
+class Position(NamedTuple):
     """Where the machine stands: X radius value, C in degrees, Z."""
 
     x: float
@@ -28,7 +28,7 @@ class Place(NamedTuple):
     z: float
 
 
-def pieces_with_feed(split: Split, start: Place, move, entry: float, least_x: float) -> list[tuple]:
+def pieces_with_feed(split: Split, start: Position, move, entry: float, least_x: float) -> list[tuple]:
     """Return the pieces ``(x, c, z, F)`` of a move that the machine makes from ``start`` on.
 
     ``entry`` is the C angle in degrees at the plane's zero angle; ``least_x`` in program units.
