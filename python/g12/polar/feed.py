@@ -28,7 +28,9 @@ class Position(NamedTuple):
     z: float
 
 
-def pieces_with_feed(split: Split, start: Position, move, entry: float, least_x: float) -> list[tuple]:
+def pieces_with_feed(
+    split: Split, start: Position, move, entry: float, least_x: float
+) -> list[tuple]:
     """Return the pieces ``(x, c, z, F)`` of a move that the machine makes from ``start`` on.
 
     ``entry`` is the C angle in degrees at the plane's zero angle; ``least_x`` in program units.
