@@ -207,7 +207,7 @@ class Emission:
     def _execute(self, action: Action) -> None:
         """Execute the block as one of the program, which a remapped code must be."""
         interp, place = self.interp, Place(self.code, action.line)
-        level = interp.call_level
+        level, stands = interp.call_level, self._stands()
         interp.call_level = level if action.level is None else action.level
         try:
             interp.read(action.text)
@@ -216,4 +216,9 @@ class Emission:
             raise place.refuse(interp.get_errormsg()) from None
         if status:
             raise place.refuse(f"{action.text} waits for the machine: not inside a section")
+        if self._stands() != stands:
+            raise place.refuse(f"{action.text} moves the machine: not inside a section")
         interp.call_level = level
+
+    def _stands(self) -> tuple[float, float, float]:
+        return self.interp.current_x, self.interp.CC_current, self.interp.current_z

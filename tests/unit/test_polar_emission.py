@@ -32,7 +32,8 @@ class Interpreter:
         self.current_y = self.AA_current = self.BB_current = 0.0
         self.u_current = self.v_current = self.w_current = 0.0
         self.done, self.lines, self.wrapped, self.levels, self.stops = [], [], [], [], []
-        self.status = 0
+        self.current_x = self.CC_current = self.current_z = self.status = 0
+        self.moving = None
 
     def read(self, text):
         self._read = text
@@ -42,6 +43,7 @@ class Interpreter:
             self.stops.append(self.sequence_number)
             return 0
         self.done.append(self._read if text is None else text)
+        self.current_x += self.done[-1] == self.moving
         self.lines.append(getattr(self, "sequence_number", None))
         self.wrapped.append(self.c_axis_wrapped)
         self.levels.append(self.call_level)
@@ -221,6 +223,13 @@ def test_a_block_ends_where_it_is_marked():
     done = handed_over(steps, exact={7}).done
     assert [what for what in done if what == "G61.1"] == ["G61.1"]
     assert done.index("G61.1") < done.index(FIRST)
+
+
+def test_an_action_that_moves_is_refused():
+    interp = Interpreter()
+    interp.moving = "M411"
+    with pytest.raises(Refusal, match=r"G12\.1 line 8: M411 moves the machine: not inside a sect"):
+        handed_over([Action(8, "M411", MODES)], interp)
 
 
 def test_an_action_that_waits_is_refused():
