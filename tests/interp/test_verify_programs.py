@@ -8,7 +8,7 @@ import shutil
 import pytest
 
 from g12.cli.ini import read_ini
-from g12.cli.proof import prove
+from g12.cli.proof import pocket_findings, pocket_notes, prove
 from machines import PROGRAMS, ROOT, SIM
 
 INCH = 25.4
@@ -321,3 +321,45 @@ def test_a_circle_cut_where_the_tool_stands_was_come_down_to(tmp_path):
     lines = [*head, "G12 I30 D10", "G0 X100", "G12 I30 D10", "G0 Z5", "M2"]
     found = proof_of_text(tmp_path, lines, "mill_mitsubishi_mm").findings
     assert [line for line, _ in found] == [6]
+
+
+# ---------------------------------------------------------------- the machine's travel
+
+
+def far(tmp_path, *head, centre=490, stored=None):
+    """Return findings and notes of a pocket of radius 20 at X ``centre``, limits -500 to 500."""
+    machine = ini("mill_mm")
+    if stored is not None:
+        (tmp_path / "its.var").write_text(f"5220 1\n5221 {stored}\n5222 0\n")
+        machine = machine.replaced({"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "its.var")}})
+    program = tmp_path / "program.ngc"
+    lines = [*MM, *head, f"G0 X{centre} Y0 Z1", "G12 I20 Z-1 D4", "M2", ""]
+    program.write_text("\n".join(lines))
+    (facts,) = prove(program, machine).pockets
+    return list(pocket_findings(facts, 0.005)), list(pocket_notes(facts))
+
+
+def test_a_pocket_beyond_the_travel_is_noted_without_a_work_offset(tmp_path):
+    found, noted = far(tmp_path)
+    assert found == []
+    assert noted == ["with no work offset the X axis would go to 505, its limit is 500 mm"]
+
+
+@pytest.mark.parametrize(("stored", "text"), [(100, "to 605"), (-100, ""), (-1000, "to −525")])
+def test_a_stored_work_offset_counts(stored, text, tmp_path):
+    found, noted = far(tmp_path, stored=stored)
+    assert text in "".join(found) and bool(text) == bool(found) and noted == []
+
+
+def test_an_offset_that_the_program_sets_counts(tmp_path):
+    found, _ = far(tmp_path, "G10 L2 P1 X480", centre=10, stored=-1000)
+    assert found == ["the X axis would go to 505, its limit is 500 mm"]
+
+
+def test_a_pocket_wider_than_the_travel_fits_nowhere(tmp_path):
+    machine = ini("mill_mm").replaced({"AXIS_Y": {"MIN_LIMIT": 0, "MAX_LIMIT": 25}})
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*MM, "G0 Z1", "G12 I20 Z-1 D4", "M2", ""]))
+    assert [text for _, text in prove(program, machine).findings] == [
+        "the Y axis would go to −15, its limit is 0 mm"
+    ]

@@ -15,6 +15,7 @@ from shapely.geometry import MultiLineString, Point
 from shapely.geometry.base import BaseGeometry
 
 from g12.cli.motion import Followed, Track
+from g12.cli.overrun import Overrun
 from g12.cli.pace import Pace, pace_of
 from g12.cli.part import disc, swept
 from g12.cli.programmed import Target
@@ -33,6 +34,7 @@ class PocketFacts:
     ``reached`` is the radius of the wall, ``deviation`` the wall's greatest distance from the
     programmed circle, all round; ``left`` and ``gouge`` are areas beyond the tolerance;
     ``rings`` the radii of the tool centre's full circles; ``stepover`` None with one ring only.
+    ``overruns`` are the axes that would leave their travel.
     ``off_path`` and ``off_rings`` are the real motion's largest deviations, None without a run.
     """
 
@@ -51,6 +53,7 @@ class PocketFacts:
     pace: Pace
     off_path: float | None
     off_rings: float | None
+    overruns: tuple[Overrun, ...] = ()
 
 
 def measure_pocket(

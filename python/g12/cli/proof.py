@@ -8,7 +8,7 @@ LinuxCNC makes of it; the cycles' own planning has no part in it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from g12.cli.blocks import calls_elsewhere, executed, read_lines
@@ -19,6 +19,7 @@ from g12.cli.ini import Ini
 from g12.cli.measure_pocket import PocketFacts, measure_pocket
 from g12.cli.measure_section import SectionFacts, measure_section
 from g12.cli.motion import Followed, Track, follow, limits_of, track
+from g12.cli.overrun import Overrun, Travel
 from g12.cli.part import C, part_of_program, tool_diameters
 from g12.cli.programmed import CALL, Codes, Reader, Target
 from g12.cli.rapids import Collision, collisions
@@ -107,9 +108,16 @@ def prove(
     path = track(part_of_program(ini, moves), moves, limits, trace.modes.speed)
     real = follow(path, moves, run.samples, mm_per_unit(ini)) if run else None
     asked = list(Reader(codes, moves, diameters).targets(blocks))
+    travel = Travel(ini, trace, read_lines(program))
     return Proof(
         Subject(program, ini, trace, path, real),
-        [measure_pocket(t, b.at, b.end, path, moves, plain, real) for b, t in asked],
+        [
+            replace(
+                measure_pocket(wanted, block.at, block.end, path, moves, plain, real),
+                overruns=tuple(travel.overruns(block.at, block.end, path)),
+            )
+            for block, wanted in asked
+        ],
         [
             measure_section(each, path, moves, diameters, limits.axes[C], polar, real)
             for each in polars
@@ -173,6 +181,15 @@ def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> It
         yield f"the depth is off by {unit.fine(too_high)} {unit.name}"
     if target.turn and facts.turns and set(facts.turns) != {target.turn}:
         yield "it turns the wrong way"
+    for overrun in facts.overruns:
+        if overrun.certain:
+            yield overrun_text(overrun, unit)
+
+
+def overrun_text(overrun: Overrun, unit: Unit) -> str:
+    """Return in words which axis leaves its travel."""
+    there, limit = unit.text(overrun.position), unit.text(overrun.limit)
+    return f"the {overrun.letter} axis would go to {there}, its limit is {limit} {unit.name}"
 
 
 def gouged(facts: SectionFacts, unit: Unit) -> str:
@@ -202,6 +219,9 @@ def pocket_notes(facts: PocketFacts, unit: Unit = MM) -> Iterator[str]:
     target = facts.target
     if target.word:
         yield "the tool's centre goes round on the circle, the wall is a tool radius farther"
+    for overrun in facts.overruns:
+        if not overrun.certain:
+            yield f"with no work offset {overrun_text(overrun, unit)}"
     if target.offset is None or is_wrong_tool(target):
         return
     if not target.loaded:
