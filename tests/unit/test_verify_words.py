@@ -164,7 +164,13 @@ def test_d0_puts_the_tool_centre_on_the_circle():
 
 @pytest.mark.parametrize(
     ("words", "core", "bore"),
-    [("I50 D2", 40, 0), ("I50 K35 Q4 L2 D2", 29, 0), ("I50 K35 Q4", 36, 0), ("I50 R40 D2", 40, 40)],
+    [
+        ("I50 D2", 40, 0),
+        ("I50 K35 Q4 L2 D2", 29, 0),
+        ("I50 K35 Q4", 36, 0),
+        ("I50 R40 D2", 40, 40),
+        ("I50 R40", 43, 43),
+    ],
 )
 def test_yasnac_leaves_the_middle_by_design(words, core, bore):
     found = Reader(YASNAC, Hand().rapid(z=5).line(z=4).moves, {1: 6.0, 2: 10.0})

@@ -157,6 +157,7 @@ class Reader:
         offset = self._radius(words["D"]) if "D" in words else 0.0
         target = self._inside(view, "I", offset, round(words.get("D", 0)))
         bore = abs(view.length("R") or view.length("J"))
+        bore += target.loaded if bore and target.word else 0.0
         # A spiral has gone all round when it has grown by Q.
         spiral = abs(view.length("I")) - abs(view.length("K")) - view.length("Q")
         inner = target.radius - (max(0.0, spiral) if "K" in words else 0.0)
