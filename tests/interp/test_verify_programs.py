@@ -155,16 +155,45 @@ def test_a_pocket_in_a_subroutine_of_the_program(tmp_path):
     assert proof.findings == []
 
 
-def test_a_sub_of_another_file_is_told_of(tmp_path):
-    folder = tmp_path / "subs"
-    folder.mkdir()
-    (folder / "hole.ngc").write_text("o<hole> sub\nG12 I9 Z-2 D4\no<hole> endsub\nM2\n")
-    program = tmp_path / "program.ngc"
-    program.write_text("\n".join([*MM, "G0 Z1", "o<hole> call", "M2", ""]))
-    path = f"{ROOT / 'ngc'}:{folder}"
-    machine = ini("mill_mm").replaced({"RS274NGC": {"SUBROUTINE_PATH": path}})
-    proof = prove(program, machine)
-    assert (proof.pockets, proof.unseen) == ([], [(4, "hole")])
+@pytest.mark.parametrize("code", ["G[10 + 2]", "G#5"])
+def test_a_code_that_is_an_expression(code, tmp_path):
+    lines = [*MM, "#5 = 12", "G0 X0 Y0 Z1", f"{code} I7 K20 Q6 Z-2 D4", "M2"]
+    proof = proof_of_text(tmp_path, lines)
+    assert [facts.target.radius for facts in proof.pockets] == pytest.approx([20])
+    assert proof.findings == []
+
+
+@pytest.fixture
+def with_sub(tmp_path):
+    """Return the proof of a program on a machine that has a sub in a file of its own."""
+
+    def proof(name, body, *lines, machine="mill_mm"):
+        folder = tmp_path / "subs"
+        folder.mkdir()
+        (folder / f"{name}.ngc").write_text("\n".join([*body, ""]))
+        path = f"{ini(machine).get('RS274NGC', 'SUBROUTINE_PATH')}:{folder}"
+        changed = ini(machine).replaced({"RS274NGC": {"SUBROUTINE_PATH": path}})
+        program = tmp_path / "program.ngc"
+        program.write_text("\n".join([*lines, "M2", ""]))
+        return prove(program, changed)
+
+    return proof
+
+
+UNMEASURED = "a cycle cuts here that could not be measured"
+
+
+def test_a_section_in_another_file_is_a_finding(with_sub):
+    body = ["o<flat> sub", "G12.1", "G1 X20 F500", "C5", "G13.1", "o<flat> endsub", "M2"]
+    lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X30 Z2 C40", "o<flat> call"]
+    proof = with_sub("flat", body, *lines, machine="lathe_mm")
+    assert proof.findings == [(4, UNMEASURED)]
+
+
+def test_a_sub_of_another_file_without_a_cycle_is_none(with_sub):
+    body = ["o<way> sub", "G0 Z1", "G1 X50", "o<way> endsub", "M2"]
+    proof = with_sub("way", body, *MM, "o<way> call", "G12 I7 K20 Q6 Z-3 D4")
+    assert len(proof.pockets) == 1 and proof.findings == []
 
 
 @pytest.mark.parametrize("modes", ["G20", "G91", "G20 G91", "G90.1", "G64 P0.1"])

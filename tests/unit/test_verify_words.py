@@ -16,7 +16,6 @@ from g12.cli.blocks import (
     after,
     before,
     blocks_in,
-    calls_elsewhere,
     read_line,
 )
 from g12.cli.contour_words import Pen
@@ -105,14 +104,6 @@ def test_a_block_that_never_ends_is_none():
 
 def test_after_tells_the_same_number():
     assert list(after(read_line(12, "G12 I1"))) == [f"(DEBUG,{TAG} end 12 0)"]
-
-
-def test_calls_of_subs_in_other_files_are_known(tmp_path):
-    program = tmp_path / "a.ngc"
-    program.write_text(
-        "o<own> sub\no<own> endsub\no<own> call\nN2 O<Far Off> CALL [1]\no<circle_mill> call\n"
-    )
-    assert calls_elsewhere(program, "circle_mill") == [(4, "faroff")]
 
 
 # ---------------------------------------------------------------- targets
@@ -207,11 +198,16 @@ def test_a_centre_word_turns_with_the_work_coordinates():
 
 
 def test_codes_know_cycles_and_sections_by_their_handlers():
-    assert CODES.cycle_of(read_line(1, "G12 I1"))[0] == "haas"
-    assert CODES.cycle_of(read_line(1, "G1 X1")) is None
+    assert CODES.cycle_of("", (12.0,))[0] == "haas"
+    assert CODES.cycle_of("", (1.0,)) is None
+    assert CODES.cycle_of("circle_mill", ())[0] == "circle-mill"
     assert CODES.polar(read_line(1, "G12.1")) == "on"
     assert CODES.polar(read_line(1, "N5 G13.1")) == "off"
     assert not CODES.wanted(read_line(1, "T1 M6"))
+    assert CODES.wanted(read_line(1, "G[13] I5")) and CODES.wanted(read_line(1, "G#5 I5"))
+    assert [CODES.knows(code) for code in ("G13", "G12.1", "G2", "M6", "")] == [True, True] + 3 * [
+        False
+    ]
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,6 @@ NUMBER = re.compile(r"[0-9]*\.?[0-9]*")
 COMMENT = re.compile(r"\([^)]*\)|;.*")
 FUNCTION = re.compile(r"[a-z]+(?=\[)")
 LETTER_O = re.compile(r"/?(n[0-9.]+)?o")
-DEFINITION = re.compile(r"(?:n[0-9.]+)?o<([^>]+)>sub")
 CALL = re.compile(r"/?(?:n[0-9.]+)?o<([^>]+)>call")
 
 
@@ -43,6 +42,11 @@ class Text(NamedTuple):
     def codes(self) -> list[float]:
         """The G codes whose numbers are written out."""
         return [float(text) for letter, text in self.words if letter == "G" and is_number(text)]
+
+    @property
+    def hides_code(self) -> bool:
+        """Whether the number of a G code is an expression."""
+        return any(letter == "G" and not is_number(text) for letter, text in self.words)
 
 
 @dataclass(frozen=True)
@@ -133,16 +137,6 @@ def read_lines(program: Path) -> list[Text]:
     """Return the lines of a program as text."""
     lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
     return [read_line(number, line) for number, line in enumerate(lines, start=1)]
-
-
-def calls_elsewhere(program: Path, own: str) -> list[tuple[int, str]]:
-    """Return the calls of subs that the program does not define: line and name; not ``own``."""
-    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
-    code = [re.sub(r"\s", "", COMMENT.sub("", line)).lower() for line in lines]
-    defined = {found[1] for found in map(DEFINITION.match, code) if found}
-    called = ((number, CALL.match(line)) for number, line in enumerate(code, start=1))
-    told = [(number, found[1]) for number, found in called if found]
-    return [(number, name) for number, name in told if name != own and name not in defined]
 
 
 def executed(tracer: Tracer, program: Path, wanted: Wanted) -> list[Block]:

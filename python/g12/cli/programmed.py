@@ -81,11 +81,15 @@ class Codes:
             remap.number[1] / 10: (model[0], model[1]) for remap, model in found if model
         }
 
-    def cycle_of(self, text: Text) -> tuple[str, Remap | None] | None:
-        """Return the dialect of the cycle that a line calls and its REMAP line."""
-        if text.call == CALL:
+    def knows(self, code: str) -> bool:
+        """Tell whether a remapped code, as ``Move.remap`` has it, is one of the package."""
+        return code[:1] == "G" and float(code[1:]) in self._known
+
+    def cycle_of(self, call: str, codes: Sequence[float]) -> tuple[str, Remap | None] | None:
+        """Return the dialect of the cycle that a block calls and its REMAP line."""
+        if call == CALL:
             return "circle-mill", None
-        known = (self._known.get(code) for code in text.codes)
+        known = (self._known.get(code) for code in codes)
         return next((found for found in known if found and not is_polar(found[0])), None)
 
     def polar(self, text: Text) -> str:
@@ -97,9 +101,10 @@ class Codes:
         return ""
 
     def wanted(self, text: Text) -> bool:
-        """Tell whether a line's words matter for what is programmed."""
+        """Tell whether a line's words matter for what is programmed, or may: G[12], G#1."""
         compensation = any(code in COMPENSATION for code in text.codes)
-        return bool(compensation or self.cycle_of(text) or self.polar(text))
+        cycle = self.cycle_of(text.call, text.codes)
+        return bool(compensation or cycle or self.polar(text) or text.hides_code)
 
 
 def is_polar(feature: str) -> bool:
@@ -121,7 +126,7 @@ class Reader:
     def targets(self, blocks: Sequence[Block]) -> Iterator[tuple[Block, Target]]:
         """Yield each block that cuts a circle with what it asks for."""
         for block in blocks:
-            cycle = self.codes.cycle_of(block.text)
+            cycle = self.codes.cycle_of(block.text.call, block.codes)
             if cycle and block.end > block.at:
                 yield block, self._target(block, *cycle)
             elif any(code in COMPENSATION for code in block.codes):

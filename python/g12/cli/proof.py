@@ -7,11 +7,11 @@ LinuxCNC makes of it; the cycles' own planning has no part in it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from g12.cli.blocks import calls_elsewhere, executed, read_lines
+from g12.cli.blocks import executed, read_lines
 from g12.cli.command import ended, with_axes
 from g12.cli.contour_words import sections
 from g12.cli.headless import Run
@@ -21,7 +21,7 @@ from g12.cli.measure_section import SectionFacts, measure_section
 from g12.cli.motion import Followed, Track, follow, limits_of, track
 from g12.cli.overrun import Overrun, Travel
 from g12.cli.part import C, part_of_program, tool_diameters
-from g12.cli.programmed import CALL, Codes, Reader, Target
+from g12.cli.programmed import Codes, Reader, Target
 from g12.cli.rapids import Collision, collisions
 from g12.cli.trace import MM_PER_INCH, Move, Tools, Trace, Tracer, mm_per_unit
 from g12.cli.units import MM, Unit, plain
@@ -35,6 +35,7 @@ SAME_SPEED = 1.001
 WEAR = 0.05  # of its diameter: D differs from the loaded tool by more than an allowance for wear
 SAME_SIZE = 1e-4  # mm
 SAME_ANGLE = 1e-3  # degree
+UNMEASURED = "a cycle cuts here that could not be measured"
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,8 @@ class Subject:
 class Proof:
     """What was measured; tolerances are in mm.
 
-    ``unseen`` are the calls, line and name, of subs in other files: what they cut with a cycle
-    is not measured.
+    ``unseen`` are lines whose blocks make a cycle cut that belongs to no pocket and no section
+    measured, and the cycle's code.
     """
 
     subject: Subject
@@ -81,7 +82,8 @@ class Proof:
             for facts in self.sections
             for text in section_findings(facts, self.polar_tolerance, unit)
         ]
-        return told + [(hit.line, collision_text(hit, unit)) for hit in self.collisions]
+        told += [(hit.line, collision_text(hit, unit)) for hit in self.collisions]
+        return told + [(line, UNMEASURED) for line, _ in self.unseen]
 
 
 def prove(
@@ -109,6 +111,7 @@ def prove(
     real = follow(path, moves, run.samples, mm_per_unit(ini)) if run else None
     asked = list(Reader(codes, moves, diameters).targets(blocks))
     travel = Travel(ini, trace, read_lines(program))
+    measured = [*(block for block, _ in asked), *polars]
     return Proof(
         Subject(program, ini, trace, path, real),
         [
@@ -123,7 +126,7 @@ def prove(
             for each in polars
         ],
         collisions(asked, moves, path, diameters, real),
-        calls_elsewhere(program, CALL),
+        unseen(moves, codes, [range(each.at, each.end) for each in measured]),
         plain,
         polar,
     )
@@ -151,6 +154,17 @@ def collision_text(hit: Collision, unit: Unit = MM) -> str:
     """Return in words what a rapid goes through."""
     x, y, z = (unit.text(value) for value in hit.way[0])
     return f"a rapid goes through {unit.area(hit.area)} not cleared before, from X{x} Y{y} Z{z} on"
+
+
+def unseen(moves: Sequence[Move], codes: Codes, measured: Iterable[range]) -> list[tuple[int, str]]:
+    """Return each line and code that makes moves of a cycle outside the ranges measured."""
+    seen = {index for stretch in measured for index in stretch}
+    told = (
+        (move.block, move.remap)
+        for index, move in enumerate(moves)
+        if index not in seen and codes.knows(move.remap)
+    )
+    return list(dict.fromkeys(told))
 
 
 def polar_tolerance(ini: Ini) -> float:

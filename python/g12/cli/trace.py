@@ -109,6 +109,8 @@ class Move(NamedTuple):
     interpreter's count (positive counterclockwise seen from the plane's positive third axis,
     1 or -1 for anything up to a full circle) and ``rotation`` the angle of the work coordinate
     system about Z in degrees, which turns G18 and G19 planes.
+
+    ``remap`` is the remapped code that makes the move, ``G12``, "" without one.
     """
 
     kind: str
@@ -124,6 +126,7 @@ class Move(NamedTuple):
     centre: tuple[float, float, float] | None = None
     turns: int = 0
     rotation: float = 0.0
+    remap: str = ""
 
     @property
     def radius(self) -> float:

@@ -114,6 +114,12 @@ class Lines:
             return self._of_remap(this)
         return this.sequence_number
 
+    def remap(self) -> str:
+        """Return the remapped code whose motion is being made, in upper case, "" without one."""
+        this = interpreter_object()
+        level = this.remap_level
+        return this.blocks[level].executing_remap.name.upper() if level else ""
+
     def _of_remap(self, this) -> int:
         return bisect.bisect_left(self._ends, this.blocks[1].offset) + 1
 
@@ -294,7 +300,8 @@ class Canon:
         mode = FEED_MODES[interpreter_object().feed_mode] if feed else ""
         state = (self.plane, self.spindle[0], self.length)
         place = (kind, self.line, self.lines.now(), start, self.position)
-        self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation))
+        arc = (centre, turns, self.rotation)
+        self.moves.append((*place, feed, mode, *state, *arc, self.lines.remap()))
 
     def _resolved(self, tip: tuple) -> tuple:
         """Machine coordinates of a point in program coordinates, both in mm."""

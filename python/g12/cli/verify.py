@@ -28,6 +28,7 @@ from g12.cli.measure_pocket import PocketFacts
 from g12.cli.measure_section import SectionFacts
 from g12.cli.pace import Pace
 from g12.cli.proof import (
+    UNMEASURED,
     Proof,
     collision_text,
     gouged,
@@ -67,8 +68,7 @@ def report(proof: Proof, unit: Unit) -> str:
     if count:
         verdict = f"verdict: {count} finding{'s' if count > 1 else ''}"
     unseen = [
-        f"line {line} calls o<{name}> of another file: its pockets and sections are not measured"
-        for line, name in proof.unseen
+        paragraph(f"line {line}: {code}", [], [], [UNMEASURED]) for line, code in proof.unseen
     ]
     rapids = [
         paragraph(f"line {hit.line}: rapid", [], [], [collision_text(hit, unit)])
@@ -218,7 +218,7 @@ def as_json(proof: Proof) -> str:
             "pockets": [pocket_json(facts, proof) for facts in proof.pockets],
             "sections": [section_json(facts, proof) for facts in proof.sections],
             "rapids": [collision_json(hit) for hit in proof.collisions],
-            "unseen": [{"line": line, "sub": name} for line, name in proof.unseen],
+            "unseen": [{"line": line, "code": code} for line, code in proof.unseen],
             "good": not proof.findings,
         },
         indent=2,
@@ -331,7 +331,7 @@ def main(arguments: list[str]) -> int:
         with progress(f"running {asked.program.name}, real time"):
             run = run_program(asked.program, asked.ini, asked.tools, asked.override)
     proof = prove(asked.program, ini, tools=asked.tools, run=run, tolerance=asked.tolerance)
-    if not proof.pockets and not proof.sections:
+    if not (proof.pockets or proof.sections or proof.unseen):
         raise UsageError(f"{asked.program}: has no pocket and no polar section to verify")
     unit = unit_of(proof.subject.trace.modes, asked.units)
     print(as_json(proof) if asked.json else report(proof, unit))
