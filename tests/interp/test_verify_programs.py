@@ -180,6 +180,53 @@ def with_sub(tmp_path):
     return proof
 
 
+@pytest.mark.parametrize(
+    ("name", "body", "call"),
+    [
+        (
+            "hole",
+            ["o<hole> sub", "G0 Z1", "G12 I#1 Z-2 D4", "o<hole> endsub", "M2"],
+            "o<hole> call",
+        ),
+        ("77", ["o77 sub", "G0 Z1", "G12 I[#1] Z-2 D4", "o77 endsub", "M2"], "o77 call"),
+        ("77", ["O77", "G0 Z1", "G[12] I#1 Z-2 D4", "M99"], "M98 P77"),
+    ],
+)
+def test_a_pocket_in_a_sub_of_another_file_is_measured(name, body, call, with_sub):
+    lines = ["#1 = 9", call if "98" in call else f"{call} [9]", "G12 I11 Z-3 D4"]
+    proof = with_sub(name, body, *MM, *lines)
+    assert [facts.target.radius for facts in proof.pockets] == pytest.approx([9, 11])
+    targets = [facts.target for facts in proof.pockets]
+    assert [(target.line, target.file) for target in targets] == [(3, f"{name}.ngc"), (5, "")]
+    assert proof.findings == []
+
+
+def test_an_event_in_a_sub_that_a_sub_calls_is_measured(with_sub):
+    body = [
+        "o<event> sub",
+        "o<circle_mill> call [7] [0] [0] [-2] [1] [-9999] [#1] [0] [2] [-9999] [-9999] [-9999]"
+        " [-9999] [-9999] [-9999]",
+        "o<event> endsub",
+        "M2",
+    ]
+    own = ["o<way> sub", "o<event> call [#1]", "o<way> endsub"]
+    proof = with_sub("event", body, *own, *MM, "G0 Z1", "o<way> call [20]", "o<way> call [30]")
+    assert [facts.target.radius for facts in proof.pockets] == pytest.approx([20, 30])
+    assert proof.findings == []
+
+
+def test_a_sub_that_linuxcnc_finds_elsewhere_than_the_copy_is_a_finding(tmp_path):
+    shutil.copytree(SIM.parent, tmp_path / "configs")
+    shutil.copytree(ROOT / "ngc", tmp_path / "ngc")
+    (tmp_path / "python").symlink_to(ROOT / "python")
+    here = tmp_path / "configs" / "sim"
+    (here / "hole.ngc").write_text("o<hole> sub\nG12 I9 Z-2 D4\no<hole> endsub\nM2\n")
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*MM, "G0 Z1", "o<hole> call", "M2", ""]))
+    proof = prove(program, read_ini(here / "mill_mm_headless.ini"))
+    assert (proof.pockets, proof.unseen) == ([], [(4, "G12")])
+
+
 UNMEASURED = "a cycle cuts here that could not be measured"
 
 

@@ -37,6 +37,7 @@ class Text(NamedTuple):
     deleted: bool = False  # begins with /
     control: bool = False  # an O-word line
     call: str = ""  # the sub that it calls; its arguments are words with the letter ""
+    file: str = ""  # the name of a sub's own file, "" in the program
 
     @property
     def codes(self) -> list[float]:
@@ -141,30 +142,37 @@ def read_lines(program: Path) -> list[Text]:
 
 def executed(tracer: Tracer, program: Path, wanted: Wanted) -> list[Block]:
     """Return every execution of the blocks wanted, in order."""
-    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
     texts = read_lines(program)
-    watched = (
-        (*before(text), line, *after(text)) if wanted(text) else (line,)
+    return blocks_in(tracer.trace_text(watched(program, texts, wanted)), texts)
+
+
+def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) -> list[str]:
+    """Return the lines of a file and those that tell of the blocks wanted; see ``before``."""
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    groups = (
+        (*before(text, skip), line, *after(text, skip)) if wanted(text) else (line,)
         for text, line in zip(texts, lines)
     )
-    trace = tracer.trace_text([line for group in watched for line in group])
-    return blocks_in(trace, texts)
+    return [line for group in groups for line in group]
 
 
-def before(text: Text) -> Iterator[str]:
-    """Return the lines that tell a block's beginning, the state it finds and its words."""
+def before(text: Text, skip: int = 0) -> Iterator[str]:
+    """Return the lines that tell a block's beginning, the state it finds and its words.
+
+    ``skip`` is how many lines of other files come first where texts are counted.
+    """
     slash = "/" if text.deleted else ""
     state = " ".join(f"#<{name}>" for name in STATE)
-    yield f"{slash}(DEBUG,{TAG} begin {text.number} %.9f{state})"
+    yield f"{slash}(DEBUG,{TAG} begin {skip + text.number} %.9f{state})"
     for index, (_, value) in enumerate(text.words):
         if not is_number(value):
             yield f"{slash}{VALUE} = {value if value.startswith('[') else f'[{value}]'}"
             yield f"{slash}(DEBUG,{TAG} value {index} %.9f{VALUE})"
 
 
-def after(text: Text) -> Iterator[str]:
+def after(text: Text, skip: int = 0) -> Iterator[str]:
     """Return the line that tells that a block is done."""
-    yield f"{'/' if text.deleted else ''}(DEBUG,{TAG} end {text.number} 0)"
+    yield f"{'/' if text.deleted else ''}(DEBUG,{TAG} end {skip + text.number} 0)"
 
 
 def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:

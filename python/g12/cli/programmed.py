@@ -35,6 +35,7 @@ class Target:
     the cutter. Between ``cleared`` and ``radius`` nothing may be left. ``deepest`` is the depth
     along the third axis, None where the block does not say. ``smooth`` is for cycles that turn
     no corner, ``turn`` is -1 for clockwise and +1 for counterclockwise, 0 if not checked.
+    ``file`` is the name of the file that ``line`` is in, "" for the program.
     """
 
     line: int
@@ -56,6 +57,7 @@ class Target:
     offset: int | None = None
     bore: float = 0.0
     face: float = 0.0
+    file: str = ""
 
     @property
     def plane(self) -> int:
@@ -139,9 +141,10 @@ class Reader:
         else:
             target = getattr(self, f"_{dialect}")(view)
         code = next((f"G{code:g}" for code in block.codes if code in self.codes._known), CALL)
-        about = {"dialect": dialect, "turn": TURNS.get(code, 0)}
-        face = view.start[2] - view.present("z")
-        return replace(target, line=block.text.number, code=code, face=face, **about)
+        turn = TURNS.get(code, 0)
+        place = {"line": block.text.number, "file": block.text.file}
+        place["face"] = view.start[2] - view.present("z")
+        return replace(target, **place, code=code, dialect=dialect, turn=turn)
 
     def _haas(self, view: View) -> Target:
         words = view.words

@@ -11,9 +11,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from g12.cli.blocks import executed, read_lines
+from g12.cli.blocks import read_lines
 from g12.cli.command import ended, with_axes
 from g12.cli.contour_words import sections
+from g12.cli.elsewhere import executed_everywhere
 from g12.cli.headless import Run
 from g12.cli.ini import Ini
 from g12.cli.measure_pocket import PocketFacts, measure_pocket
@@ -103,7 +104,7 @@ def prove(
     plain = tolerance or POCKET_TOLERANCE
     with Tracer(ini, tools=tools) as tracer:
         trace = ended(program, with_axes(tracer.trace(program), ini.path))
-        blocks = executed(tracer, program, codes.wanted)
+        blocks = executed_everywhere(tracer, program, trace, codes, tools)
         reading = ini.get("G12", "POLAR_X", "inherit").lower()
         polars = sections(tracer, program, codes, reading, blocks)
     moves = trace.moves

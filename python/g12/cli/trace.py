@@ -207,6 +207,7 @@ class Trace:
     ``printed`` is the text of ``(print, …)`` and of Python, ``position`` where the last move
     ended, ``globals`` the global named parameters that the program left, ``numbered`` the
     parameters asked for, ``seconds`` the interpreter's time.  ``events`` holds the messages too.
+    ``files`` are those of subs outside the program that execute a remapped code which moves.
     """
 
     moves: list[Move]
@@ -220,6 +221,7 @@ class Trace:
     globals: dict[str, float]
     numbered: dict[int, float]
     seconds: float
+    files: tuple[str, ...] = ()
 
 
 class TraceFailure(RuntimeError):
@@ -440,6 +442,7 @@ def _trace(answer: dict) -> Trace:
         modes=modes(answer["gcodes"], answer["mcodes"], answer["settings"]),
         **{key: answer[key] for key in ("state", "printed", "position", "seconds")},
         **{key: answer[key] for key in ("globals", "numbered")},
+        files=tuple(answer["files"]),
     )
 
 

@@ -120,6 +120,17 @@ class Lines:
         level = this.remap_level
         return this.blocks[level].executing_remap.name.upper() if level else ""
 
+    def files(self) -> set[str]:
+        """Return the files of subs that wait for the remap at work, the program's own aside."""
+        this = interpreter_object()
+        found = set()
+        for level in range(1, this.call_level):
+            frame = this.sub_context[level]
+            if frame.call_type == CALL_OF_REMAP:
+                break
+            found.add(os.path.abspath(frame.filename or self._program))
+        return found - {self._program}
+
     def _of_remap(self, this) -> int:
         return bisect.bisect_left(self._ends, this.blocks[1].offset) + 1
 
@@ -135,6 +146,7 @@ class Canon:
         self.moves: list[tuple] = []
         self.messages: list[tuple] = []
         self.events: list[tuple] = []
+        self.files: set[str] = set()
         self.in_force: tuple = ()
         self.pitch = ""
         self.line = 0
@@ -300,8 +312,10 @@ class Canon:
         mode = FEED_MODES[interpreter_object().feed_mode] if feed else ""
         state = (self.plane, self.spindle[0], self.length)
         place = (kind, self.line, self.lines.now(), start, self.position)
-        arc = (centre, turns, self.rotation)
-        self.moves.append((*place, feed, mode, *state, *arc, self.lines.remap()))
+        remap = self.lines.remap()
+        self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation, remap))
+        if remap:
+            self.files |= self.lines.files()
 
     def _resolved(self, tip: tuple) -> tuple:
         """Machine coordinates of a point in program coordinates, both in mm."""
@@ -364,7 +378,7 @@ def interpret(machine: dict, tools: Tools, request: dict) -> dict:
     if result > gcode.MIN_ERROR:
         error = (gcode.strerror(result), canon.lines.of_error() if canon.started else 0)
     answer = {"moves": canon.moves, "messages": canon.messages, "events": canon.events}
-    answer["error"] = error
+    answer["error"], answer["files"] = error, sorted(canon.files)
     return {**answer, "position": canon.position, "seconds": seconds, **left_behind(request)}
 
 

@@ -98,7 +98,8 @@ def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
         ("time", duration(facts.pace)),
     ]
     found = list(pocket_findings(facts, proof.pocket_tolerance, unit))
-    title = f"line {target.line}: {target.code} ({target.dialect})"
+    line = f"line {target.line}{f' of {target.file}' if target.file else ''}"
+    title = f"{line}: {target.code} ({target.dialect})"
     return paragraph(title, rows, list(pocket_notes(facts, unit)), found)
 
 
@@ -230,6 +231,7 @@ def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
     target = facts.target
     return {
         "line": target.line,
+        "file": target.file or None,
         "code": target.code,
         "dialect": target.dialect,
         "centre": [float(value) for value in target.origin[:2]],
