@@ -243,6 +243,18 @@ def test_a_sub_of_another_file_without_a_cycle_is_none(with_sub):
     assert len(proof.pockets) == 1 and proof.findings == []
 
 
+@pytest.mark.parametrize("mode", ["G90", "G91"])
+def test_the_call_form_goes_from_the_tool_in_incremental_mode(mode, tmp_path):
+    call = "o<circle_mill> call [7] [50] [7] [-6] [2] [10] [40] [2] [2] [3] [-9999] [.3] [150]"
+    lines = [*MM, "G0 X10 Y10 Z5", mode, f"{call} [800] [400]", "M2"]
+    proof = proof_of_text(tmp_path, lines)
+    (facts,) = proof.pockets
+    centre, depth = ([60, 17], -4) if mode == "G91" else ([50, 7], -6)
+    assert facts.target.origin[:2] == pytest.approx(centre)
+    assert facts.target.height(facts.target.deepest) == pytest.approx(depth)
+    assert proof.findings == []
+
+
 @pytest.mark.parametrize("modes", ["G20", "G91", "G20 G91", "G90.1", "G64 P0.1"])
 @pytest.mark.parametrize("offset", ["", "G10 L2 P1 X7 Y-3 Z2 R30", "G92 X4 Y5 Z1"])
 def test_modes_and_work_coordinates_do_not_matter(modes, offset, tmp_path):

@@ -191,7 +191,7 @@ class Reader:
         if "W" in event:
             self.plane = event["W"]
         loaded, wall = self._radius(view.tool), event["R"]
-        depth = event["Z"] if remap is None or view.absolute else event["Z"] + (self.plane or 0.0)
+        depth = event["Z"] if view.absolute else event["Z"] + (self.plane or 0.0)
         side = side_of(event.get("D", 0.0), event["C"])
         inner = wall - abs(event.get("L", 0.0)) - 2 * loaded
         if side == 0:
@@ -285,7 +285,6 @@ def entries_of_call(view: View) -> dict[str, float]:
         if value != LEFT_OUT
     }
     view.words = {letter: given[letter] for letter in "XY"}
-    view.absolute = True
     return entries
 
 
