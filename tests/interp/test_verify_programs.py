@@ -356,16 +356,16 @@ def test_what_cannot_be_followed_is_a_finding(tmp_path):
 
 @pytest.fixture
 def sabotaged(tmp_path):
-    """Return a machine whose haas pocket has one piece of NGC replaced by another."""
+    """Return a machine whose cycle has one piece of NGC replaced by another."""
 
-    def machine(good, bad):
+    def machine(good, bad, name="g12_haas", of="mill_mm"):
         folder = tmp_path / "ngc"
         shutil.copytree(ROOT / "ngc", folder)
-        body = folder / "g12_haas.ngc"
+        body = folder / f"{name}.ngc"
         text = body.read_text()
         assert good in text
         body.write_text(text.replace(good, bad))
-        return ini("mill_mm").replaced({"RS274NGC": {"SUBROUTINE_PATH": str(folder)}})
+        return ini(of).replaced({"RS274NGC": {"SUBROUTINE_PATH": str(folder)}})
 
     return machine
 
@@ -390,6 +390,59 @@ def test_a_cycle_that_cuts_too_shallow_is_found(sabotaged, tmp_path):
 def test_a_cycle_that_turns_the_wrong_way_is_found(sabotaged, tmp_path):
     found = broken(sabotaged, tmp_path, "G#<arc>", "G[5 - #<arc>]")
     assert "it turns the wrong way" in found
+
+
+@pytest.mark.parametrize(
+    ("good", "bad", "found"),
+    [
+        ("    G1 Z#<z> ", "    G1 Z[#<z> - 5]\n    G1 Z#<z> ", "it goes 5 mm below its depth"),
+        ("repeat [#<levels>]", "repeat [1]", "full circles along the wall: 1, not 2"),
+        ("  o<level> repeat", "  F[2 * #<_feed>]\n  o<level> repeat", "the feed 1200, not 600"),
+    ],
+)
+def test_a_haas_cycle_that_moves_otherwise_is_found(good, bad, found, sabotaged, tmp_path):
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*MM, "G0 X0 Y0 Z1", "G13 I7 K20 Q6 Z-3 L2 D4", "M2", ""]))
+    ((_, text),) = prove(program, sabotaged(good, bad)).findings
+    assert found in text
+
+
+EVENT = [*MM, "G0 Z5", "G13.2 X0 Y0 Z-6 I2 E10 R40 D2 H2 K3 Q.3 P150 F800", "M2", ""]
+
+
+@pytest.mark.parametrize(
+    ("good", "bad", "found"),
+    [
+        ("G#<rough_arc> J[", "G[5 - #<rough_arc>] J[", "it turns the wrong way"),
+        ("G#<finish_arc>", "G[5 - #<finish_arc>]", "its finish pass turns the wrong way"),
+        ("#<z> = [#<z> - #<peck>]", "#<z> = #<rough_z>", "not at −1, −4, −5.7, −6 mm"),
+        ("  F#<feed>", "  F[10 * #<feed>]", "a move has the feed 8000, not 800"),
+        ("F#<plunge_feed>", "F#<feed>", "a move has the feed 800, not 150"),
+    ],
+)
+def test_an_event_that_moves_otherwise_is_found(good, bad, found, sabotaged, tmp_path):
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join(EVENT))
+    assert prove(program, ini("mill_mm")).findings == []
+    texts = [text for _, text in prove(program, sabotaged(good, bad, "g12_circle_mill")).findings]
+    assert any(found in text for text in texts)
+
+
+@pytest.mark.parametrize(
+    ("good", "bad", "found"),
+    [
+        ("repeat [#<circles>]", "repeat [1]", "full circles along the wall: 1, not 2"),
+        ("  o130 repeat", "  G1 Z-9\n  G1 Z-5\n  o130 repeat", "it goes 4 mm below its depth"),
+        ("  o130 repeat", "  F3000\n  o130 repeat", "a move has the feed 3000, not 600"),
+    ],
+)
+def test_a_yasnac_circle_that_moves_otherwise_is_found(good, bad, found, sabotaged, tmp_path):
+    program = tmp_path / "program.ngc"
+    lines = [MM[0], "T10 M6", "G0 X3 Y4 Z-5", "G13 I30. R20. L2 D10", "M2", ""]
+    program.write_text("\n".join(lines))
+    machine = sabotaged(good, bad, "g12_yasnac", "mill_yasnac_mm")
+    assert found in [text for _, text in prove(program, machine).findings]
+    assert prove(program, ini("mill_yasnac_mm")).findings == []
 
 
 # ---------------------------------------------------------------- rapids

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from g12.cli.measure_pocket import measure_pocket
 from g12.cli.motion import follow, track
 from g12.cli.part import Part
-from g12.cli.programmed import Target
+from g12.cli.programmed import Feeds, Target
 from g12.cli.proof import pocket_findings, pocket_notes
 from g12.cli.units import UNITS
 from handmade import LIMITS, Hand, samples_of
@@ -99,6 +99,56 @@ def test_the_wrong_turn_is_found():
 def test_a_wrong_depth_is_found():
     facts = measure(cut([17], depth=-0.9), target(cleared=14))
     assert findings(facts) == "the depth is off by 0.1 mm"
+
+
+def test_a_dive_below_the_depth_is_found():
+    hand = Hand().rapid(x=50).line(z=-6).line(z=-1).pocket([17])
+    assert findings(measure(hand, target(cleared=14))) == "it goes 5 mm below its depth"
+
+
+def test_levels_are_those_asked_for():
+    hand = cut([17], depth=-0.6).pocket([17], depth=-1.0)
+    assert findings(measure(hand, target(cleared=14, levels=(-0.6, -1.0)))) == ""
+    found = findings(measure(hand, target(cleared=14, levels=(-0.3, -0.6, -1.0))))
+    assert found == "it is cut at −0.6, −1, not at −0.3, −0.6, −1 mm"
+    assert "not at −0.5, −1 mm" in findings(measure(hand, target(cleared=14, levels=(-0.5, -1.0))))
+
+
+def test_circles_along_the_wall_are_counted():
+    hand = cut([10, 17]).arc(-1, 58.5, 0, x=67).arc(-1, 50, 0).arc(-1, 58.5, 0, x=50)
+    assert findings(measure(hand, target(cleared=14, passes=2, smooth=False))) == ""
+    found = findings(measure(hand, target(cleared=14, passes=3, smooth=False)))
+    assert found == "full circles along the wall: 2, not 3"
+
+
+@pytest.mark.parametrize(
+    ("turn", "finish", "found"),
+    [
+        (-1, 1, ""),
+        (1, 1, "it turns the wrong way"),
+        (-1, -1, "its finish pass turns the wrong way"),
+        (-1, 0, "it turns the wrong way"),
+    ],
+)
+def test_rough_and_finish_turn_as_asked(turn, finish, found):
+    hand = cut([10, 16]).line(x=67).arc(1, 50, 0)
+    wanted = target(cleared=14, turn=turn, finish_turn=finish, smooth=False)
+    assert findings(measure(hand, wanted)) == found
+
+
+@pytest.mark.parametrize(
+    ("feeds", "found"),
+    [
+        (Feeds(600, 600, 600, None), ""),
+        (Feeds(None, 600, None, 600), ""),
+        (Feeds(60, 600, 600, None), "a move has the feed 600, not 60"),
+        (Feeds(600, 60, 600, None), "a move has the feed 600, not 60"),
+        (Feeds(600, 600, 60, None), "a move has the feed 600, not 60"),
+        (Feeds(600, 600, 600, 60), "a move has the feed 600, not 60"),
+    ],
+)
+def test_feeds_are_those_asked_for(feeds, found):
+    assert findings(measure(cut([10, 17]), target(cleared=14, feeds=feeds, smooth=False))) == found
 
 
 def test_a_block_that_cuts_nothing_is_found():

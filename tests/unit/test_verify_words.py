@@ -113,7 +113,7 @@ def block(line, number=1, at=1, end=2, **state):
     """Return an executed block with plain numbers, metric and absolute unless told otherwise."""
     text = read_line(number, line)
     values = [(letter, float(value)) for letter, value in text.words]
-    found = {"_x": 0, "_y": 0, "_z": 0, "_c": 0, "_metric": 1, "_absolute": 1}
+    found = {"_x": 0, "_y": 0, "_z": 0, "_c": 0, "_metric": 1, "_absolute": 1, "_feed": 600}
     return Block(
         text,
         {letter: value for letter, value in values if letter != "G"},
@@ -208,6 +208,49 @@ def test_codes_know_cycles_and_sections_by_their_handlers():
     assert [CODES.knows(code) for code in ("G13", "G12.1", "G2", "M6", "")] == [True, True] + 3 * [
         False
     ]
+
+
+def test_loops_are_spring_passes_or_further_levels():
+    again, deeper = target("G12 I4 Z-2 L3 D1", **HERE), target("G12 G91 I4 Z-2 L3 D1", **HERE)
+    assert (again.levels, again.passes) == ((-7,), 3)
+    assert (deeper.levels, deeper.passes) == ((-2, -4, -6), 3)
+
+
+@pytest.mark.parametrize(
+    ("line", "state", "feed"),
+    [
+        ("G12 I4 Z-2 F50", {}, 50),
+        ("G12 I4 Z-2", {"_feed": 70}, 70),
+        ("G12 I4 Z-2", {"_feed": 2, "_metric": 0}, 50.8),
+        ("G20 G12 I4 Z-2 F50", {}, None),  # LinuxCNC reads F before it changes the units
+        ("G12 I4 Z-2", {"_feed": 1}, None),
+    ],
+)
+def test_the_feed_is_the_blocks_or_the_one_in_force(line, state, feed):
+    assert target(line, **state).feeds == (feed, feed, feed, None)
+
+
+@pytest.mark.parametrize(
+    ("event", "levels"),
+    [
+        ({"Z": -1.0}, [-1]),
+        ({"Z": -1.0, "K": 0.3, "L": 0.02}, [-0.2, -0.5, -0.8, -0.98, -1]),
+        ({"Z": -1.0, "K": 0.3, "L": -0.02}, [-0.2, -0.5, -0.8, -1]),
+        ({"Z": -0.5, "K": 0.3}, [-0.2, -0.5]),
+        ({"Z": -1.0, "K": 9.0}, [-1]),
+    ],
+)
+def test_the_event_pecks_from_its_first_plane(event, levels):
+    assert programmed.levels_of(event, 0.1, True) == pytest.approx(levels)
+    event["Z"] -= 0.1
+    assert programmed.levels_of(event, 0.1, False) == pytest.approx(levels)
+
+
+def test_the_event_has_feeds_of_its_own():
+    every = programmed.feeds_of({"F": 8.0, "P": 1.0, "V": 4.0, "L": 0.3}, 6.0)
+    assert every == (1, 8, 8, 4)
+    assert programmed.feeds_of({"L": -0.3}, 6.0) == (6, 6, 6, 6)
+    assert programmed.feeds_of({"V": 4.0}, 6.0) == (6, 6, 6, None)
 
 
 @pytest.mark.parametrize(

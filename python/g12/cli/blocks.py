@@ -20,7 +20,7 @@ from g12.cli.trace import Trace, Tracer
 
 TAG = "g12-verify"
 VALUE = "#<g12_verify_value>"
-STATE = ("_x", "_y", "_z", "_c", "_metric", "_absolute", "_lathe_diameter_mode")
+STATE = ("_x", "_y", "_z", "_c", "_metric", "_absolute", "_lathe_diameter_mode", "_feed")
 NUMBER = re.compile(r"[0-9]*\.?[0-9]*")
 COMMENT = re.compile(r"\([^)]*\)|;.*")
 FUNCTION = re.compile(r"[a-z]+(?=\[)")

@@ -24,6 +24,7 @@ from g12.cli.trace import Move
 SECTORS = 720  # directions in which the wall is looked at
 SAME_LEVEL = 1e-3
 FINE = 1e-5  # chord error of the polylines that stand for arcs
+SAME_FEED = 1e-6
 NEAR_CENTRE = 0.02  # of a move's own reach
 
 
@@ -34,6 +35,9 @@ class PocketFacts:
     ``reached`` is the radius of the wall, ``deviation`` the wall's greatest distance from the
     programmed circle, all round; ``left`` and ``gouge`` are areas beyond the tolerance;
     ``rings`` the radii of the tool centre's full circles; ``stepover`` None with one ring only.
+    ``circles`` are the turns of the full circles in the order they are cut, ``passes`` says how
+    many of them are along the wall. ``lowest`` is the least depth that any move comes to. Of the
+    first move with another feed than the words ask for, ``feed`` is its feed and the one asked.
     ``overruns`` are the axes that would leave their travel.
     ``off_path`` and ``off_rings`` are the real motion's largest deviations, None without a run.
     """
@@ -47,13 +51,21 @@ class PocketFacts:
     jump: float
     rings: tuple[float, ...]
     depths: tuple[float, ...]
-    turns: tuple[int, ...]
+    circles: tuple[int, ...]
+    passes: int
+    lowest: float
+    feed: tuple[float, float] | None
     shortest: float
     longest: float
     pace: Pace
     off_path: float | None
     off_rings: float | None
     overruns: tuple[Overrun, ...] = ()
+
+    @property
+    def turns(self) -> tuple[int, ...]:
+        """The turns of the full circles, each but once."""
+        return tuple(sorted(set(self.circles)))
 
 
 def measure_pocket(
@@ -91,13 +103,47 @@ def measure_pocket(
         jump=largest_jump(own, target),
         rings=tuple(dict.fromkeys(round(move.radius, 6) for move in circles)),
         depths=tuple(levels),
-        turns=tuple(sorted({int(math.copysign(1, move.turns)) for move in circles})),
+        circles=tuple(int(math.copysign(1, move.turns)) for move in circles),
+        passes=passes_of(circles, target),
+        lowest=lowest_of(first, last, path, target),
+        feed=wrong_feed(own, target),
         shortest=min(lengths),
         longest=max(lengths),
         pace=pace,
         off_path=real.largest(cutters) if real else None,
         off_rings=real.largest(rings) if real else None,
     )
+
+
+def passes_of(circles: Sequence[Move], target: Target) -> int:
+    """Return how many full circles are next to the wall."""
+    radii = [move.radius for move in circles]
+    nearest = (max if target.inside else min)(radii, default=0.0)
+    return sum(abs(radius - nearest) < SAME_LEVEL for radius in radii)
+
+
+def lowest_of(first: int, last: int, path: Track, target: Target) -> float:
+    """Return the least depth that moves ``first`` to ``last`` - 1 come to."""
+    vertices = slice(*np.searchsorted(path.move, (first, last)))
+    return float(target.local(path.points[vertices])[:, 2].min(initial=0.0))
+
+
+def wrong_feed(moves: Sequence[Move], target: Target) -> tuple[float, float] | None:
+    """Return the feed of the first move that has another one than asked, and the one asked."""
+    last = max((at for at, move in enumerate(moves) if is_full_circle(move)), default=0)
+    for at, move in enumerate(moves):
+        finishing = target.feeds.finish is not None and abs(at - last) < 2
+        wanted = target.feeds.finish if finishing else feed_of(move, target)
+        if move.kind != "rapid" and wanted and abs(move.feed / wanted - 1) > SAME_FEED:
+            return move.feed, wanted
+    return None
+
+
+def feed_of(move: Move, target: Target) -> float | None:
+    """Return the feed that the words ask for along a move that does not finish the wall."""
+    if move.kind == "arc":
+        return target.feeds.arc
+    return target.feeds.straight if is_cutting(move, target) else target.feeds.plunge
 
 
 def is_full_circle(move: Move) -> bool:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,25 @@ LEFT_OUT = -9999.0
 POCKET = "circle_mill_pocket"  # the handler of the event's pocket
 COMPENSATION = (41.0, 42.0, 41.1, 42.1)
 TURNS = {"G12": -1, "G13": 1}
+ROUGH_FINISH = ((-1, -1), (1, 1), (-1, 1), (1, -1))  # turns of the event by D
+FORGOTTEN = 1.0  # F after the preview changed its units; see ``trace``
+SAME_DEPTH = 1e-6
+AT_PRESENT_Z = {"deepest": 0.0, "levels": (0.0,)}
+
+
+class Feeds(NamedTuple):
+    """Feeds in mm per minute or revolution: down, on arcs, on straight moves, of the finish.
+
+    None: the words do not say.
+    """
+
+    plunge: float | None
+    arc: float | None
+    straight: float | None
+    finish: float | None
+
+
+UNSAID = Feeds(None, None, None, None)
 
 
 @dataclass(frozen=True)
@@ -33,8 +53,10 @@ class Target:
     ``origin`` (3,) is the centre at the height where the block began, the rows of ``axes`` are
     the plane's first, second and third axis. ``radius`` is that of the wall, ``cutter`` that of
     the cutter. Between ``cleared`` and ``radius`` nothing may be left. ``deepest`` is the depth
-    along the third axis, None where the block does not say. ``smooth`` is for cycles that turn
-    no corner, ``turn`` is -1 for clockwise and +1 for counterclockwise, 0 if not checked.
+    along the third axis, ``levels`` are all depths to be cut and ``passes`` says how often the
+    finished circle is, None where the block does not say. ``smooth`` is for cycles that turn
+    no corner, ``turn`` is -1 for clockwise and +1 for counterclockwise, 0 if not checked;
+    ``finish_turn`` that of a last circle which finishes the wall, 0 without one.
     ``file`` is the name of the file that ``line`` is in, "" for the program.
     """
 
@@ -50,6 +72,10 @@ class Target:
     deepest: float | None = None
     smooth: bool = True
     turn: int = 0
+    finish_turn: int = 0
+    levels: tuple[float, ...] | None = None
+    passes: int | None = None
+    feeds: Feeds = UNSAID
     circle: float = 0.0
     word: str = ""
     tool: int = 0
@@ -141,7 +167,7 @@ class Reader:
         else:
             target = getattr(self, f"_{dialect}")(view)
         code = next((f"G{code:g}" for code in block.codes if code in self.codes._known), CALL)
-        turn = TURNS.get(code, 0)
+        turn = TURNS.get(code, target.turn)
         place = {"line": block.text.number, "file": block.text.file}
         place["face"] = view.start[2] - view.present("z")
         return replace(target, **place, code=code, dialect=dialect, turn=turn)
@@ -152,12 +178,17 @@ class Reader:
             self.offset, self.number = self._radius(words["D"]), round(words["D"])
         offset = self._radius(view.tool) if self.offset is None else self.offset
         target = self._inside(view, "K" if "K" in words else "I", offset, self.number)
-        count = 1 if view.absolute else int(words.get("L", 1))
+        passes = int(words.get("L", 1))
+        counts = (1,) if view.absolute else range(1, passes + 1)
+        levels = tuple(view.height("Z", count) - view.start[2] for count in counts)
         return replace(
             target,
             origin=view.centre(),
             cleared=0.0 if "K" in words else core_of(target, target.radius),
-            deepest=view.height("Z", count) - view.start[2],
+            deepest=min(levels),
+            levels=levels,
+            passes=passes,
+            feeds=Feeds(*[view.feed()] * 3, None),
         )
 
     def _yasnac(self, view: View) -> Target:
@@ -169,12 +200,20 @@ class Reader:
         # A spiral has gone all round when it has grown by Q.
         spiral = abs(view.length("I")) - abs(view.length("K")) - view.length("Q")
         inner = target.radius - (max(0.0, spiral) if "K" in words else 0.0)
-        return replace(target, cleared=bore or core_of(target, inner), bore=bore)
+        return replace(
+            target,
+            cleared=bore or core_of(target, inner),
+            bore=bore,
+            passes=int(words.get("L", 1)),
+            feeds=Feeds(None, view.feed(), None, None),
+            **AT_PRESENT_Z,
+        )
 
     def _mitsubishi(self, view: View) -> Target:
         number = view.words["D"]
         target = self._inside(view, "I", self._radius(number), round(number))
-        return replace(target, cleared=core_of(target, target.radius))
+        cleared, feeds = core_of(target, target.radius), Feeds(*[view.feed()] * 3, None)
+        return replace(target, cleared=cleared, passes=1, feeds=feeds, **AT_PRESENT_Z)
 
     def _inside(self, view: View, word: str, offset: float, number: int | None) -> Target:
         """Return a pocket; without an offset the tool's centre goes round on the circle."""
@@ -191,7 +230,8 @@ class Reader:
         if "W" in event:
             self.plane = event["W"]
         loaded, wall = self._radius(view.tool), event["R"]
-        depth = event["Z"] if view.absolute else event["Z"] + (self.plane or 0.0)
+        levels = levels_of(event, self.plane or 0.0, view.absolute)
+        turn, finish_turn = ROUGH_FINISH[int(event.get("D", 0.0))]
         side = side_of(event.get("D", 0.0), event["C"])
         inner = wall - abs(event.get("L", 0.0)) - 2 * loaded
         if side == 0:
@@ -207,12 +247,17 @@ class Reader:
             loaded,
             0.0 if pocket else max(0.0, inner),
             inside=side <= 0,
-            deepest=depth - view.present("z"),
+            deepest=levels[-1] - view.present("z"),
             smooth=False,
             circle=0.0 if side else event["R"],
             word="" if side else "R",
             tool=view.tool,
             loaded=loaded,
+            turn=turn,
+            finish_turn=finish_turn if "L" in event else 0,
+            levels=tuple(level - view.present("z") for level in levels),
+            passes=1 if "L" in event else len(levels),
+            feeds=feeds_of(event, view.feed()),
         )
 
     def _remember(self, block: Block) -> None:
@@ -250,6 +295,17 @@ class View:
     def length(self, letter: str) -> float:
         """Return a length word in mm, 0 without it."""
         return self.words.get(letter, 0.0) * self.unit
+
+    def feed(self) -> float | None:
+        """Return the feed in mm per minute or revolution: the F word, else what is in force.
+
+        None if the preview does not know: the block changes the units, or one before it did.
+        """
+        if self.unit != self._unit_before:
+            return None
+        if "F" not in self.words and self._state["_feed"] == FORGOTTEN:
+            return None
+        return self.words.get("F", self._state["_feed"]) * self.unit
 
     def present(self, axis: str) -> float:
         """Return where the tool stands in program coordinates, mm."""
@@ -290,8 +346,10 @@ def entries_of_call(view: View) -> dict[str, float]:
 
 def entries_of_code(view: View, remap: Remap) -> dict[str, float]:
     """Return the entries of a G12.2 or G13.2 block, mm."""
-    letters = {"R": "R", "Z": "Z", "W": "I", "L": "Q"}
+    letters = {"R": "R", "Z": "Z", "W": "I", "L": "Q", "K": "K", "P": "P"}
     entries = {entry: view.length(word) for entry, word in letters.items() if word in view.words}
+    if view.words.get("L") == 0.0:
+        entries["L"] = -entries["L"]
     entries["D"], entries["C"] = view.words.get("D", 0.0), view.words["H"]
     entries["G"] = 7.0 if POCKET in remap.handlers else 0.0
     return entries
@@ -300,6 +358,25 @@ def entries_of_code(view: View, remap: Remap) -> dict[str, float]:
 def core_of(target: Target, wall: float) -> float:
     """Return the radius of what one ring along a wall leaves standing by design."""
     return max(0.0, wall - 2 * target.cutter)
+
+
+def levels_of(event: Mapping[str, float], plane: float, absolute: bool) -> list[float]:
+    """Return the heights that an event cuts at, in program coordinates, downward from W."""
+    final = event["Z"] if absolute else plane + event["Z"]
+    rough = final + max(0.0, event.get("L", 0.0))
+    peck = event.get("K", plane - rough)
+    levels = [plane - peck]
+    while levels[-1] > rough + SAME_DEPTH:
+        levels.append(levels[-1] - peck)
+    levels[-1] = rough
+    return levels + [final] * (rough > final)
+
+
+def feeds_of(event: Mapping[str, float], feed: float | None) -> Feeds:
+    """Return the feeds of an event; ``feed`` is the block's or the one in force."""
+    rough = event.get("F", feed)
+    finish = event.get("V", rough) if "L" in event else None
+    return Feeds(event.get("P", rough), rough, rough, finish)
 
 
 def side_of(direction: float, compensation: float) -> int:

@@ -17,7 +17,7 @@ from g12.cli.contour_words import sections
 from g12.cli.elsewhere import executed_everywhere
 from g12.cli.headless import Run
 from g12.cli.ini import Ini
-from g12.cli.measure_pocket import PocketFacts, measure_pocket
+from g12.cli.measure_pocket import SAME_LEVEL, PocketFacts, measure_pocket
 from g12.cli.measure_section import SectionFacts, measure_section
 from g12.cli.motion import Followed, Track, follow, limits_of, track
 from g12.cli.overrun import Overrun, Travel
@@ -194,11 +194,38 @@ def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> It
     too_high = facts.depths[-1] - target.deepest if target.deepest is not None else 0.0
     if abs(too_high) > tolerance:
         yield f"the depth is off by {unit.fine(too_high)} {unit.name}"
-    if target.turn and facts.turns and set(facts.turns) != {target.turn}:
-        yield "it turns the wrong way"
+    elif target.deepest is not None and min(target.deepest, 0.0) - facts.lowest > tolerance:
+        yield f"it goes {unit.fine(target.deepest - facts.lowest)} {unit.name} below its depth"
+    elif target.levels is not None:
+        yield from level_findings(facts, max(tolerance, SAME_LEVEL), unit)
+    yield from way_findings(facts, unit)
     for overrun in facts.overruns:
         if overrun.certain:
             yield overrun_text(overrun, unit)
+
+
+def level_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
+    """Yield what is wrong with the levels of a pocket whose last one is right."""
+    wanted, cut = sorted(facts.target.levels, reverse=True), facts.depths
+    equal = len(wanted) == len(cut)
+    if not equal or max(map(abs, map(float.__sub__, wanted, cut))) > tolerance:
+        told = [", ".join(map(unit.text, map(facts.target.height, z))) for z in (cut, wanted)]
+        yield f"it is cut at {told[0]}, not at {told[1]} {unit.name}"
+
+
+def way_findings(facts: PocketFacts, unit: Unit) -> Iterator[str]:
+    """Yield what is wrong with the way a pocket is cut: turns, passes and feeds."""
+    target = facts.target
+    rough = facts.circles[:-1] if target.finish_turn else facts.circles
+    if target.turn and any(turn != target.turn for turn in rough):
+        yield "it turns the wrong way"
+    if target.finish_turn and target.finish_turn not in facts.circles[-1:]:
+        yield "its finish pass turns the wrong way"
+    if target.passes is not None and facts.passes != target.passes:
+        yield f"full circles along the wall: {facts.passes}, not {target.passes}"
+    if facts.feed:
+        told = [plain(feed / unit.mm, unit.decimals) for feed in facts.feed]
+        yield f"a move has the feed {told[0]}, not {told[1]}"
 
 
 def overrun_text(overrun: Overrun, unit: Unit) -> str:
