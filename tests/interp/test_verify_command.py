@@ -191,6 +191,10 @@ def test_plot_says_in_one_line_why_it_cannot(text, name, code, said, written, tm
         ["plot", "x.ngc", "--ini", MILL],
         ["plot", "x.ngc", "--ini", MILL, "-o", "x.png", "--units", "feet"],
         ["verify", "x.ngc", "--ini", MILL, "--run", "--override", "0"],
+        *(
+            ["verify", "x.ngc", "--ini", MILL, "--tolerance", wrong]
+            for wrong in ("nan", "inf", "0", "-1", "fine")
+        ),
     ],
 )
 def test_wrong_words_end_with_2(arguments, capsys):

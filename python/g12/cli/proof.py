@@ -25,7 +25,7 @@ from g12.cli.part import C, part_of_program, tool_diameters
 from g12.cli.programmed import Codes, Reader, Target
 from g12.cli.rapids import Collision, collisions
 from g12.cli.trace import MM_PER_INCH, Move, Tools, Trace, Tracer, mm_per_unit
-from g12.cli.units import MM, Unit, plain
+from g12.cli.units import MM, Unit
 
 POCKET_TOLERANCE = 0.005  # mm
 POLAR_TOLERANCE = {1.0: 0.005, MM_PER_INCH: 0.0002}  # by machine unit, in that unit
@@ -100,8 +100,9 @@ def prove(
     ``tolerance`` in mm replaces both that of pockets and that of polar sections.
     """
     limits, diameters, codes = limits_of(ini), tool_diameters(ini, tools), Codes(ini)
-    polar = tolerance or polar_tolerance(ini) + (RUN_ALLOWANCE if run else 0.0)
-    plain = tolerance or POCKET_TOLERANCE
+    usual = polar_tolerance(ini) + (RUN_ALLOWANCE if run else 0.0)
+    polar = usual if tolerance is None else tolerance
+    plain = POCKET_TOLERANCE if tolerance is None else tolerance
     with Tracer(ini, tools=tools) as tracer:
         trace = ended(program, with_axes(tracer.trace(program), ini.path))
         blocks = executed_everywhere(tracer, program, trace, codes, tools)
@@ -224,8 +225,7 @@ def way_findings(facts: PocketFacts, unit: Unit) -> Iterator[str]:
     if target.passes is not None and facts.passes != target.passes:
         yield f"full circles along the wall: {facts.passes}, not {target.passes}"
     if facts.feed:
-        told = [plain(feed / unit.mm, unit.decimals) for feed in facts.feed]
-        yield f"a move has the feed {told[0]}, not {told[1]}"
+        yield "a move has the feed {}, not {}".format(*map(unit.text, facts.feed))
 
 
 def overrun_text(overrun: Overrun, unit: Unit) -> str:

@@ -19,6 +19,7 @@ from g12.cli.command import (
     add_run,
     check_run,
     checked_ini,
+    number_above,
     one_line,
     progress,
     run_program,
@@ -314,7 +315,9 @@ def parser() -> Parser:
     """Return the command's words."""
     words = Parser(prog="g12 verify", description=__doc__, epilog=EXAMPLES)
     add_program(words)
-    words.add_argument("--tolerance", type=float, metavar="MM", help="in place of the usual ones")
+    words.add_argument(
+        "--tolerance", type=number_above(0), metavar="MM", help="in place of the usual ones"
+    )
     words.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
     words.add_argument("--json", action="store_true", help="print values in mm for a program")
     add_run(words, "measure the real motion of a headless run")
