@@ -35,6 +35,16 @@ def test_chords_of_an_arc_stay_within_the_error(radius, sweep, error):
     assert sagitta <= error * (1 + 1e-6)
 
 
+@pytest.mark.parametrize("plane", [17, 18, 19])
+def test_many_points_of_an_arc_are_those_of_the_move(plane):
+    hand = Hand().rapid(x=9, y=8, z=7)
+    hand.arc(-2, 3, 4, plane=plane, x=2, y=1, z=5, c=30)
+    move = hand.moves[-1]._replace(rotation=25.0)
+    fractions = np.linspace(0, 1, 9)
+    each = [move.point(fraction) for fraction in fractions]
+    assert np.allclose(part.arc_points(move, fractions), each, atol=1e-12)
+
+
 def test_a_circle_becomes_a_closed_polyline_on_the_circle():
     line = MILL.polyline(Hand().rapid(x=10).arc(-1, 0, 0).moves[1])
     assert np.allclose(np.hypot(*line[:, :2].T), 10)

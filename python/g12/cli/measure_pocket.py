@@ -24,6 +24,7 @@ from g12.cli.trace import Move
 SECTORS = 720  # directions in which the wall is looked at
 SAME_LEVEL = 1e-3
 FINE = 1e-5  # chord error of the polylines that stand for arcs
+COARSE = 1e-4  # the same where distances are looked for many times
 SAME_FEED = 1e-6
 NEAR_CENTRE = 0.02  # of a move's own reach
 
@@ -85,7 +86,8 @@ def measure_pocket(
     points = np.concatenate(deepest) if deepest else np.zeros((0, 3))
     wall = wall_of(points, target)
     floor = swept(deepest, target.cutter)
-    every = swept([line for level in lines.values() for line in level], target.cutter)
+    above = [line for level in levels[:-1] for line in lines[level]]
+    every = floor.union(swept(above, target.cutter)) if above else floor
     reached = (wall.max() if target.inside else wall.min()) if len(points) else 0.0
     circles = [move for move in own if is_full_circle(move)]
     cutting = [move for move in own if is_cutting(move, target)]
@@ -244,7 +246,7 @@ def stepover_of(lines: Sequence[np.ndarray]) -> float | None:
     """
     passes = [line for line in lines if is_pass(line)]
     gaps = gaps_between(np.concatenate(passes)) if passes else ()
-    ways = MultiLineString([line[:, :2] for line in lines])
+    ways = MultiLineString([line[:, :2] for line in lines]).simplify(COARSE, False)
     return max((2 * ways.distance(Point(gap)) for gap in gaps), default=None)
 
 

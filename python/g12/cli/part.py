@@ -54,7 +54,7 @@ class Part:
         """
         count = self._pieces(move, chord_error)
         if move.kind == "arc":
-            return np.array([move.point(i / count) for i in range(count + 1)])
+            return arc_points(move, np.linspace(0.0, 1.0, count + 1))
         if count == 1:
             return np.array([move.start, move.end])
         return np.linspace(move.start, move.end, count + 1)
@@ -91,6 +91,19 @@ def arc_pieces(radius: float, sweep: float, chord_error: float) -> int:
         return 1
     fitting = 2 * math.acos(max(0.0, 1 - chord_error / max(radius, chord_error)))
     return max(1, math.ceil(abs(sweep) / min(fitting, LONGEST_ARC_CHORD)))
+
+
+def arc_points(move: Move, fractions: np.ndarray) -> np.ndarray:
+    """Return machine positions (n, 9) after fractions of an arc: ``Move.point`` of many."""
+    axes, centre = plane_axes(move), np.array(move.centre)
+    start, end = (axes @ (np.array(point[:3]) - centre) for point in (move.start, move.end))
+    growth = 1 + (np.hypot(*end[:2]) / np.hypot(*start[:2]) - 1) * fractions
+    cos, sin = np.cos(move.sweep * fractions), np.sin(move.sweep * fractions)
+    first, second = start[0] * cos - start[1] * sin, start[0] * sin + start[1] * cos
+    third = start[2] + (end[2] - start[2]) * fractions
+    points = np.outer(1 - fractions, move.start) + np.outer(fractions, move.end)
+    points[:, :3] = np.stack([first * growth, second * growth, third], axis=1) @ axes + centre
+    return points
 
 
 def paths(part: Part, moves: Iterable[Move], chord_error: float = CHORD_ERROR) -> list[np.ndarray]:
