@@ -25,7 +25,8 @@ from g12.cli.part import C, part_of_program, tool_diameters
 from g12.cli.programmed import Codes, Reader, Target
 from g12.cli.rapids import Collision, collisions
 from g12.cli.trace import MM_PER_INCH, Move, Tools, Trace, Tracer, mm_per_unit
-from g12.cli.units import MM, Unit
+from g12.cli.units import MM, Unit, plain
+from g12.cli.working import Tell, counted, silent
 
 POCKET_TOLERANCE = 0.005  # mm
 POLAR_TOLERANCE = {1.0: 0.005, MM_PER_INCH: 0.0002}  # by machine unit, in that unit
@@ -94,10 +95,12 @@ def prove(
     tools: Tools = None,
     run: Run | None = None,
     tolerance: float | None = None,
+    tell: Tell = silent,
 ) -> Proof:
     """Return the proof of a program, of its real motion if there is a run.
 
-    ``tolerance`` in mm replaces both that of pockets and that of polar sections.
+    ``tolerance`` in mm replaces both that of pockets and that of polar sections, ``tell`` is told
+    what is being done.
     """
     limits, diameters, codes = limits_of(ini), tool_diameters(ini, tools), Codes(ini)
     usual = polar_tolerance(ini) + (RUN_ALLOWANCE if run else 0.0)
@@ -121,11 +124,11 @@ def prove(
                 measure_pocket(wanted, block.at, block.end, path, moves, plain, real),
                 overruns=tuple(travel.overruns(block.at, block.end, path)),
             )
-            for block, wanted in asked
+            for block, wanted in counted(asked, "measuring pocket", tell)
         ],
         [
             measure_section(each, path, moves, diameters, limits.axes[C], polar, real)
-            for each in polars
+            for each in counted(polars, "measuring section", tell)
         ],
         collisions(asked, moves, path, diameters, real),
         unseen(moves, codes, [range(each.at, each.end) for each in measured]),

@@ -41,6 +41,7 @@ from g12.cli.proof import (
 )
 from g12.cli.rapids import Collision
 from g12.cli.units import UNITS, Unit, plain, unit_of
+from g12.cli.working import working
 
 EXAMPLES = """\
 examples:
@@ -335,7 +336,9 @@ def main(arguments: list[str]) -> int:
         traced(asked.program, asked.ini, asked.tools)
         with progress(f"running {asked.program.name}, real time"):
             run = run_program(asked.program, asked.ini, asked.tools, asked.override)
-    proof = prove(asked.program, ini, tools=asked.tools, run=run, tolerance=asked.tolerance)
+    with working(f"interpreting {asked.program.name}") as tell:
+        options = {"tools": asked.tools, "tolerance": asked.tolerance}
+        proof = prove(asked.program, ini, run=run, tell=tell, **options)
     if not (proof.pockets or proof.sections or proof.unseen):
         raise UsageError(f"{asked.program}: has no pocket and no polar section to verify")
     unit = unit_of(proof.subject.trace.modes, asked.units)
