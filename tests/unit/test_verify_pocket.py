@@ -2,6 +2,7 @@
 """Pockets made by hand, right and wrong, and what is measured of them."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -176,6 +177,21 @@ def test_a_wall_cut_from_outside():
     facts = measure(closer, wanted)
     ring = 2 * math.pi * 20 * (0.1 - TOLERANCE)
     assert facts.gouge == pytest.approx(ring, rel=0.02)
+
+
+def test_pockets_of_one_shape_are_measured_once():
+    hand = Hand().rapid(x=50).pocket([17]).rapid(x=90.3, y=7.1).pocket([17])
+    hand.rapid(x=130).pocket([17.02])
+    path, known = track(MILL, hand.moves, LIMITS), {}
+    found = []
+    for first, x, y in ((1, 50, 0), (6, 90.3, 7.1), (11, 130, 7.1)):
+        wanted = replace(target(cleared=14.1), origin=np.array([x, y, 0.0]))
+        pocket = (first, first + 4, path, hand.moves, TOLERANCE)
+        found.append(measure_pocket(wanted, *pocket, known=known))
+        alone = measure_pocket(wanted, *pocket)
+        assert found[-1].deviation == pytest.approx(alone.deviation, abs=1e-6)
+    assert len(known) == 2
+    assert [findings(facts) == "" for facts in found] == [True, True, False]
 
 
 def test_another_plane_is_measured_the_same():

@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from hashlib import blake2b
+from typing import NamedTuple
 
 import numpy as np
 from shapely.geometry import MultiLineString, Point
@@ -26,7 +28,10 @@ SAME_LEVEL = 1e-3
 FINE = 1e-5  # chord error of the polylines that stand for arcs
 COARSE = 1e-4  # the same where distances are looked for many times
 SAME_FEED = 1e-6
+SAME_PLACE = 6  # decimals
 NEAR_CENTRE = 0.02  # of a move's own reach
+
+Lines = dict[float, list[np.ndarray]]
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,16 @@ class PocketFacts:
         return tuple(sorted(set(self.circles)))
 
 
+class Shape(NamedTuple):
+    """What of a pocket's facts follows from its size and the tool's path about its centre."""
+
+    reached: float
+    deviation: float
+    left: float
+    gouge: float
+    stepover: float | None
+
+
 def measure_pocket(
     target: Target,
     first: int,
@@ -77,18 +92,17 @@ def measure_pocket(
     moves: Sequence[Move],
     tolerance: float,
     real: Followed | None = None,
+    known: dict[tuple, Shape] | None = None,
 ) -> PocketFacts:
-    """Return the facts of the pocket that moves ``first`` to ``last`` - 1 cut."""
+    """Return the facts of the pocket that moves ``first`` to ``last`` - 1 cut.
+
+    ``known`` are shapes measured before, to which this one is added.
+    """
     own = moves[first:last]
     lines = real_lines(target, first, own, real) if real else emitted_lines(target, own, path)
-    levels = sorted(lines, reverse=True)
-    deepest = lines[levels[-1]] if levels else []
-    points = np.concatenate(deepest) if deepest else np.zeros((0, 3))
-    wall = wall_of(points, target)
-    floor = swept(deepest, target.cutter)
-    above = [line for level in levels[:-1] for line in lines[level]]
-    every = floor.union(swept(above, target.cutter)) if above else floor
-    reached = (wall.max() if target.inside else wall.min()) if len(points) else 0.0
+    known = {} if known is None else known
+    key = key_of(lines, target, tolerance)
+    shape = known[key] = known.get(key) or shape_of(lines, target, tolerance)
     circles = [move for move in own if is_full_circle(move)]
     cutting = [move for move in own if is_cutting(move, target)]
     cutters = [index for index in range(first, last) if is_cutting(moves[index], target)]
@@ -97,14 +111,10 @@ def measure_pocket(
     lengths = [move.length for move in cutting] or [0.0]
     return PocketFacts(
         target,
-        reached=float(reached),
-        deviation=float(np.abs(wall - target.radius).max()),
-        left=left_of(target, floor, tolerance).area,
-        gouge=gouge_of(target, every, tolerance).area,
-        stepover=stepover_of(deepest),
+        **shape._asdict(),
         jump=largest_jump(own, target),
         rings=tuple(dict.fromkeys(round(move.radius, 6) for move in circles)),
-        depths=tuple(levels),
+        depths=tuple(sorted(lines, reverse=True)),
         circles=tuple(int(math.copysign(1, move.turns)) for move in circles),
         passes=passes_of(circles, target),
         lowest=lowest_of(first, last, path, target),
@@ -114,6 +124,32 @@ def measure_pocket(
         pace=pace,
         off_path=real.largest(cutters) if real else None,
         off_rings=real.largest(rings) if real else None,
+    )
+
+
+def key_of(lines: Lines, target: Target, tolerance: float) -> tuple:
+    """Return what is equal for pockets that have the same shape, wherever they are."""
+    size = (target.radius, target.cutter, target.cleared, target.inside, tolerance)
+    ways = [np.round(line, SAME_PLACE) + 0.0 for level in sorted(lines) for line in lines[level]]
+    return (*size, blake2b(b"".join(way.tobytes() for way in ways)).digest())
+
+
+def shape_of(lines: Lines, target: Target, tolerance: float) -> Shape:
+    """Return the shape that is cut along the tool's path at each depth."""
+    levels = sorted(lines, reverse=True)
+    deepest = lines[levels[-1]] if levels else []
+    points = np.concatenate(deepest) if deepest else np.zeros((0, 3))
+    wall = wall_of(points, target)
+    floor = swept(deepest, target.cutter)
+    above = [line for level in levels[:-1] for line in lines[level]]
+    every = floor.union(swept(above, target.cutter)) if above else floor
+    reached = (wall.max() if target.inside else wall.min()) if len(points) else 0.0
+    return Shape(
+        reached=float(reached),
+        deviation=float(np.abs(wall - target.radius).max()),
+        left=left_of(target, floor, tolerance).area,
+        gouge=gouge_of(target, every, tolerance).area,
+        stepover=stepover_of(deepest),
     )
 
 
@@ -159,9 +195,7 @@ def is_cutting(move: Move, target: Target) -> bool:
     return move.kind != "rapid" and bool(np.hypot(*across) > 1e-6)
 
 
-def emitted_lines(
-    target: Target, moves: Sequence[Move], path: Track
-) -> dict[float, list[np.ndarray]]:
+def emitted_lines(target: Target, moves: Sequence[Move], path: Track) -> Lines:
     """Return the tool's path (n, 3) across the plane at each depth, as emitted."""
     lines = {}
     for move in moves:
@@ -171,9 +205,7 @@ def emitted_lines(
     return lines
 
 
-def real_lines(
-    target: Target, first: int, moves: Sequence[Move], real: Followed
-) -> dict[float, list[np.ndarray]]:
+def real_lines(target: Target, first: int, moves: Sequence[Move], real: Followed) -> Lines:
     """Return the tool's path (n, 3) across the plane at each depth, as it was."""
     lines = {}
     for index, move in enumerate(moves, start=first):

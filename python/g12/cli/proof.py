@@ -17,7 +17,7 @@ from g12.cli.contour_words import sections
 from g12.cli.elsewhere import executed_everywhere
 from g12.cli.headless import Run
 from g12.cli.ini import Ini
-from g12.cli.measure_pocket import SAME_LEVEL, PocketFacts, measure_pocket
+from g12.cli.measure_pocket import SAME_LEVEL, PocketFacts, Shape, measure_pocket
 from g12.cli.measure_section import SectionFacts, measure_section
 from g12.cli.motion import Followed, Track, follow, limits_of, track
 from g12.cli.overrun import Overrun, Travel
@@ -116,12 +116,13 @@ def prove(
     real = follow(path, moves, run.samples, mm_per_unit(ini)) if run else None
     asked = list(Reader(codes, moves, diameters).targets(blocks))
     travel = Travel(ini, trace, read_lines(program))
+    known: dict[tuple, Shape] = {}
     measured = [*(block for block, _ in asked), *polars]
     return Proof(
         Subject(program, ini, trace, path, real),
         [
             replace(
-                measure_pocket(wanted, block.at, block.end, path, moves, plain, real),
+                measure_pocket(wanted, block.at, block.end, path, moves, plain, real, known),
                 overruns=tuple(travel.overruns(block.at, block.end, path)),
             )
             for block, wanted in counted(asked, "measuring pocket", tell)
