@@ -103,9 +103,8 @@ def prove(
     what is being done.
     """
     limits, diameters, codes = limits_of(ini), tool_diameters(ini, tools), Codes(ini)
-    usual = polar_tolerance(ini) + (RUN_ALLOWANCE if run else 0.0)
-    polar = usual if tolerance is None else tolerance
-    plain = POCKET_TOLERANCE if tolerance is None else tolerance
+    usual = (POCKET_TOLERANCE, polar_tolerance(ini) + (RUN_ALLOWANCE if run else 0.0))
+    round_, polar = usual if tolerance is None else (tolerance, tolerance)
     with Tracer(ini, tools=tools) as tracer:
         trace = ended(program, with_axes(tracer.trace(program), ini.path))
         blocks = executed_everywhere(tracer, program, trace, codes, tools)
@@ -116,13 +115,15 @@ def prove(
     real = follow(path, moves, run.samples, mm_per_unit(ini)) if run else None
     asked = list(Reader(codes, moves, diameters).targets(blocks))
     travel = Travel(ini, trace, read_lines(program))
-    known: dict[tuple, Shape] = {}
     measured = [*(block for block, _ in asked), *polars]
+    known: dict[tuple, Shape] = {}
+    tell("looking for rapids through material")
+    collided = collisions(asked, moves, path, diameters, real)
     return Proof(
         Subject(program, ini, trace, path, real),
         [
             replace(
-                measure_pocket(wanted, block.at, block.end, path, moves, plain, real, known),
+                measure_pocket(wanted, block.at, block.end, path, moves, round_, real, known),
                 overruns=tuple(travel.overruns(block.at, block.end, path)),
             )
             for block, wanted in counted(asked, "measuring pocket", tell)
@@ -131,9 +132,9 @@ def prove(
             measure_section(each, path, moves, diameters, limits.axes[C], polar, real)
             for each in counted(polars, "measuring section", tell)
         ],
-        collisions(asked, moves, path, diameters, real),
+        collided,
         unseen(moves, codes, [range(each.at, each.end) for each in measured]),
-        plain,
+        round_,
         polar,
     )
 
