@@ -95,11 +95,16 @@ def test_samples_of_every_dialect_are_good(program, machine, radii):
         "G12 I30. R20. K25. Q5. D10",
         "G12 I30.",
         "G13 I50. K35. Q4. L2",
+        "G12 I30. R20.",
     ],
 )
-def test_yasnac_circles(block, tmp_path):
-    lines = ["G21 G17 G40 G49 G90 F600", "T10 M6", "G0 X3 Y4 Z-5", block, "M2"]
-    proof = proof_of_text(tmp_path, lines, "mill_yasnac_mm")
+@pytest.mark.parametrize("traverse", ["0", "3000"])
+def test_yasnac_circles(block, traverse, tmp_path):
+    lines = ["G21 G17 G40 G49 G90 F600", "T10 M6", "G0 X3 Y4 Z5", "Z-5", block, "M2"]
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*lines, ""]))
+    machine = ini("mill_yasnac_mm").replaced({"G12": {"YASNAC_TRAVERSE": traverse}})
+    proof = prove(program, machine)
     assert proof.findings == [] and len(proof.pockets) == 1
 
 
@@ -153,6 +158,12 @@ def test_a_pocket_in_a_subroutine_of_the_program(tmp_path):
     proof = proof_of_text(tmp_path, lines)
     assert [facts.target.radius for facts in proof.pockets] == pytest.approx([9, 11])
     assert proof.findings == []
+
+
+def test_spring_passes_in_inches_do_not_move_down_again(tmp_path):
+    lines = [*MM, "G20 G0 X0 Y0 Z.1", "G12 I.3 K.8 Q.2 Z-.1 L3 D4 F20", "M2"]
+    proof = proof_of_text(tmp_path, lines)
+    assert len(proof.pockets) == 1 and proof.findings == []
 
 
 @pytest.mark.parametrize("code", ["G[10 + 2]", "G#5"])

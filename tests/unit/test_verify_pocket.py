@@ -62,6 +62,12 @@ def test_one_ring_is_smooth_and_leaves_its_core():
     assert findings(facts) == ""
 
 
+@pytest.mark.parametrize("ring", [0.02, 0.3, 1.0, 1.06, 2.5])
+def test_a_small_ring_is_round(ring):
+    facts = measure(cut([ring]), target(ring + 3))
+    assert facts.deviation < 1e-4 and findings(facts) == ""
+
+
 @pytest.mark.parametrize(("ring", "gouged"), [(17.02, True), (16.98, False)])
 def test_a_wrong_size_is_found(ring, gouged):
     facts = measure(cut([ring]), target(cleared=14.1))

@@ -26,6 +26,7 @@ from g12.cli.trace import Move
 SECTORS = 720  # directions in which the wall is looked at
 SAME_LEVEL = 1e-3
 FINE = 1e-5  # chord error of the polylines that stand for arcs
+ROUND = 4e-6  # the same of an arc with radius 1, so that every sector gets a point
 COARSE = 1e-4  # the same where distances are looked for many times
 SAME_FEED = 1e-6
 SAME_PLACE = 6  # decimals
@@ -172,7 +173,8 @@ def wrong_feed(moves: Sequence[Move], target: Target) -> tuple[float, float] | N
     for at, move in enumerate(moves):
         finishing = target.feeds.finish is not None and abs(at - last) < 2
         wanted = target.feeds.finish if finishing else feed_of(move, target)
-        if move.kind != "rapid" and wanted and abs(move.feed / wanted - 1) > SAME_FEED:
+        moves_at_feed = move.kind != "rapid" and move.length > 0.0
+        if moves_at_feed and wanted and abs(move.feed / wanted - 1) > SAME_FEED:
             return move.feed, wanted
     return None
 
@@ -200,7 +202,8 @@ def emitted_lines(target: Target, moves: Sequence[Move], path: Track) -> Lines:
     lines = {}
     for move in moves:
         if is_cutting(move, target):
-            line = target.local(path.part.polyline(move, FINE))
+            error = min(FINE, ROUND * move.radius) if move.kind == "arc" else FINE
+            line = target.local(path.part.polyline(move, error))
             lines.setdefault(level_of(line), []).append(line)
     return lines
 
@@ -306,7 +309,11 @@ def is_pass(line: np.ndarray) -> bool:
 
 
 def largest_jump(moves: Sequence[Move], target: Target) -> float:
-    """Return the largest change of direction between cutting moves that follow each other."""
+    """Return the largest change of direction between cutting moves that follow each other.
+
+    Yasnac's straight moves are its fast ones to and from the approach, whatever their feed.
+    """
+    moves = [move for move in moves if target.dialect != "yasnac" or move.kind != "feed"]
     jumps = [
         angle_between(before.tangent(1.0), after.tangent(0.0))
         for before, after in zip(moves, moves[1:])
