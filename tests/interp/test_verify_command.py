@@ -6,7 +6,7 @@ import json
 import pytest
 
 from g12.cli.main import main
-from machines import PROGRAMS, SIM
+from machines import PROGRAMS, SIM, copy_of_machines
 
 MILL = str(SIM / "mill_mm_headless.ini")
 LATHE = str(SIM / "lathe_mm_headless.ini")
@@ -45,6 +45,18 @@ def test_a_finding_ends_with_1_and_is_told(written, capsys):
     code, out, _ = verify(capsys, written(WIDE), "--ini", MILL)
     assert code == 1
     assert "FINDING" in out and "left standing" in out and out.endswith("verdict: 1 finding\n")
+
+
+def test_a_cycle_out_of_sight_is_no_good(capsys, written, tmp_path):
+    machines = copy_of_machines(tmp_path)
+    body = "o<flat> sub\nG12.1\nG1 X20 F500\nG13.1\no<flat> endsub\n"
+    (machines / "subs" / "flat.ngc").write_text(body)
+    program = written("G21 G18 G8 G40 G90 G94\nT3 M6\nG0 X30 Z2 C0\no<flat> call\nM2\n")
+    lathe = str(machines / "lathe_mm_headless.ini")
+    code, out, _ = verify(capsys, program, "--ini", lathe)
+    told = json.loads(verify(capsys, program, "--ini", lathe, "--json")[1])
+    assert code == 1 and out.endswith("could not be measured\n\nverdict: 1 finding\n")
+    assert (told["good"], told["unseen"]) == (False, [{"line": 4, "code": "G12.1"}])
 
 
 def test_json_has_the_same_in_millimetres(written, capsys):

@@ -9,7 +9,7 @@ import pytest
 
 from g12.cli.ini import read_ini
 from g12.cli.proof import pocket_findings, pocket_notes, prove
-from machines import PROGRAMS, ROOT, SIM
+from machines import PROGRAMS, ROOT, SIM, copy_of_machines
 
 INCH = 25.4
 
@@ -160,6 +160,11 @@ def test_a_pocket_in_a_subroutine_of_the_program(tmp_path):
     assert proof.findings == []
 
 
+def test_a_cycle_in_the_last_block(tmp_path):
+    proof = proof_of_text(tmp_path, [*MM, "G0 X0 Y0 Z1", "G12 I7 K20 Q6 Z-2 D4 M2"])
+    assert len(proof.pockets) == 1 and proof.findings == []
+
+
 def test_spring_passes_in_inches_do_not_move_down_again(tmp_path):
     lines = [*MM, "G20 G0 X0 Y0 Z.1", "G12 I.3 K.8 Q.2 Z-.1 L3 D4 F20", "M2"]
     proof = proof_of_text(tmp_path, lines)
@@ -227,10 +232,7 @@ def test_an_event_in_a_sub_that_a_sub_calls_is_measured(with_sub):
 
 
 def test_a_sub_that_linuxcnc_finds_elsewhere_than_the_copy_is_a_finding(tmp_path):
-    shutil.copytree(SIM.parent, tmp_path / "configs")
-    shutil.copytree(ROOT / "ngc", tmp_path / "ngc")
-    (tmp_path / "python").symlink_to(ROOT / "python")
-    here = tmp_path / "configs" / "sim"
+    here = copy_of_machines(tmp_path)
     (here / "hole.ngc").write_text("o<hole> sub\nG12 I9 Z-2 D4\no<hole> endsub\nM2\n")
     program = tmp_path / "program.ngc"
     program.write_text("\n".join([*MM, "G0 Z1", "o<hole> call", "M2", ""]))

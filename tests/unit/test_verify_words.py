@@ -98,8 +98,9 @@ def test_blocks_are_put_together_from_messages():
     assert block.state == dict(zip(STATE, map(float, state.split())))
 
 
-def test_a_block_that_never_ends_is_none():
-    assert told([read_line(1, "G12 I1")], "begin 1 0 0 0 0 1 1 0") == []
+def test_a_block_that_ends_the_program_has_all_moves_that_follow():
+    (block,) = told([read_line(1, "G12 I1 M2")], "begin 1 0 0 0 0 1 1 0")
+    assert (block.at, block.end) == (0, 0)  # there are no moves
 
 
 def test_after_tells_the_same_number():

@@ -193,6 +193,8 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
         elif opened:
             found.append(_block(*opened, values, at))
             opened = None
+    if opened:  # the program ended in it, with M2
+        found.append(_block(*opened, values, len(trace.moves)))
     return found
 
 
