@@ -32,6 +32,7 @@ from g12.cli.proof import collisions_in
 from g12.cli.scene import Scene, scene_of, with_run
 from g12.cli.turn_picture import draw_turn
 from g12.cli.units import UNITS
+from g12.cli.working import working
 
 EXAMPLES = """\
 examples:
@@ -72,16 +73,18 @@ def main(arguments: list[str]) -> int:
         pictures.check_format(asked.output)
     except pictures.PictureError as problem:
         raise UsageError(str(problem)) from None
-    trace = traced(asked.program, asked.ini, asked.tools)
-    if not trace.moves:
-        raise UsageError(f"{asked.program}: moves nothing, so there is nothing to draw")
-    chosen = {"tools": asked.tools, "units": asked.units, "feed_colours": asked.feeds}
-    scene = scene_of(asked.program, ini, trace, **chosen)
+    with working(f"interpreting {asked.program.name}"):
+        trace = traced(asked.program, asked.ini, asked.tools)
+        if not trace.moves:
+            raise UsageError(f"{asked.program}: moves nothing, so there is nothing to draw")
+        chosen = {"tools": asked.tools, "units": asked.units, "feed_colours": asked.feeds}
+        scene = scene_of(asked.program, ini, trace, **chosen)
     if asked.run:
         with progress(f"running {asked.program.name}, real time"):
             run = run_program(asked.program, asked.ini, asked.tools, asked.override)
         scene = with_run(scene, run, asked.override)
-    hits = collisions_in(asked.program, ini, trace.moves, scene.path, asked.tools, scene.real)
-    pictures.save(draw(replace(scene, collisions=tuple(hits))), asked.output)
+    with working(f"drawing {asked.output.name}"):
+        hits = collisions_in(asked.program, ini, trace, scene.path, asked.tools, scene.real)
+        pictures.save(draw(replace(scene, collisions=tuple(hits))), asked.output)
     print(f"{asked.output} written")
     return GOOD

@@ -11,7 +11,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from g12.cli.blocks import read_lines
 from g12.cli.command import ended, with_axes
 from g12.cli.contour_words import sections
 from g12.cli.elsewhere import executed_everywhere
@@ -142,19 +141,19 @@ def prove(
 def collisions_in(
     program: Path,
     ini: Ini,
-    moves: Sequence[Move],
+    trace: Trace,
     path: Track,
     tools: Tools = None,
     real: Followed | None = None,
 ) -> list[Collision]:
     """Return the rapids of a program that go through material, of its run if there is one."""
     codes, diameters = Codes(ini), tool_diameters(ini, tools)
-    if not any(map(codes.cycle_of, read_lines(program))):
+    if not any(codes.knows(move.remap) for move in trace.moves):
         return []
     with Tracer(ini, tools=tools) as tracer:
-        blocks = executed(tracer, program, codes.wanted)
-    asked = list(Reader(codes, moves, diameters).targets(blocks))
-    return collisions(asked, moves, path, diameters, real)
+        blocks = executed_everywhere(tracer, program, trace, codes, tools)
+    asked = list(Reader(codes, trace.moves, diameters).targets(blocks))
+    return collisions(asked, trace.moves, path, diameters, real)
 
 
 def collision_text(hit: Collision, unit: Unit = MM) -> str:
