@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from g12.cli.blocks import read_lines
 from g12.cli.command import ended, with_axes
 from g12.cli.contour_words import sections
 from g12.cli.elsewhere import executed_everywhere
