@@ -197,10 +197,18 @@ def test_machines_side_by_side_do_not_touch_each_other(machine):
         assert other.stat().position[:2] == pytest.approx((1.0, 2.0))
 
 
-def test_nothing_shared_with_the_system(machine):
-    segments = subprocess.run(["ipcs", "-m"], capture_output=True, text=True).stdout
-    assert "0x48414c32" not in segments
-    assert not Path("/tmp/linuxcnc.lock").exists()
+def shared():
+    """Return what LinuxCNC instances share on this computer: memory segments and the lock."""
+    lines = subprocess.run(["ipcs", "-m"], capture_output=True, text=True).stdout.splitlines()
+    found = {line.split()[1] for line in lines if line.startswith("0x")}
+    return found | {name for name in ("/tmp/linuxcnc.lock",) if Path(name).exists()}
+
+
+def test_nothing_shared_with_the_system():
+    before = shared()
+    with Machine(SIM / "mill_mm.ini"):
+        assert shared() <= before
+    assert shared() <= before
 
 
 def test_the_machines_directory_is_never_written(tmp_path):
