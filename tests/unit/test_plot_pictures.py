@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from shapely.geometry import Point
 
 from g12.cli import pictures, plan_view
-from g12.cli.deviation_picture import describe, most_telling, told
+from g12.cli.deviation_picture import most_telling, told
 from g12.cli.face_picture import programmed_history
 from g12.cli.ini import Ini
 from g12.cli.mill_picture import Layout, removed_at
@@ -286,8 +286,8 @@ def test_the_window_shows_the_axes_in_which_the_motion_strays(away, way, axes):
 
 def test_the_largest_deviation_is_told_with_its_line():
     shown = with_real_motion(Hand().line(x=100), MILL, {"Y": 0.0123})
-    text = describe(worst_of(shown.real, shown.moves), MM)
-    assert text.startswith("0.012 mm at X") and text.endswith("(line 1)")
+    lines = list(told(worst_of(shown.real, shown.moves), shown, [0, 1]))
+    assert lines == ["0.012 mm,", "line 1, in X and Y"]
 
 
 def test_the_window_tells_the_override_and_the_contour():
@@ -295,7 +295,7 @@ def test_the_window_tells_the_override_and_the_contour():
     shown = replace(shown, override=1500.0, contour=0.0025)
     lines = list(told(worst_of(shown.real, shown.moves), shown, [0, 1]))
     assert lines[0].endswith(" mm at 1500 % feed,")
-    assert lines[1].startswith("line ") and lines[2] == "off the contour: 0.0025 mm"
+    assert lines[1].endswith(", in X and C") and lines[2] == "off the contour: 0.0025 mm"
     shown = replace(shown, override=100.0, contour=None)
     assert "feed" not in "".join(told(worst_of(shown.real, shown.moves), shown, [0, 1]))
 

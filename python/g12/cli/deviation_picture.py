@@ -20,15 +20,7 @@ SIZE = 1.9  # inches, the window's sides
 NEIGHBOURS = 3  # moves before and after that are drawn
 WINDOW = 6.0  # half the window's side, in deviations
 LEAST_WINDOW = 1e-4  # mm
-AXES_OF_PART = "XYZ"
-
-
-def describe(worst: Worst, unit: Unit) -> str:
-    """Return the size and place of the largest deviation in words."""
-    where = " ".join(
-        f"{letter}{unit.text(value)}" for letter, value in zip(AXES_OF_PART, worst.nearest)
-    )
-    return f"{size_of(worst, unit)} at {where} (line {worst.move.block})"
+AXES_OF_PART = {False: "XYZ", True: "XCZ"}  # by whether the part turns
 
 
 def size_of(worst: Worst, unit: Unit) -> str:
@@ -71,7 +63,8 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
 def told(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
     """Yield the lines below the window: size, place, feed; and what is off the contour itself."""
     fast = f" at {scene.override:g} % feed" if scene.override != 100.0 else ""
-    letters = " and ".join(AXES_OF_PART[axis] for axis in pair)
+    axes = AXES_OF_PART[scene.path.part.turning]
+    letters = " and ".join(axes[axis] for axis in pair)
     yield f"{size_of(worst, scene.unit)}{fast},"
     yield f"line {worst.move.block}, in {letters}"
     if scene.contour is not None:
