@@ -21,7 +21,6 @@ from g12.cli.part import CHORD_ERROR, Part, plane_axes
 from g12.cli.trace import AXES, Move, mm_per_unit
 
 LINEAR = [AXES.index(letter) for letter in "XYZUVW"]
-ROTARY = [AXES.index(letter) for letter in "ABC"]
 SLACK = 0.25  # mm that a run may be ahead of the path, where it cuts a corner
 UNLIMITED = math.inf
 
