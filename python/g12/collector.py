@@ -15,7 +15,7 @@ from typing import NamedTuple
 from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
 
 from . import host
-from .emission import BLOCK_END, Action
+from .emission import BLOCK_END, PER_MINUTE, PER_REVOLUTION, Action
 from .errors import number
 from .polar.block import (
     COMPENSATION,
@@ -45,7 +45,6 @@ from .polar.block import (
 from .polar.contour import Contour
 from .program import Program
 
-PER_MINUTE, PER_REVOLUTION = 0, 2  # feed_mode
 ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
 MOTIONS = (G0, G1, G2, G3)
 MOST_FEED = 1e9  # program units per minute

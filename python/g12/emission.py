@@ -16,7 +16,7 @@ from typing import NamedTuple
 from .polar import Run
 from .polar.block import G1, Modes, Place, decimal
 
-PER_REVOLUTION = 2  # feed_mode
+PER_MINUTE, PER_REVOLUTION = 0, 2  # feed_mode
 PATH_ACTIVE = 11  # index into active_g_codes
 G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
@@ -157,6 +157,7 @@ class Emission:
         interp.distance_mode = self.absolute
         if self._per_revolution:
             interp.execute("G94")
+        interp.feed_mode = PER_MINUTE  # reading may have left what the section ends in
         interp.motion_mode = G1
 
     def _moves_to_an_end(self, run: Run, following: object, exact_stop: bool) -> None:

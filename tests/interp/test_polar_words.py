@@ -158,6 +158,12 @@ def test_feed_is_the_speed_along_the_part(lathe, before, body, speed):
     assert part_speeds(traced) == pytest.approx([speed] * len(feed_moves(traced)), rel=0.02)
 
 
+def test_the_speed_may_come_inside_the_section_and_feed_per_revolution_behind_it(lathe):
+    traced = cut(lathe, "G1 C2", "S100", "G95 F.1 C4")
+    assert part_speeds(traced)[0] == pytest.approx(100, rel=0.02)
+    assert part_speeds(traced)[-1] == pytest.approx(10, rel=0.02)
+
+
 def test_feed_mode_and_f_commanded_inside_stay(lathe):
     for code, kept in (("G95 F.2", "G95"), ("G99 F.2", "G95"), ("G98 F60", "G94")):
         traced = cut(lathe, f"{code} G1 X12", before=["S500"], after=["X5 C0"])

@@ -94,6 +94,21 @@ def test_short_moves_in_a_row_keep_their_shape():
     assert abs(abs(made - 30) - 25).max() < 0.0055
 
 
+@pytest.mark.parametrize("side", [41, 42])
+@pytest.mark.parametrize(("radius", "chord"), [(40, 0.025), (15, 0.05), (12, 0.02), (40, 0.1)])
+def test_fine_points_with_few_decimals_are_cut(side, radius, chord):
+    count = int(math.pi * radius / chord)
+    arc = [radius * cmath.exp(-1j * math.pi * k / count) for k in range(count + 1)]
+    points = [(round(z.real, 3), round(z.imag, 3)) for z in arc]
+    outside = side == 41
+    start = (radius + 8.0, 0.0) if outside else (radius - 5.5, 0.0)
+    away = (-radius - 8.0, 0.0) if outside else (-radius + 5.5, 0.0)
+    contour = programmed(*points, away, side=side, radius=5.0, start=start)
+    made = abs(tool_points(contour, range(3, 80)))
+    wanted = radius + 5.0 if outside else radius - 5.0
+    assert abs(made - wanted).max() < 0.005 + 0.0008
+
+
 def test_the_z_of_a_move_left_out_is_kept():
     contour = Contour(30.0, 0.0)
     contour.compensation(41, 5.0, line=1)

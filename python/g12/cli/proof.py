@@ -30,6 +30,7 @@ from g12.cli.working import Tell, counted, silent
 
 POCKET_TOLERANCE = 0.005  # mm
 POLAR_TOLERANCE = {1.0: 0.005, MM_PER_INCH: 0.0002}  # by machine unit, in that unit
+LAST_DECIMAL = 0.0005  # mm: arcs whose words are rounded do not close any better
 RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE
 SAME_AREA = 0.01  # mm², less is rounding
 MOST_JUMP = 1.0  # degree
@@ -296,7 +297,7 @@ def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> 
     if facts.section.doubt:
         yield f"the contour cannot be read from the words: {facts.section.doubt}"
         return
-    if facts.deviation > tolerance:
+    if facts.deviation > tolerance + LAST_DECIMAL:
         yield f"the path is {unit.fine(facts.deviation)} {unit.name} off the contour"
     if facts.gouge > SAME_AREA:
         yield f"{gouged(facts, unit)} are gouged beyond the contour"

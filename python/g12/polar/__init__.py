@@ -24,13 +24,14 @@ from copy import copy
 from math import copysign, degrees, hypot, pi, radians, remainder
 from typing import NamedTuple
 
+from g12.errors import Refusal
 from g12.polar.contour import Arc, Contour, Line, Mark, Plunge, Start, is_move
 from g12.polar.corners import stops
 from g12.polar.feed import Position, pieces_with_feed
 from g12.polar.offset import tool_path
 from g12.polar.pieces import Law, split
 from g12.polar.pole import POLE, through_pole
-from g12.polar.short_moves import without_short_moves
+from g12.polar.short_moves import with_points_left_out, without_short_moves
 
 CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
 STOP_SHARE = (
@@ -89,10 +90,9 @@ def plan(contour: Contour, settings: Settings, *, c: float) -> Plan:
     ``c`` is the C axis in degrees at the plane's zero angle. Raises Refusal, naming the blocks by
     their lines, when the contour cannot be cut as programmed.
     """
-    meant, moved = without_short_moves(contour.elements, SHORT_SHARE * settings.tolerance)
+    path, moved = _centre_path(contour, settings.tolerance)
     tolerance = settings.tolerance - moved
     settings = settings._replace(tolerance=tolerance)
-    path = tool_path(contour, meant, tolerance)
     path = through_pole(contour, path, POLE_SHARE * tolerance, settings.pole_refused)
     stopping = stops(
         path, ROUNDING_SHARE * tolerance, settings.x_acceleration, radians(settings.c_acceleration)
@@ -107,6 +107,26 @@ def plan(contour: Contour, settings: Settings, *, c: float) -> Plan:
             machine.cut(element, stop)
     machine.finish(path)
     return Plan(machine.steps, machine.place, machine.angle)
+
+
+def _centre_path(contour: Contour, tolerance: float) -> tuple[list, float]:
+    """Return the path of the tool's centre, and by how much the contour was moved for it.
+
+    Points nearer to each other than their last decimal allows make corners that no tool reaches:
+    where a contour would be refused, it is tried without them.
+    """
+    limit = SHORT_SHARE * tolerance
+    meant, moved = without_short_moves(contour.elements, limit)
+    try:
+        return tool_path(contour, meant, tolerance - moved), moved
+    except Refusal as refusal:
+        fewer, left_out = with_points_left_out(meant, limit - moved)
+        if len(fewer) == len(meant):
+            raise
+        try:
+            return tool_path(contour, fewer, tolerance - moved - left_out), moved + left_out
+        except Refusal:
+            raise refusal from None
 
 
 def resume(contour: Contour, planned: Plan) -> Contour:

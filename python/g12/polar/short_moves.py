@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from math import hypot
 
 from g12.polar.contour import Arc, Line, Plunge, is_move, path_length
+from g12.polar.crossing import distance_from
 
 
 def without_short_moves(elements: Sequence, limit: float) -> tuple[list, float]:
@@ -48,6 +49,51 @@ def _meeting(before: Line | Arc, move: Line | Arc) -> list[Line | Arc]:
         return [before._replace(x1=move.x0, c1=move.c0), move]
     start, end = (before.x1, before.c1, move.z0), (move.x0, move.c0, move.z0)
     return [before, Line(move.line, move.feed, move.offset, *start, *end), move]
+
+
+def with_points_left_out(elements: Sequence, limit: float) -> tuple[list, float]:
+    """Return a contour's elements without the points of polylines that are only rounding.
+
+    Lines under compensation that follow each other at one feed and Z become one line, as long as
+    all points between stay within ``limit`` of it. Also returns by how much that has moved the
+    contour at most. Program units.
+    """
+    kept: list = []
+    moved = 0.0
+    at = 0
+    while at < len(elements):
+        last, away = _reach(elements, at, limit)
+        element = elements[at]
+        if last > at:
+            moved = max(moved, away)
+            element = element._replace(x1=elements[last].x1, c1=elements[last].c1)
+        kept.append(element)
+        at = last + 1
+    return kept, moved
+
+
+def _reach(elements: Sequence, first: int, limit: float) -> tuple[int, float]:
+    """Return the last of the elements that one line can stand for, and how far it is off them."""
+    last, most = first, 0.0
+    while last + 1 < len(elements) and _is_like(elements[first], elements[last + 1]):
+        end = elements[last + 1]
+        chord = elements[first]._replace(x1=end.x1, c1=end.c1)
+        if path_length(chord) <= limit:
+            break
+        points = elements[first : last + 1]
+        away = max(distance_from(chord, (point.x1, point.c1)) for point in points)
+        if away > limit:
+            break
+        last, most = last + 1, away
+    return last, most
+
+
+def _is_like(one: object, other: object) -> bool:
+    """Return whether two elements are lines under compensation that may be one."""
+    if not (isinstance(one, Line) and isinstance(other, Line) and one.offset):
+        return False
+    level = one.z0 == one.z1 == other.z1
+    return level and one.feed == other.feed and one.offset == other.offset
 
 
 def _is_short(before: Line | Arc, move: Line | Arc, limit: float) -> bool:
