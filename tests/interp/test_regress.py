@@ -601,6 +601,11 @@ def test_the_fixture_of_the_plugin(pocket):
     assert "2 failed, 1 passed" in bad.stdout
     assert "pocket.ngc:8: 1 move: X5 → X5.0002 (+0.0002 in)" in bad.stdout
     assert "if that is right: g12 regress record -d" in bad.stdout
+    recorded = pocket.folder / "regress" / "regress.json"
+    recorded.write_text(recorded.read_text().replace('.ini"', '.gone"'))
+    wrong = subprocess.run([*command, "-k", "all", "-p", "no:cacheprovider"], **options)
+    assert ".gone: no such file" in wrong.stdout
+    assert "UsageError" not in wrong.stdout
 
 
 # ---------------------------------------------------------------- the project's own recordings

@@ -23,6 +23,7 @@ from pathlib import Path
 import pytest
 
 from g12.cli.baseline import load
+from g12.cli.command import UsageError
 from g12.cli.recorder import SAME
 from g12.cli.regress_report import text_report
 from g12.cli.regression import Terms, check
@@ -52,7 +53,10 @@ def gcode_regression(request: pytest.FixtureRequest) -> Callable[..., None]:
     ) -> None:
         folder = here / programs_in if programs_in else None
         terms = Terms(tolerance, feed_tolerance)
-        results, notes = check(here / directory, programs, programs=folder, terms=terms)
+        try:
+            results, notes = check(here / directory, programs, programs=folder, terms=terms)
+        except UsageError as error:
+            pytest.fail(str(error), pytrace=False)
         if any(result.verdict != SAME for result in results):
             advice = f"if that is right: g12 regress record -d {directory}"
             pytest.fail("\n".join([*text_report(results, notes), advice]), pytrace=False)
