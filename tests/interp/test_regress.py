@@ -328,6 +328,9 @@ def living(session):
     return found
 
 
+ALL_AT_WORK = 5  # the command, two workers, two interpreters
+
+
 def test_an_interrupted_recording_ends_at_once(shop):
     for name in ("a.ngc", "b.ngc", "c.ngc"):
         shop.write(name, "o1 while [1]\no1 endwhile\nM2\n")
@@ -336,10 +339,13 @@ def test_an_interrupted_recording_ends_at_once(shop):
     process = subprocess.Popen(
         command, cwd=shop.folder, stderr=subprocess.PIPE, text=True, start_new_session=True
     )
-    time.sleep(3)
+    end = time.monotonic() + 60
+    while len(living(process.pid)) < ALL_AT_WORK and time.monotonic() < end:
+        time.sleep(0.1)
+    time.sleep(2)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     try:
-        _, said = process.communicate(timeout=10)
+        _, said = process.communicate(timeout=30)
     finally:
         os.killpg(process.pid, signal.SIGKILL) if process.poll() is None else None
     assert (process.returncode, said) == (130, "g12 regress: interrupted\n")

@@ -31,6 +31,7 @@ from g12.cli.trace_text import (
 )
 from g12.cli.units import UNITS
 
+GRACE = 5.0  # seconds for a worker to end its interpreters
 SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
 HASH_DIGITS = 16
 UNIT_NAMES = {unit.mm: name for name, unit in UNITS.items()}
@@ -242,11 +243,19 @@ def results(jobs: Sequence[Job], processes: int, report: Report) -> list[Result]
             found[futures[future]] = _reported(future.result(), done, jobs, report)
         return [found[job.name] for job in jobs]
     except BaseException:
-        for process in {*active_children()} - others:
-            process.terminate()
+        _end({*active_children()} - others)
         raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _end(processes: set) -> None:
+    """End worker processes; those that do not end by themselves are killed."""
+    for process in processes:
+        process.terminate()
+    for process in processes:
+        process.join(GRACE)
+        process.kill()
 
 
 def _reported(result: Result, done: int, jobs: Sequence[Job], report: Report) -> Result:
