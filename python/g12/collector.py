@@ -144,6 +144,7 @@ class Collector:
             motion = modes.motion if motion == NO_CODE else motion
             self.set_modes(modes._replace(feed=f if has_f else modes.feed, motion=motion))
         if has_x or has_c or has_z or has_i or has_j or has_r:
+            self._keep_apart()
             self._move(
                 motion,
                 x if has_x else None,
@@ -153,6 +154,13 @@ class Collector:
                 j if has_j else None,
                 r if has_r else None,
             )
+
+    def with_spindle(self, line: Line) -> Line:
+        """Return a line with its $ word as a number: of the parsed block it cannot be asked."""
+        if not line.spindle:
+            return line
+        self.interp.read(f"C{line.spindle[1:]}")
+        return line._replace(spindle=f"${round(self.parsed.c_number)}")
 
     def set_parameters(self, line: Line) -> None:
         """Let the assignments of a line act; their values are those before it."""
@@ -169,8 +177,7 @@ class Collector:
 
     def _speed(self, line: Line, block: Block) -> float:
         """Return the commanded speed of the spindle that feeds per revolution refer to."""
-        named = self._named_spindle(line)
-        count = self.interp.num_spindles
+        named, count = int(line.spindle[1:] or MAIN_SPINDLE), self.interp.num_spindles
         if not ALL_SPINDLES <= named < count:
             raise self.refuse(f"${named}: this machine has {count} spindle{'s' * (count > 1)}")
         if "S" in block.words:
@@ -180,13 +187,6 @@ class Collector:
             self._spindle = max(named, MAIN_SPINDLE)
         return self._speeds[self._spindle]
 
-    def _named_spindle(self, line: Line) -> int:
-        """Return the value of a line's $ word: of the parsed block it cannot be asked."""
-        if not line.spindle:
-            return MAIN_SPINDLE
-        self.interp.read(f"C{line.spindle[1:]}")
-        return round(self.parsed.c_number)
-
     def action(self, line: Line, block: Block) -> None:
         """Keep what the block does besides motion."""
         self._mark(action_text(block, line))
@@ -195,6 +195,8 @@ class Collector:
         """Add the block's motion and compensation, and keep the stop behind it."""
         if line.exact_stop:
             self.exact_lines.add(self.program.line)
+        if block.moves:
+            self._keep_apart()
         if block.g[COMPENSATION] != NO_CODE:
             self._compensate(block.g[COMPENSATION] // 10)
         if block.moves:
@@ -262,15 +264,15 @@ class Collector:
             self._check_z(x, c, i, j)
             z += contour.z if modes.incremental else 0.0
         line = self.program.place
-        self._keep_apart(line)
         if G1 < motion <= G3:
             turn = 1 if motion == G3 else -1
             contour.arc(turn, x, c, z, i=i, j=j, radius=r, line=line, feed=self._feed())
         else:
             contour.line(x, c, z, line=line, feed=self._feed() if motion else self._rapid_feed())
 
-    def _keep_apart(self, line: int) -> None:
-        """Mark the end of a block where the next one, in a loop, is on the same line."""
+    def _keep_apart(self) -> None:
+        """Mark the end of a block where the next one's line has the same number, as in a loop."""
+        line = self.program.place
         if line == self._moved:
             self._keep(Action(line, BLOCK_END, None))
         self._moved = line

@@ -27,7 +27,7 @@ from .circle_mill import (
     SIDES,
 )
 from .errors import Refusal, number
-from .words import LARGEST
+from .words import LARGEST, LONGEST_BLOCK
 
 EVENT = re.compile(r"N(?P<number>\d+)\((?P<type>\w+)\)(?P<entries>.*)\$", re.ASCII)
 ENTRY = re.compile(
@@ -43,7 +43,6 @@ CHOICES = {
     "D": range(len(ROUGH_FINISH)),
     "C": range(len(SIDES[CLOCKWISE])),
 }
-LONGEST_BLOCK = 254  # characters that LinuxCNC reads of a line
 UNIT_CODES = {"inch": "G20 ", "mm": "G21 ", None: ""}
 
 

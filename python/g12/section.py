@@ -135,6 +135,7 @@ class Section:
     def _obey(self, line: Line, block: Block) -> Iterator[int]:
         """Let a block act, in the order in which the interpreter executes one."""
         blocks = self.blocks
+        line = blocks.with_spindle(line)
         blocks.set_parameters(line)
         blocks.set_state(line, block)
         if block.m[WAITING_GROUP] == WAIT_FOR_INPUT:
@@ -210,7 +211,7 @@ class Section:
 
     def _wait_for_input(self, text: str) -> Iterator[int]:
         """Obey M66: all before it has to happen before the lines behind it can be read."""
-        self.blocks.contour.wait(line=self.program.place, code=f"M{WAIT_FOR_INPUT}")
+        self.blocks.contour.wait(line=self.program.place)
         planned = self._emit()
         yield from self.frame.execute_and_wait(text)
         self._remember_machine()

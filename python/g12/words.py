@@ -10,6 +10,7 @@ from __future__ import annotations
 from .errors import Refusal, number
 
 WHOLE = 1e-4  # LinuxCNC's own tolerance for "close to an integer"
+LONGEST_BLOCK = 254  # characters that LinuxCNC reads of a line
 LARGEST = 1e6  # in inches or mm more than any machine; sums and squares stay exact enough
 
 

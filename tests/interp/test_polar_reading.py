@@ -321,6 +321,11 @@ def test_a_section_in_a_sub_of_another_file(subs):
 # ---------------------------------------------------------------- comments, files
 
 
+def test_a_report_longer_than_a_line_is_cut(lathe):
+    (said,) = texts(cut(lathe, "G1 X12", "(DEBUG," + 30 * "#5420 " + ")"))
+    assert said.startswith("12.0000 12.0000") and len(said) > 200
+
+
 def test_messages_reports_and_comments(lathe):
     body = [
         "(MSG, one)",
@@ -441,6 +446,19 @@ def test_the_spindle_in_use_gives_the_feed_per_revolution():
         wrong = lathe.trace_text(section("S100 $2"))
     assert [round(move.feed) for move in feed_moves(traced)] == [10, 10, 5]
     assert wrong.error.text == "G12.1 line 6: $2: this machine has 2 spindles"
+
+
+def test_the_spindle_named_by_a_parameter_is_that_of_its_line(lathe):
+    assert cut(lathe, "G1 X12", "#1=0", "#1=5 S500 $#1", "#1=7", "X11").error is None
+
+
+def test_a_sub_whose_line_has_the_number_of_the_line_before_it(tmp_path):
+    sub = ["o<far> sub", *[""] * 6, "G41 G1 X20", "C-15", "G40 X30", "o<far> endsub"]
+    (tmp_path / "far.ngc").write_text("\n".join([*sub, ""]))
+    overrides = {"RS274NGC": {"SUBROUTINE_PATH": f"{tmp_path}:../../ngc:subs"}}
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
+        program = section("(six)", "(seven)", "G1 X30 C9", "o<far> call", start="G0 X40 Z5 C0")
+        assert [move.line for move in feed_moves(lathe.trace_text(program))][0] == 8
 
 
 def test_modes_saved_and_restored(lathe):

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString
 
 from g12.errors import Refusal
-from g12.polar import Settings, plan
-from g12.polar.contour import Contour, is_move
+from g12.polar import Settings, plan, short_moves
+from g12.polar.contour import Contour, Line, is_move
 from plane import cuts, path
 
 MACHINE = Settings(0.005, 0.001, 1000.0, 3600.0, 21600.0)
@@ -107,6 +107,16 @@ def test_fine_points_with_few_decimals_are_cut(side, radius, chord):
     made = abs(tool_points(contour, range(3, 80)))
     wanted = radius + 5.0 if outside else radius - 5.0
     assert abs(made - wanted).max() < 0.005 + 0.0008
+
+
+def test_many_points_in_a_row_are_looked_at_once():
+    looked = []
+    line = [Line(1, 9.0, 5.0, k, 0.0, 0.0, k + 1.0, 0.0, 0.0) for k in range(1000)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(short_moves, "distance_from", lambda *_: looked.append(1) or 0.0)
+        kept, moved = short_moves.with_points_left_out(line, 0.001)
+    assert len(kept) < 50 and moved == 0.0
+    assert len(looked) < 100 * len(line)
 
 
 def test_the_z_of_a_move_left_out_is_kept():

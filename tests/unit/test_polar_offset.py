@@ -308,11 +308,11 @@ def test_the_feed_is_that_of_the_tools_centre():
 
 def test_no_block_may_wait_for_the_machine_under_compensation():
     contour = Contour(10.0, 0.0)
-    contour.wait(line=1, code="M66")
+    contour.wait(line=1)
     contour.compensation(42, 2.0, line=2)
     contour.line(10.0, 5.0, line=2, feed=100.0)
     with pytest.raises(Refusal, match=r"^G12\.1 line 3: M66 waits .* G42 of line 2 is on$"):
-        contour.wait(line=3, code="M66")
+        contour.wait(line=3)
 
 
 @pytest.mark.parametrize("z", [None, -1.0])

@@ -15,7 +15,8 @@ import re
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.errors import Refusal
+from g12.words import LONGEST_BLOCK
 
 NO_CODE = -1
 
@@ -375,7 +376,7 @@ def may_fail(comment: str) -> bool:
 def comment_text(comment: str, value_of: Callable[[str], float | None]) -> str:
     """Return a comment with the parameters of (DEBUG,), (PRINT,), (LOG,) and (ABORT,) filled in.
 
-    ``value_of`` gives a parameter by number or name ("12", "_x"), None if it does not exist.
+    It is cut to a line that LinuxCNC can read. ``value_of`` gives a parameter by number or name ("12", "_x"), None if it does not exist.
     """
     if not comment.lstrip().lower().startswith(_REPORTS):
         return f"({comment})"
@@ -389,5 +390,5 @@ def comment_text(comment: str, value_of: Callable[[str], float | None]) -> str:
         value = value_of("".join(match[2].split()).strip("<>").lower())
         return "######" if value is None else f"{value:.{decimals}f}"
 
-    text = _IN_REPORT.sub(filled, comment)[:LONGEST_MESSAGE]
+    text = _IN_REPORT.sub(filled, comment)[: LONGEST_BLOCK - len("( )")]
     return f"({text} )" if text.endswith("#") else f"({text})"  # no parameter may begin there

@@ -12,10 +12,10 @@ from math import atan2, copysign, hypot, pi, sqrt
 from typing import NamedTuple, NoReturn
 
 from g12.errors import Refusal, number
+from g12.words import LARGEST
 
 Point = tuple  # (x, c)
 SAME_PLACE = 1e-6  # program units: closer points are one point, a shorter move is rounding
-MOST_LENGTH = 1e6  # program units: more can only be a mistake, and is no longer exact
 CLOSING_RATIO = 0.001  # of the radius: the mismatch LinuxCNC allows any arc
 
 
@@ -188,7 +188,7 @@ class Contour:
         x1 = self.x if x is None else x
         c1 = self.c if c is None else c
         z1 = self.z if z is None else z
-        if max(abs(x1), abs(c1), abs(z1)) > MOST_LENGTH:
+        if max(abs(x1), abs(c1), abs(z1)) > LARGEST:
             self._check_lengths(line, X=x1, C=c1, Z=z1)
         length = hypot(x1 - x0, c1 - c0)
         self._check_feed(feed, line)
@@ -262,8 +262,8 @@ class Contour:
                 line, f"G{self.side} of line {self._switched_on} is still on: G40 is missing"
             )
 
-    def wait(self, *, line: int, code: str) -> None:
-        """Check that a block may wait for the machine here: compensation is off.
+    def wait(self, *, line: int) -> None:
+        """Check that M66 may wait for the machine here: compensation is off.
 
         Where the tool has to stop under compensation is told by the block behind, which is not
         known yet. LinuxCNC has the same rule.
@@ -271,15 +271,15 @@ class Contour:
         if self.side != 40:
             self.refuse(
                 line,
-                f"{code} waits for the machine, which needs G40: "
+                "M66 waits for the machine, which needs G40: "
                 f"G{self.side} of line {self._switched_on} is on",
             )
 
     def _check_lengths(self, line: int, **words: float | None) -> None:
         for word, value in words.items():
-            if value is not None and abs(value) > MOST_LENGTH:
-                most = number(MOST_LENGTH)
-                self.refuse(line, f"{word}{number(value)} is no length: at most {most}")
+            if value is not None and abs(value) > LARGEST:
+                reason = f"{word}{number(value)} is no length: at most {number(LARGEST)}"
+                self.refuse(line, reason)
 
     def _check_feed(self, feed: float, line: int) -> None:
         if feed <= 0.0:

@@ -5,9 +5,8 @@ from __future__ import annotations
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 
-from g12.polar.contour import Arc, Line, Point, arc_radius, path_length, start_direction
+from g12.polar.contour import SAME_PLACE, Arc, Line, Point, arc_radius, path_length, start_direction
 
-REACH = 1e-6  # program units: as exact as a program is written
 PARALLEL = 1e-9  # sine of an angle that is none
 
 
@@ -16,7 +15,10 @@ def crossing(a: Line | Arc, b: Line | Arc) -> Point | None:
     length, best, nearest = path_length(a), None, 0.0
     for place in _crossings(a, b):
         leave, meet = along_end(a, place), along_start(b, place)
-        on_both = -REACH <= leave <= length + REACH and -REACH <= meet <= path_length(b) + REACH
+        on_both = (
+            -SAME_PLACE <= leave <= length + SAME_PLACE
+            and -SAME_PLACE <= meet <= path_length(b) + SAME_PLACE
+        )
         if on_both and (best is None or length - leave + meet < nearest):
             best, nearest = place, length - leave + meet
     return best
@@ -77,7 +79,7 @@ def _facing(a: Line | Arc, b: Line | Arc) -> list[Point]:
         nx, nc = -tc, tx
     else:
         apart = hypot(b.cx - a.cx, b.cc - a.cc)
-        if apart <= REACH:
+        if apart <= SAME_PLACE:
             return []
         nx, nc = (b.cx - a.cx) / apart, (b.cc - a.cc) / apart
     radius = arc_radius(a)
@@ -156,7 +158,7 @@ def _line_circle(line: Line, arc: Arc) -> list[Point]:
 
 def _circle_circle(a: Arc, b: Arc) -> list[Point]:
     distance = hypot(b.cx - a.cx, b.cc - a.cc)
-    if distance <= REACH:
+    if distance <= SAME_PLACE:
         return []
     ux, uc = (b.cx - a.cx) / distance, (b.cc - a.cc) / distance
     radius = arc_radius(a)
@@ -167,7 +169,7 @@ def _circle_circle(a: Arc, b: Arc) -> list[Point]:
 
 def _half_chord(distance: float, radius: float) -> tuple[float, ...]:
     """Return half the chord at a distance from a circle's centre, with both signs, if any."""
-    if distance > radius + REACH:
+    if distance > radius + SAME_PLACE:
         return ()
     half = sqrt(max(0.0, (radius - distance) * (radius + distance)))
     return (half, -half)

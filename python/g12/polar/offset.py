@@ -19,6 +19,7 @@ from typing import NamedTuple, NoReturn
 
 from g12.errors import number
 from g12.polar.contour import (
+    SAME_PLACE,
     Arc,
     Contour,
     Line,
@@ -32,7 +33,6 @@ from g12.polar.contour import (
 )
 from g12.polar.crossing import (
     PARALLEL,
-    REACH,
     along_end,
     along_start,
     crossing,
@@ -195,7 +195,7 @@ def _parallel(contour: Contour, move: Line | Arc) -> Line | Arc:
         return _placed(move, (move.x0 + dx, move.c0 + dc), (move.x1 + dx, move.c1 + dc))
     radius = arc_radius(move)
     scale = 1.0 - copysign(move.offset, move.offset * move.sweep) / radius
-    if scale * radius < -REACH:
+    if scale * radius < -SAME_PLACE:
         contour.refuse(
             move.line,
             f"the arc of radius {number(radius)} is smaller than the tool radius "
@@ -220,14 +220,14 @@ def _trimmed(contour: Contour, steps: list[_Step], k: int, start: Point, end: Po
     """Return the parallel of a step from one place on it to another that must lie behind."""
     move, parallel = steps[k].move, steps[k].parallel
     first, last = along_start(parallel, start), along_end(parallel, end)
-    if last - first < -REACH:
+    if last - first < -SAME_PLACE:
         lines = [steps[n].move.line for n in (k - 1, k + 1) if 0 <= n < len(steps)]
         contour.refuse(
             move.line,
             f"too short for the tool radius {number(abs(move.offset))} between its inside corners "
             f"with lines {' and '.join(map(str, lines))}",
         )
-    if last - first <= REACH:
+    if last - first <= SAME_PLACE:
         return _in_place(move)
     if isinstance(move, Line):
         return (_placed(move, start, end),)
@@ -240,7 +240,7 @@ def _uncut(move: Line | Arc, start: Point, end: Point) -> tuple:
 
     A ramp square to the contour and as long as the tool's radius is no way at all.
     """
-    if isinstance(move, Line) and hypot(end[0] - start[0], end[1] - start[1]) <= REACH:
+    if isinstance(move, Line) and hypot(end[0] - start[0], end[1] - start[1]) <= SAME_PLACE:
         return _in_place(move)
     return (_placed(move, start, end),)
 

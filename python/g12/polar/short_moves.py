@@ -14,6 +14,8 @@ from math import hypot
 from g12.polar.contour import Arc, Line, Plunge, is_move, path_length
 from g12.polar.crossing import distance_from
 
+MOST_POINTS = 100  # that one line stands for: all of them are looked at for each one more
+
 
 def without_short_moves(elements: Sequence, limit: float) -> tuple[list, float]:
     """Return a contour's elements without the moves under compensation up to ``limit`` long.
@@ -75,7 +77,8 @@ def with_points_left_out(elements: Sequence, limit: float) -> tuple[list, float]
 def _reach(elements: Sequence, first: int, limit: float) -> tuple[int, float]:
     """Return the last of the elements that one line can stand for, and how far it is off them."""
     last, most = first, 0.0
-    while last + 1 < len(elements) and _is_like(elements[first], elements[last + 1]):
+    end_at = min(len(elements), first + MOST_POINTS)
+    while last + 1 < end_at and _is_like(elements[first], elements[last + 1]):
         end = elements[last + 1]
         chord = elements[first]._replace(x1=end.x1, c1=end.c1)
         if path_length(chord) <= limit:
