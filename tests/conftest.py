@@ -23,7 +23,7 @@ def missing(folder):
     if not shutil.which("linuxcnc"):
         return "LinuxCNC is not installed"
     if folder == "sim":
-        from g12.cli.isolated import obstacle
+        from g12.tools.headless.namespaces import obstacle
 
         why = obstacle()
         return why and f"LinuxCNC cannot be isolated here: {why}"

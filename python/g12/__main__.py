@@ -16,7 +16,7 @@ if __package__ in (None, ""):
     ):
         os.execv(SYSTEM_PYTHON, [SYSTEM_PYTHON, *sys.argv])
 
-from g12.cli.main import main  # noqa: E402 - the path has to be set first
+from g12.tools.commands.main import main  # noqa: E402 - the path has to be set first
 
 
 def end(number: int, _frame: object) -> None:

@@ -2,6 +2,7 @@
 """The one exception of the package: a block, a section or a setting that is refused."""
 
 LONGEST_MESSAGE = 255  # LinuxCNC cuts an operator message there
+LONGEST_BLOCK = 254  # characters that LinuxCNC reads of a line
 
 
 class Refusal(ValueError):

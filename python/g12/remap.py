@@ -3,12 +3,18 @@
 
 from __future__ import annotations
 
-from interpreter import INTERP_OK
-
-from . import circle_mill, host, mitsubishi, yasnac
-from .haas import plan_pocket
-from .polar_remap import polar_off, polar_on
-from .words import Words
+from g12.host.cycle_prologs import (
+    circle_mill_perimeter,
+    circle_mill_pocket,
+    cycle_done,
+    g12_haas,
+    g12_mitsubishi,
+    g12_yasnac,
+    g13_haas,
+    g13_mitsubishi,
+    g13_yasnac,
+)
+from g12.host.polar_handlers import polar_off, polar_on
 
 __all__ = [  # what `from g12.remap import *` brings into a user's own module remap
     "circle_mill_perimeter",
@@ -23,114 +29,3 @@ __all__ = [  # what `from g12.remap import *` brings into a user's own module re
     "polar_off",
     "polar_on",
 ]
-
-CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
-
-
-def prepare_haas(interp: object, arc: int) -> int:
-    """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
-    pocket = plan_pocket(host.words_of_block(interp), host.snapshot(interp), host.SETTINGS.clearing)
-    hand = 1 if arc == COUNTERCLOCKWISE else -1
-    host.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
-    if pocket.commanded_radius is not None:
-        host.remember_radius(interp, pocket.commanded_radius)
-    if pocket.message:
-        host.message(pocket.message)
-    return INTERP_OK
-
-
-@host.handler
-def g12_haas(self, **words):
-    """Prolog of G12, clockwise circular pocket."""
-    return prepare_haas(self, CLOCKWISE)
-
-
-@host.handler
-def g13_haas(self, **words):
-    """Prolog of G13, counterclockwise circular pocket."""
-    return prepare_haas(self, COUNTERCLOCKWISE)
-
-
-def prepare_yasnac(interp: object, arc: int) -> int:
-    """Check a Yasnac G12/G13 block and hand its circle to `ngc/g12_yasnac.ngc`."""
-    circle = yasnac.plan_circle(host.words_of_block(interp), host.snapshot(interp))
-    host.hand_over(
-        interp,
-        **circle._asdict(),
-        arc=arc,
-        traverse=host.traverse_feed(interp),
-        feed=interp.feed_rate,
-        per_revolution=host.per_revolution(interp),
-    )
-    return INTERP_OK
-
-
-@host.handler
-def g12_yasnac(self, **words):
-    """Prolog of G12, clockwise circle cutting."""
-    return prepare_yasnac(self, CLOCKWISE)
-
-
-@host.handler
-def g13_yasnac(self, **words):
-    """Prolog of G13, counterclockwise circle cutting."""
-    return prepare_yasnac(self, COUNTERCLOCKWISE)
-
-
-def prepare_mitsubishi(interp: object, arc: int) -> int:
-    """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_circle.ngc`."""
-    circle = mitsubishi.plan_circle(host.words_of_block(interp), host.snapshot(interp))
-    host.hand_over(interp, **circle._asdict(), arc=arc)
-    return INTERP_OK
-
-
-@host.handler
-def g12_mitsubishi(self, **words):
-    """Prolog of G12, clockwise circular cutting."""
-    return prepare_mitsubishi(self, CLOCKWISE)
-
-
-@host.handler
-def g13_mitsubishi(self, **words):
-    """Prolog of G13, counterclockwise circular cutting."""
-    return prepare_mitsubishi(self, COUNTERCLOCKWISE)
-
-
-def planned_event(interp: object, pocket: bool) -> circle_mill.Event:
-    """Return the event of a code block, or of the call if the code stands in o<circle_mill>."""
-    words, context = host.words_of_block(interp), host.snapshot(interp)
-    plane = host.first_plane(interp)
-    entries = host.entries_of_call(interp, "circle_mill", len(circle_mill.ENTRIES))
-    if entries is None:
-        return circle_mill.plan_code(words, context, plane, pocket)
-    call = Words("circle_mill", circle_mill.entries_of_call(entries))
-    return circle_mill.plan_call(call, context, plane)
-
-
-def prepare_circle_mill(interp: object, pocket: bool) -> int:
-    """Check a circle mill event and hand it to `ngc/g12_circle_mill.ngc`."""
-    event = planned_event(interp, pocket)
-    host.hand_over(interp, **event.locals())
-    host.remember_first_plane(interp, event.place.first_plane)
-    if event.message:
-        host.message(event.message)
-    return INTERP_OK
-
-
-@host.handler
-def circle_mill_perimeter(self, **words):
-    """Prolog of G12.2, and of the event's subroutine form."""
-    return prepare_circle_mill(self, pocket=False)
-
-
-@host.handler
-def circle_mill_pocket(self, **words):
-    """Prolog of G13.2."""
-    return prepare_circle_mill(self, pocket=True)
-
-
-@host.handler
-def cycle_done(self, **words):
-    """Epilog of every cycle: the modes are again what the block found."""
-    host.restore_modes(self)
-    return INTERP_OK

@@ -12,7 +12,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from .errors import Refusal, number
+from g12.errors import Refusal, number
 
 SECTION = "G12"
 

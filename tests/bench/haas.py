@@ -9,11 +9,11 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-import proof
 from bench import Figure
-from g12.cli.ini import read_ini
-from g12.cli.trace import Tracer
-from machines import SIM
+from g12.tools.machine.ini import read_ini
+from g12.tools.preview.tracer import Tracer
+from support import cut_geometry
+from support.sim_machines import SIM
 
 INI = SIM / "mill_inch.ini"
 TOOLS = {1: 0.25}
@@ -67,7 +67,7 @@ def starts(block):
 def expanded():
     """Yield the moves of `starts` as plain G-code, taken from a trace of one pocket."""
     with Tracer(INI, tools=TOOLS) as tracer:
-        moves = proof.cutting(tracer.trace_text([FIRST, "G0 Z.1", TEN_RINGS]).moves)
+        moves = cut_geometry.cutting(tracer.trace_text([FIRST, "G0 Z.1", TEN_RINGS]).moves)
     for index in range(POCKETS):
         x, y = index % 40, index // 40
         yield f"G0 Z.1\nG0 X{x} Y{y}"
@@ -80,7 +80,7 @@ def plain_block(move, x, y):
     end = [value / MM_PER_INCH for value in move.end[:3]]
     if move.kind == "arc":
         i, j = ((move.centre[axis] - move.start[axis]) / MM_PER_INCH for axis in (0, 1))
-        whole = math.dist(move.start[:2], move.end[:2]) < proof.SAME_POINT
+        whole = math.dist(move.start[:2], move.end[:2]) < cut_geometry.SAME_POINT
         target = "" if whole else f"X{end[0] + x:.6f} Y{end[1] + y:.6f} "
         return f"G3 {target}I{i:.6f} J{j:.6f}"
     if move.tangent(0)[2]:
@@ -106,25 +106,25 @@ def cpu_seconds(scratch, program):
 def length_ratio(tracer):
     """Compare the path with its circles, lead-in and lead-out."""
     moves = tracer.trace_text([FIRST, "G0 Z.1", SAMPLE]).moves
-    sideways = proof.in_plane(proof.cutting(moves))
-    rings = proof.radii(moves)
+    sideways = cut_geometry.in_plane(cut_geometry.cutting(moves))
+    rings = cut_geometry.radii(moves)
     ideal = sum(2 * math.pi * radius for radius in rings) + math.pi / 2 * (rings[0] + rings[-1])
     return Figure(
         "G12: path length against the circles, lead-in and lead-out, I.3 K1.5 Q.3, cutter .25",
-        proof.path_length(sideways) / ideal,
+        cut_geometry.path_length(sideways) / ideal,
         1.25,
         "",
-        f"{proof.path_length(sideways):.1f} mm against {ideal:.1f} mm",
+        f"{cut_geometry.path_length(sideways):.1f} mm against {ideal:.1f} mm",
     )
 
 
 def direction_jump(tracer):
     """Find the largest change of direction between plunge and retract."""
     moves = tracer.trace_text([FIRST, "G0 Z.1", f"{SAMPLE} L3"]).moves
-    sideways = proof.in_plane(proof.cutting(moves))
+    sideways = cut_geometry.in_plane(cut_geometry.cutting(moves))
     return Figure(
         "G12: direction jump anywhere between the plunge and the retract",
-        proof.largest_jump(sideways),
+        cut_geometry.largest_jump(sideways),
         1.0,
         " degrees",
         "three spring passes of I.3 K1.5 Q.3, cutter .25",

@@ -10,13 +10,13 @@ import numpy as np
 
 from bench import Figure
 from bench.haas import cpu_seconds
-from drawings import HEXAGON, INCHES, MILLIMETRES
-from g12.cli.headless import Machine
-from g12.cli.ini import read_ini
-from g12.cli.trace import Tracer
-from lathe import Cut, feed_moves
-from machines import PROGRAMS, SIM
-from outline import Arc, deviation, outward
+from g12.tools.headless.machine import Machine
+from g12.tools.machine.ini import read_ini
+from g12.tools.preview.tracer import Tracer
+from support.outline import Arc, deviation, outward
+from support.polar_drawings import HEXAGON, INCHES, MILLIMETRES
+from support.polar_programs import Cut, feed_moves
+from support.sim_machines import PROGRAMS, SIM
 
 MM_PER_INCH = 25.4
 SAMPLES = PROGRAMS / "polar"

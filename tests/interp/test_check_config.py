@@ -9,10 +9,11 @@ import sys
 
 import pytest
 
-from configs import HAAS, LATHE, MILL, content_of, with_lines, write_config
-from g12.cli import check, features, install, uninstall
-from g12.cli.trace import Tracer, trace_text
-from machines import ROOT, SIM
+from g12.tools.commands import check, install, uninstall
+from g12.tools.install import features
+from g12.tools.preview.tracer import Tracer, trace_text
+from support.sim_machines import ROOT, SIM
+from support.small_configs import HAAS, LATHE, MILL, content_of, with_lines, write_config
 
 REFERRED = f"SUBROUTINE_PATH = {ROOT}/ngc\n{HAAS}"
 PYTHON = f"[PYTHON]\nTOPLEVEL = {ROOT}/python/toplevel.py\nPATH_PREPEND = {ROOT}/python\n"
@@ -173,7 +174,7 @@ def test_a_toplevel_without_any_module_remap_gets_the_packages(tmp_path, capsys)
 
 
 @pytest.mark.parametrize("own", [False, True])
-@pytest.mark.parametrize("name", ["", "ngc/g12_haas.ngc", "python/g12/haas.py"])
+@pytest.mark.parametrize("name", ["", "ngc/g12_haas.ngc", "python/g12/cycles/haas.py"])
 def test_a_damaged_copy_is_mended(tmp_path, capsys, own, name):
     ini = write_config(tmp_path, MILL + OWN * own, **(remap("x = 1\n") if own else {}))
     assert installed(ini, "haas") == 0

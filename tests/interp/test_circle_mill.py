@@ -8,10 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import matrix
-import proof
-from g12.cli.trace import Tracer
-from machines import PROGRAMS, SIM
+from g12.tools.preview.tracer import Tracer
+from support import cut_geometry, mode_matrix
+from support.sim_machines import PROGRAMS, SIM
 
 INCH = 25.4
 TOOLS = {1: 0.5, 2: 0.0, 3: 12.0 / INCH}
@@ -42,7 +41,7 @@ def cut(tracer, *blocks, **options):
 
 def event_of(traced):
     """Return the moves behind the approach of BEFORE, in inches."""
-    return proof.moving(traced.moves)[1:]
+    return cut_geometry.moving(traced.moves)[1:]
 
 
 def described(moves):
@@ -131,14 +130,14 @@ def test_golden_pocket_rings(inch, metric, words, rings, finish, scale, unit):
     place = place if finish else place.replace(" L0", "")
     for tracer in (inch, metric):
         traced = cut(tracer, unit, f"F{20 * scale}", f"G13.2 {place}")
-        radii = [radius / INCH for radius in proof.radii(traced.moves)]
+        radii = [radius / INCH for radius in cut_geometry.radii(traced.moves)]
         assert radii == pytest.approx(rings + ([finish] if finish else []), abs=1e-6)
 
 
 def test_golden_pocket_in_millimetres(inch, metric):
     for tracer in (inch, metric):
         traced = cut(tracer, "T3 M6", "G21", "F300", "G13.2 X0 Y0 Z-5 I2 R40 H2 Q.3 L0")
-        radii = proof.radii(traced.moves)
+        radii = cut_geometry.radii(traced.moves)
         assert radii == pytest.approx([11.233333, 22.466667, 33.7, 34], abs=1e-6)
 
 
@@ -151,7 +150,7 @@ def test_golden_pocket_in_millimetres(inch, metric):
 )
 def test_golden_depths(inch, words, depths):
     traced = cut(inch, f"G13.2 X0 Y0 Z-1 I.1 R1.5 J.3 K.3 Q.02 H2 {words}")
-    assert [z / INCH for z in proof.levels(traced.moves)] == pytest.approx(depths)
+    assert [z / INCH for z in cut_geometry.levels(traced.moves)] == pytest.approx(depths)
 
 
 @pytest.mark.parametrize(
@@ -166,7 +165,7 @@ def test_golden_depths(inch, words, depths):
 )
 def test_golden_perimeter_radii(inch, words, radii):
     traced = cut(inch, f"G12.2 X0 Y0 Z-.1 I.1 R1 {words}")
-    assert [r / INCH for r in proof.radii(traced.moves)] == pytest.approx(radii)
+    assert [r / INCH for r in cut_geometry.radii(traced.moves)] == pytest.approx(radii)
 
 
 # ---------------------------------------------------------------- both front ends
@@ -187,24 +186,24 @@ def test_the_call_is_the_code(inch, g, code):
 def test_a_negative_l_of_the_call_is_the_side_only(inch):
     by_code = cut(inch, f"G13.2 {CODE_WORDS} L0")
     by_call = cut(inch, call(**{**ENTRIES, "g": 7, "l": -0.02}))
-    assert proof.radii(by_call.moves) == proof.radii(by_code.moves)
-    assert proof.levels(by_call.moves) == proof.levels(by_code.moves)
+    assert cut_geometry.radii(by_call.moves) == cut_geometry.radii(by_code.moves)
+    assert cut_geometry.levels(by_call.moves) == cut_geometry.levels(by_code.moves)
 
 
 def test_v_is_the_feed_of_the_side_finish(inch):
     traced = cut(inch, call(**ENTRIES, g=7, v=15))
-    *_, entry, circle, leave = proof.cutting(traced.moves)
+    *_, entry, circle, leave = cut_geometry.cutting(traced.moves)
     assert [move.feed / INCH for move in (entry, circle, leave)] == pytest.approx([15] * 3)
 
 
 def test_feeds_of_plunges_and_rings(inch):
     traced = cut(inch, call(**ENTRIES, g=7, v=15))
-    roughing = proof.cutting(traced.moves)[:-3]
+    roughing = cut_geometry.cutting(traced.moves)[:-3]
     plunges = [move for move in roughing if move.start[:2] == move.end[:2] and move.kind == "feed"]
     rings = [move for move in roughing if move not in plunges]
     assert {round(move.feed / INCH, 6) for move in plunges} == {5}
     assert {round(move.feed / INCH, 6) for move in rings} == {30}
-    assert len(plunges) == len(proof.levels(traced.moves))
+    assert len(plunges) == len(cut_geometry.levels(traced.moves))
 
 
 def test_f_of_the_call_is_modal_p_and_v_are_not(inch):
@@ -212,7 +211,7 @@ def test_f_of_the_call_is_modal_p_and_v_are_not(inch):
     without = {key: value for key, value in ENTRIES.items() if key not in "fp"}
     traced = cut(inch, call(**ENTRIES), call(**without, v=11))
     assert traced.modes.feed == 30
-    feeds = [round(move.feed / INCH, 6) for move in proof.cutting(traced.moves)]
+    feeds = [round(move.feed / INCH, 6) for move in cut_geometry.cutting(traced.moves)]
     assert set(feeds[len(feeds) // 2 :]) == {30, 11}
 
 
@@ -228,7 +227,7 @@ def test_the_call_works_inside_other_subs_loops_and_expressions(inch):
         "o<row> call [3] [0]",
     ]
     traced = cut(inch, *program)
-    centres = [round(circle.x / INCH, 6) for circle in proof.full_circles(traced.moves)]
+    centres = [round(circle.x / INCH, 6) for circle in cut_geometry.full_circles(traced.moves)]
     assert sorted(set(centres)) == [3, 6, 9]
 
 
@@ -255,7 +254,7 @@ def test_w_is_modal_and_o_is_not(inch):
     )
     returns = [
         round(move.start[2] / INCH, 6)
-        for move in proof.moving(traced.moves)[1:]
+        for move in cut_geometry.moving(traced.moves)[1:]
         if (move.end[0] / INCH, move.end[1] / INCH) == (-1, -1) != move.start[:2]
         and move.start[2] == move.end[2]
     ]
@@ -300,7 +299,7 @@ def test_the_converted_events_run(inch):
     traced = inch.trace(PROGRAMS / "dynapath" / "flange.ngc", setup=["T1 M6", "G0 X-3 Y-3 Z1"])
     assert traced.error is None
     circles = [
-        [round(value / INCH, 6) for value in c[:4]] for c in proof.full_circles(traced.moves)
+        [round(value / INCH, 6) for value in c[:4]] for c in cut_geometry.full_circles(traced.moves)
     ]
     assert circles[-6:] == [
         [1.5, 2, -0.5, 0.984],
@@ -318,7 +317,8 @@ def test_the_sample_program():
         traced = tracer.trace(PROGRAMS / "circle_mill" / "sample.ngc")
     assert (traced.error, traced.messages) == (None, [])
     circles = [
-        [round(value, 6) for value in circle[:4]] for circle in proof.full_circles(traced.moves)
+        [round(value, 6) for value in circle[:4]]
+        for circle in cut_geometry.full_circles(traced.moves)
     ]
     rings = [11.233333, 22.466667, 33.7]
     assert circles == [
@@ -406,7 +406,7 @@ def check_approach_and_return(moves, event):
 
 def check_depths(moves, event):
     """From W down in steps of at most K to Z, or to the finish dimension above it and then Z."""
-    levels = [z / INCH for z in proof.levels(moves)]
+    levels = [z / INCH for z in cut_geometry.levels(moves)]
     drops = -np.diff([event["first"], *levels])
     assert levels[-1] == pytest.approx(event["z"], abs=1e-6)
     rough = drops[:-1] if event["bottom"] else drops
@@ -419,7 +419,7 @@ def check_depths(moves, event):
 
 def check_rings(moves, event, levels):
     """Equal steps to the rough radius at each level, in the rough direction; then the finish."""
-    circles = proof.full_circles(moves)
+    circles = cut_geometry.full_circles(moves)
     if event["finish"]:
         last = circles.pop()
         assert last.radius / INCH == pytest.approx(event["finished"], abs=1e-6)
@@ -442,12 +442,12 @@ def check_finish(moves, event):
     """Tangent half circles of the finish dimension's diameter on the rough side of the wall."""
     if not event["finish"]:
         return
-    entry, circle, leave = proof.cutting(moves)[-3:]
-    assert proof.largest_jump([entry, circle, leave]) < 0.01
+    entry, circle, leave = cut_geometry.cutting(moves)[-3:]
+    assert cut_geometry.largest_jump([entry, circle, leave]) < 0.01
     assert 2 * entry.radius / INCH == pytest.approx(event["finish"], abs=1e-6)
     assert 2 * leave.radius / INCH == pytest.approx(event["finish"], abs=1e-6)
     assert (abs(entry.sweep), abs(leave.sweep)) == pytest.approx((math.pi, math.pi), abs=1e-5)
-    distance = polar(proof.dense_points([entry, leave], step=0.05))
+    distance = polar(cut_geometry.dense_points([entry, leave], step=0.05))
     bounds = sorted((event["rough"], event["finished"]))
     assert bounds[0] - 1e-5 <= distance.min() <= distance.max() <= bounds[1] + 1e-5
 
@@ -469,7 +469,7 @@ def check_rapids_stay_out_of_material(moves, event):
             retract = min(bottom + 2.54, event["first"] * INCH)
             assert low == pytest.approx(retract, abs=1e-6)
             assert low > bottom
-            assert polar(proof.dense_points([move])).max() <= event["rough"] + 1e-6
+            assert polar(cut_geometry.dense_points([move])).max() <= event["rough"] + 1e-6
 
 
 @settings(max_examples=200, deadline=None)
@@ -481,7 +481,7 @@ def test_any_valid_event_cuts_its_circle(inch, event):
     check_rings(moves, event, levels)
     check_finish(moves, event)
     check_rapids_stay_out_of_material(moves, event)
-    reach = polar(proof.dense_points(proof.cutting(moves), step=1.0)).max()
+    reach = polar(cut_geometry.dense_points(cut_geometry.cutting(moves), step=1.0)).max()
     assert reach <= max(event["rough"], event["finished"]) + 1e-6
 
 
@@ -493,22 +493,24 @@ def test_a_pocket_is_swept_to_its_radius_at_every_level(inch, words):
     traced = cut(inch, f"G13.2 X1 Y2 Z-.5 I.1 K.2 {words}")
     radius = float(words.split()[0][1:])
     finish = float(words.split("Q")[1].split()[0]) if "Q" in words else 0.0
-    for level in proof.levels(traced.moves):
-        at_level = [move for move in proof.cutting(traced.moves) if move.end[2] <= level + 1e-6]
-        swept = proof.swept(at_level, 0.25 * INCH)
-        hole = proof.disc(1 * INCH, 2 * INCH, radius * INCH)
+    for level in cut_geometry.levels(traced.moves):
+        at_level = [
+            move for move in cut_geometry.cutting(traced.moves) if move.end[2] <= level + 1e-6
+        ]
+        swept = cut_geometry.swept(at_level, 0.25 * INCH)
+        hole = cut_geometry.disc(1 * INCH, 2 * INCH, radius * INCH)
         assert swept.difference(hole.buffer(0.001)).area == pytest.approx(0, abs=1e-6)
-        roughed = proof.disc(1 * INCH, 2 * INCH, (radius - finish) * INCH).buffer(-0.001)
+        roughed = cut_geometry.disc(1 * INCH, 2 * INCH, (radius - finish) * INCH).buffer(-0.001)
         assert roughed.difference(swept).area == pytest.approx(0, abs=1e-3)
-    whole = proof.swept(proof.cutting(traced.moves), 0.25 * INCH)
+    whole = cut_geometry.swept(cut_geometry.cutting(traced.moves), 0.25 * INCH)
     assert hole.buffer(-0.001).difference(whole).area == pytest.approx(0, abs=1e-3)
 
 
 @pytest.mark.parametrize(("h", "inner", "outer"), [(2, 0.5, 1.0), (1, 1.0, 1.5), (0, 0.75, 1.25)])
 def test_a_perimeter_is_one_groove_on_its_side(inch, h, inner, outer):
     traced = cut(inch, f"G12.2 X1 Y2 Z-.5 I.1 R1 H{h}")
-    swept = proof.swept(proof.cutting(traced.moves), 0.25 * INCH)
-    ring = [proof.disc(1 * INCH, 2 * INCH, radius * INCH) for radius in (outer, inner)]
+    swept = cut_geometry.swept(cut_geometry.cutting(traced.moves), 0.25 * INCH)
+    ring = [cut_geometry.disc(1 * INCH, 2 * INCH, radius * INCH) for radius in (outer, inner)]
     groove = ring[0].difference(ring[1])
     assert swept.symmetric_difference(groove).buffer(-0.002).area == pytest.approx(0, abs=1e-3)
 
@@ -516,8 +518,8 @@ def test_a_perimeter_is_one_groove_on_its_side(inch, h, inner, outer):
 @pytest.mark.parametrize(("h", "inner", "outer"), [(2, 0.48, 1.0), (1, 1.0, 1.52)])
 def test_a_finished_perimeter_is_wider_by_the_finish(inch, h, inner, outer):
     traced = cut(inch, f"G12.2 X1 Y2 Z-.5 I.1 R1 H{h} Q.02")
-    swept = proof.swept(proof.cutting(traced.moves), 0.25 * INCH)
-    ring = [proof.disc(1 * INCH, 2 * INCH, radius * INCH) for radius in (outer, inner)]
+    swept = cut_geometry.swept(cut_geometry.cutting(traced.moves), 0.25 * INCH)
+    ring = [cut_geometry.disc(1 * INCH, 2 * INCH, radius * INCH) for radius in (outer, inner)]
     groove = ring[0].difference(ring[1])
     assert swept.symmetric_difference(groove).buffer(-0.002).area == pytest.approx(0, abs=1e-3)
 
@@ -528,8 +530,8 @@ def test_a_roughing_width_above_the_tool_diameter_says_what_it_leaves(inch):
         "G13.2: the roughing width 0.625 is greater than the tool diameter 0.5:"
         " material is left between the rings"
     ]
-    swept = proof.swept(proof.cutting(traced.moves), 0.25 * INCH)
-    assert proof.disc(0, 0, 1.4 * INCH).difference(swept).area > 10
+    swept = cut_geometry.swept(cut_geometry.cutting(traced.moves), 0.25 * INCH)
+    assert cut_geometry.disc(0, 0, 1.4 * INCH).difference(swept).area > 10
 
 
 # ---------------------------------------------------------------- modes, units, work offsets
@@ -537,7 +539,7 @@ def test_a_roughing_width_above_the_tool_diameter_says_what_it_leaves(inch):
 
 def pocket_block(scale, incremental):
     x, y, z = (1.0, -1.0, -0.6) if incremental else (1.5, -0.75, -0.5)
-    lengths = matrix.words(
+    lengths = mode_matrix.words(
         scale, X=x, Y=y, Z=z, I=0.1, E=0.4, R=1.2, K=0.25, J=0.3, Q=0.02, P=5.0, F=12.0
     )
     return f"G13.2 {lengths} D2 H2"
@@ -551,9 +553,9 @@ def outside_call(scale, incremental):
 
 
 @pytest.mark.parametrize("block", [pocket_block, outside_call])
-@matrix.any_coordinates
+@mode_matrix.any_coordinates
 def test_every_combination_of_modes_makes_the_same_machine_path(inch, metric, coordinates, block):
-    matrix.check_same_path(inch, metric, coordinates, matrix.Case(block, feed=12.0))
+    mode_matrix.check_same_path(inch, metric, coordinates, mode_matrix.Case(block, feed=12.0))
 
 
 @pytest.mark.parametrize("motion", ["G0", "G1", "G2", "G3", "G80"])
@@ -634,7 +636,7 @@ REFUSED = [
 @pytest.mark.parametrize(("block", "message"), REFUSED)
 def test_a_bad_event_moves_nothing_and_changes_nothing(inch, block, message):
     distance = "G91" if "G91" in block else "G90"
-    matrix.check_refused(inch, [*BEFORE, distance], block.replace("G91 ", ""), message)
+    mode_matrix.check_refused(inch, [*BEFORE, distance], block.replace("G91 ", ""), message)
 
 
 EVENTS = [("G13.2", f"G13.2 {PLACE} H2"), ("circle_mill", call(x=0, y=0, z=0, w=0.1, r=1, c=2))]
@@ -670,14 +672,14 @@ def test_a_second_motion_code_in_the_block_is_refused(inch):
 
 
 @settings(max_examples=150, deadline=None)
-@given(block=matrix.blocks("G13.2", "IERDHKJQLP").map(lambda block: f"{block} X1 Y2 Z-3"))
+@given(block=mode_matrix.blocks("G13.2", "IERDHKJQLP").map(lambda block: f"{block} X1 Y2 Z-3"))
 def test_any_block_cuts_or_is_refused_in_words(inch, block):
-    matrix.check_cut_or_refused(inch, BEFORE, block, "G13.2")
+    mode_matrix.check_cut_or_refused(inch, BEFORE, block, "G13.2")
 
 
 @settings(max_examples=80, deadline=None)
-@given(values=st.dictionaries(st.sampled_from("gworkjlpvdc"), matrix.VALUES))
+@given(values=st.dictionaries(st.sampled_from("gworkjlpvdc"), mode_matrix.VALUES))
 def test_any_call_cuts_or_is_refused_in_words(inch, values):
     texts = {letter: f"{value:.5f}" for letter, value in values.items()}
     block = call(**{"x": 1, "y": 2, "z": -3, "r": 1, "c": 2, "w": 0.1, **texts})
-    matrix.check_cut_or_refused(inch, BEFORE, block, "circle_mill")
+    mode_matrix.check_cut_or_refused(inch, BEFORE, block, "circle_mill")

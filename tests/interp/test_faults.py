@@ -3,19 +3,20 @@
 
 import pytest
 
-from g12.cli.trace import Tracer
-from machines import SIM
+from g12.tools.preview.tracer import Tracer
+from support.sim_machines import SIM
 
 TOPLEVEL = """\
 import sys
 sys.path.insert(0, "{python}")
 import remap
-from g12 import polar, remap as handlers
+from g12.host import cycle_prologs
+from g12.polar import plan
 def broken(*_, **__):
     raise KeyError("wire")
-handlers.plan_pocket = polar.plan = broken
+cycle_prologs.plan_pocket = plan.plan = broken
 """
-SHORT = "from g12 import section\nsection.MOST_LINES = 99\n"
+SHORT = "from g12.host import polar_section\npolar_section.MOST_LINES = 99\n"
 
 
 def test_an_endless_loop_ends(tmp_path):

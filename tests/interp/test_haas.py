@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import proof
-from g12.cli.trace import Tracer
-from machines import SIM
+from g12.tools.preview.tracer import Tracer
+from support import cut_geometry
+from support.sim_machines import SIM
 
 INCH = 25.4
 TOOLS = {1: 0.25, 2: 0.5, 3: -0.25, 4: 0.0}
@@ -63,10 +63,10 @@ GOLDEN = [
 def test_golden_rings(inch, metric, block, expected, left):
     for tracer in (inch, metric):
         traced = cut(tracer, "G0 Z.1", block)
-        circles = proof.full_circles(traced.moves)
+        circles = cut_geometry.full_circles(traced.moves)
         assert [circle.radius / INCH for circle in circles] == pytest.approx(expected, abs=1e-9)
         assert {circle.turns for circle in circles} == {-1 if block.startswith("G12") else 1}
-        assert proof.levels(traced.moves) == pytest.approx([-1.2 * INCH])
+        assert cut_geometry.levels(traced.moves) == pytest.approx([-1.2 * INCH])
         assert [message.text[: len(f"G12: {left} ")] for message in traced.messages] == (
             [f"{block[:3]}: {left} "] if left else []
         )
@@ -74,7 +74,7 @@ def test_golden_rings(inch, metric, block, expected, left):
 
 def test_golden_incremental_levels(inch):
     traced = cut(inch, "G0 Z.1", "G13 G91 Z-.5 I.4 K2. Q.4 L4 D2")
-    circles = proof.full_circles(traced.moves)
+    circles = cut_geometry.full_circles(traced.moves)
     rings = [0.15, 0.55, 0.95, 1.35, 1.75]
     assert [c.radius / INCH for c in circles] == pytest.approx(rings * 4)
     assert [c.z / INCH for c in circles] == pytest.approx(
@@ -86,7 +86,7 @@ def test_golden_incremental_levels(inch):
 
 def test_golden_d_of_another_tool_than_the_loaded_one(inch):
     traced = cut(inch, "T1 M6", "G0 Z.1", "G12 I.75 Z-1 D2", "G12 I.75 Z-1")
-    assert [r / INCH for r in proof.radii(traced.moves)] == pytest.approx([0.5, 0.5])
+    assert [r / INCH for r in cut_geometry.radii(traced.moves)] == pytest.approx([0.5, 0.5])
 
 
 def test_golden_trace_of_one_pocket(inch):
@@ -94,7 +94,7 @@ def test_golden_trace_of_one_pocket(inch):
     traced = cut(inch, "G0 Z.1", "G12 I.3 K1. Q.4 Z-1.2 D1")
     moves = [
         (move.kind, *(round(value / INCH, 9) + 0.0 for value in move.end[:2]))
-        for move in proof.cutting(traced.moves)
+        for move in cut_geometry.cutting(traced.moves)
     ]
     assert moves == [
         ("feed", 0, 0),
@@ -115,13 +115,13 @@ def test_golden_trace_of_one_pocket(inch):
 
 def assert_pocket(moves, *, centre, first, last, step, levels, turns):
     """Prove one pocket from its moves: ``first``, ``last``, ``step`` of the tool centre, mm."""
-    (span,) = proof.spans(moves)
-    circles = proof.full_circles(span)
+    (span,) = cut_geometry.spans(moves)
+    circles = cut_geometry.full_circles(span)
     assert {circle.turns for circle in circles} == {turns}
     for circle in circles:
         assert (circle.x, circle.y) == pytest.approx(centre, abs=1e-6)
-    assert proof.levels(span) == pytest.approx(sorted(set(levels), reverse=True), abs=1e-6)
-    points = proof.dense_points(proof.in_plane(span), step=1.0)
+    assert cut_geometry.levels(span) == pytest.approx(sorted(set(levels), reverse=True), abs=1e-6)
+    points = cut_geometry.dense_points(cut_geometry.in_plane(span), step=1.0)
     distance = np.hypot(points[:, 0] - centre[0], points[:, 1] - centre[1])
     assert distance.max() <= last + 1e-6
     assert (span[0].start[:2], span[-1].end[:2]) == (
@@ -140,7 +140,7 @@ def assert_pocket(moves, *, centre, first, last, step, levels, turns):
             assert np.diff([ring.radius for ring in rings]).max(initial=0) <= step + 1e-5
             assert np.diff([ring.radius for ring in rings]).min(initial=1) > 0
     for sideways in sideways_stretches(span):
-        assert proof.largest_jump(sideways) <= 0.01  # degrees; the figure to reach is 1
+        assert cut_geometry.largest_jump(sideways) <= 0.01  # degrees; the figure to reach is 1
 
 
 def sideways_stretches(span):
@@ -221,7 +221,7 @@ def test_the_spiral_s_arcs_grow_by_half_the_increment(spiral, pocket):
     x, y = pocket["centre"]
     ends = [
         math.hypot(move.end[0] - x, move.end[1] - y)
-        for move in proof.in_plane(proof.cutting(traced.moves))
+        for move in cut_geometry.in_plane(cut_geometry.cutting(traced.moves))
     ]
     growth = np.diff(ends[: len(ends) // len(pocket["levels"])][:-1])
     assert growth.max(initial=0) <= pocket["step"] / 2 + 1e-5
@@ -233,35 +233,35 @@ def test_the_spiral_s_arcs_grow_by_half_the_increment(spiral, pocket):
 def test_swept_area_is_the_finished_disc(inch, spiral, clearing, code, words):
     tracer = {"rings": inch, "spiral": spiral}[clearing]
     traced = cut(tracer, "G0 X1 Y2 Z.1", f"{code} {words} Z-.5 D1")
-    area = proof.swept(proof.cutting(traced.moves), 0.125 * INCH)
+    area = cut_geometry.swept(cut_geometry.cutting(traced.moves), 0.125 * INCH)
     numbers = {word[0]: float(word[1:]) for word in words.split()}
-    finished = proof.disc(1 * INCH, 2 * INCH, numbers.get("K", numbers["I"]) * INCH)
+    finished = cut_geometry.disc(1 * INCH, 2 * INCH, numbers.get("K", numbers["I"]) * INCH)
     assert area.difference(finished.buffer(0.001)).area == pytest.approx(0, abs=1e-6)
     assert finished.buffer(-0.001).difference(area).area == pytest.approx(0, abs=1e-3)
 
 
 def test_a_stepover_above_the_tool_diameter_leaves_what_the_message_says(inch):
     traced = cut(inch, "G0 Z.1", "G13 I.3 K1.5 Q.3 Z-.5 D1")
-    area = proof.swept(proof.cutting(traced.moves), 0.125 * INCH)
-    assert proof.disc(0, 0, 1.499 * INCH).difference(area).area > 1.0
+    area = cut_geometry.swept(cut_geometry.cutting(traced.moves), 0.125 * INCH)
+    assert cut_geometry.disc(0, 0, 1.499 * INCH).difference(area).area > 1.0
     assert len(traced.messages) == 1
 
 
 def test_rings_cost_at_most_a_quarter_more_than_their_circles(inch):
     traced = cut(inch, "G0 Z.1", "G13 I.3 K1.5 Q.3 Z-.5 D1")
-    sideways = proof.in_plane(proof.cutting(traced.moves))
-    circles = sum(2 * math.pi * radius for radius in proof.radii(traced.moves))
+    sideways = cut_geometry.in_plane(cut_geometry.cutting(traced.moves))
+    circles = sum(2 * math.pi * radius for radius in cut_geometry.radii(traced.moves))
     leads = math.pi / 2 * (0.175 + 1.375) * INCH
-    assert proof.path_length(sideways) / (circles + leads) <= 1.25
+    assert cut_geometry.path_length(sideways) / (circles + leads) <= 1.25
 
 
 def test_links_stay_inside_the_larger_ring(inch):
     traced = cut(inch, "G0 Z.1", "G13 I.3 K1.5 Q1. Z-.5 D1")
     reached = 0.0
-    for move in reversed(proof.in_plane(proof.cutting(traced.moves))[:-1]):
-        points = proof.dense_points([move])
+    for move in reversed(cut_geometry.in_plane(cut_geometry.cutting(traced.moves))[:-1]):
+        points = cut_geometry.dense_points([move])
         distance = np.hypot(points[:, 0], points[:, 1])
-        if move.kind == "arc" and math.dist(move.start, move.end) < proof.SAME_POINT:
+        if move.kind == "arc" and math.dist(move.start, move.end) < cut_geometry.SAME_POINT:
             reached = move.radius
         assert distance.max() <= reached + 1e-6
 
@@ -302,7 +302,9 @@ COORDINATES = {
 
 def machine_path(traced):
     # the last levels differ between G90 (spring pass) and G91 (deeper), so compare in XY
-    return proof.dense_points(proof.in_plane(proof.cutting(traced.moves)), step=5.0)[:, :2]
+    return cut_geometry.dense_points(
+        cut_geometry.in_plane(cut_geometry.cutting(traced.moves)), step=5.0
+    )[:, :2]
 
 
 @pytest.mark.parametrize("coordinates", COORDINATES)
@@ -377,7 +379,7 @@ def test_g7_reads_x_as_a_diameter_and_nothing_else(inch):
 
 def test_the_block_s_feed_is_the_feed_of_the_cut_and_stays(inch):
     traced = cut(inch, "G12 I.3 K.6 Q.2 Z-.1 D1 F7.5")
-    feeds = [move.feed for move in proof.cutting(traced.moves)]
+    feeds = [move.feed for move in cut_geometry.cutting(traced.moves)]
     assert feeds == pytest.approx([7.5 * INCH] * len(feeds))
     assert traced.modes.feed == 7.5
 
@@ -390,7 +392,7 @@ def test_expressions_parameters_and_case_are_the_interpreter_s(inch):
 
 def test_a_tool_length_offset_does_not_move_the_path(inch):
     with_offset = cut(inch, "G43.1 Z.5", "G12 I.3 Z-.1 D1")
-    assert proof.levels(with_offset.moves) == pytest.approx([-0.1 * INCH])
+    assert cut_geometry.levels(with_offset.moves) == pytest.approx([-0.1 * INCH])
 
 
 # ---------------------------------------------------------------- the D last commanded
@@ -416,12 +418,12 @@ def test_a_tool_length_offset_does_not_move_the_path(inch):
 )
 def test_without_d_the_last_commanded_one_counts(inch, blocks, radius):
     traced = cut(inch, *blocks, "G0 X0 Y0", "G13 I.75 Z-.1")
-    assert proof.radii(traced.moves)[-1] / INCH == pytest.approx(0.75 - radius)
+    assert cut_geometry.radii(traced.moves)[-1] / INCH == pytest.approx(0.75 - radius)
 
 
 def test_without_d_the_last_one_follows_the_units(inch):
     traced = cut(inch, "G12 I.6 Z-.1 D1", "G21", "G12 I20 Z-2 F200")
-    assert proof.radii(traced.moves)[-1] == pytest.approx(20 - 0.125 * INCH)
+    assert cut_geometry.radii(traced.moves)[-1] == pytest.approx(20 - 0.125 * INCH)
 
 
 def test_a_refused_block_stores_no_d(inch):
@@ -485,7 +487,7 @@ def assert_refused(tracer, before, block, message):
     assert refused.error.line == len(before) + 1
     assert refused.error.text.startswith(message)
     assert len(refused.error.text) <= 255
-    assert proof.moving(refused.moves) == proof.moving(found.moves)
+    assert cut_geometry.moving(refused.moves) == cut_geometry.moving(found.moves)
     assert refused.messages == found.messages
     assert refused.modes.gcodes == found.modes.gcodes
     assert refused.globals == found.globals
@@ -512,7 +514,9 @@ def test_right_after_g40_the_plunge_must_not_slant(inch):
     message = "G12: the tool still stands offset: after G40 move in X or Y first"
     assert_refused(inch, [*offset, "G40"], "G12 I.26 Z-1", message)
     moved = inch.trace_text([*offset, "G40", "G12 X1 Y1 I.26 Z-1"])
-    (plunge,) = [move for move in proof.cutting(moved.moves) if abs(move.tangent(0.5)[2]) > 0.1]
+    (plunge,) = [
+        move for move in cut_geometry.cutting(moved.moves) if abs(move.tangent(0.5)[2]) > 0.1
+    ]
     assert plunge.start[:2] == pytest.approx(plunge.end[:2])
 
 
@@ -561,7 +565,7 @@ def test_any_bad_block_is_refused(inch, code, first, depth, breaking, mode):
 @pytest.mark.parametrize("code", ["M8", "M3 S100", "M9", "M48", "S200", "T2"])
 def test_spindle_coolant_and_tool_preparation_may_stand_in_the_block(inch, code):
     traced = cut(inch, "G0 Z.1", f"G12 I.5 Z-.1 D1 {code}")
-    assert [r / INCH for r in proof.radii(traced.moves)] == pytest.approx([0.375])
+    assert [r / INCH for r in cut_geometry.radii(traced.moves)] == pytest.approx([0.375])
 
 
 def test_the_program_goes_on_after_an_operator_message(inch):

@@ -6,14 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import matrix
-import proof
-from g12.cli.trace import Tracer
-from machines import PROGRAMS, ROOT, SIM
+from g12.tools.preview.tracer import Tracer
+from support import cut_geometry, mode_matrix
+from support.sim_machines import PROGRAMS, ROOT, SIM
 
 TOOLS = {1: 6.0, 3: -4.0, 10: 20.0}
 FIRST = "G21 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F300"
-REMAPS = {"RS274NGC": {"REMAP": matrix.remaps(ROOT / "configs/include/g12_mitsubishi.inc")}}
+REMAPS = {"RS274NGC": {"REMAP": mode_matrix.remaps(ROOT / "configs/include/g12_mitsubishi.inc")}}
 AXES = {"G17": (0, 1), "G18": (2, 0), "G19": (1, 2)}  # first and second axis of the plane
 
 
@@ -25,7 +24,7 @@ def metric():
 
 @pytest.fixture(scope="module")
 def inch():
-    tools = {number: diameter / matrix.INCH for number, diameter in TOOLS.items()}
+    tools = {number: diameter / mode_matrix.INCH for number, diameter in TOOLS.items()}
     with Tracer(SIM / "mill_inch.ini", overrides=REMAPS, tools=tools) as tracer:
         yield tracer
 
@@ -63,13 +62,13 @@ def test_the_sign_of_i_does_not_matter(metric):
 
 @pytest.mark.parametrize(("offset", "radius"), [("D0", 50), ("D10", 40), ("D1", 47), ("D3", 52)])
 def test_the_offset_s_sign_reduces_or_enlarges(metric, offset, radius):
-    assert proof.radii(cut(metric, f"G13 I50 {offset}").moves) == pytest.approx([radius])
+    assert cut_geometry.radii(cut(metric, f"G13 I50 {offset}").moves) == pytest.approx([radius])
 
 
 def test_the_sample_circle(metric):
     traced = metric.trace(PROGRAMS / "mitsubishi" / "circle.ngc")
     assert traced.error is None
-    assert proof.full_circles(traced.moves) == [pytest.approx((0, 0, -5, 40, -1))]
+    assert cut_geometry.full_circles(traced.moves) == [pytest.approx((0, 0, -5, 40, -1))]
 
 
 def test_the_sample_of_every_plane(metric):
@@ -100,8 +99,8 @@ def test_any_valid_block_cuts_its_circle(metric, plane, code, offset, room, sign
     assert circle.centre == pytest.approx((3, -4, 5), abs=1e-6)
     assert lead_in.start[:3] == pytest.approx((3, -4, 5), abs=1e-9)
     assert lead_out.end[:3] == pytest.approx((3, -4, 5), abs=1e-9)
-    assert proof.largest_jump((lead_in, circle, lead_out)) < 0.001
-    points = proof.dense_points(traced.moves[-3:], step=1.0) - (3, -4, 5)
+    assert cut_geometry.largest_jump((lead_in, circle, lead_out)) < 0.001
+    points = cut_geometry.dense_points(traced.moves[-3:], step=1.0) - (3, -4, 5)
     third = ({0, 1, 2} - set(AXES[plane])).pop()
     assert np.abs(points[:, third]).max() < 1e-9
     assert np.hypot(*points.T[list(AXES[plane])]).max() <= radius + 1e-6
@@ -111,13 +110,13 @@ def test_any_valid_block_cuts_its_circle(metric, plane, code, offset, room, sign
 
 
 @pytest.mark.parametrize("plane", AXES)
-@matrix.any_coordinates
+@mode_matrix.any_coordinates
 def test_every_combination_of_modes_makes_the_same_machine_path(inch, metric, coordinates, plane):
     def block(scale, incremental):
-        return f"{plane}\nG13 {matrix.words(scale, I=1.9, F=12.0)} D10\nG17"
+        return f"{plane}\nG13 {mode_matrix.words(scale, I=1.9, F=12.0)} D10\nG17"
 
-    case = matrix.Case(block, feed=12.0)
-    matrix.check_same_path(inch, metric, coordinates, case)
+    case = mode_matrix.Case(block, feed=12.0)
+    mode_matrix.check_same_path(inch, metric, coordinates, case)
 
 
 @pytest.mark.parametrize("motion", ["G0", "G1", "G2", "G3", "G80"])
@@ -152,7 +151,7 @@ REFUSED = [
 
 @pytest.mark.parametrize(("block", "message"), REFUSED)
 def test_a_bad_block_moves_nothing_and_changes_nothing(metric, block, message):
-    matrix.check_refused(metric, [FIRST, "G91 G0 X3 Z5 G18"], block, message)
+    mode_matrix.check_refused(metric, [FIRST, "G91 G0 X3 Z5 G18"], block, message)
 
 
 @pytest.mark.parametrize(
@@ -174,6 +173,6 @@ def test_a_mode_that_cannot_work_is_refused(metric, mode, message):
 
 
 @settings(max_examples=60, deadline=None)
-@given(block=matrix.blocks("G13", "IDQ"))
+@given(block=mode_matrix.blocks("G13", "IDQ"))
 def test_any_block_cuts_or_is_refused_in_words(metric, block):
-    matrix.check_cut_or_refused(metric, [FIRST, "G91 G0 X3 G19"], block, "G13")
+    mode_matrix.check_cut_or_refused(metric, [FIRST, "G91 G0 X3 G19"], block, "G13")

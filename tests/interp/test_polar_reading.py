@@ -3,9 +3,9 @@
 
 import pytest
 
-from g12.cli.trace import Tracer
-from lathe import FIRST, START, ends, feed_moves, lines, section, texts, tracer
-from machines import SIM
+from g12.tools.preview.tracer import Tracer
+from support.polar_programs import FIRST, START, ends, feed_moves, lines, section, texts, tracer
+from support.sim_machines import SIM
 
 
 @pytest.fixture(scope="module")
@@ -323,7 +323,7 @@ def test_a_section_in_a_sub_of_another_file(subs):
 
 def test_a_report_longer_than_a_line_is_cut(lathe):
     (said,) = texts(cut(lathe, "G1 X12", "(DEBUG," + 30 * "#5420 " + ")"))
-    assert said.startswith("12.0000 12.0000") and len(said) > 200
+    assert said.startswith("12.000000 12.000000") and len(said) > 200
 
 
 def test_messages_reports_and_comments(lathe):
@@ -458,7 +458,7 @@ def test_a_sub_whose_line_has_the_number_of_the_line_before_it(tmp_path):
     overrides = {"RS274NGC": {"SUBROUTINE_PATH": f"{tmp_path}:../../ngc:subs"}}
     with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
         program = section("(six)", "(seven)", "G1 X30 C9", "o<far> call", start="G0 X40 Z5 C0")
-        assert [move.line for move in feed_moves(lathe.trace_text(program))][0] == 8
+        assert feed_moves(lathe.trace_text(program))[0].line == 8
 
 
 def test_modes_saved_and_restored(lathe):

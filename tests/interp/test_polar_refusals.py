@@ -3,9 +3,9 @@
 
 import pytest
 
-from g12.cli.trace import Tracer
-from lathe import FIRST, feed_moves, section, tracer
-from machines import SIM
+from g12.tools.preview.tracer import Tracer
+from support.polar_programs import FIRST, feed_moves, section, tracer
+from support.sim_machines import SIM
 
 REFERENCE = "the reference point is not in the plane"
 ORIGIN = "the origin must stay in the spindle's centre"

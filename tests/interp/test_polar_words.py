@@ -5,9 +5,9 @@ import math
 
 import pytest
 
-from g12.cli.trace import Tracer
-from lathe import FIRST, ends, feed_moves, in_plane, section, texts, tracer
-from machines import SIM
+from g12.tools.preview.tracer import Tracer
+from support.polar_programs import FIRST, ends, feed_moves, in_plane, section, texts, tracer
+from support.sim_machines import SIM
 
 INCH = 25.4
 
@@ -272,7 +272,7 @@ SPY = """\
 import sys
 sys.path.insert(0, "{python}")
 import remap
-from g12.emission import PathControl
+from g12.host.section_output import PathControl
 within = PathControl.within = getattr(PathControl, "within", PathControl.inside)  # loaded twice
 def spied(self):
     within(self)

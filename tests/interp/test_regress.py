@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from g12.cli import main as command_line
-from g12.cli.recorder import hash_of
-from machines import PROGRAMS, ROOT, SIM
+from g12.tools.commands import main as command_line
+from g12.tools.regress.recorder import hash_of
+from support.sim_machines import PROGRAMS, ROOT, SIM
 
 INI = SIM / "mill_inch.ini"
 TABLE = SIM / "mill_inch.tbl"
@@ -575,7 +575,7 @@ from pathlib import Path
 
 import pytest
 
-from g12.cli.pytest_plugin import recorded_programs
+from g12.tools.regress.pytest_plugin import recorded_programs
 
 REGRESS = Path(__file__).with_name("regress")
 
@@ -592,7 +592,7 @@ def test_all(gcode_regression):
 
 def test_the_fixture_of_the_plugin(pocket):
     pocket.write("test_programs.py", TEST, pocket.folder)
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "g12.cli.pytest_plugin"]
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "g12.tools.regress.pytest_plugin"]
     options = {
         "cwd": pocket.folder,
         "env": {**os.environ, "PYTHONPATH": str(ROOT / "python")},
@@ -616,7 +616,7 @@ def test_the_fixture_of_the_plugin(pocket):
 
 # ---------------------------------------------------------------- the project's own recordings
 
-pytest_plugins = ["g12.cli.pytest_plugin"]
+pytest_plugins = ["g12.tools.regress.pytest_plugin"]
 OWN = sorted(path.parent.relative_to(PROGRAMS) for path in PROGRAMS.glob("*/regress/regress.json"))
 
 

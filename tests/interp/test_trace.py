@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from g12.cli.isolated import PYTHON
-from g12.cli.trace import TraceFailure, Tracer, trace_text
-from machines import ROOT
+from g12.tools.headless.namespaces import PYTHON
+from g12.tools.preview.tracer import TraceFailure, Tracer, trace_text
+from support.sim_machines import ROOT
 
 INI = """\
 [EMC]
@@ -298,7 +298,7 @@ def test_a_machine_whose_python_does_not_load_says_so(ini, tmp_path):
 
 def test_nothing_is_left_when_the_caller_is_killed(ini):
     code = (
-        "import os, sys; from g12.cli.trace import Tracer; tracer = Tracer(sys.argv[1]);"
+        "import os, sys; from g12.tools.preview.tracer import Tracer; tracer = Tracer(sys.argv[1]);"
         "print(tracer.folder, flush=True); os.kill(os.getpid(), 9)"
     )
     killed = subprocess.run(

@@ -5,8 +5,8 @@ import json
 
 import pytest
 
-from g12.cli.main import main
-from machines import PROGRAMS, SIM, copy_of_machines
+from g12.tools.commands.main import main
+from support.sim_machines import PROGRAMS, SIM, copy_of_machines
 
 MILL = str(SIM / "mill_mm_headless.ini")
 LATHE = str(SIM / "lathe_mm_headless.ini")

@@ -7,9 +7,9 @@ import shutil
 
 import pytest
 
-from g12.cli.ini import read_ini
-from g12.cli.proof import pocket_findings, pocket_notes, prove
-from machines import PROGRAMS, ROOT, SIM, copy_of_machines
+from g12.tools.machine.ini import read_ini
+from g12.tools.verify.proof import pocket_findings, pocket_notes, prove
+from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
 
 INCH = 25.4
 

@@ -8,14 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import matrix
-import proof
-from g12.cli.trace import Tracer
-from machines import PROGRAMS, ROOT, SIM
+from g12.tools.preview.tracer import Tracer
+from support import cut_geometry, mode_matrix
+from support.sim_machines import PROGRAMS, ROOT, SIM
 
 TOOLS = {1: 6.0, 3: -4.0, 10: 20.0}
 FIRST = "G21 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F300"
-REMAPS = {"RS274NGC": {"REMAP": matrix.remaps(ROOT / "configs/include/g12_yasnac.inc")}}
+REMAPS = {"RS274NGC": {"REMAP": mode_matrix.remaps(ROOT / "configs/include/g12_yasnac.inc")}}
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +25,7 @@ def metric():
 
 @pytest.fixture(scope="module")
 def inch():
-    tools = {number: diameter / matrix.INCH for number, diameter in TOOLS.items()}
+    tools = {number: diameter / mode_matrix.INCH for number, diameter in TOOLS.items()}
     with Tracer(SIM / "mill_inch.ini", overrides=REMAPS, tools=tools) as tracer:
         yield tracer
 
@@ -46,7 +45,7 @@ def cut(tracer, *blocks):
 
 
 def path(traced):
-    return proof.dense_points(proof.moving(traced.moves), step=1.0)[:, :2]
+    return cut_geometry.dense_points(cut_geometry.moving(traced.moves), step=1.0)[:, :2]
 
 
 def described(traced):
@@ -119,7 +118,7 @@ def test_golden_spiral(metric):
 
 def test_without_d_the_circle_is_not_compensated(metric):
     traced = cut(metric, "T10 M6", "G12 I60 D10", "G12 I50")
-    assert proof.radii(traced.moves) == pytest.approx([50, 50])
+    assert cut_geometry.radii(traced.moves) == pytest.approx([50, 50])
 
 
 # ---------------------------------------------------------------- any valid block
@@ -159,19 +158,19 @@ def circles(draw):
 @given(circle=circles())
 def test_any_valid_block_cuts_its_circle(metric, circle):
     traced = cut(metric, "G0 X7 Y-3 Z-2", circle["block"])
-    moves = proof.moving(traced.moves)[1:]
-    cutting = proof.cutting(moves)
+    moves = cut_geometry.moving(traced.moves)[1:]
+    cutting = cut_geometry.cutting(moves)
     assert {round(move.end[2], 9) for move in moves} == {-2}
     assert {move.turns for move in cutting} == {circle["turns"]}
-    assert proof.largest_jump(cutting) < 0.001
+    assert cut_geometry.largest_jump(cutting) < 0.001
     rapids = [tuple(np.round(move.end[:2], 6)) for move in moves if move.kind == "rapid"]
     approach = (round(7 + circle["approach"], 6), -3)
     assert rapids == ([approach, (7, -3)] if circle["approach"] else [])
     assert cutting[0].start[:2] == pytest.approx(approach, abs=1e-6)
     assert cutting[-1].end[:2] == pytest.approx(approach, abs=1e-6)
-    check_circles(proof.full_circles(cutting), circle)
+    check_circles(cut_geometry.full_circles(cutting), circle)
     check_spiral(cutting, circle)
-    points = proof.dense_points(cutting, step=1.0)
+    points = cut_geometry.dense_points(cutting, step=1.0)
     distance = np.hypot(points[:, 0] - 7, points[:, 1] + 3)
     assert distance.max() <= circle["radius"] + 1e-6
 
@@ -204,8 +203,8 @@ def check_spiral(cutting, circle):
 @pytest.mark.parametrize("words", ["I50 R40 D10", "I50 R30 K36 Q6 D10", "I-50 R-40 D10 L2"])
 def test_swept_area_is_what_a_bored_hole_leaves(metric, words):
     traced = cut(metric, f"G12 {words}")
-    swept = proof.swept(proof.cutting(traced.moves), 10.0)
-    finished, bored = proof.disc(0, 0, 50.0), proof.disc(0, 0, 32.0)
+    swept = cut_geometry.swept(cut_geometry.cutting(traced.moves), 10.0)
+    finished, bored = cut_geometry.disc(0, 0, 50.0), cut_geometry.disc(0, 0, 32.0)
     assert swept.difference(finished.buffer(0.001)).area == pytest.approx(0, abs=1e-6)
     assert finished.buffer(-0.001).difference(bored.union(swept)).area == pytest.approx(0, abs=1e-3)
 
@@ -220,7 +219,7 @@ def test_fast_moves_at_the_traverse_feed(traversing, mode):
     kinds = [(move.kind, round(move.feed, 9), move.feed_mode) for move in traced.moves]
     cutting = ("arc", 300, "G94") if "G94" in mode else ("arc", 0.2, "G95")
     assert kinds == [("feed", 1500, "G94"), *[cutting] * 3, ("feed", 1500, "G94")]
-    matrix.check_modes(traversing.trace_text(before), traced)
+    mode_matrix.check_modes(traversing.trace_text(before), traced)
 
 
 def test_the_traverse_feed_is_in_machine_units(traversing):
@@ -238,13 +237,15 @@ def test_without_r_nothing_moves_fast(traversing):
 
 
 def spiral_block(scale, incremental):
-    lengths = matrix.words(scale, I=1.9, R=0.7, K=1.1, Q=0.3, F=12.0)
+    lengths = mode_matrix.words(scale, I=1.9, R=0.7, K=1.1, Q=0.3, F=12.0)
     return f"G13 {lengths} D10 L2"
 
 
-@matrix.any_coordinates
+@mode_matrix.any_coordinates
 def test_every_combination_of_modes_makes_the_same_machine_path(inch, metric, coordinates):
-    matrix.check_same_path(inch, metric, coordinates, matrix.Case(spiral_block, feed=12.0))
+    mode_matrix.check_same_path(
+        inch, metric, coordinates, mode_matrix.Case(spiral_block, feed=12.0)
+    )
 
 
 @pytest.mark.parametrize("motion", ["G0", "G1", "G2", "G3", "G80"])
@@ -302,7 +303,7 @@ REFUSED = [
 
 @pytest.mark.parametrize(("block", "message"), REFUSED)
 def test_a_bad_block_moves_nothing_and_changes_nothing(metric, block, message):
-    matrix.check_refused(metric, [FIRST, "G91 G0 X3 Z5"], block, message)
+    mode_matrix.check_refused(metric, [FIRST, "G91 G0 X3 Z5"], block, message)
 
 
 @pytest.mark.parametrize(
@@ -326,6 +327,6 @@ def test_a_mode_that_cannot_work_is_refused(metric, mode, message):
 
 
 @settings(max_examples=100, deadline=None)
-@given(block=matrix.blocks("G13", "IRJKQLDX"))
+@given(block=mode_matrix.blocks("G13", "IRJKQLDX"))
 def test_any_block_cuts_or_is_refused_in_words(metric, block):
-    matrix.check_cut_or_refused(metric, [FIRST, "G91 G0 X3"], block, "G13")
+    mode_matrix.check_cut_or_refused(metric, [FIRST, "G91 G0 X3"], block, "G13")

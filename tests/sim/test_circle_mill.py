@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from shapely.geometry import MultiLineString, Point
 
-import proof
-from g12.cli.headless import Machine
-from g12.cli.trace import Tracer
-from machines import BRISK, SIM
+from g12.tools.headless.machine import Machine
+from g12.tools.preview.tracer import Tracer
+from support import cut_geometry
+from support.sim_machines import BRISK, SIM
 
 TOOLS = {1: 6.0, 2: 10.0}
 FIRST = "G21 G17 G40 G49 G54 G61 G80 G90 G91.1 G94 F8000"
@@ -47,16 +47,18 @@ def programmed(tracer, block):
     """Return the programmed path in XY and in the levels passed (shapely and mm)."""
     traced = tracer.trace_text([FIRST, "T1 M6", HOME, block])
     assert traced.error is None, traced.error
-    return MultiLineString([proof.polyline(move) for move in proof.moving(traced.moves)]), traced
+    return MultiLineString(
+        [cut_geometry.polyline(move) for move in cut_geometry.moving(traced.moves)]
+    ), traced
 
 
 def check_motion(samples, path, traced):
     points = np.column_stack([samples.axes["X"], samples.axes["Y"]])[samples.moving()]
     assert max(path.distance(Point(point)) for point in points[::3]) < DEVIATION
     height = samples.axes["Z"]
-    for level in proof.levels(traced.moves):
+    for level in cut_geometry.levels(traced.moves):
         assert np.abs(height - level).min() < 1e-4
-    assert height.min() == pytest.approx(min(proof.levels(traced.moves)), abs=1e-4)
+    assert height.min() == pytest.approx(min(cut_geometry.levels(traced.moves)), abs=1e-4)
     assert height[sideways_rapids(samples)].min() >= min(1, retracted(traced)) - 1e-4
 
 
@@ -67,7 +69,7 @@ def sideways_rapids(samples):
 
 def retracted(traced):
     """Return the height of the lowest rapid back to the centre: 2.54 above its level."""
-    *above, _ = proof.levels(traced.moves)
+    *above, _ = cut_geometry.levels(traced.moves)
     return min(above, default=1) + 2.54
 
 

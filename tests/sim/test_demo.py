@@ -5,10 +5,10 @@ import json
 
 import pytest
 
-from g12.cli import demo
-from g12.cli.headless import MachineError
-from g12.cli.main import main
-from machines import SIM
+from g12.tools.commands import demo
+from g12.tools.commands.main import main
+from g12.tools.headless.machine import MachineError
+from support.sim_machines import SIM
 
 POCKET = """\
 G21 G17 G40 G49 G54 G64 P0.01 G80 G90 G94 F2000

@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 
-import proof
-from g12.cli.headless import Machine
-from g12.cli.trace import Tracer
-from machines import BRISK, PROGRAMS, SIM
+from g12.tools.headless.machine import Machine
+from g12.tools.preview.tracer import Tracer
+from support import cut_geometry
+from support.sim_machines import BRISK, PROGRAMS, SIM
 
 MILLS = {
     "mill_yasnac_mm": ("yasnac/example.ngc", "G12 I50 R55 D10", "G12: R55 puts the tool centre"),
@@ -35,8 +35,8 @@ def test_the_sample_program_s_real_motion_is_the_traced_one(mill):
     assert traced.error is None
     run = machine.run_text(text)
     assert (run.error, run.messages) == (None, [])
-    cutting = proof.cutting(traced.moves)
-    programmed = proof.dense_points(cutting, step=0.1) + cutting[0].tool_offset[:3]
+    cutting = cut_geometry.cutting(traced.moves)
+    programmed = cut_geometry.dense_points(cutting, step=0.1) + cutting[0].tool_offset[:3]
     circles = run.samples.kind == 3
     real = np.column_stack([run.samples.axes[axis][circles] for axis in "XYZ"])[::10]
     distances = [np.linalg.norm(programmed - point, axis=1).min() for point in real]

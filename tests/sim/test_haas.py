@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from shapely.geometry import MultiLineString, Point
 
-import proof
-from g12.cli.headless import Machine
-from g12.cli.trace import Tracer
-from machines import BRISK, SIM
+from g12.tools.headless.machine import Machine
+from g12.tools.preview.tracer import Tracer
+from support import cut_geometry
+from support.sim_machines import BRISK, SIM
 
 TOOLS = {1: 6.0, 2: 10.0}
 FIRST = "G21 G17 G40 G49 G54 G61 G80 G90 G91.1 G94 F4000"
@@ -42,7 +42,9 @@ def programmed_path(tracer, *blocks):
     """Return the programmed path in XY (shapely) and its moves."""
     traced = tracer.trace_text([FIRST, "G0 X0 Y0 Z2", *blocks])
     assert traced.error is None, traced.error
-    return MultiLineString([proof.polyline(move) for move in proof.moving(traced.moves)]), traced
+    return MultiLineString(
+        [cut_geometry.polyline(move) for move in cut_geometry.moving(traced.moves)]
+    ), traced
 
 
 def largest_deviation(samples, path):
@@ -65,7 +67,7 @@ def test_auto_cuts_the_traced_path(machine, tracer):
     assert largest_deviation(run.samples, path) < DEVIATION
     assert longest_reach(run.samples) == pytest.approx(9, abs=DEVIATION)
     assert run.samples.axes["Z"].min() == pytest.approx(-1, abs=1e-6)
-    length = proof.path_length(proof.cutting(traced.moves))
+    length = cut_geometry.path_length(cut_geometry.cutting(traced.moves))
     feeding = np.isin(run.samples.kind, (2, 3))
     travelled = run.samples.velocity[feeding].sum() * 0.001
     assert travelled == pytest.approx(length, rel=0.02)

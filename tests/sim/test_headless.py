@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from g12.cli.headless import Machine, StartupError, Timeout, run
-from g12.cli.isolated import PYTHON, Isolated
-from g12.cli.trace import trace_text
-from machines import ROOT, SIM
+from g12.tools.headless.machine import Machine, StartupError, Timeout, run
+from g12.tools.headless.namespaces import PYTHON, Isolated
+from g12.tools.preview.tracer import trace_text
+from support.sim_machines import ROOT, SIM
 
 EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
 NOBODY = 65534
@@ -270,7 +270,8 @@ def test_close_ends_what_hangs():
 
 def test_nothing_is_left_when_the_runner_is_killed():
     code = (
-        "import os, sys; from g12.cli.headless import Machine; machine = Machine(sys.argv[1]);"
+        "import os, sys; from g12.tools.headless.machine import Machine;"
+        "machine = Machine(sys.argv[1]);"
         "print(machine.folder, flush=True); os.kill(os.getpid(), 9)"
     )
     killed = subprocess.run(

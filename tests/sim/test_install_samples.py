@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString, Point
 
-from configs import with_lines
-from g12.cli import check, install, uninstall
-from g12.cli.config_rules import PROBLEM
-from g12.cli.headless import Machine
-from g12.cli.ini_edit import IniText
+from g12.tools.commands import check, install, uninstall
+from g12.tools.headless.machine import Machine
+from g12.tools.install.ini_edit import IniText
+from g12.tools.install.rules import PROBLEM
+from support.small_configs import with_lines
 
 SAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs")
 NC_FILES = Path("/usr/share/linuxcnc/ncfiles")

@@ -7,10 +7,10 @@ import threading
 
 import pytest
 
-from g12.cli import isolated
-from g12.cli.headless import Machine, Timeout
-from g12.cli.isolated import obstacle
-from machines import SIM
+from g12.tools.headless import namespaces
+from g12.tools.headless.machine import Machine, Timeout
+from g12.tools.headless.namespaces import obstacle
+from support.sim_machines import SIM
 
 
 @pytest.fixture
@@ -39,13 +39,13 @@ def test_a_machine_that_is_only_slow_is_no_obstacle(monkeypatch):
     def late(*_):
         raise subprocess.TimeoutExpired("true", 60)
 
-    monkeypatch.setattr(isolated.Isolated, "wait", late)
+    monkeypatch.setattr(namespaces.Isolated, "wait", late)
     assert obstacle() is None
 
 
 def test_a_refusal_of_the_kernel_is_an_obstacle(monkeypatch):
-    monkeypatch.setattr(isolated.Isolated, "wait", lambda *_: 125)
-    monkeypatch.setattr(isolated.Isolated, "log", lambda *_: "no namespaces\n")
+    monkeypatch.setattr(namespaces.Isolated, "wait", lambda *_: 125)
+    monkeypatch.setattr(namespaces.Isolated, "log", lambda *_: "no namespaces\n")
     assert obstacle() == "no namespaces"
 
 

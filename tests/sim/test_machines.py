@@ -7,10 +7,10 @@ import time
 
 import pytest
 
-from g12.cli.headless import Machine, smoke
-from g12.cli.ini import read_ini
-from g12.cli.isolated import Isolated
-from machines import SIM
+from g12.tools.headless.machine import Machine, smoke
+from g12.tools.headless.namespaces import Isolated
+from g12.tools.machine.ini import read_ini
+from support.sim_machines import SIM
 
 INIS = sorted(SIM.glob("*.ini"))
 HEADLESS = [ini for ini in INIS if ini.stem.endswith("_headless")]

@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from drawings import INCHES, MILLIMETRES
-from g12.cli.headless import Machine
-from lathe import FEED, FIRST, Cut, section
-from machines import PROGRAMS, SIM
-from outline import deviation, distances, fitted_circle, fitted_line, lines
+from g12.tools.headless.machine import Machine
+from support.outline import deviation, distances, fitted_circle, fitted_line, lines
+from support.polar_drawings import INCHES, MILLIMETRES
+from support.polar_programs import FEED, FIRST, Cut, section
+from support.sim_machines import PROGRAMS, SIM
 
 INCH = 25.4
 TOLERANCE = {"mm": 0.005, "inch": 0.0002}  # the default of POLAR_TOLERANCE

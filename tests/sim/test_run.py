@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-from g12.cli import main
-from machines import ROOT, SIM
+from g12.tools.commands import main
+from support.sim_machines import ROOT, SIM
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,8 @@
 
 import time
 
-from g12.cli.headless import Machine
-from machines import SIM
+from g12.tools.headless.machine import Machine
+from support.sim_machines import SIM
 
 SECONDS = 10.0
 

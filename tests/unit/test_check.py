@@ -5,10 +5,11 @@ import json
 
 import pytest
 
-from configs import HAAS, LATHE, MILL, config_of, with_lines, write_config
-from g12.cli import check, features
-from g12.cli.config import python_error
-from g12.cli.config_rules import NOTE, PROBLEM, WARNING, Finding, findings_of, last_words
+from g12.tools.commands import check
+from g12.tools.install import features
+from g12.tools.install.config import python_error
+from g12.tools.install.rules import NOTE, PROBLEM, WARNING, Finding, findings_of, last_words
+from support.small_configs import HAAS, LATHE, MILL, config_of, with_lines, write_config
 
 HANDLERS = {name: "g12.remap" for f in features.FILES for name in features.handlers_of(f)}
 PYTHON = "[PYTHON]\nTOPLEVEL = toplevel.py\n"

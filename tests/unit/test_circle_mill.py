@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from found import BAD_MODES, INCH, MM
-from g12.circle_mill import (
+from g12.cycles.circle_mill import (
     CLOCKWISE,
     COUNTERCLOCKWISE,
     ENTRIES,
@@ -18,9 +17,10 @@ from g12.circle_mill import (
     plan_call,
     plan_code,
 )
-from g12.context import Tool
+from g12.cycles.context import Tool
+from g12.cycles.words import Words
 from g12.errors import Refusal
-from g12.words import Words
+from support.planner_context import BAD_MODES, INCH, MM
 
 PLACE = dict(X=1.0, Y=2.0)
 NEEDED = dict(**PLACE, Z=-0.5, R=1.5, I=0.1)

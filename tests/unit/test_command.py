@@ -8,9 +8,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from configs import MILL, TOOLS, write_config
-from g12.cli import command, main
-from machines import ROOT
+from g12.tools.commands import arguments, main
+from support.sim_machines import ROOT
+from support.small_configs import MILL, TOOLS, write_config
 
 PROGRAM = str(ROOT / "python" / "g12")
 COMMANDS = [name for name in main.COMMANDS if name != "demo"]
@@ -48,24 +48,24 @@ def test_help_is_plain_text_with_examples(name, capsys):
 @pytest.mark.parametrize(
     ("reader", "text", "says"),
     [
-        (command.number_above(0), "0", "'0' is not a number above 0"),
-        (command.number_above(0), "x", "'x' is not a number above 0"),
-        (command.number_above(0), "inf", "'inf' is not a number above 0"),
-        (command.number_from(0), "-1", "'-1' is not a number from 0"),
-        (command.number_from(0), "nan", "'nan' is not a number from 0"),
-        (command.count_from(1), "0", "'0' is not a whole number from 1"),
-        (command.count_from(1), "1.5", "'1.5' is not a whole number from 1"),
+        (arguments.number_above(0), "0", "'0' is not a number above 0"),
+        (arguments.number_above(0), "x", "'x' is not a number above 0"),
+        (arguments.number_above(0), "inf", "'inf' is not a number above 0"),
+        (arguments.number_from(0), "-1", "'-1' is not a number from 0"),
+        (arguments.number_from(0), "nan", "'nan' is not a number from 0"),
+        (arguments.count_from(1), "0", "'0' is not a whole number from 1"),
+        (arguments.count_from(1), "1.5", "'1.5' is not a whole number from 1"),
     ],
 )
 def test_numbers_of_the_command_line(reader, text, says):
-    with pytest.raises(command.argparse.ArgumentTypeError, match=f"^{says}$"):
+    with pytest.raises(arguments.argparse.ArgumentTypeError, match=f"^{says}$"):
         reader(text)
 
 
 def test_good_numbers_of_the_command_line():
-    assert command.number_above(0)("0.5") == 0.5
-    assert command.number_from(0)("0") == 0
-    assert command.count_from(1)("1") == 1
+    assert arguments.number_above(0)("0.5") == 0.5
+    assert arguments.number_from(0)("0") == 0
+    assert arguments.count_from(1)("1") == 1
 
 
 @pytest.fixture
@@ -98,22 +98,22 @@ def test_wrong_files_are_told_in_one_line(name, files, capsys):
 def test_tool_tables(tmp_path, text):
     path = tmp_path / "any.tbl"
     path.write_text(text)
-    assert command.tool_table(path) == path
+    assert arguments.tool_table(path) == path
 
 
 @pytest.mark.parametrize("text", [MILL, "G21\nT1 M6\nM2\n", "P1 D6\n"])
 def test_no_tool_tables(tmp_path, text):
     path = tmp_path / "any.tbl"
     path.write_text(text)
-    with pytest.raises(command.UsageError, match="not a tool table"):
-        command.tool_table(path)
+    with pytest.raises(arguments.UsageError, match="not a tool table"):
+        arguments.tool_table(path)
 
 
 def test_an_axis_that_the_machine_lacks_is_explained(files):
-    said = command.told("Bad character 'c' used", files.ini)
+    said = arguments.told("Bad character 'c' used", files.ini)
     assert said == "Bad character 'c' used: this INI's machine has axes X Y Z"
     for text in ("Bad character 'z' used", "Bad character 'q' used", "Unknown g code used"):
-        assert command.told(text, files.ini) == text
+        assert arguments.told(text, files.ini) == text
 
 
 def test_events_that_are_not_there(tmp_path, capsys):

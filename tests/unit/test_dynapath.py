@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.cli.ini import read_ini
-from g12.dynapath import program_from_events
 from g12.errors import Refusal
-from machines import PROGRAMS, ROOT, SIM
+from g12.tools.dynapath import program_from_events
+from g12.tools.machine.ini import read_ini
+from support.sim_machines import PROGRAMS, ROOT, SIM
 
 EXAMPLE = "N1800(4)G7X1.5Y2.Z-.5W.1O.5R1.5D0C2K.2J.3L.02P5F20V15$"
 COMMAND = [sys.executable, str(ROOT / "python" / "g12"), "dynapath"]

@@ -12,12 +12,14 @@ from hypothesis import HealthCheck, given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from configs import MILL, config_of, content_of, with_lines, write_config
-from g12.cli import command as command_line
-from g12.cli import features, install, package_copy, safe_write, uninstall
-from g12.cli.command import UsageError
-from g12.cli.ini_edit import BEGIN, END, IniError, IniText, read_lines, to_bytes
-from g12.cli.install_plan import Refused, make_plan
+from g12.tools.commands import arguments as command_line
+from g12.tools.commands import install, uninstall
+from g12.tools.commands.arguments import UsageError
+from g12.tools.install import features, package_copy
+from g12.tools.install.ini_edit import BEGIN, END, IniError, IniText, read_lines, to_bytes
+from g12.tools.install.plan import Refused, make_plan
+from g12.tools.machine import files
+from support.small_configs import MILL, config_of, content_of, with_lines, write_config
 
 MODULES = {f"python/{name}.py" for name in ("toplevel", "remap")}
 PACKAGE = {
@@ -457,7 +459,7 @@ def test_of_several_old_versions_none_is_left_behind(tmp_path, monkeypatch):
     def fails_on_the_ini(path):
         if path.suffix == ".ini":
             raise OSError("disk full")
-        return safe_write.back_up(path)
+        return files.back_up(path)
 
     monkeypatch.setattr(install, "back_up", fails_on_the_ini)
     with pytest.raises(OSError, match="disk full"):
@@ -688,7 +690,7 @@ def test_writing_keeps_mode_and_links(tmp_path):
     target.write_text("old\n")
     target.chmod(0o640)
     link.symlink_to(target)
-    safe_write.write(link, b"new\n")
+    files.write(link, b"new\n")
     assert link.is_symlink()
     assert target.read_text() == "new\n"
     assert stat.S_IMODE(target.stat().st_mode) == 0o640
@@ -709,7 +711,7 @@ def test_a_write_that_fails_leaves_every_file_as_it_was(tmp_path, monkeypatch):
 
     monkeypatch.setattr(os, "replace", fails_on_second)
     with pytest.raises(OSError, match="disk full"):
-        safe_write.write_all({first: b"new\n", second: b"new\n"})
+        files.write_all({first: b"new\n", second: b"new\n"})
     assert content_of(tmp_path) == before
 
 
@@ -725,7 +727,7 @@ def test_a_protected_file_stops_everything(tmp_path, monkeypatch):
         put_in(ini)
     assert content_of(tmp_path) == before
     with pytest.raises(OSError):
-        safe_write.require_writable([tmp_path])
+        files.require_writable([tmp_path])
 
 
 def test_a_failed_installation_leaves_no_old_versions_behind(tmp_path, monkeypatch):
@@ -745,11 +747,11 @@ def test_a_failed_installation_leaves_no_old_versions_behind(tmp_path, monkeypat
 def test_old_versions_are_never_overwritten(tmp_path):
     path = tmp_path / "mill.ini"
     path.write_text("one\n")
-    assert safe_write.back_up(path).name == "mill.ini.before-g12"
-    assert safe_write.back_up(path).name == "mill.ini.before-g12"
+    assert files.back_up(path).name == "mill.ini.before-g12"
+    assert files.back_up(path).name == "mill.ini.before-g12"
     path.write_text("two\n")
-    assert safe_write.back_up(path).name == "mill.ini.before-g12.2"
-    assert safe_write.drop_backup(path) == [tmp_path / "mill.ini.before-g12"]
+    assert files.back_up(path).name == "mill.ini.before-g12.2"
+    assert files.drop_backup(path) == [tmp_path / "mill.ini.before-g12"]
 
 
 @given(st.binary(max_size=200))

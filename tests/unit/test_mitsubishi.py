@@ -3,10 +3,10 @@
 
 import pytest
 
-from found import BAD_MODES, MM
+from g12.cycles.mitsubishi import Circle, plan_circle
+from g12.cycles.words import Words
 from g12.errors import Refusal
-from g12.mitsubishi import Circle, plan_circle
-from g12.words import Words
+from support.planner_context import BAD_MODES, MM
 
 STANDING = MM._replace(x=1.0, y=2.0, z=3.0)
 

@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from g12.cli.headless import Samples
-from g12.cli.motion import duration, follow, speed, track, worst_of
-from g12.cli.pace import pace_of
-from g12.cli.part import Part
-from handmade import HOME, LIMITS, Hand, samples_of
+from g12.tools.headless.machine import Samples
+from g12.tools.path.follow import duration, follow, speed, track, worst_of
+from g12.tools.path.part import Part
+from g12.tools.path.slowest import pace_of
+from support.made_moves import HOME, LIMITS, Hand, samples_of
 
 MILL, FACE = Part(turning=False), Part(turning=True)
 

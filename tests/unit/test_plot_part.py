@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.cli import part
-from g12.cli.part import Part
-from handmade import Hand
+from g12.tools.path import part
+from g12.tools.path.part import Part
+from support.made_moves import Hand
 
 MILL, FACE = Part(turning=False), Part(turning=True)
 

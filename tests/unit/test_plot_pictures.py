@@ -10,17 +10,17 @@ import pytest
 from matplotlib.figure import Figure
 from shapely.geometry import Point
 
-from g12.cli import pictures, plan_view
-from g12.cli.deviation_picture import most_telling, told
-from g12.cli.face_picture import programmed_history
-from g12.cli.ini import Ini
-from g12.cli.mill_picture import Layout, removed_at
-from g12.cli.motion import follow, worst_of
-from g12.cli.plot import draw
-from g12.cli.rapids import Collision
-from g12.cli.scene import Scene, clock, heading, scene_of
-from g12.cli.units import MM, UNITS, plain
-from handmade import Hand, samples_of
+from g12.tools.commands.plot import draw
+from g12.tools.machine.ini import Ini
+from g12.tools.path.follow import follow, worst_of
+from g12.tools.plot import plan_view, style
+from g12.tools.plot.deviation import most_telling, told
+from g12.tools.plot.face import programmed_history
+from g12.tools.plot.mill import Layout, removed_at
+from g12.tools.plot.scene import Scene, clock, heading, scene_of
+from g12.tools.units import MM, UNITS, plain
+from g12.tools.verify.rapids import Collision
+from support.made_moves import Hand, samples_of
 
 MILL = Ini(Path("mill.ini"), ("[TRAJ]", "COORDINATES = X Y Z"))
 LATHE = Ini(Path("lathe.ini"), ("[TRAJ]", "COORDINATES = XZC", "[AXIS_C]", "MAX_VELOCITY = 360"))
@@ -98,7 +98,7 @@ def test_many_moves_at_one_depth_are_one_level():
     hand = Hand().rapid(x=50).pocket([4, 8, 12, 16, 20, 24], depth=-2.5)
     (level,) = plan_view.levels_of(scene(hand))
     assert level.z == pytest.approx(-2.5)
-    assert level.shade == pictures.shades(1)[0]
+    assert level.shade == style.shades(1)[0]
 
 
 def test_drilling_sweeps_holes():
@@ -231,10 +231,10 @@ def test_the_history_of_c_obeys_its_limit():
 
 
 def test_holes_in_an_area_stay_holes():
-    outline = pictures.outline_of(Point(0, 0).buffer(10).difference(Point(0, 0).buffer(5)))
+    outline = style.outline_of(Point(0, 0).buffer(10).difference(Point(0, 0).buffer(5)))
     assert outline.contains_point((7, 0))
     assert len(outline.to_polygons()) == 2
-    assert pictures.outline_of(Point(0, 0).buffer(0)) is None
+    assert style.outline_of(Point(0, 0).buffer(0)) is None
 
 
 # ---------------------------------------------------------------- layout
@@ -322,31 +322,31 @@ SCENES = {
 @pytest.mark.parametrize("name", SCENES)
 def test_every_kind_of_picture_is_drawn(name, tmp_path):
     path = tmp_path / "picture.png"
-    pictures.save(draw(SCENES[name]()), path)
+    style.save(draw(SCENES[name]()), path)
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(("suffix", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_formats_are_told_by_the_suffix(suffix, start, tmp_path):
     path = tmp_path / f"picture.{suffix}"
-    pictures.save(draw(scene(pocket())), path)
+    style.save(draw(scene(pocket())), path)
     assert path.read_bytes().startswith(start)
 
 
 def test_an_svg_is_the_same_file_every_time(tmp_path):
     one, other = tmp_path / "one.svg", tmp_path / "other.SVG"
     for path in (one, other):
-        pictures.save(draw(scene(pocket())), path)
+        style.save(draw(scene(pocket())), path)
     assert ET.parse(one).getroot().tag.endswith("svg")
     assert one.read_bytes() == other.read_bytes()
 
 
 @pytest.mark.parametrize("name", ["picture", "picture.bmp", "picture.jpeg"])
 def test_other_suffixes_are_refused_by_name(name, tmp_path):
-    with pytest.raises(pictures.PictureError, match=r"\.png, \.svg, \.pdf"):
-        pictures.check_format(tmp_path / name)
+    with pytest.raises(style.PictureError, match=r"\.png, \.svg, \.pdf"):
+        style.check_format(tmp_path / name)
 
 
 def test_a_folder_that_is_not_there_is_refused(tmp_path):
-    with pytest.raises(pictures.PictureError, match="no such directory"):
-        pictures.check_format(tmp_path / "nowhere" / "picture.png")
+    with pytest.raises(style.PictureError, match="no such directory"):
+        style.check_format(tmp_path / "nowhere" / "picture.png")

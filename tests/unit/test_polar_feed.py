@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from g12.polar.contour import Line
+from g12.flat.contour import Line
 from g12.polar.feed import Position, pieces_with_feed
 from g12.polar.pieces import Split
 

@@ -10,9 +10,9 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from g12.errors import Refusal
-from g12.polar import Run, Settings, plan, resume
-from g12.polar.contour import Contour
-from plane import (
+from g12.flat.contour import Contour
+from g12.polar.plan import Run, Settings, plan, resume
+from support.plane import (
     SAGITTA,
     Round,
     Straight,

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.cli.align import pairs
-from g12.cli.difference import differences, lines_of
-from g12.cli.edits import Tolerance
-from g12.cli.part import Part
-from g12.cli.trace import Error, Move
-from g12.cli.trace_text import Note, Recording
+from g12.tools.path.part import Part
+from g12.tools.preview.tracer import Error, Move
+from g12.tools.regress.alignment import pairs
+from g12.tools.regress.differences import differences, lines_of
+from g12.tools.regress.edits import Tolerance
+from g12.tools.regress.recording_text import Note, Recording
 
 STILL = (0.0,) * 9
 FACTS = {"program": "a.ngc sha256:1", "machine": "m", "linuxcnc": "2.9.4", "units": "mm"}

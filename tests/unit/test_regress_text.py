@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.cli.trace import Error, Move
-from g12.cli.trace_text import (
+from g12.tools.preview.tracer import Error, Move
+from g12.tools.regress.recording_text import (
     Note,
     Recording,
     TraceTextError,

@@ -3,7 +3,7 @@
 
 import pytest
 
-from g12.cli.ini import IniError, read_ini
+from g12.tools.machine.ini import IniError, read_ini
 
 
 @pytest.fixture

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.cli.measure_pocket import measure_pocket
-from g12.cli.motion import follow, track
-from g12.cli.part import Part
-from g12.cli.programmed import Feeds, Target
-from g12.cli.proof import pocket_findings, pocket_notes
-from g12.cli.units import UNITS
-from handmade import LIMITS, Hand, samples_of
+from g12.tools.path.follow import follow, track
+from g12.tools.path.part import Part
+from g12.tools.units import UNITS
+from g12.tools.verify.pocket import measure_pocket
+from g12.tools.verify.proof import pocket_findings, pocket_notes
+from g12.tools.verify.wanted_circle import Feeds, Target
+from support.made_moves import LIMITS, Hand, samples_of
 
 TOLERANCE = 0.005
 MILL = Part(turning=False)

@@ -4,12 +4,12 @@
 import numpy as np
 import pytest
 
-from g12.cli.blocks import Block
-from g12.cli.motion import follow, track
-from g12.cli.part import Part
-from g12.cli.programmed import Target
-from g12.cli.rapids import collisions
-from handmade import LIMITS, Hand, samples_of
+from g12.tools.path.follow import follow, track
+from g12.tools.path.part import Part
+from g12.tools.preview.executed_blocks import Block
+from g12.tools.verify.rapids import collisions
+from g12.tools.verify.wanted_circle import Target
+from support.made_moves import LIMITS, Hand, samples_of
 
 MILL = Part(turning=False)
 DIAMETERS = {1: 6.0}

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.cli.contour_words import Element, Section
-from g12.cli.measure_section import measure_section
-from g12.cli.motion import follow, track
-from g12.cli.part import Part
-from g12.cli.proof import section_findings, section_notes
-from g12.cli.shape import Shape
-from handmade import LIMITS, Hand, samples_of
+from g12.tools.path.follow import follow, track
+from g12.tools.path.part import Part
+from g12.tools.verify.contour_distance import Shape
+from g12.tools.verify.proof import section_findings, section_notes
+from g12.tools.verify.section import measure_section
+from g12.tools.verify.wanted_contour import Element, Section
+from support.made_moves import LIMITS, Hand, samples_of
 
 FACE = Part(turning=True)
 TOLERANCE = 0.006

@@ -8,21 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from g12.cli import contour_words, programmed
-from g12.cli.blocks import (
-    STATE,
-    TAG,
-    Block,
-    after,
-    before,
-    blocks_in,
-    read_line,
-)
-from g12.cli.contour_words import Pen
-from g12.cli.ini import Ini
-from g12.cli.programmed import Codes, Reader
-from g12.cli.trace import Event
-from handmade import Hand
+from g12.tools.machine.ini import Ini
+from g12.tools.preview.executed_blocks import STATE, TAG, Block, after, before, blocks_in, read_line
+from g12.tools.preview.tracer import Event
+from g12.tools.verify import wanted_circle, wanted_contour
+from g12.tools.verify.wanted_circle import Codes, Reader
+from g12.tools.verify.wanted_contour import Pen
+from support.made_moves import Hand
 
 REMAPS = (
     "[RS274NGC]",
@@ -242,16 +234,16 @@ def test_the_feed_is_the_blocks_or_the_one_in_force(line, state, feed):
     ],
 )
 def test_the_event_pecks_from_its_first_plane(event, levels):
-    assert programmed.levels_of(event, 0.1, True) == pytest.approx(levels)
+    assert wanted_circle.levels_of(event, 0.1, True) == pytest.approx(levels)
     event["Z"] -= 0.1
-    assert programmed.levels_of(event, 0.1, False) == pytest.approx(levels)
+    assert wanted_circle.levels_of(event, 0.1, False) == pytest.approx(levels)
 
 
 def test_the_event_has_feeds_of_its_own():
-    every = programmed.feeds_of({"F": 8.0, "P": 1.0, "V": 4.0, "L": 0.3}, 6.0)
+    every = wanted_circle.feeds_of({"F": 8.0, "P": 1.0, "V": 4.0, "L": 0.3}, 6.0)
     assert every == (1, 8, 8, 4)
-    assert programmed.feeds_of({"L": -0.3}, 6.0) == (6, 6, 6, 6)
-    assert programmed.feeds_of({"V": 4.0}, 6.0) == (6, 6, 6, None)
+    assert wanted_circle.feeds_of({"L": -0.3}, 6.0) == (6, 6, 6, 6)
+    assert wanted_circle.feeds_of({"V": 4.0}, 6.0) == (6, 6, 6, None)
 
 
 @pytest.mark.parametrize(
@@ -259,7 +251,7 @@ def test_the_event_has_feeds_of_its_own():
     [(0, 0, 0), (0, 1, 1), (0, 2, -1), (1, 1, -1), (1, 2, 1), (2, 2, -1), (3, 1, -1)],
 )
 def test_the_event_puts_the_cutter_where_the_manual_says(direction, compensation, side):
-    assert programmed.side_of(direction, compensation) == side
+    assert wanted_circle.side_of(direction, compensation) == side
 
 
 # ---------------------------------------------------------------- contours
@@ -327,7 +319,7 @@ def test_left_is_left():
 def test_what_cannot_be_followed_is_a_doubt(line, why):
     lines = ["G12.1", "G1 C5", line, "G13.1"]
     texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
-    assert why in contour_words.doubts_of(texts, CODES, lines)[1]
+    assert why in wanted_contour.doubts_of(texts, CODES, lines)[1]
 
 
 def test_motion_is_taken_out_of_the_copy_and_control_stays():
@@ -342,6 +334,6 @@ def test_motion_is_taken_out_of_the_copy_and_control_stays():
         "G0 X9",
     ]
     texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
-    flat = [line for way in contour_words.flattened(texts, CODES, lines) for line in way]
+    flat = [line for way in wanted_contour.flattened(texts, CODES, lines) for line in way]
     kept = [line for line in flat if "DEBUG" not in line and "verify" not in line]
     assert kept == ["G0 X5", "#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile", "G0 X9"]

@@ -5,8 +5,9 @@ import math
 
 import pytest
 
+from g12.cycles.words import Words
 from g12.errors import Refusal
-from g12.words import LARGEST, Words
+from g12.lengths import LARGEST
 
 
 def words(**values):

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from found import BAD_MODES, MM
-from g12.context import Tool
+from g12.cycles.context import Tool
+from g12.cycles.words import Words
+from g12.cycles.yasnac import plan_circle
 from g12.errors import Refusal
-from g12.words import Words
-from g12.yasnac import plan_circle
+from support.planner_context import BAD_MODES, MM
 
 
 def plan(found=MM, **values):

@@ -24,7 +24,7 @@ from __future__ import annotations
 from math import atan, atan2, ceil, copysign, cos, floor, hypot, pi, sin, sqrt
 from typing import NamedTuple
 
-from g12.polar.contour import Arc, Line, arc_radius
+from g12.flat.contour import Arc, Line, arc_radius
 from g12.polar.spacing import BULGE, WHOLE_BULGE, Density, Stretch, spaced
 
 RADIAL = 1e-9  # program units: a line that close to the pole is a radius

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from math import asin, hypot, sqrt
 
-from g12.polar.contour import (
+from g12.flat.contour import (
     Arc,
     Contour,
     Line,
@@ -20,7 +20,7 @@ from g12.polar.contour import (
     path_length,
     sweep_between,
 )
-from g12.polar.crossing import height_at, part_of, place_at
+from g12.flat.intersect import height_at, part_of, place_at
 
 POLE = (0.0, 0.0)
 FLAT_SHARE = 0.2  # of the reach: how far the radii that replace an arc may be from it

@@ -1,0 +1,416 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The circle mill event: entries and modes in, one checked perimeter or pocket out.
+
+Source: Dynapath programming manual, section 33 "Circle Mill Event". Two front ends, one plan:
+the codes (G12.2 perimeter, G13.2 pocket) and ``o<circle_mill> call`` with the control's own
+fifteen entries. The comments here use the control's letters; `Spelling` has those of the codes.
+
+The motions of `ngc/g12_circle_mill.ngc`:
+
+1. rapid up to W if the tool is below it, rapid in XY to the plunge point, rapid to W
+2. feed at P to the level's depth: K below the last one, the last rough level at Z, or L above Z
+   if the bottom is finished as well
+3. perimeter: one circle at F. Pocket: feed in -Y by the roughing width, circle at F, and so on
+   outward
+4. for each further level: a pocket retracts 0.1 in, not above W, and rapids back to the centre
+   first; a perimeter plunges on where it stands
+5. L with bottom finish: one more level, at Z
+6. L: half circle of diameter L onto the finished side, circle, half circle off it, at V
+7. rapid to O, rapid in XY to where the event started
+
+The plunge point is the centre of a pocket, the -Y point of a perimeter.
+
+Rules, in the order of the checks: F above 0; G17, no G93, no G41/G42; X, Y, Z, R, C required, R
+above 0; D from 0 to 3 and C from 0 to 2, in a pocket the pairs that put the tool inside; no L
+with C0; W known from this block or an earlier one, O not below W; K, J, L, P, V above 0, J in
+pockets only; every word known; a tool with a diameter in the spindle; room for it inside; the
+deepest rough level below W.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from g12.cycles.common import (
+    ROUNDING_MM,
+    SMALLEST_RING_MM,
+    check_count,
+    check_modes,
+    coordinate,
+    steps_between,
+)
+from g12.cycles.context import Context, Tool
+from g12.cycles.words import Words
+from g12.errors import number
+
+ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order
+LEFT_OUT = -9999.0
+PERIMETER_CYCLE, POCKET_CYCLE = 0, 7  # the control's G0 and G7
+NARROWER_MM = 0.254  # the default roughing width is the tool diameter less this
+RETRACT_MM = 2.54
+CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
+ROUGH_FINISH = (  # by D
+    (CLOCKWISE, CLOCKWISE),
+    (COUNTERCLOCKWISE, COUNTERCLOCKWISE),
+    (CLOCKWISE, COUNTERCLOCKWISE),
+    (COUNTERCLOCKWISE, CLOCKWISE),
+)
+INSIDE, CENTRE, OUTSIDE = -1, 0, 1
+SIDES = {  # by rough direction, then C: the tool centre, left, right of the profile
+    CLOCKWISE: (CENTRE, OUTSIDE, INSIDE),
+    COUNTERCLOCKWISE: (CENTRE, INSIDE, OUTSIDE),
+}
+
+
+class Spelling(NamedTuple):
+    """The letters of the entries that the two front ends write differently."""
+
+    first_plane: str
+    second_plane: str
+    side: str
+    finish: str
+    known: str
+
+
+CODE = Spelling("I", "E", "H", "Q", "X Y Z I E R D H K J Q L P F")
+CALL = Spelling("W", "O", "C", "L", "G X Y Z W O R D C K J L P F V")
+
+
+class Block(NamedTuple):
+    """A block as its front end read it, entries that both share still among the words.
+
+    ``plane`` is the first reference plane last commanded (None: none was), ``finish`` the
+    finish dimension L (0: no finish), ``bottom`` whether it is for the bottom as well.
+    """
+
+    words: Words
+    spelling: Spelling
+    context: Context
+    plane: float | None
+    pocket: bool
+    finish: float
+    bottom: bool
+    finish_feed: float
+
+    def refuse(self, rule: str):
+        """Return the refusal of this block for breaking ``rule`` (the caller raises it)."""
+        return self.words.refuse(rule)
+
+
+class Circle(NamedTuple):
+    """The circle as programmed, and on which side of it the tool's centre goes round."""
+
+    x: float
+    y: float
+    radius: float
+    side: int
+    rough_arc: int
+    finish_arc: int
+
+
+class Place(NamedTuple):
+    """Where the event goes in XY, its reference planes; ``below``: the tool starts below W."""
+
+    x: float
+    y: float
+    start_x: float
+    start_y: float
+    first_plane: float
+    second_plane: float
+    below: bool
+
+
+class Roughing(NamedTuple):
+    """The circles of one level, radii of the tool centre; a perimeter is one ring.
+
+    ``plunge_radius`` is the distance of the plunge point from the centre, in -Y.
+    """
+
+    pocket: bool
+    plunge_radius: float
+    rings: int
+    roughing_width: float
+    rough_radius: float
+    rough_arc: int
+
+
+class Depths(NamedTuple):
+    """The levels: ``pecks`` of them above the last rough one, ``z`` the first one's depth."""
+
+    levels: int
+    pecks: int
+    peck: float
+    z: float
+    rough_z: float
+    final_z: float
+    retract: float
+
+
+class SideFinish(NamedTuple):
+    """The pass along the side, ``side_finish`` False for none, and its tangent entry."""
+
+    side_finish: bool
+    finish_radius: float
+    finish_arc: int
+    entry_arc: int
+
+
+class Feeds(NamedTuple):
+    """Feeds per minute or revolution."""
+
+    plunge_feed: float
+    feed: float
+    finish_feed: float
+
+
+class Event(NamedTuple):
+    """An event that is fit to cut. Lengths and feeds are in program units."""
+
+    place: Place
+    roughing: Roughing
+    depths: Depths
+    side_finish: SideFinish
+    feeds: Feeds
+    message: str | None  # for the operator, never a refusal
+
+    def locals(self) -> dict[str, float]:
+        """Return the named locals of `ngc/g12_circle_mill.ngc`."""
+        parts = (self.place, self.roughing, self.depths, self.side_finish, self.feeds)
+        return {name: value for part in parts for name, value in part._asdict().items()}
+
+
+def plan_code(words: Words, context: Context, plane: float | None, pocket: bool) -> Event:
+    """Return the event of a code block (G12.2, or G13.2: ``pocket``), or raise `Refusal`.
+
+    ``plane`` is the first reference plane last commanded, None if there is none.
+    """
+    check_modes(words, context)
+    finish, bottom = finish_of_code(words)
+    return plan_event(
+        Block(words, CODE, context, plane, pocket, finish, bottom, finish_feed=context.feed)
+    )
+
+
+def plan_call(words: Words, context: Context, plane: float | None) -> Event:
+    """Return the event of one ``o<circle_mill> call``, or raise `Refusal`."""
+    finish_feed = finish_feed_of_call(words)
+    context = context._replace(feed=words.take_positive("F") or context.feed)
+    check_modes(words, context)
+    cycle = words.take("G") or PERIMETER_CYCLE
+    if cycle not in (PERIMETER_CYCLE, POCKET_CYCLE):
+        raise words.refuse(f"G{number(cycle)} must be 0 (perimeter) or 7 (pocket)")
+    pocket = cycle == POCKET_CYCLE
+    finish, bottom = finish_of_call(words)
+    feed = finish_feed or context.feed
+    return plan_event(Block(words, CALL, context, plane, pocket, finish, bottom, finish_feed=feed))
+
+
+def entries_of_call(values: list[float]) -> dict[str, float]:
+    """Return a call's entries by letter, without those that are left out."""
+    return {letter: value for letter, value in zip(ENTRIES, values) if value != LEFT_OUT}
+
+
+def finish_feed_of_call(words: Words) -> float | None:
+    """Return V, the last entry: LinuxCNC makes it 0 if the call is too short."""
+    feed = words.take("V")
+    if feed is not None and feed <= 0:
+        raise words.refuse(
+            f"V{number(feed)} must be greater than 0 (a call has {len(ENTRIES)} entries,"
+            f" {number(LEFT_OUT)} leaves one out)"
+        )
+    return feed
+
+
+def finish_of_code(words: Words) -> tuple[float, bool]:
+    """Return finish dimension and bottom finish of the words Q and L."""
+    if "L" in words and "Q" not in words:
+        raise words.refuse("L needs Q as well: the finish dimension")
+    finish = words.take_positive("Q") or 0.0
+    bottom = words.take_whole("L", least=0, most=1, default=1)
+    return finish, finish > 0 and bottom == 1
+
+
+def finish_of_call(words: Words) -> tuple[float, bool]:
+    """Return finish dimension and bottom finish of the entry L, below zero: incremental."""
+    finish = words.take("L")
+    if finish == 0:
+        raise words.refuse(f"L0 must not be 0; {number(LEFT_OUT)} leaves it out")
+    return abs(finish or 0.0), (finish or 0.0) > 0
+
+
+def plan_event(block: Block) -> Event:
+    """Return the event of either front end's block."""
+    words, context = block.words, block.context
+    circle = circle_of(block)
+    first_plane, second_plane = planes_of(block)
+    depth = words.require("Z", "the final depth")
+    peck = words.take_positive("K")
+    width = words.take_positive("J")
+    plunge_feed = words.take_positive("P") or context.feed
+    words.finish(block.spelling.known)
+    tool = loaded_tool(block)
+    roughing = roughing_of(block, circle, tool, width)
+    depths = depths_of(block, depth, first_plane, peck)
+    check_count(words, roughing.rings * depths.levels, "J and K make")
+    below = context.z < first_plane - context.length(ROUNDING_MM)
+    return Event(
+        Place(circle.x, circle.y, context.x, context.y, first_plane, second_plane, below),
+        roughing,
+        depths,
+        side_finish_of(block, circle, tool),
+        Feeds(plunge_feed, context.feed, block.finish_feed),
+        left_material(block, roughing, tool),
+    )
+
+
+def circle_of(block: Block) -> Circle:
+    """Return centre, radius, side and directions: X, Y, R, D and C."""
+    words, letter = block.words, block.spelling.side
+    x = words.require("X", "the circle's centre")
+    y = words.require("Y", "the circle's centre")
+    radius = words.require_positive("R", "the circle's radius")
+    direction = words.take_whole("D", least=0, most=3, default=0)
+    if letter not in words:
+        words.require(letter, "0 tool centre on the circle, 1 left, 2 right of it")
+    compensation = words.take_whole(letter, least=0, most=2)
+    rough_arc, finish_arc = ROUGH_FINISH[direction]
+    side = SIDES[rough_arc][compensation]
+    if block.pocket and side != INSIDE:
+        raise block.refuse(
+            f"D{direction} with {letter}{compensation} does not put the tool inside the pocket:"
+            f" D0 and D2 need {letter}2, D1 and D3 need {letter}1"
+        )
+    if side == CENTRE and block.finish:
+        raise block.refuse(
+            f"{block.spelling.finish}{number(block.finish)}: there is no finish pass"
+            f" with the tool centre on the circle ({letter}0)"
+        )
+    context = block.context
+    x, y = coordinate(x, context.x, context), coordinate(y, context.y, context)
+    return Circle(x, y, radius, side, rough_arc, finish_arc)
+
+
+def planes_of(block: Block) -> tuple[float, float]:
+    """Return the reference planes W, modal, and O, which is W unless the block has it."""
+    words, spelling = block.words, block.spelling
+    first, second = words.take(spelling.first_plane), words.take(spelling.second_plane)
+    if first is None:
+        first = block.plane
+    if first is None:
+        raise block.refuse(
+            f"{spelling.first_plane} is missing: the first reference plane,"
+            " which no earlier event has commanded"
+        )
+    if second is None:
+        second = first
+    if second < first - block.context.length(ROUNDING_MM):
+        raise block.refuse(
+            f"{spelling.second_plane}{number(second)} must not be below the first reference"
+            f" plane {spelling.first_plane}{number(first)}"
+        )
+    return first, second
+
+
+def loaded_tool(block: Block) -> Tool:
+    """Return the tool in the spindle, which must have a diameter."""
+    tool = block.context.spindle_tool
+    if tool is None:
+        raise block.refuse("no tool is loaded: its diameter sets the path")
+    if tool.radius <= 0:
+        raise block.refuse(
+            f"T{tool.number} in the spindle needs a diameter above 0 in the tool table,"
+            f" not {number(2 * tool.radius)}"
+        )
+    return tool
+
+
+def roughing_of(block: Block, circle: Circle, tool: Tool, width: float | None) -> Roughing:
+    """Return the circles of one level."""
+    radius = circle.radius + circle.side * (tool.radius + block.finish)
+    check_room(block, circle, tool, radius)
+    if not block.pocket:
+        if width is not None:
+            raise block.refuse(f"J{number(width)} is the roughing width of a pocket")
+        return Roughing(False, radius, 1, 0.0, radius, circle.rough_arc)
+    rings = rings_of(block, radius, tool, width)
+    return Roughing(True, 0.0, rings, radius / rings, radius, circle.rough_arc)
+
+
+def check_room(block: Block, circle: Circle, tool: Tool, radius: float) -> None:
+    """Refuse a circle too small for its tool and finish: ``radius`` is the tool centre's."""
+    smallest = block.context.length(SMALLEST_RING_MM)
+    if radius >= smallest:
+        return
+    if circle.side == CENTRE:
+        raise block.refuse(f"R{number(circle.radius)} must be at least {number(smallest)}")
+    finish = f" + {block.spelling.finish}{number(block.finish)}" if block.finish else ""
+    raise block.refuse(
+        f"R{number(circle.radius)} must be greater than the tool radius"
+        f" {number(tool.radius)} (T{tool.number}){finish}"
+    )
+
+
+def rings_of(block: Block, outermost: float, tool: Tool, width: float | None) -> int:
+    """Return how many equal steps outward, none wider than ``width``, lead to the last ring."""
+    length = block.context.length
+    widest = 2 * tool.radius - length(NARROWER_MM) if width is None else width
+    least = length(SMALLEST_RING_MM)
+    if widest < least:
+        raise block.refuse(
+            f"J is missing: its default, the tool diameter {number(2 * tool.radius)} less"
+            f" {number(length(NARROWER_MM))}, is too small"
+            if width is None
+            else f"J{number(width)} must be at least {number(least)}"
+        )
+    return max(1, steps_between(0.0, outermost, widest, length(ROUNDING_MM)))
+
+
+def depths_of(block: Block, depth: float, first_plane: float, peck: float | None) -> Depths:
+    """Return the levels from W down to Z; refuse a Z that is not below W."""
+    context = block.context
+    final = first_plane + depth if context.incremental else depth
+    rough = final + block.finish if block.bottom else final
+    way = first_plane - rough
+    if way <= context.length(ROUNDING_MM):
+        finish = (
+            f" by more than {block.spelling.finish}{number(block.finish)}" if block.bottom else ""
+        )
+        raise block.refuse(
+            f"Z{number(depth)} must be below the first reference plane"
+            f" {block.spelling.first_plane}{number(first_plane)}{finish}"
+        )
+    peck = peck or way
+    pecks = max(0, steps_between(0.0, way, peck, context.length(ROUNDING_MM)) - 1)
+    first = first_plane - peck if pecks else rough
+    levels = pecks + 1 + block.bottom
+    return Depths(levels, pecks, peck, first, rough, final, context.length(RETRACT_MM))
+
+
+def side_finish_of(block: Block, circle: Circle, tool: Tool) -> SideFinish:
+    """Return the side finish; refuse a finish dimension too small for its entry arcs.
+
+    Inside, the entry arc turns the way of the cut; outside, the other way.
+    """
+    smallest = block.context.length(SMALLEST_RING_MM)
+    if 0 < block.finish < smallest:
+        raise block.refuse(
+            f"{block.spelling.finish}{number(block.finish)} must be at least {number(smallest)}"
+        )
+    other = CLOCKWISE + COUNTERCLOCKWISE - circle.finish_arc
+    return SideFinish(
+        side_finish=block.finish > 0,
+        finish_radius=circle.radius + circle.side * tool.radius,
+        finish_arc=circle.finish_arc,
+        entry_arc=circle.finish_arc if circle.side == INSIDE else other,
+    )
+
+
+def left_material(block: Block, roughing: Roughing, tool: Tool) -> str | None:
+    """Return the operator message of a pocket that leaves material standing, or None."""
+    rounding = block.context.length(ROUNDING_MM)
+    if roughing.roughing_width <= 2 * tool.radius + rounding:
+        return None
+    return (
+        f"{block.words.code}: the roughing width {number(roughing.roughing_width)} is greater than"
+        f" the tool diameter {number(2 * tool.radius)}: material is left between the rings"
+    )

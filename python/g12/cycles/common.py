@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the cycles of every dialect share: modes, coordinates, the tool that D names, counts.
+
+Counts of rings, levels and turns are decided here once, never rounded again in NGC.
+
+Lengths are in program units.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+
+from g12.cycles.context import XY, Context, Tool
+from g12.cycles.words import Words
+from g12.errors import number
+
+SMALLEST_RING_MM = 0.00508  # 0.0002 in: its half circles are twice what LinuxCNC needs
+ROUNDING_MM = 1e-6  # lengths closer than this are equal
+COUNTLESS = 1e9  # steps; a quotient beyond it could not even be rounded
+MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
+
+
+def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,)) -> None:
+    """Refuse the modes in which no circle can be cut."""
+    if context.plane not in planes:
+        *others, last = planes
+        wanted = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"
+        raise words.refuse(f"needs {wanted}, but {context.plane} is active")
+    if context.inverse_time:
+        raise words.refuse("needs feed per minute or revolution (G94, G95), but G93 is active")
+    if context.per_revolution and context.speed == 0:
+        raise words.refuse("needs a spindle speed for feed per revolution (G95), but S is 0")
+    if context.compensated:
+        raise words.refuse("brings its own cutter compensation: program G40 first")
+    if not context.feed > 0:
+        raise words.refuse(f"F{number(context.feed)} must be greater than 0")
+
+
+def check_start(words: Words, context: Context) -> None:
+    """Refuse to begin where the tool stands if G40 has left it beside the programmed point."""
+    if context.offset_pending:
+        raise words.refuse("the tool still stands offset: after G40 move in X or Y first")
+
+
+def coordinate(word: float | None, present: float, context: Context) -> float:
+    """Return the absolute coordinate of a word in G90 or G91; without it, the present one."""
+    if word is None:
+        return present
+    return present + word if context.incremental else word
+
+
+def commanded_tool(words: Words, context: Context) -> Tool | None:
+    """Return the tool that D names, None without D; D0 is a cutter without size."""
+    tool_number = words.take_whole("D", least=0)
+    if tool_number is None:
+        return None
+    if tool_number == 0:
+        return Tool(0, 0.0)
+    tool = context.tool_in_table(tool_number)
+    if tool is None:
+        raise words.refuse(f"D{tool_number} is not in the tool table")
+    return tool
+
+
+def sound_tool(words: Words, tool: Tool, source: str) -> Tool:
+    """Return the tool; refuse a negative diameter. ``source`` names the tool: ``D1``."""
+    if tool.radius < 0:
+        raise words.refuse(
+            f"{source} has the negative diameter {number(2 * tool.radius)} in the tool table"
+        )
+    return tool
+
+
+def check_count(words: Words, circles: int, cause: str) -> None:
+    """Refuse steps so small that the block would never end; ``cause`` names their words."""
+    if circles > MOST_CIRCLES:
+        raise words.refuse(f"{cause} {circles} circles, the most is {MOST_CIRCLES}")
+
+
+def steps_between(first: float, last: float, step: float, tolerance: float) -> int:
+    """Return how many steps, none longer than ``step``, lead from ``first`` to ``last``.
+
+    A rest shorter than ``tolerance`` is rounding, not a step of its own.
+    """
+    return max(0, math.ceil(min((last - first - tolerance) / step, COUNTLESS)))

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a block finds when it starts: modes, units, position, tools. Plain data, no LinuxCNC."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from g12.lengths import MM_PER_INCH
+
+XY, YZ, XZ = "G17", "G19", "G18"
+
+
+class Tool(NamedTuple):
+    """A cutter as the block sees it: its number and its radius in program units."""
+
+    number: int
+    radius: float
+
+
+class Context(NamedTuple):
+    """The interpreter's state in front of a block. Lengths are in program units.
+
+    Position is in the active work coordinate system, tool offset applied, X as a radius.
+    ``speed`` is the commanded spindle speed in rpm. ``offset_pending`` tells that G40 came after
+    the last move: the tool is still beside the programmed point by its radius.
+    ``last_radius`` is the cutter radius of the last D commanded (None: none ever was),
+    ``tool_in_table(n)`` gives tool n or None.
+    """
+
+    inch: bool
+    x: float
+    y: float
+    z: float
+    incremental: bool
+    plane: str
+    inverse_time: bool
+    per_revolution: bool
+    speed: float
+    feed: float
+    compensated: bool
+    offset_pending: bool
+    spindle_tool: Tool | None
+    last_radius: float | None
+    tool_in_table: Callable[[int], Tool | None]
+
+    def length(self, millimetres: float) -> float:
+        """Return a length given in mm in program units."""
+        return millimetres / MM_PER_INCH if self.inch else millimetres

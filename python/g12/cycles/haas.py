@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12/G13 circular pocket, dialect haas: words and modes in, one checked pocket out.
+
+Source: Haas Mill Operator's Manual, "G12 Circular Pocket Milling CW / G13 CCW".
+
+The motions of `ngc/g12_haas.ngc`, per level:
+
+1. with X or Y in the block: rapid to the centre at the present Z (before the first level)
+2. feed to the level's Z in the centre
+3. half circle from the centre to (+b, 0), turning the way of the cut, tangent to the ring
+4. full circle of radius b
+5. for each further ring: a tangent link outward, then its full circle; the last is K exactly
+6. tangent half circle back to the centre; Z stays at depth after the last level
+
+A tool-centre radius b is the programmed radius less the tool radius.
+
+Rules, in the order of the checks: G17, no G93, no G41/G42, feed above 0; every word known;
+I, Z required; K and Q together; Q > 0; L whole, from 1; D whole, from 0, in the tool table;
+I greater than the tool radius; I less than K.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from g12.cycles.common import (
+    ROUNDING_MM,
+    SMALLEST_RING_MM,
+    check_count,
+    check_modes,
+    check_start,
+    commanded_tool,
+    coordinate,
+    sound_tool,
+    steps_between,
+)
+from g12.cycles.context import Context, Tool
+from g12.cycles.words import Words
+from g12.errors import number
+
+KNOWN_WORDS = "X Y Z I K Q L D F"
+
+
+class Pocket(NamedTuple):
+    """A pocket that is fit to cut. Lengths in program units, radii of the tool centre."""
+
+    x: float
+    y: float
+    move_to_centre: bool
+    z: float  # depth of the first level
+    z_step: float  # signed distance to each further level, 0 for spring passes
+    levels: int
+    first_radius: float
+    last_radius: float
+    links: int  # from ring to ring, or half turns of the spiral; the last ends at last_radius
+    first_grow: float  # by how much the first link grows
+    shrink: float  # by which share of that the last one is shorter
+    spiral: bool
+    commanded_radius: float | None  # of the cutter that D names, None without D
+    message: str | None  # for the operator, never a refusal
+
+    def locals(self) -> dict[str, float]:
+        """Return the named locals of `ngc/g12_haas.ngc`, but for the direction."""
+        spring = not self.z_step
+        return {
+            "x": self.x,
+            "y": self.y,
+            "move_to_centre": self.move_to_centre,
+            "z": self.z,
+            "z_step": self.z_step,
+            "levels": self.levels,
+            "first_radius": self.first_radius,
+            "links": self.links,
+            "growth": self.first_grow / self.first_radius,
+            "shrink": self.shrink,
+            "keep": self.first_radius / self.last_radius if spring else 0.0,
+            "rings": not self.spiral,
+        }
+
+
+def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pocket:
+    """Return the pocket of one G12/G13 block, or raise `Refusal`."""
+    check_modes(words, context)
+    first = words.require("I", "the radius of the first circle")
+    outward = words.take_pair("K", "Q")
+    levels = words.take_whole("L", least=1, default=1)
+    centre_word = "X" in words or "Y" in words
+    x = coordinate(words.take("X"), context.x, context)
+    y = coordinate(words.take("Y"), context.y, context)
+    depth = words.require("Z", "the depth of the pocket")
+    if not centre_word:
+        check_start(words, context)
+    with_d = "D" in words
+    cutter, source = choose_cutter(words, context)
+    words.finish(KNOWN_WORDS)
+    check_radii(words, context, first, outward, cutter, source)
+
+    finished, stepover = outward or (first, first)
+    growth = stepover / 2 if clearing == "spiral" else stepover
+    links = steps_between(first, finished, growth, context.length(ROUNDING_MM))
+    check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
+    last_grow = finished - first - growth * (links - 1)
+    return Pocket(
+        x=x,
+        y=y,
+        move_to_centre=centre_word,
+        z=coordinate(depth, context.z, context),
+        z_step=depth if context.incremental else 0.0,
+        levels=levels,
+        first_radius=first - cutter.radius,
+        last_radius=finished - cutter.radius,
+        links=links,
+        first_grow=min(growth, finished - first),
+        shrink=1 - last_grow / growth if links > 1 else 0.0,
+        spiral=clearing == "spiral",
+        commanded_radius=cutter.radius if with_d else None,
+        message=upward(words, depth, context)
+        or left_material(words, outward, first, cutter, context),
+    )
+
+
+def choose_cutter(words: Words, context: Context) -> tuple[Tool, str]:
+    """Return the cutter of the block and where it comes from, for messages.
+
+    D in the block, else the D last commanded, else the tool in the spindle.
+    """
+    tool = commanded_tool(words, context)
+    if tool is not None:
+        return sound_tool(words, tool, f"D{tool.number}"), f"D{tool.number}"
+    if context.last_radius is not None:
+        return Tool(0, context.last_radius), "the D last commanded"
+    if context.spindle_tool is None:
+        raise words.refuse("D is missing, none was commanded before and no tool is loaded")
+    source = f"T{context.spindle_tool.number} in the spindle"
+    return sound_tool(words, context.spindle_tool, source), source
+
+
+def check_radii(
+    words: Words,
+    context: Context,
+    first: float,
+    outward: tuple[float, float] | None,
+    cutter: Tool,
+    source: str,
+) -> None:
+    """Refuse circles that the cutter cannot mill, or that do not grow."""
+    rounding = context.length(ROUNDING_MM)
+    if first <= rounding:
+        raise words.refuse(f"I{number(first)} must be greater than 0")
+    if first <= cutter.radius + rounding:
+        raise words.refuse(
+            f"I{number(first)} must be greater than the tool radius"
+            f" {number(cutter.radius)} ({source})"
+        )
+    smallest = context.length(SMALLEST_RING_MM)
+    if first - cutter.radius < smallest - rounding:
+        raise words.refuse(
+            f"I{number(first)} must exceed the tool radius {number(cutter.radius)} ({source})"
+            f" by at least {number(smallest)}"
+        )
+    if outward and outward[0] <= first + rounding:
+        raise words.refuse(f"I{number(first)} must be less than K{number(outward[0])}")
+
+
+def upward(words: Words, depth: float, context: Context) -> str | None:
+    """Return the operator message of a pocket that begins above the tool, or None.
+
+    A lost minus sign looks like this; the control would go up and cut there, too.
+    """
+    first = coordinate(depth, context.z, context)
+    if first <= context.z + context.length(ROUNDING_MM):
+        return None
+    return (
+        f"{words.code}: Z{number(depth)} is up from the tool at Z{number(context.z)}:"
+        " has it lost its minus sign?"
+    )
+
+
+def left_material(
+    words: Words,
+    outward: tuple[float, float] | None,
+    first: float,
+    cutter: Tool,
+    context: Context,
+) -> str | None:
+    """Return the operator message of a pocket that leaves material standing, or None.
+
+    The control's own sample programs do this, so it is no error. With D0 the cutter's size
+    is not known, and a single circle may well finish a bored hole: no message then.
+    """
+    if outward is None or cutter.radius == 0:
+        return None
+    (finished, stepover), rounding = outward, context.length(ROUNDING_MM)
+    if min(stepover, finished - first) > 2 * cutter.radius + rounding:
+        return (
+            f"{words.code}: Q{number(stepover)} is greater than the tool diameter"
+            f" {number(2 * cutter.radius)}: material is left between the rings"
+        )
+    # the plunge clears the tool radius, the first ring begins at I - 2 tool radii
+    if first > 3 * cutter.radius + rounding:
+        return (
+            f"{words.code}: I{number(first)} is greater than 1.5 x the tool diameter"
+            f" {number(2 * cutter.radius)}: a core is left in the centre"
+        )
+    return None

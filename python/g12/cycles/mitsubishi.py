@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12/G13 circular cutting, dialect mitsubishi: words and modes in, one checked circle out.
+
+The motions of `ngc/g12_circle.ngc`, in the plane of G17, G18 or G19, from the centre where the
+tool stands:
+
+1. half circle out along the plane's first axis (X, Z, Y), turning the way of the cut
+2. full circle
+3. half circle back to the centre
+
+Rules, in the order of the checks: no plane of U, V, W, no G93, no G41/G42, feed above 0; I and D
+required, every other word refused; D whole, from 0, in the tool table; I, whose sign is
+ignored, greater than the offset. A negative diameter in the tool table enlarges the circle.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from g12.cycles.common import SMALLEST_RING_MM, check_modes, check_start, commanded_tool
+from g12.cycles.context import XY, XZ, YZ, Context, Tool
+from g12.cycles.words import Words
+from g12.errors import number
+
+KNOWN_WORDS = "I D F"
+FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}
+
+
+class Circle(NamedTuple):
+    """A circle that is fit to cut: the named locals of `ngc/g12_circle.ngc`.
+
+    ``plane`` is 17, 18 or 19, ``centre`` a coordinate of the plane's first axis, ``radius`` the
+    tool centre's, in program units.
+    """
+
+    plane: int
+    centre: float
+    radius: float
+
+
+def plan_circle(words: Words, context: Context) -> Circle:
+    """Return the circle of one G12/G13 block, or raise `Refusal`."""
+    check_modes(words, context, planes=tuple(FIRST_AXIS))
+    check_start(words, context)
+    wanted = words.require("I", "the radius of the circle")
+    if "D" not in words:
+        raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")
+    tool = commanded_tool(words, context)
+    words.finish(KNOWN_WORDS)
+    check_radius(words, context, wanted, tool)
+    return Circle(
+        plane=int(context.plane[1:]),
+        centre=getattr(context, FIRST_AXIS[context.plane]),
+        radius=abs(wanted) - tool.radius,
+    )
+
+
+def check_radius(words: Words, context: Context, wanted: float, tool: Tool) -> None:
+    """Refuse a circle that the cutter fills."""
+    smallest = context.length(SMALLEST_RING_MM)
+    if abs(wanted) - tool.radius < smallest:
+        raise words.refuse(
+            f"I{number(wanted)} must be greater than the tool radius"
+            f" {number(tool.radius)} (D{tool.number}) by at least {number(smallest)}"
+        )

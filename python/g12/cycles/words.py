@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The words of one block: a dialect takes those it knows, whatever is left is refused.
+
+Every rule about a single word lives here, so that each refusal names the code, the word,
+the rule and the value in the same way.
+"""
+
+from __future__ import annotations
+
+from g12.errors import Refusal, number
+from g12.lengths import LARGEST
+
+WHOLE = 1e-4  # LinuxCNC's own tolerance for "close to an integer"
+
+
+class Words:
+    """The words of a block, to be taken one by one.
+
+    ``code`` names the block in messages (``G12``), ``values`` maps upper-case letters to
+    numbers as the parser gave them: program units, expressions already resolved. A number beyond
+    any machine is refused at once.
+    """
+
+    def __init__(self, code: str, values: dict[str, float]) -> None:
+        self.code = code
+        self._left = dict(values)
+        for letter, value in values.items():
+            if not abs(value) <= LARGEST:
+                raise self.refuse(f"{letter}{number(value)} is beyond {number(LARGEST)}")
+
+    def __contains__(self, letter: str) -> bool:
+        """Tell whether the word is in the block and not yet taken."""
+        return letter in self._left
+
+    def refuse(self, rule: str) -> Refusal:
+        """Return the refusal of this block for breaking ``rule`` (the caller raises it)."""
+        return Refusal(f"{self.code}: {rule}")
+
+    def take(self, letter: str) -> float | None:
+        """Return the word's value, or None if the block does not have it."""
+        return self._left.pop(letter, None)
+
+    def require(self, letter: str, meaning: str) -> float:
+        """Return the word's value; refuse a block without it."""
+        if letter not in self._left:
+            raise self.refuse(f"{letter} is missing: {meaning}")
+        return self._left.pop(letter)
+
+    def take_positive(self, letter: str) -> float | None:
+        """Return the word's value, which must be above zero, or None."""
+        value = self.take(letter)
+        if value is not None and not value > 0:
+            raise self.refuse(f"{letter}{number(value)} must be greater than 0")
+        return value
+
+    def require_positive(self, letter: str, meaning: str) -> float:
+        """Return the word's value, above zero; refuse a block without it."""
+        if letter not in self._left:
+            raise self.refuse(f"{letter} is missing: {meaning}")
+        return self.take_positive(letter)
+
+    def take_whole(
+        self, letter: str, least: int, default: int | None = None, most: int | None = None
+    ) -> int | None:
+        """Return the word's value, a whole number from ``least`` (to ``most``), or the default."""
+        value = self.take(letter)
+        if value is None:
+            return default
+        if abs(value - round(value)) > WHOLE:
+            raise self.refuse(f"{letter}{number(value)} must be a whole number")
+        if round(value) < least:
+            raise self.refuse(f"{letter}{number(value)} must be at least {least}")
+        if most is not None and round(value) > most:
+            raise self.refuse(f"{letter}{number(value)} must be at most {most}")
+        return round(value)
+
+    def has_pair(self, first: str, second: str) -> bool:
+        """Tell whether two words are in the block; refuse one without the other."""
+        if (first in self) != (second in self):
+            present, absent = (first, second) if first in self else (second, first)
+            raise self.refuse(f"{present}{number(self._left[present])} needs {absent} as well")
+        return first in self
+
+    def take_pair(self, first: str, second: str) -> tuple[float, float] | None:
+        """Return two positive words that need each other, or None if both are absent."""
+        if not self.has_pair(first, second):
+            return None
+        return self.take_positive(first), self.take_positive(second)
+
+    def finish(self, known: str) -> None:
+        """Refuse every word that nobody took; ``known`` lists the dialect's words."""
+        for letter, value in self._left.items():
+            raise self.refuse(
+                f"{letter}{number(value)} is not a word of this cycle, which knows {known}"
+            )

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12/G13 circle cutting, dialect yasnac: words and modes in, one checked circle out.
+
+Source: Yasnac instructions, 2.9.9 "Circle Cutting (G12, G13)". Its page states I, R, D, F and
+their rules; K and Q (a spiral), L (repeats) and J (another letter for R) are our reading.
+
+The motions of `ngc/g12_yasnac.ngc`, at the present Z, from the centre where the tool stands:
+
+1. fast along X to ``approach`` (R; without R the tool stays in the centre)
+2. half circle to ``first``, turning the way of the cut
+3. with K and Q: half circles outward that grow to the finished circle in whole turns
+4. the finished circle, L times
+5. half circle back to ``approach``
+6. fast back to the centre
+
+All of it lies on the side of X that I's sign picks: I-50 is I50 turned by 180 degrees.
+With d = the tool radius, signed like I, R - d and K - d and I - d are tool-centre positions.
+
+Rules, in the order of the checks: G17, no G93, no G41/G42, feed above 0; I required; R or J, not
+both; K and Q together, Q > 0; L whole, from 1; D whole, from 0, in the tool table; every word
+known; I beyond the tool radius; R - d from 0 to less than I - d; K - d between R - d and I - d.
+"""
+
+from __future__ import annotations
+
+from math import copysign
+from typing import NamedTuple
+
+from g12.cycles.common import (
+    ROUNDING_MM,
+    SMALLEST_RING_MM,
+    check_count,
+    check_modes,
+    check_start,
+    commanded_tool,
+    sound_tool,
+    steps_between,
+)
+from g12.cycles.context import Context, Tool
+from g12.cycles.words import Words
+from g12.errors import number
+
+KNOWN_WORDS = "I R (or J) K Q L D F"
+
+
+class Circle(NamedTuple):
+    """A circle that is fit to cut: the named locals of `ngc/g12_yasnac.ngc`.
+
+    Lengths in program units; ``approach``, ``first``, ``growth`` and ``radius`` are those of the
+    tool centre along X, with the sign of I.
+    """
+
+    x: float
+    y: float
+    approach: float
+    first: float
+    half_turns: int
+    growth: float  # of the first half turn
+    shrink: float  # share by which a half turn of the last turn grows less than the others
+    radius: float
+    circles: int
+
+
+class Reach(NamedTuple):
+    """Tool-centre positions along X of a block's radii: each less the tool radius, sign of I."""
+
+    words: Words
+    offset: float
+    cutter: str  # for messages
+    rounding: float
+    smallest: float
+
+    def position(self, word: float) -> float:
+        """Return the tool-centre position; exactly 0 if it only misses the centre by rounding."""
+        position = word - self.offset
+        return position if abs(position) > self.rounding else 0.0
+
+    def check(self, letter: str, word: float, first: float, last: float, bounds: str) -> None:
+        """Refuse a word whose position is not from ``first`` to before ``last``."""
+        position = self.position(word)
+        side = copysign(1.0, last)
+        if not side * first <= side * position <= side * last - self.smallest:
+            raise self.words.refuse(
+                f"{letter}{number(word)} puts the tool centre at X{number(position)} from the"
+                f" circle's centre ({self.cutter}): it must be {bounds}"
+            )
+
+
+def plan_circle(words: Words, context: Context) -> Circle:
+    """Return the circle of one G12/G13 block, or raise `Refusal`."""
+    check_modes(words, context)
+    check_start(words, context)
+    finished = words.require("I", "the radius of the finished circle")
+    traverse = take_traverse(words)
+    spiral = take_spiral(words)
+    circles = words.take_whole("L", least=1, default=1)
+    tool = commanded_tool(words, context) or Tool(0, 0.0)
+    words.finish(KNOWN_WORDS)
+    reach = reach_of(words, context, finished, sound_tool(words, tool, f"D{tool.number}"))
+
+    radius = reach.position(finished)
+    approach = approach_of(reach, traverse, finished)
+    first, half_turns, growth, shrink = half_turns_of(reach, spiral, approach, finished)
+    check_count(words, half_turns + circles, "K, Q and L make")
+    return Circle(
+        context.x, context.y, approach, first, half_turns, growth, shrink, radius, circles
+    )
+
+
+def take_traverse(words: Words) -> tuple[str, float] | None:
+    """Return letter and value of R, or of J in its place."""
+    if "R" in words and "J" in words:
+        raise words.refuse("R and J are the same word: give one of them")
+    letter = "R" if "R" in words else "J"
+    return (letter, words.take(letter)) if letter in words else None
+
+
+def take_spiral(words: Words) -> tuple[float, float] | None:
+    """Return K, signed, and Q, above zero."""
+    if not words.has_pair("K", "Q"):
+        return None
+    return words.take("K"), words.take_positive("Q")
+
+
+def reach_of(words: Words, context: Context, finished: float, tool: Tool) -> Reach:
+    """Return the reach of a block; refuse a finished circle that the cutter cannot mill."""
+    cutter = f"tool radius {number(tool.radius)}, D{tool.number}" if tool.number else "no D"
+    smallest = context.length(SMALLEST_RING_MM)
+    room = abs(finished) - tool.radius
+    if abs(finished) < smallest:
+        raise words.refuse(f"I{number(finished)} must not be 0")
+    if room < smallest:
+        raise words.refuse(
+            f"I{number(finished)} must exceed the tool radius {number(tool.radius)}"
+            f" (D{tool.number}) in size"
+        )
+    offset = copysign(tool.radius, finished)
+    return Reach(words, offset, cutter, context.length(ROUNDING_MM), smallest)
+
+
+def approach_of(reach: Reach, traverse: tuple[str, float] | None, finished: float) -> float:
+    """Return where the fast move ends, 0 without R."""
+    if traverse is None:
+        return 0.0
+    last = reach.position(finished)
+    bounds = f"from 0 to less than X{number(last)}, where I{number(finished)} puts it"
+    reach.check(*traverse, 0.0, last, bounds)
+    return reach.position(traverse[1])
+
+
+def half_turns_of(
+    reach: Reach, spiral: tuple[float, float] | None, approach: float, finished: float
+) -> tuple[float, int, float, float]:
+    """Return first radius, number, growth and shrink of the spiral's half turns.
+
+    Whole turns only, so that the finished circle begins on the side of I. The last turn grows
+    by what is left.
+    """
+    last = reach.position(finished)
+    if spiral is None:
+        return last, 0, 0.0, 0.0
+    first, pitch = reach.position(spiral[0]), spiral[1]
+    least = approach + copysign(reach.smallest, last)
+    bounds = f"between X{number(approach)} and X{number(last)}, where I{number(finished)} puts it"
+    reach.check("K", spiral[0], least, last, bounds)
+    turns = steps_between(abs(first), abs(last), pitch, reach.rounding)
+    rest = abs(last) - abs(first) - pitch * (turns - 1)
+    growth = copysign(pitch if turns > 1 else rest, last) / 2
+    return first, 2 * turns, growth, 1 - rest / pitch if turns > 1 else 0.0

@@ -1,0 +1,374 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The programmed contour: lines and arcs in the flat X-C plane, each with the block it comes from.
+
+X is the distance from the spindle's centre line (a radius value, whatever the X words meant), C
+the length at right angles to it; both and Z in program units, with their origin in the spindle's
+centre. An angle grows from +X to +C; a positive sweep is counterclockwise (G3), in radians.
+"""
+
+from __future__ import annotations
+
+from math import atan2, copysign, hypot, pi, sqrt
+from typing import NamedTuple, NoReturn
+
+from g12.errors import Refusal, number
+from g12.lengths import LARGEST
+
+Point = tuple  # (x, c)
+SAME_PLACE = 1e-6  # program units: closer points are one point, a shorter move is rounding
+CLOSING_RATIO = 0.001  # of the radius: the mismatch LinuxCNC allows any arc
+
+
+class Line(NamedTuple):
+    """A straight move in the plane, with Z from ``z0`` to ``z1``.
+
+    ``offset`` is the compensation in force: the tool's radius, above zero with the tool on the
+    left of the path (G41), below zero on its right (G42), 0 without. ``feed`` is the tool centre's
+    speed in program units per minute.
+    """
+
+    line: int
+    feed: float
+    offset: float
+    x0: float
+    c0: float
+    z0: float
+    x1: float
+    c1: float
+    z1: float
+
+
+class Arc(NamedTuple):
+    """A circular move about (``cx``, ``cc``) by the signed angle ``sweep``.
+
+    The other members are those of :class:`Line`.
+    """
+
+    line: int
+    feed: float
+    offset: float
+    x0: float
+    c0: float
+    z0: float
+    x1: float
+    c1: float
+    z1: float
+    cx: float
+    cc: float
+    sweep: float
+
+
+class Plunge(NamedTuple):
+    """A move of Z alone."""
+
+    line: int
+    feed: float
+    z0: float
+    z1: float
+
+
+class Mark(NamedTuple):
+    """A block without motion; the plan gives the caller's ``action`` back in its place."""
+
+    line: int
+    action: object
+
+
+class Start(NamedTuple):
+    """Where the machine stands: X radius value, angle of C in the plane in radians, Z."""
+
+    x: float
+    angle: float
+    z: float
+
+
+def is_move(element: Line | Arc | Plunge | Mark) -> bool:
+    """Return whether an element moves in the plane."""
+    return isinstance(element, (Line, Arc))
+
+
+def arc_radius(move: Arc) -> float:
+    """Return an arc's radius."""
+    return hypot(move.x0 - move.cx, move.c0 - move.cc)
+
+
+def path_length(move: Line | Arc) -> float:
+    """Return the length of a move in the plane."""
+    if isinstance(move, Line):
+        return hypot(move.x1 - move.x0, move.c1 - move.c0)
+    return abs(move.sweep) * arc_radius(move)
+
+
+def start_direction(move: Line | Arc) -> Point:
+    """Return the unit vector of the motion in the plane at the move's start."""
+    return _direction(move, move.x0, move.c0)
+
+
+def end_direction(move: Line | Arc) -> Point:
+    """Return the unit vector of the motion in the plane at the move's end."""
+    return _direction(move, move.x1, move.c1)
+
+
+def _direction(move: Line | Arc, x: float, c: float) -> Point:
+    if isinstance(move, Line):
+        tx, tc = move.x1 - move.x0, move.c1 - move.c0
+    else:
+        turn = 1.0 if move.sweep > 0.0 else -1.0
+        tx, tc = turn * (move.cc - c), turn * (x - move.cx)
+    length = hypot(tx, tc)
+    return tx / length, tc / length
+
+
+def recentred(start: Point, end: Point, centre: Point) -> Point:
+    """Return the point nearest to ``centre`` that is equally far from ``start`` and ``end``."""
+    ux, uc = end[0] - start[0], end[1] - start[1]
+    mx, mc = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
+    along = ((centre[0] - mx) * ux + (centre[1] - mc) * uc) / (ux * ux + uc * uc)
+    return centre[0] - along * ux, centre[1] - along * uc
+
+
+def sweep_between(start: Point, end: Point, centre: Point, turn: int) -> float:
+    """Return the signed angle from one point to another about a third.
+
+    ``turn``: +1 counterclockwise, -1 clockwise. A full turn where the angle is none.
+    """
+    ax, ac = start[0] - centre[0], start[1] - centre[1]
+    bx, bc = end[0] - centre[0], end[1] - centre[1]
+    angle = turn * atan2(ax * bc - ac * bx, ax * bx + ac * bc)
+    return turn * (angle if angle > 0.0 else angle + 2 * pi)
+
+
+class Contour:
+    """Collects the blocks of one section, in order, and refuses those that cannot be a contour.
+
+    ``x`` (radius value, above zero), ``c`` and ``z`` are the programmed position, readable at any
+    time; a section starts at C0, wherever the C axis stands. ``code`` names the section in
+    messages. ``diameter`` tells whether the program's X words are diameters: the values passed in
+    are always radius values, but a message has to say which reading was meant. ``closing`` is the
+    radius mismatch of an arc that is forgiven, in program units.
+
+    ``side`` is the compensation in force: 40, 41 or 42. ``start`` is where the machine stands,
+    which for a section that goes on where another was cut in two is not at C0.
+    """
+
+    def __init__(
+        self,
+        x: float,
+        z: float,
+        *,
+        code: str = "G12.1",
+        diameter: bool = False,
+        closing: float = 0.0,
+    ) -> None:
+        self.x, self.c, self.z = x, 0.0, z
+        self.code, self.diameter, self.closing = code, diameter, closing
+        self.elements: list[Line | Arc | Plunge | Mark] = []
+        self._end = (x, 0.0, z)  # of the elements; less than SAME_PLACE from the position
+        self.side = 40
+        self.start = Start(x, 0.0, z)
+        self._offset = self._radius = 0.0
+        self._switch: int | None = None  # line of the G40, G41 or G42 that waits for its G1
+        self._switched_on = 0
+
+    def refuse(self, line: int, reason: str) -> NoReturn:
+        """Raise the refusal of a block of this section."""
+        raise Refusal(f"{self.code} line {line}: {reason}")
+
+    def line(
+        self,
+        x: float | None = None,
+        c: float | None = None,
+        z: float | None = None,
+        *,
+        line: int,
+        feed: float,
+    ) -> None:
+        """Add a G1 to the absolute point given; a coordinate left out stays."""
+        x0, c0, z0 = self._end
+        x1 = self.x if x is None else x
+        c1 = self.c if c is None else c
+        z1 = self.z if z is None else z
+        if max(abs(x1), abs(c1), abs(z1)) > LARGEST:
+            self._check_lengths(line, X=x1, C=c1, Z=z1)
+        length = hypot(x1 - x0, c1 - c0)
+        self._check_feed(feed, line)
+        self._check_switch(line, length)
+        if length > SAME_PLACE:
+            self.elements.append(Line(line, feed, self._offset, x0, c0, z0, x1, c1, z1))
+            self._end = x1, c1, z1
+        elif abs(z1 - z0) > SAME_PLACE:
+            self.elements.append(Plunge(line, feed, z0, z1))
+            self._end = x0, c0, z1
+        self.x, self.c, self.z = x1, c1, z1
+
+    def arc(
+        self,
+        turn: int,
+        x: float | None = None,
+        c: float | None = None,
+        z: float | None = None,
+        *,
+        i: float | None = None,
+        j: float | None = None,
+        radius: float | None = None,
+        line: int,
+        feed: float,
+    ) -> None:
+        """Add a G2 (``turn`` -1) or G3 (``turn`` +1) to the absolute point given.
+
+        Either ``i`` and/or ``j``: the centre from the arc's start, or ``radius``: negative for the
+        arc over a half turn. The start as end point, or no end point, is a full circle with
+        ``i``/``j``.
+        """
+        self._check_arc(turn, i, j, radius, line, feed)
+        end = (self.x if x is None else x, self.c if c is None else c)
+        z1 = self.z if z is None else z
+        self._check_lengths(line, X=end[0], C=end[1], Z=z1, I=i, J=j, R=radius)
+        if radius is None:
+            centre, sweep = self._about_centre(turn, end, i or 0.0, j or 0.0, line)
+        else:
+            centre, sweep = self._with_radius(turn, end, radius, line)
+        self.elements.append(Arc(line, feed, self._offset, *self._end, *end, z1, *centre, sweep))
+        self.x, self.c, self.z = self._end = (*end, z1)
+
+    def compensation(self, side: int, radius: float, *, line: int) -> None:
+        """Switch to G40, G41 or G42 (``side`` 40, 41, 42) with the next block, which must be a G1.
+
+        Call it before the :meth:`line` of the same block. ``radius`` is the tool's, and may be 0.
+        """
+        self._check_waiting()
+        if side == self.side:
+            return
+        if 40 not in (side, self.side):
+            self.refuse(
+                line, f"G{side}: cancel G{self.side} of line {self._switched_on} with G40 first"
+            )
+        self._radius = radius if side != 40 else abs(self._offset)
+        self._offset = {40: 0.0, 41: radius, 42: -radius}[side]
+        self._switched_on = line
+        self._switch = line
+        self.side = side
+
+    def mark(self, action: object, *, line: int) -> None:
+        """Add a block without motion."""
+        self._check_waiting()
+        self.elements.append(Mark(line, action))
+
+    def close(self, *, line: int) -> None:
+        """Check that the section may end here: compensation is off."""
+        self._check_waiting()
+        if self.side != 40:
+            self.refuse(
+                line, f"G{self.side} of line {self._switched_on} is still on: G40 is missing"
+            )
+
+    def wait(self, *, line: int) -> None:
+        """Check that M66 may wait for the machine here: compensation is off.
+
+        Where the tool has to stop under compensation is told by the block behind, which is not
+        known yet. LinuxCNC has the same rule.
+        """
+        if self.side != 40:
+            self.refuse(
+                line,
+                "M66 waits for the machine, which needs G40: "
+                f"G{self.side} of line {self._switched_on} is on",
+            )
+
+    def _check_lengths(self, line: int, **words: float | None) -> None:
+        for word, value in words.items():
+            if value is not None and abs(value) > LARGEST:
+                reason = f"{word}{number(value)} is no length: at most {number(LARGEST)}"
+                self.refuse(line, reason)
+
+    def _check_feed(self, feed: float, line: int) -> None:
+        if feed <= 0.0:
+            self.refuse(line, f"F{number(feed)} must be above zero (no feed commanded?)")
+
+    def _check_waiting(self) -> None:
+        if self._switch is not None:
+            self.refuse(self._switch, f"G{self.side} needs a G1 with X or C in its own block")
+
+    def _check_switch(self, line: int, length: float) -> None:
+        """Check the G1 that switches compensation on or off."""
+        if self._switch is None:
+            return
+        if self._switch != line or length <= SAME_PLACE:
+            self._check_waiting()
+        if length < self._radius - 1e-6:
+            self.refuse(
+                line,
+                f"the G1 with G{self.side} is {number(length)} long: it must be at least "
+                f"the tool radius {number(self._radius)}",
+            )
+        self._switch = None
+
+    def _check_arc(self, turn, i, j, radius, line, feed) -> None:
+        name = _name(turn)
+        self._check_feed(feed, line)
+        if self._switch is not None:
+            self.refuse(line, f"G{self.side} with {name}: compensation is switched by a G1 only")
+        if radius is not None and (i is not None or j is not None):
+            self.refuse(line, f"{name}: either R or I and J, not both")
+        if radius is None and not i and not j:
+            self.refuse(line, f"{name} needs R, or the centre in I and J")
+
+    def _about_centre(self, turn, end, i, j, line):
+        """Return centre and sweep of an arc with I and J, the centre equally far from both ends."""
+        start, centre = self._end[:2], (self.x + i, self.c + j)
+        if hypot(end[0] - start[0], end[1] - start[1]) <= SAME_PLACE:
+            return centre, turn * 2 * pi
+        from_start, from_end = hypot(i, j), hypot(end[0] - centre[0], end[1] - centre[1])
+        if not self._closes(from_start, from_end):
+            self.refuse(
+                line,
+                f"{_name(turn)} does not close: its centre is {number(from_start)} from the start, "
+                f"{number(from_end)} from the end{self._hint(self._centre_closes, end, i, j)}",
+            )
+        centre = recentred(start, end, centre)
+        return centre, sweep_between(start, end, centre, turn)
+
+    def _with_radius(self, turn, end, radius, line):
+        """Return centre and sweep of an arc with R."""
+        start = self._end[:2]
+        half = 0.5 * hypot(end[0] - start[0], end[1] - start[1])
+        name = f"{_name(turn)} R{number(radius)}"
+        if 2.0 * half <= SAME_PLACE:
+            self.refuse(line, f"{name}: a full circle needs I and J, not R")
+        if not self._spans(half, radius):
+            self.refuse(
+                line,
+                f"{name} does not close: the ends are {number(2 * half)} apart, R must be at least "
+                f"{number(half)}{self._hint(self._radius_closes, end, radius)}",
+            )
+        height = sqrt(max(0.0, radius * radius - half * half)) / (2 * half)
+        height *= copysign(turn, turn * radius)
+        centre = (
+            0.5 * (start[0] + end[0]) - height * (end[1] - start[1]),
+            0.5 * (start[1] + end[1]) + height * (end[0] - start[0]),
+        )
+        return centre, sweep_between(start, end, centre, turn)
+
+    def _closes(self, from_start: float, from_end: float) -> bool:
+        return abs(from_start - from_end) <= max(self.closing, CLOSING_RATIO * from_start)
+
+    def _spans(self, half: float, radius: float) -> bool:
+        return half - abs(radius) <= max(0.5 * self.closing, CLOSING_RATIO * half)
+
+    def _centre_closes(self, x0, x1, c1, i, j) -> bool:
+        return self._closes(hypot(i, j), hypot(x1 - x0 - i, c1 - self.c - j))
+
+    def _radius_closes(self, x0, x1, c1, radius) -> bool:
+        return self._spans(0.5 * hypot(x1 - x0, c1 - self.c), radius)
+
+    def _hint(self, closes, end, *words) -> str:
+        """Return which other reading of the X words, if any, would close the arc."""
+        other, ratio = ("radius", 2.0) if self.diameter else ("diameter", 0.5)
+        for x0 in (self.x * ratio, self.x):
+            if closes(x0, end[0] * ratio, end[1], *words):
+                return f"; it would close with X read as a {other} (POLAR_X = {other})"
+        return ""
+
+
+def _name(turn: int) -> str:
+    return "G3" if turn > 0 else "G2"

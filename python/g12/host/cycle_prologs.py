@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Prologs and epilog of the cycles: a block is checked, and its motion handed to the NGC sub."""
+
+from __future__ import annotations
+
+from interpreter import INTERP_OK
+
+from g12.cycles import circle_mill, mitsubishi, yasnac
+from g12.cycles.haas import plan_pocket
+from g12.cycles.words import Words
+from g12.host import glue
+
+CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
+
+
+def prepare_haas(interp: object, arc: int) -> int:
+    """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
+    pocket = plan_pocket(glue.words_of_block(interp), glue.snapshot(interp), glue.SETTINGS.clearing)
+    hand = 1 if arc == COUNTERCLOCKWISE else -1
+    glue.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
+    if pocket.commanded_radius is not None:
+        glue.remember_radius(interp, pocket.commanded_radius)
+    if pocket.message:
+        glue.message(pocket.message)
+    return INTERP_OK
+
+
+@glue.handler
+def g12_haas(self, **words):
+    """Prolog of G12, clockwise circular pocket."""
+    return prepare_haas(self, CLOCKWISE)
+
+
+@glue.handler
+def g13_haas(self, **words):
+    """Prolog of G13, counterclockwise circular pocket."""
+    return prepare_haas(self, COUNTERCLOCKWISE)
+
+
+def prepare_yasnac(interp: object, arc: int) -> int:
+    """Check a Yasnac G12/G13 block and hand its circle to `ngc/g12_yasnac.ngc`."""
+    circle = yasnac.plan_circle(glue.words_of_block(interp), glue.snapshot(interp))
+    glue.hand_over(
+        interp,
+        **circle._asdict(),
+        arc=arc,
+        traverse=glue.traverse_feed(interp),
+        feed=interp.feed_rate,
+        per_revolution=glue.per_revolution(interp),
+    )
+    return INTERP_OK
+
+
+@glue.handler
+def g12_yasnac(self, **words):
+    """Prolog of G12, clockwise circle cutting."""
+    return prepare_yasnac(self, CLOCKWISE)
+
+
+@glue.handler
+def g13_yasnac(self, **words):
+    """Prolog of G13, counterclockwise circle cutting."""
+    return prepare_yasnac(self, COUNTERCLOCKWISE)
+
+
+def prepare_mitsubishi(interp: object, arc: int) -> int:
+    """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_circle.ngc`."""
+    circle = mitsubishi.plan_circle(glue.words_of_block(interp), glue.snapshot(interp))
+    glue.hand_over(interp, **circle._asdict(), arc=arc)
+    return INTERP_OK
+
+
+@glue.handler
+def g12_mitsubishi(self, **words):
+    """Prolog of G12, clockwise circular cutting."""
+    return prepare_mitsubishi(self, CLOCKWISE)
+
+
+@glue.handler
+def g13_mitsubishi(self, **words):
+    """Prolog of G13, counterclockwise circular cutting."""
+    return prepare_mitsubishi(self, COUNTERCLOCKWISE)
+
+
+def planned_event(interp: object, pocket: bool) -> circle_mill.Event:
+    """Return the event of a code block, or of the call if the code stands in o<circle_mill>."""
+    words, context = glue.words_of_block(interp), glue.snapshot(interp)
+    plane = glue.first_plane(interp)
+    entries = glue.entries_of_call(interp, "circle_mill", len(circle_mill.ENTRIES))
+    if entries is None:
+        return circle_mill.plan_code(words, context, plane, pocket)
+    call = Words("circle_mill", circle_mill.entries_of_call(entries))
+    return circle_mill.plan_call(call, context, plane)
+
+
+def prepare_circle_mill(interp: object, pocket: bool) -> int:
+    """Check a circle mill event and hand it to `ngc/g12_circle_mill.ngc`."""
+    event = planned_event(interp, pocket)
+    glue.hand_over(interp, **event.locals())
+    glue.remember_first_plane(interp, event.place.first_plane)
+    if event.message:
+        glue.message(event.message)
+    return INTERP_OK
+
+
+@glue.handler
+def circle_mill_perimeter(self, **words):
+    """Prolog of G12.2, and of the event's subroutine form."""
+    return prepare_circle_mill(self, pocket=False)
+
+
+@glue.handler
+def circle_mill_pocket(self, **words):
+    """Prolog of G13.2."""
+    return prepare_circle_mill(self, pocket=True)
+
+
+@glue.handler
+def cycle_done(self, **words):
+    """Epilog of every cycle: the modes are again what the block found."""
+    glue.restore_modes(self)
+    return INTERP_OK

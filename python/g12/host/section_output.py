@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The moves and actions of a planned section, handed to the machine in order.
+
+While pieces go out the interpreter is in G90 G94 with C unwrapped, and blends them in G64.
+`Emission.release` puts everything back to what the program commanded; so it is wherever the
+program can see it, or the machine waits.
+
+A move in front of the section would be blended into its first piece: a dwell of no time stops it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Sequence
+from typing import NamedTuple
+
+from g12.polar.plan import Run
+from g12.section.block_rules import G1
+from g12.section.line import Place
+from g12.section.modes import Modes, decimal
+
+PER_MINUTE, PER_REVOLUTION = 0, 2  # feed_mode
+PATH_ACTIVE = 11  # index into active_g_codes
+G64 = 640
+TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
+EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
+STOP_HERE = "G4P0"
+BLOCK_END = ""
+
+
+class Action(NamedTuple):
+    """A block that is no motion, in its place between the moves.
+
+    ``modes`` are those in force when the tool gets there, None for a comment that needs none.
+    The text may be `BLOCK_END`: that is all the action tells then.
+    ``level`` is the call level whose saved state an M70 to M72 means, None for other blocks.
+    """
+
+    line: int
+    text: str
+    modes: Modes | None
+    level: int | None = None
+
+
+class PathControl:
+    """G61, G61.1 or G64 as the program commanded it, and as the pieces of a section need it.
+
+    Between the pieces of one block the path is blended, with ``smooth`` if the program gave no
+    tolerance; at the end of a block it is what the program commanded.
+    """
+
+    def __init__(self, interp: object, smooth: str) -> None:
+        self.interp, self.smooth = interp, smooth
+        self.find()
+
+    def find(self) -> None:
+        """Take what is in force for what the program commanded."""
+        settings, code = self.interp.active_settings, self.interp.active_g_codes[PATH_ACTIVE]
+        self._tolerances = f"G64P{decimal(settings[TOLERANCE])}Q{decimal(settings[MERGING])}"
+        self._commanded = self._tolerances if code == G64 else f"G{code / 10:g}"
+        own_tolerance = code == G64 and settings[TOLERANCE] > 0
+        self._within = self._commanded if own_tolerance else self.smooth
+        self._in_force, self._blending = self._commanded, self._tolerances
+
+    def inside(self) -> None:
+        """Set what blends the pieces of one block."""
+        self.set(self._within)
+
+    @property
+    def exact(self) -> bool:
+        """Tell whether blocks end in an exact path or stop."""
+        return self._commanded in EXACT_PATHS
+
+    def at_end(self, stop: bool, exact_stop: bool, block_ends: bool) -> None:
+        """Set what the last piece of a run must end in.
+
+        ``stop`` is asked for by the planner, ``exact_stop`` by G9.
+        """
+        if block_ends and exact_stop:
+            self.set(EXACT_STOP)
+        elif block_ends and self.exact:
+            self.set(self._commanded)
+        elif stop:
+            self.set(EXACT_PATH)
+
+    def give_back(self) -> None:
+        """Set what the program commanded."""
+        if self._blending != self._tolerances:
+            self.set(self._tolerances)
+        self.set(self._commanded)
+
+    def set(self, path: str) -> None:
+        """Set a path control; `give_back` undoes it."""
+        if path != self._in_force:
+            self.interp.execute(path)
+            self._in_force = path
+            self._blending = self._blending if path in EXACT_PATHS else path
+
+
+class Emission:
+    """Hands steps to the interpreter.
+
+    ``code`` names the section in refusals. ``x_factor`` turns a radius value into an X word (2
+    under G7); ``blending`` is in program units. ``absolute`` is the interpreter's name of G90,
+    ``canon`` its canonical functions.
+    """
+
+    def __init__(
+        self,
+        interp: object,
+        code: str,
+        *,
+        x_factor: float,
+        blending: float,
+        absolute: object,
+        canon: object,
+    ) -> None:
+        self.interp, self.code = interp, code
+        self.x_factor, self.absolute, self.canon = x_factor, absolute, canon
+        self.path = PathControl(interp, f"G64P{decimal(blending)}Q0")
+        self._wrapped = interp.c_axis_wrapped
+        self._per_revolution = interp.feed_mode == PER_REVOLUTION
+        self._begun = False
+
+    def run(self, steps: Sequence[Run | Action], modes: Modes, exact_lines: Container[int]) -> None:
+        """Hand over all steps, and release the interpreter in ``modes``.
+
+        ``exact_lines`` are those of blocks with G9.
+        """
+        self._stop_in_front(steps)
+        self._take_over()
+        for step, following in zip(steps, [*steps[1:], None]):
+            if isinstance(step, Action):
+                self._act(step)
+            elif step.stop or exact_lines or self.path.exact:
+                self._moves_to_an_end(step, following, step.line in exact_lines)
+            else:
+                self._moves(step.line, step.axes, step.pieces)
+        self.release(modes)
+
+    def release(self, modes: Modes) -> None:
+        """Put the interpreter into the modes that the program commanded."""
+        interp = self.interp
+        interp.c_axis_wrapped = self._wrapped
+        self.path.give_back()
+        self._per_revolution = modes.per_revolution
+        interp.execute("G95" * modes.per_revolution + f"F{decimal(modes.feed)}")
+        interp.execute("G91" if modes.incremental else "G90")
+        interp.motion_mode = modes.motion
+
+    def _stop_in_front(self, steps: Sequence[Run | Action]) -> None:
+        if steps and not self._begun and not self.path.exact:
+            self.interp.sequence_number = steps[0].line
+            self.interp.execute(STOP_HERE)
+        self._begun = True
+
+    def _take_over(self) -> None:
+        interp = self.interp
+        interp.c_axis_wrapped = False
+        interp.distance_mode = self.absolute
+        if self._per_revolution:
+            interp.execute("G94")
+        interp.feed_mode = PER_MINUTE  # reading may have left what the section ends in
+        interp.motion_mode = G1
+
+    def _moves_to_an_end(self, run: Run, following: object, exact_stop: bool) -> None:
+        """Hand over moves of which the last ends in another path control."""
+        block_ends = not isinstance(following, Run) or following.line != run.line
+        if len(run.pieces) > 1:
+            self._moves(run.line, run.axes, run.pieces[:-1])
+        self.interp.sequence_number = run.line
+        self.path.at_end(run.stop, exact_stop, block_ends)
+        self._block(run.axes, *run.pieces[-1])
+
+    def _moves(self, line: int, axes: str, pieces: list[tuple[float, ...]]) -> None:
+        """Hand over moves of one block.
+
+        The first is a block to the interpreter, which tells the machine the line and the modes.
+        The others are what it would make of their blocks, at a third of the time.
+        """
+        interp = self.interp
+        interp.sequence_number = line
+        self.path.inside()
+        self._block(axes, *pieces[0])
+        y, a, b = interp.current_y, interp.AA_current, interp.BB_current
+        u, v, w = interp.u_current, interp.v_current, interp.w_current
+        set_feed, move = self.canon.SET_FEED_RATE, self.canon.STRAIGHT_FEED
+        for x, c, z, feed in pieces[1:]:
+            set_feed(feed)
+            move(line, x, y, z, a, b, c, u, v, w)
+        interp.current_x, interp.CC_current, interp.current_z, _ = pieces[-1]
+
+    def _block(self, axes: str, x: float, c: float, z: float, feed: float) -> None:
+        # every digit: X must come back as the number that the moves behind this one have
+        values = {"X": x * self.x_factor, "C": c, "Z": z, "F": feed}
+        self.interp.execute("".join(f"{word}{values[word]:.17f}" for word in (*axes, "F")))
+
+    def _act(self, action: Action) -> None:
+        """Execute a block in its place."""
+        if action.text == BLOCK_END:
+            return
+        self.interp.sequence_number = action.line
+        if action.modes is None:
+            self._execute(action)
+            return
+        self.release(action.modes)
+        self._execute(action)
+        self.path.find()
+        self._take_over()
+
+    def _execute(self, action: Action) -> None:
+        """Execute the block as one of the program, which a remapped code must be."""
+        interp, place = self.interp, Place(self.code, action.line)
+        level, stands = interp.call_level, self._stands()
+        interp.call_level = level if action.level is None else action.level
+        try:
+            interp.read(action.text)
+            status = interp.execute(None)
+        except SystemError:  # how LinuxCNC hands a failed read or execute to Python
+            raise place.refuse(interp.get_errormsg()) from None
+        if status:
+            raise place.refuse(f"{action.text} waits for the machine: not inside a section")
+        if self._stands() != stands:
+            raise place.refuse(f"{action.text} moves the machine: not inside a section")
+        interp.call_level = level
+
+    def _stands(self) -> tuple[float, float, float]:
+        return self.interp.current_x, self.interp.CC_current, self.interp.current_z

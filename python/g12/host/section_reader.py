@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the blocks of a section do: contour motion is collected, modes act, the rest is kept.
+
+A block that is no motion is kept for its place between the moves; assignments act at once. While
+a section is read the interpreter is shown the programmed position in the plane, and the modes of
+the section, so that a program reads them from #5420, #<_x> or #<_feed>.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from operator import attrgetter
+from typing import NamedTuple
+
+from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
+
+from g12.errors import number
+from g12.flat.contour import Contour
+from g12.host import glue
+from g12.host.program_lines import Program
+from g12.host.section_output import BLOCK_END, PER_MINUTE, PER_REVOLUTION, Action
+from g12.section.block_rules import (
+    COMPENSATION,
+    FEED,
+    FORGET,
+    G0,
+    G1,
+    G2,
+    G3,
+    M_STATE,
+    NO_CODE,
+    REASON_OF_G,
+    RESTORE,
+    SAVE,
+    SAVE_FOR_SUB,
+    STATE_CODES,
+    Block,
+)
+from g12.section.line import Line, Place
+from g12.section.modes import Modes, action_text, comment_text, may_fail, modes_after, stop_text
+
+ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
+MOTIONS = (G0, G1, G2, G3)
+MOST_FEED = 1e9  # program units per minute
+
+WORDS = [
+    (letter, f"{letter.lower()}_flag", f"{letter.lower()}_number") for letter in "XCZIJRFSPQLE"
+]
+plain_words = attrgetter(
+    "f_flag", "f_number", "motion_to_be", *(name for word in WORDS[:6] for name in word[1:])
+)
+
+
+class Rules(NamedTuple):
+    """How the words of a section are read; lengths and feeds in program units.
+
+    ``diameter`` tells whether X words are diameters, ``x_scale`` turns a parsed one into a radius
+    value. ``rapid_feed`` is None where G0 is refused, ``closing`` the radius mismatch of an arc
+    that is forgiven. ``tool_radius`` returns None if no tool is loaded. ``level`` is the call
+    level at which the section is read.
+    """
+
+    code: str
+    level: int
+    diameter: bool
+    x_scale: float
+    z_with_x: bool
+    rapid_feed: float | None
+    closing: float
+    tool_radius: Callable[[], float | None]
+
+
+def block_of(parsed: object) -> Block:
+    """Return the interpreter's parsed block as plain data."""
+    words = {
+        letter: getattr(parsed, value) for letter, flag, value in WORDS if getattr(parsed, flag)
+    }
+    return Block(tuple(parsed.g_modes), tuple(parsed.m_modes), parsed.motion_to_be, words)
+
+
+def modes_of(interp: object) -> Modes:
+    """Return the modes in which a section begins."""
+    return Modes(
+        incremental=interp.distance_mode == MODE_INCREMENTAL,
+        per_revolution=interp.feed_mode == PER_REVOLUTION,
+        feed=interp.feed_rate,
+        speed=glue.spindle_speed(interp),
+        motion=interp.motion_mode,
+    )
+
+
+class Collector:
+    """Collects the blocks of one section, as the interpreter parsed them, in ``contour``."""
+
+    def __init__(self, interp: object, rules: Rules, program: Program) -> None:
+        self.interp, self.rules, self.program = interp, rules, program
+        self.parsed = interp.blocks[0]
+        self.modes = modes_of(interp)
+        self._spindle = glue.feed_spindle(interp)
+        self._speeds = [interp.speed[spindle] for spindle in range(interp.num_spindles)]
+        self.contour = Contour(
+            interp.current_x,
+            interp.current_z,
+            code=rules.code,
+            diameter=rules.diameter,
+            closing=rules.closing,
+        )
+        self.exact_lines: set[int] = set()  # of G9
+        self._moved = 0  # the line of the last move
+        self._saved: dict[int, Modes] = {}  # by M70 and M73, at each call level
+        self._restored_on_return: set[int] = set()
+
+    def refuse(self, reason: str) -> Exception:
+        """Return the refusal of the line taken last."""
+        return Place(self.rules.code, self.program.place).refuse(reason)
+
+    def set_modes(self, modes: Modes) -> None:
+        """Let modes act on the blocks that follow, and be what the program reads of them."""
+        interp, self.modes = self.interp, modes
+        interp.distance_mode = MODE_INCREMENTAL if modes.incremental else MODE_ABSOLUTE
+        interp.feed_mode = PER_REVOLUTION if modes.per_revolution else PER_MINUTE
+        interp.feed_rate = modes.feed
+        interp.motion_mode = modes.motion
+
+    def show_plane(self) -> None:
+        """Show the interpreter the programmed position."""
+        interp, contour = self.interp, self.contour
+        interp.current_x, interp.current_z, interp.CC_current = contour.x, contour.z, contour.c
+
+    def plain_line(self, raw: str) -> None:
+        """Take a line of nothing but numbers behind G1 to G3, F and the words of a move."""
+        self.program.parse(raw)
+        has_f, f, motion, has_x, x, has_c, c, has_z, z, has_i, i, has_j, j, has_r, r = plain_words(
+            self.parsed
+        )
+        modes = self.modes
+        if has_f or (motion != modes.motion and motion != NO_CODE):
+            motion = modes.motion if motion == NO_CODE else motion
+            self.set_modes(modes._replace(feed=f if has_f else modes.feed, motion=motion))
+        if has_x or has_c or has_z or has_i or has_j or has_r:
+            self._keep_apart()
+            self._move(
+                motion,
+                x if has_x else None,
+                c if has_c else None,
+                z if has_z else None,
+                i if has_i else None,
+                j if has_j else None,
+                r if has_r else None,
+            )
+
+    def with_spindle(self, line: Line) -> Line:
+        """Return a line with its $ word as a number: of the parsed block it cannot be asked."""
+        if not line.spindle:
+            return line
+        self.interp.read(f"C{line.spindle[1:]}")
+        return line._replace(spindle=f"${round(self.parsed.c_number)}")
+
+    def set_parameters(self, line: Line) -> None:
+        """Let the assignments of a line act; their values are those before it."""
+        if line.assignments:
+            self.interp.read(line.assignments)
+            self.interp.execute(None)
+
+    def set_state(self, line: Line, block: Block) -> None:
+        """Let the modes of a block act, and those it saves or restores."""
+        code = block.m[M_STATE]
+        if code in STATE_CODES:
+            self._state_code(code)
+        self.set_modes(modes_after(self.modes, block, self._speed(line, block)))
+
+    def _speed(self, line: Line, block: Block) -> float:
+        """Return the commanded speed of the spindle that feeds per revolution refer to."""
+        named, count = int(line.spindle[1:] or MAIN_SPINDLE), self.interp.num_spindles
+        if not ALL_SPINDLES <= named < count:
+            raise self.refuse(f"${named}: this machine has {count} spindle{'s' * (count > 1)}")
+        if "S" in block.words:
+            for spindle in range(count) if named == ALL_SPINDLES else (named,):
+                self._speeds[spindle] = block.words["S"]
+        if block.g[FEED] != NO_CODE:
+            self._spindle = max(named, MAIN_SPINDLE)
+        return self._speeds[self._spindle]
+
+    def action(self, line: Line, block: Block) -> None:
+        """Keep what the block does besides motion."""
+        self._mark(action_text(block, line))
+
+    def move(self, line: Line, block: Block) -> None:
+        """Add the block's motion and compensation, and keep the stop behind it."""
+        if line.exact_stop:
+            self.exact_lines.add(self.program.line)
+        if block.moves:
+            self._keep_apart()
+        if block.g[COMPENSATION] != NO_CODE:
+            self._compensate(block.g[COMPENSATION] // 10)
+        if block.moves:
+            words = [block.words.get(letter) for letter in "XCZIJR"]
+            self._move(block.motion, *words, line.relative)
+        self._mark(stop_text(block))
+
+    def comment(self, line: Line) -> None:
+        """Keep a comment, message or report, with its parameters as they are now."""
+        for comment in line.comments[-1:]:  # the interpreter knows only the last one of a line
+            if "#" in comment:
+                self.show_plane()
+                self.interp.read("")  # which renews #5420
+            text = comment_text(comment, self._parameter)
+            modes = self.modes if may_fail(comment) else None
+            self._keep(Action(self.program.place, text, modes))
+
+    def returned(self) -> None:
+        """Restore what an M73 saved in subs that have ended."""
+        for level in sorted(self._restored_on_return, reverse=True):
+            if level > self.interp.call_level:
+                self._restore(level)
+                self._restored_on_return.discard(level)
+
+    def _keep(self, action: Action) -> None:
+        self.contour.mark(action, line=action.line)
+
+    def _mark(self, text: str) -> None:
+        if text:
+            self._keep(Action(self.program.place, text, self.modes))
+
+    def _parameter(self, name: str) -> float | None:
+        """Return a parameter by number or name, None if there is none."""
+        params = self.interp.params
+        if name.isdigit():
+            return params[int(name)] if int(name) < len(params) else None
+        try:
+            return params[name]
+        except RuntimeError:
+            return None
+
+    def _move(
+        self,
+        motion: int,
+        x: float | None,
+        c: float | None,
+        z: float | None,
+        i: float | None,
+        j: float | None,
+        r: float | None,
+        relative: str = "",
+    ) -> None:
+        """Add a move; the words are the program's, None where there is none."""
+        contour, modes = self.contour, self.modes
+        if motion not in MOTIONS:
+            code = f"G{motion / 10:g}"
+            raise self.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
+        if x is not None:
+            x *= self.rules.x_scale
+            if modes.incremental or "X" in relative:
+                x += contour.x
+        if c is not None and (modes.incremental or "C" in relative):
+            c += contour.c
+        if z is not None:
+            self._check_z(x, c, i, j)
+            z += contour.z if modes.incremental else 0.0
+        line = self.program.place
+        if G1 < motion <= G3:
+            turn = 1 if motion == G3 else -1
+            contour.arc(turn, x, c, z, i=i, j=j, radius=r, line=line, feed=self._feed())
+        else:
+            contour.line(x, c, z, line=line, feed=self._feed() if motion else self._rapid_feed())
+
+    def _keep_apart(self) -> None:
+        """Mark the end of a block where the next one's line has the same number, as in a loop."""
+        line = self.program.place
+        if line == self._moved:
+            self._keep(Action(line, BLOCK_END, None))
+        self._moved = line
+
+    def _check_z(self, *others: float | None) -> None:
+        if not self.rules.z_with_x and any(other is not None for other in others):
+            raise self.refuse("Z needs a block of its own, or [G12] POLAR_Z = allow")
+
+    def _feed(self) -> float:
+        """Return the feed along the part in program units per minute."""
+        modes = self.modes
+        if modes.feed > MOST_FEED:
+            raise self.refuse(f"F{number(modes.feed)} is no feed: at most {number(MOST_FEED)}")
+        if not modes.per_revolution:
+            return modes.feed
+        if not modes.speed:
+            raise self.refuse("feed per revolution (G95, G99) needs the spindle speed S")
+        return modes.feed * modes.speed
+
+    def _rapid_feed(self) -> float:
+        feed = self.rules.rapid_feed
+        if feed is None:
+            raise self.refuse(f"G0 is refused (it is still active): {REASON_OF_G[G0]}")
+        return feed
+
+    def _compensate(self, side: int) -> None:
+        radius = self.rules.tool_radius()
+        if radius is None:
+            raise self.refuse(f"G{side} needs a tool in the spindle: its radius is compensated")
+        self.contour.compensation(side, radius, line=self.program.place)
+
+    def _state_code(self, code: int) -> None:
+        """Obey M70 to M73: here for the section's modes, between the moves for the machine's."""
+        level = self.interp.call_level
+        if code == RESTORE:
+            self._restore(level)
+        elif code == FORGET:
+            self._saved.pop(level, None)
+            self._restored_on_return.discard(level)
+            self._keep(Action(self.program.place, f"M{FORGET}", self.modes, level))
+        else:
+            self._saved[level] = self.modes
+            if code == SAVE_FOR_SUB and level > self.rules.level:
+                self._restored_on_return.add(level)
+            self._keep(Action(self.program.place, f"M{SAVE}", self.modes, level))
+
+    def _restore(self, level: int) -> None:
+        if level not in self._saved:
+            raise self.refuse("M72: no modes were saved in this section")
+        self._keep(Action(self.program.place, f"M{RESTORE}", self.modes, level))
+        self.set_modes(self._saved[level])

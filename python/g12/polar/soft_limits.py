@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Whether planned moves stay within the travel of the machine's axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from g12.machine_ini import Axis
+from g12.polar.plan import Run
+
+
+class Scale(NamedTuple):
+    """How a program coordinate becomes a machine coordinate: times ``factor``, plus ``offset``."""
+
+    factor: float
+    offset: float
+
+
+class Beyond(NamedTuple):
+    """A move that an axis cannot make: where it would go, and its limit, in machine coordinates."""
+
+    line: int
+    axis: str
+    position: float
+    limit: float
+
+
+class Travel:
+    """The travel of the axes X, C and Z, for moves in program coordinates."""
+
+    def __init__(self, axes: dict[str, Axis], scales: dict[str, Scale]) -> None:
+        self._ranges = [
+            (
+                letter,
+                [
+                    (limit - scales[letter].offset) / scales[letter].factor
+                    for limit in axes[letter][:2]
+                ],
+            )
+            for letter in "XCZ"
+        ]
+        self._scales = scales
+
+    def beyond(self, steps: Iterable[Run | object]) -> Beyond | None:
+        """Return the first move that leaves the travel of an axis, None if all stay within."""
+        runs = [step for step in steps if isinstance(step, Run)]
+        columns = zip(*(piece for run in runs for piece in run.pieces))
+        for (letter, limits), positions in zip(self._ranges, columns):
+            if min(positions) < limits[0] or limits[1] < max(positions):
+                return self._first(runs, letter, limits)
+        return None
+
+    def _first(self, runs: list[Run], letter: str, limits: list[float]) -> Beyond:
+        at = "XCZ".index(letter)
+        line, position = next(
+            (run.line, piece[at])
+            for run in runs
+            for piece in run.pieces
+            if not limits[0] <= piece[at] <= limits[1]
+        )
+        limit = limits[0] if position < limits[0] else limits[1]
+        factor, offset = self._scales[letter]
+        return Beyond(line, letter, position * factor + offset, limit * factor + offset)

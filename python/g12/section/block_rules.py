@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which codes and words a block of a section may hold, and why others are refused.
+
+Codes are the parser's: a G code times ten, by modal group.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from g12.section.line import Line, Place
+
+NO_CODE = -1
+# Modal groups of the G codes, as the parser numbers them, and two of the M codes.
+NON_MODAL, MOTION, PLANE, DISTANCE, CENTRE = 0, 1, 2, 3, 4
+FEED, UNITS, COMPENSATION, LENGTH, RETRACT = 5, 6, 7, 8, 10
+WORK_OFFSET, PATH, SPINDLE, DIAMETER, SHIFT = 12, 13, 14, 15, 16
+M_STOP, M_STATE = 4, 7
+G0, G1, G2, G3, G4 = 0, 10, 20, 30, 40
+M2, M30 = 2, 30
+STATE_CODES = SAVE, FORGET, RESTORE, SAVE_FOR_SUB = 70, 71, 72, 73
+KNOWN_G = {
+    NON_MODAL: {G4},
+    MOTION: {G0, G1, G2, G3},
+    PLANE: {170, 180},
+    DISTANCE: {900, 910},
+    CENTRE: {911},
+    FEED: {940, 950},
+    COMPENSATION: {400, 410, 420},
+    RETRACT: {980, 990},
+    PATH: {610, 611, 640},
+    SPINDLE: {970},
+}
+FEED_MODES = {940: False, 980: False, 950: True, 990: True}  # code: per revolution
+AXES = ("X", "C", "Z")
+MOVING_WORDS = (*AXES, "I", "J")
+ORIGIN = "the origin must stay in the spindle's centre"
+OTHER_AXES = "the section's words are X, C (or Y), Z, U and H"
+TOOL = "the tool cannot change inside the section"
+REASON_OF_GROUP = {
+    NON_MODAL: ORIGIN,
+    MOTION: "only G1, G2 and G3 move inside the section",
+    PLANE: "the section's plane is X-C",
+    CENTRE: "I and J are always incremental inside the section",
+    FEED: "the feed of a section is G94 or G95 (G98 or G99)",
+    UNITS: "the units cannot change inside the section",
+    COMPENSATION: "the radius is that of the loaded tool: G41 or G42 without D",
+    LENGTH: "the tool length offset cannot change inside the section",
+    WORK_OFFSET: ORIGIN,
+    SPINDLE: "the spindle keeps its speed inside the section (G97)",
+    DIAMETER: "X cannot change between diameter and radius inside the section",
+    SHIFT: ORIGIN,
+}
+REASON_OF_G = {
+    G0: "a rapid leaves the contour. Is the section's end missing above? "
+    "Else use G1 with a high F, or set [G12] POLAR_G0 = feed",
+    100: "offsets cannot change inside the section",
+    280: "the reference point is not in the plane",
+    281: "the reference point is not in the plane",
+    300: "the reference point is not in the plane",
+    301: "the reference point is not in the plane",
+    530: "machine coordinates are not those of the plane",
+}
+REASON_OF_M = {6: TOOL, 61: TOOL}
+NEEDED_WORD = {62: "P", 63: "P", 64: "P", 65: "P", 67: "E", 68: "E"}
+WAIT_FOR_INPUT, AT_ONCE = 66, 0  # M66, and the L that does not wait
+REASON_OF_WORD = {
+    **dict.fromkeys("ABVW@^", OTHER_AXES),
+    "T": TOOL,
+    "D": "the radius is that of the loaded tool",
+    "K": "the centre of an arc in the X-C plane is I and J",
+}
+
+
+class Block(NamedTuple):
+    """What the parser made of a line: codes by modal group, -1 is none, and word values."""
+
+    g: tuple[int, ...]
+    m: tuple[int, ...]
+    motion: int
+    words: dict[str, float]
+
+    @property
+    def moves(self) -> bool:
+        """Tell whether the block is a piece of the contour."""
+        return any(letter in self.words for letter in MOVING_WORDS)
+
+
+def check_letters(line: Line, place: Place) -> None:
+    """Refuse words that a section does not know, and two words for one axis."""
+    for letter in line.letters:
+        if letter in REASON_OF_WORD:
+            raise place.refuse(f"{letter} is refused: {REASON_OF_WORD[letter]}")
+    for axis, letters in (("X", "XU"), ("C", "CYH")):
+        given = [letter for letter in letters if letter in line.letters]
+        if len(given) > 1:
+            raise place.refuse(f"{given[0]} and {given[1]} both move {axis}: only one of them")
+
+
+def check_block(block: Block, rapid_allowed: bool, place: Place) -> None:
+    """Refuse codes that have no place in a section, each with its reason."""
+    for group, code in enumerate(block.g):
+        if code != NO_CODE and (
+            code not in KNOWN_G.get(group, ()) or (code == G0 and not rapid_allowed)
+        ):
+            reason = REASON_OF_G.get(code, REASON_OF_GROUP.get(group, "it is not known here"))
+            raise place.refuse(f"G{code / 10:g} is refused: {reason}")
+    for code in block.m:
+        if code in REASON_OF_M:
+            raise place.refuse(f"M{code} is refused: {REASON_OF_M[code]}")
+    _check_arguments(block, place)
+    if "P" in block.words and block.moves and block.motion in (G2, G3):
+        raise place.refuse("P is refused: an arc inside the section has no turns")
+    if len(feed_modes(block)) > 1:
+        raise place.refuse("G94 and G98 are feed per minute, G95 and G99 per revolution: not both")
+
+
+def _check_arguments(block: Block, place: Place) -> None:
+    """Refuse what LinuxCNC would find wrong with the words of an M code only between the moves."""
+    words = block.words
+    for code in block.m:
+        needed = NEEDED_WORD.get(code)
+        if needed and words.get(needed, -1.0) < 0.0:
+            raise place.refuse(f"M{code} needs {needed}, the number of the output")
+    if WAIT_FOR_INPUT in block.m:
+        _check_waiting(words, place)
+
+
+def _check_waiting(words: dict[str, float], place: Place) -> None:
+    """Refuse an M66 that LinuxCNC would refuse."""
+    waits = words.get("L", AT_ONCE) != AT_ONCE
+    for wrong, reason in (
+        (("P" in words) == ("E" in words), "either P or E, the number of the input"),
+        (waits and "E" in words, "L0 with E: only a digital input can be waited for"),
+        (waits and words.get("Q", 0.0) <= 0.0, "Q above zero, the longest wait in seconds"),
+        (words.get("L", 0.0) not in range(5), "L from 0 to 4"),
+    ):
+        if wrong:
+            raise place.refuse(f"M{WAIT_FOR_INPUT} needs {reason}")
+
+
+def feed_modes(block: Block) -> set[bool]:
+    """Return the feed modes that a block commands; True is per revolution."""
+    return {FEED_MODES[code] for code in (block.g[FEED], block.g[RETRACT]) if code in FEED_MODES}
+
+
+def alone(block: Block, m_code: int = NO_CODE) -> bool:
+    """Tell whether the block holds only a motion code, or ``m_code`` and its arguments."""
+    if m_code == NO_CODE:
+        others = [*block.g[:MOTION], *block.g[MOTION + 1 :], *block.m]
+        return not block.words and max(others) == NO_CODE
+    codes = [code for code in (*block.g, *block.m) if code != NO_CODE]
+    return codes == [m_code] and set(block.words) <= set("PQLE")

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One line of a section: what the interpreter may parse of it, and what its words mean there.
+
+The interpreter's parser reads every value, expression and parameter. It does not know G9, U, nor H
+with a sign, nor Y on a lathe: `split_line` rewrites those (U to X, H and Y to C) and says what
+they meant. A line of plain words, as most lines of a program are, is told by `is_plain` and needs
+none of it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from g12.errors import Refusal
+
+_NUMBER = r"[-+]?[\d.]+"
+is_plain: Callable[[str], object] = re.compile(
+    rf"(?:[Nn]\d+)?[ \t]*(?:(?:[XCZIJRFxczijrf]{_NUMBER}|[Gg]0?[123](?![\d.]))[ \t]*)+\r?", re.ASCII
+).fullmatch
+_COMMENT = re.compile(r"\(([^()]*)\)|;.*")
+_BLANKS = re.compile(r"\s+")
+_CONTROL = re.compile(r"/?(?:n[\d.]+)?(?:o|m0*(98|99)(?![\d.]))")
+_KEYWORD = re.compile(r"[a-z]*")
+_BRACKET = re.compile(r"\[|\]|<[^>]*>")
+_SIGNS = re.compile(r"[-+]*")
+_FUNCTION = re.compile(r"[a-z]+(?=\[)")
+_NAME = re.compile(r"<[^>]*>?")
+_DIGITS = re.compile(r"[\d.]*")
+_NINE = re.compile(r"0*9(?:\.0*)?")
+_LINE_NAMED = re.compile(r" line (\d+):")
+FOREIGN = {"u": "x", "h": "c", "y": "c"}  # what the parser is given instead
+
+
+class Place(NamedTuple):
+    """Where something is refused: the section's code, and the line."""
+
+    code: str
+    line: int
+
+    def refuse(self, reason: str) -> Refusal:
+        """Return the refusal of this line."""
+        return Refusal(f"{self.code} line {self.line}: {reason}")
+
+
+def line_named(error: Exception) -> int | None:
+    """Return the line of the section's file that a refusal names, None if it names none."""
+    named = _LINE_NAMED.search(str(error))
+    return int(named[1]) if named else None
+
+
+class Line(NamedTuple):
+    """A raw line in parts.
+
+    ``text`` is for the parser: lower case, no blanks, no comments; ``rewritten`` where the parser
+    could not have read the line itself. ``control`` is the kind of an O-word ("sub", "call",
+    "while", …; M98 is a "call" and M99 a "return"), "" on other lines. ``letters`` are the words
+    as written, ``relative`` the axes given by U and H. A parsed block shows neither
+    ``assignments`` nor the $ word, ``spindle``.
+    """
+
+    text: str
+    comments: tuple[str, ...] = ()
+    control: str = ""
+    letters: tuple[str, ...] = ()
+    rewritten: bool = False
+    relative: str = ""
+    exact_stop: bool = False
+    assignments: str = ""
+    spindle: str = ""
+
+    @property
+    def empty(self) -> bool:
+        """Tell whether the line holds no words."""
+        return not self.text.lstrip("/")
+
+    @property
+    def deletable(self) -> bool:
+        """Tell whether the line goes out with block delete."""
+        return self.text[:1] == "/"
+
+
+def split_line(raw: str) -> Line:
+    """Return a raw line in its parts."""
+    bare = _BLANKS.sub("", _COMMENT.sub("", raw)).lower()
+    comments = tuple(match[1] for match in _COMMENT.finditer(raw) if match[1] is not None)
+    control = _CONTROL.match(bare)
+    if control:
+        return Line(bare, comments, _kind(bare, control))
+    if "(" in bare:  # an unclosed or nested comment: the parser says so
+        return Line(bare)
+    words = list(split_words(bare.lstrip("/")))
+    letters = tuple(letter.upper() for letter, _ in words)
+    kept = [word for word in words if not _is_exact_stop(word)]
+    text = "".join(FOREIGN.get(letter, letter) + value for letter, value in kept)
+    return Line(
+        "/" * (bare[:1] == "/") + text,
+        comments,
+        letters=letters,
+        rewritten=len(kept) < len(words) or not {"U", "H", "Y"}.isdisjoint(letters),
+        relative="X" * ("U" in letters) + "C" * ("H" in letters),
+        exact_stop=len(kept) < len(words),
+        assignments=_words_of("#", words),
+        spindle=_words_of("$", words),
+    )
+
+
+def _kind(bare: str, control: re.Match[str]) -> str:
+    """Return the kind of an O-word: its keyword stands behind a name, a number or an expression."""
+    if control[1]:
+        return {"98": "call", "99": "return"}[control[1]]
+    name = _NAME.match(bare, control.end())
+    behind = name.end() if name else value_end(bare, control.end())
+    return _KEYWORD.match(bare, behind)[0] or "program"
+
+
+def _words_of(wanted: str, words: list[tuple[str, str]]) -> str:
+    return "".join(letter + value for letter, value in words if letter == wanted)
+
+
+def _is_exact_stop(word: tuple[str, str]) -> bool:
+    return word[0] == "g" and bool(_NINE.fullmatch(word[1]))
+
+
+def split_words(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the (letter, value text) pairs of a bare line; ("#", "1=3") for an assignment."""
+    at = 0
+    while at < len(text):
+        end = value_end(text, at if text[at] == "#" else at + 1)
+        if text[end : end + 1] == "=":
+            end = value_end(text, end + 1)
+        yield text[at], text[at + 1 : end]
+        at = max(end, at + 1)
+
+
+def value_end(text: str, start: int) -> int:
+    """Return where the value that begins at ``start`` ends: number, parameter or expression."""
+    at = _SIGNS.match(text, start).end()
+    if text[at : at + 2] == "#<":
+        return _NAME.match(text, at + 1).end()
+    if text[at : at + 1] == "#":
+        return value_end(text, at + 1)
+    function = _FUNCTION.match(text, at)
+    end = _bracket_end(text, function.end() if function else at)
+    if function and text[end : end + 2] == "/[":  # atan[1]/[2]
+        return _bracket_end(text, end + 1)
+    return end
+
+
+def _bracket_end(text: str, start: int) -> int:
+    """Where the bracket that opens at ``start`` closes, or the number there ends."""
+    if text[start : start + 1] != "[":
+        return _DIGITS.match(text, start).end()
+    depth = 0
+    for bracket in _BRACKET.finditer(text, start):
+        depth += {"[": 1, "]": -1}.get(bracket[0], 0)
+        if not depth:
+            return bracket.end()
+    return len(text)

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the blocks of a section do besides motion: modes, actions of the machine, comments."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+from g12.errors import LONGEST_BLOCK
+from g12.section.block_rules import (
+    CENTRE,
+    DISTANCE,
+    M_STOP,
+    MOTION,
+    NO_CODE,
+    NON_MODAL,
+    PATH,
+    SPINDLE,
+    STATE_CODES,
+    Block,
+    feed_modes,
+)
+from g12.section.line import Line
+
+PASSED_ON = (NON_MODAL, CENTRE, PATH, SPINDLE)  # groups that the machine acts on
+ARGUMENTS = ("S", "P", "Q", "L", "E")  # of the codes that are no motion
+ORIENT = 19
+_IN_REPORT = re.compile(r"%(d|f|\.\df)|#(\d+|<[^>]*>)")
+_REPORTS = ("debug,", "print,", "log,", "abort,")
+
+
+class Modes(NamedTuple):
+    """The modes of a section: they act as they are read, not when the tool gets there.
+
+    ``feed`` is F in program units per minute, or per revolution; ``speed`` that of the spindle
+    which turns the latter into the former; ``motion`` the code that bare words repeat.
+    """
+
+    incremental: bool
+    per_revolution: bool
+    feed: float
+    speed: float
+    motion: int
+
+
+def modes_after(modes: Modes, block: Block, speed: float) -> Modes:
+    """Return the modes once the codes and F of ``block`` have acted, and S has made the speed."""
+    words = block.words
+    distance, commanded = block.g[DISTANCE], feed_modes(block)
+    per_revolution = commanded.pop() if commanded else modes.per_revolution
+    feed = modes.feed if per_revolution == modes.per_revolution else 0.0  # F in the other unit
+    return Modes(
+        incremental=modes.incremental if distance == NO_CODE else distance == 910,
+        per_revolution=per_revolution,
+        feed=words.get("F", feed),
+        speed=speed,
+        motion=modes.motion if block.g[MOTION] == NO_CODE else block.g[MOTION],
+    )
+
+
+def action_text(block: Block, line: Line) -> str:
+    """Return the block without its motion, every value read; "" if nothing is left."""
+    codes = [f"G{block.g[group] / 10:g}" for group in PASSED_ON if block.g[group] != NO_CODE]
+    codes += [
+        f"M{code}"
+        for group, code in enumerate(block.m)
+        if code != NO_CODE and group != M_STOP and code not in STATE_CODES
+    ]
+    letters = (*ARGUMENTS, "R") if ORIENT in block.m else ARGUMENTS
+    codes += [letter + decimal(block.words[letter]) for letter in letters if letter in block.words]
+    return "".join(codes) + line.spindle if codes else ""
+
+
+def stop_text(block: Block) -> str:
+    """Return the block's M0, M1 or M60, which acts behind its motion; "" if there is none."""
+    return "" if block.m[M_STOP] == NO_CODE else f"M{block.m[M_STOP]}"
+
+
+def decimal(value: float) -> str:
+    """Return a value the way the parser reads one: the language has no exponents."""
+    return f"{value:.10f}".rstrip("0").rstrip(".")
+
+
+def may_fail(comment: str) -> bool:
+    """Tell whether a comment may stop the program: (ABORT,), (PY,) and their like."""
+    return comment.lstrip().lower().startswith(("abort,", "py"))
+
+
+def comment_text(comment: str, value_of: Callable[[str], float | None]) -> str:
+    """Return a comment with the parameters of (DEBUG,), (PRINT,), (LOG,) and (ABORT,) filled in.
+
+    It is cut to a line that LinuxCNC can read. ``value_of`` gives a parameter by number or name
+    ("12", "_x"), None if it does not exist.
+    """
+    if not comment.lstrip().lower().startswith(_REPORTS):
+        return f"({comment})"
+    decimals = 6
+
+    def filled(match: re.Match[str]) -> str:
+        nonlocal decimals
+        if match[1]:
+            decimals = {"d": 0, "f": 4}.get(match[1]) if match[1] in "df" else int(match[1][1])
+            return ""
+        value = value_of("".join(match[2].split()).strip("<>").lower())
+        return "######" if value is None else f"{value:.{decimals}f}"
+
+    text = _IN_REPORT.sub(filled, comment)[: LONGEST_BLOCK - len("( )")]
+    return f"({text} )" if text.endswith("#") else f"({text})"  # no parameter may begin there

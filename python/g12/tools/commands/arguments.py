@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the commands share: words of the command line, errors, progress, traces and runs."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import functools
+import math
+import re
+import sys
+import threading
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Callable
+
+from g12.tools.headless.machine import Machine, MachineError, Run, StartupError
+from g12.tools.machine.ini import Ini, IniError, read_ini
+from g12.tools.preview.tracer import Tools, Trace, TraceFailure, trace
+
+GOOD, FINDING, USAGE = 0, 1, 2
+TICK = 1.0  # s
+MOST_SECONDS = 24 * 3600.0
+SECTIONS = re.compile(r"\s*\[(EMC|KINS|RS274NGC|TRAJ)\]", re.MULTILINE)  # of a machine's INI
+TOOL = re.compile(r"\s*T\d+(\s+[TPDIJQXYZABCUVW][-+.\d]+)*\s*(;.*)?", re.IGNORECASE)
+NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
+RAISED = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:")  # how Python names what was raised
+HIDDEN = "\r\033[K"
+
+
+class UsageError(ValueError):
+    """The command cannot do what was asked: a wrong file, suffix or word."""
+
+
+class ProgramError(RuntimeError):
+    """The program itself does not come to its end; names its line and LinuxCNC's text."""
+
+
+class Parser(argparse.ArgumentParser):
+    """The words of one command, whose wrong use is told in one line."""
+
+    def __init__(self, prog: str, description: str = "", **options) -> None:
+        shape = {"formatter_class": argparse.RawDescriptionHelpFormatter, **options}
+        super().__init__(prog=prog, description=description.replace("`", ""), **shape)
+
+    def error(self, message: str) -> None:
+        """End the program: ``message`` says what is wrong with its words."""
+        self.exit(USAGE, f"{self.prog}: {message} (usage: {self.prog} --help)\n")
+
+
+def number_above(least: float) -> Callable[[str], float]:
+    """Return what reads a number above ``least`` from the command line."""
+    return _reader(float, lambda value: least < value < math.inf, f"a number above {least:g}")
+
+
+def number_from(least: float) -> Callable[[str], float]:
+    """Return what reads a number not below ``least`` from the command line."""
+    return _reader(float, lambda value: least <= value < math.inf, f"a number from {least:g}")
+
+
+def count_from(least: int) -> Callable[[str], int]:
+    """Return what reads a whole number not below ``least`` from the command line."""
+    return _reader(int, lambda value: value >= least, f"a whole number from {least}")
+
+
+def _reader(sort: type, is_good: Callable[[float], bool], wanted: str) -> Callable:
+    def read(text: str) -> float:
+        try:
+            value = sort(text)
+        except ValueError:
+            value = math.nan
+        if not is_good(value):
+            raise argparse.ArgumentTypeError(f"{text!r} is not {wanted}")
+        return value
+
+    return read
+
+
+def add_program(parser: argparse.ArgumentParser) -> None:
+    """Add the words that name a program and its machine."""
+    parser.add_argument("program", type=Path, help="program file")
+    parser.add_argument("--ini", type=Path, required=True, help="INI file of the machine")
+    parser.add_argument("--tools", type=Path, help="tool table in place of the INI's")
+
+
+def add_run(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add the words of commands that can also run the program."""
+    parser.add_argument("--run", action="store_true", help=what)
+    parser.add_argument(
+        "--override",
+        type=number_above(0),
+        default=100.0,
+        metavar="PERCENT",
+        help="feed override of --run (default 100): real time is what a run takes",
+    )
+
+
+def check_run(asked: argparse.Namespace) -> None:
+    """Refuse a feed override where nothing is run."""
+    if asked.override != 100.0 and not asked.run:
+        raise UsageError("--override is the feed override of --run, which is not there")
+
+
+def one_line(name: str) -> Callable:
+    """Make a command's problems one line on standard error and an exit code."""
+
+    def decorate(command: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
+        @functools.wraps(command)
+        def guarded(arguments: list[str]) -> int:
+            try:
+                return command(arguments)
+            except BrokenPipeError:  # whose it is, main() finds out
+                raise
+            except (UsageError, IniError, OSError) as problem:
+                print(f"g12 {name}: {_text(problem)}", file=sys.stderr)
+                return USAGE
+            except (ProgramError, TraceFailure, StartupError, MachineError) as problem:
+                print(f"g12 {name}: {_text(problem)}", file=sys.stderr)
+                return FINDING
+
+        return guarded
+
+    return decorate
+
+
+def checked_ini(program: Path, ini: Path, tools: Path | None) -> Ini:
+    """Return the machine's INI after a look whether all files named are what they should be."""
+    for path in filter(None, (program, ini, tools)):
+        existing(path)
+    if tools:
+        tool_table(tools)
+    return machine_ini(ini)
+
+
+def existing(path: Path) -> Path:
+    """Return a file's path if it is there."""
+    if path.is_dir():
+        raise UsageError(f"{path}: is a folder")
+    if not path.is_file():
+        raise UsageError(f"{path}: no such file")
+    return path
+
+
+def machine_ini(path: Path) -> Ini:
+    """Return the INI of a machine if it is one."""
+    ini = read_ini(existing(path))
+    if not SECTIONS.search(ini.text):
+        raise UsageError(f"{path}: is not a machine INI: no section [RS274NGC] or [TRAJ]")
+    return ini
+
+
+def tool_table(path: Path) -> Path:
+    """Return the path of a tool table if it is one; an empty one is."""
+    lines = existing(path).read_text(encoding="utf-8", errors="replace").splitlines()
+    entries = [line for line in lines if line.strip() and line.strip()[0] not in ";#"]
+    if entries and not any(map(TOOL.fullmatch, entries)):
+        raise UsageError(f"{path}: is not a tool table: no line is like T1 P1 D6.0")
+    return path
+
+
+def traced(program: Path, ini: Path, tools: Tools = None) -> Trace:
+    """Return the trace of a program that comes to its end, or raise ProgramError."""
+    return ended(program, with_axes(trace(program, ini, tools=tools), ini))
+
+
+def with_axes(result: Trace, ini: Path) -> Trace:
+    """Return a trace whose error names the machine's axes if the program asks for another one."""
+    error = result.error
+    return replace(result, error=error._replace(text=told(error.text, ini))) if error else result
+
+
+def told(text: str, ini: Path) -> str:
+    """Return the interpreter's error, with the machine's axes if it is about another one."""
+    wanted = NO_AXIS.match(text)
+    axes = "".join(read_ini(ini).words("TRAJ", "COORDINATES", "XYZ")).upper()
+    if not wanted or wanted[1].upper() in axes:
+        return text
+    return f"{text}: this INI's machine has axes {' '.join(dict.fromkeys(axes))}"
+
+
+def ended(program: Path, result: Trace) -> Trace:
+    """Return a trace that came to its end, or raise ProgramError."""
+    if result.error:
+        raise ProgramError(f"{program}:{result.error.line}: {result.error.text}")
+    return result
+
+
+def run_program(program: Path, ini: Path, tools: Tools = None, override: float = 100.0) -> Run:
+    """Return the run of a program that comes to its end, or raise ProgramError.
+
+    ``override`` is the feed override in per cent.
+    """
+    result = run_anyhow(program, ini, tools, override)
+    if result.error:
+        raise ProgramError(f"{program}: {told(result.error.text, ini)}")
+    return result
+
+
+def run_anyhow(
+    program: Path,
+    ini: Path,
+    tools: Tools = None,
+    override: float = 100.0,
+    timeout: float = MOST_SECONDS,
+) -> Run:
+    """Return the run of a program that may end with an error; ``timeout`` is in seconds.
+
+    LinuxCNC runs a copy of the program; where it names that, the program's own name is put.
+    """
+    faster = {"DISPLAY": {"MAX_FEED_OVERRIDE": max(1.0, override / 100.0)}}
+    with Machine(ini, tools=tools, overrides=faster) as machine:
+        machine.feed_override(override / 100.0)
+        try:
+            return machine.run(program, timeout)
+        except MachineError as problem:
+            copy = rf"[^\s'\"]*/{re.escape(program.name)}"
+            raise type(problem)(re.sub(copy, str(program), str(problem))) from None
+
+
+def say(lines: Iterable[str]) -> None:
+    """Print what a work tells as it goes on; it is done even if nobody reads that to its end."""
+    unread = None
+    for line in lines:
+        try:
+            print(line)
+        except BrokenPipeError as problem:
+            unread = problem
+    if unread:
+        raise unread
+
+
+@contextlib.contextmanager
+def progress(text: str) -> Iterator[None]:
+    """Say on standard error what is being done; on a terminal also for how long."""
+    if not sys.stderr.isatty():
+        print(text, file=sys.stderr, flush=True)
+        yield
+        return
+    done = threading.Event()
+    ticker = threading.Thread(target=_tick, args=(text, done))
+    ticker.start()
+    try:
+        yield
+    finally:
+        done.set()
+        ticker.join()
+
+
+def _tick(text: str, done: threading.Event) -> None:
+    started = time.monotonic()
+    while not done.wait(TICK):
+        seconds = time.monotonic() - started
+        print(f"{HIDDEN}{text} {seconds:.0f} s", end="", file=sys.stderr, flush=True)
+    print(HIDDEN, end="", file=sys.stderr, flush=True)
+
+
+def _text(problem: Exception) -> str:
+    """Return the problem in one line: what went wrong, of a long log only what tells most."""
+    lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
+    if len(lines) < 2:
+        return "".join(lines)
+    raised = [line for line in lines if RAISED.match(line)]
+    return f"{lines[0]} … {(raised or lines)[-1]}"

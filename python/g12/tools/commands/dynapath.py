@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 dynapath``: circle mill events as a LinuxCNC program.
+
+Nothing is printed unless every line is good. Made for a [FILTER] of LinuxCNC's INI:
+
+  [FILTER]
+  PROGRAM_EXTENSION = .dyn Dynapath circle mill events
+  dyn = python3 /path/to/g12/python/g12 dynapath --units inch
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from g12.errors import Refusal
+from g12.tools.commands.arguments import GOOD, Parser, ProgramError, existing, one_line
+from g12.tools.dynapath import program_from_events
+
+EXAMPLES = """\
+examples:
+  g12 dynapath events.dyn --units inch
+  g12 dynapath events.dyn > events.ngc
+
+exit code: 0 the program is printed, 1 a line is wrong, 2 wrong use
+"""
+
+
+@one_line("dynapath")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    parser = Parser(prog="g12 dynapath", description=__doc__, epilog=EXAMPLES)
+    parser.add_argument("file", type=Path, help="event text")
+    parser.add_argument("--units", choices=("inch", "mm"), help="of the events: adds G20 or G21")
+    asked = parser.parse_args(arguments)
+    text = existing(asked.file).read_text(encoding="latin-1")
+    try:
+        program = program_from_events(text, asked.units)
+    except Refusal as refusal:
+        raise ProgramError(f"{asked.file}: {refusal}") from None
+    print(program, end="")
+    return GOOD

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The commands of ``python3 python/g12``: one line each, loaded when called.
+
+A command is a module with ``main(arguments) -> exit code``.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import sys
+from importlib import import_module
+
+FAILED = 1
+INTERRUPTED, UNREAD = 130, 141  # as a shell says of a program ended by SIGINT, SIGPIPE
+
+COMMANDS = {
+    "check": ("g12.tools.commands.check", "check how the package is set up in a machine config"),
+    "install": ("g12.tools.commands.install", "put the package into a machine config"),
+    "uninstall": ("g12.tools.commands.uninstall", "take it out again"),
+    "run": ("g12.tools.commands.run", "run a program on a headless LinuxCNC"),
+    "dynapath": (
+        "g12.tools.commands.dynapath",
+        "print Dynapath circle mill events as a LinuxCNC program",
+    ),
+    "plot": ("g12.tools.commands.plot", "draw a picture of what a program cuts"),
+    "verify": (
+        "g12.tools.commands.verify",
+        "prove that pockets and polar sections come out as programmed",
+    ),
+    "regress": ("g12.tools.commands.regress", "keep what programs do, and tell what changed"),
+    "demo": ("g12.tools.commands.demo", "run, draw and measure the manuals' programs"),
+    "trace": ("g12.tools.commands.trace", "list the moves of a program"),
+}
+
+
+def usage() -> str:
+    """Return the list of commands."""
+    lines = (f"  {name:10} {summary}" for name, (_, summary) in COMMANDS.items())
+    return "\n".join(["usage: python3 python/g12 COMMAND [-h] …", "", *lines])
+
+
+def main(arguments: list[str]) -> int:
+    """Run the command named first; return its exit code."""
+    name, *rest = arguments or ["--help"]
+    try:
+        return flushed(name, rest)
+    except KeyboardInterrupt:
+        print(f"g12 {name}: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError as problem:
+        if not nobody_reads():
+            print(f"g12 {name}: {problem}", file=sys.stderr)
+            return FAILED
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return UNREAD
+
+
+def command(name: str, arguments: list[str]) -> int:
+    """Run a command; return its exit code."""
+    if name in ("-h", "--help"):
+        print(usage())
+        return 0
+    if name not in COMMANDS:
+        print(f"g12: no command {name!r} (usage: g12 --help)", file=sys.stderr)
+        return 2
+    return import_module(COMMANDS[name][0]).main(arguments)
+
+
+def flushed(name: str, arguments: list[str]) -> int:
+    """Run a command until all its output is written; return its exit code."""
+    try:
+        return command(name, arguments)
+    finally:
+        print(end="", flush=True)
+
+
+def nobody_reads() -> bool:
+    """Tell whether whoever read the standard output has closed it, as ``| head`` does."""
+    output = select.poll()
+    output.register(sys.stdout, 0)
+    return bool(output.poll(0))

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 regress``: keep what programs do, and tell later what changed, where and by how much.
+
+``record`` writes a trace of each program to a directory to keep under version control; ``check``
+interprets the programs again and compares. For a shop that updates LinuxCNC (same programs) or a
+post-processor (new programs, ``--programs``), or edits its INI, its remaps or its tools.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+
+from g12.tools.commands.arguments import (
+    FINDING,
+    GOOD,
+    Parser,
+    count_from,
+    number_above,
+    number_from,
+    one_line,
+)
+from g12.tools.regress.record_and_check import Asked, Terms, check, record
+from g12.tools.regress.recorder import FAILED, SAME, Result
+from g12.tools.regress.report import Progress, json_report, text_report
+
+DESCRIPTION = __doc__.partition("\n\n")[2].replace("`", "")
+RECORD_EXAMPLES = """\
+examples:
+  g12 regress record nc/ --ini mill.ini -d regress      a folder of programs, for the first time
+  g12 regress record nc/new.ngc -d regress              one program more, or one again
+  g12 regress record -d regress                         everything again: what it does now is right
+
+A program that LinuxCNC refuses is recorded with its error as the expected result.
+exit code: 0 recorded, 1 the interpreter died or found no end with a program, 2 wrong use
+"""
+CHECK_EXAMPLES = """\
+examples:
+  g12 regress check -d regress                          after an update of LinuxCNC
+  g12 regress check -d regress --programs new_nc/       after an update of the post-processor
+  g12 regress check -d regress --picture changes/       with a picture of each change
+  g12 regress check -d regress --tools mill.tbl         with the present tool table
+
+exit code: 0 as recorded, 1 something changed, 2 wrong use
+"""
+
+
+def parser() -> Parser:
+    """Return the command's words."""
+    words = Parser(prog="g12 regress", description=DESCRIPTION)
+    actions = words.add_subparsers(dest="action", required=True, metavar="record | check")
+    _record_words(actions)
+    _check_words(actions)
+    return words
+
+
+def _record_words(actions) -> None:
+    words = actions.add_parser(
+        "record",
+        help="keep what programs do",
+        epilog=RECORD_EXAMPLES,
+    )
+    words.set_defaults(run=run_record)
+    words.add_argument(
+        "programs",
+        nargs="*",
+        type=Path,
+        metavar="PROGRAM",
+        help="program or folder with programs (default: all that are recorded)",
+    )
+    _file(words, "--ini", "INI file of the machine")
+    _file(words, "--tools", "tool table in place of the INI's")
+    _file(words, "--var", "var file (default: all parameters are 0)")
+    _common_words(words)
+
+
+def _check_words(actions) -> None:
+    words = actions.add_parser(
+        "check",
+        help="tell what changed",
+        epilog=CHECK_EXAMPLES,
+    )
+    words.set_defaults(run=run_check)
+    words.add_argument("names", nargs="*", metavar="PROGRAM", help="default: all recorded")
+    _file(words, "--programs", "folder with other versions of the programs", "DIR")
+    _file(words, "--ini", "INI file in place of the recorded one")
+    _file(words, "--tools", "tool table in place of the recorded one")
+    _file(words, "--picture", "draw each change, in this folder", "DIR")
+    _common_words(words)
+
+
+def _file(words: argparse.ArgumentParser, name: str, text: str, metavar: str = "FILE") -> None:
+    words.add_argument(name, type=Path, metavar=metavar, help=text)
+
+
+def _common_words(words: argparse.ArgumentParser) -> None:
+    directory = {"type": Path, "required": True, "metavar": "DIR"}
+    words.add_argument("-d", "--directory", **directory, help="the recordings")
+    for name, default, metavar, text in (
+        ("--tolerance", Terms.ends, "LENGTH", "of ends, in machine units and degrees"),
+        ("--feed-tolerance", Terms.feeds, "PERCENT", "of feeds"),
+        ("--timeout", Terms.timeout, "SECONDS", "for each program"),
+    ):
+        help_ = f"{text} (default {default:g})"
+        read = number_above(0) if name == "--timeout" else number_from(0)
+        words.add_argument(name, type=read, default=default, metavar=metavar, help=help_)
+    jobs = {"type": count_from(1), "default": os.cpu_count(), "metavar": "N"}
+    words.add_argument("--jobs", **jobs, help="default: all cores")
+    words.add_argument("--json", action="store_true", help="report as JSON")
+
+
+@one_line("regress")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    asked = parser().parse_args(arguments)
+    return asked.run(asked)
+
+
+def _terms(asked: argparse.Namespace) -> Terms:
+    pictures = getattr(asked, "picture", None)
+    values = (asked.tolerance, asked.feed_tolerance, asked.timeout, asked.jobs, pictures)
+    return Terms(*values, Progress())
+
+
+def run_record(asked: argparse.Namespace) -> int:
+    """Record programs; return the exit code."""
+    what = Asked(asked.programs, asked.ini, asked.tools, asked.var)
+    found = record(asked.directory, what, _terms(asked))
+    return _say(found, [], asked.json, good=all(result.verdict != FAILED for result in found))
+
+
+def run_check(asked: argparse.Namespace) -> int:
+    """Compare programs with their recordings; return the exit code."""
+    others = {"programs": asked.programs, "ini": asked.ini, "tools": asked.tools}
+    found, notes = check(asked.directory, asked.names, **others, terms=_terms(asked))
+    return _say(found, notes, asked.json, good=all(result.verdict == SAME for result in found))
+
+
+def _say(found: list[Result], notes: list[str], as_json: bool, good: bool) -> int:
+    lines = [json_report(found, notes, good)] if as_json else text_report(found, notes)
+    print("\n".join(lines))
+    return GOOD if good else FINDING

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 run``: a program to its end on a headless LinuxCNC.
+
+It is isolated from any other LinuxCNC on the computer, and nothing of the machine's own files is
+written. M0 and M1 are passed over.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+
+from g12.tools.commands.arguments import (
+    FINDING,
+    GOOD,
+    Parser,
+    add_program,
+    checked_ini,
+    number_above,
+    one_line,
+    run_anyhow,
+    told,
+)
+from g12.tools.headless.machine import Run
+from g12.tools.machine.ini import Ini
+from g12.tools.preview.tracer import AXES, mm_per_unit
+from g12.tools.regress.recording_text import LINEAR, number
+from g12.tools.units import UNITS
+
+EXAMPLES = """\
+examples:
+  g12 run pocket.ngc --ini mill.ini
+  g12 run pocket.ngc --ini mill.ini --tools other.tbl --timeout 3600
+
+exit code: 0 the program came to its end, 1 it did not, 2 wrong use
+"""
+DECIMALS = 6
+
+
+def report(result: Run, ini: Ini) -> Iterator[str]:
+    """Yield what the run said and where the machine stands at its end."""
+    for message in result.messages:
+        yield f"message: {message.text}"
+    axes = [(axis, AXES.index(axis)) for axis in result.samples.axes]
+    ends = (f"{axis}{number(round(result.position[at], DECIMALS))}" for axis, at in axes)
+    unit = next(unit.name for unit in UNITS.values() if unit.mm == mm_per_unit(ini))
+    units = unit if all(LINEAR[at] for _, at in axes) else f"{unit} and degrees"
+    yield f"ends at {' '.join(ends)} (machine position, {units})"
+    yield f"{result.seconds:.3f} s in motion"
+
+
+@one_line("run")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    parser = Parser(prog="g12 run", description=__doc__, epilog=EXAMPLES)
+    add_program(parser)
+    timeout = {"type": number_above(0), "default": 600.0, "metavar": "SECONDS"}
+    parser.add_argument("--timeout", **timeout, help="give up after this (default 600)")
+    asked = parser.parse_args(arguments)
+    ini = checked_ini(asked.program, asked.ini, asked.tools)
+    result = run_anyhow(asked.program, asked.ini, asked.tools, timeout=asked.timeout)
+    for line in report(result, ini):
+        print(line)
+    if result.error:
+        print(f"g12 run: {asked.program}: {told(result.error.text, asked.ini)}", file=sys.stderr)
+    return FINDING if result.error else GOOD

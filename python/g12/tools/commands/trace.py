@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 trace``: the moves of a program, one a line.
+
+The stock interpreter is asked, as a preview does; nothing moves. Lengths are mm and angles
+degrees, whatever the program and the machine use; positions are those of the controlled point
+in machine coordinates. A line begins with the program's own line number.
+"""
+
+from __future__ import annotations
+
+from g12.tools.commands.arguments import (
+    GOOD,
+    Parser,
+    add_program,
+    checked_ini,
+    count_from,
+    ended,
+    one_line,
+    with_axes,
+)
+from g12.tools.preview.tracer import AXES, Move, trace
+
+EXAMPLES = """\
+examples:
+  g12 trace pocket.ngc --ini mill.ini
+  g12 trace pocket.ngc --ini mill.ini --tools other.tbl --digits 10
+
+exit code: 0 the program came to its end, 1 it did not, 2 wrong use
+"""
+
+
+def line_of(move: Move, digits: int) -> str:
+    """Return a move as text: line, kind, what changes, centre of an arc, feed."""
+    words = [f"{axis}{end:.{digits}f}" for axis, end in zip(AXES, move.end) if _moves(move, axis)]
+    if move.kind == "arc":
+        words += [f"{name}{value:.{digits}f}" for name, value in zip("IJK", move.centre)]
+        words.append(f"turns {move.turns:+d} G{move.plane}")
+    if move.feed:
+        words.append(f"F{move.feed:.6g} {move.feed_mode}")
+    return f"{move.block:6d} {move.kind:5} {' '.join(words)}"
+
+
+def _moves(move: Move, axis: str) -> bool:
+    index = AXES.index(axis)
+    return move.start[index] != move.end[index]
+
+
+@one_line("trace")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    parser = Parser(prog="g12 trace", description=__doc__, epilog=EXAMPLES)
+    add_program(parser)
+    digits = {"type": count_from(0), "default": 6, "metavar": "N"}
+    parser.add_argument("--digits", **digits, help="decimals (default 6)")
+    asked = parser.parse_args(arguments)
+    checked_ini(asked.program, asked.ini, asked.tools)
+    traced = with_axes(trace(asked.program, asked.ini, tools=asked.tools), asked.ini)
+    for move in traced.moves:
+        print(line_of(move, asked.digits))
+    for line, text in traced.messages:
+        print(f"{line:6d} message {text}")
+    ended(asked.program, traced)
+    return GOOD

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Dynapath event text to a LinuxCNC program: circle mill events only. Knows text, not motion.
+
+An event is one line: ``N1800(4)G7X1.5Y2.Z-.5W.1O.5R1.5D0C2K.2J.3L.02P5F20V15$``, that is block
+number, event type, entries, end mark. A ``/`` behind a letter marks an incremental entry. Each
+becomes one ``o<circle_mill> call``; W and F are modal and carried from event to event.
+
+Rules: every line is empty or an event of type 4; no entry twice; X, Y, Z, R, C in every event,
+W and F in it or an earlier one; only X, Y, Z, L can be incremental; G 0 or 7, D from 0 to 3, C from
+0 to 2; R, K, J, P, F, V above 0, L not below 0 and L/ not 0; no value beyond any machine or that
+the call would take for an entry left out; no call longer than a block of LinuxCNC can be.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from decimal import Decimal
+
+from g12.cycles.circle_mill import (
+    CLOCKWISE,
+    ENTRIES,
+    LEFT_OUT,
+    PERIMETER_CYCLE,
+    POCKET_CYCLE,
+    ROUGH_FINISH,
+    SIDES,
+)
+from g12.errors import LONGEST_BLOCK, Refusal, number
+from g12.lengths import LARGEST
+
+EVENT = re.compile(r"N(?P<number>\d+)\((?P<type>\w+)\)(?P<entries>.*)\$", re.ASCII)
+ENTRY = re.compile(
+    r"(?P<letter>[A-Z])(?P<incremental>/?)(?P<value>[+-]?(?:\d+\.?\d*|\.\d+))", re.ASCII
+)
+CIRCLE_MILL = "4"
+REQUIRED = "XYZRC"
+MODAL = "WF"
+INCREMENTAL = "XYZL"
+POSITIVE = "RKJPFV"
+CHOICES = {
+    "G": (PERIMETER_CYCLE, POCKET_CYCLE),
+    "D": range(len(ROUGH_FINISH)),
+    "C": range(len(SIDES[CLOCKWISE])),
+}
+UNIT_CODES = {"inch": "G20 ", "mm": "G21 ", None: ""}
+
+
+def program_from_events(text: str, units: str | None = None) -> str:
+    """Return the LinuxCNC program of an event text, or raise `Refusal` naming the line.
+
+    ``units`` (``inch``, ``mm``) are those of the text; None leaves the machine's active ones.
+    """
+    calls = list(calls_of_events(text))
+    if not calls:
+        raise Refusal("there is no event in the file")
+    return "\n".join([f"{UNIT_CODES[units]}G17 G40 G90 G94", *calls, "M2", ""])
+
+
+def calls_of_events(text: str) -> Iterator[str]:
+    """Yield one block of G-code for each event."""
+    modal: dict[str, Entry] = {}
+    for line, row in enumerate(text.upper().splitlines(), start=1):
+        for event in re.findall(r"[^$]*\$|[^$]+", re.sub(r"\s", "", row)):
+            yield call_of_event(event, modal, line)
+
+
+class Entry:
+    """One entry of an event: its number as written, and whether it is incremental."""
+
+    def __init__(self, value: str, incremental: bool) -> None:
+        self.value = Decimal(value)
+        self.incremental = incremental
+
+
+def call_of_event(event: str, modal: dict[str, Entry], line: int) -> str:
+    """Return the call of one event; its modal entries are added to ``modal``."""
+    match = EVENT.fullmatch(event)
+    if not match:
+        raise refusal(line, f"{event[:40]} is not an event: N…(4)…$")
+    if match["type"] != CIRCLE_MILL:
+        raise refusal(line, f"event type {match['type']} is not the circle mill event, 4")
+    entries = entries_of_event(match["entries"], line)
+    modal.update((letter, entry) for letter, entry in entries.items() if letter in MODAL)
+    entries = {**modal, **entries}
+    check_entries(entries, line)
+    values = " ".join(f"[{argument(letter, entries)}]" for letter in ENTRIES)
+    call = f"N{match['number']} o<circle_mill> call {values}"
+    if len(call) > LONGEST_BLOCK:
+        raise refusal(
+            line, f"the call of the event has {len(call)} characters, the most is {LONGEST_BLOCK}"
+        )
+    return call
+
+
+def entries_of_event(text: str, line: int) -> dict[str, Entry]:
+    """Return the entries by letter."""
+    entries: dict[str, Entry] = {}
+    position = 0
+    while position < len(text):
+        match = ENTRY.match(text, position)
+        if not match or match["letter"] not in ENTRIES:
+            raise refusal(line, f"{text[position:][:20]} does not start with an entry")
+        if match["letter"] in entries:
+            raise refusal(line, f"{match['letter']} stands twice")
+        entries[match["letter"]] = Entry(match["value"], bool(match["incremental"]))
+        position = match.end()
+    return entries
+
+
+def check_entries(entries: Mapping[str, Entry], line: int) -> None:
+    """Refuse an event without a required entry, or with one that no event can have."""
+    for letter in REQUIRED:
+        if letter not in entries:
+            raise refusal(line, f"{letter} is missing")
+    for letter in MODAL:
+        if letter not in entries:
+            raise refusal(line, f"{letter} is missing, and no event before has it")
+    for letter, entry in entries.items():
+        rule = broken_rule(letter, entry) or unfit_for_call(letter, entries)
+        if rule:
+            raise refusal(line, rule)
+
+
+def broken_rule(letter: str, entry: Entry) -> str | None:
+    """Return the rule of its letter that an entry breaks, None if it keeps them."""
+    written = f"{letter}{number(entry.value)}"
+    if entry.incremental and letter not in INCREMENTAL:
+        return f"{letter}/ cannot be incremental"
+    if letter in CHOICES and entry.value not in CHOICES[letter]:
+        return f"{written} must be one of {', '.join(map(str, CHOICES[letter]))}"
+    if letter in POSITIVE and not float(entry.value) > 0:
+        return f"{written} must be greater than 0"
+    if letter == "L" and entry.value < 0:
+        return f"{written} must not be negative; L/ is the side only"
+    if letter == "L" and float(entry.value) == 0:
+        return f"{written} must not be 0"
+    return None
+
+
+def unfit_for_call(letter: str, entries: Mapping[str, Entry]) -> str | None:
+    """Return why the call cannot carry an entry's value, None if it can."""
+    value = float(value_in_call(letter, entries))
+    written = f"{letter}{number(value)}"
+    if abs(value) > LARGEST:
+        return f"{written} is beyond {number(LARGEST)}"
+    if value == LEFT_OUT and not from_the_tool(letter, entries[letter]):
+        return f"{written} would be left out: {number(LEFT_OUT)} in the call means no entry"
+    return None
+
+
+def value_in_call(letter: str, entries: Mapping[str, Entry]) -> Decimal:
+    """Return the number that the call gets: Z/ from W, L/ below zero."""
+    entry = entries[letter]
+    if entry.incremental and letter == "Z":
+        return entries["W"].value + entry.value
+    if entry.incremental and letter == "L":
+        return -entry.value
+    return entry.value
+
+
+def from_the_tool(letter: str, entry: Entry) -> bool:
+    """Tell whether the call has to add the entry to where the tool stands."""
+    return entry.incremental and letter in "XY"
+
+
+def argument(letter: str, entries: Mapping[str, Entry]) -> str:
+    """Return one entry as an argument of the call."""
+    if letter not in entries:
+        return f"{LEFT_OUT:.0f}"
+    value = f"{value_in_call(letter, entries):f}"
+    return f"#<_{letter.lower()}> + {value}" if from_the_tool(letter, entries[letter]) else value
+
+
+def refusal(line: int, rule: str) -> Refusal:
+    """Return the refusal of a line (the caller raises it)."""
+    return Refusal(f"line {line}: {rule}")

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A LinuxCNC in namespaces of its own, with scratch directories, log and clean-up.
+
+The namespaces are made by ``namespaces_init.py``, a process that ends with everything inside when
+this one closes its standard input, also by dying.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+PYTHON = "/usr/bin/python3"  # LinuxCNC's Python modules belong to the system's Python
+ISOLATE = Path(__file__).with_name("namespaces_init.py")
+PATIENCE = 60.0  # s
+NOBODY = "65534"  # LinuxCNC's realtime part refuses to be plain root
+NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "INI_FILE_NAME")
+
+
+class Isolated:
+    """One isolated process: ``folder`` is its scratch directory."""
+
+    def __init__(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="g12-", dir="/tmp"))
+        for name in ("bin", "home", "programs", "run"):
+            (self.folder / name).mkdir()
+        self.folder.chmod(0o711)
+        (self.folder / "run").chmod(0o777)
+        self._process: subprocess.Popen | None = None
+
+    def install(self, name: str, code: str) -> Path:
+        """Make a program of Python code that the process finds by its name."""
+        script = self.folder / "bin" / f"{name}.py"
+        script.write_text(code, encoding="utf-8")
+        program = self.folder / "bin" / name
+        command = f"#!/bin/sh\nexec {PYTHON} {shlex.quote(str(script))}\n"
+        program.write_text(command, encoding="utf-8")
+        program.chmod(0o755)
+        return program
+
+    def launch(
+        self,
+        command: Sequence[str],
+        copies: Mapping[Path, Mapping[str, str]],
+        covers: Mapping[str, Path] | None = None,
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        """Start ``command``.
+
+        ``copies`` are directories of which it sees a private copy, with texts of files to
+        stand there instead; ``covers`` files to be seen in place of others; ``environment``
+        adds variables, of which a screen's are otherwise not handed on.
+        """
+        job = {
+            "command": list(command),
+            "environment": {**self._environment(), **(environment or {})},
+            "copies": {str(directory): dict(files) for directory, files in copies.items()},
+            "covers": {covered: str(file) for covered, file in (covers or {}).items()},
+            "scratch": str(self.folder),
+        }
+        with open(self.folder / "log.txt", "wb") as log:
+            self._process = subprocess.Popen(
+                [PYTHON, str(ISOLATE)],
+                stdin=subprocess.PIPE,
+                stdout=log,
+                stderr=log,
+                start_new_session=True,
+            )
+        self._process.stdin.write(json.dumps(job).encode() + b"\n")
+        self._process.stdin.flush()
+
+    def exit_code(self) -> int | None:
+        """Return the exit code, None while it runs."""
+        return self._process.poll()
+
+    def wait(self, timeout: float) -> int:
+        """Wait up to ``timeout`` seconds for the end and return the exit code."""
+        return self._process.wait(timeout)
+
+    def log(self) -> str:
+        """Return what was printed so far."""
+        return (self.folder / "log.txt").read_text(encoding="utf-8", errors="replace")
+
+    def close(self) -> None:
+        """End everything at once and remove the scratch directory."""
+        if self._process:
+            self._process.stdin.close()
+            self._process.wait()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _environment(self) -> dict[str, str]:
+        kept = {key: value for key, value in os.environ.items() if key not in NO_SCREEN}
+        private = {
+            "HOME": str(self.folder / "home"),
+            "PATH": f"{self.folder / 'bin'}:{os.environ.get('PATH', os.defpath)}",
+            "RTAPI_FIFO_PATH": str(self.folder / "run" / "rtapi"),
+            "TMPDIR": "/tmp",
+            "PYTHONDONTWRITEBYTECODE": "1",
+        }
+        return {**kept, **private, **({"RTAPI_UID": NOBODY} if os.geteuid() == 0 else {})}
+
+
+def obstacle() -> str | None:
+    """Return why this system allows no namespaces, None if it does."""
+    isolated = Isolated()
+    try:
+        isolated.launch(["true"], {})
+        return isolated.log().strip() if isolated.wait(PATIENCE) else None
+    except subprocess.TimeoutExpired:
+        return None  # slow under load: what was to be found out is not known, so it is tried
+    finally:
+        isolated.close()

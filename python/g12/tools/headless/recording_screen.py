@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The screen program of a headless run: takes the runner's requests over a socket.
+
+LinuxCNC starts it in place of the INI's screen.  A request is a tuple of a method's name and
+its arguments, the answer a pair: whether it worked, and the result or the error.
+"""
+
+from __future__ import annotations
+
+import array
+import socket
+import subprocess
+import time
+from multiprocessing.connection import Connection
+
+import hal
+
+from g12.tools.headless.operator_panel import INTERPRETER, TASK_MODES, Panel, PanelTimeout
+
+DEPTH = 20000  # samples in HAL's buffer: 20 s at 1 kHz
+PATIENCE = 5.0  # s, for milltask to come up
+DRAIN = 0.05  # s between looks into it
+THREAD = "servo-thread"
+MOTION = (
+    ("f", "motion.current-vel"),
+    ("f", "motion.requested-vel"),
+    ("s", "motion.program-line"),
+    ("s", "motion.motion-type"),
+)
+
+
+class Sampler:
+    """Records axes and motion at the servo rate, into rows of doubles."""
+
+    def __init__(self, axes: str) -> None:
+        pins = [("f", f"axis.{letter.lower()}.pos-cmd") for letter in axes] + list(MOTION)
+        kinds = "".join(kind for kind, _ in pins)
+        self._component = hal.component("g12-driver")
+        self._component.ready()
+        halcmd("loadrt", "sampler", f"depth={DEPTH}", f"cfg={kinds}")
+        hal.set_p("sampler.0.enable", "0")
+        for number, (kind, pin) in enumerate(pins):
+            connect(pin, f"sampler.0.pin.{number}", kind)
+        halcmd("addf", "sampler.0", THREAD)
+        self._stream = hal.stream(self._component, hal.sampler_base, kinds)
+        self.rows = array.array("d")
+
+    def start(self) -> None:
+        """Forget what was recorded and record from now on."""
+        hal.set_p("sampler.0.enable", "0")
+        time.sleep(DRAIN)
+        self.drain()
+        self.rows = array.array("d")
+        hal.set_p("sampler.0.overruns", "0")
+        hal.set_p("sampler.0.enable", "1")
+
+    def stop(self) -> tuple[bytes, int]:
+        """Stop and return the rows and the number of samples lost."""
+        hal.set_p("sampler.0.enable", "0")
+        time.sleep(DRAIN)
+        self.drain()
+        return self.rows.tobytes(), int(hal.get_value("sampler.0.overruns"))
+
+    def drain(self) -> None:
+        """Take what HAL has recorded."""
+        row = self._stream.read()
+        while row is not None:
+            self.rows.extend(row)
+            row = self._stream.read()
+
+
+class Driver:
+    """The requests a runner can make, beside those of ``Panel``."""
+
+    def __init__(self, axes: str) -> None:
+        self.sampler = Sampler(axes)
+        self._drained = 0.0
+        self.panel = Panel(self.tick)
+
+    def tick(self) -> None:
+        """Keep HAL's buffer from running over."""
+        if time.monotonic() - self._drained > DRAIN:
+            self.sampler.drain()
+            self._drained = time.monotonic()
+
+    def answer(self, name: str, *arguments):
+        """Do what a request asks."""
+        own = getattr(self, f"do_{name}", None)
+        return own(*arguments) if own else getattr(self.panel, name)(*arguments)
+
+    def do_stat(self) -> dict:
+        """Return the status as plain values."""
+        self.panel.wait(lambda stat: stat.task_mode in TASK_MODES, PATIENCE, "milltask")
+        stat = self.panel.look()
+        return {
+            "task_mode": TASK_MODES[stat.task_mode],
+            "interp": INTERPRETER[stat.interp_state],
+            "enabled": bool(stat.enabled),
+            "homed": all(stat.homed[: stat.joints]),
+            "paused": bool(stat.paused),
+            "idle": self.panel.is_idle(stat),
+            "in_position": bool(stat.inpos),
+            "position": tuple(stat.position),
+            "actual": tuple(stat.actual_position),
+            "current_line": stat.current_line,
+            "motion_line": stat.motion_line,
+            "read_line": stat.read_line,
+            "feed_override": stat.feedrate,
+            "tool": stat.tool_in_spindle,
+            "queue": stat.queue,
+            "modes": (stat.gcodes[1:], stat.mcodes[1:], stat.settings[1:]),
+        }
+
+    def do_get(self, pin: str):
+        """Return the value of a HAL pin."""
+        return hal.get_value(pin)
+
+    def do_set(self, pin: str, value) -> None:
+        """Set a HAL pin or parameter that nothing drives, or the signal a pin reads."""
+        signal = signals_by_pin().get(pin)
+        text = str(int(value)) if isinstance(value, bool) else str(value)
+        hal.set_s(signal, text) if signal else hal.set_p(pin, text)
+
+    def do_sample(self) -> None:
+        """Start sampling."""
+        self.sampler.start()
+
+    def do_samples(self) -> tuple[bytes, int]:
+        """Stop sampling and return what was recorded."""
+        return self.sampler.stop()
+
+
+def halcmd(*words: str) -> None:
+    """Run one HAL command."""
+    subprocess.run(["halcmd", *words], check=True, capture_output=True, text=True)
+
+
+def connect(source: str, target: str, kind: str) -> None:
+    """Let ``target`` read the output pin ``source``, whatever else reads it."""
+    signal = signals_by_pin().get(source)
+    if signal is None:
+        signal = f"g12-{source}"
+        hal.new_sig(signal, hal.HAL_FLOAT if kind == "f" else hal.HAL_S32)
+        hal.connect(source, signal)
+    hal.connect(target, signal)
+
+
+def signals_by_pin() -> dict[str, str]:
+    """Return the signal of each pin that has one."""
+    lines = subprocess.run(["halcmd", "-s", "show", "pin"], capture_output=True, text=True)
+    words = (line.split() for line in lines.stdout.splitlines())
+    return {line[4]: line[6] for line in words if len(line) > 6}
+
+
+def serve(address: str, axes: str) -> None:
+    """Answer requests until the runner closes the connection."""
+    with socket.socket(socket.AF_UNIX) as client:
+        client.connect(address)
+        connection = Connection(client.detach())
+    driver = Driver(axes)
+    connection.send((True, "ready"))
+    while True:
+        while not connection.poll(DRAIN):
+            driver.tick()
+        try:
+            request = connection.recv()
+        except EOFError:
+            return
+        try:
+            connection.send((True, driver.answer(*request)))
+        except PanelTimeout as error:
+            connection.send((False, ("timeout", str(error))))
+        except Exception as error:
+            connection.send((False, ("failure", f"{type(error).__name__}: {error}")))

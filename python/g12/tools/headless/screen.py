@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The screen of a machine without one: ``[DISPLAY] DISPLAY`` of the headless INIs.
+
+Switches the machine on, homes it, runs one program to its end and leaves, whereupon LinuxCNC
+shuts down.  The program is the one named behind the INI on LinuxCNC's command line, or else
+``[DISPLAY] OPEN_FILE``; with neither it only homes.  A program stop (M0, M1) is passed over.
+The exit code, LinuxCNC's too, is 0 if the program came to its end and 1 if not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+if __name__ == "__main__":
+    sys.path[0] = str(Path(__file__).resolve().parents[3])
+
+from g12.tools.headless.operator_panel import Panel, PanelError
+from g12.tools.machine.ini import Ini, read_ini
+
+LONGEST_PROGRAM = 24 * 3600.0  # s
+
+
+def program_to_run(ini: Ini, named: list[str]) -> Path | None:
+    """Return the program to run: named on the command line or in the INI."""
+    if named:
+        return Path(named[0]).absolute()
+    return ini.file("DISPLAY", "OPEN_FILE")
+
+
+def report(panel: Panel) -> bool:
+    """Print what LinuxCNC said; tell whether there was an error among it."""
+    for text, _ in panel.messages():
+        print(f"message: {text}", flush=True)
+    errors = panel.errors()
+    for text, _ in errors:
+        print(f"error: {text}", file=sys.stderr, flush=True)
+    return bool(errors)
+
+
+def run(panel: Panel, program: Path | None) -> bool:
+    """Home the machine, run the program and tell whether it came to its end."""
+    panel.enable()
+    panel.home()
+    if program is None:
+        return not report(panel)
+    panel.open(str(program))
+    panel.start()
+    panel.finish(LONGEST_PROGRAM)
+    return not report(panel)
+
+
+def main(arguments: list[str]) -> int:
+    """Run as LinuxCNC calls its screen: ``-ini INI`` and what the user named behind the INI."""
+    parser = argparse.ArgumentParser(description="The screen of a machine without one.")
+    parser.add_argument("-ini", required=True)
+    parser.add_argument("program", nargs="*")
+    named = parser.parse_args(arguments)
+    program = program_to_run(read_ini(named.ini), named.program)
+    panel = Panel()
+    try:
+        worked = run(panel, program)
+    except PanelError as error:
+        print(f"error: {error}", file=sys.stderr)
+        worked = False
+    print(f"{program or 'homing'}: {'done' if worked else 'FAILED'}", flush=True)
+    return 0 if worked else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A machine config as LinuxCNC finds it: read, then loaded in the stock interpreter."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import tempfile
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+from g12.tools.install.features import Remap, remap_from_value
+from g12.tools.install.ini_edit import IniText, Line
+from g12.tools.machine.ini import Ini, Overrides
+from g12.tools.preview.tracer import PYTHON, TraceFailure, Tracer
+
+ANSWER = "G12 CONFIG "
+# What the machine's Python modules brought into the interpreter, asked from inside it.
+QUESTION = f"""\
+def g12_config():
+    import json, sys
+    main = vars(sys.modules["__main__"])
+    def functions(name):
+        items = vars(main[name]).items() if hasattr(main.get(name), "__dict__") else ()
+        return {{key: getattr(item, "__module__", None) for key, item in items if callable(item)}}
+    return {ANSWER!r} + json.dumps({{
+        "remap": functions("remap"),
+        "oword": functions("oword"),
+        "remap_file": getattr(main.get("remap"), "__file__", None),
+        "package": getattr(sys.modules.get("g12"), "__file__", None),
+    }})
+print(g12_config(), flush=True)
+"""
+VERSION = "import linuxcnc; print(linuxcnc.version)"
+UNKNOWN_CODE = "Unknown g code used"
+NO_REMAPS: Overrides = {"RS274NGC": {"REMAP": None, "RS274NGC_STARTUP_CODE": None}}
+FAILED = "Python plugin configure() failed"
+PYTHON_LINE = re.compile(r'File "([^"]+)", line (\d+)')
+MOST_FOLDERS = 10  # of SUBROUTINE_PATH; LinuxCNC ignores the rest
+
+
+@dataclass(frozen=True)
+class Python:
+    """What the machine's Python modules brought into the interpreter.
+
+    ``remap`` and ``oword`` map the functions of these modules to the module that made them, and
+    are empty if the config has none. ``package`` is the folder of the package g12 in use.
+    ``error`` is the exception that stopped the modules, with its place.
+    """
+
+    remap: dict[str, str | None] = field(default_factory=dict)
+    oword: dict[str, str | None] = field(default_factory=dict)
+    remap_file: str | None = None
+    package: Path | None = None
+    error: str | None = None
+
+
+@dataclass(frozen=True)
+class Config:
+    """A machine config: its lines, values and REMAP lines, and how the interpreter takes it.
+
+    ``version`` is LinuxCNC's, empty if its Python modules are not there; ``python`` is None if
+    nothing could be asked.  ``owned`` holds those of the codes asked about that LinuxCNC itself
+    has a meaning for.  ``failure`` is the interpreter's own text if it does not load the config.
+    """
+
+    text: IniText
+    ini: Ini
+    remaps: list[tuple[Line, Remap]]
+    version: str
+    python: Python | None
+    owned: frozenset[str]
+    failure: str | None
+
+    @property
+    def folder(self) -> Path:
+        """The config's folder, which LinuxCNC works in."""
+        return self.ini.directory
+
+
+def remaps_in(text: IniText) -> list[tuple[Line, Remap]]:
+    """Return the REMAP lines that LinuxCNC reads."""
+    return [(line, remap_from_value(value)) for line, value in text.entries("RS274NGC", "REMAP")]
+
+
+def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None) -> Config:
+    """Return the config of an INI, asking LinuxCNC about it and about G ``codes``.
+
+    ``overlay`` replaces values for the interpreter, as in `Ini.replaced`.
+    """
+    ini = text.ini().replaced(overlay or {})
+    version = linuxcnc_version()
+    if not version:
+        return Config(text, ini, remaps_in(text), version, None, frozenset(), "no LinuxCNC")
+    failure = load_failure(ini)
+    python, owned = None, frozenset()
+    try:
+        with Tracer(ini, overrides=NO_REMAPS) as tracer:
+            python = ask_python(tracer)
+            owned = frozenset(code for code in codes if is_owned(tracer, code))
+    except TraceFailure as refused:
+        failure = failure or str(refused)
+    return Config(text, ini, remaps_in(text), version, python, owned, failure)
+
+
+@cache
+def linuxcnc_version() -> str:
+    """Return the version of the LinuxCNC on this computer, empty if there is none."""
+    asked = subprocess.run([PYTHON, "-c", VERSION], capture_output=True, text=True, check=False)
+    return asked.stdout.strip()
+
+
+def load_failure(ini: Ini) -> str | None:
+    """Return the interpreter's own text if it does not load the INI as it stands."""
+    try:
+        with Tracer(ini):
+            return None
+    except TraceFailure as refused:
+        return str(refused).removeprefix(f"{ini.path}: ")
+
+
+def is_owned(tracer: Tracer, code: str) -> bool:
+    """Tell whether LinuxCNC itself has a meaning for a code; REMAP lines must be out of the way."""
+    error = tracer.trace_text([code]).error
+    return error is None or error.text != UNKNOWN_CODE
+
+
+def ask_python(tracer: Tracer) -> Python:
+    """Return what the machine's Python modules brought into a running interpreter."""
+    error = python_error(tracer.printed)
+    if error:
+        return Python(error=error)
+    with tempfile.TemporaryDirectory(prefix="g12-config-") as folder:
+        question = Path(folder) / "question.py"
+        question.write_text(QUESTION, encoding="utf-8")
+        printed = tracer.trace_text([f"(pyrun,{question})"]).printed
+    answers = [line for line in printed.splitlines() if line.startswith(ANSWER)]
+    if not answers:
+        return Python(error="the modules loaded, but the interpreter's Python gives no answer")
+    found = json.loads(answers[-1][len(ANSWER) :])
+    package = found.pop("package")
+    here = tracer.ini.directory
+    return Python(**found, package=here / Path(package).parent if package else None)
+
+
+def python_error(printed: str) -> str | None:
+    """Return the exception in what loading printed, with its place; None if Python loaded."""
+    before, failed, _ = printed.partition(FAILED)
+    if not failed:
+        return None
+    lines = [line.strip() for line in before.splitlines() if line.strip()]
+    places = [place for line in lines for place in PYTHON_LINE.findall(line)]
+    where = f" ({Path(places[-1][0]).name}:{places[-1][1]})" if places else ""
+    return f"{lines[-1]}{where}" if lines else failed
+
+
+def folder_from_ini(ini: Ini, name: str) -> Path:
+    """Return a folder that the INI names, as LinuxCNC resolves it."""
+    return (ini.directory / os.path.expanduser(name)).resolve()
+
+
+def sub_folders(ini: Ini) -> list[Path]:
+    """Return the folders LinuxCNC looks for NGC subs in, in its order."""
+    prefix = ini.get("DISPLAY", "PROGRAM_PREFIX")
+    names = [name for name in ini.get("RS274NGC", "SUBROUTINE_PATH", "").split(":") if name]
+    existing = [folder for folder in (folder_from_ini(ini, name) for name in names)
+                if folder.exists()]  # fmt: skip
+    first = [ini.directory, *([folder_from_ini(ini, prefix)] if prefix else [])]
+    return [*first, *existing[:MOST_FOLDERS]]
+
+
+def subs_named(ini: Ini, name: str) -> list[Path]:
+    """Return every file LinuxCNC could take for an NGC sub; it takes the first."""
+    files = (folder / f"{name}.ngc" for folder in sub_folders(ini))
+    return list(dict.fromkeys(file for file in files if file.is_file()))

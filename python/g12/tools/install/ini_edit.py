@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Machine INI files as they stand on disk: where a line is, and edits that touch nothing else.
+
+Bytes that are no UTF-8, line ends and a missing last line end survive. What is put in stands
+between two marker comments, by which it is found and taken out again.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from g12.tools.machine.ini import ENTRY, Ini, IniError, included_file
+
+BEGIN = "# >>> g12 install"
+END = "# <<< g12 install"
+LINE = re.compile(r"[^\n]*\n|[^\n]+")
+CONTINUED = re.compile(r"\\\r?\n?\Z")
+
+
+class Line(NamedTuple):
+    """A line of the expanded INI: ``index`` counts from 0 in ``file``, ``text`` has no line end.
+
+    ``host`` is the index of the INI's own line that brings it: itself or an #INCLUDE.
+    """
+
+    file: Path
+    index: int
+    text: str
+    host: int
+
+    @property
+    def place(self) -> str:
+        """File and line number for messages."""
+        return f"{self.file.name}:{self.index + 1}"
+
+
+class Place(NamedTuple):
+    """A gap between lines: in front of line ``index`` of ``file``."""
+
+    file: Path
+    index: int
+
+
+def read_lines(path: Path) -> list[str]:
+    """Return a text file's lines with their line ends, exactly as they are."""
+    return LINE.findall(path.read_bytes().decode("utf-8", "surrogateescape"))
+
+
+def to_bytes(lines: Sequence[str]) -> bytes:
+    """Return the file that `read_lines` read the lines from."""
+    return "".join(lines).encode("utf-8", "surrogateescape")
+
+
+def line_end(lines: Sequence[str]) -> str:
+    """Return the line end that a file uses."""
+    return "\r\n" if lines and lines[0].endswith("\r\n") else "\n"
+
+
+def is_entry(text: str) -> bool:
+    """Tell whether a line says anything: neither blank nor a comment."""
+    return bool(text.strip()) and text.lstrip()[0] not in "#;"
+
+
+def belongs(text: str) -> bool:
+    """Tell whether a line belongs to the section in front of it; comments may not."""
+    return is_entry(text) or text.startswith(END)
+
+
+def opens_section(text: str, section: str) -> bool:
+    """Tell whether LinuxCNC takes the line for the header of that section."""
+    return text.lstrip().startswith(f"[{section}]")
+
+
+def joined(lines: Sequence[Line]) -> Iterator[tuple[Line, str]]:
+    """Yield the text of every entry with its first line, broken lines put together."""
+    first, text = None, ""
+    for line in lines:
+        first = first or line
+        text += line.text.removesuffix("\\")
+        if not line.text.endswith("\\"):
+            yield first, text
+            first, text = None, ""
+
+
+def without(lines: Sequence[str], doomed: set[int]) -> list[str]:
+    """Return lines without those at the indices; a last line without an end stays one."""
+    kept = [line for index, line in enumerate(lines) if index not in doomed]
+    unended = lines and not lines[-1].endswith("\n") and len(lines) - 1 in doomed
+    return [*kept[:-1], kept[-1].rstrip("\r\n")] if unended and kept else kept
+
+
+class IniText:
+    """An INI file with the files it includes; edits stay in memory until somebody writes them."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path.absolute()
+        self.files: dict[Path, list[str]] = {self.path: self._read(self.path)}
+        self.unreadable: list[Line] = []
+        for line in self._own_lines():
+            self._load_included(line)
+
+    def _read(self, path: Path) -> list[str]:
+        try:
+            return read_lines(path)
+        except OSError as error:
+            raise IniError(f"{path}: {error.strerror}") from error
+
+    def _load_included(self, line: Line) -> None:
+        included = included_file(line.text, self.path.parent)
+        if included and included.is_file():
+            self.files[included] = self._read(included)
+        elif included or line.text.split() == ["#INCLUDE"]:
+            self.unreadable.append(line)
+
+    def _own_lines(self) -> Iterator[Line]:
+        for index, text in enumerate(self.files[self.path]):
+            yield Line(self.path, index, text.rstrip("\r\n"), index)
+
+    def lines(self) -> Iterator[Line]:
+        """Yield every line as LinuxCNC sees it, an #INCLUDE line in front of what it includes."""
+        for line in self._own_lines():
+            yield line
+            included = included_file(line.text, self.path.parent)
+            for index, text in enumerate(self.files.get(included, ())):
+                yield Line(included, index, text.rstrip("\r\n"), line.index)
+
+    def ini(self) -> Ini:
+        """Return the expanded INI, edits included, for looking values up."""
+        included = (included_file(line.text, self.path.parent) for line in self.lines())
+        pairs = zip(self.lines(), included)
+        return Ini(self.path, tuple(line.text for line, file in pairs if file not in self.files))
+
+    def headers(self, section: str) -> list[Line]:
+        """Return every header of that section; LinuxCNC 2.9 reads the first one's lines only."""
+        return [line for line in self.lines() if opens_section(line.text, section)]
+
+    def section(self, section: str) -> list[Line]:
+        """Return the lines LinuxCNC finds in a section, its header first."""
+        found: list[Line] = []
+        for line in self.lines():
+            if found and line.text.lstrip().startswith("["):
+                break
+            if found or opens_section(line.text, section):
+                found.append(line)
+        return found
+
+    def entries(self, section: str, key: str) -> list[tuple[Line, str]]:
+        """Return the values of a key in the section LinuxCNC reads, with their first lines."""
+        matches = [(line, ENTRY.match(text)) for line, text in joined(self.section(section))]
+        return [(line, match[2]) for line, match in matches if match and match[1] == key]
+
+    def end_of_section(self, section: str) -> Place | None:
+        """Return the place behind the section's last entry, in the INI itself if that can be."""
+        found = self.section(section)
+        if not found:
+            return None
+        after = {line.host: line for line in self.lines()}  # the last line each own line brings
+        inside = set(found)
+        own = [
+            line
+            for line in self._own_lines()
+            if after[line.index] in inside and (belongs(line.text) or after[line.index] != line)
+        ]
+        last = own[-1] if own else [line for line in found if belongs(line.text)][-1]
+        return Place(last.file, self._behind(last.file, last.index))
+
+    def _behind(self, file: Path, index: int) -> int:
+        """Index behind the line at ``index`` and its continuation lines."""
+        lines = self.files[file]
+        while CONTINUED.search(lines[index]) and index + 1 < len(lines):
+            index += 1
+        return index + 1
+
+    def end_of_file(self) -> Place:
+        """Return the place at the end of the INI itself."""
+        return Place(self.path, len(self.files[self.path]))
+
+    def insert(self, place: Place, texts: Sequence[str]) -> None:
+        """Put lines in. At the end of a file without a last line end they have none either."""
+        lines = self.files[place.file]
+        end = line_end(lines)
+        new = [text + end for text in texts]
+        if place.index == len(lines) and lines and not lines[-1].endswith("\n"):
+            lines[-1] += end
+            new[-1] = texts[-1]
+        lines[place.index : place.index] = new
+
+    def append_to_value(self, line: Line, text: str) -> None:
+        """Append to the value of the entry that begins at ``line``."""
+        index = self._behind(line.file, line.index) - 1
+        lines = self.files[line.file]
+        body = lines[index].rstrip()
+        lines[index] = body + text + lines[index][len(body) :]
+
+    def remove_from_value(self, line: Line, entry: str) -> None:
+        """Take an entry out of the list, separated by colons, that begins at ``line``."""
+        lines = self.files[line.file]
+        lines[line.index] = re.sub(rf"(=\s*){re.escape(entry)}:", r"\1", lines[line.index], count=1)
+        for index in range(line.index, self._behind(line.file, line.index)):
+            lines[index] = re.sub(rf":{re.escape(entry)}(?=[:\s]|$)", "", lines[index])
+
+    def blocks(self) -> list[list[Line]]:
+        """Return the marked blocks, markers included, of the INI and of what it includes."""
+        blocks: list[list[Line]] = []
+        open_ = False
+        for line in self.lines():
+            if line.text.startswith(BEGIN):
+                if open_:
+                    break
+                blocks.append([])
+                open_ = True
+            if open_:
+                blocks[-1].append(line)
+            if line.text.startswith(END):
+                if not open_:
+                    raise IniError(f'{line.place}: the line "{BEGIN}" that begins this is missing')
+                open_ = False
+        if open_:
+            raise IniError(f'{blocks[-1][0].place}: the line "{END}" that ends this is missing')
+        return blocks
+
+    def remove(self, doomed: Sequence[Line]) -> None:
+        """Take lines out."""
+        for file in {line.file for line in doomed}:
+            indices = {line.index for line in doomed if line.file == file}
+            self.files[file] = without(self.files[file], indices)
+
+
+def other_inis(text: IniText) -> Iterator[IniText]:
+    """Yield the other INIs of an INI's folder; a link to it is none."""
+    for path in sorted(text.path.parent.glob("*.ini")):
+        if path.is_file() and not path.samefile(text.path):
+            yield IniText(path)

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The package's own copy inside a machine config: folder ``g12`` with a list of its files."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import shutil
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+
+from g12.tools.commands.arguments import UsageError
+from g12.tools.install.features import ROOT
+from g12.tools.machine.files import take_owner, write
+
+NAME = "g12"  # of the folder in the config's folder
+MANIFEST = "MANIFEST"  # as sha256sum writes and checks it
+PARTS = ("LICENSE", "ngc/*.ngc", "configs/include/*.inc", "python/*.py", "python/g12/**/*.py")
+EDITED = ".edited"
+ENTRY = re.compile(r"([0-9a-f]{64})  (\S.*)")
+
+
+def package_files() -> dict[str, bytes]:
+    """Return the files of this package, by their names below its folder."""
+    paths = sorted(path for part in PARTS for path in ROOT.glob(part))
+    return {path.relative_to(ROOT).as_posix(): path.read_bytes() for path in paths}
+
+
+def digest(content: bytes) -> str:
+    """Return a file's SHA-256 in hexadecimal."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def digest_of(path: Path) -> str:
+    """Return the SHA-256 of a file in hexadecimal, "" if it is not there."""
+    return digest(path.read_bytes()) if path.is_file() else ""
+
+
+def is_package(folder: Path) -> bool:
+    """Tell whether a folder holds the package, copied by whomever."""
+    return (folder / "python" / "g12" / "__init__.py").is_file() and (folder / "ngc").is_dir()
+
+
+def is_copy(folder: Path) -> bool:
+    """Tell whether a folder is a copy that `install` made."""
+    return (folder / MANIFEST).is_file()
+
+
+def listed(folder: Path) -> dict[str, str]:
+    """Return the files of a copy with the digest they were installed with.
+
+    Raises UsageError for a list that names anything but files of the copy.
+    """
+    manifest = folder / MANIFEST
+    content = manifest.read_bytes() if manifest.is_file() else b""
+    lines = content.decode("utf-8", "replace").splitlines()
+    entries = [ENTRY.fullmatch(line) for line in lines]
+    for number, (line, entry) in enumerate(zip(lines, entries), start=1):
+        if not entry or not is_inside(folder, entry[2]):
+            raise UsageError(f"{manifest}:{number}: not a line that install wrote: {line[:80]!r}; "
+                             "take that line out")  # fmt: skip
+    return {entry[2]: entry[1] for entry in entries}
+
+
+def is_inside(folder: Path, name: str) -> bool:
+    """Tell whether a name is that of a file below a folder, links followed."""
+    place = (folder / name).parent.resolve()
+    return ".." not in Path(name).parts and place.is_relative_to(folder.resolve())
+
+
+def edited(folder: Path) -> list[str]:
+    """Return the files of a copy that somebody changed since they were installed."""
+    return [
+        name
+        for name, value in listed(folder).items()
+        if digest_of(folder / name) not in ("", value)
+    ]
+
+
+def missing(folder: Path) -> list[str]:
+    """Return the files of a copy that are gone, or empty though they were not."""
+    return [name for name, value in listed(folder).items() if is_lost(folder / name, value)]
+
+
+def is_lost(path: Path, value: str) -> bool:
+    """Tell whether a file is gone, or empty though its digest was another's."""
+    found = digest_of(path)
+    return not found or found == digest(b"") != value
+
+
+def stale(folder: Path) -> list[str]:
+    """Return the files of this package that a copy lacks or has in another version."""
+    there = listed(folder)
+    return [
+        name
+        for name, content in package_files().items()
+        if there.get(name) != digest(content) or is_lost(folder / name, digest(content))
+    ]
+
+
+def leftovers(folder: Path) -> list[str]:
+    """Return the files of a folder if all are such as `uninstall` leaves, else none."""
+    names = files_below(folder)
+    known = package_files()
+    return names if all(name.partition(EDITED)[0] in known for name in names) else []
+
+
+def files_below(folder: Path) -> list[str]:
+    """Return the names of all files below a folder."""
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+def write_copy(folder: Path) -> list[str]:
+    """Make a copy of this package or bring it up to date.
+
+    Returns under what names edited files were put aside for a newer version.
+    """
+    if folder.exists():
+        return update_copy(folder)
+    fresh = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
+    try:
+        fresh.chmod(0o755)
+        take_owner(fresh)
+        update_copy(fresh)
+        fresh.rename(folder)
+    except BaseException:
+        shutil.rmtree(fresh)
+        raise
+    return []
+
+
+def update_copy(folder: Path) -> list[str]:
+    """Bring a copy up to date; return under what names edited files were put aside."""
+    files, old, late = package_files(), listed(folder), stale(folder)
+    gone = [name for name in old if name not in files]
+    digests = {name: digest(files[name]) for name in late}
+    theirs = [
+        name
+        for name in (*late, *gone)
+        if not is_lost(folder / name, old.get(name, ""))
+        and digest_of(folder / name) not in (old.get(name), digests.get(name))
+    ]
+    aside = [put_aside(folder, name) for name in theirs]
+    write_files(folder, {name: files[name] for name in late})
+    lines = [f"{digest(content)}  {name}\n" for name, content in files.items()]
+    write_files(folder, {MANIFEST: "".join(lines).encode()})
+    remove_files(folder, gone)
+    return aside
+
+
+def put_aside(folder: Path, name: str) -> str:
+    """Rename an edited file to a name that is free; return that."""
+    number, aside = 1, f"{name}{EDITED}"
+    while (folder / aside).exists():
+        number += 1
+        aside = f"{name}{EDITED}.{number}"
+    (folder / name).rename(folder / aside)
+    return aside
+
+
+def write_files(folder: Path, files: dict[str, bytes]) -> None:
+    """Write files below a folder, each at once."""
+    for name, content in files.items():
+        make_folder((folder / name).parent, folder.parent)
+        write(folder / name, content)
+
+
+def make_folder(folder: Path, above: Path) -> None:
+    """Create a folder and those it is in, with the owner of the config's folder."""
+    below = [path for path in (folder, *folder.parents) if above in path.parents]
+    for path in reversed([path for path in below if not path.exists()]):
+        path.mkdir()
+        take_owner(path)
+
+
+def remove_files(folder: Path, names: Iterable[str]) -> None:
+    """Take files away, and the folders that nothing is left in."""
+    for name in names:
+        (folder / name).unlink(missing_ok=True)
+    for cache in sorted(folder.rglob("__pycache__")):
+        shutil.rmtree(cache)
+    for path in sorted(folder.rglob("*"), reverse=True):
+        if path.is_dir() and not path.is_symlink() and not any(path.iterdir()):
+            path.rmdir()
+
+
+def remove_copy(folder: Path) -> list[str]:
+    """Take a copy away; return the names of files in it that somebody edited or added."""
+    remove_files(folder, set(listed(folder)) - set(edited(folder)))
+    (folder / MANIFEST).unlink()  # last: until then the copy is known for what it is
+    if not any(folder.iterdir()):
+        folder.rmdir()
+        return []
+    return files_below(folder)

@@ -1,0 +1,279 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What an installation changes in a machine config: the INI's lines, the user's Python modules.
+
+The INI gets blocks between two marker comments.  Whatever is put elsewhere is noted in a comment
+there, so that `uninstall` finds it: an entry of SUBROUTINE_PATH (LinuxCNC 2.9 reads one such line
+only) and import lines in the user's own modules.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from g12.tools.install import features, package_copy
+from g12.tools.install.config import Config, folder_from_ini
+from g12.tools.install.ini_edit import (
+    BEGIN,
+    END,
+    IniText,
+    Line,
+    Place,
+    line_end,
+    read_lines,
+    to_bytes,
+)
+from g12.tools.install.rules import odd_folder, problem
+
+BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"
+NOTE = "# also by g12 install: "
+PATH_NOTE = " at the end of SUBROUTINE_PATH"
+MODULE_NOTE = "a line in "
+MARK = "  # by g12 install"
+NAMES_COPY = re.compile(rf"\s*(#INCLUDE\s+|[^\s#;].*[=:]\s*)(\./)?{package_copy.NAME}/")
+IMPORT_HANDLERS = "from g12.remap import *"
+IMPORT_REMAP = "import remap"
+
+
+class Refused(Exception):
+    """The installation is refused; ``args`` are the findings."""
+
+
+def refuse(kind: str, text: str, cure: str) -> Refused:
+    """Return the refusal for one reason (the caller raises it)."""
+    return Refused(problem(kind, text, cure))
+
+
+@dataclass
+class Plan:
+    """What an installation would change; nothing is written yet.
+
+    ``text`` is the INI with its includes, edited; ``modules`` the user's own Python modules with
+    the lines they get.  ``prefix`` is the package's folder as the INI names it, ``copied`` tells
+    whether it is the copy that `install` makes.
+    """
+
+    text: IniText
+    prefix: str
+    copied: bool
+    modules: dict[Path, list[str]] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    def changes(self) -> dict[Path, bytes]:
+        """Return the user's files that change and their new content, the INI last."""
+        inis = {file: to_bytes(lines) for file, lines in reversed(self.text.files.items())}
+        files = {**{path: with_lines(path, new) for path, new in self.modules.items()}, **inis}
+        return {path: content for path, content in files.items() if content != path.read_bytes()}
+
+
+def with_lines(path: Path, new: Sequence[str]) -> bytes:
+    """Return a module's content with lines at its end."""
+    lines = read_lines(path)
+    end = line_end(lines)
+    ended = not lines or lines[-1].endswith("\n")
+    return to_bytes([*lines, *(text + end if ended else end + text for text in new)])
+
+
+def marked(path: Path, statement: str) -> bool:
+    """Tell whether an earlier installation put a statement into a module."""
+    return any(line.rstrip().endswith(statement + MARK) for line in read_lines(path))
+
+
+def make_plan(config: Config, wanted: Sequence[str]) -> Plan:
+    """Return the plan that gives a config the features wanted."""
+    prefix, copied = package_folder(config)
+    plan = Plan(IniText(config.text.path), prefix, copied)
+    python = python_lines(plan, config, wanted)
+    subs = subroutine_lines(plan, config, wanted)
+    remaps = [f"REMAP = {remap.text}" for remap in new_remaps(config, wanted)]
+    place = plan.text.end_of_section("RS274NGC")
+    noted = {line.text for block in plan.text.blocks() for line in block}
+    put_block(
+        plan.text, place, [*(note for note in plan.notes if note not in noted), *subs, *remaps]
+    )
+    put_python(plan.text, place, python)
+    for path in plan.changes():
+        require_inside(config, path)
+    return plan
+
+
+def names_copy(text: IniText) -> list[Line]:
+    """Return the lines of an INI that need the copy, be they by `install` or by hand."""
+    here = text.path.parent
+    found = [line for line in text.lines() if NAMES_COPY.match(line.text)]
+    for line in (line for block in text.blocks() for line in block):
+        module = here / line.text.removeprefix(f"{NOTE}{MODULE_NOTE}")
+        if line.text.startswith(f"{NOTE}{MODULE_NOTE}") and module.is_file():
+            found += [line] * (f'"{package_copy.NAME}/python"' in "".join(read_lines(module)))
+    return found
+
+
+def put_block(text: IniText, place: Place, lines: Sequence[str]) -> None:
+    """Put lines in between the markers."""
+    if lines:
+        text.insert(place, [BEGIN_LINE, *lines, END])
+
+
+def put_python(text: IniText, interpreter: Place, lines: Sequence[str]) -> None:
+    """Put lines into section [PYTHON]; a new one stands in the file of [RS274NGC].
+
+    In an included file that is in front of a header, where no other section is cut in two.
+    """
+    place = text.end_of_section("PYTHON")
+    if place:
+        put_block(text, place, lines)
+    elif lines and interpreter.file == text.path:
+        put_block(text, text.end_of_file(), ["[PYTHON]", *lines])
+    elif lines:
+        header = text.headers("RS274NGC")[0]
+        put_block(text, Place(header.file, header.index), ["[PYTHON]", *lines])
+
+
+def package_folder(config: Config) -> tuple[str, bool]:
+    """Return the package's folder as the INI names it, and whether it is `install`'s copy."""
+    own = config.folder / package_copy.NAME
+    package = config.python.package.parent.parent if config.python.package else None
+    if package and not package_copy.is_copy(package):
+        return name_in_ini(config, package), False
+    if package_copy.is_copy(own):
+        return package_copy.NAME, True
+    if features.ROOT.is_relative_to(config.folder.resolve()):
+        return name_in_ini(config, features.ROOT), False
+    if not own.exists():
+        return package_copy.NAME, True
+    if package_copy.is_package(own):
+        return package_copy.NAME, False
+    left = package_copy.leftovers(own)
+    what = f"left from an uninstall, with files you changed: {', '.join(left)}"
+    raise refuse(
+        "folder",
+        f"{own} is there already, {what if left else 'and is not this package'}",
+        "rename that folder" + (", and put your changes into the new one afterwards" * bool(left)),
+    )
+
+
+def name_in_ini(config: Config, folder: Path) -> str:
+    """Return a folder's name for the INI: relative if it is inside the config's folder."""
+    folder, here = folder.resolve(), config.folder.resolve()
+    return folder.relative_to(here).as_posix() if folder.is_relative_to(here) else str(folder)
+
+
+def new_remaps(config: Config, wanted: Sequence[str]) -> list[features.Remap]:
+    """Return the REMAP lines that the config does not have yet."""
+    there = [remap for _, remap in config.remaps]
+    return [
+        remap
+        for feature in wanted
+        for remap in features.remaps_of(feature)
+        if not any(
+            other.number == remap.number and other.own_names & remap.own_names for other in there
+        )
+    ]
+
+
+def subroutine_lines(plan: Plan, config: Config, wanted: Sequence[str]) -> list[str]:
+    """Return the SUBROUTINE_PATH line to put in; one that is there gets longer instead."""
+    name = f"{plan.prefix}/ngc"
+    if not any(features.names_of(feature) for feature in wanted):
+        return []
+    for finding in odd_folder(folder_from_ini(config.ini, name)):
+        raise Refused(finding)
+    entries = plan.text.entries("RS274NGC", "SUBROUTINE_PATH")
+    if not entries:
+        return [f"SUBROUTINE_PATH = {name}"]
+    line, value = entries[0]
+    folders = {folder_from_ini(config.ini, folder) for folder in value.split(":") if folder}
+    missing = folder_from_ini(config.ini, name) not in folders
+    if missing:
+        plan.text.append_to_value(line, f":{name}")
+    ours = any(line in block for block in plan.text.blocks())
+    if missing or (line.file != plan.text.path and not ours):
+        # in an included file the entry may come from another INI's installation
+        plan.notes.append(f"{NOTE}{name}{PATH_NOTE}")
+    return []
+
+
+def python_lines(plan: Plan, config: Config, wanted: Sequence[str]) -> list[str]:
+    """Return the lines for [PYTHON], and plan those for the user's own modules."""
+    folder = f"{plan.prefix}/python"
+    if not config.ini.get("PYTHON", "TOPLEVEL"):
+        return [f"TOPLEVEL = {folder}/toplevel.py", f"PATH_PREPEND = {folder}"]
+    way = "" if config.python.package else f'import sys; sys.path.append("{folder}"); '
+    for path, statement, lacking in own_modules(config, wanted):
+        there = marked(path, statement)
+        if lacking and not there:
+            require_inside(config, path)
+            plan.modules[path] = [f"{way}{statement}{MARK}"]
+        if lacking or there:
+            plan.notes.append(f"{NOTE}{MODULE_NOTE}{name_in_ini(config, path)}")
+    return []
+
+
+def own_modules(config: Config, wanted: Sequence[str]) -> list[tuple[Path, str, bool]]:
+    """Return the user's TOPLEVEL and module remap, the import each needs, and if it lacks it."""
+    python, toplevel = config.python, config.ini.file("PYTHON", "TOPLEVEL")
+    if python.remap and not python.remap_file:
+        raise refuse(
+            "remap-module",
+            f"what {toplevel} calls remap is no module that a line could be added to",
+            f"add {IMPORT_HANDLERS} where your handlers are, by hand",
+        )
+    refuse_own_names(config)
+    ours = {name for name, module in python.remap.items() if is_ours(module)}
+    needed = {name for feature in wanted for name in features.handlers_of(feature)}
+    remap = config.folder / python.remap_file if python.remap_file else remap_on_path(config)
+    modules = [(toplevel, IMPORT_REMAP, not python.remap_file)]
+    modules += [(remap, IMPORT_HANDLERS, bool(needed - ours))] if remap else []
+    return [module for module in modules if not is_package_module(module[0])]
+
+
+def is_package_module(path: Path) -> bool:
+    """Tell whether a module is the package's own toplevel.py or remap.py."""
+    own = features.ROOT / "python" / path.name
+    return own.is_file() and own.read_bytes() == path.read_bytes()
+
+
+def is_ours(module: str | None) -> bool:
+    """Tell whether a function's module belongs to the package."""
+    return (module or "").split(".")[0] == "g12"
+
+
+def is_below(path: str | Path, folder: Path) -> bool:
+    """Tell whether a file is in a folder, links followed."""
+    return Path(path).resolve().is_relative_to(folder.resolve())
+
+
+def refuse_own_names(config: Config) -> None:
+    """Refuse functions of the user's own that the import would replace."""
+    handlers = {name for feature in features.FILES for name in features.handlers_of(feature)}
+    for name in sorted(handlers & set(config.python.remap)):
+        if not is_ours(config.python.remap[name]):
+            raise refuse(
+                "hidden",
+                f"{config.python.remap_file} has a function {name}, and so has the package",
+                "give your function another name",
+            )
+
+
+def remap_on_path(config: Config) -> Path | None:
+    """Return the module remap that `import remap` would find, None if the user has none."""
+    prepended = reversed(config.ini.all("PYTHON", "PATH_PREPEND"))
+    names = [*prepended, *config.ini.all("PYTHON", "PATH_APPEND")]
+    for folder in (folder_from_ini(config.ini, name) for name in names):
+        for file in (folder / "remap" / "__init__.py", folder / "remap.py"):
+            if file.is_file():
+                return file
+    return None
+
+
+def require_inside(config: Config, path: Path) -> None:
+    """Refuse to change a file that is outside the config's folder."""
+    if not is_below(path, config.folder):
+        raise refuse(
+            "outside",
+            f"{path} would have to change, which is outside the folder of {config.text.path.name}",
+            "copy that file into the config's folder and name it in the INI, or set the package "
+            "up by hand (README)",
+        )

@@ -1,0 +1,508 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What can be wrong with the package in a machine config, and the cure for it.
+
+Each rule is a function that yields what it finds.  A problem keeps a code from working, a
+warning says what will surprise.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from g12.errors import Refusal
+from g12.settings import SECTION, section_entries, settings_from_entries
+from g12.tools.install import features
+from g12.tools.install.config import MOST_FOLDERS, Config, folder_from_ini, subs_named
+from g12.tools.install.features import Remap
+from g12.tools.install.ini_edit import Line
+from g12.tools.machine.ini import ENTRY, INCLUDE
+
+PROBLEM, WARNING, NOTE = "problem", "warning", "note"
+OLDEST = (2, 9)
+LONGEST_LINE = 254  # LinuxCNC 2.9 reads no more of a line
+LINE_FOR_REMAP = "from g12.remap import *"
+SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
+TOOL = re.compile(r"T(\d+)", re.IGNORECASE)
+DIAMETER = re.compile(r"D([-+.\d]+)", re.IGNORECASE)
+MEND = "if it was there once, run install again: it mends the folder g12"
+AFTERMATH = "Bad character 'g' used"  # of an interpreter that never came up
+STOPPING = {  # kinds that keep LinuxCNC itself from loading the config
+    "taken",
+    "wrong-line",
+    "no-sub",
+    "blank-in-path",
+    "no-python",
+    "python-fails",
+    "no-linuxcnc",
+}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something the owner should know: ``kind`` is a short name that stays the same."""
+
+    level: str
+    kind: str
+    text: str
+    cure: str
+
+
+@dataclass(frozen=True)
+class Code:
+    """A REMAP line of the package in a config, with the package's own line for it."""
+
+    line: Line
+    remap: Remap
+    feature: str
+    model: Remap
+
+
+Rule = Callable[[Config, "list[Code]"], Iterator[Finding]]
+
+
+def problem(kind: str, text: str, cure: str) -> Finding:
+    """Return a finding that keeps a code from working."""
+    return Finding(PROBLEM, kind, text, cure)
+
+
+def warning(kind: str, text: str, cure: str) -> Finding:
+    """Return a finding that will surprise."""
+    return Finding(WARNING, kind, text, cure)
+
+
+def codes_of(remaps: list[tuple[Line, Remap]]) -> list[Code]:
+    """Return the REMAP lines that are the package's."""
+    found = ((line, remap, features.model_of(remap)) for line, remap in remaps)
+    return [Code(line, remap, *model) for line, remap, model in found if model]
+
+
+def note(kind: str, text: str, cure: str) -> Finding:
+    """Return a finding that is as it may be, but that the owner should know of."""
+    return Finding(NOTE, kind, text, cure)
+
+
+# The INI's lines.
+
+
+def unreadable_includes(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find an #INCLUDE of a file that is not there."""
+    for line in config.text.unreadable:
+        yield warning(
+            "include",
+            f"{line.place}: {line.text.strip()}: LinuxCNC cannot read this file and goes on",
+            "correct the file name or take the line out",
+        )
+
+
+def nested_includes(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find an #INCLUDE inside an included file, which LinuxCNC 2.9 takes for a comment."""
+    for line in config.text.lines():
+        if line.file != config.text.path and INCLUDE.match(line.text):
+            yield warning(
+                "include",
+                f"{line.place}: {line.text.strip()}: an included file's #INCLUDE is only a comment",
+                f"put the #INCLUDE into {config.text.path.name} itself",
+            )
+
+
+def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find REMAP lines of the package, or settings, where LinuxCNC does not look."""
+    read = {line for line, _ in config.remaps}
+    for line in config.text.lines():
+        entry = ENTRY.match(line.text)
+        if not entry or entry[1] != "REMAP" or line in read:
+            continue
+        if features.model_of(features.remap_from_value(entry[2])):
+            yield problem(
+                "not-read",
+                f"{line.place}: {line.text.strip()}: not in the section [RS274NGC] that is read",
+                "move the line into the first [RS274NGC]; LinuxCNC 2.9 reads no second one",
+            )
+    for header in config.text.headers(SECTION)[1:]:
+        yield problem(
+            "not-read",
+            f"{header.place}: a second [{SECTION}], which LinuxCNC 2.9 does not read",
+            f"move its lines into the first [{SECTION}]",
+        )
+
+
+def long_lines(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find lines LinuxCNC would cut."""
+    for section in ("RS274NGC", "PYTHON", SECTION):
+        for line in config.text.section(section):
+            if len(line.text) > LONGEST_LINE:
+                yield problem(
+                    "long-line",
+                    f"{line.place}: {len(line.text)} characters; LinuxCNC reads {LONGEST_LINE}",
+                    "shorten the line, or break it with a backslash at the end",
+                )
+
+
+# LinuxCNC itself.
+
+
+def wrong_version(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find no LinuxCNC, or one before the first that works."""
+    numbers = tuple(map(int, re.findall(r"\d+", config.version)[:2]))
+    if not numbers:
+        yield problem(
+            "no-linuxcnc",
+            "there is no LinuxCNC on this computer: nothing could be loaded",
+            "run this on the machine's own computer, with LinuxCNC 2.9 or later",
+        )
+    elif numbers < OLDEST:
+        yield problem(
+            "too-old",
+            f"LinuxCNC {config.version} is too old for the package",
+            "update LinuxCNC to 2.9 or later",
+        )
+
+
+def other_interpreter(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find a machine that does not read G-code with LinuxCNC's interpreter."""
+    name = config.ini.get("TASK", "INTERPRETER")
+    if name:
+        yield problem(
+            "interpreter",
+            f"[TASK] INTERPRETER = {name}: REMAP lines are for LinuxCNC's own interpreter",
+            "take that line out to use the package",
+        )
+
+
+# The codes.
+
+
+def codes_missing(_config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find a config without the package."""
+    if not codes:
+        yield problem(
+            "no-codes",
+            "no code of the package is set up here",
+            "python3 python/g12 install INI --with haas (or another; see install --help)",
+        )
+
+
+def taken_codes(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find a code with two REMAP lines: LinuxCNC does not start."""
+    mine = [code.line for code in codes]
+    for code in codes:
+        earlier = mine[: mine.index(code.line)]
+        for line, remap in config.remaps:
+            if remap.number != code.remap.number or line in (code.line, *earlier):
+                continue
+            yield problem(
+                "taken",
+                f"{line.place}: {remap.code} is remapped here already: REMAP = {remap.text}",
+                f"keep one meaning of {remap.code}: take this line out or the package's "
+                f"({code.line.place})",
+            )
+
+
+def owned_codes(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find a code that LinuxCNC keeps for itself: it accepts the REMAP line and ignores it."""
+    for code in codes:
+        if code.remap.code not in config.owned:
+            continue
+        cure = "give the feature another code in its REMAP line"
+        if code.feature == "polar":
+            cure = "use the pair G12.3/G13.3: uninstall, then install --with polar-g12.3"
+        yield problem(
+            "owned",
+            f"{code.line.place}: {code.remap.code} is LinuxCNC's own code: its REMAP is ignored",
+            cure,
+        )
+
+
+def wrong_lines(_config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find REMAP lines that are nearly the package's."""
+    for code in codes:
+        wanted, found = code.model.keywords, code.remap.keywords
+        wrong = [f"{key}={value}" for key, value in wanted.items() if found.get(key) != value]
+        wrong += [f"no {key}=" for key in found if key not in wanted]
+        if wrong:
+            yield problem(
+                "wrong-line",
+                f"{code.line.place}: REMAP = {code.remap.text}: should have {', '.join(wrong)}",
+                f"REMAP = {' '.join([code.remap.code, *code.model.text.split()[1:]])}",
+            )
+
+
+def halves(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find one code of a pair without the other."""
+    others = {remap.number: remap for _, remap in config.remaps}
+    for feature in dict.fromkeys(code.feature for code in codes):
+        there = {code.model for code in codes if code.feature == feature}
+        for model in set(features.remaps_of(feature)) - there:
+            other = others.get(model.number)
+            now = f"means something else here (REMAP = {other.text})" if other else "is missing"
+            yield problem(
+                "half",
+                f"{feature}: {model.code} {now}, though its other code is there",
+                f"have in [RS274NGC]: REMAP = {model.text}",
+            )
+
+
+def missing_subs(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find NGC subs that LinuxCNC does not find: it does not start."""
+    for name in needed_subs(codes):
+        if not subs_named(config.ini, name):
+            yield problem(
+                "no-sub",
+                f"{name}.ngc is in none of the folders LinuxCNC looks in",
+                "add the package's folder ngc to SUBROUTINE_PATH in [RS274NGC] "
+                f"(the first such line counts, and its first {MOST_FOLDERS} folders); {MEND}",
+            )
+
+
+def blanks_in_path(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find a folder name that a shell would split: LinuxCNC finds no subs there."""
+    first = [subs_named(config.ini, name)[:1] for name in needed_subs(codes)]
+    for folder in sorted({file.parent for files in first for file in files}):
+        if folder != config.folder:
+            yield from odd_folder(folder)
+
+
+def odd_folder(folder: Path) -> Iterator[Finding]:
+    """Find a character in a folder's path at which LinuxCNC, like a shell, gives up."""
+    odd = SHELL_CHARACTERS.search(str(folder))
+    if odd:
+        yield problem(
+            "blank-in-path",
+            f"{folder}: LinuxCNC finds no NGC subs in a folder with {odd[0]!r} in its path",
+            "rename the folder: letters, digits, - and _ only",
+        )
+
+
+def shadowed_subs(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find another file of a sub's name in a folder LinuxCNC looks in first."""
+    for name in needed_subs(codes):
+        first, *others = subs_named(config.ini, name) or [None]
+        own = package_sub(config, name)
+        if own in [other.resolve() for other in others]:
+            yield problem(
+                "shadowed",
+                f"{first} is found before the package's {name}.ngc",
+                "rename or remove that file (LinuxCNC looks in the INI's folder, then "
+                "PROGRAM_PREFIX, then SUBROUTINE_PATH)",
+            )
+
+
+def shadowing_functions(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find a Python O-word of the name of a sub that programs call; REMAP lines go past it."""
+    called = {name for code in codes for name in features.SUBS.get(code.feature, ())}
+    for name in sorted(called & set(config.python.oword if config.python else ())):
+        yield problem(
+            "shadowed",
+            f"a call of o<{name}> runs the function {name} of your module oword, "
+            f"not the package's {name}.ngc",
+            "give your function another name",
+        )
+
+
+def needed_subs(codes: list[Code]) -> list[str]:
+    """Return the NGC subs that the codes set up here need."""
+    names = (name for code in codes for name in features.names_of(code.feature))
+    return list(dict.fromkeys(names))
+
+
+def package_sub(config: Config, name: str) -> Path | None:
+    """Return the sub that belongs to the package in use."""
+    package = config.python.package if config.python else None
+    return (package.parent.parent / "ngc" / f"{name}.ngc").resolve() if package else None
+
+
+# Python.
+
+
+def no_toplevel(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find a config whose Python LinuxCNC never loads."""
+    name = config.ini.get("PYTHON", "TOPLEVEL")
+    if not codes:
+        return
+    if not name:
+        yield problem(
+            "no-python",
+            "[PYTHON] TOPLEVEL is missing: LinuxCNC loads no Python, and the codes need it",
+            "add [PYTHON], TOPLEVEL = …/python/toplevel.py and PATH_PREPEND = …/python "
+            "with the package's folder",
+        )
+    elif not folder_from_ini(config.ini, name).is_file():
+        yield problem(
+            "no-python",
+            f"[PYTHON] TOPLEVEL = {name}: there is no such file",
+            f"correct the name; it is relative to {config.folder}; {MEND}",
+        )
+
+
+def python_fails(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find Python modules that stop with an error: LinuxCNC does not start."""
+    error = config.python.error if config.python else None
+    if error and not any(no_toplevel(config, codes_of(config.remaps))):
+        cure = "correct the module named"
+        if "No module named" in error:
+            cure = "add the folder of that module to [PYTHON] as PATH_PREPEND or PATH_APPEND"
+        yield problem("python-fails", f"[PYTHON] does not load: {error}", cure)
+
+
+def handlers_missing(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find handlers that are missing: LinuxCNC starts, and the code fails when it is used."""
+    python = config.python
+    if not codes or not python or python.error or any(no_toplevel(config, codes)):
+        return
+    needed = {name for code in codes for name in code.model.handlers}
+    missing = sorted(needed - set(python.remap))
+    if missing and not python.remap and not python.remap_file:
+        toplevel = config.ini.get("PYTHON", "TOPLEVEL")
+        yield problem(
+            "no-remap-module",
+            f"{toplevel} does not import a module remap, where LinuxCNC looks for handlers",
+            f"add the line: import remap   to {toplevel}",
+        )
+    elif missing:
+        yield problem(
+            "no-import",
+            f"{python.remap_file} has no {', '.join(missing)}",
+            f"add the line: {LINE_FOR_REMAP}   to {python.remap_file}",
+        )
+
+
+def handlers_hidden(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find functions of the user's own under a handler's name."""
+    functions = config.python.remap if config.python else {}
+    for name in sorted({name for code in codes for name in code.model.handlers}):
+        module = functions.get(name)
+        if module and module.split(".")[0] != "g12":
+            yield problem(
+                "hidden",
+                f"your own function {name} (module {module}) hides the package's",
+                "give your function another name",
+            )
+
+
+# The machine.
+
+
+def bad_settings(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find a [G12] section that is a start-up error."""
+    try:
+        settings_from_entries(section_entries(config.ini.text, SECTION))
+    except Refusal as refusal:
+        yield problem("setting", refusal.message, f"correct the line in [{SECTION}]")
+
+
+def missing_axes(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find axes that a code needs."""
+    axes = coordinates(config)
+    for feature in dict.fromkeys(code.feature for code in codes):
+        needed = "XC" if feature in features.POLAR else "XYZ"
+        missing = [axis for axis in needed if axis not in axes]
+        if missing:
+            yield problem(
+                "no-axis",
+                f"{feature} needs axis {' and '.join(missing)}; "
+                f"[TRAJ] COORDINATES has {' '.join(axes)}",
+                "add the axis to the machine, or take these codes out",
+            )
+
+
+def no_tool_table(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find a machine without a tool table: it starts, and has no tool."""
+    name, database = (config.ini.get("EMCIO", key) for key in ("TOOL_TABLE", "DB_PROGRAM"))
+    path = config.ini.file("EMCIO", "TOOL_TABLE")
+    if not codes or (path and path.is_file() and not database):
+        return
+    if database:
+        yield note(
+            "tool-database",
+            f"[EMCIO] DB_PROGRAM = {database}: the tools of that program were not looked at",
+            "look yourself whether the cutters have diameters",
+        )
+        return
+    yield warning(
+        "no-tool-table",
+        f"[EMCIO] TOOL_TABLE = {name}: there is no such file"
+        if name
+        else "[EMCIO] TOOL_TABLE is missing: this machine knows no tool",
+        f"name a tool table that is there; it is relative to {config.folder}",
+    )
+
+
+def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find a tool table that cannot tell any cutter's radius."""
+    tools = tool_diameters(config)
+    mill = any(code.feature not in features.POLAR for code in codes)
+    if mill and tools is not None and not any(tools.values()):
+        yield warning(
+            "no-diameters",
+            "no tool in the tool table has a diameter: a pocket with D would come out too large",
+            "enter the cutters' diameters (D) in the tool table",
+        )
+
+
+def coordinates(config: Config) -> list[str]:
+    """Return the machine's axes."""
+    letters = "".join(config.ini.words("TRAJ", "COORDINATES", "XYZ")).upper()
+    return list(dict.fromkeys(letters))
+
+
+def tool_diameters(config: Config) -> dict[int, float] | None:
+    """Return tool number to diameter in machine units; None without a tool table file."""
+    path = config.ini.file("EMCIO", "TOOL_TABLE")
+    if not path or not path.is_file() or config.ini.get("EMCIO", "DB_PROGRAM"):
+        return None
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    entries = (line.split(";")[0] for line in lines)
+    found = ((TOOL.search(line), DIAMETER.search(line)) for line in entries)
+    return {int(tool[1]): float(size[1]) if size else 0.0 for tool, size in found if tool}
+
+
+RULES: tuple[Rule, ...] = (
+    wrong_version,
+    other_interpreter,
+    codes_missing,
+    unreadable_includes,
+    nested_includes,
+    lines_not_read,
+    long_lines,
+    taken_codes,
+    owned_codes,
+    wrong_lines,
+    halves,
+    missing_subs,
+    blanks_in_path,
+    shadowed_subs,
+    shadowing_functions,
+    no_toplevel,
+    python_fails,
+    handlers_missing,
+    handlers_hidden,
+    bad_settings,
+    missing_axes,
+    no_tool_table,
+    tools_without_diameter,
+)
+
+
+def findings_of(config: Config) -> list[Finding]:
+    """Return everything found; what nothing explains is LinuxCNC's own word."""
+    codes = codes_of(config.remaps)
+    found = [finding for rule in RULES for finding in rule(config, codes)]
+    if config.failure and not any(finding.kind in STOPPING for finding in found):
+        found.append(
+            problem(
+                "does-not-load",
+                f"LinuxCNC does not load this config: {last_words(config.failure)}",
+                "correct the config until LinuxCNC starts",
+            )
+        )
+    return found
+
+
+def last_words(failure: str) -> str:
+    """Return what the interpreter said last before it gave up, in one line."""
+    lines = [line.strip() for line in failure.splitlines() if line.strip()]
+    told = [line for line in lines if line != AFTERMATH] or lines
+    return "; ".join(told[-2:])

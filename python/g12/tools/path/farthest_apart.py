@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How far two paths on the part are apart at most, and where. Lengths are millimetres."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from g12.tools.path.part import CHORD_ERROR, Part, paths
+from g12.tools.preview.tracer import AXES, Move
+
+ROUGH = 0.005  # chord error where the finer one makes too many points
+MOST_DISTANCES = 3_000_000
+BATCH = 200_000
+
+
+class Gap(NamedTuple):
+    """The point of one path that is farthest from another, and the nearest point there."""
+
+    size: float
+    point: np.ndarray
+    nearest: np.ndarray
+
+
+def gap_between(part: Part, moves: Sequence[Move], others: Sequence[Move]) -> Gap | None:
+    """Return where two paths are farthest apart.
+
+    None where that says nothing, as of axes that the part does not know, or takes too long.
+    """
+    few = len(moves) * len(others) <= MOST_DISTANCES
+    if not few or any(_is_beyond(part, move) for move in [*moves, *others]):
+        return None
+    for chord_error in (CHORD_ERROR, ROUGH):
+        lines = [paths(part, some, chord_error) for some in (moves, others)]
+        if _count(lines[0]) * _count(lines[1]) <= MOST_DISTANCES:
+            return max(_farthest(*lines), _farthest(*lines[::-1]), key=lambda gap: gap.size)
+    return None
+
+
+def _is_beyond(part: Part, move: Move) -> bool:
+    known = "XYZC" if part.turning else "XYZ"
+    ends = zip(AXES, move.start, move.end)
+    return any(a != b for axis, a, b in ends if axis not in known)
+
+
+def _count(lines: Sequence[np.ndarray]) -> int:
+    return sum(map(len, lines))
+
+
+def _farthest(lines: Sequence[np.ndarray], others: Sequence[np.ndarray]) -> Gap:
+    """Return the point of polylines (n, 3) that is farthest from the others."""
+    starts = np.concatenate([line[:-1] for line in others])
+    ways = np.concatenate([np.diff(line, axis=0) for line in others])
+    points = np.concatenate(lines)
+    size = max(1, BATCH // len(starts))
+    batches = (points[first : first + size] for first in range(0, len(points), size))
+    return max((_in_batch(batch, starts, ways) for batch in batches), key=lambda gap: gap.size)
+
+
+def _in_batch(points: np.ndarray, starts: np.ndarray, ways: np.ndarray) -> Gap:
+    squares = np.maximum(np.einsum("ij,ij->i", ways, ways), 1e-300)
+    away = points[:, None, :] - starts
+    share = np.clip(np.einsum("pij,ij->pi", away, ways) / squares, 0.0, 1.0)
+    across = away - share[:, :, None] * ways
+    distances = np.linalg.norm(across, axis=2)
+    nearest = distances.argmin(axis=1)
+    sizes = distances[np.arange(len(points)), nearest]
+    worst = int(sizes.argmax())
+    point = points[worst]
+    return Gap(float(sizes[worst]), point, point - across[worst, nearest[worst]])

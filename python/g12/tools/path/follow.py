@@ -1,0 +1,358 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Paths in time, programmed and real: one dense polyline for the moves, and what a run made of it.
+
+Lengths are millimetres, angles of rotary axes degrees, times seconds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+from typing import NamedTuple
+
+import numpy as np
+
+from g12.tools.headless.machine import Samples
+from g12.tools.machine.ini import Ini
+from g12.tools.path.part import CHORD_ERROR, Part, plane_axes
+from g12.tools.preview.tracer import AXES, Move, mm_per_unit
+
+LINEAR = [AXES.index(letter) for letter in "XYZUVW"]
+SLACK = 0.25  # mm that a run may be ahead of the path, where it cuts a corner
+UNLIMITED = math.inf
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Greatest speeds: per axis (mm/s or degrees/s, in the order of AXES) and along the path."""
+
+    axes: tuple[float, ...]
+    path: float
+
+
+@dataclass(frozen=True)
+class Track:
+    """Moves as one polyline: per vertex the machine position, part point, move and time.
+
+    ``positions`` (n, 9) are those of the controlled point, ``offsets`` (n, 9) the tool length
+    offset in force, ``move`` (n,) the index of the move that ends at or passes the vertex.
+    ``time`` supposes that every move runs at its feed, as far as the axes' speeds allow.
+    """
+
+    part: Part
+    positions: np.ndarray
+    offsets: np.ndarray
+    move: np.ndarray
+    time: np.ndarray
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Part points (n, 3)."""
+        return self.part.points(self.positions)
+
+    @cached_property
+    def axis_points(self) -> np.ndarray:
+        """Part points (n, 3) as the axes stand, tool length offset included."""
+        return self.part.points(self.positions + self.offsets)
+
+    def vertices(self, index: int) -> slice:
+        """Return the vertices of a move, its start included."""
+        first, last = np.searchsorted(self.move, (index, index + 1))
+        return slice(max(0, first - (1 if index else 0)), last)
+
+    def part_length(self, index: int) -> float:
+        """Return the length along the part of a move, mm."""
+        points = self.points[self.vertices(index)]
+        return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
+    def seconds(self, index: int) -> float:
+        """Return the time of a move."""
+        time = self.time[self.vertices(index)]
+        return float(time[-1] - time[0])
+
+    def part_feed(self, index: int) -> float:
+        """Return the speed along the part of a move, mm/min."""
+        seconds = self.seconds(index)
+        return self.part_length(index) / seconds * 60.0 if seconds else 0.0
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Samples of a run laid on the programmed path, arrays of one entry per sample.
+
+    ``positions`` (n, 9) are those of the controlled point, ``points`` (n, 3) the part's;
+    ``move`` is the index of the move being made, ``nearest`` (n, 3) the programmed point next
+    to the sample and ``deviation`` the distance to it, ``time`` in seconds.
+    """
+
+    time: np.ndarray
+    positions: np.ndarray
+    points: np.ndarray
+    move: np.ndarray
+    nearest: np.ndarray
+    deviation: np.ndarray
+
+    def during(self, move: int) -> slice:
+        """Return the samples of a move, and the one before, so that stretches join."""
+        first, last = np.searchsorted(self.move, (move, move + 1))
+        return slice(max(0, first - 1) if last > first else first, last)
+
+    def part_speed(self) -> np.ndarray:
+        """Return the speed along the part, mm/s, of each sample."""
+        return speed(self.points, self.time)
+
+    def largest(self, moves: Sequence[int]) -> float:
+        """Return the largest deviation from some moves, given by their indices."""
+        return float(self.deviation[np.isin(self.move, moves)].max(initial=0.0))
+
+    def worst(self, among: np.ndarray) -> int:
+        """Return the index of the largest deviation among the samples of a mask."""
+        return int(np.flatnonzero(among)[np.argmax(self.deviation[among])])
+
+
+class Worst(NamedTuple):
+    """The largest deviation of a run from the moves at feed, mm."""
+
+    index: int  # of the sample
+    deviation: float
+    point: np.ndarray
+    nearest: np.ndarray
+    move: Move
+
+
+def worst_of(real: Followed, moves: Sequence[Move]) -> Worst | None:
+    """Return where a run is farthest from its moves at feed; None without such motion."""
+    at_feed = np.array([move.kind != "rapid" for move in moves], bool)[real.move]
+    if not at_feed.any():
+        return None
+    index = real.worst(at_feed)
+    return Worst(
+        index,
+        float(real.deviation[index]),
+        real.points[index],
+        real.nearest[index],
+        moves[real.move[index]],
+    )
+
+
+def limits_of(ini: Ini) -> Limits:
+    """Return the greatest speeds that an INI allows."""
+    unit = mm_per_unit(ini)
+    scale = [unit if index in LINEAR else 1.0 for index in range(len(AXES))]
+    axes = [ini.number(f"AXIS_{letter}", "MAX_VELOCITY", UNLIMITED) for letter in AXES]
+    path = ini.number("TRAJ", "MAX_LINEAR_VELOCITY", UNLIMITED) * unit
+    return Limits(tuple(map(float.__mul__, axes, scale)), path)
+
+
+def duration(move: Move, limits: Limits, spindle_speed: float = 0.0) -> float:
+    """Return the seconds a move takes at its feed, axis speeds permitting, without acceleration.
+
+    ``spindle_speed`` in revolutions per minute is for moves in G95.
+    """
+    changes = [abs(end - start) for start, end in zip(move.start, move.end)]
+    if move.kind == "arc":
+        return move.length / min(rate(move, spindle_speed) or limits.path, limits.path)
+    needed = max(change / limit for change, limit in zip(changes, limits.axes))
+    needed = max(needed, move.length / limits.path)
+    wanted = rate(move, spindle_speed)
+    return max(needed, feed_length(move) / wanted) if wanted else needed
+
+
+def rate(move: Move, spindle_speed: float) -> float:
+    """Return the programmed speed of a move in mm/s or degrees/s; 0 is as fast as it may."""
+    per_minute = move.feed * spindle_speed if move.feed_mode == "G95" else move.feed
+    return per_minute / 60.0
+
+
+def feed_length(move: Move) -> float:
+    """Return the length that a move's feed is for: of X Y Z, else of U V W, else degrees."""
+    change = np.subtract(move.end, move.start)
+    lengths = (math.hypot(*change[:3]), math.hypot(*change[6:]), math.hypot(*change[3:6]))
+    return next((length for length in lengths if length > 1e-9), 0.0)
+
+
+def track(
+    part: Part,
+    moves: Sequence[Move],
+    limits: Limits,
+    spindle_speed: float = 0.0,
+    chord_error: float = CHORD_ERROR,
+) -> Track:
+    """Return the polyline of moves."""
+    positions, offsets, owner, times = [], [], [], [0.0]
+    before = (0.0,) * 9
+    for index, move in enumerate(moves):
+        points = part.machine_points(move, chord_error)
+        skip = 1 if index else 0
+        share = np.linspace(0.0, 1.0, len(points))[:, None]
+        positions.append(points[skip:])
+        offsets.append((np.array(before) * (1 - share) + np.array(move.tool_offset) * share)[skip:])
+        owner.append(np.full(len(points) - skip, index))
+        start, seconds = times[-1], duration(move, limits, spindle_speed)
+        times.extend(start + seconds * share[1:, 0])
+        before = move.tool_offset
+    return Track(
+        part,
+        np.concatenate(positions or [np.zeros((1, 9))]),
+        np.concatenate(offsets or [np.zeros((1, 9))]),
+        np.concatenate(owner or [np.zeros(1, int)]),
+        np.array(times),
+    )
+
+
+def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) -> Followed:
+    """Lay the samples in motion on the path of moves; ``unit`` is one machine unit in mm.
+
+    Where a corner is rounded, the tool is off the line that LinuxCNC names: the distance is that
+    to this line or to those before and after it, whichever is nearer.
+    """
+    moving = samples.moving()
+    axes = _positions(samples, unit)[moving]
+    there = path.part.points(axes)
+    named, beside = stretches(path, moves, samples.line[moving])
+    segment = _segments(path.axis_points, there, named)
+    following = np.minimum(segment + 1, len(path.move) - 1)
+    positions = axes - _offsets(path, there, segment, following)
+    points = path.part.points(positions)
+    nearest = _programmed(path, moves, points, segment)
+    other = _programmed(path, moves, points, _segments(path.axis_points, there, beside))
+    away, other_away = (np.linalg.norm(points - near, axis=1) for near in (nearest, other))
+    nearest = np.where((other_away < away)[:, None], other, nearest)
+    deviation = np.minimum(away, other_away)
+    move = path.move[following]
+    return Followed(samples.time[moving], positions, points, move, nearest, deviation)
+
+
+def _programmed(
+    path: Track, moves: Sequence[Move], points: np.ndarray, segment: np.ndarray
+) -> np.ndarray:
+    """Return the programmed points next to points: of arcs the arcs themselves."""
+    nearest = _nearest(path.points, points, segment)
+    move = path.move[np.minimum(segment + 1, len(path.move) - 1)]
+    for index in np.unique(move) if not path.part.turning else ():
+        if is_plain_arc(moves[index]):
+            own = move == index
+            nearest[own] = on_arc(moves[index], points[own], nearest[own])
+    return nearest
+
+
+def is_plain_arc(move: Move) -> bool:
+    """Tell whether a move is an arc of one radius in its plane."""
+    if move.kind != "arc":
+        return False
+    ends = (np.array([move.start[:3], move.end[:3]]) - move.centre) @ plane_axes(move).T
+    radius = np.hypot(ends[:, 0], ends[:, 1])
+    return bool(abs(radius[1] - radius[0]) < 1e-6 and abs(ends[1, 2] - ends[0, 2]) < 1e-6)
+
+
+def on_arc(move: Move, points: np.ndarray, nearest: np.ndarray) -> np.ndarray:
+    """Return the points of an arc next to points, given the nearest ones of its chords.
+
+    A nearest point that is an end of the arc stays.
+    """
+    axes = plane_axes(move)
+    local = (points - move.centre) @ axes.T
+    radius = np.maximum(np.hypot(local[:, 0], local[:, 1]), 1e-9)
+    local[:, :2] *= (move.radius / radius)[:, None]
+    local[:, 2] = 0.0
+    exact = local @ axes + move.centre
+    ends = np.array([move.start[:3], move.end[:3]])
+    at_end = np.min(np.linalg.norm(nearest[:, None] - ends, axis=2), axis=1) < 1e-9
+    return np.where(at_end[:, None], nearest, exact)
+
+
+def speed(points: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Return the speed along points (n, 3) at given times; ends repeat their neighbour."""
+    if len(points) < 2:
+        return np.zeros(len(points))
+    return np.linalg.norm(np.gradient(points, time, axis=0), axis=1)
+
+
+def _positions(samples: Samples, unit: float) -> np.ndarray:
+    """Return axis positions (n, 9) of samples, mm and degrees."""
+    positions = np.zeros((len(samples.time), len(AXES)))
+    for letter, values in samples.axes.items():
+        index = AXES.index(letter)
+        positions[:, index] = values * (unit if index in LINEAR else 1.0)
+    return positions
+
+
+def _offsets(path: Track, there: np.ndarray, segment: np.ndarray, following: np.ndarray):
+    """Return the tool length offsets (n, 9) of axis points: a move with G43 brings it in."""
+    start = path.axis_points[segment]
+    share = _share(start, path.axis_points[following] - start, there)[:, None]
+    return path.offsets[segment] * (1 - share) + path.offsets[following] * share
+
+
+def _share(start: np.ndarray, along: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """Return how far along segments points are, from 0 to 1, row by row."""
+    square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
+    return np.clip(np.einsum("ij,ij->i", point - start, along) / square, 0.0, 1.0)
+
+
+def stretches(path: Track, moves: Sequence[Move], lines: np.ndarray):
+    """Return the first and last segment (n, 2) that each sample can be on: of its line, of more.
+
+    Samples name the line that is in motion. Where those lines come in the same order as the
+    moves', a sample is on one of its line's moves, or in a corner with those before or after;
+    else it may be anywhere.
+    """
+    going = [i for i, move in enumerate(moves) if move.start != move.end or move.kind == "arc"]
+    groups = [list(group) for _, group in groupby(going, key=lambda index: moves[index].line)]
+    runs = [run for run in np.split(lines, np.flatnonzero(np.diff(lines)) + 1) if len(run)]
+    if [moves[group[0]].line for group in groups] != [run[0] for run in runs]:
+        everywhere = np.tile([0, max(0, len(path.move) - 2)], (len(lines), 1))
+        return everywhere, everywhere
+    first = np.array([path.vertices(group[0]).start for group in groups], int)
+    last = np.array([max(0, path.vertices(group[-1]).stop - 2) for group in groups], int)
+    before, after = np.append(first[:1], first[:-1]), np.append(last[1:], last[-1:])
+    lengths = [len(run) for run in runs]
+    pairs = (np.stack(pair, axis=1) for pair in ((first, last), (before, after)))
+    return tuple(np.repeat(pair, lengths, axis=0) for pair in pairs)
+
+
+def _segments(path: np.ndarray, points: np.ndarray, within: np.ndarray) -> np.ndarray:
+    """Return the index of the segment of the path that each point is on, never going back.
+
+    The nearest place is looked for only as far ahead as the tool can have come, and not behind
+    where it was: a path may cross, repeat or retrace itself, but the tool cannot jump along it.
+    """
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+    found = np.zeros(len(points), int)
+    first, here = 0, path[0]
+    for index, (point, (least, most)) in enumerate(zip(points, within)):
+        if first < least:
+            first, here = least, path[least]
+        reached = along[first] + math.dist(here, path[first])
+        ahead = int(np.searchsorted(along, reached + 2 * math.dist(point, here) + SLACK))
+        starts = path[first : min(max(ahead, first + 1), most + 1)].copy()
+        ends = path[first + 1 : first + 1 + len(starts)]
+        if len(ends):
+            starts[0] = here
+            near, distance = _nearest_on(starts[: len(ends)], ends - starts[: len(ends)], point)
+            best = int(np.argmin(distance))
+            first, here = first + best, near[best]
+        found[index] = first
+    return found
+
+
+def _nearest_on(start: np.ndarray, along: np.ndarray, point: np.ndarray):
+    """Return nearest points on segments and their distances, row by row."""
+    near = start + along * _share(start, along, point)[:, None]
+    return near, np.linalg.norm(point - near, axis=1)
+
+
+def _nearest(path: np.ndarray, points: np.ndarray, segment: np.ndarray) -> np.ndarray:
+    """Return the nearest point of the path to each point, close to its segment."""
+    last = max(0, len(path) - 2)
+    near, distance = points.copy(), np.full(len(points), np.inf)
+    for shift in (-2, -1, 0, 1, 2):
+        index = np.clip(segment + shift, 0, last)
+        following = np.minimum(index + 1, len(path) - 1)
+        found, away = _nearest_on(path[index], path[following] - path[index], points)
+        better = away < distance
+        near[better], distance[better] = found[better], away[better]
+    return near

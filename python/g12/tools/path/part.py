@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The workpiece's view of a path: where the tool goes on the part, and what the cutter sweeps.
+
+A ``Part`` turns machine positions into part positions. On a mill they are the same. On a lathe
+whose work spindle turns as C the part plane is the face as one looks at it: with C at 0, machine
+X points right; angles grow counterclockwise, so a tool at X, C stands at (X cos C, X sin C).
+
+Lengths are millimetres, angles radians unless a name says degrees.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from shapely.geometry import LineString, Point
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
+
+from g12.tools.machine.ini import Ini
+from g12.tools.preview.tracer import THIRD_AXIS, Move, Tools, mm_per_unit
+
+CHORD_ERROR = 2e-4  # of the polylines that stand for curves
+LONGEST_ARC_CHORD = math.radians(10)
+DISC_SEGMENTS = 64  # per quarter of a swept disc
+X, Y, Z, C = 0, 1, 2, 5
+TOOL_LINE = re.compile(r"\s*T\s*(\d+)\b([^;]*)", re.IGNORECASE)
+DIAMETER = re.compile(r"\bD\s*([-+]?[\d.]+)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Part:
+    """How machine positions relate to the part; ``turning`` if a work spindle turns it as C."""
+
+    turning: bool
+
+    def points(self, positions: np.ndarray) -> np.ndarray:
+        """Return part points (n, 3) of machine positions (n, 9)."""
+        positions = np.atleast_2d(positions)
+        if not self.turning:
+            return positions[:, :3]
+        angle = np.radians(positions[:, C])
+        radius = positions[:, X]
+        return np.stack([radius * np.cos(angle), radius * np.sin(angle), positions[:, Z]], axis=1)
+
+    def machine_points(self, move: Move, chord_error: float = CHORD_ERROR) -> np.ndarray:
+        """Return machine positions (n, 9) along a move, its ends included.
+
+        They are so close together that chords between them follow the part's own curves.
+        """
+        count = self._pieces(move, chord_error)
+        if move.kind == "arc":
+            return arc_points(move, np.linspace(0.0, 1.0, count + 1))
+        if count == 1:
+            return np.array([move.start, move.end])
+        return np.linspace(move.start, move.end, count + 1)
+
+    def polyline(self, move: Move, chord_error: float = CHORD_ERROR) -> np.ndarray:
+        """Return part points (n, 3) along a move, its ends included."""
+        return self.points(self.machine_points(move, chord_error))
+
+    def _pieces(self, move: Move, chord_error: float) -> int:
+        """Into how many chords a move is cut."""
+        if move.kind == "arc":
+            return arc_pieces(move.radius, move.sweep, chord_error)
+        if self.turning:
+            turn = math.radians(move.end[C] - move.start[C])
+            return arc_pieces(max(abs(move.start[X]), abs(move.end[X])), turn, chord_error)
+        return 1
+
+
+def part_of(ini: Ini) -> Part:
+    """Return how the machine of an INI holds its part: X and C without Y is a lathe."""
+    axes = "".join(ini.words("TRAJ", "COORDINATES", "XYZ")).upper()
+    return Part(turning="C" in axes and "Y" not in axes)
+
+
+def part_of_program(ini: Ini, moves: Iterable[Move]) -> Part:
+    """Return how a program sees its part: on a lathe, C turns it if it moves at all."""
+    turned = any(move.start[C] != move.end[C] for move in moves)
+    return Part(turning=part_of(ini).turning and turned)
+
+
+def arc_pieces(radius: float, sweep: float, chord_error: float) -> int:
+    """Return into how many chords an arc is cut that stay within ``chord_error``."""
+    if abs(sweep) < 1e-12:
+        return 1
+    fitting = 2 * math.acos(max(0.0, 1 - chord_error / max(radius, chord_error)))
+    return max(1, math.ceil(abs(sweep) / min(fitting, LONGEST_ARC_CHORD)))
+
+
+def arc_points(move: Move, fractions: np.ndarray) -> np.ndarray:
+    """Return machine positions (n, 9) after fractions of an arc: ``Move.point`` of many."""
+    axes, centre = plane_axes(move), np.array(move.centre)
+    start, end = (axes @ (np.array(point[:3]) - centre) for point in (move.start, move.end))
+    growth = 1 + (np.hypot(*end[:2]) / np.hypot(*start[:2]) - 1) * fractions
+    cos, sin = np.cos(move.sweep * fractions), np.sin(move.sweep * fractions)
+    first, second = start[0] * cos - start[1] * sin, start[0] * sin + start[1] * cos
+    third = start[2] + (end[2] - start[2]) * fractions
+    points = np.outer(1 - fractions, move.start) + np.outer(fractions, move.end)
+    points[:, :3] = np.stack([first * growth, second * growth, third], axis=1) @ axes + centre
+    return points
+
+
+def paths(part: Part, moves: Iterable[Move], chord_error: float = CHORD_ERROR) -> list[np.ndarray]:
+    """Return the moves as polylines (n, 3) in the part, one for each stretch without a gap."""
+    found: list[list[np.ndarray]] = []
+    for move in moves:
+        points = part.polyline(move, chord_error)
+        if found and np.allclose(found[-1][-1][-1], points[0], atol=1e-9):
+            found[-1].append(points[1:])
+        else:
+            found.append([points])
+    return [np.concatenate(pieces) for pieces in found]
+
+
+def swept(lines: Iterable[np.ndarray], radius: float) -> BaseGeometry:
+    """Return the area in the part plane that a cutter of ``radius`` sweeps along polylines."""
+    return unary_union([_swept_line(line[:, :2], radius) for line in lines])
+
+
+def _swept_line(line: np.ndarray, radius: float) -> BaseGeometry:
+    changed = np.any(np.abs(np.diff(line, axis=0)) > 1e-9, axis=1)
+    line = line[np.concatenate([[True], changed])]
+    shape = LineString(line) if len(line) > 1 else Point(line[0])
+    return shape.buffer(radius, DISC_SEGMENTS)
+
+
+def disc(centre: Sequence[float], radius: float, chord_error: float = CHORD_ERROR) -> BaseGeometry:
+    """Return the full disc about a point of the part plane."""
+    pieces = arc_pieces(radius, math.pi / 2, chord_error)
+    return Point(centre[0], centre[1]).buffer(radius, pieces)
+
+
+def is_sideways(move: Move) -> bool:
+    """Tell whether a move goes anywhere but along the tool's axis Z."""
+    if move.kind == "arc":
+        return True
+    return any(abs(move.end[axis] - move.start[axis]) > 1e-6 for axis in (X, Y, C))
+
+
+def plane_axes(move: Move) -> np.ndarray:
+    """Return the directions of a move's plane: first, second and third axis, as rows."""
+    cos, sin = np.cos(np.radians(move.rotation)), np.sin(np.radians(move.rotation))
+    turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return np.roll(turned, 2 - THIRD_AXIS[move.plane], axis=0)
+
+
+def tool_diameters(ini: Ini, tools: Tools = None) -> dict[int, float]:
+    """Return each tool's diameter in mm: the INI's table, another file, or a mapping.
+
+    A mapping holds diameters in machine units, like a table.
+    """
+    source = ini.file("EMCIO", "TOOL_TABLE") if tools is None else tools
+    if not isinstance(source, Mapping):
+        source = read_tool_table(Path(source)) if source and Path(source).exists() else {}
+    unit = mm_per_unit(ini)
+    return {number: diameter * unit for number, diameter in source.items()}
+
+
+def read_tool_table(path: Path) -> dict[int, float]:
+    """Return the diameters in a LinuxCNC tool table file; a tool without D has 0."""
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    entries = filter(None, map(TOOL_LINE.match, lines))
+    diameters = ((int(entry.group(1)), DIAMETER.search(entry.group(2))) for entry in entries)
+    return {number: float(found.group(1)) if found else 0.0 for number, found in diameters}

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The window on the largest deviation of a run: programmed path, real motion, the gap between."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from g12.tools.path.follow import Worst, worst_of
+from g12.tools.path.part import paths
+from g12.tools.plot import style
+from g12.tools.plot.scene import Scene
+from g12.tools.units import Unit
+
+SIZE = 1.9  # inches, the window's sides
+NEIGHBOURS = 3  # moves before and after that are drawn
+WINDOW = 6.0  # half the window's side, in deviations
+LEAST_WINDOW = 1e-4  # mm
+AXES_OF_PART = {False: "XYZ", True: "XCZ"}  # by whether the part turns
+
+
+def size_of(worst: Worst, unit: Unit) -> str:
+    """Return the size of the largest deviation in words."""
+    least = "below " if worst.deviation < LEAST_WINDOW else ""
+    return f"{least}{unit.fine(max(worst.deviation, LEAST_WINDOW))} {unit.name}"
+
+
+def draw_window(figure: Figure, corner: tuple[float, float], scene: Scene) -> None:
+    """Draw the window with its lower left corner (inches) there."""
+    worst = worst_of(scene.real, scene.moves)
+    if worst is not None:
+        _draw(style.add_axes(figure, *corner, SIZE, SIZE), scene, worst)
+
+
+def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
+    real, moves, unit = scene.real, scene.moves, scene.unit
+    half = max(WINDOW * worst.deviation, LEAST_WINDOW)
+    before, after = real.points[max(0, worst.index - 1) : worst.index + 2][[0, -1]]
+    pair = most_telling(worst.point - worst.nearest, after - before)
+    origin = worst.nearest[pair]
+    around = moves[max(0, real.move[worst.index] - NEIGHBOURS) :][: 2 * NEIGHBOURS + 1]
+    programmed = [line[:, pair] - origin for line in paths(scene.path.part, around, half / 500)]
+    sampled = _stretch(real.points, worst, half)[:, pair] - origin
+    style.draw(axes, programmed, style.PATH, 2.6)
+    style.draw(axes, [sampled], style.REAL, 1.0, 3.5)
+    axes.plot(*sampled.T, ".", color=style.REAL, markersize=3, zorder=3.5)
+    gap = np.array([[0.0, 0.0], worst.point[pair] - origin])
+    style.draw(axes, [gap], style.WORST, 1.8, 4.0)
+    axes.set(xlim=(-half, half), ylim=(-half, half), xticks=[], yticks=[])
+    for spine in axes.spines.values():
+        spine.set(visible=True, color=style.WORST, linewidth=0.9)
+    of_pieces = scene.path.part.turning
+    style.caption(axes, f"Largest deviation{' from the pieces' if of_pieces else ''}")
+    text = "\n".join(told(worst, scene, pair))
+    axes.set_xlabel(text, size=8, color=style.WORST, labelpad=4, loc="left")
+    _scale_bar(axes, half, unit)
+
+
+def told(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
+    """Yield the lines below the window: size, place, feed; and what is off the contour itself."""
+    fast = f" at {scene.override:g} % feed" if scene.override != 100.0 else ""
+    axes = AXES_OF_PART[scene.path.part.turning]
+    letters = " and ".join(axes[axis] for axis in pair)
+    yield f"{size_of(worst, scene.unit)}{fast},"
+    yield f"line {worst.move.block}, in {letters}"
+    if scene.contour is not None:
+        yield f"off the contour: {scene.unit.fine(scene.contour)} {scene.unit.name}"
+
+
+def most_telling(away: np.ndarray, way: np.ndarray) -> list[int]:
+    """Return the two axes of the part, in order, that show a deviation and the way there best."""
+    score = sum(vector**2 / max(vector @ vector, 1e-30) for vector in (away, way))
+    return sorted(np.argsort(-score, kind="stable")[:2].tolist())
+
+
+def _stretch(points: np.ndarray, worst: Worst, half: float) -> np.ndarray:
+    """Return the samples in sequence about the worst one, as far as the window shows them."""
+    away = np.max(np.abs(points - worst.point), axis=1) > 3 * half
+    before = np.flatnonzero(away[: worst.index])
+    after = np.flatnonzero(away[worst.index :])
+    first = before[-1] if len(before) else 0
+    last = worst.index + after[0] if len(after) else len(points) - 1
+    return points[first : last + 1]
+
+
+def _scale_bar(axes: Axes, half: float, unit: Unit) -> None:
+    """Draw a bar of a round length in the window's corner."""
+    shown = half / unit.mm
+    length = 10.0 ** math.floor(math.log10(shown))
+    length = max(step * length for step in (0.2, 0.5, 1.0) if step * length <= shown)
+    place = axes.transAxes
+    share = length / shown / 2
+    bar = {"transform": place, "color": style.INK, "linewidth": 1.4, "zorder": 5}
+    axes.plot([0.06, 0.06 + share], [0.06, 0.06], solid_capstyle="butt", **bar)
+    text = f"{length:g} {unit.name}"
+    axes.text(0.06, 0.09, text, transform=place, size=7.5, color=style.INK)

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The picture of a lathe program with C: the part's face as one looks at it, and what the axes do.
+
+Lengths are millimetres until they are drawn; those of the layout are inches on the page.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from g12.tools.path.follow import limits_of
+from g12.tools.plot import style
+from g12.tools.plot.deviation import SIZE, draw_window
+from g12.tools.plot.plan_view import bounds_of, draw_plan, entries, levels_of, mark_worst
+from g12.tools.plot.scene import Scene
+from g12.tools.units import plain
+
+WIDTH, HEIGHT = 11.6, 8.0
+HIGHER = 1.25  # with the window on the largest deviation
+LEFT, TOP = style.MARGIN, 1.05
+FACE = 5.0  # the side of the face's view
+PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
+PANEL, GAP = 1.32, 0.3  # high, between
+X, C = 0, 5
+
+
+class History(NamedTuple):
+    """What the machine does over time, arrays of one value per moment.
+
+    Seconds, mm, degrees, degrees/s, mm/min; ``wanted`` is the feed programmed along the part,
+    not a number in rapids.
+    """
+
+    time: np.ndarray
+    x: np.ndarray
+    c: np.ndarray
+    c_speed: np.ndarray
+    feed: np.ndarray
+    wanted: np.ndarray
+    rapid: np.ndarray
+
+
+def draw_face(scene: Scene) -> Figure:
+    """Return the picture of a lathe program with C."""
+    levels = levels_of(scene)
+    height = HEIGHT if scene.real is None else HEIGHT + HIGHER
+    figure = style.new_figure(WIDTH, height, scene.title, scene.subtitle)
+    face = style.add_axes(figure, LEFT, height - TOP - FACE, FACE, FACE)
+    frame(face, scene, levels)
+    draw_plan(face, scene, levels)
+    under = (height - TOP - FACE - 0.5) / height
+    bands = [style.swatch(style.FAINT, None, "time spent in rapids")]
+    figure.legend(
+        handles=entries(scene, levels) + bands,
+        loc="upper left",
+        bbox_to_anchor=((LEFT - 0.1) / WIDTH, under),
+        ncol=2 if scene.real is None else 1,
+        columnspacing=1.6,
+    )
+    draw_panels(figure, scene)
+    if scene.real is not None:
+        mark_worst(face, scene, [0, 1])
+        draw_window(figure, (LEFT + FACE - SIZE, 0.55), scene)
+    return figure
+
+
+def frame(axes: Axes, scene: Scene, levels: list) -> None:
+    """Show what is cut and the spindle's centre, in a square."""
+    low, high = bounds_of(scene, levels)
+    low, high = np.minimum(low[:2], 0), np.maximum(high[:2], 0)
+    middle, half = (low + high) / 2, max(high - low) / 2
+    unit = scene.unit
+    (left, bottom), (right, top) = (middle - half) / unit.mm, (middle + half) / unit.mm
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    axes.set_xlabel(f"towards C0, {unit.name}")
+    axes.set_ylabel(f"towards C90, {unit.name}")
+    axes.axhline(0, color=style.MUTED, linewidth=0.5, dashes=(12, 3, 2, 3), zorder=1.9)
+    axes.axvline(0, color=style.MUTED, linewidth=0.5, dashes=(12, 3, 2, 3), zorder=1.9)
+    style.caption(axes, "The part's face")
+
+
+def draw_panels(figure: Figure, scene: Scene) -> None:
+    """Draw X, C, the speed of C and the feed along the part over time."""
+    history = real_history(scene) if scene.real is not None else programmed_history(scene)
+    panels = [panel_axes(figure, row) for row in range(4)]
+    x, c, c_speed, feed = panels
+    colour = style.REAL if scene.real is not None else style.DEPTHS(0.5)
+    drawn = {"color": colour, "linewidth": 1.0, "zorder": 3}
+    name = scene.unit.name
+    x.plot(history.time, history.x / scene.unit.mm, **drawn)
+    style.caption(x, f"X (radius), {name}")
+    c.plot(history.time, history.c, **drawn)
+    style.caption(c, "C, degrees")
+    c_speed.plot(history.time, history.c_speed, drawstyle="steps-pre", **drawn)
+    limit = limits_of(scene.ini).axes[C]
+    draw_limit(c_speed, limit, f"limit {plain(limit, 1)}")
+    style.caption(c_speed, "Speed of C, degrees/s")
+    draw_feed(feed, history, scene, drawn)
+    style.caption(feed, f"Feed along the part, {name}/min")
+    for axes in panels:
+        shade_rapids(axes, history)
+        axes.set_xlim(0, history.time[-1])
+        axes.tick_params(labelbottom=axes is feed)
+    feed.set_xlabel("time, s" if scene.real is not None else "time, s, at the programmed feeds")
+
+
+def panel_axes(figure: Figure, row: int) -> Axes:
+    """Return the axes of one panel over time, from the top."""
+    height = figure.get_figheight()
+    panel = PANEL + (height - HEIGHT) / 4
+    bottom = height - TOP - panel - row * (panel + GAP)
+    return style.add_axes(figure, PANELS_LEFT, bottom, PANELS_WIDTH, panel)
+
+
+def programmed_history(scene: Scene) -> History:
+    """Return the axes over time with every move at its feed, as far as axis speeds allow."""
+    path = scene.path
+    seconds = np.maximum(np.diff(path.time), 1e-12)
+    c_speed = np.abs(np.diff(path.positions[:, C])) / seconds
+    feed = np.linalg.norm(np.diff(path.points, axis=0), axis=1) / seconds
+    rapid = np.array([move.kind == "rapid" for move in scene.moves])[path.move]
+    step = np.insert(feed, 0, feed[0]) * 60
+    wanted = np.where(rapid, np.nan, step)
+    c_step = np.insert(c_speed, 0, c_speed[0])
+    positions = path.positions
+    return History(path.time, positions[:, X], positions[:, C], c_step, step, wanted, rapid)
+
+
+def real_history(scene: Scene) -> History:
+    """Return the axes over time as they moved."""
+    real = scene.real
+    time = real.time - real.time[0]
+    c_speed = np.abs(np.gradient(real.positions[:, C], time))
+    rapid = np.array([move.kind == "rapid" for move in scene.moves])[real.move]
+    feeds = np.array([scene.path.part_feed(index) for index in range(len(scene.moves))])
+    wanted = np.where(rapid, np.nan, feeds[real.move]) * scene.override / 100.0
+    x, c = real.positions[:, X], real.positions[:, C]
+    return History(time, x, c, c_speed, real.part_speed() * 60, wanted, rapid)
+
+
+def draw_feed(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:
+    """Draw the feed along the part, of moves at feed only."""
+    unit = scene.unit.mm
+    if scene.real is not None:
+        wanted = {"color": style.PATH, "linewidth": 2.2, "drawstyle": "steps-pre"}
+        axes.plot(history.time, history.wanted / unit, **wanted)
+    feed = np.where(history.rapid, np.nan, history.feed)
+    axes.plot(history.time, feed / unit, drawstyle="steps-pre", **drawn)
+    axes.set_ylim(0, 1.15 * axes.get_ylim()[1])
+
+
+def draw_limit(axes: Axes, limit: float, text: str) -> None:
+    """Draw a limit that the values must stay below."""
+    if np.isfinite(limit):
+        axes.axhline(limit, color=style.LIMIT, linewidth=0.9, linestyle=(0, (4, 2)))
+        place = {"xy": (1, limit), "xycoords": ("axes fraction", "data"), "ha": "right"}
+        offset = {"xytext": (0, 2), "textcoords": "offset points", "va": "bottom"}
+        axes.annotate(text, color=style.LIMIT, size=7.5, **place, **offset)
+        axes.set_ylim(0, 1.25 * limit)
+
+
+def shade_rapids(axes: Axes, history: History) -> None:
+    """Shade the time spent in rapids."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], history.rapid.astype(int), [0]])))
+    last = len(history.time) - 1
+    for first, end in zip(edges[::2], edges[1::2]):
+        span = history.time[max(0, first - 1)], history.time[min(end - 1, last)]
+        axes.axvspan(*span, color=style.FAINT, linewidth=0, zorder=0.5)

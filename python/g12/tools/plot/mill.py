@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The picture of a mill program: plan view over side view, with the area the cutter sweeps.
+
+Lengths are millimetres until they are drawn; those of the layout are inches on the page.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from shapely.affinity import scale as scaled
+from shapely.geometry import MultiPoint, box
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
+
+from g12.tools.plot import style
+from g12.tools.plot.deviation import SIZE, draw_window
+from g12.tools.plot.plan_view import (
+    SAME_DEPTH,
+    Level,
+    bounds_of,
+    draw_paths,
+    draw_plan,
+    entries,
+    few,
+    floor,
+    levels_of,
+    mark_worst,
+    top_of,
+)
+from g12.tools.plot.scene import Scene
+from g12.tools.units import Unit, plain
+
+PAGE = 11.0  # wide
+WIDE = 2.0  # plans wider than this times their height have the legend below
+LEFT, RIGHT, TOP, BETWEEN, BOTTOM = style.MARGIN, 0.5, 1.05, 0.5, 0.55
+LEGEND = 2.35  # wide
+MOST_PLAN, LEAST_PLAN = 5.6, 1.2  # high
+MOST_SIDE, LEAST_SIDE = 3.2, 0.8
+ROW = 0.22  # a line of the legend
+COLUMNS = 4
+LETTER_HEIGHT = 0.11  # of the heights at the floors
+WINDOW = SIZE + 0.75  # the window on the largest deviation, with its texts
+
+
+class Layout:
+    """Where on the page everything is; ``size`` is width, height and depth of the view."""
+
+    def __init__(self, size: np.ndarray, rows: int, with_window: bool) -> None:
+        width, height, depth = size
+        self.below = width > WIDE * height
+        room = PAGE - LEFT - RIGHT - (0 if self.below else LEGEND)
+        scale = min(room / width, MOST_PLAN / height)
+        self.plan = (width * scale, max(LEAST_PLAN, height * scale))
+        self.side = min(MOST_SIDE, max(LEAST_SIDE, depth * scale))
+        self.stretch = self.side / (depth * scale)
+        legend = ROW * (-(-rows // COLUMNS) if self.below else rows) + 0.2
+        window = WINDOW if with_window else 0.0
+        foot = max(legend, window) if self.below else 0.0
+        views = self.plan[1] + BETWEEN + self.side + BOTTOM
+        self.height = TOP + max(views + foot, 0.0 if self.below else legend + window)
+        self.width = PAGE if self.below else LEFT + self.plan[0] + LEGEND + RIGHT
+        self.under = self.height - TOP - views
+
+    def axes(self, figure: Figure) -> tuple[Axes, Axes]:
+        """Return the axes of the plan and of the side view."""
+        low = self.height - TOP - self.plan[1]
+        plan = style.add_axes(figure, LEFT, low, *self.plan)
+        side = style.add_axes(figure, LEFT, low - BETWEEN - self.side, self.plan[0], self.side)
+        return plan, side
+
+    def draw_legend(self, figure: Figure, shown: Sequence) -> None:
+        """Place the legend beside or below the views."""
+        beside = (LEFT + self.plan[0] + 0.2, self.height - TOP + 0.08)
+        at = (LEFT - 0.1, self.under) if self.below else beside
+        figure.legend(
+            handles=shown,
+            loc="upper left",
+            bbox_to_anchor=(at[0] / self.width, at[1] / self.height),
+            ncol=COLUMNS if self.below else 1,
+            columnspacing=1.6,
+        )
+
+    def window_corner(self) -> tuple[float, float]:
+        """Return the lower left corner of the window on the largest deviation."""
+        beside = (LEFT + self.plan[0] + 0.35, BOTTOM)
+        return (self.width - RIGHT - SIZE, 0.4) if self.below else beside
+
+
+def draw_mill(scene: Scene) -> Figure:
+    """Return the picture of a mill program."""
+    levels = levels_of(scene)
+    low, high = bounds_of(scene, levels)
+    shown = entries(scene, levels)
+    layout = Layout(high - low, len(shown), scene.real is not None)
+    figure = style.new_figure(layout.width, layout.height, scene.title, scene.subtitle)
+    plan, side = layout.axes(figure)
+    frame(plan, scene.unit, low, high, [0, 1])
+    plan.set_aspect("equal", adjustable="datalim")
+    plan.set_xlabel("")
+    style.caption(plan, "Plan")
+    draw_plan(plan, scene, levels)
+    frame(side, scene.unit, low, high, [0, 2])
+    draw_side(side, scene, levels, layout.stretch)
+    layout.draw_legend(figure, shown)
+    if scene.real is not None:
+        mark_worst(plan, scene, [0, 1])
+        mark_worst(side, scene, [0, 2])
+        draw_window(figure, layout.window_corner(), scene)
+    return figure
+
+
+def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float) -> None:
+    """Draw the view along Y: what is removed at each level, seen through the part."""
+    unit, top = scene.unit.mm, top_of(scene)
+    for order, level in enumerate(reversed(levels)):
+        shape = scaled(removed_at(level, max(top, level.z)), 1 / unit, 1 / unit, origin=(0, 0))
+        style.fill(axes, shape, *floor(scene, level), 1 + order / 100)
+    draw_heights(axes, scene, levels)
+    draw_paths(axes, scene, levels, [0, 2])
+    true = abs(stretch - 1) < 0.02
+    style.caption(axes, "Side" if true else f"Side, heights drawn {plain(stretch, 2)} : 1")
+
+
+def removed_at(level: Level, top: float) -> BaseGeometry:
+    """Return what a level removes as seen along Y: X and Z, up to the top."""
+    if all(np.ptp(line[:, 2]) < SAME_DEPTH for line in level.lines):
+        areas = getattr(level.area, "geoms", [level.area])
+        return unary_union([box(area.bounds[0], level.z, area.bounds[2], top) for area in areas])
+    ends = (pair for line in level.lines for pair in zip(line[:, [0, 2]], line[1:, [0, 2]]))
+    reach = np.array([[-level.reach, 0.0], [level.reach, 0.0]])
+    corners = (np.concatenate([start + reach, end + reach]) for start, end in ends)
+    above = (np.concatenate([bottom, bottom * (1, 0) + (0, top)]) for bottom in corners)
+    return unary_union([MultiPoint(points).convex_hull for points in above])
+
+
+def draw_heights(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
+    """Write the height of each floor beside it, as far as there is room."""
+    apart = LETTER_HEIGHT / axes.get_figure().get_figheight() / axes.get_position().height
+    low, high = axes.get_ylim()
+    written: list[float] = []
+    for level in sorted(few(levels), key=lambda level: level is not levels[-1]):
+        share = (level.z / scene.unit.mm - low) / (high - low)
+        if all(abs(share - other) > apart for other in written):
+            place = {"transform": axes.transAxes, "va": "center", "clip_on": False}
+            text = f"Z{scene.unit.text(level.z)}"
+            axes.text(1.005, share, text, size=6.5, color=style.INK, **place)
+            written.append(share)
+
+
+def frame(axes: Axes, unit: Unit, low: np.ndarray, high: np.ndarray, pair: list[int]) -> None:
+    """Set limits and labels of a view of two axes."""
+    first, second = pair
+    axes.set_xlim(low[first] / unit.mm, high[first] / unit.mm)
+    axes.set_ylim(low[second] / unit.mm, high[second] / unit.mm)
+    axes.set_xlabel(f"{'XYZ'[first]}, {unit.name}")
+    axes.set_ylabel(f"{'XYZ'[second]}, {unit.name}")

@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The view along the tool's axis, of a mill's part or of a lathe's face: swept floors and paths.
+
+Lengths are millimetres until they are drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import groupby
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle
+from shapely.affinity import scale as scaled
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
+
+from g12.tools.path.follow import Worst, worst_of
+from g12.tools.path.part import Part, is_sideways, paths, swept
+from g12.tools.plot import style
+from g12.tools.plot.scene import Scene
+from g12.tools.plot.style import Shade
+from g12.tools.preview.tracer import Move
+from g12.tools.units import plain
+
+PICTURE_CHORD = 0.01
+SAME_DEPTH = 1e-3
+MOST_LEVELS = 10  # with more, depths and feeds are shown in bands
+BANDS = 24
+MOST_ARROWS = 80
+FLAT, ROUND = 17, 181  # the plane whose arcs keep their height, points of other arcs
+NEAR = 0.5  # of the view: rapids that end no farther outside are shown whole
+MANY = 20_000  # moves
+LONG = 0.12  # of the view's smaller side: shorter moves get no arrow
+MARGIN = 0.05  # of the view's greater side
+PLUNGE, CUTTER = 3.5, 8.0  # points
+
+
+class Level(NamedTuple):
+    """What is milled at one depth: colours, paths (n, 3), area swept, largest cutter's radius."""
+
+    z: float
+    shade: Shade
+    lines: list[np.ndarray]
+    area: BaseGeometry
+    reach: float = 0.0
+
+
+def levels_of(scene: Scene) -> list[Level]:
+    """Return the depths milled or drilled, from the top down; with many, in bands."""
+    cutting = [move for move in scene.moves if move.kind != "rapid" and removes(move)]
+    if not cutting:
+        return []
+    depth = np.array([lowest(move) for move in cutting])
+    found = sorted(set(np.round(depth / SAME_DEPTH) * SAME_DEPTH), reverse=True)
+    if len(found) > MOST_LEVELS:
+        found = list(np.linspace(depth.max(), depth.min(), BANDS))
+    nearest = np.abs(np.subtract.outer(depth, found)).argmin(axis=1)
+    groups = [[cutting[i] for i in np.flatnonzero(nearest == level)] for level in range(len(found))]
+    part = scene.path.part
+    return [
+        Level(z, shade, milled(part, group), *swept_by(part, group, scene.diameters))
+        for z, shade, group in zip(found, style.shades(len(found)), groups)
+        if group
+    ]
+
+
+def lowest(move: Move) -> float:
+    """Return the lowest height of a move; an arc may go below its ends."""
+    bulge = move.kind == "arc" and move.plane != FLAT
+    shares = np.linspace(0, 1, ROUND) if bulge else (0.0, 1.0)
+    return min(move.point(share)[2] for share in shares)
+
+
+def removes(move: Move) -> bool:
+    """Tell whether a move at feed goes sideways or down."""
+    return is_sideways(move) or move.end[2] < move.start[2]
+
+
+def milled(part: Part, moves: Sequence[Move]) -> list[np.ndarray]:
+    """Return the paths of the moves that go sideways."""
+    return paths(part, [move for move in moves if is_sideways(move)], PICTURE_CHORD)
+
+
+def swept_by(
+    part: Part, moves: Sequence[Move], diameters: dict[int, float]
+) -> tuple[BaseGeometry, float]:
+    """Return the area that the cutters of moves sweep, and the radius of the largest."""
+    areas, radii = [], []
+    for tool in {move.tool for move in moves}:
+        lines = paths(part, [move for move in moves if move.tool == tool], PICTURE_CHORD)
+        radii.append(max(diameters.get(tool, 0.0) / 2, PICTURE_CHORD))
+        areas.append(swept(lines, radii[-1]))
+    return unary_union(areas), max(radii)
+
+
+def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.ndarray]:
+    """Return least and greatest X, Y, Z of what is cut, with a margin; far rapids don't count."""
+    shown = at_feed(scene) or range(len(scene.moves))
+    points = np.concatenate([scene.path.points[scene.path.vertices(index)] for index in shown])
+    low, high = points.min(axis=0), points.max(axis=0)
+    for level in levels:
+        bounds = level.area.bounds
+        low[:2], high[:2] = np.minimum(low[:2], bounds[:2]), np.maximum(high[:2], bounds[2:])
+    high[2] = max(high[2], top_of(scene))
+    low[:2], high[:2] = with_near_rapids(scene, low[:2], high[:2])
+    size = high - low
+    margin = np.clip(MARGIN * max(size[:2]), PICTURE_CHORD, np.maximum(0.15 * size, PICTURE_CHORD))
+    margin[2] = max(0.12 * size[2], 0.2 * min(margin[:2]))
+    return low - margin, high + margin
+
+
+def with_near_rapids(
+    scene: Scene, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return a view's corners moved out to the ends of rapids that are not far away."""
+    ends = np.array([point for move in scene.moves for point in (move.start, move.end)])
+    points = scene.path.part.points(ends)[:, :2]
+    away = NEAR * max(high - low)
+    near = points[np.all((points > low - away) & (points < high + away), axis=1)]
+    return np.vstack([near, low]).min(axis=0), np.vstack([near, high]).max(axis=0)
+
+
+def top_of(scene: Scene) -> float:
+    """Return the top of the part: Z0 if the tool goes down through it, else where it feeds from."""
+    cutting = [move for move in scene.moves if move.kind != "rapid"] or scene.moves
+    lowest = min(min(move.start[2], move.end[2]) for move in cutting)
+    highest = max(max(move.start[2], move.end[2]) for move in scene.moves)
+    if lowest < 0 < highest:
+        return 0.0
+    return max(max(move.start[2], move.end[2]) for move in cutting)
+
+
+def draw_plan(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
+    """Draw the view along the tool's axis."""
+    unit = scene.unit.mm
+    for order, level in enumerate(levels):
+        area = scaled(level.area, 1 / unit, 1 / unit, origin=(0, 0))
+        style.fill(axes, area, *floor(scene, level), 1 + order / 100)
+    draw_paths(axes, scene, levels, [0, 1])
+    draw_plunges(axes, scene)
+    draw_arrows(axes, scene)
+
+
+def floor(scene: Scene, level: Level) -> tuple:
+    """Return the fill and the outline of a level's area; grey where colours tell feeds."""
+    if scene.feed_colours:
+        return style.grey(level.shade.floor), style.RAPID
+    return level.shade.floor, style.tint(level.shade.line, 0.35)
+
+
+def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int]) -> None:
+    """Draw rapids, programmed path and real motion in two of the part's axes."""
+    unit = scene.unit.mm
+    rapids = (move for move in scene.moves if move.kind == "rapid")
+    lines = (scene.path.part.polyline(move, PICTURE_CHORD) for move in rapids)
+    style.draw_rapids(axes, once([line[:, pair] / unit for line in lines]))
+    wide = scene.real is not None
+    for lines, colour in coloured_paths(scene, levels):
+        lines = [line[:, pair] / unit for line in lines]
+        shade = style.tint(colour, 0.4) if wide else colour
+        style.draw(axes, lines, shade, 2.6 if wide else width_for(scene))
+    if scene.real is not None:
+        draw_real(axes, scene, pair)
+    hit = [collision.way[:, pair] / unit for collision in scene.collisions]
+    style.draw(axes, hit, style.CRASH, 3.0, 3.8)
+
+
+def draw_real(axes: Axes, scene: Scene, pair: list[int]) -> None:
+    """Draw the real motion in two of the part's axes, rapids dashed."""
+    real, cuts, rapids = scene.real, [], []
+    edges = np.flatnonzero(np.diff(real.move)) + 1
+    for stretch in np.split(np.arange(len(real.move)), edges):
+        shown = real.points[max(0, stretch[0] - 1) : stretch[-1] + 1, pair] / scene.unit.mm
+        is_rapid = scene.moves[real.move[stretch[0]]].kind == "rapid"
+        (rapids if is_rapid else cuts).append(shown)
+    style.draw(axes, cuts, style.REAL, 0.7, 3.5)
+    style.draw_rapids(axes, once(rapids), style.REAL, 3.4)
+
+
+def once(lines: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Return polylines without those that go there and back again: two dashed lines look solid."""
+    found = {}
+    for line in lines:
+        ends = np.round(line[[0, len(line) // 2, -1]] / max(np.ptp(line, axis=0).max(), 1e-6), 2)
+        found.setdefault(frozenset(map(tuple, ends + 0.0)), line)
+    return list(found.values())
+
+
+def width_for(scene: Scene) -> float:
+    """Return the width of paths in points: finer where there are very many."""
+    return 1.1 if len(scene.moves) < MANY else 0.5
+
+
+def coloured_paths(scene: Scene, levels: Sequence[Level]) -> list:
+    """Return the moves at feed as polylines with their colour: by depth, or by feed."""
+    part = scene.path.part
+    if scene.feed_colours:
+        bands = feed_bands(scene)
+        return [(paths(part, moves, PICTURE_CHORD), colour) for _, colour, moves in bands]
+    plunging = [m for m in scene.moves if m.kind != "rapid" and not is_sideways(m)]
+    below = [(paths(part, plunging), style.MUTED)]
+    return below + [(level.lines, level.shade.line) for level in levels]
+
+
+def feed_bands(scene: Scene) -> list[tuple[float, tuple, list[Move]]]:
+    """Return feeds along the part (mm/min), each with its colour and moves; many in bands."""
+    feeds = {index: scene.path.part_feed(index) for index in at_feed(scene)}
+    found = sorted({float(f"{feed:.3g}") for feed in feeds.values()})
+    if len(found) > MOST_LEVELS:
+        found = list(np.linspace(found[0], found[-1], MOST_LEVELS))
+    groups: list[list[Move]] = [[] for _ in found]
+    for index, feed in feeds.items():
+        groups[int(np.argmin(np.abs(np.subtract(found, feed))))].append(scene.moves[index])
+    return list(zip(found, style.feed_colours(len(found)), groups))
+
+
+def at_feed(scene: Scene) -> list[int]:
+    """Return the indices of the moves at feed."""
+    return [index for index, move in enumerate(scene.moves) if move.kind != "rapid"]
+
+
+def plunges_of(scene: Scene) -> list[tuple[tuple[float, float], int]]:
+    """Return the points where a tool feeds straight down, each with the tool's number."""
+    down = [m for m in scene.moves if m.kind != "rapid" and not is_sideways(m)]
+    down = [move for move in down if move.end[2] < move.start[2]]
+    points = scene.path.part.points(np.array([m.end for m in down]).reshape(-1, 9))
+    return sorted({(tuple(np.round(p[:2], 6)), m.tool) for p, m in zip(points, down)})
+
+
+def draw_plunges(axes: Axes, scene: Scene) -> None:
+    """Mark where the tool plunges, with the cutter drawn to scale about each point."""
+    for (x, y), tool in plunges_of(scene):
+        at = (x / scene.unit.mm, y / scene.unit.mm)
+        radius = scene.diameters.get(tool, 0.0) / 2 / scene.unit.mm
+        axes.plot(*at, "o", color=style.INK, markersize=PLUNGE, zorder=5)
+        circle = Circle(at, radius, fill=False, edgecolor=style.INK, linewidth=0.8, zorder=4.5)
+        axes.add_patch(circle)
+
+
+def draw_arrows(axes: Axes, scene: Scene, pair: Sequence[int] = (0, 1)) -> None:
+    """Show the direction of the longer moves, once where levels repeat them."""
+    least = LONG * min(np.diff(axes.get_xlim())[0], np.diff(axes.get_ylim())[0]) * scene.unit.mm
+    lines = [line[:, list(pair)] for line in elements(scene)]
+    long = [line for line in lines if np.linalg.norm(np.diff(line, axis=0), axis=1).sum() > least]
+    places = {tuple(np.round(line[len(line) // 2], 2)): line for line in long}
+    if len(places) <= MOST_ARROWS:
+        for line in places.values():
+            style.draw_arrow(axes, line / scene.unit.mm, style.INK)
+
+
+def elements(scene: Scene) -> list[np.ndarray]:
+    """Return the path of each cutting block (n, 3); pieces of one line of the program are one."""
+    part, blocks = scene.path.part, []
+    cutting = (scene.moves[index] for index in at_feed(scene))
+    whole = (lambda move: (move.block, move.line)) if part.turning else id
+    for _, moves in groupby(cutting, whole):
+        blocks += paths(part, moves, PICTURE_CHORD)
+    return blocks
+
+
+def entries(scene: Scene, levels: Sequence[Level]) -> list:
+    """Return the legend."""
+    listed = feed_entries(scene) if scene.feed_colours else []
+    listed += level_entries(scene, levels)
+    for tool in sorted({scene.moves[index].tool for index in at_feed(scene)}):
+        listed.append(style.marker(style.INK, cutter_text(scene, tool), CUTTER, hollow=True))
+    if plunges_of(scene):
+        listed.append(style.marker(style.INK, "plunge"))
+    return listed + motion_entries(scene)
+
+
+def cutter_text(scene: Scene, tool: int) -> str:
+    """Return a cutter in words."""
+    diameter = scene.diameters.get(tool, 0.0)
+    if tool <= 0 or not diameter:
+        return f"{f'T{tool} has no diameter' if tool > 0 else 'no tool'}: tool centre only"
+    return f"cutter T{tool}, ⌀ {scene.unit.text(diameter)} {scene.unit.name}"
+
+
+def motion_entries(scene: Scene) -> list:
+    """Return the legend's entries of rapids and of the real motion."""
+    listed = []
+    if any(move.kind == "rapid" for move in scene.moves):
+        listed.append(style.stroke(style.RAPID, "rapid", 0.9, dashed=True))
+    if scene.real is not None:
+        listed.append(style.stroke(style.PATH, "programmed path", 2.6))
+        listed.append(style.stroke(style.REAL, "real motion", 0.9))
+        listed.append(style.marker(style.WORST, "largest deviation", 7, hollow=True))
+    if scene.collisions:
+        listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
+    return listed
+
+
+def level_entries(scene: Scene, levels: Sequence[Level]) -> list:
+    """Return the legend's entries of the depths."""
+    return [
+        style.swatch(*floor(scene, level), f"swept at Z{scene.unit.text(level.z)}")
+        for level in few(levels)
+    ]
+
+
+def feed_entries(scene: Scene) -> list:
+    """Return the legend's entries of the feeds."""
+    unit = scene.unit
+    return [
+        style.stroke(colour, f"{plain(feed / unit.mm, 1)} {unit.name}/min")
+        for feed, colour, _ in feed_bands(scene)
+    ]
+
+
+def few(items: Sequence) -> list:
+    """Return at most MOST_LEVELS of the items, the first and the last among them."""
+    if len(items) <= MOST_LEVELS:
+        return list(items)
+    return [items[i] for i in np.linspace(0, len(items) - 1, MOST_LEVELS).round().astype(int)]
+
+
+def mark_worst(axes: Axes, scene: Scene, pair: list[int]) -> Worst | None:
+    """Circle the largest deviation of the run in a view of two of the part's axes."""
+    worst = worst_of(scene.real, scene.moves)
+    if worst is not None:
+        at = worst.point[pair] / scene.unit.mm
+        axes.plot(*at, "o", color=style.WORST, markersize=8, fillstyle="none", zorder=6)
+    return worst

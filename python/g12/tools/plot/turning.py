@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The picture of a turning program: the tool's path in Z and X, as one stands at the lathe.
+
+Lengths are millimetres until they are drawn; those of the layout are inches on the page.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from shapely.geometry import GeometryCollection
+
+from g12.tools.path.part import paths
+from g12.tools.plot import style
+from g12.tools.plot.deviation import SIZE, draw_window
+from g12.tools.plot.plan_view import (
+    PICTURE_CHORD,
+    Level,
+    at_feed,
+    bounds_of,
+    draw_arrows,
+    draw_paths,
+    feed_entries,
+    mark_worst,
+    motion_entries,
+)
+from g12.tools.plot.scene import Scene
+
+WIDTH, MOST, LEAST = 11.0, 6.5, 2.0
+LEFT, RIGHT, TOP, BOTTOM = style.MARGIN, 0.3, 1.05, 0.55
+LEGEND, ROWS = 2.35, 2.2  # the legend's width and height
+PROFILE = [2, 0]  # Z to the right, X up
+CENTRE_LINE = (12, 3, 2, 3)
+
+
+def draw_turn(scene: Scene) -> Figure:
+    """Return the picture of a turning program."""
+    low, high = (corner[PROFILE] for corner in bounds_of(scene, []))
+    low[1] = min(low[1], 0.0)
+    width = WIDTH - LEFT - RIGHT - LEGEND
+    across, up = high - low
+    height = float(np.clip(width * up / across, LEAST, MOST))
+    beside = ROWS + SIZE if scene.real is not None else 0.0
+    page = TOP + max(height, beside) + BOTTOM
+    figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
+    axes = style.add_axes(figure, LEFT, page - TOP - height, width, height)
+    draw_profile(axes, scene, low, high)
+    figure.legend(
+        handles=turn_entries(scene),
+        loc="upper left",
+        bbox_to_anchor=((LEFT + width + 0.2) / WIDTH, (page - TOP + 0.08) / page),
+    )
+    if scene.real is not None:
+        mark_worst(axes, scene, PROFILE)
+        draw_window(figure, (LEFT + width + 0.35, BOTTOM), scene)
+    return figure
+
+
+def draw_profile(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray) -> None:
+    """Draw the path between two corners of the view, and the spindle's centre line."""
+    unit = scene.unit
+    (left, bottom), (right, top) = low / unit.mm, high / unit.mm
+    axes.set(xlim=(left, right), ylim=(bottom, top))
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(f"Z, {unit.name}")
+    axes.set_ylabel(f"X (radius), {unit.name}")
+    axes.axhline(0, color=style.MUTED, linewidth=0.5, dashes=CENTRE_LINE, zorder=1.9)
+    draw_paths(axes, scene, [everything(scene)], PROFILE)
+    draw_arrows(axes, scene, PROFILE)
+
+
+def everything(scene: Scene) -> Level:
+    """Return all that is cut as one level, without an area."""
+    cutting = [scene.moves[index] for index in at_feed(scene)]
+    lines = paths(scene.path.part, cutting, PICTURE_CHORD)
+    return Level(0.0, style.shades(1)[0], lines, GeometryCollection())
+
+
+def turn_entries(scene: Scene) -> list:
+    """Return the legend."""
+    one = [style.stroke(style.shades(1)[0].line, "cut")]
+    return [*(feed_entries(scene) if scene.feed_colours else one), *motion_entries(scene)]

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which blocks a program executes, and what their words say, with expressions worked out.
+
+The text of the program is read here; LinuxCNC's own interpreter only says which blocks are
+executed in which order, what an expression in a word comes to, and where the tool stands
+then: ``(DEBUG, …)`` lines around the blocks tell, in a copy of the program that is traced.
+
+Nothing is shared with the planners: this is how ``verify`` knows what was programmed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable, NamedTuple
+
+from g12.tools.preview.tracer import Trace, Tracer
+
+TAG = "g12-verify"
+VALUE = "#<g12_verify_value>"
+STATE = ("_x", "_y", "_z", "_c", "_metric", "_absolute", "_lathe_diameter_mode", "_feed")
+NUMBER = re.compile(r"[0-9]*\.?[0-9]*")
+COMMENT = re.compile(r"\([^)]*\)|;.*")
+FUNCTION = re.compile(r"[a-z]+(?=\[)")
+LETTER_O = re.compile(r"/?(n[0-9.]+)?o")
+CALL = re.compile(r"/?(?:n[0-9.]+)?o<([^>]+)>call")
+
+
+class Text(NamedTuple):
+    """One line as it is written: its words in order (letter, value text), its assignments."""
+
+    number: int
+    words: tuple[tuple[str, str], ...]
+    assignments: tuple[str, ...] = ()
+    deleted: bool = False  # begins with /
+    control: bool = False  # an O-word line
+    call: str = ""  # the sub that it calls; its arguments are words with the letter ""
+    file: str = ""  # the name of a sub's own file, "" in the program
+
+    @property
+    def codes(self) -> list[float]:
+        """The G codes whose numbers are written out."""
+        return [float(text) for letter, text in self.words if letter == "G" and is_number(text)]
+
+    @property
+    def hides_code(self) -> bool:
+        """Whether the number of a G code is an expression."""
+        return any(letter == "G" and not is_number(text) for letter, text in self.words)
+
+
+@dataclass(frozen=True)
+class Block:
+    """One execution of a block.
+
+    ``words`` maps letters to values in program units (G words aside, which are ``codes``; the
+    arguments of a call are ``arguments``), ``state`` is what the block found: ``_x`` …
+    ``at`` is the index of its first move and ``end`` that of the first move after it.
+    """
+
+    text: Text
+    words: dict[str, float]
+    codes: tuple[float, ...]
+    arguments: tuple[float, ...]
+    state: dict[str, float]
+    at: int
+    end: int
+
+
+Wanted = Callable[[Text], bool]
+
+
+def is_number(text: str) -> bool:
+    """Tell whether a word's value is a plain number."""
+    return bool(re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)", text))
+
+
+def read_line(number: int, line: str) -> Text:
+    """Return a line of G code as text; what cannot be read is left to LinuxCNC to refuse."""
+    code = re.sub(r"\s", "", COMMENT.sub("", line)).lower()
+    deleted = code.startswith("/")
+    if LETTER_O.match(code):
+        return _control(number, code, deleted)
+    words, assignments, at = [], [], 1 if deleted else 0
+    while at < len(code):
+        end = _value_end(code, at + 1)
+        if code[at] == "#":
+            end = _value_end(code, end + 1)
+            assignments.append(code[at:end])
+        elif code[at].isalpha():
+            words.append((code[at].upper(), code[at + 1 : end]))
+        at = max(end, at + 1)
+    return Text(number, tuple(words), tuple(assignments), deleted)
+
+
+def _control(number: int, code: str, deleted: bool) -> Text:
+    called = CALL.match(code)
+    if not called:
+        return Text(number, (), (), deleted, control=True)
+    words, at = [], called.end()
+    while at < len(code) and code[at] == "[":
+        end = _value_end(code, at)
+        words.append(("", code[at:end]))
+        at = end
+    return Text(number, tuple(words), (), deleted, control=True, call=called.group(1))
+
+
+def _value_end(code: str, at: int) -> int:
+    """Return where the value that starts at ``at`` ends, as LinuxCNC reads values."""
+    if at >= len(code):
+        return at
+    if code[at] in "+-":
+        return _value_end(code, at + 1)
+    if code[at] == "[":
+        return _bracket_end(code, at)
+    if code[at] == "<":
+        return code.find(">", at) + 1 or len(code)
+    if code[at] == "#":
+        return _value_end(code, at + 1)
+    function = FUNCTION.match(code, at)
+    if function:
+        end = _bracket_end(code, function.end())
+        return _bracket_end(code, end + 1) if code[end : end + 2] == "/[" else end
+    return NUMBER.match(code, at).end()
+
+
+def _bracket_end(code: str, at: int) -> int:
+    depth = 0
+    for index in range(at, len(code)):
+        depth += {"[": 1, "]": -1}.get(code[index], 0)
+        if not depth:
+            return index + 1
+    return len(code)
+
+
+def read_lines(program: Path) -> list[Text]:
+    """Return the lines of a program as text."""
+    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
+    return [read_line(number, line) for number, line in enumerate(lines, start=1)]
+
+
+def executed(tracer: Tracer, program: Path, wanted: Wanted) -> list[Block]:
+    """Return every execution of the blocks wanted, in order."""
+    texts = read_lines(program)
+    return blocks_in(tracer.trace_text(watched(program, texts, wanted)), texts)
+
+
+def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) -> list[str]:
+    """Return the lines of a file and those that tell of the blocks wanted; see ``before``."""
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    groups = (
+        (*before(text, skip), line, *after(text, skip)) if wanted(text) else (line,)
+        for text, line in zip(texts, lines)
+    )
+    return [line for group in groups for line in group]
+
+
+def before(text: Text, skip: int = 0) -> Iterator[str]:
+    """Return the lines that tell a block's beginning, the state it finds and its words.
+
+    ``skip`` is how many lines of other files come first where texts are counted.
+    """
+    slash = "/" if text.deleted else ""
+    state = " ".join(f"#<{name}>" for name in STATE)
+    yield f"{slash}(DEBUG,{TAG} begin {skip + text.number} %.9f{state})"
+    for index, (_, value) in enumerate(text.words):
+        if not is_number(value):
+            yield f"{slash}{VALUE} = {value if value.startswith('[') else f'[{value}]'}"
+            yield f"{slash}(DEBUG,{TAG} value {index} %.9f{VALUE})"
+
+
+def after(text: Text, skip: int = 0) -> Iterator[str]:
+    """Return the line that tells that a block is done."""
+    yield f"{'/' if text.deleted else ''}(DEBUG,{TAG} end {skip + text.number} 0)"
+
+
+def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
+    """Return the blocks that a trace tells of."""
+    told = [
+        (event.at, *event.text.split(f"{TAG} ", 1)[1].split())
+        for event in trace.events
+        if TAG in event.text
+    ]
+    found: list[Block] = []
+    values: dict[int, float] = {}
+    opened: tuple | None = None
+    for at, kind, number, *rest in told:
+        if kind == "begin":
+            values, opened = {}, (at, texts[int(number) - 1], [float(v) for v in rest])
+        elif kind == "value":
+            values[int(number)] = float(rest[0])
+        elif opened:
+            found.append(_block(*opened, values, at))
+            opened = None
+    if opened:  # the program ended in it, with M2
+        found.append(_block(*opened, values, len(trace.moves)))
+    return found
+
+
+def _block(at: int, text: Text, state: list[float], values: dict[int, float], end: int) -> Block:
+    told = [
+        (letter, values.get(index, float(value) if is_number(value) else 0.0))
+        for index, (letter, value) in enumerate(text.words)
+    ]
+    return Block(
+        text,
+        {letter: value for letter, value in told if letter not in ("G", "")},
+        tuple(value for letter, value in told if letter == "G"),
+        tuple(value for letter, value in told if letter == ""),
+        dict(zip(STATE, state)),
+        at,
+        end,
+    )

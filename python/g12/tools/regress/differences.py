@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What changed between two recordings of a program, in words: which lines, what moved, how much.
+
+Moves that follow each other with the same sort of change are one difference, and differences that
+say the same of several places are one too.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from g12.tools.path.farthest_apart import gap_between
+from g12.tools.path.part import Part
+from g12.tools.preview.tracer import AXES, Move
+from g12.tools.regress.edits import Change, Edit, Tolerance, edits_of
+from g12.tools.regress.recording_text import Recording, Step, number
+from g12.tools.units import UNITS
+
+DECIMALS = 6  # shown, where they tell two numbers apart
+LONG_RUN = 10  # edits; fewer are told together however they differ
+DIGITS = ".4g"
+MOVED = (*AXES, "radius")
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A finding: ``text`` says what changed; ``was`` and ``now`` are the steps it is about.
+
+    ``kind`` is moved, changed, added, missing, replaced, refused, accepted or end. ``by`` is the
+    largest change in machine units or degrees, along ``axis`` if it is one axis's. ``moves``
+    counts the moves, ``line`` is the program's for a difference without steps.
+    """
+
+    kind: str
+    text: str
+    was: tuple[int, ...] = ()
+    now: tuple[int, ...] = ()
+    axis: str = ""
+    by: float = 0.0
+    moves: int = 0
+    line: int = 0
+
+
+def differences(
+    was: Recording, now: Recording, tolerance: Tolerance, part: Part
+) -> list[Difference]:
+    """Return the findings about a program, in its order; ``part`` is how the machine holds it."""
+    edits = edits_of(was.steps, now.steps, tolerance)
+    words = Words(was, now, part)
+    lost = _lost(edits, was, now)
+    runs = _runs(edits[: len(edits) - len(lost)])
+    found = [words.of_run(part) for run in runs for part in _parts(run)]
+    return [*_merged(found), *_endings(was, now, lost)]
+
+
+def lines_of(recording: Recording, steps: Iterable[int]) -> list[int]:
+    """Return the program's lines that steps come from, without repetition."""
+    return sorted({recording.steps[index].block for index in steps})
+
+
+def _lost(edits: list[Edit], was: Recording, now: Recording) -> list[Edit]:
+    """Return the steps that are missing because the program is now refused before them."""
+    if not now.error or not edits:
+        return []
+    last = edits[-1]
+    at_end = last.was and not last.now and last.was[-1] == len(was.steps) - 1
+    return [last] if at_end else []
+
+
+def _runs(edits: Sequence[Edit]) -> Iterator[list[Edit]]:
+    """Edits of pairs that follow each other with the same sort of change; others alone."""
+    run: list[Edit] = []
+    for edit in edits:
+        if run and not (_follows(run[-1], edit) and _sort(run[-1]) & _sort(edit)):
+            yield run
+            run = []
+        run.append(edit)
+    if run:
+        yield run
+
+
+def _parts(run: list[Edit]) -> list[list[Edit]]:
+    """Return what most edits of a run say and what the others say, if most say the same."""
+    said = Counter(map(_said, run))
+    same, count = said.most_common(1)[0]
+    if len(run) < LONG_RUN or 2 * count <= len(run):
+        return [run]
+    parts = ([edit for edit in run if (_said(edit) == same) is alike] for alike in (True, False))
+    return list(filter(None, parts))
+
+
+def _said(edit: Edit) -> tuple:
+    return tuple((change.what, f"{change.by:{DIGITS}}") for change in edit.changes)
+
+
+def _follows(before: Edit, edit: Edit) -> bool:
+    alone = not before.changes or not edit.changes
+    return not alone and (before.was[0] + 1, before.now[0] + 1) == (edit.was[0], edit.now[0])
+
+
+def _sort(edit: Edit) -> set[str]:
+    return {"moved" if change.what in MOVED else change.what for change in edit.changes}
+
+
+class Words:
+    """Puts edits of two recordings into words, lengths in machine units."""
+
+    def __init__(self, was: Recording, now: Recording, part: Part) -> None:
+        self._was, self._now, self._part = was.steps, now.steps, part
+        self._unit, self._name = now.unit, UNITS[now.facts["units"]].name
+
+    def of_run(self, run: list[Edit]) -> Difference:
+        """Return the difference that a run of edits makes."""
+        was = tuple(index for edit in run for index in edit.was)
+        now = tuple(index for edit in run for index in edit.now)
+        steps = [self._now[index] for index in now] or [self._was[index] for index in was]
+        moves = sum(isinstance(step, Move) for step in steps)
+        made = self._of_pairs(run) if run[0].changes else self._of_others(was, now)
+        return replace(made, was=was, now=now, moves=moves)
+
+    def _of_pairs(self, run: list[Edit]) -> Difference:
+        changes = [change for edit in run for change in edit.changes]
+        kinds = dict.fromkeys(change.what for change in changes)
+        groups = [[change for change in changes if change.what == what] for what in kinds]
+        text = ", ".join(map(self._of_changes, groups))
+        moved = [change for change in changes if change.what in MOVED]
+        if not moved:
+            return Difference("changed", text)
+        worst = max(moved, key=lambda change: abs(change.by))
+        axis = worst.what if worst.what in AXES else ""
+        return Difference(
+            "moved", text, axis=axis, by=round(worst.by / self._scale(worst.what), 10)
+        )
+
+    def _of_changes(self, group: list[Change]) -> str:
+        """Return what changes of one thing say together."""
+        what = group[0].what
+        if isinstance(group[0].was, str):
+            return ", ".join(dict.fromkeys(f"{c.was} → {c.now}" for c in group))
+        scale = self._scale(what)
+        values = {shown(change.was / scale, change.now / scale) for change in group}
+        was, now = next(iter(values))
+        most = max((change.by for change in group), key=abs)
+        if "feed" in what:
+            return f"F{was} → F{now}" if len(values) == 1 else f"feed by up to {most:+.3%}"
+        size = f"{most / scale:{DIGITS}} {self._unit_of(what)}"
+        if what == "radius":
+            off = f"middle of the arc {size} off"
+            return f"radius {was} → {now} ({off})" if len(values) == 1 else f"{off} at most"
+        if len(values) == 1:
+            return f"{what}{was} → {what}{now} ({_signed(size)})"
+        same = len({f"{change.by:{DIGITS}}" for change in group}) == 1
+        return f"{what} by {_signed(size)}" if same else f"{what} by up to {_signed(size)}"
+
+    def _of_others(self, was: tuple[int, ...], now: tuple[int, ...]) -> Difference:
+        """Return the difference of steps that were added, are missing, or replace others."""
+        before = [step for step in map(self._was.__getitem__, was) if isinstance(step, Move)]
+        after = [step for step in map(self._now.__getitem__, now) if isinstance(step, Move)]
+        notes = _of_notes(self._was, was, "missing"), _of_notes(self._now, now, "new")
+        kind = "replaced" if was and now else "added" if now else "missing"
+        return Difference(kind, "; ".join([*self._of_moves(before, after), *filter(None, notes)]))
+
+    def _of_moves(self, before: list[Move], after: list[Move]) -> list[str]:
+        if before and after:
+            apart = self._apart(before, after)
+            far = "" if apart is None else f", up to {apart:{DIGITS}} {self._name} apart"
+            return [f"{_count(before)} became {len(after)}{far}"]
+        if not before and not after:
+            return []
+        there = "added" if after else "missing"
+        return [f"{_count(before or after)} {there}, {self._extent(before or after)}"]
+
+    def _extent(self, moves: list[Move]) -> str:
+        """Return from where to where moves go on each axis that they move."""
+        ends = np.array([position for move in moves for position in (move.start, move.end)])
+        low, high = ends.min(axis=0), ends.max(axis=0)
+        scales = [self._scale(axis) for axis in AXES]
+        texts = [[number(round(v, DECIMALS)) for v in bound / scales] for bound in (low, high)]
+        words = [f"{axis}{a} to {b}" for axis, a, b in zip(AXES, *texts) if a != b]
+        return " ".join(words) or "standing still"
+
+    def _apart(self, before: list[Move], after: list[Move]) -> float | None:
+        """Return how far two paths are apart, machine units; None where that says nothing."""
+        gap = gap_between(self._part, before, after)
+        return gap.size / self._unit if gap else None
+
+    def _scale(self, what: str) -> float:
+        return 1.0 if what in "ABC" or what == "rotary feed" else self._unit
+
+    def _unit_of(self, what: str) -> str:
+        return "degrees" if what in "ABC" else self._name
+
+
+def _signed(size: str) -> str:
+    return size if size.startswith("-") else f"+{size}"
+
+
+def _count(moves: Sequence[Move]) -> str:
+    return f"{len(moves)} move" if len(moves) == 1 else f"{len(moves)} moves"
+
+
+def _of_notes(steps: Sequence[Step], indices: tuple[int, ...], word: str) -> str:
+    texts = [steps[index].text for index in indices if not isinstance(steps[index], Move)]
+    return f"{word}: {', '.join(texts)}" if texts else ""
+
+
+def shown(*values: float) -> tuple[str, ...]:
+    """Return numbers as text, short if that still tells them apart."""
+    short = tuple(number(round(value, DECIMALS)) for value in values)
+    return short if len(set(short)) == len(values) else tuple(map(number, values))
+
+
+def _merged(found: Sequence[Difference]) -> list[Difference]:
+    """Return differences that say the same as one, where the first was."""
+    groups: dict[tuple, list[Difference]] = {}
+    for difference in found:
+        groups.setdefault((difference.kind, difference.text), []).append(difference)
+    return [
+        replace(
+            max(group, key=lambda difference: abs(difference.by)),
+            was=tuple(index for difference in group for index in difference.was),
+            now=tuple(index for difference in group for index in difference.now),
+            moves=sum(difference.moves for difference in group),
+        )
+        for group in groups.values()
+    ]
+
+
+def _endings(was: Recording, now: Recording, lost: list[Edit]) -> list[Difference]:
+    """Return what is different in how the programs end."""
+    if not was.error and not now.error:
+        return _ends(was.end, now.end)
+    if was.error and now.error and was.error.text == now.error.text:
+        same = was.error.line == now.error.line or was.facts["program"] != now.facts["program"]
+        text = f"refused at this line, was at line {was.error.line}: {now.error.text}"
+        return [] if same else [Difference("refused", text, line=now.error.line)]
+    if not now.error:
+        text = f"no longer refused, was at line {was.error.line}: {was.error.text}"
+        return [Difference("accepted", text, line=was.error.line)]
+    steps = tuple(index for edit in lost for index in edit.was)
+    count = sum(isinstance(was.steps[index], Move) for index in steps)
+    before = f", was refused at line {was.error.line}: {was.error.text}" if was.error else ""
+    missing = f"; {count} moves are missing" if count else ""
+    text = f"refused: {now.error.text}{missing}{before}"
+    return [Difference("refused", text, was=steps, moves=count, line=now.error.line)]
+
+
+def _ends(was: str, now: str) -> list[Difference]:
+    before, after = was.split(), now.split()
+    gone = " ".join(word for word in before if word not in after)
+    new = " ".join(word for word in after if word not in before)
+    if not gone and not new:
+        return []
+    return [Difference("end", f"modal state at the end: {gone or 'nothing'} → {new or 'nothing'}")]

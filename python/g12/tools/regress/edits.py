@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How the steps of one recording became those of another: what changed, came or went.
+
+Moves are paired by where they end and how they bend, within a tolerance, so an inserted block is
+one edit and what follows it is none. A pair is then compared in everything. Between pairs, as many
+moves as before are compared in order. Where their number changed, they are paired by the way they
+go if most of them go it as before, as in a program shifted sideways; else they are one edit.
+
+Lengths are millimetres, angles degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from g12.tools.preview.tracer import AXES, Move
+from g12.tools.regress.alignment import pairs
+from g12.tools.regress.recording_text import LINEAR, Note, Step, turns_only
+
+NO_CENTRE = (0.0, 0.0, 0.0)
+MOST_OF = 0.8
+
+
+class Tolerance(NamedTuple):
+    """What counts as equal: ends in mm, ends in degrees, feeds as a share."""
+
+    length: float
+    angle: float
+    feed: float
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Return the tolerance of each axis."""
+        return tuple(self.length if linear else self.angle for linear in LINEAR)
+
+
+class Change(NamedTuple):
+    """One thing that a step does otherwise.
+
+    ``what`` is an axis (``by`` in mm or degrees), radius (``by`` is how far the arc's middle
+    moved, mm), feed or rotary feed (``by`` is a share), or kind, direction, plane, feed mode,
+    note with texts.
+    """
+
+    what: str
+    by: float
+    was: float | str
+    now: float | str
+
+
+class Edit(NamedTuple):
+    """Steps, by their indices, that became others.
+
+    Of a pair ``changes`` says what is different; without it steps were added, are missing, or
+    others are in their place.
+    """
+
+    was: tuple[int, ...]
+    now: tuple[int, ...]
+    changes: tuple[Change, ...] = ()
+
+
+def edits_of(was: Sequence[Step], now: Sequence[Step], tolerance: Tolerance) -> list[Edit]:
+    """Return how the steps of a recording became others, in order."""
+    found: list[Edit] = []
+    paired = _paired(was, now, _place, tolerance)
+    for before, after, pair in _walk(paired, range(len(was)), range(len(now))):
+        found += _gap(was, now, before, after, tolerance)
+        found += _pair(was, now, *pair, tolerance) if pair else []
+    return found
+
+
+def _paired(was, now, numbers, tolerance: Tolerance) -> list[tuple]:
+    """Return pairs of steps that are about equal in the numbers of their moves."""
+    keys = _keys([*was, *now], numbers, tolerance)
+    return pairs(keys[: len(was)], keys[len(was) :])
+
+
+def _keys(steps: Sequence[Step], numbers, tolerance: Tolerance) -> list[tuple]:
+    """Return a key for each step; keys of moves are equal if their numbers are about equal."""
+    rows = [numbers(step) for step in steps if isinstance(step, Move)]
+    columns = np.array(rows).reshape(-1, 12).T
+    tolerances = (*tolerance.ends, *[tolerance.length] * 3)
+    clusters = iter(zip(*(_clusters(column, tol) for column, tol in zip(columns, tolerances))))
+    return [
+        (step.text,) if isinstance(step, Note) else (step.kind, step.turns, *next(clusters))
+        for step in steps
+    ]
+
+
+def _place(move: Move) -> tuple[float, ...]:
+    """Return where a move ends and about what it turns."""
+    return (*move.end, *(move.centre or NO_CENTRE))
+
+
+def _way(move: Move) -> tuple[float, ...]:
+    """Return what a move does, seen from its start."""
+    seen = (b - a for a, b in zip(move.start * 2, (*move.end, *(move.centre or move.start[:3]))))
+    return tuple(seen)
+
+
+def _walk(paired, before: range, after: range) -> Iterator[tuple[range, range, tuple | None]]:
+    """Go through pairs: the steps on both sides ahead of each, and it; at last no pair."""
+    i, j = before.start, after.start
+    for pair in paired:
+        yield range(i, pair[0]), range(j, pair[1]), pair
+        i, j = pair[0] + 1, pair[1] + 1
+    yield range(i, before.stop), range(j, after.stop), None
+
+
+def _clusters(values: np.ndarray, tolerance: float) -> list[int]:
+    """Return a number for each value so that values nearer than the tolerance have the same."""
+    order = np.argsort(values)
+    numbers = np.empty(len(values), int)
+    numbers[order] = np.cumsum(np.diff(values[order], prepend=values[order][:1]) > tolerance)
+    return numbers.tolist()
+
+
+def _gap(was, now, before: range, after: range, tolerance: Tolerance) -> Iterator[Edit]:
+    """Yield the edits of the steps between two pairs."""
+    if _are_as_many(was, now, before, after):
+        return _as_many(was, now, before, after, tolerance)
+    some, others = was[before.start : before.stop], now[after.start : after.stop]
+    paired = _paired(some, others, _way, tolerance)
+    if paired and len(paired) >= MOST_OF * min(len(some), len(others)):
+        paired = [(before.start + i, after.start + j) for i, j in paired]
+        return _same_ways(was, now, paired, before, after, tolerance)
+    return iter([Edit(tuple(before), tuple(after))])
+
+
+def _same_ways(was, now, paired, before, after, tolerance: Tolerance) -> Iterator[Edit]:
+    """Yield the edits of steps of which most do the same from another place."""
+    for some, others, pair in _walk(paired, before, after):
+        if _are_as_many(was, now, some, others):
+            yield from _as_many(was, now, some, others, tolerance)
+        else:
+            yield Edit(tuple(some), tuple(others))
+        yield from _pair(was, now, *pair, tolerance) if pair else ()
+
+
+def _are_as_many(was, now, before: range, after: range) -> bool:
+    return len(_only(was, before, Move)) == len(_only(now, after, Move))
+
+
+def _as_many(was, now, before: range, after: range, tolerance: Tolerance) -> Iterator[Edit]:
+    """Yield the edits between two pairs where there are as many moves as there were."""
+    both = list(zip(_only(was, before, Move), _only(now, after, Move)))
+    notes, other_notes = _only(was, before, Note), _only(now, after, Note)
+    if len(notes) == len(other_notes):
+        both = sorted([*both, *zip(notes, other_notes)])
+    elif notes or other_notes:
+        yield Edit(notes, other_notes)
+    for i, j in both:
+        yield from _pair(was, now, i, j, tolerance)
+
+
+def _only(steps: Sequence[Step], indices: range, sort: type) -> tuple[int, ...]:
+    return tuple(index for index in indices if isinstance(steps[index], sort))
+
+
+def _pair(was, now, i: int, j: int, tolerance: Tolerance) -> Iterator[Edit]:
+    found = changes(was[i], now[j], tolerance)
+    if found:
+        yield Edit((i,), (j,), tuple(found))
+
+
+def changes(was: Step, now: Step, tolerance: Tolerance) -> list[Change]:
+    """Return what is different between two steps of the same sort."""
+    if isinstance(was, Note):
+        return [Change("note", 0.0, was.text, now.text)] if was.text != now.text else []
+    found = [
+        Change(axis, b - a, a, b)
+        for axis, a, b, most in zip(AXES, was.end, now.end, tolerance.ends)
+        if abs(b - a) > most
+    ]
+    if was.kind != now.kind:
+        found.append(Change("kind", 0.0, was.kind, now.kind))
+    elif was.kind == "arc":
+        found += _arc_changes(was, now, tolerance, moved=bool(found))
+    return found + _feed_changes(was, now, tolerance)
+
+
+def _arc_changes(was: Move, now: Move, tolerance: Tolerance, moved: bool) -> list[Change]:
+    """Compare arcs by their middle: of a flat arc the centre alone says little."""
+    if was.plane != now.plane:
+        return [Change("plane", 0.0, f"G{was.plane}", f"G{now.plane}")]
+    if was.turns != now.turns:
+        return [Change("direction", 0.0, _direction(was), _direction(now))]
+    if moved or math.dist(was.centre, now.centre) <= tolerance.length:
+        return []
+    by = math.dist(was.point(0.5)[:3], now.point(0.5)[:3])
+    return [Change("radius", by, was.radius, now.radius)] if by > tolerance.length else []
+
+
+def _direction(move: Move) -> str:
+    sense = "clockwise" if move.turns < 0 else "counterclockwise"
+    return sense if abs(move.turns) == 1 else f"{sense}, {abs(move.turns)} turns"
+
+
+def _feed_changes(was: Move, now: Move, tolerance: Tolerance) -> list[Change]:
+    if "rapid" in (was.kind, now.kind):
+        return []
+    if was.feed_mode != now.feed_mode:
+        return [Change("feed mode", 0.0, was.feed_mode, now.feed_mode)]
+    larger = max(was.feed, now.feed)
+    if abs(now.feed - was.feed) <= tolerance.feed * larger:
+        return []
+    what = "rotary feed" if turns_only(now) else "feed"
+    return [Change(what, (now.feed - was.feed) / larger, was.feed, now.feed)]

@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The picture of what changed in a program: the recorded path, the present one, where they part.
+
+Lengths are millimetres until they are drawn; those of the layout are inches on the page.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from g12.tools.path.farthest_apart import Gap, gap_between
+from g12.tools.path.part import Part, paths
+from g12.tools.plot import style
+from g12.tools.preview.tracer import Move
+from g12.tools.regress.differences import Difference
+from g12.tools.regress.recording_text import Recording
+from g12.tools.units import UNITS, Unit
+
+CHORD_ERROR = 0.005
+LEFT, RIGHT, TOP, BETWEEN, BOTTOM = style.MARGIN, 0.3, 1.0, 0.65, 0.55
+PLAN, MOST_HIGH = 7.0, 5.6  # inches of the larger view
+LEAST_WIDE, LEAST_HIGH = 3.0, 1.4
+SIDE = 1.5  # height of the side view
+LEGEND, ROWS = 2.9, 1.6
+WINDOW = 2.0  # sides of the window on the largest gap
+REACH, LEAST_REACH = 4.0, 1e-3  # half the window's side: in gaps, in mm
+VISIBLE = 0.08  # of the picture's size: a larger gap needs no window
+MARGIN = 0.05
+FLAT = 1e-6  # an axis that moves less is not shown
+LONGEST_SUBTITLE = 130
+LEAST_CHORD_ERROR = 1e-6
+STYLES = (  # colour, width, order of what is same, was, now
+    (style.RAPID, 0.8, 2.5),
+    (style.PATH, 3.0, 3.0),
+    (style.REAL, 1.2, 3.5),
+)
+
+
+class Paths(NamedTuple):
+    """Polylines (n, 3) on the part: as recorded and still so, only recorded, only now."""
+
+    same: list[np.ndarray]
+    was: list[np.ndarray]
+    now: list[np.ndarray]
+
+
+class Drawn(NamedTuple):
+    """What is drawn of two recordings: moves at feed, rapids, and where they part the most.
+
+    ``around`` are the moves near there again, fine enough to look at closely.
+    """
+
+    feeds: Paths
+    rapids: Paths
+    gap: Gap | None
+    around: Paths
+
+    @property
+    def points(self) -> np.ndarray:
+        """Return every point (n, 3)."""
+        lines = [line for paths_ in (self.feeds, self.rapids) for some in paths_ for line in some]
+        return np.concatenate(lines) if lines else np.zeros((1, 3))
+
+
+class View:
+    """Which axes are shown where on the page, and in which unit."""
+
+    def __init__(self, points: np.ndarray, unit: Unit, turning: bool) -> None:
+        self.unit = unit
+        self.low, self.high = points.min(axis=0), points.max(axis=0)
+        spread = self.high - self.low
+        self.letters = ("towards C0", "towards C90", "Z") if turning else "XYZ"
+        profile = spread[1] < FLAT < spread[2]
+        self.pairs = [[2, 0]] if profile else [[0, 1]] + [[0, 2]] * bool(spread[2] > FLAT)
+        self.size = max(*spread, FLAT)
+        self.low, self.high = self.low - MARGIN * self.size, self.high + MARGIN * self.size
+        first, second = self.pairs[0]
+        across, up = (self.high - self.low)[self.pairs[0]]
+        scale = min(PLAN / across, MOST_HIGH / up)
+        self._widen(first, LEAST_WIDE / scale)
+        self._widen(second, LEAST_HIGH / scale)
+        self.plan = tuple((self.high - self.low)[self.pairs[0]] * scale)
+        views = self.plan[1] + (BETWEEN + SIDE) * (len(self.pairs) > 1)
+        self.height = max(TOP + views + BOTTOM, TOP + ROWS + WINDOW + BOTTOM)
+        self.width = LEFT + self.plan[0] + LEGEND + RIGHT
+
+    def _widen(self, axis: int, least: float) -> None:
+        """Show at least so much of an axis."""
+        more = max(0.0, least - (self.high[axis] - self.low[axis])) / 2
+        self.low[axis], self.high[axis] = self.low[axis] - more, self.high[axis] + more
+
+    def panels(self, figure: Figure) -> Iterator[tuple[Axes, list[int]]]:
+        """Yield the axes of each view with the part's two axes it shows."""
+        bottom = self.height - TOP - self.plan[1]
+        for pair, height in zip(self.pairs, (self.plan[1], SIDE)):
+            axes = style.add_axes(figure, LEFT, bottom, self.plan[0], height)
+            yield self._framed(axes, pair), pair
+            bottom -= BETWEEN + SIDE
+
+    def _framed(self, axes: Axes, pair: list[int]) -> Axes:
+        (left, low), (right, high) = (edge[pair] / self.unit.mm for edge in (self.low, self.high))
+        axes.set(xlim=(left, right), ylim=(low, high))
+        for name, axis in (("x", pair[0]), ("y", pair[1])):
+            axes.set(**{f"{name}label": f"{self.letters[axis]}, {self.unit.name}"})
+        heading = "The part" if pair == self.pairs[0] else "Side, not to scale"
+        style.caption(axes, heading)
+        return axes
+
+    @property
+    def beside(self) -> tuple[float, float]:
+        """Where the legend is, and below it the window: left and top in inches."""
+        return LEFT + self.plan[0] + 0.35, self.height - TOP + 0.08
+
+
+def picture_file(folder: Path, program: str) -> Path:
+    """Return where the picture of a program goes."""
+    path = folder / f"{program}.png"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Figure:
+    """Return the picture of a program's differences."""
+    drawn = drawn_of(was, now, found, part)
+    view = View(drawn.points, UNITS[now.facts["units"]], part.turning)
+    name = now.facts["program"].rpartition(" ")[0]
+    figure = style.new_figure(view.width, view.height, name, subtitle(found))
+    for axes, pair in view.panels(figure):
+        draw_paths(axes, drawn, pair, view.unit.mm)
+        if drawn.gap:
+            at = drawn.gap.point[pair] / view.unit.mm
+            axes.plot(*at, "o", color=style.WORST, markersize=9, fillstyle="none", zorder=6)
+    left, top = view.beside
+    place = {"loc": "upper left", "bbox_to_anchor": (left / view.width, top / view.height)}
+    figure.legend(handles=entries(drawn, view.unit), borderaxespad=0.0, **place)
+    if drawn.gap and drawn.gap.size < VISIBLE * view.size:
+        axes = style.add_axes(figure, left, top - ROWS - WINDOW, WINDOW, WINDOW)
+        draw_window(axes, drawn, view)
+    return figure
+
+
+def drawn_of(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Drawn:
+    """Return what to draw of two recordings."""
+    old = {index for difference in found for index in difference.was}
+    new = {index for difference in found for index in difference.now}
+    moves = (_moves(now, new, False), _moves(was, old, True), _moves(now, new, True))
+    feeds, rapids = (
+        Paths(*(paths(part, _rapid(some, fast), CHORD_ERROR) for some in moves))
+        for fast in (False, True)
+    )
+    gap = gap_of(was, now, found, part)
+    near = (_near(part, some, gap) if gap else [] for some in moves)
+    return Drawn(feeds, rapids, gap, Paths(*near))
+
+
+def _reach(gap: Gap) -> float:
+    return max(REACH * gap.size, LEAST_REACH)
+
+
+def _near(part: Part, moves: Sequence[Move], gap: Gap) -> list[np.ndarray]:
+    """Return moves that come near a gap as polylines that are fine at its size."""
+    margin = 2 * _reach(gap) + CHORD_ERROR
+    lines = (part.polyline(move, CHORD_ERROR) for move in moves)
+    near = [move for move, line in zip(moves, lines) if _is_near(line, gap.point, margin)]
+    return paths(part, near, max(_reach(gap) / 500, LEAST_CHORD_ERROR))
+
+
+def _is_near(line: np.ndarray, point: np.ndarray, margin: float) -> bool:
+    low, high = line.min(axis=0) - margin, line.max(axis=0) + margin
+    return bool(np.all((low <= point) & (point <= high)))
+
+
+def _moves(recording: Recording, changed: set[int], among: bool) -> list[Move]:
+    steps = enumerate(recording.steps)
+    return [step for i, step in steps if (i in changed) is among and isinstance(step, Move)]
+
+
+def _rapid(moves: Iterable[Move], fast: bool) -> list[Move]:
+    return [move for move in moves if (move.kind == "rapid") is fast]
+
+
+def gap_of(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Gap | None:
+    """Return where moved or replaced moves are farthest from what they were."""
+    gaps = []
+    for difference in found:
+        if difference.kind in ("moved", "replaced"):
+            before = _moves(was, set(difference.was), True)
+            after = _moves(now, set(difference.now), True)
+            gaps.append(gap_between(part, before, after) if before and after else None)
+    return max(filter(None, gaps), key=lambda gap: gap.size, default=None)
+
+
+def subtitle(found: Sequence[Difference]) -> str:
+    """Return the first difference of the path in words, and how many there are."""
+    first = next((one for one in found if one.moves), found[0]).text
+    text = first if len(found) == 1 else f"{len(found)} differences, such as {first}"
+    return text if len(text) <= LONGEST_SUBTITLE else f"{text[:LONGEST_SUBTITLE]}…"
+
+
+def draw_paths(axes: Axes, drawn: Drawn, pair: list[int], unit: float) -> None:
+    """Draw the paths in two of the part's axes; ``unit`` is the unit shown in mm."""
+    _draw_styled(axes, drawn.feeds, pair, unit)
+    _draw_styled(axes, drawn.rapids, pair, unit, 0.6, linestyle=(0, (4, 3)), capstyle="butt")
+
+
+def _draw_styled(axes, drawn: Paths, pair: list[int], unit: float, share=1.0, **line) -> None:
+    for lines, (colour, width, order) in zip(drawn, STYLES):
+        shown = [line[:, pair] / unit for line in lines]
+        style.draw(axes, shown, colour, share * width, order, **line)
+
+
+def draw_window(axes: Axes, drawn: Drawn, view: View) -> None:
+    """Draw the surroundings of the largest gap, in the view that shows most of it."""
+    gap, unit = drawn.gap, view.unit
+    half = _reach(gap)
+    pair = max(view.pairs, key=lambda pair: round(math.dist(gap.point[pair], gap.nearest[pair]), 9))
+    _draw_styled(axes, drawn.around, pair, unit.mm)
+    ends = np.array([gap.nearest[pair], gap.point[pair]]) / unit.mm
+    style.draw(axes, [ends], style.WORST, 1.8, 4.0)
+    (x, y), reach = ends.mean(axis=0), half / unit.mm
+    axes.set(xlim=(x - reach, x + reach), ylim=(y - reach, y + reach), xticks=[], yticks=[])
+    for spine in axes.spines.values():
+        spine.set(visible=True, color=style.WORST, linewidth=0.9)
+    style.caption(axes, f"Largest gap{', from the side' if pair != view.pairs[0] else ''}")
+    text = f"{unit.fine(gap.size)} {unit.name}; the window is {unit.fine(2 * half)} wide"
+    axes.set_xlabel(text, size=8, color=style.WORST, loc="left")
+
+
+def entries(drawn: Drawn, unit: Unit) -> list:
+    """Return the legend."""
+    listed = [
+        style.stroke(style.RAPID, "as recorded", 0.8),
+        style.stroke(style.PATH, "recorded, not so any more", 3.0),
+        style.stroke(style.REAL, "now", 1.2),
+    ]
+    if any(drawn.rapids):
+        listed.append(style.stroke(style.INK, "dashed: rapid", 0.6, dashed=True))
+    if drawn.gap:
+        text = f"farthest apart, {unit.fine(drawn.gap.size)} {unit.name}"
+        listed.append(style.marker(style.WORST, text, 7, hollow=True))
+    return listed

@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Recording programs in a directory and checking them against it: what ``g12 regress`` does."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from g12.tools.commands.arguments import UsageError, existing, machine_ini, tool_table
+from g12.tools.machine.ini import read_ini
+from g12.tools.preview.tracer import mm_per_unit
+from g12.tools.regress.edits import Tolerance
+from g12.tools.regress.recorder import (
+    ADDED,
+    CHANGED,
+    MISSING,
+    SAME,
+    Job,
+    Report,
+    Result,
+    machine_of,
+    results,
+)
+from g12.tools.regress.recordings import (
+    ABOUT,
+    PROGRAM_SUFFIXES,
+    Baseline,
+    common_folder,
+    load,
+    program_names,
+)
+
+
+def _silent(_done: int, _total: int, _program: str) -> None:
+    """Nobody hears of progress."""
+
+
+@dataclass(frozen=True)
+class Terms:
+    """How to compare and to work.
+
+    ``ends`` is the tolerance of ends in machine units and degrees, ``feeds`` that of feeds in per
+    cent; ``timeout`` is in seconds a program. ``report`` hears how many programs are done.
+    """
+
+    ends: float = 1e-6
+    feeds: float = 0.01
+    timeout: float = 600.0
+    jobs: int = 1
+    pictures: Path | None = None
+    report: Report = _silent
+
+    def tolerance(self, ini: Path) -> Tolerance:
+        """Return the tolerance in mm on a machine."""
+        return Tolerance(self.ends * mm_per_unit(read_ini(ini)), self.ends, self.feeds / 100)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a recording is asked for with: programs and folders, and the machine's files."""
+
+    programs: Sequence[Path] = ()
+    ini: Path | None = None
+    tools: Path | None = None
+    var: Path | None = None
+
+
+def record(directory: Path, asked: Asked, terms: Terms) -> list[Result]:
+    """Record programs, all recorded ones if none is named; return what became of each."""
+    named = [_existing(program) for program in asked.programs]
+    known = (directory / ABOUT).exists()
+    start = _known if known else _new
+    baseline = _with(start(directory.absolute(), asked, named), asked, named)
+    names = _names(baseline, named)
+    tools, parameters = _sources(baseline, asked, everything=not (known and named))
+    machine = machine_of(baseline.ini, tools, parameters, terms.timeout)
+    found = _done(baseline, names, baseline.programs, machine, terms, keep=True)
+    baseline.take_copies(tools, parameters)
+    baseline.save()
+    return _sorted([*found, *([] if named else _dropped(baseline))])
+
+
+def check(
+    directory: Path,
+    names: Sequence[str] = (),
+    *,
+    programs: Path | None = None,
+    ini: Path | None = None,
+    tools: Path | None = None,
+    terms: Terms | None = None,
+) -> tuple[list[Result], list[str]]:
+    """Compare programs, without ``names`` all, with their recordings.
+
+    ``programs`` is a folder with other versions of them, ``ini`` and ``tools`` replace those
+    recorded. Returns what became of each program, and notes on what else is different.
+    """
+    baseline, terms = load(directory.absolute()), terms or Terms()
+    folder = _folder(programs) if programs else baseline.programs
+    recorded = [_recorded(baseline, name) for name in names] or baseline.names()
+    if not recorded:
+        raise UsageError(f"{directory}: no program is recorded there")
+    table = _absolute(tool_table(tools)) if tools else baseline.tools
+    ini = _machine(ini or baseline.ini)
+    machine = machine_of(ini, table, baseline.parameters, terms.timeout)
+    there = [name for name in recorded if (folder / name).is_file()]
+    found = _done(baseline, there, folder, machine, terms)
+    found += [Result(name, MISSING) for name in recorded if name not in there]
+    new = [] if names else {*baseline.in_folders(folder)} - {*recorded}
+    found += [Result(name, ADDED) for name in new]
+    notes = _common_notes(found) + ([] if tools else _outdated(baseline))
+    return _sorted(found), notes
+
+
+def _sorted(found: Sequence[Result]) -> list[Result]:
+    return sorted(found, key=lambda result: result.program)
+
+
+def _done(baseline, names, folder: Path, machine, terms: Terms, keep=False) -> list[Result]:
+    """Trace programs and compare them with their recordings."""
+    shared = {"tolerance": terms.tolerance(machine.ini), "keep": keep, "pictures": terms.pictures}
+    jobs = [Job(baseline, machine, name, folder / name, **shared) for name in names]
+    return results(jobs, terms.jobs, terms.report)
+
+
+def _common_notes(found: Sequence[Result]) -> list[str]:
+    """Return what else changed since the recordings, with the number of programs if not all."""
+    compared = [result for result in found if result.verdict in (SAME, CHANGED)]
+    counts = Counter(note for result in compared for note in result.notes)
+    everyone = len(compared)
+    return [
+        note if count == everyone else f"{note} ({count} of {everyone} programs)"
+        for note, count in counts.items()
+    ]
+
+
+def _existing(path: Path) -> Path:
+    if not path.exists():
+        raise UsageError(f"{path}: no such file")
+    return _absolute(path)
+
+
+def _absolute(path: Path) -> Path:
+    return Path(os.path.abspath(path))
+
+
+def _machine(path: Path) -> Path:
+    """Return the path of a machine's INI if it is one."""
+    machine_ini(path)
+    return _absolute(path)
+
+
+def _folder(path: Path) -> Path:
+    if not path.is_dir():
+        raise UsageError(f"{path}: no such folder")
+    return _absolute(path)
+
+
+def _new(directory: Path, asked: Asked, named: list[Path]) -> Baseline:
+    """Return a directory that nothing is recorded in so far."""
+    if directory.exists() and not directory.is_dir():
+        raise UsageError(f"{directory}: not a directory")
+    if not named:
+        raise UsageError(f"{directory}: nothing is recorded there; name the programs")
+    if not asked.ini:
+        raise UsageError(f"{directory}: nothing is recorded there; name the machine, --ini")
+    return Baseline(directory, asked.ini, common_folder(named))
+
+
+def _known(directory: Path, asked: Asked, named: list[Path]) -> Baseline:
+    """Return a recorded directory."""
+    baseline = load(directory)
+    if asked.ini and named and _machine(asked.ini) != baseline.ini:
+        raise UsageError(
+            f"{directory} is recorded on {baseline.ini}: use another -d, or name no programs to "
+            f"record all of it anew on {asked.ini}"
+        )
+    return baseline
+
+
+def _with(baseline: Baseline, asked: Asked, named: list[Path]) -> Baseline:
+    """Return a directory with the machine's files and the folders asked for."""
+    ini = _machine(asked.ini or baseline.ini)
+    table = read_ini(ini).file("EMCIO", "TOOL_TABLE")
+    own = _absolute(table) if table and table.is_file() else None
+    known = None if asked.ini else baseline.tool_table
+    folders = [baseline.name_of(path) for path in named if path.is_dir()]
+    return replace(
+        baseline,
+        ini=ini,
+        folders=tuple(dict.fromkeys([*baseline.folders, *folders])),
+        tool_table=_absolute(tool_table(asked.tools)) if asked.tools else known or own,
+        var_file=_absolute(existing(asked.var)) if asked.var else baseline.var_file,
+    )
+
+
+def _names(baseline: Baseline, named: list[Path]) -> list[str]:
+    """Return the programs to record: those named, or all."""
+    if not named:
+        names = {*baseline.names(), *baseline.in_folders(baseline.programs)}
+        return sorted(name for name in names if (baseline.programs / name).is_file())
+    found = [_programs(baseline, path) for path in named]
+    return sorted({name for names in found for name in names})
+
+
+def _programs(baseline: Baseline, path: Path) -> list[str]:
+    names = [baseline.name_of(path)]
+    if path.is_dir():
+        names = program_names(baseline.programs, path)
+    if not names:
+        raise UsageError(f"{path}: no programs in this folder ({', '.join(PROGRAM_SUFFIXES)})")
+    return names
+
+
+def _sources(baseline, asked: Asked, everything: bool) -> tuple[Path | None, Path | None]:
+    """Return tool table and var file to record with: the machine's, or the directory's copies.
+
+    One program more is recorded with the copies, as the others were.
+    """
+    asked_for = (
+        (asked.tools, baseline.tool_table, baseline.tools),
+        (
+            asked.var,
+            baseline.var_file,
+            baseline.parameters,
+        ),
+    )
+    return tuple(
+        source if source and (everything or given) and source.is_file() else copy
+        for given, source, copy in asked_for
+    )
+
+
+def _recorded(baseline: Baseline, name: str) -> str:
+    """Return a recorded program's name from that or from its file's."""
+    path = Path(os.path.abspath(name))
+    if path.is_relative_to(baseline.programs):
+        name = path.relative_to(baseline.programs).as_posix()
+    if not baseline.trace_file(name).is_file():
+        raise UsageError(f"{name}: not recorded in {baseline.directory}")
+    return name
+
+
+def _dropped(baseline: Baseline) -> list[Result]:
+    """Remove the recordings of programs that are gone."""
+    gone = [name for name in baseline.names() if not (baseline.programs / name).is_file()]
+    for name in gone:
+        baseline.drop(name)
+    return [Result(name, MISSING) for name in gone]
+
+
+def _outdated(baseline: Baseline) -> list[str]:
+    """Return which of the machine's files are no longer as they were recorded."""
+    copies = (baseline.tool_table, baseline.tools), (baseline.var_file, baseline.parameters)
+    return [
+        f"{source.name} has changed since the recording, its recorded copy is used"
+        for source, copy in copies
+        if source and source.is_file() and source.read_bytes() != copy.read_bytes()
+    ]

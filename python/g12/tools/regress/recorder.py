@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Recordings made and compared in several processes, each with an interpreter of its own."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from multiprocessing import active_children, util
+from pathlib import Path
+
+from g12.tools.commands.arguments import UsageError
+from g12.tools.install.config import linuxcnc_version, python_error
+from g12.tools.machine.ini import Ini, read_ini
+from g12.tools.path.part import part_of
+from g12.tools.preview.tracer import Move, TraceFailure, Tracer, mm_per_unit
+from g12.tools.regress.differences import Difference, differences, lines_of
+from g12.tools.regress.edits import Tolerance
+from g12.tools.regress.recording_text import (
+    Recording,
+    TraceTextError,
+    read_recording,
+    recording_of,
+    split,
+    text_of,
+)
+from g12.tools.regress.recordings import Baseline
+from g12.tools.units import UNITS
+
+GRACE = 5.0  # seconds for a worker to end its interpreters
+SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
+HASH_DIGITS = 16
+UNIT_NAMES = {unit.mm: name for name, unit in UNITS.items()}
+_tracers: list[Tracer] = []  # this process's
+Report = Callable[[int, int, str], None]  # hears of programs done, of how many, the last one
+
+
+@dataclass(frozen=True)
+class Machine:
+    """What programs are traced on; ``timeout`` is in seconds for each program.
+
+    ``contents`` is a hash of INI and tool table: changed files need another interpreter.
+    """
+
+    ini: Path
+    tools: Path | None
+    parameters: Path | None
+    timeout: float
+    linuxcnc: str
+    contents: str
+
+
+@dataclass(frozen=True)
+class Job:
+    """One program to trace and to compare with its recording.
+
+    ``keep`` makes the trace the recording; ``pictures`` is a folder for a picture of changes.
+    """
+
+    baseline: Baseline
+    machine: Machine
+    name: str
+    program: Path
+    tolerance: Tolerance
+    keep: bool = False
+    pictures: Path | None = None
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A difference together with the lines of the program that it is about.
+
+    ``block`` is the text of the first line; ``by`` is in machine units or degrees.
+    """
+
+    kind: str
+    text: str
+    lines: list[int] = field(default_factory=list)
+    recorded_lines: list[int] = field(default_factory=list)
+    moves: int = 0
+    axis: str = ""
+    by: float = 0.0
+    block: str = ""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What became of one program.
+
+    ``summary`` says what it does now; ``notes`` with what else than now it was recorded.
+    """
+
+    program: str
+    verdict: str
+    findings: list[Finding] = field(default_factory=list)
+    summary: str = ""
+    notes: tuple[str, ...] = ()
+    picture: str | None = None
+
+
+def machine_of(ini: Path, tools: Path | None, parameters: Path | None, timeout: float) -> Machine:
+    """Return the machine as its files are now."""
+    contents = text_bytes(read_ini(ini)) + (tools.read_bytes() if tools else b"")
+    return Machine(ini, tools, parameters, timeout, linuxcnc_version(), hash_of(contents))
+
+
+def text_bytes(ini: Ini) -> bytes:
+    """Return the expanded INI as it is in its files."""
+    return ini.text.encode(errors="surrogateescape")
+
+
+class Recorder:
+    """A running interpreter that makes recordings on one machine."""
+
+    def __init__(self, machine: Machine) -> None:
+        ini = read_ini(machine.ini)
+        self._machine = machine
+        self._tracer = Tracer(ini, tools=machine.tools)
+        _tracers.append(self._tracer)
+        self._check_python()
+        self.part = part_of(ini)
+        self._facts = {
+            "machine": f"{ini.path.name} {hash_of(text_bytes(ini))}",
+            "linuxcnc": machine.linuxcnc,
+            "units": UNIT_NAMES[mm_per_unit(ini)],
+        }
+        util.Finalize(self, self._tracer.close, exitpriority=1)
+
+    def _check_python(self) -> None:
+        """Refuse a machine without its Python modules: it would only trace other errors."""
+        error = python_error(self._tracer.printed)
+        if error:
+            self._tracer.close()
+            raise TraceFailure(f"{self._machine.ini}: its Python modules do not load: {error}")
+
+    def text(self, name: str, program: Path) -> str:
+        """Return the recording of a program as text."""
+        facts = {"program": f"{name} {hash_of(program.read_bytes())}", **self._facts}
+        machine = self._machine
+        options = {"parameters": machine.parameters, "timeout": machine.timeout, "alone": True}
+        return text_of(recording_of(self._tracer.trace(program, **options), program, facts))
+
+
+@functools.lru_cache(maxsize=4)
+def recorder_of(machine: Machine, _process: int) -> Recorder:
+    """Return this process's recorder for a machine; a forked process must not use its parent's."""
+    return Recorder(machine)
+
+
+def hash_of(content: bytes) -> str:
+    """Return a short hash to tell two versions of a file apart."""
+    return f"sha256:{hashlib.sha256(content).hexdigest()[:HASH_DIGITS]}"
+
+
+def do(job: Job) -> Result:
+    """Trace a program, compare it with its recording, and keep the trace if that is the job."""
+    recorder = recorder_of(job.machine, os.getpid())
+    try:
+        now = recorder.text(job.name, job.program)
+    except TraceFailure as failure:
+        text = f"no trace: {str(failure).splitlines()[0]}"
+        return Result(job.name, FAILED, [Finding("failed", text)])
+    result = _compared(job, now, recorder)
+    if job.keep:
+        job.baseline.keep(job.name, now)
+    return result
+
+
+def _compared(job: Job, now: str, recorder: Recorder) -> Result:
+    path = job.baseline.trace_file(job.name)
+    if not path.exists():
+        return Result(job.name, NEW, summary=_summary(read_recording(now)))
+    try:
+        was = path.read_bytes().decode()
+        facts, body = split(was)
+        new_facts, new_body = split(now)
+        notes = tuple(_notes(facts, new_facts))
+        if body == new_body:
+            return Result(job.name, SAME, notes=notes)
+        recordings = read_recording(was), read_recording(now)
+    except (TraceTextError, UnicodeDecodeError) as problem:
+        if job.keep:
+            return Result(job.name, NEW, summary=_summary(read_recording(now)))
+        raise UsageError(f"{path}: not a trace, or one that was edited: {problem}") from None
+    found = differences(*recordings, job.tolerance, recorder.part)
+    findings = [_finding(difference, *recordings) for difference in found]
+    verdict = CHANGED if found else SAME
+    picture = _picture(job, *recordings, found, recorder) if found and job.pictures else None
+    return Result(job.name, verdict, findings, _summary(recordings[1]), notes, picture)
+
+
+def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
+    """Yield what else is different since the recording."""
+    if was["linuxcnc"] != now["linuxcnc"]:
+        yield f"LinuxCNC {was['linuxcnc']} when recorded, {now['linuxcnc']} now"
+    if was["machine"] != now["machine"]:
+        yield f"{now['machine'].rpartition(' ')[0]} has changed since the recording"
+    if was["units"] != now["units"]:
+        yield f"machine units {was['units']} when recorded, {now['units']} now"
+
+
+def _finding(difference: Difference, was: Recording, now: Recording) -> Finding:
+    lines = lines_of(now, difference.now) or [difference.line] * bool(difference.line)
+    recorded = lines_of(was, difference.was)
+    block = now.blocks.get(lines[0], "") if lines else was.blocks.get((recorded or [0])[0], "")
+    shared = ("kind", "text", "moves", "axis", "by")
+    values = {name: getattr(difference, name) for name in shared}
+    return Finding(lines=lines, recorded_lines=recorded, block=block, **values)
+
+
+def _summary(recording: Recording) -> str:
+    moves = sum(isinstance(step, Move) for step in recording.steps)
+    error = recording.error
+    return f"refused at line {error.line}: {error.text}" if error else f"{moves} moves"
+
+
+def _picture(job: Job, was: Recording, now: Recording, found, recorder: Recorder) -> str:
+    """Draw what changed; matplotlib takes a while to load."""
+    from g12.tools.plot.style import save
+    from g12.tools.regress.overlay import draw_overlay, picture_file
+
+    path = picture_file(job.pictures, job.name)
+    save(draw_overlay(was, now, found, recorder.part), path)
+    return str(path)
+
+
+def results(jobs: Sequence[Job], processes: int, report: Report) -> list[Result]:
+    """Return the results of jobs in their order, done by so many processes at once."""
+    processes = min(processes, len(jobs))
+    if processes <= 1:
+        return [_reported(do(job), done, jobs, report) for done, job in enumerate(jobs, start=1)]
+    largest_first = sorted(jobs, key=lambda job: -job.program.stat().st_size)
+    others = {*active_children()}
+    pool = ProcessPoolExecutor(processes, initializer=_obey_the_parent)
+    try:
+        futures = {pool.submit(do, job): job.name for job in largest_first}
+        found = {}
+        for done, future in enumerate(as_completed(futures), start=1):
+            found[futures[future]] = _reported(future.result(), done, jobs, report)
+        return [found[job.name] for job in jobs]
+    except BaseException:
+        _end({*active_children()} - others)
+        raise
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _end(processes: set) -> None:
+    """End worker processes; those that do not end by themselves are killed."""
+    for process in processes:
+        process.terminate()
+    for process in processes:
+        process.join(GRACE)
+        process.kill()
+
+
+def _reported(result: Result, done: int, jobs: Sequence[Job], report: Report) -> Result:
+    report(done, len(jobs), result.program)
+    return result
+
+
+def _obey_the_parent() -> None:
+    """Leave it to the parent process when to end, and its interpreters alone."""
+    _tracers.clear()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+
+
+def _leave(_signal: int, _frame: object) -> None:
+    """End this process with its interpreters, which may be far from the end of a program."""
+    for tracer in _tracers:
+        tracer.close()
+    os._exit(1)

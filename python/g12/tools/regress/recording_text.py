@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Traces as text to keep under version control: one move a line, below the block it comes from.
+
+::
+
+    g12 trace 1
+    program O60121.ngc sha256:4f0e3b7f66e5f8a1
+    machine mill_inch.ini sha256:0b1d6e9d5c1f2a33
+    linuxcnc 2.9.4
+    units inch
+
+    14: G12 I0.75 F10. Z-1.2 D01 (Finish pocket CW);
+      feed Z-1.2 F10
+      arc X0.625 centre X0.3125 turns -1
+      arc centre X0 turns -1
+      * message G12: …
+
+    end: G0 G17 G40 …
+
+Positions are machine coordinates in machine units and degrees, as in ``trace``. A move names only
+the axes that change, an arc's centre only the axes on which it is not where the arc starts, and a
+feed holds until the next one; so a change stays on its own lines in a diff. A line with ``*`` is
+what happens between moves. ``error at LINE: TEXT`` in place of ``end`` is a program that is
+refused. Ten decimals are finer than what an inch conversion leaves of a double; more would show
+rounding that differs from one build of LinuxCNC to the next.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import NamedTuple, Union
+
+from g12.tools.preview.tracer import AXES, Error, Modes, Move, Position, Trace
+from g12.tools.units import UNITS
+
+HEAD = "g12 trace 1"
+FACTS = ("program", "machine", "linuxcnc", "units")
+LINEAR = (1, 1, 1, 0, 0, 0, 1, 1, 1)  # which of AXES are lengths
+FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/:'\"<>()]+/)+")
+BLOCK = re.compile(r"(\d+):(?: (.*))?")
+ERROR = re.compile(r"error at (\d+): (.*)")
+WORDS = r"((?: [XYZABCUVW][-\d.]+)*)"
+MOVE = re.compile(
+    rf"  (rapid|feed|arc|probe){WORDS}"
+    rf"(?: centre{WORDS} turns (-?\d+)(?: G(18|19)(?: rotation ([-\d.]+))?)?)?"
+    r"(?: F([-\d.]+))?(?: (G9[345]))?"
+)
+
+
+class TraceTextError(ValueError):
+    """A text that is no trace, or one that was edited."""
+
+
+class Note(NamedTuple):
+    """What happens between two moves; ``block`` is the program's line."""
+
+    block: int
+    text: str
+
+
+Step = Union[Move, Note]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A trace together with what it is a trace of.
+
+    ``facts`` are the lines of the head by their first word, ``blocks`` the text of the program's
+    lines that do something, ``steps`` moves (mm, degrees) and notes in order. ``error`` is None
+    for a program that came to its end, ``end`` then its modal state there.
+    """
+
+    facts: dict[str, str]
+    steps: list[Step]
+    blocks: dict[int, str] = field(default_factory=dict)
+    error: Error | None = None
+    end: str = ""
+
+    @property
+    def unit(self) -> float:
+        """Return the machine unit in mm."""
+        return UNITS[self.facts["units"]].mm
+
+
+def recording_of(trace: Trace, program: Path, facts: dict[str, str]) -> Recording:
+    """Return the recording of a program's trace."""
+    steps = list(_steps(trace, UNITS[facts["units"]].mm))
+    lines = program.read_bytes().decode(errors="replace").split("\n")
+    numbers = {step.block for step in steps} | ({trace.error.line} if trace.error else set())
+    blocks = {line: lines[line - 1].strip() for line in numbers if 0 < line <= len(lines)}
+    if trace.error:
+        error = Error(one_line(trace.error.text), trace.error.line)
+        return Recording(facts, steps, blocks, error)
+    return Recording(facts, steps, blocks, end=_end(trace.modes))
+
+
+def one_line(text: str) -> str:
+    """Return a text on one line, file names in it without their folders."""
+    return FOLDERS.sub("", " ".join(text.split()))
+
+
+def _steps(trace: Trace, unit: float) -> Iterator[Step]:
+    events = iter(trace.events)
+    event = next(events, None)
+    offset = (0.0,) * 9
+    for index, move in enumerate(trace.moves):
+        while event and event.at <= index:
+            yield Note(event.line, one_line(event.text))
+            event = next(events, None)
+        if move.tool_offset != offset:
+            offset = move.tool_offset
+            yield Note(move.block, f"tool offset {_offset(offset, unit)}")
+        yield move
+    while event:
+        yield Note(event.line, one_line(event.text))
+        event = next(events, None)
+
+
+def _offset(offset: Position, unit: float) -> str:
+    values = zip(AXES, offset, LINEAR)
+    words = (f"{axis}{number(value / unit if linear else value)}" for axis, value, linear in values)
+    return " ".join(word for word in words if word[1:] != "0") or "0"
+
+
+def _end(modes: Modes) -> str:
+    return " ".join((*modes.gcodes, *modes.mcodes))
+
+
+def number(value: float) -> str:
+    """Return a number with up to ten decimals, without trailing zeros."""
+    text = f"{value:.10f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+class Writer:
+    """Writes steps as lines; ``unit`` is the machine unit in mm."""
+
+    def __init__(self, unit: float) -> None:
+        self._scales = [1 / unit if linear else 1.0 for linear in LINEAR]
+        self._at = ["0"] * 9
+        self._feed = ("", "G94")
+
+    def line(self, step: Step) -> str:
+        """Return the line of one step."""
+        return f"  * {step.text}" if isinstance(step, Note) else f"  {' '.join(self._move(step))}"
+
+    def _move(self, move: Move) -> list[str]:
+        start, end = self._at, self._texts(move.end)
+        words = [move.kind, *_changed(start, end)]
+        if move.kind == "arc":
+            words += self._arc(move, start)
+        if move.kind != "rapid":
+            words += self._feed_words(move)
+        self._at = end
+        return words
+
+    def _texts(self, position: Sequence[float]) -> list[str]:
+        return [number(value * scale) for value, scale in zip(position, self._scales)]
+
+    def _arc(self, move: Move, start: list[str]) -> list[str]:
+        words = ["centre", *_changed(start, self._texts(move.centre)), "turns", str(move.turns)]
+        if move.plane != 17:
+            words += [f"G{move.plane}"]
+            words += ["rotation", number(move.rotation)] if move.rotation else []
+        return words
+
+    def _feed_words(self, move: Move) -> list[str]:
+        scale = 1.0 if turns_only(move) else self._scales[0]
+        feed = (number(move.feed * scale), move.feed_mode or "G94")
+        known, self._feed = self._feed, feed
+        return [f"F{feed[0]}"] * (feed != known) + [feed[1]] * (feed[1] != known[1])
+
+
+def _changed(before: Sequence[str], after: Sequence[str]) -> list[str]:
+    return [f"{axis}{new}" for axis, old, new in zip(AXES, before, after) if old != new]
+
+
+def turns_only(move: Move) -> bool:
+    """Tell whether only rotary axes move, at a feed in degrees."""
+    ends = zip(move.start, move.end, LINEAR)
+    return move.kind != "arc" and not any(linear and a != b for a, b, linear in ends)
+
+
+def text_of(recording: Recording) -> str:
+    """Return a recording as text."""
+    lines = [HEAD, *(f"{key} {recording.facts[key]}" for key in FACTS)]
+    writer = Writer(recording.unit)
+    block = None
+    for step in recording.steps:
+        if step.block != block:
+            block = step.block
+            lines += ["", f"{block}: {recording.blocks.get(block, '')}".rstrip()]
+        lines.append(writer.line(step))
+    error = recording.error
+    if error and error.line != block and error.line in recording.blocks:
+        lines += ["", f"{error.line}: {recording.blocks[error.line]}".rstrip()]
+    last = f"error at {error.line}: {error.text}" if error else f"end: {recording.end}"
+    return "\n".join([*lines, "", last, ""])
+
+
+class Reader:
+    """Reads lines back into steps; ``unit`` is the machine unit in mm."""
+
+    def __init__(self, unit: float) -> None:
+        self._scales = [unit if linear else 1.0 for linear in LINEAR]
+        self._at: Position = (0.0,) * 9
+        self._feed, self._mode = 0.0, "G94"
+
+    def step(self, block: int, line: str) -> Step:
+        """Return the step of a line of the program's line ``block``."""
+        if line.startswith("  * "):
+            return Note(block, line[4:])
+        words = MOVE.fullmatch(line)
+        if not words:
+            raise TraceTextError("neither a move nor a note")
+        kind, ends, centre, turns, plane, rotation, feed, mode = words.groups()
+        start = self._at
+        self._at = self._position(ends)
+        self._feed, self._mode = float(feed or self._feed), mode or self._mode
+        move = Move(
+            kind,
+            line=block,
+            block=block,
+            start=start,
+            end=self._at,
+            feed=0.0,
+            feed_mode="" if kind == "rapid" else self._mode,
+            plane=int(plane or 17),
+            tool=-1,
+            tool_offset=(0.0,) * 9,
+            centre=self._position(centre, start)[:3] if kind == "arc" else None,
+            turns=int(turns or 0),
+            rotation=float(rotation or 0.0),
+        )
+        return move if kind == "rapid" else move._replace(feed=self._feed_in_mm(move))
+
+    def _feed_in_mm(self, move: Move) -> float:
+        return self._feed * (1.0 if turns_only(move) else self._scales[0])
+
+    def _position(self, words: str, start: Position | None = None) -> Position:
+        position = list(start or self._at)
+        for word in words.split():
+            axis = AXES.index(word[0])
+            position[axis] = float(word[1:]) * self._scales[axis]
+        return tuple(position)
+
+
+def split(text: str) -> tuple[dict[str, str], str]:
+    """Return the facts at the head of a text, and the rest of it."""
+    head, *lines = text.split("\n", len(FACTS) + 1)
+    if head != HEAD:
+        raise TraceTextError(f"line 1: not {HEAD!r}")
+    facts = dict(line.partition(" ")[::2] for line in lines[: len(FACTS)])
+    if tuple(facts) != FACTS or facts["units"] not in UNITS:
+        raise TraceTextError(f"lines 2 to {len(FACTS) + 1}: not {', '.join(FACTS)}")
+    return facts, "".join(lines[len(FACTS) :])
+
+
+def read_recording(text: str) -> Recording:
+    """Return the recording that a text holds, or raise TraceTextError with the line."""
+    facts, body = split(text)
+    steps, blocks = [], {}
+    reader, block = Reader(UNITS[facts["units"]].mm), 0
+    lines = enumerate(body.split("\n"), start=len(FACTS) + 2)
+    for number_of_line, line in lines:
+        start = BLOCK.fullmatch(line)
+        if start:
+            block = int(start.group(1))
+            blocks[block] = start.group(2) or ""
+        elif line.startswith("  "):
+            steps.append(_step(reader, block, line, number_of_line))
+        elif line:
+            recording = _finished(Recording(facts, steps, blocks), line, number_of_line)
+            _require_end(lines)
+            return recording
+    raise TraceTextError("the last line, end or error, is missing")
+
+
+def _require_end(lines: Iterator[tuple[int, str]]) -> None:
+    """Raise TraceTextError if there is anything behind the last line."""
+    for number_of_line, line in lines:
+        if line:
+            raise TraceTextError(f"line {number_of_line}: something behind the end")
+
+
+def _step(reader: Reader, block: int, line: str, number_of_line: int) -> Step:
+    try:
+        return reader.step(block, line)
+    except ValueError as problem:
+        raise TraceTextError(f"line {number_of_line}: {problem}") from None
+
+
+def _finished(recording: Recording, line: str, number_of_line: int) -> Recording:
+    error = ERROR.fullmatch(line)
+    if error:
+        return replace(recording, error=Error(error.group(2), int(error.group(1))))
+    if not line.startswith("end: "):
+        raise TraceTextError(f"line {number_of_line}: neither a line of the program nor its end")
+    return replace(recording, end=line[len("end: ") :])

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A recorded directory: one machine, the folder of its programs, a trace for each of them.
+
+``regress.json`` names the INI, the programs' folder and where the tool table and the var file came
+from, all relative to the directory; ``tool.tbl`` and ``parameters.var`` are copies, so a tool that
+wears or a work offset that is touched off changes no trace. Everything in it is text to commit.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from g12.tools.commands.arguments import UsageError
+from g12.tools.machine.files import write
+
+FORMAT = 1
+ABOUT = "regress.json"
+TOOLS, PARAMETERS = "tool.tbl", "parameters.var"
+SUFFIX = ".trace"
+PROGRAM_SUFFIXES = (".ngc", ".nc", ".tap", ".gcode")
+
+
+@dataclass(frozen=True)
+class Baseline:
+    """Where everything is; ``folders`` are those recorded as a whole, relative to ``programs``.
+
+    ``tool_table`` and ``var_file`` are what the directory's copies were made from.
+    """
+
+    directory: Path
+    ini: Path
+    programs: Path
+    folders: tuple[str, ...] = ()
+    tool_table: Path | None = None
+    var_file: Path | None = None
+
+    @property
+    def tools(self) -> Path | None:
+        """Return the directory's copy of the tool table, if it has one."""
+        return self.directory / TOOLS if self.tool_table else None
+
+    @property
+    def parameters(self) -> Path | None:
+        """Return the directory's copy of the var file, if it has one."""
+        return self.directory / PARAMETERS if self.var_file else None
+
+    def names(self) -> list[str]:
+        """Return the recorded programs, relative to their folder."""
+        found = self.directory.rglob(f"*{SUFFIX}")
+        return sorted(path.relative_to(self.directory).as_posix()[: -len(SUFFIX)] for path in found)
+
+    def trace_file(self, name: str) -> Path:
+        """Return where the trace of a program is."""
+        return self.directory / f"{name}{SUFFIX}"
+
+    def keep(self, name: str, text: str) -> None:
+        """Write the trace of a program."""
+        path = self.trace_file(name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if not path.exists() or path.read_bytes() != text.encode():
+            write(path, text.encode())
+
+    def drop(self, name: str) -> None:
+        """Remove the trace of a program, and its folder if nothing else is in it."""
+        path = self.trace_file(name)
+        path.unlink()
+        while path.parent != self.directory and not any(path.parent.iterdir()):
+            path = path.parent
+            path.rmdir()
+
+    def in_folders(self, programs: Path) -> list[str]:
+        """Return the programs that are now in the folders recorded as a whole."""
+        names = (program_names(programs, programs / folder) for folder in self.folders)
+        return sorted({name for found in names for name in found})
+
+    def name_of(self, program: Path) -> str:
+        """Return a program's name, which is its place below the programs' folder."""
+        return _below(program, self.programs, self.directory)
+
+    def save(self) -> None:
+        """Write what the directory is."""
+        self.directory.mkdir(parents=True, exist_ok=True)
+        about = {
+            "format": FORMAT,
+            "ini": self._relative(self.ini),
+            "programs": self._relative(self.programs),
+            "folders": list(self.folders),
+            "tool_table": self._relative(self.tool_table),
+            "var_file": self._relative(self.var_file),
+        }
+        write(self.directory / ABOUT, f"{json.dumps(about, indent=2)}\n".encode())
+
+    def take_copies(self, tools: Path | None, parameters: Path | None) -> None:
+        """Make these files the directory's copies."""
+        self.directory.mkdir(parents=True, exist_ok=True)
+        for source, copy in ((tools, self.tools), (parameters, self.parameters)):
+            if source and source != copy:
+                write(copy, source.read_bytes())
+
+    def _relative(self, path: Path | None) -> str | None:
+        return Path(os.path.relpath(path, self.directory)).as_posix() if path else None
+
+
+def load(directory: Path) -> Baseline:
+    """Return a recorded directory."""
+    about = directory / ABOUT
+    if not about.is_file():
+        raise UsageError(f"{directory}: nothing is recorded there (no {ABOUT})")
+    try:
+        values = json.loads(about.read_text(encoding="utf-8"))
+        known, folders = values.pop("format") == FORMAT, tuple(values.pop("folders"))
+        paths = {key: _absolute(directory, value) for key, value in values.items()}
+        if not (paths["ini"] and paths["programs"] and all(isinstance(f, str) for f in folders)):
+            raise TypeError
+        baseline = Baseline(directory, folders=folders, **paths)
+    except (ValueError, KeyError, TypeError, AttributeError):
+        raise UsageError(f"{about}: not a file of g12 regress") from None
+    if not known:
+        raise UsageError(f"{about}: written by another version of g12")
+    return baseline
+
+
+def _absolute(directory: Path, name: str | None) -> Path | None:
+    return Path(os.path.normpath(directory / name)) if name else None
+
+
+def program_names(root: Path, folder: Path) -> list[str]:
+    """Return the programs in a folder and below, by their places below ``root``."""
+    found = (path for path in folder.rglob("*") if path.suffix.lower() in PROGRAM_SUFFIXES)
+    return sorted(path.relative_to(root).as_posix() for path in found if path.is_file())
+
+
+def common_folder(programs: Iterable[Path]) -> Path:
+    """Return the deepest folder that holds all programs and folders given."""
+    folders = [path if path.is_dir() else path.parent for path in programs]
+    return Path(os.path.commonpath(folders))
+
+
+def _below(program: Path, folder: Path, directory: Path) -> str:
+    try:
+        return program.relative_to(folder).as_posix()
+    except ValueError:
+        raise UsageError(
+            f"{program}: not in {folder}, the programs of {directory}; use another -d for it"
+        ) from None

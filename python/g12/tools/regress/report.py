@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What ``g12 regress`` says: a line per finding, like a compiler's, or JSON; progress meanwhile."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+
+from g12.tools.commands.arguments import HIDDEN
+from g12.tools.regress.recorder import ADDED, CHANGED, FAILED, MISSING, NEW, SAME, Finding, Result
+
+SAYS = {
+    NEW: "new",
+    SAME: "as recorded",
+    CHANGED: "changed",
+    ADDED: "added",
+    MISSING: "gone",
+    FAILED: "failed",
+}
+MOST_FINDINGS = 20  # of a program, in text; JSON has every one
+MOST_LINES = 4
+PROGRESS_SECONDS = 10.0  # between lines, where no terminal shows every program
+
+
+class Progress:
+    """Says on standard error how far a long work is."""
+
+    def __init__(self) -> None:
+        self._said = time.monotonic()
+        self._terminal = sys.stderr.isatty()
+
+    def __call__(self, done: int, total: int, program: str) -> None:
+        """Say that so many programs are done, the last of them ``program``."""
+        text = f"{done} of {total}: {program}"
+        if self._terminal:
+            end = HIDDEN if done == total else ""
+            print(f"{HIDDEN}{text}{end}", end="", file=sys.stderr, flush=True)
+        elif time.monotonic() > self._said + PROGRESS_SECONDS:
+            self._said = time.monotonic()
+            print(text, file=sys.stderr, flush=True)
+
+
+def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str]:
+    """Yield the lines of a report."""
+    for note in notes:
+        yield f"note: {note}"
+    for result in results:
+        yield from lines_of_result(result)
+    counts = Counter(result.verdict for result in results)
+    said = ", ".join(f"{counts[verdict]} {say}" for verdict, say in SAYS.items() if counts[verdict])
+    yield f"{_counted(len(results), 'program')}: {said}"
+
+
+def lines_of_result(result: Result) -> Iterator[str]:
+    """Yield what there is to say about one program."""
+    if result.verdict == NEW:
+        yield f"{result.program}: new, {result.summary}"
+    if result.verdict == ADDED:
+        yield f"{result.program}: added, it is not recorded"
+    if result.verdict == MISSING:
+        yield f"{result.program}: gone, it was recorded"
+    for finding in result.findings[:MOST_FINDINGS]:
+        yield from _finding(result.program, finding)
+    if len(result.findings) > MOST_FINDINGS:
+        yield f"{result.program}: and {len(result.findings) - MOST_FINDINGS} more findings"
+    if result.picture:
+        yield f"{result.program}: see {result.picture}"
+
+
+def _finding(program: str, finding: Finding) -> Iterator[str]:
+    counts = finding.kind in ("moved", "changed") and finding.moves
+    moves = f"{_counted(finding.moves, 'move')}: " if counts else ""
+    yield f"{program}{_where(finding)} {moves}{finding.text}"
+    if finding.block:
+        yield f"    {finding.block}"
+
+
+def _where(finding: Finding) -> str:
+    """Return the lines: ``:14:``, with others of the same finding, or those recorded."""
+    if not finding.lines and not finding.recorded_lines:
+        return ":"
+    first, *others = finding.lines or finding.recorded_lines
+    shown = ", ".join(map(str, others[:MOST_LINES]))
+    more = f" and {len(others) - MOST_LINES} more" if len(others) > MOST_LINES else ""
+    also = f" (also {shown}{more})" if others else ""
+    return f":{first}{'' if finding.lines else ' as recorded'}:{also}"
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
+def json_report(results: Sequence[Result], notes: Sequence[str], good: bool) -> str:
+    """Return a report for another program."""
+    programs = [_as_json(result) for result in results]
+    return json.dumps({"good": good, "notes": list(notes), "programs": programs}, indent=2)
+
+
+def _as_json(result: Result) -> dict:
+    values = asdict(result)
+    values.pop("notes")
+    return values

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Units of length as they are shown to people; everything else is in millimetres."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from g12.tools.preview.tracer import Modes
+
+
+class Unit(NamedTuple):
+    """The unit of length shown: its name, its size in mm and the decimals worth showing."""
+
+    name: str
+    mm: float
+    decimals: int
+
+    def text(self, length: float) -> str:
+        """Return a length in mm as text in this unit, without trailing zeros."""
+        return plain(length / self.mm, self.decimals)
+
+    def fine(self, length: float) -> str:
+        """Return a small length in mm as text in this unit, with two digits that count."""
+        value = length / self.mm
+        first = math.floor(math.log10(abs(value))) if value else 0
+        return plain(value, max(self.decimals, 1 - first) if abs(value) > 1e-7 else 1)
+
+    def area(self, square_mm: float) -> str:
+        """Return an area in mm² as text in this unit's square."""
+        return f"{plain(square_mm / self.mm**2, self.decimals)} {self.name}²"
+
+
+MM = Unit("mm", 1.0, 3)
+UNITS = {"mm": MM, "inch": Unit("in", 25.4, 4)}
+
+
+def unit_of(modes: Modes, name: str | None = None) -> Unit:
+    """Return the unit of that name, without one that of a program's modal state."""
+    return UNITS[name or ("inch" if "G20" in modes.gcodes else "mm")]
+
+
+def plain(value: float, decimals: int) -> str:
+    """Return a number without trailing zeros, with a real minus sign."""
+    text = f"{value:.{decimals}f}"
+    text = text.rstrip("0").rstrip(".") if "." in text else text
+    return "0" if text == "-0" else text.replace("-", "−")

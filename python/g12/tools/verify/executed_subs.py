@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which blocks a program executes, those in the files of subs that it calls included.
+
+LinuxCNC is made to find copies of those files that tell of their blocks, as the copy of the
+program does; see ``blocks``.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from g12.tools.machine.ini import Ini
+from g12.tools.preview.executed_blocks import Block, Text, blocks_in, executed, read_lines, watched
+from g12.tools.preview.tracer import Tools, Trace, Tracer, write_program
+from g12.tools.verify.wanted_circle import CALL, Codes
+
+
+def executed_everywhere(
+    tracer: Tracer, program: Path, trace: Trace, codes: Codes, tools: Tools
+) -> list[Block]:
+    """Return every execution of the blocks that matter, in order.
+
+    ``trace`` is the program's. Polar sections count in the program only. Where LinuxCNC does not
+    take the copies, the blocks of the program are all.
+    """
+    files = [Path(name) for name in trace.files if Path(name).stem != CALL]
+    if files:
+        with tempfile.TemporaryDirectory(prefix="g12-verify-") as folder:
+            texts = read_lines(program) + write_copies(files, Path(folder), program, codes)
+            with Tracer(shadowed(tracer.ini, folder), tools=tools) as other:
+                copy = other.trace_text(watched(program, texts, codes.wanted))
+        if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
+            return blocks_in(copy, texts)
+    return executed(tracer, program, codes.wanted)
+
+
+def write_copies(files: Sequence[Path], folder: Path, program: Path, codes: Codes) -> list[Text]:
+    """Write copies of files that tell of their blocks; return the lines of all as text."""
+    skip, found = len(read_lines(program)), []
+    for file in files:
+        texts = [text._replace(file=file.name) for text in read_lines(file)]
+        lines = watched(
+            file, texts, lambda text: codes.wanted(text) and not codes.polar(text), skip
+        )
+        write_program(lines, folder / file.name)
+        skip, found = skip + len(texts), found + texts
+    return found
+
+
+def shadowed(ini: Ini, folder: str) -> Ini:
+    """Return an INI whose subs are looked for in a folder first, then where they were."""
+    prefix, subs = ini.get("DISPLAY", "PROGRAM_PREFIX"), ini.get("RS274NGC", "SUBROUTINE_PATH")
+    path = ":".join(filter(None, (prefix, subs)))
+    return ini.replaced(
+        {"DISPLAY": {"PROGRAM_PREFIX": folder}, "RS274NGC": {"SUBROUTINE_PATH": path or None}}
+    )

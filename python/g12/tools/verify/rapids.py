@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Rapids that go through material: a forgotten retract, or a retract blended into the next rapid.
+
+The stock is not known, but a pocket has a wall, and perhaps a core. So: where a rapid passes
+through a pocket, all of it that lies lower than the pocket's top must stay in what the program
+has cleared down to that height before.
+
+A pocket's top is the height from which the tool came down to it (the lowest such height of all
+pockets that still is above its first floor), or the program's Z0 if that is between this height
+and that floor. Circles cut from outside and those of other planes than XY have no such wall.
+
+Lengths are millimetres, areas square millimetres, in machine coordinates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+
+import numpy as np
+from shapely.geometry import Point
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
+from shapely.prepared import prep
+
+from g12.tools.path.follow import Followed, Track
+from g12.tools.path.part import disc, is_sideways, swept
+from g12.tools.preview.executed_blocks import Block
+from g12.tools.preview.tracer import Move
+from g12.tools.verify.wanted_circle import Target
+
+SAME_HEIGHT = 1e-3
+CHORD = 5e-3
+STEP = 0.5  # between points of a rapid that are looked at
+ALLOWED = 0.05  # that a rapid may go into a wall: the rounding of a run's corners
+LEAST_AREA = 0.05
+MOST_POINTS = 300  # of a rapid that are looked at
+
+Asked = Sequence[tuple[Block, Target]]
+
+
+@dataclass(frozen=True)
+class Collision:
+    """A rapid, by its move's index and line, that goes through ``area`` of material.
+
+    ``way`` (n, 3) is its tool's way where it does.
+    """
+
+    move: int
+    line: int
+    area: float
+    way: np.ndarray
+
+
+@dataclass(frozen=True)
+class Opening:
+    """A pocket from its first move on: the area that is cut, its top and its first floor."""
+
+    first: int
+    area: BaseGeometry
+    top: float
+    floor: float
+
+
+class Cleared:
+    """What a program has cleared, at any of its moves and any height."""
+
+    def __init__(self, asked: Asked, moves: Sequence[Move], path: Track, diameters: dict) -> None:
+        self._moves, self._path, self._diameters = moves, path, diameters
+        self._cutters = {
+            index: target.cutter for block, target in asked for index in range(block.at, block.end)
+        }
+        self._bores = [(block.at, target) for block, target in asked if target.bore]
+        self._swept_by: dict[int, BaseGeometry] = {}
+        self._before: dict[tuple, BaseGeometry] = {}
+
+    def radius(self, index: int) -> float:
+        """Return the radius of a move's cutter; in a pocket D's if the tool has none."""
+        loaded = self._diameters.get(self._moves[index].tool, 0.0) / 2
+        return loaded or self._cutters.get(index, 0.0)
+
+    def before(self, index: int, height: float) -> BaseGeometry:
+        """Return the area cleared down to a height before a move."""
+        cut = tuple(np.flatnonzero(self._lowest[:index] <= height + SAME_HEIGHT))
+        if (index, cut) not in self._before:
+            bored = [
+                disc(target.origin, target.bore)
+                for first, target in self._bores
+                if first <= index and target.origin[2] <= height + SAME_HEIGHT
+            ]
+            found = unary_union([*map(self._swept, cut), *bored]).buffer(ALLOWED)
+            self._before[index, cut] = found
+        return self._before[index, cut]
+
+    def of(self, indices: Sequence[int]) -> BaseGeometry:
+        """Return the area that moves sweep."""
+        return unary_union([self._swept(index) for index in indices])
+
+    @cached_property
+    def _lowest(self) -> np.ndarray:
+        """The lowest height of each move at feed; a rapid clears nothing."""
+        heights = np.full(len(self._moves), np.inf)
+        for index, move in enumerate(self._moves):
+            if move.kind != "rapid":
+                heights[index] = self._path.points[self._path.vertices(index), 2].min()
+        return heights
+
+    def _swept(self, index: int) -> BaseGeometry:
+        if index not in self._swept_by:
+            line = self._path.part.polyline(self._moves[index], CHORD)
+            self._swept_by[index] = swept([line], max(self.radius(index), CHORD))
+        return self._swept_by[index]
+
+
+def collisions(
+    asked: Asked,
+    moves: Sequence[Move],
+    path: Track,
+    diameters: dict[int, float],
+    real: Followed | None = None,
+) -> list[Collision]:
+    """Return the rapids that go through material; those of a run if there is one."""
+    cleared = Cleared(asked, moves, path, diameters)
+    openings = list(openings_of(asked, moves, cleared))
+    found: dict[int, Collision] = {}
+    for chain in chains_of(moves, openings):
+        points, owner = way_of(chain, moves, path, real)
+        for opening in openings:
+            for stretch in stretches_in(opening, points, owner):
+                for hit in hits(points[stretch], owner[stretch], moves, cleared):
+                    known = found.get(hit.move)
+                    found[hit.move] = hit if known is None or known.area < hit.area else known
+    return [found[move] for move in sorted(found)]
+
+
+def openings_of(asked: Asked, moves: Sequence[Move], cleared: Cleared) -> Iterator[Opening]:
+    """Yield the pockets that rapids can leave through a wall."""
+    walled = [(block, target) for block, target in asked if target.inside and target.plane == 2]
+    heights = [(height_before(block, moves), *floors_of(block, moves)) for block, _ in walled]
+    for (block, target), (_, highest, lowest) in zip(walled, heights):
+        above = [height for height, _, _ in heights if height > highest + SAME_HEIGHT]
+        if above:
+            top = target.face if highest < target.face < min(above) else min(above)
+            yield Opening(block.at, cleared.of(cutting(block, moves)), top, lowest)
+
+
+def cutting(block: Block, moves: Sequence[Move]) -> list[int]:
+    """Return the moves of a block that cut sideways."""
+    own = range(block.at, block.end)
+    return [i for i in own if moves[i].kind != "rapid" and is_sideways(moves[i])]
+
+
+def floors_of(block: Block, moves: Sequence[Move]) -> tuple[float, float]:
+    """Return the highest and the lowest floor that a block cuts."""
+    ends = [moves[index].end[2] for index in cutting(block, moves)] or [np.inf]
+    return max(ends), min(ends)
+
+
+def height_before(block: Block, moves: Sequence[Move]) -> float:
+    """Return the height from which the tool came down to a pocket, its own plunge included."""
+    highest, _ = floors_of(block, moves)
+    index = block.at
+    if moves[index].start[2] <= highest + SAME_HEIGHT:
+        while index and not is_sideways(moves[index - 1]):
+            index -= 1
+    return moves[index].start[2]
+
+
+def chains_of(moves: Sequence[Move], openings: Sequence[Opening]) -> Iterator[list[int]]:
+    """Yield the rapids that follow each other without a cut, once there is a pocket."""
+    first = min((opening.first for opening in openings), default=len(moves))
+    for rapid, group in groupby(range(first, len(moves)), lambda i: moves[i].kind == "rapid"):
+        if rapid:
+            yield list(group)
+
+
+def way_of(
+    chain: Sequence[int], moves: Sequence[Move], path: Track, real: Followed | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return points (n, 3) along moves, as programmed or as they were, and the move of each."""
+    ways = [real.points[real.during(i)] if real else dense(path, moves[i]) for i in chain]
+    owner = np.concatenate([np.full(len(way), index) for index, way in zip(chain, ways)])
+    return np.concatenate(ways), owner
+
+
+def dense(path: Track, move: Move) -> np.ndarray:
+    """Return points (n, 3) along a rapid."""
+    count = max(2, int(np.ceil(move.length / STEP)) + 1)
+    return path.part.points(np.linspace(move.start, move.end, count))
+
+
+def stretches_in(opening: Opening, points: np.ndarray, owner: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield the stretches of a way (indices) below an opening's top that pass through it."""
+    low = (points[:, 2] < opening.top - SAME_HEIGHT) & (owner >= opening.first)
+    for below, group in groupby(np.arange(len(points)), lambda index: low[index]):
+        stretch = np.array(list(group))
+        inside = points[stretch[points[stretch, 2] > opening.floor - SAME_HEIGHT], :2]
+        if below and any(map(prep(opening.area).contains, map(Point, inside))):
+            yield stretch
+
+
+def hits(
+    points: np.ndarray, owner: np.ndarray, moves: Sequence[Move], cleared: Cleared
+) -> Iterator[Collision]:
+    """Yield the collisions along a way, one for each move."""
+    for index in np.unique(owner):
+        way, radius = points[owner == index], cleared.radius(index)
+        if np.ptp(way[:, :2], axis=0).max() > ALLOWED:
+            hit = bites_of(way, index, radius, cleared)
+            area = unary_union([piece for _, piece in hit]).area if hit else 0.0
+            if area > LEAST_AREA:
+                yield Collision(index, moves[index].block, area, np.array([at for at, _ in hit]))
+
+
+def bites_of(way: np.ndarray, index: int, radius: float, cleared: Cleared) -> list:
+    """Return the points of a way at which the cutter is in material, each with the area there."""
+    found = []
+    for point in way[:: len(way) // MOST_POINTS + 1]:
+        cutter = Point(point[:2]).buffer(radius)
+        piece = cutter.difference(cleared.before(index, point[2]))
+        if piece.area > LEAST_AREA:
+            found.append((point, piece))
+    return found

@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How well a polar section follows its contour, from the emitted or the real motion.
+
+The contour's plane is that of complex numbers: the real axis is X where the section begins, and
+the plane turns with the part. Lengths are millimetres, areas square millimetres, angles degrees,
+C's speed degrees/s.
+
+With compensation the tool's centre must stay one tool radius away from the contour, on the
+programmed side. ``gouge`` is what the cutter takes beyond the contour, ``left`` what it leaves of
+what it could have reached, each an integral of the excess along the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby, product
+
+import numpy as np
+from shapely.geometry import LineString
+from shapely.ops import nearest_points
+
+from g12.tools.path.follow import Followed, Track
+from g12.tools.path.part import C, Z
+from g12.tools.path.slowest import Pace, pace_of
+from g12.tools.preview.tracer import Move
+from g12.tools.verify.contour_distance import SAME, STEP, Shape
+from g12.tools.verify.section_paths import Plane, Ways, goes_across, ways_of
+from g12.tools.verify.wanted_contour import Element, Section
+
+LEADS = 3  # elements at either end of a contour that may be there to lead in or out
+MEETS = 1e-3
+TINY_PIECE = 1e-6
+
+
+@dataclass(frozen=True)
+class SectionFacts:
+    """What was measured of one section.
+
+    ``wanted`` and ``reached`` are the contour's least and greatest distance from the spindle's
+    centre, where compensation is on if it is anywhere. ``deviation`` is the tool centre's
+    greatest distance from where it should be, ``jump`` the greatest change of direction from
+    piece to piece of one block, ``c_speed`` the highest speed of C and ``c_limit`` its limit,
+    ``tool`` the cutter's radius. ``through`` says that the tool's centre goes beyond the contour:
+    then ``gouge`` is only what lies next to it, and there is more.
+
+    ``zero`` is the angle of C where the section begins, ``start_height`` Z there, ``lowest`` the
+    lowest Z. ``slowest_at`` is the place of the lowest feed as the section's own X (a radius),
+    C and Z.
+    """
+
+    section: Section
+    tool: float
+    sides: tuple[int, ...]
+    wanted: tuple[float, float]
+    reached: tuple[float, float]
+    deviation: float
+    left: float
+    gouge: float
+    through: bool
+    jump: float
+    pieces: int
+    shortest: float
+    longest: float
+    pace: Pace
+    c_speed: float
+    c_limit: float
+    zero: float
+    start_height: float
+    lowest: float
+    slowest_at: tuple[float, float, float]
+
+
+def measure_section(
+    section: Section,
+    path: Track,
+    moves: Sequence[Move],
+    diameters: dict[int, float],
+    limit: float,
+    tolerance: float,
+    real: Followed | None = None,
+) -> SectionFacts:
+    """Return the facts of a section; ``limit`` is C's greatest speed, degrees/s."""
+    plane = Plane(section, moves[section.at])
+    own = range(section.at, section.end)
+    cutting = [i for i in own if moves[i].kind != "rapid" and path.part_length(i) > TINY_PIECE]
+    across = [index for index in cutting if goes_across(moves[index])]
+    tool = diameters.get(moves[section.at].tool, 0.0) / 2
+    ways = ways_of(plane, cutting, moves, path, real)
+    leads = leads_of(section, tool)
+    runs = runs_of(section)
+    found = [measure_run(run, leads, ways, tool, tolerance) for run in runs]
+    shaping = [facts for run, facts in zip(runs, found) if run[0].side] or found
+    lengths = [path.part_length(index) for index in across] or [0.0]
+    pace = pace_of(own, across, path, real)
+    return SectionFacts(
+        section,
+        tool,
+        tuple(sorted({run[0].side for run in runs})),
+        wanted=span([facts.wanted for facts in shaping]),
+        reached=span([facts.reached for facts in shaping]),
+        deviation=max((facts.deviation for facts in found), default=0.0),
+        left=sum(facts.left for facts in found),
+        gouge=sum(facts.gouge for facts in found),
+        through=any(facts.through for facts in found),
+        jump=largest_jump(across, moves, plane, path),
+        pieces=len(across),
+        shortest=min(lengths),
+        longest=max(lengths),
+        pace=pace,
+        c_speed=c_speed_of(own, path, real),
+        c_limit=limit,
+        zero=moves[section.at].start[C],
+        start_height=moves[section.at].start[Z],
+        lowest=min(moves[index].end[Z] for index in own),
+        slowest_at=plane.of_part(pace.point),
+    )
+
+
+def runs_of(section: Section) -> list[list[Element]]:
+    """Return the stretches of contour with the tool on one side, ramps aside."""
+    longer = (element for element in section.elements if element.length > SAME)
+    groups = groupby(longer, key=lambda element: (element.side, element.ramp))
+    return [list(run) for (_, ramp), run in groups if not ramp]
+
+
+def leads_of(section: Section, tool: float) -> Shape:
+    """Return the ways on which compensation is switched on and off.
+
+    They end square to the element that follows, one tool radius away from it, and begin square
+    to the one before.
+    """
+    longer = [element for element in section.elements if element.length > SAME]
+    leads = []
+    for before, ramp, after in zip([None, *longer], longer, [*longer[1:], None]):
+        if ramp.ramp:
+            away = before.normal(1.0) * before.side * tool if before else 0.0
+            beside = after.normal(0.0) * ramp.side * tool if after else 0.0
+            start, end = ramp.start + away, ramp.end + beside
+            leads.append(Element(ramp.line, start, end, 0, True, ramp.depth))
+    return Shape(leads)
+
+
+@dataclass(frozen=True)
+class RunFacts:
+    """What was measured of one stretch of contour; members as those of ``SectionFacts``."""
+
+    deviation: float
+    left: float
+    gouge: float
+    through: bool
+    wanted: np.ndarray
+    reached: np.ndarray
+
+
+def measure_run(
+    run: Sequence[Element], leads: Shape, ways: Ways, tool: float, tolerance: float
+) -> RunFacts:
+    """Return the facts of a stretch of contour; on the leads to and from it all is well."""
+    nothing = np.zeros(0)
+    if not any(ways.of(element.line) for element in run):
+        return RunFacts(float("inf"), 0.0, 0.0, False, nothing, nothing)
+    side = run[0].side
+    radius = tool if side else 0.0
+    points, nearest, left_of, steps = laid_along(run, ways)
+    away = np.abs(points - nearest)
+    wrong = left_of * side < -SAME
+    off = np.where(wrong, -away, away) - radius
+    if leads.elements:
+        beside = leads.distances(points)
+        off = np.where(beside < np.abs(off), beside, off)
+    missed, lengths = missed_by(Shape(run), side, radius, ways.below(np.inf))
+    deviation = float(max(np.abs(off).max(), missed.max(initial=0.0)))
+    wall = points + (nearest - points) * radius / np.maximum(away, 1e-12) if side else points
+    if not side:
+        return RunFacts(deviation, 0.0, 0.0, False, np.abs(nearest), np.abs(wall))
+    left = float(np.maximum(0.0, missed - tolerance) @ lengths)
+    across = float(np.where(wrong, np.maximum(0.0, -off - tolerance), 0.0) @ steps)
+    bite, lengths = bites(run, radius, ways)
+    gouge = across + float(np.maximum(0.0, bite - tolerance) @ lengths)
+    through = bool(wrong.any() or (bite > radius - STEP).any())
+    return RunFacts(deviation, left, gouge, through, np.abs(nearest), np.abs(wall))
+
+
+def laid_along(run: Sequence[Element], ways: Ways) -> tuple[np.ndarray, ...]:
+    """Return the tool centre's points, the contour's next to them, their sides, their steps.
+
+    Each block is compared with its own element and those before and after, as far as these are
+    part of a closed contour: a later pass may cross the lead-in's extension.
+    """
+    closed = trimmed(run)
+    columns = []
+    near: dict[int, set[int]] = {}
+    for index, element in enumerate(run):
+        near.setdefault(element.line, set()).update((index - 1, index, index + 1))
+    for line, indices in near.items():
+        own = {index for index in indices if 0 <= index < len(run) and run[index].line == line}
+        others = indices.difference(own, (-1, len(run)))
+        shape = Shape([run[index] for index in own] + [closed[index] for index in others])
+        for way in ways.of(line):
+            columns.append((way, *shape.nearest(way), shares_of(way)))
+    return tuple(np.concatenate(column) for column in zip(*columns))
+
+
+def shares_of(way: np.ndarray) -> np.ndarray:
+    """Return the length of a polyline that each of its points stands for."""
+    steps = np.abs(np.diff(way)) / 2
+    return np.append(steps, 0.0) + np.insert(steps, 0, 0.0)
+
+
+def missed_by(shape: Shape, side: int, wanted: float, way: Shape) -> tuple[np.ndarray, np.ndarray]:
+    """Return how far the cutter stays away from points of the contour that it can reach."""
+    points, lengths, normals = shape.samples
+    reachable = shape.distances(points + normals * side * wanted) >= wanted - 10 * SAME
+    away = way.distances(points[reachable]) - wanted
+    return np.maximum(0.0, away), lengths[reachable]
+
+
+def span(distances: Sequence[np.ndarray]) -> tuple[float, float]:
+    """Return the least and the greatest of all distances."""
+    every = np.concatenate([np.zeros(0), *distances])
+    return (float(every.min()), float(every.max())) if len(every) else (0.0, 0.0)
+
+
+def bites(run: Sequence[Element], tool: float, ways: Ways) -> tuple[np.ndarray, np.ndarray]:
+    """Return how deep the cutter goes into points of the contour, and the length of each.
+
+    Ramps and later passes count. Where the end of a contour meets its beginning, what sticks out
+    beyond is no contour.
+    """
+    points, lengths, _ = Shape(trimmed(run)).samples
+    return np.maximum(0.0, tool - ways.distances(points, ways.solid(run))), lengths
+
+
+def trimmed(run: Sequence[Element]) -> list[Element]:
+    """Return a contour without what sticks out where its end meets its beginning.
+
+    Elements that stick out as a whole are there with no length.
+    """
+    first, last = closing(run)
+    ends = np.concatenate([[0.0], np.cumsum([element.length for element in run])])
+    return [
+        element.part(*(np.clip((first, last), start, end) - start) / (end - start))
+        for element, start, end in zip(run, ends, ends[1:])
+    ]
+
+
+def closing(run: Sequence[Element]) -> tuple[float, float]:
+    """Return the lengths along a contour between which it is closed; else its whole length."""
+    ends = np.concatenate([[0.0], np.cumsum([element.length for element in run])])
+    for i, j in product(range(min(len(run), LEADS)), range(len(run) - 1, len(run) - 1 - LEADS, -1)):
+        if j > i:
+            # Neighbours meet where they join: the later half of the second is looked at.
+            skipped = 0.5 if j == i + 1 else 0.0
+            one, other = as_line(run[i]), as_line(run[j].part(skipped, 1.0))
+            if one.distance(other) < MEETS:
+                here, there = nearest_points(one, other)
+                passed = ends[j] + skipped * run[j].length
+                return ends[i] + one.project(here), passed + other.project(there)
+    return 0.0, ends[-1]
+
+
+def as_line(element: Element) -> LineString:
+    """Return an element as a polyline."""
+    count = max(1, int(element.length / STEP)) if element.centre is not None else 1
+    points = (element.point(index / count) for index in range(count + 1))
+    return LineString([(point.real, point.imag) for point in points])
+
+
+def largest_jump(across: Sequence[int], moves: Sequence[Move], plane: Plane, path: Track) -> float:
+    """Return the greatest change of direction between pieces of one block."""
+    jumps = []
+    for before, after in zip(across, across[1:]):
+        if moves[before].block == moves[after].block:
+            one, other = (plane.way(index, path, None).points for index in (before, after))
+            turn = (other[1] - other[0]) / (one[-1] - one[-2])
+            jumps.append(abs(np.degrees(np.angle(turn))))
+    return float(max(jumps, default=0.0))
+
+
+def c_speed_of(own: Sequence[int], path: Track, real: Followed | None) -> float:
+    """Return the highest speed of C."""
+    if real is not None:
+        mask = np.isin(real.move, own)
+        angle, time = real.positions[mask, C], real.time[mask]
+        return float(np.abs(np.gradient(angle, time)).max()) if len(time) > 1 else 0.0
+    vertices = slice(path.vertices(own[0]).start, path.vertices(own[-1]).stop)
+    turned, seconds = np.diff(path.positions[vertices, C]), np.diff(path.time[vertices])
+    return float((np.abs(turned) / np.maximum(seconds, 1e-12)).max(initial=0.0))

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The contour that a polar section's blocks describe, read once more apart from the planner.
+
+A copy of the program is traced in which the section's motion is left out and every block tells
+its words instead; expressions, loops, calls and conditions are LinuxCNC's own doing.
+
+Lengths are millimetres, X a radius value; the contour's plane turns with the part, its first
+axis is X where the section begins.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from g12.lengths import MM_PER_INCH
+from g12.tools.preview.executed_blocks import Block, Text, after, before, blocks_in, read_lines
+from g12.tools.preview.tracer import Tracer
+from g12.tools.verify.wanted_circle import Codes
+
+SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
+CONTOUR = "XYCUHIJRZ"
+POSITION = "#<_", "#54"  # position parameters, which the copy of the program cannot follow
+
+
+@dataclass(frozen=True)
+class Element:
+    """A line or an arc of the contour; an arc has a ``centre`` and a signed ``sweep``.
+
+    ``side`` is +1 with the tool on the left (G41), -1 on the right, 0 without compensation;
+    ``ramp`` says that compensation is switched on or off along it. ``depth`` is Z at its end.
+    """
+
+    line: int
+    start: complex
+    end: complex
+    side: int
+    ramp: bool
+    depth: float
+    centre: complex | None = None
+    sweep: float = 0.0
+
+    @property
+    def length(self) -> float:
+        """Return its length."""
+        if self.centre is None:
+            return abs(self.end - self.start)
+        return abs(self.start - self.centre) * abs(self.sweep)
+
+    def point(self, fraction: float) -> complex:
+        """Return the point after a fraction of it."""
+        if self.centre is None:
+            return self.start + (self.end - self.start) * fraction
+        turn = complex(math.cos(self.sweep * fraction), math.sin(self.sweep * fraction))
+        return self.centre + (self.start - self.centre) * turn
+
+    def part(self, first: float, last: float) -> Element:
+        """Return the stretch between two fractions of it."""
+        start, end = self.point(first), self.point(last)
+        return replace(self, start=start, end=end, sweep=self.sweep * (last - first))
+
+    def normal(self, fraction: float) -> complex:
+        """Return the direction to the left of the way at a fraction."""
+        if self.centre is None:
+            along = self.end - self.start
+        else:
+            along = (self.point(fraction) - self.centre) * math.copysign(1, self.sweep) * 1j
+        return 1j * along / (abs(along) or 1.0)
+
+
+@dataclass(frozen=True)
+class Section:
+    """One run through a section: first and last line, first move and the one after it, contour.
+
+    ``x`` and ``z`` are where it begins, in program coordinates. ``doubt`` tells why the contour
+    could not be read from the words, if it could not. ``diameters`` says that X words are.
+    """
+
+    line: int
+    last: int
+    at: int
+    end: int
+    code: str
+    x: float
+    elements: tuple[Element, ...]
+    doubt: str = ""
+    z: float = 0.0
+    diameters: bool = False
+
+
+def sections(
+    tracer: Tracer, program: Path, codes: Codes, reading: str, blocks: Sequence[Block]
+) -> list[Section]:
+    """Return the sections in the order they are run.
+
+    ``reading`` is [G12] POLAR_X, ``blocks`` the program's own, which say where sections begin.
+    """
+    runs = [(group[0], group[-1]) for group in grouped(blocks, codes)]
+    if not runs:
+        return []
+    texts = read_lines(program)
+    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
+    flat = [line for way in flattened(texts, codes, lines) for line in way]
+    groups = grouped(blocks_in(tracer.trace_text(flat), texts), codes)
+    doubts = doubts_of(texts, codes, lines)
+    return [
+        section_of(first, last, group, codes, reading, doubts.get(first.text.number, ""))
+        for (first, last), group in zip(runs, groups)
+    ]
+
+
+def flattened(
+    texts: Sequence[Text], codes: Codes, lines: Sequence[str]
+) -> Iterator[tuple[str, ...]]:
+    """Yield the lines that stand for each line in the copy without the sections' motion."""
+    inside = False
+    for text, line in zip(texts, lines):
+        switch = codes.polar(text)
+        if switch or (inside and text.words and not text.control):
+            slash = "/" if text.deleted else ""
+            kept = tuple(slash + assignment for assignment in text.assignments)
+            yield (*before(text), *kept, *after(text))
+        else:
+            yield (line,)
+        inside = inside if not switch else switch == "on"
+
+
+def grouped(blocks: Sequence[Block], codes: Codes) -> Iterator[list[Block]]:
+    """Yield the blocks of each section, the one that switches it on first."""
+    group: list[Block] = []
+    for block in blocks:
+        switch = codes.polar(block.text)
+        if switch == "on":
+            group = [block]
+        elif group:
+            group.append(block)
+        if switch == "off" and group:
+            yield group
+            group = []
+
+
+def doubts_of(texts: Sequence[Text], codes: Codes, lines: Sequence[str]) -> dict[int, str]:
+    """Return, by a section's first line, what in it the copy of the program cannot follow."""
+    doubts: dict[int, str] = {}
+    first = 0
+    for text, line in zip(texts, lines):
+        first = {"on": text.number, "off": 0}.get(codes.polar(text), first)
+        if first and text.call:
+            doubts[first] = f"line {text.number} calls o<{text.call}>"
+        elif first and any(name in line.replace(" ", "") for name in POSITION):
+            doubts[first] = f"line {text.number} asks for a position"
+    return doubts
+
+
+def section_of(
+    first: Block, last: Block, group: Sequence[Block], codes: Codes, reading: str, doubt: str
+) -> Section:
+    """Return the section between two blocks of the program that executed blocks describe."""
+    pen = Pen(first, reading)
+    x, z, diameters = pen.at.real, pen.depth, pen.x_unit < pen.unit
+    elements = tuple(element for block in group[1:] for element in pen.draw(block))
+    code = next(f"G{code:g}" for code in first.codes if codes.polar(first.text))
+    lines = first.text.number, last.text.number
+    return Section(*lines, first.at, last.end, code, x, elements, doubt, z, diameters)
+
+
+class Pen:
+    """Follows the words of a section's blocks, as the mode's rules say."""
+
+    def __init__(self, first: Block, reading: str) -> None:
+        state = first.state
+        self.unit = 1.0 if state["_metric"] else MM_PER_INCH
+        diameter = {"diameter": True, "radius": False}.get(reading, state["_lathe_diameter_mode"])
+        self.x_unit = self.unit / 2 if diameter else self.unit
+        self.at = complex(state["_x"] * self.unit, 0.0)
+        self.depth = state["_z"] * self.unit
+        self.absolute = bool(state["_absolute"])
+        self.motion, self.side, self.changes = 1.0, 0, False
+
+    def draw(self, block: Block) -> Iterator[Element]:
+        """Yield the element that a block adds, if any."""
+        for code in block.codes:
+            self._switch(code)
+        words = block.words
+        if not any(letter in words for letter in CONTOUR):
+            return
+        self.depth = self._to(words, "Z", None, self.depth, self.unit)
+        end = complex(
+            self._to(words, "X", "U", self.at.real, self.x_unit),
+            self._to(words, "C" if "C" in words else "Y", "H", self.at.imag, self.unit),
+        )
+        centre, sweep = self._turn(words, end)
+        if end != self.at or centre is not None:
+            line = block.text.number
+            ramp, self.changes = self.changes, False
+            yield Element(line, self.at, end, self.side, ramp, self.depth, centre, sweep)
+        self.at = end
+
+    def _switch(self, code: float) -> None:
+        if code in SIDES:
+            self.changes = self.changes or SIDES[code] != self.side
+            self.side = SIDES[code]
+        elif code in (0.0, 1.0, 2.0, 3.0):
+            self.motion = code
+        elif code in (90.0, 91.0):
+            self.absolute = code == 90.0
+
+    def _to(self, words: dict, letter: str, step: str | None, now: float, unit: float) -> float:
+        """Return where a coordinate goes: by its word, by its incremental word, or nowhere."""
+        if letter in words:
+            return words[letter] * unit + (0.0 if self.absolute else now)
+        return now + words.get(step, 0.0) * unit
+
+    def _turn(self, words: dict, end: complex) -> tuple[complex | None, float]:
+        """Return an arc's centre and its sweep; no centre for a line."""
+        if self.motion not in (2.0, 3.0):
+            return None, 0.0
+        sign = 1.0 if self.motion == 3.0 else -1.0
+        if "R" in words:
+            centre = centre_of(self.at, end, words["R"] * self.unit, sign)
+        elif "I" in words or "J" in words:
+            centre = self.at + complex(words.get("I", 0.0), words.get("J", 0.0)) * self.unit
+        else:
+            return None, 0.0
+        return centre, sweep_of(self.at - centre, end - centre, sign)
+
+
+def centre_of(start: complex, end: complex, radius: float, sign: float) -> complex:
+    """Return the centre of an arc by its radius; a negative one is for the arc over 180 degrees."""
+    chord = end - start
+    half = abs(chord) / 2
+    height = math.sqrt(max(0.0, radius * radius - half * half))
+    left = 1j * chord / abs(chord)
+    return (start + end) / 2 + left * height * sign * math.copysign(1.0, radius)
+
+
+def sweep_of(start: complex, end: complex, sign: float) -> float:
+    """Return the signed angle from one direction to another; the same point is a full turn."""
+    if abs(end - start) < 1e-6:
+        return sign * 2 * math.pi
+    angle = math.atan2((end / start).imag, (end / start).real)
+    return angle if angle * sign > 0 else angle + sign * 2 * math.pi

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One cycle in every combination of modes and coordinate systems: the same machine path.
+
+A ``Case`` writes its block for a scale (25.4 for a program in mm) and for G90 or G91.
+"""
+
+import itertools
+import re
+from typing import Callable, NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import strategies as st
+
+from support import cut_geometry
+
+INCH = 25.4
+MODES = list(
+    itertools.product(
+        ("G20", "G21"),
+        ("G90", "G91"),
+        ("G90.1", "G91.1"),
+        ("G94", "G95"),
+        ("G61", "G64", "G64 P0.01"),
+        ("G8", "G7"),
+    )
+)
+COORDINATES = {  # parameters in inches and degrees
+    "plain": {},
+    "shifted": {5221: 3.0, 5222: -2.0, 5223: 0.5},
+    "rotated": {5221: 3.0, 5222: -2.0, 5223: 0.5, 5230: 30.0},
+    "G92": {5211: 0.25, 5212: 0.125, 5213: -0.0625, 5210: 1.0, 5230: -12.5},
+    "far": {5221: 900.0, 5222: -900.0, 5230: 45.0},
+}
+FRACTIONS = (0.0, 0.3, 0.5, 0.8, 1.0)  # of each move: enough to tell an arc from any other
+UNSCALED = (5210, 5230)  # G92 is on, the rotation
+
+
+class Case(NamedTuple):
+    """A cycle from ``start``, an absolute point in inches; ``block(scale, incremental)``."""
+
+    block: Callable[[float, bool], str]
+    start: tuple = (0.5, 0.25, 0.1)
+    feed: float = 5.0
+
+    def program(self, units, distance, centres, feed, path, diameter):
+        """Return the blocks before the cycle, and the cycle's."""
+        scale = 1.0 if units == "G20" else INCH
+        start = " ".join(f"{axis}{v * scale:.10f}" for axis, v in zip("XYZ", self.start))
+        modes = f"{distance} {centres} {feed} {path} {diameter} F{self.feed * scale:.10f}"
+        before = [f"{units} G90 G8 G0 {start}", "T1 M6", "S1000 M3", modes]
+        block = self.block(scale, distance == "G91")
+        return before, diameters(block) if diameter == "G7" else block
+
+
+def words(scale, **values):
+    """Return scaled words: ``words(25.4, X=1.0)`` is ``X25.4``."""
+    return " ".join(f"{letter}{value * scale:.10f}" for letter, value in values.items())
+
+
+def diameters(block):
+    """Return a block with its X words doubled, as G7 reads them."""
+    return re.sub(r"\bX(-?[\d.]+)", lambda word: f"X{2 * float(word[1]):.10f}", block)
+
+
+def path_of(traced):
+    """Return points along all that moves, and each move's kind and feed."""
+    moves = cut_geometry.moving(traced.moves)
+    points = [move.point(fraction)[:3] for move in moves for fraction in FRACTIONS]
+    return np.array(points), [(move.kind, round(move.feed, 6)) for move in moves]
+
+
+def check_same_path(inch, metric, coordinates, case):
+    """Check that all modes on both machines make one path and give every mode back.
+
+    Under G95 the feed is per revolution, so kinds and feeds are compared for each of the two.
+    """
+    points, feeds = None, {}
+    for tracer, unit in ((inch, 1.0), (metric, INCH)):
+        parameters = {
+            key: value * (1.0 if key in UNSCALED else unit)
+            for key, value in COORDINATES[coordinates].items()
+        }
+        for modes in MODES:
+            before, block = case.program(*modes)
+            found = tracer.trace_text(before, parameters=parameters)
+            after = tracer.trace_text([*before, block], parameters=parameters)
+            check_modes(found, after)
+            path, kinds = path_of(after)
+            points = path if points is None else points
+            assert path.shape == points.shape, modes
+            assert np.abs(path - points).max() < 1e-6, modes
+            assert kinds == feeds.setdefault("G95" in modes, kinds), modes
+
+
+def check_modes(found, after):
+    """Check that a good block left the modes as it found them."""
+    assert after.error is None, after.error
+    assert after.modes == found.modes
+    assert after.globals == found.globals
+
+
+def check_refused(tracer, before, block, message):
+    """Check that a block is refused with that text, moves nothing and changes nothing."""
+    found = tracer.trace_text(before)
+    after = tracer.trace_text([*before, block])
+    assert after.error is not None, block
+    assert after.error.text == message
+    assert len(message) <= 255
+    assert after.moves == found.moves
+    assert after.modes == found.modes
+    assert after.state == found.state
+    assert after.globals == found.globals
+    assert after.messages == found.messages
+
+
+OF_THE_PARSER = ("Non integer value for integer", "Negative h word used", "Negative l word used")
+VALUES = st.sampled_from(
+    [-9999, -2, -1, -0.5, -0.001, 0, 0.00005, 0.02, 0.1, 0.25, 0.3, 0.5, 1, 2, 3, 7, 10, 50, 1e6]
+)
+
+
+def blocks(code, letters):
+    """Return a strategy of blocks with any of the letters and any odd values."""
+    entries = st.dictionaries(st.sampled_from(letters), VALUES, max_size=len(letters))
+    return entries.map(
+        lambda values: " ".join([code, *(f"{letter}{values[letter]:.5f}" for letter in values)])
+    )
+
+
+def check_cut_or_refused(tracer, before, block, name):
+    """Check that any block either cuts or is refused in words, without a move or a change."""
+    found = tracer.trace_text(before)
+    after = tracer.trace_text([*before, block])
+    assert after.printed == ""
+    if after.error is None:
+        assert len(after.moves) > len(found.moves)
+        assert after.modes == found.modes
+    else:
+        assert after.error.text.startswith((f"{name}: ", *OF_THE_PARSER))
+        assert (after.moves, after.modes) == (found.moves, found.modes)
+
+
+def remaps(include):
+    """Return the REMAP lines of a file of `configs/include`, for an INI override."""
+    lines = include.read_text().splitlines()
+    return [line.partition("=")[2].strip() for line in lines if line.startswith("REMAP")]
+
+
+any_coordinates = pytest.mark.parametrize("coordinates", COORDINATES)

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a block finds in the planners' own tests: modes, position, tools, without LinuxCNC."""
+
+from g12.cycles.context import Context, Tool
+
+MM = Context(
+    inch=False,
+    x=0.0,
+    y=0.0,
+    z=10.0,
+    incremental=False,
+    plane="G17",
+    inverse_time=False,
+    per_revolution=False,
+    speed=0.0,
+    feed=300.0,
+    compensated=False,
+    offset_pending=False,
+    spindle_tool=None,
+    last_radius=None,
+    tool_in_table={1: Tool(1, 6.0), 2: Tool(2, 10.0), 3: Tool(3, -2.0), 4: Tool(4, 0.0)}.get,
+)
+INCH = MM._replace(
+    inch=True,
+    z=1.0,
+    feed=10.0,
+    spindle_tool=Tool(1, 0.25),
+    tool_in_table={1: Tool(1, 0.25), 2: Tool(2, 0.125)}.get,
+)
+BAD_MODES = [
+    (dict(inverse_time=True), "needs feed per minute or revolution (G94, G95), but G93 is active"),
+    (dict(compensated=True), "brings its own cutter compensation: program G40 first"),
+    (dict(feed=0.0), "F0 must be greater than 0"),
+]

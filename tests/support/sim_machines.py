@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where the simulated machines and the manuals' programs are."""
+
+import shutil
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SIM = ROOT / "configs" / "sim"
+PROGRAMS = ROOT / "tests" / "programs"
+
+BRISK = {  # overrides for a simulated mill in mm: real runs in a fraction of the time
+    section: {"MAX_ACCELERATION": 20000, "MAX_VELOCITY": 250}
+    for section in ("JOINT_0", "JOINT_1", "JOINT_2", "AXIS_X", "AXIS_Y", "AXIS_Z")
+}
+
+
+def copy_of_machines(folder):
+    """Copy the simulated machines to a folder; return the new folder of their INI files."""
+    shutil.copytree(SIM.parent, folder / "configs")
+    for part in ("ngc", "python"):
+        (folder / part).symlink_to(ROOT / part)
+    return folder / "configs" / "sim"

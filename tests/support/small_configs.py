@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Small machine configs for the tests of check and install."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from g12.tools.install.config import Config, Python, remaps_in
+from g12.tools.install.ini_edit import IniText
+
+MILL = """\
+[EMC]
+VERSION = 1.1
+
+[RS274NGC]
+PARAMETER_FILE = mill.var
+
+[TRAJ]
+COORDINATES = X Y Z
+LINEAR_UNITS = mm
+
+[EMCIO]
+TOOL_TABLE = mill.tbl
+"""
+LATHE = MILL.replace("X Y Z", "X Z C")
+HAAS = """\
+REMAP = G12 modalgroup=1 prolog=g12_haas ngc=g12_haas epilog=cycle_done
+REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done
+"""
+TOOLS = "T1 P1 D6.0 ;end mill\nT2 P2 D10\n"
+
+
+def write_config(folder: Path, text: str = MILL, name: str = "mill.ini", **files: str) -> Path:
+    """Write an INI, a tool table and further files (``a__b_py`` is a/b.py); return the INI."""
+    ini = folder / name
+    ini.write_bytes(text.encode("utf-8", "surrogateescape"))
+    (folder / "mill.tbl").write_text(TOOLS, encoding="utf-8")
+    for key, content in files.items():
+        stem, _, suffix = key.replace("__", "/").rpartition("_")
+        path = folder / f"{stem}.{suffix}"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content.encode())
+    return ini
+
+
+def with_lines(text: str, section: str, lines: str) -> str:
+    """Return an INI with lines put at the head of a section."""
+    return text.replace(f"[{section}]\n", f"[{section}]\n{lines}")
+
+
+def config_of(ini: Path, *, failure=None, owned=(), version="2.9.0", **python) -> Config:
+    """Return the config of an INI that no LinuxCNC was asked about."""
+    text = IniText(ini)
+    asked = Python(**python)
+    return Config(text, text.ini(), remaps_in(text), version, asked, frozenset(owned), failure)
+
+
+def content_of(folder: Path) -> dict[str, bytes]:
+    """Return every file of a folder with its content."""
+    files = (path for path in sorted(folder.rglob("*")) if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}

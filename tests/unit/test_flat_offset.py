@@ -1,0 +1,428 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Cutter compensation in the plane: the tool touches the part, and nothing it cannot reach.
+
+The proof is shapely's: the tool's centre runs on the boundary of the part, grown by its radius.
+"""
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from shapely.geometry import LineString, Polygon
+
+from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.flat.contour import Contour
+from g12.polar.plan import Run, Settings, plan
+from support.plane import SAGITTA, Round, Straight, add, cuts, distance_from_path, path
+
+TOLERANCE = 0.005
+LATHE = Settings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
+EXACT = LATHE._replace(least_x=1e-9)
+OUTSIDE, INSIDE = 42, 41  # of a part that is cut counterclockwise
+
+
+def compensated(shapes, side, radius):
+    """Return the contour that cuts the shapes, from line 3 on, and the shapes as they lie there.
+
+    Everything is turned so that the tool comes from the positive X axis, square to the first shape.
+    """
+    first = shapes[0]
+    tangent = first.points(10001)[1] - first.start
+    square = 1j * tangent / abs(tangent) * (1 if side == 41 else -1)
+    come = first.start + square * (1.5 * radius + 0.5)
+    shapes = [shape.turned(cmath.exp(-1j * cmath.phase(come))) for shape in shapes]
+    contour = Contour(abs(come), 3.0)
+    contour.compensation(side, radius, line=1)
+    contour.line(shapes[0].start.real, shapes[0].start.imag, line=1, feed=300.0)
+    contour.line(z=-1.0, line=2, feed=100.0)
+    for line, shape in enumerate(shapes, 3):
+        add(contour, shape, line=line, feed=300.0)
+    contour.compensation(40, 0.0, line=90)
+    contour.line(contour.x + 2 * radius + 1.0, line=90, feed=300.0)
+    contour.close(line=91)
+    return contour, shapes
+
+
+def along_the_part(shapes, side, radius):
+    """Return the tool's path along the shapes, without the ramps, and the shapes as they lie."""
+    contour, shapes = compensated(shapes, side, radius)
+    made = cuts(contour, plan(contour, EXACT, c=0.0))
+    return [cut for cut in made if 3 <= cut.line < 90], shapes
+
+
+def outline(shapes):
+    """Return a part's outline as shapely has it, arcs as fine polygons."""
+    count = {Straight: 2, Round: 200}
+    return np.concatenate([shape.points(count[type(shape)])[:-1] for shape in shapes])
+
+
+def check(shapes, side, radius):
+    """Check that the tool's centre runs on the boundary of the grown or shrunk part, all round."""
+    made, shapes = along_the_part(shapes, side, radius)
+    made, part = path(made), outline(shapes)
+    solid = Polygon(np.column_stack([part.real, part.imag]))
+    grown = solid.buffer(radius if side == OUTSIDE else -radius, resolution=100)
+    assume(isinstance(grown, Polygon) and not grown.is_empty)
+    ring = np.array(grown.exterior.coords)
+    ring = ring[:, 0] + 1j * ring[:, 1]
+    slack = TOLERANCE + SAGITTA + 5e-4  # polygons for arcs
+    assert distance_from_path(made[::5], ring).max() <= slack
+    assert distance_from_path(ring[:: max(1, len(ring) // 100)], made).max() <= slack
+    clear = distance_from_path(made[::5], np.append(part, part[0]))
+    assert abs(clear - radius).max() <= slack
+
+
+def polygon(*corners):
+    return [Straight(*ends) for ends in zip(corners, [*corners[1:], corners[0]])]
+
+
+@st.composite
+def convex_polygons(draw):
+    radius = draw(st.floats(5.0, 20.0))
+    gaps = [draw(st.floats(0.4, 1.0)) for _ in range(draw(st.integers(3, 7)))]
+    angles = np.cumsum(gaps) / sum(gaps) * 2 * math.pi
+    centre = complex(draw(st.floats(-25.0, 25.0)), draw(st.floats(-25.0, 25.0)))
+    middle = centre + radius * (np.exp(1j * angles[-1]) + np.exp(1j * angles[0])) / 2
+    corners = [centre + radius * cmath.exp(1j * angle) for angle in angles]
+    return polygon(middle, *corners), radius
+
+
+@settings(max_examples=25, deadline=None)
+@given(convex_polygons(), st.sampled_from([0.5, 3.0, 12.0]))
+def test_outside_a_polygon_the_tool_rolls_round_the_corners(part, radius):
+    check(part[0], OUTSIDE, radius)
+
+
+@settings(max_examples=25, deadline=None)
+@given(convex_polygons(), st.floats(0.05, 0.15))
+def test_inside_a_polygon_the_tool_stops_short_of_the_corners(part, share):
+    check(part[0], INSIDE, share * part[1])
+
+
+def star(points, outer, inner, centre=0j):
+    """Return a star from the middle of an edge on: corners outside and inside in turn."""
+    radii = [outer, inner] * points
+    corners = [centre + r * cmath.exp(1j * math.pi * k / points) for k, r in enumerate(radii)]
+    return polygon((corners[-1] + corners[0]) / 2, *corners)
+
+
+@pytest.mark.parametrize("side", [OUTSIDE, INSIDE])
+@pytest.mark.parametrize("centre", [0j, 30 + 5j, 8j])
+def test_a_star_has_corners_of_both_kinds(side, centre):
+    check(star(5, 20.0, 13.0, centre), side, 1.5)
+
+
+def slot(length, width):
+    """Return a slot across the spindle, counterclockwise from the middle of a side on."""
+    right, top = length / 2, 1j * width / 2
+    return [
+        Straight(-top, right - top),
+        Round(right - top, complex(right), math.pi),
+        Straight(right + top, -right + top),
+        Round(-right + top, complex(-right), math.pi),
+        Straight(-right - top, -top),
+    ]
+
+
+def pillow(half, sweep):
+    """Return a square, counterclockwise, whose sides are arcs: hollow with a sweep below zero."""
+    corners = [half * cmath.exp(1j * math.pi * (0.25 + 0.5 * k)) for k in range(4)]
+    shapes = []
+    for a, b in zip(corners, [*corners[1:], corners[0]]):
+        centre = (a + b) / 2 + 1j * (b - a) / abs(b - a) * abs(b - a) / 2 / math.tan(sweep / 2)
+        shapes.append(Round(a, centre, sweep))
+    middle = shapes[0].points(3)[1]
+    first, last = (Round(at, shapes[0].centre, sweep / 2) for at in (middle, shapes[0].start))
+    return [first, *shapes[1:], last]
+
+
+@pytest.mark.parametrize("side", [OUTSIDE, INSIDE])
+@pytest.mark.parametrize(
+    "shapes",
+    [slot(30.0, 8.0), pillow(20.0, 1), pillow(20.0, -1), pillow(20.0, 0.3), pillow(20.0, -0.3)],
+    ids=["slot", "bulging", "hollow", "nearly straight", "slightly hollow"],
+)
+def test_arcs_meet_lines_and_arcs(shapes, side):
+    check(shapes, side, 2.0)
+
+
+@pytest.mark.parametrize(("side", "radius"), [(OUTSIDE, 8.0), (INSIDE, 4.0)])
+def test_a_full_circle_has_the_tools_radius_more_or_less(side, radius):
+    made, (circle,) = along_the_part([Round(10 + 0j, 4 + 0j, 2 * math.pi)], side, 2.0)
+    assert abs(path(made) - circle.centre) == pytest.approx(radius, abs=TOLERANCE)
+
+
+# Anything at all is cut right, or refused.
+
+
+coordinate = st.floats(-20.0, 20.0)
+point = st.builds(complex, coordinate, coordinate)
+sweep = st.floats(0.1, 5.0)
+arc = st.tuples(point, st.builds(math.copysign, sweep, st.sampled_from([1, -1])))
+
+
+@st.composite
+def drawings(draw):
+    at, shapes = draw(point), []
+    for element in draw(st.lists(point | arc, min_size=2, max_size=4)):
+        shape = Straight(at, element) if isinstance(element, complex) else Round(at, *element)
+        assume(shape.length > 0.5 and abs(shape.start - shape.end) > 0.1)
+        shapes.append(shape)
+        at = shape.end
+    drawn = np.concatenate([shape.points(60) for shape in shapes])
+    assume(LineString(np.column_stack([drawn.real, drawn.imag])).is_simple)
+    return shapes
+
+
+@settings(max_examples=300, deadline=None)
+@given(drawings(), st.sampled_from([41, 42]), st.sampled_from([0.1, 1.0, 4.0]))
+def test_any_contour_is_cut_at_the_tools_radius_or_refused(shapes, side, radius):
+    try:
+        made, shapes = along_the_part(shapes, side, radius)
+    except Refusal as refusal:
+        assert str(refusal).startswith("G12.1 line ")
+        return
+    beside = {cut.line: cut.run for cut in made}  # the last run of a line; others turn at corners
+    for cut in made:
+        index = cut.line - 3
+        assert abs(shapes[index].distance(cut.points) - radius).max() <= TOLERANCE
+        for neighbour in near_sides(shapes, index, radius, cut.run == beside[cut.line]):
+            assert neighbour.distance(cut.points).min() >= radius - 2 * TOLERANCE
+
+
+def near_sides(shapes, index, radius, with_next):
+    """Yield the neighbours of a shape, without their far ends: beyond these others begin."""
+    for at, first, last in ((index - 1, 1.0, 0.0), (index + 1, 0.0, 1.0)):
+        if 0 <= at < len(shapes) and (with_next or at < index):
+            far = 5.0 * radius / shapes[at].length
+            if far < 1.0:
+                yield shapes[at].between(first * far, 1.0 - last * far)
+
+
+# Joints, one at a time: lines in, coordinates of the tool's centre out.
+
+
+def joined(*blocks, side=41, radius=2.0):
+    """Return the places where the tool's centre ends each run, rounded."""
+    contour = Contour(10.0, 0.0)
+    contour.compensation(side, radius, line=1)
+    contour.line(10.0, 5.0, line=1, feed=100.0)
+    for line, block in enumerate(blocks, 2):
+        block(contour, line)
+    contour.compensation(40, 0.0, line=50)
+    contour.line(30.0, -20.0, line=50, feed=100.0)
+    made = cuts(contour, plan(contour, EXACT, c=0.0))
+    ends = {}
+    for cut in made:
+        place = complex(cut.radius[1] * cmath.exp(1j * cut.angle[1]))
+        ends[cut.line] = (round(place.real, 6), round(place.imag, 6))
+    return ends
+
+
+def to(x, c):
+    return lambda contour, line: contour.line(x, c, line=line, feed=100.0)
+
+
+def down(contour, line):
+    contour.line(z=-1.0, line=line, feed=100.0)
+
+
+def mark(contour, line):
+    contour.mark("M8", line=line)
+
+
+def test_the_ramps_are_square_to_the_contour():
+    ends = joined(to(20, 5), to(20, 15))
+    assert ends[1] == (10.0, 7.0)
+    assert ends[3] == (18.0, 15.0)
+
+
+def test_blocks_without_motion_in_the_plane_are_looked_through():
+    ends = joined(down, mark, to(20, 5), mark, down, to(20, 15))
+    assert ends[1] == (10.0, 7.0)
+    assert ends[4] == (18.0, 7.0)
+
+
+def test_an_inside_corner_is_the_crossing_of_the_parallels():
+    assert joined(to(20, 5), to(20, 15))[2] == (18.0, 7.0)
+
+
+def test_an_outside_corner_is_rounded_in_the_next_block():
+    ends = joined(to(20, 5), to(20, -15))
+    assert ends[2] == (20.0, 7.0)
+    assert ends[3] == (22.0, -15.0)
+
+
+def test_a_turn_back_is_an_outside_corner():
+    assert joined(to(20, 5), to(15, 5))[3] == (15.0, 3.0)
+
+
+def test_an_arc_of_the_tools_radius_becomes_a_corner():
+    def round_off(contour, line):
+        contour.arc(1, 20.0, 7.0, i=0.0, j=2.0, line=line, feed=100.0)
+
+    ends = joined(to(18, 5), round_off, to(20, 15))
+    assert ends[2] == pytest.approx((18.0, 7.0))
+    assert 3 not in ends
+    assert ends[4] == (18.0, 15.0)
+
+
+def test_a_tool_without_radius_follows_the_program():
+    ends = joined(to(20, 5), to(20, 15), radius=0.0)
+    assert [ends[line] for line in (1, 2, 3)] == [(10.0, 5.0), (20.0, 5.0), (20.0, 15.0)]
+
+
+def test_a_hardly_bent_line_gets_no_corner_arc():
+    contour = Contour(10.0, 0.0)
+    contour.compensation(42, 2.0, line=1)
+    contour.line(10.0, 5.0, line=1, feed=100.0)
+    contour.line(20.0, 5.0, line=2, feed=100.0)
+    contour.line(30.0, 5.01, line=3, feed=100.0)
+    contour.compensation(40, 0.0, line=4)
+    contour.line(30.0, 10.0, line=4, feed=100.0)
+    steps = plan(contour, LATHE, c=0.0).steps
+    assert [step.line for step in steps] == [1, 2, 3, 4]
+
+
+def test_a_line_hardly_beside_its_tangent_gets_no_corner_arc():
+    contour = Contour(10.0, 0.0)
+    contour.compensation(42, 2.0, line=1)
+    contour.line(10.0, 5.0, line=1, feed=100.0)
+    contour.line(20.0, 5.0, line=2, feed=100.0)
+    contour.arc(1, 25.0, 10.0, i=-0.001, j=5.0, line=3, feed=100.0)
+    contour.compensation(40, 0.0, line=4)
+    contour.line(30.0, 10.0, line=4, feed=100.0)
+    steps = plan(contour, LATHE, c=0.0).steps
+    assert [step.line for step in steps] == [1, 2, 3, 4]
+
+
+def test_the_feed_is_that_of_the_tools_centre():
+    contour, _ = compensated(pillow(15.0, 1), OUTSIDE, 6.0)
+    for cut in cuts(contour, plan(contour, EXACT, c=0.0)):
+        if 3 <= cut.line < 90:
+            assert 60.0 * cut.length / cut.seconds == pytest.approx(300.0, rel=0.01)
+
+
+def test_no_block_may_wait_for_the_machine_under_compensation():
+    contour = Contour(10.0, 0.0)
+    contour.wait(line=1)
+    contour.compensation(42, 2.0, line=2)
+    contour.line(10.0, 5.0, line=2, feed=100.0)
+    with pytest.raises(Refusal, match=r"^G12\.1 line 3: M66 waits .* G42 of line 2 is on$"):
+        contour.wait(line=3)
+
+
+@pytest.mark.parametrize("z", [None, -1.0])
+def test_a_ramp_square_to_the_contour_and_as_long_as_the_radius_is_no_way_at_all(z):
+    contour = Contour(12.0, 0.0)
+    contour.line(c=5.0, line=1, feed=100.0)
+    contour.compensation(41, 2.0, line=2)
+    contour.line(x=10.0, z=z, line=2, feed=100.0)
+    contour.line(c=-5.0, line=3, feed=100.0)
+    contour.compensation(40, 0.0, line=4)
+    contour.line(x=12.0, z=z and 0.0, line=4, feed=100.0)
+    contour.line(c=-6.0, line=5, feed=100.0)
+    steps = plan(contour, EXACT, c=0.0).steps
+    assert [step.line for step in steps] == [1, *[2] * bool(z), 3, *[4] * bool(z), 5]
+    assert {step.axes for step in steps if step.line in (2, 4)} <= {"Z"}
+    made = [cut for cut in cuts(contour, plan(contour, EXACT, c=0.0)) if cut.length]
+    assert path(made).real == pytest.approx(12.0, abs=TOLERANCE)
+
+
+# What the tool cannot reach.
+
+
+def refusal(*blocks, side=41, radius=2.0):
+    with pytest.raises(Refusal) as refused:
+        joined(*blocks, side=side, radius=radius)
+    assert len(refused.value.message) < LONGEST_MESSAGE
+    return refused.value.message
+
+
+def round_to(turn, x, c, radius):
+    return lambda contour, line: contour.arc(turn, x, c, radius=radius, line=line, feed=100.0)
+
+
+@pytest.mark.parametrize(
+    ("blocks", "message"),
+    [
+        (
+            [to(20, 5), round_to(1, 20, 8, 1.5), to(10, 8)],
+            "line 3: the arc of radius 1.5 is smaller than the tool radius 2 (between lines 2 "
+            "and 4)",
+        ),
+        (
+            [to(20, 5), to(20, 6), to(30, 6)],
+            "line 3: the tool of radius 2 cannot reach both lines 2 and 3: their corner is too "
+            "tight",
+        ),
+        (
+            [to(20, 5), mark, to(20, 8), to(10, 8)],
+            "line 4: too short for the tool radius 2 between its inside corners with lines 2 and 5",
+        ),
+        (
+            [to(20, 5), round_to(1, 18, 8, 3.0), to(10, 8)],
+            "line 3: the tool of radius 2 cannot reach both lines 2 and 3: their corner is too "
+            "tight",
+        ),
+        (
+            [to(20, 5), round_to(1, 18, 6.5, 2.6), to(10, 12)],
+            "line 3: the tool of radius 2 cannot reach both lines 2 and 3: their corner is too "
+            "tight",
+        ),
+        ([], "line 50: G40 follows G41 of line 1 with nothing between them to cut"),
+    ],
+)
+def test_too_tight_names_both_lines(blocks, message):
+    assert refusal(*blocks) == f"G12.1 {message}"
+
+
+@pytest.mark.parametrize("sweep", [2 * math.pi, 1.9 * math.pi])
+def test_a_line_beside_a_circle_that_follows_it(sweep):
+    circle = Round(-3 + 6j, -1.5 + 9j, sweep)
+    with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* follow both lines 3 and 4: beside one"):
+        along_the_part([Straight(-15j, -3 + 6j), circle], 41, 3.0)
+
+
+def test_the_corner_in_front_of_a_circle_beside_that_circle():
+    inside = [Straight(4 + 2j, 0j), Round(0j, 1 - 2j, -2 * math.pi)]
+    with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* follow both lines 3 and 4: beside one"):
+        along_the_part(inside, 42, 0.5)
+
+
+def test_a_cusp_that_curls_back_onto_the_tool_is_too_tight():
+    curl = [Straight(-3j, 0j), Round(0j, -1 + 0j, -1.0)]
+    with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* follow both lines 3 and 4: beside one"):
+        along_the_part(curl, 41, 1.0)
+
+
+def test_a_small_arc_inside_a_big_tool_is_not_joined_beside_its_end():
+    bend = cmath.exp(0.004j)
+    nearly = [Straight(-40 + 0j, 0j), Round(0j, 51j * bend, 1.0)]
+    made, (_, arc_shape) = along_the_part(nearly, 41, 50.0)
+    points = path([cut for cut in made if cut.line == 4])
+    assert abs(arc_shape.distance(points) - 50.0).max() <= TOLERANCE
+
+
+def test_a_ramp_alone_cannot_be_cut():
+    contour = Contour(10.0, 0.0)
+    contour.compensation(41, 2.0, line=1)
+    contour.line(10.0, 5.0, line=1, feed=100.0)
+    with pytest.raises(Refusal, match=r"^G12\.1 line 1: G41 needs a block of the contour "):
+        plan(contour, LATHE, c=0.0)
+
+
+def test_nothing_is_planned_of_a_section_with_a_refused_block():
+    contour = Contour(10.0, 0.0)
+    contour.line(12.0, 0.0, line=1, feed=100.0)
+    contour.compensation(41, 2.0, line=2)
+    contour.line(12.0, 5.0, line=2, feed=100.0)
+    contour.line(20.0, 5.0, line=3, feed=100.0)
+    contour.line(20.0, 5.5, line=4, feed=100.0)
+    contour.line(30.0, 5.5, line=5, feed=100.0)
+    with pytest.raises(Refusal):
+        plan(contour, LATHE, c=0.0)
+    assert not any(isinstance(element, Run) for element in contour.elements)

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Moves that are rounding, and moves too short to matter, do not spoil a contour."""
+
+import cmath
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely.geometry import LineString
+
+from g12.errors import Refusal
+from g12.flat import simplify
+from g12.flat.contour import Contour, Line, is_move
+from g12.polar.plan import Settings, plan
+from support.plane import cuts, path
+
+MACHINE = Settings(0.005, 0.001, 1000.0, 3600.0, 21600.0)
+
+
+def programmed(*points, side=40, radius=0.0, start=(30.0, -30.0)):
+    """Return the contour through points of the plane (None: Z), ramps included."""
+    contour = Contour(start[0], 0.0)
+    contour.line(c=start[1], line=1, feed=600.0)
+    contour.compensation(side, radius, line=2)
+    for line, (x, c) in enumerate(points[:-1], 2):
+        contour.line(x, c, line=line, feed=600.0)
+    contour.compensation(40, 0.0, line=90)
+    contour.line(*points[-1], line=90, feed=600.0)
+    return contour
+
+
+@pytest.mark.parametrize("noise", [2e-15, 1e-9, 9e-7])
+def test_rounding_is_no_move(noise):
+    contour = programmed((20, -5), (20, 5), (20, 5 + noise), (20 + noise, 5), (10, 5))
+    assert [e.line for e in contour.elements if is_move(e)] == [1, 2, 3, 90]
+    assert contour.elements[-1].x0 == contour.elements[-2].x1
+
+
+def test_rounding_does_not_add_up():
+    contour = Contour(10.0, 0.0)
+    for _ in range(40):
+        contour.line(c=contour.c + 5e-7, line=1, feed=100.0)
+    assert contour.c == pytest.approx(2e-5)
+    assert contour.elements[-1].c1 == pytest.approx(2e-5, abs=2e-6)
+
+
+# Under compensation.
+
+
+def refused(contour):
+    """Return whether the contour is refused."""
+    try:
+        plan(contour, MACHINE, c=0.0)
+    except Refusal:
+        return True
+    return False
+
+
+def tool_points(contour, lines):
+    """Return the planned path of the tool's centre on some lines, as complex numbers."""
+    made = cuts(contour, plan(contour, MACHINE, c=0.0))
+    return path([cut for cut in made if cut.line in lines])
+
+
+def depth(contour, walls, radius, lines):
+    """Return how much deeper than its radius the tool cuts into walls."""
+    outline = LineString([(z.real, z.imag) for z in tool_points(contour, lines)])
+    return radius - outline.distance(LineString(walls))
+
+
+MICRO = [(x, c) for x in (-1e-3, 0.0, 2e-4) for c in (-2e-4, 0.0, 1e-3) if x or c]
+
+
+@pytest.mark.parametrize(("x", "c"), MICRO)
+def test_a_corner_is_cut_whatever_rounding_there_is_in_it(x, c):
+    corner = [(30, -12), (30, 10), (30 + x, 10 + c), (8, 10), (8, -2)]
+    contour = programmed(*corner, side=41, radius=5.0, start=(22.0, -30.0))
+    assert depth(contour, [(30, -12), (30, 10), (8, 10)], 5.0, range(3, 6)) < 0.005
+    assert abs(tool_points(contour, range(3, 6)) - (25 + 5j)).min() < 0.001
+
+
+@pytest.mark.parametrize(("x", "c"), MICRO)
+def test_a_line_is_cut_whatever_rounding_there_is_in_it(x, c):
+    line = [(30, -12), (30, 0), (30 + x, c), (30, 10), (40, 10)]
+    contour = programmed(*line, side=41, radius=5.0, start=(20.0, -30.0))
+    assert tool_points(contour, range(3, 6)).real == pytest.approx(25.0, abs=0.005)
+
+
+def test_short_moves_in_a_row_keep_their_shape():
+    arc = [30 + 20 * cmath.exp(1j * math.radians(180 - k * 0.002)) for k in range(5000)]
+    points = [(z.real, z.imag) for z in arc]
+    contour = programmed(*points, (40, 30), side=41, radius=5.0, start=(5.0, -5.0))
+    made = tool_points(contour, range(3, 90))
+    assert abs(abs(made - 30) - 25).max() < 0.0055
+
+
+@pytest.mark.parametrize("side", [41, 42])
+@pytest.mark.parametrize(("radius", "chord"), [(40, 0.025), (15, 0.05), (12, 0.02), (40, 0.1)])
+def test_fine_points_with_few_decimals_are_cut(side, radius, chord):
+    count = int(math.pi * radius / chord)
+    arc = [radius * cmath.exp(-1j * math.pi * k / count) for k in range(count + 1)]
+    points = [(round(z.real, 3), round(z.imag, 3)) for z in arc]
+    outside = side == 41
+    start = (radius + 8.0, 0.0) if outside else (radius - 5.5, 0.0)
+    away = (-radius - 8.0, 0.0) if outside else (-radius + 5.5, 0.0)
+    contour = programmed(*points, away, side=side, radius=5.0, start=start)
+    made = abs(tool_points(contour, range(3, 80)))
+    wanted = radius + 5.0 if outside else radius - 5.0
+    assert abs(made - wanted).max() < 0.005 + 0.0008
+
+
+def test_many_points_in_a_row_are_looked_at_once():
+    looked = []
+    line = [Line(1, 9.0, 5.0, k, 0.0, 0.0, k + 1.0, 0.0, 0.0) for k in range(1000)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(simplify, "distance_from", lambda *_: looked.append(1) or 0.0)
+        kept, moved = simplify.with_points_left_out(line, 0.001)
+    assert len(kept) < 50 and moved == 0.0
+    assert len(looked) < 100 * len(line)
+
+
+def test_the_z_of_a_move_left_out_is_kept():
+    contour = Contour(30.0, 0.0)
+    contour.compensation(41, 5.0, line=1)
+    contour.line(20.0, 0.0, line=1, feed=600.0)
+    contour.line(20.0, 5.0, line=2, feed=600.0)
+    contour.line(20.0002, 5.0, -1.0, line=3, feed=600.0)
+    contour.line(20.0, -9.0 + 20.0, line=4, feed=600.0)
+    contour.compensation(40, 0.0, line=5)
+    contour.line(40.0, 11.0, line=5, feed=600.0)
+    steps = plan(contour, MACHINE, c=0.0).steps
+    assert [(step.line, step.axes) for step in steps] == [
+        (1, "XC"),
+        (2, "XC"),
+        (3, "Z"),
+        (4, "XC"),
+        (5, "XC"),
+    ]
+
+
+size = st.floats(0.0001, 1.6).map(lambda value: round(value, 4))
+angle = st.floats(0.0, 2 * math.pi)
+
+
+@settings(deadline=None, max_examples=300)
+@given(extra=st.lists(st.tuples(size, angle), min_size=1, max_size=3))
+def test_short_moves_in_a_corner_are_cut_right_or_refused(extra):
+    walls = [30 - 30j, 30 + 10j]
+    for length, direction in extra:
+        walls.append(walls[-1] + length * cmath.exp(1j * direction))
+    walls.append(walls[-1] - 30)
+    points = [(z.real, z.imag) for z in walls]
+    contour = programmed(*points, (points[-1][0], -20), side=41, radius=5.0, start=(20.0, -40.0))
+    if not refused(contour):
+        near = range(3, 3 + len(points) - 1)
+        assert depth(contour, points, 5.0, near) < 0.012

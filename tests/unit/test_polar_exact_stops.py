@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where the tool stops: at the pole, at the end, and where blending would round a corner too much.
+
+Two moves at right angles, each with the acceleration a, are blended at the speed v in 2 v / a; the
+tool passes the corner at sqrt(2) v t / 8.
+"""
+
+import math
+
+import pytest
+
+from g12.flat.contour import Line, Mark, Plunge
+from g12.polar.exact_stops import stops
+
+FEED = 600.0  # 10 per second
+C = 1000.0 / 30.0  # as quick as X at the corners, which are at radius 30
+ROUNDING = math.sqrt(2) * 10.0 * (2 * 10.0 / 1000.0) / 8
+
+
+def line(x0, c0, x1, c1, z0=0.0, z1=0.0, feed=FEED):
+    return Line(1, feed, 0.0, x0, c0, z0, x1, c1, z1)
+
+
+def first_stops(path, rounding, x=1000.0, c=C):
+    """Say whether the tool stops at the end of the first move; the last one is not the end."""
+    away = path[-1]
+    behind = line(away.x1, away.c1, away.x1 + (away.x1 - away.x0), away.c1 + (away.c1 - away.c0))
+    return stops([*path, behind], rounding, x, c)[0]
+
+
+RIGHT_ANGLE = [line(20, 0, 30, 0), line(30, 0, 30, 10)]
+
+
+@pytest.mark.parametrize(("share", "stop"), [(0.99, True), (1.01, False)])
+def test_a_right_angle_is_rounded_by_the_formula(share, stop):
+    assert first_stops(RIGHT_ANGLE, share * ROUNDING) is stop
+
+
+def test_the_slower_axis_counts_where_it_brakes():
+    """C at radius 10 has a fifth of the acceleration, X is 2.2 times as quick and more."""
+    braking = [line(10, -5, 10, 0), line(10, 0, 20, 0)]
+    slow, quick = 5 * ROUNDING * 2.2, dict(c=20.0)
+    assert first_stops(braking, 0.99 * slow, **quick)
+    assert not first_stops(braking, 1.01 * slow, **quick)
+
+
+def test_a_move_that_stops_gathers_speed_twice_as_quickly():
+    assert stops(RIGHT_ANGLE, 1.99 * ROUNDING, 1000.0, C) == [True, True]
+    assert stops(RIGHT_ANGLE, 2.01 * ROUNDING, 1000.0, C) == [False, True]
+
+
+def test_short_moves_do_not_reach_their_feed():
+    """On 0.025 the speed is 5 per second: half the speed, a quarter of the rounding."""
+    short = [line(20, 0, 20.025, 0), line(20.025, 0, 20.025, 10)]
+    assert first_stops(short, 0.24 * ROUNDING)
+    assert not first_stops(short, 0.26 * ROUNDING)
+
+
+@pytest.mark.parametrize(("feed", "stop"), [(FEED, False), (1.1 * FEED, True)])
+def test_the_higher_feed_counts(feed, stop):
+    bend = [line(20, 0, 30, 0), line(30, 0, 30, 10, feed=feed)]
+    assert first_stops(bend, 1.01 * ROUNDING) is stop
+
+
+def test_a_plunge_is_at_right_angles_to_the_plane():
+    plunge = [line(20, 0, 30, 0), Plunge(2, FEED, 0.0, -5.0), line(30, 0, 40, 0)]
+    assert stops(plunge, 0.99 * ROUNDING, 1000.0, C) == [True, True, True]
+    assert stops(plunge, 2.01 * ROUNDING, 1000.0, C) == [False, False, True]
+
+
+def test_down_and_up_again_is_a_turn_back():
+    pecks = [Plunge(1, FEED, 0.0, -5.0), Plunge(2, FEED, -5.0, -1.0), Plunge(3, FEED, -1.0, 0.0)]
+    assert stops(pecks, ROUNDING, 1000.0, C) == [True, False, True]
+
+
+def test_straight_on_is_no_corner_however_fast():
+    fast = [line(20, 0, 30, 0, feed=1e5), line(30, 0, 40, 0, feed=1e5)]
+    assert stops(fast, 1e-6, 1000.0, C) == [False, True]
+
+
+def test_a_slope_counts_in_space():
+    level_then_down = [line(20, 0, 30, 0), line(30, 0, 40, 0, 0.0, -10.0)]
+    assert first_stops(level_then_down, 0.5 * ROUNDING)
+    assert not first_stops(level_then_down, ROUNDING)
+
+
+def test_at_the_pole_the_tool_always_stops():
+    assert stops([line(5, 0, 0, 0, feed=1.0), line(0, 0, -5, 0, feed=1.0)], 1.0, 1e3, 1e2)[0]
+
+
+def test_marks_are_looked_through():
+    path = [RIGHT_ANGLE[0], Mark(2, "M8"), RIGHT_ANGLE[1]]
+    assert stops(path, 0.5 * ROUNDING, 1000.0, C) == [True, False, True]
+
+
+def test_marks_alone_do_not_stop():
+    assert stops([Mark(1, "M8")], ROUNDING, 1000.0, C) == [False]

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What is said while long work goes on, on a terminal and elsewhere."""
+
+import time
+
+import pytest
+
+from g12.tools import progress
+from g12.tools.progress import counted
+
+
+@pytest.mark.parametrize(("terminal", "between"), [(False, "\n"), (True, progress.HIDDEN)])
+def test_long_work_is_told_of(terminal, between, capsys, monkeypatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: terminal)
+    monkeypatch.setattr(progress, "TICK" if terminal else "LINE_TICK", 0.05)
+    with progress.working("reading") as tell:
+        time.sleep(0.3)
+        for _ in counted("ab", "measuring pocket", tell):
+            time.sleep(0.3)
+    err = capsys.readouterr().err
+    said = [text for text in dict.fromkeys(err.split(between)) if text]
+    assert said == ["reading", "measuring pocket 1 of 2", "measuring pocket 2 of 2"]
+    assert err.endswith(between)
+
+
+def test_short_work_is_not(capsys):
+    with progress.working("reading"):
+        pass
+    assert capsys.readouterr().err == ""
+
+
+def test_an_error_ends_the_telling(capsys, monkeypatch):
+    monkeypatch.setattr(progress, "LINE_TICK", 0.05)
+    with pytest.raises(ValueError, match="wrong"), progress.working("reading"):
+        raise ValueError("wrong")
+    time.sleep(0.1)
+    assert capsys.readouterr().err == ""

@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One line of a section: splitting and rewriting of raw lines, meaning of parsed blocks."""
+
+import re
+
+import pytest
+
+from g12.errors import Refusal
+from g12.section.block_rules import Block, alone, check_block, check_letters
+from g12.section.line import Place, is_plain, line_named, split_line, split_words
+from g12.section.modes import Modes, action_text, comment_text, decimal, modes_after, stop_text
+
+HERE = Place("G12.1", 7)
+MODES = Modes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
+
+
+def block(*, g=(), m=(), motion=-1, **words):
+    """Return a block with G codes (times ten) and M codes given by modal group."""
+    by_group = [[-1] * 17, [-1] * 11]
+    for codes, given in zip(by_group, (dict(g), dict(m))):
+        for group, code in given.items():
+            codes[group] = code
+    return Block(tuple(by_group[0]), tuple(by_group[1]), motion, words)
+
+
+@pytest.mark.parametrize(
+    "raw", ["G1 X1.5 C-2. F20", "x1c2", "N10 G03 X-1 I-2.5 J+3", "G2R.5X1", "F5", "X1 \r", "Z-.375"]
+)
+def test_plain_lines(raw):
+    assert is_plain(raw)
+
+
+@pytest.mark.parametrize(
+    "raw",
+    ["", " ", "G0 X1", "G12.1", "G1.5", "G10", "G9 X1", "U1", "H1", "Y1", "X#1", "X[1]", "X1 (a)",
+     "X1;a", "/X1", "O1 sub", "M3", "#1=2", "%", "G13 X1", "G1G91X1", "S5", "K1", "X٣"],
+)  # fmt: skip
+def test_lines_that_are_not_plain(raw):
+    assert not is_plain(raw)
+
+
+@pytest.mark.parametrize(
+    ("raw", "text"),
+    [
+        ("G1 U1.0 H-2", "g1x1.0c-2"),
+        ("g1y3", "g1c3"),
+        ("G1 U[#<yh u>*2]", "g1x[#<yhu>*2]"),
+        ("G1 Uexp[1]Hfup[#1]", "g1xexp[1]cfup[#1]"),
+        ("G1 Uatan[1]/[2]H##3", "g1xatan[1]/[2]c##3"),
+        ("G1 U-#<a>H- 2 . 5", "g1x-#<a>c-2.5"),
+        ("G9 G1 U1", "g1x1"),
+        ("G09. G90 G9.0", "g90"),
+        ("G90 H1", "g90c1"),
+        ("#<u>=3 G1 U#<h> #2=[1+#1]", "#<u>=3g1x#<h>#2=[1+#1]"),
+        ("/ N5 G1 U1", "/n5g1x1"),
+        ("G1 U#<_ini[axis_x]home>", "g1x#<_ini[axis_x]home>"),
+        ("G1 U1 (h u y) ; y", "g1x1"),
+    ],
+)
+def test_what_the_parser_does_not_know_is_rewritten(raw, text):
+    line = split_line(raw)
+    assert line.text == text
+    assert line.rewritten
+
+
+def test_what_the_parser_knows_stays():
+    line = split_line("G1 X1 (U) #1=2")
+    assert (line.rewritten, line.text) == (False, "g1x1#1=2")
+
+
+def test_u_and_h_are_relative_and_y_is_not():
+    relative = [split_line(raw).relative for raw in ("U1 C2", "X1 H2", "U1 H2", "X1 Y2")]
+    assert relative == ["X", "C", "XC", ""]
+
+
+def test_parts_of_a_line():
+    line = split_line("/#1=2 G9 M3 S[#1] $1 #<ab>=sin[30] (one) X1 (two; three) ; (four)")
+    assert line.comments == ("one", "two; three")
+    assert line.assignments == "#1=2#<ab>=sin[30]"
+    assert line.spindle == "$1"
+    assert line.exact_stop and line.deletable and not line.empty
+    assert line.letters == ("#", "G", "M", "S", "$", "#", "X")
+
+
+@pytest.mark.parametrize(
+    ("raw", "kind"),
+    [
+        ("o100 if [#1 EQ 2]", "if"),
+        ("O<a b> Call [1] [2]", "call"),
+        ("N5 o1 endwhile", "endwhile"),
+        ("/o1 else", "else"),
+        ("o#1 repeat [3]", "repeat"),
+        ("o[#1+2] sub", "sub"),
+        ("M98 P100", "call"),
+        ("m 9 9", "return"),
+        ("M099", "return"),
+        ("O200", "program"),
+        ("o<x> return [1]", "return"),
+        ("o#<n> call", "call"),
+        ("o#<_global n> call [#<n>] [1]", "call"),
+        ("o[#<n>+1] if [1]", "if"),
+        ("o abs[#1] call", "call"),
+        ("o##1 call", "call"),
+        ("o[atan[1]/[2]] repeat [2]", "repeat"),
+        ("M980", ""),
+        ("M3", ""),
+        ("G1 X1", ""),
+        ("M9 M98", ""),
+    ],
+)
+def test_o_words(raw, kind):
+    assert split_line(raw).control == kind
+
+
+def test_words_are_split_at_their_values():
+    text = "g1x-[1+[2*3]]c#<_x>i##1j-sin[30]katan[1]/[2]$0@5#1=[2]"
+    assert list(split_words(text)) == [
+        ("g", "1"), ("x", "-[1+[2*3]]"), ("c", "#<_x>"), ("i", "##1"), ("j", "-sin[30]"),
+        ("k", "atan[1]/[2]"), ("$", "0"), ("@", "5"), ("#", "1=[2]"),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "raw", ["X[1", "X#<a", "X", "=", "]", "#", "#1=", "x#", "[[[", "G1 X5 (abc"]
+)
+def test_broken_lines_are_left_to_the_parser(raw):
+    assert split_line(raw).text == raw.replace(" ", "").lower()
+
+
+@pytest.mark.parametrize("letter", "ABDKTVW@^")
+def test_letters_a_section_does_not_know(letter):
+    with pytest.raises(Refusal, match=re.escape(f"G12.1 line 7: {letter} is refused: ")):
+        check_letters(split_line(f"G1 {letter}5"), HERE)
+
+
+@pytest.mark.parametrize("raw", ["X1 U2", "C1 H2", "Y1 C2", "Y1 H2"])
+def test_two_words_for_one_axis(raw):
+    with pytest.raises(Refusal, match="only one of them"):
+        check_letters(split_line(raw), HERE)
+
+
+def test_accepted_codes():
+    for codes in ({0: 40}, {1: 10, 2: 180, 3: 910, 7: 410}, {5: 950, 10: 990}, {13: 611, 14: 970}):
+        check_block(block(g=codes, m={7: 3, 8: 8}), False, HERE)
+
+
+def test_g0_is_accepted_where_it_is_a_feed():
+    check_block(block(g={1: 0}), True, HERE)
+    with pytest.raises(Refusal, match="G0 is refused"):
+        check_block(block(g={1: 0}), False, HERE)
+
+
+@pytest.mark.parametrize(
+    ("code", "words", "reason"),
+    [
+        (62, {}, "M62 needs P, the number of the output"),
+        (65, {"P": -1.0}, "M65 needs P, the number of the output"),
+        (67, {"Q": 1.0}, "M67 needs E, the number of the output"),
+        (68, {"E": -1.0, "Q": 1.0}, "M68 needs E, the number of the output"),
+        (66, {}, "M66 needs either P or E, the number of the input"),
+        (66, {"P": 0.0, "E": 0.0}, "M66 needs either P or E, the number of the input"),
+        (66, {"E": 0.0, "L": 3.0, "Q": 1.0}, "M66 needs L0 with E: only a digital input"),
+        (66, {"P": 0.0, "L": 3.0}, "M66 needs Q above zero, the longest wait in seconds"),
+        (66, {"P": 0.0, "L": 5.0, "Q": 1.0}, "M66 needs L from 0 to 4"),
+    ],
+)
+def test_arguments_are_checked_before_anything_moves(code, words, reason):
+    with pytest.raises(Refusal, match=re.escape(f"G12.1 line 7: {reason}")):
+        check_block(block(m={5: code}, **words), False, HERE)
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        (62, {"P": 0.0}),
+        (67, {"E": 0.0, "Q": -1.0}),
+        (66, {"P": 1.0}),
+        (66, {"E": 0.0, "L": 0.0}),
+        (66, {"P": 0.0, "L": 3.0, "Q": 0.5}),
+    ],
+)
+def test_arguments_that_linuxcnc_takes(code, words):
+    check_block(block(m={5: code}, **words), False, HERE)
+
+
+def test_modes_act_as_they_are_read():
+    after = modes_after(MODES, block(g={1: 20, 3: 910}, F=5.0), 7.0)
+    assert after == Modes(True, False, 5.0, 7.0, 20)
+    assert modes_after(after, block(), 7.0) == after
+
+
+@pytest.mark.parametrize(
+    ("codes", "words", "expected"),
+    [
+        ({10: 990}, {"F": 0.2}, (True, 0.2)),
+        ({5: 950}, {}, (True, 0.0)),
+        ({10: 980}, {}, (False, 100.0)),
+        ({5: 940, 10: 980}, {"F": 9.0}, (False, 9.0)),
+    ],
+)
+def test_feed_modes(codes, words, expected):
+    after = modes_after(MODES, block(g=codes, **words), 500.0)
+    assert (after.per_revolution, after.feed) == expected
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        ({"g": {1: 10}, "X": 5.0, "F": 3.0}, ""),
+        ({"g": {0: 40}, "P": 0.25}, "G4P0.25"),
+        ({"g": {1: 10, 13: 640}, "P": 0.01, "X": 1.0}, "G64P0.01"),
+        ({"m": {7: 3, 8: 8}, "S": 1000.0}, "M3M8S1000"),
+        ({"m": {7: 19}, "R": 90.0, "Q": 1.0}, "M19Q1R90"),
+        ({"g": {1: 20}, "m": {8: 8}, "R": 9.0, "X": 1.0}, "M8"),
+        ({"m": {4: 0}}, ""),
+        ({"m": {7: 70}}, ""),
+        ({"m": {5: 66}, "P": 1.0, "L": 3.0, "Q": 1e-5}, "M66P1Q0.00001L3"),
+        ({"g": {14: 970, 2: 180, 3: 900, 7: 400, 10: 980}}, "G97"),
+    ],
+)
+def test_what_is_no_motion(given, text):
+    assert action_text(block(**given), split_line("")) == text
+
+
+def test_the_spindle_word_goes_along():
+    assert action_text(block(m={7: 3}, S=5.0), split_line("M3 S5 $-1")) == "M3S5$-1"
+
+
+def test_stops():
+    assert stop_text(block(m={4: 1}, g={1: 10}, X=1.0)) == "M1"
+    assert stop_text(block(m={7: 3})) == ""
+
+
+def test_alone():
+    assert alone(block(g={1: 131}))
+    assert not alone(block(g={1: 131, 3: 900}))
+    assert not alone(block(g={1: 131}, m={8: 8}))
+    assert not alone(block(g={1: 131}, X=1.0))
+    assert alone(block(m={10: 410}, P=3.0), 410)
+    assert not alone(block(m={10: 410}, X=3.0), 410)
+    assert not alone(block(m={10: 410, 8: 8}), 410)
+
+
+VALUES = {"1": 2.0, "5420": 12.5, "_x": -3.25, "ab": 7.0}
+
+
+@pytest.mark.parametrize(
+    ("comment", "text"),
+    [
+        ("DEBUG,x #1", "(DEBUG,x 2.000000)"),
+        (" print, %d#5420 %f#<_x> %.2f#<A B>", "( print, 12 -3.2500 7.00)"),
+        ("log,#<none> and #9", "(log,###### and ###### )"),
+        ("MSG, #1", "(MSG, #1)"),
+        ("a #1 comment", "(a #1 comment)"),
+        ("debug,100% #1", "(debug,100% 2.000000)"),
+    ],
+)
+def test_reports_are_filled_in(comment, text):
+    assert comment_text(comment, VALUES.get) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(1.0, "1"), (-0.5, "-0.5"), (1e-7, "0.0000001"), (0.0, "0"), (100.0, "100")]
+)
+def test_decimals_have_no_exponents(value, text):
+    assert decimal(value) == text
+
+
+def test_the_line_that_a_refusal_names():
+    assert line_named(HERE.refuse("x")) == 7
+    assert line_named(Refusal("G12.1 line 3 of flat.ngc: x")) is None

@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a planned section hands to the interpreter, block by block."""
+
+import pytest
+
+from g12.errors import Refusal
+from g12.host.section_output import BLOCK_END, STOP_HERE, Action, Emission
+from g12.polar.plan import Run
+from g12.section.modes import Modes
+
+MODES = Modes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
+LINE = [(10.0, 0.5, 0.0, 250.0), (11.0, 1.0, 0.0, 260.0)]
+
+
+def written(**words):
+    """Return a block with every digit of its numbers."""
+    return "".join(f"{word}{value:.17f}" for word, value in words.items())
+
+
+FIRST, LAST = written(X=10, C=0.5, F=250), written(X=11, C=1, F=260)
+NEXT = [("F", 260.0), (11.0, 1.0, 0.0)]  # the last as it goes to the canonical functions
+
+
+class Interpreter:
+    """Records what is executed; knows of modes what an emission asks for."""
+
+    def __init__(self, path=640, tolerance=0.0, merging=0.0, feed_mode=0, wrapped=True):
+        self.active_g_codes = [-1] * 11 + [path]
+        self.active_settings = [0, 0, 0, tolerance, merging]
+        self.feed_mode, self.c_axis_wrapped = feed_mode, wrapped
+        self.call_level, self.motion_mode, self.distance_mode = 1, 0, "G91"
+        self.current_y = self.AA_current = self.BB_current = 0.0
+        self.u_current = self.v_current = self.w_current = 0.0
+        self.done, self.lines, self.wrapped, self.levels, self.stops = [], [], [], [], []
+        self.current_x = self.CC_current = self.current_z = self.status = 0
+        self.moving = None
+
+    def read(self, text):
+        self._read = text
+
+    def execute(self, text):
+        if text == STOP_HERE:
+            self.stops.append(self.sequence_number)
+            return 0
+        self.done.append(self._read if text is None else text)
+        self.current_x += self.done[-1] == self.moving
+        self.lines.append(getattr(self, "sequence_number", None))
+        self.wrapped.append(self.c_axis_wrapped)
+        self.levels.append(self.call_level)
+        if self.done[-1].startswith("G6"):
+            self._path(self.done[-1])
+        return self.status if text is None else 0
+
+    def _path(self, text):
+        words = text.replace("Q", " Q").replace("P", " P").split()
+        self.active_g_codes[11] = round(float(words[0][1:]) * 10)
+        values = {word[0]: float(word[1:]) for word in words[1:]}
+        if words[0] == "G64":
+            self.active_settings[3:] = [values.get("P", 0.0), values.get("Q", values.get("P", 0.0))]
+
+
+class Canon:
+    """Records in the same list what goes past the interpreter's parser."""
+
+    def __init__(self, interp):
+        self.interp = interp
+
+    def _record(self, what, line):
+        self.interp.done.append(what)
+        self.interp.lines.append(line)
+        self.interp.wrapped.append(self.interp.c_axis_wrapped)
+        self.interp.levels.append(self.interp.call_level)
+
+    def SET_FEED_RATE(self, rate):  # noqa: N802
+        self._record(("F", rate), None)
+
+    def STRAIGHT_FEED(self, line, x, y, z, a, b, c, u, v, w):  # noqa: N802
+        assert (y, a, b, u, v, w) == (0, 0, 0, 0, 0, 0)
+        self._record((x, c, z), line)
+
+
+def is_move(what):
+    return what[0] == "X" or (isinstance(what, tuple) and what[0] != "F")
+
+
+def emission_of(interp, x_factor=1.0):
+    return Emission(
+        interp, "G12.1", x_factor=x_factor, blending=0.0025, absolute="G90", canon=Canon(interp)
+    )
+
+
+def handed_over(steps, interp=None, modes=MODES, exact=(), x_factor=1.0):
+    interp = interp or Interpreter()
+    emission_of(interp, x_factor).run(steps, modes, exact)
+    return interp
+
+
+def run(stop=False, line=7, axes="XC", pieces=LINE):
+    return Run(line, axes, pieces, stop)
+
+
+SMOOTH, OLD = "G64P0.0025Q0", "G64P0Q0"
+RELEASED = ["F100", "G90"]
+
+
+def test_pieces_run_under_g64_with_a_tolerance_and_the_old_one_comes_back():
+    assert handed_over([run()]).done == [SMOOTH, FIRST, *NEXT, OLD, *RELEASED]
+
+
+@pytest.mark.parametrize(("path", "stops"), [(640, True), (610, False), (611, False)])
+def test_a_move_in_front_of_the_section_is_not_blended_into_it(path, stops):
+    interp = handed_over([run()], Interpreter(path=path))
+    assert interp.stops == [7] * stops
+
+
+def test_the_second_part_of_a_section_begins_without_a_stop():
+    interp = Interpreter()
+    emission = emission_of(interp)
+    for _ in range(2):
+        emission.run([run()], MODES, ())
+    assert interp.stops == [7]
+
+
+def test_a_programmed_tolerance_is_kept():
+    interp = Interpreter(tolerance=0.1, merging=0.2)
+    assert handed_over([run()], interp).done == [FIRST, *NEXT, *RELEASED]
+
+
+def test_a_stop_ends_in_exact_path():
+    interp = handed_over([run(stop=True), run()])
+    assert interp.done == [SMOOTH, FIRST, "G61", LAST, SMOOTH, FIRST, *NEXT, OLD, *RELEASED]
+
+
+@pytest.mark.parametrize("path", ["G61", "G61.1"])
+def test_programmed_exact_paths_hold_at_the_end_of_a_block(path):
+    interp = Interpreter(path=round(float(path[1:]) * 10), tolerance=0.05)
+    done = handed_over([run(), run(), run(line=8)], interp).done
+    assert done == [
+        SMOOTH,
+        FIRST,
+        LAST,
+        FIRST,
+        path,
+        LAST,
+        SMOOTH,
+        FIRST,
+        path,
+        LAST,
+        "G64P0.05Q0",
+        path,
+        *RELEASED,
+    ]
+
+
+def test_g9_is_an_exact_stop_at_the_end_of_its_block():
+    done = handed_over([run(), run(line=8)], exact={8}).done
+    assert done == [SMOOTH, FIRST, LAST, FIRST, "G61.1", LAST, OLD, *RELEASED]
+
+
+def test_every_move_has_the_line_of_its_block():
+    interp = handed_over([run(line=7), run(line=9)])
+    assert [line for text, line in zip(interp.done, interp.lines) if is_move(text)] == [7, 7, 9, 9]
+
+
+def test_c_is_not_wrapped_while_pieces_go_out():
+    interp = handed_over([run()])
+    assert [on for text, on in zip(interp.done, interp.wrapped) if is_move(text)] == [False, False]
+    assert interp.c_axis_wrapped is True
+    assert handed_over([run()], Interpreter(wrapped=False)).c_axis_wrapped is False
+
+
+def test_axes_and_diameters():
+    steps = [run(axes="Z", pieces=[(10.0, 0.0, -2.0, 50.0)]), run(axes="XCZ", pieces=LINE[:1])]
+    assert handed_over(steps, x_factor=2.0).done[1:3] == [
+        written(Z=-2, F=50),
+        written(X=20, C=0.5, Z=0, F=250),
+    ]
+
+
+def test_feed_per_revolution_is_left_and_comes_back():
+    interp = Interpreter(feed_mode=2)
+    modes = MODES._replace(per_revolution=True, feed=0.2, incremental=True, motion=30)
+    done = handed_over([run()], interp, modes).done
+    assert done == ["G94", SMOOTH, FIRST, *NEXT, OLD, "G95F0.2", "G91"]
+    assert interp.motion_mode == 30
+
+
+def test_actions_find_the_programs_modes():
+    action = Action(8, "M8", MODES._replace(incremental=True, feed=50.0))
+    interp = handed_over([run(), action, run(line=9)])
+    assert interp.done == [
+        SMOOTH, FIRST, *NEXT, OLD, "F50", "G91", "M8", SMOOTH, FIRST, *NEXT, OLD, *RELEASED,
+    ]  # fmt: skip
+    assert interp.lines[7] == 8
+
+
+def test_comments_need_no_modes():
+    assert handed_over([Action(8, "(MSG,x)", None), run()]).done[:2] == ["(MSG,x)", SMOOTH]
+
+
+def test_path_control_commanded_inside_stays():
+    steps = [
+        run(),
+        Action(8, "G64P0.1", MODES),
+        run(line=9),
+        Action(10, "G61", MODES),
+        run(line=11),
+    ]
+    done = handed_over(steps).done
+    second, third = done.index("G64P0.1"), done.index("G61")
+    assert done[second:third] == ["G64P0.1", FIRST, *NEXT, *RELEASED]
+    assert done[third:] == ["G61", SMOOTH, FIRST, "G61", LAST, "G64P0.1Q0.1", "G61", *RELEASED]
+
+
+def test_saved_state_is_that_of_its_call_level():
+    interp = handed_over([Action(8, "M70", MODES, level=3)])
+    assert interp.levels[interp.done.index("M70")] == 3
+    assert interp.call_level == 1
+
+
+def test_a_block_ends_where_it_is_marked():
+    steps = [run(pieces=LINE[:1]), Action(7, BLOCK_END, None), run(pieces=LINE[1:])]
+    done = handed_over(steps, exact={7}).done
+    assert [what for what in done if what == "G61.1"] == ["G61.1"]
+    assert done.index("G61.1") < done.index(FIRST)
+
+
+def test_an_action_that_moves_is_refused():
+    interp = Interpreter()
+    interp.moving = "M411"
+    with pytest.raises(Refusal, match=r"G12\.1 line 8: M411 moves the machine: not inside a sect"):
+        handed_over([Action(8, "M411", MODES)], interp)
+
+
+def test_an_action_that_waits_is_refused():
+    interp = Interpreter()
+    interp.status = 2
+    with pytest.raises(Refusal, match=r"G12\.1 line 8: M411 waits for the machine"):
+        handed_over([Action(8, "M411", MODES)], interp)
+
+
+def test_an_action_that_fails_names_its_line():
+    class Failing(Interpreter):
+        def read(self, text):
+            raise SystemError
+
+        def get_errormsg(self):
+            return "No valid P word with M62"
+
+    with pytest.raises(Refusal, match=r"G12\.1 line 8: No valid P word with M62"):
+        handed_over([Action(8, "M62", MODES)], Failing())
