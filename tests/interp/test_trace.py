@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from g12.tools.headless.namespaces import PYTHON
 from g12.tools.preview.tracer import TraceFailure, Tracer, trace_text
+from g12.tools.system import PYTHON
 from support.sim_machines import ROOT
 
 INI = """\

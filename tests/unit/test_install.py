@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from g12.tools.commands import arguments as command_line
 from g12.tools.commands import install, uninstall
-from g12.tools.commands.arguments import UsageError
+from g12.tools.errors import UsageError
 from g12.tools.install import features, package_copy
 from g12.tools.install.ini_edit import BEGIN, END, IniError, IniText, read_lines, to_bytes
 from g12.tools.install.plan import Refused, make_plan

@@ -16,6 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Callable
 
+from g12.tools.errors import ProgramError, UsageError
 from g12.tools.headless.machine import Machine, MachineError, Run, StartupError
 from g12.tools.machine.ini import Ini, IniError, read_ini
 from g12.tools.preview.tracer import Tools, Trace, TraceFailure, trace
@@ -28,14 +29,6 @@ TOOL = re.compile(r"\s*T\d+(\s+[TPDIJQXYZABCUVW][-+.\d]+)*\s*(;.*)?", re.IGNOREC
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 RAISED = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:")  # how Python names what was raised
 HIDDEN = "\r\033[K"
-
-
-class UsageError(ValueError):
-    """The command cannot do what was asked: a wrong file, suffix or word."""
-
-
-class ProgramError(RuntimeError):
-    """The program itself does not come to its end; names its line and LinuxCNC's text."""
 
 
 class Parser(argparse.ArgumentParser):

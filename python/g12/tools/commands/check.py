@@ -12,7 +12,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 from g12.settings import SECTION, TABLE, section_entries
-from g12.tools.commands.arguments import FINDING, GOOD, Parser, UsageError, existing, one_line
+from g12.tools.commands.arguments import FINDING, GOOD, Parser, existing, one_line
+from g12.tools.errors import UsageError
 from g12.tools.install import features
 from g12.tools.install.config import Config, load_config, remaps_in
 from g12.tools.install.ini_edit import IniText

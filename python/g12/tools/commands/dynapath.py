@@ -13,8 +13,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from g12.errors import Refusal
-from g12.tools.commands.arguments import GOOD, Parser, ProgramError, existing, one_line
+from g12.tools.commands.arguments import GOOD, Parser, existing, one_line
 from g12.tools.dynapath import program_from_events
+from g12.tools.errors import ProgramError
 
 EXAMPLES = """\
 examples:

@@ -14,8 +14,9 @@ import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from g12.tools.commands.arguments import FINDING, GOOD, Parser, UsageError, one_line, say
+from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line, say
 from g12.tools.commands.check import readable
+from g12.tools.errors import UsageError
 from g12.tools.install import features, package_copy
 from g12.tools.install.config import Config, load_config, remaps_in
 from g12.tools.install.ini_edit import IniText, other_inis

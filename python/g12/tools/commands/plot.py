@@ -15,7 +15,6 @@ from matplotlib.figure import Figure
 from g12.tools.commands.arguments import (
     GOOD,
     Parser,
-    UsageError,
     add_program,
     add_run,
     check_run,
@@ -25,6 +24,7 @@ from g12.tools.commands.arguments import (
     run_program,
     traced,
 )
+from g12.tools.errors import UsageError
 from g12.tools.plot import style
 from g12.tools.plot.face import draw_face
 from g12.tools.plot.mill import draw_mill

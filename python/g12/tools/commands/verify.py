@@ -14,7 +14,6 @@ from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
     Parser,
-    UsageError,
     add_program,
     add_run,
     check_run,
@@ -25,6 +24,7 @@ from g12.tools.commands.arguments import (
     run_program,
     traced,
 )
+from g12.tools.errors import UsageError
 from g12.tools.path.slowest import Pace
 from g12.tools.progress import working
 from g12.tools.units import UNITS, Unit, plain, unit_of

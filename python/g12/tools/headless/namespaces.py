@@ -16,7 +16,8 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-PYTHON = "/usr/bin/python3"  # LinuxCNC's Python modules belong to the system's Python
+from g12.tools.system import PYTHON
+
 ISOLATE = Path(__file__).with_name("namespaces_init.py")
 PATIENCE = 60.0  # s
 NOBODY = "65534"  # LinuxCNC's realtime part refuses to be plain root

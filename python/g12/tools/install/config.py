@@ -15,7 +15,8 @@ from pathlib import Path
 from g12.tools.install.features import Remap, remap_from_value
 from g12.tools.install.ini_edit import IniText, Line
 from g12.tools.machine.ini import Ini, Overrides
-from g12.tools.preview.tracer import PYTHON, TraceFailure, Tracer
+from g12.tools.preview.tracer import TraceFailure, Tracer
+from g12.tools.system import PYTHON
 
 ANSWER = "G12 CONFIG "
 # What the machine's Python modules brought into the interpreter, asked from inside it.

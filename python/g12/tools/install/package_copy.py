@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
-from g12.tools.commands.arguments import UsageError
+from g12.tools.errors import UsageError
 from g12.tools.install.features import ROOT
 from g12.tools.machine.files import take_owner, write
 

@@ -28,8 +28,8 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import NamedTuple, Union
 
-from g12.tools.headless.namespaces import PYTHON
 from g12.tools.machine.ini import Ini, Overrides, read_ini
+from g12.tools.system import PYTHON
 
 WORKER = Path(__file__).with_name("worker.py")
 LAUNCH = (

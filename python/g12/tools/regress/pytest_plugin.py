@@ -23,7 +23,7 @@ from pathlib import Path
 
 import pytest
 
-from g12.tools.commands.arguments import UsageError
+from g12.tools.errors import UsageError
 from g12.tools.regress.record_and_check import Terms, check
 from g12.tools.regress.recorder import SAME
 from g12.tools.regress.recordings import load

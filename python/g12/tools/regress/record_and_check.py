@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from g12.tools.commands.arguments import UsageError, existing, machine_ini, tool_table
+from g12.tools.commands.arguments import existing, machine_ini, tool_table
+from g12.tools.errors import UsageError
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import mm_per_unit
 from g12.tools.regress.edits import Tolerance

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from multiprocessing import active_children, util
 from pathlib import Path
 
-from g12.tools.commands.arguments import UsageError
+from g12.tools.errors import UsageError
 from g12.tools.install.config import linuxcnc_version, python_error
 from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.path.part import part_of

@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from g12.tools.commands.arguments import UsageError
+from g12.tools.errors import UsageError
 from g12.tools.machine.files import write
 
 FORMAT = 1
