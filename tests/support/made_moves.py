@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 
-from g12.tools.headless.machine import Samples
-from g12.tools.path.follow import Limits
+from g12.tools.path.samples import Samples
+from g12.tools.path.track import Limits
 from g12.tools.preview.tracer import Modes, Move, Trace
 
 HOME = (0.0,) * 9

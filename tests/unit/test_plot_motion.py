@@ -6,10 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from g12.tools.headless.machine import Samples
-from g12.tools.path.follow import duration, follow, speed, track, worst_of
+from g12.tools.path.follow import follow, speed, worst_of
 from g12.tools.path.part import Part
+from g12.tools.path.samples import Samples
 from g12.tools.path.slowest import pace_of
+from g12.tools.path.track import duration, track
 from support.made_moves import HOME, LIMITS, Hand, samples_of
 
 MILL, FACE = Part(turning=False), Part(turning=True)

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.tools.path.follow import follow, track
+from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
+from g12.tools.path.track import track
 from g12.tools.units import UNITS
 from g12.tools.verify.pocket import measure_pocket
 from g12.tools.verify.proof import pocket_findings, pocket_notes

@@ -4,8 +4,9 @@
 import numpy as np
 import pytest
 
-from g12.tools.path.follow import follow, track
+from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
+from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.verify.rapids import collisions
 from g12.tools.verify.wanted_circle import Target

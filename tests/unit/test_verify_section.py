@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.tools.path.follow import follow, track
+from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
+from g12.tools.path.track import track
 from g12.tools.verify.contour_distance import Shape
 from g12.tools.verify.proof import section_findings, section_notes
 from g12.tools.verify.section import measure_section

@@ -12,21 +12,20 @@ import sys
 import threading
 import time
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Callable
 
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.headless.machine import Machine, MachineError, Run, StartupError
 from g12.tools.machine.ini import Ini, IniError, read_ini
-from g12.tools.preview.tracer import Tools, Trace, TraceFailure, trace
+from g12.tools.preview.ended import text_with_axes
+from g12.tools.preview.tracer import Tools, TraceFailure
 
 GOOD, FINDING, USAGE = 0, 1, 2
 TICK = 1.0  # s
 MOST_SECONDS = 24 * 3600.0
 SECTIONS = re.compile(r"\s*\[(EMC|KINS|RS274NGC|TRAJ)\]", re.MULTILINE)  # of a machine's INI
 TOOL = re.compile(r"\s*T\d+(\s+[TPDIJQXYZABCUVW][-+.\d]+)*\s*(;.*)?", re.IGNORECASE)
-NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 RAISED = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:")  # how Python names what was raised
 HIDDEN = "\r\033[K"
 
@@ -153,33 +152,6 @@ def tool_table(path: Path) -> Path:
     return path
 
 
-def traced(program: Path, ini: Path, tools: Tools = None) -> Trace:
-    """Return the trace of a program that comes to its end, or raise ProgramError."""
-    return ended(program, with_axes(trace(program, ini, tools=tools), ini))
-
-
-def with_axes(result: Trace, ini: Path) -> Trace:
-    """Return a trace whose error names the machine's axes if the program asks for another one."""
-    error = result.error
-    return replace(result, error=error._replace(text=told(error.text, ini))) if error else result
-
-
-def told(text: str, ini: Path) -> str:
-    """Return the interpreter's error, with the machine's axes if it is about another one."""
-    wanted = NO_AXIS.match(text)
-    axes = "".join(read_ini(ini).words("TRAJ", "COORDINATES", "XYZ")).upper()
-    if not wanted or wanted[1].upper() in axes:
-        return text
-    return f"{text}: this INI's machine has axes {' '.join(dict.fromkeys(axes))}"
-
-
-def ended(program: Path, result: Trace) -> Trace:
-    """Return a trace that came to its end, or raise ProgramError."""
-    if result.error:
-        raise ProgramError(f"{program}:{result.error.line}: {result.error.text}")
-    return result
-
-
 def run_program(program: Path, ini: Path, tools: Tools = None, override: float = 100.0) -> Run:
     """Return the run of a program that comes to its end, or raise ProgramError.
 
@@ -187,7 +159,7 @@ def run_program(program: Path, ini: Path, tools: Tools = None, override: float =
     """
     result = run_anyhow(program, ini, tools, override)
     if result.error:
-        raise ProgramError(f"{program}: {told(result.error.text, ini)}")
+        raise ProgramError(f"{program}: {text_with_axes(result.error.text, ini)}")
     return result
 
 

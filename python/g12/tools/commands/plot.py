@@ -22,7 +22,6 @@ from g12.tools.commands.arguments import (
     one_line,
     progress,
     run_program,
-    traced,
 )
 from g12.tools.errors import UsageError
 from g12.tools.plot import style
@@ -30,6 +29,7 @@ from g12.tools.plot.face import draw_face
 from g12.tools.plot.mill import draw_mill
 from g12.tools.plot.scene import Scene, scene_of, with_run
 from g12.tools.plot.turning import draw_turn
+from g12.tools.preview.ended import traced
 from g12.tools.progress import working
 from g12.tools.units import UNITS
 from g12.tools.verify.proof import collisions_in

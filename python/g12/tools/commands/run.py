@@ -19,10 +19,10 @@ from g12.tools.commands.arguments import (
     number_above,
     one_line,
     run_anyhow,
-    told,
 )
 from g12.tools.headless.machine import Run
 from g12.tools.machine.ini import Ini
+from g12.tools.preview.ended import text_with_axes
 from g12.tools.preview.tracer import AXES, mm_per_unit
 from g12.tools.regress.recording_text import LINEAR, number
 from g12.tools.units import UNITS
@@ -62,5 +62,6 @@ def main(arguments: list[str]) -> int:
     for line in report(result, ini):
         print(line)
     if result.error:
-        print(f"g12 run: {asked.program}: {told(result.error.text, asked.ini)}", file=sys.stderr)
+        text = text_with_axes(result.error.text, asked.ini)
+        print(f"g12 run: {asked.program}: {text}", file=sys.stderr)
     return FINDING if result.error else GOOD

@@ -14,10 +14,9 @@ from g12.tools.commands.arguments import (
     add_program,
     checked_ini,
     count_from,
-    ended,
     one_line,
-    with_axes,
 )
+from g12.tools.preview.ended import ended, with_axes
 from g12.tools.preview.tracer import AXES, Move, trace
 
 EXAMPLES = """\

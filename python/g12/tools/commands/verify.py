@@ -22,10 +22,10 @@ from g12.tools.commands.arguments import (
     one_line,
     progress,
     run_program,
-    traced,
 )
 from g12.tools.errors import UsageError
 from g12.tools.path.slowest import Pace
+from g12.tools.preview.ended import traced
 from g12.tools.progress import working
 from g12.tools.units import UNITS, Unit, plain, unit_of
 from g12.tools.verify.pocket import PocketFacts

@@ -24,6 +24,7 @@ import numpy as np
 
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import Ini, Overrides, read_ini
+from g12.tools.path.samples import Samples
 from g12.tools.preview.tracer import (
     START_BLOCKS,
     Error,
@@ -107,29 +108,6 @@ class Status:
     tool: int
     queue: int
     modes: Modes
-
-
-@dataclass(frozen=True)
-class Samples:
-    """The motion recorded at the servo rate, numpy arrays of equal length.
-
-    ``time`` in seconds from the first sample; ``axes`` maps ``"X"`` … to commanded positions;
-    ``velocity`` is the speed along the path and ``requested`` the one asked for, machine units
-    per second; ``line`` the program line in motion; ``kind`` 0 for standstill, 1 rapid, 2 feed,
-    3 arc, 4 tool change, 5 probe, 6 rotary unlock.  ``lost`` counts samples that overran.
-    """
-
-    time: np.ndarray
-    axes: dict[str, np.ndarray]
-    velocity: np.ndarray
-    requested: np.ndarray
-    line: np.ndarray
-    kind: np.ndarray
-    lost: int
-
-    def moving(self) -> np.ndarray:
-        """Return a mask of the samples during which a move was being made."""
-        return self.kind != 0
 
 
 @dataclass(frozen=True)

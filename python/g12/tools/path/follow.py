@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Paths in time, programmed and real: one dense polyline for the moves, and what a run made of it.
+"""The real motion of a run, laid on the path that was programmed.
 
 Lengths are millimetres, angles of rotary axes degrees, times seconds.
 """
@@ -9,74 +9,17 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
 
-from g12.tools.headless.machine import Samples
-from g12.tools.machine.ini import Ini
-from g12.tools.path.part import CHORD_ERROR, Part, plane_axes
-from g12.tools.preview.tracer import AXES, Move, mm_per_unit
+from g12.tools.path.part import plane_axes
+from g12.tools.path.samples import Samples
+from g12.tools.path.track import LINEAR, Track
+from g12.tools.preview.tracer import AXES, Move
 
-LINEAR = [AXES.index(letter) for letter in "XYZUVW"]
 SLACK = 0.25  # mm that a run may be ahead of the path, where it cuts a corner
-UNLIMITED = math.inf
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Greatest speeds: per axis (mm/s or degrees/s, in the order of AXES) and along the path."""
-
-    axes: tuple[float, ...]
-    path: float
-
-
-@dataclass(frozen=True)
-class Track:
-    """Moves as one polyline: per vertex the machine position, part point, move and time.
-
-    ``positions`` (n, 9) are those of the controlled point, ``offsets`` (n, 9) the tool length
-    offset in force, ``move`` (n,) the index of the move that ends at or passes the vertex.
-    ``time`` supposes that every move runs at its feed, as far as the axes' speeds allow.
-    """
-
-    part: Part
-    positions: np.ndarray
-    offsets: np.ndarray
-    move: np.ndarray
-    time: np.ndarray
-
-    @cached_property
-    def points(self) -> np.ndarray:
-        """Part points (n, 3)."""
-        return self.part.points(self.positions)
-
-    @cached_property
-    def axis_points(self) -> np.ndarray:
-        """Part points (n, 3) as the axes stand, tool length offset included."""
-        return self.part.points(self.positions + self.offsets)
-
-    def vertices(self, index: int) -> slice:
-        """Return the vertices of a move, its start included."""
-        first, last = np.searchsorted(self.move, (index, index + 1))
-        return slice(max(0, first - (1 if index else 0)), last)
-
-    def part_length(self, index: int) -> float:
-        """Return the length along the part of a move, mm."""
-        points = self.points[self.vertices(index)]
-        return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
-
-    def seconds(self, index: int) -> float:
-        """Return the time of a move."""
-        time = self.time[self.vertices(index)]
-        return float(time[-1] - time[0])
-
-    def part_feed(self, index: int) -> float:
-        """Return the speed along the part of a move, mm/min."""
-        seconds = self.seconds(index)
-        return self.part_length(index) / seconds * 60.0 if seconds else 0.0
 
 
 @dataclass(frozen=True)
@@ -135,71 +78,6 @@ def worst_of(real: Followed, moves: Sequence[Move]) -> Worst | None:
         real.points[index],
         real.nearest[index],
         moves[real.move[index]],
-    )
-
-
-def limits_of(ini: Ini) -> Limits:
-    """Return the greatest speeds that an INI allows."""
-    unit = mm_per_unit(ini)
-    scale = [unit if index in LINEAR else 1.0 for index in range(len(AXES))]
-    axes = [ini.number(f"AXIS_{letter}", "MAX_VELOCITY", UNLIMITED) for letter in AXES]
-    path = ini.number("TRAJ", "MAX_LINEAR_VELOCITY", UNLIMITED) * unit
-    return Limits(tuple(map(float.__mul__, axes, scale)), path)
-
-
-def duration(move: Move, limits: Limits, spindle_speed: float = 0.0) -> float:
-    """Return the seconds a move takes at its feed, axis speeds permitting, without acceleration.
-
-    ``spindle_speed`` in revolutions per minute is for moves in G95.
-    """
-    changes = [abs(end - start) for start, end in zip(move.start, move.end)]
-    if move.kind == "arc":
-        return move.length / min(rate(move, spindle_speed) or limits.path, limits.path)
-    needed = max(change / limit for change, limit in zip(changes, limits.axes))
-    needed = max(needed, move.length / limits.path)
-    wanted = rate(move, spindle_speed)
-    return max(needed, feed_length(move) / wanted) if wanted else needed
-
-
-def rate(move: Move, spindle_speed: float) -> float:
-    """Return the programmed speed of a move in mm/s or degrees/s; 0 is as fast as it may."""
-    per_minute = move.feed * spindle_speed if move.feed_mode == "G95" else move.feed
-    return per_minute / 60.0
-
-
-def feed_length(move: Move) -> float:
-    """Return the length that a move's feed is for: of X Y Z, else of U V W, else degrees."""
-    change = np.subtract(move.end, move.start)
-    lengths = (math.hypot(*change[:3]), math.hypot(*change[6:]), math.hypot(*change[3:6]))
-    return next((length for length in lengths if length > 1e-9), 0.0)
-
-
-def track(
-    part: Part,
-    moves: Sequence[Move],
-    limits: Limits,
-    spindle_speed: float = 0.0,
-    chord_error: float = CHORD_ERROR,
-) -> Track:
-    """Return the polyline of moves."""
-    positions, offsets, owner, times = [], [], [], [0.0]
-    before = (0.0,) * 9
-    for index, move in enumerate(moves):
-        points = part.machine_points(move, chord_error)
-        skip = 1 if index else 0
-        share = np.linspace(0.0, 1.0, len(points))[:, None]
-        positions.append(points[skip:])
-        offsets.append((np.array(before) * (1 - share) + np.array(move.tool_offset) * share)[skip:])
-        owner.append(np.full(len(points) - skip, index))
-        start, seconds = times[-1], duration(move, limits, spindle_speed)
-        times.extend(start + seconds * share[1:, 0])
-        before = move.tool_offset
-    return Track(
-        part,
-        np.concatenate(positions or [np.zeros((1, 9))]),
-        np.concatenate(offsets or [np.zeros((1, 9))]),
-        np.concatenate(owner or [np.zeros(1, int)]),
-        np.array(times),
     )
 
 

@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.tools.path.follow import Followed, Track
+from g12.tools.path.follow import Followed
+from g12.tools.path.track import Track
 
 AT_SPEED = 0.98  # of the feed: a run has come up to speed
 LEAST_LENGTH = 1e-3  # mm, shorter moves have no feed worth telling

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from g12.tools.path.follow import limits_of
+from g12.tools.path.track import limits_of
 from g12.tools.plot import style
 from g12.tools.plot.deviation import SIZE, draw_window
 from g12.tools.plot.plan_view import bounds_of, draw_plan, entries, levels_of, mark_worst

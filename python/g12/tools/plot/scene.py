@@ -12,8 +12,9 @@ from pathlib import Path
 
 from g12.tools.headless.machine import Run
 from g12.tools.machine.ini import Ini
-from g12.tools.path.follow import Followed, Track, follow, limits_of, track
+from g12.tools.path.follow import Followed, follow
 from g12.tools.path.part import part_of_program, tool_diameters
+from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.executed_blocks import COMMENT
 from g12.tools.preview.tracer import Move, Tools, Trace, mm_per_unit
 from g12.tools.units import Unit, plain, unit_of

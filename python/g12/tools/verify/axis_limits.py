@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.tools.machine.ini import Ini
-from g12.tools.path.follow import Track
+from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import Text
 from g12.tools.preview.tracer import Trace, mm_per_unit
 

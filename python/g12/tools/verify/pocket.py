@@ -16,9 +16,10 @@ import numpy as np
 from shapely.geometry import MultiLineString, Point
 from shapely.geometry.base import BaseGeometry
 
-from g12.tools.path.follow import Followed, Track
+from g12.tools.path.follow import Followed
 from g12.tools.path.part import disc, swept
 from g12.tools.path.slowest import Pace, pace_of
+from g12.tools.path.track import Track
 from g12.tools.preview.tracer import Move
 from g12.tools.verify.axis_limits import Overrun
 from g12.tools.verify.wanted_circle import Target

@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from g12.lengths import MM_PER_INCH
-from g12.tools.commands.arguments import ended, with_axes
 from g12.tools.headless.machine import Run
 from g12.tools.machine.ini import Ini
-from g12.tools.path.follow import Followed, Track, follow, limits_of, track
+from g12.tools.path.follow import Followed, follow
 from g12.tools.path.part import C, part_of_program, tool_diameters
+from g12.tools.path.track import Track, limits_of, track
+from g12.tools.preview.ended import ended, with_axes
 from g12.tools.preview.executed_blocks import read_lines
 from g12.tools.preview.tracer import Move, Tools, Trace, Tracer, mm_per_unit
 from g12.tools.progress import Tell, counted, silent

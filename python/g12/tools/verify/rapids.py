@@ -25,8 +25,9 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 from shapely.prepared import prep
 
-from g12.tools.path.follow import Followed, Track
+from g12.tools.path.follow import Followed
 from g12.tools.path.part import disc, is_sideways, swept
+from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.tracer import Move
 from g12.tools.verify.wanted_circle import Target

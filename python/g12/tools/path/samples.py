@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The real motion of a machine, as recorded at the servo rate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Samples:
+    """The motion recorded at the servo rate, numpy arrays of equal length.
+
+    ``time`` in seconds from the first sample; ``axes`` maps ``"X"`` … to commanded positions;
+    ``velocity`` is the speed along the path and ``requested`` the one asked for, machine units
+    per second; ``line`` the program line in motion; ``kind`` 0 for standstill, 1 rapid, 2 feed,
+    3 arc, 4 tool change, 5 probe, 6 rotary unlock.  ``lost`` counts samples that overran.
+    """
+
+    time: np.ndarray
+    axes: dict[str, np.ndarray]
+    velocity: np.ndarray
+    requested: np.ndarray
+    line: np.ndarray
+    kind: np.ndarray
+    lost: int
+
+    def moving(self) -> np.ndarray:
+        """Return a mask of the samples during which a move was being made."""
+        return self.kind != 0
