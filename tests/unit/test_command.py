@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from g12.tools.commands import arguments, main
+from g12.tools.preview.ended import text_with_axes
 from support.sim_machines import ROOT
 from support.small_configs import MILL, TOOLS, write_config
 
@@ -110,10 +111,10 @@ def test_no_tool_tables(tmp_path, text):
 
 
 def test_an_axis_that_the_machine_lacks_is_explained(files):
-    said = arguments.told("Bad character 'c' used", files.ini)
+    said = text_with_axes("Bad character 'c' used", files.ini)
     assert said == "Bad character 'c' used: this INI's machine has axes X Y Z"
     for text in ("Bad character 'z' used", "Bad character 'q' used", "Unknown g code used"):
-        assert arguments.told(text, files.ini) == text
+        assert text_with_axes(text, files.ini) == text
 
 
 def test_events_that_are_not_there(tmp_path, capsys):
