@@ -683,3 +683,18 @@ def test_any_call_cuts_or_is_refused_in_words(inch, values):
     texts = {letter: f"{value:.5f}" for letter, value in values.items()}
     block = call(**{"x": 1, "y": 2, "z": -3, "r": 1, "c": 2, "w": 0.1, **texts})
     mode_matrix.check_cut_or_refused(inch, BEFORE, block, "circle_mill")
+
+
+@pytest.mark.parametrize(
+    ("word", "rule"),
+    [
+        ("K1", "K1 is not a word of this cycle, which knows no words inside o<circle_mill>"),
+        ("X1 Y2 Z-3", "X1 is not a word of this cycle, which knows no words inside o<circle_mill>"),
+    ],
+)
+def test_a_word_of_the_code_inside_the_subroutine_is_refused(inch, word, rule):
+    edited = ["o<circle_mill> sub", f"  G12.2 {word}", "o<circle_mill> endsub"]
+    event = call(g=7, x=0, y=0, z=-0.1, w=0.1, r=1, c=2)
+    traced = inch.trace_text([*edited, *BEFORE, event])
+    assert traced.error.text == f"G12.2: {rule}"
+    assert len(traced.moves) == 1

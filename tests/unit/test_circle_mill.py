@@ -13,7 +13,7 @@ from g12.cycles.circle_mill import (
     COUNTERCLOCKWISE,
     ENTRIES,
     LEFT_OUT,
-    entries_of_call,
+    entries_by_letter,
     plan_call,
     plan_code,
 )
@@ -218,10 +218,10 @@ def test_both_front_ends_plan_the_same_event():
 
 def test_entries_of_a_call():
     values = [LEFT_OUT] * len(ENTRIES)
-    assert entries_of_call(values) == {}
+    assert entries_by_letter(values) == {}
     values[1], values[14] = 0.0, 15.0
-    assert entries_of_call(values) == {"X": 0.0, "V": 15.0}
-    assert list(entries_of_call(range(15))) == list("GXYZWORDCKJLPFV")
+    assert entries_by_letter(values) == {"X": 0.0, "V": 15.0}
+    assert list(entries_by_letter(range(15))) == list("GXYZWORDCKJLPFV")
 
 
 def test_a_perimeter_is_the_default_of_the_call():

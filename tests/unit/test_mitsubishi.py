@@ -3,7 +3,7 @@
 
 import pytest
 
-from g12.cycles.mitsubishi import Circle, plan_circle
+from g12.cycles.mitsubishi import MitsubishiCircle, plan_circle
 from g12.cycles.words import Words
 from g12.errors import Refusal
 from support.planner_context import BAD_MODES, MM
@@ -18,9 +18,9 @@ def plan(found=STANDING, **values):
 @pytest.mark.parametrize(
     ("plane", "circle"),
     [
-        ("G17", Circle(17, 1.0, 40.0)),
-        ("G18", Circle(18, 3.0, 40.0)),
-        ("G19", Circle(19, 2.0, 40.0)),
+        ("G17", MitsubishiCircle(17, 1.0, 40.0)),
+        ("G18", MitsubishiCircle(18, 3.0, 40.0)),
+        ("G19", MitsubishiCircle(19, 2.0, 40.0)),
     ],
 )
 def test_the_circle_lies_along_the_plane_s_first_axis(plane, circle):

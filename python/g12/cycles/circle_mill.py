@@ -20,11 +20,14 @@ The motions of `ngc/g12_circle_mill.ngc`:
 
 The plunge point is the centre of a pocket, the -Y point of a perimeter.
 
-Rules, in the order of the checks: F above 0; G17, no G93, no G41/G42; X, Y, Z, R, C required, R
-above 0; D from 0 to 3 and C from 0 to 2, in a pocket the pairs that put the tool inside; no L
-with C0; W known from this block or an earlier one, O not below W; K, J, L, P, V above 0, J in
-pockets only; every word known; a tool with a diameter in the spindle; room for it inside; the
-deepest rough level below W.
+Rules, in the order of the checks. Of a call: V and F above 0, `check_modes`, G 0 or 7, L not 0; of
+a code: `check_modes`, L only with Q, Q above 0, L 0 or 1. Of both: X, Y, R required, R above 0; D
+from 0 to 3, C required, from 0 to 2, in a pocket the pairs that put the tool inside; no finish
+with C0; W known from here or an earlier event, O not below W; Z required; K, J, P above 0; every
+word known; a tool with a diameter in the spindle; R with room for it; J in pockets only, and not
+too small; the deepest rough level below W; not too many circles; L not too small.
+
+`check_start` is not asked: the first move goes to the plunge point, which X and Y name.
 """
 
 from __future__ import annotations
@@ -76,8 +79,8 @@ CODE = Spelling("I", "E", "H", "Q", "X Y Z I E R D H K J Q L P F")
 CALL = Spelling("W", "O", "C", "L", "G X Y Z W O R D C K J L P F V")
 
 
-class Block(NamedTuple):
-    """A block as its front end read it, entries that both share still among the words.
+class EventEntries(NamedTuple):
+    """An event as its front end read it, entries that both share still among the words.
 
     ``plane`` is the first reference plane last commanded (None: none was), ``finish`` the
     finish dimension L (0: no finish), ``bottom`` whether it is for the bottom as well.
@@ -93,11 +96,11 @@ class Block(NamedTuple):
     finish_feed: float
 
     def refuse(self, rule: str):
-        """Return the refusal of this block for breaking ``rule`` (the caller raises it)."""
+        """Return the refusal of this event for breaking ``rule`` (the caller raises it)."""
         return self.words.refuse(rule)
 
 
-class Circle(NamedTuple):
+class EventCircle(NamedTuple):
     """The circle as programmed, and on which side of it the tool's centre goes round."""
 
     x: float
@@ -108,7 +111,7 @@ class Circle(NamedTuple):
     finish_arc: int
 
 
-class Place(NamedTuple):
+class EventPosition(NamedTuple):
     """Where the event goes in XY, its reference planes; ``below``: the tool starts below W."""
 
     x: float
@@ -155,7 +158,7 @@ class SideFinish(NamedTuple):
     entry_arc: int
 
 
-class Feeds(NamedTuple):
+class EventFeeds(NamedTuple):
     """Feeds per minute or revolution."""
 
     plunge_feed: float
@@ -163,14 +166,14 @@ class Feeds(NamedTuple):
     finish_feed: float
 
 
-class Event(NamedTuple):
+class MillEvent(NamedTuple):
     """An event that is fit to cut. Lengths and feeds are in program units."""
 
-    place: Place
+    place: EventPosition
     roughing: Roughing
     depths: Depths
     side_finish: SideFinish
-    feeds: Feeds
+    feeds: EventFeeds
     message: str | None  # for the operator, never a refusal
 
     def locals(self) -> dict[str, float]:
@@ -179,7 +182,7 @@ class Event(NamedTuple):
         return {name: value for part in parts for name, value in part._asdict().items()}
 
 
-def plan_code(words: Words, context: Context, plane: float | None, pocket: bool) -> Event:
+def plan_code(words: Words, context: Context, plane: float | None, pocket: bool) -> MillEvent:
     """Return the event of a code block (G12.2, or G13.2: ``pocket``), or raise `Refusal`.
 
     ``plane`` is the first reference plane last commanded, None if there is none.
@@ -187,11 +190,11 @@ def plan_code(words: Words, context: Context, plane: float | None, pocket: bool)
     check_modes(words, context)
     finish, bottom = finish_of_code(words)
     return plan_event(
-        Block(words, CODE, context, plane, pocket, finish, bottom, finish_feed=context.feed)
+        EventEntries(words, CODE, context, plane, pocket, finish, bottom, finish_feed=context.feed)
     )
 
 
-def plan_call(words: Words, context: Context, plane: float | None) -> Event:
+def plan_call(words: Words, context: Context, plane: float | None) -> MillEvent:
     """Return the event of one ``o<circle_mill> call``, or raise `Refusal`."""
     finish_feed = finish_feed_of_call(words)
     context = context._replace(feed=words.take_positive("F") or context.feed)
@@ -202,10 +205,12 @@ def plan_call(words: Words, context: Context, plane: float | None) -> Event:
     pocket = cycle == POCKET_CYCLE
     finish, bottom = finish_of_call(words)
     feed = finish_feed or context.feed
-    return plan_event(Block(words, CALL, context, plane, pocket, finish, bottom, finish_feed=feed))
+    return plan_event(
+        EventEntries(words, CALL, context, plane, pocket, finish, bottom, finish_feed=feed)
+    )
 
 
-def entries_of_call(values: list[float]) -> dict[str, float]:
+def entries_by_letter(values: list[float]) -> dict[str, float]:
     """Return a call's entries by letter, without those that are left out."""
     return {letter: value for letter, value in zip(ENTRIES, values) if value != LEFT_OUT}
 
@@ -238,34 +243,34 @@ def finish_of_call(words: Words) -> tuple[float, bool]:
     return abs(finish or 0.0), (finish or 0.0) > 0
 
 
-def plan_event(block: Block) -> Event:
-    """Return the event of either front end's block."""
-    words, context = block.words, block.context
-    circle = circle_of(block)
-    first_plane, second_plane = planes_of(block)
+def plan_event(entries: EventEntries) -> MillEvent:
+    """Return the event of either front end's entries."""
+    words, context = entries.words, entries.context
+    circle = circle_of(entries)
+    first_plane, second_plane = planes_of(entries)
     depth = words.require("Z", "the final depth")
     peck = words.take_positive("K")
     width = words.take_positive("J")
     plunge_feed = words.take_positive("P") or context.feed
-    words.finish(block.spelling.known)
-    tool = loaded_tool(block)
-    roughing = roughing_of(block, circle, tool, width)
-    depths = depths_of(block, depth, first_plane, peck)
+    words.finish(entries.spelling.known)
+    tool = loaded_tool(entries)
+    roughing = roughing_of(entries, circle, tool, width)
+    depths = depths_of(entries, depth, first_plane, peck)
     check_count(words, roughing.rings * depths.levels, "J and K make")
     below = context.z < first_plane - context.length(ROUNDING_MM)
-    return Event(
-        Place(circle.x, circle.y, context.x, context.y, first_plane, second_plane, below),
+    return MillEvent(
+        EventPosition(circle.x, circle.y, context.x, context.y, first_plane, second_plane, below),
         roughing,
         depths,
-        side_finish_of(block, circle, tool),
-        Feeds(plunge_feed, context.feed, block.finish_feed),
-        left_material(block, roughing, tool),
+        side_finish_of(entries, circle, tool),
+        EventFeeds(plunge_feed, context.feed, entries.finish_feed),
+        left_material(entries, roughing, tool),
     )
 
 
-def circle_of(block: Block) -> Circle:
+def circle_of(entries: EventEntries) -> EventCircle:
     """Return centre, radius, side and directions: X, Y, R, D and C."""
-    words, letter = block.words, block.spelling.side
+    words, letter = entries.words, entries.spelling.side
     x = words.require("X", "the circle's centre")
     y = words.require("Y", "the circle's centre")
     radius = words.require_positive("R", "the circle's radius")
@@ -275,88 +280,90 @@ def circle_of(block: Block) -> Circle:
     compensation = words.take_whole(letter, least=0, most=2)
     rough_arc, finish_arc = ROUGH_FINISH[direction]
     side = SIDES[rough_arc][compensation]
-    if block.pocket and side != INSIDE:
-        raise block.refuse(
+    if entries.pocket and side != INSIDE:
+        raise entries.refuse(
             f"D{direction} with {letter}{compensation} does not put the tool inside the pocket:"
             f" D0 and D2 need {letter}2, D1 and D3 need {letter}1"
         )
-    if side == CENTRE and block.finish:
-        raise block.refuse(
-            f"{block.spelling.finish}{number(block.finish)}: there is no finish pass"
+    if side == CENTRE and entries.finish:
+        raise entries.refuse(
+            f"{entries.spelling.finish}{number(entries.finish)}: there is no finish pass"
             f" with the tool centre on the circle ({letter}0)"
         )
-    context = block.context
+    context = entries.context
     x, y = coordinate(x, context.x, context), coordinate(y, context.y, context)
-    return Circle(x, y, radius, side, rough_arc, finish_arc)
+    return EventCircle(x, y, radius, side, rough_arc, finish_arc)
 
 
-def planes_of(block: Block) -> tuple[float, float]:
+def planes_of(entries: EventEntries) -> tuple[float, float]:
     """Return the reference planes W, modal, and O, which is W unless the block has it."""
-    words, spelling = block.words, block.spelling
+    words, spelling = entries.words, entries.spelling
     first, second = words.take(spelling.first_plane), words.take(spelling.second_plane)
     if first is None:
-        first = block.plane
+        first = entries.plane
     if first is None:
-        raise block.refuse(
+        raise entries.refuse(
             f"{spelling.first_plane} is missing: the first reference plane,"
             " which no earlier event has commanded"
         )
     if second is None:
         second = first
-    if second < first - block.context.length(ROUNDING_MM):
-        raise block.refuse(
+    if second < first - entries.context.length(ROUNDING_MM):
+        raise entries.refuse(
             f"{spelling.second_plane}{number(second)} must not be below the first reference"
             f" plane {spelling.first_plane}{number(first)}"
         )
     return first, second
 
 
-def loaded_tool(block: Block) -> Tool:
+def loaded_tool(entries: EventEntries) -> Tool:
     """Return the tool in the spindle, which must have a diameter."""
-    tool = block.context.spindle_tool
+    tool = entries.context.spindle_tool
     if tool is None:
-        raise block.refuse("no tool is loaded: its diameter sets the path")
+        raise entries.refuse("no tool is loaded: its diameter sets the path")
     if tool.radius <= 0:
-        raise block.refuse(
+        raise entries.refuse(
             f"T{tool.number} in the spindle needs a diameter above 0 in the tool table,"
             f" not {number(2 * tool.radius)}"
         )
     return tool
 
 
-def roughing_of(block: Block, circle: Circle, tool: Tool, width: float | None) -> Roughing:
+def roughing_of(
+    entries: EventEntries, circle: EventCircle, tool: Tool, width: float | None
+) -> Roughing:
     """Return the circles of one level."""
-    radius = circle.radius + circle.side * (tool.radius + block.finish)
-    check_room(block, circle, tool, radius)
-    if not block.pocket:
+    radius = circle.radius + circle.side * (tool.radius + entries.finish)
+    check_room(entries, circle, tool, radius)
+    if not entries.pocket:
         if width is not None:
-            raise block.refuse(f"J{number(width)} is the roughing width of a pocket")
+            raise entries.refuse(f"J{number(width)} is the roughing width of a pocket")
         return Roughing(False, radius, 1, 0.0, radius, circle.rough_arc)
-    rings = rings_of(block, radius, tool, width)
+    rings = rings_of(entries, radius, tool, width)
     return Roughing(True, 0.0, rings, radius / rings, radius, circle.rough_arc)
 
 
-def check_room(block: Block, circle: Circle, tool: Tool, radius: float) -> None:
+def check_room(entries: EventEntries, circle: EventCircle, tool: Tool, radius: float) -> None:
     """Refuse a circle too small for its tool and finish: ``radius`` is the tool centre's."""
-    smallest = block.context.length(SMALLEST_RING_MM)
+    smallest = entries.context.length(SMALLEST_RING_MM)
     if radius >= smallest:
         return
     if circle.side == CENTRE:
-        raise block.refuse(f"R{number(circle.radius)} must be at least {number(smallest)}")
-    finish = f" + {block.spelling.finish}{number(block.finish)}" if block.finish else ""
-    raise block.refuse(
+        raise entries.refuse(f"R{number(circle.radius)} must be at least {number(smallest)}")
+    finish = f" + {entries.spelling.finish}{number(entries.finish)}" if entries.finish else ""
+    raise entries.refuse(
         f"R{number(circle.radius)} must be greater than the tool radius"
         f" {number(tool.radius)} (T{tool.number}){finish}"
     )
 
 
-def rings_of(block: Block, outermost: float, tool: Tool, width: float | None) -> int:
+def rings_of(entries: EventEntries, outermost: float, tool: Tool, width: float | None) -> int:
     """Return how many equal steps outward, none wider than ``width``, lead to the last ring."""
-    length = block.context.length
+    length = entries.context.length
     widest = 2 * tool.radius - length(NARROWER_MM) if width is None else width
     least = length(SMALLEST_RING_MM)
     if widest < least:
-        raise block.refuse(
+        raise entries.refuse(
             f"J is missing: its default, the tool diameter {number(2 * tool.radius)} less"
             f" {number(length(NARROWER_MM))}, is too small"
             if width is None
@@ -365,52 +372,56 @@ def rings_of(block: Block, outermost: float, tool: Tool, width: float | None) ->
     return max(1, steps_between(0.0, outermost, widest, length(ROUNDING_MM)))
 
 
-def depths_of(block: Block, depth: float, first_plane: float, peck: float | None) -> Depths:
+def depths_of(
+    entries: EventEntries, depth: float, first_plane: float, peck: float | None
+) -> Depths:
     """Return the levels from W down to Z; refuse a Z that is not below W."""
-    context = block.context
+    context = entries.context
     final = first_plane + depth if context.incremental else depth
-    rough = final + block.finish if block.bottom else final
+    rough = final + entries.finish if entries.bottom else final
     way = first_plane - rough
     if way <= context.length(ROUNDING_MM):
         finish = (
-            f" by more than {block.spelling.finish}{number(block.finish)}" if block.bottom else ""
+            f" by more than {entries.spelling.finish}{number(entries.finish)}"
+            if entries.bottom
+            else ""
         )
-        raise block.refuse(
+        raise entries.refuse(
             f"Z{number(depth)} must be below the first reference plane"
-            f" {block.spelling.first_plane}{number(first_plane)}{finish}"
+            f" {entries.spelling.first_plane}{number(first_plane)}{finish}"
         )
     peck = peck or way
     pecks = max(0, steps_between(0.0, way, peck, context.length(ROUNDING_MM)) - 1)
     first = first_plane - peck if pecks else rough
-    levels = pecks + 1 + block.bottom
+    levels = pecks + 1 + entries.bottom
     return Depths(levels, pecks, peck, first, rough, final, context.length(RETRACT_MM))
 
 
-def side_finish_of(block: Block, circle: Circle, tool: Tool) -> SideFinish:
+def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> SideFinish:
     """Return the side finish; refuse a finish dimension too small for its entry arcs.
 
     Inside, the entry arc turns the way of the cut; outside, the other way.
     """
-    smallest = block.context.length(SMALLEST_RING_MM)
-    if 0 < block.finish < smallest:
-        raise block.refuse(
-            f"{block.spelling.finish}{number(block.finish)} must be at least {number(smallest)}"
+    smallest = entries.context.length(SMALLEST_RING_MM)
+    if 0 < entries.finish < smallest:
+        raise entries.refuse(
+            f"{entries.spelling.finish}{number(entries.finish)} must be at least {number(smallest)}"
         )
     other = CLOCKWISE + COUNTERCLOCKWISE - circle.finish_arc
     return SideFinish(
-        side_finish=block.finish > 0,
+        side_finish=entries.finish > 0,
         finish_radius=circle.radius + circle.side * tool.radius,
         finish_arc=circle.finish_arc,
         entry_arc=circle.finish_arc if circle.side == INSIDE else other,
     )
 
 
-def left_material(block: Block, roughing: Roughing, tool: Tool) -> str | None:
+def left_material(entries: EventEntries, roughing: Roughing, tool: Tool) -> str | None:
     """Return the operator message of a pocket that leaves material standing, or None."""
-    rounding = block.context.length(ROUNDING_MM)
+    rounding = entries.context.length(ROUNDING_MM)
     if roughing.roughing_width <= 2 * tool.radius + rounding:
         return None
     return (
-        f"{block.words.code}: the roughing width {number(roughing.roughing_width)} is greater than"
-        f" the tool diameter {number(2 * tool.radius)}: material is left between the rings"
+        f"{entries.words.code}: the roughing width {number(roughing.roughing_width)} is greater"
+        f" than the tool diameter {number(2 * tool.radius)}: material is left between the rings"
     )

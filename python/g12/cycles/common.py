@@ -22,7 +22,10 @@ MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the
 
 
 def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,)) -> None:
-    """Refuse the modes in which no circle can be cut."""
+    """Refuse the modes in which no circle can be cut.
+
+    In this order: another plane, G93, G95 without a spindle speed, G41/G42, a feed of 0.
+    """
     if context.plane not in planes:
         *others, last = planes
         wanted = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"

@@ -14,9 +14,10 @@ The motions of `ngc/g12_haas.ngc`, per level:
 
 A tool-centre radius b is the programmed radius less the tool radius.
 
-Rules, in the order of the checks: G17, no G93, no G41/G42, feed above 0; every word known;
-I, Z required; K and Q together; Q > 0; L whole, from 1; D whole, from 0, in the tool table;
-I greater than the tool radius; I less than K.
+Rules, in the order of the checks: G17 and the modes of `check_modes`; I required; K and Q together,
+both above 0; L whole, from 1; Z required; without X and Y `check_start`; D whole, from 0, in the
+tool table, or a cutter known without it; every word known; I above 0, greater than the tool radius
+by a ring that can be cut, less than K; not too many circles.
 """
 
 from __future__ import annotations

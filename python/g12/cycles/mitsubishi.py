@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G12/G13 circular cutting, dialect mitsubishi: words and modes in, one checked circle out.
 
-The motions of `ngc/g12_circle.ngc`, in the plane of G17, G18 or G19, from the centre where the
+The motions of `ngc/g12_mitsubishi.ngc`, in the plane of G17, G18 or G19, from the centre where the
 tool stands:
 
 1. half circle out along the plane's first axis (X, Z, Y), turning the way of the cut
 2. full circle
 3. half circle back to the centre
 
-Rules, in the order of the checks: no plane of U, V, W, no G93, no G41/G42, feed above 0; I and D
-required, every other word refused; D whole, from 0, in the tool table; I, whose sign is
-ignored, greater than the offset. A negative diameter in the tool table enlarges the circle.
+Rules, in the order of the checks: G17, G18 or G19 and the modes of `check_modes`; `check_start`; I
+required; D required, whole, from 0, in the tool table; every other word refused; I, whose sign
+is ignored, greater than the offset. A negative diameter in the tool table enlarges the circle.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ KNOWN_WORDS = "I D F"
 FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}
 
 
-class Circle(NamedTuple):
-    """A circle that is fit to cut: the named locals of `ngc/g12_circle.ngc`.
+class MitsubishiCircle(NamedTuple):
+    """A circle that is fit to cut: the named locals of `ngc/g12_mitsubishi.ngc`.
 
     ``plane`` is 17, 18 or 19, ``centre`` a coordinate of the plane's first axis, ``radius`` the
     tool centre's, in program units.
@@ -38,7 +38,7 @@ class Circle(NamedTuple):
     radius: float
 
 
-def plan_circle(words: Words, context: Context) -> Circle:
+def plan_circle(words: Words, context: Context) -> MitsubishiCircle:
     """Return the circle of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context, planes=tuple(FIRST_AXIS))
     check_start(words, context)
@@ -48,7 +48,7 @@ def plan_circle(words: Words, context: Context) -> Circle:
     tool = commanded_tool(words, context)
     words.finish(KNOWN_WORDS)
     check_radius(words, context, wanted, tool)
-    return Circle(
+    return MitsubishiCircle(
         plane=int(context.plane[1:]),
         centre=getattr(context, FIRST_AXIS[context.plane]),
         radius=abs(wanted) - tool.radius,

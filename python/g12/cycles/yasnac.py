@@ -16,9 +16,10 @@ The motions of `ngc/g12_yasnac.ngc`, at the present Z, from the centre where the
 All of it lies on the side of X that I's sign picks: I-50 is I50 turned by 180 degrees.
 With d = the tool radius, signed like I, R - d and K - d and I - d are tool-centre positions.
 
-Rules, in the order of the checks: G17, no G93, no G41/G42, feed above 0; I required; R or J, not
-both; K and Q together, Q > 0; L whole, from 1; D whole, from 0, in the tool table; every word
-known; I beyond the tool radius; R - d from 0 to less than I - d; K - d between R - d and I - d.
+Rules, in the order of the checks: G17 and the modes of `check_modes`; `check_start`; I required; R
+or J, not both; K and Q together, Q above 0; L whole, from 1; D whole, from 0, in the tool table;
+every word known; no negative diameter; I not 0, beyond the tool radius; R - d from 0 to less than
+I - d; K - d between R - d and I - d; not too many circles.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ from g12.errors import number
 KNOWN_WORDS = "I R (or J) K Q L D F"
 
 
-class Circle(NamedTuple):
+class YasnacCircle(NamedTuple):
     """A circle that is fit to cut: the named locals of `ngc/g12_yasnac.ngc`.
 
     Lengths in program units; ``approach``, ``first``, ``growth`` and ``radius`` are those of the
@@ -86,7 +87,7 @@ class Reach(NamedTuple):
             )
 
 
-def plan_circle(words: Words, context: Context) -> Circle:
+def plan_circle(words: Words, context: Context) -> YasnacCircle:
     """Return the circle of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context)
     check_start(words, context)
@@ -102,7 +103,7 @@ def plan_circle(words: Words, context: Context) -> Circle:
     approach = approach_of(reach, traverse, finished)
     first, half_turns, growth, shrink = half_turns_of(reach, spiral, approach, finished)
     check_count(words, half_turns + circles, "K, Q and L make")
-    return Circle(
+    return YasnacCircle(
         context.x, context.y, approach, first, half_turns, growth, shrink, radius, circles
     )
 

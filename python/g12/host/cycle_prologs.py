@@ -64,7 +64,7 @@ def g13_yasnac(self, **words):
 
 
 def prepare_mitsubishi(interp: object, arc: int) -> int:
-    """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_circle.ngc`."""
+    """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_mitsubishi.ngc`."""
     circle = mitsubishi.plan_circle(glue.words_of_block(interp), glue.snapshot(interp))
     glue.hand_over(interp, **circle._asdict(), arc=arc)
     return INTERP_OK
@@ -82,14 +82,15 @@ def g13_mitsubishi(self, **words):
     return prepare_mitsubishi(self, COUNTERCLOCKWISE)
 
 
-def planned_event(interp: object, pocket: bool) -> circle_mill.Event:
+def planned_event(interp: object, pocket: bool) -> circle_mill.MillEvent:
     """Return the event of a code block, or of the call if the code stands in o<circle_mill>."""
     words, context = glue.words_of_block(interp), glue.snapshot(interp)
     plane = glue.first_plane(interp)
     entries = glue.entries_of_call(interp, "circle_mill", len(circle_mill.ENTRIES))
     if entries is None:
         return circle_mill.plan_code(words, context, plane, pocket)
-    call = Words("circle_mill", circle_mill.entries_of_call(entries))
+    words.finish("no words inside o<circle_mill>")
+    call = Words("circle_mill", circle_mill.entries_by_letter(entries))
     return circle_mill.plan_call(call, context, plane)
 
 
