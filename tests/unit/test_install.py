@@ -360,6 +360,28 @@ def test_a_users_remap_gets_its_line_once(tmp_path):
     assert len(notes) == 1
 
 
+def test_the_lines_of_an_older_package_are_brought_up_to_date(tmp_path):
+    ini = write_config(tmp_path, MILL.replace("\n", "\r\n"))
+    before = content_of(tmp_path)
+    put_in(ini, "mitsubishi")
+    up_to_date = ini.read_bytes()
+    ini.write_bytes(up_to_date.replace(b"ngc=g12_mitsubishi", b"ngc=g12_circle"))
+    put_in(ini, "circle-mill")
+    assert b"g12_circle " not in ini.read_bytes()
+    take_out(ini)
+    put_in(ini, "mitsubishi")
+    assert ini.read_bytes() == up_to_date
+    take_out(ini)
+    assert content_of(tmp_path) == before
+
+
+def test_a_line_of_the_users_own_is_not_brought_up_to_date(tmp_path):
+    line = "REMAP = G12 modalgroup=1 prolog=g12_mitsubishi ngc=mine epilog=cycle_done\n"
+    ini = write_config(tmp_path, with_lines(MILL, "RS274NGC", line))
+    put_in(ini, "mitsubishi")
+    assert line in ini.read_text()
+
+
 # The copy of the package.
 
 

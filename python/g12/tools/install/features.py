@@ -66,6 +66,10 @@ class Remap:
         names = {self.keywords[word] for word in ("ngc", *HANDLERS) if word in self.keywords}
         return names - SHARED
 
+    def like(self, model: Remap) -> str:
+        """Return the line as the package writes it today, with this line's own code."""
+        return f"REMAP = {' '.join([self.code, *model.text.split()[1:]])}"
+
 
 def code_number(code: str) -> tuple[str, int]:
     """Return a code's letter and ten times its number, ("", 0) if it is none."""

@@ -188,6 +188,11 @@ class IniText:
             new[-1] = texts[-1]
         lines[place.index : place.index] = new
 
+    def replace(self, line: Line, text: str) -> None:
+        """Put another text in place of a line; its line end stays."""
+        lines = self.files[line.file]
+        lines[line.index] = text + lines[line.index][len(line.text) :]
+
     def append_to_value(self, line: Line, text: str) -> None:
         """Append to the value of the entry that begins at ``line``."""
         index = self._behind(line.file, line.index) - 1

@@ -85,6 +85,7 @@ def make_plan(config: Config, wanted: Sequence[str]) -> Plan:
     """Return the plan that gives a config the features wanted."""
     prefix, copied = package_folder(config)
     plan = Plan(IniText(config.text.path), prefix, copied)
+    mend_remaps(plan.text, config)
     python = python_lines(plan, config, wanted)
     subs = subroutine_lines(plan, config, wanted)
     remaps = [f"REMAP = {remap.text}" for remap in new_remaps(config, wanted)]
@@ -97,6 +98,15 @@ def make_plan(config: Config, wanted: Sequence[str]) -> Plan:
     for path in plan.changes():
         require_inside(config, path)
     return plan
+
+
+def mend_remaps(text: IniText, config: Config) -> None:
+    """Bring the REMAP lines up to date that an older `install` wrote."""
+    ours = {line for block in text.blocks() for line in block}
+    for line, remap in config.remaps:
+        found = features.model_of(remap) if line in ours else None
+        if found and found[1].keywords != remap.keywords:
+            text.replace(line, remap.like(found[1]))
 
 
 def names_copy(text: IniText) -> list[Line]:

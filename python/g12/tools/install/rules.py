@@ -226,7 +226,7 @@ def wrong_lines(_config: Config, codes: list[Code]) -> Iterator[Finding]:
             yield problem(
                 "wrong-line",
                 f"{code.line.place}: REMAP = {code.remap.text}: should have {', '.join(wrong)}",
-                f"REMAP = {' '.join([code.remap.code, *code.model.text.split()[1:]])}",
+                code.remap.like(code.model),
             )
 
 
