@@ -55,6 +55,16 @@ def test_w_and_f_are_carried_from_event_to_event():
     assert second[5] == second[12] == "-9999"
 
 
+def test_w_may_be_written_i_and_c_may_be_written_h():
+    """As on a control whose auxiliary axes have the letters W and C."""
+    event = "N1(4)G7X0Y0Z/-.6{}.1R1{}2F20$"
+    plain = calls(event.format("W", "C"))
+    for w, c in ("IC", "WH", "IH"):
+        assert calls(event.format(w, c)) == plain
+    first, second = calls(event.format("I", "H"), "N2(4)X5Y0Z-1R1C2$")
+    assert (first[4], second[4], second[8]) == ("0.1", "0.1", "2")
+
+
 def test_empty_lines_blanks_and_lower_case_do_not_matter():
     spaced = EXAMPLE.lower().replace("x", " x ")
     assert calls("", spaced, "  ", EXAMPLE.replace("N1800", "N1810") + EXAMPLE) == calls(
@@ -81,6 +91,12 @@ def test_the_units_of_the_text_can_be_given():
         (["N1(4)X0Y0Z-1W.1RC2F20$"], "line 1: RC2F20 does not start with an entry"),
         (["N1(4)X0Y0Z--1W.1R1C2F20$"], "line 1: Z--1W.1R1C2F20 does not start with an entry"),
         (["N1(4)X0X1Y0Z-1W.1R1C2F20$"], "line 1: X stands twice"),
+        (["N1(4)X0Y0Z-1W.1I.1R1C2F20$"], "line 1: W and I are the same entry: give one of them"),
+        (["N1(4)X0Y0Z-1I.1W.1R1C2F20$"], "line 1: I and W are the same entry: give one of them"),
+        (["", "N1(4)X0Y0Z-1W.1R1C2H2F20$"], "line 2: C and H are the same entry: give one of them"),
+        (["N1(4)X0Y0Z-1I.1I.1R1C2F20$"], "line 1: I stands twice"),
+        (["N1(4)X0Y0Z-1I/.1R1C2F20$"], "line 1: I/ cannot be incremental"),
+        (["N1(4)X0Y0Z-1W.1R1H3F20$"], "line 1: H3 must be one of 0, 1, 2"),
         (["N1(4)Y0Z-1W.1R1C2F20$"], "line 1: X is missing"),
         (["N1(4)X0Z-1W.1R1C2F20$"], "line 1: Y is missing"),
         (["N1(4)X0Y0W.1R1C2F20$"], "line 1: Z is missing"),
@@ -157,7 +173,7 @@ def test_a_call_longer_than_a_block_can_be_is_refused():
     assert refused.value.message == f"line 2: {rule}"
 
 
-@given(text=st.text(st.sampled_from("NXYZWORDCKJLPFVG0123456789.-/()$ \n")))
+@given(text=st.text(st.sampled_from("NXYZWORDCHIKJLPFVG0123456789.-/()$ \n")))
 def test_any_text_is_a_program_or_a_refusal(text):
     try:
         program = program_from_events(text)

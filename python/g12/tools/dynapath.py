@@ -3,12 +3,14 @@
 
 An event is one line: ``N1800(4)G7X1.5Y2.Z-.5W.1O.5R1.5D0C2K.2J.3L.02P5F20V15$``, that is block
 number, event type, entries, end mark. A ``/`` behind a letter marks an incremental entry. Each
-becomes one ``o<circle_mill> call``; W and F are modal and carried from event to event.
+becomes one ``o<circle_mill> call``; W and F are modal and carried from event to event. A control
+with auxiliary axes W and C writes I for W and H for C.
 
-Rules: every line is empty or an event of type 4; no entry twice; X, Y, Z, R, C in every event,
-W and F in it or an earlier one; only X, Y, Z, L can be incremental; G 0 or 7, D from 0 to 3, C from
-0 to 2; R, K, J, P, F, V above 0, L not below 0 and L/ not 0; no value beyond any machine or that
-the call would take for an entry left out; no call longer than a block of LinuxCNC can be.
+Rules: every line is empty or an event of type 4; no entry twice, be it by its two letters; X, Y,
+Z, R, C in every event, W and F in it or an earlier one; only X, Y, Z, L can be incremental; G 0
+or 7, D from 0 to 3, C from 0 to 2; R, K, J, P, F, V above 0, L not below 0 and L/ not 0; no value
+beyond any machine or that the call would take for an entry left out; no call longer than a block
+of LinuxCNC can be.
 """
 
 from __future__ import annotations
@@ -34,6 +36,7 @@ ENTRY = re.compile(
     r"(?P<letter>[A-Z])(?P<incremental>/?)(?P<value>[+-]?(?:\d+\.?\d*|\.\d+))", re.ASCII
 )
 CIRCLE_MILL = "4"
+OTHER_LETTERS = {"I": "W", "H": "C"}  # of a control with auxiliary axes W and C
 REQUIRED = "XYZRC"
 MODAL = "WF"
 INCREMENTAL = "XYZL"
@@ -66,9 +69,10 @@ def calls_of_events(text: str) -> Iterator[str]:
 
 
 class Entry:
-    """One entry of an event: its number as written, and whether it is incremental."""
+    """One entry of an event: letter and number as written, and whether it is incremental."""
 
-    def __init__(self, value: str, incremental: bool) -> None:
+    def __init__(self, letter: str, value: str, incremental: bool) -> None:
+        self.letter = letter
         self.value = Decimal(value)
         self.incremental = incremental
 
@@ -99,13 +103,22 @@ def entries_of_event(text: str, line: int) -> dict[str, Entry]:
     position = 0
     while position < len(text):
         match = ENTRY.match(text, position)
-        if not match or match["letter"] not in ENTRIES:
+        written = match["letter"] if match else ""
+        letter = OTHER_LETTERS.get(written, written)
+        if not match or letter not in ENTRIES:
             raise refusal(line, f"{text[position:][:20]} does not start with an entry")
-        if match["letter"] in entries:
-            raise refusal(line, f"{match['letter']} stands twice")
-        entries[match["letter"]] = Entry(match["value"], bool(match["incremental"]))
+        if letter in entries:
+            raise refusal(line, repeated(entries[letter].letter, written))
+        entries[letter] = Entry(written, match["value"], bool(match["incremental"]))
         position = match.end()
     return entries
+
+
+def repeated(first: str, second: str) -> str:
+    """Return the rule that an entry breaks which stands twice, by whichever letters."""
+    if first == second:
+        return f"{first} stands twice"
+    return f"{first} and {second} are the same entry: give one of them"
 
 
 def check_entries(entries: Mapping[str, Entry], line: int) -> None:
@@ -124,9 +137,9 @@ def check_entries(entries: Mapping[str, Entry], line: int) -> None:
 
 def broken_rule(letter: str, entry: Entry) -> str | None:
     """Return the rule of its letter that an entry breaks, None if it keeps them."""
-    written = f"{letter}{number(entry.value)}"
+    written = f"{entry.letter}{number(entry.value)}"
     if entry.incremental and letter not in INCREMENTAL:
-        return f"{letter}/ cannot be incremental"
+        return f"{entry.letter}/ cannot be incremental"
     if letter in CHOICES and entry.value not in CHOICES[letter]:
         return f"{written} must be one of {', '.join(map(str, CHOICES[letter]))}"
     if letter in POSITIVE and not float(entry.value) > 0:
@@ -141,7 +154,7 @@ def broken_rule(letter: str, entry: Entry) -> str | None:
 def unfit_for_call(letter: str, entries: Mapping[str, Entry]) -> str | None:
     """Return why the call cannot carry an entry's value, None if it can."""
     value = float(value_in_call(letter, entries))
-    written = f"{letter}{number(value)}"
+    written = f"{entries[letter].letter}{number(value)}"
     if abs(value) > LARGEST:
         return f"{written} is beyond {number(LARGEST)}"
     if value == LEFT_OUT and not from_the_tool(letter, entries[letter]):
