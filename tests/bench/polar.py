@@ -13,7 +13,7 @@ from bench.haas import cpu_seconds
 from g12.tools.headless.machine import Machine
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
-from support.outline import Arc, deviation, outward
+from support.contour_geometry import deviation, outward, spaced
 from support.polar_drawings import HEXAGON, INCHES, MILLIMETRES
 from support.polar_programs import Cut, feed_moves
 from support.sim_machines import PROGRAMS, SIM
@@ -59,7 +59,7 @@ def against_ideal(lathe, name, scale, feed, blocks, drawings):
     """Compare the time of a contour at F250 with its length over the feed."""
     program = _at_feed((SAMPLES / f"{name}.ngc").read_text(), feed, blocks)
     seconds = seconds_in(lathe.run_text(program), blocks)
-    length = scale * sum(_length(piece) for block in blocks for piece in drawings[name].path[block])
+    length = scale * sum(piece.length for block in blocks for piece in drawings[name].path[block])
     return Figure(
         f"polar: section time against the ideal at F250, {name}",
         seconds / (length / 250 * 60),
@@ -90,18 +90,17 @@ def against_equal_angles(lathe):
 
 def equal_angles(piece, tolerance=TOLERANCE["mm"]):
     """Return the fewest points on a piece, at equal C angles, whose X-C moves stay near it."""
-    fine = piece.points(0.002)
-    radii, angles = np.hypot(*fine.T), np.unwrap(np.arctan2(fine[:, 1], fine[:, 0]))
+    fine = spaced(piece, 0.002)
+    radii, angles = abs(fine), np.unwrap(np.angle(fine))
     if angles[-1] < angles[0]:
         radii, angles = radii[::-1], angles[::-1]
     for count in range(1, 10000):
         at = np.linspace(angles[0], angles[-1], count + 1)
         straight = np.interp(angles, at, np.interp(at, angles, radii))
-        moved = np.column_stack([straight * np.cos(angles), straight * np.sin(angles)])
-        if piece.distances(moved).max() <= tolerance:
+        if piece.distance(straight * np.exp(1j * angles)).max() <= tolerance:
             break
     x = np.interp(at, angles, radii)
-    if piece.points(1)[0] @ [np.cos(at[0]), np.sin(at[0])] < x[0] - 1e-6:
+    if (piece.start * np.exp(-1j * at[0])).real < x[0] - 1e-6:
         x, at = x[::-1], at[::-1]
     return np.column_stack([x[1:], at[1:]])
 
@@ -185,9 +184,3 @@ def _at_feed(text, feed, blocks):
         words = [word for word in lines[block - 1].split() if word[0] != "F"]
         lines[block - 1] = " ".join([*words, feed])
     return lines
-
-
-def _length(piece):
-    if isinstance(piece, Arc):
-        return piece.radius * abs(piece.sweep)
-    return float(np.hypot(*(piece.end - piece.start)))

@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 
 from g12.tools.headless.machine import Machine
-from support.outline import deviation, distances, fitted_circle, fitted_line, lines
+from support.contour_geometry import (
+    FROM_COLUMNS,
+    deviation,
+    distance,
+    fitted_circle,
+    fitted_line,
+    lines,
+)
 from support.polar_drawings import INCHES, MILLIMETRES
 from support.polar_programs import FEED, FIRST, Cut, section
 from support.sim_machines import PROGRAMS, SIM
@@ -169,7 +176,7 @@ def part(feed="F2500", **around):
 def on_the_part(samples):
     """Tell whether every sample lies on the straight blocks or the arc of the part."""
     points = Cut(samples).points
-    off = distances(OUTLINE, points)
+    off = distance(points @ FROM_COLUMNS, OUTLINE)
     return np.minimum(off, np.abs(np.hypot(*points.T) - 13)).max() < 0.006
 
 

@@ -8,7 +8,7 @@ program's units.
 import math
 from typing import NamedTuple
 
-from support.outline import Arc, Line, lines, outward
+from support.contour_geometry import Straight, arc, lines, outward
 
 
 class Drawing(NamedTuple):
@@ -32,10 +32,10 @@ def _compensated(first, contour, cutter, approach, leave=None):
     blocks = list(approach)
     stops = [approach[block] for block in blocks]
     path = {block: lines(*stops[at : at + 2]) for at, block in enumerate(blocks[:-1])}
-    path[blocks[-1]] = lines(stops[-1], groups[0][0].start)
+    path[blocks[-1]] = [Straight(complex(*stops[-1]), groups[0][0].start)]
     path.update(enumerate(groups, first))
     if leave:
-        path[leave[0]] = lines(groups[-1][-1].end, leave[1])
+        path[leave[0]] = [Straight(groups[-1][-1].end, complex(*leave[1]))]
     return path
 
 
@@ -44,27 +44,27 @@ HEXAGON = lines(
     (13.5, 7.7942),
 )  # fmt: skip
 SQUARE = [
-    Line((15, 5), (15, -10)), Arc((10, -10), 5, 0, -90), Line((10, -15), (-10, -15)),
-    Arc((-10, -10), 5, -90, -90), Line((-15, -10), (-15, 10)), Arc((-10, 10), 5, 180, -90),
-    Line((-10, 15), (10, 15)), Arc((10, 10), 5, 90, -90), Line((15, 10), (15, 0)),
+    *lines((15, 5), (15, -10)), arc((10, -10), 5, 0, -90), *lines((10, -15), (-10, -15)),
+    arc((-10, -10), 5, -90, -90), *lines((-15, -10), (-15, 10)), arc((-10, 10), 5, 180, -90),
+    *lines((-10, 15), (10, 15)), arc((10, 10), 5, 90, -90), *lines((15, 10), (15, 0)),
 ]  # fmt: skip
 NOSE, BASE = (
     math.degrees(math.atan2(c, x)) for x, c in ((0.69625, -0.7177996), (0.078125, -0.996943))
 )
 CAM = [
-    Arc((16, 0), 5, 0, NOSE), Arc((-1.40625, 17.94499), 30, NOSE, BASE - NOSE),
-    Arc((0, 0), 12, BASE, -360 - 2 * BASE), Arc((-1.40625, -17.94499), 30, -BASE, BASE - NOSE),
-    Arc((16, 0), 5, -NOSE, NOSE),
+    arc((16, 0), 5, 0, NOSE), arc((-1.40625, 17.94499), 30, NOSE, BASE - NOSE),
+    arc((0, 0), 12, BASE, -360 - 2 * BASE), arc((-1.40625, -17.94499), 30, -BASE, BASE - NOSE),
+    arc((16, 0), 5, -NOSE, NOSE),
 ]  # fmt: skip
 CLEAR = math.degrees(math.asin(0.4153 / 0.65))
 FLATS = [
-    Line((0.5, 0.4153), (0.5, -0.4153)), Arc((0, 0), 0.65, -CLEAR, 2 * CLEAR - 180),
-    Line((-0.5, -0.4153), (-0.5, 0.4153)),
+    *lines((0.5, 0.4153), (0.5, -0.4153)), arc((0, 0), 0.65, -CLEAR, 2 * CLEAR - 180),
+    *lines((-0.5, -0.4153), (-0.5, 0.4153)),
 ]  # fmt: skip
 AROUND = math.degrees(math.asin(0.5339 / 1.025))
 CENTRES = [
-    Line((0.875, 0.5339), (0.875, -0.5339)), Arc((0, 0), 1.025, -AROUND, 2 * AROUND - 180),
-    Line((-0.875, -0.5339), (-0.875, 0.5339)),
+    *lines((0.875, 0.5339), (0.875, -0.5339)), arc((0, 0), 1.025, -AROUND, 2 * AROUND - 180),
+    *lines((-0.875, -0.5339), (-0.875, 0.5339)),
 ]  # fmt: skip
 
 
@@ -76,15 +76,15 @@ def _flat(first, approach):
 
 def _turned(path):
     """Return straight pieces turned by 180 degrees."""
-    return {block: [Line(-piece.start, -piece.end) for piece in path[block]] for block in path}
+    return {block: [Straight(-piece.start, -piece.end) for piece in path[block]] for block in path}
 
 
 SECOND_START = math.hypot(0.9, 0.4153)  # where the first flat leaves the X slide
 SLOT = {7: lines((18, 0), (-18, 0)), 8: lines((-18, 0), (-18, 1)), 9: lines((-18, 1), (18, 1))}
 CIRCLES = {
-    7: [Arc((4, 0), 10, 0, 360)],
+    7: [arc((4, 0), 10, 0, 360)],
     8: lines((14, 0), (19, 0)),
-    9: [Arc((19, -5), 5, 90, -360)],
+    9: [arc((19, -5), 5, 90, -360)],
 }
 
 MILLIMETRES = {

@@ -16,7 +16,8 @@ from shapely.geometry import LineString, Polygon
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat.contour import Contour
 from g12.polar.plan import Run, Settings, plan
-from support.plane import SAGITTA, Round, Straight, add, cuts, distance_from_path, path
+from support.contour_geometry import Round, Straight, distance_from_path
+from support.planned_cuts import SAGITTA, add, cuts, path
 
 TOLERANCE = 0.005
 LATHE = Settings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)

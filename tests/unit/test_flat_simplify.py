@@ -13,7 +13,7 @@ from g12.errors import Refusal
 from g12.flat import simplify
 from g12.flat.contour import Contour, Line, is_move
 from g12.polar.plan import Settings, plan
-from support.plane import cuts, path
+from support.planned_cuts import cuts, path
 
 MACHINE = Settings(0.005, 0.001, 1000.0, 3600.0, 21600.0)
 

@@ -12,16 +12,8 @@ from hypothesis import strategies as st
 from g12.errors import Refusal
 from g12.flat.contour import Contour
 from g12.polar.plan import Run, Settings, plan, resume
-from support.plane import (
-    SAGITTA,
-    Round,
-    Straight,
-    cuts,
-    distance,
-    distance_from_path,
-    path,
-    programmed,
-)
+from support.contour_geometry import Round, Straight, distance, distance_from_path
+from support.planned_cuts import SAGITTA, cuts, path, programmed
 
 TOLERANCE = 0.005
 LATHE = Settings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)

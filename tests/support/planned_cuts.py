@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Independent geometry of polar interpolation: what a plan cuts, and what it should have cut.
+"""What a polar plan cuts: its pieces turned back into the plane by r exp(j angle).
 
-Nothing here knows how the planner works. A path in the X-C plane is a list of complex numbers
-x + jc, or of shapes with a distance; pieces of a plan are turned back into it by r exp(j angle).
+Nothing here knows how the planner works.
 """
 
 import math
@@ -12,86 +11,9 @@ import numpy as np
 
 from g12.flat.contour import Contour
 from g12.polar.plan import Run
+from support.contour_geometry import Straight
 
 SAGITTA = 2e-4  # of the chords that stand for a piece
-
-
-class Straight(NamedTuple):
-    """A line of the drawing."""
-
-    start: complex
-    end: complex
-
-    @property
-    def length(self):
-        return abs(self.end - self.start)
-
-    def points(self, count):
-        return self.start + (self.end - self.start) * np.linspace(0.0, 1.0, count)
-
-    def turned(self, by):
-        return Straight(self.start * by, self.end * by)
-
-    def between(self, first, last):
-        return Straight(*(self.start + (self.end - self.start) * part for part in (first, last)))
-
-    def distance(self, points):
-        along = self.end - self.start
-        part = np.clip(((points - self.start) * np.conj(along)).real / abs(along) ** 2, 0.0, 1.0)
-        return abs(points - self.start - part * along)
-
-
-class Round(NamedTuple):
-    """An arc of the drawing; ``sweep`` in radians, counterclockwise above zero."""
-
-    start: complex
-    centre: complex
-    sweep: float
-
-    @property
-    def radius(self):
-        return abs(self.start - self.centre)
-
-    @property
-    def length(self):
-        return self.radius * abs(self.sweep)
-
-    @property
-    def end(self):
-        return self.points(2)[-1]
-
-    def points(self, count):
-        angles = self.sweep * np.linspace(0.0, 1.0, count)
-        return self.centre + (self.start - self.centre) * np.exp(1j * angles)
-
-    def turned(self, by):
-        return Round(self.start * by, self.centre * by, self.sweep)
-
-    def between(self, first, last):
-        start = self.centre + (self.start - self.centre) * np.exp(1j * self.sweep * first)
-        return Round(start, self.centre, self.sweep * (last - first))
-
-    def distance(self, points):
-        arm = (points - self.centre) / (self.start - self.centre)
-        angle = np.angle(arm) * math.copysign(1.0, self.sweep) % (2 * math.pi)
-        to_ends = np.minimum(abs(points - self.start), abs(points - self.end))
-        to_circle = abs(abs(points - self.centre) - self.radius)
-        return np.where(angle <= abs(self.sweep) + 1e-9, to_circle, to_ends)
-
-
-def distance(points, shapes):
-    """Return the distance of points from the nearest of the shapes."""
-    return np.min([shape.distance(points) for shape in shapes], axis=0)
-
-
-def distance_from_path(points, path):
-    """Return the distance of points from the polyline through the points of a path."""
-    start, along = path[:-1], np.diff(path)
-    there = abs(along) > 1e-12
-    start, along = start[there], along[there]
-    arms = points[:, None] - start
-    part = np.clip((arms * np.conj(along)).real / abs(along) ** 2, 0.0, 1.0)
-    return abs(arms - part * along).min(axis=1)
 
 
 def programmed(shapes, *, feed=250.0, by_radius=False):
