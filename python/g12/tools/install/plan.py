@@ -178,7 +178,8 @@ def new_remaps(config: Config, wanted: Sequence[str]) -> list[features.Remap]:
         for feature in wanted
         for remap in features.remaps_of(feature)
         if not any(
-            other.number == remap.number and other.own_names & remap.own_names for other in there
+            other.number == remap.number and features.own_names(other) & features.own_names(remap)
+            for other in there
         )
     ]
 

@@ -12,7 +12,6 @@ from pathlib import Path
 from g12.tools.commands.arguments import existing, machine_ini, tool_table
 from g12.tools.errors import UsageError
 from g12.tools.machine.ini import read_ini
-from g12.tools.preview.tracer import mm_per_unit
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recorder import (
     ADDED,
@@ -56,7 +55,7 @@ class Terms:
 
     def tolerance(self, ini: Path) -> Tolerance:
         """Return the tolerance in mm on a machine."""
-        return Tolerance(self.ends * mm_per_unit(read_ini(ini)), self.ends, self.feeds / 100)
+        return Tolerance(self.ends * read_ini(ini).mm, self.ends, self.feeds / 100)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,8 @@ from g12.tools.errors import UsageError
 from g12.tools.install.config import linuxcnc_version, python_error
 from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.path.part import part_of
-from g12.tools.preview.tracer import Move, TraceFailure, Tracer, mm_per_unit
+from g12.tools.preview.moves import Move
+from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.regress.differences import Difference, differences, lines_of
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recording_text import (
@@ -29,12 +30,11 @@ from g12.tools.regress.recording_text import (
     text_of,
 )
 from g12.tools.regress.recordings import Baseline
-from g12.tools.units import UNITS
+from g12.tools.units import name_of_unit
 
 GRACE = 5.0  # seconds for a worker to end its interpreters
 SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
 HASH_DIGITS = 16
-UNIT_NAMES = {unit.mm: name for name, unit in UNITS.items()}
 _tracers: list[Tracer] = []  # this process's
 Report = Callable[[int, int, str], None]  # hears of programs done, of how many, the last one
 
@@ -126,7 +126,7 @@ class Recorder:
         self._facts = {
             "machine": f"{ini.path.name} {hash_of(text_bytes(ini))}",
             "linuxcnc": machine.linuxcnc,
-            "units": UNIT_NAMES[mm_per_unit(ini)],
+            "units": name_of_unit(ini.mm),
         }
         util.Finalize(self, self._tracer.close, exitpriority=1)
 
