@@ -286,5 +286,5 @@ def require_inside(config: Config, path: Path) -> None:
             "outside",
             f"{path} would have to change, which is outside the folder of {config.text.path.name}",
             "copy that file into the config's folder and name it in the INI, or set the package "
-            "up by hand (README)",
+            "up by hand (configs/README.md)",
         )
