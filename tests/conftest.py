@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What holds for all tests: which of them this system can run, and a scratch home."""
+"""What holds for all tests: which this system can run, a scratch home, no process left."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import shutil
 
 import pytest
 from hypothesis import settings
+
+from support.processes import kill_session, start_in_terminal
 
 NEED_LINUXCNC = ("interp", "sim")
 
@@ -43,3 +45,17 @@ def scratch_home(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("HOME", str(tmp_path_factory.mktemp("home")))
         yield
+
+
+@pytest.fixture
+def start():
+    """Start commands as a terminal does; they and what they started end with the test."""
+    started = []
+
+    def started_here(*command, **options):
+        started.append(start_in_terminal(*command, **options))
+        return started[-1]
+
+    yield started_here
+    for process in started:
+        kill_session(process)

@@ -74,17 +74,17 @@ def test_a_number_that_is_none_is_one_line(told, tmp_path):
     words = ["-o", str(tmp_path / "no.png")]
     code, _, errors = told("plot", "G21 G90 F100\nG1 X1 C5\nM2\n", *words, ini=ini)
     assert code == 2
-    assert errors == f"g12 plot: {ini}: [AXIS_X] MAX_VELOCITY = fast: must be a number\n"
+    assert errors == f"g12 plot: {ini}: [AXIS_X] MAX_VELOCITY = fast: not a number\n"
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
-def test_a_command_that_is_ended_leaves_nothing_behind(tmp_path, number):
+def test_a_command_that_is_ended_leaves_nothing_behind(tmp_path, number, start):
     program, scratch = tmp_path / "part.ngc", tmp_path / "tmp"
     program.write_text("o1 while [1]\no1 endwhile\nM2\n")
     scratch.mkdir()
     command = [sys.executable, str(ROOT / "python" / "g12"), "trace", str(program)]
     environment = {**os.environ, "TMPDIR": str(scratch)}
-    process = subprocess.Popen([*command, "--ini", str(INI)], env=environment)
+    process = start(*command, "--ini", str(INI), env=environment)
     deadline = time.monotonic() + 20
     while not list(scratch.glob("*/trace.var")) and time.monotonic() < deadline:
         time.sleep(0.05)
@@ -94,28 +94,25 @@ def test_a_command_that_is_ended_leaves_nothing_behind(tmp_path, number):
     assert list(scratch.iterdir()) == []
 
 
-def test_what_is_told_to_ignore_a_closed_terminal_ignores_it(tmp_path):
+def test_what_is_told_to_ignore_a_closed_terminal_ignores_it(tmp_path, start):
     program = tmp_path / "part.ngc"
     program.write_text("G4 P1\nM2\n" + "(end)\n" * 1000)
-    process = subprocess.Popen(
-        [sys.executable, str(ROOT / "python" / "g12"), "trace", str(program), "--ini", str(INI)],
-        stdout=subprocess.DEVNULL,
-        preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN),  # as nohup does
-    )
+    command = [sys.executable, str(ROOT / "python" / "g12"), "trace", str(program)]
+    ignored = {"ignored": [signal.SIGHUP]}  # as nohup does
+    process = start(*command, "--ini", str(INI), stdout=subprocess.DEVNULL, **ignored)
     while process.poll() is None:
         process.send_signal(signal.SIGHUP)
         time.sleep(0.1)
     assert process.returncode == 0
 
 
-def test_a_list_that_nobody_reads_to_its_end_is_no_error(tmp_path):
+def test_a_list_that_nobody_reads_to_its_end_is_no_error(tmp_path, start):
     program = tmp_path / "part.ngc"
     program.write_text("G21 G90 F100\n" + "G1 X1\nX2\n" * 5000 + "M2\n")
     read, write = os.pipe()
     command = [sys.executable, str(ROOT / "python" / "g12"), "trace", str(program)]
-    process = subprocess.Popen(
-        [*command, "--ini", str(INI)], stdout=write, stderr=subprocess.PIPE, text=True
-    )
+    options = {"stdout": write, "stderr": subprocess.PIPE, "text": True}
+    process = start(*command, "--ini", str(INI), **options)
     os.close(write)
     os.read(read, 10)
     os.close(read)

@@ -54,16 +54,11 @@ def test_a_program_that_cannot_be_opened_is_named_as_the_user_did(tmp_path, caps
     assert said.count("\n") == 1
 
 
-def test_an_interrupted_run_is_one_line(tmp_path):
+def test_an_interrupted_run_is_one_line(tmp_path, start):
     (tmp_path / "long.ngc").write_text("G21 G90 F10\nG1 X50\nM2\n")
     words = ["run", "long.ngc", "--ini", str(SIM / "mill_mm.ini")]
-    process = subprocess.Popen(
-        [sys.executable, str(ROOT / "python" / "g12"), *words],
-        cwd=tmp_path,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+    command = [sys.executable, str(ROOT / "python" / "g12"), *words]
+    process = start(*command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     time.sleep(5)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     _, said = process.communicate(timeout=20)
