@@ -4,9 +4,8 @@
 Data flow of one block, one way only::
 
     words and modes -> request -> named locals -> motion
-    (host)             (cycles)   (host)          (ngc/)
+    (host, words)      (haas)     (host)          (ngc/)
 
-The planners (`cycles`, `section`, `flat`, `polar`) are pure: numbers in, values out, no LinuxCNC.
-README.md beside this file has the rooms, and the walk of a block and of a section.
+The planners (`haas`, `geometry`, `polar`) are pure: numbers in, values out, no LinuxCNC.
 Lengths are in program units unless a docstring says otherwise, angles in radians.
 """

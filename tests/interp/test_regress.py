@@ -14,6 +14,7 @@ import pytest
 
 from g12.tools.commands import main as command_line
 from g12.tools.regress.recorder import hash_of
+from support.processes import living, until
 from support.sim_machines import PROGRAMS, ROOT, SIM
 
 INI = SIM / "mill_inch.ini"
@@ -318,38 +319,46 @@ def test_no_program_leaves_anything_to_the_next(shop):
         assert "\n  rapid X3\n" not in text
 
 
-def living(session):
-    """Return the processes of a session that still run."""
-    found = []
-    for path in Path("/proc").glob("[0-9]*/stat"):
-        with contextlib.suppress(OSError):
-            state, _, _, its = path.read_text().rpartition(")")[2].split()[:4]
-            found += [path.parent.name] if its == str(session) and state != "Z" else []
-    return found
+ALL_AT_WORK = 5  # the command, two interpreters, each with a copy of itself for its program
 
 
-ALL_AT_WORK = 5  # the command, two workers, two interpreters
-
-
-def test_an_interrupted_recording_ends_at_once(shop):
+@pytest.fixture
+def endless(shop, start):
+    """Start a recording whose programs come to no end; return it when all are at work."""
     for name in ("a.ngc", "b.ngc", "c.ngc"):
         shop.write(name, "o1 while [1]\no1 endwhile\nM2\n")
     words = ["regress", "record", "nc", "--ini", str(INI), "-d", "regress", "--jobs", "2"]
     command = [sys.executable, str(ROOT / "python" / "g12"), *words]
-    process = subprocess.Popen(
-        command, cwd=shop.folder, stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
-    end = time.monotonic() + 60
-    while len(living(process.pid)) < ALL_AT_WORK and time.monotonic() < end:
-        time.sleep(0.1)
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    process = start(*command, cwd=shop.folder, **pipes)
+    assert until(lambda: len(living(process.pid)) >= ALL_AT_WORK, 60)
     time.sleep(2)
-    os.killpg(process.pid, signal.SIGINT)  # as a terminal does
-    try:
-        _, said = process.communicate(timeout=30)
-    finally:
-        os.killpg(process.pid, signal.SIGKILL) if process.poll() is None else None
-    assert (process.returncode, said) == (130, "g12 regress: interrupted\n")
-    assert living(process.pid) == []
+    return process
+
+
+def test_an_interrupted_recording_ends_at_once(endless):
+    os.killpg(endless.pid, signal.SIGINT)  # as a terminal does
+    _, said = endless.communicate(timeout=30)
+    assert (endless.returncode, said) == (130, "g12 regress: interrupted\n")
+    assert living(endless.pid) == []
+
+
+def test_a_recording_that_is_killed_leaves_no_process(endless):
+    endless.kill()
+    endless.wait()
+    assert until(lambda: not living(endless.pid), 10)
+
+
+def test_interpreters_that_are_killed_are_told_in_a_line_each(endless):
+    while endless.poll() is None:
+        for number in set(living(endless.pid)) - {endless.pid}:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)  # as a system without memory does
+        time.sleep(1)
+    out, errors = endless.communicate()
+    assert (endless.returncode, errors) == (1, "")
+    died = [f"{name}.ngc: no trace: the interpreter died" for name in "abc"]
+    assert out.splitlines() == [*died, "3 programs: 3 failed"]
 
 
 def test_a_program_that_kills_the_interpreter_fails_and_the_others_are_checked(shop):

@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from g12.tools.commands import arguments as command_line
+from g12.tools import progress
 from g12.tools.commands import install, uninstall
 from g12.tools.errors import UsageError
 from g12.tools.install import features, package_copy
@@ -856,7 +856,7 @@ def test_what_nobody_reads_is_done_to_its_end(tmp_path, monkeypatch):
     def broken(*_arguments, **_options):
         raise BrokenPipeError
 
-    monkeypatch.setattr(command_line, "print", broken, raising=False)
+    monkeypatch.setattr(progress, "print", broken, raising=False)
     with pytest.raises(BrokenPipeError):
         uninstall.main([str(ini)])
     assert content_of(tmp_path) == before

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a command says on standard error while long work goes on."""
+"""What a command says while long work goes on."""
 
 from __future__ import annotations
 
 import contextlib
 import sys
 import threading
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Callable, TypeVar
 
 TICK = 1.0  # s, on a terminal
-LINE_TICK = 5.0  # s, elsewhere: every tick is a line that stays
+LINE_TICK = 5.0  # s, elsewhere: every line stays
 HIDDEN = "\r\033[K"
 
 Item = TypeVar("Item")
@@ -22,10 +23,14 @@ def silent(_text: str) -> None:
 
 
 @contextlib.contextmanager
-def working(text: str) -> Iterator[Tell]:
-    """Say what is being done if it takes long; yields what changes the text."""
+def working(text: str, clock: bool = False) -> Iterator[Tell]:
+    """Say what is being done on standard error if it takes long; yields what changes the text.
+
+    An empty text says nothing. ``clock`` adds, on a terminal, for how many seconds it goes on.
+    """
     now, done = [text], threading.Event()
-    ticker = threading.Thread(target=_tick, args=(now, done))
+    tick = _tick_on_terminal if sys.stderr.isatty() else _tick_in_lines
+    ticker = threading.Thread(target=tick, args=(now, done, clock))
     ticker.start()
     try:
         yield lambda text: now.__setitem__(0, text)
@@ -41,10 +46,29 @@ def counted(items: Sequence[Item], what: str, tell: Tell) -> Iterator[Item]:
         yield item
 
 
-def _tick(now: list[str], done: threading.Event) -> None:
-    terminal = sys.stderr.isatty()
-    while not done.wait(TICK if terminal else LINE_TICK):
-        before, after = (HIDDEN, "") if terminal else ("", "\n")
-        print(f"{before}{now[0]}", end=after, file=sys.stderr, flush=True)
-    if terminal:
-        print(HIDDEN, end="", file=sys.stderr, flush=True)
+def print_all(lines: Iterable[str]) -> None:
+    """Print what a work tells as it goes on; it is done even if nobody reads that to its end."""
+    unread = None
+    for line in lines:
+        try:
+            print(line)
+        except BrokenPipeError as problem:
+            unread = problem
+    if unread:
+        raise unread
+
+
+def _tick_on_terminal(now: list[str], done: threading.Event, clock: bool) -> None:
+    started = time.monotonic()
+    while not done.wait(TICK):
+        seconds = f" {time.monotonic() - started:.0f} s" if clock else ""
+        print(f"{HIDDEN}{now[0]}{seconds}", end="", file=sys.stderr, flush=True)
+    print(HIDDEN, end="", file=sys.stderr, flush=True)
+
+
+def _tick_in_lines(now: list[str], done: threading.Event, _clock: bool) -> None:
+    said = ""
+    while not done.wait(LINE_TICK):
+        if now[0] != said:
+            said = now[0]
+            print(said, file=sys.stderr, flush=True)

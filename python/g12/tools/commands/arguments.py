@@ -1,33 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the commands share: words of the command line, errors, progress, traces and runs."""
+"""What the commands share: words of the command line, and errors told in one line."""
 
 from __future__ import annotations
 
 import argparse
-import contextlib
 import functools
 import math
 import re
 import sys
-import threading
-import time
-from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Callable
 
 from g12.tools.errors import ProgramError, UsageError
-from g12.tools.headless.machine import Machine, MachineError, Run, StartupError
-from g12.tools.machine.ini import Ini, IniError, read_ini
-from g12.tools.preview.ended import text_with_axes
-from g12.tools.preview.tracer import Tools, TraceFailure
+from g12.tools.headless.machine import MachineError, StartupError
+from g12.tools.machine.files import existing
+from g12.tools.machine.ini import Ini, IniError, read_machine_ini
+from g12.tools.preview.tracer import TraceFailure
 
 GOOD, FINDING, USAGE = 0, 1, 2
-TICK = 1.0  # s
-MOST_SECONDS = 24 * 3600.0
-SECTIONS = re.compile(r"\s*\[(EMC|KINS|RS274NGC|TRAJ)\]", re.MULTILINE)  # of a machine's INI
 TOOL = re.compile(r"\s*T\d+(\s+[TPDIJQXYZABCUVW][-+.\d]+)*\s*(;.*)?", re.IGNORECASE)
 RAISED = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:")  # how Python names what was raised
-HIDDEN = "\r\033[K"
 
 
 class Parser(argparse.ArgumentParser):
@@ -123,24 +115,7 @@ def checked_ini(program: Path, ini: Path, tools: Path | None) -> Ini:
         existing(path)
     if tools:
         tool_table(tools)
-    return machine_ini(ini)
-
-
-def existing(path: Path) -> Path:
-    """Return a file's path if it is there."""
-    if path.is_dir():
-        raise UsageError(f"{path}: is a folder")
-    if not path.is_file():
-        raise UsageError(f"{path}: no such file")
-    return path
-
-
-def machine_ini(path: Path) -> Ini:
-    """Return the INI of a machine if it is one."""
-    ini = read_ini(existing(path))
-    if not SECTIONS.search(ini.text):
-        raise UsageError(f"{path}: is not a machine INI: no section [RS274NGC] or [TRAJ]")
-    return ini
+    return read_machine_ini(ini)
 
 
 def tool_table(path: Path) -> Path:
@@ -150,75 +125,6 @@ def tool_table(path: Path) -> Path:
     if entries and not any(map(TOOL.fullmatch, entries)):
         raise UsageError(f"{path}: is not a tool table: no line is like T1 P1 D6.0")
     return path
-
-
-def run_program(program: Path, ini: Path, tools: Tools = None, override: float = 100.0) -> Run:
-    """Return the run of a program that comes to its end, or raise ProgramError.
-
-    ``override`` is the feed override in per cent.
-    """
-    result = run_anyhow(program, ini, tools, override)
-    if result.error:
-        raise ProgramError(f"{program}: {text_with_axes(result.error.text, ini)}")
-    return result
-
-
-def run_anyhow(
-    program: Path,
-    ini: Path,
-    tools: Tools = None,
-    override: float = 100.0,
-    timeout: float = MOST_SECONDS,
-) -> Run:
-    """Return the run of a program that may end with an error; ``timeout`` is in seconds.
-
-    LinuxCNC runs a copy of the program; where it names that, the program's own name is put.
-    """
-    faster = {"DISPLAY": {"MAX_FEED_OVERRIDE": max(1.0, override / 100.0)}}
-    with Machine(ini, tools=tools, overrides=faster) as machine:
-        machine.feed_override(override / 100.0)
-        try:
-            return machine.run(program, timeout)
-        except MachineError as problem:
-            copy = rf"[^\s'\"]*/{re.escape(program.name)}"
-            raise type(problem)(re.sub(copy, str(program), str(problem))) from None
-
-
-def say(lines: Iterable[str]) -> None:
-    """Print what a work tells as it goes on; it is done even if nobody reads that to its end."""
-    unread = None
-    for line in lines:
-        try:
-            print(line)
-        except BrokenPipeError as problem:
-            unread = problem
-    if unread:
-        raise unread
-
-
-@contextlib.contextmanager
-def progress(text: str) -> Iterator[None]:
-    """Say on standard error what is being done; on a terminal also for how long."""
-    if not sys.stderr.isatty():
-        print(text, file=sys.stderr, flush=True)
-        yield
-        return
-    done = threading.Event()
-    ticker = threading.Thread(target=_tick, args=(text, done))
-    ticker.start()
-    try:
-        yield
-    finally:
-        done.set()
-        ticker.join()
-
-
-def _tick(text: str, done: threading.Event) -> None:
-    started = time.monotonic()
-    while not done.wait(TICK):
-        seconds = time.monotonic() - started
-        print(f"{HIDDEN}{text} {seconds:.0f} s", end="", file=sys.stderr, flush=True)
-    print(HIDDEN, end="", file=sys.stderr, flush=True)
 
 
 def _text(problem: Exception) -> str:

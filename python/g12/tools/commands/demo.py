@@ -10,10 +10,11 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import NamedTuple
 
-from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line, run_program
+from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
 from g12.tools.commands.plot import draw
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.headless.machine import MachineError, Run, StartupError
+from g12.tools.headless.run import run_program
 from g12.tools.install.features import ROOT
 from g12.tools.machine.ini import read_ini
 from g12.tools.plot import style

@@ -13,9 +13,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from g12.errors import Refusal
-from g12.tools.commands.arguments import GOOD, Parser, existing, one_line
+from g12.tools.commands.arguments import GOOD, Parser, one_line
 from g12.tools.dynapath import program_from_events
 from g12.tools.errors import ProgramError
+from g12.tools.machine.files import existing
 
 EXAMPLES = """\
 examples:

@@ -14,7 +14,7 @@ import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line, say
+from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
 from g12.tools.commands.check import readable
 from g12.tools.errors import UsageError
 from g12.tools.install import features, package_copy
@@ -24,6 +24,7 @@ from g12.tools.install.plan import Plan, Refused, make_plan, names_copy, refuse
 from g12.tools.install.rules import PROBLEM, Finding, codes_of, findings_of
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.machine.ini import Overrides
+from g12.tools.progress import print_all
 
 BEFORE = {"no-linuxcnc", "python-fails", "does-not-load"}  # what keeps a config from being read
 EXAMPLES = """\
@@ -270,7 +271,7 @@ def main(arguments: list[str]) -> int:
     for pair in excluding(wanted):
         raise UsageError(f"{pair} exclude each other: choose one")
     try:
-        say(install(readable(ini), wanted, asked.dry_run))
+        print_all(install(readable(ini), wanted, asked.dry_run))
     except Refused as refused:
         for finding in refused.args:
             said = f"[{finding.kind}] {finding.text}; cure: {finding.cure}"

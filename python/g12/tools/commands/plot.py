@@ -20,10 +20,9 @@ from g12.tools.commands.arguments import (
     check_run,
     checked_ini,
     one_line,
-    progress,
-    run_program,
 )
 from g12.tools.errors import UsageError
+from g12.tools.headless.run import run_program
 from g12.tools.plot import style
 from g12.tools.plot.face import draw_face
 from g12.tools.plot.mill import draw_mill
@@ -48,7 +47,7 @@ def draw(scene: Scene) -> Figure:
     """Return the picture that fits machine and program."""
     if scene.path.part.turning:
         return draw_face(scene)
-    lathe = "Y" not in scene.ini.axes
+    lathe = "Y" not in "".join(scene.ini.words("TRAJ", "COORDINATES", "XYZ")).upper()
     return draw_turn(scene) if lathe else draw_mill(scene)
 
 
@@ -80,7 +79,7 @@ def main(arguments: list[str]) -> int:
         chosen = {"tools": asked.tools, "units": asked.units, "feed_colours": asked.feeds}
         scene = scene_of(asked.program, ini, trace, **chosen)
     if asked.run:
-        with progress(f"running {asked.program.name}, real time"):
+        with working(f"running {asked.program.name}, real time", clock=True):
             run = run_program(asked.program, asked.ini, asked.tools, asked.override)
         scene = with_run(scene, run, asked.override)
     with working(f"drawing {asked.output.name}"):

@@ -21,9 +21,10 @@ from g12.tools.commands.arguments import (
     number_from,
     one_line,
 )
-from g12.tools.regress.record_and_check import Asked, Terms, check, record
-from g12.tools.regress.recorder import FAILED, SAME, Result
-from g12.tools.regress.report import Progress, json_report, text_report
+from g12.tools.progress import Tell, working
+from g12.tools.regress.record_and_check import RecordRequest, Terms, check, record
+from g12.tools.regress.recorder import FAILED, SAME, Recorders, Result
+from g12.tools.regress.report import json_report, text_report
 
 DESCRIPTION = __doc__.partition("\n\n")[2].replace("`", "")
 RECORD_EXAMPLES = """\
@@ -113,31 +114,37 @@ def _common_words(words: argparse.ArgumentParser) -> None:
 @one_line("regress")
 def main(arguments: list[str]) -> int:
     """Run the command."""
-    asked = parser().parse_args(arguments)
-    return asked.run(asked)
+    options = parser().parse_args(arguments)
+    with working("") as tell, Recorders() as recorders:
+        found, notes, good = options.run(options, _terms(options, tell), recorders)
+    _print(found, notes, options.json, good)
+    return GOOD if good else FINDING
 
 
-def _terms(asked: argparse.Namespace) -> Terms:
-    pictures = getattr(asked, "picture", None)
-    values = (asked.tolerance, asked.feed_tolerance, asked.timeout, asked.jobs, pictures)
-    return Terms(*values, Progress())
+def _terms(options: argparse.Namespace, tell: Tell) -> Terms:
+    pictures = getattr(options, "picture", None)
+    values = (options.tolerance, options.feed_tolerance, options.timeout, options.jobs, pictures)
+    return Terms(*values, tell)
 
 
-def run_record(asked: argparse.Namespace) -> int:
-    """Record programs; return the exit code."""
-    what = Asked(asked.programs, asked.ini, asked.tools, asked.var)
-    found = record(asked.directory, what, _terms(asked))
-    return _say(found, [], asked.json, good=all(result.verdict != FAILED for result in found))
+def run_record(
+    options: argparse.Namespace, terms: Terms, recorders: Recorders
+) -> tuple[list[Result], list[str], bool]:
+    """Record programs; return what became of them, no notes, and whether all is well."""
+    what = RecordRequest(options.programs, options.ini, options.tools, options.var)
+    found = record(options.directory, what, terms, recorders)
+    return found, [], all(result.verdict != FAILED for result in found)
 
 
-def run_check(asked: argparse.Namespace) -> int:
-    """Compare programs with their recordings; return the exit code."""
-    others = {"programs": asked.programs, "ini": asked.ini, "tools": asked.tools}
-    found, notes = check(asked.directory, asked.names, **others, terms=_terms(asked))
-    return _say(found, notes, asked.json, good=all(result.verdict == SAME for result in found))
+def run_check(
+    options: argparse.Namespace, terms: Terms, recorders: Recorders
+) -> tuple[list[Result], list[str], bool]:
+    """Compare programs with their recordings; return results, notes and whether all is well."""
+    others = {"programs": options.programs, "ini": options.ini, "tools": options.tools}
+    found, notes = check(options.directory, options.names, recorders, **others, terms=terms)
+    return found, notes, all(result.verdict == SAME for result in found)
 
 
-def _say(found: list[Result], notes: list[str], as_json: bool, good: bool) -> int:
+def _print(found: list[Result], notes: list[str], as_json: bool, good: bool) -> None:
     lines = [json_report(found, notes, good)] if as_json else text_report(found, notes)
     print("\n".join(lines))
-    return GOOD if good else FINDING

@@ -8,7 +8,6 @@ in machine coordinates. A line begins with the program's own line number.
 
 from __future__ import annotations
 
-from g12.machine_ini import AXES
 from g12.tools.commands.arguments import (
     GOOD,
     Parser,
@@ -18,8 +17,7 @@ from g12.tools.commands.arguments import (
     one_line,
 )
 from g12.tools.preview.ended import ended, with_axes
-from g12.tools.preview.moves import Move
-from g12.tools.preview.tracer import trace
+from g12.tools.preview.tracer import AXES, Move, trace
 
 EXAMPLES = """\
 examples:

@@ -20,10 +20,9 @@ from g12.tools.commands.arguments import (
     checked_ini,
     number_above,
     one_line,
-    progress,
-    run_program,
 )
 from g12.tools.errors import UsageError
+from g12.tools.headless.run import run_program
 from g12.tools.path.slowest import Pace
 from g12.tools.preview.ended import traced
 from g12.tools.progress import working
@@ -180,7 +179,7 @@ def depth(facts: PocketFacts, unit: Unit) -> str:
 
 def x_words(facts: SectionFacts, proof: Proof) -> str:
     """Return what X words are in a section, and what decides it."""
-    reading = proof.subject.ini.settings.polar_x
+    reading = proof.subject.ini.get("G12", "POLAR_X", "inherit").lower()
     kind, modal = ("diameters", "G7") if facts.section.diameters else ("radii", "G8")
     return f"{kind} ({modal if reading == 'inherit' else f'POLAR_X = {reading}'})"
 
@@ -334,13 +333,13 @@ def main(arguments: list[str]) -> int:
     run = None
     if asked.run:
         traced(asked.program, asked.ini, asked.tools)
-        with progress(f"running {asked.program.name}, real time"):
+        with working(f"running {asked.program.name}, real time", clock=True):
             run = run_program(asked.program, asked.ini, asked.tools, asked.override)
     with working(f"interpreting {asked.program.name}") as tell:
         options = {"tools": asked.tools, "tolerance": asked.tolerance}
         proof = prove(asked.program, ini, run=run, tell=tell, **options)
     if not (proof.pockets or proof.sections or proof.unseen):
         raise UsageError(f"{asked.program}: has no pocket and no polar section to verify")
-    unit = unit_of(proof.subject.trace.modes.gcodes, asked.units)
+    unit = unit_of(proof.subject.trace.modes, asked.units)
     print(as_json(proof) if asked.json else report(proof, unit))
     return FINDING if proof.findings else GOOD

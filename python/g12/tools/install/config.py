@@ -5,18 +5,15 @@ from __future__ import annotations
 
 import json
 import os
-import re
-import subprocess
 import tempfile
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 
-from g12.machine_ini import Remap, remap_from_value
+from g12.tools.install.features import Remap, remap_from_value
 from g12.tools.install.ini_edit import IniText, Line
 from g12.tools.machine.ini import Ini, Overrides
+from g12.tools.preview.loading import linuxcnc_version, load_failure, python_error
 from g12.tools.preview.tracer import TraceFailure, Tracer
-from g12.tools.system import PYTHON
 
 ANSWER = "G12 CONFIG "
 # What the machine's Python modules brought into the interpreter, asked from inside it.
@@ -35,11 +32,8 @@ def g12_config():
     }})
 print(g12_config(), flush=True)
 """
-VERSION = "import linuxcnc; print(linuxcnc.version)"
 UNKNOWN_CODE = "Unknown g code used"
 NO_REMAPS: Overrides = {"RS274NGC": {"REMAP": None, "RS274NGC_STARTUP_CODE": None}}
-FAILED = "Python plugin configure() failed"
-PYTHON_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 MOST_FOLDERS = 10  # of SUBROUTINE_PATH; LinuxCNC ignores the rest
 
 
@@ -107,22 +101,6 @@ def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None
     return Config(text, ini, remaps_in(text), version, python, owned, failure)
 
 
-@cache
-def linuxcnc_version() -> str:
-    """Return the version of the LinuxCNC on this computer, empty if there is none."""
-    asked = subprocess.run([PYTHON, "-c", VERSION], capture_output=True, text=True, check=False)
-    return asked.stdout.strip()
-
-
-def load_failure(ini: Ini) -> str | None:
-    """Return the interpreter's own text if it does not load the INI as it stands."""
-    try:
-        with Tracer(ini):
-            return None
-    except TraceFailure as refused:
-        return str(refused).removeprefix(f"{ini.path}: ")
-
-
 def is_owned(tracer: Tracer, code: str) -> bool:
     """Tell whether LinuxCNC itself has a meaning for a code; REMAP lines must be out of the way."""
     error = tracer.trace_text([code]).error
@@ -145,17 +123,6 @@ def ask_python(tracer: Tracer) -> Python:
     package = found.pop("package")
     here = tracer.ini.directory
     return Python(**found, package=here / Path(package).parent if package else None)
-
-
-def python_error(printed: str) -> str | None:
-    """Return the exception in what loading printed, with its place; None if Python loaded."""
-    before, failed, _ = printed.partition(FAILED)
-    if not failed:
-        return None
-    lines = [line.strip() for line in before.splitlines() if line.strip()]
-    places = [place for line in lines for place in PYTHON_LINE.findall(line)]
-    where = f" ({Path(places[-1][0]).name}:{places[-1][1]})" if places else ""
-    return f"{lines[-1]}{where}" if lines else failed
 
 
 def folder_from_ini(ini: Ini, name: str) -> Path:

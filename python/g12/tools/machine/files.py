@@ -11,7 +11,18 @@ import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
+from g12.tools.errors import UsageError
+
 BACKUP = ".before-g12"
+
+
+def existing(path: Path) -> Path:
+    """Return a file's path if it is there."""
+    if path.is_dir():
+        raise UsageError(f"{path}: is a folder")
+    if not path.is_file():
+        raise UsageError(f"{path}: no such file")
+    return path
 
 
 def shown(content: bytes) -> list[str]:

@@ -14,6 +14,7 @@ import ctypes
 import math
 import os
 import re
+import select
 import shutil
 import signal
 import time
@@ -449,13 +450,23 @@ def reply_alone(connection: Connection, machine: dict, tools: Tools, request: di
     """Answer from a copy of this process, so that what the machine's modules keep is forgotten."""
     copy = os.fork()
     if copy:
-        _, status = os.waitpid(copy, 0)
-        if status:
+        if until_end(copy, connection):
             connection.send({"failure": "the interpreter died"})
         return
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     reply(connection, machine, answered(machine, tools, request))
     os._exit(0)
+
+
+def until_end(copy: int, connection: Connection) -> int:
+    """Wait for a process, and end it if nobody waits for its answer; return its exit status."""
+    watched = select.poll()
+    watched.register(connection, 0)  # tells of the other end's death in any case
+    with open(os.pidfd_open(copy), "rb") as ended:
+        watched.register(ended, select.POLLIN)
+        if connection.fileno() in dict(watched.poll()):
+            os.kill(copy, signal.SIGKILL)
+    return os.waitpid(copy, 0)[1]
 
 
 def serve(descriptor: int) -> None:

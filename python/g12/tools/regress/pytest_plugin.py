@@ -18,14 +18,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from g12.tools.errors import UsageError
 from g12.tools.regress.record_and_check import Terms, check
-from g12.tools.regress.recorder import SAME
+from g12.tools.regress.recorder import SAME, Recorders
 from g12.tools.regress.recordings import load
 from g12.tools.regress.report import text_report
 
@@ -35,8 +35,17 @@ def recorded_programs(directory: str | os.PathLike) -> list[str]:
     return load(Path(directory).absolute()).names()
 
 
+@pytest.fixture(scope="session")
+def gcode_recorders() -> Iterator[Recorders]:
+    """Keep the interpreters that have been started for the tests to come."""
+    with Recorders() as recorders:
+        yield recorders
+
+
 @pytest.fixture
-def gcode_regression(request: pytest.FixtureRequest) -> Callable[..., None]:
+def gcode_regression(
+    request: pytest.FixtureRequest, gcode_recorders: Recorders
+) -> Callable[..., None]:
     """Compare programs with their recordings; the test fails with what changed.
 
     ``gcode_regression(directory, *programs, tolerance=, feed_tolerance=, programs_in=)``: the
@@ -55,7 +64,8 @@ def gcode_regression(request: pytest.FixtureRequest) -> Callable[..., None]:
         folder = here / programs_in if programs_in else None
         terms = Terms(tolerance, feed_tolerance)
         try:
-            results, notes = check(here / directory, programs, programs=folder, terms=terms)
+            options = {"programs": folder, "terms": terms}
+            results, notes = check(here / directory, programs, gcode_recorders, **options)
         except UsageError as error:
             pytest.fail(str(error), pytrace=False)
         if any(result.verdict != SAME for result in results):

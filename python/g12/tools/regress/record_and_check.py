@@ -9,9 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from g12.tools.commands.arguments import existing, machine_ini, tool_table
+from g12.tools.commands.arguments import tool_table
 from g12.tools.errors import UsageError
-from g12.tools.machine.ini import read_ini
+from g12.tools.machine.files import existing
+from g12.tools.machine.ini import read_ini, read_machine_ini
+from g12.tools.preview.tracer import mm_per_unit
+from g12.tools.progress import Tell, silent
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recorder import (
     ADDED,
@@ -19,7 +22,7 @@ from g12.tools.regress.recorder import (
     MISSING,
     SAME,
     Job,
-    Report,
+    Recorders,
     Result,
     machine_of,
     results,
@@ -34,16 +37,12 @@ from g12.tools.regress.recordings import (
 )
 
 
-def _silent(_done: int, _total: int, _program: str) -> None:
-    """Nobody hears of progress."""
-
-
 @dataclass(frozen=True)
 class Terms:
     """How to compare and to work.
 
     ``ends`` is the tolerance of ends in machine units and degrees, ``feeds`` that of feeds in per
-    cent; ``timeout`` is in seconds a program. ``report`` hears how many programs are done.
+    cent; ``timeout`` is in seconds a program. ``tell`` hears how far it is.
     """
 
     ends: float = 1e-6
@@ -51,16 +50,16 @@ class Terms:
     timeout: float = 600.0
     jobs: int = 1
     pictures: Path | None = None
-    report: Report = _silent
+    tell: Tell = silent
 
     def tolerance(self, ini: Path) -> Tolerance:
         """Return the tolerance in mm on a machine."""
-        return Tolerance(self.ends * read_ini(ini).mm, self.ends, self.feeds / 100)
+        return Tolerance(self.ends * mm_per_unit(read_ini(ini)), self.ends, self.feeds / 100)
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What a recording is asked for with: programs and folders, and the machine's files."""
+class RecordRequest:
+    """What to record: programs and folders, and the machine's files."""
 
     programs: Sequence[Path] = ()
     ini: Path | None = None
@@ -68,16 +67,18 @@ class Asked:
     var: Path | None = None
 
 
-def record(directory: Path, asked: Asked, terms: Terms) -> list[Result]:
+def record(
+    directory: Path, request: RecordRequest, terms: Terms, recorders: Recorders
+) -> list[Result]:
     """Record programs, all recorded ones if none is named; return what became of each."""
-    named = [_existing(program) for program in asked.programs]
+    named = [_existing(program) for program in request.programs]
     known = (directory / ABOUT).exists()
     start = _known if known else _new
-    baseline = _with(start(directory.absolute(), asked, named), asked, named)
+    baseline = _as_requested(start(directory.absolute(), request, named), request, named)
     names = _names(baseline, named)
-    tools, parameters = _sources(baseline, asked, everything=not (known and named))
+    tools, parameters = _tools_and_parameters(baseline, request, everything=not (known and named))
     machine = machine_of(baseline.ini, tools, parameters, terms.timeout)
-    found = _done(baseline, names, baseline.programs, machine, terms, keep=True)
+    found = _done(baseline, names, baseline.programs, machine, terms, recorders, keep=True)
     baseline.take_copies(tools, parameters)
     baseline.save()
     return _sorted([*found, *([] if named else _dropped(baseline))])
@@ -85,14 +86,15 @@ def record(directory: Path, asked: Asked, terms: Terms) -> list[Result]:
 
 def check(
     directory: Path,
-    names: Sequence[str] = (),
+    names: Sequence[str],
+    recorders: Recorders,
     *,
     programs: Path | None = None,
     ini: Path | None = None,
     tools: Path | None = None,
     terms: Terms | None = None,
 ) -> tuple[list[Result], list[str]]:
-    """Compare programs, without ``names`` all, with their recordings.
+    """Compare programs, all recorded ones if ``names`` is empty, with their recordings.
 
     ``programs`` is a folder with other versions of them, ``ini`` and ``tools`` replace those
     recorded. Returns what became of each program, and notes on what else is different.
@@ -106,7 +108,7 @@ def check(
     ini = _machine(ini or baseline.ini)
     machine = machine_of(ini, table, baseline.parameters, terms.timeout)
     there = [name for name in recorded if (folder / name).is_file()]
-    found = _done(baseline, there, folder, machine, terms)
+    found = _done(baseline, there, folder, machine, terms, recorders)
     found += [Result(name, MISSING) for name in recorded if name not in there]
     new = [] if names else {*baseline.in_folders(folder)} - {*recorded}
     found += [Result(name, ADDED) for name in new]
@@ -118,11 +120,13 @@ def _sorted(found: Sequence[Result]) -> list[Result]:
     return sorted(found, key=lambda result: result.program)
 
 
-def _done(baseline, names, folder: Path, machine, terms: Terms, keep=False) -> list[Result]:
+def _done(
+    baseline, names, folder: Path, machine, terms: Terms, recorders: Recorders, keep=False
+) -> list[Result]:
     """Trace programs and compare them with their recordings."""
     shared = {"tolerance": terms.tolerance(machine.ini), "keep": keep, "pictures": terms.pictures}
     jobs = [Job(baseline, machine, name, folder / name, **shared) for name in names]
-    return results(jobs, terms.jobs, terms.report)
+    return results(jobs, terms.jobs, terms.tell, recorders)
 
 
 def _common_notes(found: Sequence[Result]) -> list[str]:
@@ -148,7 +152,7 @@ def _absolute(path: Path) -> Path:
 
 def _machine(path: Path) -> Path:
     """Return the path of a machine's INI if it is one."""
-    machine_ini(path)
+    read_machine_ini(path)
     return _absolute(path)
 
 
@@ -158,41 +162,41 @@ def _folder(path: Path) -> Path:
     return _absolute(path)
 
 
-def _new(directory: Path, asked: Asked, named: list[Path]) -> Baseline:
+def _new(directory: Path, request: RecordRequest, named: list[Path]) -> Baseline:
     """Return a directory that nothing is recorded in so far."""
     if directory.exists() and not directory.is_dir():
         raise UsageError(f"{directory}: not a directory")
     if not named:
         raise UsageError(f"{directory}: nothing is recorded there; name the programs")
-    if not asked.ini:
+    if not request.ini:
         raise UsageError(f"{directory}: nothing is recorded there; name the machine, --ini")
-    return Baseline(directory, asked.ini, common_folder(named))
+    return Baseline(directory, request.ini, common_folder(named))
 
 
-def _known(directory: Path, asked: Asked, named: list[Path]) -> Baseline:
+def _known(directory: Path, request: RecordRequest, named: list[Path]) -> Baseline:
     """Return a recorded directory."""
     baseline = load(directory)
-    if asked.ini and named and _machine(asked.ini) != baseline.ini:
+    if request.ini and named and _machine(request.ini) != baseline.ini:
         raise UsageError(
             f"{directory} is recorded on {baseline.ini}: use another -d, or name no programs to "
-            f"record all of it anew on {asked.ini}"
+            f"record all of it anew on {request.ini}"
         )
     return baseline
 
 
-def _with(baseline: Baseline, asked: Asked, named: list[Path]) -> Baseline:
+def _as_requested(baseline: Baseline, request: RecordRequest, named: list[Path]) -> Baseline:
     """Return a directory with the machine's files and the folders asked for."""
-    ini = _machine(asked.ini or baseline.ini)
+    ini = _machine(request.ini or baseline.ini)
     table = read_ini(ini).file("EMCIO", "TOOL_TABLE")
     own = _absolute(table) if table and table.is_file() else None
-    known = None if asked.ini else baseline.tool_table
+    known = None if request.ini else baseline.tool_table
     folders = [baseline.name_of(path) for path in named if path.is_dir()]
     return replace(
         baseline,
         ini=ini,
         folders=tuple(dict.fromkeys([*baseline.folders, *folders])),
-        tool_table=_absolute(tool_table(asked.tools)) if asked.tools else known or own,
-        var_file=_absolute(existing(asked.var)) if asked.var else baseline.var_file,
+        tool_table=_absolute(tool_table(request.tools)) if request.tools else known or own,
+        var_file=_absolute(existing(request.var)) if request.var else baseline.var_file,
     )
 
 
@@ -214,15 +218,17 @@ def _programs(baseline: Baseline, path: Path) -> list[str]:
     return names
 
 
-def _sources(baseline, asked: Asked, everything: bool) -> tuple[Path | None, Path | None]:
+def _tools_and_parameters(
+    baseline, request: RecordRequest, everything: bool
+) -> tuple[Path | None, Path | None]:
     """Return tool table and var file to record with: the machine's, or the directory's copies.
 
     One program more is recorded with the copies, as the others were.
     """
     asked_for = (
-        (asked.tools, baseline.tool_table, baseline.tools),
+        (request.tools, baseline.tool_table, baseline.tools),
         (
-            asked.var,
+            request.var,
             baseline.var_file,
             baseline.parameters,
         ),

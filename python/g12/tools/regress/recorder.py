@@ -1,24 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Recordings made and compared in several processes, each with an interpreter of its own."""
+"""Recordings made and compared by several interpreters at once, each of them a process."""
 
 from __future__ import annotations
 
-import functools
+import contextlib
 import hashlib
-import os
-import signal
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
-from multiprocessing import active_children, util
 from pathlib import Path
 
 from g12.tools.errors import UsageError
-from g12.tools.install.config import linuxcnc_version, python_error
 from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.path.part import part_of
-from g12.tools.preview.moves import Move
-from g12.tools.preview.tracer import TraceFailure, Tracer
+from g12.tools.preview.loading import linuxcnc_version, python_error
+from g12.tools.preview.tracer import Move, TraceFailure, Tracer, mm_per_unit
+from g12.tools.progress import Tell
 from g12.tools.regress.differences import Difference, differences, lines_of
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recording_text import (
@@ -30,17 +28,15 @@ from g12.tools.regress.recording_text import (
     text_of,
 )
 from g12.tools.regress.recordings import Baseline
-from g12.tools.units import name_of_unit
+from g12.tools.units import UNITS
 
-GRACE = 5.0  # seconds for a worker to end its interpreters
 SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
 HASH_DIGITS = 16
-_tracers: list[Tracer] = []  # this process's
-Report = Callable[[int, int, str], None]  # hears of programs done, of how many, the last one
+UNIT_NAMES = {unit.mm: name for name, unit in UNITS.items()}
 
 
 @dataclass(frozen=True)
-class Machine:
+class TracedMachine:
     """What programs are traced on; ``timeout`` is in seconds for each program.
 
     ``contents`` is a hash of INI and tool table: changed files need another interpreter.
@@ -62,7 +58,7 @@ class Job:
     """
 
     baseline: Baseline
-    machine: Machine
+    machine: TracedMachine
     name: str
     program: Path
     tolerance: Tolerance
@@ -71,7 +67,7 @@ class Job:
 
 
 @dataclass(frozen=True)
-class Finding:
+class RegressFinding:
     """A difference together with the lines of the program that it is about.
 
     ``block`` is the text of the first line; ``by`` is in machine units or degrees.
@@ -96,16 +92,18 @@ class Result:
 
     program: str
     verdict: str
-    findings: list[Finding] = field(default_factory=list)
+    findings: list[RegressFinding] = field(default_factory=list)
     summary: str = ""
     notes: tuple[str, ...] = ()
     picture: str | None = None
 
 
-def machine_of(ini: Path, tools: Path | None, parameters: Path | None, timeout: float) -> Machine:
+def machine_of(
+    ini: Path, tools: Path | None, parameters: Path | None, timeout: float
+) -> TracedMachine:
     """Return the machine as its files are now."""
     contents = text_bytes(read_ini(ini)) + (tools.read_bytes() if tools else b"")
-    return Machine(ini, tools, parameters, timeout, linuxcnc_version(), hash_of(contents))
+    return TracedMachine(ini, tools, parameters, timeout, linuxcnc_version(), hash_of(contents))
 
 
 def text_bytes(ini: Ini) -> bytes:
@@ -116,25 +114,27 @@ def text_bytes(ini: Ini) -> bytes:
 class Recorder:
     """A running interpreter that makes recordings on one machine."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: TracedMachine) -> None:
         ini = read_ini(machine.ini)
         self._machine = machine
         self._tracer = Tracer(ini, tools=machine.tools)
-        _tracers.append(self._tracer)
         self._check_python()
         self.part = part_of(ini)
         self._facts = {
             "machine": f"{ini.path.name} {hash_of(text_bytes(ini))}",
             "linuxcnc": machine.linuxcnc,
-            "units": name_of_unit(ini.mm),
+            "units": UNIT_NAMES[mm_per_unit(ini)],
         }
-        util.Finalize(self, self._tracer.close, exitpriority=1)
+
+    def close(self) -> None:
+        """End the interpreter, which may be far from the end of a program."""
+        self._tracer.close()
 
     def _check_python(self) -> None:
         """Refuse a machine without its Python modules: it would only trace other errors."""
         error = python_error(self._tracer.printed)
         if error:
-            self._tracer.close()
+            self.close()
             raise TraceFailure(f"{self._machine.ini}: its Python modules do not load: {error}")
 
     def text(self, name: str, program: Path) -> str:
@@ -145,10 +145,45 @@ class Recorder:
         return text_of(recording_of(self._tracer.trace(program, **options), program, facts))
 
 
-@functools.lru_cache(maxsize=4)
-def recorder_of(machine: Machine, _process: int) -> Recorder:
-    """Return this process's recorder for a machine; a forked process must not use its parent's."""
-    return Recorder(machine)
+class Recorders:
+    """The running interpreters: as many of a machine as work at the same time.
+
+    All of them end with the ``with`` block, or where ``close`` is called.
+    """
+
+    def __init__(self) -> None:
+        self._idle: defaultdict[TracedMachine, list[Recorder]] = defaultdict(list)
+        self._all: list[Recorder] = []
+        self._closed = False
+
+    def __enter__(self) -> Recorders:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End every interpreter; one that is still starting ends when it has."""
+        self._closed = True
+        for recorder in self._all:
+            recorder.close()
+
+    @contextlib.contextmanager
+    def one_of(self, machine: TracedMachine) -> Iterator[Recorder]:
+        """Yield a recorder that nobody else uses meanwhile."""
+        try:
+            recorder = self._idle[machine].pop()
+        except IndexError:
+            recorder = self._started(machine)
+        yield recorder
+        self._idle[machine].append(recorder)
+
+    def _started(self, machine: TracedMachine) -> Recorder:
+        recorder = Recorder(machine)
+        self._all.append(recorder)
+        if self._closed:
+            recorder.close()
+        return recorder
 
 
 def hash_of(content: bytes) -> str:
@@ -156,15 +191,15 @@ def hash_of(content: bytes) -> str:
     return f"sha256:{hashlib.sha256(content).hexdigest()[:HASH_DIGITS]}"
 
 
-def do(job: Job) -> Result:
-    """Trace a program, compare it with its recording, and keep the trace if that is the job."""
-    recorder = recorder_of(job.machine, os.getpid())
-    try:
-        now = recorder.text(job.name, job.program)
-    except TraceFailure as failure:
-        text = f"no trace: {str(failure).splitlines()[0]}"
-        return Result(job.name, FAILED, [Finding("failed", text)])
-    result = _compared(job, now, recorder)
+def trace_and_compare(job: Job, recorders: Recorders) -> Result:
+    """Return what became of a program's trace, which is kept if that is the job."""
+    with recorders.one_of(job.machine) as recorder:
+        try:
+            now = recorder.text(job.name, job.program)
+        except TraceFailure as failure:
+            text = f"no trace: {str(failure).splitlines()[0]}"
+            return Result(job.name, FAILED, [RegressFinding("failed", text)])
+        result = _compared(job, now, recorder)
     if job.keep:
         job.baseline.keep(job.name, now)
     return result
@@ -203,13 +238,13 @@ def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
         yield f"machine units {was['units']} when recorded, {now['units']} now"
 
 
-def _finding(difference: Difference, was: Recording, now: Recording) -> Finding:
+def _finding(difference: Difference, was: Recording, now: Recording) -> RegressFinding:
     lines = lines_of(now, difference.now) or [difference.line] * bool(difference.line)
     recorded = lines_of(was, difference.was)
     block = now.blocks.get(lines[0], "") if lines else was.blocks.get((recorded or [0])[0], "")
     shared = ("kind", "text", "moves", "axis", "by")
     values = {name: getattr(difference, name) for name in shared}
-    return Finding(lines=lines, recorded_lines=recorded, block=block, **values)
+    return RegressFinding(lines=lines, recorded_lines=recorded, block=block, **values)
 
 
 def _summary(recording: Recording) -> str:
@@ -228,50 +263,19 @@ def _picture(job: Job, was: Recording, now: Recording, found, recorder: Recorder
     return str(path)
 
 
-def results(jobs: Sequence[Job], processes: int, report: Report) -> list[Result]:
-    """Return the results of jobs in their order, done by so many processes at once."""
-    processes = min(processes, len(jobs))
-    if processes <= 1:
-        return [_reported(do(job), done, jobs, report) for done, job in enumerate(jobs, start=1)]
+def results(jobs: Sequence[Job], workers: int, tell: Tell, recorders: Recorders) -> list[Result]:
+    """Return the results of jobs in their order, made by so many interpreters at once."""
     largest_first = sorted(jobs, key=lambda job: -job.program.stat().st_size)
-    others = {*active_children()}
-    pool = ProcessPoolExecutor(processes, initializer=_obey_the_parent)
-    try:
-        futures = {pool.submit(do, job): job.name for job in largest_first}
-        found = {}
-        for done, future in enumerate(as_completed(futures), start=1):
-            found[futures[future]] = _reported(future.result(), done, jobs, report)
-        return [found[job.name] for job in jobs]
-    except BaseException:
-        _end({*active_children()} - others)
-        raise
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _end(processes: set) -> None:
-    """End worker processes; those that do not end by themselves are killed."""
-    for process in processes:
-        process.terminate()
-    for process in processes:
-        process.join(GRACE)
-        process.kill()
-
-
-def _reported(result: Result, done: int, jobs: Sequence[Job], report: Report) -> Result:
-    report(done, len(jobs), result.program)
-    return result
-
-
-def _obey_the_parent() -> None:
-    """Leave it to the parent process when to end, and its interpreters alone."""
-    _tracers.clear()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, _leave)
-
-
-def _leave(_signal: int, _frame: object) -> None:
-    """End this process with its interpreters, which may be far from the end of a program."""
-    for tracer in _tracers:
-        tracer.close()
-    os._exit(1)
+    found = {}
+    with ThreadPoolExecutor(workers) as pool:
+        futures = [pool.submit(trace_and_compare, job, recorders) for job in largest_first]
+        try:
+            for done, future in enumerate(as_completed(futures), start=1):
+                result = future.result()
+                found[result.program] = result
+                tell(f"{done} of {len(jobs)}: {result.program}")
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            recorders.close()
+            raise
+    return [found[job.name] for job in jobs]

@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What ``g12 regress`` says: a line per finding, like a compiler's, or JSON; progress meanwhile."""
+"""What ``g12 regress`` says: a line per finding, like a compiler's, or JSON."""
 
 from __future__ import annotations
 
 import json
-import sys
-import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 
-from g12.tools.commands.arguments import HIDDEN
-from g12.tools.regress.recorder import ADDED, CHANGED, FAILED, MISSING, NEW, SAME, Finding, Result
+from g12.tools.regress.recorder import (
+    ADDED,
+    CHANGED,
+    FAILED,
+    MISSING,
+    NEW,
+    SAME,
+    RegressFinding,
+    Result,
+)
 
 SAYS = {
     NEW: "new",
@@ -23,25 +29,6 @@ SAYS = {
 }
 MOST_FINDINGS = 20  # of a program, in text; JSON has every one
 MOST_LINES = 4
-PROGRESS_SECONDS = 10.0  # between lines, where no terminal shows every program
-
-
-class Progress:
-    """Says on standard error how far a long work is."""
-
-    def __init__(self) -> None:
-        self._said = time.monotonic()
-        self._terminal = sys.stderr.isatty()
-
-    def __call__(self, done: int, total: int, program: str) -> None:
-        """Say that so many programs are done, the last of them ``program``."""
-        text = f"{done} of {total}: {program}"
-        if self._terminal:
-            end = HIDDEN if done == total else ""
-            print(f"{HIDDEN}{text}{end}", end="", file=sys.stderr, flush=True)
-        elif time.monotonic() > self._said + PROGRESS_SECONDS:
-            self._said = time.monotonic()
-            print(text, file=sys.stderr, flush=True)
 
 
 def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str]:
@@ -71,7 +58,7 @@ def lines_of_result(result: Result) -> Iterator[str]:
         yield f"{result.program}: see {result.picture}"
 
 
-def _finding(program: str, finding: Finding) -> Iterator[str]:
+def _finding(program: str, finding: RegressFinding) -> Iterator[str]:
     counts = finding.kind in ("moved", "changed") and finding.moves
     moves = f"{_counted(finding.moves, 'move')}: " if counts else ""
     yield f"{program}{_where(finding)} {moves}{finding.text}"
@@ -79,7 +66,7 @@ def _finding(program: str, finding: Finding) -> Iterator[str]:
         yield f"    {finding.block}"
 
 
-def _where(finding: Finding) -> str:
+def _where(finding: RegressFinding) -> str:
     """Return the lines: ``:14:``, with others of the same finding, or those recorded."""
     if not finding.lines and not finding.recorded_lines:
         return ":"

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Programs run to their end, each on a headless LinuxCNC of its own."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from g12.tools.errors import ProgramError
+from g12.tools.headless.machine import Machine, MachineError, Run
+from g12.tools.preview.ended import text_with_axes
+from g12.tools.preview.tracer import Tools
+
+MOST_SECONDS = 24 * 3600.0
+
+
+def run_program(program: Path, ini: Path, tools: Tools = None, override: float = 100.0) -> Run:
+    """Return the run of a program that comes to its end, or raise ProgramError.
+
+    ``override`` is the feed override in per cent.
+    """
+    result = run_anyhow(program, ini, tools, override)
+    if result.error:
+        raise ProgramError(f"{program}: {text_with_axes(result.error.text, ini)}")
+    return result
+
+
+def run_anyhow(
+    program: Path,
+    ini: Path,
+    tools: Tools = None,
+    override: float = 100.0,
+    timeout: float = MOST_SECONDS,
+) -> Run:
+    """Return the run of a program that may end with an error; ``timeout`` is in seconds.
+
+    LinuxCNC runs a copy of the program; where it names that, the program's own name is put.
+    """
+    faster = {"DISPLAY": {"MAX_FEED_OVERRIDE": max(1.0, override / 100.0)}}
+    with Machine(ini, tools=tools, overrides=faster) as machine:
+        machine.feed_override(override / 100.0)
+        try:
+            return machine.run(program, timeout)
+        except MachineError as problem:
+            copy = rf"[^\s'\"]*/{re.escape(program.name)}"
+            raise type(problem)(re.sub(copy, str(program), str(problem))) from None

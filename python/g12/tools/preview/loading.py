@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which LinuxCNC is here, and whether it loads a machine config."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from functools import cache
+from pathlib import Path
+
+from g12.tools.machine.ini import Ini
+from g12.tools.preview.tracer import TraceFailure, Tracer
+from g12.tools.system import PYTHON
+
+VERSION = "import linuxcnc; print(linuxcnc.version)"
+FAILED = "Python plugin configure() failed"
+PYTHON_LINE = re.compile(r'File "([^"]+)", line (\d+)')
+
+
+@cache
+def linuxcnc_version() -> str:
+    """Return the version of the LinuxCNC on this computer, empty if there is none."""
+    asked = subprocess.run([PYTHON, "-c", VERSION], capture_output=True, text=True, check=False)
+    return asked.stdout.strip()
+
+
+def load_failure(ini: Ini) -> str | None:
+    """Return the interpreter's own text if it does not load the INI as it stands."""
+    try:
+        with Tracer(ini):
+            return None
+    except TraceFailure as refused:
+        return str(refused).removeprefix(f"{ini.path}: ")
+
+
+def python_error(printed: str) -> str | None:
+    """Return the exception in what loading printed, with its place; None if Python loaded."""
+    before, failed, _ = printed.partition(FAILED)
+    if not failed:
+        return None
+    lines = [line.strip() for line in before.splitlines() if line.strip()]
+    places = [place for line in lines for place in PYTHON_LINE.findall(line)]
+    where = f" ({Path(places[-1][0]).name}:{places[-1][1]})" if places else ""
+    return f"{lines[-1]}{where}" if lines else failed
