@@ -4,8 +4,9 @@
 Data flow of one block, one way only::
 
     words and modes -> request -> named locals -> motion
-    (host, words)      (haas)     (host)          (ngc/)
+    (host)             (cycles)   (host)          (ngc/)
 
-The planners (`haas`, `geometry`, `polar`) are pure: numbers in, values out, no LinuxCNC.
+The planners (`cycles`, `section`, `flat`, `polar`) are pure: numbers in, values out, no LinuxCNC.
+README.md beside this file has the rooms, and the walk of a block and of a section.
 Lengths are in program units unless a docstring says otherwise, angles in radians.
 """

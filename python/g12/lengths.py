@@ -4,4 +4,10 @@
 from __future__ import annotations
 
 MM_PER_INCH = 25.4
+INCH_SLACK = 1e-3  # units per mm by which LinuxCNC tells an inch machine
 LARGEST = 1e6  # inches or mm: more than any machine has; sums and squares stay exact enough
+
+
+def is_inch(millimetres: float) -> bool:
+    """Tell whether LinuxCNC takes a machine for an inch machine, by its unit's length in mm."""
+    return abs(1 / millimetres - 1 / MM_PER_INCH) < INCH_SLACK

@@ -1,15 +1,26 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a machine's INI file says of its units, its axes X, Z and C, and its remapped codes."""
+"""What a machine's INI file says of its units, its axes and its remapped codes.
+
+Every question is put to a ``find`` (section, key: the first value or None) or ``find_all`` (every
+value).  Inside LinuxCNC these are its own reader's, in the tools those of `tools.machine.ini`,
+which reads texts that are in no file.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
-from typing import NamedTuple
+import re
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple, Optional
 
 from g12.errors import Refusal, number
+from g12.ini_sections import leading_number
 from g12.lengths import MM_PER_INCH
-from g12.settings import section_entries
 
+Find = Callable[[str, str], Optional[str]]
+FindAll = Callable[[str, str], Sequence[str]]
+
+AXES = "XYZABCUVW"
 NO_LIMIT = 1e99
 AXIS_KEYS = (  # with what LinuxCNC takes where there is none
     ("MIN_LIMIT", -NO_LIMIT),
@@ -17,11 +28,20 @@ AXIS_KEYS = (  # with what LinuxCNC takes where there is none
     ("MAX_VELOCITY", 1.0),
     ("MAX_ACCELERATION", 1.0),
 )
-INCHES = ("in", "inch", "imperial")
+UNITS = {  # with their lengths in mm
+    "mm": 1.0,
+    "metric": 1.0,
+    "in": MM_PER_INCH,
+    "inch": MM_PER_INCH,
+    "imperial": MM_PER_INCH,
+}
+KEYWORDS = ("modalgroup", "argspec", "prolog", "epilog", "ngc", "python")  # in LinuxCNC's order
+HANDLERS = ("prolog", "epilog", "python")
+CODE = re.compile(r"([A-Za-z])(\d*)(?:\.(\d+))?\Z")
 
 
 class Axis(NamedTuple):
-    """One axis in machine units (degrees for C) and seconds: where it may go, and how fast."""
+    """One axis in machine units (degrees for A, B, C) and seconds: its travel, and how fast."""
 
     low: float
     high: float
@@ -29,54 +49,101 @@ class Axis(NamedTuple):
     acceleration: float
 
 
-def millimetres_of(text: str) -> float:
-    """Return the length of a machine unit in mm."""
-    unit = dict(section_entries(text, "TRAJ")).get("LINEAR_UNITS", "mm").split()[0].lower()
-    return MM_PER_INCH if unit in INCHES else 1.0
+@dataclass(frozen=True)
+class Remap:
+    """A REMAP line: the code it gives a meaning to, and its keywords."""
+
+    text: str
+    code: str
+    keywords: Mapping[str, str] = field(hash=False)
+
+    @property
+    def number(self) -> tuple[str, int]:
+        """The code as LinuxCNC compares it: letter and ten times the number."""
+        return code_number(self.code)
+
+    @property
+    def handlers(self) -> list[str]:
+        """The Python functions the line names."""
+        return [self.keywords[word] for word in HANDLERS if word in self.keywords]
+
+    def like(self, model: Remap) -> str:
+        """Return the line as another one is written, with this line's own code."""
+        return f"REMAP = {' '.join([self.code, *model.text.split()[1:]])}"
 
 
-def coordinates_of(text: str) -> set[str]:
-    """Return the letters of the machine's axes."""
-    return set(dict(section_entries(text, "TRAJ")).get("COORDINATES", "").upper()) - {" "}
+def millimetres_of(find: Find) -> float:
+    """Return the length of a machine unit in mm; LinuxCNC takes a name or units per mm."""
+    text = find("TRAJ", "LINEAR_UNITS") or "mm"
+    per_mm = leading_number(text)
+    length = UNITS.get(text.split()[0].lower(), 0.0) if per_mm is None else per_mm
+    if length <= 0.0:
+        rule = f"must be {', '.join(UNITS)} or units per mm, a number above 0"
+        raise Refusal(f"[TRAJ] LINEAR_UNITS = {text:.40}: {rule}")
+    return length if per_mm is None else 1.0 / per_mm
 
 
-def axes_of(text: str) -> dict[str, Axis]:
-    """Return the axes X, Z and C; raise Refusal for a value that no axis can have."""
-    return {letter: _axis(f"AXIS_{letter}", text) for letter in "XZC"}
+def coordinates_of(find: Find) -> str:
+    """Return the letters of the machine's axes, each once."""
+    letters = (find("TRAJ", "COORDINATES") or "XYZ").upper()
+    return "".join(dict.fromkeys(letter for letter in letters if letter in AXES))
 
 
-def _axis(section: str, text: str) -> Axis:
-    entries = dict(section_entries(text, section))
-    low, high, *speeds = (_number(section, entries, *key) for key in AXIS_KEYS)
+def axes_of(find: Find, letters: Iterable[str]) -> dict[str, Axis]:
+    """Return axes by their letters; raise Refusal for a value that no axis can have."""
+    return {letter: _axis(f"AXIS_{letter}", find) for letter in letters}
+
+
+def _axis(section: str, find: Find) -> Axis:
+    low, high, *speeds = (number_in(find, section, *key) for key in AXIS_KEYS)
     for (key, _), speed in zip(AXIS_KEYS[2:], speeds):
         if speed <= 0.0:
             raise Refusal(f"[{section}] {key} = {number(speed)}: must be above 0")
     return Axis(low, high, *speeds)
 
 
-def _number(section: str, entries: Mapping[str, str], key: str, default: float) -> float:
-    words = entries.get(key, "").split() or [f"{default}"]
-    try:
-        return float(words[0])
-    except ValueError:
-        raise Refusal(f"[{section}] {key} = {words[0]}: must be a number") from None
+def number_in(find: Find, section: str, key: str, default: float) -> float:
+    """Return a value as a number, read as far as it is one: ``20 # mm`` is 20."""
+    text = find(section, key)
+    value = default if text is None else leading_number(text)
+    if value is None:
+        raise Refusal(f"[{section}] {key} = {text:.40}: must be a number")
+    return value
 
 
-def remaps_of(text: str) -> dict[str, dict[str, str]]:
-    """Return the REMAP lines: code in upper case, then its options."""
-    lines = [value.split() for key, value in section_entries(text, "RS274NGC") if key == "REMAP"]
-    return {
-        code.upper(): dict(option.split("=", 1) for option in options if "=" in option)
-        for code, *options in lines
-    }
+def remap_lines(find_all: FindAll) -> list[Remap]:
+    """Return the REMAP lines."""
+    return [remap_from_value(value) for value in find_all("RS274NGC", "REMAP")]
 
 
-def refuse_owned_codes(remaps: Container[str], owned: bool) -> None:
+def remap_from_value(value: str) -> Remap:
+    """Return the REMAP line of an INI value; keywords may be shortened as LinuxCNC allows."""
+    code, *options = value.split("#")[0].split() or [""]
+    keywords: dict[str, str] = {}
+    for option in options:
+        word, _, argument = option.partition("=")
+        full = next((key for key in KEYWORDS if key.startswith(word.lower())), word)
+        keywords[full] = argument
+    return Remap(value, code.upper(), keywords)
+
+
+def code_number(code: str) -> tuple[str, int]:
+    """Return a code's letter and ten times its number, ("", 0) if it is none.
+
+    LinuxCNC adds what stands behind the point as a whole number: G12.10 is 130, which is G13.
+    """
+    match = CODE.match(code)
+    if not match:
+        return "", 0
+    return match[1].upper(), 10 * int(match[2] or 0) + int(match[3] or 0)
+
+
+def refuse_owned_codes(codes: Container[str], owned: bool) -> None:
     """Refuse a REMAP of G12.1 where the interpreter has that code itself, and ignores the line."""
-    codes = [code for code in ("G12.1", "G13.1") if code in remaps]
-    if owned and codes:
+    remapped = [code for code in ("G12.1", "G13.1") if code in codes]
+    if owned and remapped:
         raise Refusal(
-            f"REMAP = {codes[0]}: this LinuxCNC has a G12.1 of its own (kinematics selection). "
+            f"REMAP = {remapped[0]}: this LinuxCNC has a G12.1 of its own (kinematics selection). "
             "Use configs/include/polar_g12_3.inc, and G12.3 and G13.3 in programs"
         )
 

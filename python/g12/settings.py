@@ -9,12 +9,16 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from g12.errors import Refusal, number
+from g12.ini_sections import entries_of
+from g12.lengths import is_inch
 
 SECTION = "G12"
+TOLERANCE_MM, TOLERANCE_INCH = 0.005, 0.0002
 
 
 @dataclass(frozen=True)
@@ -86,25 +90,16 @@ class Settings:
     polar_tolerance: float | None = TABLE["POLAR_TOLERANCE"].default
     polar_pole: str = TABLE["POLAR_POLE"].default
 
-
-def section_entries(text: str, section: str) -> list[tuple[str, str]]:
-    """Return the (key, value) pairs of the first section of that name, as LinuxCNC 2.9 reads it."""
-    entries: list[tuple[str, str]] = []
-    inside = seen = False
-    for line in map(str.strip, text.splitlines()):
-        if line.startswith("["):
-            inside = not seen and line.split("]")[0] == f"[{section}"
-            seen = seen or inside
-        elif inside and line and line[0] not in "#;":
-            key, _, value = line.partition("=")
-            entries.append((key.strip(), value.strip()))
-    return entries
+    def tolerance(self, millimetres: float) -> float:
+        """Return POLAR_TOLERANCE in machine units, which are ``millimetres`` long."""
+        usual = TOLERANCE_INCH if is_inch(millimetres) else TOLERANCE_MM / millimetres
+        return self.polar_tolerance or usual
 
 
-def settings_from_entries(entries: list[tuple[str, str]]) -> Settings:
-    """Return the settings of (key, value) pairs; raise `Refusal` on a bad key or value."""
+def settings_from_lines(lines: Sequence[str]) -> Settings:
+    """Return the settings of an INI file's lines; raise `Refusal` on a bad key or value."""
     values = {}
-    for key, text in entries:
+    for _, key, text in entries_of(lines, SECTION):
         if key not in TABLE:
             raise Refusal(f"[{SECTION}] {key:.40} is not a setting. Known: {', '.join(TABLE)}")
         if key.lower() in values:
@@ -124,15 +119,15 @@ def settings_from_ini(path: str | os.PathLike[str] | None) -> Settings:
     """Return the settings of an (expanded) INI file; the defaults if there is no file."""
     if not path:
         return Settings()
-    text = Path(path).read_text(encoding="utf-8", errors="replace")
-    check_section(text)
-    return settings_from_entries(section_entries(text, SECTION))
+    lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
+    check_section(lines)
+    return settings_from_lines(lines)
 
 
-def check_section(text: str) -> None:
+def check_section(lines: Sequence[str]) -> None:
     """Refuse a section that LinuxCNC would not read: in lower case, or a second one."""
-    lines = [line for line in map(str.strip, text.splitlines()) if line.startswith("[")]
-    names = [line.split("]")[0][1:] for line in lines]
+    headers = [line for line in map(str.strip, lines) if line.startswith("[")]
+    names = [line.split("]")[0][1:] for line in headers]
     found = [name for name in names if name.upper() == SECTION]
     if any(name != SECTION for name in found):
         raise Refusal(f"[{min(set(found) - {SECTION})}] must be written [{SECTION}]")

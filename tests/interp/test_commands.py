@@ -74,7 +74,7 @@ def test_a_number_that_is_none_is_one_line(told, tmp_path):
     words = ["-o", str(tmp_path / "no.png")]
     code, _, errors = told("plot", "G21 G90 F100\nG1 X1 C5\nM2\n", *words, ini=ini)
     assert code == 2
-    assert errors == f"g12 plot: {ini}: [AXIS_X] MAX_VELOCITY = fast: not a number\n"
+    assert errors == f"g12 plot: {ini}: [AXIS_X] MAX_VELOCITY = fast: must be a number\n"
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])

@@ -5,6 +5,7 @@ import json
 
 import pytest
 
+from g12.machine_ini import remap_from_value
 from g12.tools.commands import check
 from g12.tools.install import features
 from g12.tools.install.config import python_error
@@ -267,15 +268,15 @@ def test_python_errors_name_the_module_and_its_line():
 
 
 def test_shortened_keywords_and_comments_in_remap_lines():
-    remap = features.remap_from_value("g88.1 modal=1 py=involute ngc=  # mine prolog=x")
+    remap = remap_from_value("g88.1 modal=1 py=involute ngc=  # mine prolog=x")
     assert remap.code == "G88.1"
     assert remap.number == ("G", 881)
     assert remap.keywords == {"modalgroup": "1", "python": "involute", "ngc": ""}
-    assert features.remap_from_value("").number == ("", 0)
+    assert remap_from_value("").number == ("", 0)
 
 
 def test_a_users_own_cycle_may_use_our_epilog():
-    remap = features.remap_from_value("G88.1 modalgroup=1 ngc=mine epilog=cycle_done")
+    remap = remap_from_value("G88.1 modalgroup=1 ngc=mine epilog=cycle_done")
     assert features.model_of(remap) is None
 
 

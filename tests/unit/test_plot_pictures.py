@@ -22,8 +22,11 @@ from g12.tools.units import MM, UNITS, plain
 from g12.tools.verify.rapids import Collision
 from support.made_moves import Hand, samples_of
 
-MILL = Ini(Path("mill.ini"), ("[TRAJ]", "COORDINATES = X Y Z"))
-LATHE = Ini(Path("lathe.ini"), ("[TRAJ]", "COORDINATES = XZC", "[AXIS_C]", "MAX_VELOCITY = 360"))
+FAST = [line for axis in "XYZ" for line in (f"[AXIS_{axis}]", "MAX_VELOCITY = 1e12")]
+MILL = Ini(Path("mill.ini"), ("[TRAJ]", "COORDINATES = X Y Z", *FAST))
+LATHE = Ini(
+    Path("lathe.ini"), ("[TRAJ]", "COORDINATES = XZC", *FAST, "[AXIS_C]", "MAX_VELOCITY = 360")
+)
 PROGRAM = Path(__file__)
 
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.tools.path.part import Part
-from g12.tools.preview.tracer import Error, Move
+from g12.tools.preview.moves import Error, Move
 from g12.tools.regress.alignment import pairs
 from g12.tools.regress.differences import differences, lines_of
 from g12.tools.regress.edits import Tolerance

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.tools.preview.tracer import Error, Move
+from g12.tools.preview.moves import Error, Move
 from g12.tools.regress.recording_text import (
     Note,
     Recording,

@@ -6,7 +6,8 @@ from dataclasses import fields
 import pytest
 
 from g12.errors import Refusal
-from g12.settings import TABLE, Settings, section_entries, settings_from_entries, settings_from_ini
+from g12.ini_sections import entries_of
+from g12.settings import TABLE, Settings, settings_from_ini, settings_from_lines
 
 
 def test_every_key_of_the_table_is_a_setting():
@@ -29,7 +30,20 @@ def test_a_section_is_read(tmp_path):
 
 def test_only_the_first_section_of_the_name_counts():
     text = "[G12]\nCLEARING = spiral\n[A]\n[G12]\nCLEARING = rings\n"
-    assert section_entries(text, "G12") == [("CLEARING", "spiral")]
+    assert list(entries_of(text.splitlines(), "G12")) == [(1, "CLEARING", "spiral")]
+    assert settings_from_lines(text.splitlines()).clearing == "spiral"
+
+
+def test_a_line_may_be_continued():
+    assert settings_from_lines(["[G12]", "CLEARING = \\", "spiral"]).clearing == "spiral"
+
+
+@pytest.mark.parametrize(
+    ("text", "mm", "tolerance"),
+    [("", 1.0, 0.005), ("", 25.4, 0.0002), ("", 10.0, 0.0005), ("POLAR_TOLERANCE = 0.01", 1, 0.01)],
+)
+def test_the_tolerance_is_in_machine_units(text, mm, tolerance):
+    assert settings_from_lines(["[G12]", text]).tolerance(mm) == tolerance
 
 
 @pytest.mark.parametrize(
@@ -50,18 +64,18 @@ def test_only_the_first_section_of_the_name_counts():
 )
 def test_an_illegal_value_names_key_and_legal_values(key, value, message):
     with pytest.raises(Refusal) as refused:
-        settings_from_entries([(key, value)])
+        settings_from_lines(["[G12]", f"{key} = {value}"])
     assert refused.value.message == message
 
 
 def test_a_number_is_written_as_in_an_ini():
     with pytest.raises(Refusal, match=r"must be a number from 0\.00001"):
-        settings_from_entries([("POLAR_TOLERANCE", "1_0")])
+        settings_from_lines(["[G12]", "POLAR_TOLERANCE = 1_0"])
 
 
 def test_a_key_stands_there_once():
     with pytest.raises(Refusal) as refused:
-        settings_from_entries([("CLEARING", "rings"), ("CLEARING", "spiral")])
+        settings_from_lines(["[G12]", "CLEARING = rings", "CLEARING = spiral"])
     assert refused.value.message == "[G12] CLEARING stands there twice"
 
 
@@ -85,6 +99,6 @@ def test_a_section_that_linuxcnc_would_not_read_is_refused(tmp_path, text, messa
 
 def test_an_unknown_key_names_the_known_ones():
     with pytest.raises(Refusal) as refused:
-        settings_from_entries([("CLERING", "rings")])
+        settings_from_lines(["[G12]", "CLERING = rings"])
     assert refused.value.message.startswith("[G12] CLERING is not a setting. Known: CLEARING, ")
     assert len(refused.value.message) <= 255

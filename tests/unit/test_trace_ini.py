@@ -78,12 +78,16 @@ def test_a_number_is_read_as_far_as_it_goes_as_linuxcnc_does(ini, text, value):
     assert ini("[A]\nY = 1\n").number("A", "X", 7) == 7
 
 
-@pytest.mark.parametrize(
-    ("section", "text"), [("A", "abc"), ("A", ""), ("A", "# 5"), ("G12", "0.005 mm"), ("G12", "x")]
-)
-def test_what_is_no_number_is_named(ini, section, text):
-    with pytest.raises(IniError, match=rf"machine.ini: \[{section}\] X = {text}: not a number"):
-        ini(f"[{section}]\nX = {text}\n").number(section, "X", 7)
+@pytest.mark.parametrize("text", ["abc", "", "# 5"])
+def test_what_is_no_number_is_named(ini, text):
+    with pytest.raises(IniError, match=rf"machine.ini: \[A\] X = {text}: must be a number"):
+        ini(f"[A]\nX = {text}\n").number("A", "X", 7)
+
+
+@pytest.mark.parametrize("text", ["0.005 mm", "x"])
+def test_a_setting_that_is_all_but_a_number_is_named(ini, text):
+    with pytest.raises(IniError, match=rf"machine.ini: \[G12\] POLAR_TOLERANCE = {text}: must be"):
+        _ = ini(f"[G12]\nPOLAR_TOLERANCE = {text}\n").settings
 
 
 def test_files_are_relative_to_the_ini(ini, tmp_path):

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from g12.tools.preview.tracer import Move
+from g12.tools.preview.moves import Move
 
 REST = (0.0,) * 6
 PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis

@@ -10,7 +10,7 @@ import pytest
 
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import STATE, TAG, Block, after, before, blocks_in, read_line
-from g12.tools.preview.tracer import Event
+from g12.tools.preview.moves import Event
 from g12.tools.verify import wanted_circle, wanted_contour
 from g12.tools.verify.wanted_circle import Codes, Reader
 from g12.tools.verify.wanted_contour import Pen

@@ -189,8 +189,12 @@ def entries_of_call(interp: object, sub: str, count: int) -> list[float] | None:
 
 def program_units_per_machine_unit(interp: object) -> float:
     """Return the factor from INI file and tool table lengths to the program's."""
-    millimetres = 1 / emccanon.GET_EXTERNAL_LENGTH_UNITS()
-    return millimetres / MM_PER_INCH if interp.length_units == INCH else millimetres
+    return millimetres_per_machine_unit() / millimetres_per_unit(interp)
+
+
+def millimetres_per_machine_unit() -> float:
+    """Return the machine's unit in mm."""
+    return 1 / emccanon.GET_EXTERNAL_LENGTH_UNITS()
 
 
 def tool_from_entry(interp: object, entry: object) -> Tool:

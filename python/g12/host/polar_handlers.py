@@ -6,7 +6,6 @@ from __future__ import annotations
 import functools
 import os
 from collections.abc import Iterator
-from pathlib import Path
 
 import emccanon
 import interpreter
@@ -23,11 +22,11 @@ from g12.host.section_output import Emission
 from g12.host.section_reader import Rules, block_of
 from g12.machine_ini import (
     axes_of,
+    code_number,
     coordinates_of,
-    millimetres_of,
     owns_g12_1,
     refuse_owned_codes,
-    remaps_of,
+    remap_lines,
 )
 from g12.polar import plan as polar
 from g12.polar.soft_limits import Scale, Travel
@@ -35,7 +34,6 @@ from g12.section.block_rules import alone
 from g12.section.line import Place, line_named
 
 SWITCHED_OFF_BY = "polar_off"  # the handler's name in a REMAP line
-DEFAULT_TOLERANCE_MM, DEFAULT_TOLERANCE_INCH = 0.005, 0.0002
 LEAST_X_MM = 0.001  # a smaller part in X makes LinuxCNC 2.9 get the feed of a piece wrong
 CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
 KINEMATICS_PARAMETER = "_kins_type"  # an interpreter that has it has a G12.1 of its own
@@ -44,14 +42,9 @@ DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could re
 G96 = 960
 
 
-def ini_text() -> str:
-    """Return the machine's INI file, as LinuxCNC names it to the interpreter."""
-    path = os.environ.get("INI_FILE_NAME")
-    return Path(path).read_text(encoding="utf-8", errors="replace") if path else ""
-
-
-INI = ini_text()
-REMAPS, COORDINATES, MILLIMETRES = remaps_of(INI), coordinates_of(INI), millimetres_of(INI)
+INI = linuxcnc.ini(os.environ.get("INI_FILE_NAME") or os.devnull)
+REMAPS = {remap.code: remap for remap in remap_lines(INI.findall)}
+COORDINATES = set(coordinates_of(INI.find))
 
 
 def check_at_start() -> None:
@@ -153,7 +146,8 @@ def stands_alone(interp: object) -> bool:
 def setup_of_section(interp: object, code: str) -> Setup:
     """Return what a section needs to know that begins with the block being remapped."""
     units, off_code = glue.program_units_per_machine_unit(interp), code_switching_off(code)
-    axes = axes_of(INI)
+    axes = axes_of(INI.find, "XZC")
+    mm = glue.millimetres_per_unit(interp)
     return Setup(
         rules=rules_of_section(interp, code),
         off_code=off_code,
@@ -162,7 +156,7 @@ def setup_of_section(interp: object, code: str) -> Setup:
         c=interp.CC_current,
         plan=polar.Settings(
             tolerance=tolerance() * units,
-            least_x=LEAST_X_MM * units / MILLIMETRES,
+            least_x=LEAST_X_MM / mm,
             x_acceleration=axes["X"].acceleration * units,
             c_acceleration=axes["C"].acceleration,
             c_speed=axes["C"].velocity * 60,
@@ -170,7 +164,9 @@ def setup_of_section(interp: object, code: str) -> Setup:
         ),
         travel=Travel(axes, scales_of_axes(interp)),
         remapped={
-            int(name[1:]): "ngc" in options for name, options in REMAPS.items() if name[0] == "M"
+            remap.number[1] // 10: "ngc" in remap.keywords
+            for remap in REMAPS.values()
+            if remap.number[0] == "M"
         },
     )
 
@@ -187,7 +183,7 @@ def rules_of_section(interp: object, code: str) -> Rules:
         x_scale=(0.5 if diameter else 1.0) / (0.5 if g7 else 1.0),  # G7 has halved it already
         z_with_x=settings.polar_z == "allow",
         rapid_feed=settings.polar_g0_feed * units if settings.polar_g0 == "feed" else None,
-        closing=CLOSING_MM * units / MILLIMETRES,
+        closing=CLOSING_MM / glue.millimetres_per_unit(interp),
         tool_radius=functools.partial(tool_radius, interp),
     )
 
@@ -206,8 +202,7 @@ def emission_of_section(interp: object, code: str) -> Emission:
 
 def tolerance() -> float:
     """Return POLAR_TOLERANCE in machine units."""
-    default = DEFAULT_TOLERANCE_MM if MILLIMETRES == 1 else DEFAULT_TOLERANCE_INCH
-    return glue.SETTINGS.polar_tolerance or default
+    return glue.SETTINGS.tolerance(glue.millimetres_per_machine_unit())
 
 
 def tool_radius(interp: object) -> float | None:
@@ -218,15 +213,15 @@ def tool_radius(interp: object) -> float | None:
 
 def code_switching_off(code: str) -> str:
     """Return the code that ends a section begun by ``code``."""
-    for name, options in REMAPS.items():
-        if options.get("python") == SWITCHED_OFF_BY:
+    for name, remap in REMAPS.items():
+        if remap.keywords.get("python") == SWITCHED_OFF_BY:
             return name
     return f"G{float(code[1:]) + 1:g}"
 
 
 def number_of_code(code: str) -> int:
     """Return a G code as the parser numbers it: G12.1 is 121."""
-    return round(float(code[1:]) * 10)
+    return code_number(code)[1]
 
 
 def scales_of_axes(interp: object) -> dict[str, Scale]:

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Container
 from typing import NamedTuple
 
-from g12.tools.preview.tracer import Modes
+from g12.lengths import MM_PER_INCH, is_inch
 
 
 class Unit(NamedTuple):
@@ -32,12 +33,17 @@ class Unit(NamedTuple):
 
 
 MM = Unit("mm", 1.0, 3)
-UNITS = {"mm": MM, "inch": Unit("in", 25.4, 4)}
+UNITS = {"mm": MM, "inch": Unit("in", MM_PER_INCH, 4)}
 
 
-def unit_of(modes: Modes, name: str | None = None) -> Unit:
-    """Return the unit of that name, without one that of a program's modal state."""
-    return UNITS[name or ("inch" if "G20" in modes.gcodes else "mm")]
+def unit_of(gcodes: Container[str], name: str | None = None) -> Unit:
+    """Return the unit of that name, without one that of a program's active G codes."""
+    return UNITS[name or ("inch" if "G20" in gcodes else "mm")]
+
+
+def name_of_unit(mm: float) -> str:
+    """Return the name in UNITS for a machine whose unit is ``mm`` long."""
+    return "inch" if is_inch(mm) else "mm"
 
 
 def plain(value: float, decimals: int) -> str:

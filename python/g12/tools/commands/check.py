@@ -11,13 +11,14 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 
-from g12.settings import SECTION, TABLE, section_entries
+from g12.ini_sections import entries_of
+from g12.settings import SECTION, TABLE
 from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
 from g12.tools.errors import UsageError
 from g12.tools.install import features
 from g12.tools.install.config import Config, load_config, remaps_in
 from g12.tools.install.ini_edit import IniText
-from g12.tools.install.rules import NOTE, Finding, codes_of, coordinates, findings_of
+from g12.tools.install.rules import NOTE, Finding, codes_of, findings_of
 from g12.tools.machine.files import existing
 
 EXAMPLES = """\
@@ -40,8 +41,8 @@ def check(text: IniText) -> tuple[Config, list[Finding]]:
 
 def settings_of(config: Config) -> dict[str, str]:
     """Return the settings that section [G12] changes."""
-    entries = section_entries(config.ini.text, SECTION)
-    return {key: value for key, value in entries if key in TABLE}
+    entries = entries_of(config.ini.lines, SECTION)
+    return {key: value for _, key, value in entries if key in TABLE}
 
 
 def report(config: Config, found: list[Finding]) -> dict:
@@ -53,7 +54,7 @@ def report(config: Config, found: list[Finding]) -> dict:
         "ini": str(config.text.path),
         "linuxcnc": config.version,
         "loads": config.failure is None,
-        "axes": coordinates(config),
+        "axes": list(config.ini.axes),
         "codes": [
             {"code": code.remap.code, "feature": code.feature, "line": code.line.place}
             for code in codes

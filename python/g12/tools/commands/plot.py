@@ -47,7 +47,7 @@ def draw(scene: Scene) -> Figure:
     """Return the picture that fits machine and program."""
     if scene.path.part.turning:
         return draw_face(scene)
-    lathe = "Y" not in "".join(scene.ini.words("TRAJ", "COORDINATES", "XYZ")).upper()
+    lathe = "Y" not in scene.ini.axes
     return draw_turn(scene) if lathe else draw_mill(scene)
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
+from g12.machine_ini import AXES
 from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
@@ -23,9 +24,9 @@ from g12.tools.headless.machine import Run
 from g12.tools.headless.run import run_anyhow
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.ended import text_with_axes
-from g12.tools.preview.tracer import AXES, mm_per_unit
-from g12.tools.regress.recording_text import LINEAR, number
-from g12.tools.units import UNITS
+from g12.tools.preview.moves import LINEAR
+from g12.tools.regress.recording_text import number
+from g12.tools.units import UNITS, name_of_unit
 
 EXAMPLES = """\
 examples:
@@ -43,7 +44,7 @@ def report(result: Run, ini: Ini) -> Iterator[str]:
         yield f"message: {message.text}"
     axes = [(axis, AXES.index(axis)) for axis in result.samples.axes]
     ends = (f"{axis}{number(round(result.position[at], DECIMALS))}" for axis, at in axes)
-    unit = next(unit.name for unit in UNITS.values() if unit.mm == mm_per_unit(ini))
+    unit = UNITS[name_of_unit(ini.mm)].name
     units = unit if all(LINEAR[at] for _, at in axes) else f"{unit} and degrees"
     yield f"ends at {' '.join(ends)} (machine position, {units})"
     yield f"{result.seconds:.3f} s in motion"

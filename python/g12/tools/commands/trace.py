@@ -8,6 +8,7 @@ in machine coordinates. A line begins with the program's own line number.
 
 from __future__ import annotations
 
+from g12.machine_ini import AXES
 from g12.tools.commands.arguments import (
     GOOD,
     Parser,
@@ -17,7 +18,8 @@ from g12.tools.commands.arguments import (
     one_line,
 )
 from g12.tools.preview.ended import ended, with_axes
-from g12.tools.preview.tracer import AXES, Move, trace
+from g12.tools.preview.moves import Move
+from g12.tools.preview.tracer import trace
 
 EXAMPLES = """\
 examples:

@@ -10,11 +10,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from g12.ini_sections import key_and_value
+from g12.machine_ini import remap_from_value
 from g12.tools.commands.arguments import GOOD, Parser, one_line
 from g12.tools.commands.check import readable
 from g12.tools.install import package_copy
 from g12.tools.install.config import remaps_in
-from g12.tools.install.features import model_of, remap_from_value
+from g12.tools.install.features import model_of
 from g12.tools.install.ini_edit import (
     BEGIN,
     END,
@@ -29,7 +31,6 @@ from g12.tools.install.ini_edit import (
 from g12.tools.install.plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE, names_copy
 from g12.tools.install.rules import codes_of
 from g12.tools.machine.files import difference, drop_backup, require_writable, write_all
-from g12.tools.machine.ini import ENTRY
 from g12.tools.progress import print_all
 
 OWN_ENDS = {
@@ -48,11 +49,11 @@ exit code: 0 done or nothing to do, 2 wrong use"""
 
 def is_ours(line: Line) -> bool:
     """Tell whether a line between the markers is one that `install` puts there."""
-    entry = ENTRY.match(line.text)
-    if entry and entry[1] == "REMAP":
-        return model_of(remap_from_value(entry[2])) is not None
-    if entry:
-        return ":" not in entry[2] and entry[2].endswith(OWN_ENDS.get(entry[1], "\n"))
+    key, value = key_and_value(line.text)
+    if key == "REMAP":
+        return model_of(remap_from_value(value)) is not None
+    if key:
+        return ":" not in value and value.endswith(OWN_ENDS.get(key, "\n"))
     return line.text.startswith((BEGIN, NOTE, END))
 
 

@@ -179,7 +179,7 @@ def depth(facts: PocketFacts, unit: Unit) -> str:
 
 def x_words(facts: SectionFacts, proof: Proof) -> str:
     """Return what X words are in a section, and what decides it."""
-    reading = proof.subject.ini.get("G12", "POLAR_X", "inherit").lower()
+    reading = proof.subject.ini.settings.polar_x
     kind, modal = ("diameters", "G7") if facts.section.diameters else ("radii", "G8")
     return f"{kind} ({modal if reading == 'inherit' else f'POLAR_X = {reading}'})"
 
@@ -340,6 +340,6 @@ def main(arguments: list[str]) -> int:
         proof = prove(asked.program, ini, run=run, tell=tell, **options)
     if not (proof.pockets or proof.sections or proof.unseen):
         raise UsageError(f"{asked.program}: has no pocket and no polar section to verify")
-    unit = unit_of(proof.subject.trace.modes, asked.units)
+    unit = unit_of(proof.subject.trace.modes.gcodes, asked.units)
     print(as_json(proof) if asked.json else report(proof, unit))
     return FINDING if proof.findings else GOOD

@@ -25,16 +25,12 @@ import numpy as np
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.path.samples import Samples
+from g12.tools.preview.moves import Error, Message, Modes, modes
 from g12.tools.preview.tracer import (
-    START_BLOCKS,
-    Error,
-    Message,
-    Modes,
     Parameters,
     Program,
     Tools,
-    mm_per_unit,
-    modes,
+    start_block,
     write_parameters,
     write_program,
     write_tools,
@@ -151,9 +147,7 @@ class Machine:
         self._connection: Connection | None = None
         try:
             self.ini = self._private_ini(read_ini(ini).replaced(overrides or {}), tools, parameters)
-            self.mm = mm_per_unit(self.ini)
-            letters = "".join(self.ini.words("TRAJ", "COORDINATES", "XYZ")).upper()
-            self.axes = "".join(dict.fromkeys(letters))
+            self.mm, self.axes = self.ini.mm, self.ini.axes
             self._start(timeout)
             if home:
                 self._get_ready()
@@ -285,7 +279,7 @@ class Machine:
         self.feed_override(1.0)
         zero = " ".join(f"{axis}0" for axis in self.axes)
         turn = " R0" if {"X", "Y"} <= set(self.axes) else ""
-        modes_at_start = f"{START_BLOCKS[self.mm]} G40 G49 G8 G91.1 G97"
+        modes_at_start = f"{start_block(self.mm)} G40 G49 G8 G91.1 G97"
         up = ["G53 G0 Z0"] if "Z" in self.axes else []
         away = ["T0 M6"] if self.stat().tool else []
         offsets = ["G92.1", f"G10 L2 P1 {zero}{turn}"]

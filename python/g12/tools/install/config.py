@@ -9,7 +9,7 @@ import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from g12.tools.install.features import Remap, remap_from_value
+from g12.machine_ini import Remap, remap_from_value
 from g12.tools.install.ini_edit import IniText, Line
 from g12.tools.machine.ini import Ini, Overrides
 from g12.tools.preview.loading import linuxcnc_version, load_failure, python_error

@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What of the package a machine can have, and REMAP lines as LinuxCNC reads them."""
+"""What of the package a machine can have, and the REMAP lines that make it."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
-from g12.tools.machine.ini import ENTRY
+from g12.ini_sections import entries_of
+from g12.machine_ini import HANDLERS, Remap, remap_from_value
 
 ROOT = Path(__file__).resolve().parents[4]  # the folder that holds ngc, python and configs
 INCLUDES = ROOT / "configs" / "include"
@@ -37,65 +35,21 @@ SHARED = {"cycle_done"}  # the epilog of every cycle does not tell which one it 
 SUBS = {"circle-mill": ("circle_mill",)}  # what a program calls besides the codes
 
 CLOSE = 0.8  # share of letters in common that makes a name a misspelt one
-KEYWORDS = ("modalgroup", "argspec", "prolog", "epilog", "ngc", "python")
-HANDLERS = ("prolog", "epilog", "python")
-CODE = re.compile(r"([A-Za-z])(\d*)(?:\.(\d+))?\Z")
+SECTION = "RS274NGC"  # which the files of configs/include go into
 
 
-@dataclass(frozen=True)
-class Remap:
-    """A REMAP line: the code it gives a meaning to, and its keywords."""
-
-    text: str
-    code: str
-    keywords: Mapping[str, str] = field(hash=False)
-
-    @property
-    def number(self) -> tuple[str, int]:
-        """The code as LinuxCNC compares it: letter and ten times the number."""
-        return code_number(self.code)
-
-    @property
-    def handlers(self) -> list[str]:
-        """The Python functions the line names."""
-        return [self.keywords[word] for word in HANDLERS if word in self.keywords]
-
-    @property
-    def own_names(self) -> set[str]:
-        """What tells the line from those of other cycles: its subs and functions."""
-        names = {self.keywords[word] for word in ("ngc", *HANDLERS) if word in self.keywords}
-        return names - SHARED
-
-    def like(self, model: Remap) -> str:
-        """Return the line as the package writes it today, with this line's own code."""
-        return f"REMAP = {' '.join([self.code, *model.text.split()[1:]])}"
-
-
-def code_number(code: str) -> tuple[str, int]:
-    """Return a code's letter and ten times its number, ("", 0) if it is none."""
-    match = CODE.match(code)
-    if not match:
-        return "", 0
-    return match[1].upper(), 10 * int(match[2] or 0) + int(match[3] or 0)
-
-
-def remap_from_value(value: str) -> Remap:
-    """Return the REMAP line of an INI value; keywords may be shortened as LinuxCNC allows."""
-    code, *options = value.split("#")[0].split() or [""]
-    keywords: dict[str, str] = {}
-    for option in options:
-        word, _, argument = option.partition("=")
-        full = next((key for key in KEYWORDS if key.startswith(word.lower())), word)
-        keywords[full] = argument
-    return Remap(value, code.upper(), keywords)
+def own_names(remap: Remap) -> set[str]:
+    """Return what tells a REMAP line from those of other cycles: its subs and functions."""
+    names = {remap.keywords[word] for word in ("ngc", *HANDLERS) if word in remap.keywords}
+    return names - SHARED
 
 
 @cache
 def remaps_of(feature: str) -> tuple[Remap, ...]:
     """Return the REMAP lines of a feature, from its file in configs/include."""
     lines = (INCLUDES / FILES[feature]).read_text(encoding="utf-8").splitlines()
-    entries = (ENTRY.match(line) for line in lines)
-    return tuple(remap_from_value(entry[2]) for entry in entries if entry and entry[1] == "REMAP")
+    entries = entries_of([f"[{SECTION}]", *lines], SECTION)
+    return tuple(remap_from_value(value) for _, key, value in entries if key == "REMAP")
 
 
 def model_of(remap: Remap) -> tuple[str, Remap] | None:
@@ -104,7 +58,7 @@ def model_of(remap: Remap) -> tuple[str, Remap] | None:
 
     def likeness(candidate: tuple[str, Remap]) -> tuple[int, bool]:
         _, model = candidate
-        return len(model.own_names & remap.own_names), model.number == remap.number
+        return len(own_names(model) & own_names(remap)), model.number == remap.number
 
     best = max(models, key=likeness)
     if likeness(best)[0]:
@@ -114,8 +68,8 @@ def model_of(remap: Remap) -> tuple[str, Remap] | None:
 
 def is_misspelt(remap: Remap, model: Remap) -> bool:
     """Tell whether a REMAP line of the same code names nothing but what a line names, misspelt."""
-    names = remap.own_names if remap.number == model.number else ()
-    close = [get_close_matches(name, model.own_names, cutoff=CLOSE) for name in names]
+    names = own_names(remap) if remap.number == model.number else ()
+    close = [get_close_matches(name, own_names(model), cutoff=CLOSE) for name in names]
     return bool(close) and all(close)
 
 

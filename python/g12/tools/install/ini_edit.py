@@ -12,7 +12,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from g12.tools.machine.ini import ENTRY, Ini, IniError, included_file
+from g12.ini_sections import entries_of, section_extent
+from g12.tools.machine.ini import Ini, IniError, included_file
 
 BEGIN = "# >>> g12 install"
 END = "# <<< g12 install"
@@ -74,17 +75,6 @@ def opens_section(text: str, section: str) -> bool:
     return text.lstrip().startswith(f"[{section}]")
 
 
-def joined(lines: Sequence[Line]) -> Iterator[tuple[Line, str]]:
-    """Yield the text of every entry with its first line, broken lines put together."""
-    first, text = None, ""
-    for line in lines:
-        first = first or line
-        text += line.text.removesuffix("\\")
-        if not line.text.endswith("\\"):
-            yield first, text
-            first, text = None, ""
-
-
 def without(lines: Sequence[str], doomed: set[int]) -> list[str]:
     """Return lines without those at the indices; a last line without an end stays one."""
     kept = [line for index, line in enumerate(lines) if index not in doomed]
@@ -139,18 +129,15 @@ class IniText:
 
     def section(self, section: str) -> list[Line]:
         """Return the lines LinuxCNC finds in a section, its header first."""
-        found: list[Line] = []
-        for line in self.lines():
-            if found and line.text.lstrip().startswith("["):
-                break
-            if found or opens_section(line.text, section):
-                found.append(line)
-        return found
+        lines = list(self.lines())
+        extent = section_extent([line.text for line in lines], section)
+        return lines[extent.start - 1 : extent.stop] if extent.start else []
 
     def entries(self, section: str, key: str) -> list[tuple[Line, str]]:
         """Return the values of a key in the section LinuxCNC reads, with their first lines."""
-        matches = [(line, ENTRY.match(text)) for line, text in joined(self.section(section))]
-        return [(line, match[2]) for line, match in matches if match and match[1] == key]
+        lines = list(self.lines())
+        found = entries_of([line.text for line in lines], section)
+        return [(lines[entry.index], entry.value) for entry in found if entry.key == key]
 
     def end_of_section(self, section: str) -> Place | None:
         """Return the place behind the section's last entry, in the INI itself if that can be."""

@@ -16,7 +16,15 @@ from g12.tools.machine.files import take_owner, write
 
 NAME = "g12"  # of the folder in the config's folder
 MANIFEST = "MANIFEST"  # as sha256sum writes and checks it
-PARTS = ("LICENSE", "ngc/*.ngc", "configs/include/*.inc", "python/*.py", "python/g12/**/*.py")
+PAGES = (  # what a machinist reads beside the machine; they link to nothing else
+    "ngc/*.md",
+    "ngc/pictures/*.png",
+    "configs/README.md",
+    "python/README.md",
+    "python/g12/tools/regress/README.md",
+)
+CODE = ("ngc/*.ngc", "configs/include/*.inc", "python/*.py", "python/g12/**/*.py")
+PARTS = ("LICENSE", *CODE, *PAGES)
 EDITED = ".edited"
 ENTRY = re.compile(r"([0-9a-f]{64})  (\S.*)")
 

@@ -178,7 +178,8 @@ def new_remaps(config: Config, wanted: Sequence[str]) -> list[features.Remap]:
         for feature in wanted
         for remap in features.remaps_of(feature)
         if not any(
-            other.number == remap.number and other.own_names & remap.own_names for other in there
+            other.number == remap.number and features.own_names(other) & features.own_names(remap)
+            for other in there
         )
     ]
 
@@ -285,5 +286,5 @@ def require_inside(config: Config, path: Path) -> None:
             "outside",
             f"{path} would have to change, which is outside the folder of {config.text.path.name}",
             "copy that file into the config's folder and name it in the INI, or set the package "
-            "up by hand (README)",
+            "up by hand (configs/README.md)",
         )

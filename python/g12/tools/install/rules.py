@@ -13,12 +13,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from g12.errors import Refusal
-from g12.settings import SECTION, section_entries, settings_from_entries
+from g12.ini_sections import key_and_value
+from g12.machine_ini import Remap, remap_from_value
+from g12.settings import SECTION, settings_from_lines
 from g12.tools.install import features
 from g12.tools.install.config import MOST_FOLDERS, Config, folder_from_ini, subs_named
-from g12.tools.install.features import Remap
 from g12.tools.install.ini_edit import Line
-from g12.tools.machine.ini import ENTRY, INCLUDE
+from g12.tools.machine.ini import INCLUDE
 
 PROBLEM, WARNING, NOTE = "problem", "warning", "note"
 OLDEST = (2, 9)
@@ -112,10 +113,10 @@ def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[Finding]:
     """Find REMAP lines of the package, or settings, where LinuxCNC does not look."""
     read = {line for line, _ in config.remaps}
     for line in config.text.lines():
-        entry = ENTRY.match(line.text)
-        if not entry or entry[1] != "REMAP" or line in read:
+        key, value = key_and_value(line.text)
+        if key != "REMAP" or line in read:
             continue
-        if features.model_of(features.remap_from_value(entry[2])):
+        if features.model_of(remap_from_value(value)):
             yield problem(
                 "not-read",
                 f"{line.place}: {line.text.strip()}: not in the section [RS274NGC] that is read",
@@ -388,14 +389,14 @@ def handlers_hidden(config: Config, codes: list[Code]) -> Iterator[Finding]:
 def bad_settings(config: Config, _codes: list[Code]) -> Iterator[Finding]:
     """Find a [G12] section that is a start-up error."""
     try:
-        settings_from_entries(section_entries(config.ini.text, SECTION))
+        settings_from_lines(config.ini.lines)
     except Refusal as refusal:
         yield problem("setting", refusal.message, f"correct the line in [{SECTION}]")
 
 
 def missing_axes(config: Config, codes: list[Code]) -> Iterator[Finding]:
     """Find axes that a code needs."""
-    axes = coordinates(config)
+    axes = config.ini.axes
     for feature in dict.fromkeys(code.feature for code in codes):
         needed = "XC" if feature in features.POLAR else "XYZ"
         missing = [axis for axis in needed if axis not in axes]
@@ -440,12 +441,6 @@ def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[Findin
             "no tool in the tool table has a diameter: a pocket with D would come out too large",
             "enter the cutters' diameters (D) in the tool table",
         )
-
-
-def coordinates(config: Config) -> list[str]:
-    """Return the machine's axes."""
-    letters = "".join(config.ini.words("TRAJ", "COORDINATES", "XYZ")).upper()
-    return list(dict.fromkeys(letters))
 
 
 def tool_diameters(config: Config) -> dict[int, float] | None:

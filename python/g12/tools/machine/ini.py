@@ -13,21 +13,23 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Union
+from typing import Callable, TypeVar, Union
 
+from g12.errors import Refusal
+from g12.ini_sections import continued, entries_of, key_and_value, section_extent
+from g12.machine_ini import Axis, axes_of, coordinates_of, millimetres_of, number_in
+from g12.settings import Settings, settings_from_lines
 from g12.tools.errors import UsageError
 from g12.tools.machine.files import existing
 
 INCLUDE = re.compile(r"\s*#INCLUDE\s+(\S.*)")
-ENTRY = re.compile(r"\s*([^\s=#;\[][^\s=]*)\s*=\s*(.*?)\s*$")
 SECTIONS = re.compile(r"\s*\[(EMC|KINS|RS274NGC|TRAJ)\]", re.MULTILINE)  # of a machine's INI
-NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-PACKAGE = "G12"  # the section of the package's settings
 LONGEST_PART = 250
 ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
 
 Value = Union[str, int, float, None, Sequence]
 Overrides = Mapping[str, Mapping[str, Value]]
+T = TypeVar("T")
 
 
 class IniError(ValueError):
@@ -51,29 +53,43 @@ class Ini:
         """The expanded file."""
         return "\n".join(self.lines) + "\n"
 
+    @property
+    def mm(self) -> float:
+        """The length of a machine unit in mm."""
+        return self._asked(lambda: millimetres_of(self.get))
+
+    @property
+    def axes(self) -> str:
+        """The letters of the machine's axes."""
+        return coordinates_of(self.get)
+
+    @property
+    def axis_limits(self) -> dict[str, Axis]:
+        """What each of the machine's axes can do, in machine units (degrees for A, B, C)."""
+        return self._asked(lambda: axes_of(self.get, self.axes))
+
+    @property
+    def settings(self) -> Settings:
+        """The settings of section [G12]."""
+        return self._asked(lambda: settings_from_lines(self.lines))
+
+    def _asked(self, question: Callable[[], T]) -> T:
+        try:
+            return question()
+        except Refusal as refusal:
+            raise IniError(f"{self.path}: {refusal}") from None
+
     def all(self, section: str, key: str) -> list[str]:
         """Return every value of a repeated key, in order."""
-        first, last = self._extent(section)
-        entries = (ENTRY.match(line) for line in _joined(self.lines[first:last]))
-        return [entry.group(2) for entry in entries if entry and entry.group(1) == key]
+        return [entry.value for entry in entries_of(self.lines, section) if entry.key == key]
 
     def get(self, section: str, key: str, default: str | None = None) -> str | None:
         """Return the value LinuxCNC finds: the first one."""
         return next(iter(self.all(section, key)), default)
 
     def number(self, section: str, key: str, default: float) -> float:
-        """Return a value as a number.
-
-        LinuxCNC reads its own as far as they are one (``20 # mm`` is 20); of section [G12], which
-        is the package's, a value is all number or an error.
-        """
-        text = self.get(section, key)
-        found = NUMBER.match(text or "")
-        if text is None:
-            return default
-        if not found or (section == PACKAGE and found[0] != text):
-            raise IniError(f"{self.path}: [{section}] {key} = {text}: not a number")
-        return float(found[0])
+        """Return a value as a number, read as far as it is one (``20 # mm`` is 20)."""
+        return self._asked(lambda: number_in(self.get, section, key, default))
 
     def file(self, section: str, key: str) -> Path | None:
         """Return a file name of the INI as an absolute path."""
@@ -97,23 +113,12 @@ class Ini:
         return ini
 
     def _with(self, section: str, key: str, value: Value) -> Ini:
-        first, last = self._extent(section)
-        head, body, tail = self.lines[:first], self.lines[first:last], self.lines[last:]
-        if not first:
-            head, body, tail = (*self.lines, f"[{section}]"), (), ()
-        kept = _without(body, key)
+        body = section_extent(self.lines, section)
+        head, tail = self.lines[: body.start], self.lines[body.stop :]
+        if not body.start:
+            head, tail = (*self.lines, f"[{section}]"), ()
+        kept = _without(self.lines[body.start : body.stop], key)
         return Ini(self.path, (*head, *_entries(key, value), *kept, *tail))
-
-    def _extent(self, section: str) -> tuple[int, int]:
-        """First and past-the-last line index of a section's body; (0, 0) if there is none."""
-        first = last = 0
-        for index, line in enumerate(self.lines, start=1):
-            if first and line.lstrip().startswith("["):
-                return first, index - 1
-            if not first and line.lstrip().startswith(f"[{section}]"):
-                first = index
-            last = index
-        return (first, last) if first else (0, 0)
 
 
 def read_ini(path: str | os.PathLike) -> Ini:
@@ -152,32 +157,11 @@ def _expanded(lines: list[str], directory: Path):
             yield from included.read_text(**ENCODING).splitlines()
 
 
-def _broken(lines: Sequence[str]) -> Iterator[list[str]]:
-    """Yield lines together with those that a backslash continues them on."""
-    group: list[str] = []
-    for line in lines:
-        group.append(line)
-        if not line.endswith("\\"):
-            yield group
-            group = []
-
-
-def _joined(lines: Sequence[str]) -> Iterator[str]:
-    """Yield lines with backslash continuations put together."""
-    for *started, last in _broken(lines):
-        yield "".join([*(line[:-1] for line in started), last])
-
-
 def _without(lines: Sequence[str], key: str) -> Iterator[str]:
     """Yield lines but for the entries of a key; a broken line stays broken."""
-    for group in _broken(lines):
-        if not any(_is_entry_of(line, key) for line in _joined(group)):
+    for group in continued(lines):
+        if key_and_value(group[0])[0] != key:
             yield from group
-
-
-def _is_entry_of(line: str, key: str) -> bool:
-    entry = ENTRY.match(line)
-    return bool(entry) and entry.group(1) == key
 
 
 def _entries(key: str, value: Value) -> list[str]:

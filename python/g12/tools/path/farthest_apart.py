@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from g12.machine_ini import AXES
 from g12.tools.path.part import CHORD_ERROR, Part, paths
-from g12.tools.preview.tracer import AXES, Move
+from g12.tools.preview.moves import Move
 
 ROUGH = 0.005  # chord error where the finer one makes too many points
 MOST_DISTANCES = 3_000_000

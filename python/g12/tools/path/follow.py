@@ -14,10 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from g12.machine_ini import AXES
 from g12.tools.path.part import plane_axes
 from g12.tools.path.samples import Samples
-from g12.tools.path.track import LINEAR, Track
-from g12.tools.preview.tracer import AXES, Move
+from g12.tools.path.track import Track
+from g12.tools.preview.moves import LINEAR, Move
 
 SLACK = 0.25  # mm that a run may be ahead of the path, where it cuts a corner
 
@@ -154,7 +155,7 @@ def _positions(samples: Samples, unit: float) -> np.ndarray:
     positions = np.zeros((len(samples.time), len(AXES)))
     for letter, values in samples.axes.items():
         index = AXES.index(letter)
-        positions[:, index] = values * (unit if index in LINEAR else 1.0)
+        positions[:, index] = values * (unit if LINEAR[index] else 1.0)
     return positions
 
 

@@ -22,7 +22,8 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.tools.machine.ini import Ini
-from g12.tools.preview.tracer import THIRD_AXIS, Move, Tools, mm_per_unit
+from g12.tools.preview.moves import THIRD_AXIS, Move
+from g12.tools.preview.tracer import Tools
 
 CHORD_ERROR = 2e-4  # of the polylines that stand for curves
 LONGEST_ARC_CHORD = math.radians(10)
@@ -75,8 +76,7 @@ class Part:
 
 def part_of(ini: Ini) -> Part:
     """Return how the machine of an INI holds its part: X and C without Y is a lathe."""
-    axes = "".join(ini.words("TRAJ", "COORDINATES", "XYZ")).upper()
-    return Part(turning="C" in axes and "Y" not in axes)
+    return Part(turning="C" in ini.axes and "Y" not in ini.axes)
 
 
 def part_of_program(ini: Ini, moves: Iterable[Move]) -> Part:
@@ -158,7 +158,7 @@ def tool_diameters(ini: Ini, tools: Tools = None) -> dict[int, float]:
     source = ini.file("EMCIO", "TOOL_TABLE") if tools is None else tools
     if not isinstance(source, Mapping):
         source = read_tool_table(Path(source)) if source and Path(source).exists() else {}
-    unit = mm_per_unit(ini)
+    unit = ini.mm
     return {number: diameter * unit for number, diameter in source.items()}
 
 

@@ -13,11 +13,11 @@ from functools import cached_property
 
 import numpy as np
 
+from g12.machine_ini import AXES
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import CHORD_ERROR, Part
-from g12.tools.preview.tracer import AXES, Move, mm_per_unit
+from g12.tools.preview.moves import LINEAR, Move
 
-LINEAR = [AXES.index(letter) for letter in "XYZUVW"]
 UNLIMITED = math.inf
 
 
@@ -77,10 +77,9 @@ class Track:
 
 def limits_of(ini: Ini) -> Limits:
     """Return the greatest speeds that an INI allows."""
-    unit = mm_per_unit(ini)
-    scale = [unit if index in LINEAR else 1.0 for index in range(len(AXES))]
-    axes = [ini.number(f"AXIS_{letter}", "MAX_VELOCITY", UNLIMITED) for letter in AXES]
-    path = ini.number("TRAJ", "MAX_LINEAR_VELOCITY", UNLIMITED) * unit
+    known, scale = ini.axis_limits, [ini.mm if linear else 1.0 for linear in LINEAR]
+    axes = [known[axis].velocity if axis in known else UNLIMITED for axis in AXES]
+    path = ini.number("TRAJ", "MAX_LINEAR_VELOCITY", UNLIMITED) * ini.mm
     return Limits(tuple(map(float.__mul__, axes, scale)), path)
 
 

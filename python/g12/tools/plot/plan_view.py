@@ -22,7 +22,7 @@ from g12.tools.path.part import Part, is_sideways, paths, swept
 from g12.tools.plot import style
 from g12.tools.plot.scene import Scene
 from g12.tools.plot.style import Shade
-from g12.tools.preview.tracer import Move
+from g12.tools.preview.moves import Move
 from g12.tools.units import plain
 
 PICTURE_CHORD = 0.01

@@ -16,7 +16,8 @@ from g12.tools.path.follow import Followed, follow
 from g12.tools.path.part import part_of_program, tool_diameters
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.executed_blocks import COMMENT
-from g12.tools.preview.tracer import Move, Tools, Trace, mm_per_unit
+from g12.tools.preview.moves import Move, Trace
+from g12.tools.preview.tracer import Tools
 from g12.tools.units import Unit, plain, unit_of
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.rapids import Collision
@@ -85,14 +86,14 @@ def scene_of(
 ) -> Scene:
     """Return what to show of a traced program; without ``units`` lengths as the program's."""
     path = track(part_of_program(ini, trace.moves), trace.moves, limits_of(ini), trace.modes.speed)
-    unit = unit_of(trace.modes, units)
+    unit = unit_of(trace.modes.gcodes, units)
     return Scene(program, ini, trace, tool_diameters(ini, tools), unit, path, feed_colours)
 
 
 def scene_of_proof(proof: Proof, tools: Tools = None, override: float = 100.0) -> Scene:
     """Return what to show of a program that was measured, its real motion included."""
     subject = proof.subject
-    unit = unit_of(subject.trace.modes)
+    unit = unit_of(subject.trace.modes.gcodes)
     diameters = tool_diameters(subject.ini, tools)
     about = (subject.program, subject.ini, subject.trace, diameters, unit, subject.path)
     contour = max((facts.deviation for facts in proof.sections), default=None)
@@ -102,7 +103,7 @@ def scene_of_proof(proof: Proof, tools: Tools = None, override: float = 100.0) -
 
 def with_run(scene: Scene, run: Run, override: float = 100.0) -> Scene:
     """Return the same scene with the real motion of a run at a feed override in per cent."""
-    real = follow(scene.path, scene.moves, run.samples, mm_per_unit(scene.ini))
+    real = follow(scene.path, scene.moves, run.samples, scene.ini.mm)
     return replace(scene, real=real, override=override)
 
 

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
-from g12.tools.preview.tracer import Tools, Trace, trace
+from g12.tools.preview.moves import Trace
+from g12.tools.preview.tracer import Tools, trace
 
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
@@ -37,7 +38,7 @@ def with_axes(result: Trace, ini: Path) -> Trace:
 def text_with_axes(text: str, ini: Path) -> str:
     """Return the interpreter's error, with the machine's axes if it is about another one."""
     wanted = NO_AXIS.match(text)
-    axes = "".join(read_ini(ini).words("TRAJ", "COORDINATES", "XYZ")).upper()
+    axes = read_ini(ini).axes
     if not wanted or wanted[1].upper() in axes:
         return text
-    return f"{text}: this INI's machine has axes {' '.join(dict.fromkeys(axes))}"
+    return f"{text}: this INI's machine has axes {' '.join(axes)}"

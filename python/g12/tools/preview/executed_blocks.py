@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, NamedTuple
 
-from g12.tools.preview.tracer import Trace, Tracer
+from g12.tools.preview.moves import Trace
+from g12.tools.preview.tracer import Tracer
 
 TAG = "g12-verify"
 VALUE = "#<g12_verify_value>"

@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from g12.machine_ini import AXES
 from g12.tools.path.farthest_apart import gap_between
 from g12.tools.path.part import Part
-from g12.tools.preview.tracer import AXES, Move
+from g12.tools.preview.moves import Move
 from g12.tools.regress.edits import Change, Edit, Tolerance, edits_of
 from g12.tools.regress.recording_text import Recording, Step, number
 from g12.tools.units import UNITS

@@ -17,9 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.tools.preview.tracer import AXES, Move
+from g12.machine_ini import AXES
+from g12.tools.preview.moves import LINEAR, Move
 from g12.tools.regress.alignment import pairs
-from g12.tools.regress.recording_text import LINEAR, Note, Step, turns_only
+from g12.tools.regress.recording_text import Note, Step, turns_only
 
 NO_CENTRE = (0.0, 0.0, 0.0)
 MOST_OF = 0.8

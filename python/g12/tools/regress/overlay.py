@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from g12.tools.path.farthest_apart import Gap, gap_between
 from g12.tools.path.part import Part, paths
 from g12.tools.plot import style
-from g12.tools.preview.tracer import Move
+from g12.tools.preview.moves import Move
 from g12.tools.regress.differences import Difference
 from g12.tools.regress.recording_text import Recording
 from g12.tools.units import UNITS, Unit

@@ -13,7 +13,6 @@ from g12.tools.commands.arguments import tool_table
 from g12.tools.errors import UsageError
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import read_ini, read_machine_ini
-from g12.tools.preview.tracer import mm_per_unit
 from g12.tools.progress import Tell, silent
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recorder import (
@@ -54,7 +53,7 @@ class Terms:
 
     def tolerance(self, ini: Path) -> Tolerance:
         """Return the tolerance in mm on a machine."""
-        return Tolerance(self.ends * mm_per_unit(read_ini(ini)), self.ends, self.feeds / 100)
+        return Tolerance(self.ends * read_ini(ini).mm, self.ends, self.feeds / 100)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,8 @@ from g12.tools.errors import UsageError
 from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.path.part import part_of
 from g12.tools.preview.loading import linuxcnc_version, python_error
-from g12.tools.preview.tracer import Move, TraceFailure, Tracer, mm_per_unit
+from g12.tools.preview.moves import Move
+from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.progress import Tell
 from g12.tools.regress.differences import Difference, differences, lines_of
 from g12.tools.regress.edits import Tolerance
@@ -28,11 +29,10 @@ from g12.tools.regress.recording_text import (
     text_of,
 )
 from g12.tools.regress.recordings import Baseline
-from g12.tools.units import UNITS
+from g12.tools.units import name_of_unit
 
 SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
 HASH_DIGITS = 16
-UNIT_NAMES = {unit.mm: name for name, unit in UNITS.items()}
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ class Recorder:
         self._facts = {
             "machine": f"{ini.path.name} {hash_of(text_bytes(ini))}",
             "linuxcnc": machine.linuxcnc,
-            "units": UNIT_NAMES[mm_per_unit(ini)],
+            "units": name_of_unit(ini.mm),
         }
 
     def close(self) -> None:

@@ -33,12 +33,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple, Union
 
-from g12.tools.preview.tracer import AXES, Error, Modes, Move, Position, Trace
+from g12.machine_ini import AXES
+from g12.tools.preview.moves import LINEAR, Error, Modes, Move, Position, Trace
 from g12.tools.units import UNITS
 
 HEAD = "g12 trace 1"
 FACTS = ("program", "machine", "linuxcnc", "units")
-LINEAR = (1, 1, 1, 0, 0, 0, 1, 1, 1)  # which of AXES are lengths
 FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/:'\"<>()]+/)+")
 BLOCK = re.compile(r"(\d+):(?: (.*))?")
 ERROR = re.compile(r"error at (\d+): (.*)")

@@ -8,17 +8,17 @@ to be where it is traced, but how wide it is.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from g12.machine_ini import axes_of
 from g12.tools.machine.ini import Ini
 from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import Text
-from g12.tools.preview.tracer import Trace, mm_per_unit
+from g12.tools.preview.moves import Trace
 
 LETTERS = "XYZ"
 SETTING = (10.0, 52.0, 92.0, 92.1, 92.2, 92.3)  # codes that change offsets
@@ -43,10 +43,9 @@ class Travel:
     """A machine's limits in mm, and how far its work offset moves what was traced."""
 
     def __init__(self, ini: Ini, trace: Trace, texts: list[Text]) -> None:
-        unit = mm_per_unit(ini)
-        axes = [f"AXIS_{letter}" for letter in LETTERS]
-        self._low = np.array([ini.number(axis, "MIN_LIMIT", -math.inf) for axis in axes]) * unit
-        self._high = np.array([ini.number(axis, "MAX_LIMIT", math.inf) for axis in axes]) * unit
+        unit, limits = ini.mm, axes_of(ini.get, LETTERS)
+        self._low = np.array([limits[letter].low for letter in LETTERS]) * unit
+        self._high = np.array([limits[letter].high for letter in LETTERS]) * unit
         sets = any(code in SETTING for text in texts for code in text.codes)
         shift = np.zeros(3) if sets else stored_offset(ini, trace) * unit
         self._known = sets or bool(shift.any())

@@ -13,7 +13,8 @@ from pathlib import Path
 
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import Block, Text, blocks_in, executed, read_lines, watched
-from g12.tools.preview.tracer import Tools, Trace, Tracer, write_program
+from g12.tools.preview.moves import Trace
+from g12.tools.preview.tracer import Tools, Tracer, write_program
 from g12.tools.verify.wanted_circle import CALL, Codes
 
 

@@ -20,7 +20,7 @@ from g12.tools.path.follow import Followed
 from g12.tools.path.part import disc, swept
 from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
-from g12.tools.preview.tracer import Move
+from g12.tools.preview.moves import Move
 from g12.tools.verify.axis_limits import Overrun
 from g12.tools.verify.wanted_circle import Target
 

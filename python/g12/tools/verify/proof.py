@@ -11,7 +11,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from g12.lengths import MM_PER_INCH
 from g12.tools.headless.machine import Run
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
@@ -19,7 +18,8 @@ from g12.tools.path.part import C, part_of_program, tool_diameters
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.ended import ended, with_axes
 from g12.tools.preview.executed_blocks import read_lines
-from g12.tools.preview.tracer import Move, Tools, Trace, Tracer, mm_per_unit
+from g12.tools.preview.moves import Move, Trace
+from g12.tools.preview.tracer import Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.axis_limits import Overrun, Travel
@@ -31,7 +31,6 @@ from g12.tools.verify.wanted_circle import Codes, Reader, Target
 from g12.tools.verify.wanted_contour import sections
 
 POCKET_TOLERANCE = 0.005  # mm
-POLAR_TOLERANCE = {1.0: 0.005, MM_PER_INCH: 0.0002}  # by machine unit, in that unit
 LAST_DECIMAL = 0.0005  # mm: arcs whose words are rounded do not close any better
 RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE
 SAME_AREA = 0.01  # mm², less is rounding
@@ -111,11 +110,11 @@ def prove(
     with Tracer(ini, tools=tools) as tracer:
         trace = ended(program, with_axes(tracer.trace(program), ini.path))
         blocks = executed_everywhere(tracer, program, trace, codes, tools)
-        reading = ini.get("G12", "POLAR_X", "inherit").lower()
+        reading = ini.settings.polar_x
         polars = sections(tracer, program, codes, reading, blocks)
     moves = trace.moves
     path = track(part_of_program(ini, moves), moves, limits, trace.modes.speed)
-    real = follow(path, moves, run.samples, mm_per_unit(ini)) if run else None
+    real = follow(path, moves, run.samples, ini.mm) if run else None
     asked = list(Reader(codes, moves, diameters).targets(blocks))
     travel = Travel(ini, trace, read_lines(program))
     measured = [*(block for block, _ in asked), *polars]
@@ -179,8 +178,7 @@ def unseen(moves: Sequence[Move], codes: Codes, measured: Iterable[range]) -> li
 
 def polar_tolerance(ini: Ini) -> float:
     """Return [G12] POLAR_TOLERANCE in mm."""
-    unit = mm_per_unit(ini)
-    return ini.number("G12", "POLAR_TOLERANCE", POLAR_TOLERANCE[unit]) * unit
+    return ini.settings.tolerance(ini.mm) * ini.mm
 
 
 def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:

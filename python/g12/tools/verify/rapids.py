@@ -29,7 +29,7 @@ from g12.tools.path.follow import Followed
 from g12.tools.path.part import disc, is_sideways, swept
 from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import Block
-from g12.tools.preview.tracer import Move
+from g12.tools.preview.moves import Move
 from g12.tools.verify.wanted_circle import Target
 
 SAME_HEIGHT = 1e-3

@@ -24,7 +24,7 @@ from g12.tools.path.follow import Followed
 from g12.tools.path.part import C, Z
 from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
-from g12.tools.preview.tracer import Move
+from g12.tools.preview.moves import Move
 from g12.tools.verify.contour_distance import SAME, STEP, Shape
 from g12.tools.verify.section_paths import Plane, Ways, goes_across, ways_of
 from g12.tools.verify.wanted_contour import Element, Section

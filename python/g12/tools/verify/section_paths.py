@@ -18,7 +18,7 @@ import numpy as np
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import C, X, Z
 from g12.tools.path.track import Track
-from g12.tools.preview.tracer import Move
+from g12.tools.preview.moves import Move
 from g12.tools.verify.contour_distance import Shape
 from g12.tools.verify.wanted_contour import Element, Section
 

@@ -14,11 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.lengths import MM_PER_INCH
-from g12.tools.install.features import Remap, model_of, remap_from_value
+from g12.machine_ini import Remap, remap_lines
+from g12.tools.install.features import model_of
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import plane_axes
 from g12.tools.preview.executed_blocks import Block, Text
-from g12.tools.preview.tracer import Move
+from g12.tools.preview.moves import Move
 
 CALL = "circle_mill"
 ENTRIES = "GXYZWORDCKJLPFV"
@@ -104,8 +105,7 @@ class Codes:
     """Which codes of a machine are cycles, by its REMAP lines."""
 
     def __init__(self, ini: Ini) -> None:
-        remaps = map(remap_from_value, ini.all("RS274NGC", "REMAP"))
-        found = ((remap, model_of(remap)) for remap in remaps)
+        found = ((remap, model_of(remap)) for remap in remap_lines(ini.all))
         self._known = {
             remap.number[1] / 10: (model[0], model[1]) for remap, model in found if model
         }

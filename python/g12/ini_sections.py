@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Sections and keys of an INI file's text, the way LinuxCNC 2.9 reads them.
+
+The first section of a name is read, a backslash at a line's end continues it, and of several
+lines with one key the first counts.  (2.10 reads later sections of the name too.)
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf)", re.IGNORECASE)
+
+
+class Entry(NamedTuple):
+    """What one line says: ``index`` counts lines from 0, of a continued one it is the first's."""
+
+    index: int
+    key: str
+    value: str
+
+
+def section_extent(lines: Sequence[str], section: str) -> range:
+    """Return the indices of a section's lines, its header not among them."""
+    first = 0
+    for index, line in enumerate(map(str.lstrip, lines), start=1):
+        if first and line.startswith("["):
+            return range(first, index - 1)
+        if not first and line.startswith(f"[{section}]"):
+            first = index
+    return range(first, len(lines) if first else 0)
+
+
+def continued(lines: Sequence[str]) -> Iterator[list[str]]:
+    """Yield lines together with those that a backslash continues them on."""
+    group: list[str] = []
+    for line in lines:
+        group.append(line)
+        if not line.endswith("\\"):
+            yield group
+            group = []
+
+
+def entries_of(lines: Sequence[str], section: str) -> Iterator[Entry]:
+    """Yield the entries of a section; one without a ``=`` is all key."""
+    extent = section_extent(lines, section)
+    index = extent.start
+    for group in continued(lines[extent.start : extent.stop]):
+        key, value = key_and_value("".join([*(line[:-1] for line in group[:-1]), group[-1]]))
+        if key:
+            yield Entry(index, key, value)
+        index += len(group)
+
+
+def key_and_value(line: str) -> tuple[str, str]:
+    """Return what a line inside a section says; two empty texts for a comment."""
+    key, _, value = line.strip().partition("=")
+    return ("", "") if key[:1] in "#;" else (key.rstrip(), value.lstrip())
+
+
+def leading_number(text: str) -> float | None:
+    """Return the number that a value begins with, as LinuxCNC reads numbers; None without one."""
+    found = NUMBER.match(text)
+    return float(found[0]) if found else None

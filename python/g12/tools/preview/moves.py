@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a program does, as values: moves, events, modal state and the trace that holds them.
+
+Lengths are millimetres and angles degrees, whatever the program and the machine use.
+Positions are those of the controlled point in machine coordinates: work offsets, G92 and the
+rotation of the work coordinate system are resolved.  The tool length offset is not added, so
+with no work offset they are the program's positions.  (A real machine's axes stand at the
+position plus ``Move.tool_offset``.)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from g12.machine_ini import AXES
+
+LINEAR = tuple(letter in "XYZUVW" for letter in AXES)  # which of AXES are lengths
+SAME_POINT = 1e-6  # mm; an arc whose ends are nearer is a full circle, as in motion
+THIRD_AXIS = {17: 2, 18: 1, 19: 0}
+
+Position = tuple  # nine floats in the order of AXES: mm, degrees for A, B, C
+
+
+class Message(NamedTuple):
+    """A text for the operator that is no error: ``(MSG, …)`` or a handler's MESSAGE."""
+
+    line: int
+    text: str
+
+
+class Event(NamedTuple):
+    """What the program does between two moves, as text: ``tool 1``, ``S1000``, ``M8 on``.
+
+    ``at`` is the index of the move that follows, ``line`` the program's line.  LinuxCNC tells
+    of spindle, coolant, work offset and path mode when the next line starts.
+    """
+
+    at: int
+    line: int
+    text: str
+
+
+class Error(NamedTuple):
+    """The interpreter's own text for the block that was refused, and that block's line."""
+
+    text: str
+    line: int
+
+
+@dataclass(frozen=True)
+class Modes:
+    """The modal state of an interpreter, in LinuxCNC's words.
+
+    ``gcodes`` and ``mcodes`` are like ``("G1", "G17", "G90.1", …)``, one per modal group with
+    a code active.  ``feed`` and ``speed`` are the F and S words in program units, ``blending``
+    is G64's (P, Q) in program units.
+    """
+
+    gcodes: tuple[str, ...]
+    mcodes: tuple[str, ...]
+    feed: float
+    speed: float
+    blending: tuple[float, float]
+
+
+class Move(NamedTuple):
+    """One canonical move.
+
+    ``kind`` is ``rapid``, ``feed``, ``arc`` or ``probe``.  ``line`` is what the interpreter says
+    and a GUI highlights: in a subroutine that subroutine's line, in a Python remap 0 unless the
+    remap sets it.  ``block`` is the line of the program itself whose block makes the move; in a
+    G12.1 section that is the contour's block.
+
+    ``feed`` is mm/min under ``feed_mode`` G94 and G93 (the interpreter resolves inverse time),
+    mm/rev under G95; degrees for a straight move of rotary axes alone; 0 for a rapid.
+    ``plane`` is 17, 18 or 19, ``tool`` the number of the tool in the spindle, 0 or less for
+    none.
+
+    Of an arc, ``centre`` is the centre (x, y, z) at the level of the start, ``turns`` the
+    interpreter's count (positive counterclockwise seen from the plane's positive third axis,
+    1 or -1 for anything up to a full circle) and ``rotation`` the angle of the work coordinate
+    system about Z in degrees, which turns G18 and G19 planes.
+
+    ``remap`` is the remapped code that makes the move, ``G12``, "" without one.
+    """
+
+    kind: str
+    line: int
+    block: int
+    start: Position
+    end: Position
+    feed: float
+    feed_mode: str
+    plane: int
+    tool: int
+    tool_offset: Position
+    centre: tuple[float, float, float] | None = None
+    turns: int = 0
+    rotation: float = 0.0
+    remap: str = ""
+
+    @property
+    def radius(self) -> float:
+        """Radius of an arc at its start, mm."""
+        return math.hypot(*self._in_plane(self.start)[:2])
+
+    @property
+    def sweep(self) -> float:
+        """Signed angle of an arc in radians, positive counterclockwise in its plane."""
+        one, two, _ = self._in_plane(self.start)
+        end_one, end_two, _ = self._in_plane(self.end)
+        angle = math.atan2(one * end_two - two * end_one, one * end_one + two * end_two)
+        turn = math.copysign(2 * math.pi, self.turns)
+        closed = math.dist((one, two), (end_one, end_two)) < SAME_POINT
+        first = turn if closed else angle + (turn if angle * turn < 0 else 0.0)
+        return first + turn * (abs(self.turns) - 1)
+
+    @property
+    def length(self) -> float:
+        """Length of the path in X, Y, Z, mm (the helix of an arc included)."""
+        if self.kind != "arc":
+            return math.dist(self.start[:3], self.end[:3])
+        rise = self._in_plane(self.end)[2] - self._in_plane(self.start)[2]
+        return math.hypot(self.radius * self.sweep, rise)
+
+    def point(self, fraction: float) -> Position:
+        """Return the position after ``fraction`` (0 to 1) of the move."""
+        straight = tuple(a + (b - a) * fraction for a, b in zip(self.start, self.end))
+        if self.kind != "arc":
+            return straight
+        one, two, three = self._in_plane(self.start)
+        end_one, end_two, end_three = self._in_plane(self.end)
+        growth = 1 + (math.hypot(end_one, end_two) / self.radius - 1) * fraction
+        cos, sin = math.cos(self.sweep * fraction), math.sin(self.sweep * fraction)
+        turned = ((one * cos - two * sin) * growth, (one * sin + two * cos) * growth)
+        level = three + (end_three - three) * fraction
+        return (*self._out_of_plane((*turned, level)), *straight[3:])
+
+    def tangent(self, fraction: float) -> tuple[float, float, float]:
+        """Return the unit direction in X, Y, Z after ``fraction``; zeros if they stand still."""
+        if self.kind == "arc":
+            direction = self._arc_direction(fraction)
+        else:
+            direction = [b - a for a, b in zip(self.start[:3], self.end[:3])]
+        size = math.hypot(*direction)
+        return tuple(value / size if size else 0.0 for value in direction)
+
+    def _arc_direction(self, fraction: float) -> list[float]:
+        one, two, _ = self._in_plane(self.point(fraction))
+        rise = (self._in_plane(self.end)[2] - self._in_plane(self.start)[2]) / self.sweep
+        around = math.copysign(1.0, self.sweep)
+        velocity = (-two * around, one * around, rise * around)
+        tip = self._out_of_plane(velocity)
+        return [value - origin for value, origin in zip(tip, self.centre)]
+
+    def _in_plane(self, position: Sequence[float]) -> tuple[float, float, float]:
+        """First, second and third axis of the plane, seen from the centre of the arc."""
+        x, y, z = (value - origin for value, origin in zip(position, self.centre))
+        x, y = _turned(x, y, -self.rotation)
+        third = THIRD_AXIS[self.plane]
+        return ((x, y, z) * 2)[third + 1 : third + 4]
+
+    def _out_of_plane(self, values: Sequence[float]) -> tuple[float, float, float]:
+        """Back from the plane's axes to X, Y, Z."""
+        third = THIRD_AXIS[self.plane]
+        x, y, z = (tuple(values) * 2)[2 - third : 5 - third]
+        x, y = _turned(x, y, self.rotation)
+        return tuple(value + origin for value, origin in zip((x, y, z), self.centre))
+
+
+@dataclass(frozen=True)
+class Trace:
+    """What one program did.
+
+    ``error`` is None for a program that ran to its end.  ``modes`` is the state behind the last
+    block that succeeded, M2 included; ``state`` the interpreter's variables themselves, after
+    the refused block if there was one (motion_mode, plane, feed_rate …, program units).
+    ``printed`` is the text of ``(print, …)`` and of Python, ``position`` where the last move
+    ended, ``globals`` the global named parameters that the program left, ``numbered`` the
+    parameters asked for, ``seconds`` the interpreter's time.  ``events`` holds the messages too.
+    ``files`` are those of subs outside the program that execute a remapped code which moves.
+    """
+
+    moves: list[Move]
+    messages: list[Message]
+    events: list[Event]
+    error: Error | None
+    modes: Modes
+    state: dict[str, float]
+    printed: str
+    position: Position
+    globals: dict[str, float]
+    numbered: dict[int, float]
+    seconds: float
+    files: tuple[str, ...] = ()
+
+
+def modes(gcodes: Iterable[int], mcodes: Iterable[int], settings: Sequence[float]) -> Modes:
+    """Return the modal state from LinuxCNC's arrays, each without its first item."""
+    return Modes(
+        tuple(f"G{code / 10:g}" for code in gcodes if code >= 0),
+        tuple(f"M{code}" for code in mcodes if code > 0),
+        settings[0],
+        settings[1],
+        tuple(settings[2:4]),
+    )
+
+
+def _turned(x: float, y: float, degrees: float) -> tuple[float, float]:
+    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return x * cos - y * sin, x * sin + y * cos

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The programs that the pages begin with cut what they say, on the simulated machines."""
+
+import json
+import re
+
+import pytest
+
+from g12.tools.commands.main import main
+from support.sim_machines import ROOT, SIM
+
+PAGES = {
+    "README.md": ("mill_inch", 2),
+    "ngc/haas.md": ("mill_inch", 2),
+    "ngc/yasnac.md": ("mill_yasnac_mm", 2),
+    "ngc/mitsubishi.md": ("mill_mitsubishi_mm", 2),
+    "ngc/circle_mill.md": ("mill_mm", 2),
+    "ngc/polar.md": ("lathe_mm", 1),
+}
+PROGRAM = re.compile(r"(?:^ {4}.*\n)+?^ {4}M2\n", re.MULTILINE)
+
+
+def program_of(page):
+    """Return the first program of a page, the code block that ends with M2."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return re.sub("^ {4}", "", PROGRAM.search(text)[0], flags=re.MULTILINE)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_first_program_of_a_page_cuts_what_it_says(page, tmp_path, capsys):
+    machine, cuts = PAGES[page]
+    program = tmp_path / "page.ngc"
+    program.write_text(program_of(page), encoding="utf-8")
+    ini = SIM / f"{machine}_headless.ini"
+    assert main(["verify", str(program), "--ini", str(ini), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert len(told["pockets"]) + len(told["sections"]) == cuts

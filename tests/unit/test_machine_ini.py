@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What an INI file says of a machine, read the way LinuxCNC reads it."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from g12.errors import Refusal
+from g12.lengths import is_inch
+from g12.machine_ini import (
+    Axis,
+    axes_of,
+    code_number,
+    coordinates_of,
+    millimetres_of,
+    owns_g12_1,
+    refuse_owned_codes,
+    remap_from_value,
+    remap_lines,
+)
+from g12.tools.machine.ini import Ini
+
+INI = """
+[RS274NGC]
+REMAP = G12.1 modalgroup=1 python=polar_on
+REMAP=m410 modalgroup=10 argspec=P ngc=m410
+[TRAJ]
+LINEAR_UNITS = {units}
+[AXIS_X]
+MIN_LIMIT = -10 ; comment
+MAX_LIMIT = 300
+MAX_VELOCITY = 150
+MAX_ACCELERATION = 1000
+[AXIS_C]
+MAX_VELOCITY = 360
+"""
+
+
+def ini_of(text):
+    return Ini(Path("machine.ini"), tuple(text.splitlines()))
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [
+        ("MAX_ACCELERATION = 0", "[AXIS_C] MAX_ACCELERATION = 0: must be above 0"),
+        ("MAX_VELOCITY = -5", "[AXIS_C] MAX_VELOCITY = -5: must be above 0"),
+        ("MAX_LIMIT = foo", "[AXIS_C] MAX_LIMIT = foo: must be a number"),
+    ],
+)
+def test_an_axis_that_cannot_be(line, reason):
+    with pytest.raises(Refusal, match=re.escape(reason)):
+        axes_of(ini_of(f"[AXIS_C]\n{line}\n").get, "C")
+
+
+def test_axes():
+    axes = axes_of(ini_of(INI).get, "XZC")
+    assert axes["X"] == Axis(-10, 300, 150, 1000)
+    assert axes["C"] == Axis(-1e99, 1e99, 360, 1)
+    assert axes["Z"] == Axis(-1e99, 1e99, 1, 1)
+
+
+@pytest.mark.parametrize(
+    ("units", "length"),
+    [
+        ("mm", 1),
+        ("metric", 1),
+        ("inch", 25.4),
+        ("in", 25.4),
+        ("IMPERIAL", 25.4),
+        ("1", 1),
+        ("0.1 # cm", 10),
+        ("0.03937007874015748", 25.4),
+    ],
+)
+def test_units(units, length):
+    assert millimetres_of(ini_of(INI.format(units=units)).get) == pytest.approx(length)
+    assert millimetres_of(ini_of("").get) == 1
+
+
+def test_coordinates():
+    assert coordinates_of(ini_of("[TRAJ]\nCOORDINATES = X Z C\n").get) == "XZC"
+    assert coordinates_of(ini_of("[TRAJ]\nCOORDINATES = xzxc\n").get) == "XZC"
+    assert coordinates_of(ini_of("").get) == "XYZ"
+
+
+def test_remaps():
+    remaps = remap_lines(ini_of(INI).all)
+    assert {remap.code: remap.keywords for remap in remaps} == {
+        "G12.1": {"modalgroup": "1", "python": "polar_on"},
+        "M410": {"modalgroup": "10", "argspec": "P", "ngc": "m410"},
+    }
+
+
+@pytest.mark.parametrize("units", ["furlong", "0", "-1"])
+def test_units_that_linuxcnc_refuses(units):
+    with pytest.raises(Refusal, match=r"LINEAR_UNITS = .*: must be mm, metric, in, inch, imperial"):
+        millimetres_of(ini_of(INI.format(units=units)).get)
+
+
+def test_an_inch_machine_is_told_as_linuxcnc_tells_it():
+    assert is_inch(25.4)
+    assert is_inch(1 / 0.03937)
+    assert not is_inch(1)
+    assert not is_inch(10)
+
+
+def test_the_first_of_repeated_keys_counts_and_a_backslash_continues_a_line():
+    ini = ini_of("[AXIS_X]\nMAX_LIMIT = \\\n100\nMAX_LIMIT = 300\n[AXIS_X]\nMIN_LIMIT = 1\n")
+    assert axes_of(ini.get, "X")["X"] == Axis(-1e99, 100, 1, 1)
+
+
+def test_keywords_of_a_remap_may_be_shortened_and_a_comment_may_follow():
+    assert remap_from_value("M33 modalgroup=10 n=m33 # ours").keywords["ngc"] == "m33"
+    assert remap_from_value("G13.1 MODAL=1 Py=polar_off").handlers == ["polar_off"]
+    assert remap_from_value("g12 prolog=a e=b").code == "G12"
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [("G12.1", 121), ("g13", 130), ("G12.10", 130), ("M33", 330), ("T", 0)],
+)
+def test_the_number_of_a_code_is_linuxcncs(code, found):
+    assert code_number(code) == (code[0].upper(), found)
+
+
+def test_a_linuxcnc_with_a_g12_1_of_its_own_is_told_at_start_up():
+    remaps = [remap.code for remap in remap_lines(ini_of(INI).all)]
+    refuse_owned_codes(remaps, owned=False)
+    refuse_owned_codes(["G12.3", "G13.3"], owned=True)
+    with pytest.raises(Refusal, match=r"REMAP = G12\.1: .*polar_g12_3\.inc"):
+        refuse_owned_codes(remaps, owned=True)
+
+
+@pytest.mark.parametrize(
+    ("version", "owned"),
+    [("2.9.0~pre1+git1.f12", False), ("2.9.10", False), ("2.10.0~pre1", True), ("3.0", True)],
+)
+def test_versions_that_own_g12_1(version, owned):
+    assert owns_g12_1(version) == owned
