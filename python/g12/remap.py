@@ -3,20 +3,9 @@
 
 from __future__ import annotations
 
-from g12.host.cycle_prologs import (
-    circle_mill_perimeter,
-    circle_mill_pocket,
-    cycle_done,
-    g12_haas,
-    g12_mitsubishi,
-    g12_yasnac,
-    g13_haas,
-    g13_mitsubishi,
-    g13_yasnac,
-)
-from g12.host.polar_handlers import polar_off, polar_on
+from g12.host.loading import handlers_of
 
-__all__ = [  # what `from g12.remap import *` brings into a user's own module remap
+CYCLES = (
     "circle_mill_perimeter",
     "circle_mill_pocket",
     "cycle_done",
@@ -26,6 +15,9 @@ __all__ = [  # what `from g12.remap import *` brings into a user's own module re
     "g13_haas",
     "g13_mitsubishi",
     "g13_yasnac",
-    "polar_off",
-    "polar_on",
-]
+)
+POLAR = ("polar_off", "polar_on")
+__all__ = [*CYCLES, *POLAR]  # what `from g12.remap import *` brings into a user's own remap
+
+globals().update(handlers_of("g12.host.cycle_prologs", CYCLES))
+globals().update(handlers_of("g12.host.polar_handlers", POLAR))

@@ -16,6 +16,20 @@ def broken(*_, **__):
     raise KeyError("wire")
 cycle_prologs.plan_pocket = plan.plan = broken
 """
+BROKEN = """\
+import sys
+sys.path.insert(0, "{python}")
+sys.modules["{module}"] = None
+import remap
+"""
+HALVES = ["g12.cycles.words", "g12.polar.spacing"]
+PROGRAMS = {  # of the half whose codes they use
+    "g12.cycles.words": ("mill_mm", ["F600", "G0 X0 Y0", "G12 I20 D1 Z-1", "M2"]),
+    "g12.polar.spacing": (
+        "lathe_mm",
+        ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "G1 X15", "G13.1", "M2"],
+    ),
+}
 SHORT = "from g12.host import polar_section\npolar_section.MOST_LINES = 99\n"
 
 
@@ -45,3 +59,33 @@ def test_a_fault_in_a_handler_is_named(tmp_path, machine, program):
         error = tracer.trace_text(program).error
     assert error.text == "g12: a fault of the package, please report it: KeyError: 'wire'"
     assert program[error.line - 1] in ("G12 I20 D1", "G13.1")
+
+
+@pytest.mark.parametrize("broken", HALVES)
+@pytest.mark.parametrize("used", HALVES)
+def test_a_half_that_does_not_load_leaves_the_other(tmp_path, broken, used):
+    """The operator is told when LinuxCNC comes up; the broken codes refuse with the same text."""
+    toplevel = tmp_path / "toplevel.py"
+    toplevel.write_text(BROKEN.format(python=SIM.parents[1] / "python", module=broken))
+    machine, program = PROGRAMS[used]
+    overrides = {"PYTHON": {"TOPLEVEL": str(toplevel)}}
+    with Tracer(SIM / f"{machine}.ini", overrides=overrides, tools={1: 6.0}) as tracer:
+        printed, traced = tracer.printed, tracer.trace_text(program)
+    fault = (
+        f"g12: a fault of the package, please report it: ModuleNotFoundError: import of {broken}"
+    )
+    assert fault in printed
+    if used == broken:
+        assert traced.error.text.startswith(fault)
+        assert not [move for move in traced.moves if move.kind != "rapid"]
+    else:
+        assert traced.error is None
+        assert len(traced.moves) > 1
+
+
+def test_an_axis_that_cannot_be_leaves_the_cycles():
+    machine, program = PROGRAMS["g12.cycles.words"]
+    overrides = {"AXIS_X": {"MAX_ACCELERATION": "0"}}
+    with Tracer(SIM / f"{machine}.ini", overrides=overrides, tools={1: 6.0}) as tracer:
+        assert "g12: [AXIS_X] MAX_ACCELERATION = 0: must be above 0" in tracer.printed
+        assert tracer.trace_text(program).error is None

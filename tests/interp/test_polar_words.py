@@ -352,3 +352,24 @@ def test_the_other_pair_of_codes():
             ["G12.3" if line == "G12.1" else line for line in section("G1 X12")[:-2]]
         )
     assert refused.error.text == "G12.3 line 6: G13.3 is missing: the program ends before it"
+
+
+def test_both_pairs_of_codes_on_one_machine():
+    pairs = [f"G{on}.{pair} modalgroup=1 python=polar_{name}"
+             for pair in (1, 3) for on, name in ((12, "on"), (13, "off"))]  # fmt: skip
+    remaps = [*pairs, "M33 modalgroup=10 ngc=m33"]
+    with Tracer(SIM / "lathe_mm.ini", overrides={"RS274NGC": {"REMAP": remaps}}) as lathe:
+
+        def with_codes(on, off, *body):
+            program = section(*body)
+            return lathe.trace_text(
+                [{"G12.1": on, "G13.1": off}.get(line, line) for line in program]
+            )
+
+        for on in ("G12.1", "G12.3"):
+            for off in ("G13.1", "G13.3"):
+                assert ends(with_codes(on, off, "G1 X12", "U-2")) == [(12, 0), (10, 0)]
+            refused = with_codes(on, "M9", "G1 X12")
+            assert refused.error.text.startswith(f"{on} line 8: G13{on[3:]} is missing")
+            refused = with_codes(on, "G13.1", "G12.3")
+            assert refused.error.text == f"{on} line 7: {on} is already on"

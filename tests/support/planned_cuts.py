@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.flat.contour import Contour
-from g12.polar.plan import Run
+from g12.polar.plan import BlockMoves
 from support.contour_geometry import Straight
 
 SAGITTA = 2e-4  # of the chords that stand for a piece
@@ -84,7 +84,7 @@ def cuts(contour, plan, c=0.0):
     """Return the pieces of a plan whose plane has its zero angle at ``c`` degrees."""
     x, angle, z = contour.start
     degrees, made = c + math.degrees(angle), []
-    for count, run in enumerate(step for step in plan.steps if isinstance(step, Run)):
+    for count, run in enumerate(step for step in plan.steps if isinstance(step, BlockMoves)):
         for to_x, to_c, to_z, feed in run.pieces:
             assert "X" in run.axes or (to_x == x and to_c == degrees)
             assert "Z" in run.axes or to_z == z

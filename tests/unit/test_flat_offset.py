@@ -15,12 +15,12 @@ from shapely.geometry import LineString, Polygon
 
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat.contour import Contour
-from g12.polar.plan import Run, Settings, plan
+from g12.polar.plan import BlockMoves, PolarSettings, plan
 from support.contour_geometry import Round, Straight, distance_from_path
 from support.planned_cuts import SAGITTA, add, cuts, path
 
 TOLERANCE = 0.005
-LATHE = Settings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
+LATHE = PolarSettings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
 EXACT = LATHE._replace(least_x=1e-9)
 OUTSIDE, INSIDE = 42, 41  # of a part that is cut counterclockwise
 
@@ -426,4 +426,4 @@ def test_nothing_is_planned_of_a_section_with_a_refused_block():
     contour.line(30.0, 5.5, line=5, feed=100.0)
     with pytest.raises(Refusal):
         plan(contour, LATHE, c=0.0)
-    assert not any(isinstance(element, Run) for element in contour.elements)
+    assert not any(isinstance(element, BlockMoves) for element in contour.elements)

@@ -12,10 +12,10 @@ from shapely.geometry import LineString
 from g12.errors import Refusal
 from g12.flat import simplify
 from g12.flat.contour import Contour, Line, is_move
-from g12.polar.plan import Settings, plan
+from g12.polar.plan import PolarSettings, plan
 from support.planned_cuts import cuts, path
 
-MACHINE = Settings(0.005, 0.001, 1000.0, 3600.0, 21600.0)
+MACHINE = PolarSettings(0.005, 0.001, 1000.0, 3600.0, 21600.0)
 
 
 def programmed(*points, side=40, radius=0.0, start=(30.0, -30.0)):

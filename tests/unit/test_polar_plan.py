@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from g12.errors import Refusal
 from g12.flat.contour import Contour
-from g12.polar.plan import Run, Settings, plan, resume
+from g12.polar.plan import BlockMoves, PolarSettings, plan, resume
 from support.contour_geometry import Round, Straight, distance, distance_from_path
 from support.planned_cuts import SAGITTA, cuts, path, programmed
 
 TOLERANCE = 0.005
-LATHE = Settings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
+LATHE = PolarSettings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
 EXACT = LATHE._replace(least_x=1e-9)  # nothing is handed on, so that all of the deviation is seen
 DRIVEN = EXACT._replace(x_acceleration=1e-3, c_acceleration=1e-3)  # no pieces for an even speed
 
@@ -40,7 +40,7 @@ def drawings(draw, most=5):
 
 
 def runs(planned):
-    return [step for step in planned.steps if isinstance(step, Run)]
+    return [step for step in planned.steps if isinstance(step, BlockMoves)]
 
 
 # What is cut is the contour.
@@ -304,7 +304,9 @@ def test_a_circle_about_the_spindle_is_one_piece():
 
 def test_a_radius_is_one_piece():
     contour = programmed([Straight(10 + 0j, 25 + 0j)], feed=300.0)
-    assert runs(plan(contour, LATHE, c=0.0)) == [Run(1, "XC", [(25.0, 0.0, 0.0, 300.0)], True)]
+    assert runs(plan(contour, LATHE, c=0.0)) == [
+        BlockMoves(1, "XC", [(25.0, 0.0, 0.0, 300.0)], True)
+    ]
 
 
 def test_a_radius_does_not_turn_c_by_rounding():
@@ -336,9 +338,9 @@ def test_repeated_points_are_harmless():
 def test_through_the_pole_c_turns_in_place_as_fast_as_it_may():
     contour = programmed([Straight(10 + 0j, -8 + 0j)], feed=300.0)
     assert runs(plan(contour, LATHE, c=0.0)) == [
-        Run(1, "XC", [(0.0, 0.0, 0.0, 300.0)], True),
-        Run(1, "XC", [(0.0, -180.0, 0.0, 21600.0)], True),
-        Run(1, "XC", [(8.0, -180.0, 0.0, 300.0)], True),
+        BlockMoves(1, "XC", [(0.0, 0.0, 0.0, 300.0)], True),
+        BlockMoves(1, "XC", [(0.0, -180.0, 0.0, 21600.0)], True),
+        BlockMoves(1, "XC", [(8.0, -180.0, 0.0, 300.0)], True),
     ]
 
 
@@ -414,7 +416,7 @@ def test_marks_keep_their_place_and_pieces_their_lines():
     contour.line(12.0, 3.0, line=5, feed=100.0)
     contour.mark("M9", line=6)
     steps = plan(contour, LATHE, c=0.0).steps
-    assert [step.line if isinstance(step, Run) else step for step in steps] == [
+    assert [step.line if isinstance(step, BlockMoves) else step for step in steps] == [
         "M8",
         2,
         3,
@@ -422,7 +424,7 @@ def test_marks_keep_their_place_and_pieces_their_lines():
         5,
         "M9",
     ]
-    assert steps[2] == Run(3, "Z", [(12.0, 0.0, -1.0, 50.0)], False)
+    assert steps[2] == BlockMoves(3, "Z", [(12.0, 0.0, -1.0, 50.0)], False)
 
 
 def test_goes_on_after_a_block_that_waits_for_the_machine():

@@ -4,8 +4,8 @@
 import pytest
 
 from g12.machine_ini import Axis
-from g12.polar.plan import Run
-from g12.polar.soft_limits import Beyond, Scale, Travel
+from g12.polar.plan import BlockMoves
+from g12.polar.soft_limits import AxisScale, Beyond, SoftLimits
 
 AXES = {
     "X": Axis(-10, 300, 150, 1000),
@@ -15,27 +15,27 @@ AXES = {
 
 
 def travel(offset=0.0):
-    scale = {"X": Scale(1.0, offset), "Z": Scale(1.0, 0.0), "C": Scale(1.0, 0.0)}
-    return Travel(AXES, scale)
+    scale = {"X": AxisScale(1.0, offset), "Z": AxisScale(1.0, 0.0), "C": AxisScale(1.0, 0.0)}
+    return SoftLimits(AXES, scale)
 
 
 def test_moves_within_the_travel():
-    steps = [Run(3, "XC", [(0, 0, 0, 1), (300, 1e6, 0, 1)], False), "an action"]
+    steps = [BlockMoves(3, "XC", [(0, 0, 0, 1), (300, 1e6, 0, 1)], False), "an action"]
     assert travel().beyond(steps) is None
     assert travel().beyond([]) is None
 
 
 def test_the_first_move_beyond_is_named_in_machine_coordinates():
     steps = [
-        Run(3, "XC", [(290, 0, 0, 1)], False),
-        Run(4, "XC", [(20, 0, 0, 1), (301, 0, 0, 1)], False),
+        BlockMoves(3, "XC", [(290, 0, 0, 1)], False),
+        BlockMoves(4, "XC", [(20, 0, 0, 1), (301, 0, 0, 1)], False),
     ]
     assert travel().beyond(steps) == Beyond(4, "X", 301, 300)
     assert travel(offset=20).beyond(steps) == Beyond(3, "X", 310, 300)
 
 
 def test_inches_on_a_metric_machine():
-    scales = {"X": Scale(25.4, -1.0), "Z": Scale(25.4, 0.0), "C": Scale(1.0, 0.0)}
-    beyond = Travel(AXES, scales).beyond([Run(3, "XC", [(12, 0, 0, 1)], False)])
+    scales = {"X": AxisScale(25.4, -1.0), "Z": AxisScale(25.4, 0.0), "C": AxisScale(1.0, 0.0)}
+    beyond = SoftLimits(AXES, scales).beyond([BlockMoves(3, "XC", [(12, 0, 0, 1)], False)])
     assert beyond.position == pytest.approx(12 * 25.4 - 1)
     assert beyond.limit == pytest.approx(300)

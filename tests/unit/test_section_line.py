@@ -6,12 +6,19 @@ import re
 import pytest
 
 from g12.errors import Refusal
-from g12.section.block_rules import Block, alone, check_block, check_letters
-from g12.section.line import Place, is_plain, line_named, split_line, split_words
-from g12.section.modes import Modes, action_text, comment_text, decimal, modes_after, stop_text
+from g12.section.block_rules import SectionBlock, alone, check_block, check_letters
+from g12.section.line import SectionPlace, is_plain, line_named, split_line, split_words
+from g12.section.modes import (
+    SectionModes,
+    action_text,
+    comment_text,
+    decimal,
+    modes_after,
+    stop_text,
+)
 
-HERE = Place("G12.1", 7)
-MODES = Modes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
+HERE = SectionPlace("G12.1", 7)
+MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
 
 
 def block(*, g=(), m=(), motion=-1, **words):
@@ -20,7 +27,7 @@ def block(*, g=(), m=(), motion=-1, **words):
     for codes, given in zip(by_group, (dict(g), dict(m))):
         for group, code in given.items():
             codes[group] = code
-    return Block(tuple(by_group[0]), tuple(by_group[1]), motion, words)
+    return SectionBlock(tuple(by_group[0]), tuple(by_group[1]), motion, words)
 
 
 @pytest.mark.parametrize(
@@ -185,7 +192,7 @@ def test_arguments_that_linuxcnc_takes(code, words):
 
 def test_modes_act_as_they_are_read():
     after = modes_after(MODES, block(g={1: 20, 3: 910}, F=5.0), 7.0)
-    assert after == Modes(True, False, 5.0, 7.0, 20)
+    assert after == SectionModes(True, False, 5.0, 7.0, 20)
     assert modes_after(after, block(), 7.0) == after
 
 

@@ -4,11 +4,11 @@
 import pytest
 
 from g12.errors import Refusal
-from g12.host.section_output import BLOCK_END, STOP_HERE, Action, Emission
-from g12.polar.plan import Run
-from g12.section.modes import Modes
+from g12.host.section_output import BLOCK_END, STOP_HERE, Action, SectionOutput
+from g12.polar.plan import BlockMoves
+from g12.section.modes import SectionModes
 
-MODES = Modes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
+MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
 LINE = [(10.0, 0.5, 0.0, 250.0), (11.0, 1.0, 0.0, 260.0)]
 
 
@@ -84,7 +84,7 @@ def is_move(what):
 
 
 def emission_of(interp, x_factor=1.0):
-    return Emission(
+    return SectionOutput(
         interp, "G12.1", x_factor=x_factor, blending=0.0025, absolute="G90", canon=Canon(interp)
     )
 
@@ -96,7 +96,7 @@ def handed_over(steps, interp=None, modes=MODES, exact=(), x_factor=1.0):
 
 
 def run(stop=False, line=7, axes="XC", pieces=LINE):
-    return Run(line, axes, pieces, stop)
+    return BlockMoves(line, axes, pieces, stop)
 
 
 SMOOTH, OLD = "G64P0.0025Q0", "G64P0Q0"

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from g12.errors import number
 from g12.flat.contour import Arc, Contour, Line, path_length
-from g12.flat.intersect import cross_inside, least_distance, part_of
+from g12.flat.intersect import cross_inside, least_distance, part_of_move
 
 LOCAL = 2.0  # tool radii: so far from the corner the tool's way is tested
 BESIDE = 2.0  # tolerances: places so near to each other are one corner
@@ -70,7 +70,7 @@ def _near(move: Line | Arc, radius: float, end: bool) -> Line | Arc:
     share = LOCAL * radius / path_length(move)
     if share >= 1.0:
         return move
-    return part_of(move, 1.0 - share, 1.0) if end else part_of(move, 0.0, share)
+    return part_of_move(move, 1.0 - share, 1.0) if end else part_of_move(move, 0.0, share)
 
 
 def _across_short_moves(cuts: Sequence[Cut | None]) -> Iterator[tuple[Cut, Cut, list[Arc]]]:

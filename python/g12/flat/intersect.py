@@ -44,7 +44,7 @@ def place_at(move: Line | Arc, part: float) -> Point:
     return move.cx + x * cosine - c * sine, move.cc + x * sine + c * cosine
 
 
-def part_of(move: Line | Arc, first: float, last: float) -> Line | Arc:
+def part_of_move(move: Line | Arc, first: float, last: float) -> Line | Arc:
     """Return a move from one part of it to a later one, Z included."""
     z0, z1 = height_at(move, first), height_at(move, last)
     (x0, c0), (x1, c1) = place_at(move, first), place_at(move, last)

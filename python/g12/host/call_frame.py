@@ -18,7 +18,7 @@ NO_CODE = -1
 MOTION = 1  # modal group
 
 
-class Frame:
+class CallFrame:
     """The frame of the handler at work, and of its caller."""
 
     def __init__(self, interp: object) -> None:
@@ -28,6 +28,11 @@ class Frame:
         self._remap, self._phase = block.executing_remap, block.phase
         # the interpreter keeps no copy of the name: it must live as long as the frame
         self._name = interp.sub_context[self.level - 1].subname or ""
+
+    @property
+    def is_current(self) -> bool:
+        """Tell whether the line taken last is of the handler's own level, not of a sub's."""
+        return self.interp.call_level == self.level
 
     def enter(self) -> None:
         """Show the caller's local parameters and labels to the lines that follow."""

@@ -8,20 +8,21 @@ from interpreter import INTERP_OK
 from g12.cycles import circle_mill, mitsubishi, yasnac
 from g12.cycles.haas import plan_pocket
 from g12.cycles.words import Words
-from g12.host import glue
+from g12.host import cycle_glue, glue
 
 CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
 
 
 def prepare_haas(interp: object, arc: int) -> int:
     """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
-    pocket = plan_pocket(glue.words_of_block(interp), glue.snapshot(interp), glue.SETTINGS.clearing)
+    words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
+    pocket = plan_pocket(words, context, glue.SETTINGS.clearing)
     hand = 1 if arc == COUNTERCLOCKWISE else -1
-    glue.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
+    cycle_glue.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
     if pocket.commanded_radius is not None:
-        glue.remember_radius(interp, pocket.commanded_radius)
+        cycle_glue.remember_radius(interp, pocket.commanded_radius)
     if pocket.message:
-        glue.message(pocket.message)
+        cycle_glue.message(pocket.message)
     return INTERP_OK
 
 
@@ -39,14 +40,14 @@ def g13_haas(self, **words):
 
 def prepare_yasnac(interp: object, arc: int) -> int:
     """Check a Yasnac G12/G13 block and hand its circle to `ngc/g12_yasnac.ngc`."""
-    circle = yasnac.plan_circle(glue.words_of_block(interp), glue.snapshot(interp))
-    glue.hand_over(
+    circle = yasnac.plan_circle(cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp))
+    cycle_glue.hand_over(
         interp,
         **circle._asdict(),
         arc=arc,
-        traverse=glue.traverse_feed(interp),
+        traverse=cycle_glue.traverse_feed(interp),
         feed=interp.feed_rate,
-        per_revolution=glue.per_revolution(interp),
+        per_revolution=cycle_glue.per_revolution(interp),
     )
     return INTERP_OK
 
@@ -65,8 +66,8 @@ def g13_yasnac(self, **words):
 
 def prepare_mitsubishi(interp: object, arc: int) -> int:
     """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_mitsubishi.ngc`."""
-    circle = mitsubishi.plan_circle(glue.words_of_block(interp), glue.snapshot(interp))
-    glue.hand_over(interp, **circle._asdict(), arc=arc)
+    circle = mitsubishi.plan_circle(cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp))
+    cycle_glue.hand_over(interp, **circle._asdict(), arc=arc)
     return INTERP_OK
 
 
@@ -84,9 +85,9 @@ def g13_mitsubishi(self, **words):
 
 def planned_event(interp: object, pocket: bool) -> circle_mill.MillEvent:
     """Return the event of a code block, or of the call if the code stands in o<circle_mill>."""
-    words, context = glue.words_of_block(interp), glue.snapshot(interp)
-    plane = glue.first_plane(interp)
-    entries = glue.entries_of_call(interp, "circle_mill", len(circle_mill.ENTRIES))
+    words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
+    plane = cycle_glue.first_plane(interp)
+    entries = cycle_glue.entries_of_sub(interp, "circle_mill", len(circle_mill.ENTRIES))
     if entries is None:
         return circle_mill.plan_code(words, context, plane, pocket)
     words.finish("no words inside o<circle_mill>")
@@ -97,10 +98,10 @@ def planned_event(interp: object, pocket: bool) -> circle_mill.MillEvent:
 def prepare_circle_mill(interp: object, pocket: bool) -> int:
     """Check a circle mill event and hand it to `ngc/g12_circle_mill.ngc`."""
     event = planned_event(interp, pocket)
-    glue.hand_over(interp, **event.locals())
-    glue.remember_first_plane(interp, event.place.first_plane)
+    cycle_glue.hand_over(interp, **event.locals())
+    cycle_glue.remember_first_plane(interp, event.place.first_plane)
     if event.message:
-        glue.message(event.message)
+        cycle_glue.message(event.message)
     return INTERP_OK
 
 
@@ -119,5 +120,5 @@ def circle_mill_pocket(self, **words):
 @glue.handler
 def cycle_done(self, **words):
     """Epilog of every cycle: the modes are again what the block found."""
-    glue.restore_modes(self)
+    cycle_glue.restore_modes(self)
     return INTERP_OK

@@ -22,7 +22,7 @@ SHORT = 200  # characters: every LinuxCNC reads longer lines than that
 SKIPPED_OVER = "g12_skipped_over"  # the name of a sub that never exists in a file
 
 
-class Source(NamedTuple):
+class ProgramFile(NamedTuple):
     """A program file: its lines, the byte at which each begins, and when it was written."""
 
     filename: str
@@ -31,7 +31,7 @@ class Source(NamedTuple):
     version: tuple[int, int]
 
 
-def read_source(filename: str, known: Source | None = None) -> Source:
+def read_source(filename: str, known: ProgramFile | None = None) -> ProgramFile:
     """Return the lines of a program file; ``known`` again if that is the file, unchanged."""
     status = os.stat(filename)
     version = (status.st_mtime_ns, status.st_size)
@@ -43,7 +43,7 @@ def read_source(filename: str, known: Source | None = None) -> Source:
         lines.pop()
     starts = list(accumulate((len(line) + 1 for line in lines), initial=0))
     text = [line.decode("utf-8", "replace") for line in lines]
-    return Source(filename, text, starts, version)
+    return ProgramFile(filename, text, starts, version)
 
 
 class LineOfFile(int):
@@ -60,7 +60,15 @@ class LineOfFile(int):
         return f"{int(self)} of {self.file}"
 
 
-class Program:
+def error_text(interp: object) -> str:
+    """Return the interpreter's text of its last error; not all of them are UTF-8."""
+    try:
+        return interp.get_errormsg()
+    except UnicodeDecodeError as error:
+        return error.object.decode("utf-8", "replace")
+
+
+class ProgramLines:
     """The lines that follow the block being remapped.
 
     ``line`` is the number of the line taken last, counted from 1 as an editor does; ``place`` is
@@ -68,7 +76,7 @@ class Program:
     of an earlier section, which may be in the same file.
     """
 
-    def __init__(self, interp: object, known: Source | None = None) -> None:
+    def __init__(self, interp: object, known: ProgramFile | None = None) -> None:
         self.interp = interp
         self.home = self.source = read_source(interp.filename, known)
         self.line = bisect_right(self.source.starts, interp.blocks[interp.remap_level].offset)

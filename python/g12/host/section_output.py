@@ -2,7 +2,7 @@
 """The moves and actions of a planned section, handed to the machine in order.
 
 While pieces go out the interpreter is in G90 G94 with C unwrapped, and blends them in G64.
-`Emission.release` puts everything back to what the program commanded; so it is wherever the
+`SectionOutput.release` puts everything back to what the program commanded; so it is wherever the
 program can see it, or the machine waits.
 
 A move in front of the section would be blended into its first piece: a dwell of no time stops it.
@@ -13,10 +13,11 @@ from __future__ import annotations
 from collections.abc import Container, Sequence
 from typing import NamedTuple
 
-from g12.polar.plan import Run
+from g12.host.program_lines import error_text
+from g12.polar.plan import BlockMoves
 from g12.section.block_rules import G1
-from g12.section.line import Place
-from g12.section.modes import Modes, decimal
+from g12.section.line import SectionPlace
+from g12.section.modes import SectionModes, decimal
 
 PER_MINUTE, PER_REVOLUTION = 0, 2  # feed_mode
 PATH_ACTIVE = 11  # index into active_g_codes
@@ -37,7 +38,7 @@ class Action(NamedTuple):
 
     line: int
     text: str
-    modes: Modes | None
+    modes: SectionModes | None
     level: int | None = None
 
 
@@ -96,7 +97,7 @@ class PathControl:
             self._blending = self._blending if path in EXACT_PATHS else path
 
 
-class Emission:
+class SectionOutput:
     """Hands steps to the interpreter.
 
     ``code`` names the section in refusals. ``x_factor`` turns a radius value into an X word (2
@@ -121,7 +122,9 @@ class Emission:
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
         self._begun = False
 
-    def run(self, steps: Sequence[Run | Action], modes: Modes, exact_lines: Container[int]) -> None:
+    def run(
+        self, steps: Sequence[BlockMoves | Action], modes: SectionModes, exact_lines: Container[int]
+    ) -> None:
         """Hand over all steps, and release the interpreter in ``modes``.
 
         ``exact_lines`` are those of blocks with G9.
@@ -137,7 +140,7 @@ class Emission:
                 self._moves(step.line, step.axes, step.pieces)
         self.release(modes)
 
-    def release(self, modes: Modes) -> None:
+    def release(self, modes: SectionModes) -> None:
         """Put the interpreter into the modes that the program commanded."""
         interp = self.interp
         interp.c_axis_wrapped = self._wrapped
@@ -147,7 +150,7 @@ class Emission:
         interp.execute("G91" if modes.incremental else "G90")
         interp.motion_mode = modes.motion
 
-    def _stop_in_front(self, steps: Sequence[Run | Action]) -> None:
+    def _stop_in_front(self, steps: Sequence[BlockMoves | Action]) -> None:
         if steps and not self._begun and not self.path.exact:
             self.interp.sequence_number = steps[0].line
             self.interp.execute(STOP_HERE)
@@ -162,9 +165,9 @@ class Emission:
         interp.feed_mode = PER_MINUTE  # reading may have left what the section ends in
         interp.motion_mode = G1
 
-    def _moves_to_an_end(self, run: Run, following: object, exact_stop: bool) -> None:
+    def _moves_to_an_end(self, run: BlockMoves, following: object, exact_stop: bool) -> None:
         """Hand over moves of which the last ends in another path control."""
-        block_ends = not isinstance(following, Run) or following.line != run.line
+        block_ends = not isinstance(following, BlockMoves) or following.line != run.line
         if len(run.pieces) > 1:
             self._moves(run.line, run.axes, run.pieces[:-1])
         self.interp.sequence_number = run.line
@@ -209,19 +212,20 @@ class Emission:
 
     def _execute(self, action: Action) -> None:
         """Execute the block as one of the program, which a remapped code must be."""
-        interp, place = self.interp, Place(self.code, action.line)
+        interp, place = self.interp, SectionPlace(self.code, action.line)
         level, stands = interp.call_level, self._stands()
         interp.call_level = level if action.level is None else action.level
         try:
             interp.read(action.text)
             status = interp.execute(None)
         except SystemError:  # how LinuxCNC hands a failed read or execute to Python
-            raise place.refuse(interp.get_errormsg()) from None
+            raise place.refuse(error_text(interp)) from None
+        finally:
+            interp.call_level = level
         if status:
             raise place.refuse(f"{action.text} waits for the machine: not inside a section")
         if self._stands() != stands:
             raise place.refuse(f"{action.text} moves the machine: not inside a section")
-        interp.call_level = level
 
     def _stands(self) -> tuple[float, float, float]:
         return self.interp.current_x, self.interp.CC_current, self.interp.current_z

@@ -8,16 +8,14 @@ the section, so that a program reads them from #5420, #<_x> or #<_feed>.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from operator import attrgetter
-from typing import NamedTuple
 
+import emccanon
 from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
 
 from g12.errors import number
 from g12.flat.contour import Contour
-from g12.host import glue
-from g12.host.program_lines import Program
+from g12.host.program_lines import ProgramLines, error_text
 from g12.host.section_output import BLOCK_END, PER_MINUTE, PER_REVOLUTION, Action
 from g12.section.block_rules import (
     COMPENSATION,
@@ -34,10 +32,18 @@ from g12.section.block_rules import (
     SAVE,
     SAVE_FOR_SUB,
     STATE_CODES,
-    Block,
+    SectionBlock,
 )
-from g12.section.line import Line, Place
-from g12.section.modes import Modes, action_text, comment_text, may_fail, modes_after, stop_text
+from g12.section.line import SectionPlace, TextLine
+from g12.section.modes import (
+    SectionModes,
+    action_text,
+    comment_text,
+    may_fail,
+    modes_after,
+    stop_text,
+)
+from g12.section.start import SectionStart, WordRules
 
 ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
 MOTIONS = (G0, G1, G2, G3)
@@ -51,70 +57,67 @@ plain_words = attrgetter(
 )
 
 
-class Rules(NamedTuple):
-    """How the words of a section are read; lengths and feeds in program units.
-
-    ``diameter`` tells whether X words are diameters, ``x_scale`` turns a parsed one into a radius
-    value. ``rapid_feed`` is None where G0 is refused, ``closing`` the radius mismatch of an arc
-    that is forgiven. ``tool_radius`` returns None if no tool is loaded. ``level`` is the call
-    level at which the section is read.
-    """
-
-    code: str
-    level: int
-    diameter: bool
-    x_scale: float
-    z_with_x: bool
-    rapid_feed: float | None
-    closing: float
-    tool_radius: Callable[[], float | None]
-
-
-def block_of(parsed: object) -> Block:
+def block_of(parsed: object) -> SectionBlock:
     """Return the interpreter's parsed block as plain data."""
     words = {
         letter: getattr(parsed, value) for letter, flag, value in WORDS if getattr(parsed, flag)
     }
-    return Block(tuple(parsed.g_modes), tuple(parsed.m_modes), parsed.motion_to_be, words)
+    return SectionBlock(tuple(parsed.g_modes), tuple(parsed.m_modes), parsed.motion_to_be, words)
 
 
-def modes_of(interp: object) -> Modes:
-    """Return the modes in which a section begins."""
-    return Modes(
-        incremental=interp.distance_mode == MODE_INCREMENTAL,
-        per_revolution=interp.feed_mode == PER_REVOLUTION,
-        feed=interp.feed_rate,
-        speed=glue.spindle_speed(interp),
-        motion=interp.motion_mode,
-    )
-
-
-class Collector:
+class SectionReader:
     """Collects the blocks of one section, as the interpreter parsed them, in ``contour``."""
 
-    def __init__(self, interp: object, rules: Rules, program: Program) -> None:
-        self.interp, self.rules, self.program = interp, rules, program
+    def __init__(
+        self, interp: object, start: SectionStart, rules: WordRules, program: ProgramLines
+    ) -> None:
+        self.interp, self.start, self.rules, self.program = interp, start, rules, program
         self.parsed = interp.blocks[0]
-        self.modes = modes_of(interp)
-        self._spindle = glue.feed_spindle(interp)
-        self._speeds = [interp.speed[spindle] for spindle in range(interp.num_spindles)]
+        self.modes = start.modes
+        self._spindle, self._speeds = start.spindle, list(start.speeds)
         self.contour = Contour(
-            interp.current_x,
-            interp.current_z,
-            code=rules.code,
+            start.x,
+            start.z,
+            code=start.place.code,
             diameter=rules.diameter,
             closing=rules.closing,
         )
         self.exact_lines: set[int] = set()  # of G9
         self._moved = 0  # the line of the last move
-        self._saved: dict[int, Modes] = {}  # by M70 and M73, at each call level
+        self._saved: dict[int, SectionModes] = {}  # by M70 and M73, at each call level
         self._restored_on_return: set[int] = set()
+        self.remember_machine()
 
-    def refuse(self, reason: str) -> Exception:
-        """Return the refusal of the line taken last."""
-        return Place(self.rules.code, self.program.place).refuse(reason)
+    @property
+    def place(self) -> SectionPlace:
+        """The line taken last, for the operator."""
+        return SectionPlace(self.start.place.code, self.program.place)
 
-    def set_modes(self, modes: Modes) -> None:
+    def refuse_failed(self) -> Exception:
+        """Return the refusal of a line that the interpreter could not read or execute."""
+        return self.place.refuse(error_text(self.interp))
+
+    def remember_machine(self) -> None:
+        """Note where the machine stands, as the interpreter knows it now, and in which modes."""
+        interp = self.interp
+        self._machine = interp.current_x, interp.current_z, interp.CC_current
+        self._modes_found = self.modes
+
+    def show_machine(self) -> None:
+        """Show the interpreter where the machine stands."""
+        interp = self.interp
+        interp.current_x, interp.current_z, interp.CC_current = self._machine
+
+    def put_back(self) -> None:
+        """Leave the interpreter as it was when the machine moved last."""
+        self.show_machine()
+        self.set_modes(self._modes_found)
+
+    def deletes(self, line: TextLine) -> bool:
+        """Tell whether a line goes out with block delete."""
+        return line.deletable and emccanon.GET_BLOCK_DELETE()
+
+    def set_modes(self, modes: SectionModes) -> None:
         """Let modes act on the blocks that follow, and be what the program reads of them."""
         interp, self.modes = self.interp, modes
         interp.distance_mode = MODE_INCREMENTAL if modes.incremental else MODE_ABSOLUTE
@@ -126,6 +129,12 @@ class Collector:
         """Show the interpreter the programmed position."""
         interp, contour = self.interp, self.contour
         interp.current_x, interp.current_z, interp.CC_current = contour.x, contour.z, contour.c
+
+    def has_moved(self) -> bool:
+        """Tell whether the interpreter has left the position that it was shown."""
+        interp, contour = self.interp, self.contour
+        stands = interp.current_x, interp.CC_current, interp.current_z
+        return stands != (contour.x, contour.c, contour.z)
 
     def plain_line(self, raw: str) -> None:
         """Take a line of nothing but numbers behind G1 to G3, F and the words of a move."""
@@ -149,31 +158,33 @@ class Collector:
                 r if has_r else None,
             )
 
-    def with_spindle(self, line: Line) -> Line:
+    def with_spindle(self, line: TextLine) -> TextLine:
         """Return a line with its $ word as a number: of the parsed block it cannot be asked."""
         if not line.spindle:
             return line
         self.interp.read(f"C{line.spindle[1:]}")
         return line._replace(spindle=f"${round(self.parsed.c_number)}")
 
-    def set_parameters(self, line: Line) -> None:
+    def set_parameters(self, line: TextLine) -> None:
         """Let the assignments of a line act; their values are those before it."""
         if line.assignments:
             self.interp.read(line.assignments)
             self.interp.execute(None)
 
-    def set_state(self, line: Line, block: Block) -> None:
+    def set_state(self, line: TextLine, block: SectionBlock) -> None:
         """Let the modes of a block act, and those it saves or restores."""
         code = block.m[M_STATE]
         if code in STATE_CODES:
             self._state_code(code)
         self.set_modes(modes_after(self.modes, block, self._speed(line, block)))
 
-    def _speed(self, line: Line, block: Block) -> float:
+    def _speed(self, line: TextLine, block: SectionBlock) -> float:
         """Return the commanded speed of the spindle that feeds per revolution refer to."""
-        named, count = int(line.spindle[1:] or MAIN_SPINDLE), self.interp.num_spindles
+        named, count = int(line.spindle[1:] or MAIN_SPINDLE), len(self._speeds)
         if not ALL_SPINDLES <= named < count:
-            raise self.refuse(f"${named}: this machine has {count} spindle{'s' * (count > 1)}")
+            raise self.place.refuse(
+                f"${named}: this machine has {count} spindle{'s' * (count > 1)}"
+            )
         if "S" in block.words:
             for spindle in range(count) if named == ALL_SPINDLES else (named,):
                 self._speeds[spindle] = block.words["S"]
@@ -181,11 +192,11 @@ class Collector:
             self._spindle = max(named, MAIN_SPINDLE)
         return self._speeds[self._spindle]
 
-    def action(self, line: Line, block: Block) -> None:
+    def action(self, line: TextLine, block: SectionBlock) -> None:
         """Keep what the block does besides motion."""
         self._mark(action_text(block, line))
 
-    def move(self, line: Line, block: Block) -> None:
+    def move(self, line: TextLine, block: SectionBlock) -> None:
         """Add the block's motion and compensation, and keep the stop behind it."""
         if line.exact_stop:
             self.exact_lines.add(self.program.line)
@@ -198,7 +209,7 @@ class Collector:
             self._move(block.motion, *words, line.relative)
         self._mark(stop_text(block))
 
-    def comment(self, line: Line) -> None:
+    def comment(self, line: TextLine) -> None:
         """Keep a comment, message or report, with its parameters as they are now."""
         for comment in line.comments[-1:]:  # the interpreter knows only the last one of a line
             if "#" in comment:
@@ -247,7 +258,7 @@ class Collector:
         contour, modes = self.contour, self.modes
         if motion not in MOTIONS:
             code = f"G{motion / 10:g}"
-            raise self.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
+            raise self.place.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
         if x is not None:
             x *= self.rules.x_scale
             if modes.incremental or "X" in relative:
@@ -273,29 +284,33 @@ class Collector:
 
     def _check_z(self, *others: float | None) -> None:
         if not self.rules.z_with_x and any(other is not None for other in others):
-            raise self.refuse("Z needs a block of its own, or [G12] POLAR_Z = allow")
+            raise self.place.refuse("Z needs a block of its own, or [G12] POLAR_Z = allow")
 
     def _feed(self) -> float:
         """Return the feed along the part in program units per minute."""
         modes = self.modes
         if modes.feed > MOST_FEED:
-            raise self.refuse(f"F{number(modes.feed)} is no feed: at most {number(MOST_FEED)}")
+            raise self.place.refuse(
+                f"F{number(modes.feed)} is no feed: at most {number(MOST_FEED)}"
+            )
         if not modes.per_revolution:
             return modes.feed
         if not modes.speed:
-            raise self.refuse("feed per revolution (G95, G99) needs the spindle speed S")
+            raise self.place.refuse("feed per revolution (G95, G99) needs the spindle speed S")
         return modes.feed * modes.speed
 
     def _rapid_feed(self) -> float:
         feed = self.rules.rapid_feed
         if feed is None:
-            raise self.refuse(f"G0 is refused (it is still active): {REASON_OF_G[G0]}")
+            raise self.place.refuse(f"G0 is refused (it is still active): {REASON_OF_G[G0]}")
         return feed
 
     def _compensate(self, side: int) -> None:
-        radius = self.rules.tool_radius()
+        radius = self.start.tool_radius
         if radius is None:
-            raise self.refuse(f"G{side} needs a tool in the spindle: its radius is compensated")
+            raise self.place.refuse(
+                f"G{side} needs a tool in the spindle: its radius is compensated"
+            )
         self.contour.compensation(side, radius, line=self.program.place)
 
     def _state_code(self, code: int) -> None:
@@ -309,12 +324,12 @@ class Collector:
             self._keep(Action(self.program.place, f"M{FORGET}", self.modes, level))
         else:
             self._saved[level] = self.modes
-            if code == SAVE_FOR_SUB and level > self.rules.level:
+            if code == SAVE_FOR_SUB and level > self.start.level:
                 self._restored_on_return.add(level)
             self._keep(Action(self.program.place, f"M{SAVE}", self.modes, level))
 
     def _restore(self, level: int) -> None:
         if level not in self._saved:
-            raise self.refuse("M72: no modes were saved in this section")
+            raise self.place.refuse("M72: no modes were saved in this section")
         self._keep(Action(self.program.place, f"M{RESTORE}", self.modes, level))
         self.set_modes(self._saved[level])

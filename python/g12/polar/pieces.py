@@ -55,7 +55,7 @@ class Split(NamedTuple):
     lengths: list[float]
 
 
-def split(move: Line | Arc, law: Law) -> Split:
+def split_move(move: Line | Arc, law: Law) -> Split:
     """Return the pieces of a move of the tool's centre that does not run through the pole."""
     return _split_line(move, law) if isinstance(move, Line) else _split_arc(move, law)
 

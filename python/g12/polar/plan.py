@@ -13,7 +13,7 @@ from g12.flat.offset import tool_path
 from g12.flat.simplify import with_points_left_out, without_short_moves
 from g12.polar.exact_stops import stops
 from g12.polar.feed import Position, pieces_with_feed
-from g12.polar.pieces import Law, split
+from g12.polar.pieces import Law, split_move
 from g12.polar.pole import POLE, through_pole
 
 CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
@@ -28,7 +28,7 @@ SAME_ANGLE = 1e-9  # radians
 RIPPLE = 0.01  # by so much may the speed differ from F inside a piece
 
 
-class Settings(NamedTuple):
+class PolarSettings(NamedTuple):
     """What the machine and its owner want of a section; lengths in program units."""
 
     tolerance: float  # POLAR_TOLERANCE
@@ -39,7 +39,7 @@ class Settings(NamedTuple):
     pole_refused: bool = False  # POLAR_POLE = refuse
 
 
-class Run(NamedTuple):
+class BlockMoves(NamedTuple):
     """G1 moves of one block, one after the other, all in G90 and G94.
 
     ``axes`` is "XC", "XCZ" or "Z": the words to write. Each piece is ``(x, c, z, feed)``: X radius
@@ -56,10 +56,11 @@ class Run(NamedTuple):
     stop: bool
 
 
-class Plan(NamedTuple):
-    """The moves of a section: ``steps`` holds each :class:`Run`, and each mark's action, in order.
+class PolarPlan(NamedTuple):
+    """The moves of a section.
 
-    ``place`` is where the machine stands in the end.
+    ``steps`` holds each :class:`BlockMoves`, and each mark's action, in order. ``place`` is where
+    the machine stands in the end.
     """
 
     steps: list
@@ -67,7 +68,7 @@ class Plan(NamedTuple):
     angle: float  # of the C axis in the plane, radians
 
 
-def plan(contour: Contour, settings: Settings, *, c: float) -> Plan:
+def plan(contour: Contour, settings: PolarSettings, *, c: float) -> PolarPlan:
     """Return the moves of a whole section.
 
     ``c`` is the C axis in degrees at the plane's zero angle. Raises Refusal, naming the blocks by
@@ -80,7 +81,7 @@ def plan(contour: Contour, settings: Settings, *, c: float) -> Plan:
     stopping = stops(
         path, ROUNDING_SHARE * tolerance, settings.x_acceleration, radians(settings.c_acceleration)
     )
-    machine = _Machine(contour, settings, c)
+    machine = _SlideAndSpindle(contour, settings, c)
     for element, stop in zip(path, stopping):
         if isinstance(element, Mark):
             machine.steps.append(element.action)
@@ -89,7 +90,7 @@ def plan(contour: Contour, settings: Settings, *, c: float) -> Plan:
         else:
             machine.cut(element, stop)
     machine.finish(path)
-    return Plan(machine.steps, machine.place, machine.angle)
+    return PolarPlan(machine.steps, machine.place, machine.angle)
 
 
 def _centre_path(contour: Contour, tolerance: float) -> tuple[list, float]:
@@ -112,7 +113,7 @@ def _centre_path(contour: Contour, tolerance: float) -> tuple[list, float]:
             raise refusal from None
 
 
-def resume(contour: Contour, planned: Plan) -> Contour:
+def resume(contour: Contour, planned: PolarPlan) -> Contour:
     """Return an empty contour that goes on where a planned one ended.
 
     For a section that is cut in two by a block that waits for the machine. Plan it with the same
@@ -124,10 +125,10 @@ def resume(contour: Contour, planned: Plan) -> Contour:
     return following
 
 
-class _Machine:
+class _SlideAndSpindle:
     """The X slide and the C axis, making one element after the other."""
 
-    def __init__(self, contour: Contour, settings: Settings, c: float) -> None:
+    def __init__(self, contour: Contour, settings: PolarSettings, c: float) -> None:
         x, self.angle, z = contour.start
         self.steps: list = []
         self.place = Position(x, c + degrees(self.angle), z)
@@ -136,7 +137,7 @@ class _Machine:
 
     def cut(self, move: Line | Arc, stop: bool) -> None:
         """Add the pieces of a move in the plane."""
-        parts = split(move, self._law(move.feed, stop))
+        parts = split_move(move, self._law(move.feed, stop))
         if (move.x0, move.c0) == POLE:
             self._turn(move, parts.angles[0])
         turns = round((self.angle - parts.angles[0]) / (2 * pi))
@@ -169,7 +170,7 @@ class _Machine:
 
     def _run(self, line: int, axes: str, pieces: list, stop: bool) -> None:
         if pieces:
-            self.steps.append(Run(line, axes, pieces, stop))
+            self.steps.append(BlockMoves(line, axes, pieces, stop))
             self.place = Position(*pieces[-1][:3])
 
     def _law(self, feed: float, stop: bool) -> Law:

@@ -20,7 +20,7 @@ from g12.flat.contour import (
     path_length,
     sweep_between,
 )
-from g12.flat.intersect import height_at, part_of, place_at
+from g12.flat.intersect import height_at, part_of_move, place_at
 
 POLE = (0.0, 0.0)
 FLAT_SHARE = 0.2  # of the reach: how far the radii that replace an arc may be from it
@@ -87,13 +87,13 @@ def _replaced(move: Line | Arc, passes: list[float], half: float, reach: float) 
     moves, done = [], 0.0
     for part in passes:
         if part - half > done:
-            moves.append(part_of(move, done, part - half))
+            moves.append(part_of_move(move, done, part - half))
             done = part - half
         moves.extend(_radius(move, done, part, reach))
         done = min(part + half, 1.0)
         moves.extend(_radius(move, done, part, reach, outwards=True))
     if done < 1.0:
-        moves.append(part_of(move, done, 1.0))
+        moves.append(part_of_move(move, done, 1.0))
     return moves
 
 

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from g12.machine_ini import Axis
-from g12.polar.plan import Run
+from g12.polar.plan import BlockMoves
 
 
-class Scale(NamedTuple):
+class AxisScale(NamedTuple):
     """How a program coordinate becomes a machine coordinate: times ``factor``, plus ``offset``."""
 
     factor: float
@@ -26,10 +26,10 @@ class Beyond(NamedTuple):
     limit: float
 
 
-class Travel:
+class SoftLimits:
     """The travel of the axes X, C and Z, for moves in program coordinates."""
 
-    def __init__(self, axes: dict[str, Axis], scales: dict[str, Scale]) -> None:
+    def __init__(self, axes: dict[str, Axis], scales: dict[str, AxisScale]) -> None:
         self._ranges = [
             (
                 letter,
@@ -42,16 +42,16 @@ class Travel:
         ]
         self._scales = scales
 
-    def beyond(self, steps: Iterable[Run | object]) -> Beyond | None:
+    def beyond(self, steps: Iterable[BlockMoves | object]) -> Beyond | None:
         """Return the first move that leaves the travel of an axis, None if all stay within."""
-        runs = [step for step in steps if isinstance(step, Run)]
+        runs = [step for step in steps if isinstance(step, BlockMoves)]
         columns = zip(*(piece for run in runs for piece in run.pieces))
         for (letter, limits), positions in zip(self._ranges, columns):
             if min(positions) < limits[0] or limits[1] < max(positions):
                 return self._first(runs, letter, limits)
         return None
 
-    def _first(self, runs: list[Run], letter: str, limits: list[float]) -> Beyond:
+    def _first(self, runs: list[BlockMoves], letter: str, limits: list[float]) -> Beyond:
         at = "XCZ".index(letter)
         line, position = next(
             (run.line, piece[at])

@@ -6,9 +6,10 @@ Codes are the parser's: a G code times ten, by modal group.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
-from g12.section.line import Line, Place
+from g12.section.line import SectionPlace, TextLine
 
 NO_CODE = -1
 # Modal groups of the G codes, as the parser numbers them, and two of the M codes.
@@ -31,6 +32,25 @@ KNOWN_G = {
     PATH: {610, 611, 640},
     SPINDLE: {970},
 }
+REFUSED_G = {  # the others that LinuxCNC knows
+    NON_MODAL: (100, 280, 281, 300, 301, 520, 530, 920, 921, 922, 923),
+    MOTION: (
+        *range(50, 54),
+        *(330, 331, 382, 383, 384, 385),
+        *(700, 710, 711, 712, 720, 721, 722, 730, 740, 760),
+        *range(800, 900, 10),
+    ),
+    PLANE: (171, 181, 190, 191),
+    CENTRE: (901,),
+    FEED: (930,),
+    UNITS: (200, 210),
+    COMPENSATION: (411, 421),
+    LENGTH: (430, 431, 432, 490),
+    WORK_OFFSET: (540, 550, 560, 570, 580, 590, 591, 592, 593),
+    SPINDLE: (960,),
+    DIAMETER: (70, 80),
+}
+GROUP_OF_G = {code: group for group, codes in REFUSED_G.items() for code in codes} | {G0: MOTION}
 FEED_MODES = {940: False, 980: False, 950: True, 990: True}  # code: per revolution
 AXES = ("X", "C", "Z")
 MOVING_WORDS = (*AXES, "I", "J")
@@ -72,7 +92,7 @@ REASON_OF_WORD = {
 }
 
 
-class Block(NamedTuple):
+class SectionBlock(NamedTuple):
     """What the parser made of a line: codes by modal group, -1 is none, and word values."""
 
     g: tuple[int, ...]
@@ -86,7 +106,19 @@ class Block(NamedTuple):
         return any(letter in self.words for letter in MOVING_WORDS)
 
 
-def check_letters(line: Line, place: Place) -> None:
+def check_codes(codes: Iterable[tuple[str, int]], rapid_allowed: bool, place: SectionPlace) -> None:
+    """Refuse codes as they are written: what is wrong is the code, whatever words stand with it.
+
+    ``codes`` are letters, with numbers times ten. The parser would find fault with words first.
+    """
+    for letter, code in codes:
+        if letter == "G" and code in GROUP_OF_G:
+            _check_g(GROUP_OF_G[code], code, rapid_allowed, place)
+        elif letter == "M":
+            _check_m(code // 10, place)
+
+
+def check_letters(line: TextLine, place: SectionPlace) -> None:
     """Refuse words that a section does not know, and two words for one axis."""
     for letter in line.letters:
         if letter in REASON_OF_WORD:
@@ -97,17 +129,13 @@ def check_letters(line: Line, place: Place) -> None:
             raise place.refuse(f"{given[0]} and {given[1]} both move {axis}: only one of them")
 
 
-def check_block(block: Block, rapid_allowed: bool, place: Place) -> None:
+def check_block(block: SectionBlock, rapid_allowed: bool, place: SectionPlace) -> None:
     """Refuse codes that have no place in a section, each with its reason."""
     for group, code in enumerate(block.g):
-        if code != NO_CODE and (
-            code not in KNOWN_G.get(group, ()) or (code == G0 and not rapid_allowed)
-        ):
-            reason = REASON_OF_G.get(code, REASON_OF_GROUP.get(group, "it is not known here"))
-            raise place.refuse(f"G{code / 10:g} is refused: {reason}")
+        if code != NO_CODE:
+            _check_g(group, code, rapid_allowed, place)
     for code in block.m:
-        if code in REASON_OF_M:
-            raise place.refuse(f"M{code} is refused: {REASON_OF_M[code]}")
+        _check_m(code, place)
     _check_arguments(block, place)
     if "P" in block.words and block.moves and block.motion in (G2, G3):
         raise place.refuse("P is refused: an arc inside the section has no turns")
@@ -115,7 +143,18 @@ def check_block(block: Block, rapid_allowed: bool, place: Place) -> None:
         raise place.refuse("G94 and G98 are feed per minute, G95 and G99 per revolution: not both")
 
 
-def _check_arguments(block: Block, place: Place) -> None:
+def _check_g(group: int, code: int, rapid_allowed: bool, place: SectionPlace) -> None:
+    if code not in KNOWN_G.get(group, ()) or (code == G0 and not rapid_allowed):
+        reason = REASON_OF_G.get(code, REASON_OF_GROUP.get(group, "it is not known here"))
+        raise place.refuse(f"G{code / 10:g} is refused: {reason}")
+
+
+def _check_m(code: int, place: SectionPlace) -> None:
+    if code in REASON_OF_M:
+        raise place.refuse(f"M{code} is refused: {REASON_OF_M[code]}")
+
+
+def _check_arguments(block: SectionBlock, place: SectionPlace) -> None:
     """Refuse what LinuxCNC would find wrong with the words of an M code only between the moves."""
     words = block.words
     for code in block.m:
@@ -126,7 +165,7 @@ def _check_arguments(block: Block, place: Place) -> None:
         _check_waiting(words, place)
 
 
-def _check_waiting(words: dict[str, float], place: Place) -> None:
+def _check_waiting(words: dict[str, float], place: SectionPlace) -> None:
     """Refuse an M66 that LinuxCNC would refuse."""
     waits = words.get("L", AT_ONCE) != AT_ONCE
     for wrong, reason in (
@@ -139,12 +178,12 @@ def _check_waiting(words: dict[str, float], place: Place) -> None:
             raise place.refuse(f"M{WAIT_FOR_INPUT} needs {reason}")
 
 
-def feed_modes(block: Block) -> set[bool]:
+def feed_modes(block: SectionBlock) -> set[bool]:
     """Return the feed modes that a block commands; True is per revolution."""
     return {FEED_MODES[code] for code in (block.g[FEED], block.g[RETRACT]) if code in FEED_MODES}
 
 
-def alone(block: Block, m_code: int = NO_CODE) -> bool:
+def alone(block: SectionBlock, m_code: int = NO_CODE) -> bool:
     """Tell whether the block holds only a motion code, or ``m_code`` and its arguments."""
     if m_code == NO_CODE:
         others = [*block.g[:MOTION], *block.g[MOTION + 1 :], *block.m]

@@ -28,12 +28,13 @@ _SIGNS = re.compile(r"[-+]*")
 _FUNCTION = re.compile(r"[a-z]+(?=\[)")
 _NAME = re.compile(r"<[^>]*>?")
 _DIGITS = re.compile(r"[\d.]*")
+_CODE = re.compile(r"\d+(?:\.\d*)?")
 _NINE = re.compile(r"0*9(?:\.0*)?")
 _LINE_NAMED = re.compile(r" line (\d+):")
 FOREIGN = {"u": "x", "h": "c", "y": "c"}  # what the parser is given instead
 
 
-class Place(NamedTuple):
+class SectionPlace(NamedTuple):
     """Where something is refused: the section's code, and the line."""
 
     code: str
@@ -50,20 +51,22 @@ def line_named(error: Exception) -> int | None:
     return int(named[1]) if named else None
 
 
-class Line(NamedTuple):
+class TextLine(NamedTuple):
     """A raw line in parts.
 
     ``text`` is for the parser: lower case, no blanks, no comments; ``rewritten`` where the parser
     could not have read the line itself. ``control`` is the kind of an O-word ("sub", "call",
     "while", …; M98 is a "call" and M99 a "return"), "" on other lines. ``letters`` are the words
-    as written, ``relative`` the axes given by U and H. A parsed block shows neither
-    ``assignments`` nor the $ word, ``spindle``.
+    as written, ``codes`` the G and M words with a plain number (letter, number times ten),
+    ``relative`` the axes given by U and H. A parsed block shows neither ``assignments`` nor the $
+    word, ``spindle``.
     """
 
     text: str
     comments: tuple[str, ...] = ()
     control: str = ""
     letters: tuple[str, ...] = ()
+    codes: tuple[tuple[str, int], ...] = ()
     rewritten: bool = False
     relative: str = ""
     exact_stop: bool = False
@@ -81,23 +84,24 @@ class Line(NamedTuple):
         return self.text[:1] == "/"
 
 
-def split_line(raw: str) -> Line:
+def split_line(raw: str) -> TextLine:
     """Return a raw line in its parts."""
     bare = _BLANKS.sub("", _COMMENT.sub("", raw)).lower()
     comments = tuple(match[1] for match in _COMMENT.finditer(raw) if match[1] is not None)
     control = _CONTROL.match(bare)
     if control:
-        return Line(bare, comments, _kind(bare, control))
+        return TextLine(bare, comments, _kind(bare, control))
     if "(" in bare:  # an unclosed or nested comment: the parser says so
-        return Line(bare)
+        return TextLine(bare)
     words = list(split_words(bare.lstrip("/")))
     letters = tuple(letter.upper() for letter, _ in words)
     kept = [word for word in words if not _is_exact_stop(word)]
     text = "".join(FOREIGN.get(letter, letter) + value for letter, value in kept)
-    return Line(
+    return TextLine(
         "/" * (bare[:1] == "/") + text,
         comments,
         letters=letters,
+        codes=tuple(_codes_of(kept)),
         rewritten=len(kept) < len(words) or not {"U", "H", "Y"}.isdisjoint(letters),
         relative="X" * ("U" in letters) + "C" * ("H" in letters),
         exact_stop=len(kept) < len(words),
@@ -117,6 +121,12 @@ def _kind(bare: str, control: re.Match[str]) -> str:
 
 def _words_of(wanted: str, words: list[tuple[str, str]]) -> str:
     return "".join(letter + value for letter, value in words if letter == wanted)
+
+
+def _codes_of(words: list[tuple[str, str]]) -> Iterator[tuple[str, int]]:
+    for letter, value in words:
+        if letter in "gm" and _CODE.fullmatch(value):
+            yield letter.upper(), round(float(value) * 10)
 
 
 def _is_exact_stop(word: tuple[str, str]) -> bool:

@@ -18,10 +18,10 @@ from g12.section.block_rules import (
     PATH,
     SPINDLE,
     STATE_CODES,
-    Block,
+    SectionBlock,
     feed_modes,
 )
-from g12.section.line import Line
+from g12.section.line import TextLine
 
 PASSED_ON = (NON_MODAL, CENTRE, PATH, SPINDLE)  # groups that the machine acts on
 ARGUMENTS = ("S", "P", "Q", "L", "E")  # of the codes that are no motion
@@ -30,7 +30,7 @@ _IN_REPORT = re.compile(r"%(d|f|\.\df)|#(\d+|<[^>]*>)")
 _REPORTS = ("debug,", "print,", "log,", "abort,")
 
 
-class Modes(NamedTuple):
+class SectionModes(NamedTuple):
     """The modes of a section: they act as they are read, not when the tool gets there.
 
     ``feed`` is F in program units per minute, or per revolution; ``speed`` that of the spindle
@@ -44,13 +44,13 @@ class Modes(NamedTuple):
     motion: int
 
 
-def modes_after(modes: Modes, block: Block, speed: float) -> Modes:
+def modes_after(modes: SectionModes, block: SectionBlock, speed: float) -> SectionModes:
     """Return the modes once the codes and F of ``block`` have acted, and S has made the speed."""
     words = block.words
     distance, commanded = block.g[DISTANCE], feed_modes(block)
     per_revolution = commanded.pop() if commanded else modes.per_revolution
     feed = modes.feed if per_revolution == modes.per_revolution else 0.0  # F in the other unit
-    return Modes(
+    return SectionModes(
         incremental=modes.incremental if distance == NO_CODE else distance == 910,
         per_revolution=per_revolution,
         feed=words.get("F", feed),
@@ -59,7 +59,7 @@ def modes_after(modes: Modes, block: Block, speed: float) -> Modes:
     )
 
 
-def action_text(block: Block, line: Line) -> str:
+def action_text(block: SectionBlock, line: TextLine) -> str:
     """Return the block without its motion, every value read; "" if nothing is left."""
     codes = [f"G{block.g[group] / 10:g}" for group in PASSED_ON if block.g[group] != NO_CODE]
     codes += [
@@ -72,7 +72,7 @@ def action_text(block: Block, line: Line) -> str:
     return "".join(codes) + line.spindle if codes else ""
 
 
-def stop_text(block: Block) -> str:
+def stop_text(block: SectionBlock) -> str:
     """Return the block's M0, M1 or M60, which acts behind its motion; "" if there is none."""
     return "" if block.m[M_STOP] == NO_CODE else f"M{block.m[M_STOP]}"
 

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a cycle finds in the interpreter, its hand-over to NGC, and what is remembered of it.
+
+Facts about the interpreter that the code relies on stand beside the line that does.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from pathlib import Path
+
+import emccanon
+
+from g12.cycles.context import XY, XZ, YZ, Context, Tool
+from g12.cycles.words import Words
+from g12.host.glue import (
+    INCH,
+    SETTINGS,
+    code_of_block,
+    diameter_mode,
+    millimetres_per_unit,
+    program_units_per_machine_unit,
+    spindle_speed,
+)
+
+# indices into a block's g_modes
+MODAL_0, TOOL_LENGTH, PATH_CONTROL, SPINDLE = 0, 8, 13, 14
+NO_CODE = -1
+READING_WORDS = (
+    (TOOL_LENGTH, 430, "H"),
+    (TOOL_LENGTH, 431, "XYZABCUVW"),
+    (TOOL_LENGTH, 432, "HXYZABCUVW"),
+    (PATH_CONTROL, 640, "PQ"),
+    (SPINDLE, 960, "D"),
+)
+M_GROUPS = 11
+HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
+INCREMENTAL = 1  # distance_mode and ijk_distance_mode: 0 absolute, 1 incremental
+INVERSE_TIME, PER_REVOLUTION = 1, 2  # feed_mode
+PLANES = {1: XY, 2: YZ, 3: XZ}
+
+# every word a block can carry besides F, S, T, N, M and O, which the interpreter deals with
+LETTERS = "ABCDEHIJKPQRUVWXYZ"
+WORD_FIELDS = [
+    (
+        letter,
+        f"{letter.lower()}_flag",
+        "d_number_float" if letter == "D" else f"{letter.lower()}_number",
+    )
+    for letter in LETTERS
+]
+NO_L = -1  # a block's l_number without an L word
+
+
+class CycleState:
+    """What the package remembers of one interpreter; it lives on the interpreter object.
+
+    ``modes`` are those a cycle found and has to put back; ``radius_commanded`` tells a D of
+    radius 0 from no D at all, which the interpreter's own last compensation radius cannot.
+    ``first_plane`` is the circle mill's modal reference plane in mm and the program that
+    commanded it, as it was then.
+    """
+
+    def __init__(self) -> None:
+        self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
+        self.radius_commanded = False
+        self.first_plane: tuple[float, tuple[str, int] | None] | None = None
+
+
+def state_of(interp: object) -> CycleState:
+    """Return the package's state of this interpreter."""
+    try:
+        return interp.g12_state
+    except AttributeError:
+        interp.g12_state = CycleState()
+        return interp.g12_state
+
+
+def words_of_block(interp: object) -> Words:
+    """Return the words of the block being remapped; refuse a second code that reads them."""
+    block = interp.blocks[interp.remap_level]
+    values = {
+        letter: getattr(block, field) for letter, flag, field in WORD_FIELDS if getattr(block, flag)
+    }
+    if block.l_number != NO_L:
+        values["L"] = block.l_number
+    if block.radius_flag:
+        values["@"] = block.radius
+    if block.theta_flag:
+        values["^"] = block.theta
+    words = Words(code_of_block(interp), values)
+    other = code_reading_words(block, words)
+    if other:
+        raise words.refuse(f"{other} cannot stand in the same block")
+    return words
+
+
+def code_reading_words(block: object, words: Words) -> str | None:
+    """Return a code of the block that would read a word of the cycle too, or change its tool.
+
+    (The interpreter knows the tool that M6 brings only behind the block.)
+    """
+    g_modes = block.g_modes
+    if g_modes[MODAL_0] != NO_CODE:
+        return f"G{g_modes[MODAL_0] / 10:g}"
+    for group, code, letters in READING_WORDS:
+        if g_modes[group] == code and any(letter in words for letter in letters):
+            return f"G{code / 10:g}"
+    if block.m_count:
+        for group in range(M_GROUPS):
+            if block.m_modes[group] not in HARMLESS_M:
+                return f"M{block.m_modes[group]}"
+    return None
+
+
+def entries_of_sub(interp: object, sub: str, count: int) -> list[float] | None:
+    """Return the entries of ``o<sub> call`` if the code stands alone in that sub, else None.
+
+    The frame of the remap is on top of the sub's; #1 to #30 are still the sub's in a prolog.
+    """
+    if interp.sub_context[interp.call_level - 1].subname != sub:
+        return None
+    return [interp.params[index] for index in range(1, count + 1)]
+
+
+def tool_from_entry(interp: object, entry: object) -> Tool:
+    """Return a tool table entry's number and radius in program units."""
+    return Tool(entry.toolno, entry.diameter / 2 * program_units_per_machine_unit(interp))
+
+
+def tool_in_spindle(interp: object) -> Tool | None:
+    """Return the loaded tool, None if there is none."""
+    entry = interp.tool_table[0]
+    return tool_from_entry(interp, entry) if entry.toolno > 0 else None
+
+
+def tool_in_table(interp: object, tool_number: int) -> Tool | None:
+    """Return the tool of that number from the tool table, None if it is not there.
+
+    The table is in the order of the tool file; `find_tool_pocket` would give the pocket, which
+    is another number. Place 0 is the spindle, with a random tool changer the tool's only place.
+    """
+    table = interp.tool_table
+    for place in itertools.chain(range(1, len(table)), (0,)):
+        entry = table[place]
+        if entry.toolno == tool_number:
+            return tool_from_entry(interp, entry)
+    return None
+
+
+def last_radius(interp: object) -> float | None:
+    """Return the cutter radius of the last D commanded, by a cycle or by G41/G42.
+
+    The interpreter keeps its compensation radius after G40 and converts it with G20/G21, and
+    the cycles store their D there too: one register, as on the control.
+    """
+    state, radius = state_of(interp), interp.cutter_comp_radius
+    state.radius_commanded = state.radius_commanded or radius > 0
+    return radius if state.radius_commanded else None
+
+
+def remember_radius(interp: object, radius: float) -> None:
+    """Store the cutter radius of a D word as the last commanded."""
+    interp.cutter_comp_radius = radius
+    state_of(interp).radius_commanded = True
+
+
+def main_program(interp: object) -> tuple[str, int] | None:
+    """Return the file at the bottom of the call stack and when it was last written.
+
+    In MDI it is the one that is open, if any.
+    """
+    name = interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
+    try:
+        return name, Path(name).stat().st_mtime_ns
+    except (OSError, TypeError):
+        return None
+
+
+def first_plane(interp: object) -> float | None:
+    """Return the circle mill's first reference plane as last commanded by this program.
+
+    Another program's, or that of a text since edited, would send the tool to a height that this
+    one never mentions.
+    """
+    plane = state_of(interp).first_plane
+    if plane is None or plane[1] != main_program(interp):
+        return None
+    return plane[0] / millimetres_per_unit(interp)
+
+
+def remember_first_plane(interp: object, height: float) -> None:
+    """Store the first reference plane as the last commanded."""
+    plane = height * millimetres_per_unit(interp), main_program(interp)
+    state_of(interp).first_plane = plane
+
+
+def snapshot(interp: object) -> Context:
+    """Return what the block finds: modes, units, position, tools."""
+    return Context(
+        inch=interp.length_units == INCH,
+        x=interp.current_x,
+        y=interp.current_y,
+        z=interp.current_z,
+        incremental=interp.distance_mode == INCREMENTAL,
+        plane=PLANES.get(interp.plane, "G17.1, G18.1 or G19.1"),
+        inverse_time=interp.feed_mode == INVERSE_TIME,
+        per_revolution=per_revolution(interp),
+        speed=spindle_speed(interp),
+        feed=interp.feed_rate,
+        compensated=interp.cutter_comp_side != 0,
+        offset_pending=bool(interp.arc_not_allowed),
+        spindle_tool=tool_in_spindle(interp),
+        last_radius=last_radius(interp),
+        tool_in_table=functools.partial(tool_in_table, interp),
+    )
+
+
+def per_revolution(interp: object) -> bool:
+    """Tell whether feeds are per revolution (G95)."""
+    return interp.feed_mode == PER_REVOLUTION
+
+
+def traverse_feed(interp: object) -> float:
+    """Return the feed per minute of Yasnac's fast moves in program units, 0 for rapids."""
+    return SETTINGS.yasnac_traverse * program_units_per_machine_unit(interp)
+
+
+def hand_over(interp: object, **locals_: float) -> None:
+    """Set the named locals of the NGC sub that is about to run, and note the modes it finds."""
+    params = interp.params
+    for name, value in locals_.items():
+        params[name] = value
+    state_of(interp).modes = (
+        interp.motion_mode,
+        interp.distance_mode,
+        interp.ijk_distance_mode,
+        diameter_mode(interp),
+    )
+
+
+def restore_modes(interp: object) -> None:
+    """Put back the modes the block found: motion, G90/G91, G90.1/G91.1, G7/G8."""
+    motion, distance, centre, diameter = state_of(interp).modes
+    interp.motion_mode = motion
+    # a block after the assignment, or the active codes shown would still be the cycle's
+    interp.execute(f"G{90 + distance} G{90 + centre}.1 G{7 if diameter else 8}")
+
+
+def message(text: str) -> None:
+    """Show the operator a message that is no error."""
+    emccanon.MESSAGE(text)

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The two halves of the package, loaded each on its own: one that is broken leaves the other."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable, Iterable
+
+from g12.errors import Refusal
+from g12.host import glue
+
+
+def handlers_of(module: str, names: Iterable[str]) -> dict[str, Callable]:
+    """Return the handlers of a module by name.
+
+    If it does not load, the operator is told when LinuxCNC comes up, and each refuses with that.
+    """
+    try:
+        loaded = importlib.import_module(module)
+        return {name: getattr(loaded, name) for name in names}
+    except Exception as error:
+        text = _why(error)
+        glue.say_at_start(text.removeprefix("g12: "))
+        return {name: _refusing(name, text) for name in names}
+
+
+def _why(error: Exception) -> str:
+    if isinstance(error, Refusal):
+        return error.message
+    sys.excepthook(type(error), error, error.__traceback__)
+    return glue.fault_text(error)
+
+
+def _refusing(name: str, text: str) -> Callable:
+    def refuse(self, **words):
+        raise Refusal(text)
+
+    refuse.__name__ = name
+    return glue.handler(refuse)

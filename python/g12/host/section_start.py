@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The one look at the interpreter that a section takes where it begins."""
+
+from __future__ import annotations
+
+from interpreter import MODE_INCREMENTAL
+
+from g12.host import glue
+from g12.host.section_output import PER_REVOLUTION
+from g12.host.section_reader import block_of
+from g12.section.block_rules import alone
+from g12.section.line import SectionPlace
+from g12.section.modes import SectionModes
+from g12.section.start import SectionStart
+
+OTHER_WORDS = "abdhktuvwy"
+YZ_PLANE = 2
+INVERSE_TIME = 1  # feed_mode
+G96 = 960
+
+
+def start_of_section(interp: object, line: int) -> SectionStart:
+    """Return what a section finds that begins with the block being remapped, on ``line``."""
+    machine_unit = glue.program_units_per_machine_unit(interp)
+    return SectionStart(
+        place=SectionPlace(glue.code_of_block(interp), line),
+        alone=_stands_alone(interp),
+        level=interp.call_level,
+        x=interp.current_x,
+        c=interp.CC_current,
+        z=interp.current_z,
+        machine_unit=machine_unit,
+        millimetre=1 / glue.millimetres_per_unit(interp),
+        offsets=_offsets(interp),
+        modes=_modes(interp),
+        spindle=glue.feed_spindle(interp),
+        speeds=tuple(interp.speed[number] for number in range(interp.num_spindles)),
+        tool_radius=_tool_radius(interp, machine_unit),
+        diameter=glue.diameter_mode(interp),
+        yz_plane=interp.plane == YZ_PLANE,
+        compensated=interp.cutter_comp_side != 0,
+        offset_pending=bool(interp.arc_not_allowed),
+        inverse_time=interp.feed_mode == INVERSE_TIME,
+        surface_speed=G96 in interp.active_g_codes,
+        rotated=interp.rotation_xy != 0,
+    )
+
+
+def _stands_alone(interp: object) -> bool:
+    block = interp.blocks[interp.remap_level]
+    others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
+    return alone(block_of(block)) and not others
+
+
+def _modes(interp: object) -> SectionModes:
+    return SectionModes(
+        incremental=interp.distance_mode == MODE_INCREMENTAL,
+        per_revolution=interp.feed_mode == PER_REVOLUTION,
+        feed=interp.feed_rate,
+        speed=glue.spindle_speed(interp),
+        motion=interp.motion_mode,
+    )
+
+
+def _tool_radius(interp: object, machine_unit: float) -> float | None:
+    entry = interp.tool_table[0]
+    return entry.diameter / 2 * machine_unit if entry.toolno > 0 else None
+
+
+def _offsets(interp: object) -> dict[str, float]:
+    """Return what the work offset, G92 and the tool offset add to a program's X, Z and C."""
+    tool = interp.tool_offset
+    return {
+        "X": interp.origin_offset_x + interp.axis_offset_x + tool.x,
+        "Z": interp.origin_offset_z + interp.axis_offset_z + tool.z,
+        "C": interp.CC_origin_offset + interp.CC_axis_offset + tool.c,
+    }

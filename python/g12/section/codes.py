@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which codes switch a section on and off: the user's choice, by the REMAP lines."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import NamedTuple
+
+from g12.machine_ini import Remap, code_number
+
+
+class SectionCodes(NamedTuple):
+    """The codes of sections, as the parser numbers them: G12.1 is 121.
+
+    ``off_code`` is the one that messages name. ``remapped`` tells of an M code whether it is
+    remapped to a sub (True) or to Python (False).
+    """
+
+    on: frozenset[int]
+    off: frozenset[int]
+    off_code: str
+    remapped: dict[int, bool]
+
+
+def codes_of_section(code: str, remaps: Collection[Remap], on: str, off: str) -> SectionCodes:
+    """Return the codes for a section begun by ``code``.
+
+    ``remaps`` are the REMAP lines, ``on`` and ``off`` the names of their handlers. Every code that
+    is remapped to ``off`` ends a section.
+    """
+    switching_on, switching_off = (
+        [remap.code for remap in remaps if remap.keywords.get("python") == handler]
+        for handler in (on, off)
+    )
+    partner = f"G{float(code[1:]) + 1:g}"
+    return SectionCodes(
+        frozenset(map(_number_of, (code, *switching_on))),
+        frozenset(map(_number_of, switching_off or [partner])),
+        partner if partner in switching_off else (switching_off or [partner])[0],
+        {
+            remap.number[1] // 10: "ngc" in remap.keywords
+            for remap in remaps
+            if remap.number[0] == "M"
+        },
+    )
+
+
+def _number_of(code: str) -> int:
+    return code_number(code)[1]

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a section finds where it begins, and how the words behind it are read. Plain data."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from g12.section.line import SectionPlace
+from g12.section.modes import SectionModes
+
+
+class SectionStart(NamedTuple):
+    """What a section takes of the interpreter, once: all that its parts know of the machine.
+
+    Lengths are in program units. ``place`` is that of the block that switches on, ``alone`` tells
+    whether it holds nothing else, ``level`` is its call level. X is a radius value; C, where the
+    axis stands, is in degrees. ``machine_unit`` is the length of a machine unit, ``millimetre``
+    that of 1 mm; ``offsets`` lead from program to machine coordinates (X, Z, and C in degrees).
+    ``speeds`` are the commanded ones of all spindles in rpm, ``spindle`` is the number of the one
+    that feeds per revolution refer to. ``tool_radius`` is None if no tool is loaded.
+    """
+
+    place: SectionPlace
+    alone: bool
+    level: int
+    x: float
+    c: float
+    z: float
+    machine_unit: float
+    millimetre: float
+    offsets: dict[str, float]
+    modes: SectionModes
+    spindle: int
+    speeds: tuple[float, ...]
+    tool_radius: float | None
+    diameter: bool  # G7
+    yz_plane: bool  # G19
+    compensated: bool
+    offset_pending: bool  # after G40 the tool is still beside the programmed point
+    inverse_time: bool  # G93
+    surface_speed: bool  # G96
+    rotated: bool  # the work offset, by G10 L2 R
+
+
+class WordRules(NamedTuple):
+    """How the words of a section are read; lengths and feeds in program units.
+
+    ``diameter`` tells whether X words are diameters, ``x_scale`` turns a parsed one into a radius
+    value. ``rapid_feed`` is None where G0 is refused, ``closing`` the radius mismatch of an arc
+    that is forgiven.
+    """
+
+    diameter: bool
+    x_scale: float
+    z_with_x: bool
+    rapid_feed: float | None
+    closing: float
