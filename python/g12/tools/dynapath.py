@@ -62,13 +62,13 @@ def program_from_events(text: str, units: str | None = None) -> str:
 
 def calls_of_events(text: str) -> Iterator[str]:
     """Yield one block of G-code for each event."""
-    modal: dict[str, Entry] = {}
+    modal: dict[str, WrittenEntry] = {}
     for line, row in enumerate(text.upper().splitlines(), start=1):
         for event in re.findall(r"[^$]*\$|[^$]+", re.sub(r"\s", "", row)):
             yield call_of_event(event, modal, line)
 
 
-class Entry:
+class WrittenEntry:
     """One entry of an event: letter and number as written, and whether it is incremental."""
 
     def __init__(self, letter: str, value: str, incremental: bool) -> None:
@@ -77,7 +77,7 @@ class Entry:
         self.incremental = incremental
 
 
-def call_of_event(event: str, modal: dict[str, Entry], line: int) -> str:
+def call_of_event(event: str, modal: dict[str, WrittenEntry], line: int) -> str:
     """Return the call of one event; its modal entries are added to ``modal``."""
     match = EVENT.fullmatch(event)
     if not match:
@@ -97,9 +97,9 @@ def call_of_event(event: str, modal: dict[str, Entry], line: int) -> str:
     return call
 
 
-def entries_of_event(text: str, line: int) -> dict[str, Entry]:
+def entries_of_event(text: str, line: int) -> dict[str, WrittenEntry]:
     """Return the entries by letter."""
-    entries: dict[str, Entry] = {}
+    entries: dict[str, WrittenEntry] = {}
     position = 0
     while position < len(text):
         match = ENTRY.match(text, position)
@@ -109,7 +109,7 @@ def entries_of_event(text: str, line: int) -> dict[str, Entry]:
             raise refusal(line, f"{text[position:][:20]} does not start with an entry")
         if letter in entries:
             raise refusal(line, repeated(entries[letter].letter, written))
-        entries[letter] = Entry(written, match["value"], bool(match["incremental"]))
+        entries[letter] = WrittenEntry(written, match["value"], bool(match["incremental"]))
         position = match.end()
     return entries
 
@@ -121,7 +121,7 @@ def repeated(first: str, second: str) -> str:
     return f"{first} and {second} are the same entry: give one of them"
 
 
-def check_entries(entries: Mapping[str, Entry], line: int) -> None:
+def check_entries(entries: Mapping[str, WrittenEntry], line: int) -> None:
     """Refuse an event without a required entry, or with one that no event can have."""
     for letter in REQUIRED:
         if letter not in entries:
@@ -135,7 +135,7 @@ def check_entries(entries: Mapping[str, Entry], line: int) -> None:
             raise refusal(line, rule)
 
 
-def broken_rule(letter: str, entry: Entry) -> str | None:
+def broken_rule(letter: str, entry: WrittenEntry) -> str | None:
     """Return the rule of its letter that an entry breaks, None if it keeps them."""
     written = f"{entry.letter}{number(entry.value)}"
     if entry.incremental and letter not in INCREMENTAL:
@@ -151,7 +151,7 @@ def broken_rule(letter: str, entry: Entry) -> str | None:
     return None
 
 
-def unfit_for_call(letter: str, entries: Mapping[str, Entry]) -> str | None:
+def unfit_for_call(letter: str, entries: Mapping[str, WrittenEntry]) -> str | None:
     """Return why the call cannot carry an entry's value, None if it can."""
     value = float(value_in_call(letter, entries))
     written = f"{entries[letter].letter}{number(value)}"
@@ -162,7 +162,7 @@ def unfit_for_call(letter: str, entries: Mapping[str, Entry]) -> str | None:
     return None
 
 
-def value_in_call(letter: str, entries: Mapping[str, Entry]) -> Decimal:
+def value_in_call(letter: str, entries: Mapping[str, WrittenEntry]) -> Decimal:
     """Return the number that the call gets: Z/ from W, L/ below zero."""
     entry = entries[letter]
     if entry.incremental and letter == "Z":
@@ -172,12 +172,12 @@ def value_in_call(letter: str, entries: Mapping[str, Entry]) -> Decimal:
     return entry.value
 
 
-def from_the_tool(letter: str, entry: Entry) -> bool:
+def from_the_tool(letter: str, entry: WrittenEntry) -> bool:
     """Tell whether the call has to add the entry to where the tool stands."""
     return entry.incremental and letter in "XY"
 
 
-def argument(letter: str, entries: Mapping[str, Entry]) -> str:
+def argument(letter: str, entries: Mapping[str, WrittenEntry]) -> str:
     """Return one entry as an argument of the call."""
     if letter not in entries:
         return f"{LEFT_OUT:.0f}"
