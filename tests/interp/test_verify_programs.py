@@ -8,7 +8,8 @@ import shutil
 import pytest
 
 from g12.tools.machine.ini import read_ini
-from g12.tools.verify.proof import pocket_findings, pocket_notes, prove
+from g12.tools.verify.findings import pocket_findings, pocket_notes
+from g12.tools.verify.proof import prove
 from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
 
 INCH = 25.4
@@ -45,13 +46,13 @@ def test_every_pocket_is_found_and_comes_out_as_printed(manual):
     wanted, proof = manual
     assert len(proof.pockets) == len(wanted["pockets"])
     for asked, facts in zip(wanted["pockets"], proof.pockets):
-        assert facts.target.line == asked["line"]
-        assert facts.target.code == asked["code"]
+        assert facts.target.source.line == asked["line"]
+        assert facts.target.source.code == asked["code"]
         assert facts.reached == pytest.approx(asked["finished"] * INCH, abs=1e-6)
         assert facts.rings == pytest.approx([ring * INCH for ring in asked["rings"]], abs=1e-5)
-        depths = [facts.target.height(depth) / INCH for depth in facts.depths]
+        depths = [facts.target.wall.height(depth) / INCH for depth in facts.depths]
         assert depths == pytest.approx(asked["depths"], abs=1e-4)
-        assert facts.target.origin[:2] / INCH == pytest.approx(asked["centre"])
+        assert facts.target.wall.origin[:2] / INCH == pytest.approx(asked["centre"])
         assert facts.deviation < 1e-6 and facts.gouge == 0
 
 
@@ -81,7 +82,7 @@ def test_the_area_left_between_wide_rings():
 )
 def test_samples_of_every_dialect_are_good(program, machine, radii):
     proof = proof_of(program, machine)
-    assert [facts.target.radius for facts in proof.pockets] == pytest.approx(radii)
+    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx(radii)
     assert proof.findings == []
 
 
@@ -136,9 +137,9 @@ def test_expressions_loops_and_skipped_blocks(tmp_path):
         "M2",
     ]
     proof = proof_of_text(tmp_path, lines)
-    assert [facts.target.radius for facts in proof.pockets] == pytest.approx([12, 13, 14])
-    assert [facts.target.origin[0] for facts in proof.pockets] == pytest.approx([0, 60, 120])
-    assert {facts.target.line for facts in proof.pockets} == {7}
+    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx([12, 13, 14])
+    assert [facts.target.wall.origin[0] for facts in proof.pockets] == pytest.approx([0, 60, 120])
+    assert {facts.target.source.line for facts in proof.pockets} == {7}
     assert proof.findings == []
 
 
@@ -156,7 +157,7 @@ def test_a_pocket_in_a_subroutine_of_the_program(tmp_path):
         "M2",
     ]
     proof = proof_of_text(tmp_path, lines)
-    assert [facts.target.radius for facts in proof.pockets] == pytest.approx([9, 11])
+    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx([9, 11])
     assert proof.findings == []
 
 
@@ -175,7 +176,7 @@ def test_spring_passes_in_inches_do_not_move_down_again(tmp_path):
 def test_a_code_that_is_an_expression(code, tmp_path):
     lines = [*MM, "#5 = 12", "G0 X0 Y0 Z1", f"{code} I7 K20 Q6 Z-2 D4", "M2"]
     proof = proof_of_text(tmp_path, lines)
-    assert [facts.target.radius for facts in proof.pockets] == pytest.approx([20])
+    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx([20])
     assert proof.findings == []
 
 
@@ -211,9 +212,12 @@ def with_sub(tmp_path):
 def test_a_pocket_in_a_sub_of_another_file_is_measured(name, body, call, with_sub):
     lines = ["#1 = 9", call if "98" in call else f"{call} [9]", "G12 I11 Z-3 D4"]
     proof = with_sub(name, body, *MM, *lines)
-    assert [facts.target.radius for facts in proof.pockets] == pytest.approx([9, 11])
-    targets = [facts.target for facts in proof.pockets]
-    assert [(target.line, target.file) for target in targets] == [(3, f"{name}.ngc"), (5, "")]
+    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx([9, 11])
+    sources = [facts.target.source for facts in proof.pockets]
+    assert [(source.line, source.file) for source in sources] == [
+        (3, f"{name}.ngc"),
+        (5, ""),
+    ]
     assert proof.findings == []
 
 
@@ -227,7 +231,7 @@ def test_an_event_in_a_sub_that_a_sub_calls_is_measured(with_sub):
     ]
     own = ["o<way> sub", "o<event> call [#1]", "o<way> endsub"]
     proof = with_sub("event", body, *own, *MM, "G0 Z1", "o<way> call [20]", "o<way> call [30]")
-    assert [facts.target.radius for facts in proof.pockets] == pytest.approx([20, 30])
+    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx([20, 30])
     assert proof.findings == []
 
 
@@ -263,8 +267,8 @@ def test_the_call_form_goes_from_the_tool_in_incremental_mode(mode, tmp_path):
     proof = proof_of_text(tmp_path, lines)
     (facts,) = proof.pockets
     centre, depth = ([60, 17], -4) if mode == "G91" else ([50, 7], -6)
-    assert facts.target.origin[:2] == pytest.approx(centre)
-    assert facts.target.height(facts.target.deepest) == pytest.approx(depth)
+    assert facts.target.wall.origin[:2] == pytest.approx(centre)
+    assert facts.target.wall.height(facts.target.schedule.deepest) == pytest.approx(depth)
     assert proof.findings == []
 
 
@@ -285,7 +289,7 @@ def test_modes_and_work_coordinates_do_not_matter(modes, offset, tmp_path):
     proof = proof_of_text(tmp_path, lines)
     (facts,) = proof.pockets
     assert proof.findings == []
-    assert facts.target.radius == pytest.approx(20, abs=1e-6)
+    assert facts.target.wall.radius == pytest.approx(20, abs=1e-6)
 
 
 def test_another_tool_than_d_names_is_found(tmp_path):
@@ -320,7 +324,7 @@ def test_units_changed_in_the_pockets_own_block(tmp_path):
 def test_polar_programs_follow_their_contours(program, machine, tools, count):
     proof = proof_of(f"polar/{program}.ngc", machine, tools=tools)
     assert len(proof.sections) == count and proof.findings == []
-    assert all(0 < facts.deviation < proof.polar_tolerance for facts in proof.sections)
+    assert all(0 < facts.deviation < proof.tolerances.polar for facts in proof.sections)
 
 
 def test_the_size_of_the_hexagon():

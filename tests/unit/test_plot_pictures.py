@@ -10,15 +10,16 @@ import pytest
 from matplotlib.figure import Figure
 from shapely.geometry import Point
 
-from g12.tools.commands.plot import draw
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import follow, worst_of
 from g12.tools.plot import plan_view, style
-from g12.tools.plot.deviation import most_telling, told
+from g12.tools.plot.deviation import most_telling, window_lines
 from g12.tools.plot.face import programmed_history
 from g12.tools.plot.mill import Layout, removed_at
-from g12.tools.plot.scene import Scene, clock, heading, scene_of
+from g12.tools.plot.picture import picture_of
+from g12.tools.plot.scene import clock, heading, scene_of
 from g12.tools.units import MM, UNITS, plain
+from g12.tools.verify.proof import subject_of
 from g12.tools.verify.rapids import Collision
 from support.made_moves import Hand, samples_of
 
@@ -31,7 +32,8 @@ PROGRAM = Path(__file__)
 
 
 def scene(hand, ini=MILL, **options):
-    return scene_of(PROGRAM, ini, hand.trace(), tools={1: 6.0, 2: 10.0}, **options)
+    subject = subject_of(PROGRAM, ini, hand.trace(), {1: 6.0, 2: 10.0})
+    return scene_of(subject, **options)
 
 
 def pocket():
@@ -89,7 +91,7 @@ def test_times_are_told_in_minutes():
 
 
 def test_levels_go_down_and_each_has_the_area_swept():
-    levels = plan_view.levels_of(scene(pocket()))
+    levels = plan_view.milled_levels(scene(pocket()))
     assert [level.z for level in levels] == pytest.approx([-2, -4])
     for level in levels:
         assert level.area.bounds == pytest.approx((37, -13, 63, 13), abs=0.02)
@@ -99,14 +101,14 @@ def test_levels_go_down_and_each_has_the_area_swept():
 
 def test_many_moves_at_one_depth_are_one_level():
     hand = Hand().rapid(x=50).pocket([4, 8, 12, 16, 20, 24], depth=-2.5)
-    (level,) = plan_view.levels_of(scene(hand))
+    (level,) = plan_view.milled_levels(scene(hand))
     assert level.z == pytest.approx(-2.5)
     assert level.shade == style.shades(1)[0]
 
 
 def test_drilling_sweeps_holes():
     hand = Hand().rapid(x=9).line(z=-5).rapid(z=1).rapid(x=30).line(z=-5)
-    (level,) = plan_view.levels_of(scene(hand))
+    (level,) = plan_view.milled_levels(scene(hand))
     assert level.area.bounds == pytest.approx((6, -3, 33, 3), abs=0.01)
     assert len(level.area.geoms) == 2
 
@@ -120,7 +122,7 @@ def test_each_tool_sweeps_with_its_own_diameter():
     hand = Hand().line(x=100)
     hand.tool = 2
     hand.rapid(y=50).line(x=0)
-    area = plan_view.levels_of(scene(hand))[0].area
+    area = plan_view.milled_levels(scene(hand))[0].area
     assert not area.contains(Point(50, 4)) and area.contains(Point(50, 2.9))
     assert area.contains(Point(50, 54)) and not area.contains(Point(50, 56))
 
@@ -129,7 +131,7 @@ def test_many_depths_become_bands():
     hand = Hand()
     for step in range(100):
         hand.line(x=100 * (step % 2), z=-step / 10)
-    levels = plan_view.levels_of(scene(hand))
+    levels = plan_view.milled_levels(scene(hand))
     assert len(levels) <= plan_view.BANDS
     assert len(plan_view.few(levels)) == plan_view.MOST_LEVELS
 
@@ -192,7 +194,7 @@ def test_a_rapid_through_material_is_in_the_legend():
 
 def both(hand, ini=MILL):
     shown = scene(hand, ini)
-    return shown, plan_view.levels_of(shown)
+    return shown, plan_view.milled_levels(shown)
 
 
 def test_the_top_of_the_part_is_z0_if_the_tool_goes_through_it():
@@ -271,7 +273,7 @@ def with_real_motion(hand, ini, aside):
     for letter, value in aside.items():
         samples.axes[letter][middle] += value
     real = follow(shown.path, shown.moves, samples, 1.0)
-    return Scene(**{**vars(shown), "real": real})
+    return replace(shown, subject=replace(shown.subject, real=real))
 
 
 @pytest.mark.parametrize(
@@ -289,18 +291,18 @@ def test_the_window_shows_the_axes_in_which_the_motion_strays(away, way, axes):
 
 def test_the_largest_deviation_is_told_with_its_line():
     shown = with_real_motion(Hand().line(x=100), MILL, {"Y": 0.0123})
-    lines = list(told(worst_of(shown.real, shown.moves), shown, [0, 1]))
+    lines = list(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1]))
     assert lines == ["0.012 mm,", "line 1, in X and Y"]
 
 
 def test_the_window_tells_the_override_and_the_contour():
     shown = with_real_motion(flats(), LATHE, {"X": 0.0123})
     shown = replace(shown, override=1500.0, contour=0.0025)
-    lines = list(told(worst_of(shown.real, shown.moves), shown, [0, 1]))
+    lines = list(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1]))
     assert lines[0].endswith(" mm at 1500 % feed,")
     assert lines[1].endswith(", in X and C") and lines[2] == "off the contour: 0.0025 mm"
     shown = replace(shown, override=100.0, contour=None)
-    assert "feed" not in "".join(told(worst_of(shown.real, shown.moves), shown, [0, 1]))
+    assert "feed" not in "".join(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1]))
 
 
 # ---------------------------------------------------------------- files
@@ -325,21 +327,21 @@ SCENES = {
 @pytest.mark.parametrize("name", SCENES)
 def test_every_kind_of_picture_is_drawn(name, tmp_path):
     path = tmp_path / "picture.png"
-    style.save(draw(SCENES[name]()), path)
+    style.save(picture_of(SCENES[name]()), path)
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(("suffix", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_formats_are_told_by_the_suffix(suffix, start, tmp_path):
     path = tmp_path / f"picture.{suffix}"
-    style.save(draw(scene(pocket())), path)
+    style.save(picture_of(scene(pocket())), path)
     assert path.read_bytes().startswith(start)
 
 
 def test_an_svg_is_the_same_file_every_time(tmp_path):
     one, other = tmp_path / "one.svg", tmp_path / "other.SVG"
     for path in (one, other):
-        style.save(draw(scene(pocket())), path)
+        style.save(picture_of(scene(pocket())), path)
     assert ET.parse(one).getroot().tag.endswith("svg")
     assert one.read_bytes() == other.read_bytes()
 

@@ -2,7 +2,7 @@
 """Pockets made by hand, right and wrong, and what is measured of them."""
 
 import math
-from dataclasses import replace
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -13,18 +13,27 @@ from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
 from g12.tools.path.track import track
 from g12.tools.units import UNITS
+from g12.tools.verify.findings import pocket_findings, pocket_notes
 from g12.tools.verify.pocket import measure_pocket
-from g12.tools.verify.proof import pocket_findings, pocket_notes
-from g12.tools.verify.wanted_circle import Feeds, Target
+from g12.tools.verify.wanted_circle import CircleFeeds, Cutter, Schedule, Source, Target, Wall
 from support.made_moves import LIMITS, Hand, samples_of
 
 TOLERANCE = 0.005
+UNSAID = CircleFeeds(None, None, None, None)
 MILL = Part(turning=False)
 
 
 def target(radius=20.0, **changes):
-    wanted = {"cutter": 3.0, "cleared": 0.0, "deepest": -1.0, "turn": -1, **changes}
-    return Target(1, "G12", "haas", np.array([50.0, 0, 0]), np.eye(3), radius, **wanted)
+    parts = {
+        Wall: {"origin": np.array([50.0, 0, 0]), "axes": np.eye(3), "radius": radius},
+        Cutter: {"radius": 3.0},
+        Schedule: {"levels": (-1.0,), "passes": 1, "feeds": UNSAID, "turn": -1},
+    }
+    for part, about in parts.items():
+        own = {field.name for field in fields(part)} & changes.keys()
+        about.update({name: changes.pop(name) for name in own})
+    assert not changes
+    return Target(Source(1, "", "G12", "haas"), *(part(**about) for part, about in parts.items()))
 
 
 def measure(hand, wanted, real_shift=None):
@@ -34,7 +43,7 @@ def measure(hand, wanted, real_shift=None):
         samples = samples_of(path, 8000, shift=real_shift)
         real = follow(path, hand.moves, samples, 1.0)
     last = len(hand.moves)
-    return measure_pocket(wanted, 1, last, path, hand.moves, TOLERANCE, real)
+    return measure_pocket(wanted, range(1, last), path, hand.moves, TOLERANCE, real)
 
 
 def cut(rings, **options):
@@ -116,10 +125,12 @@ def test_a_dive_below_the_depth_is_found():
 
 def test_levels_are_those_asked_for():
     hand = cut([17], depth=-0.6).pocket([17], depth=-1.0)
-    assert findings(measure(hand, target(cleared=14, levels=(-0.6, -1.0)))) == ""
-    found = findings(measure(hand, target(cleared=14, levels=(-0.3, -0.6, -1.0))))
+    assert findings(measure(hand, target(cleared=14, passes=2, levels=(-0.6, -1.0)))) == ""
+    found = findings(measure(hand, target(cleared=14, passes=2, levels=(-0.3, -0.6, -1.0))))
     assert found == "it is cut at −0.6, −1, not at −0.3, −0.6, −1 mm"
-    assert "not at −0.5, −1 mm" in findings(measure(hand, target(cleared=14, levels=(-0.5, -1.0))))
+    assert "not at −0.5, −1 mm" in findings(
+        measure(hand, target(cleared=14, passes=2, levels=(-0.5, -1.0)))
+    )
 
 
 def test_circles_along_the_wall_are_counted():
@@ -147,12 +158,12 @@ def test_rough_and_finish_turn_as_asked(turn, finish, found):
 @pytest.mark.parametrize(
     ("feeds", "found"),
     [
-        (Feeds(600, 600, 600, None), ""),
-        (Feeds(None, 600, None, 600), ""),
-        (Feeds(60, 600, 600, None), "a move has the feed 600, not 60"),
-        (Feeds(600, 60, 600, None), "a move has the feed 600, not 60"),
-        (Feeds(600, 600, 60, None), "a move has the feed 600, not 60"),
-        (Feeds(600, 600, 600, 60), "a move has the feed 600, not 60"),
+        (CircleFeeds(600, 600, 600, None), ""),
+        (CircleFeeds(None, 600, None, 600), ""),
+        (CircleFeeds(60, 600, 600, None), "a move has the feed 600, not 60"),
+        (CircleFeeds(600, 60, 600, None), "a move has the feed 600, not 60"),
+        (CircleFeeds(600, 600, 60, None), "a move has the feed 600, not 60"),
+        (CircleFeeds(600, 600, 600, 60), "a move has the feed 600, not 60"),
     ],
 )
 def test_feeds_are_those_asked_for(feeds, found):
@@ -172,7 +183,7 @@ def test_an_eccentric_circle_is_found():
 
 def test_a_deeper_level_clears_the_ones_above():
     hand = cut([10], depth=-1).line(x=50, y=0).pocket([4, 8, 12, 17], depth=-2)
-    assert measure(hand, target(deepest=-2.0)).left == 0
+    assert measure(hand, target(levels=(-2.0,))).left == 0
 
 
 def test_a_wall_cut_from_outside():
@@ -192,8 +203,8 @@ def test_pockets_of_one_shape_are_measured_once():
     path, known = track(MILL, hand.moves, LIMITS), {}
     found = []
     for first, x, y in ((1, 50, 0), (6, 90.3, 7.1), (11, 130, 7.1)):
-        wanted = replace(target(cleared=14.1), origin=np.array([x, y, 0.0]))
-        pocket = (first, first + 4, path, hand.moves, TOLERANCE)
+        wanted = target(cleared=14.1, origin=np.array([x, y, 0.0]))
+        pocket = (range(first, first + 4), path, hand.moves, TOLERANCE)
         found.append(measure_pocket(wanted, *pocket, known=known))
         alone = measure_pocket(wanted, *pocket)
         assert found[-1].deviation == pytest.approx(alone.deviation, abs=1e-6)
@@ -206,7 +217,7 @@ def test_another_plane_is_measured_the_same():
     hand = Hand().rapid(x=0, z=17)
     hand.arc(1, 0, 0, plane=18)
     hand.moves[-1] = hand.moves[-1]._replace(centre=(0.0, 0.0, 0.0))
-    wanted = Target(1, "G13", "x", np.zeros(3), axes, 20.0, 3.0, 14.0, turn=1)
+    wanted = target(cleared=14, origin=np.zeros(3), axes=axes, levels=(0.0,), turn=1)
     facts = measure(hand, wanted)
     assert facts.deviation < 1e-9 and facts.left == 0 and findings(facts) == ""
 
@@ -237,12 +248,12 @@ def test_real_motion_beside_the_path_is_found():
     ],
 )
 def test_a_tool_that_is_not_that_of_d(loaded, found, noted):
-    wanted = target(loaded=loaded, tool=1, offset=2, smooth=False)
+    wanted = target(loaded=loaded, tool=1, named=2, smooth=False)
     facts = measure(cut([5, 11, 17]), wanted)
     assert " | ".join(pocket_findings(facts, TOLERANCE)) == found
     assert noted in " | ".join(pocket_notes(facts)) and bool(noted) == any(pocket_notes(facts))
 
 
 def test_sizes_of_tools_are_told_in_the_units_asked_for():
-    facts = measure(cut([5, 11, 17]), target(loaded=12.7, tool=1, offset=2))
+    facts = measure(cut([5, 11, 17]), target(loaded=12.7, tool=1, named=2))
     assert "T1 (⌀ 1)" in next(pocket_findings(facts, TOLERANCE, UNITS["inch"]))

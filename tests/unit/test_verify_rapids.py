@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Rapids made by hand, through air and through material."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from g12.tools.path.part import Part
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.verify.rapids import collisions
-from g12.tools.verify.wanted_circle import Target
+from g12.tools.verify.wanted_circle import CircleFeeds, Cutter, Schedule, Source, Target, Wall
 from support.made_moves import LIMITS, Hand, samples_of
 
 MILL = Part(turning=False)
@@ -24,11 +26,12 @@ class Program(Hand):
         super().__init__()
         self.asked = []
 
-    def mill(self, rings=RINGS, depth=-3.0, **wanted):
+    def mill(self, rings=RINGS, depth=-3.0, cutter=3.0, **wanted):
         first, place = len(self.moves), np.array(self.at[:3])
         self.next_block().pocket(rings, depth)
-        about = {"radius": rings[-1] + 3.0, "cutter": 3.0, "cleared": 0.0, **wanted}
-        target = Target(self.block, "G12", "haas", place, np.eye(3), **about)
+        wall = Wall(place, np.eye(3), rings[-1] + 3.0, **wanted)
+        schedule = Schedule((depth,), 1, CircleFeeds(None, None, None, None))
+        target = Target(Source(self.block, "", "G12", "haas"), wall, Cutter(cutter), schedule)
         self.asked.append((Block(None, {}, (), (), {}, first, len(self.moves)), target))
         return self.next_block()
 
@@ -51,7 +54,7 @@ def test_a_forgotten_retract_goes_through_the_wall():
     (hit,) = program.found()
     assert hit.line == 3
     assert hit.area == pytest.approx(6 * 80, rel=0.05)  # from one wall to beyond the other
-    assert hit.way[0] == pytest.approx((67.3, 0, -3), abs=0.6)
+    assert hit.path[0] == pytest.approx((67.3, 0, -3), abs=0.6)
 
 
 def test_a_slanting_retract_through_the_wall_is_found():
@@ -103,7 +106,7 @@ def test_a_bored_hole_is_no_material(bore, count):
 @pytest.mark.parametrize("shift", [{"inside": False}, {"axes": np.eye(3)[[2, 0, 1]]}])
 def test_cuts_without_a_wall_are_not_judged(shift):
     program = start().mill().rapid(x=150)
-    program.asked = [(b, Target(**{**vars(t), **shift})) for b, t in program.asked]
+    program.asked = [(b, replace(t, wall=replace(t.wall, **shift))) for b, t in program.asked]
     assert program.found() == []
 
 

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
 from g12.tools.path.track import track
-from g12.tools.verify.contour_distance import Shape
-from g12.tools.verify.proof import section_findings, section_notes
+from g12.tools.verify.contour_distance import ContourDistances
+from g12.tools.verify.findings import section_findings, section_notes
 from g12.tools.verify.section import measure_section
-from g12.tools.verify.wanted_contour import Element, Section
+from g12.tools.verify.wanted_contour import Element, SectionContour
 from support.made_moves import LIMITS, Hand, samples_of
 
 FACE = Part(turning=True)
@@ -35,7 +35,7 @@ def square(side):
 
 
 def section(elements, x=40.0, end=None, doubt="", z=0.0):
-    return Section(1, 9, 1, end, "G12.1", x, tuple(elements), doubt, z)
+    return SectionContour(1, 9, 1, end, "G12.1", x, tuple(elements), doubt, z)
 
 
 def dense(points, step=0.05):
@@ -88,7 +88,7 @@ def findings(facts):
 
 
 def test_the_left_of_a_line_is_positive():
-    shape = Shape([line(1, 0j, 10 + 0j)])
+    shape = ContourDistances([line(1, 0j, 10 + 0j)])
     assert shape.distances(np.array([5 + 3j, 5 - 4j, 13 + 4j])) == pytest.approx([3, 4, 5])
     _, side = shape.nearest(np.array([5 + 3j, 5 - 4j]))
     assert side[0] > 0 > side[1]
@@ -96,7 +96,7 @@ def test_the_left_of_a_line_is_positive():
 
 def test_the_left_of_a_counterclockwise_arc_is_inside():
     arc = Element(1, 10 + 0j, 10j, 0, False, 0.0, 0j, math.pi / 2)
-    shape = Shape([arc])
+    shape = ContourDistances([arc])
     near, side = shape.nearest(np.array([7 + 7j, 8 + 8j, -3 + 12j]))
     assert abs(near[0]) == pytest.approx(10) and near[2] == 10j
     assert side[0] > 0 > side[1]
@@ -111,7 +111,7 @@ def test_distances_to_arcs_agree_with_many_points(x, y, sweep):
     start = 10 * np.exp(0.7j)
     arc = Element(1, start, start * np.exp(1j * sweep), 0, False, 0.0, 0j, sweep)
     points = np.array([arc.point(share) for share in np.linspace(0, 1, 2000)])
-    exact = Shape([arc]).distances(np.array([complex(x, y)]))[0]
+    exact = ContourDistances([arc]).distances(np.array([complex(x, y)]))[0]
     assert exact == pytest.approx(np.abs(points - complex(x, y)).min(), abs=0.02)
 
 

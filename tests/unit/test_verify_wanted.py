@@ -12,7 +12,8 @@ from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import STATE, TAG, Block, after, before, blocks_in, read_line
 from g12.tools.preview.moves import Event
 from g12.tools.verify import wanted_circle, wanted_contour
-from g12.tools.verify.wanted_circle import Codes, Reader
+from g12.tools.verify.codes import Codes
+from g12.tools.verify.wanted_circle import CircleReader
 from g12.tools.verify.wanted_contour import Pen
 from support.made_moves import Hand
 
@@ -120,7 +121,7 @@ def block(line, number=1, at=1, end=2, **state):
 
 def target(line, moves=None, **state):
     moves = moves or Hand().rapid(x=3, y=4, z=5).line(z=4).moves
-    reader = Reader(CODES, moves, {1: 6.0, 2: 10.0})
+    reader = CircleReader(CODES, moves, {1: 6.0, 2: 10.0})
     return next(found for _, found in reader.targets([block(line, **state)]))
 
 
@@ -129,21 +130,21 @@ HERE = {"_x": 3, "_y": 4, "_z": 5}
 
 def test_haas_words_tell_wall_core_and_depth():
     found = target("G12 I4 K20 Q3 Z-2 D2", **HERE)
-    assert (found.radius, found.cutter, found.cleared) == (20, 5, 0)
-    assert np.allclose(found.origin, [3, 4, 5])
-    assert found.deepest == pytest.approx(-7)
-    assert (found.turn, found.inside, found.smooth) == (-1, True, True)
-    assert (found.tool, found.loaded, found.offset) == (1, 3, 2)
+    assert (found.wall.radius, found.cutter.radius, found.wall.cleared) == (20, 5, 0)
+    assert np.allclose(found.wall.origin, [3, 4, 5])
+    assert found.schedule.deepest == pytest.approx(-7)
+    assert (found.schedule.turn, found.wall.inside, found.schedule.smooth) == (-1, True, True)
+    assert (found.cutter.tool, found.cutter.loaded, found.cutter.named) == (1, 3, 2)
 
 
 def test_one_ring_leaves_its_core_by_design():
-    assert target("G13 I30 Z-2 D1", **HERE).cleared == pytest.approx(24)
+    assert target("G13 I30 Z-2 D1", **HERE).wall.cleared == pytest.approx(24)
 
 
 def test_d0_puts_the_tool_centre_on_the_circle():
     found = target("G12 I4 Z-2 D0", **HERE)
-    assert (found.radius, found.cutter) == (7, 3)
-    assert (found.circle, found.word) == (4, "I")
+    assert (found.wall.radius, found.cutter.radius) == (7, 3)
+    assert (found.cutter.circle, found.cutter.word) == (4, "I")
 
 
 @pytest.mark.parametrize(
@@ -157,43 +158,46 @@ def test_d0_puts_the_tool_centre_on_the_circle():
     ],
 )
 def test_yasnac_leaves_the_middle_by_design(words, core, bore):
-    found = Reader(YASNAC, Hand().rapid(z=5).line(z=4).moves, {1: 6.0, 2: 10.0})
+    found = CircleReader(YASNAC, Hand().rapid(z=5).line(z=4).moves, {1: 6.0, 2: 10.0})
     ((_, wanted),) = found.targets([block(f"G13 {words}")])
-    assert (wanted.cleared, wanted.bore) == (core, bore)
+    assert (wanted.wall.cleared, wanted.wall.bore) == (core, bore)
 
 
 def test_incremental_words_count_from_the_tool():
     found = target("G13 G91 I4 Z-.5 L4 X1 Y-2 D1", **HERE)
-    assert np.allclose(found.origin, [4, 2, 5])
-    assert found.deepest == pytest.approx(-2)
+    assert np.allclose(found.wall.origin, [4, 2, 5])
+    assert found.schedule.deepest == pytest.approx(-2)
 
 
 def test_inch_words_become_millimetres():
     found = target("G20 G12 I1 Z-1 D1", **HERE)
-    assert (found.radius, found.deepest) == (pytest.approx(25.4), pytest.approx(-30.4))
+    assert (found.wall.radius, found.schedule.deepest) == (
+        pytest.approx(25.4),
+        pytest.approx(-30.4),
+    )
     found = target("G21 G12 I8 Z-2 D1", **{**HERE, "_metric": 0})
-    assert (found.radius, found.deepest) == (8, pytest.approx(-2 - 5 * 25.4))
+    assert (found.wall.radius, found.schedule.deepest) == (8, pytest.approx(-2 - 5 * 25.4))
 
 
 def test_the_last_d_is_remembered():
     moves = Hand().rapid(z=5).line(z=4).line(z=3).moves
-    reader = Reader(CODES, moves, {1: 6.0, 2: 10.0})
+    reader = CircleReader(CODES, moves, {1: 6.0, 2: 10.0})
     again = block("G12 I9 Z-1", at=2, end=3)
     blocks = [block("G41 D2 X1", at=0, end=1), block("G12 I9 Z-1"), block("G12 I9 Z-1 D1")]
-    cutters = [found.cutter for _, found in reader.targets([*blocks, again])]
+    cutters = [found.cutter.radius for _, found in reader.targets([*blocks, again])]
     assert cutters == [5, 3, 3]
 
 
 def test_a_centre_word_turns_with_the_work_coordinates():
     moves = [move._replace(rotation=90.0) for move in Hand().rapid(x=3, y=4).line(z=-1).moves]
     found = target("G12 X10 Y0 I5 Z-1 D1", moves)
-    assert np.allclose(found.origin, [3, 14, 0])
+    assert np.allclose(found.wall.origin, [3, 14, 0])
 
 
 def test_codes_know_cycles_and_sections_by_their_handlers():
-    assert CODES.cycle_of("", (12.0,))[0] == "haas"
+    assert CODES.cycle_of("", (12.0,)).dialect == "haas"
     assert CODES.cycle_of("", (1.0,)) is None
-    assert CODES.cycle_of("circle_mill", ())[0] == "circle-mill"
+    assert CODES.cycle_of("circle_mill", ()).dialect == "circle-mill"
     assert CODES.polar(read_line(1, "G12.1")) == "on"
     assert CODES.polar(read_line(1, "N5 G13.1")) == "off"
     assert not CODES.wanted(read_line(1, "T1 M6"))
@@ -204,7 +208,8 @@ def test_codes_know_cycles_and_sections_by_their_handlers():
 
 
 def test_loops_are_spring_passes_or_further_levels():
-    again, deeper = target("G12 I4 Z-2 L3 D1", **HERE), target("G12 G91 I4 Z-2 L3 D1", **HERE)
+    again = target("G12 I4 Z-2 L3 D1", **HERE).schedule
+    deeper = target("G12 G91 I4 Z-2 L3 D1", **HERE).schedule
     assert (again.levels, again.passes) == ((-7,), 3)
     assert (deeper.levels, deeper.passes) == ((-2, -4, -6), 3)
 
@@ -220,7 +225,7 @@ def test_loops_are_spring_passes_or_further_levels():
     ],
 )
 def test_the_feed_is_the_blocks_or_the_one_in_force(line, state, feed):
-    assert target(line, **state).feeds == (feed, feed, feed, None)
+    assert target(line, **state).schedule.feeds == (feed, feed, feed, None)
 
 
 @pytest.mark.parametrize(
@@ -234,16 +239,16 @@ def test_the_feed_is_the_blocks_or_the_one_in_force(line, state, feed):
     ],
 )
 def test_the_event_pecks_from_its_first_plane(event, levels):
-    assert wanted_circle.levels_of(event, 0.1, True) == pytest.approx(levels)
+    assert wanted_circle.event_levels(event, 0.1, True) == pytest.approx(levels)
     event["Z"] -= 0.1
-    assert wanted_circle.levels_of(event, 0.1, False) == pytest.approx(levels)
+    assert wanted_circle.event_levels(event, 0.1, False) == pytest.approx(levels)
 
 
 def test_the_event_has_feeds_of_its_own():
-    every = wanted_circle.feeds_of({"F": 8.0, "P": 1.0, "V": 4.0, "L": 0.3}, 6.0)
+    every = wanted_circle.event_feeds({"F": 8.0, "P": 1.0, "V": 4.0, "L": 0.3}, 6.0)
     assert every == (1, 8, 8, 4)
-    assert wanted_circle.feeds_of({"L": -0.3}, 6.0) == (6, 6, 6, 6)
-    assert wanted_circle.feeds_of({"V": 4.0}, 6.0) == (6, 6, 6, None)
+    assert wanted_circle.event_feeds({"L": -0.3}, 6.0) == (6, 6, 6, 6)
+    assert wanted_circle.event_feeds({"V": 4.0}, 6.0) == (6, 6, 6, None)
 
 
 @pytest.mark.parametrize(
@@ -334,6 +339,6 @@ def test_motion_is_taken_out_of_the_copy_and_control_stays():
         "G0 X9",
     ]
     texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
-    flat = [line for way in wanted_contour.flattened(texts, CODES, lines) for line in way]
+    flat = [line for some in wanted_contour.flattened(texts, CODES, lines) for line in some]
     kept = [line for line in flat if "DEBUG" not in line and "verify" not in line]
     assert kept == ["G0 X5", "#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile", "G0 X9"]

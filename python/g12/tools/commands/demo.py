@@ -11,18 +11,19 @@ from pathlib import Path
 from typing import NamedTuple
 
 from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
-from g12.tools.commands.plot import draw
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.headless.machine import MachineError, Run, StartupError
 from g12.tools.headless.run import run_program
 from g12.tools.install.features import ROOT
 from g12.tools.machine.ini import read_ini
 from g12.tools.plot import style
+from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import Scene, clock, scene_of_proof
 from g12.tools.preview.tracer import TraceFailure
 from g12.tools.units import Unit, plain
+from g12.tools.verify.findings import SAME_AREA
 from g12.tools.verify.pocket import PocketFacts
-from g12.tools.verify.proof import SAME_AREA, Proof, prove
+from g12.tools.verify.proof import Proof, prove
 from g12.tools.verify.section import SectionFacts
 
 FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
@@ -95,10 +96,10 @@ def runs(samples: Sequence[Sample], workers: int) -> Iterator[tuple[Sample, Futu
 def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
     """Draw a sample; return its table and whether its circles and contours came out right."""
     ini = read_ini(sample.ini)
-    proof = prove(sample.path, ini, tools=sample.tools, run=run)
-    scene = scene_of_proof(proof, sample.tools, sample.override)
+    proof = prove(sample.path, ini, tools=sample.tools, samples=run.samples)
+    scene = scene_of_proof(proof, sample.override)
     picture = output / f"{sample.path.parent.name}_{sample.path.stem}.png"
-    style.save(draw(scene), picture)
+    style.save(picture_of(scene), picture)
     return describe(sample, run, proof, scene, picture), is_sound(proof)
 
 
@@ -115,8 +116,8 @@ def is_sound(proof: Proof) -> bool:
 
     The manuals leave material in some and have rapids through what was left: that is told.
     """
-    off = [facts.deviation > proof.pocket_tolerance for facts in proof.pockets]
-    off += [facts.deviation > proof.polar_tolerance for facts in proof.sections]
+    off = [facts.deviation > proof.tolerances.pocket for facts in proof.pockets]
+    off += [facts.deviation > proof.tolerances.polar for facts in proof.sections]
     return not any(off) and not any(
         facts.gouge > SAME_AREA for facts in (*proof.pockets, *proof.sections)
     )
@@ -132,7 +133,7 @@ def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path
     if proof.pockets:
         lines += table(POCKET_HEADS, [pocket_row(facts, unit) for facts in proof.pockets])
     if proof.sections:
-        allowed = proof.polar_tolerance
+        allowed = proof.tolerances.polar
         rows = [section_row(facts, allowed, unit) for facts in proof.sections]
         lines += table(SECTION_HEADS, rows)
     lines += [f"  line {line}: {text}" for line, text in proof.findings_in(unit)]
@@ -141,14 +142,14 @@ def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path
 
 def pocket_row(facts: PocketFacts, unit: Unit) -> tuple[str, ...]:
     """Return a pocket's row of the table; its time is that at the programmed feed."""
-    x, y, _ = facts.target.origin
+    x, y, _ = facts.target.wall.origin
     return (
-        str(facts.target.line),
-        facts.target.code,
+        str(facts.target.source.line),
+        facts.target.source.code,
         f"X{unit.text(x)} Y{unit.text(y)}",
-        unit.text(facts.target.radius),
+        unit.text(facts.target.wall.radius),
         " ".join(unit.text(ring) for ring in facts.rings),
-        unit.text(facts.target.height(facts.depths[-1])),
+        unit.text(facts.target.wall.height(facts.depths[-1])),
         f"{unit.fine(facts.off_rings)} {unit.name}",
         f"{plain(facts.pace.expected, 1)} s",
     )

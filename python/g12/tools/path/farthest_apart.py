@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.machine_ini import AXES
+from g12.tools.path.nearest import on_segments
 from g12.tools.path.part import CHORD_ERROR, Part, paths
 from g12.tools.preview.moves import Move
 
@@ -53,21 +54,17 @@ def _count(lines: Sequence[np.ndarray]) -> int:
 def _farthest(lines: Sequence[np.ndarray], others: Sequence[np.ndarray]) -> Gap:
     """Return the point of polylines (n, 3) that is farthest from the others."""
     starts = np.concatenate([line[:-1] for line in others])
-    ways = np.concatenate([np.diff(line, axis=0) for line in others])
+    along = np.concatenate([np.diff(line, axis=0) for line in others])
     points = np.concatenate(lines)
     size = max(1, BATCH // len(starts))
     batches = (points[first : first + size] for first in range(0, len(points), size))
-    return max((_in_batch(batch, starts, ways) for batch in batches), key=lambda gap: gap.size)
+    return max((_in_batch(batch, starts, along) for batch in batches), key=lambda gap: gap.size)
 
 
-def _in_batch(points: np.ndarray, starts: np.ndarray, ways: np.ndarray) -> Gap:
-    squares = np.maximum(np.einsum("ij,ij->i", ways, ways), 1e-300)
-    away = points[:, None, :] - starts
-    share = np.clip(np.einsum("pij,ij->pi", away, ways) / squares, 0.0, 1.0)
-    across = away - share[:, :, None] * ways
-    distances = np.linalg.norm(across, axis=2)
+def _in_batch(points: np.ndarray, starts: np.ndarray, along: np.ndarray) -> Gap:
+    near = on_segments(points[:, None], starts, along)
+    distances = np.linalg.norm(points[:, None] - near, axis=2)
     nearest = distances.argmin(axis=1)
     sizes = distances[np.arange(len(points)), nearest]
     worst = int(sizes.argmax())
-    point = points[worst]
-    return Gap(float(sizes[worst]), point, point - across[worst, nearest[worst]])
+    return Gap(float(sizes[worst]), points[worst], near[worst, nearest[worst]])

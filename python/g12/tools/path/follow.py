@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.machine_ini import AXES
+from g12.tools.path.nearest import on_segments, shares_along
 from g12.tools.path.part import plane_axes
 from g12.tools.path.samples import Samples
 from g12.tools.path.track import Track
@@ -91,13 +92,14 @@ def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) ->
     moving = samples.moving()
     axes = _positions(samples, unit)[moving]
     there = path.part.points(axes)
-    named, beside = stretches(path, moves, samples.line[moving])
-    segment = _segments(path.axis_points, there, named)
+    windows = windows_of(path, moves, samples.line[moving])
+    segment = _segments(path.axis_points, there, windows.on_its_line)
     following = np.minimum(segment + 1, len(path.move) - 1)
     positions = axes - _offsets(path, there, segment, following)
     points = path.part.points(positions)
     nearest = _programmed(path, moves, points, segment)
-    other = _programmed(path, moves, points, _segments(path.axis_points, there, beside))
+    beside = _segments(path.axis_points, there, windows.with_neighbours)
+    other = _programmed(path, moves, points, beside)
     away, other_away = (np.linalg.norm(points - near, axis=1) for near in (nearest, other))
     nearest = np.where((other_away < away)[:, None], other, nearest)
     deviation = np.minimum(away, other_away)
@@ -162,35 +164,40 @@ def _positions(samples: Samples, unit: float) -> np.ndarray:
 def _offsets(path: Track, there: np.ndarray, segment: np.ndarray, following: np.ndarray):
     """Return the tool length offsets (n, 9) of axis points: a move with G43 brings it in."""
     start = path.axis_points[segment]
-    share = _share(start, path.axis_points[following] - start, there)[:, None]
+    share = shares_along(there, start, path.axis_points[following] - start)[:, None]
     return path.offsets[segment] * (1 - share) + path.offsets[following] * share
 
 
-def _share(start: np.ndarray, along: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Return how far along segments points are, from 0 to 1, row by row."""
-    square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
-    return np.clip(np.einsum("ij,ij->i", point - start, along) / square, 0.0, 1.0)
+class Windows(NamedTuple):
+    """The first and the last segment (n, 2) of the path that each sample of a run can be on.
+
+    ``on_its_line``: on the moves of the line that LinuxCNC names; ``with_neighbours``: on those,
+    or in a corner with the moves before and after.
+    """
+
+    on_its_line: np.ndarray
+    with_neighbours: np.ndarray
 
 
-def stretches(path: Track, moves: Sequence[Move], lines: np.ndarray):
-    """Return the first and last segment (n, 2) that each sample can be on: of its line, of more.
+def windows_of(path: Track, moves: Sequence[Move], lines: np.ndarray) -> Windows:
+    """Return where on the path samples can be that name the line in motion.
 
-    Samples name the line that is in motion. Where those lines come in the same order as the
-    moves', a sample is on one of its line's moves, or in a corner with those before or after;
-    else it may be anywhere.
+    Where those lines do not come in the same order as the moves', a sample may be anywhere.
     """
     going = [i for i, move in enumerate(moves) if move.start != move.end or move.kind == "arc"]
     groups = [list(group) for _, group in groupby(going, key=lambda index: moves[index].line)]
-    runs = [run for run in np.split(lines, np.flatnonzero(np.diff(lines)) + 1) if len(run)]
-    if [moves[group[0]].line for group in groups] != [run[0] for run in runs]:
+    named = [same for same in np.split(lines, np.flatnonzero(np.diff(lines)) + 1) if len(same)]
+    if [moves[group[0]].line for group in groups] != [same[0] for same in named]:
         everywhere = np.tile([0, max(0, len(path.move) - 2)], (len(lines), 1))
-        return everywhere, everywhere
+        return Windows(everywhere, everywhere)
     first = np.array([path.vertices(group[0]).start for group in groups], int)
     last = np.array([max(0, path.vertices(group[-1]).stop - 2) for group in groups], int)
-    before, after = np.append(first[:1], first[:-1]), np.append(last[1:], last[-1:])
-    lengths = [len(run) for run in runs]
-    pairs = (np.stack(pair, axis=1) for pair in ((first, last), (before, after)))
-    return tuple(np.repeat(pair, lengths, axis=0) for pair in pairs)
+    earlier, later = np.append(first[:1], first[:-1]), np.append(last[1:], last[-1:])
+    lengths = [len(same) for same in named]
+    return Windows(
+        np.repeat(np.stack([first, last], axis=1), lengths, axis=0),
+        np.repeat(np.stack([earlier, later], axis=1), lengths, axis=0),
+    )
 
 
 def _segments(path: np.ndarray, points: np.ndarray, within: np.ndarray) -> np.ndarray:
@@ -211,17 +218,12 @@ def _segments(path: np.ndarray, points: np.ndarray, within: np.ndarray) -> np.nd
         ends = path[first + 1 : first + 1 + len(starts)]
         if len(ends):
             starts[0] = here
-            near, distance = _nearest_on(starts[: len(ends)], ends - starts[: len(ends)], point)
-            best = int(np.argmin(distance))
+            starts = starts[: len(ends)]
+            near = on_segments(point, starts, ends - starts)
+            best = int(np.argmin(np.linalg.norm(point - near, axis=1)))
             first, here = first + best, near[best]
         found[index] = first
     return found
-
-
-def _nearest_on(start: np.ndarray, along: np.ndarray, point: np.ndarray):
-    """Return nearest points on segments and their distances, row by row."""
-    near = start + along * _share(start, along, point)[:, None]
-    return near, np.linalg.norm(point - near, axis=1)
 
 
 def _nearest(path: np.ndarray, points: np.ndarray, segment: np.ndarray) -> np.ndarray:
@@ -231,7 +233,8 @@ def _nearest(path: np.ndarray, points: np.ndarray, segment: np.ndarray) -> np.nd
     for shift in (-2, -1, 0, 1, 2):
         index = np.clip(segment + shift, 0, last)
         following = np.minimum(index + 1, len(path) - 1)
-        found, away = _nearest_on(path[index], path[following] - path[index], points)
+        found = on_segments(points, path[index], path[following] - path[index])
+        away = np.linalg.norm(points - found, axis=1)
         better = away < distance
         near[better], distance[better] = found[better], away[better]
     return near

@@ -55,12 +55,12 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
         spine.set(visible=True, color=style.WORST, linewidth=0.9)
     of_pieces = scene.path.part.turning
     style.caption(axes, f"Largest deviation{' from the pieces' if of_pieces else ''}")
-    text = "\n".join(told(worst, scene, pair))
+    text = "\n".join(window_lines(worst, scene, pair))
     axes.set_xlabel(text, size=8, color=style.WORST, labelpad=4, loc="left")
     _scale_bar(axes, half, unit)
 
 
-def told(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
+def window_lines(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
     """Yield the lines below the window: size, place, feed; and what is off the contour itself."""
     fast = f" at {scene.override:g} % feed" if scene.override != 100.0 else ""
     axes = AXES_OF_PART[scene.path.part.turning]

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from g12.tools.path.track import limits_of
 from g12.tools.plot import style
 from g12.tools.plot.deviation import SIZE, draw_window
-from g12.tools.plot.plan_view import bounds_of, draw_plan, entries, levels_of, mark_worst
+from g12.tools.plot.plan_view import bounds_of, draw_plan, legend_entries, mark_worst, milled_levels
 from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
 
@@ -46,16 +46,16 @@ class History(NamedTuple):
 
 def draw_face(scene: Scene) -> Figure:
     """Return the picture of a lathe program with C."""
-    levels = levels_of(scene)
+    levels = milled_levels(scene)
     height = HEIGHT if scene.real is None else HEIGHT + HIGHER
     figure = style.new_figure(WIDTH, height, scene.title, scene.subtitle)
     face = style.add_axes(figure, LEFT, height - TOP - FACE, FACE, FACE)
-    frame(face, scene, levels)
+    frame_face(face, scene, levels)
     draw_plan(face, scene, levels)
     under = (height - TOP - FACE - 0.5) / height
     bands = [style.swatch(style.FAINT, None, "time spent in rapids")]
     figure.legend(
-        handles=entries(scene, levels) + bands,
+        handles=legend_entries(scene, levels) + bands,
         loc="upper left",
         bbox_to_anchor=((LEFT - 0.1) / WIDTH, under),
         ncol=2 if scene.real is None else 1,
@@ -68,7 +68,7 @@ def draw_face(scene: Scene) -> Figure:
     return figure
 
 
-def frame(axes: Axes, scene: Scene, levels: list) -> None:
+def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
     """Show what is cut and the spindle's centre, in a square."""
     low, high = bounds_of(scene, levels)
     low, high = np.minimum(low[:2], 0), np.maximum(high[:2], 0)
@@ -96,7 +96,7 @@ def draw_panels(figure: Figure, scene: Scene) -> None:
     c.plot(history.time, history.c, **drawn)
     style.caption(c, "C, degrees")
     c_speed.plot(history.time, history.c_speed, drawstyle="steps-pre", **drawn)
-    limit = limits_of(scene.ini).axes[C]
+    limit = limits_of(scene.subject.ini).axes[C]
     draw_limit(c_speed, limit, f"limit {plain(limit, 1)}")
     style.caption(c_speed, "Speed of C, degrees/s")
     draw_feed(feed, history, scene, drawn)

@@ -24,11 +24,11 @@ from g12.tools.plot.plan_view import (
     bounds_of,
     draw_paths,
     draw_plan,
-    entries,
     few,
     floor,
-    levels_of,
+    legend_entries,
     mark_worst,
+    milled_levels,
     top_of,
 )
 from g12.tools.plot.scene import Scene
@@ -92,18 +92,18 @@ class Layout:
 
 def draw_mill(scene: Scene) -> Figure:
     """Return the picture of a mill program."""
-    levels = levels_of(scene)
+    levels = milled_levels(scene)
     low, high = bounds_of(scene, levels)
-    shown = entries(scene, levels)
+    shown = legend_entries(scene, levels)
     layout = Layout(high - low, len(shown), scene.real is not None)
     figure = style.new_figure(layout.width, layout.height, scene.title, scene.subtitle)
     plan, side = layout.axes(figure)
-    frame(plan, scene.unit, low, high, [0, 1])
+    frame_view(plan, scene.unit, low, high, [0, 1])
     plan.set_aspect("equal", adjustable="datalim")
     plan.set_xlabel("")
     style.caption(plan, "Plan")
     draw_plan(plan, scene, levels)
-    frame(side, scene.unit, low, high, [0, 2])
+    frame_view(side, scene.unit, low, high, [0, 2])
     draw_side(side, scene, levels, layout.stretch)
     layout.draw_legend(figure, shown)
     if scene.real is not None:
@@ -151,7 +151,7 @@ def draw_heights(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
             written.append(share)
 
 
-def frame(axes: Axes, unit: Unit, low: np.ndarray, high: np.ndarray, pair: list[int]) -> None:
+def frame_view(axes: Axes, unit: Unit, low: np.ndarray, high: np.ndarray, pair: list[int]) -> None:
     """Set limits and labels of a view of two axes."""
     first, second = pair
     axes.set_xlim(low[first] / unit.mm, high[first] / unit.mm)

@@ -48,7 +48,7 @@ class Level(NamedTuple):
     reach: float = 0.0
 
 
-def levels_of(scene: Scene) -> list[Level]:
+def milled_levels(scene: Scene) -> list[Level]:
     """Return the depths milled or drilled, from the top down; with many, in bands."""
     cutting = [move for move in scene.moves if move.kind != "rapid" and removes(move)]
     if not cutting:
@@ -61,7 +61,7 @@ def levels_of(scene: Scene) -> list[Level]:
     groups = [[cutting[i] for i in np.flatnonzero(nearest == level)] for level in range(len(found))]
     part = scene.path.part
     return [
-        Level(z, shade, milled(part, group), *swept_by(part, group, scene.diameters))
+        Level(z, shade, milled(part, group), *swept_by(part, group, scene.subject.diameters))
         for z, shade, group in zip(found, style.shades(len(found)), groups)
         if group
     ]
@@ -164,7 +164,7 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
         style.draw(axes, lines, shade, 2.6 if wide else width_for(scene))
     if scene.real is not None:
         draw_real(axes, scene, pair)
-    hit = [collision.way[:, pair] / unit for collision in scene.collisions]
+    hit = [collision.path[:, pair] / unit for collision in scene.collisions]
     style.draw(axes, hit, style.CRASH, 3.0, 3.8)
 
 
@@ -234,7 +234,7 @@ def draw_plunges(axes: Axes, scene: Scene) -> None:
     """Mark where the tool plunges, with the cutter drawn to scale about each point."""
     for (x, y), tool in plunges_of(scene):
         at = (x / scene.unit.mm, y / scene.unit.mm)
-        radius = scene.diameters.get(tool, 0.0) / 2 / scene.unit.mm
+        radius = scene.subject.diameters.get(tool, 0.0) / 2 / scene.unit.mm
         axes.plot(*at, "o", color=style.INK, markersize=PLUNGE, zorder=5)
         circle = Circle(at, radius, fill=False, edgecolor=style.INK, linewidth=0.8, zorder=4.5)
         axes.add_patch(circle)
@@ -261,7 +261,7 @@ def elements(scene: Scene) -> list[np.ndarray]:
     return blocks
 
 
-def entries(scene: Scene, levels: Sequence[Level]) -> list:
+def legend_entries(scene: Scene, levels: Sequence[Level]) -> list:
     """Return the legend."""
     listed = feed_entries(scene) if scene.feed_colours else []
     listed += level_entries(scene, levels)
@@ -274,7 +274,7 @@ def entries(scene: Scene, levels: Sequence[Level]) -> list:
 
 def cutter_text(scene: Scene, tool: int) -> str:
     """Return a cutter in words."""
-    diameter = scene.diameters.get(tool, 0.0)
+    diameter = scene.subject.diameters.get(tool, 0.0)
     if tool <= 0 or not diameter:
         return f"{f'T{tool} has no diameter' if tool > 0 else 'no tool'}: tool centre only"
     return f"cutter T{tool}, ⌀ {scene.unit.text(diameter)} {scene.unit.name}"

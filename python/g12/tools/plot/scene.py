@@ -10,16 +10,12 @@ from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
 
-from g12.tools.headless.machine import Run
-from g12.tools.machine.ini import Ini
-from g12.tools.path.follow import Followed, follow
-from g12.tools.path.part import part_of_program, tool_diameters
-from g12.tools.path.track import Track, limits_of, track
+from g12.tools.path.follow import Followed
+from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import COMMENT
-from g12.tools.preview.moves import Move, Trace
-from g12.tools.preview.tracer import Tools
+from g12.tools.preview.moves import Move
 from g12.tools.units import Unit, plain, unit_of
-from g12.tools.verify.proof import Proof
+from g12.tools.verify.proof import Proof, Subject
 from g12.tools.verify.rapids import Collision
 
 HEAD_COMMENT = re.compile(r"\s*(?:[Oo]\d+\s*)?(?:\(([^()]*)\)|;\s*([^;]+))[\s;]*")
@@ -30,21 +26,16 @@ LONGEST_HEADING = 72
 
 @dataclass(frozen=True)
 class Scene:
-    """A traced program on its machine; ``diameters`` of the tools in mm, ``unit`` is shown.
+    """A traced program on its machine; ``unit`` is shown.
 
     ``override`` is the feed override of the run in per cent. ``collisions`` are the rapids that
     go through material, ``contour`` the largest deviation (mm) from the programmed contours of
     polar sections, where that was measured.
     """
 
-    program: Path
-    ini: Ini
-    trace: Trace
-    diameters: dict[int, float]
+    subject: Subject
     unit: Unit
-    path: Track
     feed_colours: bool = False
-    real: Followed | None = None
     override: float = 100.0
     collisions: tuple[Collision, ...] = ()
     contour: float | None = None
@@ -52,12 +43,22 @@ class Scene:
     @property
     def moves(self) -> Sequence[Move]:
         """Return the program's moves."""
-        return self.trace.moves
+        return self.subject.trace.moves
+
+    @property
+    def path(self) -> Track:
+        """Return the path of the moves."""
+        return self.subject.path
+
+    @property
+    def real(self) -> Followed | None:
+        """Return the real motion of the run, if there was one."""
+        return self.subject.real
 
     @property
     def title(self) -> str:
         """Return the picture's heading."""
-        return self.program.stem
+        return self.subject.program.stem
 
     @property
     def subtitle(self) -> str:
@@ -65,8 +66,8 @@ class Scene:
         cutting = (i for i, move in enumerate(self.moves) if move.kind != "rapid")
         length = sum(self.path.part_length(index) for index in cutting)
         facts = [
-            heading(self.program),
-            self.ini.path.name,
+            heading(self.subject.program),
+            self.subject.ini.path.name,
             f"cutting path {plain(length / self.unit.mm, 1)} {self.unit.name}",
             f"{clock(self.path.time[-1])} at the programmed feeds",
         ]
@@ -75,36 +76,16 @@ class Scene:
         return " · ".join(filter(None, facts))
 
 
-def scene_of(
-    program: Path,
-    ini: Ini,
-    trace: Trace,
-    *,
-    tools: Tools = None,
-    units: str | None = None,
-    feed_colours: bool = False,
-) -> Scene:
+def scene_of(subject: Subject, units: str | None = None, feed_colours: bool = False) -> Scene:
     """Return what to show of a traced program; without ``units`` lengths as the program's."""
-    path = track(part_of_program(ini, trace.moves), trace.moves, limits_of(ini), trace.modes.speed)
-    unit = unit_of(trace.modes.gcodes, units)
-    return Scene(program, ini, trace, tool_diameters(ini, tools), unit, path, feed_colours)
+    return Scene(subject, unit_of(subject.trace.modes.gcodes, units), feed_colours)
 
 
-def scene_of_proof(proof: Proof, tools: Tools = None, override: float = 100.0) -> Scene:
+def scene_of_proof(proof: Proof, override: float = 100.0) -> Scene:
     """Return what to show of a program that was measured, its real motion included."""
-    subject = proof.subject
-    unit = unit_of(subject.trace.modes.gcodes)
-    diameters = tool_diameters(subject.ini, tools)
-    about = (subject.program, subject.ini, subject.trace, diameters, unit, subject.path)
     contour = max((facts.deviation for facts in proof.sections), default=None)
-    hits = tuple(proof.collisions)
-    return Scene(*about, real=subject.real, override=override, collisions=hits, contour=contour)
-
-
-def with_run(scene: Scene, run: Run, override: float = 100.0) -> Scene:
-    """Return the same scene with the real motion of a run at a feed override in per cent."""
-    real = follow(scene.path, scene.moves, run.samples, scene.ini.mm)
-    return replace(scene, real=real, override=override)
+    shown = {"collisions": tuple(proof.collisions), "contour": contour, "override": override}
+    return replace(scene_of(proof.subject), **shown)
 
 
 def heading(program: Path) -> str:

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Callable, NamedTuple
 
 from g12.tools.preview.moves import Trace
-from g12.tools.preview.tracer import Tracer
+from g12.tools.preview.tracer import Parameters, Tracer
 
 TAG = "g12-verify"
 VALUE = "#<g12_verify_value>"
@@ -141,10 +141,13 @@ def read_lines(program: Path) -> list[Text]:
     return [read_line(number, line) for number, line in enumerate(lines, start=1)]
 
 
-def executed(tracer: Tracer, program: Path, wanted: Wanted) -> list[Block]:
+def executed(
+    tracer: Tracer, program: Path, wanted: Wanted, parameters: Parameters = None
+) -> list[Block]:
     """Return every execution of the blocks wanted, in order."""
     texts = read_lines(program)
-    return blocks_in(tracer.trace_text(watched(program, texts, wanted)), texts)
+    lines = watched(program, texts, wanted)
+    return blocks_in(tracer.trace_text(lines, parameters=parameters), texts)
 
 
 def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) -> list[str]:

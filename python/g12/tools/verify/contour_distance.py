@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from g12.tools.path.nearest import on_segments
 from g12.tools.verify.wanted_contour import Element
 
 STEP = 0.05  # mm between points of the contour that are looked at
@@ -15,8 +16,8 @@ CHUNK = 256
 SAME = 1e-7
 
 
-class Shape:
-    """Elements of a contour as arrays, for distances to many points at once."""
+class ContourDistances:
+    """The elements of a contour, to measure the distance of many points at once."""
 
     def __init__(self, elements: Sequence[Element]) -> None:
         self.elements = [element for element in elements if element.length > SAME]
@@ -56,7 +57,7 @@ class Shape:
         return found, side
 
     def _nearest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        near = self._near(points)
+        near = self._elements_near(points)
         nearest = np.where(
             self.arc[near], self._on_arcs(points, near), self._on_lines(points, near)
         )
@@ -66,7 +67,7 @@ class Shape:
         side = np.where(tied, self._sides(points, nearest, near), 0.0).sum(axis=1)
         return np.take_along_axis(nearest, first, axis=1)[:, 0], side
 
-    def _near(self, points: np.ndarray) -> np.ndarray:
+    def _elements_near(self, points: np.ndarray) -> np.ndarray:
         """Return the elements that can be nearest to any of some points close together."""
         middle = (points[0] + points[-1]) / 2
         spread = np.abs(points - middle).max()
@@ -77,18 +78,18 @@ class Shape:
 
     def _on_lines(self, points: np.ndarray, near: np.ndarray) -> np.ndarray:
         start, along = self.start[near], self.end[near] - self.start[near]
-        square = np.maximum(np.abs(along) ** 2, 1e-30)
-        share = ((points[:, None] - start) * along.conj()).real / square
-        return start + along * np.clip(share, 0.0, 1.0)
+        found = on_segments(as_vectors(points)[:, None], as_vectors(start), as_vectors(along))
+        return found.view(complex)[..., 0]
 
     def _on_arcs(self, points: np.ndarray, near: np.ndarray) -> np.ndarray:
         centre, start = self.centre[near], self.start[near] - self.centre[near]
         sweep = self.sweep[near]
-        way = points[:, None] - centre
-        turn = np.angle(way / np.where(start == 0, 1.0, start)) * np.sign(sweep)
+        from_centre = points[:, None] - centre
+        turn = np.angle(from_centre / np.where(start == 0, 1.0, start)) * np.sign(sweep)
         on = np.where(turn < 0, turn + 2 * np.pi, turn) <= np.abs(sweep)
-        away = np.abs(way)
-        towards = np.where(away > SAME, way / np.maximum(away, SAME), start / np.abs(start + 1e-30))
+        away = np.abs(from_centre)
+        outward = from_centre / np.maximum(away, SAME)
+        towards = np.where(away > SAME, outward, start / np.abs(start + 1e-30))
         ring = centre + towards * np.abs(start)
         ends = np.stack(np.broadcast_arrays(self.start[near], self.end[near]))
         closer = np.abs(points[:, None] - ends[0]) < np.abs(points[:, None] - ends[1])
@@ -100,3 +101,8 @@ class Shape:
         along = np.where(self.arc[near], arcs, lines)
         along = along / np.maximum(np.abs(along), 1e-30)
         return (along.conj() * (points[:, None] - nearest)).imag
+
+
+def as_vectors(points: np.ndarray) -> np.ndarray:
+    """Return complex points (n,) as vectors (n, 2)."""
+    return np.ascontiguousarray(points).view(float).reshape(-1, 2)

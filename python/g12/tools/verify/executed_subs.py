@@ -14,12 +14,17 @@ from pathlib import Path
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import Block, Text, blocks_in, executed, read_lines, watched
 from g12.tools.preview.moves import Trace
-from g12.tools.preview.tracer import Tools, Tracer, write_program
-from g12.tools.verify.wanted_circle import CALL, Codes
+from g12.tools.preview.tracer import Parameters, Tools, Tracer, write_program
+from g12.tools.verify.codes import CALL, Codes
 
 
 def executed_everywhere(
-    tracer: Tracer, program: Path, trace: Trace, codes: Codes, tools: Tools
+    tracer: Tracer,
+    program: Path,
+    trace: Trace,
+    codes: Codes,
+    tools: Tools,
+    parameters: Parameters = None,
 ) -> list[Block]:
     """Return every execution of the blocks that matter, in order.
 
@@ -31,10 +36,12 @@ def executed_everywhere(
         with tempfile.TemporaryDirectory(prefix="g12-verify-") as folder:
             texts = read_lines(program) + write_copies(files, Path(folder), program, codes)
             with Tracer(shadowed(tracer.ini, folder), tools=tools) as other:
-                copy = other.trace_text(watched(program, texts, codes.wanted))
+                copy = other.trace_text(
+                    watched(program, texts, codes.wanted), parameters=parameters
+                )
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
             return blocks_in(copy, texts)
-    return executed(tracer, program, codes.wanted)
+    return executed(tracer, program, codes.wanted, parameters)
 
 
 def write_copies(files: Sequence[Path], folder: Path, program: Path, codes: Codes) -> list[Text]:

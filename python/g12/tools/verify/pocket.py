@@ -22,7 +22,7 @@ from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.verify.axis_limits import Overrun
-from g12.tools.verify.wanted_circle import Target
+from g12.tools.verify.wanted_circle import Target, Wall
 
 SECTORS = 720  # directions in which the wall is looked at
 SAME_LEVEL = 1e-3
@@ -46,7 +46,7 @@ class PocketFacts:
     ``circles`` are the turns of the full circles in the order they are cut, ``passes`` says how
     many of them are along the wall. ``lowest`` is the least depth that any move comes to. Of the
     first move with another feed than the words ask for, ``feed`` is its feed and the one asked.
-    ``overruns`` are the axes that would leave their travel.
+    ``overruns`` are the axes that would leave their travel, None if that is not known.
     ``off_path`` and ``off_rings`` are the real motion's largest deviations, None without a run.
     """
 
@@ -68,7 +68,7 @@ class PocketFacts:
     pace: Pace
     off_path: float | None
     off_rings: float | None
-    overruns: tuple[Overrun, ...] = ()
+    overruns: tuple[Overrun, ...] | None = ()
 
     @property
     def turns(self) -> tuple[int, ...]:
@@ -76,7 +76,7 @@ class PocketFacts:
         return tuple(sorted(set(self.circles)))
 
 
-class Shape(NamedTuple):
+class PocketAreas(NamedTuple):
     """What of a pocket's facts follows from its size and the tool's path about its centre."""
 
     reached: float
@@ -88,92 +88,92 @@ class Shape(NamedTuple):
 
 def measure_pocket(
     target: Target,
-    first: int,
-    last: int,
+    own: range,
     path: Track,
     moves: Sequence[Move],
     tolerance: float,
     real: Followed | None = None,
-    known: dict[tuple, Shape] | None = None,
+    known: dict[tuple, PocketAreas] | None = None,
 ) -> PocketFacts:
-    """Return the facts of the pocket that moves ``first`` to ``last`` - 1 cut.
+    """Return the facts of the pocket that some moves, given by their indices, cut.
 
-    ``known`` are shapes measured before, to which this one is added.
+    ``known`` are areas measured before, to which those of this pocket are added.
     """
-    own = moves[first:last]
-    lines = real_lines(target, first, own, real) if real else emitted_lines(target, own, path)
+    wall, cutting = target.wall, [index for index in own if is_cutting(moves[index], target.wall)]
+    if real:
+        lines = real_lines(wall, cutting, moves, real)
+    else:
+        lines = emitted_lines(wall, cutting, moves, path)
     known = {} if known is None else known
     key = key_of(lines, target, tolerance)
-    shape = known[key] = known.get(key) or shape_of(lines, target, tolerance)
-    circles = [move for move in own if is_full_circle(move)]
-    cutting = [move for move in own if is_cutting(move, target)]
-    cutters = [index for index in range(first, last) if is_cutting(moves[index], target)]
-    rings = [index for index in range(first, last) if is_full_circle(moves[index])]
-    pace = pace_of(range(first, last), cutters, path, real)
-    lengths = [move.length for move in cutting] or [0.0]
+    areas = known[key] = known.get(key) or areas_of(lines, wall, target.cutter.radius, tolerance)
+    circles = [index for index in own if is_full_circle(moves[index])]
+    lengths = [moves[index].length for index in cutting] or [0.0]
     return PocketFacts(
         target,
-        **shape._asdict(),
-        jump=largest_jump(own, target),
-        rings=tuple(dict.fromkeys(round(move.radius, 6) for move in circles)),
+        **areas._asdict(),
+        jump=direction_jump([moves[index] for index in own], target),
+        rings=tuple(dict.fromkeys(round(moves[index].radius, 6) for index in circles)),
         depths=tuple(sorted(lines, reverse=True)),
-        circles=tuple(int(math.copysign(1, move.turns)) for move in circles),
-        passes=passes_of(circles, target),
-        lowest=lowest_of(first, last, path, target),
-        feed=wrong_feed(own, target),
+        circles=tuple(int(math.copysign(1, moves[index].turns)) for index in circles),
+        passes=passes_of([moves[index] for index in circles], wall),
+        lowest=lowest_of(own, path, wall),
+        feed=wrong_feed([moves[index] for index in own], target),
         shortest=min(lengths),
         longest=max(lengths),
-        pace=pace,
-        off_path=real.largest(cutters) if real else None,
-        off_rings=real.largest(rings) if real else None,
+        pace=pace_of(own, cutting, path, real),
+        off_path=real.largest(cutting) if real else None,
+        off_rings=real.largest(circles) if real else None,
     )
 
 
 def key_of(lines: Lines, target: Target, tolerance: float) -> tuple:
-    """Return what is equal for pockets that have the same shape, wherever they are."""
-    size = (target.radius, target.cutter, target.cleared, target.inside, tolerance)
-    ways = [np.round(line, SAME_PLACE) + 0.0 for level in sorted(lines) for line in lines[level]]
-    return (*size, blake2b(b"".join(way.tobytes() for way in ways)).digest())
+    """Return what is equal for pockets that have the same areas, wherever they are."""
+    wall = target.wall
+    size = (wall.radius, target.cutter.radius, wall.cleared, wall.inside, tolerance)
+    every = [np.round(line, SAME_PLACE) + 0.0 for level in sorted(lines) for line in lines[level]]
+    return (*size, blake2b(b"".join(line.tobytes() for line in every)).digest())
 
 
-def shape_of(lines: Lines, target: Target, tolerance: float) -> Shape:
-    """Return the shape that is cut along the tool's path at each depth."""
+def areas_of(lines: Lines, wall: Wall, cutter: float, tolerance: float) -> PocketAreas:
+    """Return what a cutter of a radius makes of a wall along the tool's path at each depth."""
     levels = sorted(lines, reverse=True)
     deepest = lines[levels[-1]] if levels else []
     points = np.concatenate(deepest) if deepest else np.zeros((0, 3))
-    wall = wall_of(points, target)
-    floor = swept(deepest, target.cutter)
+    radii = radii_of(points, wall, cutter)
+    floor = swept(deepest, cutter)
     above = [line for level in levels[:-1] for line in lines[level]]
-    every = floor.union(swept(above, target.cutter)) if above else floor
-    reached = (wall.max() if target.inside else wall.min()) if len(points) else 0.0
-    return Shape(
+    every = floor.union(swept(above, cutter)) if above else floor
+    reached = (radii.max() if wall.inside else radii.min()) if len(points) else 0.0
+    return PocketAreas(
         reached=float(reached),
-        deviation=float(np.abs(wall - target.radius).max()),
-        left=left_of(target, floor, tolerance).area,
-        gouge=gouge_of(target, every, tolerance).area,
+        deviation=float(np.abs(radii - wall.radius).max()),
+        left=left_of(wall, cutter, floor, tolerance).area,
+        gouge=gouge_of(wall, every, tolerance).area,
         stepover=stepover_of(deepest),
     )
 
 
-def passes_of(circles: Sequence[Move], target: Target) -> int:
+def passes_of(circles: Sequence[Move], wall: Wall) -> int:
     """Return how many full circles are next to the wall."""
     radii = [move.radius for move in circles]
-    nearest = (max if target.inside else min)(radii, default=0.0)
+    nearest = (max if wall.inside else min)(radii, default=0.0)
     return sum(abs(radius - nearest) < SAME_LEVEL for radius in radii)
 
 
-def lowest_of(first: int, last: int, path: Track, target: Target) -> float:
-    """Return the least depth that moves ``first`` to ``last`` - 1 come to."""
-    vertices = slice(*np.searchsorted(path.move, (first, last)))
-    return float(target.local(path.points[vertices])[:, 2].min(initial=0.0))
+def lowest_of(own: range, path: Track, wall: Wall) -> float:
+    """Return the least depth that some moves come to."""
+    vertices = slice(*np.searchsorted(path.move, (own.start, own.stop)))
+    return float(wall.local(path.points[vertices])[:, 2].min(initial=0.0))
 
 
 def wrong_feed(moves: Sequence[Move], target: Target) -> tuple[float, float] | None:
     """Return the feed of the first move that has another one than asked, and the one asked."""
     last = max((at for at, move in enumerate(moves) if is_full_circle(move)), default=0)
+    feeds = target.schedule.feeds
     for at, move in enumerate(moves):
-        finishing = target.feeds.finish is not None and abs(at - last) < 2
-        wanted = target.feeds.finish if finishing else feed_of(move, target)
+        finishing = feeds.finish is not None and abs(at - last) < 2
+        wanted = feeds.finish if finishing else feed_of(move, target)
         moves_at_feed = move.kind != "rapid" and move.length > 0.0
         if moves_at_feed and wanted and abs(move.feed / wanted - 1) > SAME_FEED:
             return move.feed, wanted
@@ -182,9 +182,10 @@ def wrong_feed(moves: Sequence[Move], target: Target) -> tuple[float, float] | N
 
 def feed_of(move: Move, target: Target) -> float | None:
     """Return the feed that the words ask for along a move that does not finish the wall."""
+    feeds = target.schedule.feeds
     if move.kind == "arc":
-        return target.feeds.arc
-    return target.feeds.straight if is_cutting(move, target) else target.feeds.plunge
+        return feeds.arc
+    return feeds.straight if is_cutting(move, target.wall) else feeds.plunge
 
 
 def is_full_circle(move: Move) -> bool:
@@ -192,31 +193,30 @@ def is_full_circle(move: Move) -> bool:
     return move.kind == "arc" and abs(move.sweep) > 2 * math.pi - 1e-9
 
 
-def is_cutting(move: Move, target: Target) -> bool:
-    """Tell whether a move feeds across the target's plane."""
-    across = target.axes[:2] @ np.array(move.tangent(0.5))
+def is_cutting(move: Move, wall: Wall) -> bool:
+    """Tell whether a move feeds across the wall's plane."""
+    across = wall.axes[:2] @ np.array(move.tangent(0.5))
     return move.kind != "rapid" and bool(np.hypot(*across) > 1e-6)
 
 
-def emitted_lines(target: Target, moves: Sequence[Move], path: Track) -> Lines:
+def emitted_lines(wall: Wall, cutting: Sequence[int], moves: Sequence[Move], path: Track) -> Lines:
     """Return the tool's path (n, 3) across the plane at each depth, as emitted."""
-    lines = {}
-    for move in moves:
-        if is_cutting(move, target):
-            error = min(FINE, ROUND * move.radius) if move.kind == "arc" else FINE
-            line = target.local(path.part.polyline(move, error))
-            lines.setdefault(level_of(line), []).append(line)
+    lines: Lines = {}
+    for move in (moves[index] for index in cutting):
+        error = min(FINE, ROUND * move.radius) if move.kind == "arc" else FINE
+        line = wall.local(path.part.polyline(move, error))
+        lines.setdefault(level_of(line), []).append(line)
     return lines
 
 
-def real_lines(target: Target, first: int, moves: Sequence[Move], real: Followed) -> Lines:
+def real_lines(wall: Wall, cutting: Sequence[int], moves: Sequence[Move], real: Followed) -> Lines:
     """Return the tool's path (n, 3) across the plane at each depth, as it was."""
-    lines = {}
-    for index, move in enumerate(moves, start=first):
+    lines: Lines = {}
+    for index in cutting:
         points = real.points[real.during(index)]
-        if is_cutting(move, target) and len(points):
-            depth = level_of(target.local(np.array(move.end)))
-            lines.setdefault(depth, []).append(densified(target.local(points)))
+        if len(points):
+            depth = level_of(wall.local(np.array(moves[index].end)))
+            lines.setdefault(depth, []).append(densified(wall.local(points)))
     return lines
 
 
@@ -233,16 +233,16 @@ def level_of(line: np.ndarray) -> float:
     return round(float(line[-1, 2]) / SAME_LEVEL) * SAME_LEVEL + 0.0
 
 
-def wall_of(points: np.ndarray, target: Target) -> np.ndarray:
+def radii_of(points: np.ndarray, wall: Wall, cutter: float) -> np.ndarray:
     """Return the wall's radius in each direction: where the cutter reaches farthest.
 
     Where nothing was cut it is 0 (and infinite for a wall cut from outside).
     """
-    far = np.zeros(SECTORS) if target.inside else np.full(SECTORS, np.inf)
+    far = np.zeros(SECTORS) if wall.inside else np.full(SECTORS, np.inf)
     if len(points):
-        gather = np.maximum if target.inside else np.minimum
+        gather = np.maximum if wall.inside else np.minimum
         gather.at(far, *polar(points))
-    return far + target.cutter if target.inside else far - target.cutter
+    return far + cutter if wall.inside else far - cutter
 
 
 def polar(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -252,20 +252,20 @@ def polar(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return sector, np.hypot(points[:, 0], points[:, 1])
 
 
-def left_of(target: Target, floor: BaseGeometry, tolerance: float) -> BaseGeometry:
+def left_of(wall: Wall, cutter: float, floor: BaseGeometry, tolerance: float) -> BaseGeometry:
     """Return what is left standing at the deepest level, beyond the tolerance."""
-    if target.inside:
-        wanted = ring(target.cleared + tolerance, target.radius - tolerance)
+    if wall.inside:
+        wanted = ring(wall.cleared + tolerance, wall.radius - tolerance)
     else:
-        wanted = ring(target.radius + tolerance, target.radius + 2 * target.cutter - tolerance)
+        wanted = ring(wall.radius + tolerance, wall.radius + 2 * cutter - tolerance)
     return wanted.difference(floor)
 
 
-def gouge_of(target: Target, area: BaseGeometry, tolerance: float) -> BaseGeometry:
+def gouge_of(wall: Wall, area: BaseGeometry, tolerance: float) -> BaseGeometry:
     """Return what is cut beyond the wall and the tolerance."""
-    if target.inside:
-        return area.difference(disc((0, 0), target.radius + tolerance, FINE))
-    return area.intersection(disc((0, 0), target.radius - tolerance, FINE))
+    if wall.inside:
+        return area.difference(disc((0, 0), wall.radius + tolerance, FINE))
+    return area.intersection(disc((0, 0), wall.radius - tolerance, FINE))
 
 
 def ring(inner: float, outer: float) -> BaseGeometry:
@@ -282,8 +282,8 @@ def stepover_of(lines: Sequence[np.ndarray]) -> float | None:
     """
     passes = [line for line in lines if is_pass(line)]
     gaps = gaps_between(np.concatenate(passes)) if passes else ()
-    ways = MultiLineString([line[:, :2] for line in lines]).simplify(COARSE, False)
-    return max((2 * ways.distance(Point(gap)) for gap in gaps), default=None)
+    paths = MultiLineString([line[:, :2] for line in lines]).simplify(COARSE, False)
+    return max((2 * paths.distance(Point(gap)) for gap in gaps), default=None)
 
 
 def gaps_between(points: np.ndarray) -> np.ndarray:
@@ -309,16 +309,16 @@ def is_pass(line: np.ndarray) -> bool:
     return bool(radius.min() > NEAR_CENTRE * radius.max())
 
 
-def largest_jump(moves: Sequence[Move], target: Target) -> float:
+def direction_jump(moves: Sequence[Move], target: Target) -> float:
     """Return the largest change of direction between cutting moves that follow each other.
 
     Yasnac's straight moves are its fast ones to and from the approach, whatever their feed.
     """
-    moves = [move for move in moves if target.dialect != "yasnac" or move.kind != "feed"]
+    moves = [move for move in moves if target.source.dialect != "yasnac" or move.kind != "feed"]
     jumps = [
         angle_between(before.tangent(1.0), after.tangent(0.0))
         for before, after in zip(moves, moves[1:])
-        if is_cutting(before, target) and is_cutting(after, target)
+        if is_cutting(before, target.wall) and is_cutting(after, target.wall)
     ]
     return max(jumps, default=0.0)
 

@@ -39,20 +39,20 @@ ALLOWED = 0.05  # that a rapid may go into a wall: the rounding of a run's corne
 LEAST_AREA = 0.05
 MOST_POINTS = 300  # of a rapid that are looked at
 
-Asked = Sequence[tuple[Block, Target]]
+Circles = Sequence[tuple[Block, Target]]
 
 
 @dataclass(frozen=True)
 class Collision:
     """A rapid, by its move's index and line, that goes through ``area`` of material.
 
-    ``way`` (n, 3) is its tool's way where it does.
+    ``path`` (n, 3) is its tool's path where it does.
     """
 
     move: int
     line: int
     area: float
-    way: np.ndarray
+    path: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -68,14 +68,17 @@ class Opening:
 class Cleared:
     """What a program has cleared, at any of its moves and any height."""
 
-    def __init__(self, asked: Asked, moves: Sequence[Move], path: Track, diameters: dict) -> None:
+    def __init__(self, asked: Circles, moves: Sequence[Move], path: Track, diameters: dict) -> None:
         self._moves, self._path, self._diameters = moves, path, diameters
         self._cutters = {
-            index: target.cutter for block, target in asked for index in range(block.at, block.end)
+            index: target.cutter.radius
+            for block, target in asked
+            for index in range(block.at, block.end)
         }
-        self._bores = [(block.at, target) for block, target in asked if target.bore]
+        self._bores = [(block.at, target.wall) for block, target in asked if target.wall.bore]
         self._swept_by: dict[int, BaseGeometry] = {}
-        self._before: dict[tuple, BaseGeometry] = {}
+        self._floors: dict[int, np.ndarray] = {}
+        self._before: dict[tuple[int, int], BaseGeometry] = {}
 
     def radius(self, index: int) -> float:
         """Return the radius of a move's cutter; in a pocket D's if the tool has none."""
@@ -84,16 +87,27 @@ class Cleared:
 
     def before(self, index: int, height: float) -> BaseGeometry:
         """Return the area cleared down to a height before a move."""
-        cut = tuple(np.flatnonzero(self._lowest[:index] <= height + SAME_HEIGHT))
-        if (index, cut) not in self._before:
-            bored = [
-                disc(target.origin, target.bore)
-                for first, target in self._bores
-                if first <= index and target.origin[2] <= height + SAME_HEIGHT
-            ]
-            found = unary_union([*map(self._swept, cut), *bored]).buffer(ALLOWED)
-            self._before[index, cut] = found
-        return self._before[index, cut]
+        if index not in self._floors:
+            self._floors[index] = self._floors_before(index)
+        floors = self._floors[index]
+        key = (index, int(np.searchsorted(floors, height + SAME_HEIGHT, side="right")))
+        if key not in self._before:
+            self._before[key] = self._area(index, floors[key[1] - 1] if key[1] else -np.inf)
+        return self._before[key]
+
+    def _floors_before(self, index: int) -> np.ndarray:
+        """Return the heights, upward, at which more has been cleared before a move."""
+        bored = [wall.origin[2] for first, wall in self._bores if first <= index]
+        return np.unique(np.concatenate([self._lowest[:index], bored]))
+
+    def _area(self, index: int, height: float) -> BaseGeometry:
+        cut = np.flatnonzero(self._lowest[:index] <= height)
+        bored = [
+            disc(wall.origin, wall.bore)
+            for first, wall in self._bores
+            if first <= index and wall.origin[2] <= height
+        ]
+        return unary_union([*map(self._swept, cut), *bored]).buffer(ALLOWED)
 
     def of(self, indices: Sequence[int]) -> BaseGeometry:
         """Return the area that moves sweep."""
@@ -116,7 +130,7 @@ class Cleared:
 
 
 def collisions(
-    asked: Asked,
+    asked: Circles,
     moves: Sequence[Move],
     path: Track,
     diameters: dict[int, float],
@@ -127,7 +141,7 @@ def collisions(
     openings = list(openings_of(asked, moves, cleared))
     found: dict[int, Collision] = {}
     for chain in chains_of(moves, openings):
-        points, owner = way_of(chain, moves, path, real)
+        points, owner = path_along(chain, moves, path, real)
         for opening in openings:
             for stretch in stretches_in(opening, points, owner):
                 for hit in hits(points[stretch], owner[stretch], moves, cleared):
@@ -136,14 +150,15 @@ def collisions(
     return [found[move] for move in sorted(found)]
 
 
-def openings_of(asked: Asked, moves: Sequence[Move], cleared: Cleared) -> Iterator[Opening]:
+def openings_of(asked: Circles, moves: Sequence[Move], cleared: Cleared) -> Iterator[Opening]:
     """Yield the pockets that rapids can leave through a wall."""
-    walled = [(block, target) for block, target in asked if target.inside and target.plane == 2]
+    found = ((block, target.wall) for block, target in asked)
+    walled = [(block, wall) for block, wall in found if wall.inside and wall.plane == 2]
     heights = [(height_before(block, moves), *floors_of(block, moves)) for block, _ in walled]
-    for (block, target), (_, highest, lowest) in zip(walled, heights):
+    for (block, wall), (_, highest, lowest) in zip(walled, heights):
         above = [height for height, _, _ in heights if height > highest + SAME_HEIGHT]
         if above:
-            top = target.face if highest < target.face < min(above) else min(above)
+            top = wall.face if highest < wall.face < min(above) else min(above)
             yield Opening(block.at, cleared.of(cutting(block, moves)), top, lowest)
 
 
@@ -177,13 +192,13 @@ def chains_of(moves: Sequence[Move], openings: Sequence[Opening]) -> Iterator[li
             yield list(group)
 
 
-def way_of(
+def path_along(
     chain: Sequence[int], moves: Sequence[Move], path: Track, real: Followed | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return points (n, 3) along moves, as programmed or as they were, and the move of each."""
-    ways = [real.points[real.during(i)] if real else dense(path, moves[i]) for i in chain]
-    owner = np.concatenate([np.full(len(way), index) for index, way in zip(chain, ways)])
-    return np.concatenate(ways), owner
+    paths = [real.points[real.during(i)] if real else dense(path, moves[i]) for i in chain]
+    owner = np.concatenate([np.full(len(points), index) for index, points in zip(chain, paths)])
+    return np.concatenate(paths), owner
 
 
 def dense(path: Track, move: Move) -> np.ndarray:
@@ -193,7 +208,7 @@ def dense(path: Track, move: Move) -> np.ndarray:
 
 
 def stretches_in(opening: Opening, points: np.ndarray, owner: np.ndarray) -> Iterator[np.ndarray]:
-    """Yield the stretches of a way (indices) below an opening's top that pass through it."""
+    """Yield the stretches of a path (indices) below an opening's top that pass through it."""
     low = (points[:, 2] < opening.top - SAME_HEIGHT) & (owner >= opening.first)
     for below, group in groupby(np.arange(len(points)), lambda index: low[index]):
         stretch = np.array(list(group))
@@ -205,20 +220,20 @@ def stretches_in(opening: Opening, points: np.ndarray, owner: np.ndarray) -> Ite
 def hits(
     points: np.ndarray, owner: np.ndarray, moves: Sequence[Move], cleared: Cleared
 ) -> Iterator[Collision]:
-    """Yield the collisions along a way, one for each move."""
+    """Yield the collisions along points, one for each move."""
     for index in np.unique(owner):
-        way, radius = points[owner == index], cleared.radius(index)
-        if np.ptp(way[:, :2], axis=0).max() > ALLOWED:
-            hit = bites_of(way, index, radius, cleared)
+        own, radius = points[owner == index], cleared.radius(index)
+        if np.ptp(own[:, :2], axis=0).max() > ALLOWED:
+            hit = bites_of(own, index, radius, cleared)
             area = unary_union([piece for _, piece in hit]).area if hit else 0.0
             if area > LEAST_AREA:
                 yield Collision(index, moves[index].block, area, np.array([at for at, _ in hit]))
 
 
-def bites_of(way: np.ndarray, index: int, radius: float, cleared: Cleared) -> list:
-    """Return the points of a way at which the cutter is in material, each with the area there."""
+def bites_of(points: np.ndarray, index: int, radius: float, cleared: Cleared) -> list:
+    """Return the points of a rapid at which the cutter is in material, each with the area there."""
     found = []
-    for point in way[:: len(way) // MOST_POINTS + 1]:
+    for point in points[:: len(points) // MOST_POINTS + 1]:
         cutter = Point(point[:2]).buffer(radius)
         piece = cutter.difference(cleared.before(index, point[2]))
         if piece.area > LEAST_AREA:

@@ -7,7 +7,7 @@ C's speed degrees/s.
 
 With compensation the tool's centre must stay one tool radius away from the contour, on the
 programmed side. ``gouge`` is what the cutter takes beyond the contour, ``left`` what it leaves of
-what it could have reached, each an integral of the excess along the way.
+what it could have reached, each an integral of the excess along the path.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from g12.tools.path.part import C, Z
 from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
-from g12.tools.verify.contour_distance import SAME, STEP, Shape
-from g12.tools.verify.section_paths import Plane, Ways, goes_across, ways_of
-from g12.tools.verify.wanted_contour import Element, Section
+from g12.tools.verify.contour_distance import SAME, STEP, ContourDistances
+from g12.tools.verify.section_paths import Plane, ToolPaths, goes_across, tool_paths_of
+from g12.tools.verify.wanted_contour import Element, SectionContour
 
 LEADS = 3  # elements at either end of a contour that may be there to lead in or out
 MEETS = 1e-3
@@ -50,7 +50,7 @@ class SectionFacts:
     C and Z.
     """
 
-    section: Section
+    section: SectionContour
     tool: float
     sides: tuple[int, ...]
     wanted: tuple[float, float]
@@ -73,7 +73,7 @@ class SectionFacts:
 
 
 def measure_section(
-    section: Section,
+    section: SectionContour,
     path: Track,
     moves: Sequence[Move],
     diameters: dict[int, float],
@@ -87,24 +87,24 @@ def measure_section(
     cutting = [i for i in own if moves[i].kind != "rapid" and path.part_length(i) > TINY_PIECE]
     across = [index for index in cutting if goes_across(moves[index])]
     tool = diameters.get(moves[section.at].tool, 0.0) / 2
-    ways = ways_of(plane, cutting, moves, path, real)
+    paths = tool_paths_of(plane, cutting, moves, path, real)
     leads = leads_of(section, tool)
-    runs = runs_of(section)
-    found = [measure_run(run, leads, ways, tool, tolerance) for run in runs]
-    shaping = [facts for run, facts in zip(runs, found) if run[0].side] or found
+    stretches = stretches_of(section)
+    found = [measure_stretch(stretch, leads, paths, tool, tolerance) for stretch in stretches]
+    shaping = [facts for stretch, facts in zip(stretches, found) if stretch[0].side] or found
     lengths = [path.part_length(index) for index in across] or [0.0]
     pace = pace_of(own, across, path, real)
     return SectionFacts(
         section,
         tool,
-        tuple(sorted({run[0].side for run in runs})),
+        tuple(sorted({stretch[0].side for stretch in stretches})),
         wanted=span([facts.wanted for facts in shaping]),
         reached=span([facts.reached for facts in shaping]),
         deviation=max((facts.deviation for facts in found), default=0.0),
         left=sum(facts.left for facts in found),
         gouge=sum(facts.gouge for facts in found),
         through=any(facts.through for facts in found),
-        jump=largest_jump(across, moves, plane, path),
+        jump=jump_between_pieces(across, moves, plane, path),
         pieces=len(across),
         shortest=min(lengths),
         longest=max(lengths),
@@ -118,15 +118,15 @@ def measure_section(
     )
 
 
-def runs_of(section: Section) -> list[list[Element]]:
+def stretches_of(section: SectionContour) -> list[list[Element]]:
     """Return the stretches of contour with the tool on one side, ramps aside."""
     longer = (element for element in section.elements if element.length > SAME)
     groups = groupby(longer, key=lambda element: (element.side, element.ramp))
-    return [list(run) for (_, ramp), run in groups if not ramp]
+    return [list(stretch) for (_, ramp), stretch in groups if not ramp]
 
 
-def leads_of(section: Section, tool: float) -> Shape:
-    """Return the ways on which compensation is switched on and off.
+def leads_of(section: SectionContour, tool: float) -> ContourDistances:
+    """Return the lines on which compensation is switched on and off.
 
     They end square to the element that follows, one tool radius away from it, and begin square
     to the one before.
@@ -139,11 +139,11 @@ def leads_of(section: Section, tool: float) -> Shape:
             beside = after.normal(0.0) * ramp.side * tool if after else 0.0
             start, end = ramp.start + away, ramp.end + beside
             leads.append(Element(ramp.line, start, end, 0, True, ramp.depth))
-    return Shape(leads)
+    return ContourDistances(leads)
 
 
 @dataclass(frozen=True)
-class RunFacts:
+class StretchFacts:
     """What was measured of one stretch of contour; members as those of ``SectionFacts``."""
 
     deviation: float
@@ -154,66 +154,73 @@ class RunFacts:
     reached: np.ndarray
 
 
-def measure_run(
-    run: Sequence[Element], leads: Shape, ways: Ways, tool: float, tolerance: float
-) -> RunFacts:
+def measure_stretch(
+    stretch: Sequence[Element],
+    leads: ContourDistances,
+    paths: ToolPaths,
+    tool: float,
+    tolerance: float,
+) -> StretchFacts:
     """Return the facts of a stretch of contour; on the leads to and from it all is well."""
     nothing = np.zeros(0)
-    if not any(ways.of(element.line) for element in run):
-        return RunFacts(float("inf"), 0.0, 0.0, False, nothing, nothing)
-    side = run[0].side
+    if not any(paths.of(element.line) for element in stretch):
+        return StretchFacts(float("inf"), 0.0, 0.0, False, nothing, nothing)
+    side = stretch[0].side
     radius = tool if side else 0.0
-    points, nearest, left_of, steps = laid_along(run, ways)
+    points, nearest, left_of, steps = laid_along(stretch, paths)
     away = np.abs(points - nearest)
     wrong = left_of * side < -SAME
     off = np.where(wrong, -away, away) - radius
     if leads.elements:
         beside = leads.distances(points)
         off = np.where(beside < np.abs(off), beside, off)
-    missed, lengths = missed_by(Shape(run), side, radius, ways.below(np.inf))
+    missed, lengths = missed_by(ContourDistances(stretch), side, radius, paths.below(np.inf))
     deviation = float(max(np.abs(off).max(), missed.max(initial=0.0)))
     wall = points + (nearest - points) * radius / np.maximum(away, 1e-12) if side else points
     if not side:
-        return RunFacts(deviation, 0.0, 0.0, False, np.abs(nearest), np.abs(wall))
+        return StretchFacts(deviation, 0.0, 0.0, False, np.abs(nearest), np.abs(wall))
     left = float(np.maximum(0.0, missed - tolerance) @ lengths)
     across = float(np.where(wrong, np.maximum(0.0, -off - tolerance), 0.0) @ steps)
-    bite, lengths = bites(run, radius, ways)
+    bite, lengths = bites(stretch, radius, paths)
     gouge = across + float(np.maximum(0.0, bite - tolerance) @ lengths)
     through = bool(wrong.any() or (bite > radius - STEP).any())
-    return RunFacts(deviation, left, gouge, through, np.abs(nearest), np.abs(wall))
+    return StretchFacts(deviation, left, gouge, through, np.abs(nearest), np.abs(wall))
 
 
-def laid_along(run: Sequence[Element], ways: Ways) -> tuple[np.ndarray, ...]:
+def laid_along(stretch: Sequence[Element], paths: ToolPaths) -> tuple[np.ndarray, ...]:
     """Return the tool centre's points, the contour's next to them, their sides, their steps.
 
     Each block is compared with its own element and those before and after, as far as these are
     part of a closed contour: a later pass may cross the lead-in's extension.
     """
-    closed = trimmed(run)
+    closed = trimmed(stretch)
     columns = []
     near: dict[int, set[int]] = {}
-    for index, element in enumerate(run):
+    for index, element in enumerate(stretch):
         near.setdefault(element.line, set()).update((index - 1, index, index + 1))
     for line, indices in near.items():
-        own = {index for index in indices if 0 <= index < len(run) and run[index].line == line}
-        others = indices.difference(own, (-1, len(run)))
-        shape = Shape([run[index] for index in own] + [closed[index] for index in others])
-        for way in ways.of(line):
-            columns.append((way, *shape.nearest(way), shares_of(way)))
+        inside = indices.difference((-1, len(stretch)))
+        own = {index for index in inside if stretch[index].line == line}
+        elements = [stretch[index] for index in own] + [closed[index] for index in inside - own]
+        contour = ContourDistances(elements)
+        for tool_path in paths.of(line):
+            columns.append((tool_path, *contour.nearest(tool_path), shares_of(tool_path)))
     return tuple(np.concatenate(column) for column in zip(*columns))
 
 
-def shares_of(way: np.ndarray) -> np.ndarray:
+def shares_of(tool_path: np.ndarray) -> np.ndarray:
     """Return the length of a polyline that each of its points stands for."""
-    steps = np.abs(np.diff(way)) / 2
+    steps = np.abs(np.diff(tool_path)) / 2
     return np.append(steps, 0.0) + np.insert(steps, 0, 0.0)
 
 
-def missed_by(shape: Shape, side: int, wanted: float, way: Shape) -> tuple[np.ndarray, np.ndarray]:
+def missed_by(
+    contour: ContourDistances, side: int, wanted: float, tool_path: ContourDistances
+) -> tuple[np.ndarray, np.ndarray]:
     """Return how far the cutter stays away from points of the contour that it can reach."""
-    points, lengths, normals = shape.samples
-    reachable = shape.distances(points + normals * side * wanted) >= wanted - 10 * SAME
-    away = way.distances(points[reachable]) - wanted
+    points, lengths, normals = contour.samples
+    reachable = contour.distances(points + normals * side * wanted) >= wanted - 10 * SAME
+    away = tool_path.distances(points[reachable]) - wanted
     return np.maximum(0.0, away), lengths[reachable]
 
 
@@ -223,40 +230,43 @@ def span(distances: Sequence[np.ndarray]) -> tuple[float, float]:
     return (float(every.min()), float(every.max())) if len(every) else (0.0, 0.0)
 
 
-def bites(run: Sequence[Element], tool: float, ways: Ways) -> tuple[np.ndarray, np.ndarray]:
+def bites(
+    stretch: Sequence[Element], tool: float, paths: ToolPaths
+) -> tuple[np.ndarray, np.ndarray]:
     """Return how deep the cutter goes into points of the contour, and the length of each.
 
     Ramps and later passes count. Where the end of a contour meets its beginning, what sticks out
     beyond is no contour.
     """
-    points, lengths, _ = Shape(trimmed(run)).samples
-    return np.maximum(0.0, tool - ways.distances(points, ways.solid(run))), lengths
+    points, lengths, _ = ContourDistances(trimmed(stretch)).samples
+    return np.maximum(0.0, tool - paths.distances(points, paths.solid(stretch))), lengths
 
 
-def trimmed(run: Sequence[Element]) -> list[Element]:
+def trimmed(stretch: Sequence[Element]) -> list[Element]:
     """Return a contour without what sticks out where its end meets its beginning.
 
     Elements that stick out as a whole are there with no length.
     """
-    first, last = closing(run)
-    ends = np.concatenate([[0.0], np.cumsum([element.length for element in run])])
+    first, last = closing(stretch)
+    ends = np.concatenate([[0.0], np.cumsum([element.length for element in stretch])])
     return [
         element.part(*(np.clip((first, last), start, end) - start) / (end - start))
-        for element, start, end in zip(run, ends, ends[1:])
+        for element, start, end in zip(stretch, ends, ends[1:])
     ]
 
 
-def closing(run: Sequence[Element]) -> tuple[float, float]:
+def closing(stretch: Sequence[Element]) -> tuple[float, float]:
     """Return the lengths along a contour between which it is closed; else its whole length."""
-    ends = np.concatenate([[0.0], np.cumsum([element.length for element in run])])
-    for i, j in product(range(min(len(run), LEADS)), range(len(run) - 1, len(run) - 1 - LEADS, -1)):
+    ends = np.concatenate([[0.0], np.cumsum([element.length for element in stretch])])
+    count = len(stretch)
+    for i, j in product(range(min(count, LEADS)), range(count - 1, count - 1 - LEADS, -1)):
         if j > i:
             # Neighbours meet where they join: the later half of the second is looked at.
             skipped = 0.5 if j == i + 1 else 0.0
-            one, other = as_line(run[i]), as_line(run[j].part(skipped, 1.0))
+            one, other = as_line(stretch[i]), as_line(stretch[j].part(skipped, 1.0))
             if one.distance(other) < MEETS:
                 here, there = nearest_points(one, other)
-                passed = ends[j] + skipped * run[j].length
+                passed = ends[j] + skipped * stretch[j].length
                 return ends[i] + one.project(here), passed + other.project(there)
     return 0.0, ends[-1]
 
@@ -268,12 +278,14 @@ def as_line(element: Element) -> LineString:
     return LineString([(point.real, point.imag) for point in points])
 
 
-def largest_jump(across: Sequence[int], moves: Sequence[Move], plane: Plane, path: Track) -> float:
+def jump_between_pieces(
+    across: Sequence[int], moves: Sequence[Move], plane: Plane, path: Track
+) -> float:
     """Return the greatest change of direction between pieces of one block."""
     jumps = []
     for before, after in zip(across, across[1:]):
         if moves[before].block == moves[after].block:
-            one, other = (plane.way(index, path, None).points for index in (before, after))
+            one, other = (plane.tool_path(index, path, None).points for index in (before, after))
             turn = (other[1] - other[0]) / (one[-1] - one[-2])
             jumps.append(abs(np.degrees(np.angle(turn))))
     return float(max(jumps, default=0.0))

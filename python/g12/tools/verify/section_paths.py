@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The ways of the tool's centre in a polar section, in the contour's plane, with their heights.
+"""The paths of the tool's centre in a polar section, in the contour's plane, with their heights.
 
 What the cutter does in the air is no gouge: above the part's face, which is the program's Z0 if
 the contour is cut below that; else above the highest level at which the contour is cut.
@@ -10,7 +10,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterable, Sequence
-from itertools import groupby
+from itertools import chain, groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -19,14 +19,14 @@ from g12.tools.path.follow import Followed
 from g12.tools.path.part import C, X, Z
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
-from g12.tools.verify.contour_distance import Shape
-from g12.tools.verify.wanted_contour import Element, Section
+from g12.tools.verify.contour_distance import ContourDistances
+from g12.tools.verify.wanted_contour import Element, SectionContour
 
 SAME_LEVEL = 1e-3
 
 
-class Way(NamedTuple):
-    """A way of the tool's centre: points of the plane, complex, and their heights."""
+class ToolPath(NamedTuple):
+    """A path of the tool's centre: points of the plane, complex, and their heights."""
 
     points: np.ndarray
     heights: np.ndarray
@@ -35,7 +35,7 @@ class Way(NamedTuple):
 class Plane:
     """Turns machine positions into points of the contour's plane; ``face`` is the program's Z0."""
 
-    def __init__(self, section: Section, first: Move) -> None:
+    def __init__(self, section: SectionContour, first: Move) -> None:
         self._shift = first.start[X] - section.x
         self._angle = first.start[C]
         self.face = first.start[Z] - section.z
@@ -51,11 +51,11 @@ class Plane:
         there = cmath.rect(radius - self._shift, angle - math.radians(self._angle))
         return there.real, there.imag, point[2]
 
-    def way(self, index: int, path: Track, real: Followed | None) -> Way:
-        """Return the tool centre's way during a move: emitted, or as it was."""
+    def tool_path(self, index: int, path: Track, real: Followed | None) -> ToolPath:
+        """Return the tool centre's path during a move: emitted, or as it was."""
         whole = path.positions[path.vertices(index)]
         positions = whole if real is None else real.positions[real.during(index)]
-        return Way(self.points(positions), positions[:, Z])
+        return ToolPath(self.points(positions), positions[:, Z])
 
 
 def goes_across(move: Move) -> bool:
@@ -63,86 +63,88 @@ def goes_across(move: Move) -> bool:
     return move.start[X] != move.end[X] or move.start[C] != move.end[C]
 
 
-class Ways:
-    """The tool centre's ways during a section, each with the line of its block, and plunges."""
+class ToolPaths:
+    """The tool centre's paths during a section, each with the line of its block, and plunges."""
 
-    def __init__(self, ways: Iterable[tuple[int, Way]], plunges: Way, face: float) -> None:
-        self._ways: dict[int, list[Way]] = {}
+    def __init__(
+        self, tool_paths: Iterable[tuple[int, ToolPath]], plunges: ToolPath, face: float
+    ) -> None:
+        self._tool_paths: dict[int, list[ToolPath]] = {}
         self._plunges = plunges
         self._face = face
-        self._shapes: dict[float, Shape] = {}
-        for line, way in ways:
-            if len(way.points) > 1:
-                self._ways.setdefault(line, []).append(way)
+        self._distances: dict[float, ContourDistances] = {}
+        for line, tool_path in tool_paths:
+            if len(tool_path.points) > 1:
+                self._tool_paths.setdefault(line, []).append(tool_path)
 
     def of(self, line: int) -> list[np.ndarray]:
-        """Return the ways of a line, as points."""
-        return [way.points for way in self._ways.get(line, [])]
+        """Return the paths of a line, as points."""
+        return [tool_path.points for tool_path in self._tool_paths.get(line, [])]
 
-    def level(self, run: Sequence[Element]) -> float:
+    def level(self, stretch: Sequence[Element]) -> float:
         """Return the highest level at which a contour is cut: below the face, if it is anywhere."""
-        lines = {element.line for element in run}
-        ways = (way for line in lines for way in self._ways.get(line, []))
-        heights = np.concatenate([way.heights for way in ways])
+        lines = {element.line for element in stretch}
+        tool_paths = (tool_path for line in lines for tool_path in self._tool_paths.get(line, []))
+        heights = np.concatenate([tool_path.heights for tool_path in tool_paths])
         below = heights[heights < self._face - SAME_LEVEL]
         return float(max(below if len(below) else heights)) + SAME_LEVEL
 
-    def solid(self, run: Sequence[Element]) -> float:
+    def solid(self, stretch: Sequence[Element]) -> float:
         """Return the height below which there is material about a contour."""
-        level = self.level(run)
+        level = self.level(stretch)
         return max(level, self._face - SAME_LEVEL) if level < self._face else level
 
     def distances(self, points: np.ndarray, level: float) -> np.ndarray:
-        """Return how far points are from the ways that lie not above a level, plunges included."""
+        """Return how far points are from the paths that lie not above a level, plunges included."""
         away = self.below(level).distances(points)
         down = self._plunges.points[self._plunges.heights <= level]
         return np.minimum.reduce([away, *(np.abs(points - plunge) for plunge in np.unique(down))])
 
-    def below(self, level: float) -> Shape:
-        """Return the ways that lie not above a level, to measure distances from."""
-        if level not in self._shapes:
-            every = [way for ways in self._ways.values() for way in ways]
-            self._shapes[level] = shape_of_ways(every, level)
-        return self._shapes[level]
+    def below(self, level: float) -> ContourDistances:
+        """Return the paths that lie not above a level, to measure distances from."""
+        if level not in self._distances:
+            every = chain.from_iterable(self._tool_paths.values())
+            self._distances[level] = distances_to(every, level)
+        return self._distances[level]
 
 
-def ways_of(
+def tool_paths_of(
     plane: Plane,
     cutting: Sequence[int],
     moves: Sequence[Move],
     path: Track,
     real: Followed | None,
-) -> Ways:
-    """Return the ways of moves at feed, given by their indices."""
+) -> ToolPaths:
+    """Return the paths of moves at feed, given by their indices."""
     across = [index for index in cutting if goes_across(moves[index])]
-    ways = (
-        (block, joined([plane.way(index, path, real) for index in stretch]))
+    tool_paths = (
+        (block, as_one_path([plane.tool_path(index, path, real) for index in stretch]))
         for block, stretch in groupby(across, key=lambda index: moves[index].block)
     )
-    downward = [plane.way(index, path, real) for index in cutting if index not in set(across)]
-    plunges = [Way(way.points[-1:], way.heights[-1:]) for way in downward]
-    return Ways(ways, connected(plunges), plane.face)
+    downward = [plane.tool_path(index, path, real) for index in cutting if index not in set(across)]
+    plunges = [ToolPath(tool_path.points[-1:], tool_path.heights[-1:]) for tool_path in downward]
+    return ToolPaths(tool_paths, connected(plunges), plane.face)
 
 
-def connected(ways: Sequence[Way]) -> Way:
-    """Return ways one behind the other."""
+def connected(tool_paths: Sequence[ToolPath]) -> ToolPath:
+    """Return paths one behind the other."""
     nothing = (np.zeros(0, complex), np.zeros(0))
-    return Way(*(np.concatenate(column) for column in zip(nothing, *ways)))
+    return ToolPath(*(np.concatenate(column) for column in zip(nothing, *tool_paths)))
 
 
-def joined(ways: Sequence[Way]) -> Way:
-    """Return the ways of moves that follow each other as one, no point twice in a row."""
-    points, heights = connected(ways)
+def as_one_path(tool_paths: Sequence[ToolPath]) -> ToolPath:
+    """Return the paths of moves that follow each other as one, no point twice in a row."""
+    points, heights = connected(tool_paths)
     kept = np.append(True, np.abs(np.diff(points)) > 0.0)[: len(points)]
-    return Way(points[kept], heights[kept])
+    return ToolPath(points[kept], heights[kept])
 
 
-def shape_of_ways(ways: Sequence[Way], level: float) -> Shape:
-    """Return polylines as a shape, as far as they lie not above a level."""
-    return Shape(
+def distances_to(tool_paths: Iterable[ToolPath], level: float) -> ContourDistances:
+    """Return polylines to measure distances from, as far as they lie not above a level."""
+    return ContourDistances(
         [
             Element(0, start, end, 0, False, 0.0)
-            for points, heights in ways
+            for points, heights in tool_paths
             for start, end, low in zip(points, points[1:], np.minimum(heights[:-1], heights[1:]))
             if low <= level
         ]

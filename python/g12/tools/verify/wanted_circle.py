@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What circle a cycle's block asks for: its words read once more, apart from the planners.
 
-One reader per dialect. Lengths are millimetres in machine coordinates; ``Target`` has axes of its
+One reader per dialect. Lengths are millimetres in machine coordinates; a wall has axes of its
 own, so that a pocket in any plane of a turned work coordinate system looks the same.
 """
 
@@ -14,26 +14,21 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.lengths import MM_PER_INCH
-from g12.machine_ini import Remap, remap_lines
-from g12.tools.install.features import model_of
-from g12.tools.machine.ini import Ini
 from g12.tools.path.part import plane_axes
-from g12.tools.preview.executed_blocks import Block, Text
+from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
+from g12.tools.verify.codes import EVENT, Codes, Cycle, compensates
 
-CALL = "circle_mill"
 ENTRIES = "GXYZWORDCKJLPFV"
 LEFT_OUT = -9999.0
 POCKET = "circle_mill_pocket"  # the handler of the event's pocket
-COMPENSATION = (41.0, 42.0, 41.1, 42.1)
-TURNS = {"G12": -1, "G13": 1}
 ROUGH_FINISH = ((-1, -1), (1, 1), (-1, 1), (1, -1))  # turns of the event by D
+DYNAMIC = (41.1, 42.1)  # compensation whose D is a diameter
 FORGOTTEN = 1.0  # F after the preview changed its units; see ``trace``
 SAME_DEPTH = 1e-6
-AT_PRESENT_Z = {"deepest": 0.0, "levels": (0.0,)}
 
 
-class Feeds(NamedTuple):
+class CircleFeeds(NamedTuple):
     """Feeds in mm per minute or revolution: down, on arcs, on straight moves, of the finish.
 
     None: the words do not say.
@@ -45,47 +40,32 @@ class Feeds(NamedTuple):
     finish: float | None
 
 
-UNSAID = Feeds(None, None, None, None)
+@dataclass(frozen=True)
+class Source:
+    """Where a circle is asked for; ``file`` is the name of a sub's own, "" for the program."""
+
+    line: int
+    file: str
+    code: str
+    dialect: str
 
 
 @dataclass(frozen=True)
-class Target:
-    """A circle to be cut. ``inside`` says that the cutter works inside its wall.
+class Wall:
+    """The wall to be cut, mm; ``inside`` says that the cutter works inside it.
 
     ``origin`` (3,) is the centre at the height where the block began, the rows of ``axes`` are
-    the plane's first, second and third axis. ``radius`` is that of the wall, ``cutter`` that of
-    the cutter. Between ``cleared`` and ``radius`` nothing may be left. ``deepest`` is the depth
-    along the third axis, ``levels`` are all depths to be cut and ``passes`` says how often the
-    finished circle is, None where the block does not say. ``smooth`` is for cycles that turn
-    no corner, ``turn`` is -1 for clockwise and +1 for counterclockwise, 0 if not checked;
-    ``finish_turn`` that of a last circle which finishes the wall, 0 without one.
-    ``file`` is the name of the file that ``line`` is in, "" for the program.
+    the plane's first, second and third axis. Between ``cleared`` and ``radius`` nothing may be
+    left. ``bore`` is the radius of the hole that was there before, ``face`` the program's Z0.
     """
 
-    line: int
-    code: str
-    dialect: str
     origin: np.ndarray
     axes: np.ndarray
     radius: float
-    cutter: float
-    cleared: float
+    cleared: float = 0.0
     inside: bool = True
-    deepest: float | None = None
-    smooth: bool = True
-    turn: int = 0
-    finish_turn: int = 0
-    levels: tuple[float, ...] | None = None
-    passes: int | None = None
-    feeds: Feeds = UNSAID
-    circle: float = 0.0
-    word: str = ""
-    tool: int = 0
-    loaded: float = 0.0
-    offset: int | None = None
     bore: float = 0.0
     face: float = 0.0
-    file: str = ""
 
     @property
     def plane(self) -> int:
@@ -101,48 +81,56 @@ class Target:
         return depth + float(self.origin @ self.axes[2])
 
 
-class Codes:
-    """Which codes of a machine are cycles, by its REMAP lines."""
+@dataclass(frozen=True)
+class Cutter:
+    """The cutter, by its radius in mm: that of D or, where no tool is ``named``, the loaded one.
 
-    def __init__(self, ini: Ini) -> None:
-        found = ((remap, model_of(remap)) for remap in remap_lines(ini.all))
-        self._known = {
-            remap.number[1] / 10: (model[0], model[1]) for remap, model in found if model
-        }
+    ``tool`` is the loaded tool's number, ``loaded`` its radius. Where the tool's centre goes
+    round on the circle, that is ``circle``, the value of ``word``.
+    """
 
-    def knows(self, code: str) -> bool:
-        """Tell whether a remapped code, as ``Move.remap`` has it, is one of the package."""
-        return code[:1] == "G" and float(code[1:]) in self._known
-
-    def cycle_of(self, call: str, codes: Sequence[float]) -> tuple[str, Remap | None] | None:
-        """Return the dialect of the cycle that a block calls and its REMAP line."""
-        if call == CALL:
-            return "circle-mill", None
-        known = (self._known.get(code) for code in codes)
-        return next((found for found in known if found and not is_polar(found[0])), None)
-
-    def polar(self, text: Text) -> str:
-        """Return ``on``, ``off`` or nothing: what a line does to polar interpolation."""
-        for code in text.codes:
-            feature, model = self._known.get(code, ("", None))
-            if is_polar(feature):
-                return model.keywords["python"].rsplit("_", 1)[1]
-        return ""
-
-    def wanted(self, text: Text) -> bool:
-        """Tell whether a line's words matter for what is programmed, or may: G[12], G#1."""
-        compensation = any(code in COMPENSATION for code in text.codes)
-        cycle = self.cycle_of(text.call, text.codes)
-        return bool(compensation or cycle or self.polar(text) or text.hides_code)
+    radius: float
+    tool: int = 0
+    loaded: float = 0.0
+    named: int | None = None
+    word: str = ""
+    circle: float = 0.0
 
 
-def is_polar(feature: str) -> bool:
-    """Tell whether a feature is polar interpolation."""
-    return feature.startswith("polar")
+@dataclass(frozen=True)
+class Schedule:
+    """How a circle is to be cut: at which depths along the third axis, how often, how fast.
+
+    ``passes`` says how often the finished circle is cut. ``turn`` is -1 for clockwise and +1 for
+    counterclockwise, 0 if not checked; ``finish_turn`` that of a last circle which finishes the
+    wall, 0 without one. ``smooth`` is for cycles that turn no corner.
+    """
+
+    levels: tuple[float, ...]
+    passes: int
+    feeds: CircleFeeds
+    turn: int = 0
+    finish_turn: int = 0
+    smooth: bool = True
+
+    @property
+    def deepest(self) -> float:
+        """Return the last depth."""
+        return min(self.levels)
+
+
+@dataclass(frozen=True)
+class Target:
+    """A circle to be cut: who asks for it, what is to be there, with what, and how."""
+
+    source: Source
+    wall: Wall
+    cutter: Cutter
+    schedule: Schedule
 
 
 @dataclass
-class Reader:
+class CircleReader:
     """Reads blocks in the order of execution; remembers D and W as the control does."""
 
     codes: Codes
@@ -157,115 +145,101 @@ class Reader:
         for block in blocks:
             cycle = self.codes.cycle_of(block.text.call, block.codes)
             if cycle and block.end > block.at:
-                yield block, self._target(block, *cycle)
-            elif any(code in COMPENSATION for code in block.codes):
+                yield block, self._target(block, cycle)
+            elif compensates(block.codes):
                 self._remember(block)
 
-    def _target(self, block: Block, dialect: str, remap: Remap | None) -> Target:
-        view = View(block, self.moves[block.at])
-        if dialect == "circle-mill":
-            target = self._circle_mill(view, remap)
-        else:
-            target = getattr(self, f"_{dialect}")(view)
-        code = next((f"G{code:g}" for code in block.codes if code in self.codes._known), CALL)
-        turn = TURNS.get(code, target.turn)
-        place = {"line": block.text.number, "file": block.text.file}
-        place["face"] = view.start[2] - view.present("z")
-        return replace(target, **place, code=code, dialect=dialect, turn=turn)
+    def _target(self, block: Block, cycle: Cycle) -> Target:
+        read = {
+            "haas": self._haas,
+            "yasnac": self._yasnac,
+            "mitsubishi": self._mitsubishi,
+            EVENT: self._event,
+        }
+        view = BlockInMm(block, self.moves[block.at])
+        wall, cutter, schedule = read[cycle.dialect](view, cycle)
+        name = self.codes.name_of(block.codes)
+        source = Source(block.text.number, block.text.file, name, cycle.dialect)
+        return Target(source, replace(wall, face=view.zero()[2]), cutter, schedule)
 
-    def _haas(self, view: View) -> Target:
+    def _haas(self, view: BlockInMm, cycle: Cycle) -> tuple[Wall, Cutter, Schedule]:
         words = view.words
         if "D" in words:
             self.offset, self.number = self._radius(words["D"]), round(words["D"])
         offset = self._radius(view.tool) if self.offset is None else self.offset
-        target = self._inside(view, "K" if "K" in words else "I", offset, self.number)
+        wall, cutter = self._inside(view, "K" if "K" in words else "I", offset, self.number)
+        cleared = 0.0 if "K" in words else core_of(cutter, wall.radius)
         passes = int(words.get("L", 1))
         counts = (1,) if view.absolute else range(1, passes + 1)
         levels = tuple(view.height("Z", count) - view.start[2] for count in counts)
-        return replace(
-            target,
-            origin=view.centre(),
-            cleared=0.0 if "K" in words else core_of(target, target.radius),
-            deepest=min(levels),
-            levels=levels,
-            passes=passes,
-            feeds=Feeds(*[view.feed()] * 3, None),
-        )
+        schedule = Schedule(levels, passes, CircleFeeds(*[view.feed()] * 3, None), cycle.turn)
+        return replace(wall, origin=view.centre(), cleared=cleared), cutter, schedule
 
-    def _yasnac(self, view: View) -> Target:
+    def _yasnac(self, view: BlockInMm, cycle: Cycle) -> tuple[Wall, Cutter, Schedule]:
         words = view.words
         offset = self._radius(words["D"]) if "D" in words else 0.0
-        target = self._inside(view, "I", offset, round(words.get("D", 0)))
+        wall, cutter = self._inside(view, "I", offset, round(words.get("D", 0)))
         bore = abs(view.length("R") or view.length("J"))
-        bore += target.loaded if bore and target.word else 0.0
+        bore += cutter.loaded if bore and cutter.word else 0.0
         # A spiral has gone all round when it has grown by Q.
         spiral = abs(view.length("I")) - abs(view.length("K")) - view.length("Q")
-        inner = target.radius - (max(0.0, spiral) if "K" in words else 0.0)
-        return replace(
-            target,
-            cleared=bore or core_of(target, inner),
-            bore=bore,
-            passes=int(words.get("L", 1)),
-            feeds=Feeds(None, view.feed(), None, None),
-            **AT_PRESENT_Z,
-        )
+        inner = wall.radius - (max(0.0, spiral) if "K" in words else 0.0)
+        wall = replace(wall, cleared=bore or core_of(cutter, inner), bore=bore)
+        feeds = CircleFeeds(None, view.feed(), None, None)
+        return wall, cutter, Schedule((0.0,), int(words.get("L", 1)), feeds, cycle.turn)
 
-    def _mitsubishi(self, view: View) -> Target:
+    def _mitsubishi(self, view: BlockInMm, cycle: Cycle) -> tuple[Wall, Cutter, Schedule]:
         number = view.words["D"]
-        target = self._inside(view, "I", self._radius(number), round(number))
-        cleared, feeds = core_of(target, target.radius), Feeds(*[view.feed()] * 3, None)
-        return replace(target, cleared=cleared, passes=1, feeds=feeds, **AT_PRESENT_Z)
+        wall, cutter = self._inside(view, "I", self._radius(number), round(number))
+        feeds = CircleFeeds(*[view.feed()] * 3, None)
+        schedule = Schedule((0.0,), 1, feeds, cycle.turn)
+        return replace(wall, cleared=core_of(cutter, wall.radius)), cutter, schedule
 
-    def _inside(self, view: View, word: str, offset: float, number: int | None) -> Target:
+    def _inside(
+        self, view: BlockInMm, word: str, offset: float, number: int | None
+    ) -> tuple[Wall, Cutter]:
         """Return a pocket; without an offset the tool's centre goes round on the circle."""
         circle, loaded = abs(view.length(word)), self._radius(view.tool)
-        about = {"tool": view.tool, "loaded": loaded}
-        place = (0, "", "", view.start, view.axes)
         if not offset:
-            about |= {"circle": circle, "word": word}
-            return Target(*place, circle + loaded, loaded, 0.0, **about)
-        return Target(*place, circle, offset, 0.0, offset=number, **about)
+            cutter = Cutter(loaded, view.tool, loaded, word=word, circle=circle)
+            return Wall(view.start, view.axes, circle + loaded), cutter
+        return Wall(view.start, view.axes, circle), Cutter(offset, view.tool, loaded, number)
 
-    def _circle_mill(self, view: View, remap: Remap | None) -> Target:
-        event = entries_of_call(view) if remap is None else entries_of_code(view, remap)
+    def _event(self, view: BlockInMm, cycle: Cycle) -> tuple[Wall, Cutter, Schedule]:
+        event = coded_event(view, cycle) if cycle.handler else called_event(view)
         if "W" in event:
             self.plane = event["W"]
-        loaded, wall = self._radius(view.tool), event["R"]
-        levels = levels_of(event, self.plane or 0.0, view.absolute)
-        turn, finish_turn = ROUGH_FINISH[int(event.get("D", 0.0))]
+        loaded, radius = self._radius(view.tool), event["R"]
         side = side_of(event.get("D", 0.0), event["C"])
-        inner = wall - abs(event.get("L", 0.0)) - 2 * loaded
+        inner = radius - abs(event.get("L", 0.0)) - 2 * loaded
+        on_circle = {}
         if side == 0:
-            wall, inner = wall + loaded, wall - loaded
-        pocket = event.get("G", 0.0) == 7.0
-        return Target(
-            0,
-            "",
-            "",
-            view.centre(),
-            view.axes,
+            on_circle = {"word": "R", "circle": radius}
+            radius, inner = radius + loaded, radius - loaded
+        cleared = 0.0 if event.get("G", 0.0) == 7.0 else max(0.0, inner)
+        wall = Wall(view.centre(), view.axes, radius, cleared, inside=side <= 0)
+        return (
             wall,
-            loaded,
-            0.0 if pocket else max(0.0, inner),
-            inside=side <= 0,
-            deepest=levels[-1] - view.present("z"),
-            smooth=False,
-            circle=0.0 if side else event["R"],
-            word="" if side else "R",
-            tool=view.tool,
-            loaded=loaded,
+            Cutter(loaded, view.tool, loaded, **on_circle),
+            self._event_schedule(view, event),
+        )
+
+    def _event_schedule(self, view: BlockInMm, event: Mapping[str, float]) -> Schedule:
+        heights = event_levels(event, self.plane or 0.0, view.absolute)
+        turn, finish_turn = ROUGH_FINISH[int(event.get("D", 0.0))]
+        return Schedule(
+            tuple(height - view.present("z") for height in heights),
+            passes=1 if "L" in event else len(heights),
+            feeds=event_feeds(event, view.feed()),
             turn=turn,
             finish_turn=finish_turn if "L" in event else 0,
-            levels=tuple(level - view.present("z") for level in levels),
-            passes=1 if "L" in event else len(levels),
-            feeds=feeds_of(event, view.feed()),
+            smooth=False,
         )
 
     def _remember(self, block: Block) -> None:
         """Note the D of a block that switches cutter compensation on."""
-        view = View(block, self.moves[min(block.at, len(self.moves) - 1)])
-        dynamic = any(code in (41.1, 42.1) for code in block.codes)
-        if dynamic:
+        view = BlockInMm(block, self.moves[min(block.at, len(self.moves) - 1)])
+        if any(code in DYNAMIC for code in block.codes):
             self.offset, self.number = view.length("D") / 2, None
         else:
             self.number = round(block.words.get("D", view.tool))
@@ -275,7 +249,7 @@ class Reader:
         return self.diameters.get(round(tool), 0.0) / 2
 
 
-class View:
+class BlockInMm:
     """A block's words in mm, and where the tool is when it begins."""
 
     def __init__(self, block: Block, first: Move) -> None:
@@ -314,11 +288,11 @@ class View:
 
     def centre(self) -> np.ndarray:
         """Return the centre in machine coordinates: X and Y words, else where the tool stands."""
-        turn = np.radians(self._first.rotation)
-        move = [self._way(axis) for axis in "xy"]
-        across = move[0] * np.cos(turn) - move[1] * np.sin(turn)
-        up = move[0] * np.sin(turn) + move[1] * np.cos(turn)
-        return self.start + np.array([across, up, 0.0])
+        return self.start + self._turned(self._step("x"), self._step("y"), 0.0)
+
+    def zero(self) -> np.ndarray:
+        """Return the program's zero in machine coordinates."""
+        return self.start - self._turned(*map(self.present, "xyz"))
 
     def height(self, letter: str, times: int) -> float:
         """Return the height in machine coordinates that a Z word leads to, ``times`` over."""
@@ -326,14 +300,20 @@ class View:
             return self.start[2] + self.length(letter) - self.present("z")
         return self.start[2] + times * self.length(letter)
 
-    def _way(self, axis: str) -> float:
+    def _step(self, axis: str) -> float:
         if axis.upper() not in self.words:
             return 0.0
         word = self.length(axis.upper())
         return word - self.present(axis) if self.absolute else word
 
+    def _turned(self, x: float, y: float, z: float) -> np.ndarray:
+        """Return a direction of the program in machine coordinates."""
+        turn = np.radians(self._first.rotation)
+        cos, sin = np.cos(turn), np.sin(turn)
+        return np.array([x * cos - y * sin, x * sin + y * cos, z])
 
-def entries_of_call(view: View) -> dict[str, float]:
+
+def called_event(view: BlockInMm) -> dict[str, float]:
     """Return the entries of ``o<circle_mill> call``, mm; X and Y go where the words would."""
     given = dict(zip(ENTRIES, view.arguments))
     entries = {
@@ -345,23 +325,23 @@ def entries_of_call(view: View) -> dict[str, float]:
     return entries
 
 
-def entries_of_code(view: View, remap: Remap) -> dict[str, float]:
+def coded_event(view: BlockInMm, cycle: Cycle) -> dict[str, float]:
     """Return the entries of a G12.2 or G13.2 block, mm."""
     letters = {"R": "R", "Z": "Z", "W": "I", "L": "Q", "K": "K", "P": "P"}
     entries = {entry: view.length(word) for entry, word in letters.items() if word in view.words}
     if view.words.get("L") == 0.0:
         entries["L"] = -entries["L"]
     entries["D"], entries["C"] = view.words.get("D", 0.0), view.words["H"]
-    entries["G"] = 7.0 if POCKET in remap.handlers else 0.0
+    entries["G"] = 7.0 if cycle.handler == POCKET else 0.0
     return entries
 
 
-def core_of(target: Target, wall: float) -> float:
+def core_of(cutter: Cutter, wall: float) -> float:
     """Return the radius of what one ring along a wall leaves standing by design."""
-    return max(0.0, wall - 2 * target.cutter)
+    return max(0.0, wall - 2 * cutter.radius)
 
 
-def levels_of(event: Mapping[str, float], plane: float, absolute: bool) -> list[float]:
+def event_levels(event: Mapping[str, float], plane: float, absolute: bool) -> list[float]:
     """Return the heights that an event cuts at, in program coordinates, downward from W."""
     final = event["Z"] if absolute else plane + event["Z"]
     rough = final + max(0.0, event.get("L", 0.0))
@@ -373,11 +353,11 @@ def levels_of(event: Mapping[str, float], plane: float, absolute: bool) -> list[
     return levels + [final] * (rough > final)
 
 
-def feeds_of(event: Mapping[str, float], feed: float | None) -> Feeds:
+def event_feeds(event: Mapping[str, float], feed: float | None) -> CircleFeeds:
     """Return the feeds of an event; ``feed`` is the block's or the one in force."""
     rough = event.get("F", feed)
     finish = event.get("V", rough) if "L" in event else None
-    return Feeds(event.get("P", rough), rough, rough, finish)
+    return CircleFeeds(event.get("P", rough), rough, rough, finish)
 
 
 def side_of(direction: float, compensation: float) -> int:

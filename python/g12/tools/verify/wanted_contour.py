@@ -17,8 +17,8 @@ from pathlib import Path
 
 from g12.lengths import MM_PER_INCH
 from g12.tools.preview.executed_blocks import Block, Text, after, before, blocks_in, read_lines
-from g12.tools.preview.tracer import Tracer
-from g12.tools.verify.wanted_circle import Codes
+from g12.tools.preview.tracer import Parameters, Tracer
+from g12.tools.verify.codes import Codes
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
 CONTOUR = "XYCUHIJRZ"
@@ -62,7 +62,7 @@ class Element:
         return replace(self, start=start, end=end, sweep=self.sweep * (last - first))
 
     def normal(self, fraction: float) -> complex:
-        """Return the direction to the left of the way at a fraction."""
+        """Return the direction to the left of its path at a fraction."""
         if self.centre is None:
             along = self.end - self.start
         else:
@@ -71,7 +71,7 @@ class Element:
 
 
 @dataclass(frozen=True)
-class Section:
+class SectionContour:
     """One run through a section: first and last line, first move and the one after it, contour.
 
     ``x`` and ``z`` are where it begins, in program coordinates. ``doubt`` tells why the contour
@@ -91,23 +91,29 @@ class Section:
 
 
 def sections(
-    tracer: Tracer, program: Path, codes: Codes, reading: str, blocks: Sequence[Block]
-) -> list[Section]:
+    tracer: Tracer,
+    program: Path,
+    codes: Codes,
+    reading: str,
+    blocks: Sequence[Block],
+    parameters: Parameters = None,
+) -> list[SectionContour]:
     """Return the sections in the order they are run.
 
     ``reading`` is [G12] POLAR_X, ``blocks`` the program's own, which say where sections begin.
     """
-    runs = [(group[0], group[-1]) for group in grouped(blocks, codes)]
-    if not runs:
+    ends = [(group[0], group[-1]) for group in grouped(blocks, codes)]
+    if not ends:
         return []
     texts = read_lines(program)
     lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
-    flat = [line for way in flattened(texts, codes, lines) for line in way]
-    groups = grouped(blocks_in(tracer.trace_text(flat), texts), codes)
+    flat = [line for some in flattened(texts, codes, lines) for line in some]
+    copy = tracer.trace_text(flat, parameters=parameters)
+    groups = grouped(blocks_in(copy, texts), codes)
     doubts = doubts_of(texts, codes, lines)
     return [
         section_of(first, last, group, codes, reading, doubts.get(first.text.number, ""))
-        for (first, last), group in zip(runs, groups)
+        for (first, last), group in zip(ends, groups)
     ]
 
 
@@ -156,14 +162,14 @@ def doubts_of(texts: Sequence[Text], codes: Codes, lines: Sequence[str]) -> dict
 
 def section_of(
     first: Block, last: Block, group: Sequence[Block], codes: Codes, reading: str, doubt: str
-) -> Section:
+) -> SectionContour:
     """Return the section between two blocks of the program that executed blocks describe."""
     pen = Pen(first, reading)
     x, z, diameters = pen.at.real, pen.depth, pen.x_unit < pen.unit
     elements = tuple(element for block in group[1:] for element in pen.draw(block))
     code = next(f"G{code:g}" for code in first.codes if codes.polar(first.text))
     lines = first.text.number, last.text.number
-    return Section(*lines, first.at, last.end, code, x, elements, doubt, z, diameters)
+    return SectionContour(*lines, first.at, last.end, code, x, elements, doubt, z, diameters)
 
 
 class Pen:

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Points of straight segments next to points, for arrays of both at once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+NO_LENGTH = 1e-30  # a square: a segment so short is a point
+
+
+def on_segments(points: np.ndarray, starts: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Return the points of segments next to points.
+
+    Arrays (..., d) of points, of where segments start and of their vectors; they are broadcast.
+    """
+    return starts + shares_along(points, starts, along)[..., None] * along
+
+
+def shares_along(points: np.ndarray, starts: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Return how far along segments the nearest points are, from 0 to 1; see ``on_segments``."""
+    squares = np.maximum(np.einsum("...i,...i->...", along, along), NO_LENGTH)
+    return np.clip(np.einsum("...i,...i->...", points - starts, along) / squares, 0.0, 1.0)

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The picture that fits a machine and its program."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from g12.tools.plot.face import draw_face
+from g12.tools.plot.mill import draw_mill
+from g12.tools.plot.scene import Scene
+from g12.tools.plot.turning import draw_turn
+
+
+def picture_of(scene: Scene) -> Figure:
+    """Return the picture of a scene."""
+    if scene.path.part.turning:
+        return draw_face(scene)
+    lathe = "Y" not in scene.subject.ini.axes
+    return draw_turn(scene) if lathe else draw_mill(scene)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which codes of a machine are cycles, and of which dialect: by what its REMAP lines call."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from g12.machine_ini import Remap, remap_lines
+from g12.tools.machine.ini import Ini
+from g12.tools.preview.executed_blocks import Text
+
+CALL = "circle_mill"  # the event's sub, which programs may call
+EVENT, POLAR = "circle-mill", "polar"
+COMPENSATION = (41.0, 42.0, 41.1, 42.1)
+TURNS = {"g12": -1, "g13": 1}  # by what the handler's name begins with
+DIALECTS = ("haas", "yasnac", "mitsubishi")
+DIALECT_OF_HANDLER = {
+    **{f"{code}_{name}": name for code in TURNS for name in DIALECTS},
+    "circle_mill_perimeter": EVENT,
+    "circle_mill_pocket": EVENT,
+    "polar_on": POLAR,
+    "polar_off": POLAR,
+}
+DIALECT_OF_SUB = {f"g12_{name}": name for name in DIALECTS}
+SUBS = {*DIALECT_OF_SUB, "g12_circle_mill"}
+
+
+class Cycle(NamedTuple):
+    """What a code makes: its dialect, and its handler, "" where a machine has its own there."""
+
+    dialect: str
+    handler: str = ""
+
+    @property
+    def turn(self) -> int:
+        """-1 for clockwise, +1 for counterclockwise, 0 where the handler does not say."""
+        return TURNS.get(self.handler[:3], 0)
+
+
+class Codes:
+    """Which codes of a machine are cycles, by its REMAP lines."""
+
+    def __init__(self, ini: Ini) -> None:
+        lines = remap_lines(ini.all)
+        found = ((line.number[1] / 10, cycle_of_line(line)) for line in lines)
+        self._cycles = {code: cycle for code, cycle in found if cycle}
+        self._ours = {line.number[1] / 10 for line in lines if line.keywords.get("ngc") in SUBS}
+
+    def knows(self, code: str) -> bool:
+        """Tell whether a remapped code, as ``Move.remap`` has it, is one of the package."""
+        return code[:1] == "G" and float(code[1:]) in self._ours | self._cycles.keys()
+
+    def cycle_of(self, call: str, codes: Sequence[float]) -> Cycle | None:
+        """Return the cycle that a block calls or commands, polar interpolation aside."""
+        if call == CALL:
+            return Cycle(EVENT)
+        known = (self._cycles.get(code) for code in codes)
+        return next((cycle for cycle in known if cycle and cycle.dialect != POLAR), None)
+
+    def name_of(self, codes: Sequence[float]) -> str:
+        """Return the code among a block's that is a cycle; a call has the name of its sub."""
+        return next((f"G{code:g}" for code in codes if code in self._cycles), CALL)
+
+    def polar(self, text: Text) -> str:
+        """Return ``on``, ``off`` or nothing: what a line does to polar interpolation."""
+        known = filter(None, map(self._cycles.get, text.codes))
+        handler = next((cycle.handler for cycle in known if cycle.dialect == POLAR), "")
+        return handler.rpartition("_")[2]
+
+    def wanted(self, text: Text) -> bool:
+        """Tell whether a line's words matter for what is programmed, or may: G[12], G#1."""
+        cycle = self.cycle_of(text.call, text.codes)
+        return bool(compensates(text.codes) or cycle or self.polar(text) or text.hides_code)
+
+
+def compensates(codes: Sequence[float]) -> bool:
+    """Tell whether one of a block's codes switches cutter compensation on."""
+    return any(code in COMPENSATION for code in codes)
+
+
+def cycle_of_line(line: Remap) -> Cycle | None:
+    """Return the cycle of a REMAP line: by its handler, else by its sub."""
+    for handler in line.handlers:
+        if handler in DIALECT_OF_HANDLER:
+            return Cycle(DIALECT_OF_HANDLER[handler], handler)
+    dialect = DIALECT_OF_SUB.get(line.keywords.get("ngc", ""))
+    return Cycle(dialect) if dialect else None

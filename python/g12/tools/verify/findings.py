@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What is wrong with what was measured, and what else a user should know of it, in words.
+
+A judgement of its own is a generator here, called from the one of its kind of facts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from g12.tools.units import MM, Unit, plain
+from g12.tools.verify.axis_limits import Overrun
+from g12.tools.verify.pocket import SAME_LEVEL, PocketFacts
+from g12.tools.verify.rapids import Collision
+from g12.tools.verify.section import SectionFacts
+from g12.tools.verify.wanted_circle import Cutter, Target
+
+LAST_DECIMAL = 0.0005  # mm: arcs whose words are rounded do not close any better
+SAME_AREA = 0.01  # mm², less is rounding
+MOST_JUMP = 1.0  # degree
+SAME_SPEED = 1.001
+WEAR = 0.05  # of its diameter: D differs from the loaded tool by more than an allowance for wear
+SAME_SIZE = 1e-4  # mm
+SAME_ANGLE = 1e-3  # degree
+UNMEASURED = "a cycle cuts here that could not be measured"
+
+
+def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:
+    """Yield what is wrong with a pocket."""
+    if not facts.depths:
+        yield "nothing is cut"
+        return
+    yield from wall_findings(facts, tolerance, unit)
+    yield from depth_findings(facts, tolerance, unit)
+    yield from schedule_findings(facts, unit)
+    for overrun in facts.overruns or ():
+        if overrun.certain:
+            yield overrun_text(overrun, unit)
+
+
+def wall_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
+    """Yield what is wrong with the wall of a pocket and what lies inside it."""
+    target = facts.target
+    if is_wrong_tool(target.cutter):
+        wall, cut = (unit.text(size) for size in (target.wall.radius, wall_of_loaded(target)))
+        yield f"{other_tool(target.cutter, unit)}: the wall comes out at radius {cut}, not {wall}"
+    if facts.deviation > tolerance:
+        yield f"the wall is {unit.fine(facts.deviation)} {unit.name} off the programmed circle"
+    if facts.gouge > SAME_AREA:
+        yield f"{unit.area(facts.gouge)} are gouged beyond the wall"
+    if facts.left > SAME_AREA:
+        yield f"{unit.area(facts.left)} of material are left standing"
+    if target.schedule.smooth and facts.jump > MOST_JUMP:
+        yield f"the direction jumps by {facts.jump:.3g} degrees"
+
+
+def depth_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
+    """Yield what is wrong with the depths that a pocket is cut at."""
+    deepest = facts.target.schedule.deepest
+    too_high = facts.depths[-1] - deepest
+    if abs(too_high) > tolerance:
+        yield f"the depth is off by {unit.fine(too_high)} {unit.name}"
+    elif min(deepest, 0.0) - facts.lowest > tolerance:
+        yield f"it goes {unit.fine(deepest - facts.lowest)} {unit.name} below its depth"
+    else:
+        yield from level_findings(facts, max(tolerance, SAME_LEVEL), unit)
+
+
+def level_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
+    """Yield what is wrong with the levels of a pocket whose last one is right."""
+    wanted, cut = sorted(facts.target.schedule.levels, reverse=True), facts.depths
+    equal = len(wanted) == len(cut)
+    if not equal or max(map(abs, map(float.__sub__, wanted, cut))) > tolerance:
+        heights = (map(facts.target.wall.height, depths) for depths in (cut, wanted))
+        was, asked = (", ".join(map(unit.text, some)) for some in heights)
+        yield f"it is cut at {was}, not at {asked} {unit.name}"
+
+
+def schedule_findings(facts: PocketFacts, unit: Unit) -> Iterator[str]:
+    """Yield what is wrong with how a pocket is cut: turns, passes and feeds."""
+    asked = facts.target.schedule
+    rough = facts.circles[:-1] if asked.finish_turn else facts.circles
+    if asked.turn and any(turn != asked.turn for turn in rough):
+        yield "it turns the wrong way"
+    if asked.finish_turn and asked.finish_turn not in facts.circles[-1:]:
+        yield "its finish pass turns the wrong way"
+    if facts.passes != asked.passes:
+        yield f"full circles along the wall: {facts.passes}, not {asked.passes}"
+    if facts.feed:
+        yield "a move has the feed {}, not {}".format(*map(unit.text, facts.feed))
+
+
+def overrun_text(overrun: Overrun, unit: Unit) -> str:
+    """Return in words which axis leaves its travel."""
+    there, limit = unit.text(overrun.position), unit.text(overrun.limit)
+    return f"the {overrun.letter} axis would go to {there}, its limit is {limit} {unit.name}"
+
+
+def gouged(facts: SectionFacts, unit: Unit) -> str:
+    """Return the gouged area of a section in words: of a deep one only a part is measured."""
+    return f"{'at least ' if facts.through else ''}{unit.area(facts.gouge)}"
+
+
+def is_wrong_tool(cutter: Cutter) -> bool:
+    """Tell whether D names another cutter than the loaded one, by more than wear."""
+    known = cutter.named is not None and cutter.loaded > 0.0
+    return known and abs(cutter.radius - cutter.loaded) > WEAR * cutter.loaded
+
+
+def wall_of_loaded(target: Target) -> float:
+    """Return the radius of the wall that the loaded tool cuts."""
+    return target.wall.radius - target.cutter.radius + target.cutter.loaded
+
+
+def other_tool(cutter: Cutter, unit: Unit) -> str:
+    """Return in words that D is not the loaded tool."""
+    loaded, named = (unit.text(2 * size) for size in (cutter.loaded, cutter.radius))
+    return f"the loaded tool T{cutter.tool} (⌀ {loaded}) is not D{cutter.named} (⌀ {named})"
+
+
+def pocket_notes(facts: PocketFacts, unit: Unit = MM) -> Iterator[str]:
+    """Yield what a user should know of a pocket that is no fault."""
+    cutter = facts.target.cutter
+    if cutter.word:
+        yield "the tool's centre goes round on the circle, the wall is a tool radius farther"
+    if facts.overruns is None:
+        yield "its travel is not known: with the machine's var file the program moves otherwise"
+    for overrun in facts.overruns or ():
+        if not overrun.certain:
+            yield f"with no work offset {overrun_text(overrun, unit)}"
+    if cutter.named is None or is_wrong_tool(cutter):
+        return
+    if not cutter.loaded:
+        yield f"T{max(cutter.tool, 0)} has no diameter: measured with that of D{cutter.named}"
+    elif abs(cutter.radius - cutter.loaded) > SAME_SIZE:
+        yield f"{other_tool(cutter, unit)}: measured with the cutter of D{cutter.named}"
+
+
+def section_notes(facts: SectionFacts, first: SectionFacts, unit: Unit = MM) -> Iterator[str]:
+    """Yield what a user should know of a section that is no fault; ``first`` is the program's."""
+    if facts.lowest >= facts.start_height - SAME_SIZE:
+        yield "no move goes below the Z of G12.1"
+    turned = (facts.zero - first.zero + 180.0) % 360.0 - 180.0
+    if abs(turned) > SAME_ANGLE:
+        yield (
+            f"its zero line is turned by {plain(turned, 3)}° against that of the program's first "
+            f"section (line {first.section.line})"
+        )
+    if not facts.tool and any(facts.sides):
+        yield "the tool has no diameter: only its centre is measured"
+
+
+def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:
+    """Yield what is wrong with a polar section."""
+    if facts.section.doubt:
+        yield f"the contour cannot be read from the words: {facts.section.doubt}"
+        return
+    if facts.deviation > tolerance + LAST_DECIMAL:
+        yield f"the path is {unit.fine(facts.deviation)} {unit.name} off the contour"
+    if facts.gouge > SAME_AREA:
+        yield f"{gouged(facts, unit)} are gouged beyond the contour"
+    if facts.left > SAME_AREA:
+        yield f"{unit.area(facts.left)} of material are left standing"
+    if facts.c_speed > facts.c_limit * SAME_SPEED:
+        yield f"C turns at {facts.c_speed:.4g} degrees/s, its limit is {facts.c_limit:.4g}"
+
+
+def collision_text(hit: Collision, unit: Unit = MM) -> str:
+    """Return in words what a rapid goes through."""
+    x, y, z = (unit.text(value) for value in hit.path[0])
+    return f"a rapid goes through {unit.area(hit.area)} not cleared before, from X{x} Y{y} Z{z} on"

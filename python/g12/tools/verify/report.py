@@ -1,0 +1,279 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A proof for people, one paragraph per pocket and section, and for programs, as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+
+from g12.tools.path.slowest import Pace
+from g12.tools.units import Unit, plain
+from g12.tools.verify.findings import (
+    UNMEASURED,
+    collision_text,
+    gouged,
+    pocket_findings,
+    pocket_notes,
+    section_findings,
+    section_notes,
+)
+from g12.tools.verify.pocket import PocketFacts
+from g12.tools.verify.proof import Proof
+from g12.tools.verify.rapids import Collision
+from g12.tools.verify.section import SectionFacts
+
+GAP = 14  # columns of a row's name
+TURNS = {-1: "clockwise", 1: "counterclockwise"}
+SIDES = {1: "left of the contour (G41)", -1: "right of the contour (G42)"}
+AXES = "XYZ"
+
+
+def as_text(proof: Proof, unit: Unit) -> str:
+    """Return the proof as text, one paragraph per pocket and section, and the verdict."""
+    pockets = [pocket_text(facts, proof, unit) for facts in proof.pockets]
+    sections = [section_text(facts, proof, unit) for facts in proof.sections]
+    count = len(proof.findings)
+    verdict = "verdict: good, everything is as programmed"
+    if count:
+        verdict = f"verdict: {count} finding{'s' if count > 1 else ''}"
+    unseen = [
+        paragraph(f"line {line}: {code}", [], [], [UNMEASURED]) for line, code in proof.unseen
+    ]
+    rapids = [
+        paragraph(f"line {hit.line}: rapid", [], [], [collision_text(hit, unit)])
+        for hit in proof.collisions
+    ]
+    return "\n\n".join([*pockets, *sections, *rapids, *unseen, verdict])
+
+
+def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
+    """Return the paragraph of one pocket."""
+    source, cutter = facts.target.source, facts.target.cutter
+    turns = " and ".join(TURNS[turn] for turn in facts.turns) or "no full circle"
+    x, y, _ = facts.target.wall.origin
+    slow = point_text("XYZ", facts.pace.point, unit)
+    stepover = unit.text(facts.stepover) if facts.stepover else "one ring"
+    rows = [
+        ("centre", f"X{unit.text(x)} Y{unit.text(y)}, cutter ⌀ {unit.text(2 * cutter.radius)}"),
+        ("radius", radius(facts, unit)),
+        ("deviation", deviation(facts.deviation, proof.tolerances.pocket, unit)),
+        ("left inside", unit.area(facts.left)),
+        ("gouged outside", unit.area(facts.gouge)),
+        ("rings", f"{', '.join(unit.text(ring) for ring in facts.rings)} (tool centre), {turns}"),
+        ("stepover", f"{stepover}, direction jump {plain(facts.jump, 2)}°"),
+        ("depth", depth(facts, unit)),
+        ("moves", spread(facts.shortest, facts.longest, unit)),
+        ("lowest feed", slowest(facts.pace, slow, proof, unit)),
+        *real_rows(facts, unit),
+        ("time", time_text(facts.pace)),
+    ]
+    found = list(pocket_findings(facts, proof.tolerances.pocket, unit))
+    line = f"line {source.line}{f' of {source.file}' if source.file else ''}"
+    title = f"{line}: {source.code} ({source.dialect})"
+    return paragraph(title, rows, list(pocket_notes(facts, unit)), found)
+
+
+def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
+    """Return the paragraph of one polar section."""
+    section = facts.section
+    sides = " and ".join(SIDES[side] for side in facts.sides if side) or "on the contour"
+    x, c, z = facts.slowest_at
+    slow = point_text("XCZ", (2 * x if section.diameters else x, c, z), unit)
+    limit = f"limit {plain(facts.c_limit, 1)}"
+    rows = [
+        ("cutter", f"⌀ {unit.text(2 * facts.tool)}, {sides}"),
+        ("zero line", f"C {plain(facts.zero, 3)}"),
+        ("X words", x_words(facts, proof)),
+        ("depth", unit.text(facts.lowest)),
+        ("from centre", sizes(facts.wanted, facts.reached, unit)),
+        ("deviation", deviation(facts.deviation, proof.tolerances.polar, unit)),
+        ("left", unit.area(facts.left)),
+        ("gouged", gouged(facts, unit)),
+        ("pieces", f"{facts.pieces}, {spread(facts.shortest, facts.longest, unit)}"),
+        ("direction jump", f"{plain(facts.jump, 2)}° from piece to piece"),
+        ("lowest feed", slowest(facts.pace, slow, proof, unit)),
+        ("speed of C", f"{plain(facts.c_speed, 1)} degrees/s at most, {limit}"),
+        ("time", time_text(facts.pace)),
+    ]
+    found = list(section_findings(facts, proof.tolerances.polar, unit))
+    notes = list(section_notes(facts, proof.sections[0], unit))
+    return paragraph(f"lines {section.line} to {section.last}: {section.code}", rows, notes, found)
+
+
+def paragraph(title: str, rows: Sequence, notes: Sequence[str], found: Sequence[str]) -> str:
+    """Return a titled table with its notes and findings."""
+    lines = [f"  {name:{GAP}}  {text}" for name, text in rows]
+    lines += [f"  {'note':{GAP}}  {text}" for text in notes]
+    lines += [f"  {'FINDING':{GAP}}  {text}" for text in found] or [f"  {'good':{GAP}}"]
+    return "\n".join([title, *(line.rstrip() for line in lines)])
+
+
+def sizes(wanted: Sequence[float], reached: Sequence[float], unit: Unit) -> str:
+    """Return programmed and reached sizes in words."""
+    asked, got = (" to ".join(unit.text(size) for size in both) for both in (wanted, reached))
+    return f"programmed {asked}, reached {got} {unit.name}"
+
+
+def deviation(size: float, tolerance: float, unit: Unit) -> str:
+    """Return a deviation and what it may be in words."""
+    return f"{unit.fine(size)} {unit.name} (allowed {unit.fine(tolerance)})"
+
+
+def spread(shortest: float, longest: float, unit: Unit) -> str:
+    """Return lengths from the shortest to the longest in words."""
+    return f"{unit.text(shortest)} to {unit.text(longest)} {unit.name} long"
+
+
+def radius(facts: PocketFacts, unit: Unit) -> str:
+    """Return the radius as programmed and reached in words."""
+    cutter, reached = facts.target.cutter, f"reached {unit.text(facts.reached)} {unit.name}"
+    wall = unit.text(facts.target.wall.radius)
+    if cutter.word:
+        word = f"{cutter.word}{unit.text(cutter.circle)}"
+        return f"programmed {word} (tool centre), wall {wall}, {reached}"
+    return f"programmed {wall}, {reached}"
+
+
+def depth(facts: PocketFacts, unit: Unit) -> str:
+    """Return the depths in words: of a circle in another plane than XY where it stands."""
+    wall = facts.target.wall
+    heights = [unit.text(wall.height(depth)) for depth in facts.depths]
+    if AXES[wall.plane] == "Z":
+        return ", ".join(heights)
+    reach = max(facts.rings, default=0.0)
+    low, high = (unit.text(wall.origin[2] + side) for side in (-reach, reach))
+    return f"plane at {AXES[wall.plane]}{', '.join(heights)}, Z from {low} to {high}"
+
+
+def x_words(facts: SectionFacts, proof: Proof) -> str:
+    """Return what X words are in a section, and what decides it."""
+    reading = proof.subject.ini.settings.polar_x
+    kind, modal = ("diameters", "G7") if facts.section.diameters else ("radii", "G8")
+    return f"{kind} ({modal if reading == 'inherit' else f'POLAR_X = {reading}'})"
+
+
+def point_text(letters: str, point: Sequence[float], unit: Unit) -> str:
+    """Return a point in words."""
+    return " ".join(f"{letter}{unit.text(at)}" for letter, at in zip(letters, point))
+
+
+def slowest(pace: Pace, where: str, proof: Proof, unit: Unit) -> str:
+    """Return the lowest feed and where it is in words."""
+    line = proof.subject.trace.moves[pace.move].block
+    return f"{plain(pace.lowest / unit.mm, 1)} {unit.name}/min at {where} (line {line})"
+
+
+def time_text(pace: Pace) -> str:
+    """Return the time in words."""
+    text = f"{plain(pace.seconds, 1)} s"
+    same = pace.seconds == pace.expected
+    return text if same else f"{text}, {plain(pace.expected, 1)} s at the programmed feeds"
+
+
+def real_rows(facts: PocketFacts, unit: Unit) -> list[tuple[str, str]]:
+    """Return the rows that only a run has."""
+    if facts.off_path is None:
+        return []
+    text = f"{unit.fine(facts.off_rings)} off the circles, {unit.fine(facts.off_path)} off the path"
+    return [("real motion", f"{text}, {unit.name}")]
+
+
+def as_json(proof: Proof) -> str:
+    """Return the proof for a program to read: lengths in mm, areas in mm², feeds in mm/min."""
+    return json.dumps(
+        {
+            "program": str(proof.subject.program),
+            "ini": str(proof.subject.ini.path),
+            "real": proof.subject.real is not None,
+            "pockets": [pocket_json(facts, proof) for facts in proof.pockets],
+            "sections": [section_json(facts, proof) for facts in proof.sections],
+            "rapids": [collision_json(hit) for hit in proof.collisions],
+            "unseen": [{"line": line, "code": code} for line, code in proof.unseen],
+            "good": not proof.findings,
+        },
+        indent=2,
+    )
+
+
+def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
+    """Return one pocket as plain values."""
+    source, wall = facts.target.source, facts.target.wall
+    return {
+        "line": source.line,
+        "file": source.file or None,
+        "code": source.code,
+        "dialect": source.dialect,
+        "centre": [float(value) for value in wall.origin[:2]],
+        "cutter": 2 * facts.target.cutter.radius,
+        "radius": wall.radius,
+        "reached": facts.reached,
+        "deviation": finite(facts.deviation),
+        "left": facts.left,
+        "gouge": facts.gouge,
+        "rings": list(facts.rings),
+        "square_to": AXES[wall.plane],
+        "depths": [wall.height(depth) for depth in facts.depths],
+        "stepover": facts.stepover,
+        "direction_jump": facts.jump,
+        "shortest": facts.shortest,
+        "longest": facts.longest,
+        "off_circles": facts.off_rings,
+        "off_path": facts.off_path,
+        **pace_json(facts.pace, proof),
+        "notes": list(pocket_notes(facts)),
+        "findings": list(pocket_findings(facts, proof.tolerances.pocket)),
+    }
+
+
+def section_json(facts: SectionFacts, proof: Proof) -> dict:
+    """Return one polar section as plain values."""
+    return {
+        "lines": [facts.section.line, facts.section.last],
+        "code": facts.section.code,
+        "cutter": 2 * facts.tool,
+        "zero_line": facts.zero,
+        "x_words": "diameters" if facts.section.diameters else "radii",
+        "lowest": facts.lowest,
+        "radii": list(facts.wanted),
+        "reached": list(facts.reached),
+        "deviation": finite(facts.deviation),
+        "left": facts.left,
+        "gouge": facts.gouge,
+        "gouge_is_least": facts.through,
+        "direction_jump": facts.jump,
+        "pieces": facts.pieces,
+        "shortest": facts.shortest,
+        "longest": facts.longest,
+        "c_speed": facts.c_speed,
+        "c_limit": finite(facts.c_limit),
+        **pace_json(facts.pace, proof),
+        "notes": list(section_notes(facts, proof.sections[0])),
+        "findings": list(section_findings(facts, proof.tolerances.polar)),
+    }
+
+
+def collision_json(hit: Collision) -> dict:
+    """Return a rapid through material as plain values."""
+    return {
+        "line": hit.line,
+        "area": hit.area,
+        "from": hit.path[0].tolist(),
+        "to": hit.path[-1].tolist(),
+        "findings": [collision_text(hit)],
+    }
+
+
+def pace_json(pace: Pace, proof: Proof) -> dict:
+    """Return feed and time as plain values."""
+    return {
+        "lowest_feed": pace.lowest,
+        "lowest_feed_at": [float(value) for value in pace.point],
+        "lowest_feed_line": proof.subject.trace.moves[pace.move].block,
+        "seconds": pace.seconds,
+        "seconds_programmed": pace.expected,
+    }
+
+
+def finite(value: float) -> float | None:
+    """Return a number that JSON has."""
+    return value if abs(value) < float("inf") else None
