@@ -449,8 +449,12 @@ def test_an_event_that_moves_otherwise_is_found(good, bad, found, sabotaged, tmp
     ("good", "bad", "found"),
     [
         ("repeat [#<circles>]", "repeat [1]", "full circles along the wall: 1, not 2"),
-        ("  o130 repeat", "  G1 Z-9\n  G1 Z-5\n  o130 repeat", "it goes 4 mm below its depth"),
-        ("  o130 repeat", "  F3000\n  o130 repeat", "a move has the feed 3000, not 600"),
+        (
+            "  o<circle> repeat",
+            "  G1 Z-9\n  G1 Z-5\n  o<circle> repeat",
+            "it goes 4 mm below its depth",
+        ),
+        ("  o<circle> repeat", "  F3000\n  o<circle> repeat", "a move has the feed 3000, not 600"),
     ],
 )
 def test_a_yasnac_circle_that_moves_otherwise_is_found(good, bad, found, sabotaged, tmp_path):
@@ -485,10 +489,15 @@ def test_a_circle_cut_where_the_tool_stands_was_come_down_to(tmp_path):
 
 
 def far(tmp_path, *head, centre=490, stored=None):
-    """Return findings and notes of a pocket of radius 20 at X ``centre``, limits -500 to 500."""
+    """Return findings and notes of a pocket of radius 20 at X ``centre``, limits -500 to 500.
+
+    ``stored`` is the work offset of G54 in X, or the parameters that the var file holds.
+    """
     machine = ini("mill_mm")
     if stored is not None:
-        (tmp_path / "its.var").write_text(f"5220 1\n5221 {stored}\n5222 0\n")
+        stored = stored if isinstance(stored, dict) else {5220: 1, 5221: stored}
+        lines = [f"{number} {value}" for number, value in sorted(stored.items())]
+        (tmp_path / "its.var").write_text("\n".join([*lines, ""]))
         machine = machine.replaced({"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "its.var")}})
     program = tmp_path / "program.ngc"
     lines = [*MM, *head, f"G0 X{centre} Y0 Z1", "G12 I20 Z-1 D4", "M2", ""]
@@ -521,3 +530,46 @@ def test_a_pocket_wider_than_the_travel_fits_nowhere(tmp_path):
     assert [text for _, text in prove(program, machine).findings] == [
         "the Y axis would go to −15, its limit is 0 mm"
     ]
+
+
+TO_505 = ["the X axis would go to 505, its limit is 500 mm"]
+
+
+def test_the_work_offset_in_force_counts_not_that_behind_m2(tmp_path):
+    stored = {5221: -900, 5241: 10}
+    assert far(tmp_path, "G55", centre=480, stored=stored)[0] == TO_505
+    assert far(tmp_path, centre=480, stored={5221: 10, 5241: -900})[0] == TO_505
+
+
+@pytest.mark.parametrize("code", ["G92.1", "G10 L1 P9 R2", "G92.2"])
+def test_a_code_that_sets_no_work_offset_leaves_the_stored_one(code, tmp_path):
+    assert far(tmp_path, code, centre=280, stored=210)[0] == TO_505
+    assert far(tmp_path, code, centre=490, stored=-200) == ([], [])
+
+
+def test_g92_of_the_var_file_counts_until_the_program_cancels_it(tmp_path):
+    stored = {5210: 1, 5211: 10}
+    assert far(tmp_path, centre=480, stored=stored)[0] == TO_505
+    assert far(tmp_path, "G92.1", centre=480, stored=stored) == ([], [])
+
+
+def test_the_rotation_of_the_var_file_counts(tmp_path):
+    stored = {5221: 1, 5230: 90}
+    assert far(tmp_path, centre=490, stored=stored)[0] == [
+        "the Y axis would go to 505, its limit is 500 mm"
+    ]
+
+
+def test_a_program_that_moves_otherwise_with_the_var_file_is_noted(tmp_path):
+    head = ["o1 if [#31 GT 0]", "G0 X5", "G0 X6", "o1 endif"]
+    found, noted = far(tmp_path, *head, stored={31: 1})
+    assert found == [] and "with the machine's var file the program moves otherwise" in noted[0]
+
+
+def test_what_a_program_starts_with_can_be_given(tmp_path):
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*MM, "G0 X0 Y0 Z1", "G12 I#31 Z-1 D4", "M2", ""]))
+    proof = prove(program, ini("mill_mm"), parameters={31: 20, 5221: 485})
+    assert [text for _, text in proof.findings] == [
+        "the X axis would go to 500, its limit is 500 mm"
+    ] or proof.pockets[0].target.wall.radius == 20

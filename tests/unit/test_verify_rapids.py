@@ -10,7 +10,7 @@ from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
-from g12.tools.verify.rapids import collisions
+from g12.tools.verify.rapids import Cleared, collisions
 from g12.tools.verify.wanted_circle import CircleFeeds, Cutter, Schedule, Source, Target, Wall
 from support.made_moves import LIMITS, Hand, samples_of
 
@@ -128,3 +128,25 @@ def test_a_run_that_rounds_the_corner_of_a_retract_is_found_if_it_cuts(rings, cu
         return samples
 
     assert bool(program.found(real=rounded)) is cuts
+
+
+def test_a_bore_counts_down_to_where_it_was_looked_at_and_no_deeper():
+    program = Program().rapid(x=50, z=2).rapid(z=-3).mill([17], depth=-3.0, bore=16.0)
+    path = track(MILL, program.moves, LIMITS)
+    cleared = Cleared(program.asked, program.moves, path, DIAMETERS)
+    low, high = (cleared.before(len(program.moves), height).area for height in (-5.0, -1.0))
+    assert low == 0 and high > np.pi * 16**2
+
+
+def test_a_height_is_looked_up_without_looking_at_every_move(monkeypatch):
+    program = start(z=10)
+    for _ in range(50):
+        program.mill([5]).rapid(z=10)
+    path = track(MILL, program.moves, LIMITS)
+    cleared = Cleared(program.asked, program.moves, path, DIAMETERS)
+    last = len(program.moves)
+    cleared.before(last, -1.0)
+    monkeypatch.setattr(cleared, "_floors_before", None)
+    monkeypatch.setattr(cleared, "_area", None)
+    areas = {cleared.before(last, height).area for height in np.linspace(-2.9, 9.0, 300)}
+    assert len(areas) == 1

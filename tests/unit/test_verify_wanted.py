@@ -207,6 +207,25 @@ def test_codes_know_cycles_and_sections_by_their_handlers():
     ]
 
 
+@pytest.mark.parametrize(("handler", "turn"), [("g12", -1), ("g13", 1)])
+def test_the_turn_is_that_of_the_handler_whatever_the_code(handler, turn):
+    line = f"REMAP = G22 modalgroup=1 prolog={handler}_haas ngc=g12_haas epilog=cycle_done"
+    codes = Codes(Ini(Path("x.ini"), ("[RS274NGC]", line)))
+    moves = Hand().rapid(z=5).line(z=4).moves
+    reader = CircleReader(codes, moves, {1: 6.0})
+    ((_, found),) = reader.targets([block("G22 I9 Z-1")])
+    assert (found.schedule.turn, found.source.code) == (turn, "G22")
+
+
+def test_a_cycle_with_a_prolog_of_the_machines_own_is_known_by_its_sub():
+    lines = ("[RS274NGC]", "REMAP = G12 modalgroup=1 prolog=mine ngc=g12_haas")
+    cycle = Codes(Ini(Path("x.ini"), lines)).cycle_of("", (12.0,))
+    assert (cycle.dialect, cycle.turn) == ("haas", 0)
+    lines = ("[RS274NGC]", "REMAP = G13.2 modalgroup=1 prolog=mine ngc=g12_circle_mill")
+    codes = Codes(Ini(Path("x.ini"), lines))
+    assert codes.cycle_of("", (13.2,)) is None and codes.knows("G13.2")
+
+
 def test_loops_are_spring_passes_or_further_levels():
     again = target("G12 I4 Z-2 L3 D1", **HERE).schedule
     deeper = target("G12 G91 I4 Z-2 L3 D1", **HERE).schedule
