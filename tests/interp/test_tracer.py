@@ -322,3 +322,11 @@ def test_a_crash_of_the_interpreter_is_no_word_about_the_program(ini, tmp_path):
         with pytest.raises(TraceFailure, match="died"):
             tracer.trace_text("G88.6 I1")
         assert ends(tracer.trace_text("G1 X1 F1")) == [near((1.0, 0.0, 0.0))]
+
+
+def test_an_interpreter_that_was_killed_meanwhile_is_started_again(ini):
+    with Tracer(ini) as tracer:
+        tracer.kill()
+        with pytest.raises(TraceFailure, match="died"):
+            tracer.trace_text("G1 X1 F1")
+        assert ends(tracer.trace_text("G1 X1 F1")) == [near((1.0, 0.0, 0.0))]

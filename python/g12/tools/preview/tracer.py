@@ -10,6 +10,7 @@ change, it forgets F and G64's tolerances (it takes 1 and 0.1) where the machine
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import socket
@@ -98,7 +99,8 @@ class Tracer:
         }
         if not self._process:
             self._start()
-        self._connection.send(request)
+        with contextlib.suppress(BrokenPipeError):  # it died: there will be no answer
+            self._connection.send(request)
         return _trace(self._answer(timeout))
 
     def trace_text(self, text: str | Iterable[str], **options) -> Trace:
@@ -110,6 +112,12 @@ class Tracer:
         traced = self.trace(program, **options)
         unended = traced.error and traced.error.text == NO_END
         return replace(traced, error=None) if unended else traced
+
+    def kill(self) -> None:
+        """End the interpreter while another thread waits for its answer, a TraceFailure."""
+        process = self._process
+        if process:
+            process.kill()
 
     def close(self) -> None:
         """End the interpreter."""

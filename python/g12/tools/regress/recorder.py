@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import time
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -33,6 +34,7 @@ from g12.tools.units import name_of_unit
 
 SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
 HASH_DIGITS = 16
+TICK = 0.1  # s
 
 
 @dataclass(frozen=True)
@@ -126,8 +128,12 @@ class Recorder:
             "units": name_of_unit(ini.mm),
         }
 
+    def kill(self) -> None:
+        """End the interpreter's work at a program: its text becomes a TraceFailure."""
+        self._tracer.kill()
+
     def close(self) -> None:
-        """End the interpreter, which may be far from the end of a program."""
+        """End the interpreter."""
         self._tracer.close()
 
     def _check_python(self) -> None:
@@ -148,25 +154,24 @@ class Recorder:
 class Recorders:
     """The running interpreters: as many of a machine as work at the same time.
 
-    All of them end with the ``with`` block, or where ``close`` is called.
+    All of them end with the ``with`` block.
     """
 
     def __init__(self) -> None:
         self._idle: defaultdict[TracedMachine, list[Recorder]] = defaultdict(list)
         self._all: list[Recorder] = []
-        self._closed = False
 
     def __enter__(self) -> Recorders:
         return self
 
     def __exit__(self, *_exception: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """End every interpreter; one that is still starting ends when it has."""
-        self._closed = True
         for recorder in self._all:
             recorder.close()
+
+    def kill(self) -> None:
+        """End the work of every interpreter that is running now."""
+        for recorder in self._all:
+            recorder.kill()
 
     @contextlib.contextmanager
     def one_of(self, machine: TracedMachine) -> Iterator[Recorder]:
@@ -174,16 +179,10 @@ class Recorders:
         try:
             recorder = self._idle[machine].pop()
         except IndexError:
-            recorder = self._started(machine)
+            recorder = Recorder(machine)
+            self._all.append(recorder)
         yield recorder
         self._idle[machine].append(recorder)
-
-    def _started(self, machine: TracedMachine) -> Recorder:
-        recorder = Recorder(machine)
-        self._all.append(recorder)
-        if self._closed:
-            recorder.close()
-        return recorder
 
 
 def hash_of(content: bytes) -> str:
@@ -276,6 +275,13 @@ def results(jobs: Sequence[Job], workers: int, tell: Tell, recorders: Recorders)
                 tell(f"{done} of {len(jobs)}: {result.program}")
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
-            recorders.close()
+            _kill_running(futures, recorders)
             raise
     return [found[job.name] for job in jobs]
+
+
+def _kill_running(futures: Sequence[Future], recorders: Recorders) -> None:
+    """End jobs that may be far from their end; an interpreter may just be starting."""
+    while any(future.running() for future in futures):
+        recorders.kill()
+        time.sleep(TICK)
