@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString, Point
 
-from g12.tools.commands import check, install, uninstall
+from g12.tools.commands import install, uninstall
 from g12.tools.headless.machine import Machine
+from g12.tools.install.checking import check_config
 from g12.tools.install.ini_edit import IniText
 from g12.tools.install.rules import PROBLEM
 from support.small_configs import with_lines
@@ -58,7 +59,7 @@ def run_installed(ini, feature, program):
     """Install, check, run headless, uninstall; return the run and the size of a unit in mm."""
     before = tree(ini.parent)
     assert install.main([str(ini), "--with", feature]) == 0
-    _, found = check.check(IniText(ini))
+    _, found = check_config(IniText(ini))
     assert [finding for finding in found if finding.level == PROBLEM] == []
     with Machine(ini) as machine:
         run, unit = machine.run_text(program, timeout=60), machine.mm

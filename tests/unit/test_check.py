@@ -8,8 +8,9 @@ import pytest
 from g12.machine_ini import remap_from_value
 from g12.tools.commands import check
 from g12.tools.install import features
-from g12.tools.install.config import python_error
+from g12.tools.install.checking import check_report, lines_of_check
 from g12.tools.install.rules import NOTE, PROBLEM, WARNING, Finding, findings_of, last_words
+from g12.tools.preview.loading import python_error
 from support.small_configs import HAAS, LATHE, MILL, config_of, with_lines, write_config
 
 HANDLERS = {name: "g12.remap" for f in features.FILES for name in features.handlers_of(f)}
@@ -329,7 +330,7 @@ def test_a_note_is_no_reason_to_fail_and_every_finding_shows_its_name(
     said = {}
     for level, code in ((NOTE, 0), (WARNING, 1), (PROBLEM, 1)):
         finding = Finding(level, "some-name", "something", "a cure")
-        monkeypatch.setattr(check, "check", lambda text, f=finding: (config_of(ini), [f]))
+        monkeypatch.setattr(check, "check_config", lambda text, f=finding: (config_of(ini), [f]))
         assert check.main([str(ini)]) == code
         said[level] = capsys.readouterr().out
     assert all(f"{level} [some-name]: something\n" in text for level, text in said.items())
@@ -338,12 +339,12 @@ def test_a_note_is_no_reason_to_fail_and_every_finding_shows_its_name(
 def test_the_report_for_programs_says_what_the_one_for_people_says(tmp_path):
     text = with_lines(GOOD, "RS274NGC", "REMAP = M400 modalgroup=10 ngc=m400\n")
     config = config_of(write_config(tmp_path, text + "[G12]\nCLEARING = spiral\n"))
-    said = check.report(config, findings_of(config))
+    said = check_report(config, findings_of(config))
     assert json.loads(json.dumps(said)) == said
     assert said["codes"][0] == {"code": "G12", "feature": "haas", "line": "mill.ini:7"}
     assert said["other_remaps"] == {"M400": "M400 modalgroup=10 ngc=m400"}
     assert said["settings"] == {"CLEARING": "spiral"}
-    lines = "\n".join(check.lines_of(said))
+    lines = "\n".join(lines_of_check(said))
     assert all(
         finding["text"] in lines and finding["cure"] in lines for finding in said["findings"]
     )

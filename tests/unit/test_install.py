@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from g12.tools import progress
 from g12.tools.commands import install, uninstall
 from g12.tools.errors import UsageError
-from g12.tools.install import features, package_copy
+from g12.tools.install import features, installation, package_copy, removal, trial
 from g12.tools.install.ini_edit import BEGIN, END, IniError, IniText, read_lines, to_bytes
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.machine import files
@@ -38,11 +38,11 @@ def small_package(monkeypatch):
 def put_in(ini, *wanted, **python):
     """Install without asking LinuxCNC; return what was said."""
     config = config_of(ini, **python)
-    return install.carry_out(make_plan(config, wanted or ["haas"]), config.folder)
+    return installation.write_changes(make_plan(config, wanted or ["haas"]), config.folder)
 
 
 def take_out(ini):
-    return list(uninstall.uninstall(IniText(ini), dry_run=False))
+    return list(removal.uninstall(IniText(ini), dry_run=False))
 
 
 def own_python(folder):
@@ -397,10 +397,10 @@ def test_a_newer_package_replaces_the_copy_and_keeps_what_was_edited(tmp_path, m
     put_in(ini)
     copy = tmp_path / "g12"
     (copy / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
-    assert install.bring_copy_up_to_date(copy) == []
+    assert installation.bring_copy_up_to_date(copy) == []
     newer = {"ngc/g12_haas.ngc": b"(two)\n", "ngc/new.ngc": b"", "python/g12/__init__.py": b""}
     monkeypatch.setattr(package_copy, "package_files", lambda: newer)
-    assert any("g12_haas.ngc.edited" in line for line in install.bring_copy_up_to_date(copy))
+    assert any("g12_haas.ngc.edited" in line for line in installation.bring_copy_up_to_date(copy))
     assert content_of(copy).keys() == {*newer, "MANIFEST", "ngc/g12_haas.ngc.edited"}
     assert (copy / "ngc" / "g12_haas.ngc").read_bytes() == b"(two)\n"
     assert (copy / "ngc" / "g12_haas.ngc.edited").read_text() == "(mine)\n"
@@ -467,7 +467,7 @@ def test_an_interrupted_installation_leaves_everything_as_it_was(tmp_path, monke
     def interrupted(*_arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(install, stage, interrupted)
+    monkeypatch.setattr(installation, stage, interrupted)
     with pytest.raises(KeyboardInterrupt):
         put_in(ini)
     assert content_of(tmp_path) == before
@@ -483,7 +483,7 @@ def test_of_several_old_versions_none_is_left_behind(tmp_path, monkeypatch):
             raise OSError("disk full")
         return files.back_up(path)
 
-    monkeypatch.setattr(install, "back_up", fails_on_the_ini)
+    monkeypatch.setattr(installation, "back_up", fails_on_the_ini)
     with pytest.raises(OSError, match="disk full"):
         put_in(ini, **python)
     assert content_of(tmp_path) == before
@@ -512,7 +512,7 @@ def test_an_update_that_was_interrupted_takes_no_new_file_for_an_edited_one(tmp_
     put_in(write_config(tmp_path))
     newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": b"(two)\n"})
     (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_bytes(b"(two)\n")
-    install.bring_copy_up_to_date(tmp_path / "g12")
+    installation.bring_copy_up_to_date(tmp_path / "g12")
     assert not list((tmp_path / "g12").rglob("*.edited*"))
     assert package_copy.edited(tmp_path / "g12") == []
 
@@ -524,12 +524,12 @@ def test_no_edit_is_ever_lost(tmp_path, monkeypatch):
     for version in ("two", "three"):
         haas.write_text(f"(mine before {version})\n")
         newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": f"({version})\n".encode()})
-        install.bring_copy_up_to_date(copy)
+        installation.bring_copy_up_to_date(copy)
     haas.write_text("(mine at last)\n")
     (copy / "ngc" / "new.ngc").write_text("(my own)\n")
     rest = {name: content for name, content in PACKAGE.items() if not name.startswith("ngc/")}
     newer(monkeypatch, {**rest, "ngc/new.ngc": b"(theirs)\n"})
-    said = install.bring_copy_up_to_date(copy)
+    said = installation.bring_copy_up_to_date(copy)
     assert content_of(copy / "ngc") == {
         "g12_haas.ngc.edited": b"(mine before two)\n",
         "g12_haas.ngc.edited.2": b"(mine before three)\n",
@@ -552,21 +552,21 @@ def test_a_damaged_copy_is_mended(tmp_path, damage):
         haas.write_bytes(b"")
     else:
         shutil.rmtree(tmp_path / "g12")
-    assert install.lost_files(IniText(ini))
-    install.bring_copy_up_to_date(tmp_path / "g12")
+    assert installation.lost_files(IniText(ini))
+    installation.bring_copy_up_to_date(tmp_path / "g12")
     assert content_of(tmp_path) == whole
-    assert not install.lost_files(IniText(ini))
+    assert not installation.lost_files(IniText(ini))
 
 
 def test_the_copy_that_only_a_users_module_names_is_missed_too(tmp_path):
     ini, python = own_config(tmp_path)
     put_in(ini, "polar", **python)
     shutil.rmtree(tmp_path / "g12")
-    assert install.lost_files(IniText(ini))
+    assert installation.lost_files(IniText(ini))
 
 
 def test_no_copy_is_missed_where_none_is_named(tmp_path):
-    assert install.lost_files(IniText(write_config(tmp_path))) == []
+    assert installation.lost_files(IniText(write_config(tmp_path))) == []
 
 
 def test_a_copy_does_not_mend_itself(tmp_path, monkeypatch):
@@ -575,11 +575,11 @@ def test_a_copy_does_not_mend_itself(tmp_path, monkeypatch):
     monkeypatch.setattr(features, "ROOT", copy)
     (copy / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
     newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": b"(mine)\n"})
-    assert install.bring_copy_up_to_date(copy) == []
+    assert installation.bring_copy_up_to_date(copy) == []
     assert package_copy.edited(copy) == ["ngc/g12_haas.ngc"]
     (copy / "ngc" / "g12_haas.ngc").unlink()
     with pytest.raises(UsageError, match="from the package itself"):
-        install.bring_copy_up_to_date(copy)
+        installation.bring_copy_up_to_date(copy)
 
 
 @pytest.mark.parametrize(
@@ -658,7 +658,7 @@ def test_a_link_to_the_ini_is_no_other_machine(tmp_path):
     (tmp_path / "link.ini").symlink_to(ini)
     put_in(ini)
     text = IniText(tmp_path / "link.ini")
-    assert list(install.others_including(text, [ini.absolute()])) == []
+    assert list(trial.others_including(text, [ini.absolute()])) == []
     take_out(tmp_path / "link.ini")
     assert ini.read_text() == MILL
     assert not (tmp_path / "g12").exists()
@@ -744,7 +744,7 @@ def test_a_protected_file_stops_everything(tmp_path, monkeypatch):
     def protected(paths):
         raise PermissionError(13, "Permission denied", str(*paths))
 
-    monkeypatch.setattr(install, "require_writable", protected)
+    monkeypatch.setattr(installation, "require_writable", protected)
     with pytest.raises(PermissionError):
         put_in(ini)
     assert content_of(tmp_path) == before
@@ -759,7 +759,7 @@ def test_a_failed_installation_leaves_no_old_versions_behind(tmp_path, monkeypat
     def fails(_changes):
         raise OSError("disk full")
 
-    monkeypatch.setattr(install, "write_all", fails)
+    monkeypatch.setattr(installation, "write_all", fails)
     with pytest.raises(OSError, match="disk full"):
         put_in(ini)
     after = content_of(tmp_path)
@@ -816,8 +816,8 @@ def test_wrong_use_of_install(arguments, says, capsys):
     ],
 )
 def test_the_ways_to_name_features(words):
-    asked = install.parser().parse_args(words)
-    found = install.named(asked.ini, asked.wanted)
+    options = install.command_parser().parse_args(words)
+    found = install.ini_and_features(options.ini, options.wanted)
     assert found == (Path("mill.ini"), ["haas", "circle-mill"])
 
 

@@ -47,7 +47,7 @@ def refuse(kind: str, text: str, cure: str) -> Refused:
 
 
 @dataclass
-class Plan:
+class InstallPlan:
     """What an installation would change; nothing is written yet.
 
     ``text`` is the INI with its includes, edited; ``modules`` the user's own Python modules with
@@ -81,10 +81,10 @@ def marked(path: Path, statement: str) -> bool:
     return any(line.rstrip().endswith(statement + MARK) for line in read_lines(path))
 
 
-def make_plan(config: Config, wanted: Sequence[str]) -> Plan:
+def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
     """Return the plan that gives a config the features wanted."""
     prefix, copied = package_folder(config)
-    plan = Plan(IniText(config.text.path), prefix, copied)
+    plan = InstallPlan(IniText(config.text.path), prefix, copied)
     mend_remaps(plan.text, config)
     python = python_lines(plan, config, wanted)
     subs = subroutine_lines(plan, config, wanted)
@@ -184,7 +184,7 @@ def new_remaps(config: Config, wanted: Sequence[str]) -> list[features.Remap]:
     ]
 
 
-def subroutine_lines(plan: Plan, config: Config, wanted: Sequence[str]) -> list[str]:
+def subroutine_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
     """Return the SUBROUTINE_PATH line to put in; one that is there gets longer instead."""
     name = f"{plan.prefix}/ngc"
     if not any(features.names_of(feature) for feature in wanted):
@@ -206,7 +206,7 @@ def subroutine_lines(plan: Plan, config: Config, wanted: Sequence[str]) -> list[
     return []
 
 
-def python_lines(plan: Plan, config: Config, wanted: Sequence[str]) -> list[str]:
+def python_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
     """Return the lines for [PYTHON], and plan those for the user's own modules."""
     folder = f"{plan.prefix}/python"
     if not config.ini.get("PYTHON", "TOPLEVEL"):

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A machine config looked at: loaded as LinuxCNC does, what was found, and the report of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+
+from g12.ini_sections import entries_of
+from g12.settings import SECTION, TABLE
+from g12.tools.errors import UsageError
+from g12.tools.install import features
+from g12.tools.install.config import Config, load_config, remaps_in
+from g12.tools.install.ini_edit import IniText
+from g12.tools.install.rules import Finding, codes_of, findings_of
+from g12.tools.machine.files import existing
+from g12.tools.machine.ini import Overrides
+
+
+def read_config_text(ini: Path) -> IniText:
+    """Return the INI, or refuse what is no INI file."""
+    existing(ini)
+    if ini.suffix == ".expanded":
+        raise UsageError(f"{ini}: LinuxCNC makes this file anew at every start; name {ini.stem}")
+    text = IniText(ini)
+    if not text.section("RS274NGC"):
+        raise UsageError(f"{ini}: no [RS274NGC] section: this is no machine's INI file")
+    return text
+
+
+def check_config(text: IniText, overlay: Overrides | None = None) -> tuple[Config, list[Finding]]:
+    """Return the config of an INI and what there is to say about it.
+
+    ``overlay`` replaces values for the interpreter, as in `Ini.replaced`.
+    """
+    codes = {code.remap.code for code in codes_of(remaps_in(text))}
+    config = load_config(text, codes, overlay)
+    return config, findings_of(config)
+
+
+def settings_of(config: Config) -> dict[str, str]:
+    """Return the settings that section [G12] changes."""
+    entries = entries_of(config.ini.lines, SECTION)
+    return {key: value for _, key, value in entries if key in TABLE}
+
+
+def check_report(config: Config, found: list[Finding]) -> dict:
+    """Return everything `check` says, for a program to read."""
+    codes = codes_of(config.remaps)
+    mine = {code.line for code in codes}
+    others = [remap for line, remap in config.remaps if line not in mine]
+    return {
+        "ini": str(config.text.path),
+        "linuxcnc": config.version,
+        "loads": config.failure is None,
+        "axes": list(config.ini.axes),
+        "codes": [
+            {"code": code.remap.code, "feature": code.feature, "line": code.line.place}
+            for code in codes
+        ],
+        "other_remaps": {remap.code: remap.text for remap in others},
+        "settings": settings_of(config),
+        "findings": [asdict(finding) for finding in found],
+    }
+
+
+def lines_of_check(report: dict) -> Iterator[str]:
+    """Yield the report for a person."""
+    loads = "loads" if report["loads"] else "does not load"
+    axes = " ".join(report["axes"])
+    yield f"{report['ini']}: {loads} in LinuxCNC {report['linuxcnc']}, axes {axes}"
+    for code in report["codes"]:
+        meaning = features.MEANING[code["feature"]]
+        yield f"  {code['code']:6} {code['feature']:12} {meaning} ({code['line']})"
+    for code, text in report["other_remaps"].items():
+        yield f"  {code:6} {'not ours':12} REMAP = {text}"
+    for key, value in report["settings"].items():
+        yield f"  [{SECTION}] {key} = {value}"
+    for finding in report["findings"]:
+        yield f"{finding['level']} [{finding['kind']}]: {finding['text']}"
+        yield f"  cure: {finding['cure']}"
+    if not report["findings"]:
+        yield "nothing found"

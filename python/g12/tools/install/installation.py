@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The package put into a machine config: tried out, shown, and then written."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from g12.tools.errors import UsageError
+from g12.tools.install import features, package_copy
+from g12.tools.install.config import Config, load_config
+from g12.tools.install.ini_edit import IniText
+from g12.tools.install.plan import InstallPlan, make_plan, names_copy, refuse
+from g12.tools.install.rules import codes_of, findings_of
+from g12.tools.install.trial import refuse_problems, try_out
+from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
+
+BEFORE = {"no-linuxcnc", "python-fails", "does-not-load"}  # what keeps a config from being read
+
+
+def install(text: IniText, wanted: Sequence[str], dry_run: bool) -> Iterator[str]:
+    """Install features in a machine config; yield what is shown."""
+    lost = lost_files(text)
+    if lost:
+        yield f"{text.path.parent / package_copy.NAME}: {len(lost)} of its files are missing"
+        if dry_run:
+            yield "dry run: nothing was written; without these files nothing more can be told"
+            return
+        yield from bring_copy_up_to_date(text.path.parent / package_copy.NAME)
+    config = readable_config(text)
+    there = [code.feature for code in codes_of(config.remaps)]
+    for pair in excluding([*there, *wanted]):
+        raise refuse("dialects", f"{pair} exclude each other", "uninstall first")
+    plan = make_plan(config, wanted)
+    changes = plan.changes()
+    old_copy = plan.copied and out_of_date(config.folder / package_copy.NAME)
+    if not changes and not old_copy:
+        yield f"{text.path}: {', '.join(wanted)}: installed already, nothing to do"
+        return
+    warnings = try_out(plan)
+    for path, content in changes.items():
+        yield from difference(path, content)
+    if dry_run:
+        yield "dry run: nothing was written"
+        return
+    yield from write_changes(plan, config.folder)
+    for warning in warnings:
+        yield f"{warning.level} [{warning.kind}]: {warning.text}; cure: {warning.cure}"
+
+
+def readable_config(text: IniText) -> Config:
+    """Return the config as it is; refuse one that LinuxCNC cannot load."""
+    config = load_config(text, set())
+    refuse_problems([finding for finding in findings_of(config) if finding.kind in BEFORE])
+    return config
+
+
+def excluding(names: Sequence[str]) -> Iterator[str]:
+    """Yield the features that exclude each other, in words."""
+    for group in features.ONE_OF:
+        chosen = [name for name in group if name in names]
+        if len(chosen) > 1:
+            yield " and ".join(chosen)
+
+
+def lost_files(text: IniText) -> list[str]:
+    """Return what is missing of the copy that the config's lines name."""
+    copy = text.path.parent / package_copy.NAME
+    if copy.exists():
+        return package_copy.missing(copy)
+    return list(package_copy.package_files()) if names_copy(text) else []
+
+
+def write_changes(plan: InstallPlan, folder: Path) -> list[str]:
+    """Write everything; return what was done, a line each."""
+    changes, copy = plan.changes(), folder / package_copy.NAME
+    require_writable(changes)
+    fresh, kept = plan.copied and not copy.exists(), {}
+    try:
+        done = bring_copy_up_to_date(copy) if plan.copied else []
+        for path in changes:
+            if not is_marked(path):
+                kept[path] = back_up(path)
+        write_all(changes)
+    except BaseException:
+        take_back(kept, copy if fresh else None)
+        raise
+    for path in changes:
+        before = f"; as it was: {kept[path].name}" if path in kept else ""
+        done.append(f"{path}: changed{before}")
+    return done
+
+
+def take_back(kept: Iterable[Path], copy: Path | None) -> None:
+    """Take away what an installation that failed has written: old versions, a new copy."""
+    for path in kept:
+        drop_backup(path)
+    if copy and copy.exists():
+        shutil.rmtree(copy)
+
+
+def bring_copy_up_to_date(copy: Path) -> list[str]:
+    """Write what is new of the package; return what was done, a line each."""
+    if not out_of_date(copy):
+        return []
+    aside = package_copy.write_copy(copy)
+    kept = [f"{copy / name}: your version, kept beside the new one" for name in aside]
+    return [f"{copy}: the package, {len(package_copy.package_files())} files", *kept]
+
+
+def out_of_date(copy: Path) -> bool:
+    """Tell whether a copy lacks files of this package; from inside itself it cannot be mended."""
+    if not copy.exists() or not copy.samefile(features.ROOT):
+        return bool(package_copy.stale(copy))
+    for name in package_copy.missing(copy):
+        raise UsageError(f"{copy / name}: is missing; run install from the package itself, "
+                         "not from this copy of it")  # fmt: skip
+    return False
+
+
+def is_marked(path: Path) -> bool:
+    """Tell whether a file has lines of an earlier installation, and so a kept old version."""
+    return b"by g12 install" in path.read_bytes() or b">>> g12 install" in path.read_bytes()

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The package taken out of a machine config: what `install` put in, and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from g12.ini_sections import key_and_value
+from g12.machine_ini import remap_from_value
+from g12.tools.install import package_copy
+from g12.tools.install.config import remaps_in
+from g12.tools.install.features import model_of
+from g12.tools.install.ini_edit import (
+    BEGIN,
+    END,
+    IniText,
+    Line,
+    is_entry,
+    other_inis,
+    read_lines,
+    to_bytes,
+    without,
+)
+from g12.tools.install.plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE, names_copy
+from g12.tools.install.rules import codes_of
+from g12.tools.machine.files import difference, drop_backup, require_writable, write_all
+
+OWN_ENDS = {
+    "SUBROUTINE_PATH": "/ngc",
+    "TOPLEVEL": "/python/toplevel.py",
+    "PATH_PREPEND": "/python",
+    "PATH_APPEND": "/python",
+}
+HEADER = "[PYTHON]"
+
+
+def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
+    """Take the package out of a machine config; yield what is shown."""
+    blocks, copy = text.blocks(), text.path.parent / package_copy.NAME
+    package_copy.listed(copy)  # refuses a damaged list before anything is written
+    stay = take_out_blocks(text, blocks)
+    shared = still_installed(text)
+    if not blocks and (shared or not package_copy.is_copy(copy)):
+        yield f"{text.path}: nothing that install put in"
+        return
+    modules = take_out_elsewhere(text, notes_in(blocks), shared)
+    if package_copy.is_copy(copy):
+        take_out_path(text, f"{package_copy.NAME}/ngc", shared)
+    inis = {path: to_bytes(lines) for path, lines in text.files.items()}
+    changes = {path: new for path, new in {**inis, **modules}.items() if new != path.read_bytes()}
+    for path, content in changes.items():
+        yield from difference(path, content)
+    for line in stay:
+        yield f"{line.place}: stays, it is not by install: {line.text}"
+    needing = sorted({line.place: line for line in lines_needing_package(text)}.values())
+    for line in needing:
+        yield f"{line.place}: still needs the package: {line.text.strip()}"
+    if dry_run:
+        yield "dry run: nothing was written"
+        return
+    require_writable(changes)
+    write_all(changes)
+    for path in changes:
+        yield from after_change(path)
+    yield from after_all(copy, shared, bool(needing))
+
+
+def take_out_blocks(text: IniText, blocks: list[list[Line]]) -> list[Line]:
+    """Take the blocks out; return the lines of the user's between the markers, which stay."""
+    doomed = [line for block in blocks for line in block if is_by_install(line)]
+    headers = [line for block in blocks for line in block if line.text == HEADER]
+    others = (line for line in text.section("PYTHON") if line not in (*doomed, *headers))
+    if not any(is_entry(line.text) for line in others):
+        doomed += headers
+    stay = [line for block in blocks for line in block if line not in (*doomed, *headers)]
+    text.remove(doomed)
+    return stay
+
+
+def is_by_install(line: Line) -> bool:
+    """Tell whether a line between the markers is one that `install` puts there."""
+    key, value = key_and_value(line.text)
+    if key == "REMAP":
+        return model_of(remap_from_value(value)) is not None
+    if key:
+        return ":" not in value and value.endswith(OWN_ENDS.get(key, "\n"))
+    return line.text.startswith((BEGIN, NOTE, END))
+
+
+def notes_in(blocks: list[list[Line]]) -> list[str]:
+    """Return what the blocks say was put elsewhere."""
+    lines = (line.text for block in blocks for line in block)
+    return [text[len(NOTE) :] for text in lines if text.startswith(NOTE)]
+
+
+def take_out_path(text: IniText, entry: str, shared: bool) -> None:
+    """Take a folder out of SUBROUTINE_PATH, unless it is alone or an include is still shared."""
+    for line, _ in text.entries("RS274NGC", "SUBROUTINE_PATH")[:1]:
+        if not shared or line.file == text.path:
+            text.remove_from_value(line, entry)
+
+
+def still_installed(text: IniText) -> bool:
+    """Tell whether another INI of the folder has the package by `install`."""
+    for other in other_inis(text):
+        other.files.update({file: text.files[file] for file in text.files if file in other.files})
+        if other.blocks() or any(line.file not in text.files for line in names_copy(other)):
+            return True
+    return False
+
+
+def without_imports(path: Path) -> bytes:
+    """Return a module's content without the lines that `install` put at its end."""
+    lines = read_lines(path)
+    ours = {index for index, line in enumerate(lines) if line.rstrip().endswith(MARK)}
+    return to_bytes(without(lines, ours))
+
+
+def take_out_elsewhere(text: IniText, notes: list[str], shared: bool) -> dict[Path, bytes]:
+    """Take out what the notes say; return the user's modules that change."""
+    modules = {}
+    for note in notes:
+        module = text.path.parent / note.removeprefix(MODULE_NOTE)
+        if note.endswith(PATH_NOTE):
+            take_out_path(text, note.removesuffix(PATH_NOTE), shared)
+        elif not shared and module.is_file():
+            modules[module] = without_imports(module)
+    return modules
+
+
+def lines_needing_package(text: IniText) -> list[Line]:
+    """Return the lines of an INI without its blocks that do nothing without the package."""
+    return [*names_copy(text), *(code.line for code in codes_of(remaps_in(text)))]
+
+
+def after_change(path: Path) -> Iterator[str]:
+    """Drop the old version if the file is that again; yield what was done."""
+    kept = ", ".join(backup.name for backup in drop_backup(path))
+    yield f"{path}: changed" + (f"; you changed it since, so {kept} stays" if kept else "")
+
+
+def after_all(copy: Path, shared: bool, needed: bool) -> Iterator[str]:
+    """Take the copy of the package away if nobody uses it; yield what was done."""
+    if shared:
+        yield f"{copy}: stays, another INI of this folder uses it"
+    elif copy.is_dir() and not package_copy.is_copy(copy):
+        yield f"{copy}: stays, it has no list of what install copied ({package_copy.MANIFEST})"
+    elif needed:
+        yield f"{copy}: stays, lines need it that are yours; take them out and run uninstall again"
+    elif package_copy.is_copy(copy):
+        left = package_copy.remove_copy(copy)
+        yield f"{copy}: " + (f"taken away but for what you changed: {', '.join(left)}"
+                             if left else "taken away")  # fmt: skip
