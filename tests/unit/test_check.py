@@ -15,7 +15,8 @@ from support.small_configs import HAAS, LATHE, MILL, config_of, with_lines, writ
 
 HANDLERS = {name: "g12.remap" for f in features.FILES for name in features.handlers_of(f)}
 PYTHON = "[PYTHON]\nTOPLEVEL = toplevel.py\n"
-GOOD = with_lines(MILL, "RS274NGC", f"SUBROUTINE_PATH = ngc\n{HAAS}") + PYTHON
+SUBS = "SUBROUTINE_PATH = ngc\n"
+GOOD = with_lines(MILL, "RS274NGC", f"{SUBS}{HAAS}") + PYTHON
 
 
 @pytest.fixture
@@ -23,7 +24,8 @@ def found(tmp_path):
     """Return a function: the findings about an INI with everything else in order."""
 
     def find(text, remap=HANDLERS, remap_file="remap.py", files=(), **facts):
-        subs = {f"ngc__{name}_ngc": "" for name in ("g12_haas", "g12_circle_mill", "circle_mill")}
+        names = ("g12_haas", "g12_circle_mill", "circle_mill", "g12_skipped_over")
+        subs = {f"ngc__{name}_ngc": "" for name in names}
         ini = write_config(tmp_path, text, toplevel_py="", **subs, **dict(files))
         package = tmp_path / "python" / "g12"
         config = config_of(ini, remap=remap, remap_file=remap_file, package=package, **facts)
@@ -72,7 +74,7 @@ def test_a_code_that_linuxcnc_owns(found):
     polar = (
         "REMAP = G12.1 modalgroup=1 python=polar_on\nREMAP = G13.1 modalgroup=1 python=polar_off\n"
     )
-    text = with_lines(LATHE, "RS274NGC", polar) + PYTHON
+    text = with_lines(LATHE, "RS274NGC", SUBS + polar) + PYTHON
     (owned,) = found(text, owned={"G12.1"})
     assert owned.kind == "owned"
     assert "polar-g12.3" in owned.cure
@@ -80,7 +82,13 @@ def test_a_code_that_linuxcnc_owns(found):
 
 def test_any_code_pair_may_be_given_to_polar_interpolation(found):
     polar = "REMAP = G7.1 modalgroup=1 python=polar_on\nREMAP = G7.2 modalgroup=1 py=polar_off\n"
-    assert found(with_lines(LATHE, "RS274NGC", polar) + PYTHON) == []
+    assert found(with_lines(LATHE, "RS274NGC", SUBS + polar) + PYTHON) == []
+
+
+def test_the_sub_of_polar_interpolation(found):
+    (missing,) = found(with_lines(LATHE, "RS274NGC", lines_of("polar")) + PYTHON)
+    assert missing.kind == "no-sub"
+    assert missing.text.startswith("g12_skipped_over.ngc is in none of the folders")
 
 
 @pytest.mark.parametrize(
@@ -199,7 +207,7 @@ def test_a_wrong_setting(found):
 def test_a_lathe_without_c_and_a_mill_without_y(found):
     (axis,) = found(GOOD.replace("X Y Z", "X Z"))
     assert axis.text == "haas needs axis Y; [TRAJ] COORDINATES has X Z"
-    (axis,) = found(with_lines(MILL, "RS274NGC", lines_of("polar")) + PYTHON)
+    (axis,) = found(with_lines(MILL, "RS274NGC", SUBS + lines_of("polar")) + PYTHON)
     assert axis.text == "polar needs axis C; [TRAJ] COORDINATES has X Y Z"
 
 

@@ -86,10 +86,10 @@ def test_a_path_broken_with_backslashes_gets_longer(tmp_path):
     assert ini.read_bytes() == before
 
 
-def test_polar_alone_needs_no_subs(tmp_path):
+def test_polar_needs_a_sub_too(tmp_path):
     ini = write_config(tmp_path)
     put_in(ini, "polar")
-    assert "SUBROUTINE_PATH" not in ini.read_text()
+    assert "SUBROUTINE_PATH = g12/ngc" in ini.read_text()
 
 
 def test_a_second_feature_joins_the_first(tmp_path):
@@ -450,13 +450,13 @@ def test_the_real_package_has_what_a_machine_needs(monkeypatch):
 # Installations that were interrupted, damaged or edited.
 
 
-def test_a_folder_that_linuxcnc_cannot_read_subs_from_is_refused(tmp_path):
+@pytest.mark.parametrize("feature", ["haas", "polar"])
+def test_a_folder_that_linuxcnc_cannot_read_subs_from_is_refused(tmp_path, feature):
     (tmp_path / "my mill").mkdir()
     ini = write_config(tmp_path / "my mill")
     with pytest.raises(Refused) as refused:
-        put_in(ini)
+        put_in(ini, feature)
     assert refused.value.args[0].kind == "blank-in-path"
-    put_in(ini, "polar")
 
 
 @pytest.mark.parametrize("stage", ["back_up", "write_all"])

@@ -18,16 +18,25 @@ NO_CODE = -1
 MOTION = 1  # modal group
 
 
-class CallFrame:
-    """The frame of the handler at work, and of its caller."""
+def kept(interp: object, text: str) -> str:
+    """Return a text that lives as long as the interpreter, which keeps no copies of names."""
+    texts = getattr(interp, "g12_texts", None)
+    if texts is None:
+        texts = interp.g12_texts = {}
+    return texts.setdefault(text, text)
 
-    def __init__(self, interp: object) -> None:
-        self.interp = interp
+
+class CallFrame:
+    """The frame of the handler at work, and of its caller, which is in the file ``home``."""
+
+    def __init__(self, interp: object, home: str) -> None:
+        self.interp, self.home = interp, home
         self.level, self.remap_level = interp.call_level, interp.remap_level
         block = interp.blocks[self.remap_level]
         self._remap, self._phase = block.executing_remap, block.phase
-        # the interpreter keeps no copy of the name: it must live as long as the frame
-        self._name = interp.sub_context[self.level - 1].subname or ""
+        caller = interp.sub_context[self.level - 1]
+        self._name = kept(interp, caller.subname or "")
+        caller.filename = kept(interp, home)  # or it is that of an earlier call
 
     @property
     def is_current(self) -> bool:
@@ -48,21 +57,24 @@ class CallFrame:
         self.interp.sub_context[self.level - 1].sequence_number = line
         self.interp.sequence_number = line
 
-    def give_up(self, line: int, *, called: bool, home: str) -> None:
-        """Let an error be that of ``line``: unwinding takes the number from the frames.
+    def give_up(self, line: int, *, called: bool, behind: int | None) -> None:
+        """Let an error be that of ``line``, and the line behind follow that begins at ``behind``.
 
-        What counts is the main program's line. In a file that the section calls (``called``), or
-        for a section that is itself in another file (``home``), it is the line that calls.
+        `Interp::unwind_call` (rs274ngc_pre.cc) takes both from the frames. What counts is the main
+        program's line. In a file that the section calls (``called``), or for a section that is
+        itself in another file, it is the line that calls.
         """
-        frames = self.interp.sub_context
+        interp, frames = self.interp, self.interp.sub_context
+        frames[self.level - 1].position = frames[self.level].position if behind is None else behind
         if called:
             line = frames[self.level].sequence_number
-        if frames[0].filename not in ("", home):
+        if frames[0].filename != self.home:
             line = frames[0].sequence_number
         for level in range(self.level):
             frames[level].sequence_number = line
-        self.interp.sequence_number = line
-        self.interp.blocks[self.remap_level].executing_remap = None
+        interp.sequence_number = line
+        interp.blocks[self.remap_level].executing_remap = None
+        interp.call_level = self.level  # a failed read has unwound already, to the place before
 
     def execute_and_wait(self, text: str) -> Iterator[int]:
         """Execute a block, and yield until the machine has done what it waits for.

@@ -45,6 +45,7 @@ def refuse_start_error() -> None:
         raise Refusal(START_ERROR.message)
 
 
+NO_FILE = ""  # the interpreter keeps no copy of it: a constant lives as long as the module
 DIAMETER = 15  # index into a block's g_modes, and into active_g_codes
 G7 = 70
 INCH = 1  # length_units
@@ -78,9 +79,19 @@ def handler(function):
             refuse_start_error()
             return function(self, **words)
         except Exception as error:
+            forget_return(self)
             return refuse_block(self, error)
 
     return guarded
+
+
+def forget_return(interp: object) -> None:
+    """Let the caller of the remap at work go on with its next line, should this one fail.
+
+    `Interp::unwind_call` (rs274ngc_pre.cc) goes back to where each frame was to return to. The
+    caller's would still say where an earlier call returned; without a file it says nothing.
+    """
+    interp.sub_context[interp.call_level - 1].filename = NO_FILE
 
 
 def code_of_block(interp: object) -> str:

@@ -57,11 +57,12 @@ check_at_start()
 def polar_on(self, **words) -> Iterator[int]:
     """Read, plan and move a section: the handler of G12.1, which may have to wait."""
     try:
+        glue.forget_return(self)
         glue.refuse_start_error()
         refuse_mdi(self)
         program = ProgramLines(self, getattr(self, "g12_source", None))
         self.g12_source = program.home
-        yield from run_section(self, CallFrame(self), program)
+        yield from run_section(self, CallFrame(self, program.home.filename), program)
     except Exception as error:
         yield glue.refuse_block(self, error)
     yield INTERP_OK
@@ -109,5 +110,5 @@ def run_section(interp: object, frame: CallFrame, program: ProgramLines) -> Iter
     except Exception as error:
         line = line_named(error)
         called = program.source is not program.home and not line
-        frame.give_up(line or program.line, called=called, home=program.home.filename)
+        frame.give_up(line or program.line, called=called, behind=program.next_at_home)
         raise

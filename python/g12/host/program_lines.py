@@ -19,7 +19,7 @@ NO_MOTION = -1
 NO_REPEATS = 0  # L of an M98
 MOVING = ("call", "endsub", "return")  # O-words that always move the interpreter in its file
 SHORT = 200  # characters: every LinuxCNC reads longer lines than that
-SKIPPED_OVER = "g12_skipped_over"  # the name of a sub that never exists in a file
+SKIPPED_OVER = "g12_skipped_over"  # ngc/g12_skipped_over.ngc
 
 
 class ProgramFile(NamedTuple):
@@ -90,6 +90,11 @@ class ProgramLines:
             return self.line
         return LineOfFile(self.line, os.path.basename(self.source.filename))
 
+    @property
+    def next_at_home(self) -> int | None:
+        """Where the next line begins, in bytes; None in another file than the section's."""
+        return self.home.starts[self.line] if self.source is self.home else None
+
     def take(self) -> str | None:
         """Return the next line and count it as read; None at the end of the file."""
         line, lines = self.line, self.source.lines
@@ -143,8 +148,8 @@ class ProgramLines:
     def catch_up(self) -> None:
         """Make the interpreter read on behind the line taken.
 
-        Nothing but the return from a sub moves its place in a file: so call an empty one, whose
-        lines need not be in any file, and change where it returns to.
+        Nothing but the return from a sub moves its place in a file: so call an empty one, and
+        change where it returns to.
         """
         interp, line = self.interp, self.line
         if self._in_file != line:

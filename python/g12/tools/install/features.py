@@ -32,7 +32,10 @@ MEANING = {
     "polar-g12.3": "polar coordinate interpolation on and off",
 }
 SHARED = {"cycle_done"}  # the epilog of every cycle does not tell which one it is
-SUBS = {"circle-mill": ("circle_mill",)}  # what a program calls besides the codes
+SUBS = {  # what a program, or a handler, calls besides the codes
+    "circle-mill": ("circle_mill",),
+    **dict.fromkeys(POLAR, ("g12_skipped_over",)),
+}
 
 CLOSE = 0.8  # share of letters in common that makes a name a misspelt one
 SECTION = "RS274NGC"  # which the files of configs/include go into
