@@ -51,6 +51,23 @@ def test_every_machine_that_comes_with_the_package_is_good(name, capsys):
     assert kinds(SIM / name, capsys) == []
 
 
+@pytest.mark.parametrize(
+    ("table", "expected"),
+    [
+        ("P1 T1 D6\n", []),
+        ("T1 P1\nt2 p2 d+.25 ;x\n", []),
+        ("D6.2.3 T1 P1\n", []),
+        ("T1 P1\nT2 P2 Z1\n", ["no-diameters"]),
+        ("T1 P1 D--\n", ["no-diameters"]),
+        ("T1 P1 ;D6\n", ["no-diameters"]),
+        ("T1P1D6\n", ["no-diameters"]),
+        ("", ["no-diameters"]),
+    ],
+)
+def test_the_tool_table_is_read_as_linuxcnc_reads_it(table, expected, tmp_path, capsys):
+    assert kinds(write_config(tmp_path, GOOD, mill_tbl=table), capsys) == expected
+
+
 def remap(text):
     return {"mine__toplevel_py": "import remap\n", "mine__remap_py": text}
 

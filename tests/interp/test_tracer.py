@@ -82,6 +82,17 @@ def mill(ini):
         yield tracer
 
 
+def test_the_tool_table_is_linuxcncs_own_reading(ini, tmp_path):
+    table = tmp_path / "tool.tbl"
+    table.write_text(
+        "; T9 P9 D99 is no tool\nT1 P1 D0.25 Z1.0 ;1/4 D8 end mill\nt2 p7 z3\n"
+        " D+12.5 P3 T3\nT4 P4 D1.2.3\nT5 P5 D--\nT1 P6 D7\n"
+    )
+    with Tracer(ini, tools=table) as tracer:
+        assert tracer.diameters == {1: 0.25, 2: 0.0, 3: 12.5, 4: 1.2}
+        assert tracer.trace_text(["M2"]).diameters == tracer.diameters
+
+
 def near(values):
     return pytest.approx(values, abs=1e-9)
 

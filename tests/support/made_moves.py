@@ -70,6 +70,7 @@ class Hand:
             printed="",
             position=self.at,
             seconds=0.0,
+            diameters={1: 6.0, 2: 10.0},
             **nothing,
         )
 

@@ -48,11 +48,15 @@ def with_lines(text: str, section: str, lines: str) -> str:
     return text.replace(f"[{section}]\n", f"[{section}]\n{lines}")
 
 
-def config_of(ini: Path, *, failure=None, owned=(), version="2.9.0", **python) -> Config:
+def config_of(
+    ini: Path, *, failure=None, owned=(), version="2.9.0", diameters=None, **python
+) -> Config:
     """Return the config of an INI that no LinuxCNC was asked about."""
     text = IniText(ini)
     asked = Python(**python)
-    return Config(text, text.ini(), remaps_in(text), version, asked, frozenset(owned), failure)
+    return Config(
+        text, text.ini(), remaps_in(text), version, asked, frozenset(owned), failure, diameters
+    )
 
 
 def content_of(folder: Path) -> dict[str, bytes]:

@@ -211,16 +211,15 @@ def test_a_lathe_without_c_and_a_mill_without_y(found):
     assert axis.text == "polar needs axis C; [TRAJ] COORDINATES has X Y Z"
 
 
-@pytest.mark.parametrize("table", ["T1 P1\nT2 P2 Z1\n", "T1P1D0\n", "T1 P1 ;D6\n"])
-def test_tools_without_diameters(found, table):
-    (tools,) = found(GOOD, files={"mill_tbl": table})
+@pytest.mark.parametrize("diameters", [{}, {1: 0.0, 2: 0.0}])
+def test_tools_without_diameters(found, diameters):
+    (tools,) = found(GOOD, diameters=diameters)
     assert (tools.level, tools.kind) == (WARNING, "no-diameters")
 
 
-@pytest.mark.parametrize("table", ["", "T1P1D6\n", "T1 P1\nT2 P2 d+.25 ;x\n"])
-def test_tools_with_diameters(found, table):
-    expected = [] if table else ["no-diameters"]
-    assert kinds(found(GOOD, files={"mill_tbl": table})) == expected
+@pytest.mark.parametrize("diameters", [{1: 0.0, 2: 0.25}, None])
+def test_tools_with_diameters_or_nobody_to_ask(found, diameters):
+    assert found(GOOD, diameters=diameters) == []
 
 
 def test_another_interpreter(found):

@@ -95,14 +95,6 @@ def test_only_motion_across_the_tool_is_sideways(hand, sideways):
     assert part.is_sideways(hand.moves[-1]) is sideways
 
 
-def test_a_tool_table_gives_diameters(tmp_path):
-    table = tmp_path / "tool.tbl"
-    table.write_text(
-        "; T9 P9 D99 is no tool\nT1 P1 D0.25 Z1.0 ;1/4 D8 end mill\nt2 p7 z3\n T3 P3 Z-1 d+12.5;x\n"
-    )
-    assert part.read_tool_table(table) == {1: 0.25, 2: 0.0, 3: 12.5}
-
-
 @pytest.mark.parametrize(("plane", "third"), [(17, [0, 0, 1]), (18, [0, 1, 0]), (19, [1, 0, 0])])
 def test_the_axes_of_each_plane_are_right_handed(plane, third):
     move = Hand().arc(1, 5, 0, plane=plane).moves[0]

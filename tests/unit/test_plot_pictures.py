@@ -32,7 +32,7 @@ PROGRAM = Path(__file__)
 
 
 def scene(hand, ini=MILL, **options):
-    subject = subject_of(PROGRAM, ini, hand.trace(), {1: 6.0, 2: 10.0})
+    subject = subject_of(PROGRAM, ini, hand.trace())
     return scene_of(subject, **options)
 
 

@@ -70,7 +70,7 @@ def main(arguments: list[str]) -> int:
             run = run_program(options.program, options.ini, options.tools, options.override)
         samples = run.samples
     with working(f"drawing {options.output.name}"):
-        subject = subject_of(options.program, ini, trace, options.tools, samples)
+        subject = subject_of(options.program, ini, trace, samples)
         scene = replace(
             scene_of(subject, options.units, options.feeds),
             override=options.override,

@@ -32,7 +32,7 @@ def g12_config():
     }})
 print(g12_config(), flush=True)
 """
-UNKNOWN_CODE = "Unknown g code used"
+UNUSED = "G99.8"  # no LinuxCNC has a meaning for it
 NO_REMAPS: Overrides = {"RS274NGC": {"REMAP": None, "RS274NGC_STARTUP_CODE": None}}
 MOST_FOLDERS = 10  # of SUBROUTINE_PATH; LinuxCNC ignores the rest
 
@@ -59,7 +59,8 @@ class Config:
 
     ``version`` is LinuxCNC's, empty if its Python modules are not there; ``python`` is None if
     nothing could be asked.  ``owned`` holds those of the codes asked about that LinuxCNC itself
-    has a meaning for.  ``failure`` is the interpreter's own text if it does not load the config.
+    has a meaning for.  ``failure`` is the interpreter's own text if it does not load the config,
+    ``diameters`` what it reads in the tool table: tool number to diameter in mm.
     """
 
     text: IniText
@@ -69,6 +70,7 @@ class Config:
     python: Python | None
     owned: frozenset[str]
     failure: str | None
+    diameters: dict[int, float] | None = None
 
     @property
     def folder(self) -> Path:
@@ -91,20 +93,21 @@ def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None
     if not version:
         return Config(text, ini, remaps_in(text), version, None, frozenset(), "no LinuxCNC")
     failure = load_failure(ini)
-    python, owned = None, frozenset()
+    python, owned, diameters = None, frozenset(), None
     try:
         with Tracer(ini, overrides=NO_REMAPS) as tracer:
             python = ask_python(tracer)
             owned = frozenset(code for code in codes if is_owned(tracer, code))
+            diameters = tracer.diameters
     except TraceFailure as refused:
         failure = failure or str(refused)
-    return Config(text, ini, remaps_in(text), version, python, owned, failure)
+    return Config(text, ini, remaps_in(text), version, python, owned, failure, diameters)
 
 
 def is_owned(tracer: Tracer, code: str) -> bool:
     """Tell whether LinuxCNC itself has a meaning for a code; REMAP lines must be out of the way."""
-    error = tracer.trace_text([code]).error
-    return error is None or error.text != UNKNOWN_CODE
+    error, unknown = (tracer.trace_text([text]).error for text in (code, UNUSED))
+    return error is None or error.text != unknown.text
 
 
 def ask_python(tracer: Tracer) -> Python:

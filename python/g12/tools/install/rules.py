@@ -26,10 +26,8 @@ OLDEST = (2, 9)
 LONGEST_LINE = 254  # LinuxCNC 2.9 reads no more of a line
 LINE_FOR_REMAP = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
-TOOL = re.compile(r"T(\d+)", re.IGNORECASE)
-DIAMETER = re.compile(r"D([-+.\d]+)", re.IGNORECASE)
 MEND = "if it was there once, run install again: it mends the folder g12"
-AFTERMATH = "Bad character 'g' used"  # of an interpreter that never came up
+AFTERMATH = "Bad character 'g'"  # begins what is said of an interpreter that never came up
 STOPPING = {  # kinds that keep LinuxCNC itself from loading the config
     "taken",
     "wrong-line",
@@ -433,25 +431,14 @@ def no_tool_table(config: Config, codes: list[Code]) -> Iterator[Finding]:
 
 def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[Finding]:
     """Find a tool table that cannot tell any cutter's radius."""
-    tools = tool_diameters(config)
     mill = any(code.feature not in features.POLAR for code in codes)
-    if mill and tools is not None and not any(tools.values()):
+    unknown = config.diameters is None or any(no_tool_table(config, codes))
+    if mill and not unknown and not any(config.diameters.values()):
         yield warning(
             "no-diameters",
             "no tool in the tool table has a diameter: a pocket with D would come out too large",
             "enter the cutters' diameters (D) in the tool table",
         )
-
-
-def tool_diameters(config: Config) -> dict[int, float] | None:
-    """Return tool number to diameter in machine units; None without a tool table file."""
-    path = config.ini.file("EMCIO", "TOOL_TABLE")
-    if not path or not path.is_file() or config.ini.get("EMCIO", "DB_PROGRAM"):
-        return None
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    entries = (line.split(";")[0] for line in lines)
-    found = ((TOOL.search(line), DIAMETER.search(line)) for line in entries)
-    return {int(tool[1]): float(size[1]) if size else 0.0 for tool, size in found if tool}
 
 
 RULES: tuple[Rule, ...] = (
@@ -499,5 +486,5 @@ def findings_of(config: Config) -> list[Finding]:
 def last_words(failure: str) -> str:
     """Return what the interpreter said last before it gave up, in one line."""
     lines = [line.strip() for line in failure.splitlines() if line.strip()]
-    told = [line for line in lines if line != AFTERMATH] or lines
+    told = [line for line in lines if not line.startswith(AFTERMATH)] or lines
     return "; ".join(told[-2:])

@@ -11,10 +11,8 @@ Lengths are millimetres, angles radians unless a name says degrees.
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from shapely.geometry import LineString, Point
@@ -23,14 +21,11 @@ from shapely.ops import unary_union
 
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.moves import THIRD_AXIS, Move
-from g12.tools.preview.tracer import Tools
 
 CHORD_ERROR = 2e-4  # of the polylines that stand for curves
 LONGEST_ARC_CHORD = math.radians(10)
 DISC_SEGMENTS = 64  # per quarter of a swept disc
 X, Y, Z, C = 0, 1, 2, 5
-TOOL_LINE = re.compile(r"\s*T\s*(\d+)\b([^;]*)", re.IGNORECASE)
-DIAMETER = re.compile(r"\bD\s*([-+]?[\d.]+)", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -148,23 +143,3 @@ def plane_axes(move: Move) -> np.ndarray:
     cos, sin = np.cos(np.radians(move.rotation)), np.sin(np.radians(move.rotation))
     turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
     return np.roll(turned, 2 - THIRD_AXIS[move.plane], axis=0)
-
-
-def tool_diameters(ini: Ini, tools: Tools = None) -> dict[int, float]:
-    """Return each tool's diameter in mm: the INI's table, another file, or a mapping.
-
-    A mapping holds diameters in machine units, like a table.
-    """
-    source = ini.file("EMCIO", "TOOL_TABLE") if tools is None else tools
-    if not isinstance(source, Mapping):
-        source = read_tool_table(Path(source)) if source and Path(source).exists() else {}
-    unit = ini.mm
-    return {number: diameter * unit for number, diameter in source.items()}
-
-
-def read_tool_table(path: Path) -> dict[int, float]:
-    """Return the diameters in a LinuxCNC tool table file; a tool without D has 0."""
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    entries = filter(None, map(TOOL_LINE.match, lines))
-    diameters = ((int(entry.group(1)), DIAMETER.search(entry.group(2))) for entry in entries)
-    return {number: float(found.group(1)) if found else 0.0 for number, found in diameters}

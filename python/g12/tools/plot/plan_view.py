@@ -61,7 +61,7 @@ def milled_levels(scene: Scene) -> list[Level]:
     groups = [[cutting[i] for i in np.flatnonzero(nearest == level)] for level in range(len(found))]
     part = scene.path.part
     return [
-        Level(z, shade, milled(part, group), *swept_by(part, group, scene.subject.diameters))
+        Level(z, shade, milled(part, group), *swept_by(part, group, scene.subject.trace.diameters))
         for z, shade, group in zip(found, style.shades(len(found)), groups)
         if group
     ]
@@ -234,7 +234,7 @@ def draw_plunges(axes: Axes, scene: Scene) -> None:
     """Mark where the tool plunges, with the cutter drawn to scale about each point."""
     for (x, y), tool in plunges_of(scene):
         at = (x / scene.unit.mm, y / scene.unit.mm)
-        radius = scene.subject.diameters.get(tool, 0.0) / 2 / scene.unit.mm
+        radius = scene.subject.trace.diameters.get(tool, 0.0) / 2 / scene.unit.mm
         axes.plot(*at, "o", color=style.INK, markersize=PLUNGE, zorder=5)
         circle = Circle(at, radius, fill=False, edgecolor=style.INK, linewidth=0.8, zorder=4.5)
         axes.add_patch(circle)
@@ -274,7 +274,7 @@ def legend_entries(scene: Scene, levels: Sequence[Level]) -> list:
 
 def cutter_text(scene: Scene, tool: int) -> str:
     """Return a cutter in words."""
-    diameter = scene.subject.diameters.get(tool, 0.0)
+    diameter = scene.subject.trace.diameters.get(tool, 0.0)
     if tool <= 0 or not diameter:
         return f"{f'T{tool} has no diameter' if tool > 0 else 'no tool'}: tool centre only"
     return f"cutter T{tool}, ⌀ {scene.unit.text(diameter)} {scene.unit.name}"

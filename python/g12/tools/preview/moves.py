@@ -11,8 +11,8 @@ position plus ``Move.tool_offset``.)
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from g12.machine_ini import AXES
@@ -181,7 +181,8 @@ class Trace:
     ``printed`` is the text of ``(print, …)`` and of Python, ``position`` where the last move
     ended, ``globals`` the global named parameters that the program left, ``numbered`` the
     parameters asked for, ``seconds`` the interpreter's time.  ``events`` holds the messages too.
-    ``files`` are those of subs outside the program that execute a remapped code which moves.
+    ``files`` are those of subs outside the program that execute a remapped code which moves,
+    ``diameters`` what LinuxCNC reads in the tool table: tool number to diameter in mm.
     """
 
     moves: list[Move]
@@ -196,6 +197,7 @@ class Trace:
     numbered: dict[int, float]
     seconds: float
     files: tuple[str, ...] = ()
+    diameters: Mapping[int, float] = field(default_factory=dict)
 
 
 def modes(gcodes: Iterable[int], mcodes: Iterable[int], settings: Sequence[float]) -> Modes:

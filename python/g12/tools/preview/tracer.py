@@ -34,7 +34,6 @@ LAUNCH = (
     "worker.serve({descriptor})"
 )
 LEAVE_NO_TRACE = {"PYTHONDONTWRITEBYTECODE": "1"}  # nothing is written beside the INI
-NO_END = "File ended with no percent sign or program end"
 
 Program = Union[str, os.PathLike]
 Tools = Union[str, os.PathLike, Mapping[int, float], None]
@@ -53,7 +52,8 @@ class Tracer:
     ``{tool number: diameter in machine units}`` in place of the INI's table.  Settings are read
     when LinuxCNC's Python modules load, so other overrides or tools need another Tracer.
     ``folder`` is its scratch directory.
-    ``printed`` is what the interpreter and the machine's modules said while loading.
+    ``printed`` is what the interpreter and the machine's modules said while loading,
+    ``diameters`` what LinuxCNC reads in the tool table: tool number to diameter in mm.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class Tracer:
             self._start()
         with contextlib.suppress(BrokenPipeError):  # it died: there will be no answer
             self._connection.send(request)
-        return _trace(self._answer(timeout))
+        return _trace(self._answer(timeout), self.diameters)
 
     def trace_text(self, text: str | Iterable[str], **options) -> Trace:
         """Trace a program given as text or as lines; see ``trace``.
@@ -110,7 +110,7 @@ class Tracer:
         """
         program = write_program(text, self.folder / "program.ngc")
         traced = self.trace(program, **options)
-        unended = traced.error and traced.error.text == NO_END
+        unended = traced.error and traced.error.text == self._no_end
         return replace(traced, error=None) if unended else traced
 
     def kill(self) -> None:
@@ -143,7 +143,9 @@ class Tracer:
         if answer["error"]:
             self.close()
             raise TraceFailure(f"{self.ini.path}: {answer['printed']}{answer['error'][0]}")
-        self.printed = answer["printed"]
+        self.printed, self._no_end = answer["printed"], answer["no_end"]
+        mm = self.ini.mm
+        self.diameters = {tool: size * mm for tool, size in answer["diameters"].items()}
 
     def _stop(self) -> None:
         if self._process:
@@ -243,7 +245,7 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
     }
 
 
-def _trace(answer: dict) -> Trace:
+def _trace(answer: dict, diameters: dict[int, float]) -> Trace:
     return Trace(
         moves=[Move._make(move) for move in answer["moves"]],
         messages=[Message._make(message) for message in answer["messages"]],
@@ -253,4 +255,5 @@ def _trace(answer: dict) -> Trace:
         **{key: answer[key] for key in ("state", "printed", "position", "seconds")},
         **{key: answer[key] for key in ("globals", "numbered")},
         files=tuple(answer["files"]),
+        diameters=diameters,
     )

@@ -41,6 +41,29 @@ STATE = (
 SPINDLE_MODE = 13  # place of G96, G97 in the active G codes
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 FEED_MODES = ("G94", "G93", "G95")
+DIAMETER = 10  # place in what the preview asks for of a tool
+TOOL_FUNCTIONS = {  # with their types as C++ names them
+    "tooldata_init": "b",
+    "tool_mmap_creator": "PK13EMC_TOOL_STATi",
+    "tooldata_reset": "v",
+    "tooldata_load": "PKcPPc",
+    "tooldata_last_index_get": "v",
+    "tooldata_get": "P16CANON_TOOL_TABLEi",
+}
+
+
+def tool_library() -> dict:
+    """Return LinuxCNC's functions for tool tables by their names in C, which 2.9 has not.
+
+    The interpreter has loaded the library: of several on a computer it is that one.
+    """
+    import gcode  # noqa: F401
+
+    library = ctypes.CDLL("libtooldata.so.0")
+    return {
+        name: getattr(library, name if hasattr(library, name) else f"_Z{len(name)}{name}{types}")
+        for name, types in TOOL_FUNCTIONS.items()
+    }
 
 
 class ToolEntry(ctypes.Structure):
@@ -65,20 +88,20 @@ class Tools:
     """The tool table in LinuxCNC's shared form, which the interpreter looks tools up in."""
 
     def __init__(self, table: str, random: bool) -> None:
-        library = ctypes.CDLL("libtooldata.so.0")
-        library._Z13tooldata_initb(ctypes.c_bool(random))
-        library._Z17tool_mmap_creatorPK13EMC_TOOL_STATi(None, int(random))
-        library._Z14tooldata_resetv()
-        if library._Z13tooldata_loadPKcPPc(table.encode(), None):
+        library = tool_library()
+        library["tooldata_init"](ctypes.c_bool(random))
+        library["tool_mmap_creator"](None, int(random))
+        library["tooldata_reset"]()
+        if library["tooldata_load"](table.encode(), None):
             raise ValueError(f"{table}: LinuxCNC cannot read this tool table")
-        self._get = library._Z12tooldata_getP16CANON_TOOL_TABLEi
-        last = library._Z23tooldata_last_index_getv()
-        self._entries = [self._read(index) for index in range(last + 1)]
+        entries = [ToolEntry() for _ in range(library["tooldata_last_index_get"]() + 1)]
+        for index, entry in enumerate(entries):
+            library["tooldata_get"](ctypes.byref(entry), index)
+        self._entries = [entry.for_canon() for entry in entries]
 
-    def _read(self, index: int) -> tuple:
-        entry = ToolEntry()
-        self._get(ctypes.byref(entry), index)
-        return entry.for_canon()
+    def diameters(self) -> dict[int, float]:
+        """Return tool number to diameter in machine units; the first entry of a tool counts."""
+        return {entry[0]: entry[DIAMETER] for entry in reversed(self._entries) if entry[0] > 0}
 
     def at(self, index: int) -> tuple:
         """Return the record at an index of the table; index 0 is the spindle."""
@@ -406,11 +429,11 @@ def printed(path: str) -> str:
 
 
 def blank(directory: str) -> dict:
-    """Return a request for a program that does nothing."""
+    """Return a request for a program that does nothing and has no end."""
     files = {name: os.path.join(directory, name) for name in ("blank.ngc", "blank.var")}
     for name in files.values():
         with open(name, "w", encoding="ascii") as file:
-            file.write("%\n%\n")
+            file.write("\n")
     return {
         "program": files["blank.ngc"],
         "parameter_file": files["blank.var"],
@@ -430,15 +453,20 @@ def answered(machine: dict, tools: Tools, request: dict) -> dict:
 def start(machine: dict, tools: Tools) -> dict:
     """Load the machine's Python modules and return its answer to a blank program.
 
+    ``no_end`` is what this LinuxCNC says of a program without an end.
+
     The interpreter's own modules exist from the first parse on, with an INI that says nothing,
     and so can be adjusted before the machine's modules import them.
     """
     request = blank(os.path.dirname(machine["output"]))
     os.environ["INI_FILE_NAME"] = request["parameter_file"]
-    interpret({**machine, "setup": []}, tools, request)
+    no_end, _ = interpret({**machine, "setup": []}, tools, request)["error"]
     record_errors_of_handlers()
     os.environ["INI_FILE_NAME"] = machine["ini"]
-    return answered(machine, tools, request)
+    answer = answered(machine, tools, request)
+    if answer.get("error") and answer["error"][0] == no_end:
+        answer["error"] = None
+    return {**answer, "no_end": no_end, "diameters": tools.diameters()}
 
 
 def reply(connection: Connection, machine: dict, answer: dict) -> None:

@@ -9,14 +9,14 @@ on both sides, and found on neither.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
-from g12.tools.path.part import C, part_of_program, tool_diameters
+from g12.tools.path.part import C, part_of_program
 from g12.tools.path.samples import Samples
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.ended import ended, with_axes
@@ -46,14 +46,10 @@ RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE
 
 @dataclass(frozen=True)
 class Subject:
-    """A program on a machine, as traced: ``path`` is its track, ``real`` the motion of a run.
-
-    ``diameters`` are those of the tools by number, mm.
-    """
+    """A program on a machine, as traced: ``path`` is its track, ``real`` the motion of a run."""
 
     program: Path
     ini: Ini
-    diameters: Mapping[int, float]
     trace: Trace
     path: Track
     real: Followed | None = None
@@ -135,27 +131,25 @@ def prove(
     tolerances = usual if tolerance is None else Tolerances(tolerance, tolerance)
     with Tracer(ini, tools=tools) as tracer:
         trace = ended(program, with_axes(tracer.trace(program, parameters=parameters), ini.path))
-        subject = subject_of(program, ini, trace, tools, samples)
+        subject = subject_of(program, ini, trace, samples)
         asked = asked_of(tracer, subject, tools, parameters)
         there = moves_there(tracer, subject, parameters)
     return measured(subject, asked, there, tolerances, tell)
 
 
-def subject_of(
-    program: Path, ini: Ini, trace: Trace, tools: Tools = None, samples: Samples | None = None
-) -> Subject:
+def subject_of(program: Path, ini: Ini, trace: Trace, samples: Samples | None = None) -> Subject:
     """Return a traced program with its path, and the samples of a run laid on that."""
     moves = trace.moves
     path = track(part_of_program(ini, moves), moves, limits_of(ini), trace.modes.speed)
     real = follow(path, moves, samples, ini.mm) if samples else None
-    return Subject(program, ini, tool_diameters(ini, tools), trace, path, real)
+    return Subject(program, ini, trace, path, real)
 
 
 def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Parameters) -> Asked:
     """Return what a program's words ask for."""
     codes, program = Codes(subject.ini), subject.program
     blocks = executed_everywhere(tracer, program, subject.trace, codes, tools, parameters)
-    reader = CircleReader(codes, subject.trace.moves, subject.diameters)
+    reader = CircleReader(codes, subject.trace.moves, subject.trace.diameters)
     reading = subject.ini.settings.polar_x
     polar = sections(tracer, program, codes, reading, blocks, parameters)
     return Asked(list(reader.targets(blocks)), polar)
@@ -192,7 +186,7 @@ def measured(
         overruns = None if there is None else tuple(overruns_of(block, there, travel))
         pockets.append(replace(facts, overruns=overruns))
     c_limit = limits_of(subject.ini).axes[C]
-    diameters = subject.diameters
+    diameters = subject.trace.diameters
     polar = [
         measure_section(each, path, moves, diameters, c_limit, tolerances.polar, real)
         for each in counted(asked.sections, "measuring section", tell)
@@ -212,7 +206,7 @@ def collisions_in(
         return []
     with Tracer(subject.ini, tools=tools) as tracer:
         circles = asked_of(tracer, subject, tools, parameters).circles
-    return collisions(circles, moves, subject.path, subject.diameters, subject.real)
+    return collisions(circles, moves, subject.path, subject.trace.diameters, subject.real)
 
 
 def unseen_in(moves: Sequence[Move], codes: Codes, seen: Iterable[range]) -> list[tuple[int, str]]:
