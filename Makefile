@@ -4,13 +4,14 @@ RUFF_VERSION := 0.17.5
 RUFF := build/venv/bin/ruff
 JOBS := $(shell nproc)
 
-.PHONY: help setup demo test lint bench clean
+.PHONY: help setup demo test lint bench kinematics clean
 
 help:
 	@echo "make demo   run the manuals' programs in headless LinuxCNC, pictures in build/demo"
 	@echo "make test   run every test"
 	@echo "make lint   check the style of the code"
 	@echo "make bench  measure the figures the project promises"
+	@echo "make kinematics  build and install the kinematics of configs/kinematics (needs root)"
 	@echo "make clean  remove what the others made"
 
 setup:
@@ -32,6 +33,9 @@ lint: $(RUFF)-$(RUFF_VERSION)
 bench: setup
 	@echo "bench: figures as ratios, each measured side by side in one run"
 	@PYTHONPATH=python:tests $(PYTHON) -m bench
+
+kinematics:
+	@sh .ci/kinematics
 
 clean:
 	@echo "clean: removing build"

@@ -10,6 +10,7 @@ import pytest
 from g12.tools.headless.machine import Machine, smoke
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import read_ini
+from support.kinematics import marked
 from support.sim_machines import SIM
 
 INIS = sorted(SIM.glob("*.ini"))
@@ -49,7 +50,7 @@ def without_screen(ini):
     return lines
 
 
-@pytest.mark.parametrize("ini", DESKTOP, ids=name)
+@pytest.mark.parametrize("ini", marked(DESKTOP), ids=name)
 def test_every_machine_runs_its_sample_to_the_end(ini):
     with Machine(ini) as machine:
         machine.feed_override(10.0)
@@ -59,7 +60,7 @@ def test_every_machine_runs_its_sample_to_the_end(ini):
         assert result.seconds > 0.5
 
 
-@pytest.mark.parametrize("ini", HEADLESS, ids=name)
+@pytest.mark.parametrize("ini", marked(HEADLESS), ids=name)
 def test_linuxcnc_runs_a_program_without_a_screen_and_exits_with_0(ini, tmp_path):
     program = tmp_path / "quick.ngc"
     program.write_text(QUICK)
@@ -99,7 +100,7 @@ def screen():
         server.terminate()
 
 
-@pytest.mark.parametrize("ini", DESKTOP, ids=name)
+@pytest.mark.parametrize("ini", marked(DESKTOP), ids=name)
 def test_axis_comes_up_with_the_sample_previewed(ini, screen):
     started = "until halcmd -s show comp axisui | grep -q axisui; do sleep 0.2; done"
     isolated = Isolated()

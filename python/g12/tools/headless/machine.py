@@ -6,7 +6,8 @@ directory, so several run side by side and a LinuxCNC already running is never t
 INI's directory is replaced by a private copy, so that nothing in it is ever written.
 
 Positions and speeds are in machine units (``Machine.mm`` is one of them in mm), degrees for
-rotary axes; sampled positions are those of the axes, tool length included.
+rotary axes; sampled positions are those of the axes, tool length included, or of the joints where
+the kinematics makes the axes mean other things (`polar_xzc`).
 """
 
 from __future__ import annotations
@@ -61,8 +62,9 @@ DRIVER = """\
 import sys
 sys.path.insert(0, {package!r})
 from g12.tools.headless.recording_screen import serve
-serve({address!r}, {axes!r})
+serve({address!r}, {pins!r})
 """
+FACE_KINEMATICS = "polar_xzc"
 
 
 class StartupError(RuntimeError):
@@ -147,7 +149,8 @@ class Machine:
         self._connection: Connection | None = None
         try:
             self.ini = self._private_ini(read_ini(ini).replaced(overrides or {}), tools, parameters)
-            self.mm, self.axes = self.ini.mm, self.ini.axes
+            self.mm, self._pins = self.ini.mm, position_pins(self.ini)
+            self.axes = "".join(self._pins)
             self._start(timeout)
             if home:
                 self._get_ready()
@@ -204,6 +207,18 @@ class Machine:
     def abort(self) -> None:
         """Stop everything and wait until the axes stand."""
         self._ask("abort")
+
+    def estop(self) -> None:
+        """Press the emergency stop; `enable` switches the machine on again, homed as it was."""
+        self._ask("estop")
+
+    def enable(self) -> None:
+        """Leave e-stop and switch the machine on."""
+        self._ask("enable")
+
+    def manual(self) -> None:
+        """Go to where the axes are jogged."""
+        self._ask("manual")
 
     def feed_override(self, scale: float) -> None:
         """Set the feed override; 1 is 100 %, and the INI's limit does not hold here."""
@@ -347,7 +362,7 @@ class Machine:
 
     def _start(self, timeout: float) -> None:
         address = str(self.folder / "run" / "socket")
-        driver = DRIVER.format(package=str(PACKAGE), address=address, axes=self.axes)
+        driver = DRIVER.format(package=str(PACKAGE), address=address, pins=[*self._pins.values()])
         self._isolated.install("g12-driver", driver)
         dialogue = self._isolated.install(TOOL_CHANGE_DIALOGUE, TOOL_CHANGE)
         real_dialogue = shutil.which(TOOL_CHANGE_DIALOGUE)
@@ -403,6 +418,16 @@ class Machine:
             return result
         kind, text = result
         raise (Timeout if kind == "timeout" else MachineError)(text)
+
+
+def position_pins(ini: Ini) -> dict[str, str]:
+    """Return the pin with the position of each axis that the machine has."""
+    module, *parameters = ini.words("KINS", "KINEMATICS", "trivkins")
+    if module == FACE_KINEMATICS:
+        named = dict(parameter.split("=") for parameter in parameters)
+        letters = named.get("coordinates", "XZC").upper()
+        return {letter: f"joint.{joint}.pos-cmd" for joint, letter in enumerate(letters)}
+    return {letter: f"axis.{letter.lower()}.pos-cmd" for letter in ini.axes}
 
 
 def run(

@@ -93,6 +93,11 @@ class Panel:
         self._do(self._command.state, linuxcnc.STATE_ON)
         self.wait(lambda stat: stat.enabled, GRACE, "machine power")
 
+    def estop(self) -> None:
+        """Press the emergency stop."""
+        self._do(self._command.state, linuxcnc.STATE_ESTOP)
+        self.wait(lambda stat: not stat.enabled, GRACE, "e-stop")
+
     def home(self, timeout: float = 60.0) -> None:
         """Home all joints: in the INI's sequence, and then those that have none."""
         self._mode(linuxcnc.MODE_MANUAL)
@@ -120,6 +125,10 @@ class Panel:
         return all(stat.homed[: stat.joints])
 
     # Running.
+
+    def manual(self) -> None:
+        """Go to where the axes are jogged."""
+        self._mode(linuxcnc.MODE_MANUAL)
 
     def mdi(self, text: str) -> None:
         """Start one block of MDI."""

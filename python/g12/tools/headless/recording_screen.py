@@ -30,10 +30,10 @@ MOTION = (
 
 
 class Sampler:
-    """Records axes and motion at the servo rate, into rows of doubles."""
+    """Records positions, by their pins, and motion at the servo rate, into rows of doubles."""
 
-    def __init__(self, axes: str) -> None:
-        pins = [("f", f"axis.{letter.lower()}.pos-cmd") for letter in axes] + list(MOTION)
+    def __init__(self, positions: list[str]) -> None:
+        pins = [("f", pin) for pin in positions] + list(MOTION)
         kinds = "".join(kind for kind, _ in pins)
         self._component = hal.component("g12-driver")
         self._component.ready()
@@ -72,8 +72,8 @@ class Sampler:
 class Driver:
     """The requests a runner can make, beside those of ``Panel``."""
 
-    def __init__(self, axes: str) -> None:
-        self.sampler = Sampler(axes)
+    def __init__(self, positions: list[str]) -> None:
+        self.sampler = Sampler(positions)
         self._drained = 0.0
         self.panel = Panel(self.tick)
 
@@ -152,12 +152,12 @@ def signals_by_pin() -> dict[str, str]:
     return {line[4]: line[6] for line in words if len(line) > 6}
 
 
-def serve(address: str, axes: str) -> None:
+def serve(address: str, positions: list[str]) -> None:
     """Answer requests until the runner closes the connection."""
     with socket.socket(socket.AF_UNIX) as client:
         client.connect(address)
         connection = Connection(client.detach())
-    driver = Driver(axes)
+    driver = Driver(positions)
     connection.send((True, "ready"))
     while True:
         while not connection.poll(DRAIN):

@@ -20,10 +20,17 @@ PAGES = (  # what a machinist reads beside the machine; they link to nothing els
     "ngc/*.md",
     "ngc/pictures/*.png",
     "configs/README.md",
+    "configs/kinematics/README.md",
     "python/README.md",
     "python/g12/tools/regress/README.md",
 )
-CODE = ("ngc/*.ngc", "configs/include/*.inc", "python/*.py", "python/g12/**/*.py")
+CODE = (
+    "ngc/*.ngc",
+    "configs/include/*.inc",
+    "configs/kinematics/polar_*",
+    "python/*.py",
+    "python/g12/**/*.py",
+)
 PARTS = ("LICENSE", *CODE, *PAGES)
 EDITED = ".edited"
 ENTRY = re.compile(r"([0-9a-f]{64})  (\S.*)")

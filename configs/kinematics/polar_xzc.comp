@@ -1,0 +1,237 @@
+component polar_xzc "switchable kinematics of a lathe with an X slide and a C axis";
+
+description
+"""
+Kinematics module for a lathe whose tool stands on the X slide and whose work spindle turns as
+the C axis. It has two types:
+
+.B Type 0
+is X, Z and C as they are: each axis is its joint. LinuxCNC starts in it.
+
+.B Type 1
+is the face of the part: X and Y are the tool's place on the face, seen from the part, Z is Z. The
+slide stands at hypot(X, Y) and C at the angle of (X, Y), so lines and arcs in X and Y are lines
+and arcs on the part, planned by LinuxCNC with its whole look-ahead. C's zero line is where C
+stands when the type is switched on: there the tool is at X, Y0. C turns on over full turns,
+and the slide never goes below the centre.
+
+Load it in place of trivkins:
+
+.RS
+.nf
+[KINS]
+JOINTS = 3
+KINEMATICS = polar_xzc coordinates=XZC
+[TRAJ]
+COORDINATES = X Y Z C
+.fi
+.RE
+
+\\fBcoordinates\\fR gives each joint its letter, as with trivkins: X and C have to be there, Y may
+not be (it has no joint), every letter stands once. Letters other than X and C are their joints in
+both types.
+
+The type is chosen by the pin \\fBmotion.switchkins-type\\fR. The function \\fBpolar-xzc.guard\\fR,
+in the servo thread behind motion-controller, drives it:
+
+.RS
+.nf
+addf polar-xzc.guard servo-thread
+net polar-centre motion.analog-out-02 => polar-xzc.centre
+net polar-request motion.analog-out-03 => polar-xzc.request
+net polar-enabled motion.motion-enabled => polar-xzc.enabled
+net polar-program motion.coord-mode => polar-xzc.program
+net polar-stands motion.in-position => polar-xzc.stands
+net polar-type polar-xzc.type => motion.switchkins-type
+net polar-face polar-xzc.face => motion.digital-in-03
+.fi
+.RE
+
+so that M68 E3 Q1 asks for the face and M68 E3 Q0 for X, Z and C. \\fBcentre\\fR is the position
+of the X joint at which the tool is on the spindle's axis; it counts when the face is switched on.
+The guard switches only while the machine stands. It goes back to type 0 by itself when the
+machine is switched off, stopped in an emergency or jogged; then the request has to be taken back
+before a new one counts.
+
+.B What is refused.
+A move that means nothing in the type in force fails: one to a Y other than 0 in type 0, and one
+of C in type 1. The face is not switched on with the tool beyond the centre.
+
+.B The centre.
+In the centre the angle of C is free. It stays what it was when the tool came, so a path that leaves the
+centre in another direction than it came needs a turn of C in type 0 in between. LinuxCNC knows
+nothing of C's speed while it plans X and Y: feeds near the centre have to be chosen so that C can
+follow. The G12.1 of this package does both.
+""";
+
+modparam dummy coordinates=XZC "letter of each joint";
+
+pin in float request "type that is asked for: 1 is the face, everything else X, Z and C";
+pin in float centre "position of the X joint with the tool on the spindle's axis";
+pin in bit enabled "the machine is on: motion.motion-enabled";
+pin in bit program "a program or MDI moves the machine, not a jog: motion.coord-mode";
+pin in bit stands "the machine stands: motion.in-position";
+pin out float type "for motion.switchkins-type";
+pin out bit face "type 1 is in force";
+
+function guard "Choose the type.";
+
+option singleton yes;
+option period no;
+option extra_setup yes;
+license "GPL";
+author "the g12 package";
+;;
+
+#include <rtapi_math.h>
+#include <rtapi_string.h>
+#include <hal.h>
+#include <emcmotcfg.h>
+#include <kinematics.h>
+
+#define DEGREE (M_PI / 180.0)
+#define AT_CENTRE 1e-6 /* machine units: so near to it the angle of C is free */
+#define NO_MOVE 1e-6   /* machine units or degrees: rounding of a word that was not given */
+
+enum { XZC, FACE };
+static const char letters[] = "XYZABCUVW";
+
+static char *coordinates = "XZC";
+RTAPI_MP_STRING(coordinates, "letter of each joint");
+
+static struct {
+    int kind;       /* XZC or FACE */
+    int begins;     /* the face was switched on, and forward has not seen it yet */
+    double origin;  /* of the face: position of the X joint */
+    double zero;    /* of the face: C in degrees on its X axis */
+    int joints;
+    int axis[EMCMOT_MAX_JOINTS]; /* index of each joint's letter */
+    int x, c;                    /* joints */
+} state;
+static struct __comp_state *component;
+
+static double *axis_of(EmcPose *pose, int axis)
+{
+    double *axes[] = {&pose->tran.x, &pose->tran.y, &pose->tran.z, &pose->a, &pose->b,
+                      &pose->c, &pose->u, &pose->v, &pose->w};
+    return axes[axis];
+}
+
+/* Take the joints' letters; return 0, or -1 for a machine that has no face. */
+static int take_coordinates(const char *text)
+{
+    int seen[EMCMOT_MAX_AXIS] = {0};
+    const char *found;
+
+    state.joints = 0;
+    for (; *text; text++) {
+        found = strchr(letters, *text & ~0x20);
+        if (!found || !*found || seen[found - letters]++ || *found == 'Y') return -1;
+        if (state.joints == EMCMOT_MAX_JOINTS) return -1;
+        if (*found == 'X') state.x = state.joints;
+        if (*found == 'C') state.c = state.joints;
+        state.axis[state.joints++] = found - letters;
+    }
+    return seen[0] && seen[5] ? 0 : -1;
+}
+
+/* Put the face's X axis where C stands; stay in X, Z and C with the tool beyond the centre. */
+static void begin_face(const double *joint)
+{
+    state.begins = 0;
+    if (joint[state.x] < state.origin) state.kind = XZC;
+    state.zero = joint[state.c];
+}
+
+int kinematicsForward(const double *joint, EmcPose *pose,
+                      const KINEMATICS_FORWARD_FLAGS *fflags, KINEMATICS_INVERSE_FLAGS *iflags)
+{
+    double radius, angle;
+    int k;
+
+    (void)fflags;
+    (void)iflags;
+    if (state.begins) begin_face(joint);
+    memset(pose, 0, sizeof(*pose));
+    for (k = 0; k < state.joints; k++) *axis_of(pose, state.axis[k]) = joint[k];
+    if (state.kind == FACE) {
+        radius = joint[state.x] - state.origin;
+        angle = (joint[state.c] - state.zero) * DEGREE;
+        pose->tran.x = state.origin + radius * cos(angle);
+        pose->tran.y = radius * sin(angle);
+        pose->c = state.zero;
+    }
+    return 0;
+}
+
+/* joint holds where the joints are: C goes on from there over the full turns. */
+int kinematicsInverse(const EmcPose *pose, double *joint,
+                      const KINEMATICS_INVERSE_FLAGS *iflags, KINEMATICS_FORWARD_FLAGS *fflags)
+{
+    EmcPose world = *pose;
+    double x, y, radius, present = joint[state.c];
+    int k;
+
+    (void)iflags;
+    (void)fflags;
+    if (state.kind == XZC && fabs(world.tran.y) > NO_MOVE) return -1;
+    if (state.kind == FACE && fabs(world.c - state.zero) > NO_MOVE) return -1;
+    for (k = 0; k < state.joints; k++) joint[k] = *axis_of(&world, state.axis[k]);
+    if (state.kind == FACE) {
+        x = world.tran.x - state.origin;
+        y = world.tran.y;
+        radius = sqrt(x * x + y * y);
+        joint[state.x] = state.origin + radius;
+        joint[state.c] = present;
+        if (radius > AT_CENTRE) {
+            joint[state.c] = state.zero + atan2(y, x) / DEGREE;
+            joint[state.c] += 360.0 * floor((present - joint[state.c]) / 360.0 + 0.5);
+        }
+    }
+    return 0;
+}
+
+KINEMATICS_TYPE kinematicsType(void) { return KINEMATICS_BOTH; }
+
+int kinematicsSwitchable(void) { return 1; }
+
+int kinematicsSwitch(int kind)
+{
+    struct __comp_state *__comp_inst = component;
+
+    if (kind != XZC && kind != FACE) return -1;
+    state.kind = kind;
+    state.begins = kind == FACE;
+    state.origin = centre;
+    return 0;
+}
+
+EXPORT_SYMBOL(kinematicsForward);
+EXPORT_SYMBOL(kinematicsInverse);
+EXPORT_SYMBOL(kinematicsType);
+EXPORT_SYMBOL(kinematicsSwitchable);
+EXPORT_SYMBOL(kinematicsSwitch);
+
+/* A switch while a jog is under way would make the axes jump to where the jog stood before it. */
+FUNCTION(guard)
+{
+    static int spent; /* the request ended by itself, and was not taken back since */
+    int asked = request == FACE;
+
+    spent = asked && (spent || !enabled || !program);
+    if (!enabled || (program && stands)) type = asked && !spent ? FACE : XZC;
+    face = state.kind == FACE && !state.begins;
+}
+
+EXTRA_SETUP()
+{
+    (void)prefix;
+    (void)extra_arg;
+    component = __comp_inst;
+    if (take_coordinates(coordinates)) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "polar_xzc: coordinates=%s: X and C have to be there, Y"
+                        " may not, every letter stands once\n", coordinates);
+        return -1;
+    }
+    return 0;
+}

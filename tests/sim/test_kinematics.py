@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The face's kinematics in a headless LinuxCNC: real motion, and no way into the wrong world."""
+
+import cmath
+import random
+import time
+
+import numpy as np
+import pytest
+
+from g12.tools.headless.machine import Machine
+from support.contour_geometry import FROM_COLUMNS, Round, Straight, distance, outward
+from support.kinematics import needs_kinematics
+from support.polar_drawings import HEXAGON
+from support.polar_programs import Cut
+from support.sim_machines import SIM
+
+pytestmark = needs_kinematics
+
+X, Y, C = 0, 1, 5
+TOLERANCE = 0.002  # mm, of G64
+ON = ("M68 E3 Q0", "M68 E3 Q1", "M66 P3 L3 Q1", "G17")
+OFF = ("M68 E3 Q0", "M66 P3 L4 Q1", "G18")
+START = ("G21 G18 G8 G90 G94 G64 P0.002 Q0", "G0 X25 Z2 C0")
+CIRCLE_AND_SQUARE = (
+    *START, "F3000", *ON, "G1 X20 Y0", "G2 X-20 I-20", "X20 I20", "G1 X20 Y20", "X-20", "Y-20",
+    "X20", "Y0", "X25", *OFF, "G0 Z5", "M2",
+)  # fmt: skip
+SOON = 0.2  # s until the machine is back from the face
+
+
+@pytest.fixture(scope="module")
+def running():
+    with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
+        yield machine
+
+
+@pytest.fixture
+def lathe(running):
+    running.abort()
+    running.mdi("M68 E3 Q0")
+    running.mdi("M66 P3 L4 Q1")
+    running.mdi("G21 G90 G94 G40 G8 G64 G18")
+    running.mdi("G0 Z5")
+    running.mdi("G0 X20 C30")
+    running.errors(), running.messages()
+    return running
+
+
+def place(machine):
+    """Return X, Y and C of the world that is in force."""
+    position = machine.stat().position
+    return pytest.approx((position[X], position[Y], position[C]), abs=1e-6)
+
+
+def on_the_face(machine):
+    return machine.get("polar-xzc.face")
+
+
+def switch_on(machine):
+    for block in ON:
+        machine.mdi(block)
+
+
+def test_the_face_begins_where_the_tool_stands(lathe):
+    switch_on(lathe)
+    assert on_the_face(lathe)
+    assert place(lathe) == (20, 0, 30)
+
+
+def test_x_and_y_move_the_slide_and_c(lathe):
+    switch_on(lathe)
+    lathe.mdi("G1 X-20 Y20 F3000")
+    joints = [lathe.get(f"joint.{joint}.pos-cmd") for joint in (0, 2)]
+    assert joints == pytest.approx([20 * 2**0.5, 30 + 135], abs=1e-6)
+    for block in OFF:
+        lathe.mdi(block)
+    assert place(lathe) == (20 * 2**0.5, 0, 165)
+
+
+def test_c_off_the_zero_line_is_refused_on_the_face(lathe):
+    switch_on(lathe)
+    lathe.mdi("G0 C0")
+    assert "kinematicsInverse" in lathe.errors()[0].text
+
+
+def test_y_is_refused_off_the_face(lathe):
+    lathe.mdi("G0 Y1")
+    assert "kinematicsInverse" in lathe.errors()[0].text
+    assert place(lathe) == (20, 0, 30)
+
+
+def hexagon(feed):
+    """Return a program of the hexagon's centre path on the face, and the path.
+
+    Its first and last piece are the ways to it and from it, at speed.
+    """
+    around = [piece for group in outward(HEXAGON, 6) for piece in group]
+    ends = [point for piece in (around[0], around[-1]) for point in (piece.start, piece.end)]
+    start, end = (
+        8 * cmath.rect(1, heading)
+        for heading in (around[0].headings()[0], around[-1].headings()[1])
+    )
+    path = [Straight(ends[0] - start, ends[0]), *around, Straight(ends[3], ends[3] + end)]
+    x, y = xy(path[0].start)
+    blocks = [block_of(piece) for piece in path]
+    return [*START, *ON, f"G1 X{x:.6f} Y{y:.6f} F{feed}", "G4 P0.1", *blocks, *OFF, "M2"], path
+
+
+def block_of(piece):
+    x, y = xy(piece.end)
+    if isinstance(piece, Round):
+        i, j = xy(piece.centre - piece.start)
+        return f"{'G3' if piece.sweep > 0 else 'G2'} X{x:.6f} Y{y:.6f} I{i:.6f} J{j:.6f}"
+    return f"G1 X{x:.6f} Y{y:.6f}"
+
+
+def xy(point):
+    return point.real, point.imag
+
+
+@pytest.mark.parametrize(("feed", "most"), [(1000, 1.02), (3000, 1.05)])
+def test_hexagon_at_its_feed_and_on_its_path(lathe, feed, most):
+    program, path = hexagon(feed)
+    first = len(START) + len(ON) + 3
+    run = lathe.run_text(program)
+    assert run.error is None
+    timed = np.isin(run.samples.line, range(first + 1, first + len(path) - 1))
+    points = Cut(run).all_points[timed] @ FROM_COLUMNS
+    assert distance(points, path).max() <= TOLERANCE
+    ideal = sum(piece.length for piece in path[1:-1]) / feed * 60
+    assert 0.99 <= timed.sum() * 0.001 / ideal <= most
+
+
+def test_program_ends_off_the_face(lathe):
+    run = lathe.run_text(CIRCLE_AND_SQUARE)
+    assert run.error is None
+    assert not on_the_face(lathe)
+    assert place(lathe) == (25, 0, 0)
+
+
+def abort(machine):
+    machine.abort()
+
+
+def emergency_stop(machine):
+    machine.estop()
+    machine.enable()
+
+
+def jog_mode(machine):
+    machine.abort()
+    machine.manual()
+    machine.mdi("G4 P0")
+
+
+@pytest.mark.parametrize("interrupt", [abort, emergency_stop, jog_mode])
+def test_an_interrupted_program_leaves_the_face(lathe, interrupt):
+    chance = random.Random(interrupt.__name__)
+    for _ in range(6):
+        lathe.open_text(CIRCLE_AND_SQUARE)
+        lathe.sample()
+        lathe.start()
+        lathe.wait_for(lambda _: on_the_face(lathe))
+        time.sleep(chance.uniform(0, 4))
+        interrupt(lathe)
+        lathe.wait_for(lambda _: not on_the_face(lathe), timeout=SOON)
+        lathe.mdi("G0 X22 C10")
+        assert place(lathe) == (22, 0, 10)
+        keeps_its_limits(lathe.samples())
+        assert lathe.errors() == []
+    assert lathe.run_text(CIRCLE_AND_SQUARE).error is None
+
+
+def test_an_error_on_the_face_leaves_it(lathe):
+    run = lathe.run_text([*START, *ON, "G1 X20 Y10 F3000", "G1 X400", *OFF, "M2"])
+    assert "X's positive limit" in run.error.text
+    lathe.wait_for(lambda _: not on_the_face(lathe), timeout=SOON)
+    lathe.mdi("G0 X22 C10")
+    assert place(lathe) == (22, 0, 10)
+
+
+def keeps_its_limits(samples):
+    """Check that no joint ever went faster than it can: no jump between the worlds."""
+    assert np.abs(np.diff(samples.axes["X"])).max() * 1000 <= 150 * 1.001
+    assert np.abs(np.diff(samples.axes["C"])).max() * 1000 <= 360 * 1.001

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The kinematics of configs/kinematics, compiled on their own and called as motion calls them."""
+
+import ctypes
+import math
+import subprocess
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from support.sim_machines import ROOT
+
+COMPONENT = ROOT / "configs" / "kinematics" / "polar_xzc.comp"
+# what halcompile and LinuxCNC's headers put in front of the component's C code
+SURROUNDINGS = """
+#include <math.h>
+#include <string.h>
+#include <stdio.h>
+#define EMCMOT_MAX_JOINTS 16
+#define EMCMOT_MAX_AXIS 9
+#define RTAPI_MP_STRING(name, text)
+#define RTAPI_MSG_ERR 1
+#define rtapi_print_msg(level, ...) printf(__VA_ARGS__)
+#define EXPORT_SYMBOL(name)
+typedef struct { double x, y, z; } PmCartesian;
+typedef struct EmcPose { PmCartesian tran; double a, b, c, u, v, w; } EmcPose;
+typedef unsigned long KINEMATICS_FORWARD_FLAGS;
+typedef unsigned long KINEMATICS_INVERSE_FLAGS;
+typedef enum { KINEMATICS_BOTH = 4 } KINEMATICS_TYPE;
+struct __comp_state { double request, centre, type; int enabled, program, stands, face; } pins;
+#define request (__comp_inst->request)
+#define centre (__comp_inst->centre)
+#define type (__comp_inst->type)
+#define enabled (__comp_inst->enabled)
+#define program (__comp_inst->program)
+#define stands (__comp_inst->stands)
+#define face (__comp_inst->face)
+#define FUNCTION(name) static void name(struct __comp_state *__comp_inst)
+#define EXTRA_SETUP() \\
+    static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extra_arg)
+"""
+ENTRIES = """
+int set_up(char *letters) { coordinates = letters; return extra_setup(&pins, 0, 0); }
+void run_guard(void) { guard(&pins); }
+"""
+
+
+class Pose(ctypes.Structure):
+    _fields_ = [(letter, ctypes.c_double) for letter in "xyzabcuvw"]
+
+
+class Pins(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_double) for name in ("request", "centre", "type")] + [
+        (name, ctypes.c_int) for name in ("enabled", "program", "stands", "face")
+    ]
+
+
+class Kinematics:
+    """The component with joints X, Z and C."""
+
+    def __init__(self, library):
+        self.library, self.pins = library, Pins.in_dll(library, "pins")
+        assert self.set_up("XZC") == 0
+        self.pins.request = self.pins.centre = 0.0
+        self.pins.enabled = self.pins.program = self.pins.stands = 1
+        self.library.kinematicsSwitch(0)
+        self.library.run_guard()
+
+    def set_up(self, letters):
+        return self.library.set_up(letters.encode())
+
+    def forward(self, *joints):
+        pose, values = Pose(), (ctypes.c_double * 16)(*joints)
+        assert self.library.kinematicsForward(values, ctypes.byref(pose), None, None) == 0
+        return pose
+
+    def inverse(self, pose, *present):
+        """Return the joints at a pose, None where there are none."""
+        values = (ctypes.c_double * 16)(*present)
+        failed = self.library.kinematicsInverse(ctypes.byref(pose), values, None, None)
+        return None if failed else tuple(values[: len(present)])
+
+    def face(self, *joints):
+        """Switch the face on where the joints stand, as motion does."""
+        assert self.library.kinematicsSwitch(1) == 0
+        return self.forward(*joints)
+
+    def guard(self, **pins):
+        """Set pins, run a cycle, obey the type as motion would; return it."""
+        for name, value in pins.items():
+            setattr(self.pins, name, value)
+        self.library.run_guard()
+        self.library.kinematicsSwitch(int(self.pins.type))
+        return self.pins.type
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("kinematics")
+    code = COMPONENT.read_text().partition("\n;;\n")[2]
+    code = "\n".join(line for line in code.splitlines() if not line.startswith("#include"))
+    source = folder / "polar_xzc.c"
+    source.write_text(SURROUNDINGS + code + ENTRIES)
+    command = ["cc", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function", "-O2", "-shared",
+               "-fPIC", "-o", folder / "polar_xzc.so", source, "-lm"]  # fmt: skip
+    subprocess.run(command, check=True)
+    return ctypes.CDLL(folder / "polar_xzc.so")
+
+
+@pytest.fixture
+def kinematics(library):
+    return Kinematics(library)
+
+
+def test_type_0_is_x_z_and_c(kinematics):
+    pose = kinematics.forward(20, -3, 400)
+    assert (pose.x, pose.y, pose.z, pose.c) == (20, 0, -3, 400)
+    assert kinematics.inverse(pose, 0, 0, 0) == (20, -3, 400)
+
+
+def test_letters_in_another_order(kinematics):
+    assert kinematics.set_up("czxa") == 0
+    pose = kinematics.forward(90, -3, 20, 7)
+    assert (pose.x, pose.z, pose.c, pose.a) == (20, -3, 90, 7)
+    assert kinematics.inverse(pose, 0, 0, 0, 0) == (90, -3, 20, 7)
+
+
+@pytest.mark.parametrize("letters", ["XZ", "ZC", "XYZC", "XZCC", "XZC7", "X ZC", ""])
+def test_letters_that_have_no_face(kinematics, letters):
+    assert kinematics.set_up(letters) == -1
+
+
+def test_the_face_begins_on_its_x_axis(kinematics):
+    pose = kinematics.face(20, 5, 30)
+    assert (pose.x, pose.y, pose.z, pose.c) == (20, 0, 5, 30)
+
+
+def test_a_quarter_turn_on_the_face(kinematics):
+    kinematics.face(20, 0, 30)
+    pose = kinematics.forward(20, 0, 120)
+    assert (pose.x, pose.y) == pytest.approx((0, 20))
+
+
+def test_a_centre_off_the_joints_zero(kinematics):
+    kinematics.pins.centre = -100.0
+    assert kinematics.face(-80, 0, 30).x == -80
+    pose = kinematics.forward(-80, 0, 120)
+    assert (pose.x, pose.y) == pytest.approx((-100, 20))
+    assert kinematics.inverse(pose, -80, 0, 119) == pytest.approx((-80, 0, 120))
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    radius=st.floats(0.001, 300),
+    zero=st.floats(-90000, 90000),
+    turn=st.floats(-4000, 4000),
+    ahead=st.floats(-170, 170),
+)
+def test_round_trip(library, radius, zero, turn, ahead):
+    kinematics = Kinematics(library)
+    kinematics.face(50, 0, zero)
+    pose = kinematics.forward(radius, 1, zero + turn)
+    there = kinematics.inverse(pose, 7, 7, zero + turn + ahead)
+    assert there == pytest.approx((radius, 1, zero + turn), abs=1e-7)
+
+
+def test_c_goes_on_over_the_full_turns(kinematics):
+    pose = kinematics.face(20, 0, 0)
+    joints = (20, 0, 0)
+    for step in range(1, 1000):
+        angle = math.radians(step * 7)
+        pose.x, pose.y = 20 * math.cos(angle), 20 * math.sin(angle)
+        joints = kinematics.inverse(pose, *joints)
+        assert joints[2] == pytest.approx(step * 7, abs=1e-6)
+
+
+def test_c_keeps_its_angle_in_the_centre(kinematics):
+    pose = kinematics.face(20, 0, 30)
+    pose.x = pose.y = 0.0
+    assert kinematics.inverse(pose, 1, 0, 75) == (0, 0, 75)
+
+
+def test_the_face_does_not_begin_beyond_the_centre(kinematics):
+    assert kinematics.face(-5, 0, 30).x == -5
+    kinematics.library.run_guard()
+    assert not kinematics.pins.face
+
+
+def test_y_means_nothing_without_the_face(kinematics):
+    assert kinematics.inverse(Pose(x=20, y=0.001), 20, 0, 0) is None
+
+
+def test_c_means_nothing_on_the_face(kinematics):
+    pose = kinematics.face(20, 0, 30)
+    pose.c = 30.001
+    assert kinematics.inverse(pose, 20, 0, 30) is None
+
+
+def test_only_two_types(kinematics):
+    assert kinematics.library.kinematicsSwitch(2) == -1
+
+
+# ---------------------------------------------------------------- the guard
+
+
+def test_guard_obeys_the_request(kinematics):
+    assert kinematics.guard(request=1.0) == 1
+    assert kinematics.guard(request=0.0) == 0
+
+
+def test_guard_waits_until_the_machine_stands(kinematics):
+    assert kinematics.guard(request=1.0, stands=0) == 0
+    assert kinematics.guard(stands=1) == 1
+    assert kinematics.guard(request=0.0, stands=0) == 1
+    assert kinematics.guard(stands=1) == 0
+
+
+@pytest.mark.parametrize("pin", ["enabled", "program"])
+def test_guard_lets_a_request_count_once(kinematics, pin):
+    kinematics.guard(request=1.0)
+    kinematics.guard(**{pin: 0})
+    assert kinematics.guard(**{pin: 1}) == 0
+    kinematics.guard(request=0.0)
+    assert kinematics.guard(request=1.0) == 1
+
+
+def test_guard_goes_back_at_once_when_the_machine_is_off(kinematics):
+    kinematics.guard(request=1.0)
+    assert kinematics.guard(enabled=0, stands=0) == 0
+
+
+def test_guard_does_not_switch_under_a_jog(kinematics):
+    kinematics.guard(request=1.0)
+    assert kinematics.guard(program=0, request=0.0) == 1
