@@ -244,6 +244,27 @@ def test_a_sub_that_linuxcnc_finds_elsewhere_than_the_copy_is_a_finding(tmp_path
     assert (proof.pockets, proof.unseen) == ([], [(4, "G12")])
 
 
+@pytest.mark.parametrize("body", [["G41 D6 G1 X40 F100", "Y-30", "G40 X80"], ["G41 D6", "G40"]])
+def test_a_d_that_a_sub_in_its_own_file_commanded_is_remembered(body, with_sub):
+    body = ["o<offset> sub", *body, "o<offset> endsub", "M2"]
+    proof = with_sub("offset", body, *MM, "G0 Z1", "o<offset> call", "G0 X0 Y0", "G12 I30 Z-2")
+    (facts,) = proof.pockets
+    assert (facts.target.cutter.named, facts.target.cutter.radius) == (6, 10)
+    assert "off the programmed circle" not in str(proof.findings)
+
+
+def long_block(start, length):
+    """Return a block that has a length and ends in an expression whose value is 10."""
+    return f"{start}[10{'+0' * ((length - len(start) - len('[10]')) // 2)}]"
+
+
+@pytest.mark.parametrize("length", [235, 251])
+def test_a_block_as_long_as_linuxcnc_reads_is_measured(length, tmp_path):
+    lines = [*MM, "G0 X0 Y0 Z1", long_block("G12Z-2I", length), "M2"]
+    proof = proof_of_text(tmp_path, lines)
+    assert len(proof.pockets) == 1 and proof.findings == []
+
+
 UNMEASURED = "a cycle cuts here that could not be measured"
 
 

@@ -32,7 +32,7 @@ class Program(Hand):
         wall = Wall(place, np.eye(3), rings[-1] + 3.0, **wanted)
         schedule = Schedule((depth,), 1, CircleFeeds(None, None, None, None))
         target = Target(Source(self.block, "", "G12", "haas"), wall, Cutter(cutter), schedule)
-        self.asked.append((Block(None, {}, (), (), {}, first, len(self.moves)), target))
+        self.asked.append((Block(None, {}, (), (), (), {}, first, len(self.moves)), target))
         return self.next_block()
 
     def found(self, real=None):

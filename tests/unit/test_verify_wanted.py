@@ -9,7 +9,16 @@ import numpy as np
 import pytest
 
 from g12.tools.machine.ini import Ini
-from g12.tools.preview.executed_blocks import STATE, TAG, Block, after, before, blocks_in, read_line
+from g12.tools.preview.executed_blocks import (
+    STATE,
+    TAG,
+    VALUE,
+    Block,
+    after,
+    before,
+    blocks_in,
+    read_line,
+)
 from g12.tools.preview.moves import Event
 from g12.tools.verify import wanted_circle, wanted_contour
 from g12.tools.verify.codes import Codes
@@ -70,8 +79,8 @@ def test_a_call_has_its_arguments():
 def test_only_expressions_are_asked_of_linuxcnc():
     lines = list(before(read_line(4, "G12 I.5 K[#1] Z-1 D#2")))
     assert [line for line in lines if "=" in line] == [
-        "#<g12_verify_value> = [#1]",
-        "#<g12_verify_value> = [#2]",
+        "#<@>=[#1]",
+        "#<@>=#2",
     ]
     assert all(line.startswith("/") for line in before(read_line(4, "/G12 I#1")))
 
@@ -112,6 +121,7 @@ def block(line, number=1, at=1, end=2, **state):
         text,
         {letter: value for letter, value in values if letter != "G"},
         tuple(value for letter, value in values if letter == "G"),
+        tuple(value for letter, value in values if letter == "M"),
         (),
         {**found, "_lathe_diameter_mode": 0, **state},
         at,
@@ -330,6 +340,18 @@ def test_incremental_mode_holds_for_both_axes():
     assert drawn("G91 G1 X-5 C2", "C2")[-1].end == 15 + 4j
 
 
+@pytest.mark.parametrize("save", ["M70", "M73"])
+def test_saved_modes_come_back(save):
+    found = drawn(save, "G91 G3 X-1 R9", "M72", "X20 C5")
+    assert found[-1].end == 20 + 5j and found[-1].centre is None
+    back, gone = drawn(save, "G91", "M72 X15", "M71")[0], drawn(save, "G91", "M71", "X-1")[0]
+    assert (back.end, gone.end) == (15, 19)
+
+
+def test_modes_are_saved_before_the_blocks_own_codes_act():
+    assert drawn("M70 G91 X-1", "M72 X7")[-1].end == 7
+
+
 def test_left_is_left():
     (line,) = drawn("C5")
     assert line.normal(0.3) == -1
@@ -338,7 +360,14 @@ def test_left_is_left():
 
 
 @pytest.mark.parametrize(
-    ("line", "why"), [("o<flat> call", "calls o<flat>"), ("X[#<_x>+1]", "asks for a position")]
+    ("line", "why"),
+    [
+        ("o<flat> call", "calls o<flat>"),
+        ("o77 call [1]", "calls o<77>"),
+        ("M98 P77", "calls o<77>"),
+        ("X[#<_x>+1]", "asks for a position"),
+        (f"X[1{'+1' * 124}]", "is too long"),
+    ],
 )
 def test_what_cannot_be_followed_is_a_doubt(line, why):
     lines = ["G12.1", "G1 C5", line, "G13.1"]
@@ -359,5 +388,5 @@ def test_motion_is_taken_out_of_the_copy_and_control_stays():
     ]
     texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
     flat = [line for some in wanted_contour.flattened(texts, CODES, lines) for line in some]
-    kept = [line for line in flat if "DEBUG" not in line and "verify" not in line]
+    kept = [line for line in flat if "DEBUG" not in line and VALUE not in line]
     assert kept == ["G0 X5", "#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile", "G0 X9"]

@@ -145,7 +145,10 @@ def split_words(text: str) -> Iterator[tuple[str, str]]:
 
 
 def value_end(text: str, start: int) -> int:
-    """Return where the value that begins at ``start`` ends: number, parameter or expression."""
+    """Return where the value that begins at ``start`` ends: number, parameter or expression.
+
+    The proof of a section reads values with a function of its own, so that it finds a slip here.
+    """
     at = _SIGNS.match(text, start).end()
     if text[at : at + 2] == "#<":
         return _NAME.match(text, at + 1).end()

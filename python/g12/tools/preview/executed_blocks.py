@@ -20,13 +20,14 @@ from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tracer
 
 TAG = "g12-verify"
-VALUE = "#<g12_verify_value>"
+VALUE = "#<@>"  # short: a line that LinuxCNC reads has 252 characters at most
+LONGEST_LINE = 252
 STATE = ("_x", "_y", "_z", "_c", "_metric", "_absolute", "_lathe_diameter_mode", "_feed")
 NUMBER = re.compile(r"[0-9]*\.?[0-9]*")
 COMMENT = re.compile(r"\([^)]*\)|;.*")
 FUNCTION = re.compile(r"[a-z]+(?=\[)")
 LETTER_O = re.compile(r"/?(n[0-9.]+)?o")
-CALL = re.compile(r"/?(?:n[0-9.]+)?o<([^>]+)>call")
+CALL = re.compile(r"/?(?:n[0-9.]+)?o(?:<([^>]+)>|([^<]+?))call")
 
 
 class Text(NamedTuple):
@@ -37,13 +38,19 @@ class Text(NamedTuple):
     assignments: tuple[str, ...] = ()
     deleted: bool = False  # begins with /
     control: bool = False  # an O-word line
-    call: str = ""  # the sub that it calls; its arguments are words with the letter ""
+    call: str = ""  # the sub that it calls; arguments of an O-word are words with the letter ""
     file: str = ""  # the name of a sub's own file, "" in the program
 
     @property
     def codes(self) -> list[float]:
         """The G codes whose numbers are written out."""
         return [float(text) for letter, text in self.words if letter == "G" and is_number(text)]
+
+    @property
+    def too_long(self) -> bool:
+        """Whether the line that asks for one of its values is longer than LinuxCNC reads."""
+        asked = (value for _, value in self.words if not is_number(value))
+        return any(len(assignment(self, value)) > LONGEST_LINE for value in asked)
 
     @property
     def hides_code(self) -> bool:
@@ -55,14 +62,16 @@ class Text(NamedTuple):
 class Block:
     """One execution of a block.
 
-    ``words`` maps letters to values in program units (G words aside, which are ``codes``; the
-    arguments of a call are ``arguments``), ``state`` is what the block found: ``_x`` …
+    ``words`` maps letters to values in program units (G and M words aside, which are ``codes``
+    and ``m_codes``; the arguments of a call are ``arguments``), ``state`` is what the block
+    found: ``_x`` …
     ``at`` is the index of its first move and ``end`` that of the first move after it.
     """
 
     text: Text
     words: dict[str, float]
     codes: tuple[float, ...]
+    m_codes: tuple[float, ...]
     arguments: tuple[float, ...]
     state: dict[str, float]
     at: int
@@ -92,7 +101,8 @@ def read_line(number: int, line: str) -> Text:
         elif code[at].isalpha():
             words.append((code[at].upper(), code[at + 1 : end]))
         at = max(end, at + 1)
-    return Text(number, tuple(words), tuple(assignments), deleted)
+    called = dict(words).get("P", "") if ("M", "98") in words else ""
+    return Text(number, tuple(words), tuple(assignments), deleted, call=called)
 
 
 def _control(number: int, code: str, deleted: bool) -> Text:
@@ -104,11 +114,15 @@ def _control(number: int, code: str, deleted: bool) -> Text:
         end = _value_end(code, at)
         words.append(("", code[at:end]))
         at = end
-    return Text(number, tuple(words), (), deleted, control=True, call=called.group(1))
+    return Text(number, tuple(words), (), deleted, control=True, call=called[1] or called[2])
 
 
 def _value_end(code: str, at: int) -> int:
-    """Return where the value that starts at ``at`` ends, as LinuxCNC reads values."""
+    """Return where the value that starts at ``at`` ends, as LinuxCNC reads values.
+
+    The section's `value_end` does the same, and is not shared: a slip in it would else be made by
+    planner and proof alike, and stay unseen.
+    """
     if at >= len(code):
         return at
     if code[at] in "+-":
@@ -154,7 +168,9 @@ def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) ->
     """Return the lines of a file and those that tell of the blocks wanted; see ``before``."""
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     groups = (
-        (*before(text, skip), line, *after(text, skip)) if wanted(text) else (line,)
+        (*before(text, skip), line, *after(text, skip))
+        if wanted(text) and not text.too_long
+        else (line,)
         for text, line in zip(texts, lines)
     )
     return [line for group in groups for line in group]
@@ -170,8 +186,13 @@ def before(text: Text, skip: int = 0) -> Iterator[str]:
     yield f"{slash}(DEBUG,{TAG} begin {skip + text.number} %.9f{state})"
     for index, (_, value) in enumerate(text.words):
         if not is_number(value):
-            yield f"{slash}{VALUE} = {value if value.startswith('[') else f'[{value}]'}"
+            yield assignment(text, value)
             yield f"{slash}(DEBUG,{TAG} value {index} %.9f{VALUE})"
+
+
+def assignment(text: Text, value: str) -> str:
+    """Return the line that works out a value of a block."""
+    return f"{'/' if text.deleted else ''}{VALUE}={value}"
 
 
 def after(text: Text, skip: int = 0) -> Iterator[str]:
@@ -209,9 +230,8 @@ def _block(at: int, text: Text, state: list[float], values: dict[int, float], en
     ]
     return Block(
         text,
-        {letter: value for letter, value in told if letter not in ("G", "")},
-        tuple(value for letter, value in told if letter == "G"),
-        tuple(value for letter, value in told if letter == ""),
+        {letter: value for letter, value in told if letter not in ("G", "M", "")},
+        *(tuple(value for letter, value in told if letter == wanted) for wanted in ("G", "M", "")),
         dict(zip(STATE, state)),
         at,
         end,

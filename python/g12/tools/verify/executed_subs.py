@@ -2,11 +2,12 @@
 """Which blocks a program executes, those in the files of subs that it calls included.
 
 LinuxCNC is made to find copies of those files that tell of their blocks, as the copy of the
-program does; see ``blocks``.
+program does; see `executed_blocks`.
 """
 
 from __future__ import annotations
 
+import os
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -31,17 +32,44 @@ def executed_everywhere(
     ``trace`` is the program's. Polar sections count in the program only. Where LinuxCNC does not
     take the copies, the blocks of the program are all.
     """
-    files = [Path(name) for name in trace.files if Path(name).stem != CALL]
+    named = called_files(read_lines(program), tracer.ini)
+    files = [
+        file
+        for file in sorted({*map(Path, trace.files), *named})
+        if file.stem != CALL and any(wanted_in_sub(text, codes) for text in read_lines(file))
+    ]
     if files:
         with tempfile.TemporaryDirectory(prefix="g12-verify-") as folder:
             texts = read_lines(program) + write_copies(files, Path(folder), program, codes)
+            lines = watched(program, texts, codes.wanted)
             with Tracer(shadowed(tracer.ini, folder), tools=tools) as other:
-                copy = other.trace_text(
-                    watched(program, texts, codes.wanted), parameters=parameters
-                )
+                copy = other.trace_text(lines, parameters=parameters)
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
             return blocks_in(copy, texts)
     return executed(tracer, program, codes.wanted, parameters)
+
+
+def called_files(texts: Sequence[Text], ini: Ini) -> set[Path]:
+    """Return the files of subs that lines call by name, and of those that these call.
+
+    They may command a D and move nothing, which no trace shows.
+    """
+    found: set[Path] = set()
+    waiting = list(texts)
+    while waiting:
+        name = waiting.pop().call
+        places = (ini.directory / os.path.expanduser(folder) for folder in folders_of_subs(ini))
+        files = (place / f"{name}.ngc" for place in places)
+        file = next((file for file in files if name and file.is_file()), None)
+        if file and file not in found:
+            found.add(file)
+            waiting += read_lines(file)
+    return found
+
+
+def wanted_in_sub(text: Text, codes: Codes) -> bool:
+    """Tell whether a line of a sub's own file matters."""
+    return codes.wanted(text) and not codes.polar(text)
 
 
 def write_copies(files: Sequence[Path], folder: Path, program: Path, codes: Codes) -> list[Text]:
@@ -49,18 +77,21 @@ def write_copies(files: Sequence[Path], folder: Path, program: Path, codes: Code
     skip, found = len(read_lines(program)), []
     for file in files:
         texts = [text._replace(file=file.name) for text in read_lines(file)]
-        lines = watched(
-            file, texts, lambda text: codes.wanted(text) and not codes.polar(text), skip
-        )
+        lines = watched(file, texts, lambda text: wanted_in_sub(text, codes), skip)
         write_program(lines, folder / file.name)
         skip, found = skip + len(texts), found + texts
     return found
 
 
+def folders_of_subs(ini: Ini) -> list[str]:
+    """Return where LinuxCNC looks for the files of subs, in that order."""
+    subs = ini.get("RS274NGC", "SUBROUTINE_PATH", "").split(":")
+    return list(filter(None, (ini.get("DISPLAY", "PROGRAM_PREFIX"), *subs)))
+
+
 def shadowed(ini: Ini, folder: str) -> Ini:
     """Return an INI whose subs are looked for in a folder first, then where they were."""
-    prefix, subs = ini.get("DISPLAY", "PROGRAM_PREFIX"), ini.get("RS274NGC", "SUBROUTINE_PATH")
-    path = ":".join(filter(None, (prefix, subs)))
+    path = ":".join(folders_of_subs(ini))
     return ini.replaced(
         {"DISPLAY": {"PROGRAM_PREFIX": folder}, "RS274NGC": {"SUBROUTINE_PATH": path or None}}
     )

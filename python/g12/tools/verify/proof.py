@@ -2,9 +2,7 @@
 """Everything a program's pockets and polar sections can be held to, in one value.
 
 What is asked for is read from the program's words, what is cut is measured from the motion that
-LinuxCNC makes of it; the cycles' own planning has no part in it. G code is split into words by
-`preview.executed_blocks` and not by the section's `split_line`: a slip in that would else be made
-on both sides, and found on neither.
+LinuxCNC makes of it; the cycles' own planning has no part in it.
 """
 
 from __future__ import annotations

@@ -22,6 +22,7 @@ from g12.tools.verify.codes import Codes
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
 CONTOUR = "XYCUHIJRZ"
+SAVE, FORGET, RESTORE, SAVE_FOR_SUB = 70.0, 71.0, 72.0, 73.0
 POSITION = "#<_", "#54"  # position parameters, which the copy of the program cannot follow
 
 
@@ -124,7 +125,7 @@ def flattened(
     inside = False
     for text, line in zip(texts, lines):
         switch = codes.polar(text)
-        if switch or (inside and text.words and not text.control):
+        if switch or (inside and text.words and not text.control and not text.too_long):
             slash = "/" if text.deleted else ""
             kept = tuple(slash + assignment for assignment in text.assignments)
             yield (*before(text), *kept, *after(text))
@@ -155,6 +156,8 @@ def doubts_of(texts: Sequence[Text], codes: Codes, lines: Sequence[str]) -> dict
         first = {"on": text.number, "off": 0}.get(codes.polar(text), first)
         if first and text.call:
             doubts[first] = f"line {text.number} calls o<{text.call}>"
+        elif first and text.too_long:
+            doubts[first] = f"line {text.number} is too long"
         elif first and any(name in line.replace(" ", "") for name in POSITION):
             doubts[first] = f"line {text.number} asks for a position"
     return doubts
@@ -184,9 +187,12 @@ class Pen:
         self.depth = state["_z"] * self.unit
         self.absolute = bool(state["_absolute"])
         self.motion, self.side, self.changes = 1.0, 0, False
+        self._saved: tuple[bool, float] | None = None  # by M70 and M73
 
     def draw(self, block: Block) -> Iterator[Element]:
         """Yield the element that a block adds, if any."""
+        for code in block.m_codes:
+            self._save_or_restore(code)
         for code in block.codes:
             self._switch(code)
         words = block.words
@@ -203,6 +209,14 @@ class Pen:
             ramp, self.changes = self.changes, False
             yield Element(line, self.at, end, self.side, ramp, self.depth, centre, sweep)
         self.at = end
+
+    def _save_or_restore(self, code: float) -> None:
+        if code in (SAVE, SAVE_FOR_SUB):
+            self._saved = self.absolute, self.motion
+        elif code == FORGET:
+            self._saved = None
+        elif code == RESTORE and self._saved:
+            self.absolute, self.motion = self._saved
 
     def _switch(self, code: float) -> None:
         if code in SIDES:
