@@ -342,9 +342,27 @@ def test_reports_print(lathe):
     assert cut(lathe, "#3=4", "(PRINT,a #3)", "(print, b %d#3)").printed == "a 4.000000\n b 4\n"
 
 
-def test_python_comments_act_in_their_place(lathe):
-    traced = cut(lathe, "(py,this.params[7] = 5)", "G1 X9", after=["(DEBUG,#7)"])
-    assert texts(traced) == ["5.000000"]
+PYTHON = "py,this.params[7] = this.current_x"
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [(f"({PYTHON})", 15), (f";{PYTHON}", 15), (f" ;{PYTHON}", 0), (f"G4 P0 ;{PYTHON}", 0)],
+)
+def test_python_comments_act_in_their_place(lathe, line, found):
+    """LinuxCNC runs one behind a semicolon if the line begins with it."""
+    for program in (
+        [FIRST, "#7=0", "G1 X15 F100", line, "G1 X9", "(DEBUG,#7)", "M2"],
+        section("G1 X15", line, "G1 X9", before=["#7=0"], after=["(DEBUG,#7)"]),
+    ):
+        traced = lathe.trace_text(program)
+        assert traced.error is None, traced.error
+        assert texts(traced) == [f"{found:.6f}"]
+
+
+def test_python_comments_that_are_skipped_do_not_act(lathe):
+    body = ["o1 if [0]", f";{PYTHON}", f"({PYTHON})", "o1 endif", "G1 X9"]
+    assert texts(cut(lathe, *body, before=["#7=1"], after=["(DEBUG,#7)"])) == ["1.000000"]
 
 
 def test_block_delete(lathe):

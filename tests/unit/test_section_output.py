@@ -249,3 +249,21 @@ def test_an_action_that_fails_names_its_line():
 
     with pytest.raises(Refusal, match=r"G12\.1 line 8: No valid P word with M62"):
         handed_over([Action(8, "M62", MODES)], Failing())
+
+
+class Failing(Interpreter):
+    """Refuses a block with a text of its own, as LinuxCNC hands it to Python."""
+
+    def read(self, text):
+        raise SystemError(text)
+
+    def get_errormsg(self):
+        return b"no \xfe such mode".decode("utf-8")
+
+
+def test_a_block_that_fails_leaves_the_call_level_and_any_text_of_the_interpreters():
+    interp = Failing()
+    with pytest.raises(Refusal) as refused:
+        handed_over([Action(9, "M72", MODES, 3)], interp)
+    assert str(refused.value) == "G12.1 line 9: no \ufffd such mode"
+    assert interp.call_level == 1

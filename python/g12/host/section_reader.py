@@ -211,6 +211,8 @@ class SectionReader:
 
     def comment(self, line: TextLine) -> None:
         """Keep a comment, message or report, with its parameters as they are now."""
+        if line.python:
+            self._keep(Action(self.program.place, line.python, self.modes))
         for comment in line.comments[-1:]:  # the interpreter knows only the last one of a line
             if "#" in comment:
                 self.show_plane()

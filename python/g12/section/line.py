@@ -31,6 +31,7 @@ _DIGITS = re.compile(r"[\d.]*")
 _CODE = re.compile(r"\d+(?:\.\d*)?")
 _NINE = re.compile(r"0*9(?:\.0*)?")
 _LINE_NAMED = re.compile(r" line (\d+):")
+PYTHON_LINE = ";py,"  # Interp::read_semicolon (interp_read.cc): at the very start of a line alone
 FOREIGN = {"u": "x", "h": "c", "y": "c"}  # what the parser is given instead
 
 
@@ -59,7 +60,7 @@ class TextLine(NamedTuple):
     "while", …; M98 is a "call" and M99 a "return"), "" on other lines. ``letters`` are the words
     as written, ``codes`` the G and M words with a plain number (letter, number times ten),
     ``relative`` the axes given by U and H. A parsed block shows neither ``assignments`` nor the $
-    word, ``spindle``.
+    word, ``spindle``. ``python`` is a whole line of it, which LinuxCNC runs.
     """
 
     text: str
@@ -72,6 +73,7 @@ class TextLine(NamedTuple):
     exact_stop: bool = False
     assignments: str = ""
     spindle: str = ""
+    python: str = ""
 
     @property
     def empty(self) -> bool:
@@ -86,6 +88,8 @@ class TextLine(NamedTuple):
 
 def split_line(raw: str) -> TextLine:
     """Return a raw line in its parts."""
+    if raw.startswith(PYTHON_LINE):
+        return TextLine("", python=raw)
     bare = _BLANKS.sub("", _COMMENT.sub("", raw)).lower()
     comments = tuple(match[1] for match in _COMMENT.finditer(raw) if match[1] is not None)
     control = _CONTROL.match(bare)
