@@ -13,7 +13,7 @@ from g12.tools.install.rules import NOTE, PROBLEM, WARNING, Finding, findings_of
 from g12.tools.preview.loading import python_error
 from support.small_configs import HAAS, LATHE, MILL, config_of, with_lines, write_config
 
-HANDLERS = {name: "g12.remap" for f in features.FILES for name in features.handlers_of(f)}
+HANDLERS = {name: "g12.remap" for f in features.FILES for name in features.functions_of(f)}
 PYTHON = "[PYTHON]\nTOPLEVEL = toplevel.py\n"
 SUBS = "SUBROUTINE_PATH = ngc\n"
 GOOD = with_lines(MILL, "RS274NGC", f"{SUBS}{HAAS}") + PYTHON

@@ -16,7 +16,7 @@ from g12.tools import progress
 from g12.tools.commands import install, uninstall
 from g12.tools.errors import UsageError
 from g12.tools.install import features, installation, package_copy, removal, trial
-from g12.tools.install.ini_edit import BEGIN, END, IniError, IniText, read_lines, to_bytes
+from g12.tools.install.ini_edit import BEGIN, END, IniError, IniText, lines_with_ends, to_bytes
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.machine import files
 from support.small_configs import MILL, config_of, content_of, with_lines, write_config
@@ -299,7 +299,7 @@ def test_a_remap_that_the_toplevel_does_not_import_yet(tmp_path):
 
 def test_a_hand_made_import_is_enough(tmp_path):
     ini, python = own_config(tmp_path)
-    ours = dict.fromkeys(features.handlers_of("haas"), "g12.remap")
+    ours = dict.fromkeys(features.functions_of("haas"), "g12.remap")
     put_in(ini, **{**python, "remap": ours, "package": tmp_path / "tools" / "python" / "g12"})
     assert "by g12 install" not in (tmp_path / "python" / "remap.py").read_text()
     assert "SUBROUTINE_PATH = tools/ngc" in ini.read_text()
@@ -780,7 +780,7 @@ def test_old_versions_are_never_overwritten(tmp_path):
 def test_reading_lines_loses_no_byte(tmp_path_factory, content):
     path = tmp_path_factory.mktemp("lines") / "any.ini"
     path.write_bytes(content)
-    assert to_bytes(read_lines(path)) == content
+    assert to_bytes(lines_with_ends(path)) == content
 
 
 # The command line.

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from g12.tools.path.part import Part
 from g12.tools.preview.moves import Error, Move
 from g12.tools.regress.alignment import pairs
-from g12.tools.regress.differences import differences, lines_of
+from g12.tools.regress.differences import differences, program_lines
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recording_text import Note, Recording
 
@@ -73,7 +73,7 @@ def test_an_inserted_block_is_one_difference():
     (difference,) = found(recording(*SQUARE), recording(*now))
     assert difference.kind == "added"
     assert difference.text == "2 moves added, X10 to 11 Y0 to 5"
-    assert lines_of(recording(*now), difference.now) == [4, 5]
+    assert program_lines(recording(*now), difference.now) == [4, 5]
 
 
 def test_a_removed_block_is_one_difference():
@@ -81,7 +81,7 @@ def test_a_removed_block_is_one_difference():
     (difference,) = found(was, recording(*SQUARE[:3], *SQUARE[4:]))
     assert (difference.kind, difference.moves) == ("missing", 1)
     assert difference.text == "1 move missing, Y0 to 10"
-    assert lines_of(was, difference.was) == [4]
+    assert program_lines(was, difference.was) == [4]
 
 
 def test_a_changed_depth_is_one_difference_with_its_amount():
@@ -203,7 +203,7 @@ def test_the_same_difference_in_several_places_is_one():
         now += [("rapid", (x, 0, 5)), ("feed", (x, 0, -3))]
     (difference,) = found(recording(*was), recording(*now))
     assert (difference.text, difference.moves) == ("Z-2 → Z-3 (-1 mm)", 5)
-    assert lines_of(recording(*now), difference.now) == [2, 4, 6, 8, 10]
+    assert program_lines(recording(*now), difference.now) == [2, 4, 6, 8, 10]
 
 
 def test_a_program_that_is_refused_now_is_one_difference():

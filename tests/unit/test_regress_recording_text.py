@@ -10,10 +10,10 @@ from g12.tools.regress.recording_text import (
     Note,
     Recording,
     TraceTextError,
-    number,
-    one_line,
+    number_text,
     read_recording,
     text_of,
+    without_folders,
 )
 
 STILL = (0.0,) * 9
@@ -70,14 +70,14 @@ def test_a_refused_program_ends_with_its_error():
     [(-0.0, "0"), (1e-11, "0"), (0.1 + 0.2, "0.3"), (-1234.5678901234, "-1234.5678901234")],
 )
 def test_numbers_have_ten_decimals_and_no_noise(value, text):
-    assert number(value) == text
+    assert number_text(value) == text
 
 
 def test_texts_do_not_tell_where_the_files_are():
-    assert one_line("EOF in file:/home/joe/nc/a.ngc seeking\n o100") == (
+    assert without_folders("EOF in file:/home/joe/nc/a.ngc seeking\n o100") == (
         "EOF in file:a.ngc seeking o100"
     )
-    assert one_line("F in mm/min, 1/2/3") == "F in mm/min, 1/2/3"
+    assert without_folders("F in mm/min, 1/2/3") == "F in mm/min, 1/2/3"
 
 
 numbers = st.floats(-2000, 2000).map(lambda value: round(value, 7))

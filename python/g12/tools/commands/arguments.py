@@ -49,10 +49,10 @@ def count_from(least: int) -> Callable[[str], int]:
     return _reader(int, lambda value: value >= least, f"a whole number from {least}")
 
 
-def _reader(sort: type, is_good: Callable[[float], bool], wanted: str) -> Callable:
+def _reader(kind: type, is_good: Callable[[float], bool], wanted: str) -> Callable:
     def read(text: str) -> float:
         try:
-            value = sort(text)
+            value = kind(text)
         except ValueError:
             value = math.nan
         if not is_good(value):
@@ -81,9 +81,9 @@ def add_run(parser: argparse.ArgumentParser, what: str) -> None:
     )
 
 
-def check_run(asked: argparse.Namespace) -> None:
+def check_run(options: argparse.Namespace) -> None:
     """Refuse a feed override where nothing is run."""
-    if asked.override != 100.0 and not asked.run:
+    if options.override != 100.0 and not options.run:
         raise UsageError("--override is the feed override of --run, which is not there")
 
 

@@ -103,7 +103,7 @@ def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
     return describe(sample, run, proof, scene, picture), is_sound(proof)
 
 
-def told(sample: Sample, job: Future, output: Path) -> tuple[str, bool]:
+def shown_or_failed(sample: Sample, job: Future, output: Path) -> tuple[str, bool]:
     """Draw a sample whose run has come to its end; return what is told of it, and whether good."""
     try:
         return show(sample, job.result(), output)
@@ -177,25 +177,27 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     ]
 
 
-def parser() -> Parser:
-    """Return the command's words."""
-    words = Parser(prog="g12 demo", description=__doc__)
-    words.add_argument("--output", type=Path, default=Path("build/demo"), help="folder of pictures")
-    return words
+def command_parser() -> Parser:
+    """Return what reads the command line."""
+    parser = Parser(prog="g12 demo", description=__doc__)
+    parser.add_argument(
+        "--output", type=Path, default=Path("build/demo"), help="folder of pictures"
+    )
+    return parser
 
 
 @one_line("demo")
 def main(arguments: list[str]) -> int:
     """Run the command."""
-    asked = parser().parse_args(arguments)
+    options = command_parser().parse_args(arguments)
     if not PROGRAMS.is_dir():
         raise UsageError(f"{PROGRAMS}: the sample programs are not there")
-    asked.output.mkdir(parents=True, exist_ok=True)
+    options.output.mkdir(parents=True, exist_ok=True)
     workers = os.cpu_count() or 1
     print(f"running {len(SAMPLES)} programs, {workers} at a time, in real time\n", flush=True)
     bad = []
     for count, (sample, job) in enumerate(runs(SAMPLES, workers), start=1):
-        text, sound = told(sample, job, asked.output)
+        text, sound = shown_or_failed(sample, job, options.output)
         bad += [] if sound else [sample.program]
         print(f"[{count} of {len(SAMPLES)}] {text}\n", flush=True)
     verdict = f"NOT everything came out right: {', '.join(bad)}"

@@ -33,11 +33,11 @@ def main(arguments: list[str]) -> int:
     parser = Parser(prog="g12 dynapath", description=__doc__, epilog=EXAMPLES)
     parser.add_argument("file", type=Path, help="event text")
     parser.add_argument("--units", choices=("inch", "mm"), help="of the events: adds G20 or G21")
-    asked = parser.parse_args(arguments)
-    text = existing(asked.file).read_text(encoding="latin-1")
+    options = parser.parse_args(arguments)
+    text = existing(options.file).read_text(encoding="latin-1")
     try:
-        program = program_from_events(text, asked.units)
+        program = program_from_events(text, options.units)
     except Refusal as refusal:
-        raise ProgramError(f"{asked.file}: {refusal}") from None
+        raise ProgramError(f"{options.file}: {refusal}") from None
     print(program, end="")
     return GOOD

@@ -47,57 +47,57 @@ exit code: 0 as recorded, 1 something changed, 2 wrong use
 """
 
 
-def parser() -> Parser:
-    """Return the command's words."""
-    words = Parser(prog="g12 regress", description=DESCRIPTION)
-    actions = words.add_subparsers(dest="action", required=True, metavar="record | check")
-    _record_words(actions)
-    _check_words(actions)
-    return words
+def command_parser() -> Parser:
+    """Return what reads the command line."""
+    parser = Parser(prog="g12 regress", description=DESCRIPTION)
+    actions = parser.add_subparsers(dest="action", required=True, metavar="record | check")
+    _add_record(actions)
+    _add_check(actions)
+    return parser
 
 
-def _record_words(actions) -> None:
-    words = actions.add_parser(
+def _add_record(actions) -> None:
+    parser = actions.add_parser(
         "record",
         help="keep what programs do",
         epilog=RECORD_EXAMPLES,
     )
-    words.set_defaults(run=run_record)
-    words.add_argument(
+    parser.set_defaults(run=run_record)
+    parser.add_argument(
         "programs",
         nargs="*",
         type=Path,
         metavar="PROGRAM",
         help="program or folder with programs (default: all that are recorded)",
     )
-    _file(words, "--ini", "INI file of the machine")
-    _file(words, "--tools", "tool table in place of the INI's")
-    _file(words, "--var", "var file (default: all parameters are 0)")
-    _common_words(words)
+    _add_file(parser, "--ini", "INI file of the machine")
+    _add_file(parser, "--tools", "tool table in place of the INI's")
+    _add_file(parser, "--var", "var file (default: all parameters are 0)")
+    _add_common(parser)
 
 
-def _check_words(actions) -> None:
-    words = actions.add_parser(
+def _add_check(actions) -> None:
+    parser = actions.add_parser(
         "check",
         help="tell what changed",
         epilog=CHECK_EXAMPLES,
     )
-    words.set_defaults(run=run_check)
-    words.add_argument("names", nargs="*", metavar="PROGRAM", help="default: all recorded")
-    _file(words, "--programs", "folder with other versions of the programs", "DIR")
-    _file(words, "--ini", "INI file in place of the recorded one")
-    _file(words, "--tools", "tool table in place of the recorded one")
-    _file(words, "--picture", "draw each change, in this folder", "DIR")
-    _common_words(words)
+    parser.set_defaults(run=run_check)
+    parser.add_argument("names", nargs="*", metavar="PROGRAM", help="default: all recorded")
+    _add_file(parser, "--programs", "folder with other versions of the programs", "DIR")
+    _add_file(parser, "--ini", "INI file in place of the recorded one")
+    _add_file(parser, "--tools", "tool table in place of the recorded one")
+    _add_file(parser, "--picture", "draw each change, in this folder", "DIR")
+    _add_common(parser)
 
 
-def _file(words: argparse.ArgumentParser, name: str, text: str, metavar: str = "FILE") -> None:
-    words.add_argument(name, type=Path, metavar=metavar, help=text)
+def _add_file(parser: argparse.ArgumentParser, name: str, text: str, metavar: str = "FILE") -> None:
+    parser.add_argument(name, type=Path, metavar=metavar, help=text)
 
 
-def _common_words(words: argparse.ArgumentParser) -> None:
+def _add_common(parser: argparse.ArgumentParser) -> None:
     directory = {"type": Path, "required": True, "metavar": "DIR"}
-    words.add_argument("-d", "--directory", **directory, help="the recordings")
+    parser.add_argument("-d", "--directory", **directory, help="the recordings")
     for name, default, metavar, text in (
         ("--tolerance", Terms.ends, "LENGTH", "of ends, in machine units and degrees"),
         ("--feed-tolerance", Terms.feeds, "PERCENT", "of feeds"),
@@ -105,16 +105,16 @@ def _common_words(words: argparse.ArgumentParser) -> None:
     ):
         help_ = f"{text} (default {default:g})"
         read = number_above(0) if name == "--timeout" else number_from(0)
-        words.add_argument(name, type=read, default=default, metavar=metavar, help=help_)
+        parser.add_argument(name, type=read, default=default, metavar=metavar, help=help_)
     jobs = {"type": count_from(1), "default": os.cpu_count(), "metavar": "N"}
-    words.add_argument("--jobs", **jobs, help="default: all cores")
-    words.add_argument("--json", action="store_true", help="report as JSON")
+    parser.add_argument("--jobs", **jobs, help="default: all cores")
+    parser.add_argument("--json", action="store_true", help="report as JSON")
 
 
 @one_line("regress")
 def main(arguments: list[str]) -> int:
     """Run the command."""
-    options = parser().parse_args(arguments)
+    options = command_parser().parse_args(arguments)
     with working("") as tell, Recorders() as recorders:
         found, notes, good = options.run(options, _terms(options, tell), recorders)
     _print(found, notes, options.json, good)

@@ -25,7 +25,7 @@ from g12.tools.headless.run import run_anyhow
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.ended import text_with_axes
 from g12.tools.preview.moves import LINEAR
-from g12.tools.regress.recording_text import number
+from g12.tools.regress.recording_text import number_text
 from g12.tools.units import UNITS, name_of_unit
 
 EXAMPLES = """\
@@ -38,12 +38,12 @@ exit code: 0 the program came to its end, 1 it did not, 2 wrong use
 DECIMALS = 6
 
 
-def report(result: Run, ini: Ini) -> Iterator[str]:
+def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
     """Yield what the run said and where the machine stands at its end."""
     for message in result.messages:
         yield f"message: {message.text}"
     axes = [(axis, AXES.index(axis)) for axis in result.samples.axes]
-    ends = (f"{axis}{number(round(result.position[at], DECIMALS))}" for axis, at in axes)
+    ends = (f"{axis}{number_text(round(result.position[at], DECIMALS))}" for axis, at in axes)
     unit = UNITS[name_of_unit(ini.mm)].name
     units = unit if all(LINEAR[at] for _, at in axes) else f"{unit} and degrees"
     yield f"ends at {' '.join(ends)} (machine position, {units})"
@@ -57,12 +57,12 @@ def main(arguments: list[str]) -> int:
     add_program(parser)
     timeout = {"type": number_above(0), "default": 600.0, "metavar": "SECONDS"}
     parser.add_argument("--timeout", **timeout, help="give up after this (default 600)")
-    asked = parser.parse_args(arguments)
-    ini = checked_ini(asked.program, asked.ini, asked.tools)
-    result = run_anyhow(asked.program, asked.ini, asked.tools, timeout=asked.timeout)
-    for line in report(result, ini):
+    options = parser.parse_args(arguments)
+    ini = checked_ini(options.program, options.ini, options.tools)
+    result = run_anyhow(options.program, options.ini, options.tools, timeout=options.timeout)
+    for line in lines_of_run(result, ini):
         print(line)
     if result.error:
-        text = text_with_axes(result.error.text, asked.ini)
-        print(f"g12 run: {asked.program}: {text}", file=sys.stderr)
+        text = text_with_axes(result.error.text, options.ini)
+        print(f"g12 run: {options.program}: {text}", file=sys.stderr)
     return FINDING if result.error else GOOD

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """``g12 trace``: the moves of a program, one a line.
 
-The stock interpreter is asked, as a preview does; nothing moves. Lengths are mm and angles
+The stock interpreter is options, as a preview does; nothing moves. Lengths are mm and angles
 degrees, whatever the program and the machine use; positions are those of the controlled point
 in machine coordinates. A line begins with the program's own line number.
 """
@@ -53,12 +53,12 @@ def main(arguments: list[str]) -> int:
     add_program(parser)
     digits = {"type": count_from(0), "default": 6, "metavar": "N"}
     parser.add_argument("--digits", **digits, help="decimals (default 6)")
-    asked = parser.parse_args(arguments)
-    checked_ini(asked.program, asked.ini, asked.tools)
-    traced = with_axes(trace(asked.program, asked.ini, tools=asked.tools), asked.ini)
+    options = parser.parse_args(arguments)
+    checked_ini(options.program, options.ini, options.tools)
+    traced = with_axes(trace(options.program, options.ini, tools=options.tools), options.ini)
     for move in traced.moves:
-        print(line_of(move, asked.digits))
+        print(line_of(move, options.digits))
     for line, text in traced.messages:
         print(f"{line:6d} message {text}")
-    ended(asked.program, traced)
+    ended(options.program, traced)
     return GOOD

@@ -5,6 +5,8 @@ Every machine has its own IPC, PID, mount and network namespace, its own HOME, /
 directory, so several run side by side and a LinuxCNC already running is never touched.  The
 INI's directory is replaced by a private copy, so that nothing in it is ever written.
 
+The commands only run whole programs; what an operator does step by step is here for tests.
+
 Positions and speeds are in machine units (``Machine.mm`` is one of them in mm), degrees for
 rotary axes; sampled positions are those of the axes, tool length included, or of the joints where
 the kinematics makes the axes mean other things (`polar_xzc`).
@@ -42,7 +44,8 @@ MARGIN = 10.0  # s that an answer may take beyond the timeout asked for
 NS_PER_S = 1e9
 LOG_LINES = 60
 
-SCREEN = {"DISPLAY": "g12-driver", "MAX_FEED_OVERRIDE": 100}
+SCREEN_NAME = "g12-recording-screen"
+SCREEN = {"DISPLAY": SCREEN_NAME, "MAX_FEED_OVERRIDE": 100}
 
 TOOL_CHANGE_DIALOGUE = "hal_manualtoolchange"
 # Stands in for the screen's tool change dialogue: whoever asks for a tool has it.
@@ -58,11 +61,11 @@ while True:
     component["changed"] = component["change"]
     time.sleep(0.01)
 """
-DRIVER = """\
+RECORDING_SCREEN = """\
 import sys
 sys.path.insert(0, {package!r})
-from g12.tools.headless.recording_screen import serve
-serve({address!r}, {pins!r})
+from g12.tools.headless.recording_screen import serve_runner
+serve_runner({address!r}, {pins!r})
 """
 FACE_KINEMATICS = "polar_xzc"
 
@@ -362,8 +365,10 @@ class Machine:
 
     def _start(self, timeout: float) -> None:
         address = str(self.folder / "run" / "socket")
-        driver = DRIVER.format(package=str(PACKAGE), address=address, pins=[*self._pins.values()])
-        self._isolated.install("g12-driver", driver)
+        screen = RECORDING_SCREEN.format(
+            package=str(PACKAGE), address=address, pins=[*self._pins.values()]
+        )
+        self._isolated.install(SCREEN_NAME, screen)
         dialogue = self._isolated.install(TOOL_CHANGE_DIALOGUE, TOOL_CHANGE)
         real_dialogue = shutil.which(TOOL_CHANGE_DIALOGUE)
         path = self.ini.path
@@ -399,7 +404,7 @@ class Machine:
         last = "\n".join(self.log().splitlines()[-LOG_LINES:])
         return StartupError(f"{self.ini.path}: {what}; its log ends:\n{last}")
 
-    # Talking to the driver.
+    # Talking to the recording screen.
 
     def _ask(self, name: str, *arguments, timeout: float = 60.0):
         try:

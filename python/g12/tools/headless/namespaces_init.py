@@ -37,7 +37,7 @@ class IsolationError(OSError):
     """The kernel refuses a namespace or a mount."""
 
 
-def check(result: int, action: str) -> None:
+def raise_if_failed(result: int, action: str) -> None:
     """Raise with the kernel's reason if a call failed."""
     if result:
         raise IsolationError(f"{action}: {os.strerror(ctypes.get_errno())}")
@@ -48,15 +48,15 @@ def unshare() -> None:
     uid, gid = os.geteuid(), os.getegid()
     flags = CLONE_NEWIPC | CLONE_NEWPID | CLONE_NEWNET
     if uid == 0:
-        check(libc.unshare(flags), "new namespaces")
+        raise_if_failed(libc.unshare(flags), "new namespaces")
         return
-    check(libc.unshare(flags | CLONE_NEWUSER), "new namespaces as an ordinary user")
-    write("/proc/self/setgroups", "deny")
-    write("/proc/self/uid_map", f"{uid} {uid} 1")
-    write("/proc/self/gid_map", f"{gid} {gid} 1")
+    raise_if_failed(libc.unshare(flags | CLONE_NEWUSER), "new namespaces as an ordinary user")
+    write_text("/proc/self/setgroups", "deny")
+    write_text("/proc/self/uid_map", f"{uid} {uid} 1")
+    write_text("/proc/self/gid_map", f"{gid} {gid} 1")
 
 
-def write(path: str, text: str) -> None:
+def write_text(path: str, text: str) -> None:
     """Write a file in one go."""
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
@@ -65,7 +65,7 @@ def write(path: str, text: str) -> None:
 def mount(source: str, target: str, kind: str | None, flags: int, options: str = "") -> None:
     """Mount ``source`` on ``target``, with the arguments of the system call."""
     arguments = [text.encode() if text is not None else None for text in (source, target, kind)]
-    check(libc.mount(*arguments, flags, options.encode()), f"mounting {target}")
+    raise_if_failed(libc.mount(*arguments, flags, options.encode()), f"mounting {target}")
 
 
 def bind(source: str, target: str) -> None:
@@ -92,7 +92,7 @@ def mirror(directory: str, files: dict[str, str], copy: bool) -> None:
             if os.path.lexists(entry.path):  # others may remove theirs from /tmp at any time
                 raise
     for name, text in files.items():
-        write(os.path.join(directory, name), text)
+        write_text(os.path.join(directory, name), text)
 
 
 def place(entry: os.DirEntry, target: str, copy: bool) -> None:
@@ -105,7 +105,7 @@ def place(entry: os.DirEntry, target: str, copy: bool) -> None:
     elif copy and entry.is_file() and entry.stat().st_size <= LARGEST_COPY:
         copy_file(entry.path, target)
     else:
-        write(target, "")
+        write_text(target, "")
         bind(entry.path, target)
 
 
@@ -120,7 +120,7 @@ def copy_file(source: str, target: str) -> None:
 
 def prepare(job: dict) -> None:
     """Set up the mounts that the command sees; the supervising process keeps the real ones."""
-    check(libc.unshare(CLONE_NEWNS), "new mount namespace")
+    raise_if_failed(libc.unshare(CLONE_NEWNS), "new mount namespace")
     mount("none", "/", None, MS_REC | MS_PRIVATE)
     mount("proc", "/proc", "proc", 0)
     mirror("/tmp", {}, copy=False)

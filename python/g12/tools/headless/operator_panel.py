@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The operator's side of a running LinuxCNC: enable, home, MDI, cycle start and the rest.
 
-Used inside a LinuxCNC session, by the headless screen and by the headless runner's driver.
+Used inside a LinuxCNC session, by the headless screen and by the recording screen.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ class Sampler:
     def __init__(self, positions: list[str]) -> None:
         pins = [("f", pin) for pin in positions] + list(MOTION)
         kinds = "".join(kind for kind, _ in pins)
-        self._component = hal.component("g12-driver")
+        self._component = hal.component("g12-recording-screen")
         self._component.ready()
         halcmd("loadrt", "sampler", f"depth={DEPTH}", f"cfg={kinds}")
         hal.set_p("sampler.0.enable", "0")
@@ -69,7 +69,7 @@ class Sampler:
             row = self._stream.read()
 
 
-class Driver:
+class RecordingScreen:
     """The requests a runner can make, beside those of ``Panel``."""
 
     def __init__(self, positions: list[str]) -> None:
@@ -152,22 +152,22 @@ def signals_by_pin() -> dict[str, str]:
     return {line[4]: line[6] for line in words if len(line) > 6}
 
 
-def serve(address: str, positions: list[str]) -> None:
+def serve_runner(address: str, positions: list[str]) -> None:
     """Answer requests until the runner closes the connection."""
     with socket.socket(socket.AF_UNIX) as client:
         client.connect(address)
         connection = Connection(client.detach())
-    driver = Driver(positions)
+    screen = RecordingScreen(positions)
     connection.send((True, "ready"))
     while True:
         while not connection.poll(DRAIN):
-            driver.tick()
+            screen.tick()
         try:
             request = connection.recv()
         except EOFError:
             return
         try:
-            connection.send((True, driver.answer(*request)))
+            connection.send((True, screen.answer(*request)))
         except PanelTimeout as error:
             connection.send((False, ("timeout", str(error))))
         except Exception as error:

@@ -30,7 +30,7 @@ def program_to_run(ini: Ini, named: list[str]) -> Path | None:
     return ini.file("DISPLAY", "OPEN_FILE")
 
 
-def report(panel: Panel) -> bool:
+def print_said(panel: Panel) -> bool:
     """Print what LinuxCNC said; tell whether there was an error among it."""
     for text, _ in panel.messages():
         print(f"message: {text}", flush=True)
@@ -40,16 +40,16 @@ def report(panel: Panel) -> bool:
     return bool(errors)
 
 
-def run(panel: Panel, program: Path | None) -> bool:
+def run_to_end(panel: Panel, program: Path | None) -> bool:
     """Home the machine, run the program and tell whether it came to its end."""
     panel.enable()
     panel.home()
     if program is None:
-        return not report(panel)
+        return not print_said(panel)
     panel.open(str(program))
     panel.start()
     panel.finish(LONGEST_PROGRAM)
-    return not report(panel)
+    return not print_said(panel)
 
 
 def main(arguments: list[str]) -> int:
@@ -61,7 +61,7 @@ def main(arguments: list[str]) -> int:
     program = program_to_run(read_ini(named.ini), named.program)
     panel = Panel()
     try:
-        worked = run(panel, program)
+        worked = run_to_end(panel, program)
     except PanelError as error:
         print(f"error: {error}", file=sys.stderr)
         worked = False

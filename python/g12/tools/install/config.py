@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from g12.machine_ini import Remap, remap_from_value
-from g12.tools.install.ini_edit import IniText, Line
+from g12.tools.install.ini_edit import IniLine, IniText
 from g12.tools.machine.ini import Ini, Overrides
 from g12.tools.preview.loading import linuxcnc_version, load_failure, python_error
 from g12.tools.preview.tracer import TraceFailure, Tracer
@@ -65,7 +65,7 @@ class Config:
 
     text: IniText
     ini: Ini
-    remaps: list[tuple[Line, Remap]]
+    remaps: list[tuple[IniLine, Remap]]
     version: str
     python: Python | None
     owned: frozenset[str]
@@ -78,7 +78,7 @@ class Config:
         return self.ini.directory
 
 
-def remaps_in(text: IniText) -> list[tuple[Line, Remap]]:
+def remaps_in(text: IniText) -> list[tuple[IniLine, Remap]]:
     """Return the REMAP lines that LinuxCNC reads."""
     return [(line, remap_from_value(value)) for line, value in text.entries("RS274NGC", "REMAP")]
 

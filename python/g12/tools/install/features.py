@@ -82,6 +82,6 @@ def names_of(feature: str) -> list[str]:
     return list(dict.fromkeys([*called, *SUBS.get(feature, ())]))
 
 
-def handlers_of(feature: str) -> list[str]:
+def functions_of(feature: str) -> list[str]:
     """Return the Python functions that a feature's codes call."""
     return list(dict.fromkeys(name for remap in remaps_of(feature) for name in remap.handlers))

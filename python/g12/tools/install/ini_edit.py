@@ -21,7 +21,7 @@ LINE = re.compile(r"[^\n]*\n|[^\n]+")
 CONTINUED = re.compile(r"\\\r?\n?\Z")
 
 
-class Line(NamedTuple):
+class IniLine(NamedTuple):
     """A line of the expanded INI: ``index`` counts from 0 in ``file``, ``text`` has no line end.
 
     ``host`` is the index of the INI's own line that brings it: itself or an #INCLUDE.
@@ -45,13 +45,13 @@ class Place(NamedTuple):
     index: int
 
 
-def read_lines(path: Path) -> list[str]:
+def lines_with_ends(path: Path) -> list[str]:
     """Return a text file's lines with their line ends, exactly as they are."""
     return LINE.findall(path.read_bytes().decode("utf-8", "surrogateescape"))
 
 
 def to_bytes(lines: Sequence[str]) -> bytes:
-    """Return the file that `read_lines` read the lines from."""
+    """Return the file that `lines_with_ends` read the lines from."""
     return "".join(lines).encode("utf-8", "surrogateescape")
 
 
@@ -88,34 +88,34 @@ class IniText:
     def __init__(self, path: Path) -> None:
         self.path = path.absolute()
         self.files: dict[Path, list[str]] = {self.path: self._read(self.path)}
-        self.unreadable: list[Line] = []
+        self.unreadable: list[IniLine] = []
         for line in self._own_lines():
             self._load_included(line)
 
     def _read(self, path: Path) -> list[str]:
         try:
-            return read_lines(path)
+            return lines_with_ends(path)
         except OSError as error:
             raise IniError(f"{path}: {error.strerror}") from error
 
-    def _load_included(self, line: Line) -> None:
+    def _load_included(self, line: IniLine) -> None:
         included = included_file(line.text, self.path.parent)
         if included and included.is_file():
             self.files[included] = self._read(included)
         elif included or line.text.split() == ["#INCLUDE"]:
             self.unreadable.append(line)
 
-    def _own_lines(self) -> Iterator[Line]:
+    def _own_lines(self) -> Iterator[IniLine]:
         for index, text in enumerate(self.files[self.path]):
-            yield Line(self.path, index, text.rstrip("\r\n"), index)
+            yield IniLine(self.path, index, text.rstrip("\r\n"), index)
 
-    def lines(self) -> Iterator[Line]:
+    def lines(self) -> Iterator[IniLine]:
         """Yield every line as LinuxCNC sees it, an #INCLUDE line in front of what it includes."""
         for line in self._own_lines():
             yield line
             included = included_file(line.text, self.path.parent)
             for index, text in enumerate(self.files.get(included, ())):
-                yield Line(included, index, text.rstrip("\r\n"), line.index)
+                yield IniLine(included, index, text.rstrip("\r\n"), line.index)
 
     def ini(self) -> Ini:
         """Return the expanded INI, edits included, for looking values up."""
@@ -123,17 +123,17 @@ class IniText:
         pairs = zip(self.lines(), included)
         return Ini(self.path, tuple(line.text for line, file in pairs if file not in self.files))
 
-    def headers(self, section: str) -> list[Line]:
+    def headers(self, section: str) -> list[IniLine]:
         """Return every header of that section; LinuxCNC 2.9 reads the first one's lines only."""
         return [line for line in self.lines() if opens_section(line.text, section)]
 
-    def section(self, section: str) -> list[Line]:
+    def section(self, section: str) -> list[IniLine]:
         """Return the lines LinuxCNC finds in a section, its header first."""
         lines = list(self.lines())
         extent = section_extent([line.text for line in lines], section)
         return lines[extent.start - 1 : extent.stop] if extent.start else []
 
-    def entries(self, section: str, key: str) -> list[tuple[Line, str]]:
+    def entries(self, section: str, key: str) -> list[tuple[IniLine, str]]:
         """Return the values of a key in the section LinuxCNC reads, with their first lines."""
         lines = list(self.lines())
         found = entries_of([line.text for line in lines], section)
@@ -175,28 +175,28 @@ class IniText:
             new[-1] = texts[-1]
         lines[place.index : place.index] = new
 
-    def replace(self, line: Line, text: str) -> None:
+    def replace(self, line: IniLine, text: str) -> None:
         """Put another text in place of a line; its line end stays."""
         lines = self.files[line.file]
         lines[line.index] = text + lines[line.index][len(line.text) :]
 
-    def append_to_value(self, line: Line, text: str) -> None:
+    def append_to_value(self, line: IniLine, text: str) -> None:
         """Append to the value of the entry that begins at ``line``."""
         index = self._behind(line.file, line.index) - 1
         lines = self.files[line.file]
         body = lines[index].rstrip()
         lines[index] = body + text + lines[index][len(body) :]
 
-    def remove_from_value(self, line: Line, entry: str) -> None:
+    def remove_from_value(self, line: IniLine, entry: str) -> None:
         """Take an entry out of the list, separated by colons, that begins at ``line``."""
         lines = self.files[line.file]
         lines[line.index] = re.sub(rf"(=\s*){re.escape(entry)}:", r"\1", lines[line.index], count=1)
         for index in range(line.index, self._behind(line.file, line.index)):
             lines[index] = re.sub(rf":{re.escape(entry)}(?=[:\s]|$)", "", lines[index])
 
-    def blocks(self) -> list[list[Line]]:
+    def blocks(self) -> list[list[IniLine]]:
         """Return the marked blocks, markers included, of the INI and of what it includes."""
-        blocks: list[list[Line]] = []
+        blocks: list[list[IniLine]] = []
         open_ = False
         for line in self.lines():
             if line.text.startswith(BEGIN):
@@ -214,7 +214,7 @@ class IniText:
             raise IniError(f'{blocks[-1][0].place}: the line "{END}" that ends this is missing')
         return blocks
 
-    def remove(self, doomed: Sequence[Line]) -> None:
+    def remove(self, doomed: Sequence[IniLine]) -> None:
         """Take lines out."""
         for file in {line.file for line in doomed}:
             indices = {line.index for line in doomed if line.file == file}

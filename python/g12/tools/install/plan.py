@@ -18,11 +18,11 @@ from g12.tools.install.config import Config, folder_from_ini
 from g12.tools.install.ini_edit import (
     BEGIN,
     END,
+    IniLine,
     IniText,
-    Line,
     Place,
     line_end,
-    read_lines,
+    lines_with_ends,
     to_bytes,
 )
 from g12.tools.install.rules import odd_folder, problem
@@ -70,7 +70,7 @@ class InstallPlan:
 
 def with_lines(path: Path, new: Sequence[str]) -> bytes:
     """Return a module's content with lines at its end."""
-    lines = read_lines(path)
+    lines = lines_with_ends(path)
     end = line_end(lines)
     ended = not lines or lines[-1].endswith("\n")
     return to_bytes([*lines, *(text + end if ended else end + text for text in new)])
@@ -78,7 +78,7 @@ def with_lines(path: Path, new: Sequence[str]) -> bytes:
 
 def marked(path: Path, statement: str) -> bool:
     """Tell whether an earlier installation put a statement into a module."""
-    return any(line.rstrip().endswith(statement + MARK) for line in read_lines(path))
+    return any(line.rstrip().endswith(statement + MARK) for line in lines_with_ends(path))
 
 
 def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
@@ -109,14 +109,14 @@ def mend_remaps(text: IniText, config: Config) -> None:
             text.replace(line, remap.like(found[1]))
 
 
-def names_copy(text: IniText) -> list[Line]:
+def names_copy(text: IniText) -> list[IniLine]:
     """Return the lines of an INI that need the copy, be they by `install` or by hand."""
     here = text.path.parent
     found = [line for line in text.lines() if NAMES_COPY.match(line.text)]
     for line in (line for block in text.blocks() for line in block):
         module = here / line.text.removeprefix(f"{NOTE}{MODULE_NOTE}")
         if line.text.startswith(f"{NOTE}{MODULE_NOTE}") and module.is_file():
-            found += [line] * (f'"{package_copy.NAME}/python"' in "".join(read_lines(module)))
+            found += [line] * (f'"{package_copy.NAME}/python"' in "".join(lines_with_ends(module)))
     return found
 
 
@@ -233,7 +233,7 @@ def own_modules(config: Config, wanted: Sequence[str]) -> list[tuple[Path, str, 
         )
     refuse_own_names(config)
     ours = {name for name, module in python.remap.items() if is_ours(module)}
-    needed = {name for feature in wanted for name in features.handlers_of(feature)}
+    needed = {name for feature in wanted for name in features.functions_of(feature)}
     remap = config.folder / python.remap_file if python.remap_file else remap_on_path(config)
     modules = [(toplevel, IMPORT_REMAP, not python.remap_file)]
     modules += [(remap, IMPORT_HANDLERS, bool(needed - ours))] if remap else []
@@ -258,7 +258,7 @@ def is_below(path: str | Path, folder: Path) -> bool:
 
 def refuse_own_names(config: Config) -> None:
     """Refuse functions of the user's own that the import would replace."""
-    handlers = {name for feature in features.FILES for name in features.handlers_of(feature)}
+    handlers = {name for feature in features.FILES for name in features.functions_of(feature)}
     for name in sorted(handlers & set(config.python.remap)):
         if not is_ours(config.python.remap[name]):
             raise refuse(

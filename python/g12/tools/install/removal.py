@@ -14,11 +14,11 @@ from g12.tools.install.features import model_of
 from g12.tools.install.ini_edit import (
     BEGIN,
     END,
+    IniLine,
     IniText,
-    Line,
     is_entry,
+    lines_with_ends,
     other_inis,
-    read_lines,
     to_bytes,
     without,
 )
@@ -66,7 +66,7 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     yield from after_all(copy, shared, bool(needing))
 
 
-def take_out_blocks(text: IniText, blocks: list[list[Line]]) -> list[Line]:
+def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[IniLine]:
     """Take the blocks out; return the lines of the user's between the markers, which stay."""
     doomed = [line for block in blocks for line in block if is_by_install(line)]
     headers = [line for block in blocks for line in block if line.text == HEADER]
@@ -78,7 +78,7 @@ def take_out_blocks(text: IniText, blocks: list[list[Line]]) -> list[Line]:
     return stay
 
 
-def is_by_install(line: Line) -> bool:
+def is_by_install(line: IniLine) -> bool:
     """Tell whether a line between the markers is one that `install` puts there."""
     key, value = key_and_value(line.text)
     if key == "REMAP":
@@ -88,7 +88,7 @@ def is_by_install(line: Line) -> bool:
     return line.text.startswith((BEGIN, NOTE, END))
 
 
-def notes_in(blocks: list[list[Line]]) -> list[str]:
+def notes_in(blocks: list[list[IniLine]]) -> list[str]:
     """Return what the blocks say was put elsewhere."""
     lines = (line.text for block in blocks for line in block)
     return [text[len(NOTE) :] for text in lines if text.startswith(NOTE)]
@@ -112,7 +112,7 @@ def still_installed(text: IniText) -> bool:
 
 def without_imports(path: Path) -> bytes:
     """Return a module's content without the lines that `install` put at its end."""
-    lines = read_lines(path)
+    lines = lines_with_ends(path)
     ours = {index for index, line in enumerate(lines) if line.rstrip().endswith(MARK)}
     return to_bytes(without(lines, ours))
 
@@ -129,7 +129,7 @@ def take_out_elsewhere(text: IniText, notes: list[str], shared: bool) -> dict[Pa
     return modules
 
 
-def lines_needing_package(text: IniText) -> list[Line]:
+def lines_needing_package(text: IniText) -> list[IniLine]:
     """Return the lines of an INI without its blocks that do nothing without the package."""
     return [*names_copy(text), *(code.line for code in codes_of(remaps_in(text)))]
 

@@ -18,7 +18,7 @@ from g12.machine_ini import Remap, remap_from_value
 from g12.settings import SECTION, settings_from_lines
 from g12.tools.install import features
 from g12.tools.install.config import MOST_FOLDERS, Config, folder_from_ini, subs_named
-from g12.tools.install.ini_edit import Line
+from g12.tools.install.ini_edit import IniLine
 from g12.tools.machine.ini import INCLUDE
 
 PROBLEM, WARNING, NOTE = "problem", "warning", "note"
@@ -53,7 +53,7 @@ class Finding:
 class Code:
     """A REMAP line of the package in a config, with the package's own line for it."""
 
-    line: Line
+    line: IniLine
     remap: Remap
     feature: str
     model: Remap
@@ -72,7 +72,7 @@ def warning(kind: str, text: str, cure: str) -> Finding:
     return Finding(WARNING, kind, text, cure)
 
 
-def codes_of(remaps: list[tuple[Line, Remap]]) -> list[Code]:
+def codes_of(remaps: list[tuple[IniLine, Remap]]) -> list[Code]:
     """Return the REMAP lines that are the package's."""
     found = ((line, remap, features.model_of(remap)) for line, remap in remaps)
     return [Code(line, remap, *model) for line, remap, model in found if model]

@@ -25,7 +25,7 @@ def existing(path: Path) -> Path:
     return path
 
 
-def shown(content: bytes) -> list[str]:
+def lines_to_show(content: bytes) -> list[str]:
     """Return a file's lines for showing them."""
     return content.decode("utf-8", "replace").splitlines()
 
@@ -34,7 +34,7 @@ def difference(path: Path, content: bytes) -> Iterator[str]:
     """Yield the lines of a unified diff from the file as it is to its new content."""
     old = path.read_bytes() if path.exists() else b""
     return difflib.unified_diff(
-        shown(old), shown(content), str(path), f"{path} (new)", lineterm="", n=2
+        lines_to_show(old), lines_to_show(content), str(path), f"{path} (new)", lineterm="", n=2
     )
 
 

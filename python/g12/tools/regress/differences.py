@@ -18,7 +18,7 @@ from g12.tools.path.farthest_apart import gap_between
 from g12.tools.path.part import Part
 from g12.tools.preview.moves import Move
 from g12.tools.regress.edits import Change, Edit, Tolerance, edits_of
-from g12.tools.regress.recording_text import Recording, Step, number
+from g12.tools.regress.recording_text import Recording, Step, number_text
 from g12.tools.units import UNITS
 
 DECIMALS = 6  # shown, where they tell two numbers apart
@@ -51,14 +51,14 @@ def differences(
 ) -> list[Difference]:
     """Return the findings about a program, in its order; ``part`` is how the machine holds it."""
     edits = edits_of(was.steps, now.steps, tolerance)
-    words = Words(was, now, part)
+    phrases = Phrases(was, now, part)
     lost = _lost(edits, was, now)
     runs = _runs(edits[: len(edits) - len(lost)])
-    found = [words.of_run(part) for run in runs for part in _parts(run)]
+    found = [phrases.of_run(alike) for run in runs for alike in _alike(run)]
     return [*_merged(found), *_endings(was, now, lost)]
 
 
-def lines_of(recording: Recording, steps: Iterable[int]) -> list[int]:
+def program_lines(recording: Recording, steps: Iterable[int]) -> list[int]:
     """Return the program's lines that steps come from, without repetition."""
     return sorted({recording.steps[index].block for index in steps})
 
@@ -76,7 +76,7 @@ def _runs(edits: Sequence[Edit]) -> Iterator[list[Edit]]:
     """Edits of pairs that follow each other with the same sort of change; others alone."""
     run: list[Edit] = []
     for edit in edits:
-        if run and not (_follows(run[-1], edit) and _sort(run[-1]) & _sort(edit)):
+        if run and not (_follows(run[-1], edit) and _kinds_of(run[-1]) & _kinds_of(edit)):
             yield run
             run = []
         run.append(edit)
@@ -84,14 +84,15 @@ def _runs(edits: Sequence[Edit]) -> Iterator[list[Edit]]:
         yield run
 
 
-def _parts(run: list[Edit]) -> list[list[Edit]]:
+def _alike(run: list[Edit]) -> list[list[Edit]]:
     """Return what most edits of a run say and what the others say, if most say the same."""
     said = Counter(map(_said, run))
     same, count = said.most_common(1)[0]
     if len(run) < LONG_RUN or 2 * count <= len(run):
         return [run]
-    parts = ([edit for edit in run if (_said(edit) == same) is alike] for alike in (True, False))
-    return list(filter(None, parts))
+    most = [edit for edit in run if _said(edit) == same]
+    others = [edit for edit in run if _said(edit) != same]
+    return [most, others] if others else [most]
 
 
 def _said(edit: Edit) -> tuple:
@@ -103,11 +104,11 @@ def _follows(before: Edit, edit: Edit) -> bool:
     return not alone and (before.was[0] + 1, before.now[0] + 1) == (edit.was[0], edit.now[0])
 
 
-def _sort(edit: Edit) -> set[str]:
+def _kinds_of(edit: Edit) -> set[str]:
     return {"moved" if change.what in MOVED else change.what for change in edit.changes}
 
 
-class Words:
+class Phrases:
     """Puts edits of two recordings into words, lengths in machine units."""
 
     def __init__(self, was: Recording, now: Recording, part: Part) -> None:
@@ -143,7 +144,7 @@ class Words:
         if isinstance(group[0].was, str):
             return ", ".join(dict.fromkeys(f"{c.was} → {c.now}" for c in group))
         scale = self._scale(what)
-        values = {shown(change.was / scale, change.now / scale) for change in group}
+        values = {told_apart(change.was / scale, change.now / scale) for change in group}
         was, now = next(iter(values))
         most = max((change.by for change in group), key=abs)
         if "feed" in what:
@@ -180,7 +181,7 @@ class Words:
         ends = np.array([position for move in moves for position in (move.start, move.end)])
         low, high = ends.min(axis=0), ends.max(axis=0)
         scales = [self._scale(axis) for axis in AXES]
-        texts = [[number(round(v, DECIMALS)) for v in bound / scales] for bound in (low, high)]
+        texts = [[number_text(round(v, DECIMALS)) for v in bound / scales] for bound in (low, high)]
         words = [f"{axis}{a} to {b}" for axis, a, b in zip(AXES, *texts) if a != b]
         return " ".join(words) or "standing still"
 
@@ -209,10 +210,10 @@ def _of_notes(steps: Sequence[Step], indices: tuple[int, ...], word: str) -> str
     return f"{word}: {', '.join(texts)}" if texts else ""
 
 
-def shown(*values: float) -> tuple[str, ...]:
+def told_apart(*values: float) -> tuple[str, ...]:
     """Return numbers as text, short if that still tells them apart."""
-    short = tuple(number(round(value, DECIMALS)) for value in values)
-    return short if len(set(short)) == len(values) else tuple(map(number, values))
+    short = tuple(number_text(round(value, DECIMALS)) for value in values)
+    return short if len(set(short)) == len(values) else tuple(map(number_text, values))
 
 
 def _merged(found: Sequence[Difference]) -> list[Difference]:

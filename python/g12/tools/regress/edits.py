@@ -159,8 +159,8 @@ def _as_many(was, now, before: range, after: range, tolerance: Tolerance) -> Ite
         yield from _pair(was, now, i, j, tolerance)
 
 
-def _only(steps: Sequence[Step], indices: range, sort: type) -> tuple[int, ...]:
-    return tuple(index for index in indices if isinstance(steps[index], sort))
+def _only(steps: Sequence[Step], indices: range, kind: type) -> tuple[int, ...]:
+    return tuple(index for index in indices if isinstance(steps[index], kind))
 
 
 def _pair(was, now, i: int, j: int, tolerance: Tolerance) -> Iterator[Edit]:
@@ -170,7 +170,7 @@ def _pair(was, now, i: int, j: int, tolerance: Tolerance) -> Iterator[Edit]:
 
 
 def changes(was: Step, now: Step, tolerance: Tolerance) -> list[Change]:
-    """Return what is different between two steps of the same sort."""
+    """Return what is different between two steps of the same kind."""
     if isinstance(was, Note):
         return [Change("note", 0.0, was.text, now.text)] if was.text != now.text else []
     found = [

@@ -133,7 +133,7 @@ def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], pa
     name = now.facts["program"].rpartition(" ")[0]
     figure = style.new_figure(view.width, view.height, name, subtitle(found))
     for axes, pair in view.panels(figure):
-        draw_paths(axes, drawn, pair, view.unit.mm)
+        draw_both_paths(axes, drawn, pair, view.unit.mm)
         if drawn.gap:
             at = drawn.gap.point[pair] / view.unit.mm
             axes.plot(*at, "o", color=style.WORST, markersize=9, fillstyle="none", zorder=6)
@@ -142,7 +142,7 @@ def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], pa
     figure.legend(handles=entries(drawn, view.unit), borderaxespad=0.0, **place)
     if drawn.gap and drawn.gap.size < VISIBLE * view.size:
         axes = style.add_axes(figure, left, top - ROWS - WINDOW, WINDOW, WINDOW)
-        draw_window(axes, drawn, view)
+        draw_change(axes, drawn, view)
     return figure
 
 
@@ -204,7 +204,7 @@ def subtitle(found: Sequence[Difference]) -> str:
     return text if len(text) <= LONGEST_SUBTITLE else f"{text[:LONGEST_SUBTITLE]}…"
 
 
-def draw_paths(axes: Axes, drawn: Drawn, pair: list[int], unit: float) -> None:
+def draw_both_paths(axes: Axes, drawn: Drawn, pair: list[int], unit: float) -> None:
     """Draw the paths in two of the part's axes; ``unit`` is the unit shown in mm."""
     _draw_styled(axes, drawn.feeds, pair, unit)
     _draw_styled(axes, drawn.rapids, pair, unit, 0.6, linestyle=(0, (4, 3)), capstyle="butt")
@@ -216,7 +216,7 @@ def _draw_styled(axes, drawn: Paths, pair: list[int], unit: float, share=1.0, **
         style.draw(axes, shown, colour, share * width, order, **line)
 
 
-def draw_window(axes: Axes, drawn: Drawn, view: View) -> None:
+def draw_change(axes: Axes, drawn: Drawn, view: View) -> None:
     """Draw the surroundings of the largest gap, in the view that shows most of it."""
     gap, unit = drawn.gap, view.unit
     half = _reach(gap)

@@ -19,14 +19,14 @@ from g12.tools.preview.loading import linuxcnc_version, python_error
 from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.progress import Tell
-from g12.tools.regress.differences import Difference, differences, lines_of
+from g12.tools.regress.differences import Difference, differences, program_lines
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recording_text import (
     Recording,
     TraceTextError,
     read_recording,
     recording_of,
-    split,
+    split_facts,
     text_of,
 )
 from g12.tools.regress.recordings import Baseline
@@ -210,8 +210,8 @@ def _compared(job: Job, now: str, recorder: Recorder) -> Result:
         return Result(job.name, NEW, summary=_summary(read_recording(now)))
     try:
         was = path.read_bytes().decode()
-        facts, body = split(was)
-        new_facts, new_body = split(now)
+        facts, body = split_facts(was)
+        new_facts, new_body = split_facts(now)
         notes = tuple(_notes(facts, new_facts))
         if body == new_body:
             return Result(job.name, SAME, notes=notes)
@@ -238,8 +238,8 @@ def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
 
 
 def _finding(difference: Difference, was: Recording, now: Recording) -> RegressFinding:
-    lines = lines_of(now, difference.now) or [difference.line] * bool(difference.line)
-    recorded = lines_of(was, difference.was)
+    lines = program_lines(now, difference.now) or [difference.line] * bool(difference.line)
+    recorded = program_lines(was, difference.was)
     block = now.blocks.get(lines[0], "") if lines else was.blocks.get((recorded or [0])[0], "")
     shared = ("kind", "text", "moves", "axis", "by")
     values = {name: getattr(difference, name) for name in shared}

@@ -92,12 +92,12 @@ def recording_of(trace: Trace, program: Path, facts: dict[str, str]) -> Recordin
     numbers = {step.block for step in steps} | ({trace.error.line} if trace.error else set())
     blocks = {line: lines[line - 1].strip() for line in numbers if 0 < line <= len(lines)}
     if trace.error:
-        error = Error(one_line(trace.error.text), trace.error.line)
+        error = Error(without_folders(trace.error.text), trace.error.line)
         return Recording(facts, steps, blocks, error)
     return Recording(facts, steps, blocks, end=_end(trace.modes))
 
 
-def one_line(text: str) -> str:
+def without_folders(text: str) -> str:
     """Return a text on one line, file names in it without their folders."""
     return FOLDERS.sub("", " ".join(text.split()))
 
@@ -108,34 +108,34 @@ def _steps(trace: Trace, unit: float) -> Iterator[Step]:
     offset = (0.0,) * 9
     for index, move in enumerate(trace.moves):
         while event and event.at <= index:
-            yield Note(event.line, one_line(event.text))
+            yield Note(event.line, without_folders(event.text))
             event = next(events, None)
         if move.tool_offset != offset:
             offset = move.tool_offset
             yield Note(move.block, f"tool offset {_offset(offset, unit)}")
         yield move
     while event:
-        yield Note(event.line, one_line(event.text))
+        yield Note(event.line, without_folders(event.text))
         event = next(events, None)
 
 
 def _offset(offset: Position, unit: float) -> str:
     values = zip(AXES, offset, LINEAR)
-    words = (f"{axis}{number(value / unit if linear else value)}" for axis, value, linear in values)
-    return " ".join(word for word in words if word[1:] != "0") or "0"
+    texts = [(axis, number_text(v / unit if linear else v)) for axis, v, linear in values]
+    return " ".join(f"{axis}{text}" for axis, text in texts if text != "0") or "0"
 
 
 def _end(modes: Modes) -> str:
     return " ".join((*modes.gcodes, *modes.mcodes))
 
 
-def number(value: float) -> str:
+def number_text(value: float) -> str:
     """Return a number with up to ten decimals, without trailing zeros."""
     text = f"{value:.10f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
 
-class Writer:
+class RecordingWriter:
     """Writes steps as lines; ``unit`` is the machine unit in mm."""
 
     def __init__(self, unit: float) -> None:
@@ -158,18 +158,18 @@ class Writer:
         return words
 
     def _texts(self, position: Sequence[float]) -> list[str]:
-        return [number(value * scale) for value, scale in zip(position, self._scales)]
+        return [number_text(value * scale) for value, scale in zip(position, self._scales)]
 
     def _arc(self, move: Move, start: list[str]) -> list[str]:
         words = ["centre", *_changed(start, self._texts(move.centre)), "turns", str(move.turns)]
         if move.plane != 17:
             words += [f"G{move.plane}"]
-            words += ["rotation", number(move.rotation)] if move.rotation else []
+            words += ["rotation", number_text(move.rotation)] if move.rotation else []
         return words
 
     def _feed_words(self, move: Move) -> list[str]:
         scale = 1.0 if turns_only(move) else self._scales[0]
-        feed = (number(move.feed * scale), move.feed_mode or "G94")
+        feed = (number_text(move.feed * scale), move.feed_mode or "G94")
         known, self._feed = self._feed, feed
         return [f"F{feed[0]}"] * (feed != known) + [feed[1]] * (feed[1] != known[1])
 
@@ -187,7 +187,7 @@ def turns_only(move: Move) -> bool:
 def text_of(recording: Recording) -> str:
     """Return a recording as text."""
     lines = [HEAD, *(f"{key} {recording.facts[key]}" for key in FACTS)]
-    writer = Writer(recording.unit)
+    writer = RecordingWriter(recording.unit)
     block = None
     for step in recording.steps:
         if step.block != block:
@@ -201,7 +201,7 @@ def text_of(recording: Recording) -> str:
     return "\n".join([*lines, "", last, ""])
 
 
-class Reader:
+class RecordingReader:
     """Reads lines back into steps; ``unit`` is the machine unit in mm."""
 
     def __init__(self, unit: float) -> None:
@@ -248,7 +248,7 @@ class Reader:
         return tuple(position)
 
 
-def split(text: str) -> tuple[dict[str, str], str]:
+def split_facts(text: str) -> tuple[dict[str, str], str]:
     """Return the facts at the head of a text, and the rest of it."""
     head, *lines = text.split("\n", len(FACTS) + 1)
     if head != HEAD:
@@ -261,9 +261,9 @@ def split(text: str) -> tuple[dict[str, str], str]:
 
 def read_recording(text: str) -> Recording:
     """Return the recording that a text holds, or raise TraceTextError with the line."""
-    facts, body = split(text)
+    facts, body = split_facts(text)
     steps, blocks = [], {}
-    reader, block = Reader(UNITS[facts["units"]].mm), 0
+    reader, block = RecordingReader(UNITS[facts["units"]].mm), 0
     lines = enumerate(body.split("\n"), start=len(FACTS) + 2)
     for number_of_line, line in lines:
         start = BLOCK.fullmatch(line)
@@ -286,7 +286,7 @@ def _require_end(lines: Iterator[tuple[int, str]]) -> None:
             raise TraceTextError(f"line {number_of_line}: something behind the end")
 
 
-def _step(reader: Reader, block: int, line: str, number_of_line: int) -> Step:
+def _step(reader: RecordingReader, block: int, line: str, number_of_line: int) -> Step:
     try:
         return reader.step(block, line)
     except ValueError as problem:
