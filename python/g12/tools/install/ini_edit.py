@@ -140,19 +140,31 @@ class IniText:
         return [(lines[entry.index], entry.value) for entry in found if entry.key == key]
 
     def end_of_section(self, section: str) -> Place | None:
-        """Return the place behind the section's last entry, in the INI itself if that can be."""
+        """Return the place behind the section's last entry, in the INI itself if that can be.
+
+        For RS274NGC that is here in front of the empty line::
+
+            [RS274NGC]
+            PARAMETER_FILE = mill.var
+            #INCLUDE remaps.inc
+
+            # Axes.
+            [TRAJ]
+
+        unless remaps.inc ends in another section: then it is in front of the #INCLUDE. Where
+        another file brings the header too, it is in that file.
+        """
         found = self.section(section)
-        if not found:
-            return None
-        after = {line.host: line for line in self.lines()}  # the last line each own line brings
-        inside = set(found)
-        own = [
-            line
-            for line in self._own_lines()
-            if after[line.index] in inside and (belongs(line.text) or after[line.index] != line)
-        ]
-        last = own[-1] if own else [line for line in found if belongs(line.text)][-1]
-        return Place(last.file, self._behind(last.file, last.index))
+        last_of = {line.host: line for line in self.lines()}  # that each line of the INI brings
+        last_inside = {line.host: line for line in found}
+        for host, line in reversed(last_inside.items()):
+            included = line.file != self.path
+            if line == last_of[host] and (included or belongs(line.text)):
+                return Place(self.path, self._behind(self.path, host))
+        for line in reversed(found):
+            if belongs(line.text):
+                return Place(line.file, self._behind(line.file, line.index))
+        return None
 
     def _behind(self, file: Path, index: int) -> int:
         """Index behind the line at ``index`` and its continuation lines."""
