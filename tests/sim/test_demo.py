@@ -7,6 +7,7 @@ import pytest
 
 from g12.tools.commands import demo
 from g12.tools.commands.main import main
+from g12.tools.demo import samples as samples_of_demo
 from g12.tools.headless.machine import MachineError
 from support.sim_machines import SIM
 
@@ -70,7 +71,7 @@ def test_the_demo_goes_on_after_a_failure(tmp_path, monkeypatch, capsys):
     def run(path, *_):
         raise MachineError(f"{path.stem} did not come up")
 
-    monkeypatch.setattr(demo, "run_program", run)
+    monkeypatch.setattr(samples_of_demo, "run_program", run)
     assert main(["demo", "--output", str(tmp_path)]) == 1
     out = capsys.readouterr().out
     assert "polar/slot.ngc: FAILED: slot did not come up" in out and "[2 of 2]" in out

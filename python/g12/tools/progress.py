@@ -26,7 +26,8 @@ def silent(_text: str) -> None:
 def working(text: str, clock: bool = False) -> Iterator[Tell]:
     """Say what is being done on standard error if it takes long; yields what changes the text.
 
-    An empty text says nothing. ``clock`` adds, on a terminal, for how many seconds it goes on.
+    An empty text says nothing. ``clock`` is for what takes long for sure: a terminal shows for
+    how many seconds it goes on, elsewhere it is said at once.
     """
     now, done = [text], threading.Event()
     tick = _tick_on_terminal if sys.stderr.isatty() else _tick_in_lines
@@ -66,9 +67,10 @@ def _tick_on_terminal(now: list[str], done: threading.Event, clock: bool) -> Non
     print(HIDDEN, end="", file=sys.stderr, flush=True)
 
 
-def _tick_in_lines(now: list[str], done: threading.Event, _clock: bool) -> None:
-    said = ""
-    while not done.wait(LINE_TICK):
+def _tick_in_lines(now: list[str], done: threading.Event, clock: bool) -> None:
+    said, pause = "", 0.0 if clock else LINE_TICK
+    while not done.wait(pause):
         if now[0] != said:
             said = now[0]
             print(said, file=sys.stderr, flush=True)
+        pause = LINE_TICK

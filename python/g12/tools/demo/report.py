@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the demo tells of a program: whether it came out right, its picture and its table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Future
+from pathlib import Path
+
+from g12.tools.demo.samples import Sample
+from g12.tools.errors import ProgramError
+from g12.tools.headless.machine import MachineError, Run, StartupError
+from g12.tools.machine.ini import read_ini
+from g12.tools.plot import style
+from g12.tools.plot.picture import picture_of
+from g12.tools.plot.scene import Scene, clock, scene_of_proof
+from g12.tools.preview.tracer import TraceFailure
+from g12.tools.units import Unit, plain
+from g12.tools.verify.findings import SAME_AREA
+from g12.tools.verify.pocket import PocketFacts
+from g12.tools.verify.proof import Proof, prove
+from g12.tools.verify.section import SectionFacts
+
+FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
+POCKET_HEADS = ("line", "code", "centre", "radius", "tool-centre rings", "Z", "off circles", "time")
+SECTION_HEADS = ("lines", "pieces", "off contour", "allowed", "lowest feed", "C at most", "time")
+
+
+def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
+    """Draw a sample; return its table and whether its circles and contours came out right."""
+    ini = read_ini(sample.ini)
+    proof = prove(sample.path, ini, tools=sample.tools, samples=run.samples)
+    scene = scene_of_proof(proof, sample.override)
+    picture = output / f"{sample.path.parent.name}_{sample.path.stem}.png"
+    style.save(picture_of(scene), picture)
+    return describe(sample, run, proof, scene, picture), is_sound(proof)
+
+
+def shown_or_failed(sample: Sample, job: Future, output: Path) -> tuple[str, bool]:
+    """Draw a sample whose run has come to its end; return what is told of it, and whether good."""
+    try:
+        return show(sample, job.result(), output)
+    except FAILURES as problem:
+        return f"{sample.program}: FAILED: {problem}", False
+
+
+def is_sound(proof: Proof) -> bool:
+    """Tell whether every circle and contour came out right.
+
+    The manuals leave material in some and have rapids through what was left: that is told.
+    """
+    off = [facts.deviation > proof.tolerances.pocket for facts in proof.pockets]
+    off += [facts.deviation > proof.tolerances.polar for facts in proof.sections]
+    return not any(off) and not any(
+        facts.gouge > SAME_AREA for facts in (*proof.pockets, *proof.sections)
+    )
+
+
+def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
+    """Return what is told of a program: its table, what LinuxCNC said, where the picture is."""
+    slow = clock(scene.path.time[-1])
+    faster = f" at {sample.override:g} % feed ({slow} at 100 %)" if sample.override != 100 else ""
+    title = f"{scene.title}: {clock(run.seconds)} on {sample.machine}{faster}, {picture}"
+    unit = scene.unit
+    lines = [title, *(f"  LinuxCNC said: {message.text}" for message in run.messages)]
+    if proof.pockets:
+        lines += table(POCKET_HEADS, [pocket_row(facts, unit) for facts in proof.pockets])
+    if proof.sections:
+        allowed = proof.tolerances.polar
+        rows = [section_row(facts, allowed, unit) for facts in proof.sections]
+        lines += table(SECTION_HEADS, rows)
+    lines += [f"  line {line}: {text}" for line, text in proof.findings_in(unit)]
+    return "\n".join(lines)
+
+
+def pocket_row(facts: PocketFacts, unit: Unit) -> tuple[str, ...]:
+    """Return a pocket's row of the table; its time is that at the programmed feed."""
+    x, y, _ = facts.target.wall.origin
+    return (
+        str(facts.target.source.line),
+        facts.target.source.code,
+        f"X{unit.text(x)} Y{unit.text(y)}",
+        unit.text(facts.target.wall.radius),
+        " ".join(unit.text(ring) for ring in facts.rings),
+        unit.text(facts.target.wall.height(facts.depths[-1])),
+        f"{unit.fine(facts.off_rings)} {unit.name}",
+        f"{plain(facts.pace.expected, 1)} s",
+    )
+
+
+def section_row(facts: SectionFacts, allowed: float, unit: Unit) -> tuple[str, ...]:
+    """Return a polar section's row of the table."""
+    return (
+        f"{facts.section.line}-{facts.section.last}",
+        str(facts.pieces),
+        f"{unit.fine(facts.deviation)} {unit.name}",
+        f"{unit.fine(allowed)} {unit.name}",
+        f"{plain(facts.pace.lowest / unit.mm, 1)} {unit.name}/min",
+        f"{plain(facts.c_speed, 1)} of {plain(facts.c_limit, 1)} °/s",
+        f"{plain(facts.pace.expected, 1)} s",
+    )
+
+
+def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return a table as lines, columns as wide as needed."""
+    widths = [max(map(len, column)) for column in zip(heads, *rows)]
+    return [
+        "  " + "  ".join(f"{text:{width}}" for text, width in zip(row, widths)).rstrip()
+        for row in (heads, *rows)
+    ]

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The programs that the demo shows, each with its machine, and their runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from pathlib import Path
+from typing import NamedTuple
+
+from g12.tools.headless.run import run_program
+from g12.tools.install.features import ROOT
+
+PROGRAMS = ROOT / "tests" / "programs"
+MACHINES = ROOT / "configs" / "sim"
+
+
+class Sample(NamedTuple):
+    """A program to show: its file, its machine, and the feed override (%) of its run.
+
+    The manuals' feeds are low: the runs are sped up to save time. ``own_tools`` maps numbers to
+    diameters in machine units where the machine's tool table has others.
+    """
+
+    program: str
+    machine: str
+    override: float = 100.0
+    own_tools: Mapping[int, float] | None = None
+
+    @property
+    def path(self) -> Path:
+        """Return the program's file."""
+        return PROGRAMS / self.program
+
+    @property
+    def ini(self) -> Path:
+        """Return the machine's INI file."""
+        return MACHINES / f"{self.machine}_headless.ini"
+
+    @property
+    def tools(self) -> Mapping[int, float] | None:
+        """Return the program's own tools: those given, or in the file beside the program."""
+        beside = self.path.with_suffix(".json")
+        if self.own_tools or not beside.exists():
+            return self.own_tools
+        tools = json.loads(beside.read_text(encoding="utf-8"))["tools"]
+        return {int(number): diameter for number, diameter in tools.items()}
+
+
+SAMPLES = (
+    Sample("haas/O60121.ngc", "mill_inch", 1500.0),
+    Sample("haas/O60131.ngc", "mill_inch", 1500.0),
+    Sample("circle_mill/sample.ngc", "mill_mm", 2000.0),
+    Sample("polar/manual_a.ngc", "lathe_inch", 200.0),
+    Sample("polar/manual_b.ngc", "lathe_inch", 200.0),
+    Sample("polar/manual_sample.ngc", "lathe_inch", 200.0, {8: 0.0}),
+    Sample("polar/hexagon.ngc", "lathe_mm"),
+    Sample("polar/slot.ngc", "lathe_mm"),
+    Sample("yasnac/example.ngc", "mill_yasnac_mm", 1500.0),
+    Sample("mitsubishi/circle.ngc", "mill_mitsubishi_mm", 1000.0),
+)
+
+
+def runs(samples: Sequence[Sample], workers: int) -> Iterator[tuple[Sample, Future]]:
+    """Yield each sample with what has its run or why there is none, as they come to their end."""
+    with ThreadPoolExecutor(workers) as pool:
+        jobs: dict[Future, Sample] = {
+            pool.submit(run_program, sample.path, sample.ini, sample.tools, sample.override): sample
+            for sample in samples
+        }
+        try:
+            for job in as_completed(jobs):
+                yield jobs[job], job
+        finally:
+            pool.shutdown(cancel_futures=True)
