@@ -3,6 +3,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from g12.tools.preview.tracer import Tracer
@@ -373,3 +374,49 @@ def test_both_pairs_of_codes_on_one_machine():
             assert refused.error.text.startswith(f"{on} line 8: G13{on[3:]} is missing")
             refused = with_codes(on, "G13.1", "G12.3")
             assert refused.error.text == f"{on} line 6: {on} is already on"
+
+
+# ---------------------------------------------------------------- the machine's INI
+
+
+def on_lathe(name, overrides, *body, tools=None, **around):
+    with Tracer(SIM / name, overrides=overrides, tools=tools) as lathe:
+        return cut(lathe, *body, **around)
+
+
+def test_a_machine_unit_may_be_a_number():
+    body = ["G1 X12 C0", "G3 X-12 C0 I-12 J0", "U-2"]
+    machines = [
+        ("lathe_inch.ini", "inch", {1: 0.5}),
+        ("lathe_inch.ini", f"{1 / INCH:.12f} # units per mm", {1: 0.5}),
+        ("lathe_mm.ini", "mm", {1: 12.7}),
+        ("lathe_mm.ini", "1.0", {1: 12.7}),
+    ]
+    moves = [
+        [
+            move.end
+            for move in on_lathe(name, {"TRAJ": {"LINEAR_UNITS": text}}, *body, tools=tools).moves
+        ]
+        for name, text, tools in machines
+    ]
+    assert np.allclose(moves[0], moves[1], atol=1e-6)
+    assert np.allclose(moves[2], moves[3], atol=1e-6)
+
+
+def test_the_first_of_repeated_limits_counts():
+    refused = on_lathe("lathe_mm.ini", {"AXIS_X": {"MAX_LIMIT": [100, 300]}}, "G1 X150")
+    assert refused.error.text.endswith("the X axis would go to 150, beyond its limit 100")
+
+
+def test_keywords_of_remap_lines_may_be_shortened(tmp_path):
+    (tmp_path / "m33.ngc").write_text("o<m33> sub\nG1 X9\no<m33> endsub\n")
+    remaps = [
+        "G12.4 modal=1 py=polar_on",
+        "G13.5 MODALGROUP=1 Py=polar_off # another pair",
+        "M33 modalgroup=10 n=m33",
+    ]
+    overrides = {"RS274NGC": {"REMAP": remaps, "SUBROUTINE_PATH": f"{tmp_path}:../../ngc:subs"}}
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
+        codes = {"G12.1": "G12.4", "G13.1": "G13.5"}
+        program = [codes.get(line, line) for line in section("G1 X12", "M33", "U-2")]
+        assert ends(lathe.trace_text(program)) == [(12, 0), (9, 0), (7, 0)]

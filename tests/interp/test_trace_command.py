@@ -41,6 +41,17 @@ def test_moves_are_listed(told):
     ]
 
 
+def test_a_var_file_gives_the_work_offsets_to_start_with(told, tmp_path):
+    stored = tmp_path / "shop.var"
+    stored.write_text("5220\t1\n5221\t10\n5241\t20\n")
+    text = "G21 G90 G54\nG0 X1\nG55\nG0 X2\nM2\n"
+    ends = [
+        [line.split()[-1] for line in told("trace", text, "--digits", "0", *words)[1]]
+        for words in ([], ["--var", str(stored)])
+    ]
+    assert ends == [["X1", "X2"], ["X11", "X22"]]
+
+
 @pytest.mark.parametrize(
     ("text", "error"),
     [

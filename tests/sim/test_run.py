@@ -44,6 +44,15 @@ def test_what_a_run_says(tmp_path, capsys, machine, text, code, out, error):
     assert said.err.replace(str(program), "PROGRAM") == error
 
 
+def test_a_run_starts_with_the_offsets_of_a_var_file(tmp_path, capsys):
+    program, stored = tmp_path / "part.ngc", tmp_path / "shop.var"
+    program.write_text("G21 G90 G54 F3000\nG1 X1\nM2\n")
+    stored.write_text("5220\t1\n5221\t10\n")
+    words = ["run", str(program), "--ini", str(SIM / "mill_mm.ini"), "--var", str(stored)]
+    assert main.main(words) == 0
+    assert "ends at X11 Y0 Z0 (machine position, mm)" in capsys.readouterr().out
+
+
 def test_a_program_that_cannot_be_opened_is_named_as_the_user_did(tmp_path, capsys):
     program = tmp_path / "part.ngc"
     program.write_text("")

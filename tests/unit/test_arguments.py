@@ -9,6 +9,8 @@ from types import SimpleNamespace
 import pytest
 
 from g12.tools.commands import arguments, main
+from g12.tools.errors import UsageError
+from g12.tools.machine import tables
 from g12.tools.preview.ended import text_with_axes
 from support.sim_machines import ROOT
 from support.small_configs import MILL, TOOLS, write_config
@@ -86,6 +88,8 @@ def test_wrong_files_are_told_in_one_line(name, files, capsys):
         (files.ini, files.program, (), f"{files.program}: is not a machine INI"),
         (files.program, files.ini, ("--tools", files.ini), "mill.ini: is not a tool table"),
         (files.program, files.ini, ("--tools", files.folder), f"{files.folder}: is a folder"),
+        (files.program, files.ini, ("--var", files.ini), "mill.ini: is not a var file"),
+        (files.program, files.ini, ("--var", files.folder), f"{files.folder}: is a folder"),
     ]
     for program, ini, more, says in wrong:
         code, said = ends(capsys, name, program, "--ini", ini, *more, *rest)
@@ -95,19 +99,34 @@ def test_wrong_files_are_told_in_one_line(name, files, capsys):
         assert said.count("\n") == 1
 
 
-@pytest.mark.parametrize("text", ["", "; none yet\n", TOOLS, "t1 p1 z-1.5 d.25 ; drill\n", "T3\n"])
+@pytest.mark.parametrize("text", ["", "; none yet\n", TOOLS, "P1 T1 D6 ; mill\nd.25 t2\n", "T3\n"])
 def test_tool_tables(tmp_path, text):
     path = tmp_path / "any.tbl"
     path.write_text(text)
-    assert arguments.tool_table(path) == path
+    assert tables.tool_table(path) == path
 
 
 @pytest.mark.parametrize("text", [MILL, "G21\nT1 M6\nM2\n", "P1 D6\n"])
 def test_no_tool_tables(tmp_path, text):
     path = tmp_path / "any.tbl"
     path.write_text(text)
-    with pytest.raises(arguments.UsageError, match="not a tool table"):
-        arguments.tool_table(path)
+    with pytest.raises(UsageError, match="not a tool table"):
+        tables.tool_table(path)
+
+
+@pytest.mark.parametrize("text", ["", "5220\t1.000000\n5221\t-10.5\n\n", " 31 5 kept\n"])
+def test_var_files(tmp_path, text):
+    path = tmp_path / "any.var"
+    path.write_text(text)
+    assert tables.var_file(path) == path
+
+
+@pytest.mark.parametrize("text", [MILL, TOOLS, "5221 1\n5220 1\n", "5221 1\n5221 2\n", "5221\n"])
+def test_no_var_files(tmp_path, text):
+    path = tmp_path / "any.var"
+    path.write_text(text)
+    with pytest.raises(UsageError, match="not a var file"):
+        tables.var_file(path)
 
 
 def test_an_axis_that_the_machine_lacks_is_explained(files):

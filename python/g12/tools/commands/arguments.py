@@ -15,10 +15,11 @@ from g12.tools.errors import ProgramError, UsageError
 from g12.tools.headless.machine import MachineError, StartupError
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, IniError, read_machine_ini
+from g12.tools.machine.tables import tool_table, var_file
 from g12.tools.preview.tracer import TraceFailure
 
 GOOD, FINDING, USAGE = 0, 1, 2
-TOOL = re.compile(r"\s*T\d+(\s+[TPDIJQXYZABCUVW][-+.\d]+)*\s*(;.*)?", re.IGNORECASE)
+VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"
 RAISED = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:")  # how Python names what was raised
 
 
@@ -67,6 +68,7 @@ def add_program(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("program", type=Path, help="program file")
     parser.add_argument("--ini", type=Path, required=True, help="INI file of the machine")
     parser.add_argument("--tools", type=Path, help="tool table in place of the INI's")
+    parser.add_argument("--var", type=Path, help=VAR_HELP)
 
 
 def add_run(parser: argparse.ArgumentParser, what: str) -> None:
@@ -109,22 +111,15 @@ def one_line(name: str) -> Callable:
     return decorate
 
 
-def checked_ini(program: Path, ini: Path, tools: Path | None) -> Ini:
+def checked_ini(options: argparse.Namespace) -> Ini:
     """Return the machine's INI after a look whether all files named are what they should be."""
-    for path in filter(None, (program, ini, tools)):
+    for path in filter(None, (options.program, options.ini, options.tools, options.var)):
         existing(path)
-    if tools:
-        tool_table(tools)
-    return read_machine_ini(ini)
-
-
-def tool_table(path: Path) -> Path:
-    """Return the path of a tool table if it is one; an empty one is."""
-    lines = existing(path).read_text(encoding="utf-8", errors="replace").splitlines()
-    entries = [line for line in lines if line.strip() and line.strip()[0] not in ";#"]
-    if entries and not any(map(TOOL.fullmatch, entries)):
-        raise UsageError(f"{path}: is not a tool table: no line is like T1 P1 D6.0")
-    return path
+    if options.tools:
+        tool_table(options.tools)
+    if options.var:
+        var_file(options.var)
+    return read_machine_ini(options.ini)
 
 
 def _text(problem: Exception) -> str:

@@ -55,26 +55,27 @@ def main(arguments: list[str]) -> int:
     """Run the command."""
     options = command_parser().parse_args(arguments)
     check_run(options)
-    ini = checked_ini(options.program, options.ini, options.tools)
+    ini = checked_ini(options)
     try:
         style.check_format(options.output)
     except style.PictureError as problem:
         raise UsageError(str(problem)) from None
+    on_machine = (options.program, options.ini, options.tools, options.var)
     samples = None
     with working(f"interpreting {options.program.name}"):
-        trace = traced(options.program, options.ini, options.tools)
+        trace = traced(*on_machine)
         if not trace.moves:
             raise UsageError(f"{options.program}: moves nothing, so there is nothing to draw")
     if options.run:
         with working(f"running {options.program.name}, real time", clock=True):
-            run = run_program(options.program, options.ini, options.tools, options.override)
+            run = run_program(*on_machine, override=options.override)
         samples = run.samples
     with working(f"drawing {options.output.name}"):
         subject = subject_of(options.program, ini, trace, samples)
         scene = replace(
             scene_of(subject, options.units, options.feeds),
             override=options.override,
-            collisions=tuple(collisions_in(subject, options.tools)),
+            collisions=tuple(collisions_in(subject, options.tools, options.var)),
         )
         style.save(picture_of(scene), options.output)
     print(f"{options.output} written")

@@ -15,6 +15,7 @@ from pathlib import Path
 from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
+    VAR_HELP,
     Parser,
     count_from,
     number_above,
@@ -72,7 +73,7 @@ def _add_record(actions) -> None:
     )
     _add_file(parser, "--ini", "INI file of the machine")
     _add_file(parser, "--tools", "tool table in place of the INI's")
-    _add_file(parser, "--var", "var file (default: all parameters are 0)")
+    _add_file(parser, "--var", VAR_HELP)
     _add_common(parser)
 
 

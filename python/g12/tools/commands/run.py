@@ -58,8 +58,10 @@ def main(arguments: list[str]) -> int:
     timeout = {"type": number_above(0), "default": 600.0, "metavar": "SECONDS"}
     parser.add_argument("--timeout", **timeout, help="give up after this (default 600)")
     options = parser.parse_args(arguments)
-    ini = checked_ini(options.program, options.ini, options.tools)
-    result = run_anyhow(options.program, options.ini, options.tools, timeout=options.timeout)
+    ini = checked_ini(options)
+    result = run_anyhow(
+        options.program, options.ini, options.tools, options.var, timeout=options.timeout
+    )
     for line in lines_of_run(result, ini):
         print(line)
     if result.error:

@@ -54,8 +54,9 @@ def main(arguments: list[str]) -> int:
     digits = {"type": count_from(0), "default": 6, "metavar": "N"}
     parser.add_argument("--digits", **digits, help="decimals (default 6)")
     options = parser.parse_args(arguments)
-    checked_ini(options.program, options.ini, options.tools)
-    traced = with_axes(trace(options.program, options.ini, tools=options.tools), options.ini)
+    checked_ini(options)
+    found = trace(options.program, options.ini, tools=options.tools, parameters=options.var)
+    traced = with_axes(found, options.ini)
     for move in traced.moves:
         print(line_of(move, options.digits))
     for line, text in traced.messages:

@@ -58,18 +58,20 @@ def main(arguments: list[str]) -> int:
     """Run the command."""
     options = command_parser().parse_args(arguments)
     check_run(options)
-    ini = checked_ini(options.program, options.ini, options.tools)
+    ini = checked_ini(options)
+    on_machine = (options.program, options.ini, options.tools, options.var)
     samples = None
     if options.run:
-        traced(options.program, options.ini, options.tools)
+        traced(*on_machine)
         with working(f"running {options.program.name}, real time", clock=True):
-            run = run_program(options.program, options.ini, options.tools, options.override)
+            run = run_program(*on_machine, override=options.override)
         samples = run.samples
     with working(f"interpreting {options.program.name}") as tell:
         proof = prove(
             options.program,
             ini,
             tools=options.tools,
+            parameters=options.var,
             samples=samples,
             tolerance=options.tolerance,
             tell=tell,

@@ -66,7 +66,9 @@ def runs(samples: Sequence[Sample], workers: int) -> Iterator[tuple[Sample, Futu
     """Yield each sample with what has its run or why there is none, as they come to their end."""
     with ThreadPoolExecutor(workers) as pool:
         jobs: dict[Future, Sample] = {
-            pool.submit(run_program, sample.path, sample.ini, sample.tools, sample.override): sample
+            pool.submit(
+                run_program, sample.path, sample.ini, sample.tools, override=sample.override
+            ): sample
             for sample in samples
         }
         try:

@@ -9,17 +9,23 @@ from pathlib import Path
 from g12.tools.errors import ProgramError
 from g12.tools.headless.machine import Machine, MachineError, Run
 from g12.tools.preview.ended import text_with_axes
-from g12.tools.preview.tracer import Tools
+from g12.tools.preview.tracer import Parameters, Tools
 
 MOST_SECONDS = 24 * 3600.0
 
 
-def run_program(program: Path, ini: Path, tools: Tools = None, override: float = 100.0) -> Run:
+def run_program(
+    program: Path,
+    ini: Path,
+    tools: Tools = None,
+    parameters: Parameters = None,
+    override: float = 100.0,
+) -> Run:
     """Return the run of a program that comes to its end, or raise ProgramError.
 
     ``override`` is the feed override in per cent.
     """
-    result = run_anyhow(program, ini, tools, override)
+    result = run_anyhow(program, ini, tools, parameters, override)
     if result.error:
         raise ProgramError(f"{program}: {text_with_axes(result.error.text, ini)}")
     return result
@@ -29,6 +35,7 @@ def run_anyhow(
     program: Path,
     ini: Path,
     tools: Tools = None,
+    parameters: Parameters = None,
     override: float = 100.0,
     timeout: float = MOST_SECONDS,
 ) -> Run:
@@ -37,7 +44,7 @@ def run_anyhow(
     LinuxCNC runs a copy of the program; where it names that, the program's own name is put.
     """
     faster = {"DISPLAY": {"MAX_FEED_OVERRIDE": max(1.0, override / 100.0)}}
-    with Machine(ini, tools=tools, overrides=faster) as machine:
+    with Machine(ini, tools=tools, parameters=parameters, overrides=faster) as machine:
         machine.feed_override(override / 100.0)
         try:
             return machine.run(program, timeout)

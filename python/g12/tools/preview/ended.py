@@ -10,14 +10,15 @@ from pathlib import Path
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.moves import Trace
-from g12.tools.preview.tracer import Tools, trace
+from g12.tools.preview.tracer import Parameters, Tools, trace
 
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
 
-def traced(program: Path, ini: Path, tools: Tools = None) -> Trace:
+def traced(program: Path, ini: Path, tools: Tools = None, parameters: Parameters = None) -> Trace:
     """Return the trace of a program that comes to its end, or raise ProgramError."""
-    return ended(program, with_axes(trace(program, ini, tools=tools), ini))
+    found = trace(program, ini, tools=tools, parameters=parameters)
+    return ended(program, with_axes(found, ini))
 
 
 def ended(program: Path, result: Trace) -> Trace:

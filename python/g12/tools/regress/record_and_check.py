@@ -9,10 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from g12.tools.commands.arguments import tool_table
 from g12.tools.errors import UsageError
-from g12.tools.machine.files import existing
 from g12.tools.machine.ini import read_ini, read_machine_ini
+from g12.tools.machine.tables import tool_table, var_file
 from g12.tools.progress import Tell, silent
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recorder import (
@@ -195,7 +194,7 @@ def _as_requested(baseline: Baseline, request: RecordRequest, named: list[Path])
         ini=ini,
         folders=tuple(dict.fromkeys([*baseline.folders, *folders])),
         tool_table=_absolute(tool_table(request.tools)) if request.tools else known or own,
-        var_file=_absolute(existing(request.var)) if request.var else baseline.var_file,
+        var_file=_absolute(var_file(request.var)) if request.var else baseline.var_file,
     )
 
 
