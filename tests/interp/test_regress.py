@@ -15,7 +15,7 @@ import pytest
 from g12.tools.commands import main as command_line
 from g12.tools.regress.recorder import hash_of
 from support.processes import living, until
-from support.sim_machines import PROGRAMS, ROOT, SIM
+from support.sim_machines import PROGRAMS, ROOT, SIM, with_package
 
 INI = SIM / "mill_inch.ini"
 TABLE = SIM / "mill_inch.tbl"
@@ -604,7 +604,7 @@ def test_the_fixture_of_the_plugin(pocket):
     command = [sys.executable, "-m", "pytest", "-q", "-p", "g12.tools.regress.pytest_plugin"]
     options = {
         "cwd": pocket.folder,
-        "env": {**os.environ, "PYTHONPATH": str(ROOT / "python")},
+        "env": with_package(os.environ),
         "capture_output": True,
         "text": True,
         "check": False,

@@ -12,7 +12,7 @@ import pytest
 
 from g12.tools.preview.tracer import TraceFailure, Tracer, trace_text
 from g12.tools.system import PYTHON
-from support.sim_machines import ROOT
+from support.sim_machines import with_package
 
 INI = """\
 [EMC]
@@ -316,7 +316,7 @@ def test_nothing_is_left_when_the_caller_is_killed(ini):
         [PYTHON, "-c", code, str(ini)],
         capture_output=True,
         text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT / "python")},
+        env=with_package(os.environ),
     )
     folder = Path(killed.stdout.strip())
     end = time.monotonic() + 10

@@ -14,7 +14,7 @@ import pytest
 from g12.tools.headless.machine import Machine, StartupError, Timeout, run
 from g12.tools.headless.namespaces import PYTHON, Isolated
 from g12.tools.preview.tracer import trace_text
-from support.sim_machines import ROOT, SIM
+from support.sim_machines import ROOT, SIM, with_package
 
 EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
 NOBODY = 65534
@@ -278,7 +278,7 @@ def test_nothing_is_left_when_the_runner_is_killed():
         [PYTHON, "-c", code, str(SIM / "mill_mm.ini")],
         capture_output=True,
         text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT / "python")},
+        env=with_package(os.environ),
     )
     folder = Path(killed.stdout.strip())
     end = time.monotonic() + 10

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Where the simulated machines and the manuals' programs are."""
 
+import os
 import shutil
 from pathlib import Path
 
@@ -20,3 +21,9 @@ def copy_of_machines(folder):
     for part in ("ngc", "python"):
         (folder / part).symlink_to(ROOT / part)
     return folder / "configs" / "sim"
+
+
+def with_package(environment):
+    """Return an environment in which Python finds the package, and LinuxCNC's modules as before."""
+    folders = (str(ROOT / "python"), environment.get("PYTHONPATH"))
+    return {**environment, "PYTHONPATH": os.pathsep.join(filter(None, folders))}

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 from g12.machine_ini import AXES
 
+NO_G92 = 922  # 2.9 lists G92.2 where no G92 offset is active, 2.10 nothing
 LINEAR = tuple(letter in "XYZUVW" for letter in AXES)  # which of AXES are lengths
 SAME_POINT = 1e-6  # mm; an arc whose ends are nearer is a full circle, as in motion
 THIRD_AXIS = {17: 2, 18: 1, 19: 0}
@@ -203,7 +204,7 @@ class Trace:
 def modes(gcodes: Iterable[int], mcodes: Iterable[int], settings: Sequence[float]) -> Modes:
     """Return the modal state from LinuxCNC's arrays, each without its first item."""
     return Modes(
-        tuple(f"G{code / 10:g}" for code in gcodes if code >= 0),
+        tuple(f"G{code / 10:g}" for code in gcodes if code >= 0 and code != NO_G92),
         tuple(f"M{code}" for code in mcodes if code > 0),
         settings[0],
         settings[1],

@@ -255,8 +255,9 @@ class Canon:
         self.feed = rate * MM
         self.program_feed = rate * MM if metric else rate
 
-    def change_tool(self, index: int) -> None:
-        """Note the tool in the spindle."""
+    def change_tool(self, _which: int) -> None:
+        """Note the tool in the spindle; LinuxCNC 2.9 hands over its index, 2.10 its number."""
+        index = interpreter_object().selected_pocket
         self.spindle = self.tools.at(index) if index else UNLOADED
         self._note(f"tool {self.spindle[0]}")
 

@@ -41,6 +41,7 @@ HEAD = "g12 trace 1"
 FACTS = ("program", "machine", "linuxcnc", "units")
 FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/:'\"<>()]+/)+")
 BLOCK = re.compile(r"(\d+):(?: (.*))?")
+NO_G92 = "G92.2"  # recordings of earlier versions list it
 ERROR = re.compile(r"error at (\d+): (.*)")
 WORDS = r"((?: [XYZABCUVW][-\d.]+)*)"
 MOVE = re.compile(
@@ -299,4 +300,5 @@ def _finished(recording: Recording, line: str, number_of_line: int) -> Recording
         return replace(recording, error=Error(error.group(2), int(error.group(1))))
     if not line.startswith("end: "):
         raise TraceTextError(f"line {number_of_line}: neither a line of the program nor its end")
-    return replace(recording, end=line[len("end: ") :])
+    codes = line.split()[1:]
+    return replace(recording, end=" ".join(code for code in codes if code != NO_G92))
