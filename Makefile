@@ -4,26 +4,34 @@ RUFF_VERSION := 0.17.5
 RUFF := build/venv/bin/ruff
 JOBS := $(shell nproc)
 
-.PHONY: help setup demo test lint bench kinematics clean
+# RIP=DIR uses the LinuxCNC that was built to run in place in DIR, instead of an installed one.
+IN_PLACE := $(if $(RIP),$(RIP)/scripts/rip-environment)
+
+.PHONY: help setup demo test test-on lint bench kinematics clean
 
 help:
 	@echo "make demo   run the manuals' programs in headless LinuxCNC, pictures in build/demo"
 	@echo "make test   run every test"
+	@echo "make test-on SUITE=trixie   the same in a bare Debian of that name, as root"
 	@echo "make lint   check the style of the code"
 	@echo "make bench  measure the figures the project promises"
 	@echo "make kinematics  build and install the kinematics of configs/kinematics (needs root)"
 	@echo "make clean  remove what the others made"
+	@echo "RIP=DIR behind demo, test or bench: with the LinuxCNC built in DIR"
 
 setup:
-	@sh .ci/setup
+	@RIP=$(RIP) sh .ci/setup
 
 demo: setup
 	@echo "demo: running the manuals' programs in headless LinuxCNC"
-	@$(PYTHON) python/g12 demo --output build/demo
+	@$(IN_PLACE) $(PYTHON) python/g12 demo --output build/demo
 
 test: setup
 	@echo "test: every test, on $(JOBS) cores"
-	@$(PYTHON) -m pytest -n $(JOBS) --dist loadfile
+	@$(IN_PLACE) $(PYTHON) -m pytest -n $(JOBS) --dist loadfile
+
+test-on:
+	@sh .ci/test-on $(SUITE)
 
 lint: $(RUFF)-$(RUFF_VERSION)
 	@echo "lint: ruff $(RUFF_VERSION)"
@@ -32,7 +40,7 @@ lint: $(RUFF)-$(RUFF_VERSION)
 
 bench: setup
 	@echo "bench: figures as ratios, each measured side by side in one run"
-	@PYTHONPATH=python:tests $(PYTHON) -m bench
+	@$(IN_PLACE) sh -c 'PYTHONPATH=python:tests:$$PYTHONPATH $(PYTHON) -m bench'
 
 kinematics:
 	@sh .ci/kinematics
