@@ -16,7 +16,7 @@ INDENTED = re.compile(r"(?:^ {4,}\S.*\n|^\n(?= {4,}\S))+", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 COMMAND = re.compile(r"python/g12 ((?:regress )?[a-z]+)\b(.*)")
-MAKE = re.compile(r"(?:^ {4}|`)make ([a-z]+)\b", re.MULTILINE)
+MAKE = re.compile(r"(?:^ {4}|`)make ([a-z-]+)\b", re.MULTILINE)
 QUOTED = re.compile(r"`([^`\n]+)`")
 IN_REPOSITORY = re.compile(rf"(?:{'|'.join(FOLDERS)})/[\w./-]+")
 
