@@ -88,22 +88,12 @@ def measure_section(
     across = [index for index in cutting if goes_across(moves[index])]
     tool = diameters.get(moves[section.at].tool, 0.0) / 2
     paths = tool_paths_of(plane, cutting, moves, path, real)
-    leads = leads_of(section, tool)
-    stretches = stretches_of(section)
-    found = [measure_stretch(stretch, leads, paths, tool, tolerance) for stretch in stretches]
-    shaping = [facts for stretch, facts in zip(stretches, found) if stretch[0].side] or found
     lengths = [path.part_length(index) for index in across] or [0.0]
     pace = pace_of(own, across, path, real)
     return SectionFacts(
         section,
         tool,
-        tuple(sorted({stretch[0].side for stretch in stretches})),
-        wanted=span([facts.wanted for facts in shaping]),
-        reached=span([facts.reached for facts in shaping]),
-        deviation=max((facts.deviation for facts in found), default=0.0),
-        left=sum(facts.left for facts in found),
-        gouge=sum(facts.gouge for facts in found),
-        through=any(facts.through for facts in found),
+        **contour_facts(section, paths, tool, tolerance),
         jump=jump_between_pieces(across, moves, plane, path),
         pieces=len(across),
         shortest=min(lengths),
@@ -116,6 +106,24 @@ def measure_section(
         lowest=min(moves[index].end[Z] for index in own),
         slowest_at=plane.of_part(pace.point),
     )
+
+
+def contour_facts(
+    section: SectionContour, paths: ToolPaths, tool: float, tolerance: float
+) -> dict[str, object]:
+    """Return those members of ``SectionFacts`` that compare the tool's paths with the contour."""
+    leads, stretches = leads_of(section, tool), stretches_of(section)
+    found = [measure_stretch(stretch, leads, paths, tool, tolerance) for stretch in stretches]
+    shaping = [facts for stretch, facts in zip(stretches, found) if stretch[0].side] or found
+    return {
+        "sides": tuple(sorted({stretch[0].side for stretch in stretches})),
+        "wanted": span([facts.wanted for facts in shaping]),
+        "reached": span([facts.reached for facts in shaping]),
+        "deviation": max((facts.deviation for facts in found), default=0.0),
+        "left": sum(facts.left for facts in found),
+        "gouge": sum(facts.gouge for facts in found),
+        "through": any(facts.through for facts in found),
+    }
 
 
 def stretches_of(section: SectionContour) -> list[list[Element]]:
