@@ -119,6 +119,14 @@ def test_a_tolerance_of_ones_own(written, capsys):
     assert code == 1 and "off the contour" in out
 
 
+def test_limits_are_compared_with_the_offsets_of_the_var_file_given(written, tmp_path, capsys):
+    stored = tmp_path / "its.var"
+    stored.write_text("5221\t490\n")
+    code, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--var", str(stored))
+    assert code == 1 and "FINDING         the X axis would go to 505, its limit is 500 mm" in out
+    assert verify(capsys, written(GOOD), "--ini", MILL)[0] == 0
+
+
 def test_lengths_are_shown_in_inches_on_demand(written, capsys):
     _, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--units", "inch")
     assert "programmed 0.7874, reached 0.7874 in" in out

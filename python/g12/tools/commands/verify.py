@@ -35,6 +35,7 @@ examples:
 findings, beside sizes, areas and directions that are not as programmed:
   the loaded tool's diameter differs from that of D by more than 5 % (less is a note)
   a rapid leaves, below a pocket's top, what the program has cleared down to that height
+  an axis leaves its travel, with the work offsets of --var or else of the machine's var file
 
 exit code: 0 everything is as programmed, 1 something is not, 2 wrong use
 """
