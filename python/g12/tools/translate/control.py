@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A control as data: what its TOML file says, checked and with what it is based on filled in.
+
+Every key is known, every value legal, no code has two meanings: whatever else stands in a file is
+refused with its line. What a code does is one of
+
+- ``same``: LinuxCNC's own code of that number does the same
+- ``comment``: nothing is left to do, it stays as a comment
+- ``machine``: the builder's; the machine itself must know it (a REMAP line, an M1xx file)
+- ``refuse: sentence``: refused, the sentence says what to do instead
+- a name of MEANINGS: a rule of the translation
+- codes of LinuxCNC, ``M7`` or ``M3 $1``: written in its place
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import tomllib
+
+CONTROLS = Path(__file__).with_name("controls")
+MEANINGS = {
+    "G": (
+        "dwell", "polar on", "polar off", "cylinder", "speed limit or origin", "local offset",
+        "numbered offset", "offset by program", "exact stop", "macro call", "cancel cycle",
+        "drilling cycle", "circular pocket",
+    ),
+    "M": ("subprogram", "local subprogram", "return"),
+}  # fmt: skip
+OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$[0-9]+))*")
+CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")
+RANGE = re.compile(r"([GM])([0-9]{1,3})-([GM])([0-9]{1,3})")
+CLASSES = (
+    "length_mm",
+    "length_inch",
+    "angle",
+    "feed_mm",
+    "feed_inch",
+    "feed_rev_mm",
+    "feed_rev_inch",
+)
+TOP = {
+    "title": str, "based_on": str, "machine": ("mill", "lathe"), "axes": str, "start": str,
+    "decimals": ("least", "whole"), "remarks": bool, "sources": list, "readings": list,
+}  # fmt: skip
+TABLES: dict[str, dict[str, object]] = {
+    "increments": dict.fromkeys(CLASSES, float),
+    "dwell": {
+        "seconds": str, "milliseconds": str, "with_point": ("seconds", "refuse"),
+        "cycle": ("seconds", "milliseconds", "refuse"),
+    },
+    "tools": {"patterns": list, "size": ("diameter", "radius")},
+    "reference": {"G28": ("stored",), "G30": ("stored",), "cancels_length": bool},
+    "polar": {
+        "x": ("diameter", "radius", "inherit"), "rapid": ("refuse", "keep", "feed"),
+        "rapid_feed_mm": float, "rapid_feed_inch": float,
+    },
+    "cylinder": {"word": ("radius", "diameter")},
+    "subprograms": {"repeat_digits": bool, "cycle_repeat": str},
+    "offsets": {"first_parameter": int},
+    "words": None,
+    "g_codes": None,
+    "m_codes": None,
+}  # fmt: skip
+PATTERN = re.compile(r"R*T+O+")
+
+
+class ControlError(ValueError):
+    """A control file that cannot be used; the message names the file, the line and the rule."""
+
+
+@dataclass(frozen=True)
+class Control:
+    """One control.
+
+    ``axes`` are the machine's axes, ``start`` the codes that hold when a program begins,
+    ``decimals`` what a number without a point is (``least`` increments, ``whole`` units, ``""`` if
+    that is not known). ``meanings`` has the codes, the tables the values of the file.
+    """
+
+    name: str
+    title: str
+    machine: str
+    axes: str
+    start: tuple[str, ...]
+    decimals: str
+    remarks: bool
+    sources: tuple[str, ...]
+    readings: tuple[str, ...]
+    meanings: Mapping[str, str]
+    tables: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+
+    @property
+    def is_lathe(self) -> bool:
+        """Whether X is programmed as a diameter, and U W H are increments."""
+        return self.machine == "lathe"
+
+    def value(self, table: str, key: str, default: object = "") -> object:
+        """Return a value of one of the tables."""
+        return self.tables.get(table, {}).get(key, default)
+
+
+def shipped_controls() -> list[str]:
+    """Return the names of the controls that come with the package."""
+    return sorted(path.stem for path in CONTROLS.glob("*.toml"))
+
+
+def read_control(name: str) -> Control:
+    """Return the control of a name, or of a TOML file whose path is given."""
+    path = _path_of(name)
+    data = _with_base(path, ())
+    missing = [key for key in ("machine", "axes", "g_codes", "m_codes") if key not in data]
+    if missing:
+        raise ControlError(f"{path}: {missing[0]} is missing: say it, or based_on another control")
+    return Control(
+        name=path.stem,
+        title=data.get("title", path.stem),
+        machine=data["machine"],
+        axes=data["axes"],
+        start=tuple(data.get("start", "").split()),
+        decimals=data.get("decimals", ""),
+        remarks=data.get("remarks", False),
+        sources=tuple(data.get("sources", ())),
+        readings=tuple(data.get("readings", ())),
+        meanings={**data["g_codes"], **data["m_codes"]},
+        tables={name: data[name] for name in TABLES if name in data and name[1:] != "_codes"},
+    )
+
+
+def _path_of(name: str) -> Path:
+    if name.endswith(".toml"):
+        return Path(name)
+    if name not in shipped_controls():
+        known = ", ".join(shipped_controls())
+        raise ControlError(f"no control {name}: there are {known}, or give a .toml file")
+    return CONTROLS / f"{name}.toml"
+
+
+def _with_base(path: Path, above: tuple[Path, ...]) -> dict:
+    """Return the data of a file over those of the control that it is based on."""
+    if path.resolve() in above:
+        raise ControlError(f"{path}: is based on itself")
+    data = _data(path)
+    base = data.pop("based_on", "")
+    if not base:
+        return data
+    if base.endswith(".toml"):
+        base = str(path.parent / base)
+    under = _with_base(_path_of(base), (*above, path.resolve()))
+    tables = {k: {**under.get(k, {}), **v} for k, v in data.items() if isinstance(v, dict)}
+    return {**under, **data, **tables}
+
+
+def _data(path: Path) -> dict:
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as problem:
+        raise ControlError(f"{path}: {problem}") from None
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise ControlError(f"{path}: {problem}") from None
+    return _Checked(path, text).data(data)
+
+
+class _Checked:
+    """The checks of one file, which know where its keys stand."""
+
+    def __init__(self, path: Path, text: str) -> None:
+        self._path, self._rows = path, text.splitlines()
+
+    def data(self, data: dict) -> dict:
+        """Return the data with every list and range of codes written out."""
+        for key, value in data.items():
+            if key in TABLES:
+                if not isinstance(value, dict):
+                    self._refuse(key, f"{key} is a table: [{key}]")
+                self._table(key, value)
+            elif key in TOP:
+                self._value(key, value, TOP[key])
+            else:
+                self._refuse(key, f"{key} is no key of a control")
+        self._axes(data)
+        for letter in "gm":
+            name = f"{letter}_codes"
+            if name in data:
+                data[name] = self._codes(letter.upper(), data[name])
+        return data
+
+    def _table(self, name: str, table: dict) -> None:
+        kinds = TABLES[name]
+        for key, value in table.items():
+            if kinds is None:
+                if not isinstance(value, (str, list, dict)):
+                    self._refuse(key, f"{key} in [{name}] must be a text")
+            elif key not in kinds:
+                self._refuse(key, f"{key} is no key of [{name}]: {', '.join(kinds)}")
+            else:
+                self._value(key, value, kinds[key])
+        for pattern in table.get("patterns", ()) if name == "tools" else ():
+            if not isinstance(pattern, str) or not PATTERN.fullmatch(pattern):
+                self._refuse("patterns", f"{pattern} is no pattern such as TTOO or RRTTOO")
+        if name == "words":
+            for key, value in table.items():
+                if not re.fullmatch("[A-Z]{2}", key) or not re.fullmatch("[A-Z]", str(value)):
+                    self._refuse(key, f'{key} = "{value}": a word of two letters, and one of one')
+
+    def _value(self, key: str, value: object, kind: object) -> None:
+        if isinstance(kind, tuple):
+            if value not in kind:
+                self._refuse(key, f"{key} = {value!r} must be one of {', '.join(kind)}")
+            return
+        number = kind is float and type(value) in (int, float) and value > 0
+        listed = kind is not list or (
+            isinstance(value, list) and all(isinstance(v, str) for v in value)
+        )
+        if kind is float and not number:
+            self._refuse(key, f"{key} must be a number above 0")
+        if kind is not float and (type(value) is not kind or not listed):
+            names = {
+                str: "a text",
+                bool: "true or false",
+                int: "a whole number",
+                list: "a list of texts",
+            }
+            self._refuse(key, f"{key} must be {names[kind]}")
+
+    def _axes(self, data: dict) -> None:
+        axes = data.get("axes", "X")
+        if not re.fullmatch("[XYZABC]+", axes) or len(set(axes)) < len(axes):
+            self._refuse("axes", f'axes = "{axes}" must be letters of X Y Z A B C, each once')
+        for code in data.get("start", "").split():
+            if not CODE.fullmatch(code):
+                self._refuse("start", f"{code} in start is no code such as G17")
+
+    def _codes(self, letter: str, table: dict) -> dict[str, str]:
+        """Return the meaning of every code; a code that is named twice is refused."""
+        meanings: dict[str, str] = {}
+        for key, value in table.items():
+            if isinstance(value, dict):
+                self._refuse(
+                    key, f'a code with a point is written in quotes: "{key}.{next(iter(value))}"'
+                )
+            listed = key in ("same", "comment", "machine")
+            if listed != isinstance(value, list):
+                self._refuse(key, f"{key} must be a {'list of codes' if listed else 'text'}")
+            for code in value if listed else [key]:
+                for one in self._each(letter, str(code), key):
+                    if one in meanings:
+                        self._refuse(key, f"{one} has two meanings")
+                    meanings[one] = key if listed else self._meaning(letter, key, value)
+        return meanings
+
+    def _each(self, letter: str, code: str, key: str) -> list[str]:
+        """Return the codes of ``G110-G129``, or the one code."""
+        span = RANGE.fullmatch(code)
+        if span and span[1] == span[3] == letter and int(span[2]) < int(span[4]):
+            return [f"{letter}{number}" for number in range(int(span[2]), int(span[4]) + 1)]
+        if not CODE.fullmatch(code) or code[0] != letter:
+            self._refuse(
+                key, f"{code} is no {letter} code such as {letter}31, or {letter}31-{letter}33"
+            )
+        return [code]
+
+    def _meaning(self, letter: str, key: str, value: str) -> str:
+        known = value in ("same", "comment", "machine", *MEANINGS[letter])
+        if not known and not value.startswith("refuse: ") and not OWN_CODES.fullmatch(value):
+            names = ", ".join(("same", "comment", "machine", "refuse: …", *MEANINGS[letter]))
+            self._refuse(key, f'{key} = "{value}" must be one of {names}, or codes of LinuxCNC')
+        return value
+
+    def _refuse(self, key: str, rule: str) -> None:
+        """Raise the error of a key, with the line that it stands in."""
+        wanted = re.compile(rf'\s*\[?"?{re.escape(key)}"?\s*(=|\]|$)')
+        rows = [number for number, row in enumerate(self._rows, 1) if wanted.match(row)]
+        place = f":{rows[0]}" if rows else ""
+        raise ControlError(f"{self._path}{place}: {rule}")

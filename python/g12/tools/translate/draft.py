@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One block on its way through the rules: what is left of its words, and the lines it becomes."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+from typing import NamedTuple
+
+from g12.tools.translate.control import Control
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.lexer import ForeignBlock, ForeignWord
+from g12.tools.translate.modal import UNSURE, ModalState
+
+AXIS_NUMBERS = {"X": 1, "Y": 2, "Z": 3, "A": 4, "B": 5, "C": 6}
+PARTNERS = {"U": "X", "V": "Y", "W": "Z", "H": "C"}  # a lathe's increments
+
+
+class SubprogramCall(NamedTuple):
+    """A call: the called program's number, its ``kind`` (``sub``, ``macro``), what it is given.
+
+    ``repeats`` is how often, "" for once; ``arguments`` are variables' numbers and values.
+    """
+
+    number: int
+    kind: str
+    repeats: str = ""
+    arguments: tuple[tuple[int, str], ...] = ()
+
+
+class Draft:
+    """A block that the rules rewrite.
+
+    ``words`` are those that will be its own line; ``meanings`` the codes that a rule of the
+    translation owns, by their meaning; ``before`` and ``after`` further lines; ``comments`` what is
+    kept as text; ``state`` the modes before the block, which the rules carry on; ``call`` what it
+    calls and ``returns`` whether a subprogram ends here, by ``return_text``; ``head`` begins one;
+    ``programs`` are the numbers of the programs in the file; ``refusal`` is why it is not
+    translated, None if it is.
+    """
+
+    def __init__(
+        self,
+        block: ForeignBlock,
+        state: ModalState,
+        control: Control,
+        machine_codes: frozenset[str] | None = None,
+        programs: Container[int] = (),
+    ) -> None:
+        self.block, self.state, self.control = block, state, control
+        self.machine_codes = machine_codes
+        self.words: list[ForeignWord] = list(block.words)
+        self.meanings: dict[str, ForeignWord] = {}
+        self.before: list[str] = []
+        self.after: list[str] = []
+        self.comments: list[str] = list(block.comments)
+        self.call: SubprogramCall | None = None
+        self.returns = False
+        self.return_text = "M99"
+        self.head = ""
+        self.programs = programs
+        self.refusal: str | None = None
+
+    def change(self, **modes: object) -> None:
+        """Carry the state on."""
+        self.state = self.state._replace(**modes)
+
+    def codes(self) -> list[str]:
+        """Return the G codes of the block, as LinuxCNC's."""
+        return [w.code for w in self.words if w.letter == "G" and w.kind == "number"]
+
+    def letters(self) -> set[str]:
+        """Return the letters of the words that are left."""
+        return {word.letter for word in self.words if word.kind != "text"}
+
+    def axis_words(self) -> list[ForeignWord]:
+        """Return the words that name an axis."""
+        return [word for word in self.words if word.letter in AXIS_NUMBERS]
+
+    def take(self, letter: str) -> ForeignWord | None:
+        """Return the word of a letter and take it out, None if there is none; two are refused."""
+        found = [word for word in self.words if word.letter == letter]
+        if len(found) > 1:
+            raise NotTranslated(f"{letter} stands twice")
+        self.words = [word for word in self.words if word.letter != letter]
+        return found[0] if found else None
+
+    def take_codes(self, codes: Container[str]) -> list[str]:
+        """Take G codes out; return those that were there."""
+        taken = [
+            w for w in self.words if w.letter == "G" and w.kind == "number" and w.code in codes
+        ]
+        self.words = [word for word in self.words if word not in taken]
+        return [word.code for word in taken]
+
+    def replace(self, old: ForeignWord, *new: ForeignWord) -> None:
+        """Put words in the place of one."""
+        at = next(index for index, word in enumerate(self.words) if word is old)
+        self.words[at : at + 1] = new
+
+    def put_first(self, code: str) -> None:
+        """Put a code before all other words but the block number."""
+        self.words.insert(1 if self.words and self.words[0].letter == "N" else 0, word_of(code))
+
+    def sure(self, group: str, why: str) -> str:
+        """Return a mode that must be the same on every way to the block."""
+        value = getattr(self.state, group)
+        if value == UNSURE:
+            name = group.replace("_", " ")
+            raise NotTranslated(f"{why}, but the {name} here is not the same on every way")
+        return value
+
+    def written(self) -> str:
+        """Return the words that are left as one line."""
+        return " ".join(word.text for word in self.words)
+
+    def alone(self) -> bool:
+        """Tell whether nothing but a block number is left of the words."""
+        return all(word.letter == "N" and word.kind == "number" for word in self.words)
+
+
+def word_of(text: str) -> ForeignWord:
+    """Return the word of a text such as ``G90``."""
+    return ForeignWord(text[0], text[1:])
+
+
+def line_of(text: str) -> ForeignWord:
+    """Return a whole line of LinuxCNC's in the place of a word."""
+    return ForeignWord(text[0], text[1:], "text")

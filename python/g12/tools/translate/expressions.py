@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Expressions of macro controls as LinuxCNC writes them: text to text, nothing is evaluated.
+
+What differs from LinuxCNC and is written anew or refused:
+
+- FIX and FUP go towards and away from zero there, down and up here: written with ABS and a sign.
+- AND, OR and XOR work on bits there and on truth here: only between bracketed comparisons.
+- #0, the empty variable, has no counterpart.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from g12.tools.translate.errors import NotTranslated, excerpt
+
+NUMBER = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
+OPERATOR = re.compile(r"EQ|NE|GT|GE|LT|LE|AND|XOR|OR|MOD|[-+*/]")
+FUNCTION = re.compile(r"(SIN|COS|TAN|ASIN|ACOS|ATAN|SQRT|SQR|ABS|ROUND|FIX|FUP|LN|EXP)(?=\[)")
+LONGER_NAMES = {"SQR": "SQRT"}
+COMPARING = frozenset(("EQ", "NE", "GT", "GE", "LT", "LE"))
+JOINING = frozenset(("AND", "OR", "XOR"))
+DEEPEST = 8  # brackets within brackets
+LOCAL = range(1, 31)  # what LinuxCNC keeps apart in every call
+COMMON = (range(100, 200), range(500, 1000))
+POSITION = {5041: 5420, 5042: 5421, 5043: 5422}  # where the tool stands, X Y Z
+
+
+class Expression(NamedTuple):
+    """An expression as LinuxCNC reads it.
+
+    ``read`` are the numbers of the local variables in it, ``is_condition`` tells whether its
+    value is true or false, ``end`` is the index behind it in the text.
+    """
+
+    text: str
+    read: frozenset[int]
+    is_condition: bool
+    end: int
+
+
+def value_from(text: str, start: int) -> Expression:
+    """Return the value that stands at ``start``: a number, a variable or brackets, with a sign."""
+    return _operand(text, start, 0)
+
+
+def bracketed_from(text: str, start: int) -> Expression:
+    """Return the brackets that open at ``start``."""
+    if text[start : start + 1] != "[":
+        raise NotTranslated(f"[ is missing before {excerpt(text[start:]) or 'the end'}")
+    return _brackets(text, start, 0)
+
+
+def whole_expression(text: str) -> Expression:
+    """Return what stands on the right of ``=``, which needs no brackets there."""
+    found = _chain(text, 0, 0)
+    if found.end < len(text):
+        raise NotTranslated(f"{excerpt(text[found.end :])} is no part of an expression")
+    return found
+
+
+def _operand(text: str, start: int, depth: int) -> Expression:
+    at = start
+    while at < len(text) and text[at] in "+-":
+        at += 1
+    sign = "-" * (text[start:at].count("-") % 2)
+    found = _unsigned(text, at, depth)
+    return found._replace(text=sign + found.text, is_condition=found.is_condition and not sign)
+
+
+def _unsigned(text: str, at: int, depth: int) -> Expression:
+    number = NUMBER.match(text, at)
+    if number:
+        return Expression(number[0], frozenset(), False, number.end())
+    if text.startswith("#", at):
+        return _variable(text, at, depth)
+    if text.startswith("[", at):
+        return _brackets(text, at, depth)
+    function = FUNCTION.match(text, at)
+    if function:
+        return _function(function[1], text, function.end(), depth)
+    raise NotTranslated(f"{excerpt(text[at:]) or 'the end'} stands where a value is wanted")
+
+
+def _variable(text: str, at: int, depth: int) -> Expression:
+    if text.startswith("[", at + 1):
+        index = _brackets(text, at + 1, depth)
+        return index._replace(text=f"#{index.text}", is_condition=False)
+    digits = re.compile(r"[0-9]+").match(text, at + 1)
+    if not digits:
+        raise NotTranslated(f"{excerpt(text[at:])} is no variable: # and a number")
+    number = variable_number(digits[0])
+    read = frozenset((number,)) if number in LOCAL else frozenset()
+    return Expression(f"#{number}", read, False, digits.end())
+
+
+def variable_number(digits: str) -> int:
+    """Return LinuxCNC's number of a variable, or refuse one that it does not have."""
+    number = int(digits[:9])
+    if number in LOCAL or any(number in numbers for numbers in COMMON):
+        return number
+    if number in POSITION:
+        return POSITION[number]
+    if number == 0:
+        raise NotTranslated("#0, the empty variable, does not exist on LinuxCNC: give it a value")
+    raise NotTranslated(
+        f"#{digits[:9]} means something else on LinuxCNC: variables are #1 to #30, "
+        "#100 to #199 and #500 to #999"
+    )
+
+
+def _brackets(text: str, start: int, depth: int) -> Expression:
+    if depth >= DEEPEST:
+        raise NotTranslated(f"more than {DEEPEST} brackets within brackets")
+    inner = _chain(text, start + 1, depth + 1)
+    if text[inner.end : inner.end + 1] != "]":
+        raise NotTranslated(f"] is missing before {excerpt(text[inner.end :]) or 'the end'}")
+    return inner._replace(text=f"[{inner.text}]", end=inner.end + 1)
+
+
+def _function(name: str, text: str, at: int, depth: int) -> Expression:
+    argument = _brackets(text, at, depth)._replace(is_condition=False)
+    if name == "ATAN":
+        return _arc_tangent(argument, text, depth)
+    if name in ("FIX", "FUP"):
+        e = argument.text
+        return argument._replace(text=f"[{name}[ABS{e}] * [1 - 2 * [{e} LT 0]]]")
+    return argument._replace(text=f"{LONGER_NAMES.get(name, name)}{argument.text}")
+
+
+def _arc_tangent(argument: Expression, text: str, depth: int) -> Expression:
+    if not text.startswith("/[", argument.end):
+        return argument._replace(text=f"ATAN{argument.text}/[1]")
+    below = _brackets(text, argument.end + 1, depth)
+    read = argument.read | below.read
+    return Expression(f"ATAN{argument.text}/{below.text}", read, False, below.end)
+
+
+def _chain(text: str, start: int, depth: int) -> Expression:
+    """Return values with operators between them."""
+    first = _operand(text, start, depth)
+    parts, operators, read, at = [first], [], first.read, first.end
+    while operator := OPERATOR.match(text, at):
+        part = _operand(text, operator.end(), depth)
+        parts.append(part)
+        operators.append(operator[0])
+        read, at = read | part.read, part.end
+    _check_operators(parts, operators)
+    written = [first.text]
+    for operator, part in zip(operators, parts[1:]):
+        written += (operator, part.text)
+    is_condition = any(o in COMPARING or o in JOINING for o in operators)
+    is_condition = is_condition or (len(parts) == 1 and first.is_condition)
+    return Expression(" ".join(written), read, is_condition, at)
+
+
+def _check_operators(parts: list[Expression], operators: list[str]) -> None:
+    """Refuse a chain that LinuxCNC would work out in another order or another way."""
+    joining = JOINING.intersection(operators)
+    if joining and (
+        len(set(operators)) > 1
+        or not all(part.is_condition and part.text.startswith("[") for part in parts)
+    ):
+        name = sorted(joining)[0]
+        raise NotTranslated(f"{name} is translated between comparisons in brackets only")
+    if sum(operator in COMPARING for operator in operators) > 1:
+        raise NotTranslated("two comparisons in a row: put brackets around each")

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every block in the modal state that it is reached in: through calls, returns, loops and skips.
+
+A block that is reached again in another state is translated again in what both have in common, so
+the last translation of each block holds on every way. A mode can only become unsure: it ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from g12.tools.translate.control import Control
+from g12.tools.translate.draft import Draft, SubprogramCall
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.modal import GROUP_OF, ModalState, merged
+from g12.tools.translate.rules import WORD_RULES
+from g12.tools.translate.statements import STATEMENTS
+from g12.tools.translate.structure import MAIN, Structure
+
+ENDS = frozenset(("M2", "M30"))
+Progress = Callable[[int], None]
+
+
+class Followed:
+    """The drafts of a program's blocks, None where a block is never reached.
+
+    ``falls_off`` are the blocks behind which a program is over without an end of its own,
+    ``kinds`` how each program is called.
+    """
+
+    def __init__(
+        self,
+        structure: Structure,
+        control: Control,
+        machine_codes: frozenset[str] | None = None,
+        progress: Progress = lambda index: None,
+    ) -> None:
+        self.structure, self.control = structure, control
+        self._machine_codes, self._progress = machine_codes, progress
+        count = len(structure.blocks)
+        self.drafts: list[Draft | None] = [None] * count
+        self.falls_off: set[int] = set()
+        self.kinds: dict[int, str] = {}
+        self.calls: dict[int, list[Draft]] = {}
+        self._states: list[ModalState | None] = [None] * count
+        self._inside = programs_of_blocks(structure)
+        self._behind: dict[int, set[int]] = {}
+        self._exits: dict[int, ModalState] = {}
+        self._pending: list[tuple[int, ModalState]] = []
+
+    def run(self) -> Followed:
+        """Follow the main program from its first block until nothing new is found."""
+        if self.drafts:
+            self._pending.append((0, start_state(self.control)))
+        while self._pending:
+            self._reach(*self._pending.pop())
+        return self
+
+    def program_of(self, index: int) -> int:
+        """Return the number of the program that a block is in."""
+        return self._inside[index]
+
+    def _reach(self, index: int, state: ModalState) -> None:
+        known = self._states[index]
+        if known is not None:
+            state = merged(known, state)
+            if state == known:
+                return
+        self._states[index] = state
+        self._progress(index)
+        draft = self._translate(index, state)
+        self.drafts[index] = draft
+        if self.structure.blocks[index].skipped:
+            self._go_on(index, state)
+        self._leave(index, draft)
+
+    def _translate(self, index: int, state: ModalState) -> Draft:
+        block = self.structure.blocks[index]
+        draft = Draft(block, state, self.control, self._machine_codes, self.structure.entries)
+        try:
+            problem = block.problem or self.structure.problems.get(index)
+            if problem:
+                raise NotTranslated(problem)
+            statement = STATEMENTS.get(block.kind)
+            if statement:
+                statement(draft, index, self.structure)
+            elif index in self.structure.starts or draft.letters() & {"O"}:
+                self._head(draft, index)
+            else:
+                self._end(draft, index)
+                apply_rules(draft)
+        except NotTranslated as refusal:
+            draft.refusal = str(refusal)
+        return draft
+
+    def _head(self, draft: Draft, index: int) -> None:
+        """Write the first block of a program."""
+        number = self.structure.starts.get(index)
+        word = draft.take("O")
+        if number is None and not word.value.isdigit():
+            raise NotTranslated(f"{word.text}: the number of a program must be a whole number")
+        name = f"O{number}" if self.kinds.get(number) != "macro" else f"o<macro_{number}> sub"
+        self._end(draft, index)
+        apply_rules(draft)
+        if number is None:
+            draft.comments.insert(0, word.text)
+        else:
+            draft.head = name
+
+    def _end(self, draft: Draft, index: int) -> None:
+        """Tell the draft how a return is written here."""
+        number = self._inside[index]
+        if self.kinds.get(number) == "macro":
+            last = self.structure.last_returns.get(number) == index
+            draft.return_text = f"o<macro_{number}> {'endsub' if last else 'return'}"
+
+    def _leave(self, index: int, draft: Draft) -> None:
+        """Go on to the blocks that can follow."""
+        block, state = draft.block, draft.state
+        codes = {word.code for word in draft.words if word.letter == "M" and word.kind == "number"}
+        if draft.call:
+            self._call(index, draft, draft.call)
+        elif draft.returns:
+            self._return(self._inside[index], state)
+        elif codes & ENDS:
+            pass
+        elif block.kind == "while" and index in self.structure.partners:
+            self._go_on(index, state)
+            self._go_on(self.structure.partners[index], state)
+        elif block.kind == "end" and index in self.structure.partners:
+            self._pending.append((self.structure.partners[index], state))
+        else:
+            self._go_on(index, state)
+
+    def _go_on(self, index: int, state: ModalState) -> None:
+        following = index + 1
+        if following >= len(self.drafts) or following in self.structure.starts:
+            self.falls_off.add(index)
+        else:
+            self._pending.append((following, state))
+
+    def _call(self, index: int, draft: Draft, call: SubprogramCall) -> None:
+        entry = self.structure.entries.get(call.number)
+        problem = self._wrong_call(index, call, entry)
+        if problem:
+            draft.refusal = draft.refusal or problem
+            self._go_on(index, draft.state)
+            return
+        if self.kinds.setdefault(call.number, call.kind) == call.kind:
+            self.calls.setdefault(call.number, []).append(draft)
+        self._behind.setdefault(call.number, set()).add(index)
+        self._pending.append((entry, draft.state))
+        if call.number in self._exits:
+            self._go_on(index, self._exits[call.number])
+
+    def _wrong_call(self, index: int, call: SubprogramCall, entry: int | None) -> str | None:
+        name = f"O{call.number}" if call.number < 1_000_000 else f"N{call.number - 1_000_000}"
+        if entry is None:
+            return f"{name} is not in this file: put the subprogram behind the main program"
+        if entry <= index:
+            return f"{name} stands above this call: LinuxCNC wants a subprogram below its calls"
+        if self.kinds.get(call.number, call.kind) != call.kind:
+            return f"{name} is called by G65 and by M98: LinuxCNC wants a copy of it for each"
+        return None
+
+    def _return(self, number: int, state: ModalState) -> None:
+        if number == MAIN:
+            self._pending.append((0, state))  # M99 of the main program: from the top again
+            return
+        known = self._exits.get(number)
+        state = merged(known, state) if known else state
+        if state != known:
+            self._exits[number] = state
+            for index in self._behind.get(number, ()):
+                self._go_on(index, state)
+
+
+def apply_rules(draft: Draft) -> None:
+    """Send a block of words through the rules."""
+    if draft.words:
+        for rule in WORD_RULES:
+            rule(draft)
+
+
+def start_state(control: Control) -> ModalState:
+    """Return the modes that hold when a program begins."""
+    known = {GROUP_OF[code]: code for code in control.start if code in GROUP_OF}
+    return ModalState(**known)
+
+
+def programs_of_blocks(structure: Structure) -> list[int]:
+    """Return the number of the program that each block is in."""
+    inside, number = [], MAIN
+    for index in range(len(structure.blocks)):
+        number = structure.starts.get(index, number)
+        inside.append(number)
+    return inside

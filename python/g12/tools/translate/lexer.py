@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The text of a program as blocks: words, comments and macro statements, nothing of their meaning.
+
+Blanks do not count outside comments, letters are read as capitals, a line ends as it likes, ``;``
+ends a block. Comments may be nested; what LinuxCNC would obey in a comment is disarmed.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from g12.tools.translate.errors import NotTranslated, excerpt
+from g12.tools.translate.expressions import (
+    Expression,
+    bracketed_from,
+    value_from,
+    variable_number,
+    whole_expression,
+)
+
+PLAIN_WORDS = re.compile(r"(?:[A-Z][-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))*")
+PLAIN_WORD = re.compile(r"([A-Z])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
+NAMED_WORD = re.compile(r"([A-Z]{2})=")
+SKIP = re.compile(r"/([0-9]?)")
+STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])")
+ASSIGNMENT = re.compile(r"#([0-9]+)=")
+OBEYED = re.compile(r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I)
+MINUS = "\N{MINUS SIGN}"
+EMPTY_CHARACTERS = "\ufeff\u200b\0"
+PLANE_CODES = frozenset(("G17", "G18", "G19"))
+
+
+class ForeignWord(NamedTuple):
+    """A word: its letter and its value as LinuxCNC can read it.
+
+    ``kind`` is ``number``, ``expression``, ``bare`` (a letter alone beside a plane code) or
+    ``text`` (a line of LinuxCNC's that a rule has written); ``read``
+    holds the local variables of an expression.
+    """
+
+    letter: str
+    value: str
+    kind: str = "number"
+    read: frozenset[int] = frozenset()
+
+    @property
+    def text(self) -> str:
+        """The word as it is written in a block."""
+        return self.letter + self.value
+
+    @property
+    def number(self) -> float:
+        """The value of a number, in whatever unit its letter has."""
+        return float(self.value)
+
+    @property
+    def code(self) -> str:
+        """A G or M word by one name, whatever zeros it has: ``G1``, ``G12.1``."""
+        whole, _, part = self.value.partition(".")
+        part = part.rstrip("0")
+        return f"{self.letter}{int(whole or 0)}{'.' + part if part else ''}"
+
+
+class ForeignBlock(NamedTuple):
+    """One block of a program, or what stands in its place.
+
+    ``kind`` is ``words``, ``tape`` (a ``%``), ``assign`` (``variable`` = ``expression``),
+    ``while``, ``do``, ``end``, ``if`` (``expression`` and the assignment ``then``) or ``goto``.
+    ``line`` counts from 1; ``label`` is the number of DO and END; ``problem`` is why the block
+    could not be read, None if it could.
+    """
+
+    line: int
+    kind: str = "words"
+    words: tuple[ForeignWord, ...] = ()
+    comments: tuple[str, ...] = ()
+    skipped: bool = False
+    expression: Expression | None = None
+    variable: int = 0
+    label: str = ""
+    then: ForeignBlock | None = None
+    problem: str | None = None
+
+
+def program_text(content: bytes) -> str:
+    """Return the characters of a file: UTF-8, or else Latin-1, which takes any bytes."""
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")
+
+
+def source_lines(text: str) -> list[str]:
+    """Return the lines of a text; CR, LF and both together end a line."""
+    return re.split(r"\r\n|\r|\n", text.removesuffix("\n").removesuffix("\r"))
+
+
+def blocks_of(line: int, text: str, remarks: bool = False) -> Iterator[ForeignBlock]:
+    """Yield the blocks of one line, at least one.
+
+    With ``remarks`` what stands behind ``;`` is a remark, else it is the next block.
+    """
+    comments: tuple[str, ...] = ()
+    try:
+        parts, comments = _without_comments(text, remarks)
+    except NotTranslated as problem:
+        yield ForeignBlock(line, problem=str(problem))
+        return
+    for number, part in enumerate(parts):
+        yield _block(line, part, comments if number == 0 else ())
+
+
+def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, ...]]:
+    """Return the blocks of a line without blanks, and its comments."""
+    if "(" in text or ")" in text:
+        code, comments = _split_comments(text)
+    else:
+        code, comments = text, []
+    code, *behind = code.split(";") if remarks else (code,)
+    comments += [part.strip() for part in behind if part.strip()]
+    code = (
+        "".join(code.upper().split())
+        .replace(MINUS, "-")
+        .translate(dict.fromkeys(map(ord, EMPTY_CHARACTERS)))
+    )
+    parts = [part for part in code.split(";") if part] or [""]
+    return parts, tuple(printable(comment) for comment in comments)
+
+
+def _split_comments(text: str) -> tuple[str, list[str]]:
+    code, comments, depth, start = [], [], 0, 0
+    for at, character in enumerate(text):
+        if character == "(":
+            if depth == 0:
+                code.append(text[start:at])
+                start = at + 1
+            depth += 1
+        elif character == ")":
+            depth -= 1
+            if depth < 0:
+                raise NotTranslated(") without a ( before it")
+            if depth == 0:
+                comments.append(text[start:at])
+                start = at + 1
+    if depth:
+        raise NotTranslated("a comment is not closed: ) is missing")
+    return "".join([*code, text[start:]]), comments
+
+
+def printable(comment: str) -> str:
+    """Return a comment that LinuxCNC only keeps: plain characters, no brackets, no command."""
+    if not comment.isascii():
+        comment = unicodedata.normalize("NFKD", comment).encode("ascii", "replace").decode()
+        comment = comment.replace("?", " ") if not comment.strip("? ") else comment
+    comment = comment.replace("(", "[").replace(")", "]").replace(";", ",")
+    comment = "".join(c if c.isprintable() else " " for c in comment)
+    return f"- {comment.strip()}" if OBEYED.match(comment) else comment
+
+
+def _block(line: int, text: str, comments: tuple[str, ...]) -> ForeignBlock:
+    try:
+        return _parsed(line, text)._replace(comments=comments)
+    except NotTranslated as problem:
+        return ForeignBlock(line, comments=comments, problem=str(problem))
+
+
+def _parsed(line: int, text: str) -> ForeignBlock:
+    if text.startswith("%"):
+        return ForeignBlock(line, "tape", label=text[1:])
+    skip = SKIP.match(text)
+    if skip:
+        if skip[1] not in ("", "1"):
+            raise NotTranslated(f"{skip[0]}: LinuxCNC has one switch to skip blocks, / alone")
+        return _parsed(line, text[skip.end() :])._replace(skipped=True)
+    if PLAIN_WORDS.fullmatch(text):
+        words = tuple(ForeignWord(*pair) for pair in PLAIN_WORD.findall(text))
+        return ForeignBlock(line, words=words)
+    return _statement(line, text)
+
+
+def _statement(line: int, text: str) -> ForeignBlock:
+    """Return a block with more in it than plain words."""
+    number = re.compile(r"N[0-9]+").match(text)
+    start = number.end() if number else 0
+    words = (ForeignWord("N", text[1:start]),) if number else ()
+    rest = text[start:]
+    if number and rest.startswith("/"):
+        return _parsed(line, rest[1:])._replace(skipped=True)
+    statement = STATEMENT.match(rest)
+    if statement:
+        block = READERS[statement[1]](line, rest[statement.end() :])
+    elif ASSIGNMENT.match(rest):
+        block = _assignment(line, rest)
+    else:
+        block = ForeignBlock(line, words=_words(rest))
+    return block._replace(words=words + block.words)
+
+
+def _assignment(line: int, text: str) -> ForeignBlock:
+    match = ASSIGNMENT.match(text)
+    if match[1] in ("3000", "3006"):
+        return ForeignBlock(line, "stop", label=match[1])
+    variable = variable_number(match[1])
+    return ForeignBlock(
+        line, "assign", variable=variable, expression=whole_expression(text[match.end() :])
+    )
+
+
+def _if(line: int, text: str) -> ForeignBlock:
+    condition = bracketed_from(text, 0)
+    rest = text[condition.end :]
+    if rest.startswith("GOTO"):
+        return _goto(line, rest)
+    if not rest.startswith("THEN"):
+        raise NotTranslated("IF without THEN: only IF […] THEN #… = … is translated")
+    then = _parsed(line, rest[4:])
+    if then.kind not in ("assign", "stop"):
+        raise NotTranslated("behind THEN only an assignment is translated, #… = …")
+    return ForeignBlock(line, "if", expression=condition, then=then)
+
+
+def _while(line: int, text: str) -> ForeignBlock:
+    condition = bracketed_from(text, 0)
+    rest = re.fullmatch(r"DO([0-9]+)", text[condition.end :])
+    if not rest:
+        raise NotTranslated("WHILE […] needs DO and a number behind it")
+    return ForeignBlock(line, "while", expression=condition, label=rest[1])
+
+
+def _do(line: int, text: str) -> ForeignBlock:
+    raise NotTranslated("DO without WHILE never ends: LinuxCNC needs WHILE […] DO")
+
+
+def _end(line: int, text: str) -> ForeignBlock:
+    if not text.isdigit():
+        raise NotTranslated(f"END{excerpt(text)} needs a number alone")
+    return ForeignBlock(line, "end", label=text)
+
+
+def _goto(line: int, text: str) -> ForeignBlock:
+    raise NotTranslated("GOTO is not translated: write the loop as WHILE […] DO1 … END1")
+
+
+def _call(line: int, text: str) -> ForeignBlock:
+    raise NotTranslated("CALL is not translated: write a subprogram of the file with M98 P")
+
+
+READERS = {"IF": _if, "WHILE": _while, "DO": _do, "END": _end, "GOTO": _goto, "CALL": _call}
+
+
+def _words(text: str) -> tuple[ForeignWord, ...]:
+    words: list[ForeignWord] = []
+    at = 0
+    while at < len(text):
+        word, at = _word(text, at)
+        words.append(word)
+    if any(word.kind == "bare" for word in words):
+        _check_bare(words)
+    return tuple(words)
+
+
+def _word(text: str, at: int) -> tuple[ForeignWord, int]:
+    plain = PLAIN_WORD.match(text, at)
+    if plain:
+        return ForeignWord(*plain.groups()), plain.end()
+    named = NAMED_WORD.match(text, at)
+    letter, start = (named[1], named.end()) if named else (text[at], at + 1)
+    if not ("A" <= letter[0] <= "Z"):
+        raise NotTranslated(f"{excerpt(text[at:])} does not start with a word")
+    if start >= len(text) or "A" <= text[start] <= "Z":
+        return ForeignWord(letter, "", "bare"), start
+    try:
+        value = value_from(text, start)
+    except NotTranslated as problem:
+        raise NotTranslated(f"{letter} has no value: {problem}") from None
+    kind = "number" if re.fullmatch(r"-?[0-9.]+", value.text) else "expression"
+    return ForeignWord(letter, value.text, kind, value.read), value.end
+
+
+def _check_bare(words: list[ForeignWord]) -> None:
+    """Refuse a letter without a value, but for the axes of a plane."""
+    plane = any(w.letter == "G" and w.kind == "number" and w.code in PLANE_CODES for w in words)
+    for word in words:
+        if word.kind == "bare" and not (plane and word.letter in "XYZUVWCH"):
+            raise NotTranslated(f"{word.letter} has no value")

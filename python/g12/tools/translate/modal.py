@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The modal state that a block is reached in: the foreign control's, and LinuxCNC's where apart.
+
+A line can be reached by several ways (a subprogram by its calls, a loop by its end, the block
+behind a skipped one). Where the ways differ in a mode, that mode is UNSURE, and a rule that needs
+it refuses the block.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+UNSURE = "?"  # different on different ways
+UNKNOWN = ""  # never said
+AS_PROGRAMMED = "="  # LinuxCNC is in the mode that the program is in
+
+GROUPS = {
+    "motion": ("G0", "G1", "G2", "G3"),
+    "distance": ("G90", "G91"),
+    "plane": ("G17", "G18", "G19"),
+    "units": ("G20", "G21"),
+    "feed_mode": ("G93", "G94", "G95"),
+    "compensation": ("G40", "G41", "G42"),
+    "spindle_mode": ("G96", "G97"),
+    "path": ("G61", "G64"),
+}
+GROUP_OF = {code: group for group, codes in GROUPS.items() for code in codes}
+
+
+class ModalState(NamedTuple):
+    """The modes by the names of their groups, each as LinuxCNC's code.
+
+    ``cycle`` is the drilling cycle in force and ``cycle_words`` what it was given, ``length`` the H
+    of G43 (``0``: none), ``tool`` the T word, ``offset`` the work offset, ``limit`` the spindle's
+    speed limit, ``surface`` the S of G96, ``radius`` the D word, ``feed`` the F word.
+    ``own_motion``, ``own_distance`` and ``own_feed`` tell where LinuxCNC is in another mode than
+    the program.
+    ``polar`` is ``on`` between polar (or cylinder) on and off.
+    """
+
+    motion: str = UNKNOWN
+    distance: str = "G90"
+    plane: str = UNKNOWN
+    units: str = UNKNOWN
+    feed_mode: str = UNKNOWN
+    compensation: str = "G40"
+    spindle_mode: str = UNKNOWN
+    path: str = UNKNOWN
+    cycle: str = UNKNOWN
+    cycle_words: tuple = ()
+    length: str = UNKNOWN
+    tool: str = UNKNOWN
+    offset: str = UNKNOWN
+    limit: str = UNKNOWN
+    surface: str = UNKNOWN
+    radius: str = UNKNOWN
+    feed: str = UNKNOWN
+    polar: str = "off"
+    own_motion: str = AS_PROGRAMMED
+    own_distance: str = AS_PROGRAMMED
+    own_feed: str = AS_PROGRAMMED
+
+
+def merged(one: ModalState, other: ModalState) -> ModalState:
+    """Return what is sure when a line is reached in either of two states."""
+    if one == other:
+        return one
+    return ModalState(*(a if a == b else UNSURE for a, b in zip(one, other)))
+
+
+def is_sure(mode: object) -> bool:
+    """Tell whether a mode is known on every way."""
+    return mode not in (UNSURE, UNKNOWN)

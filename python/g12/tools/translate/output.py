@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The lines of the LinuxCNC program: one for each line of the file, further ones marked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from g12.tools.translate.draft import Draft
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.follow import Followed
+from g12.tools.translate.lexer import printable
+
+LONGEST_LINE = 254  # characters that LinuxCNC reads of a line
+LONGEST_MARK = 20  # of them for "/ " and "(line 123456)"
+LONGEST_COMMENT = 200
+
+
+def lines_of(draft: Draft) -> list[str]:
+    """Return the lines of one block, comments behind the first of them."""
+    own = draft.written()
+    lines = [draft.head] if draft.head else []
+    lines += [*draft.before, *([own] if own else []), *draft.after]
+    for text in lines:
+        if len(text) > LONGEST_LINE - LONGEST_MARK:
+            raise NotTranslated(f"the block has {len(text)} characters on LinuxCNC, at most 254")
+    slash = "/ " if draft.block.skipped else ""
+    return with_comments([f"{slash}{line}" for line in lines], draft.comments)
+
+
+def with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
+    """Return lines with comments behind the first; what has no room there has lines of its own."""
+    whole = "".join(f"({comment})" for comment in comments)
+    first = f"{lines[0]} {whole}".rstrip() if lines else whole
+    if len(first) <= LONGEST_LINE - LONGEST_MARK:
+        return [first, *lines[1:]]
+    pieces = [
+        f"({comment[at : at + LONGEST_COMMENT]})"
+        for comment in comments
+        for at in range(0, len(comment), LONGEST_COMMENT)
+    ]
+    return [*lines, *pieces]
+
+
+def marked(lines: Sequence[str], line: int) -> list[str]:
+    """Return the lines of one line of the file: every further one says which it belongs to."""
+    return [lines[0], *(f"{text} (line {line})" for text in lines[1:])]
+
+
+def as_comment(text: str) -> str:
+    """Return a line that is never executed."""
+    return f"(not reached: {printable(text.strip())[:LONGEST_COMMENT]})" if text.strip() else ""
+
+
+def program_lines(rows: Sequence[str], followed: Followed) -> Iterator[str]:
+    """Yield the lines of a program from the drafts of its blocks; none of them is refused."""
+    start = " ".join(followed.control.start)
+    by_line = drafts_by_line(followed)
+    for line, row in enumerate(rows, 1):
+        lines = lines_of_row(row, by_line.get(line), followed)
+        if line == 1 and start:
+            lines = begun(start, lines, by_line.get(line))
+        yield from marked(lines, line)
+
+
+def drafts_by_line(followed: Followed) -> dict[int, list[int]]:
+    """Return the indices of the blocks that each line has."""
+    by_line: dict[int, list[int]] = {}
+    for index, block in enumerate(followed.structure.blocks):
+        by_line.setdefault(block.line, []).append(index)
+    return by_line
+
+
+def lines_of_row(row: str, indices: Sequence[int] | None, followed: Followed) -> list[str]:
+    """Return the lines of one line of the file."""
+    lines: list[str] = []
+    for index in indices or ():
+        draft = followed.drafts[index]
+        block = followed.structure.blocks[index]
+        if draft:
+            lines += lines_of(draft)
+        elif block.words or block.kind not in ("words", "tape"):
+            return [as_comment(row)]
+        else:
+            tape = [f"%{block.label}"] if block.kind == "tape" else []
+            lines += with_comments([], [*tape, *block.comments])
+        if index in followed.falls_off:
+            lines.append("M2")
+    return lines if indices else [as_comment(row)]
+
+
+def begun(start: str, lines: list[str], indices: Sequence[int] | None) -> list[str]:
+    """Return the first line's lines with the codes that hold when a program begins."""
+    first = lines[0] if lines else ""
+    if not first or first.startswith("("):
+        return [f"{start} {first}".rstrip(), *lines[1:]]
+    return [start, *lines]

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A whole program: text in, text out, or every block that is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from g12.tools.translate.control import Control
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.follow import Followed
+from g12.tools.translate.lexer import blocks_of, source_lines
+from g12.tools.translate.locals import unset_locals
+from g12.tools.translate.output import lines_of, program_lines
+from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
+from g12.tools.translate.structure import MAIN, structure_of
+
+
+class RefusedBlock(NamedTuple):
+    """A block that is not translated: its line, and the sentence that says why."""
+
+    line: int
+    sentence: str
+
+
+class Translation(NamedTuple):
+    """A LinuxCNC program, or the blocks for which there is none."""
+
+    text: str
+    refused: list[RefusedBlock]
+
+
+def translate_program(
+    text: str,
+    control: Control,
+    machine_codes: frozenset[str] | None = None,
+    progress: Callable[[float], None] = lambda share: None,
+) -> Translation:
+    """Return the translation of a program's text.
+
+    ``machine_codes`` are the M codes that the machine knows by itself, None if that is not known;
+    ``progress`` is told the share that is done, 0 to 1.
+    """
+    rows = source_lines(text)
+    blocks = [
+        block for line, row in enumerate(rows, 1) for block in blocks_of(line, row, control.remarks)
+    ]
+    structure = structure_of(blocks, control)
+    total = max(1, len(blocks))
+    followed = Followed(
+        structure, control, machine_codes, lambda index: progress(index / total)
+    ).run()
+    refused = sorted(set(refusals(followed)))
+    if not refused:
+        return Translation("\n".join([*program_lines(rows, followed), ""]), [])
+    return Translation("", refused)
+
+
+def refusals(followed: Followed) -> Iterator[RefusedBlock]:
+    """Yield the blocks that are refused."""
+    if not any(draft and draft.block.words for draft in followed.drafts):
+        yield RefusedBlock(1, "there is no block in the file")
+    for draft in filter(None, followed.drafts):
+        sentence = draft.refusal or too_long(draft)
+        if sentence:
+            yield RefusedBlock(draft.block.line, sentence)
+    for index in followed.falls_off:
+        sentence = missing_end(followed, index)
+        if sentence:
+            yield RefusedBlock(followed.structure.blocks[index].line, sentence)
+    for line, sentence in unset_locals(followed):
+        yield RefusedBlock(line, sentence)
+
+
+def too_long(draft: object) -> str | None:
+    """Return why the lines of a block cannot be written, None if they can."""
+    try:
+        lines_of(draft)
+    except NotTranslated as refusal:
+        return str(refusal)
+    return None
+
+
+def missing_end(followed: Followed, index: int) -> str | None:
+    """Return what is wrong with a program that ends behind a block without a word."""
+    number = followed.program_of(index)
+    following = followed.structure.starts.get(index + 1, 0)
+    if following > LOCAL_BLOCKS:
+        return f"N{following - LOCAL_BLOCKS} is called by M97 and also reached from above it"
+    if number == MAIN:
+        return None
+    name = f"N{number - LOCAL_BLOCKS}" if number > LOCAL_BLOCKS else f"O{number}"
+    return f"{name} ends here without M99"

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The rules, one file each, in the order in which a block goes through them.
+
+A rule takes a `Draft`, rewrites its words or lines, carries its state on, or refuses.
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.rules import (
+    codes,
+    cycles,
+    decimals,
+    dwell,
+    increments,
+    modes,
+    motion,
+    offsets,
+    polar,
+    reference,
+    spindle,
+    subprograms,
+    tools,
+)
+
+WORD_RULES = (
+    codes.map_codes,
+    modes.follow_modes,
+    subprograms.call_macro,
+    dwell.dwell,
+    decimals.whole_units,
+    tools.tool_and_offsets,
+    spindle.speed_limit,
+    offsets.numbered_offset,
+    offsets.offset_by_program,
+    reference.reference_point,
+    polar.switch_polar,
+    polar.inside_polar,
+    motion.exact_stop,
+    increments.incremental_words,
+    cycles.drilling_cycle,
+    reference.machine_position,
+    motion.motion_mode,
+    motion.distance_mode,
+    modes.check_letters,
+    subprograms.finish_call,
+)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G and M codes: what the control's file says that each of them is."""
+
+from __future__ import annotations
+
+from g12.tools.translate.control import MEANINGS
+from g12.tools.translate.draft import Draft
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.lexer import ForeignWord
+
+RULES = frozenset((*MEANINGS["G"], *MEANINGS["M"]))
+
+
+def map_codes(draft: Draft) -> None:
+    """Replace every code, keep it, make it a comment, hand it to its rule, or refuse it."""
+    named = draft.control.tables.get("words", {})
+    words: list[ForeignWord] = []
+    for word in draft.words:
+        if word.letter in "GM":
+            words += mapped(draft, word)
+        else:
+            words.append(word._replace(letter=named.get(word.letter, word.letter)))
+    draft.words = words
+
+
+def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
+    """Return the words in place of one code."""
+    if word.kind != "number":
+        raise NotTranslated(f"{word.letter}{word.value}: a code must be a number")
+    code, control = word.code, draft.control
+    meaning = control.meanings.get(code, "")
+    if code in (draft.machine_codes or ()) and meaning not in RULES:
+        return [word]
+    if meaning == "same":
+        return [word]
+    if meaning == "comment":
+        draft.comments.append(code)
+        return []
+    if meaning in RULES:
+        return handed_over(draft, meaning, word)
+    if meaning == "machine":
+        return builders_code(draft, word)
+    return replaced(code, meaning, control.name)
+
+
+def handed_over(draft: Draft, meaning: str, word: ForeignWord) -> list[ForeignWord]:
+    """Keep a code for the rule of its meaning."""
+    if meaning in draft.meanings:
+        raise NotTranslated(f"{word.code} stands beside {draft.meanings[meaning].code}")
+    draft.meanings[meaning] = word
+    return []
+
+
+def builders_code(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
+    """Keep a machine builder's code; where the machine is known, it must know it."""
+    if draft.machine_codes is not None:
+        raise NotTranslated(
+            f"{word.code} is the machine builder's, and this machine has neither a REMAP line nor "
+            f"a file for it: say under [m_codes] of your control what it does"
+        )
+    return [word]
+
+
+def replaced(code: str, meaning: str, control: str) -> list[ForeignWord]:
+    """Return the codes that the control's file gives for one."""
+    if meaning.startswith("refuse: "):
+        raise NotTranslated(f"{code}: {meaning.removeprefix('refuse: ')}")
+    if not meaning:
+        table = f"[{code[0].lower()}_codes]"
+        raise NotTranslated(f"{code} is not known of {control}: say under {table} what it is")
+    return [ForeignWord(text[0], text[1:]) for text in meaning.split()]

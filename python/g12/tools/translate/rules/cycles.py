@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Drilling cycles of mills, G73 and G81 to G89: what the control remembers, LinuxCNC is told.
+
+L0 (or K0) only stores the cycle; R left out is the height where the tool stands; a new cycle code
+keeps what an earlier one was given; dwell is in the control's unit; G80 beside a motion is the
+motion.
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.draft import Draft, word_of
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.lexer import ForeignWord
+from g12.tools.translate.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
+from g12.tools.translate.rules.dwell import time_in_seconds
+from g12.tools.translate.rules.motion import CONSUMERS, MOTIONS
+
+KEPT = "ZRQP"
+NEEDS = {"G73": "Q", "G83": "Q", "G82": "P", "G86": "P", "G88": "P", "G89": "P"}
+
+
+def drilling_cycle(draft: Draft) -> None:
+    """Complete the words of a cycle, or end it."""
+    cancelled = draft.meanings.pop("cancel cycle", None)
+    code = draft.meanings.pop("drilling cycle", None)
+    if cancelled:
+        cancel(draft)
+    if code:
+        begin(draft, code.code)
+    elif draft.state.cycle and set(draft.codes()) & (MOTIONS | CONSUMERS):
+        draft.change(cycle=UNKNOWN, cycle_words=())
+    elif draft.state.cycle and draft.letters() & set("XYZR"):
+        if draft.state.cycle == UNSURE:
+            raise NotTranslated("a drilling cycle is on, but not on every way to this block")
+        drill(draft, draft.state.cycle, stored_words(draft))
+
+
+def cancel(draft: Draft) -> None:
+    """G80: leave it to the motion code beside it, or to the one that is needed next."""
+    moving = set(draft.codes()) & MOTIONS or draft.axis_words()
+    own = draft.state.own_motion
+    if own == AS_PROGRAMMED:
+        own = draft.state.motion
+    draft.change(cycle=UNKNOWN, cycle_words=(), own_motion=own if moving else "G80")
+    if moving:
+        draft.comments.append("G80")
+    else:
+        draft.put_first("G80")
+
+
+def begin(draft: Draft, code: str) -> None:
+    """Begin a cycle with what the block says and what an earlier one was given."""
+    if draft.control.is_lathe:
+        raise NotTranslated(f"{code} of a lathe is not translated: write the drilling as G1 and G0")
+    motions = draft.take_codes(MOTIONS)
+    if motions:
+        draft.change(motion=motions[0])
+    kept = stored_words(draft)
+    if code != draft.state.cycle:
+        draft.change(cycle=code)
+    drill(draft, code, kept)
+
+
+def stored_words(draft: Draft) -> dict[str, str]:
+    """Return what the cycle was given, by letter; ``@`` is the distance mode that it was under."""
+    words = draft.state.cycle_words
+    if words == UNSURE:
+        raise NotTranslated("a drilling cycle's words are not the same on every way to this block")
+    return dict(words)
+
+
+def drill(draft: Draft, code: str, kept: dict[str, str]) -> None:
+    """Write the words of one block that drills (or stores)."""
+    distance = draft.sure("distance", f"{code} has Z and R")
+    seconds_of_dwell(draft)
+    given = {word.letter: word.value for word in draft.words if word.letter in KEPT}
+    if kept and kept.pop("@") != distance and not {"Z", "R"} <= given.keys():
+        raise NotTranslated(f"G90 or G91 changed within {code}: write Z and R again")
+    values = {**kept, **given}
+    check_words(draft, code, values)
+    repeats = repeats_of(draft)
+    if repeats == "0":
+        store(draft, code)
+    else:
+        write(draft, code, values, given, distance)
+        if repeats:
+            draft.words.append(word_of(f"L{repeats}"))
+    values.setdefault("R", UNKNOWN)
+    draft.change(cycle_words=tuple(sorted({**values, "@": distance}.items())))
+
+
+def seconds_of_dwell(draft: Draft) -> None:
+    """Write the P of a cycle in seconds."""
+    word = next((word for word in draft.words if word.letter == "P"), None)
+    if not word:
+        return
+    unit = draft.control.value("dwell", "cycle", "refuse")
+    if unit == "refuse":
+        raise NotTranslated(f"{word.text}: [dwell] cycle does not say the unit of a cycle's P")
+    draft.replace(word, time_in_seconds(draft, word, unit == "milliseconds"))
+
+
+def check_words(draft: Draft, code: str, values: dict[str, str]) -> None:
+    """Refuse a cycle that lacks its depth or its peck, or has words of another kind."""
+    if "Z" not in values:
+        raise NotTranslated(f"{code} without Z, and no depth before it")
+    if NEEDS.get(code) == "Q" and "Q" not in values:
+        raise NotTranslated(f"{code} needs Q, the depth of a peck")
+    odd = draft.letters() & set("IJKUVWABC") - {draft.control.value("subprograms", "cycle_repeat")}
+    if odd:
+        raise NotTranslated(f"{code} with {min(odd)} is not translated: only Z, R, Q, P, F and L")
+
+
+def repeats_of(draft: Draft) -> str:
+    """Return how often the cycle is repeated, "" if that is not said."""
+    word = draft.take(draft.control.value("subprograms", "cycle_repeat", "L"))
+    if not word:
+        return ""
+    if word.kind != "number" or not word.value.isdigit():
+        raise NotTranslated(f"{word.text}: how often a cycle is repeated must be a whole number")
+    return str(int(word.value))
+
+
+def store(draft: Draft, code: str) -> None:
+    """Keep the cycle for the blocks behind this one."""
+    if draft.letters() & set("XY"):
+        raise NotTranslated(
+            f"{code} with L0 only stores the cycle: move to X and Y in another block"
+        )
+    stored = [word for word in draft.words if word.letter in KEPT]
+    draft.words = [word for word in draft.words if word not in stored]
+    draft.comments.append(" ".join([code, *(word.text for word in stored), "for the next holes"]))
+    draft.change(own_motion=UNSURE)
+
+
+def write(
+    draft: Draft, code: str, values: dict[str, str], given: dict[str, str], distance: str
+) -> None:
+    """Write a block that drills, complete unless LinuxCNC is in the same cycle already."""
+    first = draft.state.own_motion != code
+    if first:
+        for letter, value in values.items():
+            if letter not in given and value:
+                draft.words.append(ForeignWord(letter, value))
+        if not values.get("R"):
+            stand_off(draft, distance)
+        if NEEDS.get(code) == "P" and "P" not in values:
+            draft.words.append(word_of("P0"))
+        draft.put_first(code)
+    draft.change(own_motion=code)
+
+
+def stand_off(draft: Draft, distance: str) -> None:
+    """Write R as the height where the tool stands."""
+    if draft.sure("plane", "a cycle without R") not in ("G17", UNKNOWN):
+        raise NotTranslated("a cycle without R in another plane than G17")
+    draft.words.append(ForeignWord("R", "0" if distance == "G91" else "#5422", "expression"))

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Numbers without a decimal point: least increments or whole units, as the control's file says."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+
+from g12.tools.translate.draft import Draft
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.lexer import ForeignWord
+
+LENGTHS = frozenset("XYZUVWIJKRQE")
+ANGLES = frozenset("ABC")
+UNIT = {"G20": "inch", "G21": "mm"}
+
+
+def whole_units(draft: Draft) -> None:
+    """Write every length, angle and feed with the value that it has on the control."""
+    for at, word in enumerate(draft.words):
+        if word.kind == "number" and "." not in word.value:
+            kind = class_of(draft, word)
+            if kind:
+                draft.words[at] = in_units(draft, word, kind)
+
+
+def class_of(draft: Draft, word: ForeignWord) -> str:
+    """Return what a word's number measures, "" if it counts or names something."""
+    letter = word.letter
+    if letter == "F":
+        return "feed_rev" if draft.state.feed_mode == "G95" else "feed"
+    if (
+        letter == "K"
+        and is_cycle(draft)
+        and draft.control.value("subprograms", "cycle_repeat") == "K"
+    ):
+        return ""
+    if letter in "HC" and draft.control.is_lathe:
+        return "length" if draft.state.polar == "on" else "angle"
+    if letter in ANGLES:
+        return "angle"
+    return "length" if letter in LENGTHS else ""
+
+
+def is_cycle(draft: Draft) -> bool:
+    """Tell whether the block drills."""
+    return "drilling cycle" in draft.meanings or bool(draft.state.cycle)
+
+
+def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
+    """Return a word with its number in millimetres, inches or degrees."""
+    if float(word.value) == 0:
+        return word
+    least, rule = least_increment(draft, kind), draft.control.decimals
+    if rule == "whole" or least == 1:
+        return word
+    if rule == "":
+        raise NotTranslated(
+            f"{word.text} has no decimal point, and the control does not say what it is then: "
+            'set decimals = "least" or "whole" (--decimals)'
+        )
+    if not least:
+        raise NotTranslated(f"{word.text} has no decimal point, and no increment is set for it")
+    value = Decimal(word.value) * Decimal(str(least))
+    return word._replace(value=f"{value:f}" if "." in f"{value:f}" else f"{value:f}.")
+
+
+def least_increment(draft: Draft, kind: str) -> float:
+    """Return the increment of a class in the units of the block; 0 if none is set."""
+    if kind == "angle":
+        return float(draft.control.value("increments", kind, 0))
+    unit = UNIT.get(draft.sure("units", "a number has no decimal point"))
+    if unit:
+        return float(draft.control.value("increments", f"{kind}_{unit}", 0))
+    both = {float(draft.control.value("increments", f"{kind}_{u}", 0)) for u in ("mm", "inch")}
+    if draft.control.decimals == "least" and len(both) > 1:
+        raise NotTranslated("a number has no decimal point before G20 or G21 is said")
+    return both.pop() if len(both) == 1 else 0.0

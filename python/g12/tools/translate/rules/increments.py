@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""U V W H of a lathe: increments of X Y Z C beside absolute words.
+
+A block of increments alone goes under G91, and the next block of words goes back. Beside absolute
+words an increment is written from where the tool stands. Between polar on and off U and H are
+words of LinuxCNC's polar mode and stay.
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.draft import PARTNERS, Draft
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.rules.reference import place
+
+
+def incremental_words(draft: Draft) -> None:
+    """Rewrite the increments of a block."""
+    if not draft.control.is_lathe or draft.meanings:
+        return
+    found = [w for w in draft.words if w.letter in PARTNERS and not is_offset(draft, w.letter)]
+    if draft.state.polar != "off":
+        found = [word for word in found if word.letter not in "UH"]
+        if found and len(draft.letters() & set("XYZCUVWH")) > len(found):
+            raise NotTranslated(f"{found[0].text} beside other axes in polar mode")
+    if not found:
+        return
+    for word in found:
+        if PARTNERS[word.letter] in draft.letters():
+            raise NotTranslated(f"{word.text} and {PARTNERS[word.letter]} in one block")
+    alone = len(found) == len(draft.axis_words()) + len(found)
+    if draft.sure("distance", f"{found[0].text} is an increment") == "G91":
+        rename(draft)
+    elif alone:
+        rename(draft)
+        draft.change(own_distance="G91")
+        draft.put_first("G91")
+    else:
+        for word in found:
+            draft.replace(word, place(draft, word))
+
+
+def is_offset(draft: Draft, letter: str) -> bool:
+    """Tell whether an H belongs to G43."""
+    return letter == "H" and "G43" in draft.codes()
+
+
+def rename(draft: Draft) -> None:
+    """Write increments by their axes."""
+    draft.words = [
+        word
+        if is_offset(draft, word.letter)
+        else word._replace(letter=PARTNERS.get(word.letter, word.letter))
+        for word in draft.words
+    ]

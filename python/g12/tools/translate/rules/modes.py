@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Modes that a block sets, and the letters that may be left of it."""
+
+from __future__ import annotations
+
+from g12.tools.translate.draft import AXIS_NUMBERS, Draft
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.modal import AS_PROGRAMMED, GROUP_OF
+
+LETTERS = frozenset("NGMFSTDHIJKLPQR$")
+
+
+def follow_modes(draft: Draft) -> None:
+    """Take note of the modes that the block's codes set; the motion mode is another rule's."""
+    modes: dict[str, str] = {}
+    for word in draft.words:
+        if word.letter == "G" and word.code in GROUP_OF:
+            group = GROUP_OF[word.code]
+            if group in modes:
+                raise NotTranslated(f"{modes[group]} and {word.code} in one block")
+            modes[group] = word.code
+        elif word.letter == "F":
+            modes["feed"] = word.value
+    modes.pop("motion", None)
+    if "distance" in modes:
+        modes["own_distance"] = AS_PROGRAMMED
+    if modes:
+        draft.change(**modes)
+    follow_surface_speed(draft)
+
+
+def follow_surface_speed(draft: Draft) -> None:
+    """Take note of the S of G96."""
+    word = next((word for word in draft.words if word.letter == "S"), None)
+    if word and draft.state.spindle_mode == "G96" and not draft.meanings:
+        draft.change(surface=word.value)
+
+
+def check_letters(draft: Draft) -> None:
+    """Refuse a word that nothing has understood."""
+    axes = draft.control.axes
+    if draft.meanings:
+        word = next(iter(draft.meanings.values()))
+        raise NotTranslated(f"{word.code} cannot stand in this block")
+    for word in draft.words:
+        if word.kind == "text":
+            continue
+        inside = draft.state.polar != "off" and word.letter in "UH"
+        if word.letter in AXIS_NUMBERS and word.letter not in axes and not inside:
+            raise NotTranslated(f"{word.text}: this control's machine has the axes {axes}")
+        if word.letter not in LETTERS and word.letter not in AXIS_NUMBERS and not inside:
+            raise NotTranslated(f"{word.text} is not understood in this block")

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Motion and distance mode: written where LinuxCNC would be in another than the program is."""
+
+from __future__ import annotations
+
+from g12.tools.translate.draft import Draft
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.modal import AS_PROGRAMMED, GROUPS, UNKNOWN, is_sure
+
+MOTIONS = frozenset((*GROUPS["motion"], "G33"))
+CONSUMERS = frozenset(
+    ("G10", "G28", "G30", "G52", "G92", "G12", "G13", "G12.2", "G13.2", "G7.1")
+)  # what takes the axis words of its block for itself
+INDIFFERENT = frozenset("NMSTFHD$")
+
+
+def motion_mode(draft: Draft) -> None:
+    """Write the motion mode if LinuxCNC is not in it."""
+    codes = draft.codes()
+    if "G53" in codes or draft.state.cycle:
+        return
+    motion = next((code for code in codes if code in MOTIONS), "")
+    if CONSUMERS.intersection(codes):
+        if motion and (draft.axis_words() or "G28" in codes or "G30" in codes):
+            keep_for_later(draft, motion)
+        elif motion:
+            draft.change(motion=motion, own_motion=AS_PROGRAMMED)
+    elif motion:
+        draft.change(motion=motion, own_motion=AS_PROGRAMMED)
+    elif moves(draft):
+        bare_words(draft)
+
+
+def moves(draft: Draft) -> bool:
+    """Tell whether words without a motion code move something."""
+    inside = draft.state.polar != "off"
+    return bool(draft.letters() & (set("XYZABCUHIJR") if inside else set("XYZABC")))
+
+
+def keep_for_later(draft: Draft, motion: str) -> None:
+    """Take out a motion code that only says the mode of the blocks behind this one."""
+    state = draft.state
+    own = state.motion if state.own_motion == AS_PROGRAMMED else state.own_motion
+    draft.take_codes(MOTIONS)
+    draft.change(motion=motion, own_motion=AS_PROGRAMMED if own == motion else own)
+
+
+def bare_words(draft: Draft) -> None:
+    """Write the motion mode before words without one."""
+    state = draft.state
+    if state.motion == UNKNOWN:
+        raise NotTranslated(
+            "words without G0 or G1, and none before them: which of them holds at the start is a "
+            "setting of the control"
+        )
+    if state.own_motion == AS_PROGRAMMED:
+        return
+    if not is_sure(state.motion):
+        raise NotTranslated("words without G0 or G1, which is not the same on every way to here")
+    draft.put_first(state.motion)
+    draft.change(own_motion=AS_PROGRAMMED)
+
+
+def distance_mode(draft: Draft) -> None:
+    """Write G90 (or G91) behind a block of increments."""
+    state = draft.state
+    if state.own_distance == AS_PROGRAMMED or not draft.letters() - INDIFFERENT:
+        return
+    if {"G90", "G91"}.intersection(draft.codes()):
+        return
+    draft.put_first(draft.sure("distance", "a block of increments is before this one"))
+    draft.change(own_distance=AS_PROGRAMMED)
+
+
+def exact_stop(draft: Draft) -> None:
+    """Keep G9 in polar mode, which has it; elsewhere LinuxCNC has none for one block."""
+    code = draft.meanings.pop("exact stop", None)
+    if code and draft.state.polar != "on":
+        raise NotTranslated(
+            f"{code.code}, an exact stop for one block: write G61 and G64 around it"
+        )
+    if code:
+        draft.put_first("G9")

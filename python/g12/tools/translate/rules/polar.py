@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Polar and cylindrical interpolation: G112, G137 and their like as G12.1/G13.1, G107 as G7.1.
+
+X in polar mode is a diameter on most controls and a radius on some: G8 before and G7 behind make
+it a radius here. Y is C and V is H. A rapid in polar mode is what the control's file says.
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.draft import Draft, line_of, word_of
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.lexer import ForeignWord
+from g12.tools.translate.modal import AS_PROGRAMMED, UNKNOWN, UNSURE, is_sure
+
+PLANES = frozenset(("G17", "G18", "G19"))
+RENAMED = {"Y": "C", "V": "H"}
+
+
+def switch_polar(draft: Draft) -> None:
+    """Write polar on, polar off and cylinder as LinuxCNC's codes, in blocks of their own."""
+    plane_letters(draft)
+    for meaning, write in (("polar on", turn_on), ("polar off", turn_off), ("cylinder", cylinder)):
+        if meaning in draft.meanings:
+            write(draft, draft.meanings.pop(meaning).code)
+
+
+def plane_letters(draft: Draft) -> None:
+    """Drop what a plane code has beside it to name its axes: ``G17 XC``, ``G17 U0 H0``."""
+    if not PLANES.intersection(draft.codes()):
+        return
+    still = [w for w in draft.words if w.kind == "bare" or (w.letter in "UVWH" and is_zero(w))]
+    moving = draft.letters() - {"N", "G"} - {word.letter for word in still}
+    if not moving or all(word.kind == "bare" for word in still):
+        draft.words = [word for word in draft.words if word not in still]
+        draft.comments += [" ".join(word.text for word in still)] if still else []
+
+
+def is_zero(word: ForeignWord) -> bool:
+    """Tell whether a word is the number 0."""
+    return word.kind == "number" and word.number == 0
+
+
+def turn_on(draft: Draft, code: str) -> None:
+    """Write G12.1; X a radius if it is one on the control."""
+    x = draft.control.value("polar", "x", "")
+    if not x:
+        raise NotTranslated(
+            f'{code}: is X a diameter or a radius in it? say x = "diameter" or "radius" under '
+            "[polar] of your control (--polar-x)"
+        )
+    if draft.control.is_lathe and "C" in draft.letters() and is_zero(draft.words[-1]):
+        draft.take("C")
+    lines = ["G8"] if x == "radius" else []
+    own_block(draft, code, [*lines, "G12.1"])
+    draft.change(polar="on", own_motion=UNSURE, own_feed=AS_PROGRAMMED)
+
+
+def turn_off(draft: Draft, code: str) -> None:
+    """Write G13.1, which means nothing outside of polar mode."""
+    back = draft.state.polar != "off" and draft.control.value("polar", "x") == "radius"
+    own_block(draft, code, ["G13.1", *(["G7"] if back else [])])
+    if draft.state.polar != "off":
+        draft.change(polar="off", own_motion=UNSURE)
+
+
+def cylinder(draft: Draft, code: str) -> None:
+    """Write G7.1 with the radius, 0 ends it."""
+    word = draft.take("C") or draft.take("H")
+    if not word:
+        raise NotTranslated(f"{code} needs C, the radius of the cylinder, or C0")
+    value = word.value
+    if draft.control.value("cylinder", "word", "radius") == "diameter":
+        value = f"[{value} / 2]"
+    own_block(draft, code, [f"G7.1 C{value}"])
+    on = not is_zero(word)
+    draft.change(polar="cylinder" if on else "off", own_motion=UNSURE)
+
+
+def own_block(draft: Draft, code: str, lines: list[str]) -> None:
+    """Write lines behind the block's other words, which must move nothing."""
+    if draft.axis_words() or draft.letters() & set("UVWHIJKR"):
+        raise NotTranslated(f"{code} moves nothing: its block has {draft.words[-1].text}")
+    if draft.alone():
+        first, *draft.after = lines
+        draft.words.append(line_of(first))
+    else:
+        draft.after += lines
+
+
+def inside_polar(draft: Draft) -> None:
+    """Rewrite the words between polar on and off."""
+    if draft.state.polar == UNSURE and draft.letters() & set("XYCUVH"):
+        raise NotTranslated("polar mode is on, but not on every way to this block")
+    if draft.state.polar != "on" or "G12.1" in draft.codes():
+        return
+    draft.words = [
+        word._replace(letter=RENAMED.get(word.letter, word.letter)) for word in draft.words
+    ]
+    for letter in "CH":
+        if sum(word.letter == letter for word in draft.words) > 1:
+            raise NotTranslated(f"{letter} and its other name in one block")
+    offset_number(draft)
+    rapid(draft)
+
+
+def offset_number(draft: Draft) -> None:
+    """Drop a D that names the loaded tool: its radius is what G41 and G42 take."""
+    word = draft.take("D")
+    if word and word.value.lstrip("0") not in (draft.state.length, draft.state.tool):
+        raise NotTranslated(f"{word.text} in polar mode: G41 and G42 take the loaded tool's radius")
+
+
+def rapid(draft: Draft) -> None:
+    """Write a rapid in polar mode as the control's file says, and the feed again behind it."""
+    rule = draft.control.value("polar", "rapid", "refuse")
+    if rule == "feed":
+        rapid_at_feed(draft)
+    elif rule == "refuse" and is_rapid(draft):
+        raise NotTranslated('G0 in polar mode: G1 with a high feed, or rapid = "feed" in [polar]')
+
+
+def is_rapid(draft: Draft) -> bool:
+    """Tell whether the block moves by rapid."""
+    codes = {"G0", "G1", "G2", "G3"}.intersection(draft.codes())
+    moves = draft.letters() & set("XCZUH")
+    return "G0" in codes or (bool(moves) and not codes and draft.state.motion == "G0")
+
+
+def rapid_at_feed(draft: Draft) -> None:
+    """Write a rapid as G1 at the control's speed; give the next block that cuts its feed."""
+    if is_rapid(draft):
+        unit = {"G20": "inch", "G21": "mm"}.get(draft.state.units, "")
+        feed = draft.control.value("polar", f"rapid_feed_{unit}", 0)
+        if not feed:
+            raise NotTranslated(
+                "G0 in polar mode needs G20 or G21 before it, and its speed in [polar]"
+            )
+        draft.take_codes({"G0"})
+        draft.words += [word_of("G1"), word_of("G94"), word_of(f"F{feed:g}")]
+        draft.change(motion="G0", own_motion="G1", own_feed="rapid")
+    elif draft.state.own_feed != AS_PROGRAMMED and draft.letters() & set("XCZUH"):
+        feed_again(draft)
+
+
+def feed_again(draft: Draft) -> None:
+    """Write the feed that holds on the control where LinuxCNC has the rapid's."""
+    state = draft.state
+    if "F" not in draft.letters():
+        if not is_sure(state.feed):
+            raise NotTranslated("a feed is wanted behind a rapid of polar mode: write F")
+        draft.words.append(word_of(f"F{state.feed}"))
+    if state.feed_mode not in draft.codes() and state.feed_mode != UNKNOWN:
+        draft.words.append(word_of(draft.sure("feed_mode", "a rapid of polar mode is before it")))
+    draft.change(own_feed=AS_PROGRAMMED)

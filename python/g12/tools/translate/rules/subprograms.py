@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Calls and returns: M98 and M97 as LinuxCNC's numbered programs, G65 as an O-word with arguments.
+
+LinuxCNC's own M98 P L, O100 and M99 do what M98 does on a macro control, #1 to #30 shared with the
+caller. G65 starts with its letters as #1 to #26 and gives the caller its own back: an O-word sub.
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.draft import Draft, SubprogramCall, line_of
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.lexer import ForeignWord
+
+ARGUMENTS = dict(zip("ABCIJKDEFHMQRSTUVWXYZ", (*range(1, 10), 11, 13, *range(17, 27))))
+LOCAL_BLOCKS = 1_000_000  # a block called by M97 P100 is program O1000100
+
+
+def called_number(draft: Draft, code: str, word: ForeignWord | None) -> int:
+    """Return the number of P."""
+    if not word or word.kind != "number" or not word.value.isdigit():
+        raise NotTranslated(f"{code} needs P and the number of a program of this file")
+    return int(word.value)
+
+
+def call_macro(draft: Draft) -> None:
+    """Take the words of G65, M98, M97 and M99 out; the lines are written when the block is done."""
+    code = draft.meanings.pop("macro call", None)
+    if code:
+        draft.call = macro_call(draft)
+    for meaning in ("subprogram", "local subprogram"):
+        code = draft.meanings.pop(meaning, None)
+        if code:
+            draft.call = subprogram_call(draft, code.code, meaning)
+    code = draft.meanings.pop("return", None)
+    if code:
+        if "P" in draft.letters():
+            raise NotTranslated(
+                f"{code.code} P, a return to another block, is a jump: not translated"
+            )
+        draft.returns = True
+
+
+def subprogram_call(draft: Draft, code: str, meaning: str) -> SubprogramCall:
+    """Return the call of M98 or M97."""
+    number = called_number(draft, code, draft.take("P"))
+    repeats = draft.take("L")
+    count = repeats.value if repeats else ""
+    if meaning == "local subprogram":
+        return SubprogramCall(LOCAL_BLOCKS + number, "sub", count)
+    digits = draft.control.value("subprograms", "repeat_digits", False)
+    if digits and number > 9999 and not count and number not in draft.programs:
+        count, number = str(number // 10000), number % 10000
+    return SubprogramCall(number, "sub", count)
+
+
+def macro_call(draft: Draft) -> SubprogramCall:
+    """Return the call of G65; all other words of its block are arguments."""
+    number = called_number(draft, "G65", draft.take("P"))
+    repeats = draft.take("L")
+    arguments: dict[int, str] = {}
+    for word in draft.words:
+        if word.letter == "N":
+            continue
+        if word.letter not in ARGUMENTS or word.kind == "bare":
+            raise NotTranslated(f"{word.text} cannot be an argument of G65")
+        if ARGUMENTS[word.letter] in arguments:
+            raise NotTranslated(f"{word.letter} stands twice: LinuxCNC has one variable for it")
+        check_point(draft, word)
+        arguments[ARGUMENTS[word.letter]] = word.value
+    draft.words = [word for word in draft.words if word.letter == "N"]
+    return SubprogramCall(
+        number, "macro", repeats.value if repeats else "", tuple(sorted(arguments.items()))
+    )
+
+
+def check_point(draft: Draft, word: ForeignWord) -> None:
+    """Refuse an argument without a decimal point where that could make it another number."""
+    plain = word.kind == "number" and "." not in word.value and word.number
+    if plain and word.letter not in "DHMST" and draft.control.decimals != "whole":
+        raise NotTranslated(f"{word.text} has no decimal point: write {word.text}. as an argument")
+
+
+def finish_call(draft: Draft) -> None:
+    """Write the lines of a call or a return behind the block's other words."""
+    lines = call_lines(draft) if draft.call else []
+    if draft.returns:
+        lines.append(draft.return_text)
+    if not lines:
+        return
+    if draft.alone():
+        number = draft.written()
+        first, *rest = lines
+        keeps = number and not first.startswith("o")
+        draft.words = [line_of(f"{number} {first}" if keeps else first)]
+        draft.comments += [number] if number and not keeps else []
+        draft.after = rest
+    else:
+        draft.after += lines
+
+
+def call_lines(draft: Draft) -> list[str]:
+    """Return the blocks of a call."""
+    call = draft.call
+    if call.kind == "sub":
+        return [f"M98 P{call.number}{f' L{call.repeats}' if call.repeats else ''}"]
+    given = dict(call.arguments)
+    values = "".join(f" [{given.get(n, '0')}]" for n in range(1, max(given, default=0) + 1))
+    line = f"o<macro_{call.number}> call{values}"
+    if not call.repeats:
+        return [line]
+    label = f"o<again_{draft.block.line}>"
+    return [f"{label} repeat [{call.repeats}]", line, f"{label} endrepeat"]

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""T, H and D: a lathe's T0303 is tool and offset; on a mill G43 has H, and D is modal."""
+
+from __future__ import annotations
+
+import re
+
+from g12.tools.translate.draft import Draft, word_of
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.lexer import ForeignWord
+from g12.tools.translate.modal import UNKNOWN
+
+COMPENSATION = frozenset(("G41", "G42"))
+USES_D = frozenset(("G41", "G42", "G12", "G13"))
+
+
+def tool_and_offsets(draft: Draft) -> None:
+    """Rewrite tool, length and radius words as LinuxCNC has them."""
+    if draft.control.is_lathe:
+        turret_word(draft)
+    else:
+        length_offset(draft)
+        radius_offset(draft)
+        tool = next((word for word in draft.words if word.letter == "T"), None)
+        if tool:
+            draft.change(tool=tool.value.lstrip("0") or "0")
+
+
+def turret_word(draft: Draft) -> None:
+    """Write a lathe's T word as tool change and offset."""
+    word = next((word for word in draft.words if word.letter == "T"), None)
+    if not word:
+        return
+    tool, offset = parts_of(draft, word)
+    words = [word_of(f"T{tool}"), word_of("M6")] if tool else []
+    words += [word_of("G43"), word_of(f"H{offset}")] if offset else [word_of("G49")]
+    draft.replace(word, *words)
+    draft.change(tool=str(tool) if tool else draft.state.tool, length=str(offset))
+
+
+def parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
+    """Return tool and offset of ``T0303``; the shortest pattern that has room for it."""
+    patterns = sorted(draft.control.value("tools", "patterns", ()), key=len)
+    if word.kind != "number" or not word.value.isdigit():
+        raise NotTranslated(f"{word.text}: a tool word must be a whole number")
+    if not patterns:
+        raise NotTranslated(f"{word.text}: [tools] patterns does not say what its digits are")
+    pattern = next((p for p in patterns if len(p) >= len(word.value)), None)
+    least = len(patterns[0]) - 1
+    if not pattern or len(word.value) < least:
+        raise NotTranslated(
+            f"{word.text} has {len(word.value)} digits: tool and offset are {' or '.join(patterns)}"
+        )
+    digits = word.value.zfill(len(pattern))
+    tool, offset = (
+        int("".join(d for d, p in zip(digits, pattern) if p == place)) for place in "TO"
+    )
+    return tool, offset
+
+
+def length_offset(draft: Draft) -> None:
+    """G43 needs H; H0 is no offset."""
+    codes = draft.codes()
+    if "G49" in codes:
+        draft.change(length="0")
+    if "G43" not in codes:
+        if "H" in draft.letters():
+            raise NotTranslated("H without G43 in its block: write G43 before it")
+        return
+    word = next((word for word in draft.words if word.letter == "H"), None)
+    if not word:
+        raise NotTranslated("G43 without H: LinuxCNC would take the loaded tool's length")
+    if word.kind == "number" and word.number == 0:
+        draft.words = [w for w in draft.words if w is not word and w.text != "G43"]
+        draft.take_codes({"G43"})
+        draft.words.append(word_of("G49"))
+    draft.change(length=word.value.lstrip("0") or "0")
+
+
+def radius_offset(draft: Draft) -> None:
+    """Keep D for the codes that have one, remember it for those that come without."""
+    codes = draft.codes()
+    word = next((word for word in draft.words if word.letter == "D"), None)
+    if word:
+        draft.change(radius=word.value)
+        if not USES_D.intersection(codes):
+            draft.take("D")
+            draft.comments.append(word.text)
+    if COMPENSATION.intersection(codes):
+        compensation(draft, word)
+
+
+def compensation(draft: Draft, word: ForeignWord | None) -> None:
+    """Give G41 and G42 the D in force; D0 is a radius of 0, whatever tool is loaded."""
+    value = draft.sure("radius", "G41 and G42 need D")
+    if value == UNKNOWN:
+        raise NotTranslated("G41 or G42 without D, and no D before it")
+    if re.fullmatch("0+", value):
+        draft.words = [
+            w._replace(value=f"{w.code[1:]}.1") if w.letter == "G" and w.code in COMPENSATION else w
+            for w in draft.words
+        ]
+    if not word:
+        draft.words.append(ForeignWord("D", value))

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Macro statements: assignments, WHILE and IF as LinuxCNC's O-words."""
+
+from __future__ import annotations
+
+from g12.tools.translate.draft import Draft, line_of
+from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.expressions import NUMBER
+from g12.tools.translate.lexer import ForeignBlock
+from g12.tools.translate.structure import Structure
+
+
+def tape(draft: Draft, index: int, structure: Structure) -> None:
+    """Keep a ``%`` as a comment."""
+    draft.comments.insert(0, f"%{draft.block.label}")
+
+
+def assign(draft: Draft, index: int, structure: Structure) -> None:
+    """Write an assignment with brackets about its expression."""
+    draft.words = [*draft.block.words, line_of(assignment(draft.block))]
+
+
+def assignment(block: ForeignBlock) -> str:
+    """Return the text of an assignment."""
+    text = block.expression.text
+    return f"#{block.variable}={text if NUMBER.fullmatch(text) else f'[{text}]'}"
+
+
+def while_loop(draft: Draft, index: int, structure: Structure) -> None:
+    """Write the head of a loop."""
+    labelled(draft, f"o<while_{index}> while {draft.block.expression.text}")
+
+
+def end_of_loop(draft: Draft, index: int, structure: Structure) -> None:
+    """Write the end of a loop."""
+    labelled(draft, f"o<while_{structure.partners[index]}> endwhile")
+
+
+def if_then(draft: Draft, index: int, structure: Structure) -> None:
+    """Write a condition with one assignment."""
+    then = draft.block.then
+    text = assignment(then) if then.kind == "assign" else stop_text(draft, then.label)
+    labelled(draft, f"o<if_{index}> if {draft.block.expression.text}")
+    draft.after += [text, f"o<if_{index}> endif"]
+
+
+def stop(draft: Draft, index: int, structure: Structure) -> None:
+    """Write an alarm or a stop with a message."""
+    draft.words = [*draft.block.words, line_of(stop_text(draft, draft.block.label))]
+
+
+def stop_text(draft: Draft, variable: str) -> str:
+    """Return the block for #3000, an alarm, and #3006, a stop, with the comment as its text."""
+    message = ", ".join(draft.comments) or "stopped by the program"
+    draft.comments = []
+    if variable == "3006":
+        return f"M0 (MSG, {message})"
+    return f"(ABORT, {message})"
+
+
+def labelled(draft: Draft, text: str) -> None:
+    """Write an O-word; a block number before it becomes a comment."""
+    draft.comments = [*(word.text for word in draft.block.words), *draft.comments]
+    draft.words = [line_of(text)]
+    if draft.block.skipped:
+        raise NotTranslated("a loop or a condition cannot be skipped with /")
+
+
+STATEMENTS = {
+    "tape": tape,
+    "assign": assign,
+    "while": while_loop,
+    "end": end_of_loop,
+    "if": if_then,
+    "stop": stop,
+}
