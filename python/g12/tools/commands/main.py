@@ -23,6 +23,10 @@ COMMANDS = {
         "g12.tools.commands.dynapath",
         "print Dynapath circle mill events as a LinuxCNC program",
     ),
+    "translate": (
+        "g12.tools.commands.translate",
+        "print a program of another control as a LinuxCNC program",
+    ),
     "plot": ("g12.tools.commands.plot", "draw a picture of what a program cuts"),
     "verify": (
         "g12.tools.commands.verify",

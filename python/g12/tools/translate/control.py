@@ -26,7 +26,7 @@ MEANINGS = {
     "G": (
         "dwell", "polar on", "polar off", "cylinder", "speed limit or origin", "local offset",
         "numbered offset", "offset by program", "exact stop", "macro call", "cancel cycle",
-        "drilling cycle", "circular pocket",
+        "drilling cycle", "pocket to Z",
     ),
     "M": ("subprogram", "local subprogram", "return"),
 }  # fmt: skip
@@ -55,7 +55,7 @@ TABLES: dict[str, dict[str, object]] = {
     "tools": {"patterns": list, "size": ("diameter", "radius")},
     "reference": {"G28": ("stored",), "G30": ("stored",), "cancels_length": bool},
     "polar": {
-        "x": ("diameter", "radius", "inherit"), "rapid": ("refuse", "keep", "feed"),
+        "x": ("diameter", "radius", "inherit", "say"), "rapid": ("refuse", "keep", "feed"),
         "rapid_feed_mm": float, "rapid_feed_inch": float,
     },
     "cylinder": {"word": ("radius", "diameter")},
@@ -65,6 +65,9 @@ TABLES: dict[str, dict[str, object]] = {
     "g_codes": None,
     "m_codes": None,
 }  # fmt: skip
+OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that number is not
+    f"M{n}" for n in (*range(10), 19, 30, *range(48, 54), *range(60, 74))
+)
 PATTERN = re.compile(r"R*T+O+")
 
 
@@ -78,7 +81,8 @@ class Control:
 
     ``axes`` are the machine's axes, ``start`` the codes that hold when a program begins,
     ``decimals`` what a number without a point is (``least`` increments, ``whole`` units, ``""`` if
-    that is not known). ``meanings`` has the codes, the tables the values of the file.
+    that is not known). ``meanings`` has the codes, ``tables`` the values of the file;
+    ``polar_codes`` are LinuxCNC's codes on the machine for polar mode on and off.
     """
 
     name: str
@@ -92,6 +96,7 @@ class Control:
     readings: tuple[str, ...]
     meanings: Mapping[str, str]
     tables: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+    polar_codes: tuple[str, str] = ("G12.1", "G13.1")
 
     @property
     def is_lathe(self) -> bool:
@@ -251,6 +256,10 @@ class _Checked:
                 for one in self._each(letter, str(code), key):
                     if one in meanings:
                         self._refuse(key, f"{one} has two meanings")
+                    if one in OWNED and "machine" in (key, value):
+                        self._refuse(
+                            key, f"{one} is LinuxCNC's own: no machine can give it a meaning"
+                        )
                     meanings[one] = key if listed else self._meaning(letter, key, value)
         return meanings
 

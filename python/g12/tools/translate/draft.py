@@ -34,6 +34,8 @@ class Draft:
     translation owns, by their meaning; ``before`` and ``after`` further lines; ``comments`` what is
     kept as text; ``state`` the modes before the block, which the rules carry on; ``call`` what it
     calls and ``returns`` whether a subprogram ends here, by ``return_text``; ``head`` begins one;
+    ``around`` are lines before and behind its own; ``is_settled`` means that the block is written
+    for the distance mode that LinuxCNC is in, ``has_motion`` that its motion code is written;
     ``programs`` are the numbers of the programs in the file; ``refusal`` is why it is not
     translated, None if it is.
     """
@@ -57,6 +59,9 @@ class Draft:
         self.returns = False
         self.return_text = "M99"
         self.head = ""
+        self.around: tuple[str, str] | None = None
+        self.is_settled = False
+        self.has_motion = False
         self.programs = programs
         self.refusal: str | None = None
 
@@ -100,6 +105,11 @@ class Draft:
     def put_first(self, code: str) -> None:
         """Put a code before all other words but the block number."""
         self.words.insert(1 if self.words and self.words[0].letter == "N" else 0, word_of(code))
+
+    def increments(self) -> list[ForeignWord]:
+        """Return a lathe's words U V W and H; the H of G43 is none of them."""
+        offset = "H" if "G43" in self.codes() else ""
+        return [w for w in self.words if w.letter in PARTNERS and w.letter != offset]
 
     def sure(self, group: str, why: str) -> str:
         """Return a mode that must be the same on every way to the block."""

@@ -2,7 +2,8 @@
 """The text of a program as blocks: words, comments and macro statements, nothing of their meaning.
 
 Blanks do not count outside comments, letters are read as capitals, a line ends as it likes, ``;``
-ends a block. Comments may be nested; what LinuxCNC would obey in a comment is disarmed.
+ends a block. Comments may be nested, and stand in braces; what LinuxCNC would obey in a comment is
+disarmed.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ SKIP = re.compile(r"/([0-9]?)")
 STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])")
 ASSIGNMENT = re.compile(r"#([0-9]+)=")
 OBEYED = re.compile(r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I)
+BRACES = str.maketrans("{}", "()")  # remarks in some manuals; a comment has round ones
 MINUS = "\N{MINUS SIGN}"
 EMPTY_CHARACTERS = "\ufeff\u200b\0"
 PLANE_CODES = frozenset(("G17", "G18", "G19"))
@@ -115,6 +117,7 @@ def blocks_of(line: int, text: str, remarks: bool = False) -> Iterator[ForeignBl
 
 def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, ...]]:
     """Return the blocks of a line without blanks, and its comments."""
+    text = text.translate(BRACES)
     if "(" in text or ")" in text:
         code, comments = _split_comments(text)
     else:
@@ -170,6 +173,8 @@ def _block(line: int, text: str, comments: tuple[str, ...]) -> ForeignBlock:
 def _parsed(line: int, text: str) -> ForeignBlock:
     if text.startswith("%"):
         return ForeignBlock(line, "tape", label=text[1:])
+    if text.startswith(":"):
+        text = f"O{text[1:]}"
     skip = SKIP.match(text)
     if skip:
         if skip[1] not in ("", "1"):

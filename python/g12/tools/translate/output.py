@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 from g12.tools.translate.draft import Draft
@@ -13,6 +14,7 @@ from g12.tools.translate.lexer import printable
 LONGEST_LINE = 254  # characters that LinuxCNC reads of a line
 LONGEST_MARK = 20  # of them for "/ " and "(line 123456)"
 LONGEST_COMMENT = 200
+BLOCK_NUMBER = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments behind it
 
 
 def lines_of(draft: Draft) -> list[str]:
@@ -20,6 +22,8 @@ def lines_of(draft: Draft) -> list[str]:
     own = draft.written()
     lines = [draft.head] if draft.head else []
     lines += [*draft.before, *([own] if own else []), *draft.after]
+    if draft.around:
+        lines = [draft.around[0], *lines, draft.around[1]]
     for text in lines:
         if len(text) > LONGEST_LINE - LONGEST_MARK:
             raise NotTranslated(f"the block has {len(text)} characters on LinuxCNC, at most 254")
@@ -91,6 +95,7 @@ def lines_of_row(row: str, indices: Sequence[int] | None, followed: Followed) ->
 def begun(start: str, lines: list[str], indices: Sequence[int] | None) -> list[str]:
     """Return the first line's lines with the codes that hold when a program begins."""
     first = lines[0] if lines else ""
-    if not first or first.startswith("("):
-        return [f"{start} {first}".rstrip(), *lines[1:]]
+    number = BLOCK_NUMBER.match(first)
+    if number:
+        return [f"{number[1]}{start} {first[number.end(1) :]}".rstrip(), *lines[1:]]
     return [start, *lines]

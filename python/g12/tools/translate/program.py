@@ -58,7 +58,7 @@ def translate_program(
 
 def refusals(followed: Followed) -> Iterator[RefusedBlock]:
     """Yield the blocks that are refused."""
-    if not any(draft and draft.block.words for draft in followed.drafts):
+    if not any(draft and (draft.words or draft.refusal) for draft in followed.drafts):
         yield RefusedBlock(1, "there is no block in the file")
     for draft in filter(None, followed.drafts):
         sentence = draft.refusal or too_long(draft)

@@ -37,6 +37,7 @@ WORD_RULES = (
     polar.inside_polar,
     motion.exact_stop,
     increments.incremental_words,
+    cycles.pocket,
     cycles.drilling_cycle,
     reference.machine_position,
     motion.motion_mode,

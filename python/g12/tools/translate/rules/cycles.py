@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Drilling cycles of mills, G73 and G81 to G89: what the control remembers, LinuxCNC is told.
 
-L0 (or K0) only stores the cycle; R left out is the height where the tool stands; a new cycle code
+L0 (or K0) only stores the cycle; R left out is the height where the tool stands; levels given
+under G90 hold under G91 as they are; a new cycle code
 keeps what an earlier one was given; dwell is in the control's unit; G80 beside a motion is the
 motion.
 """
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import Draft, word_of
+from g12.tools.translate.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.errors import NotTranslated
 from g12.tools.translate.lexer import ForeignWord
 from g12.tools.translate.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
@@ -16,7 +17,7 @@ from g12.tools.translate.rules.dwell import time_in_seconds
 from g12.tools.translate.rules.motion import CONSUMERS, MOTIONS
 
 KEPT = "ZRQP"
-NEEDS = {"G73": "Q", "G83": "Q", "G82": "P", "G86": "P", "G88": "P", "G89": "P"}
+NEEDS = {"G73": "Q", "G83": "Q", "G82": "P", "G86": "P", "G89": "P"}
 
 
 def drilling_cycle(draft: Draft) -> None:
@@ -33,6 +34,17 @@ def drilling_cycle(draft: Draft) -> None:
         if draft.state.cycle == UNSURE:
             raise NotTranslated("a drilling cycle is on, but not on every way to this block")
         drill(draft, draft.state.cycle, stored_words(draft))
+
+
+def pocket(draft: Draft) -> None:
+    """Give G12 and G13 without Z the height where the tool stands."""
+    code = draft.meanings.pop("pocket to Z", None)
+    if not code:
+        return
+    draft.words.append(code)
+    if "Z" not in draft.letters():
+        incremental = draft.sure("distance", f"{code.code} without Z") == "G91"
+        draft.words.append(ForeignWord("Z", "0" if incremental else "#5422", "expression"))
 
 
 def cancel(draft: Draft) -> None:
@@ -74,19 +86,41 @@ def drill(draft: Draft, code: str, kept: dict[str, str]) -> None:
     distance = draft.sure("distance", f"{code} has Z and R")
     seconds_of_dwell(draft)
     given = {word.letter: word.value for word in draft.words if word.letter in KEPT}
-    if kept and kept.pop("@") != distance and not {"Z", "R"} <= given.keys():
-        raise NotTranslated(f"G90 or G91 changed within {code}: write Z and R again")
+    under = kept.pop("@", distance)
     values = {**kept, **given}
     check_words(draft, code, values)
     repeats = repeats_of(draft)
+    if under == distance or {"Z", "R"} <= given.keys():
+        under = distance
+    else:
+        absolute(draft, code, given, under)
     if repeats == "0":
         store(draft, code)
     else:
-        write(draft, code, values, given, distance)
-        if repeats:
-            draft.words.append(word_of(f"L{repeats}"))
-    values.setdefault("R", UNKNOWN)
-    draft.change(cycle_words=tuple(sorted({**values, "@": distance}.items())))
+        write(draft, code, values, given, under)
+        repeat(draft, repeats)
+    draft.change(cycle_words=tuple(sorted({"R": UNKNOWN, **values, "@": under}.items())))
+
+
+def absolute(draft: Draft, code: str, given: dict[str, str], under: str) -> None:
+    """Write the places of holes under G91 as absolute ones: the levels were given under G90."""
+    if under != "G90" or given.keys() & {"Z", "R"}:
+        raise NotTranslated(f"G90 or G91 changed within {code}: write Z and R again")
+    for word in draft.axis_words():
+        here = f"#{5419 + AXIS_NUMBERS[word.letter]}"
+        draft.replace(word, word._replace(value=f"[{here} + {word.value}]", kind="expression"))
+    draft.take_codes({"G91"})
+    draft.change(own_distance="G90")
+    draft.is_settled = True
+
+
+def repeat(draft: Draft, times: str) -> None:
+    """Write how often: by L, or by a loop where LinuxCNC's L would stay in one place."""
+    if times and draft.is_settled:
+        label = f"o<again_{draft.block.line}>"
+        draft.around = (f"{label} repeat [{times}]", f"{label} endrepeat")
+    elif times:
+        draft.words.append(word_of(f"L{times}"))
 
 
 def seconds_of_dwell(draft: Draft) -> None:
@@ -137,14 +171,16 @@ def write(
     draft: Draft, code: str, values: dict[str, str], given: dict[str, str], distance: str
 ) -> None:
     """Write a block that drills, complete unless LinuxCNC is in the same cycle already."""
-    first = draft.state.own_motion != code
-    if first:
-        for letter, value in values.items():
-            if letter not in given and value:
-                draft.words.append(ForeignWord(letter, value))
+    used = f"ZR{NEEDS.get(code, '')}"
+    for letter in given.keys() - set(used):
+        draft.comments.append(draft.take(letter).text)
+    if draft.state.own_motion != code:
+        for letter in used:
+            if letter not in given and values.get(letter):
+                draft.words.append(ForeignWord(letter, values[letter]))
         if not values.get("R"):
             stand_off(draft, distance)
-        if NEEDS.get(code) == "P" and "P" not in values:
+        if "P" in used and "P" not in values:
             draft.words.append(word_of("P0"))
         draft.put_first(code)
     draft.change(own_motion=code)

@@ -17,10 +17,10 @@ def incremental_words(draft: Draft) -> None:
     """Rewrite the increments of a block."""
     if not draft.control.is_lathe or draft.meanings:
         return
-    found = [w for w in draft.words if w.letter in PARTNERS and not is_offset(draft, w.letter)]
+    found = draft.increments()
     if draft.state.polar != "off":
         found = [word for word in found if word.letter not in "UH"]
-        if found and len(draft.letters() & set("XYZCUVWH")) > len(found):
+        if found and len(draft.axis_words()) + len(draft.increments()) > len(found):
             raise NotTranslated(f"{found[0].text} beside other axes in polar mode")
     if not found:
         return
@@ -39,16 +39,7 @@ def incremental_words(draft: Draft) -> None:
             draft.replace(word, place(draft, word))
 
 
-def is_offset(draft: Draft, letter: str) -> bool:
-    """Tell whether an H belongs to G43."""
-    return letter == "H" and "G43" in draft.codes()
-
-
 def rename(draft: Draft) -> None:
     """Write increments by their axes."""
-    draft.words = [
-        word
-        if is_offset(draft, word.letter)
-        else word._replace(letter=PARTNERS.get(word.letter, word.letter))
-        for word in draft.words
-    ]
+    for word in draft.increments():
+        draft.replace(word, word._replace(letter=PARTNERS[word.letter]))

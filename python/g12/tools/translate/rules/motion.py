@@ -17,7 +17,7 @@ INDIFFERENT = frozenset("NMSTFHD$")
 def motion_mode(draft: Draft) -> None:
     """Write the motion mode if LinuxCNC is not in it."""
     codes = draft.codes()
-    if "G53" in codes or draft.state.cycle:
+    if "G53" in codes or draft.state.cycle or draft.has_motion:
         return
     motion = next((code for code in codes if code in MOTIONS), "")
     if CONSUMERS.intersection(codes):
@@ -64,7 +64,7 @@ def bare_words(draft: Draft) -> None:
 def distance_mode(draft: Draft) -> None:
     """Write G90 (or G91) behind a block of increments."""
     state = draft.state
-    if state.own_distance == AS_PROGRAMMED or not draft.letters() - INDIFFERENT:
+    if draft.is_settled or state.own_distance == AS_PROGRAMMED or not draft.letters() - INDIFFERENT:
         return
     if {"G90", "G91"}.intersection(draft.codes()):
         return

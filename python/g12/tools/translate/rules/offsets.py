@@ -24,6 +24,7 @@ LENGTH_WEAR, DIAMETER_WEAR = 3000, 3200  # and the tool's number
 TOOLS = 100
 G52_PARAMETER, G54_PARAMETER = 5211, 5221
 SCALE = "#<machine_units>"
+BARE_HEIGHT = "#<height_without_tool>"
 SET_SCALE = f"{SCALE}=[[25.4 - 24.4 * #<_metric>] / [25.4 - 24.4 * #<_metric_machine>]]"
 OWN_SYSTEMS = frozenset(("G54", "G55", "G56", "G57", "G58", "G59"))
 TOOL_TABLE = {10: ("length", False), 11: ("length", True), 12: ("size", False), 13: ("size", True)}
@@ -181,11 +182,11 @@ def new_value(now: str, added: str, kept: str, wear: bool, incremental: bool) ->
 def set_length(
     draft: Draft, tool: int, added: str, kept: str, wear: bool, incremental: bool
 ) -> None:
-    """Set a tool's length; its present one is read by G43, which moves nothing."""
+    """Set a tool's length; its present one is what G43 makes of the height."""
     active = draft.sure("length", "G10 changes a tool's length")
     if wear or incremental:
-        draft.after.append(f"G43 H{tool}")
-    value = new_value("#5403", added, kept, wear, incremental)
+        draft.after += ["G49", f"{BARE_HEIGHT}=#5422", f"G43 H{tool}"]
+    value = new_value(f"[{BARE_HEIGHT} - #5422]", added, kept, wear, incremental)
     draft.after.append(f"G10 L1 P{tool} Z[{value}]")
     if active == str(tool):
         draft.after.append(f"G43 H{tool}")

@@ -43,7 +43,7 @@ def is_zero(word: ForeignWord) -> bool:
 def turn_on(draft: Draft, code: str) -> None:
     """Write G12.1; X a radius if it is one on the control."""
     x = draft.control.value("polar", "x", "")
-    if not x:
+    if x in ("", "say"):
         raise NotTranslated(
             f'{code}: is X a diameter or a radius in it? say x = "diameter" or "radius" under '
             "[polar] of your control (--polar-x)"
@@ -51,14 +51,14 @@ def turn_on(draft: Draft, code: str) -> None:
     if draft.control.is_lathe and "C" in draft.letters() and is_zero(draft.words[-1]):
         draft.take("C")
     lines = ["G8"] if x == "radius" else []
-    own_block(draft, code, [*lines, "G12.1"])
+    own_block(draft, code, [*lines, draft.control.polar_codes[0]])
     draft.change(polar="on", own_motion=UNSURE, own_feed=AS_PROGRAMMED)
 
 
 def turn_off(draft: Draft, code: str) -> None:
     """Write G13.1, which means nothing outside of polar mode."""
     back = draft.state.polar != "off" and draft.control.value("polar", "x") == "radius"
-    own_block(draft, code, ["G13.1", *(["G7"] if back else [])])
+    own_block(draft, code, [draft.control.polar_codes[1], *(["G7"] if back else [])])
     if draft.state.polar != "off":
         draft.change(polar="off", own_motion=UNSURE)
 
@@ -91,7 +91,7 @@ def inside_polar(draft: Draft) -> None:
     """Rewrite the words between polar on and off."""
     if draft.state.polar == UNSURE and draft.letters() & set("XYCUVH"):
         raise NotTranslated("polar mode is on, but not on every way to this block")
-    if draft.state.polar != "on" or "G12.1" in draft.codes():
+    if draft.state.polar != "on":
         return
     draft.words = [
         word._replace(letter=RENAMED.get(word.letter, word.letter)) for word in draft.words
@@ -138,6 +138,7 @@ def rapid_at_feed(draft: Draft) -> None:
         draft.take_codes({"G0"})
         draft.words += [word_of("G1"), word_of("G94"), word_of(f"F{feed:g}")]
         draft.change(motion="G0", own_motion="G1", own_feed="rapid")
+        draft.has_motion = True
     elif draft.state.own_feed != AS_PROGRAMMED and draft.letters() & set("XCZUH"):
         feed_again(draft)
 

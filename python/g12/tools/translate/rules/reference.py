@@ -32,7 +32,7 @@ def reference_point(draft: Draft) -> None:
 
 def from_here(draft: Draft, code: str) -> None:
     """Write U, V, W and H as places: the intermediate point, seen from where the tool stands."""
-    for word in [word for word in draft.words if word.letter in PARTNERS]:
+    for word in draft.increments():
         axis = PARTNERS[word.letter]
         if axis in draft.letters():
             raise NotTranslated(f"{word.text} beside {axis} in {code}")

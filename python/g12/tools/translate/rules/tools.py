@@ -32,9 +32,11 @@ def turret_word(draft: Draft) -> None:
     if not word:
         return
     tool, offset = parts_of(draft, word)
-    words = [word_of(f"T{tool}"), word_of("M6")] if tool else []
+    loaded = not tool or draft.state.tool == str(tool)
+    words = [] if loaded else [word_of(f"T{tool}"), word_of("M6")]
     words += [word_of("G43"), word_of(f"H{offset}")] if offset else [word_of("G49")]
     draft.replace(word, *words)
+    draft.comments += [word.text] if loaded else []
     draft.change(tool=str(tool) if tool else draft.state.tool, length=str(offset))
 
 
@@ -83,7 +85,7 @@ def radius_offset(draft: Draft) -> None:
     word = next((word for word in draft.words if word.letter == "D"), None)
     if word:
         draft.change(radius=word.value)
-        if not USES_D.intersection(codes):
+        if not USES_D.intersection(codes) and "pocket to Z" not in draft.meanings:
             draft.take("D")
             draft.comments.append(word.text)
     if COMPENSATION.intersection(codes):

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``g12 translate``: programs of other controls as LinuxCNC programs.
+
+Nothing is printed unless every block is understood. Made for a [FILTER] of LinuxCNC's INI:
+
+  [FILTER]
+  PROGRAM_EXTENSION = .nc Haas programs
+  nc = python3 /path/to/g12/python/g12 translate --control haas-mill
+
+LinuxCNC names its INI to a filter (INI_FILE_NAME): M codes that this machine knows stay.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from g12.machine_ini import Remap, code_number, remap_lines
+from g12.tools.commands.arguments import GOOD, Parser, one_line
+from g12.tools.errors import ProgramError, UsageError
+from g12.tools.machine.files import existing
+from g12.tools.machine.ini import Ini, read_ini
+from g12.tools.translate.control import Control, ControlError, read_control, shipped_controls
+from g12.tools.translate.lexer import program_text
+from g12.tools.translate.listing import listing_of
+from g12.tools.translate.program import RefusedBlock, translate_program
+
+EXAMPLES = """\
+examples:
+  g12 translate --list
+  g12 translate --list --control haas-mill
+  g12 translate --control haas-mill part.nc > part.ngc
+  g12 translate --control my_lathe.toml --ini lathe.ini part.nc
+
+exit code: 0 the program is printed, 1 a block is refused, 2 wrong use
+"""
+USER_CODE = re.compile(r"M(1[0-9]{2})")
+UNITS = {"inch": "G20", "mm": "G21"}
+POLAR_HANDLERS = ("polar_on", "polar_off")
+PROGRESS_EVERY = 0.2  # s
+OTHERS_NAMED = 5
+
+
+@one_line("translate")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    asked = parsed(arguments)
+    try:
+        if asked.list:
+            print(contents(asked), end="")
+            return GOOD
+        control = changed(read_control(asked.control), asked)
+    except ControlError as problem:
+        raise UsageError(str(problem)) from None
+    print(translated(asked, control), end="")
+    return GOOD
+
+
+def parsed(arguments: list[str]) -> argparse.Namespace:
+    """Return the words of the command."""
+    parser = Parser(prog="g12 translate", description=__doc__, epilog=EXAMPLES)
+    parser.add_argument("program", type=Path, nargs="?", help="program of the other control")
+    parser.add_argument("--control", help="name, or a .toml file of your own")
+    parser.add_argument("--list", action="store_true", help="print what controls understand")
+    parser.add_argument("--ini", type=Path, help="INI of the machine (a filter knows it)")
+    parser.add_argument("--units", choices=UNITS, help="of a program that says neither G20 nor G21")
+    parser.add_argument(
+        "--decimals", choices=("least", "whole"), help="what numbers without a decimal point are"
+    )
+    parser.add_argument("--polar-x", choices=("diameter", "radius"), help="X in polar mode")
+    asked = parser.parse_args(arguments)
+    if not asked.list and not (asked.control and asked.program):
+        parser.error("--control and a program are needed, or --list")
+    return asked
+
+
+def contents(asked: argparse.Namespace) -> str:
+    """Return what --list prints: the controls, or what one of them understands."""
+    if asked.control:
+        return listing_of(read_control(asked.control))
+    controls = [read_control(name) for name in shipped_controls()]
+    return "".join(f"{control.name:16} {control.title}\n" for control in controls)
+
+
+def changed(control: Control, asked: argparse.Namespace) -> Control:
+    """Return a control with what the command line says in place of its file."""
+    tables = dict(control.tables)
+    if asked.polar_x:
+        tables["polar"] = {**tables.get("polar", {}), "x": asked.polar_x}
+    start = (*control.start, *([UNITS[asked.units]] if asked.units else []))
+    return replace(control, start=start, decimals=asked.decimals or control.decimals, tables=tables)
+
+
+def translated(asked: argparse.Namespace, control: Control) -> str:
+    """Return the LinuxCNC program, or raise ProgramError with the first block that is refused."""
+    text = program_text(existing(asked.program).read_bytes())
+    path = asked.ini or os.environ.get("INI_FILE_NAME")
+    ini = read_ini(path) if path else None
+    codes = machine_codes(ini) if ini else None
+    pair = polar_pair(remap_lines(lambda *key: ini.all(*key))) if ini else None
+    control = replace(control, polar_codes=pair) if pair else control
+    result = translate_program(text, control, codes, progress())
+    if result.refused:
+        raise ProgramError(f"{asked.program}:{sentence_of(result.refused)}")
+    return result.text
+
+
+def sentence_of(refused: list[RefusedBlock]) -> str:
+    """Return the first refusal, and the lines of some others."""
+    first, *others = refused
+    lines = list(dict.fromkeys(block.line for block in others if block.line != first.line))
+    more = ", ".join(map(str, lines[:OTHERS_NAMED])) + (" …" if lines[OTHERS_NAMED:] else "")
+    return f"{first.line}: {first.sentence}" + (f" (refused as well: line {more})" if more else "")
+
+
+def machine_codes(ini: Ini) -> frozenset[str]:
+    """Return the M codes that a machine knows besides LinuxCNC's: REMAP lines and M1xx files."""
+    numbers = (remap.number for remap in remap_lines(lambda *key: ini.all(*key)))
+    remapped = {f"M{tenths // 10}" for letter, tenths in numbers if letter == "M"}
+    return frozenset(remapped | {name for folder in code_folders(ini) for name in codes_in(folder)})
+
+
+def code_folders(ini: Ini) -> list[Path]:
+    """Return where LinuxCNC looks for the files of M100 to M199."""
+    names = [ini.get("DISPLAY", "PROGRAM_PREFIX"), ini.get("RS274NGC", "USER_M_PATH")]
+    paths = [path for name in names if name for path in name.split(":")]
+    return [ini.directory / os.path.expanduser(path) for path in paths]
+
+
+def codes_in(folder: Path) -> list[str]:
+    """Return the M codes that a folder has an executable file for."""
+    files = folder.iterdir() if folder.is_dir() else ()
+    return [f.name for f in files if USER_CODE.fullmatch(f.name) and os.access(f, os.X_OK)]
+
+
+def polar_pair(remaps: list[Remap]) -> tuple[str, str] | None:
+    """Return the machine's own codes for polar mode on and off, None if it has none."""
+    found = {name: r.code for r in remaps for name in POLAR_HANDLERS if name in r.handlers}
+    good = all(code_number(found.get(name, ""))[0] == "G" for name in POLAR_HANDLERS)
+    return (found["polar_on"], found["polar_off"]) if good else None
+
+
+def progress() -> Callable[[float], None]:
+    """Return what tells LinuxCNC's screen the share that is done, in a filter only."""
+    if "INI_FILE_NAME" not in os.environ or sys.stderr.isatty():
+        return lambda share: None
+    last = time.monotonic()
+
+    def tell(share: float) -> None:
+        nonlocal last
+        if time.monotonic() - last > PROGRESS_EVERY:
+            last = time.monotonic()
+            print(f"FILTER_PROGRESS={100 * share:.0f}", file=sys.stderr, flush=True)
+
+    return tell

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Programs of other controls cut what the LinuxCNC programs beside them cut."""
+
+import pytest
+
+from g12.tools.errors import ProgramError
+from g12.tools.preview.tracer import Tracer
+from support.foreign_programs import (
+    FOREIGN,
+    MACHINES,
+    OPTIONS,
+    assert_same_part,
+    near,
+    tracer_of,
+    translation,
+)
+from support.sim_machines import PROGRAMS, SIM
+
+PAIRS = sorted(
+    p.relative_to(FOREIGN).with_suffix("") for c in MACHINES for p in FOREIGN.glob(f"{c}/*.nc")
+)
+
+
+@pytest.fixture(scope="module")
+def tracers():
+    opened = {}
+    yield lambda control: opened.setdefault(control, tracer_of(control))
+    for tracer in opened.values():
+        tracer.close()
+
+
+@pytest.mark.parametrize("name", PAIRS, ids=str)
+def test_a_translated_program_is_the_same_part(tracers, name):
+    control = name.parent.name
+    text = translation(FOREIGN / f"{name}.nc", control, *OPTIONS.get(str(name), []))
+    tracer = tracers(control)
+    translated = tracer.trace_text(text, alone=True)
+    assert_same_part(translated, tracer.trace(FOREIGN / f"{name}.ngc", alone=True))
+
+
+def test_there_are_thirty_pairs():
+    assert len(PAIRS) >= 30
+
+
+REFUSED = sorted((FOREIGN / "refused").glob("*.nc"))
+
+
+@pytest.mark.parametrize("path", REFUSED, ids=lambda path: path.stem)
+def test_a_wrong_program_is_refused_with_its_sentence(path):
+    control, _, _ = path.stem.partition(".")
+    sentence = path.with_suffix(".txt").read_text(encoding="utf-8").strip()
+    with pytest.raises(ProgramError) as refusal:
+        translation(path, control)
+    assert str(refusal.value) == f"{path}:{sentence}"
+
+
+def test_there_are_ten_refused_programs():
+    assert len(REFUSED) >= 10
+
+
+MANUALS = FOREIGN / "manuals"
+
+
+@pytest.mark.parametrize("name", ["O60121", "O60131"])
+def test_the_haas_manuals_programs_unedited(tracers, name):
+    printed = PROGRAMS / "haas" / f"{name}.ngc"
+    assert (MANUALS / f"{name}.nc").read_bytes() == printed.read_bytes()
+    text = translation(MANUALS / f"{name}.nc", "haas-mill")
+    tracer = tracers("haas-mill")
+    assert_same_part(tracer.trace_text(text), tracer.trace(printed))
+
+
+def test_the_yasnac_manuals_example_unedited(tracers, tmp_path):
+    own = tmp_path / "own.toml"  # a machine that is in millimetres and G91 when it is switched on
+    own.write_text('based_on = "yasnac-mill"\ndecimals = "least"\nstart = "G17 G21 G91 G94"\n')
+    tracer = tracers("yasnac-mill")
+    setup = ["G21 T10 M6", "G0 X5 Y6 Z40"]
+    translated = tracer.trace_text(translation(MANUALS / "yasnac.nc", own), setup=setup)
+    wanted = ["G17 G21 G91 G94", "G0 Z-40", "G12 I50 R40 D10 F300", "G0 Z40", "M2"]
+    assert_same_part(translated, tracer.trace_text(wanted, setup=setup))
+
+
+@pytest.fixture(scope="module")
+def manuals_lathe():
+    with tracer_of("haas-lathe", tools={1: 0.5, 8: 0.0}) as opened:  # the manual's cutters, inches
+        yield opened
+
+
+OPEN_WORDS = ("G0 X—Z—M35", "G0 X4. Z2. M35")  # the print leaves the numbers to the reader
+
+
+@pytest.mark.parametrize("name", ["method_a", "method_b"])
+def test_the_open_words_of_the_print_are_refused(name):
+    with pytest.raises(ProgramError, match=r":2[07]: X has no value: —Z—M35"):
+        translation(MANUALS / f"{name}.nc", "fanuc-lathe")
+
+
+@pytest.mark.parametrize("name", ["method_a", "method_b", "sample"])
+def test_the_lathe_manuals_programs(manuals_lathe, tmp_path, name):
+    printed = (MANUALS / f"{name}.nc").read_text(encoding="utf-8")
+    path = tmp_path / f"{name}.nc"
+    path.write_text(printed.replace(*OPEN_WORDS), encoding="utf-8")
+    assert (name == "sample") == (path.read_text(encoding="utf-8") == printed)
+    setup = ["G20 G0 X4 Z2 C30"]
+    text = translation(path, "fanuc-lathe", "--ini", str(SIM / "lathe_inch.ini"))
+    translated = manuals_lathe.trace_text(text, setup=setup)
+    adapted = manuals_lathe.trace(
+        PROGRAMS / "polar" / f"manual_{name.rpartition('_')[2]}.ngc", setup=setup
+    )
+    assert cut_at_feed(translated) == near_each(cut_at_feed(adapted))
+
+
+def cut_at_feed(traced):
+    """Return where each move at a feed ends, and how fast it is."""
+    assert traced.error is None, traced.error
+    return [(*move.end[:6], move.feed) for move in traced.moves if move.kind == "feed"]
+
+
+def near_each(rows):
+    """Return what equals rows of numbers to 1e-6."""
+    return [near(row) for row in rows]
+
+
+def test_the_haas_page_on_g10_unedited(tracers):
+    text = translation(MANUALS / "haas_g10.nc", "haas-mill", "--units", "inch")
+    asked = ("#4011", "#4012", "#4491", "#4492", "[0 - #5422]")
+    behind = [f"#{number}={value}" for number, value in enumerate(asked, 100)]
+    text = text.rsplit("M2", 1)[0] + "\n".join(["G0 G54 X0", "G43 H5", *behind, ""])
+    traced = tracers("haas-mill").trace_text(text, parameters={5221: 1.0}, ask=range(100, 105))
+    assert traced.error is None
+    assert [traced.numbered[n] for n in range(100, 105)] == near((10.0, 8.0, 10.0, 20.0, 2.5))
+    assert traced.moves[-1].end[0] == near(7 * 25.4)
+
+
+@pytest.mark.parametrize("unit", ["mill_inch", "mill_mm"])
+@pytest.mark.parametrize(("code", "scale"), [("G20", 25.4), ("G21", 1.0)])
+def test_offsets_by_number_do_not_depend_on_units(unit, code, scale, tmp_path):
+    path = tmp_path / "offsets.nc"
+    path.write_text(f"{code} G90\nG10 L20 P7 X2. Y1. Z0.\nG154 P7 G0 X1. Y0. Z0.\nM30\n")
+    with Tracer(SIM / f"{unit}.ini") as tracer:
+        traced = tracer.trace_text(translation(path, "haas-mill"))
+    assert traced.moves[-1].end[:2] == near((3 * scale, scale))

@@ -1,0 +1,11 @@
+%
+o5000(ALTE SÄGE — ÜBERARBEITET (2. FASSUNG))
+t1m6
+g20g90g54g0x0y0s2000m3
+g43h1z.1m8
+g1z-.1f10.(EINTAUCHEN (LANGSAM) 5°)
+g3x0y0i.5j0f20.
+g1x1.y1.
+g0z1.m9
+m30
+%

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Programs of other controls for tests: their machines, their options, and what they cut."""
+
+import json
+from itertools import groupby
+
+import pytest
+
+from g12.tools.commands import translate
+from g12.tools.machine.ini import read_ini
+from g12.tools.preview.tracer import Tracer
+from support.sim_machines import PROGRAMS, SIM
+
+FOREIGN = PROGRAMS / "foreign"
+MACHINES = {
+    "haas-mill": "mill_inch",
+    "fanuc-mill": "mill_mm",
+    "yasnac-mill": "mill_yasnac_mm",
+    "mitsubishi-mill": "mill_mitsubishi_mm",
+    "fanuc-lathe": "lathe_mm",
+    "haas-lathe": "lathe_inch",
+    "mazak-lathe": "lathe_mm",
+    "okuma-lathe": "lathe_mm",
+}
+BUILDERS_CODES = (135, 154, 155, 200, 202, 203, 205, 110, 109, 146, 13, 12)
+OPTIONS = json.loads((FOREIGN / "options.json").read_text(encoding="utf-8"))
+
+
+def tracer_of(control, tools=None):
+    """Return a Tracer of the machine that stands for a control's; lathes know builders' codes."""
+    ini = SIM / f"{MACHINES[control]}.ini"
+    overrides = {}
+    if control.endswith("lathe"):
+        codes = [f"M{number} modalgroup=10 ngc=m35" for number in BUILDERS_CODES]
+        codes += ["M133 modalgroup=10 ngc=m35"]
+        overrides = {"RS274NGC": {"REMAP": [*read_ini(ini).all("RS274NGC", "REMAP"), *codes]}}
+    return Tracer(ini, overrides=overrides, tools=tools)
+
+
+def translation(path, control, *options):
+    """Return what the command prints for a program, without printing it."""
+    asked = translate.parsed(["--control", str(control), str(path), *options])
+    return translate.translated(
+        asked, translate.changed(translate.read_control(asked.control), asked)
+    )
+
+
+def path_of(traced):
+    """Return the moves that go anywhere, without the lines that they come from."""
+    assert traced.error is None, traced.error
+    found, last = [], (0.0,) * 9
+    for m in traced.moves:
+        end = tuple(map(sum, zip(m.end, m.tool_offset)))  # where the machine stands
+        plane = m.plane if m.kind == "arc" else 0
+        if m.kind == "arc" or end != near(last):
+            found.append((m.kind, end, m.centre, m.turns, m.feed, m.feed_mode, plane, m.tool))
+        last = end
+    return found
+
+
+def assert_same_part(one, other):
+    """Assert that two traces are the same moves at the same feeds, with the same events between."""
+    left, right = path_of(one), path_of(other)
+    for number, (a, b) in enumerate(zip(left, right)):
+        assert a[0] == b[0], (number, a, b)
+        for value, wanted in zip(a[1:], b[1:]):
+            assert value == (
+                wanted if isinstance(wanted, str) or wanted is None else near(wanted)
+            ), (
+                number,
+                a,
+                b,
+            )
+    assert len(left) == len(right), (left[len(right) :], right[len(left) :])
+    assert events(one) == events(other), (events(one), events(other))
+
+
+def near(wanted):
+    """Return what equals a number, or each number of a tuple, to 1e-6."""
+    return pytest.approx(wanted, abs=1e-6)
+
+
+def events(traced):
+    """Return what a program does beside moving: spindle, coolant, tools, dwells."""
+    texts = [event.text for event in traced.events if not event.text.startswith(("G5", "G6", "G4"))]
+    return [text for text, _ in groupby(text for text in texts if text != "dwell 0")]
