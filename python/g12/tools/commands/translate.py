@@ -107,11 +107,11 @@ def translated(asked: argparse.Namespace, control: Control) -> str:
     control = replace(control, polar_codes=pair) if pair else control
     result = translate_program(text, control, codes, progress())
     if result.refused:
-        raise ProgramError(f"{asked.program}:{sentence_of(result.refused)}")
+        raise ProgramError(f"{asked.program}:{refusal_sentence(result.refused)}")
     return result.text
 
 
-def sentence_of(refused: list[RefusedBlock]) -> str:
+def refusal_sentence(refused: list[RefusedBlock]) -> str:
     """Return the first refusal, and the lines of some others."""
     first, *others = refused
     lines = list(dict.fromkeys(block.line for block in others if block.line != first.line))

@@ -23,6 +23,7 @@ PAGES = (  # what a machinist reads beside the machine; they link to nothing els
     "configs/kinematics/README.md",
     "python/README.md",
     "python/g12/tools/regress/README.md",
+    "python/g12/tools/translate/README.md",
 )
 CODE = (
     "ngc/*.ngc",
@@ -30,6 +31,7 @@ CODE = (
     "configs/kinematics/polar_*",
     "python/*.py",
     "python/g12/**/*.py",
+    "python/g12/tools/translate/controls/*.toml",
 )
 PARTS = ("LICENSE", *CODE, *PAGES)
 EDITED = ".edited"

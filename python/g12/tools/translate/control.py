@@ -283,7 +283,7 @@ class _Checked:
 
     def _refuse(self, key: str, rule: str) -> None:
         """Raise the error of a key, with the line that it stands in."""
-        wanted = re.compile(rf'\s*\[?"?{re.escape(key)}"?\s*(=|\]|$)')
+        wanted = re.compile(rf'\s*\[?"?{re.escape(key)}"?(\.|\s*(=|\]|$))')
         rows = [number for number, row in enumerate(self._rows, 1) if wanted.match(row)]
         place = f":{rows[0]}" if rows else ""
         raise ControlError(f"{self._path}{place}: {rule}")

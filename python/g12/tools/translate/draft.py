@@ -123,6 +123,10 @@ class Draft:
         """Return the words that are left as one line."""
         return " ".join(word.text for word in self.words)
 
+    def begins_program(self) -> bool:
+        """Tell whether the block begins with the number of a program."""
+        return bool(self.words) and self.words[0].letter == "O"
+
     def alone(self) -> bool:
         """Tell whether nothing but a block number is left of the words."""
         return all(word.letter == "N" and word.kind == "number" for word in self.words)
@@ -133,6 +137,6 @@ def word_of(text: str) -> ForeignWord:
     return ForeignWord(text[0], text[1:])
 
 
-def line_of(text: str) -> ForeignWord:
+def line_as_word(text: str) -> ForeignWord:
     """Return a whole line of LinuxCNC's in the place of a word."""
     return ForeignWord(text[0], text[1:], "text")

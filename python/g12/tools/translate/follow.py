@@ -21,7 +21,7 @@ ENDS = frozenset(("M2", "M30"))
 Progress = Callable[[int], None]
 
 
-class Followed:
+class FollowedProgram:
     """The drafts of a program's blocks, None where a block is never reached.
 
     ``falls_off`` are the blocks behind which a program is over without an end of its own,
@@ -48,7 +48,7 @@ class Followed:
         self._exits: dict[int, ModalState] = {}
         self._pending: list[tuple[int, ModalState]] = []
 
-    def run(self) -> Followed:
+    def run(self) -> FollowedProgram:
         """Follow the main program from its first block until nothing new is found."""
         if self.drafts:
             self._pending.append((0, start_state(self.control)))
@@ -84,7 +84,7 @@ class Followed:
             statement = STATEMENTS.get(block.kind)
             if statement:
                 statement(draft, index, self.structure)
-            elif index in self.structure.starts or draft.letters() & {"O"}:
+            elif index in self.structure.starts or draft.begins_program():
                 self._head(draft, index)
             else:
                 self._end(draft, index)

@@ -32,6 +32,7 @@ OBEYED = re.compile(r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVI
 BRACES = str.maketrans("{}", "()")  # remarks in some manuals; a comment has round ones
 MINUS = "\N{MINUS SIGN}"
 EMPTY_CHARACTERS = "\ufeff\u200b\0"
+MOST_DIGITS = 24
 PLANE_CODES = frozenset(("G17", "G18", "G19"))
 
 
@@ -181,7 +182,7 @@ def _parsed(line: int, text: str) -> ForeignBlock:
             raise NotTranslated(f"{skip[0]}: LinuxCNC has one switch to skip blocks, / alone")
         return _parsed(line, text[skip.end() :])._replace(skipped=True)
     if PLAIN_WORDS.fullmatch(text):
-        words = tuple(ForeignWord(*pair) for pair in PLAIN_WORD.findall(text))
+        words = tuple(map(_plain_word, PLAIN_WORD.findall(text)))
         return ForeignBlock(line, words=words)
     return _statement(line, text)
 
@@ -270,7 +271,7 @@ def _words(text: str) -> tuple[ForeignWord, ...]:
 def _word(text: str, at: int) -> tuple[ForeignWord, int]:
     plain = PLAIN_WORD.match(text, at)
     if plain:
-        return ForeignWord(*plain.groups()), plain.end()
+        return _plain_word(plain.groups()), plain.end()
     named = NAMED_WORD.match(text, at)
     letter, start = (named[1], named.end()) if named else (text[at], at + 1)
     if not ("A" <= letter[0] <= "Z"):
@@ -283,6 +284,13 @@ def _word(text: str, at: int) -> tuple[ForeignWord, int]:
         raise NotTranslated(f"{letter} has no value: {problem}") from None
     kind = "number" if re.fullmatch(r"-?[0-9.]+", value.text) else "expression"
     return ForeignWord(letter, value.text, kind, value.read), value.end
+
+
+def _plain_word(pair: tuple[str, str]) -> ForeignWord:
+    """Return the word of a letter and a number."""
+    if len(pair[1]) > MOST_DIGITS:
+        raise NotTranslated(f"{excerpt(''.join(pair))} has {len(pair[1])} digits")
+    return ForeignWord(*pair)
 
 
 def _check_bare(words: list[ForeignWord]) -> None:

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from g12.tools.translate.draft import Draft
-from g12.tools.translate.follow import Followed
+from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.lexer import ForeignBlock
 from g12.tools.translate.rules.subprograms import ARGUMENTS
 
 LETTERS = {number: letter for letter, number in ARGUMENTS.items()}
 
 
-def unset_locals(followed: Followed) -> Iterator[tuple[int, str]]:
+def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
     """Yield line and sentence for each block that reads a variable nothing has set."""
     given = {n: given_by_all(calls) for n, calls in followed.calls.items()}
     for index, block in enumerate(followed.structure.blocks):
@@ -24,7 +24,7 @@ def unset_locals(followed: Followed) -> Iterator[tuple[int, str]]:
         if followed.kinds.get(number) != "macro" or not followed.drafts[index]:
             continue
         for variable in sorted(read_by(block) - given[number]):
-            yield block.line, sentence_of(number, variable)
+            yield block.line, unset_sentence(number, variable)
         given[number] |= {set_by(block)}
 
 
@@ -47,7 +47,7 @@ def set_by(block: ForeignBlock) -> int:
     return block.variable if block.kind == "assign" and not block.skipped else 0
 
 
-def sentence_of(number: int, variable: int) -> str:
+def unset_sentence(number: int, variable: int) -> str:
     """Return what is wrong."""
     letter = LETTERS.get(variable)
     name = f"#{variable} ({letter} of the call)" if letter else f"#{variable}"

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from g12.tools.translate.draft import Draft
 from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.follow import Followed
+from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.lexer import printable
 
 LONGEST_LINE = 254  # characters that LinuxCNC reads of a line
@@ -45,7 +45,7 @@ def with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
     return [*lines, *pieces]
 
 
-def marked(lines: Sequence[str], line: int) -> list[str]:
+def with_marks(lines: Sequence[str], line: int) -> list[str]:
     """Return the lines of one line of the file: every further one says which it belongs to."""
     return [lines[0], *(f"{text} (line {line})" for text in lines[1:])]
 
@@ -55,7 +55,7 @@ def as_comment(text: str) -> str:
     return f"(not reached: {printable(text.strip())[:LONGEST_COMMENT]})" if text.strip() else ""
 
 
-def program_lines(rows: Sequence[str], followed: Followed) -> Iterator[str]:
+def output_lines(rows: Sequence[str], followed: FollowedProgram) -> Iterator[str]:
     """Yield the lines of a program from the drafts of its blocks; none of them is refused."""
     start = " ".join(followed.control.start)
     by_line = drafts_by_line(followed)
@@ -63,10 +63,10 @@ def program_lines(rows: Sequence[str], followed: Followed) -> Iterator[str]:
         lines = lines_of_row(row, by_line.get(line), followed)
         if line == 1 and start:
             lines = begun(start, lines, by_line.get(line))
-        yield from marked(lines, line)
+        yield from with_marks(lines, line)
 
 
-def drafts_by_line(followed: Followed) -> dict[int, list[int]]:
+def drafts_by_line(followed: FollowedProgram) -> dict[int, list[int]]:
     """Return the indices of the blocks that each line has."""
     by_line: dict[int, list[int]] = {}
     for index, block in enumerate(followed.structure.blocks):
@@ -74,7 +74,7 @@ def drafts_by_line(followed: Followed) -> dict[int, list[int]]:
     return by_line
 
 
-def lines_of_row(row: str, indices: Sequence[int] | None, followed: Followed) -> list[str]:
+def lines_of_row(row: str, indices: Sequence[int] | None, followed: FollowedProgram) -> list[str]:
     """Return the lines of one line of the file."""
     lines: list[str] = []
     for index in indices or ():

@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 from g12.tools.translate.control import Control
 from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.follow import Followed
+from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.lexer import blocks_of, source_lines
 from g12.tools.translate.locals import unset_locals
-from g12.tools.translate.output import lines_of, program_lines
+from g12.tools.translate.output import lines_of, output_lines
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.structure import MAIN, structure_of
 
@@ -47,16 +47,16 @@ def translate_program(
     ]
     structure = structure_of(blocks, control)
     total = max(1, len(blocks))
-    followed = Followed(
+    followed = FollowedProgram(
         structure, control, machine_codes, lambda index: progress(index / total)
     ).run()
     refused = sorted(set(refusals(followed)))
     if not refused:
-        return Translation("\n".join([*program_lines(rows, followed), ""]), [])
+        return Translation("\n".join([*output_lines(rows, followed), ""]), [])
     return Translation("", refused)
 
 
-def refusals(followed: Followed) -> Iterator[RefusedBlock]:
+def refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
     """Yield the blocks that are refused."""
     if not any(draft and (draft.words or draft.refusal) for draft in followed.drafts):
         yield RefusedBlock(1, "there is no block in the file")
@@ -81,7 +81,7 @@ def too_long(draft: object) -> str | None:
     return None
 
 
-def missing_end(followed: Followed, index: int) -> str | None:
+def missing_end(followed: FollowedProgram, index: int) -> str | None:
     """Return what is wrong with a program that ends behind a block without a word."""
     number = followed.program_of(index)
     following = followed.structure.starts.get(index + 1, 0)

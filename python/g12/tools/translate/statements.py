@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import Draft, line_of
+from g12.tools.translate.draft import Draft, line_as_word
 from g12.tools.translate.errors import NotTranslated
 from g12.tools.translate.expressions import NUMBER
 from g12.tools.translate.lexer import ForeignBlock
@@ -17,10 +17,10 @@ def tape(draft: Draft, index: int, structure: Structure) -> None:
 
 def assign(draft: Draft, index: int, structure: Structure) -> None:
     """Write an assignment with brackets about its expression."""
-    draft.words = [*draft.block.words, line_of(assignment(draft.block))]
+    draft.words = [*draft.block.words, line_as_word(assignment_text(draft.block))]
 
 
-def assignment(block: ForeignBlock) -> str:
+def assignment_text(block: ForeignBlock) -> str:
     """Return the text of an assignment."""
     text = block.expression.text
     return f"#{block.variable}={text if NUMBER.fullmatch(text) else f'[{text}]'}"
@@ -39,17 +39,17 @@ def end_of_loop(draft: Draft, index: int, structure: Structure) -> None:
 def if_then(draft: Draft, index: int, structure: Structure) -> None:
     """Write a condition with one assignment."""
     then = draft.block.then
-    text = assignment(then) if then.kind == "assign" else stop_text(draft, then.label)
+    text = assignment_text(then) if then.kind == "assign" else block_of_stop(draft, then.label)
     labelled(draft, f"o<if_{index}> if {draft.block.expression.text}")
     draft.after += [text, f"o<if_{index}> endif"]
 
 
 def stop(draft: Draft, index: int, structure: Structure) -> None:
     """Write an alarm or a stop with a message."""
-    draft.words = [*draft.block.words, line_of(stop_text(draft, draft.block.label))]
+    draft.words = [*draft.block.words, line_as_word(block_of_stop(draft, draft.block.label))]
 
 
-def stop_text(draft: Draft, variable: str) -> str:
+def block_of_stop(draft: Draft, variable: str) -> str:
     """Return the block for #3000, an alarm, and #3006, a stop, with the comment as its text."""
     message = ", ".join(draft.comments) or "stopped by the program"
     draft.comments = []
@@ -61,7 +61,7 @@ def stop_text(draft: Draft, variable: str) -> str:
 def labelled(draft: Draft, text: str) -> None:
     """Write an O-word; a block number before it becomes a comment."""
     draft.comments = [*(word.text for word in draft.block.words), *draft.comments]
-    draft.words = [line_of(text)]
+    draft.words = [line_as_word(text)]
     if draft.block.skipped:
         raise NotTranslated("a loop or a condition cannot be skipped with /")
 

@@ -42,6 +42,6 @@ WORD_RULES = (
     reference.machine_position,
     motion.motion_mode,
     motion.distance_mode,
-    modes.check_letters,
+    modes.refuse_leftovers,
     subprograms.finish_call,
 )

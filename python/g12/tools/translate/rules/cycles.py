@@ -41,7 +41,7 @@ def pocket(draft: Draft) -> None:
     code = draft.meanings.pop("pocket to Z", None)
     if not code:
         return
-    draft.words.append(code)
+    draft.put_first(code.text)
     if "Z" not in draft.letters():
         incremental = draft.sure("distance", f"{code.code} without Z") == "G91"
         draft.words.append(ForeignWord("Z", "0" if incremental else "#5422", "expression"))
@@ -97,7 +97,7 @@ def drill(draft: Draft, code: str, kept: dict[str, str]) -> None:
     if repeats == "0":
         store(draft, code)
     else:
-        write(draft, code, values, given, under)
+        write_cycle(draft, code, values, given, under)
         repeat(draft, repeats)
     draft.change(cycle_words=tuple(sorted({"R": UNKNOWN, **values, "@": under}.items())))
 
@@ -167,7 +167,7 @@ def store(draft: Draft, code: str) -> None:
     draft.change(own_motion=UNSURE)
 
 
-def write(
+def write_cycle(
     draft: Draft, code: str, values: dict[str, str], given: dict[str, str], distance: str
 ) -> None:
     """Write a block that drills, complete unless LinuxCNC is in the same cycle already."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from g12.tools.translate.draft import PARTNERS, Draft
 from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.rules.reference import place
+from g12.tools.translate.rules.reference import place_of_increment
 
 
 def incremental_words(draft: Draft) -> None:
@@ -36,7 +36,7 @@ def incremental_words(draft: Draft) -> None:
         draft.put_first("G91")
     else:
         for word in found:
-            draft.replace(word, place(draft, word))
+            draft.replace(word, place_of_increment(draft, word))
 
 
 def rename(draft: Draft) -> None:

@@ -36,15 +36,19 @@ def follow_surface_speed(draft: Draft) -> None:
         draft.change(surface=word.value)
 
 
-def check_letters(draft: Draft) -> None:
+def refuse_leftovers(draft: Draft) -> None:
     """Refuse a word that nothing has understood."""
     axes = draft.control.axes
     if draft.meanings:
         word = next(iter(draft.meanings.values()))
         raise NotTranslated(f"{word.code} cannot stand in this block")
+    seen: set[str] = set()
     for word in draft.words:
-        if word.kind == "text":
+        if word.kind == "text" or word.letter in "GM":
             continue
+        if word.letter in seen:
+            raise NotTranslated(f"{word.letter} stands twice")
+        seen.add(word.letter)
         inside = draft.state.polar != "off" and word.letter in "UH"
         if word.letter in AXIS_NUMBERS and word.letter not in axes and not inside:
             raise NotTranslated(f"{word.text}: this control's machine has the axes {axes}")

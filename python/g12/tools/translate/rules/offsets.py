@@ -12,7 +12,7 @@ value for length and wear: wear is kept in parameters and the sum is in the tabl
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import AXIS_NUMBERS, Draft, line_of
+from g12.tools.translate.draft import AXIS_NUMBERS, Draft, line_as_word
 from g12.tools.translate.errors import NotTranslated
 from g12.tools.translate.lexer import ForeignWord
 from g12.tools.translate.modal import UNKNOWN, UNSURE
@@ -40,7 +40,7 @@ def numbered_offset(draft: Draft) -> None:
     number = system_number(draft, code)
     load = load_system(draft, number)
     if draft.alone():
-        draft.words += [line_of(load)]
+        draft.words += [line_as_word(load)]
     else:
         draft.before.append(load)
     draft.change(offset=f"P{number}")
@@ -51,10 +51,10 @@ def system_number(draft: Draft, code: ForeignWord) -> int:
     whole = int(code.number)
     if 110 <= whole <= 129:
         return whole - 109
-    return counted(draft, "P", range(1, SYSTEMS + 1), code.code)
+    return whole_number_of(draft, "P", range(1, SYSTEMS + 1), code.code)
 
 
-def counted(draft: Draft, letter: str, numbers: range, code: str) -> int:
+def whole_number_of(draft: Draft, letter: str, numbers: range, code: str) -> int:
     """Return the whole number of a word that must be there."""
     word = draft.take(letter)
     if not word or word.kind != "number" or not word.number.is_integer():
@@ -108,7 +108,7 @@ def offset_by_program(draft: Draft) -> None:
 def settle(draft: Draft) -> None:
     """Make the first of the further lines the block's own."""
     first, *draft.after = draft.after
-    draft.words.append(line_of(first))
+    draft.words.append(line_as_word(first))
 
 
 def axis_values(draft: Draft, code: str) -> list[ForeignWord]:
@@ -122,7 +122,7 @@ def axis_values(draft: Draft, code: str) -> list[ForeignWord]:
 
 def work_offset(draft: Draft, incremental: bool) -> None:
     """G10 L2: G54 to G59, or G52."""
-    number = counted(draft, "P", range(7), "G10 L2")
+    number = whole_number_of(draft, "P", range(7), "G10 L2")
     words = axis_values(draft, "G10 L2")
     first = G54_PARAMETER + 20 * (number - 1) if number else G52_PARAMETER
     if incremental:
@@ -138,7 +138,7 @@ def work_offset(draft: Draft, incremental: bool) -> None:
 
 def kept_offset(draft: Draft, incremental: bool) -> None:
     """G10 L20: a system that is kept by number."""
-    number = counted(draft, "P", range(1, SYSTEMS + 1), "G10 L20")
+    number = whole_number_of(draft, "P", range(1, SYSTEMS + 1), "G10 L20")
     draft.after.append(SET_SCALE)
     values = []
     for word in axis_values(draft, "G10 L20"):
@@ -156,7 +156,7 @@ def kept_offset(draft: Draft, incremental: bool) -> None:
 
 def tool_offset(draft: Draft, what: str, wear: bool, incremental: bool) -> None:
     """G10 L10 to L13: the tool table, wear beside it in a parameter."""
-    tool = counted(draft, "P", range(1, TOOLS + 1), "G10")
+    tool = whole_number_of(draft, "P", range(1, TOOLS + 1), "G10")
     value = draft.take("R")
     if not value:
         raise NotTranslated("G10 needs R, the tool's value")

@@ -7,7 +7,7 @@ it a radius here. Y is C and V is H. A rapid in polar mode is what the control's
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import Draft, line_of, word_of
+from g12.tools.translate.draft import Draft, line_as_word, word_of
 from g12.tools.translate.errors import NotTranslated
 from g12.tools.translate.lexer import ForeignWord
 from g12.tools.translate.modal import AS_PROGRAMMED, UNKNOWN, UNSURE, is_sure
@@ -82,7 +82,7 @@ def own_block(draft: Draft, code: str, lines: list[str]) -> None:
         raise NotTranslated(f"{code} moves nothing: its block has {draft.words[-1].text}")
     if draft.alone():
         first, *draft.after = lines
-        draft.words.append(line_of(first))
+        draft.words.append(line_as_word(first))
     else:
         draft.after += lines
 

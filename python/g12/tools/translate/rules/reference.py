@@ -37,10 +37,12 @@ def from_here(draft: Draft, code: str) -> None:
         if axis in draft.letters():
             raise NotTranslated(f"{word.text} beside {axis} in {code}")
         incremental = draft.sure("distance", f"{code} with {word.letter}") == "G91"
-        draft.replace(word, word._replace(letter=axis) if incremental else place(draft, word))
+        draft.replace(
+            word, word._replace(letter=axis) if incremental else place_of_increment(draft, word)
+        )
 
 
-def place(draft: Draft, word: ForeignWord) -> ForeignWord:
+def place_of_increment(draft: Draft, word: ForeignWord) -> ForeignWord:
     """Return the absolute word for an increment from where the tool stands."""
     if draft.sure("compensation", f"{word.text} is an increment") != "G40":
         raise NotTranslated(f"{word.text} beside an absolute word, with G41 or G42 on")

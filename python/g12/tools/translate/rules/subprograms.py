@@ -7,7 +7,7 @@ caller. G65 starts with its letters as #1 to #26 and gives the caller its own ba
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import Draft, SubprogramCall, line_of
+from g12.tools.translate.draft import Draft, SubprogramCall, line_as_word
 from g12.tools.translate.errors import NotTranslated
 from g12.tools.translate.lexer import ForeignWord
 
@@ -91,7 +91,7 @@ def finish_call(draft: Draft) -> None:
         number = draft.written()
         first, *rest = lines
         keeps = number and not first.startswith("o")
-        draft.words = [line_of(f"{number} {first}" if keeps else first)]
+        draft.words = [line_as_word(f"{number} {first}" if keeps else first)]
         draft.comments += [number] if number and not keeps else []
         draft.after = rest
     else:

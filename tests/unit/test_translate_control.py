@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Controls as data: what a file may say, and where it is wrong."""
+
+import pytest
+
+from g12.tools.translate.control import ControlError, read_control, shipped_controls
+from g12.tools.translate.listing import listing_of
+
+NAMES = [
+    "fanuc-lathe", "fanuc-mill", "haas-lathe", "haas-mill", "mazak-lathe", "mitsubishi-mill",
+    "okuma-lathe", "yasnac-mill",
+]  # fmt: skip
+
+
+@pytest.fixture
+def control(tmp_path):
+    """Return a function: the control of a text based on haas-mill."""
+
+    def read(text, base="haas-mill"):
+        path = tmp_path / "own.toml"
+        path.write_text(f'based_on = "{base}"\n{text}', encoding="utf-8")
+        return read_control(str(path))
+
+    return read
+
+
+def test_the_shipped_controls():
+    assert shipped_controls() == NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_states_its_sources_and_what_is_our_reading(name):
+    control = read_control(name)
+    assert control.sources and control.readings
+    assert listing_of(control).startswith(f"{name}: {control.title}")
+
+
+def test_a_file_changes_what_it_is_based_on(control):
+    own = control('title = "Mine"\n[m_codes]\nM88 = "M7"\n[dwell]\ncycle = "seconds"\n')
+    assert (own.name, own.title, own.machine) == ("own", "Mine", "mill")
+    assert own.meanings["M88"] == "M7"
+    assert own.meanings["M89"] == "machine"
+    assert (own.value("dwell", "cycle"), own.value("dwell", "milliseconds")) == ("seconds", "P")
+
+
+def test_a_file_may_be_based_on_a_file_beside_it(tmp_path):
+    (tmp_path / "one.toml").write_text('based_on = "haas-mill"\n[m_codes]\nM88 = "M7"\n')
+    (tmp_path / "two.toml").write_text('based_on = "one.toml"\ndecimals = "whole"\n')
+    own = read_control(str(tmp_path / "two.toml"))
+    assert (own.meanings["M88"], own.decimals) == ("M7", "whole")
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "rule"),
+    [
+        ("colour = 1\n", 2, "colour is no key of a control"),
+        ("\n[tool]\n", 3, "tool is no key of a control"),
+        ("[dwell]\nsecond = 'X'\n", 3, "second is no key of [dwell]: seconds, milliseconds"),
+        ("decimals = 'some'\n", 2, "decimals = 'some' must be one of least, whole"),
+        ("axes = 'XYQ'\n", 2, 'axes = "XYQ" must be letters of X Y Z A B C, each once'),
+        ("axes = 'XX'\n", 2, 'axes = "XX" must be letters'),
+        ("start = 'G17 9'\n", 2, "9 in start is no code such as G17"),
+        ("remarks = 1\n", 2, "remarks must be true or false"),
+        ("sources = [1]\n", 2, "sources must be a list of texts"),
+        ("[increments]\nangle = -1\n", 3, "angle must be a number above 0"),
+        ("[increments]\nangle = true\n", 3, "angle must be a number above 0"),
+        ("[tools]\npatterns = ['OOT']\n", 3, "OOT is no pattern such as TTOO or RRTTOO"),
+        ("[words]\nSBX = 'S'\n", 3, 'SBX = "S": a word of two letters, and one of one'),
+        ("[m_codes]\nM31 = 'bin'\n", 3, 'M31 = "bin" must be one of same, comment, machine'),
+        ("[m_codes]\nX31 = 'same'\n", 3, "X31 is no M code such as M31, or M31-M33"),
+        ("[m_codes]\nsame = ['G1']\n", 3, "G1 is no M code"),
+        ("[m_codes]\nM1-M3 = 'same'\nM2 = 'comment'\n", 4, "M2 has two meanings"),
+        ("[m_codes]\nM52 = 'machine'\n", 3, "M52 is LinuxCNC's own: no machine can give it"),
+        ("[m_codes]\nM31 = ['same']\n", 3, "M31 must be a text"),
+        ("[m_codes]\nsame = 'M31'\n", 3, "same must be a list of codes"),
+        ("[g_codes]\nG12.1 = 'polar on'\n", 3, 'a code with a point is written in quotes: "G12.1"'),
+        ("g_codes = 5\n", 2, "g_codes is a table: [g_codes]"),
+    ],
+)
+def test_a_wrong_file_is_refused_with_its_line(control, tmp_path, text, line, rule):
+    with pytest.raises(ControlError) as refusal:
+        control(text)
+    assert str(refusal.value).startswith(f"{tmp_path / 'own.toml'}:{line}: {rule}")
+
+
+def test_what_is_no_toml_is_refused_with_its_line(control):
+    with pytest.raises(ControlError, match="line 2"):
+        control("this is no key\n")
+
+
+def test_a_control_that_is_nowhere():
+    with pytest.raises(ControlError, match="no control hass-mill: there are fanuc-lathe, "):
+        read_control("hass-mill")
+    with pytest.raises(ControlError, match=r"nowhere\.toml"):
+        read_control("nowhere.toml")
+
+
+def test_a_control_that_is_based_on_itself(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text('based_on = "own.toml"\n')
+    with pytest.raises(ControlError, match="is based on itself"):
+        read_control(str(path))
+
+
+def test_a_control_on_its_own_needs_its_tables(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text('machine = "mill"\naxes = "XYZ"\n')
+    with pytest.raises(ControlError, match="g_codes is missing"):
+        read_control(str(path))

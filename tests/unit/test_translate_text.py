@@ -1,0 +1,330 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The translation as text: lines, comments, sentences; that it is the same part: interp."""
+
+import re
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
+
+from g12.tools.translate.control import read_control
+from g12.tools.translate.lexer import program_text
+from g12.tools.translate.program import translate_program
+from support.sim_machines import ROOT
+
+HAAS, FANUC = read_control("haas-mill"), read_control("fanuc-mill")
+LATHE, HAAS_LATHE = read_control("fanuc-lathe"), read_control("haas-lathe")
+PAGE = ROOT / "python" / "g12" / "tools" / "translate" / "README.md"
+MILL = "(HEAD)\nG20 G90 G54 G0 X0 Y0 Z1.\n"
+TURN = "(HEAD)\nG0 X50. Z5.\n"
+
+
+def lines(control, text, **options):
+    """Return the lines of a translation that must succeed."""
+    result = translate_program(text, control, **options)
+    assert result.refused == []
+    return result.text.splitlines()
+
+
+def behind(control, text, head=None):
+    """Return the lines behind those of a head."""
+    head = head or (TURN if control.is_lathe else MILL)
+    return lines(control, head + text)[head.count("\n") :]
+
+
+def sentence(control, text, **options):
+    """Return the first refusal of a text: its line and its sentence."""
+    result = translate_program(text, control, **options)
+    assert (result.text, bool(result.refused)) == ("", True)
+    return result.refused[0]
+
+
+# ---------------------------------------------------------------- lines, comments, text
+
+
+def test_a_line_stays_a_line_and_further_ones_say_theirs():
+    translated = behind(HAAS, "G154 P2 G0 X1.\n\n(PLAIN)\nG0 X2. M98 P5\nM30\nO5\nM99\n")
+    assert translated == [
+        "G10 L2 P9 R0 G59.3 #5381=#4011 #5382=#4012 #5383=#4013",
+        "G0 X1. (line 3)",
+        "",
+        "(PLAIN)",
+        "G0 X2.",
+        "M98 P5 (line 6)",
+        "M30",
+        "O5",
+        "M99",
+    ]
+
+
+def test_numbers_keep_their_text():
+    assert behind(HAAS, "G01 X+1.500 Y-.50 F010.\nM30\n")[0] == "G01 X+1.500 Y-.50 F010."
+
+
+@pytest.mark.parametrize(
+    ("comment", "kept"),
+    [
+        ("(A (B) C)", "(A [B] C)"),
+        ("(MSG, HELLO)", "(- MSG, HELLO)"),
+        ("( print,#1)", "(- print,#1)"),
+        ("(DEBUG,X)(LOG,Y)", "(- DEBUG,X)(- LOG,Y)"),
+        ("(PY,x=1)", "(- PY,x=1)"),
+        ("(AXIS,hide)", "(- AXIS,hide)"),
+        ("(ABORT, no)", "(- ABORT, no)"),
+        ("(SÄGE 5° — ½)", "(SA?GE 5? ? 1?2)"),
+        ("(X;Y)", "(X,Y)"),
+        ("{BRACES}", "(BRACES)"),
+        ("(TAB\tHERE)", "(TAB HERE)"),
+    ],
+)
+def test_comments_stay_and_do_nothing(comment, kept):
+    assert behind(HAAS, f"{comment}\nM30\n")[0] == kept
+
+
+def test_a_comment_that_has_no_room_has_lines_of_its_own():
+    translated = behind(HAAS, f"G0 X1. ({'A' * 300})\nM30\n")
+    assert translated[:3] == ["G0 X1.", f"({'A' * 200}) (line 3)", f"({'A' * 100}) (line 3)"]
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_line_ends(end):
+    assert behind(HAAS, "G0 X1.\nM30\n".replace("\n", end)) == ["G0 X1.", "M30"]
+
+
+def test_blanks_and_small_letters_do_not_count():
+    assert behind(HAAS, "g 0 x 1 . 5 y - 2 .\nM30\n")[0] == "G0 X1.5 Y-2."
+
+
+def test_bytes_of_any_kind_are_text():
+    assert program_text(b"(\xe4)") == program_text("(ä)".encode()) == "(ä)"
+    assert program_text(b"\xef\xbb\xbfG0") == "\ufeffG0"
+    assert lines(HAAS, "\ufeff%\nG0 X0\nM30\n")[0].endswith("(%)")
+
+
+def test_a_minus_sign_is_a_minus_and_a_dash_is_not():
+    assert behind(HAAS, "X\N{MINUS SIGN}1.\nM30\n")[0] == "X-1."
+    assert sentence(HAAS, "G0 X\N{EN DASH}1.\n").sentence.startswith("X has no value: –1.")
+
+
+def test_several_blocks_on_a_line():
+    assert behind(HAAS, "G0 X1.; Y1.;\nM30\n")[:2] == ["G0 X1.", "Y1. (line 3)"]
+
+
+def test_what_is_behind_the_end_is_a_comment():
+    translated = lines(HAAS, "%\nG0 X0\nM30\nG0 X1.\n%\nANYTHING; AT (ALL\n")
+    assert translated[3:] == ["(not reached: G0 X1.)", "(%)", "(not reached: ANYTHING, AT [ALL)"]
+
+
+def test_a_program_that_nobody_calls_is_a_comment():
+    assert behind(HAAS, "M30\nO5\nG47 X1.\nM99\n")[1:] == [
+        "(not reached: O5)", "(not reached: G47 X1.)", "(not reached: M99)",
+    ]  # fmt: skip
+
+
+def test_what_holds_at_the_start_is_written_first():
+    assert lines(HAAS, "N5 (HEAD)\nM30\n")[0] == f"N5 {' '.join(HAAS.start)} (HEAD)"
+    assert lines(HAAS, "G0 X0\nM30\n")[:2] == [" ".join(HAAS.start), "G0 X0 (line 1)"]
+
+
+@pytest.mark.parametrize("text", ["", "%\n%\n", "(COMMENT)\n", "\n\n"])
+def test_a_file_without_a_block_is_refused(text):
+    assert sentence(HAAS, text) == (1, "there is no block in the file")
+
+
+def test_a_line_that_linuxcnc_would_cut_is_refused():
+    assert "at most 254" in sentence(HAAS, f"#1={'+'.join(['#2'] * 90)}\n").sentence
+
+
+# ---------------------------------------------------------------- numbers
+
+
+def test_numbers_without_a_point_that_mean_the_same_either_way():
+    assert behind(FANUC, "G21 G01 X0 F200\nM30\n", "(HEAD)\n")[0] == "G21 G01 X0 F200"
+
+
+@pytest.mark.parametrize(("code", "x"), [("G21", "X1.234"), ("G20", "X0.1234")])
+def test_least_increments_follow_the_units(tmp_path, code, x):
+    path = tmp_path / "own.toml"
+    path.write_text('based_on = "fanuc-mill"\ndecimals = "least"\n')
+    own = read_control(str(path))
+    assert behind(own, f"{code} G0 X1234\nM30\n", "(HEAD)\n")[0] == f"{code} G0 {x}"
+    assert "before G20 or G21" in sentence(own, "G0 X1234\n").sentence
+    path.write_text('based_on = "fanuc-mill"\ndecimals = "whole"\n')
+    whole = read_control(str(path))
+    assert behind(whole, "G0 X1234\nM30\n", "(HEAD)\n")[0] == "G0 X1234"
+
+
+# ---------------------------------------------------------------- codes
+
+
+def test_an_m_code_that_the_machine_knows_stays():
+    known = frozenset(["M31", "M88", "M137"])
+    text = f"{MILL}M31\nM88\nM137\nM30\n"
+    assert lines(HAAS, text, machine_codes=known)[2:] == ["M31", "M88", "M137", "M30"]
+    assert behind(HAAS, "M31\nM88\nM30\n") == ["(M31)", "M88", "M30"]
+    refused = sentence(HAAS, f"{MILL}M88\nM30\n", machine_codes=frozenset())
+    assert (refused.line, refused.sentence[:24]) == (3, "M88 is the machine build")
+
+
+@pytest.mark.parametrize(
+    ("control", "block", "start"),
+    [
+        (HAAS, "G68 X0", "G68: rotation: set it with"),
+        (HAAS, "G76 X1. Z-1.", "G76: fine boring"),
+        (HAAS, "G200 X1.", "G200 is not known of haas-mill"),
+        (HAAS, "G#1 X1.", "G#1: a code must be a number"),
+        (HAAS, "G0 G1 X1.", "G0 and G1 in one block"),
+        (HAAS, "G0 X1. X2.", "X stands twice"),
+        (HAAS, "G0 A1.", "A1.: this control's machine has the axes XYZ"),
+        (HAAS, "G0 U1.", "U1. is not understood in this block"),
+        (HAAS, "G0 X", "X has no value"),
+        (HAAS, "G0 X1. ?", "? does not start with a word"),
+        (HAAS, "G0 X1.)", ") without a ( before it"),
+        (HAAS, "H1", "H without G43"),
+        (HAAS, "G43 Z1.", "G43 without H"),
+        (HAAS, "G41 X1.", "G41 or G42 without D"),
+        (HAAS, "G4", "G4 needs its time as P, once"),
+        (HAAS, "G4 P-1", "P-1: a time below 0"),
+        (FANUC, "G4 P1.5", "P1.5: milliseconds have no decimal point"),
+        (FANUC, "G4 X5", "X5 has no decimal point: thousandths or seconds?"),
+        (HAAS, "G9 X1.", "G9, an exact stop for one block"),
+        (HAAS, "G30 P3 Z0", "G30 P3: LinuxCNC has two reference points"),
+        (HAAS, "G91 G53 Z0", "G53 under G91"),
+        (HAAS, "G81 R.1", "G81 without Z"),
+        (HAAS, "G83 Z-1. R.1", "G83 needs Q"),
+        (HAAS, "G83 Z-1. R.1 I.1 J.1 K.1 Q.1", "G83 with I is not translated"),
+        (HAAS, "G81 Z-1. R.1 L0 X1.", "G81 with L0 only stores"),
+        (HAAS, "G154 P100", "G154 P100 must be from 1 to 99"),
+        (HAAS, "G154", "G154 needs P and a whole number"),
+        (HAAS, "G10 L5 P1 X1.", "G10 needs L2"),
+        (HAAS, "G10 L12 P3 G91 R.1", "G10 for the diameter of T3"),
+        (HAAS, "M97 P5", "N5 is not in this file"),
+        (HAAS, "M98", "M98 needs P"),
+        (HAAS, "M99 P5", "M99 P, a return to another block"),
+        (HAAS, "G65 P5 O1", "O1 cannot be an argument"),
+        (HAAS, "G65 P5 X1", "X1 has no decimal point: write X1."),
+        (HAAS, "IF[1 EQ 1] G0 X1.", "IF without THEN"),
+        (HAAS, "IF[1 EQ 1] THEN G0 X1.", "behind THEN only an assignment"),
+        (HAAS, "WHILE[1 EQ 1]", "WHILE […] needs DO"),
+        (HAAS, "DO1", "DO without WHILE"),
+        (HAAS, "END1", "END1 without WHILE"),
+        (HAAS, "WHILE[1 EQ 1]DO1", "WHILE […] DO1 has no END1"),
+        (HAAS, "#1=#4001", "#4001 means something else"),
+        (HAAS, "#3000=1 (STOP)\nG0 X#0", "X has no value: #0, the empty variable"),
+        (HAAS, "#1=[#2 AND 3]", "AND is translated between comparisons"),
+        (HAAS, "#1=1 EQ 2 EQ 3", "two comparisons in a row"),
+        (HAAS, "#1=BIN[#2]", "BIN[#2] stands where a value"),
+        (HAAS, "#1=[[[[[[[[[1]]]]]]]]]", "more than 8 brackets"),
+        (HAAS, "#1=[1", "] is missing before the end"),
+        (LATHE, "T3", "T3 has 1 digits"),
+        (LATHE, "T30303", "T30303 has 5 digits"),
+        (LATHE, "G0 X1. U1.", "U1. and X in one block"),
+        (LATHE, "G81 X1. Z-1.", "G81: a drilling cycle of a lathe"),
+        (LATHE, "G50", "G50 needs S, a speed limit, or X and Z"),
+        (LATHE, "G12.1 X5.", "G12.1 moves nothing"),
+        (LATHE, "G107", "G107 needs C"),
+        (LATHE, "G12.1\nG1 X10. W-1.", "W-1. beside other axes in polar mode"),
+        (LATHE, "G12.1\nG41 G1 X10. D5", "D5 in polar mode"),
+        (HAAS_LATHE, "G112\nG0 X1.", "G0 in polar mode needs G20 or G21"),
+    ],
+)  # fmt: skip
+def test_what_is_refused_is_told(control, block, start):
+    head = TURN if control.is_lathe else MILL
+    refused = sentence(control, f"{head}{block}\nM30\n")
+    assert refused.line == 2 + 1 + block.count("\n")
+    assert refused.sentence.startswith(start)
+
+
+def test_a_mode_that_is_not_sure_is_not_needed_everywhere():
+    text = "M98 P5\nG91\nM98 P5\nM30\nO5\nG1 X1. F5.\nM99\n"
+    assert "G1 X1. F5." in behind(HAAS, text)
+
+
+def test_the_end_of_a_loop_is_a_way_to_its_beginning():
+    loop = "WHILE[#1LT2]DO1\nG53 Z0\nG91\n#1=#1+1\nEND1\nM30\n"
+    assert sentence(HAAS, f"{MILL}#1=0\n{loop}").sentence.startswith(
+        "G53 is absolute, but the dist"
+    )
+
+
+# ---------------------------------------------------------------- cylinder, builder's words
+
+
+def test_cylinder():
+    translated = behind(LATHE, "G107 C25.\nG1 Z-5. C30.\nG7.1 C0\nM30\n")
+    assert translated == ["G7.1 C25.", "G1 Z-5. C30.", "G7.1 C0", "M30"]
+
+
+def test_the_polar_codes_are_those_of_the_machine():
+    from dataclasses import replace
+
+    other = replace(LATHE, polar_codes=("G12.3", "G13.3"))
+    assert behind(other, "G112\nG1 X40. F5.\nG113\nM30\n")[::2] == ["G12.3", "G13.3"]
+
+
+# ---------------------------------------------------------------- the page
+
+
+def examples():
+    """Return the programs before and after of the page."""
+    text = PAGE.read_text(encoding="utf-8")
+    blocks = re.findall(r"^(?:before|after).*:\n\n((?: {4}.*\n)+)", text, re.MULTILINE)
+    texts = [re.sub("^ {4}", "", block, flags=re.MULTILINE) for block in blocks]
+    return list(zip([HAAS, LATHE], texts[::2], texts[1::2]))
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_the_page_shows_what_is_printed(number):
+    control, before, after = examples()[number]
+    assert translate_program(before, control).text == after
+
+
+def test_the_pages_own_control_is_one(tmp_path):
+    text = re.search(r"((?: {4}.*\n|\n)*? {4}# my_lathe.toml\n(?: {4}.*\n|\n)+)", PAGE.read_text())[
+        1
+    ]
+    (tmp_path / "my_lathe.toml").write_text(re.sub("^ {4}", "", text, flags=re.MULTILINE))
+    own = read_control(str(tmp_path / "my_lathe.toml"))
+    assert (own.decimals, own.meanings["M51"]) == ("whole", "M64 P0")
+
+
+# ---------------------------------------------------------------- hostile text
+
+PARTS = """
+G0 G1 G2 G28 G53 G91 G90 G81 G80 G10 L2 L10 G154 G65 M98 M97 M99 M30 P1 P100 O1 O100 N100
+X1. Y-1 Z.5 U1. W-2. H0 T0101 G12.1 G13.1 G112 G50 S100 G96 #1=2 #100=[1+2] WHILE[#1LT2]DO1
+END1 IF[#1EQ1]THEN#2=3 GOTO5 K0 L0 R Q.1 D1 G41 G40 ( ) [ ] % ; / # = é
+"""
+WORDS = st.sampled_from([*PARTS.split(), *"\n\n\n\n\0\t "])
+
+
+@hypothesis_settings(max_examples=300)
+@given(st.lists(WORDS, max_size=60), st.sampled_from([HAAS, FANUC, LATHE, HAAS_LATHE]))
+def test_any_text_is_translated_or_refused(words, control):
+    result = translate_program("".join(words), control)
+    assert bool(result.text) != bool(result.refused)
+    for line in result.text.splitlines():
+        assert len(line) <= 254 and line.isascii()
+
+
+@given(st.text(max_size=200))
+def test_any_characters_are_translated_or_refused(text):
+    result = translate_program(text, HAAS)
+    assert bool(result.text) != bool(result.refused)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "(" * 50000, ")" * 50000, "[" * 50000, "#" * 50000, "#1=" + "[" * 20000, "X" * 50000,
+        "G0 " * 20000, "#1=" + "1+" * 20000 + "1", "#1=" + "-" * 50000 + "1", "1" * 50000,
+        "X" + "1" * 50000, "G" + "9" * 50000, ";" * 50000, "#1=" + "FIX[" * 8 + "1" + "]" * 8,
+        "M98 P" + "1" * 5000, "O" + "1" * 5000, "#" + "1" * 5000 + "=1", "(" + "é" * 50000 + ")",
+    ],
+)  # fmt: skip
+def test_a_hostile_line_takes_a_bounded_time(line):
+    start = time.monotonic()
+    translate_program(f"G0 X0\n{line}\nM30\n", HAAS)
+    assert time.monotonic() - start < 5
