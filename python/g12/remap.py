@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from g12.host.loading import handlers_of
+from g12.host.loading import loaded_handlers
 
 CYCLES = (
     "circle_mill_perimeter",
@@ -19,5 +19,5 @@ CYCLES = (
 POLAR = ("polar_off", "polar_on")
 __all__ = [*CYCLES, *POLAR]  # what `from g12.remap import *` brings into a user's own remap
 
-globals().update(handlers_of("g12.host.cycle_prologs", CYCLES))
-globals().update(handlers_of("g12.host.polar_handlers", POLAR))
+globals().update(loaded_handlers("g12.host.cycle_prologs", CYCLES))
+globals().update(loaded_handlers("g12.host.polar_handlers", POLAR))

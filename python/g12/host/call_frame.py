@@ -80,7 +80,13 @@ class CallFrame:
         """Execute a block, and yield until the machine has done what it waits for.
 
         The block may stand in a sub of the section. Between it and the yield nothing may be read:
-        the interpreter would take the input at once.
+        the interpreter would take the input at once (`read_inputs`).
+
+        What goes on after the wait is block 0: `Interp::_read` (rs274ngc_pre.cc) reads no new line,
+        and `Interp::execute_call` (interp_o_word.cc) resumes the handler, only if it is the call of
+        a remap, at the level where the handler was called. Else milltask crashes. Behind the wait
+        the mark must go, or the next line would not be read either.
+        (Without it: `test_waiting_for_an_input` in tests/sim/test_polar.py.)
         """
         interp = self.interp
         level, remap_level = interp.call_level, interp.remap_level
@@ -112,8 +118,14 @@ class CallFrame:
     def _renumber(self, line: int) -> None:
         """Make the remapped block end on ``line``.
 
-        A remapped block remembers the line where it was found and goes back to it. That memory can
-        only be written by starting a remap, so the block is started again, as done but for its end.
+        A remapped block remembers the line where it was found (``saved_line_number``), and
+        `Interp::leave_remap` (rs274ngc_pre.cc) goes back to it. Only `Interp::enter_remap` writes
+        it, and for Python only execute with a line number calls that (`wrap_interp_execute_2` in
+        interpmodule.cc), here from one level lower and with nothing to execute. It makes the
+        remapped block of block 0, so the code is read again before. Then the block is told where
+        it was, and that its motion code is done with, or `Interp::remap_finished` would begin it.
+        (Without it: `test_line_numbers_inside_and_behind`; without the last two lines:
+        `test_expressions_and_functions_are_values`, as any section.)
         """
         interp, level = self.interp, self.remap_level
         interp.read(self._remap.name)

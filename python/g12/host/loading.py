@@ -11,7 +11,7 @@ from g12.errors import Refusal
 from g12.host import glue
 
 
-def handlers_of(module: str, names: Iterable[str]) -> dict[str, Callable]:
+def loaded_handlers(module: str, names: Iterable[str]) -> dict[str, Callable]:
     """Return the handlers of a module by name.
 
     If it does not load, the operator is told when LinuxCNC comes up, and each refuses with that.

@@ -149,15 +149,17 @@ class ProgramLines:
         """Make the interpreter read on behind the line taken.
 
         Nothing but the return from a sub moves its place in a file: so call an empty one, and
-        change where it returns to.
+        change where it returns to. `Interp::execute_call` (interp_o_word.cc) notes the place in
+        the caller's frame, `Interp::execute_return` seeks it. A called sub is skipped to until its
+        ``sub`` line is read (`Interp::control_back_to`), which here comes from a string.
+        (Without it: `test_line_numbers_behind_two_sections`; `test_subs_of_the_same_file` does not
+        end.)
         """
         interp, line = self.interp, self.line
         if self._in_file != line:
             interp.read(f"o<{SKIPPED_OVER}> call")
             interp.execute(None)
-            frame = interp.sub_context[interp.call_level - 1]
-            frame.position = self.source.starts[line]
-            frame.sequence_number = line
+            interp.sub_context[interp.call_level - 1].position = self.source.starts[line]
             for keyword in ("sub", "endsub"):
                 interp.read(f"o<{SKIPPED_OVER}> {keyword}")
                 interp.execute(None)

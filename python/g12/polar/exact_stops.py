@@ -7,6 +7,12 @@ and the tool passes the corner at the distance |v2 - v1| t / 8 = sin(d / 2) v**2
 move gathers speed as fast as its own axes can, so the distance is greater where these are quicker
 than those of the first, up to 2.2 times. With a C axis in motion the P of G64 limits none of it.
 
+               * corner
+           . ' | ' .            The velocity turns from v1 to v2 in the time t at the even rate
+     v1  .     |    .  v2       (v2 - v1) / t. That is a parabola from t / 2 in front of the corner
+       .   . - + - .   .        to t / 2 behind it. It passes the corner at |v2 - v1| t / 8, and
+     .  . '         ' .  .      |v2 - v1| is 2 v sin(d / 2).
+
 A stop costs v / a in time, about as much as the blending.
 """
 

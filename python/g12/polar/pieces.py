@@ -9,6 +9,13 @@ unit of length are sqrt(|difference| / (8 bulge)).
 The speed along the part is not constant inside a piece: it changes by the part sin(p)**2 dr / r.
 And where r grows by more than e times, none of this is true any more: pieces end before.
 
+                       r  . ' * place                             * place
+                     . '     |                         r  . '   /
+                . '          | s = d u                  . '     / R
+           . '               |                     . '         / a
+    pole +-------------------+ foot           pole +----------+- - - - a = 0
+                  d                                   e R      centre
+
 Line: its place is u, the tangent of the angle from the foot of the perpendicular d to the pole;
 along it s = d u and r = d sqrt(m) with m = 1 + u**2, and the curvature of the spirals is
 (1 + 2 u**2) / (d m**2).

@@ -14,6 +14,11 @@ deviation, and less where an end of an element is exactly on the path.
 An element is cut into parts at its apsides, the points nearest to the pole and farthest from it,
 which are ends of pieces: X turns round there, and a piece across would move C alone, or hardly any
 X.
+
+              o             o             o      off the path by the deviation
+           .    .         .   .         .
+    x----.--------.-----.-------.-----.------    the path; x, its end, is exactly on it
+      ' '           ' '           ' '            from o to o a piece bulges by 3/2 deviations
 """
 
 from __future__ import annotations
