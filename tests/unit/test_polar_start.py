@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a section goes by: from what it finds, the settings and the machine's axes."""
+
+import pytest
+
+from g12.errors import Refusal
+from g12.machine_ini import Axis
+from g12.polar.start import check_section_start, polar_setup
+from g12.section.line import SectionPlace
+from g12.section.modes import SectionModes
+from g12.section.start import SectionStart
+from g12.settings import Settings
+
+INCH = 25.4
+START = SectionStart(
+    place=SectionPlace("G12.1", 7),
+    alone=True,
+    level=1,
+    x=20.0,
+    c=0.0,
+    z=5.0,
+    machine_unit=1.0,
+    millimetre=1.0,
+    offsets={"X": 1.0, "Z": 2.0, "C": 90.0},
+    modes=SectionModes(False, False, 100.0, 0.0, 10),
+    spindle=0,
+    speeds=(0.0,),
+    tool_radius=None,
+    diameter=False,
+    yz_plane=False,
+    compensated=False,
+    offset_pending=False,
+    inverse_time=False,
+    surface_speed=False,
+    rotated=False,
+)
+AXES = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
+
+
+def setup_of(settings=Settings(), **found):  # noqa: B008 - it is frozen
+    return polar_setup(START._replace(**found), settings, AXES)
+
+
+@pytest.mark.parametrize(
+    ("found", "rule"),
+    [
+        ({"alone": False}, "stands alone in its block"),
+        ({"compensated": True}, "needs G40"),
+        ({"inverse_time": True}, "needs G94 or G95, not G93"),
+        ({"yz_plane": True}, "needs G18 or G17, not G19"),
+        ({"surface_speed": True}, "needs G97"),
+        ({"offset_pending": True}, "needs a move after G40"),
+        ({"rotated": True}, "needs an unrotated work offset"),
+        ({"x": 0.0}, "needs the tool at X above zero, not at 0"),
+    ],
+)
+def test_where_no_section_begins(found, rule):
+    check_section_start(START, "XZC")
+    with pytest.raises(Refusal) as refused:
+        check_section_start(START._replace(**found), "XZC")
+    assert str(refused.value).startswith(f"G12.1 line 7: G12.1 {rule}")
+
+
+def test_a_machine_needs_x_and_c():
+    with pytest.raises(Refusal, match="needs a machine with an X and a C axis"):
+        check_section_start(START, "XYZ")
+
+
+@pytest.mark.parametrize(
+    ("machine_unit", "millimetre", "tolerance"),
+    [
+        (1.0, 1.0, 0.005),  # mm machine in G21
+        (1 / INCH, 1 / INCH, 0.005 / INCH),  # mm machine in G20
+        (INCH, 1.0, 0.0002 * INCH),  # inch machine in G21
+        (1.0, 1 / INCH, 0.0002),  # inch machine in G20
+        (1 / 0.0393700787, 1.0, 0.0002 / 0.0393700787),  # LINEAR_UNITS = 0.0393700787
+    ],
+)
+def test_lengths_are_in_program_units(machine_unit, millimetre, tolerance):
+    made = setup_of(machine_unit=machine_unit, millimetre=millimetre)
+    assert made.tolerance == made.plan.tolerance == pytest.approx(tolerance)
+    assert made.plan.least_x == pytest.approx(0.001 * millimetre)
+    assert made.plan.x_acceleration == pytest.approx(1000.0 * machine_unit)
+    assert (made.plan.c_acceleration, made.plan.c_speed) == (1000.0, 3000.0)
+
+
+@pytest.mark.parametrize(
+    ("g7", "meant", "diameter", "scale"),
+    [
+        (True, "inherit", True, 1.0),
+        (False, "inherit", False, 1.0),
+        (False, "diameter", True, 0.5),
+        (True, "radius", False, 2.0),
+    ],
+)
+def test_x_words_are_diameters_or_radii(g7, meant, diameter, scale):
+    words = setup_of(Settings(polar_x=meant), diameter=g7).words
+    assert (words.diameter, words.x_scale) == (diameter, scale)
+
+
+def test_rapids_have_a_feed_only_where_they_may():
+    assert setup_of().words.rapid_feed is None
+    allowed = Settings(polar_g0="feed", polar_g0_feed=500.0)
+    assert setup_of(allowed, machine_unit=INCH).words.rapid_feed == pytest.approx(12700.0)
