@@ -119,9 +119,9 @@ class Recorder:
     def __init__(self, machine: TracedMachine) -> None:
         ini = read_ini(machine.ini)
         self._machine = machine
+        self.part = part_of(ini)
         self._tracer = Tracer(ini, tools=machine.tools)
         self._check_python()
-        self.part = part_of(ini)
         self._facts = {
             "machine": f"{ini.path.name} {hash_of(text_bytes(ini))}",
             "linuxcnc": machine.linuxcnc,

@@ -141,7 +141,8 @@ class RecordingWriter:
 
     def __init__(self, unit: float) -> None:
         self._scales = [1 / unit if linear else 1.0 for linear in LINEAR]
-        self._at = ["0"] * 9
+        self._at: Sequence[float] = (0.0,) * 9
+        self._texts_at = ["0"] * 9
         self._feed = ("", "G94")
 
     def line(self, step: Step) -> str:
@@ -149,20 +150,24 @@ class RecordingWriter:
         return f"  * {step.text}" if isinstance(step, Note) else f"  {' '.join(self._move(step))}"
 
     def _move(self, move: Move) -> list[str]:
-        start, end = self._at, self._texts(move.end)
-        words = [move.kind, *_changed(start, end)]
+        end = self._texts(move.end)
+        words = [move.kind, *_changed(self._texts_at, end)]
         if move.kind == "arc":
-            words += self._arc(move, start)
+            words += self._arc(move)
         if move.kind != "rapid":
             words += self._feed_words(move)
-        self._at = end
+        self._at, self._texts_at = move.end, end
         return words
 
     def _texts(self, position: Sequence[float]) -> list[str]:
-        return [number_text(value * scale) for value, scale in zip(position, self._scales)]
+        """Return the numbers of a position; most are those of the last one, as text already."""
+        known = zip(position, self._at, self._texts_at, self._scales)
+        return [text if value == at else number_text(value * scale)
+                for value, at, text, scale in known]  # fmt: skip
 
-    def _arc(self, move: Move, start: list[str]) -> list[str]:
-        words = ["centre", *_changed(start, self._texts(move.centre)), "turns", str(move.turns)]
+    def _arc(self, move: Move) -> list[str]:
+        centre = _changed(self._texts_at, self._texts(move.centre))
+        words = ["centre", *centre, "turns", str(move.turns)]
         if move.plane != 17:
             words += [f"G{move.plane}"]
             words += ["rotation", number_text(move.rotation)] if move.rotation else []
