@@ -3,7 +3,7 @@
 
 import pytest
 
-from g12.tools.translate.control import ControlError, read_control, shipped_controls
+from g12.tools.translate.blocks.control import ControlError, read_control, shipped_controls
 from g12.tools.translate.listing import listing_of
 
 NAMES = [

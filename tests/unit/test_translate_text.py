@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from g12.tools.translate.control import read_control
-from g12.tools.translate.lexer import program_text
+from g12.tools.translate.blocks.control import read_control
+from g12.tools.translate.blocks.lexer import program_text
 from g12.tools.translate.program import translate_program
 from support.sim_machines import ROOT
 

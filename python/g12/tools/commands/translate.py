@@ -26,8 +26,8 @@ from g12.tools.commands.arguments import GOOD, Parser, one_line
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, read_ini
-from g12.tools.translate.control import Control, ControlError, read_control, shipped_controls
-from g12.tools.translate.lexer import program_text
+from g12.tools.translate.blocks.control import Control, ControlError, read_control, shipped_controls
+from g12.tools.translate.blocks.lexer import program_text
 from g12.tools.translate.listing import listing_of
 from g12.tools.translate.program import RefusedBlock, translate_program
 

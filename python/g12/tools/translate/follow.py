@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from g12.tools.translate.control import Control
-from g12.tools.translate.draft import Draft, SubprogramCall
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.modal import GROUP_OF, ModalState, merged
+from g12.tools.translate.blocks.control import Control
+from g12.tools.translate.blocks.draft import Draft, SubprogramCall
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
 from g12.tools.translate.rules import WORD_RULES
 from g12.tools.translate.statements import STATEMENTS
 from g12.tools.translate.structure import MAIN, Structure

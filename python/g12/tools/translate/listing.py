@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from g12.tools.translate.control import Control
+from g12.tools.translate.blocks.control import Control
 
 REFUSED = "refuse: "
 HEADINGS = {

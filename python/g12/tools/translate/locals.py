@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from g12.tools.translate.draft import Draft
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.follow import FollowedProgram
-from g12.tools.translate.lexer import ForeignBlock
 from g12.tools.translate.rules.subprograms import ARGUMENTS
 
 LETTERS = {number: letter for letter, number in ARGUMENTS.items()}

@@ -6,10 +6,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from g12.tools.translate.draft import Draft
-from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import printable
 from g12.tools.translate.follow import FollowedProgram
-from g12.tools.translate.lexer import printable
 
 LONGEST_LINE = 254  # characters that LinuxCNC reads of a line
 LONGEST_MARK = 20  # of them for "/ " and "(line 123456)"

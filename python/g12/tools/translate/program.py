@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from g12.tools.translate.control import Control
-from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.blocks.control import Control
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import blocks_of, source_lines
 from g12.tools.translate.follow import FollowedProgram
-from g12.tools.translate.lexer import blocks_of, source_lines
 from g12.tools.translate.locals import unset_locals
 from g12.tools.translate.output import lines_of, output_lines
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS

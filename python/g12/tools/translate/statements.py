@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import Draft, line_as_word
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.expressions import NUMBER
-from g12.tools.translate.lexer import ForeignBlock
+from g12.tools.translate.blocks.draft import Draft, line_as_word
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.expressions import NUMBER
+from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.structure import Structure
 
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from g12.tools.translate.control import Control
-from g12.tools.translate.lexer import ForeignBlock, ForeignWord
+from g12.tools.translate.blocks.control import Control
+from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 
 MAIN = -1  # the number of the main program

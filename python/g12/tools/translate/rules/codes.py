@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from g12.tools.translate.control import MEANINGS
-from g12.tools.translate.draft import Draft
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.lexer import ForeignWord
+from g12.tools.translate.blocks.control import MEANINGS
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
 
 RULES = frozenset((*MEANINGS["G"], *MEANINGS["M"]))
 

@@ -9,10 +9,10 @@ motion.
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import AXIS_NUMBERS, Draft, word_of
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.lexer import ForeignWord
-from g12.tools.translate.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
 from g12.tools.translate.rules.dwell import time_in_seconds
 from g12.tools.translate.rules.motion import CONSUMERS, MOTIONS
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from decimal import Decimal
 
-from g12.tools.translate.draft import Draft
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.lexer import ForeignWord
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
 
 LENGTHS = frozenset("XYZUVWIJKRQE")
 ANGLES = frozenset("ABC")

@@ -8,8 +8,8 @@ words of LinuxCNC's polar mode and stay.
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import PARTNERS, Draft
-from g12.tools.translate.errors import NotTranslated
+from g12.tools.translate.blocks.draft import PARTNERS, Draft
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.rules.reference import place_of_increment
 
 

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import AXIS_NUMBERS, Draft
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.modal import AS_PROGRAMMED, GROUP_OF
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUP_OF
 
 LETTERS = frozenset("NGMFSTDHIJKLPQR$")
 

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import Draft
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.modal import AS_PROGRAMMED, GROUPS, UNKNOWN, is_sure
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUPS, UNKNOWN, is_sure
 
 MOTIONS = frozenset((*GROUPS["motion"], "G33"))
 CONSUMERS = frozenset(

@@ -12,10 +12,10 @@ value for length and wear: wear is kept in parameters and the sum is in the tabl
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import AXIS_NUMBERS, Draft, line_as_word
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.lexer import ForeignWord
-from g12.tools.translate.modal import UNKNOWN, UNSURE
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, line_as_word
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
 
 SLOT, SLOT_PARAMETER = "G59.3", 5381  # LinuxCNC's ninth system
 SYSTEMS = 99

@@ -7,10 +7,10 @@ it a radius here. Y is C and V is H. A rapid in polar mode is what the control's
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import Draft, line_as_word, word_of
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.lexer import ForeignWord
-from g12.tools.translate.modal import AS_PROGRAMMED, UNKNOWN, UNSURE, is_sure
+from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE, is_sure
 
 PLANES = frozenset(("G17", "G18", "G19"))
 RENAMED = {"Y": "C", "V": "H"}

@@ -7,10 +7,10 @@ given what a lathe writes with U, V, W and H, and lose the motion code beside th
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import AXIS_NUMBERS, PARTNERS, Draft, word_of
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.lexer import ForeignWord
-from g12.tools.translate.modal import AS_PROGRAMMED
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft, word_of
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED
 
 POINTS = frozenset(("G28", "G30"))
 MOTIONS = frozenset(("G0", "G1", "G2", "G3"))

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import Draft, word_of
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.modal import UNKNOWN, is_sure
+from g12.tools.translate.blocks.draft import Draft, word_of
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import UNKNOWN, is_sure
 
 
 def speed_limit(draft: Draft) -> None:

@@ -7,9 +7,9 @@ caller. G65 starts with its letters as #1 to #26 and gives the caller its own ba
 
 from __future__ import annotations
 
-from g12.tools.translate.draft import Draft, SubprogramCall, line_as_word
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.lexer import ForeignWord
+from g12.tools.translate.blocks.draft import Draft, SubprogramCall, line_as_word
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
 
 ARGUMENTS = dict(zip("ABCIJKDEFHMQRSTUVWXYZ", (*range(1, 10), 11, 13, *range(17, 27))))
 LOCAL_BLOCKS = 1_000_000  # a block called by M97 P100 is program O1000100

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import re
 
-from g12.tools.translate.draft import Draft, word_of
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.lexer import ForeignWord
-from g12.tools.translate.modal import UNKNOWN
+from g12.tools.translate.blocks.draft import Draft, word_of
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.modal import UNKNOWN
 
 COMPENSATION = frozenset(("G41", "G42"))
 USES_D = frozenset(("G41", "G42", "G12", "G13"))

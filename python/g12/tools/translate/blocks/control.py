@@ -21,7 +21,7 @@ from pathlib import Path
 
 import tomllib
 
-CONTROLS = Path(__file__).with_name("controls")
+CONTROLS = Path(__file__).parents[1] / "controls"
 MEANINGS = {
     "G": (
         "dwell", "polar on", "polar off", "cylinder", "speed limit or origin", "local offset",

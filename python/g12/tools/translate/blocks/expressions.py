@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from g12.tools.translate.errors import NotTranslated, excerpt
+from g12.tools.translate.blocks.errors import NotTranslated, excerpt
 
 NUMBER = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
 OPERATOR = re.compile(r"EQ|NE|GT|GE|LT|LE|AND|XOR|OR|MOD|[-+*/]")

@@ -13,8 +13,8 @@ import unicodedata
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from g12.tools.translate.errors import NotTranslated, excerpt
-from g12.tools.translate.expressions import (
+from g12.tools.translate.blocks.errors import NotTranslated, excerpt
+from g12.tools.translate.blocks.expressions import (
     Expression,
     bracketed_from,
     value_from,

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Container
 from typing import NamedTuple
 
-from g12.tools.translate.control import Control
-from g12.tools.translate.errors import NotTranslated
-from g12.tools.translate.lexer import ForeignBlock, ForeignWord
-from g12.tools.translate.modal import UNSURE, ModalState
+from g12.tools.translate.blocks.control import Control
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
+from g12.tools.translate.blocks.modal import UNSURE, ModalState
 
 AXIS_NUMBERS = {"X": 1, "Y": 2, "Z": 3, "A": 4, "B": 5, "C": 6}
 PARTNERS = {"U": "X", "V": "Y", "W": "Z", "H": "C"}  # a lathe's increments
