@@ -54,16 +54,16 @@ def called_files(texts: Sequence[Text], ini: Ini) -> set[Path]:
 
     They may command a D and move nothing, which no trace shows.
     """
+    folders = [ini.directory / os.path.expanduser(folder) for folder in folders_of_subs(ini)]
     found: set[Path] = set()
-    waiting = list(texts)
+    waiting = [texts]
     while waiting:
-        name = waiting.pop().call
-        places = (ini.directory / os.path.expanduser(folder) for folder in folders_of_subs(ini))
-        files = (place / f"{name}.ngc" for place in places)
-        file = next((file for file in files if name and file.is_file()), None)
-        if file and file not in found:
-            found.add(file)
-            waiting += read_lines(file)
+        for name in {text.call for text in waiting.pop() if text.call}:
+            files = (folder / f"{name}.ngc" for folder in folders)
+            file = next(filter(Path.is_file, files), None)
+            if file and file not in found:
+                found.add(file)
+                waiting.append(read_lines(file))
     return found
 
 
