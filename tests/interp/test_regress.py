@@ -319,7 +319,7 @@ def test_no_program_leaves_anything_to_the_next(shop):
         assert "\n  rapid X3\n" not in text
 
 
-ALL_AT_WORK = 5  # the command, two interpreters, each with a copy of itself for its program
+ALL_AT_WORK = 7  # the command, two interpreters of three processes each
 
 
 @pytest.fixture

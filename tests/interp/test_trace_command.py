@@ -10,6 +10,7 @@ import time
 import pytest
 
 from g12.tools.commands import main
+from support.processes import living, until
 from support.sim_machines import ROOT, SIM
 
 INI = SIM / "mill_mm.ini"
@@ -88,7 +89,7 @@ def test_a_number_that_is_none_is_one_line(told, tmp_path):
     assert errors == f"g12 plot: {ini}: [AXIS_X] MAX_VELOCITY = fast: must be a number\n"
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 def test_a_command_that_is_ended_leaves_nothing_behind(tmp_path, number, start):
     program, scratch = tmp_path / "part.ngc", tmp_path / "tmp"
     program.write_text("o1 while [1]\no1 endwhile\nM2\n")
@@ -101,8 +102,10 @@ def test_a_command_that_is_ended_leaves_nothing_behind(tmp_path, number, start):
         time.sleep(0.05)
     assert list(scratch.iterdir())
     process.send_signal(number)
-    assert process.wait(timeout=20) == 128 + number
-    assert list(scratch.iterdir()) == []
+    killed = number == signal.SIGKILL
+    assert process.wait(timeout=20) == (-number if killed else 128 + number)
+    assert until(lambda: not list(scratch.iterdir()), 10 * killed)
+    assert until(lambda: not living(process.pid), 10 * killed)
 
 
 def test_what_is_told_to_ignore_a_closed_terminal_ignores_it(tmp_path, start):

@@ -479,29 +479,41 @@ def reply_alone(connection: Connection, machine: dict, tools: Tools, request: di
     """Answer from a copy of this process, so that what the machine's modules keep is forgotten."""
     copy = os.fork()
     if copy:
-        if until_end(copy, connection):
+        _, status = os.waitpid(copy, 0)
+        if status:
             connection.send({"failure": "the interpreter died"})
         return
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    end_with_parent()
     reply(connection, machine, answered(machine, tools, request))
     os._exit(0)
 
 
-def until_end(copy: int, connection: Connection) -> int:
-    """Wait for a process, and end it if nobody waits for its answer; return its exit status."""
+def end_with_parent() -> None:
+    """Let this process be killed when the one that it is a copy of ends."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def serve(descriptor: int) -> None:
+    """Answer requests until the other end closes, in a copy that may be far from an answer."""
+    connection = Connection(descriptor)
+    machine = connection.recv()
+    copy = os.fork()
+    if not copy:
+        end_with_parent()
+        answer_requests(connection, machine)
+        return
     watched = select.poll()
     watched.register(connection, 0)  # tells of the other end's death in any case
     with open(os.pidfd_open(copy), "rb") as ended:
         watched.register(ended, select.POLLIN)
-        if connection.fileno() in dict(watched.poll()):
+        if connection.fileno() in dict(watched.poll()):  # died, or it would have ended this one
             os.kill(copy, signal.SIGKILL)
-    return os.waitpid(copy, 0)[1]
+            os.waitpid(copy, 0)
+            shutil.rmtree(os.path.dirname(machine["output"]), ignore_errors=True)
 
 
-def serve(descriptor: int) -> None:
-    """Answer requests until the other end closes."""
-    connection = Connection(descriptor)
-    machine = connection.recv()
+def answer_requests(connection: Connection, machine: dict) -> None:
+    """Load the machine and answer requests until the other end closes."""
     tools = Tools(machine["tool_table"], machine["random"])
     answer = start(machine, tools)
     known = tuple(answer.get("globals", ()))
@@ -509,8 +521,7 @@ def serve(descriptor: int) -> None:
     while True:
         try:
             request = {**connection.recv(), "known_globals": known}
-        except EOFError:  # the other end died, or it would have ended this one
-            shutil.rmtree(os.path.dirname(machine["output"]), ignore_errors=True)
+        except EOFError:
             return
         if request["alone"]:
             reply_alone(connection, machine, tools, request)
