@@ -241,7 +241,7 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
         "random": ini.get("EMCIO", "RANDOM_TOOLCHANGER", "0") not in ("0", ""),
         "units": 1.0 / unit,
         "axis_mask": sum(1 << AXES.index(letter) for letter in ini.axes),
-        "setup": [start_block(unit), "F0", *([startup] if startup else [])],
+        "setup": [start_block(unit), *([startup] if startup else [])],
     }
 
 

@@ -22,7 +22,7 @@ import traceback
 from multiprocessing.connection import Connection
 
 MM = 25.4  # the preview reports inches
-START = "G12 TRACE STARTS HERE"
+FRESH, START = "G12 TRACE SET-UP", "G12 TRACE STARTS HERE"
 EMPTY = (-1, *[0.0] * 12, 0)  # no tool yet
 UNLOADED = (0, *[0.0] * 12, 0)  # after T0 M6
 NO_OFFSET = (0.0,) * 9
@@ -216,7 +216,9 @@ class Canon:
             self._note_conditions(state)
 
     def comment(self, text: str) -> None:
-        """Forget the set-up when the program itself starts."""
+        """Begin without a feed, and forget the set-up when the program itself starts."""
+        if text == FRESH:
+            interpreter_object().feed_rate = 0.0  # not by F0: a machine may have remapped F
         if text == START:
             self.started = True
             self.moves.clear()
@@ -395,7 +397,7 @@ def interpret(machine: dict, tools: Tools, request: dict) -> dict:
     import gcode
 
     canon = Canon(machine, tools, request)
-    setup = ["G49", *machine["setup"], *request["setup"], f"({START})"]
+    setup = [f"({FRESH})", "G49", *machine["setup"], *request["setup"], f"({START})"]
     started = time.perf_counter()
     result, _ = gcode.parse(request["program"], canon, setup)
     seconds = time.perf_counter() - started
