@@ -68,7 +68,7 @@ def test_the_demo_goes_on_after_a_failure(tmp_path, monkeypatch, capsys):
     samples = [s for s in demo.SAMPLES if "example" in s.program or "slot" in s.program]
     monkeypatch.setattr(demo, "SAMPLES", tuple(samples))
 
-    def run(path, *_):
+    def run(path, *_, **_options):
         raise MachineError(f"{path.stem} did not come up")
 
     monkeypatch.setattr(samples_of_demo, "run_program", run)
