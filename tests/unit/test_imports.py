@@ -20,6 +20,7 @@ FORBIDDEN = {  # room: what none of its files imports
     "g12.tools": ("g12.host", "g12.remap"),
     "g12.tools.verify": PLANNERS,
 }
+ROLES = {"main", "command_parser", "plan_circle", "left_material"}  # one meaning, many files
 SHARED = [path.stem for path in PACKAGE.glob("*.py") if path.stem[:2] != "__"]
 
 
@@ -87,3 +88,14 @@ def test_the_arrows_between_rooms_make_no_circle():
         last = {room for room, others in arrows.items() if not others & arrows.keys()}
         assert last, f"a circle: {arrows}"
         arrows = {room: others for room, others in arrows.items() if room not in last}
+
+
+def test_no_public_name_has_two_meanings():
+    """What every command or every dialect has bears one name in all of them: see ``ROLES``."""
+    owners = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and node.name[0] != "_":
+                owners.setdefault(node.name, []).append(name_of(path))
+    twice = {name: files for name, files in owners.items() if len(files) > 1 and name not in ROLES}
+    assert not twice
