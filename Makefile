@@ -7,7 +7,7 @@ JOBS := $(shell nproc)
 # RIP=DIR uses the LinuxCNC that was built to run in place in DIR, instead of an installed one.
 IN_PLACE := $(if $(RIP),$(RIP)/scripts/rip-environment)
 
-.PHONY: help setup demo test test-on lint bench kinematics clean
+.PHONY: help setup demo test test-on lint bench deb kinematics clean
 
 help:
 	@echo "make demo   run the manuals' programs in headless LinuxCNC, pictures in build/demo"
@@ -16,6 +16,7 @@ help:
 	@echo "make lint   check the style of the code"
 	@echo "make bench  measure the figures the project promises"
 	@echo "make kinematics  build and install the kinematics of configs/kinematics (needs root)"
+	@echo "make deb    build the Debian package build/linuxcnc-g12_VERSION_all.deb"
 	@echo "make clean  remove what the others made"
 	@echo "RIP=DIR behind demo, test or bench: with the LinuxCNC built in DIR"
 
@@ -41,6 +42,9 @@ lint: $(RUFF)-$(RUFF_VERSION)
 bench: setup
 	@echo "bench: figures as ratios, each measured side by side in one run"
 	@$(IN_PLACE) sh -c 'PYTHONPATH=python:tests:$$PYTHONPATH $(PYTHON) -m bench'
+
+deb:
+	@sh .ci/deb
 
 kinematics:
 	@sh .ci/kinematics

@@ -15,3 +15,5 @@ The planners (`cycles`, `section`, `flat`, `polar`) are pure: numbers in, values
 README.md beside this file has the rooms, and the walk of a block and of a section.
 Lengths are in program units unless a docstring says otherwise, angles in radians.
 """
+
+__version__ = "0.1.0"

@@ -17,11 +17,12 @@ from g12.tools.install.checking import (
     read_config_text,
 )
 from g12.tools.install.rules import NOTE
+from g12.tools.system import CALL
 
-EXAMPLES = """\
+EXAMPLES = f"""\
 examples:
-  python3 python/g12 check ~/linuxcnc/configs/mill/mill.ini
-  python3 python/g12 check mill.ini --json
+  {CALL} check ~/linuxcnc/configs/mill/mill.ini
+  {CALL} check mill.ini --json
 
 exit code: 0 good, 1 something found, 2 wrong use"""
 

@@ -19,14 +19,15 @@ from g12.tools.install.checking import read_config_text
 from g12.tools.install.installation import excluding, install
 from g12.tools.install.plan import Refused
 from g12.tools.progress import print_all
+from g12.tools.system import CALL
 
 EXAMPLES = """\
 features:
 {features}
 
 examples:
-  python3 python/g12 install ~/linuxcnc/configs/mill/mill.ini --with haas circle-mill
-  python3 python/g12 install lathe.ini --with polar --dry-run
+  {call} install ~/linuxcnc/configs/mill/mill.ini --with haas circle-mill
+  {call} install lathe.ini --with polar --dry-run
 
 exit code: 0 done or nothing to do, 1 refused, 2 wrong use"""
 
@@ -38,7 +39,7 @@ def command_parser() -> Parser:
         prog="g12 install",
         description="Put the package into a machine config: a copy in the folder g12 beside the "
         "INI, and the lines that name it. Shows what changes; keeps the old files.",
-        epilog=EXAMPLES.format(features=listed),
+        epilog=EXAMPLES.format(call=CALL, features=listed),
     )
     parser.add_argument("ini", nargs="?", type=Path, help="INI file of the machine")
     parser.add_argument(

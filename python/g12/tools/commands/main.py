@@ -11,6 +11,9 @@ import select
 import sys
 from importlib import import_module
 
+from g12 import __version__
+from g12.tools.system import CALL
+
 FAILED = 1
 INTERRUPTED, UNREAD = 130, 141  # as a shell says of a program ended by SIGINT, SIGPIPE
 
@@ -41,7 +44,7 @@ COMMANDS = {
 def usage() -> str:
     """Return the list of commands."""
     lines = (f"  {name:10} {summary}" for name, (_, summary) in COMMANDS.items())
-    return "\n".join(["usage: python3 python/g12 COMMAND [-h] …", "", *lines])
+    return "\n".join([f"usage: {CALL} COMMAND [-h] …", "", *lines])
 
 
 def main(arguments: list[str]) -> int:
@@ -64,6 +67,9 @@ def command(name: str, arguments: list[str]) -> int:
     """Run a command; return its exit code."""
     if name in ("-h", "--help"):
         print(usage())
+        return 0
+    if name == "--version":
+        print(f"g12 {__version__}")
         return 0
     if name not in COMMANDS:
         print(f"g12: no command {name!r} (usage: g12 --help)", file=sys.stderr)

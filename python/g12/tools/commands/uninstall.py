@@ -13,10 +13,11 @@ from g12.tools.commands.arguments import GOOD, Parser, one_line
 from g12.tools.install.checking import read_config_text
 from g12.tools.install.removal import uninstall
 from g12.tools.progress import print_all
+from g12.tools.system import CALL
 
-EXAMPLES = """\
+EXAMPLES = f"""\
 example:
-  python3 python/g12 uninstall ~/linuxcnc/configs/mill/mill.ini
+  {CALL} uninstall ~/linuxcnc/configs/mill/mill.ini
 
 exit code: 0 done or nothing to do, 2 wrong use"""
 

@@ -20,6 +20,7 @@ from g12.tools.install import features
 from g12.tools.install.config import MOST_FOLDERS, Config, folder_from_ini, subs_named
 from g12.tools.install.ini_edit import IniLine
 from g12.tools.machine.ini import INCLUDE
+from g12.tools.system import CALL
 
 PROBLEM, WARNING, NOTE = "problem", "warning", "note"
 OLDEST = (2, 9)
@@ -180,7 +181,7 @@ def codes_missing(_config: Config, codes: list[Code]) -> Iterator[Finding]:
         yield problem(
             "no-codes",
             "no code of the package is set up here",
-            "python3 python/g12 install INI --with haas (or another; see install --help)",
+            f"{CALL} install INI --with haas (or another; see install --help)",
         )
 
 
