@@ -661,7 +661,7 @@ def test_a_mode_that_cannot_work_is_refused(inch, name, event, mode, rule):
     elif mode == "G93":
         event = event.replace("-9999] [-9999]", "-9999] [10]")
     traced = inch.trace_text([*BEFORE, mode, event])
-    assert traced.error.text == f"{name}: {rule}"
+    assert traced.error.text == f"{name} line {len(BEFORE) + 2}: {rule}"
     assert len(traced.moves) == 1
 
 
@@ -696,5 +696,5 @@ def test_a_word_of_the_code_inside_the_subroutine_is_refused(inch, word, rule):
     edited = ["o<circle_mill> sub", f"  G12.2 {word}", "o<circle_mill> endsub"]
     event = call(g=7, x=0, y=0, z=-0.1, w=0.1, r=1, c=2)
     traced = inch.trace_text([*edited, *BEFORE, event])
-    assert traced.error.text == f"G12.2: {rule}"
+    assert traced.error.text == f"G12.2 line 2: {rule}"
     assert len(traced.moves) == 1

@@ -234,7 +234,7 @@ def test_bare_words_of_a_code_that_is_no_contour(lathe, cycle):
 @pytest.mark.parametrize("words", ["X7", "C90", "K3", "D5", "R2", "I1"])
 def test_words_beside_the_code_that_ends_no_section(lathe, words):
     traced = lathe.trace_text([FIRST, f"G13.1 {words}", "M2"])
-    assert traced.error.text == "G13.1 stands alone in its block"
+    assert traced.error.text == "G13.1 line 2: G13.1 stands alone in its block"
 
 
 @pytest.mark.parametrize(

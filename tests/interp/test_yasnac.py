@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry, mode_matrix
+from support.refusals import at_line
 from support.sim_machines import PROGRAMS, ROOT, SIM
 
 TOOLS = {1: 6.0, 3: -4.0, 10: 20.0}
@@ -322,7 +323,7 @@ def test_a_bad_block_moves_nothing_and_changes_nothing(metric, block, message):
 def test_a_mode_that_cannot_work_is_refused(metric, mode, message):
     block = "G12 I50 D10 F100" if mode == "G93" else "G12 I50 D10"
     traced = metric.trace_text([FIRST, "G0 X3", mode, block])
-    assert traced.error.text == message
+    assert traced.error.text == at_line(message, 4)
     assert len(traced.moves) == 1
 
 

@@ -10,6 +10,7 @@ from shapely.geometry import MultiLineString, Point
 from g12.tools.headless.machine import Machine
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry
+from support.refusals import at_line
 from support.sim_machines import BRISK, SIM
 
 TOOLS = {1: 6.0, 2: 10.0}
@@ -173,12 +174,29 @@ def test_a_refused_block_moves_nothing_and_says_why(machine, way):
         machine.start()
         machine.wait_idle()
     samples, after = machine.samples(), machine.stat()
-    assert [error.text for error in machine.errors()] == [
-        "G12: I2 must be greater than the tool radius 3 (D1)"
-    ]
+    said = "G12: I2 must be greater than the tool radius 3 (D1)"
+    expected = at_line(said, 1) if way == "auto" else said
+    assert [error.text for error in machine.errors()] == [expected]
     assert not samples.moving().any()
     assert after.position == pytest.approx(before.position)
     assert after.modes.gcodes == before.modes.gcodes
+
+
+def test_a_refusal_in_a_sub_says_its_line_and_file(tmp_path):
+    (tmp_path / "flat.ngc").write_text("o<flat> sub\n\nG12 I2 Z-1 D1\no<flat> endsub\n")
+    paths = {"RS274NGC": {"SUBROUTINE_PATH": f"{tmp_path}:../../ngc:subs"}}
+    with Machine(SIM / "mill_mm.ini", tools=TOOLS, overrides=paths) as machine:
+        run = machine.run_text([FIRST, "G12 I9 Z0 D1", "o<flat> call", "M2"])
+        said = "G12 line 3 of flat.ngc: I2 must be greater than the tool radius 3 (D1)"
+        assert run.error.text == said
+        machine.mdi("o<flat> call")
+        machine.mdi("G12 I2 Z-1 D1")
+        machine.mdi("o<circle_mill> call [3]")
+        assert [error.text.split(": ")[0] for error in machine.errors()] == [
+            "G12 line 3 of flat.ngc",
+            "G12",
+            "circle_mill",
+        ]
 
 
 def test_an_operator_message_does_not_stop_the_cut(machine):

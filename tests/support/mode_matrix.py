@@ -13,6 +13,7 @@ import pytest
 from hypothesis import strategies as st
 
 from support import cut_geometry
+from support.refusals import at_line
 
 INCH = 25.4
 MODES = list(
@@ -105,8 +106,9 @@ def check_refused(tracer, before, block, message):
     found = tracer.trace_text(before)
     after = tracer.trace_text([*before, block])
     assert after.error is not None, block
-    assert after.error.text == message
-    assert len(message) <= 255
+    line = len(before) + 1
+    assert (after.error.text, after.error.line) == (at_line(message, line), line)
+    assert len(after.error.text) <= 255
     assert after.moves == found.moves
     assert after.modes == found.modes
     assert after.state == found.state
@@ -137,7 +139,7 @@ def check_cut_or_refused(tracer, before, block, name):
         assert len(after.moves) > len(found.moves)
         assert after.modes == found.modes
     else:
-        assert after.error.text.startswith((f"{name}: ", *OF_THE_PARSER))
+        assert after.error.text.startswith((f"{name} line {len(before) + 1}: ", *OF_THE_PARSER))
         assert (after.moves, after.modes) == (found.moves, found.modes)
 
 

@@ -7,7 +7,7 @@ the rule and the value in the same way.
 
 from __future__ import annotations
 
-from g12.errors import Refusal, number
+from g12.errors import BlockRefusal, number
 from g12.lengths import LARGEST
 
 WHOLE = 1e-4  # LinuxCNC's own tolerance for "close to an integer"
@@ -32,9 +32,9 @@ class Words:
         """Tell whether the word is in the block and not yet taken."""
         return letter in self._left
 
-    def refuse(self, rule: str) -> Refusal:
+    def refuse(self, rule: str) -> BlockRefusal:
         """Return the refusal of this block for breaking ``rule`` (the caller raises it)."""
-        return Refusal(f"{self.code}: {rule}")
+        return BlockRefusal(self.code, rule)
 
     def take(self, letter: str) -> float | None:
         """Return the word's value, or None if the block does not have it."""

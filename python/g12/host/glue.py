@@ -10,9 +10,11 @@ import functools
 import sys
 
 import emccanon
+import linuxcnc
 from interpreter import INTERP_ERROR
 
-from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.errors import LONGEST_MESSAGE, BlockRefusal, Refusal
+from g12.host.program_lines import line_of_block, line_of_call
 from g12.lengths import MM_PER_INCH
 from g12.settings import Settings, settings_from_environment
 
@@ -57,12 +59,36 @@ def refuse_block(interp: object, error: Exception) -> int:
     Raising or returning a string would not do: LinuxCNC shows "pycall(...) failed" instead. It
     hands a failed execute over as a SystemError, whose own text stands already.
     """
+    if isinstance(error, BlockRefusal):
+        error = error.at(line_of_refusal(interp, error))
     if isinstance(error, Refusal):
         interp.set_errormsg(error.message)
     elif not isinstance(error, SystemError):
         sys.excepthook(type(error), error, error.__traceback__)
         interp.set_errormsg(fault_text(error)[:LONGEST_MESSAGE])
     return INTERP_ERROR
+
+
+def line_of_refusal(interp: object, refusal: BlockRefusal) -> int | None:
+    """Return the line of a refused block, None where it is typed in MDI.
+
+    A code that stands for a sub refuses in the sub's name: the line is the one that calls.
+    """
+    level = interp.call_level - (refusal.code != code_of_block(interp))
+    mdi = in_mdi(interp)
+    if mdi and level == 1:
+        return None
+    find = line_of_block if level == interp.call_level else line_of_call
+    return find(interp, in_program=not mdi)
+
+
+def in_mdi(interp: object) -> bool:
+    """Tell whether the block, or what called its sub, was typed in MDI."""
+    if not interp.task:
+        return False
+    status = linuxcnc.stat()
+    status.poll()
+    return status.task_mode == linuxcnc.MODE_MDI
 
 
 def fault_text(error: Exception) -> str:
@@ -79,8 +105,9 @@ def handler(function):
             refuse_start_error()
             return function(self, **words)
         except Exception as error:
+            status = refuse_block(self, error)
             forget_return(self)
-            return refuse_block(self, error)
+            return status
 
     return guarded
 

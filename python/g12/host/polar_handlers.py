@@ -11,7 +11,7 @@ import interpreter
 import linuxcnc
 from interpreter import INTERP_OK, MODE_ABSOLUTE
 
-from g12.errors import Refusal
+from g12.errors import BlockRefusal, Refusal
 from g12.host import glue
 from g12.host.call_frame import CallFrame
 from g12.host.polar_section import PolarSection
@@ -73,17 +73,14 @@ def polar_off(self, **words) -> int:
     """Do nothing: the handler of G13.1 outside a section, where it is a safety line."""
     block = self.blocks[self.remap_level]
     if any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS):
-        raise Refusal(f"{glue.code_of_block(self)} stands alone in its block")
+        code = glue.code_of_block(self)
+        raise BlockRefusal(code, f"{code} stands alone in its block")
     return INTERP_OK
 
 
 def refuse_mdi(interp: object) -> None:
     """Refuse a section in MDI, where the next line could be an old program's."""
-    if not interp.task:
-        return
-    status = linuxcnc.stat()
-    status.poll()
-    if status.task_mode == linuxcnc.MODE_MDI:
+    if glue.in_mdi(interp):
         code = glue.code_of_block(interp)
         raise Refusal(f"{code} is not possible in MDI: it needs the lines behind it")
 

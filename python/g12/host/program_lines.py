@@ -56,8 +56,32 @@ class LineOfFile(int):
         return number
 
     def __format__(self, spec: str) -> str:
-        """Return the number and the file."""
-        return f"{int(self)} of {self.file}"
+        """Return the number and the file, which leaves room for the rule behind it."""
+        return f"{int(self)} of {self.file:.80}"
+
+
+def line_of_block(interp: object, *, in_program: bool) -> int | None:
+    """Return the line of the block being remapped; ``in_program``: a program runs, not MDI."""
+    offset = interp.blocks[interp.remap_level].offset
+    return _line_at(interp, interp.filename, offset, in_program)
+
+
+def line_of_call(interp: object, *, in_program: bool) -> int | None:
+    """Return the line that calls the sub in which the block being remapped stands."""
+    frame = interp.sub_context[interp.call_level - 2]
+    return _line_at(interp, frame.filename, frame.position - 1, in_program)
+
+
+def _line_at(interp: object, filename: str, offset: int, in_program: bool) -> int | None:
+    """Return the line at a byte, which tells its file if that is not the program's own."""
+    try:
+        with open(filename, "rb") as file:
+            line = file.read(max(0, offset)).count(b"\n") + 1
+    except OSError:  # an initial block of the INI is in no file
+        return None
+    program = interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
+    own = in_program and filename == program
+    return line if own else LineOfFile(line, os.path.basename(filename))
 
 
 def error_text(interp: object) -> str:

@@ -24,7 +24,7 @@ def traced(program: Path, ini: Path, tools: Tools = None, parameters: Parameters
 def ended(program: Path, result: Trace) -> Trace:
     """Return a trace that came to its end, or raise ProgramError."""
     if result.error:
-        raise ProgramError(f"{program}:{result.error.line}: {result.error.text}")
+        raise ProgramError(f"{program}:{result.error.line}: {result.error.rule}")
     return result
 
 

@@ -11,6 +11,7 @@ position plus ``Move.tool_offset``.)
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -49,6 +50,11 @@ class Error(NamedTuple):
 
     text: str
     line: int
+
+    @property
+    def rule(self) -> str:
+        """The text without ``line``, for where that stands in front: ``G12: I is missing …``."""
+        return re.sub(rf"^(\S+) line {self.line}: ", r"\1: ", self.text)
 
 
 @dataclass(frozen=True)

@@ -236,18 +236,18 @@ def _endings(was: Recording, now: Recording, lost: list[Edit]) -> list[Differenc
     """Return what is different in how the programs end."""
     if not was.error and not now.error:
         return _ends(was.end, now.end)
-    if was.error and now.error and was.error.text == now.error.text:
+    if was.error and now.error and was.error.rule == now.error.rule:
         same = was.error.line == now.error.line or was.facts["program"] != now.facts["program"]
-        text = f"refused at this line, was at line {was.error.line}: {now.error.text}"
+        text = f"refused at this line, was at line {was.error.line}: {now.error.rule}"
         return [] if same else [Difference("refused", text, line=now.error.line)]
     if not now.error:
-        text = f"no longer refused, was at line {was.error.line}: {was.error.text}"
+        text = f"no longer refused, was at line {was.error.line}: {was.error.rule}"
         return [Difference("accepted", text, line=was.error.line)]
     steps = tuple(index for edit in lost for index in edit.was)
     count = sum(isinstance(was.steps[index], Move) for index in steps)
-    before = f", was refused at line {was.error.line}: {was.error.text}" if was.error else ""
+    before = f", was refused at line {was.error.line}: {was.error.rule}" if was.error else ""
     missing = f"; {count} moves are missing" if count else ""
-    text = f"refused: {now.error.text}{missing}{before}"
+    text = f"refused: {now.error.rule}{missing}{before}"
     return [Difference("refused", text, was=steps, moves=count, line=now.error.line)]
 
 

@@ -249,7 +249,7 @@ def _finding(difference: Difference, was: Recording, now: Recording) -> RegressF
 def _summary(recording: Recording) -> str:
     moves = sum(isinstance(step, Move) for step in recording.steps)
     error = recording.error
-    return f"refused at line {error.line}: {error.text}" if error else f"{moves} moves"
+    return f"refused at line {error.line}: {error.rule}" if error else f"{moves} moves"
 
 
 def _picture(job: Job, was: Recording, now: Recording, found, recorder: Recorder) -> str:

@@ -93,7 +93,7 @@ def recording_of(trace: Trace, program: Path, facts: dict[str, str]) -> Recordin
     numbers = {step.block for step in steps} | ({trace.error.line} if trace.error else set())
     blocks = {line: lines[line - 1].strip() for line in numbers if 0 < line <= len(lines)}
     if trace.error:
-        error = Error(without_folders(trace.error.text), trace.error.line)
+        error = Error(without_folders(trace.error.rule), trace.error.line)
         return Recording(facts, steps, blocks, error)
     return Recording(facts, steps, blocks, end=_end(trace.modes))
 
