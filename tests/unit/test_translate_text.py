@@ -103,6 +103,10 @@ def test_bytes_of_any_kind_are_text():
     assert lines(HAAS, "\ufeff%\nG0 X0\nM30\n")[0].endswith("(%)")
 
 
+def test_what_stands_behind_the_percent_sign_is_a_comment():
+    assert lines(HAAS, "%O5°(A)\nG0 X0\nM30\n")[0].endswith("(%O5?)(A)")
+
+
 def test_a_minus_sign_is_a_minus_and_a_dash_is_not():
     assert behind(HAAS, "X\N{MINUS SIGN}1.\nM30\n")[0] == "X-1."
     assert sentence(HAAS, "G0 X\N{EN DASH}1.\n").sentence.startswith("X has no value: –1.")
@@ -174,6 +178,8 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G68 X0", "G68: rotation: set it with"),
         (HAAS, "G76 X1. Z-1.", "G76: fine boring"),
         (HAAS, "G200 X1.", "G200 is not known of haas-mill"),
+        (HAAS, "G-1 X1.", "G-1 is not known of haas-mill"),
+        (HAAS, "M.5", "M.5 is not known of haas-mill"),
         (HAAS, "G#1 X1.", "G#1: a code must be a number"),
         (HAAS, "G0 G1 X1.", "G0 and G1 in one block"),
         (HAAS, "G0 X1. X2.", "X stands twice"),

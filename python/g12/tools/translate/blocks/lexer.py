@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated, excerpt
@@ -24,6 +25,7 @@ from g12.tools.translate.blocks.expressions import (
 
 PLAIN_WORDS = re.compile(r"(?:[A-Z][-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))*")
 PLAIN_WORD = re.compile(r"([A-Z])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
+CODE_NUMBER = re.compile(r"([0-9]+)\.?([0-9]*)")
 NAMED_WORD = re.compile(r"([A-Z]{2})=")
 SKIP = re.compile(r"/([0-9]?)")
 STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])")
@@ -34,6 +36,16 @@ MINUS = "\N{MINUS SIGN}"
 EMPTY_CHARACTERS = "\ufeff\u200b\0"
 MOST_DIGITS = 24
 PLANE_CODES = frozenset(("G17", "G18", "G19"))
+
+
+@lru_cache(maxsize=1024)
+def code_of(letter: str, value: str) -> str:
+    """Return a code by one name; one that is no code at all as it is written."""
+    match = CODE_NUMBER.fullmatch(value)
+    if not match:
+        return letter + value
+    part = match[2].rstrip("0")
+    return f"{letter}{int(match[1])}{'.' + part if part else ''}"
 
 
 class ForeignWord(NamedTuple):
@@ -62,9 +74,7 @@ class ForeignWord(NamedTuple):
     @property
     def code(self) -> str:
         """A G or M word by one name, whatever zeros it has: ``G1``, ``G12.1``."""
-        whole, _, part = self.value.partition(".")
-        part = part.rstrip("0")
-        return f"{self.letter}{int(whole or 0)}{'.' + part if part else ''}"
+        return code_of(self.letter, self.value)
 
 
 class ForeignBlock(NamedTuple):
@@ -173,7 +183,7 @@ def _block(line: int, text: str, comments: tuple[str, ...]) -> ForeignBlock:
 
 def _parsed(line: int, text: str) -> ForeignBlock:
     if text.startswith("%"):
-        return ForeignBlock(line, "tape", label=text[1:])
+        return ForeignBlock(line, "tape", label=printable(text[1:]))
     if text.startswith(":"):
         text = f"O{text[1:]}"
     skip = SKIP.match(text)
