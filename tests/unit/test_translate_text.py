@@ -203,6 +203,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G83 Z-1. R.1 I.1 J.1 K.1 Q.1", "G83 with I is not translated"),
         (HAAS, "G81 Z-1. R.1 L0 X1.", "G81 with L0 only stores"),
         (HAAS, "G154 P100", "G154 P100 must be from 1 to 99"),
+        (HAAS, "G54 G154 P1", "G54 and G154 in one block"),
         (HAAS, "G154", "G154 needs P and a whole number"),
         (HAAS, "G10 L5 P1 X1.", "G10 needs L2"),
         (HAAS, "G10 L12 P3 G91 R.1", "G10 for the diameter of T3"),

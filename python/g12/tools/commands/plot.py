@@ -7,6 +7,7 @@ that turns C on the face of the part, and over time; a turning program in Z and 
 
 from __future__ import annotations
 
+import argparse
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +22,8 @@ from g12.tools.commands.arguments import (
 )
 from g12.tools.errors import UsageError
 from g12.tools.headless.run import run_program
+from g12.tools.machine.filter import opened_program
+from g12.tools.machine.ini import Ini
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import scene_of
@@ -60,23 +63,29 @@ def main(arguments: list[str]) -> int:
         style.check_format(options.output)
     except style.PictureError as problem:
         raise UsageError(str(problem)) from None
-    on_machine = (options.program, options.ini, options.tools, options.var)
+    with opened_program(options.program, ini) as opened:
+        draw(opened.path, ini, options)
+    print(f"{options.output} written")
+    return GOOD
+
+
+def draw(program: Path, ini: Ini, options: argparse.Namespace) -> None:
+    """Draw a program as LinuxCNC reads it."""
+    on_machine = (program, options.ini, options.tools, options.var)
     samples = None
-    with working(f"interpreting {options.program.name}"):
+    with working(f"interpreting {program.name}"):
         trace = traced(*on_machine)
         if not trace.moves:
             raise UsageError(f"{options.program}: moves nothing, so there is nothing to draw")
     if options.run:
-        with working(f"running {options.program.name}, real time", clock=True):
+        with working(f"running {program.name}, real time", clock=True):
             run = run_program(*on_machine, override=options.override)
         samples = run.samples
     with working(f"drawing {options.output.name}"):
-        subject = subject_of(options.program, ini, trace, samples)
+        subject = subject_of(program, ini, trace, samples)
         scene = replace(
             scene_of(subject, options.units, options.feeds),
             override=options.override,
             collisions=tuple(collisions_in(subject, options.tools, options.var)),
         )
         style.save(picture_of(scene), options.output)
-    print(f"{options.output} written")
-    return GOOD

@@ -22,6 +22,7 @@ from g12.tools.commands.arguments import (
 )
 from g12.tools.headless.machine import Run
 from g12.tools.headless.run import run_anyhow
+from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.ended import text_with_axes
 from g12.tools.preview.moves import LINEAR
@@ -59,12 +60,13 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--timeout", **timeout, help="give up after this (default 600)")
     options = parser.parse_args(arguments)
     ini = checked_ini(options)
-    result = run_anyhow(
-        options.program, options.ini, options.tools, options.var, timeout=options.timeout
-    )
+    with opened_program(options.program, ini) as opened:
+        result = run_anyhow(
+            opened.path, options.ini, options.tools, options.var, timeout=options.timeout
+        )
     for line in lines_of_run(result, ini):
         print(line)
     if result.error:
-        text = text_with_axes(result.error.text, options.ini)
+        text = opened.in_source(text_with_axes(result.error.text, options.ini))
         print(f"g12 run: {options.program}: {text}", file=sys.stderr)
     return FINDING if result.error else GOOD

@@ -17,8 +17,10 @@ from g12.tools.commands.arguments import (
     count_from,
     one_line,
 )
+from g12.tools.machine.filter import opened_program
 from g12.tools.preview.ended import ended, with_axes
 from g12.tools.preview.moves import Move
+from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import trace
 
 EXAMPLES = """\
@@ -54,9 +56,10 @@ def main(arguments: list[str]) -> int:
     digits = {"type": count_from(0), "default": 6, "metavar": "N"}
     parser.add_argument("--digits", **digits, help="decimals (default 6)")
     options = parser.parse_args(arguments)
-    checked_ini(options)
-    found = trace(options.program, options.ini, tools=options.tools, parameters=options.var)
-    traced = with_axes(found, options.ini)
+    ini = checked_ini(options)
+    with opened_program(options.program, ini) as opened:
+        found = trace(opened.path, options.ini, tools=options.tools, parameters=options.var)
+    traced = with_axes(trace_in_source(found, opened), options.ini)
     for move in traced.moves:
         print(line_of(move, options.digits))
     for line, text in traced.messages:

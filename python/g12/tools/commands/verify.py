@@ -7,6 +7,9 @@ LinuxCNC makes of it, or with --run from the real motion of a headless run.
 
 from __future__ import annotations
 
+import argparse
+from pathlib import Path
+
 from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
@@ -20,11 +23,14 @@ from g12.tools.commands.arguments import (
 )
 from g12.tools.errors import UsageError
 from g12.tools.headless.run import run_program
+from g12.tools.machine.filter import opened_program
+from g12.tools.machine.ini import Ini
 from g12.tools.preview.ended import traced
 from g12.tools.progress import working
 from g12.tools.units import UNITS, unit_of
-from g12.tools.verify.proof import prove
+from g12.tools.verify.proof import Proof, prove
 from g12.tools.verify.report import as_json, as_text
+from g12.tools.verify.source_lines import proof_in_source
 
 EXAMPLES = """\
 examples:
@@ -60,16 +66,27 @@ def main(arguments: list[str]) -> int:
     options = command_parser().parse_args(arguments)
     check_run(options)
     ini = checked_ini(options)
-    on_machine = (options.program, options.ini, options.tools, options.var)
+    with opened_program(options.program, ini) as opened:
+        proof = proof_in_source(proof_of(opened.path, ini, options), opened)
+    if not (proof.pockets or proof.sections or proof.unseen):
+        raise UsageError(f"{options.program}: has no pocket and no polar section to verify")
+    unit = unit_of(proof.subject.trace.modes.gcodes, options.units)
+    print(as_json(proof) if options.json else as_text(proof, unit))
+    return FINDING if proof.findings else GOOD
+
+
+def proof_of(program: Path, ini: Ini, options: argparse.Namespace) -> Proof:
+    """Return the proof of a program as LinuxCNC reads it."""
+    on_machine = (program, options.ini, options.tools, options.var)
     samples = None
     if options.run:
         traced(*on_machine)
-        with working(f"running {options.program.name}, real time", clock=True):
+        with working(f"running {program.name}, real time", clock=True):
             run = run_program(*on_machine, override=options.override)
         samples = run.samples
-    with working(f"interpreting {options.program.name}") as tell:
-        proof = prove(
-            options.program,
+    with working(f"interpreting {program.name}") as tell:
+        return prove(
+            program,
             ini,
             tools=options.tools,
             parameters=options.var,
@@ -77,8 +94,3 @@ def main(arguments: list[str]) -> int:
             tolerance=options.tolerance,
             tell=tell,
         )
-    if not (proof.pockets or proof.sections or proof.unseen):
-        raise UsageError(f"{options.program}: has no pocket and no polar section to verify")
-    unit = unit_of(proof.subject.trace.modes.gcodes, options.units)
-    print(as_json(proof) if options.json else as_text(proof, unit))
-    return FINDING if proof.findings else GOOD

@@ -12,12 +12,15 @@ from __future__ import annotations
 
 import argparse
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 if __name__ == "__main__":
     sys.path[0] = str(Path(__file__).resolve().parents[3])
 
+from g12.tools.errors import ProgramError
 from g12.tools.headless.operator_panel import Panel, PanelError
+from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini, read_ini
 
 LONGEST_PROGRAM = 24 * 3600.0  # s
@@ -58,11 +61,13 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("-ini", required=True)
     parser.add_argument("program", nargs="*")
     named = parser.parse_args(arguments)
-    program = program_to_run(read_ini(named.ini), named.program)
+    ini = read_ini(named.ini)
+    program = program_to_run(ini, named.program)
     panel = Panel()
     try:
-        worked = run_to_end(panel, program)
-    except PanelError as error:
+        with opened_program(program, ini) if program else nullcontext() as opened:
+            worked = run_to_end(panel, opened and opened.path)
+    except (PanelError, ProgramError) as error:
         print(f"error: {error}", file=sys.stderr)
         worked = False
     print(f"{program or 'homing'}: {'done' if worked else 'FAILED'}", flush=True)

@@ -12,11 +12,13 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from g12.tools.errors import UsageError
+from g12.tools.errors import ProgramError, UsageError
+from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.path.part import part_of
 from g12.tools.preview.loading import linuxcnc_version, python_error
 from g12.tools.preview.moves import Move
+from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.progress import Tell
 from g12.tools.regress.differences import Difference, differences, program_lines
@@ -119,6 +121,7 @@ class Recorder:
     def __init__(self, machine: TracedMachine) -> None:
         ini = read_ini(machine.ini)
         self._machine = machine
+        self._ini = ini
         self.part = part_of(ini)
         self._tracer = Tracer(ini, tools=machine.tools)
         self._check_python()
@@ -148,7 +151,12 @@ class Recorder:
         facts = {"program": f"{name} {hash_of(program.read_bytes())}", **self._facts}
         machine = self._machine
         options = {"parameters": machine.parameters, "timeout": machine.timeout, "alone": True}
-        return text_of(recording_of(self._tracer.trace(program, **options), program, facts))
+        try:
+            with opened_program(program, self._ini) as opened:
+                trace = trace_in_source(self._tracer.trace(opened.path, **options), opened)
+        except ProgramError as problem:
+            raise TraceFailure(str(problem)) from None
+        return text_of(recording_of(trace, program, facts))
 
 
 class Recorders:

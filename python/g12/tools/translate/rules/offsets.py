@@ -32,9 +32,11 @@ TOOL_TABLE = {10: ("length", False), 11: ("length", True), 12: ("size", False), 
 
 def numbered_offset(draft: Draft) -> None:
     """Select one of the systems that are kept by number."""
-    for own in OWN_SYSTEMS.intersection(draft.codes()):
-        draft.change(offset=own)
     code = draft.meanings.pop("numbered offset", None)
+    for own in OWN_SYSTEMS.intersection(draft.codes()):
+        if code:
+            raise NotTranslated(f"{own} and {code.code} in one block")
+        draft.change(offset=own)
     if not code:
         return
     number = system_number(draft, code)

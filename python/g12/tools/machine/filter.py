@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A program as LinuxCNC's screens open it: through the [FILTER] that the INI has for its suffix.
+
+Lines are those of the user's file: what a filter adds is marked ``(line 12)`` by `translate`, and
+any other filter's lines are counted as they come.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from g12.tools.errors import ProgramError
+from g12.tools.machine.ini import Ini
+
+MARK = re.compile(rb" \(line ([0-9]+)\)\s*$")
+NAMED_LINE = re.compile(r"\b(line|lines) ([0-9]+)\b")
+PROGRESS = "FILTER_PROGRESS="
+OWN_ERROR = re.compile(r"g12 \w+: ")
+
+
+@dataclass(frozen=True)
+class OpenedProgram:
+    """A program: the user's file, what LinuxCNC reads of it, and for each line of that the user's.
+
+    Without a filter ``path`` is the user's file and ``lines`` is empty.
+    """
+
+    source: Path
+    path: Path
+    lines: tuple[int, ...] = ()
+
+    def source_line(self, line: int) -> int:
+        """Return the line of the user's file that a line LinuxCNC reads belongs to."""
+        return self.lines[line - 1] if 0 < line <= len(self.lines) else line
+
+    def in_source(self, text: str) -> str:
+        """Return a text about the program with the user's file and its lines in it."""
+        if not self.lines:
+            return text
+        place = re.compile(rf"{re.escape(str(self.path))}(?::([0-9]+):)?")
+        line = lambda match: f":{self.source_line(int(match[1]))}:" if match[1] else ""  # noqa: E731
+        text = NAMED_LINE.sub(lambda m: f"{m[1]} {self.source_line(int(m[2]))}", text)
+        return place.sub(lambda match: f"{self.source}{line(match)}", text)
+
+
+def filter_for(program: Path, ini: Ini) -> str | None:
+    """Return the command of the INI's [FILTER] for a program's suffix, None if there is none."""
+    suffix = program.suffix[1:]
+    return ini.get("FILTER", suffix) if suffix else None
+
+
+@contextmanager
+def opened_program(program: Path, ini: Ini) -> Iterator[OpenedProgram]:
+    """Yield a program as LinuxCNC reads it; an error inside names the user's file and lines."""
+    command = filter_for(program, ini)
+    if not command:
+        yield OpenedProgram(program, program)
+        return
+    with tempfile.TemporaryDirectory(prefix="g12-filter-") as folder:
+        path = Path(folder, program.name)
+        content = filtered(program, command, ini)
+        path.write_bytes(content)
+        opened = OpenedProgram(program, path, lines_of_source(content.splitlines()))
+        try:
+            yield opened
+        except ProgramError as problem:
+            raise ProgramError(opened.in_source(str(problem))) from None
+
+
+def filtered(program: Path, command: str, ini: Ini) -> bytes:
+    """Return what a filter prints for a program; it runs as LinuxCNC's screens run it."""
+    done = subprocess.run(
+        ["sh", "-c", f'{command} "$0"', str(program.absolute())],
+        cwd=ini.directory,
+        env={**os.environ, "INI_FILE_NAME": str(ini.path)},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        check=False,
+    )
+    if done.returncode:
+        raise ProgramError(filter_error(done.stderr.decode(errors="replace"), command, program))
+    return done.stdout
+
+
+def filter_error(text: str, command: str, program: Path) -> str:
+    """Return the last line that a filter said."""
+    said = [line for line in text.splitlines() if line.strip() and not line.startswith(PROGRESS)]
+    last = OWN_ERROR.sub("", said[-1].strip()) if said else f"the filter failed: {command}"
+    return last.replace(str(program.absolute()), str(program))
+
+
+def lines_of_source(rows: Sequence[bytes]) -> tuple[int, ...]:
+    """Return the line of the user's file for each line of a filter's output."""
+    found: list[int] = []
+    own = 0
+    for row in rows:
+        mark = MARK.search(row)
+        own += not mark
+        found.append(int(mark[1]) if mark else own)
+    return tuple(found)

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Programs that an INI's [FILTER] rewrites: every command opens them as the screens do."""
+
+import json
+
+import pytest
+
+from g12.tools.commands import main
+from g12.tools.machine.filter import filter_for, lines_of_source, opened_program
+from g12.tools.machine.ini import read_ini
+from support.sim_machines import PROGRAMS, ROOT, copy_of_machines
+
+POCKET = """\
+%
+O1 (POCKET)
+T2 M6
+G20 G90 G154 P1 G0 X0 Y0
+S2000 M3
+G43 H2 Z.1
+M98 P10
+G12 I.6 K1. Q.3 Z-.25 D02 F20.
+G0 Z.1
+M30
+O10
+G91 G1 X.5 F20.
+G90 M99
+%
+"""
+
+
+@pytest.fixture(scope="module")
+def ini(tmp_path_factory):
+    """Return the INI of a mill that opens .nc files as Haas programs."""
+    sim = copy_of_machines(tmp_path_factory.mktemp("mill"))
+    command = f"python3 {ROOT / 'python' / 'g12'} translate --control haas-mill"
+    part = sim / "parts" / "mill_inch.inc"
+    text = part.read_text().replace("[FILTER]\n", f"[FILTER]\nnc = {command}\n")
+    part.write_text(text)
+    return sim / "mill_inch.ini"
+
+
+@pytest.fixture
+def told(ini, tmp_path, capsys):
+    """Return a function: exit code, output and errors of a command on a program."""
+
+    def tell(name, text, *words):
+        program = tmp_path / "part.nc"
+        program.write_text(text)
+        code = main.main([name, str(program), "--ini", str(ini), *words])
+        said = capsys.readouterr()
+        return code, said.out, said.err.replace(str(program), "PROGRAM")
+
+    return tell
+
+
+def test_moves_have_the_lines_of_the_users_file(told):
+    code, out, errors = told("trace", POCKET)
+    assert (code, errors) == (0, "")
+    assert [int(line.split()[0]) for line in out.splitlines()[:5]] == [1, 4, 6, 7, 8]
+
+
+def test_a_pocket_is_proved_on_the_line_of_the_users_file(told):
+    code, out, errors = told("verify", POCKET, "--json")
+    assert (code, errors) == (0, "")
+    assert [pocket["line"] for pocket in json.loads(out)["pockets"]] == [8]
+    code, out, _ = told("verify", POCKET)
+    assert "line 8: G12 (haas)" in out
+
+
+@pytest.mark.parametrize("command", ["trace", "verify"])
+def test_an_error_has_the_line_of_the_users_file(told, command):
+    code, _, errors = told(command, POCKET.replace("I.6", "I.1"))
+    assert code == 1
+    assert errors.startswith(f"g12 {command}: PROGRAM:8: G12: I0.1 must be greater than")
+
+
+@pytest.mark.parametrize("command", ["trace", "verify"])
+def test_what_the_filter_refuses_is_told(told, command):
+    code, out, errors = told(command, POCKET.replace("M98 P10", "G150 P10"))
+    assert (code, out) == (1, "")
+    assert errors.startswith(f"g12 {command}: PROGRAM:7: G150: the pocket of any shape")
+
+
+def test_a_picture_is_drawn(told, tmp_path):
+    code, _, errors = told("plot", POCKET, "-o", str(tmp_path / "part.svg"))
+    assert (code, errors) == (0, "")
+
+
+def test_a_recording_has_the_users_file_and_its_lines(ini, tmp_path, capsys):
+    program, folder = tmp_path / "part.nc", tmp_path / "recordings"
+    program.write_text(POCKET)
+    words = ["-d", str(folder)]
+    assert main.main(["regress", "record", str(program), "--ini", str(ini), *words]) == 0
+    recorded = next(folder.glob("*.trace")).read_text()
+    assert "G12 I.6 K1. Q.3 Z-.25 D02 F20." in recorded
+    assert main.main(["regress", "check", *words]) == 0
+    program.write_text(POCKET.replace("Z-.25", "Z-.26"))
+    capsys.readouterr()
+    assert main.main(["regress", "check", *words]) == 1
+    assert "8" in capsys.readouterr().out
+
+
+def test_a_program_without_a_filter_is_the_users_file(ini):
+    program = PROGRAMS / "haas" / "O60121.ngc"
+    with opened_program(program, read_ini(ini)) as opened:
+        assert (opened.path, opened.lines) == (program, ())
+        assert opened.in_source(f"{program}:5: line 6") == f"{program}:5: line 6"
+
+
+def test_any_filter_is_applied(ini, tmp_path):
+    program = tmp_path / "one.two"
+    program.write_text("G0 X1\n")
+    own = read_ini(ini).replaced({"FILTER": {"two": "sed s/X1/X2/"}})
+    assert filter_for(program, own) == "sed s/X1/X2/"
+    with opened_program(program, own) as opened:
+        assert opened.path.read_text() == "G0 X2\n"
+        assert opened.path.name == program.name
+    assert not opened.path.exists()
+
+
+def test_lines_that_a_filter_adds_say_theirs():
+    rows = [b"G0", b"(a) (line 1)", b"G1 (line 7 of it)", b"", b"M2 (line 4)"]
+    assert lines_of_source(rows) == (1, 1, 2, 3, 4)
