@@ -34,7 +34,7 @@ exit code: 0 done or nothing to do, 1 refused, 2 wrong use"""
 
 def command_parser() -> Parser:
     """Return what reads the command line."""
-    listed = "\n".join(f"  {name:12} {meaning}" for name, meaning in features.MEANING.items())
+    listed = "\n".join(f"  {name:24} {meaning}" for name, meaning in features.MEANING.items())
     parser = Parser(
         prog="g12 install",
         description="Put the package into a machine config: a copy in the folder g12 beside the "
@@ -69,9 +69,9 @@ def main(arguments: list[str]) -> int:
     parser = command_parser()
     options = parser.parse_args(arguments)
     ini, wanted = ini_and_features(options.ini, options.wanted)
-    unknown = [name for name in wanted if name not in features.FILES]
+    unknown = [name for name in wanted if name not in features.NAMES]
     if not ini or unknown:
-        known = f"{unknown[0]!r} is none of {', '.join(features.FILES)}" if unknown else ""
+        known = f"{unknown[0]!r} is none of {', '.join(features.NAMES)}" if unknown else ""
         parser.error(known or "the INI is missing")
     for pair in excluding(wanted):
         raise UsageError(f"{pair} exclude each other: choose one")

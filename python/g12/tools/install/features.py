@@ -9,6 +9,7 @@ from pathlib import Path
 
 from g12.ini_sections import entries_of
 from g12.machine_ini import HANDLERS, Remap, remap_from_value
+from g12.tools.translate.blocks.control import shipped_controls
 
 ROOT = Path(__file__).resolve().parents[4]  # the folder that holds ngc, python and configs
 INCLUDES = ROOT / "configs" / "include"
@@ -21,7 +22,9 @@ FILES = {
     "polar": "polar.inc",
     "polar-g12.3": "polar_g12_3.inc",
 }
-ONE_OF = (("haas", "yasnac", "mitsubishi"), ("polar", "polar-g12.3"))
+PROGRAMS = {f"programs-{control}": control for control in shipped_controls()}
+NAMES = (*FILES, *PROGRAMS)
+ONE_OF = (("haas", "yasnac", "mitsubishi"), ("polar", "polar-g12.3"), tuple(PROGRAMS))
 POLAR = ("polar", "polar-g12.3")
 MEANING = {
     "haas": "G12/G13 circular pocket, Haas words",
@@ -30,6 +33,9 @@ MEANING = {
     "circle-mill": "circle mill event, perimeter and pocket",
     "polar": "polar coordinate interpolation on and off",
     "polar-g12.3": "polar coordinate interpolation on and off",
+    **{
+        name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()
+    },
 }
 SHARED = {"cycle_done"}  # the epilog of every cycle does not tell which one it is
 SUBS = {  # what a program, or a handler, calls besides the codes

@@ -12,7 +12,7 @@ from g12.tools.install import features, package_copy
 from g12.tools.install.config import Config, load_config
 from g12.tools.install.ini_edit import IniText
 from g12.tools.install.plan import InstallPlan, make_plan, names_copy, refuse
-from g12.tools.install.rules import codes_of, findings_of
+from g12.tools.install.rules import codes_of, findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 
@@ -30,6 +30,7 @@ def install(text: IniText, wanted: Sequence[str], dry_run: bool) -> Iterator[str
         yield from bring_copy_up_to_date(text.path.parent / package_copy.NAME)
     config = readable_config(text)
     there = [code.feature for code in codes_of(config.remaps)]
+    there += [f"programs-{control}" for control in installed_programs(config)]
     for pair in excluding([*there, *wanted]):
         raise refuse("dialects", f"{pair} exclude each other", "uninstall first")
     plan = make_plan(config, wanted)

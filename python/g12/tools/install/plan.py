@@ -25,16 +25,19 @@ from g12.tools.install.ini_edit import (
     lines_with_ends,
     to_bytes,
 )
-from g12.tools.install.rules import odd_folder, problem
+from g12.tools.install.rules import installed_programs, odd_folder, problem
 
 BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"
 NOTE = "# also by g12 install: "
 PATH_NOTE = " at the end of SUBROUTINE_PATH"
 MODULE_NOTE = "a line in "
 MARK = "  # by g12 install"
-NAMES_COPY = re.compile(rf"\s*(#INCLUDE\s+|[^\s#;].*[=:]\s*)(\./)?{package_copy.NAME}/")
+NAMES_COPY = re.compile(
+    rf"\s*(#INCLUDE\s+|[^\s#;].*[=:]\s*)(python3\s+)?(\./)?{package_copy.NAME}/"
+)
 IMPORT_HANDLERS = "from g12.remap import *"
 IMPORT_REMAP = "import remap"
+FILTERED = "nc"  # the suffix of other controls' programs
 
 
 class Refused(Exception):
@@ -86,15 +89,18 @@ def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
     prefix, copied = package_folder(config)
     plan = InstallPlan(IniText(config.text.path), prefix, copied)
     mend_remaps(plan.text, config)
-    python = python_lines(plan, config, wanted)
-    subs = subroutine_lines(plan, config, wanted)
-    remaps = [f"REMAP = {remap.text}" for remap in new_remaps(config, wanted)]
+    codes = [feature for feature in wanted if feature in features.FILES]
+    python = python_lines(plan, config, codes) if codes else []
+    subs = subroutine_lines(plan, config, codes)
+    remaps = [f"REMAP = {remap.text}" for remap in new_remaps(config, codes)]
+    filters = filter_lines(plan, config, wanted)
     place = plan.text.end_of_section("RS274NGC")
     noted = {line.text for block in plan.text.blocks() for line in block}
     put_block(
         plan.text, place, [*(note for note in plan.notes if note not in noted), *subs, *remaps]
     )
-    put_python(plan.text, place, python)
+    put_section(plan.text, "PYTHON", place, python)
+    put_section(plan.text, "FILTER", place, filters)
     for path in plan.changes():
         require_inside(config, path)
     return plan
@@ -126,19 +132,19 @@ def put_block(text: IniText, place: Place, lines: Sequence[str]) -> None:
         text.insert(place, [BEGIN_LINE, *lines, END])
 
 
-def put_python(text: IniText, interpreter: Place, lines: Sequence[str]) -> None:
-    """Put lines into section [PYTHON]; a new one stands in the file of [RS274NGC].
+def put_section(text: IniText, section: str, interpreter: Place, lines: Sequence[str]) -> None:
+    """Put lines into a section; a new one stands in the file of [RS274NGC].
 
     In an included file that is in front of a header, where no other section is cut in two.
     """
-    place = text.end_of_section("PYTHON")
+    place = text.end_of_section(section)
     if place:
         put_block(text, place, lines)
     elif lines and interpreter.file == text.path:
-        put_block(text, text.end_of_file(), ["[PYTHON]", *lines])
+        put_block(text, text.end_of_file(), [f"[{section}]", *lines])
     elif lines:
         header = text.headers("RS274NGC")[0]
-        put_block(text, Place(header.file, header.index), ["[PYTHON]", *lines])
+        put_block(text, Place(header.file, header.index), [f"[{section}]", *lines])
 
 
 def package_folder(config: Config) -> tuple[str, bool]:
@@ -204,6 +210,27 @@ def subroutine_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -
         # in an included file the entry may come from another INI's installation
         plan.notes.append(f"{NOTE}{name}{PATH_NOTE}")
     return []
+
+
+def filter_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
+    """Return the lines for [FILTER] that open .nc files as programs of another control."""
+    control = next((features.PROGRAMS[name] for name in wanted if name in features.PROGRAMS), None)
+    if not control:
+        return []
+    there = config.ini.get("FILTER", FILTERED)
+    if there and control in installed_programs(config):
+        return []
+    if there:
+        raise refuse(
+            "filter",
+            f"[FILTER] {FILTERED} = {there} is there already",
+            "take that line out, or give your programs another suffix and add the line by hand "
+            "(python/g12/tools/translate/README.md)",
+        )
+    return [
+        f"PROGRAM_EXTENSION = .{FILTERED} Programs of {control}",
+        f"{FILTERED} = python3 {plan.prefix}/python/g12 translate --control {control}",
+    ]
 
 
 def python_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:

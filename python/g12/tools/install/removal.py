@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -32,7 +33,10 @@ OWN_ENDS = {
     "PATH_PREPEND": "/python",
     "PATH_APPEND": "/python",
 }
-HEADER = "[PYTHON]"
+HEADERS = {f"[{section}]": section for section in ("PYTHON", "FILTER")}
+OWN_FILTER = re.compile(
+    r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S+"
+)
 
 
 def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
@@ -69,10 +73,12 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
 def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[IniLine]:
     """Take the blocks out; return the lines of the user's between the markers, which stay."""
     doomed = [line for block in blocks for line in block if is_by_install(line)]
-    headers = [line for block in blocks for line in block if line.text == HEADER]
-    others = (line for line in text.section("PYTHON") if line not in (*doomed, *headers))
-    if not any(is_entry(line.text) for line in others):
-        doomed += headers
+    headers = [line for block in blocks for line in block if line.text in HEADERS]
+    for header in headers:
+        section = text.section(HEADERS[header.text])
+        others = (line for line in section if line not in (*doomed, *headers))
+        if not any(is_entry(line.text) for line in others):
+            doomed.append(header)
     stay = [line for block in blocks for line in block if line not in (*doomed, *headers)]
     text.remove(doomed)
     return stay
@@ -81,6 +87,8 @@ def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[IniLine]
 def is_by_install(line: IniLine) -> bool:
     """Tell whether a line between the markers is one that `install` puts there."""
     key, value = key_and_value(line.text)
+    if OWN_FILTER.fullmatch(line.text):
+        return True
     if key == "REMAP":
         return model_of(remap_from_value(value)) is not None
     if key:

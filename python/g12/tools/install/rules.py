@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from g12.errors import Refusal
-from g12.ini_sections import key_and_value
+from g12.ini_sections import entries_of, key_and_value
 from g12.machine_ini import Remap, remap_from_value
 from g12.settings import SECTION, settings_from_lines
 from g12.tools.install import features
@@ -21,9 +21,11 @@ from g12.tools.install.config import MOST_FOLDERS, Config, folder_from_ini, subs
 from g12.tools.install.ini_edit import IniLine
 from g12.tools.machine.ini import INCLUDE
 from g12.tools.system import CALL
+from g12.tools.translate.blocks.control import ControlError, read_control
 
 PROBLEM, WARNING, NOTE = "problem", "warning", "note"
 OLDEST = (2, 9)
+TRANSLATE = "translate"  # the command in a [FILTER] line
 LONGEST_LINE = 254  # LinuxCNC 2.9 reads no more of a line
 LINE_FOR_REMAP = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
@@ -175,9 +177,9 @@ def other_interpreter(config: Config, _codes: list[Code]) -> Iterator[Finding]:
 # The codes.
 
 
-def codes_missing(_config: Config, codes: list[Code]) -> Iterator[Finding]:
+def codes_missing(config: Config, codes: list[Code]) -> Iterator[Finding]:
     """Find a config without the package."""
-    if not codes:
+    if not codes and not installed_programs(config):
         yield problem(
             "no-codes",
             "no code of the package is set up here",
@@ -442,6 +444,35 @@ def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[Findin
         )
 
 
+# Filters.
+
+
+def translating_filters(config: Config) -> Iterator[tuple[str, str, list[str]]]:
+    """Yield suffix, control and words of each [FILTER] line that translates."""
+    for _, key, value in entries_of(config.ini.lines, "FILTER"):
+        words = value.split()
+        if TRANSLATE in words and "--control" in words[:-1]:
+            yield key, words[words.index("--control") + 1], words
+
+
+def installed_programs(config: Config) -> list[str]:
+    """Return the controls whose programs the machine opens."""
+    return [control for _, control, _ in translating_filters(config)]
+
+
+def wrong_filters(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find a filter whose control cannot be read, or whose package is not there."""
+    for suffix, control, words in translating_filters(config):
+        command = folder_from_ini(config.ini, words[words.index(TRANSLATE) - 1])
+        if not command.exists():
+            yield problem("filter", f"[FILTER] {suffix}: {command} is not there", MEND)
+        try:
+            own = control.endswith(".toml")
+            read_control(str(folder_from_ini(config.ini, control)) if own else control)
+        except ControlError as wrong:
+            yield problem("filter", f"[FILTER] {suffix}: {wrong}", "correct the control's file")
+
+
 RULES: tuple[Rule, ...] = (
     wrong_version,
     other_interpreter,
@@ -466,6 +497,7 @@ RULES: tuple[Rule, ...] = (
     missing_axes,
     no_tool_table,
     tools_without_diameter,
+    wrong_filters,
 )
 
 

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``install --with programs-…``: the [FILTER] lines, what `check` says of them, taking them out."""
+
+import pytest
+
+from g12.tools.install import installation, package_copy, removal
+from g12.tools.install.ini_edit import IniText
+from g12.tools.install.plan import Refused, make_plan
+from g12.tools.install.rules import installed_programs, wrong_filters
+from support.small_configs import config_of, write_config
+
+FILTER = """\
+PROGRAM_EXTENSION = .nc Programs of haas-mill
+nc = python3 g12/python/g12 translate --control haas-mill
+"""
+
+
+@pytest.fixture(autouse=True)
+def small_package(monkeypatch):
+    monkeypatch.setattr(package_copy, "package_files", lambda: {"python/g12/__init__.py": b""})
+
+
+def put_in(ini, *wanted):
+    """Install without asking LinuxCNC."""
+    config = config_of(ini)
+    return installation.write_changes(make_plan(config, wanted), config.folder)
+
+
+def test_a_section_of_its_own(tmp_path):
+    ini = write_config(tmp_path)
+    before = ini.read_bytes()
+    put_in(ini, "programs-haas-mill")
+    text = ini.read_text()
+    assert f"[FILTER]\n{FILTER}" in text
+    assert "TOPLEVEL" not in text and "REMAP" not in text
+    assert installed_programs(config_of(ini)) == ["haas-mill"]
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert ini.read_bytes() == before
+
+
+def test_a_filter_section_that_is_there_gets_longer(tmp_path):
+    ini = write_config(tmp_path)
+    own = "[FILTER]\nPROGRAM_EXTENSION = .py Python\npy = python3\n"
+    ini.write_text(f"{ini.read_text()}\n{own}")
+    before = ini.read_bytes()
+    put_in(ini, "haas", "programs-haas-mill")
+    text = ini.read_text()
+    assert own in text
+    assert text.count("[FILTER]") == 1
+    assert text.index("py = python3\n") < text.index(FILTER)
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert ini.read_bytes() == before
+
+
+def test_twice_is_once(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini, "programs-haas-mill")
+    text = ini.read_text()
+    put_in(ini, "programs-haas-mill")
+    assert ini.read_text() == text
+
+
+def test_a_filter_of_the_users_own_for_the_suffix_is_refused(tmp_path):
+    ini = write_config(tmp_path)
+    ini.write_text(f"{ini.read_text()}\n[FILTER]\nnc = mine\n")
+    with pytest.raises(Refused) as refused:
+        make_plan(config_of(ini), ["programs-haas-mill"])
+    assert refused.value.args[0].text == "[FILTER] nc = mine is there already"
+
+
+@pytest.mark.parametrize(
+    ("control", "text"),
+    [
+        ("haas-mill", "g12/python/g12 is not there"),
+        ("hass-mill", "no control hass-mill: there are fanuc-lathe"),
+        ("own.toml", "own.toml:1: colour is no key of a control"),
+    ],
+)
+def test_what_is_wrong_with_a_filter(tmp_path, control, text):
+    ini = write_config(tmp_path)
+    folder = tmp_path / "package"
+    (folder / "python" / "g12").mkdir(parents=True)
+    (tmp_path / "own.toml").write_text("colour = 1\n")
+    command = "g12/python/g12" if control == "haas-mill" else f"{folder}/python/g12"
+    ini.write_text(
+        f"{ini.read_text()}\n[FILTER]\nnc = python3 {command} translate --control {control}\n"
+    )
+    (finding,) = wrong_filters(config_of(ini), [])
+    assert text in finding.text
