@@ -64,12 +64,12 @@ def main(arguments: list[str]) -> int:
     except style.PictureError as problem:
         raise UsageError(str(problem)) from None
     with opened_program(options.program, ini) as opened:
-        draw(opened.path, ini, options)
+        write_picture(opened.path, ini, options)
     print(f"{options.output} written")
     return GOOD
 
 
-def draw(program: Path, ini: Ini, options: argparse.Namespace) -> None:
+def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> None:
     """Draw a program as LinuxCNC reads it."""
     on_machine = (program, options.ini, options.tools, options.var)
     samples = None
