@@ -40,6 +40,9 @@ HANDLERS = ("prolog", "epilog", "python")
 CODE = re.compile(r"([A-Za-z])(\d*)(?:\.(\d+))?\Z")
 
 
+FACE_KINEMATICS = "polar_xzc"  # configs/kinematics
+
+
 class Axis(NamedTuple):
     """One axis in machine units (degrees for A, B, C) and seconds: its travel, and how fast."""
 
@@ -47,6 +50,15 @@ class Axis(NamedTuple):
     high: float
     velocity: float
     acceleration: float
+
+
+class FaceAxes(NamedTuple):
+    """X and Y of the part's face, the slide that makes them, and the highest feed override."""
+
+    x: Axis
+    y: Axis
+    slide: Axis
+    override: float
 
 
 @dataclass(frozen=True)
@@ -90,8 +102,37 @@ def coordinates_of(find: Find) -> str:
 
 
 def axes_of(find: Find, letters: Iterable[str]) -> dict[str, Axis]:
-    """Return axes by their letters; raise Refusal for a value that no axis can have."""
-    return {letter: _axis(f"AXIS_{letter}", find) for letter in letters}
+    """Return axes by their letters; raise Refusal for a value that no axis can have.
+
+    With the kinematics of the face the X slide's travel is that of its joint.
+    """
+    axes = {letter: _axis(f"AXIS_{letter}", find) for letter in letters}
+    face = face_of(find)
+    if face and "X" in axes:
+        axes["X"] = axes["X"]._replace(low=face.slide.low, high=face.slide.high)
+    return axes
+
+
+def face_of(find: Find) -> FaceAxes | None:
+    """Return the axes of the part's face, None for a machine without its kinematics."""
+    joints = face_joints(find)
+    if "X" not in joints:
+        return None
+    return FaceAxes(
+        _axis("AXIS_X", find),
+        _axis("AXIS_Y", find),
+        _axis(f"JOINT_{joints.index('X')}", find),
+        number_in(find, "DISPLAY", "MAX_FEED_OVERRIDE", 1.0),
+    )
+
+
+def face_joints(find: Find) -> str:
+    """Return the letter of each joint of a machine with the kinematics of the face, else ""."""
+    module, *parameters = (find("KINS", "KINEMATICS") or "trivkins").split()
+    if module != FACE_KINEMATICS:
+        return ""
+    named = dict(parameter.partition("=")[::2] for parameter in parameters)
+    return named.get("coordinates", "XZC").upper()
 
 
 def _axis(section: str, find: Find) -> Axis:

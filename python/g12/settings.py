@@ -70,6 +70,7 @@ TABLE: dict[str, Choice | Number] = {
     "POLAR_G0_FEED": Number(None),
     "POLAR_TOLERANCE": Number(None, least=0.00001),  # less than any machine's step
     "POLAR_POLE": Choice("rotate", ("rotate", "refuse")),
+    "POLAR_KINEMATICS": Choice("0", ("0", "1")),
 }
 
 
@@ -89,6 +90,7 @@ class Settings:
     polar_g0_feed: float | None = TABLE["POLAR_G0_FEED"].default
     polar_tolerance: float | None = TABLE["POLAR_TOLERANCE"].default
     polar_pole: str = TABLE["POLAR_POLE"].default
+    polar_kinematics: str = TABLE["POLAR_KINEMATICS"].default
 
     def tolerance(self, millimetres: float) -> float:
         """Return POLAR_TOLERANCE in machine units, which are ``millimetres`` long."""

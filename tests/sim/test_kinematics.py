@@ -9,15 +9,24 @@ import numpy as np
 import pytest
 
 from g12.tools.headless.machine import Machine
-from support.contour_geometry import FROM_COLUMNS, Round, Straight, distance, outward
+from g12.tools.preview.tracer import Tracer
+from support.contour_geometry import (
+    FROM_COLUMNS,
+    Round,
+    Straight,
+    deviation,
+    distance,
+    outward,
+)
 from support.kinematics import needs_kinematics
-from support.polar_drawings import HEXAGON
-from support.polar_programs import Cut
-from support.sim_machines import SIM
+from support.polar_drawings import HEXAGON, MILLIMETRES
+from support.polar_programs import FEED, Cut
+from support.sim_machines import PROGRAMS, SIM
 
 pytestmark = needs_kinematics
 
 X, Y, C = 0, 1, 5
+ROUND = 3  # kind of a sampled move: an arc
 TOLERANCE = 0.002  # mm, of G64
 ON = ("M68 E3 Q0", "M68 E3 Q1", "M66 P3 L3 Q1", "G17")
 OFF = ("M68 E3 Q0", "M66 P3 L4 Q1", "G18")
@@ -25,6 +34,14 @@ START = ("G21 G18 G8 G90 G94 G64 P0.002 Q0", "G0 X25 Z2 C0")
 CIRCLE_AND_SQUARE = (
     *START, "F3000", *ON, "G1 X20 Y0", "G2 X-20 I-20", "X20 I20", "G1 X20 Y20", "X-20", "Y-20",
     "X20", "Y0", "X25", *OFF, "G0 Z5", "M2",
+)  # fmt: skip
+SECTION = (
+    *START, "G12.1", "G1 X25 C20 F3000", "X-25", "C-20", "G3 X25 C-20 R25", "X25 C0 R15", "G1 X20",
+    "X-20", "C25", "X25", "C0", "G13.1", "G0 Z5", "M2",
+)  # fmt: skip
+IN_INCHES = (
+    "G20 G7 G18 G90 G94 G64 P0.0002 F100", "G0 X2 Z0 C0", "G12.1", "G1 X2 C1", "G3 X0 C1.5 R2",
+    "G1 X-2 C0", "G13.1", "M2",
 )  # fmt: skip
 SOON = 0.2  # s until the machine is back from the face
 
@@ -132,6 +149,69 @@ def test_hexagon_at_its_feed_and_on_its_path(lathe, feed, most):
     assert 0.99 <= timed.sum() * 0.001 / ideal <= most
 
 
+# ---------------------------------------------------------------- G12.1
+
+
+@pytest.mark.parametrize("name", MILLIMETRES)
+def test_g12_1_is_on_the_contour_and_within_the_limits(lathe, name):
+    run = lathe.run(PROGRAMS / "polar" / f"{name}.ngc")
+    assert run.error is None
+    cutting = np.isin(run.samples.kind, (FEED, ROUND))
+    points = Cut(run).all_points[cutting]
+    there, back = deviation(MILLIMETRES[name].pieces, points, step=0.1)
+    assert max(there, back) <= 0.006
+    keeps_its_limits(run.samples)
+    c = run.samples.axes["C"]
+    assert np.abs(np.diff(c, 2))[cutting[2:]].max() * 1e6 <= 3600 * 1.01
+    assert not on_the_face(lathe)
+
+
+@pytest.mark.parametrize(("feed", "most"), [(1000, 1.02), (3000, 1.05)])
+def test_g12_1_keeps_the_feed(lathe, feed, most):
+    blocks = range(10, 16)
+    lines = (PROGRAMS / "polar" / "hexagon.ngc").read_text().splitlines()
+    lines[9] += f" F{feed}"
+    run = lathe.run_text([line.replace("F1000.", "") for line in lines])
+    pieces = [piece for block in blocks for piece in MILLIMETRES["hexagon"].path[block]]
+    seconds = np.isin(run.samples.line, blocks).sum() * 0.001
+    assert 0.98 <= seconds / (sum(piece.length for piece in pieces) / feed * 60) <= most
+
+
+def test_g12_1_with_offsets_inches_and_diameters(lathe):
+    lathe.mdi("G10 L2 P1 X40 Y-7 Z3 C20")
+    try:
+        run = lathe.run_text(IN_INCHES)
+    finally:
+        lathe.mdi("G21 G8")
+        lathe.mdi("G10 L2 P1 X0 Y0 Z0 C0")
+    assert run.error is None
+    points = (run.samples.axes["X"] - 40) * np.exp(1j * np.radians(run.samples.axes["C"] - 20))
+    corners = 25.4 * np.array([1, 1 + 1j, 1.5j, -1])
+    off = np.abs(points[:, None] - corners).min(axis=0)
+    assert off == pytest.approx([0] * 4, abs=0.02)
+
+
+@pytest.mark.parametrize("plane", ["G17", "G18"])
+@pytest.mark.parametrize("modes", ["G90 G94 F500 G64 P0.01", "G91 G95 F1 G61 G90.1 S500 M3"])
+def test_modes_behind_g13_1_are_those_of_a_section_in_pieces(plane, modes):
+    section = ("G12.1", "G1 C20", "X-5", "M8", "G3 I0 J-5", "G13.1")
+    asked = (
+        "motion_mode plane ijk_absolute_mode incremental feed units_per_rev coolant_flood x y z c"
+    )
+    told = f"(DEBUG, #5399 {' '.join(f'#<_{name}>' for name in asked.split())})"
+    ways = []
+    for kinematics in "01":
+        overrides = {"G12": {"POLAR_KINEMATICS": kinematics}}
+        with Tracer(SIM / "lathe_mm_kinematics.ini", overrides=overrides) as tracer:
+            ways.append(tracer.trace_text([*START, plane, modes, *section, told, "M2"]))
+    assert [way.error for way in ways] == [None, None]
+    assert [any(move.end[Y] for move in way.moves) for way in ways] == [False, True]
+    assert [message.text for message in ways[0].messages] == [
+        message.text for message in ways[1].messages
+    ]
+    assert ways[0].modes == ways[1].modes
+
+
 def test_program_ends_off_the_face(lathe):
     run = lathe.run_text(CIRCLE_AND_SQUARE)
     assert run.error is None
@@ -154,11 +234,12 @@ def jog_mode(machine):
     machine.mdi("G4 P0")
 
 
+@pytest.mark.parametrize("program", [CIRCLE_AND_SQUARE, SECTION], ids=["by hand", "G12.1"])
 @pytest.mark.parametrize("interrupt", [abort, emergency_stop, jog_mode])
-def test_an_interrupted_program_leaves_the_face(lathe, interrupt):
+def test_an_interrupted_program_leaves_the_face(lathe, interrupt, program):
     chance = random.Random(interrupt.__name__)
     for _ in range(6):
-        lathe.open_text(CIRCLE_AND_SQUARE)
+        lathe.open_text(program)
         lathe.sample()
         lathe.start()
         lathe.wait_for(lambda _: on_the_face(lathe))
@@ -169,7 +250,7 @@ def test_an_interrupted_program_leaves_the_face(lathe, interrupt):
         assert place(lathe) == (22, 0, 10)
         keeps_its_limits(lathe.samples())
         assert lathe.errors() == []
-    assert lathe.run_text(CIRCLE_AND_SQUARE).error is None
+    assert lathe.run_text(program).error is None
 
 
 def test_an_error_on_the_face_leaves_it(lathe):

@@ -85,13 +85,19 @@ def is_move(what):
 
 def emission_of(interp, x_factor=1.0):
     return SectionOutput(
-        interp, "G12.1", x_factor=x_factor, blending=0.0025, absolute="G90", canon=Canon(interp)
+        interp,
+        "G12.1",
+        x_factor=x_factor,
+        blending=0.0025,
+        machine_unit=1.0,
+        absolute="G90",
+        canon=Canon(interp),
     )
 
 
 def handed_over(steps, interp=None, modes=MODES, exact=(), x_factor=1.0):
     interp = interp or Interpreter()
-    emission_of(interp, x_factor).run(steps, modes, exact)
+    assert list(emission_of(interp, x_factor).run(steps, modes, exact)) == []
     return interp
 
 
@@ -117,7 +123,7 @@ def test_the_second_part_of_a_section_begins_without_a_stop():
     interp = Interpreter()
     emission = emission_of(interp)
     for _ in range(2):
-        emission.run([run()], MODES, ())
+        assert list(emission.run([run()], MODES, ())) == []
     assert interp.stops == [7]
 
 

@@ -22,6 +22,7 @@ from g12.host.section_start import start_of_section
 from g12.machine_ini import (
     axes_of,
     coordinates_of,
+    face_of,
     owns_g12_1,
     refuse_owned_codes,
     remap_lines,
@@ -37,6 +38,7 @@ DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could re
 INI = linuxcnc.ini(os.environ.get("INI_FILE_NAME") or os.devnull)
 REMAPS = {remap.code: remap for remap in remap_lines(INI.findall)}
 COORDINATES, AXES = set(coordinates_of(INI.find)), axes_of(INI.find, "XZC")
+FACE = face_of(INI.find)
 
 
 def check_at_start() -> None:
@@ -90,7 +92,7 @@ def run_section(interp: object, frame: CallFrame, program: ProgramLines) -> Iter
     try:
         start = start_of_section(interp, program.place)
         check_section_start(start, COORDINATES)
-        setup = polar_setup(start, glue.SETTINGS, AXES)
+        setup = polar_setup(start, glue.SETTINGS, AXES, FACE)
         codes = codes_of_section(
             start.place.code, REMAPS.values(), polar_on.__name__, polar_off.__name__
         )
@@ -100,6 +102,7 @@ def run_section(interp: object, frame: CallFrame, program: ProgramLines) -> Iter
             start.place.code,
             x_factor=2.0 if start.diameter else 1.0,
             blending=setup.tolerance / 2,
+            machine_unit=start.machine_unit,
             absolute=MODE_ABSOLUTE,
             canon=emccanon,
         )

@@ -8,7 +8,7 @@ Behind G13.1 the contour is planned (`g12.polar.plan`) and handed over (`Section
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from enum import Enum
 
 from g12.errors import Refusal, number
@@ -128,7 +128,7 @@ class PolarSection:
         block = block_of(self.reader.parsed)
         if block.g[MOTION] in self.codes.off:
             self.reader.set_parameters(line)
-            self._finish(block)
+            yield from self._finish(block)
         else:
             self._check(block)
             yield from self._obey(line, block)
@@ -215,12 +215,12 @@ class PolarSection:
     def _wait_for_input(self, text: str) -> Iterator[int]:
         """Obey M66: all before it has to happen before the lines behind it can be read."""
         self.reader.contour.wait(line=self.program.place)
-        planned = self._emit()
+        planned = yield from self._emit()
         yield from self.frame.execute_and_wait(text)
         self.reader.remember_machine()
         self.reader.contour = polar.resume(self.reader.contour, planned)
 
-    def _finish(self, block: SectionBlock) -> None:
+    def _finish(self, block: SectionBlock) -> Iterator[int]:
         """End the section at the block that switches off."""
         off = self.codes.off_code
         if not alone(block):
@@ -228,19 +228,20 @@ class PolarSection:
         if not self.frame.is_current:
             raise self._missing_off("the sub called here has one, but not the code that it ends")
         self.reader.contour.close(line=self.program.line)
-        self._emit()
+        yield from self._emit()
         self.program.catch_up()
         self.frame.leave(self.program.line)
         self._phase = Phase.DONE
 
-    def _emit(self) -> polar.PolarPlan:
+    def _emit(self) -> Generator[int, None, polar.PolarPlan]:
         """Plan what was read, and hand it over; return the plan."""
         reader = self.reader
         plan = polar.plan(reader.contour, self.setup.plan, c=reader.start.c)
         self._check_limits(plan)
         reader.show_machine()
         self._phase = Phase.MOVING
-        self.output.run(plan.steps, reader.modes, reader.exact_lines)
+        for waiting in self.output.run(plan.steps, reader.modes, reader.exact_lines):
+            yield from self.frame.execute_and_wait(waiting)
         self._phase = Phase.READING
         reader.remember_machine()
         return plan

@@ -6,14 +6,19 @@ While pieces go out the interpreter is in G90 G94 with C unwrapped, and blends t
 program can see it, or the machine waits.
 
 A move in front of the section would be blended into its first piece: a dwell of no time stops it.
+
+On the face (`configs/kinematics`) lines and arcs go out as they are, in X and Y. To go there and
+back the machine has to stand, and the interpreter to wait for it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Iterator, Sequence
 from typing import NamedTuple
 
+from g12.flat.contour import Arc, Plunge
 from g12.host.program_lines import error_text
+from g12.polar.face import FaceMove, FaceSwitch
 from g12.polar.plan import BlockMoves
 from g12.section.block_rules import G1
 from g12.section.line import SectionPlace
@@ -25,6 +30,10 @@ G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
+CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66: polar_kinematics.hal
+INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
+PLANES = {1: "G17", 2: "G19", 3: "G18"}  # interp.plane
+CENTRES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
 BLOCK_END = ""
 
 
@@ -101,8 +110,8 @@ class SectionOutput:
     """Hands steps to the interpreter.
 
     ``code`` names the section in refusals. ``x_factor`` turns a radius value into an X word (2
-    under G7); ``blending`` is in program units. ``absolute`` is the interpreter's name of G90,
-    ``canon`` its canonical functions.
+    under G7); ``blending`` and ``machine_unit`` are in program units. ``absolute`` is the
+    interpreter's name of G90, ``canon`` its canonical functions.
     """
 
     def __init__(
@@ -112,11 +121,13 @@ class SectionOutput:
         *,
         x_factor: float,
         blending: float,
+        machine_unit: float,
         absolute: object,
         canon: object,
     ) -> None:
         self.interp, self.code = interp, code
         self.x_factor, self.absolute, self.canon = x_factor, absolute, canon
+        self.machine_unit = machine_unit
         self.path = PathControl(interp, f"G64P{decimal(blending)}Q0")
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
@@ -124,16 +135,20 @@ class SectionOutput:
 
     def run(
         self, steps: Sequence[BlockMoves | Action], modes: SectionModes, exact_lines: Container[int]
-    ) -> None:
+    ) -> Iterator[str]:
         """Hand over all steps, and release the interpreter in ``modes``.
 
-        ``exact_lines`` are those of blocks with G9.
+        ``exact_lines`` are those of blocks with G9. Yields blocks to execute and to wait for.
         """
         self._stop_in_front(steps)
         self._take_over()
         for step, following in zip(steps, [*steps[1:], None]):
             if isinstance(step, Action):
                 self._act(step)
+            elif isinstance(step, FaceSwitch):
+                yield from self._switch(step)
+            elif isinstance(step, FaceMove):
+                self._move_on_face(step, following, step.line in exact_lines)
             elif step.stop or exact_lines or self.path.exact:
                 self._moves_to_an_end(step, following, step.line in exact_lines)
             else:
@@ -196,6 +211,62 @@ class SectionOutput:
         # every digit: X must come back as the number that the moves behind this one have
         values = {"X": x * self.x_factor, "C": c, "Z": z, "F": feed}
         self.interp.execute("".join(f"{word}{values[word]:.17f}" for word in (*axes, "F")))
+
+    def _switch(self, step: FaceSwitch) -> Iterator[str]:
+        """Go to the face or back; the interpreter loses the answer of the program's last M66."""
+        interp = self.interp
+        interp.sequence_number = step.line
+        found = interp.params[INPUT_FOUND]
+        if step.on:
+            self._found = f"{PLANES[interp.plane]}{self._centres()}"
+            centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
+            interp.execute(f"M68E{CENTRE_OUTPUT}Q{decimal(centre / self.machine_unit)}")
+            interp.execute(f"M68E{FACE_OUTPUT}Q0")  # the last request may have ended by itself
+            interp.execute(f"M68E{FACE_OUTPUT}Q1")
+            yield f"M66P{FACE_INPUT}L3Q1"
+            interp.execute("G17G91.1")
+        else:
+            interp.execute(self._found)
+            interp.execute(f"M68E{FACE_OUTPUT}Q0")
+            yield f"M66P{FACE_INPUT}L4Q1"
+        self._check_switched(step)
+        interp.params[INPUT_FOUND] = found
+        interp.current_x, interp.CC_current, interp.current_z = step.place
+        interp.current_y = -self._y_offset()
+
+    def _check_switched(self, step: FaceSwitch) -> None:
+        if self.interp.task and self.interp.params[INPUT_FOUND] == TIMED_OUT:
+            raise SectionPlace(self.code, step.line).refuse(
+                "the machine did not change its kinematics: is polar_kinematics.hal loaded?"
+            )
+
+    def _centres(self) -> str:
+        """Return the code in force that tells what I and J count from."""
+        return next(CENTRES[code] for code in self.interp.active_g_codes if code in CENTRES)
+
+    def _y_offset(self) -> float:
+        interp = self.interp
+        return interp.origin_offset_y + interp.axis_offset_y + interp.tool_offset.y
+
+    def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
+        """Hand over a line, an arc or a move of Z on the face."""
+        interp, move = self.interp, step.move
+        block_ends = not isinstance(following, FaceMove) or following.line != step.line
+        interp.sequence_number = step.line
+        self.path.inside()
+        self.path.at_end(False, exact_stop, block_ends)
+        words = "G1" if not isinstance(move, Arc) else "G3" if move.sweep > 0.0 else "G2"
+        values = {"F": move.feed}
+        if not isinstance(move, Plunge):
+            values["X"] = move.x1 * self.x_factor
+            values["Y"] = move.c1 - self._y_offset()
+        if isinstance(move, Arc):
+            values["I"] = move.cx - interp.current_x
+            values["J"] = move.cc - self._y_offset() - interp.current_y
+        if move.z0 != move.z1:
+            values["Z"] = move.z1
+        interp.execute(words + "".join(f"{word}{value:.17f}" for word, value in values.items()))
+        interp.motion_mode = G1
 
     def _act(self, action: Action) -> None:
         """Execute a block in its place."""

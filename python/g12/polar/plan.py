@@ -12,6 +12,7 @@ from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, Start, is_move
 from g12.flat.offset import tool_path
 from g12.flat.simplify import with_points_left_out, without_short_moves
 from g12.polar.exact_stops import stops
+from g12.polar.face import FaceLimits, FaceMove, FaceSwitch, chosen, in_face, passed
 from g12.polar.feed import Position, pieces_with_feed
 from g12.polar.pieces import Law, split_move
 from g12.polar.pole import POLE, through_pole
@@ -37,6 +38,7 @@ class PolarSettings(NamedTuple):
     c_acceleration: float  # degrees per second squared
     c_speed: float  # degrees per minute, for a turn in place at X0
     pole_refused: bool = False  # POLAR_POLE = refuse
+    face: FaceLimits | None = None  # POLAR_KINEMATICS = 1
 
 
 class BlockMoves(NamedTuple):
@@ -59,7 +61,8 @@ class BlockMoves(NamedTuple):
 class PolarPlan(NamedTuple):
     """The moves of a section.
 
-    ``steps`` holds each :class:`BlockMoves`, and each mark's action, in order. ``place`` is where
+    ``steps`` holds each :class:`BlockMoves` (on the face :class:`FaceMove`, with a
+    :class:`FaceSwitch` in front and behind), and each mark's action, in order. ``place`` is where
     the machine stands in the end.
     """
 
@@ -82,9 +85,13 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> PolarPlan:
         path, ROUNDING_SHARE * tolerance, settings.x_acceleration, radians(settings.c_acceleration)
     )
     machine = _SlideAndSpindle(contour, settings, c)
-    for element, stop in zip(path, stopping):
+    faced = chosen(path, settings.face) if settings.face else [False] * len(path)
+    for element, stop, face in zip(path, stopping, faced):
+        machine.switch(element.line, face)
         if isinstance(element, Mark):
             machine.steps.append(element.action)
+        elif face:
+            machine.cut_on_face(element)
         elif isinstance(element, Plunge):
             machine.plunge(element, stop)
         else:
@@ -133,6 +140,7 @@ class _SlideAndSpindle:
         self.steps: list = []
         self.place = Position(x, c + degrees(self.angle), z)
         self._settings, self._entry = settings, c
+        self._face: float | None = None  # angle of its X axis, while the machine is on it
         self._laws: dict[tuple[float, bool], Law] = {}
 
     def cut(self, move: Line | Arc, stop: bool) -> None:
@@ -146,12 +154,30 @@ class _SlideAndSpindle:
         self.angle = parts.angles[-1] + 2 * pi * turns
         self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", pieces, stop)
 
+    def switch(self, line: int, face: bool) -> None:
+        """Go to the face or back from it, if it is another way than before."""
+        if face is not (self._face is not None):
+            self._face = self.angle if face else None
+            self.steps.append(FaceSwitch(line, face, self.place))
+
+    def cut_on_face(self, move: Line | Arc | Plunge) -> None:
+        """Add a move on the face as it is."""
+        if isinstance(move, Plunge):
+            places = [(*self.place[:2], move.z1)]
+        else:
+            there = passed(move, self.angle)
+            self.angle = there[-1][1]
+            places = [(radius, self._entry + degrees(angle), z) for radius, angle, z in there]
+        self.steps.append(FaceMove(move.line, in_face(move, self._face), places))
+        self.place = Position(*places[-1])
+
     def plunge(self, move: Plunge, stop: bool) -> None:
         """Add a move of Z alone."""
         self._run(move.line, "Z", [(self.place.x, self.place.c, move.z1, move.feed)], stop)
 
     def finish(self, path: list) -> None:
-        """Add what the last piece left over of X."""
+        """Come back from the face; add what the last piece left over of X."""
+        self.switch(path[-1].line if path else 0, face=False)
         moves = [element for element in path if is_move(element)]
         radius = hypot(moves[-1].x1, moves[-1].c1) if moves else self.place.x
         if abs(radius - self.place.x) > LEFT_OVER * self._settings.least_x:

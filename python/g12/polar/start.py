@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from math import hypot, radians
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.machine_ini import Axis
+from g12.machine_ini import Axis, FaceAxes
+from g12.polar.face import FaceLimits
 from g12.polar.plan import PolarSettings
 from g12.polar.soft_limits import AxisScale, SoftLimits
 from g12.section.start import SectionStart, WordRules
@@ -47,13 +49,24 @@ def check_section_start(start: SectionStart, axes: Collection[str]) -> None:
             raise start.place.refuse(rule)
 
 
-def polar_setup(start: SectionStart, settings: Settings, axes: dict[str, Axis]) -> PolarSetup:
-    """Return what a section goes by; ``settings`` and ``axes`` are in machine units."""
+def polar_setup(
+    start: SectionStart, settings: Settings, axes: dict[str, Axis], face: FaceAxes | None
+) -> PolarSetup:
+    """Return what a section goes by; ``settings`` and ``axes`` are in machine units.
+
+    ``face`` are the axes of the part's face, if the machine has its kinematics.
+    """
+    if settings.polar_kinematics == "1" and not face:
+        raise start.place.refuse(
+            f"{start.place.code} needs [KINS] KINEMATICS = polar_xzc for [G12] POLAR_KINEMATICS = 1"
+        )
     machine_unit_mm = start.machine_unit / start.millimetre
     tolerance = settings.tolerance(machine_unit_mm) * start.machine_unit
     return PolarSetup(
         _word_rules(start, settings),
-        _planning(start, settings, axes, tolerance),
+        _planning(start, settings, axes, tolerance)._replace(
+            face=_face_limits(start, face, axes["C"]) if settings.polar_kinematics == "1" else None
+        ),
         SoftLimits(axes, _scales(start)),
         tolerance,
     )
@@ -82,6 +95,18 @@ def _planning(
         c_acceleration=axes["C"].acceleration,
         c_speed=axes["C"].velocity * 60,
         pole_refused=settings.polar_pole == "refuse",
+    )
+
+
+def _face_limits(start: SectionStart, face: FaceAxes, c: Axis) -> FaceLimits:
+    x, y = (axis.acceleration * start.machine_unit for axis in (face.x, face.y))
+    return FaceLimits(
+        acceleration=hypot(x, y),
+        round_acceleration=min(x, y),
+        slide_acceleration=face.slide.acceleration * start.machine_unit,
+        c_acceleration=radians(c.acceleration),
+        c_speed=radians(c.velocity),
+        override=max(1.0, face.override),
     )
 
 

@@ -25,6 +25,7 @@ from pathlib import Path
 
 import numpy as np
 
+from g12.machine_ini import face_joints
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.path.samples import Samples
@@ -45,7 +46,8 @@ NS_PER_S = 1e9
 LOG_LINES = 60
 
 SCREEN_NAME = "g12-recording-screen"
-SCREEN = {"DISPLAY": SCREEN_NAME, "MAX_FEED_OVERRIDE": 100}
+SCREEN = {"DISPLAY": SCREEN_NAME}
+ANY_OVERRIDE = {"MAX_FEED_OVERRIDE": 100}
 
 TOOL_CHANGE_DIALOGUE = "hal_manualtoolchange"
 # Stands in for the screen's tool change dialogue: whoever asks for a tool has it.
@@ -67,7 +69,6 @@ sys.path.insert(0, {package!r})
 from g12.tools.headless.recording_screen import serve_runner
 serve_runner({address!r}, {pins!r})
 """
-FACE_KINEMATICS = "polar_xzc"
 
 
 class StartupError(RuntimeError):
@@ -349,9 +350,10 @@ class Machine:
 
     def _private_ini(self, ini: Ini, tools: Tools, parameters: Parameters) -> Ini:
         """Return the INI with this machine's own screen and files, which it writes."""
+        any_override = {} if face_joints(ini.get) else ANY_OVERRIDE  # where no feed goes by it
         return ini.replaced(
             {
-                "DISPLAY": {**SCREEN, "INTRO_GRAPHIC": None, "OPEN_FILE": None},
+                "DISPLAY": {**SCREEN, **any_override, "INTRO_GRAPHIC": None, "OPEN_FILE": None},
                 "APPLICATIONS": {"APP": None},
                 "EMCIO": {
                     "TOOL_TABLE": write_tools(tools, ini, self.folder / "tool.tbl"),
@@ -427,11 +429,9 @@ class Machine:
 
 def position_pins(ini: Ini) -> dict[str, str]:
     """Return the pin with the position of each axis that the machine has."""
-    module, *parameters = ini.words("KINS", "KINEMATICS", "trivkins")
-    if module == FACE_KINEMATICS:
-        named = dict(parameter.split("=") for parameter in parameters)
-        letters = named.get("coordinates", "XZC").upper()
-        return {letter: f"joint.{joint}.pos-cmd" for joint, letter in enumerate(letters)}
+    joints = face_joints(ini.get)
+    if joints:
+        return {letter: f"joint.{joint}.pos-cmd" for joint, letter in enumerate(joints)}
     return {letter: f"axis.{letter.lower()}.pos-cmd" for letter in ini.axes}
 
 

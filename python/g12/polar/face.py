@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which moves of a section LinuxCNC can plan itself, as lines and arcs in X and Y of the face.
+
+On the face LinuxCNC knows nothing of the C axis, nor of what the slide has to do. Where the tool
+is at the distance r from the pole with the velocity u along the radius and w around the pole, and
+the acceleration a along the radius and b around it, C and the slide need
+
+    C's speed            w / r
+    C's acceleration     (b - 2 u w / r) / r
+    the slide's          a + w**2 / r
+
+An arc needs v**2 / R towards its centre. What the planner has beside that it uses along the path,
+up to speed or down, wherever the operator may stop the feed: so it counts all along. A move stays
+off the face, and is made of pieces, when one of these would be beyond its limit anywhere on it.
+"""
+
+from __future__ import annotations
+
+from math import atan2, ceil, cos, hypot, pi, sin, sqrt
+from typing import NamedTuple
+
+from g12.flat.contour import (
+    SAME_PLACE,
+    Arc,
+    Line,
+    Plunge,
+    arc_radius,
+    end_direction,
+    is_move,
+    path_length,
+    start_direction,
+    sweep_between,
+)
+from g12.flat.intersect import height_at, place_at
+
+LOOKS = 16  # places on a line, and on each quarter of an arc, that are looked at
+WORTH_IT = 0.1  # seconds: two switches cost about as much
+SLACK = 1.0 + 1e-9  # rounding: X and Y together may have just what the slide has
+
+
+class FaceLimits(NamedTuple):
+    """What a machine can do on its face; lengths in program units, times in seconds."""
+
+    acceleration: float  # of X and Y together: the most that the planner uses in any direction
+    round_acceleration: float  # the most that it uses on an arc
+    slide_acceleration: float
+    c_acceleration: float  # radians per second squared
+    c_speed: float  # radians per second
+    override: float  # the most that the operator may turn the feed up by
+
+
+class FaceSwitch(NamedTuple):
+    """Going to the face (``on``), or back, where the machine stands at ``place``."""
+
+    line: int
+    on: bool
+    place: tuple[float, float, float]  # X (radius value), C in degrees, Z
+
+
+class FaceMove(NamedTuple):
+    """A move on the face, in its X and Y: C's zero line is where C stood at the switch.
+
+    ``pieces`` are places that the machine passes, X (radius value), C in degrees and Z: the last
+    is the end, and no axis goes farther than they tell.
+    """
+
+    line: int
+    move: Line | Arc | Plunge
+    pieces: list[tuple[float, float, float]]
+
+
+def chosen(path: list, limits: FaceLimits) -> list[bool]:
+    """Return for each element of the tool centre's path whether it is made on the face.
+
+    Elements that are no moves in the plane go with the one in front of them.
+    """
+    able = [is_able(element, limits) if is_move(element) else None for element in path]
+    on_face = [False] * len(path)
+    begin = 0
+    while begin < len(path):
+        end = begin + 1
+        while end < len(path) and able[end] in (able[begin], None):
+            end += 1
+        run = path[begin:end]
+        if able[begin] and sum(map(_seconds, run)) >= WORTH_IT:
+            on_face[begin:end] = [True] * len(run)
+        begin = end
+    return on_face
+
+
+def _seconds(element: object) -> float:
+    return 60.0 * path_length(element) / element.feed if is_move(element) else 0.0
+
+
+def is_able(move: Line | Arc, limits: FaceLimits) -> bool:
+    """Return whether C and the slide can follow a move on the face, wherever it is stopped."""
+    most, speed = limits.acceleration, limits.override * move.feed / 60.0
+    curving = 0.0
+    if isinstance(move, Arc):
+        most, radius = limits.round_acceleration, arc_radius(move)
+        speed = min(speed, sqrt(most * radius))  # the planner goes no faster round it
+        curving = speed * speed / radius
+    left = sqrt(max(0.0, most * most - curving * curving))
+    at_speed, standing = _Going(speed, curving, left), _Going(0.0, 0.0, most)
+    return all(
+        _can_follow(move, part, going, limits)
+        for part in (0.0, *_parts(move))
+        for going in (at_speed, standing)
+    )
+
+
+class _Going(NamedTuple):
+    """A speed, the acceleration towards an arc's centre at it, and what is left along the path."""
+
+    speed: float
+    curving: float
+    left: float
+
+
+def _can_follow(move: Line | Arc, part: float, going: _Going, limits: FaceLimits) -> bool:
+    x, c = place_at(move, part)
+    radius = hypot(x, c)
+    if radius <= SAME_PLACE:
+        return False
+    tx, tc = end_direction(move._replace(x1=x, c1=c)) if part else start_direction(move)
+    along, around = (tx * x + tc * c) / radius, (tc * x - tx * c) / radius
+    left_hand = 1.0 if isinstance(move, Arc) and move.sweep > 0.0 else -1.0
+    inward, beside = going.curving * left_hand * -around, going.curving * left_hand * along
+    turning = going.speed * around / radius
+    pushed = abs(beside - 2.0 * turning * going.speed * along) + going.left * abs(around)
+    lifted = abs(inward + turning * turning * radius) + going.left * abs(along)
+    return (
+        abs(turning) <= limits.c_speed
+        and pushed / radius <= limits.c_acceleration
+        and lifted <= limits.slide_acceleration * SLACK
+    )
+
+
+def _parts(move: Line | Arc) -> list[float]:
+    """Return the parts of a move to look at: evenly spaced, and where it may be nearest."""
+    count = LOOKS
+    if isinstance(move, Arc):
+        count *= ceil(abs(move.sweep) / (pi / 2))
+        special = [_part_at(move, side) for side in (1.0, -1.0)]
+    else:
+        dx, dc = move.x1 - move.x0, move.c1 - move.c0
+        special = [-(move.x0 * dx + move.c0 * dc) / (dx * dx + dc * dc)]
+    return sorted({k / count for k in range(1, count + 1)} | {k for k in special if 0.0 < k < 1.0})
+
+
+def _part_at(move: Arc, side: float) -> float:
+    """Return the part of an arc farthest from the pole (``side`` 1) or nearest (-1)."""
+    away = hypot(move.cx, move.cc)
+    if not away:
+        return 1.0
+    reach = side * arc_radius(move) / away
+    place = (move.cx * (1.0 + reach), move.cc * (1.0 + reach))
+    turn = 1 if move.sweep > 0.0 else -1
+    centre = (move.cx, move.cc)
+    return sweep_between((move.x0, move.c0), place, centre, turn) / move.sweep
+
+
+def in_face(move: Line | Arc | Plunge, angle: float) -> Line | Arc | Plunge:
+    """Return a move of the plane in X and Y of a face whose X axis is at ``angle``, radians."""
+    if isinstance(move, Plunge):
+        return move
+    (x0, c0), (x1, c1) = (
+        _turned(*place, -angle) for place in ((move.x0, move.c0), (move.x1, move.c1))
+    )
+    turned = move._replace(x0=x0, c0=c0, x1=x1, c1=c1)
+    if isinstance(move, Line):
+        return turned
+    cx, cc = _turned(move.cx, move.cc, -angle)
+    return turned._replace(cx=cx, cc=cc)
+
+
+def _turned(x: float, c: float, angle: float) -> tuple[float, float]:
+    return x * cos(angle) - c * sin(angle), x * sin(angle) + c * cos(angle)
+
+
+def passed(move: Line | Arc, angle: float) -> list[tuple[float, float, float]]:
+    """Return places that a move passes: distance from the pole, angle in radians, Z.
+
+    The farthest one and the end are among them. ``angle`` is that at the start; the angles go on
+    from there without a jump.
+    """
+    places, before = [], (move.x0, move.c0)
+    for part in _parts(move) if isinstance(move, Arc) else (1.0,):
+        x, c = place_at(move, part)
+        angle += atan2(before[0] * c - before[1] * x, before[0] * x + before[1] * c)
+        places.append((hypot(x, c), angle, height_at(move, part)))
+        before = x, c
+    return places

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which moves of a section go out as X and Y of the face, and what they ask of C and the slide."""
+
+from math import atan2, cos, hypot, inf, pi, radians, sin
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from g12.flat.contour import Arc, Contour, Line, Mark, Plunge
+from g12.polar.face import (
+    FaceLimits,
+    FaceMove,
+    FaceSwitch,
+    chosen,
+    in_face,
+    is_able,
+    passed,
+)
+from g12.polar.plan import BlockMoves, PolarSettings, plan
+
+LIMITS = FaceLimits(1000.0, 707.0, 1000.0, radians(3600.0), radians(360.0), 1.0)
+SETTINGS = PolarSettings(0.005, 0.001, 707.0, 3600.0, 21600.0, face=LIMITS)
+ROUNDING = 1e-6
+
+
+def line(*ends, feed=1000.0, z=(0.0, 0.0)):
+    (x0, c0), (x1, c1) = ends
+    return Line(1, feed, 0.0, x0, c0, z[0], x1, c1, z[1])
+
+
+def arc(centre, radius, start, sweep, feed=1000.0):
+    (x0, c0), (x1, c1) = (
+        (centre[0] + radius * cos(angle), centre[1] + radius * sin(angle))
+        for angle in (start, start + sweep)
+    )
+    return Arc(1, feed, 0.0, x0, c0, 0.0, x1, c1, 0.0, *centre, sweep)
+
+
+def test_far_from_the_pole_a_move_is_able():
+    assert is_able(line((40, -20), (40, 20)), LIMITS)
+
+
+@pytest.mark.parametrize(
+    "move",
+    [
+        line((10, -20), (10, 20)),  # a stop of the feed would ask too much of C
+        line((30, 0), (0, 0)),
+        line((0, 0), (30, 0)),
+        arc((20, 0), 15, 0, 2 * pi),
+    ],
+)
+def test_near_the_pole_it_is_not(move):
+    assert not is_able(move, LIMITS)
+
+
+def test_along_a_radius_it_is_however_near_it_comes():
+    assert is_able(line((30, 0), (1, 0)), LIMITS)
+
+
+def test_a_higher_feed_needs_more_room():
+    slow, fast = (line((17, -20), (17, 20), feed=feed) for feed in (500.0, 6000.0))
+    assert is_able(slow, LIMITS)
+    assert not is_able(fast, LIMITS)
+
+
+def test_the_override_counts():
+    move = line((18.5, -20), (18.5, 20), feed=3000.0)
+    assert is_able(move, LIMITS)
+    assert not is_able(move, LIMITS._replace(override=3.0))
+
+
+coordinates = st.floats(-60, 60)
+places = st.tuples(coordinates, coordinates)
+lines = st.builds(
+    lambda a, b, feed: line(a, b, feed=feed), places, places, st.floats(100, 9000)
+).filter(lambda move: hypot(move.x1 - move.x0, move.c1 - move.c0) > 0.1)
+arcs = st.builds(
+    arc,
+    places,
+    st.floats(1, 60),
+    st.floats(-pi, pi),
+    st.floats(0.1, 2 * pi).flatmap(lambda turn: st.sampled_from((turn, -turn))),
+    st.floats(100, 9000),
+)
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.one_of(lines, arcs))
+def test_an_able_move_at_its_feed_keeps_c_and_the_slide_within_their_limits(move):
+    if not is_able(move, LIMITS):
+        return
+    points, speed = motion(move)
+    radius, angle = abs(points), np.unwrap(np.angle(points))
+    step = abs(np.diff(points)).mean() / speed
+    turning = np.abs(np.diff(angle)) / step
+    assert turning.max() <= LIMITS.c_speed * 1.02
+    assert np.abs(np.diff(angle, 2)).max() / step**2 <= LIMITS.c_acceleration * 1.02
+    assert np.abs(np.diff(radius, 2)).max() / step**2 <= LIMITS.slide_acceleration * 1.02
+
+
+def motion(move):
+    """Return 2,000 places of a move, as complex numbers, and its speed per second."""
+    parts, speed = np.linspace(0.0, 1.0, 2000), move.feed / 60.0
+    start, end = complex(move.x0, move.c0), complex(move.x1, move.c1)
+    if isinstance(move, Line):
+        return start + parts * (end - start), speed
+    centre = complex(move.cx, move.cc)
+    speed = min(speed, (LIMITS.round_acceleration * abs(start - centre)) ** 0.5)
+    return centre + (start - centre) * np.exp(1j * parts * move.sweep), speed
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.one_of(lines, arcs), st.floats(-20, 20))
+def test_the_face_is_the_plane_turned(move, angle):
+    turned = in_face(move, angle)
+    before, after = motion(move)[0], motion(turned)[0]
+    assert after * np.exp(1j * angle) == pytest.approx(before, abs=1e-9)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.one_of(lines, arcs), st.floats(-20, 20))
+def test_passed_tells_the_end_and_the_farthest(move, off):
+    points = motion(move)[0]
+    if abs(points).min() < 0.5:
+        return
+    begin = atan2(move.c0, move.x0) + off
+    places = passed(move, begin)
+    angles = np.unwrap(np.angle(points))
+    assert places[-1][0] == pytest.approx(hypot(move.x1, move.c1))
+    assert places[-1][1] - begin == pytest.approx(angles[-1] - angles[0], abs=1e-6)
+    assert max(radius for radius, *_ in [*places, (abs(points[0]),)]) >= abs(points).max() - 1e-4
+
+
+def test_marks_and_plunges_go_with_what_is_in_front():
+    far, near = line((40, -20), (40, 20)), line((5, -20), (5, 20))
+    mark, plunge = Mark(2, "M8"), Plunge(3, 500.0, 0.0, -1.0)
+    path = [mark, far, mark, plunge, near, plunge, far, mark]
+    assert chosen(path, LIMITS) == [False, True, True, True, False, False, True, True]
+
+
+def test_a_short_way_far_out_is_not_worth_two_switches():
+    near, short = line((5, -20), (5, 20)), line((40, 0), (40, 1))
+    assert chosen([near, short, near], LIMITS) == [False] * 3
+
+
+def contour(*points, feed=2000.0):
+    """Return a contour of lines from X30 on."""
+    drawn = Contour(30.0, 0.0, code="G12.1", diameter=False, closing=0.0127)
+    x, c = 30.0, 0.0
+    for number, (to_x, to_c) in enumerate(points, 7):
+        drawn.elements.append(Line(number, feed, 0.0, x, c, 0.0, to_x, to_c, 0.0))
+        x, c = to_x, to_c
+    return drawn
+
+
+def test_a_section_goes_to_the_face_and_back():
+    made = plan(contour((30, 20), (-30, 20), (-30, 0)), SETTINGS, c=10.0)
+    kinds = [type(step) for step in made.steps]
+    assert kinds == [FaceSwitch, FaceMove, FaceMove, FaceMove, FaceSwitch]
+    assert [step.line for step in made.steps] == [7, 7, 8, 9, 9]
+    assert made.steps[0] == FaceSwitch(7, True, (30.0, 10.0, 0.0))
+    assert made.place == pytest.approx((30.0, 190.0, 0.0))
+    assert made.angle == pytest.approx(pi)
+
+
+def test_the_part_beside_the_pole_is_made_of_pieces_and_the_face_begins_anew():
+    made = plan(contour((30, 20), (3, 20), (3, -30), (30, -30), (30, 0)), SETTINGS, c=0.0)
+    assert [step.on for step in made.steps if isinstance(step, FaceSwitch)] == [True, False] * 2
+    assert {step.line for step in made.steps if isinstance(step, BlockMoves)} == {9}
+    again = next(step for step in made.steps if isinstance(step, FaceMove) and step.line == 10)
+    assert (again.move.x0, again.move.c0) == pytest.approx((hypot(3, 30), 0.0), abs=0.002)
+
+
+def test_without_kinematics_all_is_pieces():
+    made = plan(contour((30, 20), (-30, 20)), SETTINGS._replace(face=None), c=0.0)
+    assert {type(step) for step in made.steps} == {BlockMoves}
+
+
+def test_no_limits_no_pieces():
+    free = LIMITS._replace(c_acceleration=inf, c_speed=inf, slide_acceleration=inf)
+    assert is_able(line((0.001, -20), (0.001, 20)), free)
