@@ -28,8 +28,8 @@ pytestmark = needs_kinematics
 X, Y, C = 0, 1, 5
 ROUND = 3  # kind of a sampled move: an arc
 TOLERANCE = 0.002  # mm, of G64
-ON = ("M68 E3 Q0", "M68 E3 Q1", "M66 P3 L3 Q1", "G17")
-OFF = ("M68 E3 Q0", "M66 P3 L4 Q1", "G18")
+ON = ("M68 E3 Q0", "M68 E3 Q1", "M66 P3 L3 Q10", "G17")
+OFF = ("M68 E3 Q0", "M66 P3 L4 Q10", "G18")
 START = ("G21 G18 G8 G90 G94 G64 P0.002 Q0", "G0 X25 Z2 C0")
 CIRCLE_AND_SQUARE = (
     *START, "F3000", *ON, "G1 X20 Y0", "G2 X-20 I-20", "X20 I20", "G1 X20 Y20", "X-20", "Y-20",
@@ -56,7 +56,7 @@ def running():
 def lathe(running):
     running.abort()
     running.mdi("M68 E3 Q0")
-    running.mdi("M66 P3 L4 Q1")
+    running.mdi("M66 P3 L4 Q10")
     running.mdi("G21 G90 G94 G40 G8 G64 G18")
     running.mdi("G0 Z5")
     running.mdi("G0 X20 C30")

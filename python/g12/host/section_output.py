@@ -31,6 +31,7 @@ TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66: polar_kinematics.hal
+SWITCHING = 10  # seconds that it may take at most, on a busy machine
 INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
 PLANES = {1: "G17", 2: "G19", 3: "G18"}  # interp.plane
 CENTRES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
@@ -223,12 +224,12 @@ class SectionOutput:
             interp.execute(f"M68E{CENTRE_OUTPUT}Q{decimal(centre / self.machine_unit)}")
             interp.execute(f"M68E{FACE_OUTPUT}Q0")  # the last request may have ended by itself
             interp.execute(f"M68E{FACE_OUTPUT}Q1")
-            yield f"M66P{FACE_INPUT}L3Q1"
+            yield f"M66P{FACE_INPUT}L3Q{SWITCHING}"
             interp.execute("G17G91.1")
         else:
             interp.execute(self._found)
             interp.execute(f"M68E{FACE_OUTPUT}Q0")
-            yield f"M66P{FACE_INPUT}L4Q1"
+            yield f"M66P{FACE_INPUT}L4Q{SWITCHING}"
         self._check_switched(step)
         interp.params[INPUT_FOUND] = found
         interp.current_x, interp.CC_current, interp.current_z = step.place
