@@ -10,6 +10,7 @@ from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
 from g12.tools.demo.report import shown_or_failed
 from g12.tools.demo.samples import PROGRAMS, SAMPLES, runs
 from g12.tools.errors import UsageError
+from g12.tools.headless.namespaces import has_namespaces
 
 
 def command_parser() -> Parser:
@@ -28,7 +29,7 @@ def main(arguments: list[str]) -> int:
     if not PROGRAMS.is_dir():
         raise UsageError(f"{PROGRAMS}: the sample programs are not there")
     options.output.mkdir(parents=True, exist_ok=True)
-    workers = os.cpu_count() or 1
+    workers = (os.cpu_count() or 1) if has_namespaces() else 1
     print(f"running {len(SAMPLES)} programs, {workers} at a time, in real time\n", flush=True)
     bad = []
     for count, (sample, job) in enumerate(runs(SAMPLES, workers), start=1):

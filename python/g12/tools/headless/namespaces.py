@@ -7,11 +7,13 @@ this one closes its standard input, also by dying.
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import shlex
 import shutil
 import subprocess
+import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -19,6 +21,8 @@ from pathlib import Path
 from g12.tools.system import PYTHON
 
 ISOLATE = Path(__file__).with_name("namespaces_init.py")
+CONTAINED = Path(__file__).with_name("contained_init.py")
+PROBE = "probe"  # asks ISOLATE whether it can
 PATIENCE = 60.0  # s
 NOBODY = "65534"  # LinuxCNC's realtime part refuses to be plain root
 NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "INI_FILE_NAME")
@@ -67,7 +71,7 @@ class Isolated:
         }
         with open(self.folder / "log.txt", "wb") as log:
             self._process = subprocess.Popen(
-                [PYTHON, str(ISOLATE)],
+                [PYTHON, str(ISOLATE if has_namespaces() else CONTAINED)],
                 stdin=subprocess.PIPE,
                 stdout=log,
                 stderr=log,
@@ -107,8 +111,18 @@ class Isolated:
         return {**kept, **private, **({"RTAPI_UID": NOBODY} if os.geteuid() == 0 else {})}
 
 
+@functools.cache
+def has_namespaces() -> bool:
+    """Tell whether this system allows namespaces, and the user if it does not."""
+    probed = subprocess.run([PYTHON, str(ISOLATE), PROBE], capture_output=True, text=True)
+    if probed.returncode:
+        why = (probed.stderr.strip().splitlines() or ["no reason given"])[-1]
+        print(f"g12: without namespaces ({why}): one LinuxCNC at a time", file=sys.stderr)
+    return not probed.returncode
+
+
 def obstacle() -> str | None:
-    """Return why this system allows no namespaces, None if it does."""
+    """Return why LinuxCNC cannot be run apart from others here, None if it can."""
     isolated = Isolated()
     try:
         isolated.launch(["true"], {})

@@ -153,6 +153,18 @@ def supervise(child: int, scratch: str) -> int:
     return code
 
 
+def probe() -> int:
+    """Return 0 if namespaces and mounts can be had, else say why not."""
+    try:
+        unshare()
+        raise_if_failed(libc.unshare(CLONE_NEWNS), "new mount namespace")
+        mount("none", "/", None, MS_REC | MS_PRIVATE)
+    except OSError as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
 def main() -> int:
     """Run the job and return its exit code."""
     job = json.loads(sys.stdin.readline())
@@ -170,4 +182,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(probe() if sys.argv[1:] else main())

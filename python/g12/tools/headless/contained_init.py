@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Start a command where no namespaces can be had; run by ``namespaces`` as a program.
+
+The container, or whoever forbids them, is the isolation: one LinuxCNC runs at a time, others of
+this package wait for it, and a LinuxCNC of somebody else's is not disturbed but told.  What a
+private directory is elsewhere is here a copy in a tree of links that looks like the real one.
+
+The job is that of ``namespaces_init``; ``covers`` cannot be had.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import re
+import select
+import shutil
+import signal
+import sys
+import time
+
+from namespaces_init import IsolationError, copy_file, libc, raise_if_failed, write_text
+
+PR_SET_CHILD_SUBREAPER = 36
+IPC_RMID = 0
+LOCK = "/tmp/g12-linuxcnc.lock"  # held while one of ours runs
+LINUXCNC_LOCK = "/tmp/linuxcnc.lock"
+LINUXCNC = re.compile(r"milltask|linuxcncsvr|rtapi")  # names of its processes
+PATIENCE = 15.0  # s for LinuxCNC to clean up after itself
+
+
+def running() -> list[str]:
+    """Return the processes of a LinuxCNC that runs here."""
+    names = {}
+    for entry in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{entry}/comm", encoding="utf-8") as file:
+                names[entry] = file.read().strip()
+        except OSError:  # it has ended
+            continue
+    return [f"{name} ({number})" for number, name in names.items() if LINUXCNC.match(name)]
+
+
+def claimed() -> int:
+    """Wait until no other of ours runs, and return what has to stay open."""
+    lock = os.open(LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+    while not locked(lock):
+        if select.select([sys.stdin], [], [], 0.1)[0]:
+            raise IsolationError("nobody waits for this run any more")
+    found = running()
+    if found:
+        raise IsolationError(
+            f"a LinuxCNC runs here already, {found[0]}, and this system allows no namespaces to "
+            "keep another one apart from it"
+        )
+    return lock
+
+
+def locked(file: int) -> bool:
+    """Take the lock of an open file if it is free; return whether it was."""
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def mirrored(directory: str, files: dict[str, str], tree: str) -> str:
+    """Return a private copy of a directory inside ``tree``, whose other entries are links.
+
+    Its files are copies, ``files`` texts that stand in place of some.
+    """
+    real, copy = "/", tree
+    for part in os.path.realpath(directory).strip("/").split("/"):
+        link_entries(real, copy, besides=part)
+        real, copy = os.path.join(real, part), os.path.join(copy, part)
+    os.makedirs(copy, exist_ok=True)
+    for entry in os.scandir(real):
+        target = os.path.join(copy, entry.name)
+        if entry.is_file() and entry.name not in files:
+            copy_file(entry.path, target)
+        elif entry.name not in files:
+            os.symlink(entry.path, target)
+    for name, text in files.items():
+        write_text(os.path.join(copy, name), text)
+    return copy
+
+
+def link_entries(real: str, copy: str, besides: str) -> None:
+    """Fill a directory of the tree with links to the entries of the real one."""
+    os.makedirs(copy, exist_ok=True)
+    for name in set(os.listdir(real)) - set(os.listdir(copy)) - {besides}:
+        os.symlink(os.path.join(real, name), os.path.join(copy, name))
+
+
+def moved(command: list[str], job: dict) -> list[str]:
+    """Return the command with names in the copied directories as they are in the tree."""
+    tree = os.path.join(job["scratch"], "tree")
+    for directory, files in job["copies"].items():
+        copy = mirrored(directory, files, tree)
+        command = [
+            copy + word[len(directory) :] if word.startswith(f"{directory}/") else word
+            for word in command
+        ]
+    return command
+
+
+def shared_memory() -> set[int]:
+    """Return the numbers of the shared memory segments there are."""
+    with open("/proc/sysvipc/shm", encoding="ascii") as file:
+        return {int(line.split()[1]) for line in file.readlines()[1:]}
+
+
+def children() -> list[int]:
+    """Return the processes whose parent this one is, orphans of its children included."""
+    with open(f"/proc/self/task/{os.getpid()}/children", encoding="ascii") as file:
+        return [int(number) for number in file.read().split()]
+
+
+def wait_for(child: int) -> int:
+    """Wait for the command, or end it when standard input is closed; return its exit code."""
+    descriptor = os.pidfd_open(child)
+    ready, _, _ = select.select([descriptor, sys.stdin], [], [])
+    if descriptor not in ready and not select.select([descriptor], [], [], PATIENCE)[0]:
+        os.kill(child, signal.SIGTERM)
+        select.select([descriptor], [], [], PATIENCE)
+    if not select.select([descriptor], [], [], 0)[0]:
+        os.kill(child, signal.SIGKILL)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+
+def end_all(before: set[int]) -> None:
+    """End every process that is left, and free the shared memory that is."""
+    end = time.monotonic() + PATIENCE
+    while (left := children()) and time.monotonic() < end:
+        for number in left:
+            try:
+                os.kill(number, signal.SIGKILL)
+                os.waitpid(number, 0)
+            except OSError:
+                time.sleep(0.1)  # LinuxCNC's realtime part may be root's: it ends by itself
+    for number in shared_memory() - before:
+        libc.shmctl(number, IPC_RMID, None)
+    if os.path.exists(LINUXCNC_LOCK):
+        os.unlink(LINUXCNC_LOCK)
+
+
+def main() -> int:
+    """Run the job and return its exit code."""
+    job = json.loads(sys.stdin.readline())
+    lock = claimed()
+    before = shared_memory()
+    raise_if_failed(libc.prctl(PR_SET_CHILD_SUBREAPER, 1), "taking in orphans")
+    command = moved(job["command"], job)
+    child = os.posix_spawnp(command[0], command, job["environment"])
+    try:
+        code = wait_for(child)
+    finally:
+        end_all(before)
+        os.close(lock)
+    if select.select([sys.stdin], [], [], 0)[0]:  # closed: nobody is left to do it
+        shutil.rmtree(job["scratch"], ignore_errors=True)
+    return code & 0xFF
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except IsolationError as problem:
+        print(problem, file=sys.stderr)
+        sys.exit(125)

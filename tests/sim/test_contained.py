@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Real runs in a plain container: no right to mount, no namespaces; it is the isolation itself."""
+
+import os
+import subprocess
+
+import pytest
+
+from g12.tools.system import PYTHON
+from support.sim_machines import ROOT, SIM
+
+CONTAINER = ["unshare", "--pid", "--fork", "--kill-child", "--mount-proc", "--ipc", "--net"]
+PLAIN = ["setpriv", "--bounding-set", "-sys_admin", "--inh-caps", "-sys_admin", "sh", "-c"]
+RUN = f"{PYTHON} {ROOT}/python/g12 run {SIM}/samples/mill_mm.ngc --ini {SIM}/mill_mm.ini"
+LEFT = "cat /proc/sysvipc/shm; ps -eo comm=; ls /tmp/linuxcnc.lock"
+
+
+@pytest.fixture
+def contained():
+    """Run shell commands as a container that starts with them does."""
+    if os.geteuid() or subprocess.run([*CONTAINER, "true"], capture_output=True).returncode:
+        pytest.skip("only root can make something like a container")
+
+    def run(commands):
+        whole = [*CONTAINER, *PLAIN, commands]
+        return subprocess.run(whole, capture_output=True, text=True, timeout=120)
+
+    return run
+
+
+def test_a_run_is_told_to_be_without_namespaces_and_leaves_nothing(contained):
+    done = contained(f"{RUN} || exit; {LEFT}")
+    assert "s in motion" in done.stdout
+    first, *rest = done.stderr.splitlines()
+    assert first.startswith("g12: without namespaces (") and len(rest) == 1  # of ls
+    assert "milltask" not in done.stdout and "rtapi" not in done.stdout
+    assert len([line for line in done.stdout.splitlines() if line.split()[0].isdigit()]) == 0
+
+
+def test_one_that_is_killed_leaves_nothing(contained):
+    killed = f"timeout -s KILL 6 {RUN}; sleep 35; {LEFT}"
+    done = contained(killed)
+    assert "milltask" not in done.stdout and "rtapi" not in done.stdout
+    assert "/tmp/linuxcnc.lock" not in done.stdout
+
+
+def test_another_linuxcnc_is_left_alone(contained, tmp_path):
+    other = tmp_path / "milltask"
+    other.symlink_to("/usr/bin/sleep")
+    done = contained(f"{other} 100 & {RUN}; ps -eo comm=; kill $!")
+    assert "a LinuxCNC runs here already, milltask (" in done.stderr
+    assert done.stderr.count("\n") == 2
+    assert "milltask" in done.stdout
