@@ -648,7 +648,7 @@ EVENTS = [("G13.2", f"G13.2 {PLACE} H2"), ("circle_mill", call(x=0, y=0, z=0, w=
     [
         ("G93", "needs feed per minute or revolution (G94, G95), but G93 is active"),
         ("G41 D1", "brings its own cutter compensation: program G40 first"),
-        ("F0", "F0 must be greater than 0"),
+        ("F0", "F0 must be greater than 0 (no feed commanded?)"),
         ("G18", "needs the XY plane G17, but G18 is active"),
         ("G19", "needs the XY plane G17, but G19 is active"),
         ("T0 M6", "no tool is loaded: its diameter sets the path"),

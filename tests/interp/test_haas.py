@@ -454,7 +454,7 @@ REFUSED = [
         "G12 I.5 Z-1",
         "G12: D is missing, none was commanded before and no tool is loaded",
     ),
-    ("G12 I.5 Z-1 D1 F0", "G12: F0 must be greater than 0"),
+    ("G12 I.5 Z-1 D1 F0", "G12: F0 must be greater than 0 (no feed commanded?)"),
     ("G12 I.5 Z-1 D1 G4 P1", "G12: G4 cannot stand in the same block"),
     ("G93 G12 I.5 Z-1 D1 F1", "G12: needs feed per minute or revolution (G94, G95), but G93"),
     ("G18 G12 I.5 Z-1 D1", "G12: needs the XY plane G17, but G18 is active"),

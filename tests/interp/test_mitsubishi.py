@@ -163,7 +163,7 @@ def test_a_bad_block_moves_nothing_and_changes_nothing(metric, block, message):
             "G12: needs feed per minute or revolution (G94, G95), but G93 is active",
         ),
         ("G41 D1", "G12: brings its own cutter compensation: program G40 first"),
-        ("F0", "G12: F0 must be greater than 0"),
+        ("F0", "G12: F0 must be greater than 0 (no feed commanded?)"),
     ],
 )
 def test_a_mode_that_cannot_work_is_refused(metric, mode, message):

@@ -315,7 +315,7 @@ def test_a_bad_block_moves_nothing_and_changes_nothing(metric, block, message):
             "G12: needs feed per minute or revolution (G94, G95), but G93 is active",
         ),
         ("G41 D1", "G12: brings its own cutter compensation: program G40 first"),
-        ("F0", "G12: F0 must be greater than 0"),
+        ("F0", "G12: F0 must be greater than 0 (no feed commanded?)"),
         ("G18", "G12: needs the XY plane G17, but G18 is active"),
         ("G19", "G12: needs the XY plane G17, but G19 is active"),
     ],
@@ -325,6 +325,12 @@ def test_a_mode_that_cannot_work_is_refused(metric, mode, message):
     traced = metric.trace_text([FIRST, "G0 X3", mode, block])
     assert traced.error.text == at_line(message, 4)
     assert len(traced.moves) == 1
+
+
+def test_right_after_g40_nothing_moves(metric):
+    message = "G12: the tool still stands offset: after G40 move in X or Y first"
+    before = [FIRST, "T1 M6", "G41", "G1 X30", "Y30", "G40"]
+    mode_matrix.check_refused(metric, before, "G12 I30 R20 D10", message)
 
 
 @settings(max_examples=100, deadline=None)

@@ -30,5 +30,5 @@ INCH = MM._replace(
 BAD_MODES = [
     (dict(inverse_time=True), "needs feed per minute or revolution (G94, G95), but G93 is active"),
     (dict(compensated=True), "brings its own cutter compensation: program G40 first"),
-    (dict(feed=0.0), "F0 must be greater than 0"),
+    (dict(feed=0.0), "F0 must be greater than 0 (no feed commanded?)"),
 ]

@@ -63,6 +63,10 @@ def test_rounding_of_the_increment_makes_no_sliver():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
+        (
+            dict(R=0.5, Z=-1.0, D=1),
+            "G12: R0.5 is not a word of this cycle, which knows X Y Z I K Q L D F",
+        ),
         (dict(Z=-1.0, D=1), "G12: I is missing: the radius of the first circle"),
         (dict(I=0.5, D=1), "G12: Z is missing: the depth of the pocket"),
         (dict(I=0.125, Z=-1.0, D=1), "G12: I0.125 must be greater than the tool radius 0.125 (D1)"),
@@ -114,7 +118,7 @@ def test_a_bad_block_is_refused_by_name(words, message):
             dict(compensated=True),
             "G12: brings its own cutter compensation: program G40 first",
         ),
-        (dict(feed=0.0), "G12: F0 must be greater than 0"),
+        (dict(feed=0.0), "G12: F0 must be greater than 0 (no feed commanded?)"),
         (
             dict(per_revolution=True),
             "G12: needs a spindle speed for feed per revolution (G95), but S is 0",

@@ -45,6 +45,7 @@ def test_a_positive_offset_reduces_the_circle(words, radius):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
+        (dict(R=0.5, D=2), "G13: R0.5 is not a word of this cycle, which knows I D F"),
         (dict(D=2), "G13: I is missing: the radius of the circle"),
         (
             dict(I=50.0),
@@ -85,6 +86,10 @@ def test_a_bad_block_is_refused_by_name(words, message):
     ("modes", "rule"),
     [
         *BAD_MODES,
+        (
+            dict(offset_pending=True),
+            "the tool still stands offset: after G40 move in X or Y first",
+        ),
         (
             dict(plane="G17.1, G18.1 or G19.1"),
             "needs plane G17, G18 or G19, but G17.1, G18.1 or G19.1 is active",

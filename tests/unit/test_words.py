@@ -67,9 +67,13 @@ def test_two_words_that_need_each_other():
     assert refusal(words(Q=2.0).take_pair, "K", "Q") == "G12: Q2 needs K as well"
 
 
-def test_every_word_is_taken_once_and_what_is_left_is_refused():
-    block = words(I=1.0, E=2.0)
+def test_a_word_is_taken_once():
+    block = words(I=1.0)
     assert (block.take("I"), block.take("I")) == (1.0, None)
-    assert refusal(block.finish, "I") == "G12: E2 is not a word of this cycle, which knows I"
-    block.take("E")
-    block.finish("I")
+
+
+def test_a_word_that_the_cycle_does_not_have_is_refused():
+    block = words(I=1.0, E=2.0)
+    message = "G12: E2 is not a word of this cycle, which knows I R (or J)"
+    assert refusal(block.check_known, "I R (or J)") == message
+    block.check_known("E I")

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from g12.cycles.common import SMALLEST_RING_MM
 from g12.cycles.context import Tool
 from g12.cycles.words import Words
 from g12.cycles.yasnac import plan_circle
@@ -44,6 +45,19 @@ def test_the_circle_on_the_side_of_i(words, approach, radius):
     circle = plan(**words)
     assert (circle.approach, circle.first, circle.radius) == (approach, radius, radius)
     assert (circle.half_turns, circle.circles) == (0, 1)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_r_may_be_nearer_to_i_than_two_of_the_smallest_arcs(side):
+    traverse = side * (30 - 1.5 * SMALLEST_RING_MM)
+    assert plan(I=30.0 * side, R=traverse).approach == traverse
+
+
+def test_right_after_g40_no_circle_begins():
+    with pytest.raises(Refusal) as refused:
+        plan(found=MM._replace(offset_pending=True), I=50.0, R=20.0, D=2)
+    message = "G12: the tool still stands offset: after G40 move in X or Y first"
+    assert refused.value.message == message
 
 
 @pytest.mark.parametrize("rounding", [1e-11, -1e-11])
@@ -112,6 +126,25 @@ def test_rounding_of_the_increment_makes_no_turn_of_its_own():
             dict(I=50.0, J=55.0),
             "G12: J55 puts the tool centre at X55 from the circle's centre (no D):"
             " it must be from 0 to less than X50, where I50 puts it",
+        ),
+        (
+            dict(I=30.0, R=30.0 - 0.5 * SMALLEST_RING_MM),
+            "G12: R29.99746 puts the tool centre at X29.99746 from the circle's centre (no D):"
+            " only 0.00254 from X30, where I30 puts it; the smallest arc needs 0.00508",
+        ),
+        (
+            dict(I=50.0, R=20.0, K=20.004, Q=1.0, D=2),
+            "G12: K20.004 puts the tool centre at X10.004 from the circle's centre (tool radius 10,"
+            " D2): only 0.004 from X10, where the cut begins; the smallest arc needs 0.00508",
+        ),
+        (
+            dict(I=-50.0, R=-20.0, K=-49.999, Q=1.0),
+            "G12: K-49.999 puts the tool centre at X-49.999 from the circle's centre (no D):"
+            " only 0.001 from X-50, where I-50 puts it; the smallest arc needs 0.00508",
+        ),
+        (
+            dict(R=0.5, Z=-1.0),
+            "G12: Z-1 is not a word of this cycle, which knows I R (or J) K Q L D F",
         ),
         (dict(I=50.0, R=20.0, J=20.0), "G12: R and J are the same word: give one of them"),
         (dict(I=50.0, K=20.0), "G12: K20 needs Q as well"),

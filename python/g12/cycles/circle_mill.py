@@ -21,11 +21,11 @@ The motions of `ngc/g12_circle_mill.ngc`:
 The plunge point is the centre of a pocket, the -Y point of a perimeter.
 
 Rules, in the order of the checks. Of a call: V and F above 0, `check_modes`, G 0 or 7, L not 0; of
-a code: `check_modes`, L only with Q, Q above 0, L 0 or 1. Of both: X, Y, R required, R above 0; D
-from 0 to 3, C required, from 0 to 2, in a pocket the pairs that put the tool inside; no finish
-with C0; W known from here or an earlier event, O not below W; Z required; K, J, P above 0; every
-word known; a tool with a diameter in the spindle; R with room for it; J in pockets only, and not
-too small; the deepest rough level below W; not too many circles; L not too small.
+a code: `check_modes`, every word known, L only with Q, Q above 0, L 0 or 1. Of both: X, Y, R
+required, R above 0; D from 0 to 3, C required, from 0 to 2, in a pocket the pairs that put the
+tool inside; no finish with C0; W known from here or an earlier event, O not below W; Z required;
+K, J, P above 0; a tool with a diameter in the spindle; R with room for it; J in pockets only, and
+not too small; the deepest rough level below W; not too many circles; L not too small.
 
 `check_start` is not asked: the first move goes to the plunge point, which X and Y name.
 """
@@ -72,11 +72,11 @@ class Spelling(NamedTuple):
     second_plane: str
     side: str
     finish: str
-    known: str
 
 
-CODE = Spelling("I", "E", "H", "Q", "X Y Z I E R D H K J Q L P F")
-CALL = Spelling("W", "O", "C", "L", "G X Y Z W O R D C K J L P F V")
+KNOWN_WORDS = "X Y Z I E R D H K J Q L P F"
+CODE = Spelling("I", "E", "H", "Q")
+CALL = Spelling("W", "O", "C", "L")
 
 
 class EventEntries(NamedTuple):
@@ -188,6 +188,7 @@ def plan_code(words: Words, context: Context, plane: float | None, pocket: bool)
     ``plane`` is the first reference plane last commanded, None if there is none.
     """
     check_modes(words, context)
+    words.check_known(KNOWN_WORDS)
     finish, bottom = finish_of_code(words)
     return plan_event(
         EventEntries(words, CODE, context, plane, pocket, finish, bottom, finish_feed=context.feed)
@@ -252,7 +253,6 @@ def plan_event(entries: EventEntries) -> MillEvent:
     peck = words.take_positive("K")
     width = words.take_positive("J")
     plunge_feed = words.take_positive("P") or context.feed
-    words.finish(entries.spelling.known)
     tool = loaded_tool(entries)
     roughing = roughing_of(entries, circle, tool, width)
     depths = depths_of(entries, depth, first_plane, peck)

@@ -37,7 +37,7 @@ def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,))
     if context.compensated:
         raise words.refuse("brings its own cutter compensation: program G40 first")
     if not context.feed > 0:
-        raise words.refuse(f"F{number(context.feed)} must be greater than 0")
+        raise words.refuse(f"F{number(context.feed)} must be greater than 0 (no feed commanded?)")
 
 
 def check_start(words: Words, context: Context) -> None:

@@ -14,10 +14,10 @@ The motions of `ngc/g12_haas.ngc`, per level:
 
 A tool-centre radius b is the programmed radius less the tool radius.
 
-Rules, in the order of the checks: G17 and the modes of `check_modes`; I required; K and Q together,
-both above 0; L whole, from 1; Z required; without X and Y `check_start`; D whole, from 0, in the
-tool table, or a cutter known without it; every word known; I above 0, greater than the tool radius
-by a ring that can be cut, less than K; not too many circles.
+Rules, in the order of the checks: G17 and the modes of `check_modes`; every word known; I
+required; K and Q together, both above 0; L whole, from 1; Z required; without X and Y
+`check_start`; D whole, from 0, in the tool table, or a cutter known without it; I above 0, greater
+than the tool radius by a ring that can be cut, less than K; not too many circles.
 """
 
 from __future__ import annotations
@@ -82,6 +82,7 @@ class Pocket(NamedTuple):
 def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pocket:
     """Return the pocket of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context)
+    words.check_known(KNOWN_WORDS)
     first = words.require("I", "the radius of the first circle")
     outward = words.take_pair("K", "Q")
     levels = words.take_whole("L", least=1, default=1)
@@ -93,7 +94,6 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
         check_start(words, context)
     with_d = "D" in words
     cutter, source = choose_cutter(words, context)
-    words.finish(KNOWN_WORDS)
     check_radii(words, context, first, outward, cutter, source)
 
     finished, stepover = outward or (first, first)

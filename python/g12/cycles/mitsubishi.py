@@ -8,9 +8,9 @@ tool stands:
 2. full circle
 3. half circle back to the centre
 
-Rules, in the order of the checks: G17, G18 or G19 and the modes of `check_modes`; `check_start`; I
-required; D required, whole, from 0, in the tool table; every other word refused; I, whose sign
-is ignored, greater than the offset. A negative diameter in the tool table enlarges the circle.
+Rules, in the order of the checks: G17, G18 or G19 and the modes of `check_modes`; every word known;
+`check_start`; I required; D required, whole, from 0, in the tool table; I, whose sign is ignored,
+greater than the offset. A negative diameter in the tool table enlarges the circle.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ class MitsubishiCircle(NamedTuple):
 def plan_circle(words: Words, context: Context) -> MitsubishiCircle:
     """Return the circle of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context, planes=tuple(FIRST_AXIS))
+    words.check_known(KNOWN_WORDS)
     check_start(words, context)
     wanted = words.require("I", "the radius of the circle")
     if "D" not in words:
         raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")
     tool = commanded_tool(words, context)
-    words.finish(KNOWN_WORDS)
     check_radius(words, context, wanted, tool)
     return MitsubishiCircle(
         plane=int(context.plane[1:]),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The words of one block: a dialect takes those it knows, whatever is left is refused.
+"""The words of one block: a dialect takes those it knows, any other is refused.
 
 Every rule about a single word lives here, so that each refusal names the code, the word,
 the rule and the value in the same way.
@@ -87,9 +87,10 @@ class Words:
             return None
         return self.take_positive(first), self.take_positive(second)
 
-    def finish(self, known: str) -> None:
-        """Refuse every word that nobody took; ``known`` lists the dialect's words."""
+    def check_known(self, known: str) -> None:
+        """Refuse a word that the dialect does not have; ``known`` lists its letters."""
         for letter, value in self._left.items():
-            raise self.refuse(
-                f"{letter}{number(value)} is not a word of this cycle, which knows {known}"
-            )
+            if letter not in known:
+                raise self.refuse(
+                    f"{letter}{number(value)} is not a word of this cycle, which knows {known}"
+                )

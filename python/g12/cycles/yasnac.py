@@ -16,10 +16,11 @@ The motions of `ngc/g12_yasnac.ngc`, at the present Z, from the centre where the
 All of it lies on the side of X that I's sign picks: I-50 is I50 turned by 180 degrees.
 With d = the tool radius, signed like I, R - d and K - d and I - d are tool-centre positions.
 
-Rules, in the order of the checks: G17 and the modes of `check_modes`; `check_start`; I required; R
-or J, not both; K and Q together, Q above 0; L whole, from 1; D whole, from 0, in the tool table;
-every word known; no negative diameter; I not 0, beyond the tool radius; R - d from 0 to less than
-I - d; K - d between R - d and I - d; not too many circles.
+Rules, in the order of the checks: G17 and the modes of `check_modes`; every word known;
+`check_start`; I required; R or J, not both; K and Q together, Q above 0; L whole, from 1; D whole,
+from 0, in the tool table; no negative diameter; I not 0, beyond the tool radius; R - d from 0 to
+less than I - d; K - d between R - d and I - d; each of them apart by an arc that can be cut; not
+too many circles.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ from g12.cycles.common import (
 )
 from g12.cycles.context import Context, Tool
 from g12.cycles.words import Words
-from g12.errors import number
+from g12.errors import BlockRefusal, number
 
 KNOWN_WORDS = "I R (or J) K Q L D F"
 
@@ -76,27 +77,36 @@ class Reach(NamedTuple):
         position = word - self.offset
         return position if abs(position) > self.rounding else 0.0
 
-    def check(self, letter: str, word: float, first: float, last: float, bounds: str) -> None:
-        """Refuse a word whose position is not from ``first`` to before ``last``."""
-        position = self.position(word)
-        side = copysign(1.0, last)
-        if not side * first <= side * position <= side * last - self.smallest:
-            raise self.words.refuse(
-                f"{letter}{number(word)} puts the tool centre at X{number(position)} from the"
-                f" circle's centre ({self.cutter}): it must be {bounds}"
+    def refuse(self, letter: str, word: float, rule: str) -> BlockRefusal:
+        """Return the refusal of a word whose position breaks ``rule`` (the caller raises it)."""
+        position = number(self.position(word))
+        return self.words.refuse(
+            f"{letter}{number(word)} puts the tool centre at X{position} from the circle's centre"
+            f" ({self.cutter}): {rule}"
+        )
+
+    def check_apart(self, letter: str, word: float, other: float, source: str) -> None:
+        """Refuse a word whose position is nearer to another than the smallest arc."""
+        apart = abs(self.position(word) - other)
+        if apart < self.smallest:
+            raise self.refuse(
+                letter,
+                word,
+                f"only {number(apart)} from X{number(other)}, {source};"
+                f" the smallest arc needs {number(self.smallest)}",
             )
 
 
 def plan_circle(words: Words, context: Context) -> YasnacCircle:
     """Return the circle of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context)
+    words.check_known(KNOWN_WORDS)
     check_start(words, context)
     finished = words.require("I", "the radius of the finished circle")
     traverse = take_traverse(words)
     spiral = take_spiral(words)
     circles = words.take_whole("L", least=1, default=1)
     tool = commanded_tool(words, context) or Tool(0, 0.0)
-    words.finish(KNOWN_WORDS)
     reach = reach_of(words, context, finished, sound_tool(words, tool, f"D{tool.number}"))
 
     radius = reach.position(finished)
@@ -143,10 +153,12 @@ def approach_of(reach: Reach, traverse: tuple[str, float] | None, finished: floa
     """Return where the fast move ends, 0 without R."""
     if traverse is None:
         return 0.0
-    last = reach.position(finished)
-    bounds = f"from 0 to less than X{number(last)}, where I{number(finished)} puts it"
-    reach.check(*traverse, 0.0, last, bounds)
-    return reach.position(traverse[1])
+    last, approach = reach.position(finished), reach.position(traverse[1])
+    source = f"where I{number(finished)} puts it"
+    if not 0.0 <= approach / last < 1.0:
+        raise reach.refuse(*traverse, f"it must be from 0 to less than X{number(last)}, {source}")
+    reach.check_apart(*traverse, last, source)
+    return approach
 
 
 def half_turns_of(
@@ -161,9 +173,12 @@ def half_turns_of(
     if spiral is None:
         return last, 0, 0.0, 0.0
     first, pitch = reach.position(spiral[0]), spiral[1]
-    least = approach + copysign(reach.smallest, last)
-    bounds = f"between X{number(approach)} and X{number(last)}, where I{number(finished)} puts it"
-    reach.check("K", spiral[0], least, last, bounds)
+    source = f"where I{number(finished)} puts it"
+    if not approach / last < first / last < 1.0:
+        bounds = f"between X{number(approach)} and X{number(last)}, {source}"
+        raise reach.refuse("K", spiral[0], f"it must be {bounds}")
+    reach.check_apart("K", spiral[0], approach, "where the cut begins")
+    reach.check_apart("K", spiral[0], last, source)
     turns = steps_between(abs(first), abs(last), pitch, reach.rounding)
     rest = abs(last) - abs(first) - pitch * (turns - 1)
     growth = copysign(pitch if turns > 1 else rest, last) / 2

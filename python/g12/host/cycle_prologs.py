@@ -90,7 +90,7 @@ def planned_event(interp: object, pocket: bool) -> circle_mill.MillEvent:
     entries = cycle_glue.entries_of_sub(interp, "circle_mill", len(circle_mill.ENTRIES))
     if entries is None:
         return circle_mill.plan_code(words, context, plane, pocket)
-    words.finish("no words inside o<circle_mill>")
+    words.check_known("no words inside o<circle_mill>")
     call = Words("circle_mill", circle_mill.entries_by_letter(entries))
     return circle_mill.plan_call(call, context, plane)
 
