@@ -127,10 +127,10 @@ def settings_from_ini(path: str | os.PathLike[str] | None) -> Settings:
 
 
 def check_section(lines: Sequence[str]) -> None:
-    """Refuse a section that LinuxCNC would not read: in lower case, or a second one."""
+    """Refuse a section that LinuxCNC would not read: named otherwise, or a second one."""
     headers = [line for line in map(str.strip, lines) if line.startswith("[")]
     names = [line.split("]")[0][1:] for line in headers]
-    found = [name for name in names if name.upper() == SECTION]
+    found = [name for name in names if name.strip().upper() == SECTION]
     if any(name != SECTION for name in found):
         raise Refusal(f"[{min(set(found) - {SECTION})}] must be written [{SECTION}]")
     if len(found) > 1:

@@ -112,6 +112,7 @@ INSIDE = [
     ("M33 M8", "M33 is remapped: inside a section it needs a block of its own"),
     ("M33 X5", "M33 is remapped: inside a section it needs a block of its own"),
     ("M72", "M72: no modes were saved in this section"),
+    ("M19 R90 Q0", "M19 needs Q above zero, the longest wait in seconds"),
     ("o<s> sub", "a sub cannot be defined inside the section"),
     ("o<s> endsub", "G13.1 is missing: endsub comes before it"),
     ("o<s> return", "G13.1 is missing: return comes before it"),
@@ -128,6 +129,9 @@ IN_ITS_OWN_WORDS = [  # how the interpreter begins; its versions go on different
     ("G1 X5 P3", "P word with no G2 "),
     ("G1 X[1/0]", "Attempt to divide by zero"),
     ("G4", "Dwell time missing with g4"),
+    ("G3 M8 P1", "P word with no G2 "),
+    ("M3 S[10**300]", "Command too long"),
+    ("M66 P1 L3 Q[10**300]", "Command too long"),
     ("G1 X#<a>", "Named parameter #<a> not defined"),
     ("G12.7", "Unknown g code used"),
 ]

@@ -83,6 +83,8 @@ def test_a_key_stands_there_once():
     ("text", "message"),
     [
         ("[g12]\nCLEARING = spiral\n", "[g12] must be written [G12]"),
+        ("[G12 ]\nCLEARING = spiral\n", "[G12 ] must be written [G12]"),
+        ("[ G12]\nCLEARING = spiral\n", "[ G12] must be written [G12]"),
         (
             "[G12]\nCLEARING = spiral\n[EMC]\n[G12]\n",
             "[G12] stands there twice: LinuxCNC reads the first one only",

@@ -32,7 +32,6 @@ from g12.section.block_rules import (
 )
 from g12.section.codes import SectionCodes
 from g12.section.line import TextLine, is_plain, split_line
-from g12.section.modes import action_text
 
 WAITING_GROUP = 5
 MOST_LINES = 1_000_000  # LinuxCNC is deaf to an abort while a section is read
@@ -140,7 +139,7 @@ class PolarSection:
         reader.set_parameters(line)
         reader.set_state(line, block)
         if block.m[WAITING_GROUP] == WAIT_FOR_INPUT:
-            yield from self._wait_for_input(action_text(block, line))
+            yield from self._wait_for_input(reader.action_text(line, block))
         elif any(self.codes.remapped.get(code) for code in block.m):
             self._call_remapped(line)
         else:

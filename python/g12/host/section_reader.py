@@ -194,7 +194,17 @@ class SectionReader:
 
     def action(self, line: TextLine, block: SectionBlock) -> None:
         """Keep what the block does besides motion."""
-        self._mark(action_text(block, line))
+        self._mark(self.action_text(line, block))
+
+    def action_text(self, line: TextLine, block: SectionBlock) -> str:
+        """Return the block without its motion, once the interpreter has shown that it reads it.
+
+        Between the moves a refusal would come too late.
+        """
+        text = action_text(block, line)
+        if text:
+            self.interp.read(text)
+        return text
 
     def move(self, line: TextLine, block: SectionBlock) -> None:
         """Add the block's motion and compensation, and keep the stop behind it."""

@@ -83,7 +83,9 @@ REASON_OF_G = {
 }
 REASON_OF_M = {6: TOOL, 61: TOOL}
 NEEDED_WORD = {62: "P", 63: "P", 64: "P", 65: "P", 67: "E", 68: "E"}
+ORIENT = 19
 WAIT_FOR_INPUT, AT_ONCE = 66, 0  # M66, and the L that does not wait
+LONGEST_WAIT = "Q above zero, the longest wait in seconds"
 REASON_OF_WORD = {
     **dict.fromkeys("ABVW@^", OTHER_AXES),
     "T": TOOL,
@@ -161,6 +163,8 @@ def _check_arguments(block: SectionBlock, place: SectionPlace) -> None:
         needed = NEEDED_WORD.get(code)
         if needed and words.get(needed, -1.0) < 0.0:
             raise place.refuse(f"M{code} needs {needed}, the number of the output")
+    if ORIENT in block.m and words.get("Q", 1.0) <= 0.0:
+        raise place.refuse(f"M{ORIENT} needs {LONGEST_WAIT}")
     if WAIT_FOR_INPUT in block.m:
         _check_waiting(words, place)
 
@@ -171,7 +175,7 @@ def _check_waiting(words: dict[str, float], place: SectionPlace) -> None:
     for wrong, reason in (
         (("P" in words) == ("E" in words), "either P or E, the number of the input"),
         (waits and "E" in words, "L0 with E: only a digital input can be waited for"),
-        (waits and words.get("Q", 0.0) <= 0.0, "Q above zero, the longest wait in seconds"),
+        (waits and words.get("Q", 0.0) <= 0.0, LONGEST_WAIT),
         (words.get("L", 0.0) not in range(5), "L from 0 to 4"),
     ):
         if wrong:

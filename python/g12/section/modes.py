@@ -15,6 +15,7 @@ from g12.section.block_rules import (
     MOTION,
     NO_CODE,
     NON_MODAL,
+    ORIENT,
     PATH,
     SPINDLE,
     STATE_CODES,
@@ -25,7 +26,6 @@ from g12.section.line import TextLine
 
 PASSED_ON = (NON_MODAL, CENTRE, PATH, SPINDLE)  # groups that the machine acts on
 ARGUMENTS = ("S", "P", "Q", "L", "E")  # of the codes that are no motion
-ORIENT = 19
 _IN_REPORT = re.compile(r"%(d|f|\.\df)|#(\d+|<[^>]*>)")
 _REPORTS = ("debug,", "print,", "log,", "abort,")
 
