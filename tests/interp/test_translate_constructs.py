@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Each construct of other controls, alone: the motion it makes and the modes it leaves.
+
+The blocks on the left are a foreign program's, those on the right say the same in LinuxCNC's words.
+Behind both stands a bare word, so that the motion and distance modes show, and no end.
+"""
+
+import pytest
+
+from g12.tools.translate.blocks.control import read_control
+from g12.tools.translate.program import translate_program
+from support.foreign_programs import assert_same_part, tracer_of
+
+MILL = "G20 G17 G90 G94 G98 G54 G0 X1. Y1. Z1. S100 F9.\n"
+TURN = "G21 G18 G54 G0 X50. Z5. C0 F.2\n"
+HEADS = {"mill": (MILL, MILL), "lathe": (TURN, f"G7 G90 G95 {TURN}")}  # foreign, LinuxCNC's
+TAILS = {"mill": "X3. Y2.\n", "lathe": "X40. Z2.\n"}
+
+CONSTRUCTS = [
+    # G53, G28, G30: rapid moves, whatever mode they stand in; the mode stays
+    ("haas-mill", "G1 X2.\nG53 Z0", "G1 X2\nG53 G0 Z0\nG1"),
+    ("haas-mill", "G53 Z0", "G53 G0 Z0"),
+    ("haas-mill", "G1 X2.\nG0 G53 Z0", "G1 X2\nG53 G0 Z0"),
+    ("haas-mill", "G1 X2.\nG28", "G1 X2\nG53 G0 X0 Y0 Z0\nG1"),
+    ("haas-mill", "G1 X2.\nG91 G28 Z0\nG90", "G1 X2\nG53 G0 Z0\nG1"),
+    ("haas-mill", "G1 X2.\nG0 G28 Z.5", "G1 X2\nG0 Z.5\nG53 Z0"),
+    ("fanuc-mill", "G1 X2.\nG30 P2 Z.5", "G1 X2\nG0 Z.5\nG53 Z0\nG1"),
+    ("haas-mill", "T2 M6\nG43 H2 Z2.\nG28 Z3.", "T2 M6\nG43 H2 Z2\nZ3\nG53 Z0\nG49"),
+    ("fanuc-mill", "T2 M6\nG43 H2 Z2.\nG91 G28 Z0\nG90", "T2 M6\nG43 H2 Z2\nG53 G0 Z0"),
+    # G80 beside a motion, and alone
+    ("haas-mill", "G80 G1 X2.", "G1 X2"),
+    ("haas-mill", "G1 X2.\nG80\nX2.5", "G1 X2\nX2.5"),
+    ("haas-mill", "G81 X2. Z.5 R.9\nG80 X2.5", "G81 X2 Z.5 R.9\nG80\nG0 X2.5"),
+    ("haas-mill", "G1 X1.5\nG82 X2. Z.5 R.9 P100\nG80", "G1 X1.5\nG82 X2 Z.5 R.9 P.1\nG80\nG1"),
+    # drilling cycles
+    ("haas-mill", "G81 Z.5 R.9 L0\nX2.\nG80", "G81 X2 Z.5 R.9\nG80\nG0"),
+    ("haas-mill", "G81 X2. Z.5\nG80", "G81 X2 Z.5 R1\nG80\nG0"),
+    ("haas-mill", "G91 G81 X.5 Z-.4 L2\nG80 G90", "G91 G81 X.5 Z-.4 R0 L2\nG80\nG90 G0"),
+    ("haas-mill", "G83 X2. Z.5 R.9 Q.2\nG81 X3.\nG80",
+     "G83 X2 Z.5 R.9 Q.2\nG81 X3 Z.5 R.9\nG80\nG0"),
+    ("fanuc-mill", "G81 X2. Z.5 R.9\nG91 X.5 K2\nG80 G90",
+     "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0"),
+    # cutter compensation and lengths
+    ("haas-mill", "T2 M6\nD2\nG41 G1 X2.\nY3.\nG40 X4.",
+     "T2 M6\nG41 D2 G1 X2\nY3\nG40 X4"),
+    ("haas-mill", "T2 M6\nG41 D0 G1 X2.\nY3.\nG40 X4.", "T2 M6\nG1 X2\nY3\nX4"),
+    ("haas-mill", "T1 M6\nG43 H2 Z2.\nG43 H0", "T1 M6\nG43 H2 Z2\nG49"),
+    # dwell, offsets
+    ("haas-mill", "G4 P250\nG4 P1.5", "G4 P.25\nG4 P1.5"),
+    ("haas-mill", "G52 X.5\nX1.\nG52 X0", "G52 X.5\nX1\nG52 X0"),
+    ("haas-mill", "G10 L2 P0 X.5\nX1.\nG10 L2 P0 X0", "G52 X.5\nX1\nG52 X0"),
+    ("haas-mill", "G10 L2 P1 X.5\nX1.\nG10 L2 P1 G91 X-.5\nG90", "X1.5\nG10 L2 P1 X0"),
+    ("haas-mill", "G10 L20 P3 X.5 Y0 Z0\nG112 X1. Y1.\nG54", "X1.5 Y1"),
+    # subprograms, macros
+    ("haas-mill", "G65 P5 X2. Z.5\nX2.\nM30\nO5\nG1 X#24 Z#26\nM99", None),
+    ("haas-mill", "#100=1\nWHILE[#100LT4]DO1\nG91 G1 X.1\n#100=#100+1\nEND1\nG90",
+     "G91 G1 X.1\nX.1\nX.1\nG90"),
+    ("haas-mill", "#1=2.\nIF[#1 EQ 2]THEN #1=2.5\nX#1", "X2.5"),
+    # a lathe's words
+    ("fanuc-lathe", "G98 G1 X45. F100.\nG99 F.3", "G94 G1 X45 F100\nG95 F.3"),
+    ("fanuc-lathe", "G1 U-5. W-2.", "G1 X45 Z3"),
+    ("fanuc-lathe", "G1 U-5.\nW-2.\nX40. W-1.\nU2. Z0", "G1 X45\nZ3\nX40 Z2\nX42 Z0"),
+    ("fanuc-lathe", "G3 U10. W-5. R5.\nG1", "G3 X60 Z0 R5\nG1"),
+    ("fanuc-lathe", "G1 H10.\nH5. Z2.", "G1 C10\nC15 Z2"),
+    ("fanuc-lathe", "G1 X45.\nG28 U0 W0", "G1 X45\nG53 G0 X0 Z0\nG1"),
+    ("fanuc-lathe", "G0 C20.\nG28 H0", "G0 C20\nG53 C0"),
+    ("fanuc-lathe", "G1 X45.\nG30 U2. W1.", "G1 X45\nG0 X47 Z6\nG53 X0 Z0\nG1"),
+    ("fanuc-lathe", "T0101\nT0100", "T1 M6\nG49"),
+    ("fanuc-lathe", "G50 S900\nG96 S100 M3\nX45.\nG97 S50 M5\nX46.",
+     "G96 D900 S100 M3\nX45\nG97 S50 M5\nX46"),
+    ("fanuc-lathe", "G96 S100 M3\nG50 S900\nX45.\nG97 S50 M5\nX46.",
+     "G96 S100 M3\nG96 D900 S100\nX45\nG97 S50 M5\nX46"),
+    ("fanuc-lathe", "G50 X10. Z0\nX20.\nG50 X60. Z5.", "G0 X60\nG92 X60 Z5"),
+    ("fanuc-lathe", "G4 X.5\nG4 U1.\nG4 P100", "G4 P.5\nG4 P1\nG4 P.1"),
+    ("okuma-lathe", "G4 F.5\nG91 G1 X-5.\nG90 G94 F50.", "G4 P.5\nG1 X45\nG94 F50"),
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def tracers():
+    opened = {}
+    yield lambda control: opened.setdefault(control, tracer_of(control))
+    for tracer in opened.values():
+        tracer.close()
+
+
+def translated_part(control, blocks):
+    """Return the translation of blocks without what the control holds at the start, and no end."""
+    kind = read_control(control).machine
+    (head, _), tail = HEADS[kind], TAILS[kind]
+    main, _, subs = blocks.partition("\nM30\n")
+    text = f"(HEAD)\n{head}{main}\n{tail}"
+    result = translate_program(f"{text}M30\n{subs}\n" if subs else text, read_control(control))
+    assert result.refused == []
+    start, *lines = result.text.splitlines()
+    return [start, *(line for line in lines if not (line.startswith("M2 (") and not subs))]
+
+
+@pytest.mark.parametrize(("control", "foreign", "own"), CONSTRUCTS)
+def test_a_construct_moves_the_same_and_leaves_the_same_modes(tracers, control, foreign, own):
+    tracer = tracers(control)
+    traced = tracer.trace_text(translated_part(control, foreign), alone=True)
+    if own is None:
+        own = "G1 X2 Z.5\nX2"
+        assert traced.error is None
+        assert [move.kind for move in traced.moves][-1] == "feed"
+        return
+    kind = read_control(control).machine
+    (_, head), tail = HEADS[kind], TAILS[kind]
+    wanted = tracer.trace_text(f"{head}{own}\n{tail}", alone=True)
+    assert_same_part(traced, wanted)
+    assert traced.modes.gcodes == wanted.modes.gcodes
+    assert traced.modes.feed == pytest.approx(wanted.modes.feed)
