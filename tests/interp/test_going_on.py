@@ -39,7 +39,7 @@ def rapids(folder, machine, program):
 @pytest.mark.parametrize(
     ("machine", "good", "bad"),
     [
-        ("mill_mm", "G12 I300 D0 Z-1", "G12 I300 D0"),
+        ("mill_mm", "G12 I300 D0 Z-1", "G12 I0 D0"),
         ("mill_yasnac_mm", "G12 I20", "G12 I10 R20"),
         ("mill_mitsubishi_mm", "G12 I20 D0", "G12 I20"),
         ("mill_mm", "G13.2 X9 Y0 Z-1 R200 I1 H2", "G13.2 X9"),
@@ -55,8 +55,8 @@ def test_behind_a_cycle_that_has_run(tmp_path, machine, good, bad):
 
 
 def test_in_a_sub_it_is_the_line_behind_the_call(tmp_path):
-    bad = ["o<bad> sub", "G0 X9", "G12 I1", "G0 X8", "o<bad> endsub"]
-    program = [MILL, *bad, "G12 I20 D0 Z-1", "o<bad> call", "G0 X3", "G12 I1", "G0 X4"]
+    bad = ["o<bad> sub", "G0 X9", "G12 I0", "G0 X8", "o<bad> endsub"]
+    program = [MILL, *bad, "G12 I20 D0 Z-1", "o<bad> call", "G0 X3", "G12 I0", "G0 X4"]
     assert rapids(tmp_path, "mill_mm", program)[0][-3:] == [9, 3, 4]
 
 

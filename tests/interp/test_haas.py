@@ -73,6 +73,48 @@ def test_golden_rings(inch, metric, block, expected, left):
         )
 
 
+@pytest.mark.parametrize("distance", ["G90", "G91"])
+@pytest.mark.parametrize(("repeats", "passes"), [("", 1), ("L3", 3)])
+@pytest.mark.parametrize("machine", ["inch", "spiral"])
+def test_without_z_the_cut_is_made_where_the_tool_stands(
+    request, distance, repeats, passes, machine
+):
+    tracer = request.getfixturevalue(machine)
+    block = f"{distance} G13 I.3 K.7 Q.2 {repeats} D1"
+    traced = cut(tracer, "G0 X1 Y2 Z.1", "G1 Z-.3", block)
+    deep = cut(tracer, "G0 X1 Y2 Z.1", "G1 Z-.3", block.replace("G91", "G90") + " Z-.3")
+    moves = cut_geometry.moving(traced.moves)
+    assert moves == cut_geometry.moving(deep.moves)
+    assert len(cut_geometry.radii(traced.moves)) == len(cut_geometry.radii(deep.moves))
+    assert len(cut_geometry.full_circles(traced.moves)) % passes == 0
+    assert {move.end[2] for move in moves[2:]} == {-0.3 * INCH}
+    assert traced.messages == []
+    assert moves[-1].end[:3] == pytest.approx([1 * INCH, 2 * INCH, -0.3 * INCH])
+
+
+def test_the_finishing_block_of_the_controls_workbook(inch):
+    """It roughs with Z, then finishes with I, D and F alone."""
+    rough = "G12 I.3 K1. Q.2 Z-.5 D2 F20"
+    traced = cut(inch, "G0 X1 Y2 Z.1", rough, "G12 I1. D1 F12.5", "G0 Z.1")
+    *_, last = cut_geometry.full_circles(traced.moves)
+    assert (last.radius / INCH, last.z / INCH) == pytest.approx((0.875, -0.5))
+
+
+def test_every_level_of_g91_begins_at_plus_x(inch):
+    """Two links from ring to ring turn the vector by half a turn, four of them by a whole one."""
+    for growth, links in (("K.5 Q.2", 1), ("K.7 Q.2", 2), ("K.9 Q.2", 3)):
+        traced = cut(inch, "G0 X0 Y0 Z.1", f"G91 G13 I.3 {growth} Z-.2 L3 D1")
+        arcs = [move for move in traced.moves if move.kind == "arc"]
+        lead_ins = [
+            arc
+            for before, arc in itertools.pairwise(traced.moves)
+            if arc.kind == "arc" and before.start[2] > before.end[2]
+        ]
+        assert len(lead_ins) == 3 and len(arcs) == 3 * (links * 2 + 3), links
+        for arc in lead_ins:
+            assert arc.end[:2] == pytest.approx((0.175 * INCH, 0), abs=1e-9)
+
+
 def test_golden_incremental_levels(inch):
     traced = cut(inch, "G0 Z.1", "G13 G91 Z-.5 I.4 K2. Q.4 L4 D2")
     circles = cut_geometry.full_circles(traced.moves)
@@ -438,7 +480,6 @@ def test_a_refused_block_stores_no_d(inch):
 
 REFUSED = [
     ("G12 Z-1 D1", "G12: I is missing: the radius of the first circle"),
-    ("G12 I.5 D1", "G12: Z is missing: the depth of the pocket"),
     ("G13 I.125 Z-1 D1", "G13: I0.125 must be greater than the tool radius 0.125 (D1)"),
     ("G12 I-.5 Z-1 D1", "G12: I-0.5 must be greater than 0"),
     ("G12 I.5 K1 Z-1 D1", "G12: K1 needs Q as well"),
@@ -543,7 +584,6 @@ BREAKING = st.sampled_from(
         lambda words: {**words, "R": 0.5},
         lambda words: {**words, "J": 0.5},
         lambda words: {letter: value for letter, value in words.items() if letter != "I"},
-        lambda words: {letter: value for letter, value in words.items() if letter != "Z"},
     ]
 )
 

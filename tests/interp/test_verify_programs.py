@@ -120,6 +120,20 @@ def test_both_ways_of_clearing_come_out_right(mode, tmp_path):
     assert facts.stepover == pytest.approx(6, abs=1e-3)
 
 
+@pytest.mark.parametrize("distance", ["G90", "G91"])
+@pytest.mark.parametrize("repeats", ["", "L3"])
+def test_a_pocket_without_z_is_measured_where_the_tool_stands(distance, repeats, tmp_path):
+    program = tmp_path / "program.ngc"
+    rough, finish = "G13 I7 K20 Q6 Z-3 D4", f"{distance} G13 I20.5 {repeats} D4"
+    program.write_text("\n".join([*MM, "G0 X3 Y4 Z1", rough, finish, "G90 G0 Z1", "M2", ""]))
+    proof = prove(program, ini("mill_mm"))
+    assert proof.findings == []
+    depths = [
+        facts.target.schedule.deepest + facts.target.wall.origin[2] for facts in proof.pockets
+    ]
+    assert depths == pytest.approx([-3, -3])
+
+
 # ---------------------------------------------------------------- words and modes
 
 

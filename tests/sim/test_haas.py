@@ -163,6 +163,23 @@ def test_abort_inside_a_ring_then_mdi_then_the_program_again(machine, tracer):
 
 
 @pytest.mark.parametrize("way", ["auto", "mdi"])
+def test_without_z_the_real_motion_stays_at_its_height(machine, way):
+    machine.mdi("F4000 G1 Z-1.5")
+    machine.sample()
+    block = "G13 I5 K12 Q3 L2 D1"
+    if way == "mdi":
+        machine.mdi(block)
+    else:
+        machine.open_text([block, "M2"])
+        machine.start()
+        machine.wait_idle()
+    axes = machine.samples().axes
+    assert machine.errors() == []
+    assert axes["Z"] == pytest.approx(-1.5, abs=1e-6)
+    assert axes["X"].max() == pytest.approx(9, abs=DEVIATION)
+
+
+@pytest.mark.parametrize("way", ["auto", "mdi"])
 def test_a_refused_block_moves_nothing_and_says_why(machine, way):
     machine.mdi("G91 G90.1 G61 F4000")
     before = machine.stat()

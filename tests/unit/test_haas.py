@@ -68,7 +68,6 @@ def test_rounding_of_the_increment_makes_no_sliver():
             "G12: R0.5 is not a word of this cycle, which knows X Y Z I K Q L D F",
         ),
         (dict(Z=-1.0, D=1), "G12: I is missing: the radius of the first circle"),
-        (dict(I=0.5, D=1), "G12: Z is missing: the depth of the pocket"),
         (dict(I=0.125, Z=-1.0, D=1), "G12: I0.125 must be greater than the tool radius 0.125 (D1)"),
         (dict(I=0.0, Z=-1.0, D=0), "G12: I0 must be greater than 0"),
         (dict(I=-0.5, Z=-1.0, D=0), "G12: I-0.5 must be greater than 0"),

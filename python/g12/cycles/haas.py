@@ -6,7 +6,7 @@ Source: Haas Mill Operator's Manual, "G12 Circular Pocket Milling CW / G13 CCW".
 The motions of `ngc/g12_haas.ngc`, per level:
 
 1. with X or Y in the block: rapid to the centre at the present Z (before the first level)
-2. feed to the level's Z in the centre
+2. feed to the level's Z in the centre; without Z in the block it is the present one
 3. half circle from the centre to (+b, 0), turning the way of the cut, tangent to the ring
 4. full circle of radius b
 5. for each further ring: a tangent link outward, then its full circle; the last is K exactly
@@ -15,9 +15,9 @@ The motions of `ngc/g12_haas.ngc`, per level:
 A tool-centre radius b is the programmed radius less the tool radius.
 
 Rules, in the order of the checks: G17 and the modes of `check_modes`; every word known; I
-required; K and Q together, both above 0; L whole, from 1; Z required; without X and Y
-`check_start`; D whole, from 0, in the tool table, or a cutter known without it; I above 0, greater
-than the tool radius by a ring that can be cut, less than K; not too many circles.
+required; K and Q together, both above 0; L whole, from 1; without X and Y `check_start`; D whole,
+from 0, in the tool table, or a cutter known without it; I above 0, greater than the tool radius by
+a ring that can be cut, less than K; not too many circles.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
     centre_word = "X" in words or "Y" in words
     x = coordinate(words.take("X"), context.x, context)
     y = coordinate(words.take("Y"), context.y, context)
-    depth = words.require("Z", "the depth of the pocket")
+    depth = words.take("Z")
     if not centre_word:
         check_start(words, context)
     with_d = "D" in words
@@ -106,7 +106,7 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
         y=y,
         move_to_centre=centre_word,
         z=coordinate(depth, context.z, context),
-        z_step=depth if context.incremental else 0.0,
+        z_step=depth or 0.0 if context.incremental else 0.0,
         levels=levels,
         first_radius=first - cutter.radius,
         last_radius=finished - cutter.radius,
@@ -163,7 +163,7 @@ def check_radii(
         raise words.refuse(f"I{number(first)} must be less than K{number(outward[0])}")
 
 
-def upward(words: Words, depth: float, context: Context) -> str | None:
+def upward(words: Words, depth: float | None, context: Context) -> str | None:
     """Return the operator message of a pocket that begins above the tool, or None.
 
     A lost minus sign looks like this; the control would go up and cut there, too.

@@ -170,7 +170,7 @@ class CircleReader:
         wall, cutter = self._inside(view, "K" if "K" in words else "I", offset, self.number)
         cleared = 0.0 if "K" in words else core_of(cutter, wall.radius)
         passes = int(words.get("L", 1))
-        counts = (1,) if view.absolute else range(1, passes + 1)
+        counts = (1,) if view.absolute or "Z" not in words else range(1, passes + 1)
         levels = tuple(view.height("Z", count) - view.start[2] for count in counts)
         schedule = Schedule(levels, passes, CircleFeeds(*[view.feed()] * 3, None), cycle.turn)
         return replace(wall, origin=view.centre(), cleared=cleared), cutter, schedule
@@ -295,8 +295,11 @@ class BlockInMm:
         return self.start - self._turned(*map(self.present, "xyz"))
 
     def height(self, letter: str, times: int) -> float:
-        """Return the height in machine coordinates that a Z word leads to, ``times`` over."""
-        if self.absolute:
+        """Return the height in machine coordinates that a Z word leads to, ``times`` over.
+
+        Without the word it is where the tool stands.
+        """
+        if self.absolute and letter in self.words:
             return self.start[2] + self.length(letter) - self.present("z")
         return self.start[2] + times * self.length(letter)
 
