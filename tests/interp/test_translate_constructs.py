@@ -12,8 +12,8 @@ from g12.tools.translate.program import translate_program
 from support.foreign_programs import assert_same_part, tracer_of
 
 MILL = "G20 G17 G90 G94 G98 G54 G0 X1. Y1. Z1. S100 F9.\n"
-TURN = "G21 G18 G54 G0 X50. Z5. C0 F.2\n"
-HEADS = {"mill": (MILL, MILL), "lathe": (TURN, f"G7 G90 G95 {TURN}")}  # foreign, LinuxCNC's
+TURN = "G21 G18 G54 G0 X50. Z5. C0 F.2 S100 M3\n"
+HEADS = {"mill": (MILL, MILL), "lathe": (TURN, f"G7 G90 G95\n{TURN}")}  # foreign, LinuxCNC's
 TAILS = {"mill": "X3. Y2.\n", "lathe": "X40. Z2.\n"}
 
 CONSTRUCTS = [
@@ -68,8 +68,6 @@ CONSTRUCTS = [
     ("fanuc-lathe", "T0101\nT0100", "T1 M6\nG49"),
     ("fanuc-lathe", "G50 S900\nG96 S100 M3\nX45.\nG97 S50 M5\nX46.",
      "G96 D900 S100 M3\nX45\nG97 S50 M5\nX46"),
-    ("fanuc-lathe", "G96 S100 M3\nG50 S900\nX45.\nG97 S50 M5\nX46.",
-     "G96 S100 M3\nG96 D900 S100\nX45\nG97 S50 M5\nX46"),
     ("fanuc-lathe", "G50 X10. Z0\nX20.\nG50 X60. Z5.", "G0 X60\nG92 X60 Z5"),
     ("fanuc-lathe", "G4 X.5\nG4 U1.\nG4 P100", "G4 P.5\nG4 P1\nG4 P.1"),
     ("okuma-lathe", "G4 F.5\nG91 G1 X-5.\nG90 G94 F50.", "G4 P.5\nG1 X45\nG94 F50"),

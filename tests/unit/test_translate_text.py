@@ -244,6 +244,10 @@ def test_what_is_refused_is_told(control, block, start):
     assert refused.sentence.startswith(start)
 
 
+def test_a_speed_limit_within_surface_speed_is_written_at_once():
+    assert behind(LATHE, "G96 S90 M3\nG50 S900\nM30\n")[1] == "G96 S90 D900 (G50 S900)"
+
+
 def test_a_mode_that_is_not_sure_is_not_needed_everywhere():
     text = "M98 P5\nG91\nM98 P5\nM30\nO5\nG1 X1. F5.\nM99\n"
     assert "G1 X1. F5." in behind(HAAS, text)
