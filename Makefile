@@ -2,12 +2,18 @@
 PYTHON := /usr/bin/python3
 RUFF_VERSION := 0.17.5
 RUFF := build/venv/bin/ruff
+MINUTES := 10
+SEED := $(shell date +%s)
+# What make soak tries: its own, and the properties of the normal tests.
+SOAKED := tests/soak/soak_*.py tests/interp/test_haas.py tests/interp/test_yasnac.py \
+	tests/interp/test_mitsubishi.py tests/interp/test_circle_mill.py tests/unit/test_polar_plan.py \
+	tests/unit/test_flat_offset.py tests/unit/test_flat_simplify.py -k "any or keeps or aborts or installs or recordings"
 JOBS := $(shell nproc)
 
 # RIP=DIR uses the LinuxCNC that was built to run in place in DIR, instead of an installed one.
 IN_PLACE := $(if $(RIP),$(RIP)/scripts/rip-environment)
 
-.PHONY: help setup demo test test-on lint bench deb kinematics clean
+.PHONY: help setup demo test test-on lint bench soak deb kinematics clean
 
 help:
 	@echo "make demo   run the manuals' programs in headless LinuxCNC, pictures in build/demo"
@@ -16,6 +22,7 @@ help:
 	@echo "make lint   check the style of the code"
 	@echo "make bench  measure the figures the project promises"
 	@echo "make kinematics  build and install the kinematics of configs/kinematics (needs root)"
+	@echo "make soak MINUTES=10   random blocks, contours, texts, aborts and kills"
 	@echo "make deb    build the Debian package build/linuxcnc-g12_VERSION_all.deb"
 	@echo "make clean  remove what the others made"
 	@echo "RIP=DIR behind demo, test or bench: with the LinuxCNC built in DIR"
@@ -42,6 +49,11 @@ lint: $(RUFF)-$(RUFF_VERSION)
 bench: setup
 	@echo "bench: figures as ratios, each measured side by side in one run"
 	@$(IN_PLACE) sh -c 'PYTHONPATH=python:tests:$$PYTHONPATH $(PYTHON) -m bench'
+
+soak: setup
+	@echo "soak: for about $(MINUTES) minutes on two cores, seed $(SEED)"
+	@SOAK_MINUTES=$(MINUTES) SOAK_SEED=$(SEED) $(IN_PLACE) sh -c 'PYTHONPATH=tests:$$PYTHONPATH \
+		$(PYTHON) -m pytest -p soak.more_examples --hypothesis-seed=$(SEED) -n $(JOBS) $(SOAKED)'
 
 deb:
 	@sh .ci/deb

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""`install` and `regress` are killed at random moments; one command mends what is left."""
+
+import random
+import shutil
+import subprocess
+import time
+
+from g12.tools.regress.recording_text import read_recording
+from g12.tools.system import PYTHON
+from soak import SEED, often
+from support.sim_machines import PROGRAMS, ROOT, SIM
+from support.small_configs import MILL
+
+COMMAND = [PYTHON, ROOT / "python" / "g12"]
+
+
+def g12(*words, **options):
+    return subprocess.run([*COMMAND, *words], capture_output=True, text=True, **options)
+
+
+def killed(after, *words, **options):
+    """Start a command and kill it so many seconds later."""
+    process = subprocess.Popen([*COMMAND, *words], stdout=-3, stderr=-3, **options)
+    time.sleep(after)
+    process.kill()
+    process.wait()
+
+
+def seconds_of(*words, **options):
+    """Return how long a command takes that goes well."""
+    started = time.monotonic()
+    assert g12(*words, **options).returncode == 0
+    return time.monotonic() - started
+
+
+def content_of(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_installs(tmp_path):
+    chance = random.Random(SEED)
+    ini = tmp_path / "mill.ini"
+    ini.write_text(MILL)
+    before = content_of(tmp_path)
+    words = ("install", ini, "--with", "haas")
+    lasts = seconds_of(*words)
+    assert g12("uninstall", ini).returncode == 0
+    assert content_of(tmp_path) == before
+    for number in range(often(50)):
+        seed = f"kill {number} of seed {SEED}"
+        killed(chance.uniform(0, lasts), *words)
+        assert ini.read_bytes() == before[ini] or g12("check", ini).returncode == 0, seed
+        mended = g12(*words)
+        assert mended.returncode == 0, f"{seed}: {mended.stderr}"
+        assert g12("check", ini).returncode == 0, seed
+        assert g12("uninstall", ini).returncode == 0, seed
+        assert ini.read_bytes() == before[ini], seed
+        left = set(content_of(tmp_path)) - set(before)
+        assert not [path for path in left if not path.name.startswith(".")], seed
+
+
+def test_recordings(tmp_path):
+    chance = random.Random(SEED)
+    shutil.copytree(PROGRAMS / "haas", tmp_path / "nc", ignore=shutil.ignore_patterns("regress"))
+    words = ("regress", "record", "nc", "--ini", SIM / "mill_inch.ini", "-d", "kept")
+    lasts = seconds_of(*words, cwd=tmp_path)
+    for number in range(often(50)):
+        seed = f"kill {number} of seed {SEED}"
+        if number % 2:
+            shutil.rmtree(tmp_path / "kept", ignore_errors=True)
+        killed(chance.uniform(0, lasts), *words, cwd=tmp_path)
+        for recording in (tmp_path / "kept").glob("*.trace"):
+            read_recording(recording.read_text(encoding="utf-8"))
+        mended = g12(*words, cwd=tmp_path)
+        assert mended.returncode == 0, f"{seed}: {mended.stderr}"
+        assert g12("regress", "check", "-d", "kept", cwd=tmp_path).returncode == 0, seed
