@@ -10,7 +10,7 @@ from g12.tools.regress.recording_text import read_recording
 from g12.tools.system import PYTHON
 from soak import SEED, often
 from support.sim_machines import PROGRAMS, ROOT, SIM
-from support.small_configs import MILL
+from support.small_configs import write_config
 
 COMMAND = [PYTHON, ROOT / "python" / "g12"]
 
@@ -40,8 +40,7 @@ def content_of(folder):
 
 def test_installs(tmp_path):
     chance = random.Random(SEED)
-    ini = tmp_path / "mill.ini"
-    ini.write_text(MILL)
+    ini = write_config(tmp_path)
     before = content_of(tmp_path)
     words = ("install", ini, "--with", "haas")
     lasts = seconds_of(*words)

@@ -99,3 +99,10 @@ def test_files_are_relative_to_the_ini(ini, tmp_path):
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(IniError, match=r"nothing\.ini: No such file"):
         read_ini(tmp_path / "nothing.ini")
+
+
+def test_an_ini_with_nul_bytes_is_no_text(tmp_path):
+    ini = tmp_path / "mill.ini"
+    ini.write_bytes(b"[TRAJ]\n#INCLUDE a\0b\n")
+    with pytest.raises(IniError, match="NUL bytes"):
+        read_ini(ini)

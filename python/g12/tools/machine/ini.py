@@ -126,6 +126,8 @@ def read_ini(path: str | os.PathLike) -> Ini:
     path = Path(path).absolute()
     try:
         lines = path.read_text(**ENCODING).splitlines()
+        if any("\0" in line for line in lines):
+            raise IniError(f"{path}: holds NUL bytes: it is no text")
         return Ini(path, tuple(_expanded(lines, path.parent)))
     except OSError as error:
         raise IniError(f"{error.filename}: {error.strerror}") from error
