@@ -223,6 +223,8 @@ class RecordingReader:
         if not words:
             raise TraceTextError("neither a move nor a note")
         kind, ends, centre, turns, plane, rotation, feed, mode = words.groups()
+        if kind == "arc" and centre is None:
+            raise TraceTextError("an arc without its centre")
         start = self._at
         self._at = self._position(ends)
         self._feed, self._mode = float(feed or self._feed), mode or self._mode
