@@ -8,6 +8,7 @@ from importlib import import_module
 from unittest import mock
 
 from g12.tools.commands.main import COMMANDS
+from g12.tools.system import CALL
 
 
 class Found(BaseException):
@@ -40,7 +41,7 @@ def parser() -> argparse.ArgumentParser:
             name,
             help=summary,
             description=own.description,
-            epilog=own.epilog,
+            epilog=own.epilog.replace(CALL, "g12"),
             formatter_class=own.formatter_class,
             parents=[own],
             add_help=False,

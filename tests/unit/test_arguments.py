@@ -33,7 +33,7 @@ def test_wrong_words_are_told_in_one_line(name, capsys):
     code, said = ends(capsys, name, "--nonsense", "3")
     assert code == 2
     assert said.startswith(f"g12 {name}: ")
-    assert said.endswith(f"(usage: g12 {name} --help)\n")
+    assert said.endswith(f"(usage: python3 python/g12 {name} --help)\n")
     assert said.count("\n") == 1
 
 
@@ -44,7 +44,9 @@ def test_help_is_plain_text_with_examples(name, capsys):
         main.main([name, *sub, "--help"])
     assert end.value.code == 0
     said = capsys.readouterr().out
-    assert "example" in said
+    assert f"usage: python3 python/g12 {name} " in said
+    assert f"\n  python3 python/g12 {name} " in said.partition("example")[2]
+    assert "\n  g12 " not in said
     assert "`" not in said
 
 

@@ -789,11 +789,12 @@ def test_reading_lines_loses_no_byte(tmp_path_factory, content):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ([], "--with"),
-        (["mill.ini"], "--with"),
+        ([], "the INI is missing, --with is missing"),
+        (["mill.ini"], "--with is missing"),
         (["mill.ini", "--with"], "expected at least one argument"),
         (["mill.ini", "--with", "heidenhain"], "'heidenhain' is none of haas, yasnac,"),
         (["--with", "haas"], "the INI is missing"),
+        (["--with", "haas", "circle-mill"], "the INI is missing"),
     ],
 )
 def test_wrong_use_of_install(arguments, says, capsys):

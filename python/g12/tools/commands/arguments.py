@@ -17,22 +17,34 @@ from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, IniError, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
 from g12.tools.preview.tracer import TraceFailure
+from g12.tools.system import CALL
 
 GOOD, FINDING, USAGE = 0, 1, 2
 VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"
+NAMED = re.compile(r"^( *)g12\b", re.MULTILINE)  # the command, at the beginning of a line
 RAISED = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:")  # how Python names what was raised
 
 
 class Parser(argparse.ArgumentParser):
-    """The words of one command, whose wrong use is told in one line."""
+    """The words of one command, whose wrong use is told in one line.
 
-    def __init__(self, prog: str, description: str = "", **options) -> None:
+    ``prog`` and the examples of ``epilog`` name it ``g12``; shown is what is typed here.
+    """
+
+    def __init__(self, prog: str, description: str = "", epilog: str = "", **options) -> None:
         shape = {"formatter_class": argparse.RawDescriptionHelpFormatter, **options}
-        super().__init__(prog=prog, description=description.replace("`", ""), **shape)
+        texts = {"prog": typed(prog), "epilog": typed(epilog)}
+        super().__init__(description=description.replace("`", ""), **texts, **shape)
 
     def error(self, message: str) -> None:
         """End the program: ``message`` says what is wrong with its words."""
-        self.exit(USAGE, f"{self.prog}: {message} (usage: {self.prog} --help)\n")
+        name = self.prog.replace(CALL, "g12")
+        self.exit(USAGE, f"{name}: {message} (usage: {self.prog} --help)\n")
+
+
+def typed(text: str) -> str:
+    """Return a text with ``g12`` at the beginning of its lines as it is typed on this system."""
+    return NAMED.sub(rf"\1{CALL}", text)
 
 
 def number_above(least: float) -> Callable[[str], float]:

@@ -17,12 +17,11 @@ from g12.tools.install.checking import (
     read_config_text,
 )
 from g12.tools.install.rules import NOTE
-from g12.tools.system import CALL
 
-EXAMPLES = f"""\
+EXAMPLES = """\
 examples:
-  {CALL} check ~/linuxcnc/configs/mill/mill.ini
-  {CALL} check mill.ini --json
+  g12 check ~/linuxcnc/configs/mill/mill.ini
+  g12 check mill.ini --json
 
 exit code: 0 good, 1 something found, 2 wrong use"""
 

@@ -19,15 +19,14 @@ from g12.tools.install.checking import read_config_text
 from g12.tools.install.installation import excluding, install
 from g12.tools.install.plan import Refused
 from g12.tools.progress import print_all
-from g12.tools.system import CALL
 
 EXAMPLES = """\
 features:
 {features}
 
 examples:
-  {call} install ~/linuxcnc/configs/mill/mill.ini --with haas circle-mill
-  {call} install lathe.ini --with polar --dry-run
+  g12 install ~/linuxcnc/configs/mill/mill.ini --with haas circle-mill
+  g12 install lathe.ini --with polar --dry-run
 
 exit code: 0 done or nothing to do, 1 refused, 2 wrong use"""
 
@@ -37,30 +36,32 @@ def command_parser() -> Parser:
     listed = "\n".join(f"  {name:24} {meaning}" for name, meaning in features.MEANING.items())
     parser = Parser(
         prog="g12 install",
-        description="Put the package into a machine config: a copy in the folder g12 beside the "
+        description="Put the package into a machine config: a copy in the folder g12 beside the\n"
         "INI, and the lines that name it. Shows what changes; keeps the old files.",
-        epilog=EXAMPLES.format(call=CALL, features=listed),
+        epilog=EXAMPLES.format(features=listed),
     )
     parser.add_argument("ini", nargs="?", type=Path, help="INI file of the machine")
-    parser.add_argument(
-        "--with",
-        dest="wanted",
-        nargs="+",
-        required=True,
-        metavar="FEATURE",
-        help="what to install (see below)",
-    )
+    wanted = {"dest": "wanted", "nargs": "+", "default": [], "metavar": "FEATURE"}
+    parser.add_argument("--with", **wanted, help="what to install (see below)")
     parser.add_argument("--dry-run", action="store_true", help="show the changes only")
     return parser
 
 
 def ini_and_features(ini: Path | None, words: Sequence[str]) -> tuple[Path | None, list[str]]:
     """Return the INI, which may stand behind the features, and the features, each once."""
-    if not ini and len(words) > 1:
+    if not ini and len(words) > 1 and words[-1].lower() not in features.NAMES:
         *words, last = words
         ini = Path(last)
     features_named = [name for word in words for name in word.lower().split(",") if name]
     return ini, list(dict.fromkeys(features_named))
+
+
+def wrong_words(ini: Path | None, wanted: Sequence[str]) -> str:
+    """Return what is missing or unknown of the command line, "" if nothing is."""
+    known = ", ".join(features.NAMES)
+    unknown = [f"{name!r} is none of {known}" for name in wanted if name not in features.NAMES]
+    given = {"the INI": ini, "--with": wanted}
+    return ", ".join(unknown[:1] or [f"{name} is missing" for name in given if not given[name]])
 
 
 @one_line("install")
@@ -69,10 +70,9 @@ def main(arguments: list[str]) -> int:
     parser = command_parser()
     options = parser.parse_args(arguments)
     ini, wanted = ini_and_features(options.ini, options.wanted)
-    unknown = [name for name in wanted if name not in features.NAMES]
-    if not ini or unknown:
-        known = f"{unknown[0]!r} is none of {', '.join(features.NAMES)}" if unknown else ""
-        parser.error(known or "the INI is missing")
+    wrong = wrong_words(ini, wanted)
+    if wrong:
+        parser.error(wrong)
     for pair in excluding(wanted):
         raise UsageError(f"{pair} exclude each other: choose one")
     try:

@@ -72,7 +72,7 @@ def command(name: str, arguments: list[str]) -> int:
         print(f"g12 {__version__}")
         return 0
     if name not in COMMANDS:
-        print(f"g12: no command {name!r} (usage: g12 --help)", file=sys.stderr)
+        print(f"g12: no command {name!r} (usage: {CALL} --help)", file=sys.stderr)
         return 2
     return import_module(COMMANDS[name][0]).main(arguments)
 

@@ -13,11 +13,10 @@ from g12.tools.commands.arguments import GOOD, Parser, one_line
 from g12.tools.install.checking import read_config_text
 from g12.tools.install.removal import uninstall
 from g12.tools.progress import print_all
-from g12.tools.system import CALL
 
-EXAMPLES = f"""\
+EXAMPLES = """\
 example:
-  {CALL} uninstall ~/linuxcnc/configs/mill/mill.ini
+  g12 uninstall ~/linuxcnc/configs/mill/mill.ini
 
 exit code: 0 done or nothing to do, 2 wrong use"""
 

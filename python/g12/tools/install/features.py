@@ -30,9 +30,9 @@ MEANING = {
     "haas": "G12/G13 circular pocket, Haas words",
     "yasnac": "G12/G13 circle cutting, Yasnac words",
     "mitsubishi": "G12/G13 circular cutting, Mitsubishi words",
-    "circle-mill": "circle mill event, perimeter and pocket",
-    "polar": "polar coordinate interpolation on and off",
-    "polar-g12.3": "polar coordinate interpolation on and off",
+    "circle-mill": "G12.2/G13.2 circle mill event, perimeter and pocket",
+    "polar": "G12.1/G13.1 polar coordinate interpolation on and off",
+    "polar-g12.3": "G12.3/G13.3 polar coordinate interpolation on and off",
     **{
         name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()
     },

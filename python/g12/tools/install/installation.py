@@ -16,6 +16,7 @@ from g12.tools.install.rules import codes_of, findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 
+SOME = 3  # missing files are named
 BEFORE = {"no-linuxcnc", "python-fails", "does-not-load"}  # what keeps a config from being read
 
 
@@ -23,7 +24,9 @@ def install(text: IniText, wanted: Sequence[str], dry_run: bool) -> Iterator[str
     """Install features in a machine config; yield what is shown."""
     lost = lost_files(text)
     if lost:
-        yield f"{text.path.parent / package_copy.NAME}: {len(lost)} of its files are missing"
+        more = " …" if len(lost) > SOME else ""
+        names = f"{', '.join(lost[:SOME])}{more}"
+        yield f"{text.path.parent / package_copy.NAME}: missing: {names}"
         if dry_run:
             yield "dry run: nothing was written; without these files nothing more can be told"
             return
