@@ -135,8 +135,3 @@ def check_section(lines: Sequence[str]) -> None:
         raise Refusal(f"[{min(set(found) - {SECTION})}] must be written [{SECTION}]")
     if len(found) > 1:
         raise Refusal(f"[{SECTION}] stands there twice: LinuxCNC reads the first one only")
-
-
-def settings_from_environment() -> Settings:
-    """Return the settings of the INI file that LinuxCNC names in ``INI_FILE_NAME``."""
-    return settings_from_ini(os.environ.get("INI_FILE_NAME"))

@@ -94,7 +94,7 @@ def cpu_seconds(scratch, program):
     subprocess.run(
         ["rs274", "-g", "-i", scratch / "machine.ini", "-t", scratch / "tool.tbl", program],
         cwd=INI.parent,
-        env={**os.environ, "HOME": str(scratch), "INI_FILE_NAME": str(scratch / "machine.ini")},
+        env={**os.environ, "HOME": str(scratch)},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         check=True,

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`rs274 -n 0` goes on after an error: a refused block is followed by the next line, once."""
+"""`rs274 -n 0` goes on after an error: a refused block is followed by the next line, once.
+
+It names the INI behind Python's start: a section finds the machine's axes there all the same.
+"""
 
 import os
 import re
@@ -26,7 +29,7 @@ def rapids(folder, machine, program):
     done = subprocess.run(
         [*command, "-t", folder / "tool.tbl", folder / "program.ngc"],
         cwd=ini.parent,
-        env={**os.environ, "HOME": str(folder), "INI_FILE_NAME": str(folder / "machine.ini")},
+        env={**os.environ, "HOME": str(folder)},
         capture_output=True,
         text=True,
         timeout=LONGEST,

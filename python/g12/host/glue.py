@@ -6,7 +6,9 @@ Facts about the interpreter that the code relies on stand beside the line that d
 
 from __future__ import annotations
 
+import ctypes
 import functools
+import os
 import sys
 
 import emccanon
@@ -16,7 +18,18 @@ from interpreter import INTERP_ERROR
 from g12.errors import LONGEST_MESSAGE, BlockRefusal, Refusal
 from g12.host.program_lines import line_of_block, line_of_call
 from g12.lengths import MM_PER_INCH
-from g12.settings import Settings, settings_from_environment
+from g12.settings import Settings, settings_from_ini
+
+
+def ini_file() -> str | None:
+    """Return the name of the INI file as LinuxCNC tells it in ``INI_FILE_NAME``.
+
+    `rs274 -i` does so behind Python's start, which is when `os.environ` is made.
+    """
+    getenv = ctypes.CDLL(None).getenv
+    getenv.restype = ctypes.c_char_p
+    name = getenv(b"INI_FILE_NAME")
+    return os.fsdecode(name) if name else None
 
 
 def settings_at_start() -> tuple[Settings, Refusal | None]:
@@ -26,7 +39,7 @@ def settings_at_start() -> tuple[Settings, Refusal | None]:
     with it. (An exception here would stop LinuxCNC with an empty message on the screen.)
     """
     try:
-        return settings_from_environment(), None
+        return settings_from_ini(ini_file()), None
     except Refusal as refusal:
         say_at_start(refusal.message)
         return Settings(), refusal

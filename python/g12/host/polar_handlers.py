@@ -35,7 +35,7 @@ KINEMATICS_PARAMETER = "_kins_type"  # an interpreter that has it has a G12.1 of
 DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could read them
 
 
-INI = linuxcnc.ini(os.environ.get("INI_FILE_NAME") or os.devnull)
+INI = linuxcnc.ini(glue.ini_file() or os.devnull)
 REMAPS = {remap.code: remap for remap in remap_lines(INI.findall)}
 COORDINATES, AXES = set(coordinates_of(INI.find)), axes_of(INI.find, "XZC")
 FACE = face_of(INI.find)
