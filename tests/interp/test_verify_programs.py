@@ -354,12 +354,17 @@ def test_units_changed_in_the_pockets_own_block(tmp_path):
         ("slot", "lathe_mm", None, 1),
         ("circles", "lathe_mm", None, 1),
         ("cam", "lathe_mm", None, 1),
+        *(
+            (name, "lathe_mm_kinematics", None, 1)
+            for name in ("hexagon", "square", "slot", "circles", "cam")
+        ),
     ],
 )
 def test_polar_programs_follow_their_contours(program, machine, tools, count):
     proof = proof_of(f"polar/{program}.ngc", machine, tools=tools)
     assert len(proof.sections) == count and proof.findings == []
     assert all(0 < facts.deviation < proof.tolerances.polar for facts in proof.sections)
+    assert all(0 < facts.c_speed <= facts.c_limit * 1.001 for facts in proof.sections)
 
 
 def test_the_size_of_the_hexagon():

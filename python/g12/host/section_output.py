@@ -30,6 +30,7 @@ G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
+MEANINGS_CHANGED = "g12: the axes mean something else now"  # for `g12.tools.preview.worker`
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66: polar_kinematics.hal
 SWITCHING = 10  # seconds that it may take at most, on a busy machine
 INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
@@ -234,6 +235,8 @@ class SectionOutput:
         interp.params[INPUT_FOUND] = found
         interp.current_x, interp.CC_current, interp.current_z = step.place
         interp.current_y = -self._y_offset()
+        if not interp.task:
+            self.canon.COMMENT(MEANINGS_CHANGED)
 
     def _check_switched(self, step: FaceSwitch) -> None:
         if self.interp.task and self.interp.params[INPUT_FOUND] == TIMED_OUT:

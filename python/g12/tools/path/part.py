@@ -10,6 +10,7 @@ Lengths are millimetres, angles radians unless a name says degrees.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from shapely.geometry import LineString, Point
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
+from g12.machine_ini import face_joints
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.moves import THIRD_AXIS, Move
 
@@ -30,7 +32,10 @@ X, Y, Z, C = 0, 1, 2, 5
 
 @dataclass(frozen=True)
 class Part:
-    """How machine positions relate to the part; ``turning`` if a work spindle turns it as C."""
+    """How machine positions relate to the part; ``turning`` if a work spindle turns it as C.
+
+    A lathe has a Y only on the face of its kinematics, which C, standing, has turned.
+    """
 
     turning: bool
 
@@ -39,9 +44,9 @@ class Part:
         positions = np.atleast_2d(positions)
         if not self.turning:
             return positions[:, :3]
-        angle = np.radians(positions[:, C])
-        radius = positions[:, X]
-        return np.stack([radius * np.cos(angle), radius * np.sin(angle), positions[:, Z]], axis=1)
+        turn = np.exp(1j * np.radians(positions[:, C]))
+        points = (positions[:, X] + 1j * positions[:, Y]) * turn
+        return np.stack([points.real, points.imag, positions[:, Z]], axis=1)
 
     def machine_points(self, move: Move, chord_error: float = CHORD_ERROR) -> np.ndarray:
         """Return machine positions (n, 9) along a move, its ends included.
@@ -64,20 +69,39 @@ class Part:
         if move.kind == "arc":
             return arc_pieces(move.radius, move.sweep, chord_error)
         if self.turning:
-            turn = math.radians(move.end[C] - move.start[C])
+            turn = math.radians(move.end[C] - move.start[C]) + face_turn(move)
             return arc_pieces(max(abs(move.start[X]), abs(move.end[X])), turn, chord_error)
         return 1
 
 
 def part_of(ini: Ini) -> Part:
-    """Return how the machine of an INI holds its part: X and C without Y is a lathe."""
-    return Part(turning="C" in ini.axes and "Y" not in ini.axes)
+    """Return how the machine of an INI holds its part: X and C without a joint of Y is a lathe."""
+    return Part(turning="C" in ini.axes and ("Y" not in ini.axes or bool(face_joints(ini.get))))
 
 
 def part_of_program(ini: Ini, moves: Iterable[Move]) -> Part:
     """Return how a program sees its part: on a lathe, C turns it if it moves at all."""
-    turned = any(move.start[C] != move.end[C] for move in moves)
+    turned = any(move.start[axis] != move.end[axis] for move in moves for axis in (Y, C))
     return Part(turning=part_of(ini).turning and turned)
+
+
+def face_turn(move: Move) -> float:
+    """Return the angle, radians, that a straight move on the face goes about X0 Y0."""
+    start, end = (complex(place[X], place[Y]) for place in (move.start, move.end))
+    return cmath.phase(end * start.conjugate()) if start.imag or end.imag else 0.0
+
+
+def spindle_angles(on_face: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Return where the C axis stands, degrees, for points (complex) that the face turned by ``c``.
+
+    On the face C follows their angle. Where both change at once, the axes only take on another
+    meaning, and C stands.
+    """
+    turned = np.degrees(np.angle(on_face[1:] * np.conj(on_face[:-1])))
+    turned[(on_face.imag[1:] == 0.0) & (on_face.imag[:-1] == 0.0)] = 0.0
+    changed = np.diff(c)
+    steps = np.where((np.abs(turned) > 1e-9) & (changed != 0.0), 0.0, turned + changed)
+    return c[0] + np.append(0.0, np.cumsum(steps))
 
 
 def arc_pieces(radius: float, sweep: float, chord_error: float) -> int:

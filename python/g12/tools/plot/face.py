@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from g12.tools.path.part import C, X, Y, spindle_angles
 from g12.tools.path.track import limits_of
 from g12.tools.plot import style
 from g12.tools.plot.deviation import SIZE, draw_window
@@ -25,7 +26,6 @@ LEFT, TOP = style.MARGIN, 1.05
 FACE = 5.0  # the side of the face's view
 PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
 PANEL, GAP = 1.32, 0.3  # high, between
-X, C = 0, 5
 
 
 class History(NamedTuple):
@@ -120,14 +120,16 @@ def programmed_history(scene: Scene) -> History:
     """Return the axes over time with every move at its feed, as far as axis speeds allow."""
     path = scene.path
     seconds = np.maximum(np.diff(path.time), 1e-12)
-    c_speed = np.abs(np.diff(path.positions[:, C])) / seconds
+    on_face = path.positions[:, X] + 1j * path.positions[:, Y]
+    c = spindle_angles(on_face, path.positions[:, C])
+    c_speed = np.abs(np.diff(c)) / seconds
     feed = np.linalg.norm(np.diff(path.points, axis=0), axis=1) / seconds
     rapid = np.array([move.kind == "rapid" for move in scene.moves])[path.move]
     step = np.insert(feed, 0, feed[0]) * 60
     wanted = np.where(rapid, np.nan, step)
     c_step = np.insert(c_speed, 0, c_speed[0])
-    positions = path.positions
-    return History(path.time, positions[:, X], positions[:, C], c_step, step, wanted, rapid)
+    x = np.where(on_face.imag, np.abs(on_face), on_face.real)
+    return History(path.time, x, c, c_step, step, wanted, rapid)
 
 
 def real_history(scene: Scene) -> History:

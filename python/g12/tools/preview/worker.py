@@ -28,6 +28,7 @@ UNLOADED = (0, *[0.0] * 12, 0)  # after T0 M6
 NO_OFFSET = (0.0,) * 9
 LINEAR = (0, 1, 2, 6, 7, 8)
 METRIC = 2
+MEANINGS_CHANGED = "g12: the axes mean something else now"  # what `g12.host` says then
 PLANES = {1: 17, 2: 19, 3: 18}
 ARC_AXES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis
 PR_SET_PDEATHSIG = 1  # of Linux: the signal a process gets when its parent dies
@@ -219,6 +220,8 @@ class Canon:
         """Begin without a feed, and forget the set-up when the program itself starts."""
         if text == FRESH:
             interpreter_object().feed_rate = 0.0  # not by F0: a machine may have remapped F
+        if text == MEANINGS_CHANGED:
+            self._stand_where_the_interpreter_does()
         if text == START:
             self.started = True
             self.moves.clear()
@@ -343,6 +346,15 @@ class Canon:
         self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation, remap))
         if remap:
             self.files |= self.lines.files()
+
+    def _stand_where_the_interpreter_does(self) -> None:
+        """Go on from there: the axes mean something else, the tool stands where it stood."""
+        this = interpreter_object()
+        linear = (this.current_x, this.current_y, this.current_z)
+        scale = 1.0 if this.length_units == METRIC else MM
+        self.tip = (*(value * scale for value in linear), *self.tip[3:5], this.CC_current,
+                    *self.tip[6:])  # fmt: skip
+        self.position = self._resolved(self.tip)
 
     def _resolved(self, tip: tuple) -> tuple:
         """Machine coordinates of a point in program coordinates, both in mm."""

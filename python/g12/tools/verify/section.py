@@ -21,7 +21,7 @@ from shapely.geometry import LineString
 from shapely.ops import nearest_points
 
 from g12.tools.path.follow import Followed
-from g12.tools.path.part import C, Z
+from g12.tools.path.part import C, Z, spindle_angles
 from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
@@ -99,7 +99,7 @@ def measure_section(
         shortest=min(lengths),
         longest=max(lengths),
         pace=pace,
-        c_speed=c_speed_of(own, path, real),
+        c_speed=c_speed_of(own, path, plane, real),
         c_limit=limit,
         zero=moves[section.at].start[C],
         start_height=moves[section.at].start[Z],
@@ -299,12 +299,13 @@ def jump_between_pieces(
     return float(max(jumps, default=0.0))
 
 
-def c_speed_of(own: Sequence[int], path: Track, real: Followed | None) -> float:
+def c_speed_of(own: Sequence[int], path: Track, plane: Plane, real: Followed | None) -> float:
     """Return the highest speed of C."""
     if real is not None:
         mask = np.isin(real.move, own)
         angle, time = real.positions[mask, C], real.time[mask]
         return float(np.abs(np.gradient(angle, time)).max()) if len(time) > 1 else 0.0
     vertices = slice(path.vertices(own[0]).start, path.vertices(own[-1]).stop)
-    turned, seconds = np.diff(path.positions[vertices, C]), np.diff(path.time[vertices])
-    return float((np.abs(turned) / np.maximum(seconds, 1e-12)).max(initial=0.0))
+    positions, seconds = path.positions[vertices], np.maximum(np.diff(path.time[vertices]), 1e-12)
+    turned = np.diff(spindle_angles(plane.on_face(positions), positions[:, C]))
+    return float((np.abs(turned) / seconds).max(initial=0.0))

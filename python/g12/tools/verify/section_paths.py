@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.tools.path.follow import Followed
-from g12.tools.path.part import C, X, Z
+from g12.tools.path.part import C, X, Y, Z
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.verify.contour_distance import ContourDistances
@@ -43,7 +43,11 @@ class Plane:
     def points(self, positions: np.ndarray) -> np.ndarray:
         """Return the points (complex) of machine positions (n, 9)."""
         angle = np.radians(positions[:, C] - self._angle)
-        return (positions[:, X] - self._shift) * np.exp(1j * angle)
+        return self.on_face(positions) * np.exp(1j * angle)
+
+    def on_face(self, positions: np.ndarray) -> np.ndarray:
+        """Return the points (complex) of machine positions, seen from the face that C turns."""
+        return positions[:, X] - self._shift + 1j * positions[:, Y]
 
     def of_part(self, point: Sequence[float]) -> tuple[float, float, float]:
         """Return X (radius), C and Z in the plane of a point of the part."""
@@ -59,8 +63,8 @@ class Plane:
 
 
 def goes_across(move: Move) -> bool:
-    """Tell whether a move changes X or C."""
-    return move.start[X] != move.end[X] or move.start[C] != move.end[C]
+    """Tell whether a move changes X, Y or C; the start of a full circle is its end."""
+    return move.kind == "arc" or any(move.start[axis] != move.end[axis] for axis in (X, Y, C))
 
 
 class ToolPaths:
