@@ -11,7 +11,7 @@ from hypothesis import settings
 
 from support.processes import kill_session, start_in_terminal
 
-NEED_LINUXCNC = ("interp", "sim")
+NEED_LINUXCNC = ("faults", "interp", "sim")
 
 settings.register_profile("g12", deadline=None, derandomize=True, database=None)
 settings.load_profile("g12")

@@ -11,8 +11,14 @@ from hypothesis import strategies as st
 from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
 from g12.tools.path.track import track
+from g12.tools.units import MM
 from g12.tools.verify.contour_distance import ContourDistances
-from g12.tools.verify.findings import section_findings, section_notes
+from g12.tools.verify.findings import (
+    contour_findings,
+    section_findings,
+    section_notes,
+    turn_findings,
+)
 from g12.tools.verify.section import measure_section
 from g12.tools.verify.wanted_contour import Element, SectionContour
 from support.made_moves import LIMITS, Hand, samples_of
@@ -81,7 +87,10 @@ def measure(hand, elements, real=None, **options):
 
 
 def findings(facts):
-    return " | ".join(section_findings(facts, TOLERANCE))
+    """Return what is wrong in the plane and of C, or why nothing can be said."""
+    if facts.section.doubt:
+        return " | ".join(section_findings(facts, TOLERANCE))
+    return " | ".join([*contour_findings(facts, TOLERANCE, MM), *turn_findings(facts)])
 
 
 # ---------------------------------------------------------------- distances
@@ -291,3 +300,38 @@ def test_the_lowest_feed_is_placed_in_the_sections_own_plane():
     hand = Hand().rapid(x=40.0, c=90.0).next_block().line(c=120.0)
     facts = measure(hand, [line(2, 40 + 0j, 40 * np.exp(1j * math.radians(30)))])
     assert facts.slowest_at == pytest.approx((40 * math.cos(math.pi / 6), 20.0, 0.0), abs=0.1)
+
+
+# ---------------------------------------------------------------- block by block
+
+
+def blockwise(depths, feeds, asked=(600.0, 600.0)):
+    """Return a section of a lead-in, a plunge and a side, made at those depths and feeds."""
+    hand = Hand().rapid(x=40.0)
+    hand.feed = feeds[0]
+    hand.line(z=depths[0])
+    hand.next_block().polar(dense([40, 40 + 20j])[1:], feed=600.0)
+    hand.moves[-1] = hand.moves[-1]._replace(
+        end=(*hand.moves[-1].end[:2], depths[1], *hand.moves[-1].end[3:])
+    )
+    elements = [
+        Element(1, 40 + 0j, 40 + 0j, 0, False, -1.0, feed=asked[0]),
+        Element(2, 40 + 0j, 40 + 20j, 0, False, -1.0, feed=None),
+    ]
+    return measure(hand, elements)
+
+
+def test_depth_and_feed_of_each_block_are_those_of_the_words():
+    facts = blockwise((-1.0, -1.0), (600.0,))
+    assert (facts.depth_off, facts.feed_off) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("depths", "line", "found"), [((-2.0, -2.0), 1, -2.0), ((-1.0, -1.5), 2, -1.5)]
+)
+def test_another_depth_is_told_with_its_line(depths, line, found):
+    assert blockwise(depths, (600.0,)).depth_off == pytest.approx((line, found, -1.0))
+
+
+def test_another_feed_is_told_with_its_line():
+    assert blockwise((-1.0, -1.0), (700.0,)).feed_off == pytest.approx((1, 700.0, 600.0))

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Callable, NamedTuple
 
@@ -22,7 +22,12 @@ from g12.tools.preview.tracer import Parameters, Tracer
 TAG = "g12-verify"
 VALUE = "#<@>"  # short: a line that LinuxCNC reads has 252 characters at most
 LONGEST_LINE = 252
-STATE = ("_x", "_y", "_z", "_c", "_metric", "_absolute", "_lathe_diameter_mode", "_feed")
+STATE = (
+    *("_x", "_y", "_z", "_c", "_metric", "_absolute", "_lathe_diameter_mode", "_feed"),
+    *("_units_per_rev", "_rpm", "_motion_mode"),
+)
+FORGOTTEN = 1.0  # F after the preview changed its units; see ``tracer``
+STATE_TEXT = "%.9f" + " ".join(f"#<{name}>" for name in STATE)
 NUMBER = re.compile(r"[0-9]*\.?[0-9]*")
 COMMENT = re.compile(r"\([^)]*\)|;.*")
 FUNCTION = re.compile(r"[a-z]+(?=\[)")
@@ -64,7 +69,7 @@ class Block:
 
     ``words`` maps letters to values in program units (G and M words aside, which are ``codes``
     and ``m_codes``; the arguments of a call are ``arguments``), ``state`` is what the block
-    found: ``_x`` …
+    found: ``_x`` …, ``left`` what it left, empty where the program ended in it.
     ``at`` is the index of its first move and ``end`` that of the first move after it.
     """
 
@@ -76,6 +81,7 @@ class Block:
     state: dict[str, float]
     at: int
     end: int
+    left: dict[str, float] = field(default_factory=dict)
 
 
 Wanted = Callable[[Text], bool]
@@ -182,8 +188,7 @@ def before(text: Text, skip: int = 0) -> Iterator[str]:
     ``skip`` is how many lines of other files come first where texts are counted.
     """
     slash = "/" if text.deleted else ""
-    state = " ".join(f"#<{name}>" for name in STATE)
-    yield f"{slash}(DEBUG,{TAG} begin {skip + text.number} %.9f{state})"
+    yield f"{slash}(DEBUG,{TAG} begin {skip + text.number} {STATE_TEXT})"
     for index, (_, value) in enumerate(text.words):
         if not is_number(value):
             yield assignment(text, value)
@@ -196,8 +201,8 @@ def assignment(text: Text, value: str) -> str:
 
 
 def after(text: Text, skip: int = 0) -> Iterator[str]:
-    """Return the line that tells that a block is done."""
-    yield f"{'/' if text.deleted else ''}(DEBUG,{TAG} end {skip + text.number} 0)"
+    """Return the line that tells that a block is done, and the state it leaves."""
+    yield f"{'/' if text.deleted else ''}(DEBUG,{TAG} end {skip + text.number} {STATE_TEXT})"
 
 
 def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
@@ -216,14 +221,21 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
         elif kind == "value":
             values[int(number)] = float(rest[0])
         elif opened:
-            found.append(_block(*opened, values, at))
+            found.append(_block(*opened, values, at, [float(value) for value in rest]))
             opened = None
     if opened:  # the program ended in it, with M2
-        found.append(_block(*opened, values, len(trace.moves)))
+        found.append(_block(*opened, values, len(trace.moves), []))
     return found
 
 
-def _block(at: int, text: Text, state: list[float], values: dict[int, float], end: int) -> Block:
+def _block(
+    at: int,
+    text: Text,
+    state: list[float],
+    values: dict[int, float],
+    end: int,
+    left: list[float],
+) -> Block:
     told = [
         (letter, values.get(index, float(value) if is_number(value) else 0.0))
         for index, (letter, value) in enumerate(text.words)
@@ -235,4 +247,5 @@ def _block(at: int, text: Text, state: list[float], values: dict[int, float], en
         dict(zip(STATE, state)),
         at,
         end,
+        dict(zip(STATE, left)),
     )

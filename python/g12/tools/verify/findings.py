@@ -155,14 +155,36 @@ def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> 
     if facts.section.doubt:
         yield f"the contour cannot be read from the words: {facts.section.doubt}"
         return
+    yield from contour_findings(facts, tolerance, unit)
+    yield from block_findings(facts, unit)
+    yield from turn_findings(facts)
+
+
+def contour_findings(facts: SectionFacts, tolerance: float, unit: Unit) -> Iterator[str]:
+    """Yield where a section leaves its contour in the plane."""
     if facts.deviation > tolerance + LAST_DECIMAL:
         yield f"the path is {unit.fine(facts.deviation)} {unit.name} off the contour"
     if facts.gouge > SAME_AREA:
         yield f"{gouged(facts, unit)} are gouged beyond the contour"
     if facts.left > SAME_AREA:
         yield f"{unit.area(facts.left)} of material are left standing"
-    if facts.c_speed > facts.c_limit * SAME_SPEED:
-        yield f"C turns at {facts.c_speed:.4g} degrees/s, its limit is {facts.c_limit:.4g}"
+
+
+def block_findings(facts: SectionFacts, unit: Unit) -> Iterator[str]:
+    """Yield which heights and feeds of a section's blocks are not the words'."""
+    if facts.depth_off:
+        line, found, asked = facts.depth_off
+        yield f"line {line}: Z is {unit.text(found)}, not {unit.text(asked)} {unit.name}"
+    if facts.feed_off:
+        line, found, asked = facts.feed_off
+        yield f"line {line}: the feed is {unit.text(found)}, not {unit.text(asked)} {unit.name}/min"
+
+
+def turn_findings(facts: SectionFacts) -> Iterator[str]:
+    """Yield where C is faster than it may be, or is asked to be where it turns in place."""
+    speed = max(facts.c_speed, facts.turn_speed)
+    if speed > facts.c_limit * SAME_SPEED:
+        yield f"C turns at {speed:.4g} degrees/s, its limit is {facts.c_limit:.4g}"
 
 
 def collision_text(hit: Collision, unit: Unit = MM) -> str:

@@ -26,6 +26,7 @@ from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.verify.contour_distance import SAME, STEP, ContourDistances
+from g12.tools.verify.section_blocks import OffWords, depth_off, feed_off, turn_speed
 from g12.tools.verify.section_paths import Plane, ToolPaths, goes_across, tool_paths_of
 from g12.tools.verify.wanted_contour import Element, SectionContour
 
@@ -47,7 +48,8 @@ class SectionFacts:
 
     ``zero`` is the angle of C where the section begins, ``start_height`` Z there, ``lowest`` the
     lowest Z. ``slowest_at`` is the place of the lowest feed as the section's own X (a radius),
-    C and Z.
+    C and Z. ``depth_off`` and ``feed_off`` are the first Z and the first feed that are not the
+    words', ``turn_speed`` is what F asks of C where it turns in place.
     """
 
     section: SectionContour
@@ -70,6 +72,9 @@ class SectionFacts:
     start_height: float
     lowest: float
     slowest_at: tuple[float, float, float]
+    depth_off: OffWords | None
+    feed_off: OffWords | None
+    turn_speed: float
 
 
 def measure_section(
@@ -105,6 +110,9 @@ def measure_section(
         start_height=moves[section.at].start[Z],
         lowest=min(moves[index].end[Z] for index in own),
         slowest_at=plane.of_part(pace.point),
+        depth_off=depth_off(section, moves, path),
+        feed_off=feed_off(section, moves, path),
+        turn_speed=turn_speed(section, moves, path),
     )
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from g12.lengths import MM_PER_INCH
 from g12.tools.path.part import plane_axes
-from g12.tools.preview.executed_blocks import Block
+from g12.tools.preview.executed_blocks import FORGOTTEN, Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.codes import EVENT, Codes, Cycle, compensates
 
@@ -24,7 +24,6 @@ LEFT_OUT = -9999.0
 POCKET = "circle_mill_pocket"  # the handler of the event's pocket
 ROUGH_FINISH = ((-1, -1), (1, 1), (-1, 1), (1, -1))  # turns of the event by D
 DYNAMIC = (41.1, 42.1)  # compensation whose D is a diameter
-FORGOTTEN = 1.0  # F after the preview changed its units; see ``trace``
 SAME_DEPTH = 1e-6
 
 

@@ -16,12 +16,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from g12.lengths import MM_PER_INCH
-from g12.tools.preview.executed_blocks import Block, Text, after, before, blocks_in, read_lines
+from g12.tools.preview.executed_blocks import (
+    FORGOTTEN,
+    Block,
+    Text,
+    after,
+    before,
+    blocks_in,
+    read_lines,
+)
 from g12.tools.preview.tracer import Parameters, Tracer
 from g12.tools.verify.codes import Codes
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
 CONTOUR = "XYCUHIJRZ"
+FEED_MODES = {94.0: False, 98.0: False, 95.0: True, 99.0: True}  # code: per revolution
 SAVE, FORGET, RESTORE, SAVE_FOR_SUB = 70.0, 71.0, 72.0, 73.0
 POSITION = "#<_", "#54"  # position parameters, which the copy of the program cannot follow
 
@@ -31,7 +40,8 @@ class Element:
     """A line or an arc of the contour; an arc has a ``centre`` and a signed ``sweep``.
 
     ``side`` is +1 with the tool on the left (G41), -1 on the right, 0 without compensation;
-    ``ramp`` says that compensation is switched on or off along it. ``depth`` is Z at its end.
+    ``ramp`` says that compensation is switched on or off along it. ``depth`` is Z at its end,
+    ``feed`` along it in mm/min, None where the words do not say. A move of Z alone has no length.
     """
 
     line: int
@@ -42,6 +52,7 @@ class Element:
     depth: float
     centre: complex | None = None
     sweep: float = 0.0
+    feed: float | None = None
 
     @property
     def length(self) -> float:
@@ -187,7 +198,9 @@ class Pen:
         self.depth = state["_z"] * self.unit
         self.absolute = bool(state["_absolute"])
         self.motion, self.side, self.changes = 1.0, 0, False
-        self._saved: tuple[bool, float] | None = None  # by M70 and M73
+        self.feed = None if state["_feed"] == FORGOTTEN else state["_feed"] * self.unit
+        self.per_revolution, self.speed = bool(state["_units_per_rev"]), state["_rpm"]
+        self._saved: tuple | None = None  # by M70 and M73
 
     def draw(self, block: Block) -> Iterator[Element]:
         """Yield the element that a block adds, if any."""
@@ -196,9 +209,11 @@ class Pen:
         for code in block.codes:
             self._switch(code)
         words = block.words
+        self.speed = words.get("S", self.speed)
+        self.feed = words["F"] * self.unit if "F" in words else self.feed
         if not any(letter in words for letter in CONTOUR):
             return
-        self.depth = self._to(words, "Z", None, self.depth, self.unit)
+        depth, self.depth = self.depth, self._to(words, "Z", None, self.depth, self.unit)
         end = complex(
             self._to(words, "X", "U", self.at.real, self.x_unit),
             self._to(words, "C" if "C" in words else "Y", "H", self.at.imag, self.unit),
@@ -207,16 +222,25 @@ class Pen:
         if end != self.at or centre is not None:
             line = block.text.number
             ramp, self.changes = self.changes, False
-            yield Element(line, self.at, end, self.side, ramp, self.depth, centre, sweep)
+            at, feed = self.at, self._feed()
+            yield Element(line, at, end, self.side, ramp, self.depth, centre, sweep, feed)
+        elif depth != self.depth:
+            yield Element(block.text.number, end, end, 0, False, self.depth, feed=self._feed())
         self.at = end
+
+    def _feed(self) -> float | None:
+        """Return the feed in mm per minute; that of a G0 is not in the words."""
+        if self.feed is None or self.motion == 0.0:
+            return None
+        return self.feed * (self.speed if self.per_revolution else 1.0)
 
     def _save_or_restore(self, code: float) -> None:
         if code in (SAVE, SAVE_FOR_SUB):
-            self._saved = self.absolute, self.motion
+            self._saved = self.absolute, self.motion, self.feed, self.per_revolution, self.speed
         elif code == FORGET:
             self._saved = None
         elif code == RESTORE and self._saved:
-            self.absolute, self.motion = self._saved
+            self.absolute, self.motion, self.feed, self.per_revolution, self.speed = self._saved
 
     def _switch(self, code: float) -> None:
         if code in SIDES:
@@ -226,6 +250,8 @@ class Pen:
             self.motion = code
         elif code in (90.0, 91.0):
             self.absolute = code == 90.0
+        elif code in FEED_MODES:
+            self.per_revolution = FEED_MODES[code]
 
     def _to(self, words: dict, letter: str, step: str | None, now: float, unit: float) -> float:
         """Return where a coordinate goes: by its word, by its incremental word, or nowhere."""

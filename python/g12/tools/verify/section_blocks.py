@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a polar section does block by block: heights and feeds against the words.
+
+Lengths are millimetres, feeds mm/min along the part, C's speed degrees/s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import NamedTuple
+
+import numpy as np
+
+from g12.tools.path.part import C, Z
+from g12.tools.path.track import Track, feed_length, rate
+from g12.tools.preview.moves import Move
+from g12.tools.verify.wanted_contour import Element, SectionContour
+
+SAME_LEVEL = 1e-3  # mm
+SAME_FEED = 0.01
+LEAST_LENGTH = 0.02  # mm: the feed of a shorter piece is rounding
+TURN = 1e-6  # mm along the part: C turns in place
+
+
+class OffWords(NamedTuple):
+    """A value that a line has not as its words ask: what was found, and what is asked."""
+
+    line: int
+    found: float
+    asked: float
+
+
+class BlockOfSection(NamedTuple):
+    """The moves (indices) of one block, or of equal lines in a row, and what they should make.
+
+    ``above`` is Z in front of the block, program coordinates.
+    """
+
+    elements: list[Element]
+    above: float
+    moves: list[int]
+
+
+def blocks_cut(section: SectionContour, moves: Sequence[Move]) -> Iterator[BlockOfSection]:
+    """Yield the blocks of a section that moved, in order."""
+    groups = [list(group) for _, group in groupby(section.elements, lambda element: element.line)]
+    above = [section.z, *(group[-1].depth for group in groups)]
+    at = 0
+    for line, own in groupby(range(section.at, section.end), lambda index: moves[index].block):
+        rest = range(at, len(groups))
+        found = next((index for index in rest if groups[index][0].line == line), None)
+        if found is not None:
+            at = found + 1
+            yield BlockOfSection(groups[found], above[found], list(own))
+
+
+def depth_off(section: SectionContour, moves: Sequence[Move], path: Track) -> OffWords | None:
+    """Return the first Z that is not as the words ask."""
+    face = moves[section.at].start[Z] - section.z
+    for block in blocks_cut(section, moves):
+        off = depth_off_in(block, face, path)
+        if off:
+            return off
+    asked = section.elements[-1].depth if section.elements else section.z
+    found = moves[section.end - 1].end[Z] - face
+    wrong = abs(found - asked) > SAME_LEVEL
+    return OffWords(section.last, found, asked) if wrong else None
+
+
+def depth_off_in(block: BlockOfSection, face: float, path: Track) -> OffWords | None:
+    """Return the Z of a block that is farthest from what its words ask, if it is too far."""
+    vertices = slice(path.vertices(block.moves[0]).start, path.vertices(block.moves[-1]).stop)
+    heights = path.points[vertices, 2] - face
+    wanted = heights_wanted(block, path.points[vertices], heights)
+    worst = int(np.abs(heights - wanted).argmax())
+    if abs(heights[worst] - wanted[worst]) <= SAME_LEVEL:
+        return None
+    return OffWords(block.elements[0].line, float(heights[worst]), float(wanted[worst]))
+
+
+def heights_wanted(block: BlockOfSection, points: np.ndarray, heights: np.ndarray) -> np.ndarray:
+    """Return the heights that a block asks for at points along it.
+
+    Z changes evenly along one element that is not compensated; else any height between those of
+    the elements will do but for the last.
+    """
+    first, last = block.elements[0], block.elements[-1]
+    depths = [block.above, *(element.depth for element in block.elements)]
+    if len(block.elements) == 1 and first.length and not (first.side or first.ramp):
+        steps = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        return block.above + (last.depth - block.above) * along / (along[-1] or 1.0)
+    wanted = np.clip(heights, min(depths), max(depths))
+    wanted[-1] = last.depth
+    return wanted
+
+
+def feed_off(section: SectionContour, moves: Sequence[Move], path: Track) -> OffWords | None:
+    """Return the first feed along the part that is not the words'."""
+    for block in blocks_cut(section, moves):
+        feeds = {element.feed for element in block.elements}
+        for index in block.moves if None not in feeds else ():
+            found = feed_asked(moves[index], path.part_length(index))
+            if found and all(abs(found / feed - 1) > SAME_FEED for feed in feeds):
+                return OffWords(block.elements[0].line, found, min(feeds))
+    return None
+
+
+def feed_asked(move: Move, length: float) -> float | None:
+    """Return the feed along the part that a move's F makes, whatever the axes can do."""
+    if move.kind == "rapid" or length < LEAST_LENGTH:
+        return None
+    return length / feed_length(move) * rate(move, 0.0) * 60.0
+
+
+def turn_speed(section: SectionContour, moves: Sequence[Move], path: Track) -> float:
+    """Return the highest speed that F asks of C where it turns in place."""
+    in_place = (
+        moves[index]
+        for index in range(section.at, section.end)
+        if path.part_length(index) < TURN and moves[index].kind != "rapid"
+    )
+    return max((rate(move, 0.0) for move in in_place if move.start[C] != move.end[C]), default=0.0)
