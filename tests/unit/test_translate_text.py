@@ -263,6 +263,19 @@ def test_the_end_of_a_loop_is_a_way_to_its_beginning():
 # ---------------------------------------------------------------- cylinder, builder's words
 
 
+@pytest.mark.parametrize(
+    ("block", "written"),
+    [
+        ("G17XC", "G17 (X C)"),
+        ("G17 U0 H0", "G17 (U0 H0)"),
+        ("G18 XZ G40", "G18 G40 (X Z)"),
+        ("G28 G19 XH U0", "G28 G19 X[2 * #5420] (X H)"),
+    ],
+)
+def test_the_axes_that_a_plane_code_names_are_a_comment(block, written):
+    assert behind(LATHE, f"{block}\nM30\n")[0] == written
+
+
 def test_cylinder():
     translated = behind(LATHE, "G107 C25.\nG1 Z-5. C30.\nG7.1 C0\nM30\n")
     assert translated == ["G7.1 C25.", "G1 Z-5. C30.", "G7.1 C0", "M30"]

@@ -25,6 +25,7 @@ from g12.tools.translate.rules import (
 WORD_RULES = (
     codes.map_codes,
     modes.follow_modes,
+    polar.plane_letters,
     subprograms.call_macro,
     dwell.dwell,
     decimals.whole_units,

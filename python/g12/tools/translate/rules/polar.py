@@ -18,7 +18,6 @@ RENAMED = {"Y": "C", "V": "H"}
 
 def switch_polar(draft: Draft) -> None:
     """Write polar on, polar off and cylinder as LinuxCNC's codes, in blocks of their own."""
-    plane_letters(draft)
     for meaning, write in (("polar on", turn_on), ("polar off", turn_off), ("cylinder", cylinder)):
         if meaning in draft.meanings:
             write(draft, draft.meanings.pop(meaning).code)
@@ -28,11 +27,11 @@ def plane_letters(draft: Draft) -> None:
     """Drop what a plane code has beside it to name its axes: ``G17 XC``, ``G17 U0 H0``."""
     if not PLANES.intersection(draft.codes()):
         return
-    still = [w for w in draft.words if w.kind == "bare" or (w.letter in "UVWH" and is_zero(w))]
-    moving = draft.letters() - {"N", "G"} - {word.letter for word in still}
-    if not moving or all(word.kind == "bare" for word in still):
-        draft.words = [word for word in draft.words if word not in still]
-        draft.comments += [" ".join(word.text for word in still)] if still else []
+    named = [word for word in draft.words if word.kind == "bare"]
+    if not named and not draft.letters() - set("NGUVWH"):
+        named = [w for w in draft.words if w.letter in "UVWH" and is_zero(w)]
+    draft.words = [word for word in draft.words if word not in named]
+    draft.comments += [" ".join(word.text for word in named)] if named else []
 
 
 def is_zero(word: ForeignWord) -> bool:
