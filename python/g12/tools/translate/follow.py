@@ -14,6 +14,7 @@ from g12.tools.translate.blocks.draft import Draft, SubprogramCall
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
 from g12.tools.translate.rules import WORD_RULES
+from g12.tools.translate.rules.plain import is_plain
 from g12.tools.translate.statements import STATEMENTS
 from g12.tools.translate.structure import MAIN, Structure
 
@@ -177,7 +178,7 @@ class FollowedProgram:
 
 def apply_rules(draft: Draft) -> None:
     """Send a block of words through the rules."""
-    if draft.words:
+    if draft.words and not is_plain(draft):
         for rule in WORD_RULES:
             rule(draft)
 

@@ -81,7 +81,7 @@ def lines_of_row(row: str, indices: Sequence[int] | None, followed: FollowedProg
         draft = followed.drafts[index]
         block = followed.structure.blocks[index]
         if draft:
-            lines += lines_of(draft)
+            lines += draft.lines
         elif block.words or block.kind not in ("words", "tape"):
             return [as_comment(row)]
         else:

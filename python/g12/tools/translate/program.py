@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.control import Control
+from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import blocks_of, source_lines
 from g12.tools.translate.follow import FollowedProgram
@@ -61,7 +62,7 @@ def refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
     if not any(draft and (draft.words or draft.refusal) for draft in followed.drafts):
         yield RefusedBlock(1, "there is no block in the file")
     for draft in filter(None, followed.drafts):
-        sentence = draft.refusal or too_long(draft)
+        sentence = draft.refusal or unwritable(draft)
         if sentence:
             yield RefusedBlock(draft.block.line, sentence)
     for index in followed.falls_off:
@@ -72,10 +73,10 @@ def refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
         yield RefusedBlock(line, sentence)
 
 
-def too_long(draft: object) -> str | None:
-    """Return why the lines of a block cannot be written, None if they can."""
+def unwritable(draft: Draft) -> str | None:
+    """Write the lines of a block; return why that cannot be, None if it can."""
     try:
-        lines_of(draft)
+        draft.lines = lines_of(draft)
     except NotTranslated as refusal:
         return str(refusal)
     return None

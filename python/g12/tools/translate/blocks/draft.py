@@ -36,8 +36,8 @@ class Draft:
     calls and ``returns`` whether a subprogram ends here, by ``return_text``; ``head`` begins one;
     ``around`` are lines before and behind its own; ``is_settled`` means that the block is written
     for the distance mode that LinuxCNC is in, ``has_motion`` that its motion code is written;
-    ``programs`` are the numbers of the programs in the file; ``refusal`` is why it is not
-    translated, None if it is.
+    ``programs`` are the numbers of the programs in the file; ``lines`` are those that it becomes,
+    ``refusal`` is why it is not translated, None if it is.
     """
 
     def __init__(
@@ -63,6 +63,7 @@ class Draft:
         self.is_settled = False
         self.has_motion = False
         self.programs = programs
+        self.lines: list[str] = []
         self.refusal: str | None = None
 
     def change(self, **modes: object) -> None:

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Most blocks of a long program: lines and arcs that are the same on LinuxCNC, told at a glance."""
+
+from __future__ import annotations
+
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUPS, UNKNOWN
+
+MOTIONS = frozenset(GROUPS["motion"])
+LETTERS = frozenset("NXYZABCIJKRF")
+SETTLED = (UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
+
+
+def is_plain(draft: Draft) -> bool:
+    """Tell whether no rule has anything to do; the block's motion and feed are then taken note of.
+
+    So it is for one motion code or none, numbers with points, and no mode that LinuxCNC lacks.
+    """
+    state, control = draft.state, draft.control
+    at = (state.cycle, state.polar, state.own_motion, state.own_distance, state.own_feed)
+    if at != SETTLED:
+        return False
+    modes: dict[str, str] = {}
+    seen = set()
+    for letter, value, kind, _ in draft.words:
+        if kind != "number" or letter in seen:
+            return False
+        seen.add(letter)
+        if letter == "G":
+            modes["motion"] = f"G{value.lstrip('0') or '0'}"
+        elif (
+            letter not in LETTERS
+            or (letter in AXIS_NUMBERS and letter not in control.axes)
+            or (letter != "N" and "." not in value and value != "0")
+        ):
+            return False
+        elif letter == "F":
+            modes["feed"] = value
+    motion = modes.get("motion", state.motion)
+    if motion not in MOTIONS or control.meanings.get(motion) != "same":
+        return False
+    if any(getattr(state, mode) != value for mode, value in modes.items()):
+        draft.change(**modes)
+    return True

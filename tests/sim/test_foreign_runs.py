@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Programs of other controls on running machines: the INI's [FILTER] is applied to them."""
+
+import pytest
+
+from g12.tools.commands import main
+from g12.tools.headless.machine import smoke
+from support.foreign_programs import FOREIGN
+from support.sim_machines import SIM
+
+PROGRAM = "%\nO5 (SLOT)\nG20 G90 G54 G00 X.1 Y0\nG01 X.3 F90.\nM31\nG53 X.5\nM30\n%\n"
+
+
+@pytest.fixture
+def program(tmp_path):
+    path = tmp_path / "slot.nc"
+    path.write_text(PROGRAM)
+    return path
+
+
+def test_run_opens_a_haas_program(program, capsys):
+    assert main.main(["run", str(program), "--ini", str(SIM / "mill_inch.ini")]) == 0
+    assert "ends at X0.5 Y0 Z0 (machine position, in)" in capsys.readouterr().out
+
+
+def test_the_headless_screen_opens_a_haas_program(program):
+    code, log = smoke(SIM / "mill_inch_headless.ini", program, timeout=120)
+    assert code == 0, log
+    assert "slot.nc: done" in log
+
+
+def test_the_headless_screen_tells_what_the_filter_refuses():
+    program = FOREIGN / "refused" / "haas-mill.probing.nc"
+    code, log = smoke(SIM / "mill_inch_headless.ini", program, timeout=120)
+    assert code == 1, log
+    assert f"error: {program}:3: O9810 is not in this file" in log
