@@ -119,5 +119,5 @@ def test_any_filter_is_applied(ini, tmp_path):
 
 
 def test_lines_that_a_filter_adds_say_theirs():
-    rows = [b"G0", b"(a) (line 1)", b"G1 (line 7 of it)", b"", b"M2 (line 4)"]
-    assert lines_of_source(rows) == (1, 1, 2, 3, 4)
+    rows = [b"G0", b"(a) (line 1)", b"G1 (line 7 of it)", b"", b"M2 (line 4)", b"(line 9) M2 (a)"]
+    assert lines_of_source(rows) == (1, 1, 2, 3, 4, 9)

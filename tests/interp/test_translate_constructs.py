@@ -109,3 +109,15 @@ def test_a_construct_moves_the_same_and_leaves_the_same_modes(tracers, control, 
     assert_same_part(traced, wanted)
     assert traced.modes.gcodes == wanted.modes.gcodes
     assert traced.modes.feed == pytest.approx(wanted.modes.feed)
+
+
+def test_alarms_and_stops_with_a_message(tracers):
+    blocks = [
+        "#101=3", "#3006=1 (LOOK AT IT)", "IF[#101EQ3]THEN #3006=1 (TURN IT)", "X2.",
+        "IF[#101EQ4]THEN #3000=5 (WRONG TOOL)", "X3.", "IF[#101EQ3]THEN #3000=5 (TOO DEEP)", "X4.",
+    ]  # fmt: skip
+    text = translated_part("haas-mill", "\n".join(blocks))
+    traced = tracers("haas-mill").trace_text(text, alone=True)
+    assert [message.text.strip() for message in traced.messages] == ["LOOK AT IT", "TURN IT"]
+    assert traced.error.text.strip() == "TOO DEEP"
+    assert traced.moves[-1].end[0] == pytest.approx(3 * 25.4)

@@ -19,7 +19,7 @@ from pathlib import Path
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import Ini
 
-MARK = re.compile(rb" \(line ([0-9]+)\)\s*$")
+MARK = re.compile(rb" \(line ([0-9]+)\)\s*$|^\(line ([0-9]+)\) ")
 NAMED_LINE = re.compile(r"\b(line|lines) ([0-9]+)\b")
 PROGRESS = "FILTER_PROGRESS="
 OWN_ERROR = re.compile(r"g12 \w+: ")
@@ -103,5 +103,5 @@ def lines_of_source(rows: Sequence[bytes]) -> tuple[int, ...]:
     for row in rows:
         mark = MARK.search(row)
         own += not mark
-        found.append(int(mark[1]) if mark else own)
+        found.append(int(mark[1] or mark[2]) if mark else own)
     return tuple(found)

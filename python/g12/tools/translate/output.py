@@ -14,6 +14,7 @@ from g12.tools.translate.follow import FollowedProgram
 LONGEST_LINE = 254  # characters that LinuxCNC reads of a line
 LONGEST_MARK = 20  # of them for "/ " and "(line 123456)"
 LONGEST_COMMENT = 200
+OBEYED = re.compile(r"\((MSG|ABORT), ")
 BLOCK_NUMBER = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments behind it
 
 
@@ -47,7 +48,12 @@ def with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
 
 def with_marks(lines: Sequence[str], line: int) -> list[str]:
     """Return the lines of one line of the file: every further one says which it belongs to."""
-    return [lines[0], *(f"{text} (line {line})" for text in lines[1:])]
+    return [lines[0], *(with_mark(text, line) for text in lines[1:])]
+
+
+def with_mark(text: str, line: int) -> str:
+    """Return a further line with its mark; LinuxCNC obeys the last comment of a block only."""
+    return f"(line {line}) {text}" if OBEYED.search(text) else f"{text} (line {line})"
 
 
 def as_comment(text: str) -> str:
