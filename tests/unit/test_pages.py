@@ -16,6 +16,7 @@ INDENTED = re.compile(r"(?:^ {4,}\S.*\n|^\n(?= {4,}\S))+", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 COMMAND = re.compile(r"python/g12 ((?:regress )?[a-z]+)\b(.*)")
+NEEDED = re.compile(r"(?<=\s)(-[a-z-]+) [A-Z]")  # in a usage: what stands in no brackets
 MAKE = re.compile(r"(?:^ {4}|`)make ([a-z-]+)\b", re.MULTILINE)
 QUOTED = re.compile(r"`([^`\n]+)`")
 IN_REPOSITORY = re.compile(rf"(?:{'|'.join(FOLDERS)})/[\w./-]+")
@@ -80,6 +81,16 @@ def test_every_command_and_option_that_a_page_shows_exists(page, capsys):
         known = capsys.readouterr().out
         for option in re.findall(r"(?<!\S)--?[a-z][a-z-]*", rest.partition("#")[0]):
             assert option in known, f"{command} {option}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_every_command_line_to_copy_has_what_its_command_needs(page, capsys):
+    shown = "".join(INDENTED.findall(page.read_text(encoding="utf-8")))
+    for command, rest in COMMAND.findall(shown):
+        with pytest.raises(SystemExit):
+            command_line.main([*command.split(), "--help"])
+        for option in NEEDED.findall(capsys.readouterr().out.partition("\n\n")[0]):
+            assert f" {option} " in rest, f"{command} {option}"
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
