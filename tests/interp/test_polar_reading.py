@@ -392,7 +392,7 @@ def test_a_file_without_a_last_newline(lathe, tmp_path):
 
 def test_a_program_that_is_not_utf8(lathe, tmp_path):
     program = tmp_path / "cut.ngc"
-    text = "\n".join(section("(Fläche \xb0)", "G1 X12 (ä)", "U-2"))
+    text = "\n".join(section("(Fläche \xb0)", f"G1 X12 ({'ä' * 200})", "U-2"))
     program.write_bytes(text.encode("latin-1"))
     assert ends(lathe.trace(program)) == [(12, 0), (10, 0)]
 

@@ -38,12 +38,10 @@ def read_source(filename: str, known: ProgramFile | None = None) -> ProgramFile:
     if known and (known.filename, known.version) == (filename, version):
         return known
     with open(filename, "rb") as file:
-        lines = file.read().split(b"\n")
-    if not lines[-1]:
-        lines.pop()
-    starts = list(accumulate((len(line) + 1 for line in lines), initial=0))
-    text = [line.decode("utf-8", "replace") for line in lines]
-    return ProgramFile(filename, text, starts, version)
+        source = file.read().removesuffix(b"\n")
+    starts = list(accumulate((len(line) + 1 for line in source.split(b"\n")), initial=0))
+    text = source.decode("utf-8", "replace").replace("\ufffd", "?")  # as long as it was
+    return ProgramFile(filename, text.split("\n"), starts, version)
 
 
 class LineOfFile(int):
