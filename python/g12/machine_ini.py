@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import NamedTuple, Optional
 
 from g12.errors import Refusal, number
@@ -22,6 +23,7 @@ FindAll = Callable[[str, str], Sequence[str]]
 
 AXES = "XYZABCUVW"
 NO_LIMIT = 1e99
+KINEMATICS_PARAMETER = b"_kins_type"  # an interpreter that has it has a G12.1 of its own
 AXIS_KEYS = (  # with what LinuxCNC takes where there is none
     ("MIN_LIMIT", -NO_LIMIT),
     ("MAX_LIMIT", NO_LIMIT),
@@ -189,7 +191,11 @@ def refuse_owned_codes(codes: Container[str], owned: bool) -> None:
         )
 
 
-def owns_g12_1(version: str) -> bool:
-    """Tell whether a version of LinuxCNC ("2.9.10") selects kinematics by G12.1."""
-    major, minor = (int(part) for part in version.split(".")[:2])
-    return (major, minor) >= (2, 10)
+def owns_g12_1(maps: str) -> bool:
+    """Tell whether the interpreter that a process has loaded selects kinematics by G12.1.
+
+    ``maps`` is the text of the process's /proc/self/maps.  The version tells nothing: 2.10 was
+    developed for years without it.
+    """
+    libraries = {line.split(maxsplit=5)[5] for line in maps.splitlines() if "/librs274" in line}
+    return any(KINEMATICS_PARAMETER in Path(library).read_bytes() for library in libraries)

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
 
 import emccanon
-import interpreter
 import linuxcnc
 from interpreter import INTERP_OK, MODE_ABSOLUTE
 
@@ -31,7 +31,6 @@ from g12.polar.start import check_section_start, polar_setup
 from g12.section.codes import codes_of_section
 from g12.section.line import line_named
 
-KINEMATICS_PARAMETER = "_kins_type"  # an interpreter that has it has a G12.1 of its own
 DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could read them
 
 
@@ -43,12 +42,8 @@ FACE = face_of(INI.find)
 
 def check_at_start() -> None:
     """Say so, when LinuxCNC comes up, if it takes G12.1 for itself."""
-    if hasattr(interpreter, "this"):
-        owned = KINEMATICS_PARAMETER in interpreter.this.params.globals()
-    else:  # milltask loads this module before its interpreter exists
-        owned = owns_g12_1(linuxcnc.version)
     try:
-        refuse_owned_codes(REMAPS, owned)
+        refuse_owned_codes(REMAPS, owns_g12_1(Path("/proc/self/maps").read_text()))
     except Refusal as refusal:
         glue.say_at_start(refusal.message)
 
