@@ -276,6 +276,19 @@ def test_the_axes_that_a_plane_code_names_are_a_comment(block, written):
     assert behind(LATHE, f"{block}\nM30\n")[0] == written
 
 
+def test_the_feed_comes_back_behind_a_rapid_of_polar_mode():
+    text = "G20 G98 G1 X5. F9.\nG112\nG0 X2. F8.\nG1 X1.\nG0 X2.\nG113\nG99 G1 X2.5\nX3.\nM30\n"
+    written = behind(HAAS_LATHE, text, "(HEAD)\nG0 Z1.\n")
+    assert [line for line in written if "X" in line] == [
+        "G20 G94 G1 X5. F9.",
+        "X2. G1 G94 F100",
+        "G1 X1. F8. G94",
+        "X2. G1 G94 F100",
+        "G95 G1 X2.5 F8.",
+        "X3.",
+    ]
+
+
 def test_cylinder():
     translated = behind(LATHE, "G107 C25.\nG1 Z-5. C30.\nG7.1 C0\nM30\n")
     assert translated == ["G7.1 C25.", "G1 Z-5. C30.", "G7.1 C0", "M30"]

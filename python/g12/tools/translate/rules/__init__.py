@@ -36,6 +36,7 @@ WORD_RULES = (
     reference.reference_point,
     polar.switch_polar,
     polar.inside_polar,
+    polar.feed_again,
     motion.exact_stop,
     increments.incremental_words,
     cycles.pocket,

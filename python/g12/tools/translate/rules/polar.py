@@ -12,6 +12,7 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE, is_sure
 
+MOVING = frozenset("XYZABCUVWHF")
 PLANES = frozenset(("G17", "G18", "G19"))
 RENAMED = {"Y": "C", "V": "H"}
 
@@ -51,7 +52,7 @@ def turn_on(draft: Draft, code: str) -> None:
         draft.take("C")
     lines = ["G8"] if x == "radius" else []
     own_block(draft, code, [*lines, draft.control.polar_codes[0]])
-    draft.change(polar="on", own_motion=UNSURE, own_feed=AS_PROGRAMMED)
+    draft.change(polar="on", own_motion=UNSURE)
 
 
 def turn_off(draft: Draft, code: str) -> None:
@@ -126,7 +127,7 @@ def is_rapid(draft: Draft) -> bool:
 
 
 def rapid_at_feed(draft: Draft) -> None:
-    """Write a rapid as G1 at the control's speed; give the next block that cuts its feed."""
+    """Write a rapid as G1 at the control's speed; an F beside it is for the blocks behind."""
     if is_rapid(draft):
         unit = {"G20": "inch", "G21": "mm"}.get(draft.state.units, "")
         feed = draft.control.value("polar", f"rapid_feed_{unit}", 0)
@@ -135,16 +136,17 @@ def rapid_at_feed(draft: Draft) -> None:
                 "G0 in polar mode needs G20 or G21 before it, and its speed in [polar]"
             )
         draft.take_codes({"G0"})
+        draft.take("F")
         draft.words += [word_of("G1"), word_of("G94"), word_of(f"F{feed:g}")]
         draft.change(motion="G0", own_motion="G1", own_feed="rapid")
         draft.has_motion = True
-    elif draft.state.own_feed != AS_PROGRAMMED and draft.letters() & set("XCZUH"):
-        feed_again(draft)
 
 
 def feed_again(draft: Draft) -> None:
-    """Write the feed that holds on the control where LinuxCNC has the rapid's."""
+    """Write the feed that holds on the control where LinuxCNC has that of a rapid in polar mode."""
     state = draft.state
+    if draft.has_motion or state.own_feed == AS_PROGRAMMED or not draft.letters() & MOVING:
+        return
     if "F" not in draft.letters():
         if not is_sure(state.feed):
             raise NotTranslated("a feed is wanted behind a rapid of polar mode: write F")
