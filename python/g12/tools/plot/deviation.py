@@ -50,13 +50,8 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
     axes.plot(*sampled.T, ".", color=style.REAL, markersize=3, zorder=3.5)
     gap = np.array([[0.0, 0.0], worst.point[pair] - origin])
     style.draw(axes, [gap], style.WORST, 1.8, 4.0)
-    axes.set(xlim=(-half, half), ylim=(-half, half), xticks=[], yticks=[])
-    for spine in axes.spines.values():
-        spine.set(visible=True, color=style.WORST, linewidth=0.9)
-    of_pieces = scene.path.part.turning
-    style.caption(axes, f"Largest deviation{' from the pieces' if of_pieces else ''}")
-    text = "\n".join(window_lines(worst, scene, pair))
-    axes.set_xlabel(text, size=8, color=style.WORST, labelpad=4, loc="left")
+    title = f"Largest deviation{' from the pieces' if scene.path.part.turning else ''}"
+    style.frame_detail(axes, (0, 0), half, title, "\n".join(window_lines(worst, scene, pair)))
     _scale_bar(axes, half, unit)
 
 

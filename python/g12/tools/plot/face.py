@@ -52,15 +52,12 @@ def draw_face(scene: Scene) -> Figure:
     face = style.add_axes(figure, LEFT, height - TOP - FACE, FACE, FACE)
     frame_face(face, scene, levels)
     draw_plan(face, scene, levels)
-    under = (height - TOP - FACE - 0.5) / height
-    bands = [style.swatch(style.FAINT, None, "time spent in rapids")]
-    figure.legend(
-        handles=legend_entries(scene, levels) + bands,
-        loc="upper left",
-        bbox_to_anchor=((LEFT - 0.1) / WIDTH, under),
-        ncol=2 if scene.real is None else 1,
-        columnspacing=1.6,
-    )
+    entries = [
+        *legend_entries(scene, levels),
+        style.swatch(style.FAINT, None, "time spent in rapids"),
+    ]
+    columns = 2 if scene.real is None else 1
+    style.draw_legend(figure, entries, LEFT - 0.1, height - TOP - FACE - 0.5, columns)
     draw_panels(figure, scene)
     if scene.real is not None:
         mark_worst(face, scene, [0, 1])
@@ -73,13 +70,10 @@ def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
     low, high = bounds_of(scene, levels)
     low, high = np.minimum(low[:2], 0), np.maximum(high[:2], 0)
     middle, half = (low + high) / 2, max(high - low) / 2
-    unit = scene.unit
-    (left, bottom), (right, top) = (middle - half) / unit.mm, (middle + half) / unit.mm
-    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
-    axes.set_xlabel(f"towards C0, {unit.name}")
-    axes.set_ylabel(f"towards C90, {unit.name}")
-    axes.axhline(0, color=style.MUTED, linewidth=0.5, dashes=(12, 3, 2, 3), zorder=1.9)
-    axes.axvline(0, color=style.MUTED, linewidth=0.5, dashes=(12, 3, 2, 3), zorder=1.9)
+    style.frame(axes, middle - half, middle + half, scene.unit, ("towards C0", "towards C90"))
+    axes.set_aspect("equal")
+    axes.axhline(0, **style.CENTRE_LINE)
+    axes.axvline(0, **style.CENTRE_LINE)
     style.caption(axes, "The part's face")
 
 

@@ -32,7 +32,7 @@ from g12.tools.plot.plan_view import (
     top_of,
 )
 from g12.tools.plot.scene import Scene
-from g12.tools.units import Unit, plain
+from g12.tools.units import plain
 
 PAGE = 11.0  # wide
 WIDE = 2.0  # plans wider than this times their height have the legend below
@@ -42,6 +42,7 @@ MOST_PLAN, LEAST_PLAN = 5.6, 1.2  # high
 MOST_SIDE, LEAST_SIDE = 3.2, 0.8
 ROW = 0.22  # a line of the legend
 COLUMNS = 4
+PLAN, SIDE = [0, 1], [0, 2]  # axes
 LETTER_HEIGHT = 0.11  # of the heights at the floors
 WINDOW = SIZE + 0.75  # the window on the largest deviation, with its texts
 
@@ -74,15 +75,9 @@ class Layout:
 
     def draw_legend(self, figure: Figure, shown: Sequence) -> None:
         """Place the legend beside or below the views."""
-        beside = (LEFT + self.plan[0] + 0.2, self.height - TOP + 0.08)
-        at = (LEFT - 0.1, self.under) if self.below else beside
-        figure.legend(
-            handles=shown,
-            loc="upper left",
-            bbox_to_anchor=(at[0] / self.width, at[1] / self.height),
-            ncol=COLUMNS if self.below else 1,
-            columnspacing=1.6,
-        )
+        beside = (LEFT + self.plan[0] + 0.2, self.height - TOP + 0.08, 1)
+        at = (LEFT - 0.1, self.under, COLUMNS) if self.below else beside
+        style.draw_legend(figure, shown, *at)
 
     def window_corner(self) -> tuple[float, float]:
         """Return the lower left corner of the window on the largest deviation."""
@@ -98,17 +93,17 @@ def draw_mill(scene: Scene) -> Figure:
     layout = Layout(high - low, len(shown), scene.real is not None)
     figure = style.new_figure(layout.width, layout.height, scene.title, scene.subtitle)
     plan, side = layout.axes(figure)
-    frame_view(plan, scene.unit, low, high, [0, 1])
+    style.frame(plan, low[PLAN], high[PLAN], scene.unit, "XY")
     plan.set_aspect("equal", adjustable="datalim")
     plan.set_xlabel("")
     style.caption(plan, "Plan")
     draw_plan(plan, scene, levels)
-    frame_view(side, scene.unit, low, high, [0, 2])
+    style.frame(side, low[SIDE], high[SIDE], scene.unit, "XZ")
     draw_side(side, scene, levels, layout.stretch)
     layout.draw_legend(figure, shown)
     if scene.real is not None:
-        mark_worst(plan, scene, [0, 1])
-        mark_worst(side, scene, [0, 2])
+        mark_worst(plan, scene, PLAN)
+        mark_worst(side, scene, SIDE)
         draw_window(figure, layout.window_corner(), scene)
     return figure
 
@@ -120,7 +115,7 @@ def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float)
         shape = scaled(removed_at(level, max(top, level.z)), 1 / unit, 1 / unit, origin=(0, 0))
         style.fill(axes, shape, *floor(scene, level), 1 + order / 100)
     draw_heights(axes, scene, levels)
-    draw_paths(axes, scene, levels, [0, 2])
+    draw_paths(axes, scene, levels, SIDE)
     true = abs(stretch - 1) < 0.02
     style.caption(axes, "Side" if true else f"Side, heights drawn {plain(stretch, 2)} : 1")
 
@@ -149,12 +144,3 @@ def draw_heights(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
             text = f"Z{scene.unit.text(level.z)}"
             axes.text(1.005, share, text, size=6.5, color=style.INK, **place)
             written.append(share)
-
-
-def frame_view(axes: Axes, unit: Unit, low: np.ndarray, high: np.ndarray, pair: list[int]) -> None:
-    """Set limits and labels of a view of two axes."""
-    first, second = pair
-    axes.set_xlim(low[first] / unit.mm, high[first] / unit.mm)
-    axes.set_ylim(low[second] / unit.mm, high[second] / unit.mm)
-    axes.set_xlabel(f"{'XYZ'[first]}, {unit.name}")
-    axes.set_ylabel(f"{'XYZ'[second]}, {unit.name}")

@@ -26,6 +26,8 @@ from matplotlib.path import Path as Outline
 from shapely.geometry.base import BaseGeometry
 from shapely.geometry.polygon import orient
 
+from g12.tools.units import Unit
+
 FORMATS = ("png", "svg", "pdf")
 INK, MUTED, FAINT = "#1f2933", "#64707d", "#e4e8ec"
 PATH = "#5fa8d3"
@@ -71,6 +73,7 @@ FEEDS = colors.LinearSegmentedColormap.from_list(
 DPI = 150
 LETTERS = 14.0  # of the subtitle to an inch
 MARGIN = 0.75  # inches left of titles and axes
+CENTRE_LINE = {"color": MUTED, "linewidth": 0.5, "dashes": (12, 3, 2, 3), "zorder": 1.9}
 SAVE = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
@@ -109,6 +112,32 @@ def add_axes(figure: Figure, left: float, bottom: float, width: float, height: f
 def caption(axes: Axes, text: str) -> None:
     """Write the heading of one panel."""
     axes.set_title(text, loc="left", size=9, color=INK, pad=5)
+
+
+def frame(axes: Axes, low: np.ndarray, high: np.ndarray, unit: Unit, names: Sequence[str]) -> None:
+    """Set limits (mm) and labels of a view of two axes."""
+    (left, bottom), (right, top) = low / unit.mm, high / unit.mm
+    across, up = (f"{name}, {unit.name}" for name in names)
+    axes.set(xlim=(left, right), ylim=(bottom, top), xlabel=across, ylabel=up)
+
+
+def frame_detail(axes: Axes, centre: Sequence[float], half: float, title: str, text: str) -> None:
+    """Make axes the window on a deviation: so far to each side, framed, with a text below."""
+    x, y = centre
+    axes.set(xlim=(x - half, x + half), ylim=(y - half, y + half), xticks=[], yticks=[])
+    for spine in axes.spines.values():
+        spine.set(visible=True, color=WORST, linewidth=0.9)
+    caption(axes, title)
+    axes.set_xlabel(text, size=8, color=WORST, loc="left")
+
+
+def draw_legend(
+    figure: Figure, entries: Sequence, left: float, top: float, columns: int = 1, **layout
+) -> None:
+    """Draw the legend with its upper left corner there, in inches."""
+    across, up = figure.get_size_inches()
+    at = {"loc": "upper left", "bbox_to_anchor": (left / across, top / up)}
+    figure.legend(handles=entries, ncol=columns, columnspacing=1.6, **at, **layout)
 
 
 def fill(axes: Axes, area: BaseGeometry, face, edge=None, order: float = 1.0, **style) -> None:

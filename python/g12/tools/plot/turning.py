@@ -31,7 +31,6 @@ WIDTH, MOST, LEAST = 11.0, 6.5, 2.0
 LEFT, RIGHT, TOP, BOTTOM = style.MARGIN, 0.3, 1.05, 0.55
 LEGEND, ROWS = 2.35, 2.2  # the legend's width and height
 PROFILE = [2, 0]  # Z to the right, X up
-CENTRE_LINE = (12, 3, 2, 3)
 
 
 def draw_turn(scene: Scene) -> Figure:
@@ -46,11 +45,7 @@ def draw_turn(scene: Scene) -> Figure:
     figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
     axes = style.add_axes(figure, LEFT, page - TOP - height, width, height)
     draw_profile(axes, scene, low, high)
-    figure.legend(
-        handles=turn_entries(scene),
-        loc="upper left",
-        bbox_to_anchor=((LEFT + width + 0.2) / WIDTH, (page - TOP + 0.08) / page),
-    )
+    style.draw_legend(figure, turn_entries(scene), LEFT + width + 0.2, page - TOP + 0.08)
     if scene.real is not None:
         mark_worst(axes, scene, PROFILE)
         draw_window(figure, (LEFT + width + 0.35, BOTTOM), scene)
@@ -59,13 +54,9 @@ def draw_turn(scene: Scene) -> Figure:
 
 def draw_profile(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray) -> None:
     """Draw the path between two corners of the view, and the spindle's centre line."""
-    unit = scene.unit
-    (left, bottom), (right, top) = low / unit.mm, high / unit.mm
-    axes.set(xlim=(left, right), ylim=(bottom, top))
+    style.frame(axes, low, high, scene.unit, ("Z", "X (radius)"))
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(f"Z, {unit.name}")
-    axes.set_ylabel(f"X (radius), {unit.name}")
-    axes.axhline(0, color=style.MUTED, linewidth=0.5, dashes=CENTRE_LINE, zorder=1.9)
+    axes.axhline(0, **style.CENTRE_LINE)
     draw_paths(axes, scene, [everything(scene)], PROFILE)
     draw_arrows(axes, scene, PROFILE)
 

@@ -105,12 +105,9 @@ class View:
             bottom -= BETWEEN + SIDE
 
     def _framed(self, axes: Axes, pair: list[int]) -> Axes:
-        (left, low), (right, high) = (edge[pair] / self.unit.mm for edge in (self.low, self.high))
-        axes.set(xlim=(left, right), ylim=(low, high))
-        for name, axis in (("x", pair[0]), ("y", pair[1])):
-            axes.set(**{f"{name}label": f"{self.letters[axis]}, {self.unit.name}"})
-        heading = "The part" if pair == self.pairs[0] else "Side, not to scale"
-        style.caption(axes, heading)
+        names = [self.letters[axis] for axis in pair]
+        style.frame(axes, self.low[pair], self.high[pair], self.unit, names)
+        style.caption(axes, "The part" if pair == self.pairs[0] else "Side, not to scale")
         return axes
 
     @property
@@ -138,8 +135,7 @@ def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], pa
             at = drawn.gap.point[pair] / view.unit.mm
             axes.plot(*at, "o", color=style.WORST, markersize=9, fillstyle="none", zorder=6)
     left, top = view.beside
-    place = {"loc": "upper left", "bbox_to_anchor": (left / view.width, top / view.height)}
-    figure.legend(handles=entries(drawn, view.unit), borderaxespad=0.0, **place)
+    style.draw_legend(figure, entries(drawn, view.unit), left, top, borderaxespad=0.0)
     if drawn.gap and drawn.gap.size < VISIBLE * view.size:
         axes = style.add_axes(figure, left, top - ROWS - WINDOW, WINDOW, WINDOW)
         draw_change(axes, drawn, view)
@@ -224,13 +220,9 @@ def draw_change(axes: Axes, drawn: Drawn, view: View) -> None:
     _draw_styled(axes, drawn.around, pair, unit.mm)
     ends = np.array([gap.nearest[pair], gap.point[pair]]) / unit.mm
     style.draw(axes, [ends], style.WORST, 1.8, 4.0)
-    (x, y), reach = ends.mean(axis=0), half / unit.mm
-    axes.set(xlim=(x - reach, x + reach), ylim=(y - reach, y + reach), xticks=[], yticks=[])
-    for spine in axes.spines.values():
-        spine.set(visible=True, color=style.WORST, linewidth=0.9)
-    style.caption(axes, f"Largest gap{', from the side' if pair != view.pairs[0] else ''}")
+    title = f"Largest gap{', from the side' if pair != view.pairs[0] else ''}"
     text = f"{unit.fine(gap.size)} {unit.name}; the window is {unit.fine(2 * half)} wide"
-    axes.set_xlabel(text, size=8, color=style.WORST, loc="left")
+    style.frame_detail(axes, ends.mean(axis=0), half / unit.mm, title, text)
 
 
 def entries(drawn: Drawn, unit: Unit) -> list:
