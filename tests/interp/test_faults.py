@@ -89,3 +89,11 @@ def test_an_axis_that_cannot_be_leaves_the_cycles():
     with Tracer(SIM / f"{machine}.ini", overrides=overrides, tools={1: 6.0}) as tracer:
         assert "g12: [AXIS_X] MAX_ACCELERATION = 0: must be above 0" in tracer.printed
         assert tracer.trace_text(program).error is None
+
+
+def test_a_wrong_setting_is_told_once_and_every_code_refuses_with_it():
+    reason = "[G12] CLEARING = zigzag: must be rings or spiral"
+    for machine, program in PROGRAMS.values():
+        with Tracer(SIM / f"{machine}.ini", overrides={"G12": {"CLEARING": "zigzag"}}) as tracer:
+            assert tracer.printed.count(reason) == 1
+            assert tracer.trace_text(program).error.text == reason

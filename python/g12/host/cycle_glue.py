@@ -16,13 +16,15 @@ from g12.cycles.context import XY, XZ, YZ, Context, Tool
 from g12.cycles.words import Words
 from g12.host.glue import (
     INCH,
-    SETTINGS,
     code_of_block,
     diameter_mode,
     millimetres_per_unit,
     program_units_per_machine_unit,
+    settings_of_machine,
     spindle_speed,
 )
+
+SETTINGS = settings_of_machine()
 
 # indices into a block's g_modes
 MODAL_0, TOOL_LENGTH, PATH_CONTROL, SPINDLE = 0, 8, 13, 14

@@ -21,6 +21,11 @@ from g12.lengths import MM_PER_INCH
 from g12.settings import Settings, settings_from_ini
 
 
+def settings_of_machine() -> Settings:
+    """Return section [G12]; a Refusal tells why it cannot be used."""
+    return settings_from_ini(ini_file())
+
+
 def ini_file() -> str | None:
     """Return the name of the INI file as LinuxCNC tells it in ``INI_FILE_NAME``.
 
@@ -32,32 +37,11 @@ def ini_file() -> str | None:
     return os.fsdecode(name) if name else None
 
 
-def settings_at_start() -> tuple[Settings, Refusal | None]:
-    """Return section [G12], and the start-up error if it cannot be used.
-
-    The operator sees the error when LinuxCNC comes up, and every code of the package refuses
-    with it. (An exception here would stop LinuxCNC with an empty message on the screen.)
-    """
-    try:
-        return settings_from_ini(ini_file()), None
-    except Refusal as refusal:
-        say_at_start(refusal.message)
-        return Settings(), refusal
-
-
+@functools.cache  # both halves may have the same to say
 def say_at_start(text: str) -> None:
     """Tell the operator, when LinuxCNC comes up, what cannot work."""
     print(f"g12: {text}", file=sys.stderr)
     emccanon.CANON_ERROR(f"g12: {text}")
-
-
-SETTINGS, START_ERROR = settings_at_start()
-
-
-def refuse_start_error() -> None:
-    """Refuse every code after a start-up error, with its message."""
-    if START_ERROR:
-        raise Refusal(START_ERROR.message)
 
 
 NO_FILE = ""  # the interpreter keeps no copy of it: a constant lives as long as the module
@@ -115,7 +99,6 @@ def handler(function):
     @functools.wraps(function)
     def guarded(self, **words):
         try:
-            refuse_start_error()
             return function(self, **words)
         except Exception as error:
             status = refuse_block(self, error)

@@ -34,6 +34,7 @@ from g12.section.line import line_named
 DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could read them
 
 
+SETTINGS = glue.settings_of_machine()
 INI = linuxcnc.ini(glue.ini_file() or os.devnull)
 REMAPS = {remap.code: remap for remap in remap_lines(INI.findall)}
 COORDINATES, AXES = set(coordinates_of(INI.find)), axes_of(INI.find, "XZC")
@@ -55,7 +56,6 @@ def polar_on(self, **words) -> Iterator[int]:
     """Read, plan and move a section: the handler of G12.1, which may have to wait."""
     try:
         glue.forget_return(self)
-        glue.refuse_start_error()
         refuse_mdi(self)
         program = ProgramLines(self, getattr(self, "g12_source", None))
         self.g12_source = program.home
@@ -87,7 +87,7 @@ def run_section(interp: object, frame: CallFrame, program: ProgramLines) -> Iter
     try:
         start = start_of_section(interp, program.place)
         check_section_start(start, COORDINATES)
-        setup = polar_setup(start, glue.SETTINGS, AXES, FACE)
+        setup = polar_setup(start, SETTINGS, AXES, FACE)
         codes = codes_of_section(
             start.place.code, REMAPS.values(), polar_on.__name__, polar_off.__name__
         )
