@@ -23,6 +23,8 @@ SAMPLES = PROGRAMS / "polar"
 MANUAL_TOOLS = {1: 0.5, 8: 0.0}
 TOLERANCE = {"mm": 0.005, "inch": 0.0002 * MM_PER_INCH}
 LINES, PAIRS = 10000, 7
+FACE_FEEDS = ((1000, 1.02), (2000, 1.05), (3000, 1.05))
+ROUNDING = 1e-3
 HEXAGON_BLOCKS, FLAT_BLOCKS = range(10, 16), (14, 15, 16)
 
 
@@ -34,6 +36,12 @@ def figures():
             yield real_deviation(lathe, name, "mm", MILLIMETRES[name])
         yield against_ideal(lathe, "hexagon", 1.0, "F250", HEXAGON_BLOCKS, MILLIMETRES)
         yield against_equal_angles(lathe)
+    with Machine(SIM / "lathe_mm.ini") as pieces, Machine(SIM / "lathe_mm_kinematics.ini") as face:
+        for feed, most in FACE_FEEDS:
+            yield by_kinematics(face, pieces, feed, most)
+        yield deviation_on_face(face)
+        for name in ("slot", "circles"):
+            yield from spindle_limits(face, name)
     with Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as lathe:
         for name in INCHES:
             yield real_deviation(lathe, name, "inch", INCHES[name])
@@ -67,6 +75,50 @@ def against_ideal(lathe, name, scale, feed, blocks, drawings):
         "",
         f"{seconds:.2f} s for {length:.1f} mm",
     )
+
+
+def by_kinematics(face, pieces, feed, most):
+    """Compare the time of the hexagon on the face with its length over the feed."""
+    program = _at_feed((SAMPLES / "hexagon.ngc").read_text(), f"F{feed}", HEXAGON_BLOCKS)
+    path = MILLIMETRES["hexagon"].path
+    length = sum(piece.length for block in HEXAGON_BLOCKS for piece in path[block])
+    ours, theirs = (
+        seconds_in(lathe.run_text(program), HEXAGON_BLOCKS) / (length / feed * 60)
+        for lathe in (face, pieces)
+    )
+    return Figure(
+        f"polar with kinematics: hexagon against the ideal at F{feed}",
+        ours,
+        most,
+        "",
+        f"with pieces {theirs:.3f}",
+    )
+
+
+def deviation_on_face(face):
+    """Compare the motion of the hexagon at F3000, G64 P0.002, with its drawing."""
+    program = _at_feed((SAMPLES / "hexagon.ngc").read_text(), "F3000", HEXAGON_BLOCKS)
+    program[1] += " P0.002"  # of G64
+    cut = Cut(face.run_text(program))
+    return Figure(
+        "polar with kinematics: real motion against the hexagon at F3000, G64 P0.002",
+        deviation(MILLIMETRES["hexagon"].pieces, cut.points, 0.1)[0],
+        0.002,
+        " mm",
+        f"{len(cut.points)} samples",
+    )
+
+
+def spindle_limits(face, name):
+    """Yield C's highest speed and acceleration in a program near the pole, as shares."""
+    samples = face.run(SAMPLES / f"{name}.ngc").samples
+    steps = np.diff(samples.axes["C"])[samples.kind[1:] != 0]
+    for what, most in (
+        ("speed", np.abs(steps).max() * 1e3 / 360),
+        ("acceleration", np.abs(np.diff(steps)).max() * 1e6 / 3600),
+    ):
+        title = f"polar with kinematics: C's {what} against its limit, {name}"
+        yield Figure(title, most, 1.0 + ROUNDING, "", f"{len(steps)} samples")
 
 
 def against_equal_angles(lathe):

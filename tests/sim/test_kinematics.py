@@ -20,13 +20,12 @@ from support.contour_geometry import (
 )
 from support.kinematics import needs_kinematics
 from support.polar_drawings import HEXAGON, MILLIMETRES
-from support.polar_programs import FEED, Cut
+from support.polar_programs import FEED, ROUND, Cut
 from support.sim_machines import PROGRAMS, SIM
 
 pytestmark = needs_kinematics
 
 X, Y, C = 0, 1, 5
-ROUND = 3  # kind of a sampled move: an arc
 TOLERANCE = 0.002  # mm, of G64
 ON = ("M68 E3 Q0", "M68 E3 Q1", "M66 P3 L3 Q10", "G17")
 OFF = ("M68 E3 Q0", "M66 P3 L4 Q10", "G18")
@@ -156,12 +155,10 @@ def test_hexagon_at_its_feed_and_on_its_path(lathe, feed, most):
 def test_g12_1_is_on_the_contour_and_within_the_limits(lathe, name):
     run = lathe.run(PROGRAMS / "polar" / f"{name}.ngc")
     assert run.error is None
-    cutting = np.isin(run.samples.kind, (FEED, ROUND))
-    points = Cut(run).all_points[cutting]
-    there, back = deviation(MILLIMETRES[name].pieces, points, step=0.1)
+    there, back = deviation(MILLIMETRES[name].pieces, Cut(run).points, step=0.1)
     assert max(there, back) <= 0.006
     keeps_its_limits(run.samples)
-    c = run.samples.axes["C"]
+    c, cutting = run.samples.axes["C"], np.isin(run.samples.kind, (FEED, ROUND))
     assert np.abs(np.diff(c, 2))[cutting[2:]].max() * 1e6 <= 3600 * 1.01
     assert not on_the_face(lathe)
 

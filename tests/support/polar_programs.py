@@ -12,7 +12,7 @@ from support.sim_machines import SIM
 FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 START = "G0 X20 Z5 C0"
 X, Z, C = 0, 2, 5
-FEED = 2  # kind of a sampled move
+FEED, ROUND = 2, 3  # kinds of a sampled move: straight and circular
 
 
 def section(*body, before=(), after=(), first=FIRST, start=START, feed="F100"):
@@ -60,7 +60,7 @@ class Cut:
 
     def __init__(self, run_or_samples):
         samples = getattr(run_or_samples, "samples", run_or_samples)
-        cutting = samples.kind == FEED
+        cutting = np.isin(samples.kind, (FEED, ROUND))
         angles = np.radians(samples.axes["C"])
         points = np.column_stack([np.cos(angles), np.sin(angles)]) * samples.axes["X"][:, None]
         self.all_points, self.points = points, points[cutting]
