@@ -46,7 +46,7 @@ lint: $(RUFF)-$(RUFF_VERSION)
 	@$(RUFF) check --quiet
 	@$(RUFF) format --check --quiet
 
-bench: setup
+bench: setup kinematics
 	@echo "bench: figures as ratios, each measured side by side in one run"
 	@$(IN_PLACE) sh -c 'PYTHONPATH=python:tests:$$PYTHONPATH $(PYTHON) -m bench'
 

@@ -3,6 +3,7 @@
 
 import ctypes
 import math
+import shutil
 import subprocess
 
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 
 from support.sim_machines import ROOT
 
+pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="there is no C compiler")
 COMPONENT = ROOT / "configs" / "kinematics" / "polar_xzc.comp"
 # what halcompile and LinuxCNC's headers put in front of the component's C code
 SURROUNDINGS = """
