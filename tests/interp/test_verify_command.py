@@ -221,7 +221,7 @@ def test_wrong_words_end_with_2(arguments, capsys):
     with pytest.raises(SystemExit) as end:
         main(arguments)
     assert end.value.code == 2
-    assert "usage: g12" in capsys.readouterr().err
+    assert "usage: python3 python/g12 verify --help" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("command", ["verify", "plot", "demo"])

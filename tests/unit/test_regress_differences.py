@@ -211,6 +211,8 @@ def test_a_program_that_is_refused_now_is_one_difference():
     (difference,) = found(recording(*SQUARE, "M5"), now)
     assert (difference.kind, difference.line) == ("refused", 5)
     assert difference.text == "refused: G12: no I; 3 moves are missing"
+    (difference,) = found(recording(*SQUARE[:5]), now)
+    assert difference.text == "refused: G12: no I; 1 move is missing"
 
 
 def test_a_program_that_is_no_longer_refused_is_told():

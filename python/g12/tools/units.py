@@ -46,6 +46,11 @@ def name_of_unit(mm: float) -> str:
     return "inch" if is_inch(mm) else "mm"
 
 
+def counted_as(count: int, what: str) -> str:
+    """Return a count with the word for what is counted: 1 move, 2 moves."""
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
 def plain(value: float, decimals: int) -> str:
     """Return a number without trailing zeros, with a real minus sign."""
     text = f"{value:.{decimals}f}"

@@ -13,10 +13,13 @@ from typing import Callable
 
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.headless.machine import MachineError, StartupError
+from g12.tools.headless.run import run_program
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, IniError, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
+from g12.tools.path.samples import Samples
 from g12.tools.preview.tracer import TraceFailure
+from g12.tools.progress import working
 from g12.tools.system import CALL
 
 GOOD, FINDING, USAGE = 0, 1, 2
@@ -99,6 +102,15 @@ def check_run(options: argparse.Namespace) -> None:
     """Refuse a feed override where nothing is run."""
     if options.override != 100.0 and not options.run:
         raise UsageError("--override is the feed override of --run, which is not there")
+
+
+def samples_of_run(program: Path, options: argparse.Namespace) -> Samples | None:
+    """Return the real motion of a program if --run asks for it."""
+    if not options.run:
+        return None
+    files = (options.ini, options.tools, options.var)
+    with working(f"running {program.name}, real time", clock=True):
+        return run_program(program, *files, override=options.override).samples
 
 
 def one_line(name: str) -> Callable:

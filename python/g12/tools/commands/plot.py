@@ -19,9 +19,9 @@ from g12.tools.commands.arguments import (
     check_run,
     checked_ini,
     one_line,
+    samples_of_run,
 )
 from g12.tools.errors import UsageError
-from g12.tools.headless.run import run_program
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.plot import style
@@ -71,16 +71,11 @@ def main(arguments: list[str]) -> int:
 
 def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> None:
     """Draw a program as LinuxCNC reads it."""
-    on_machine = (program, options.ini, options.tools, options.var)
-    samples = None
     with working(f"interpreting {program.name}"):
-        trace = traced(*on_machine)
+        trace = traced(program, options.ini, options.tools, options.var)
         if not trace.moves:
             raise UsageError(f"{options.program}: moves nothing, so there is nothing to draw")
-    if options.run:
-        with working(f"running {program.name}, real time", clock=True):
-            run = run_program(*on_machine, override=options.override)
-        samples = run.samples
+    samples = samples_of_run(program, options)
     with working(f"drawing {options.output.name}"):
         subject = subject_of(program, ini, trace, samples)
         scene = replace(

@@ -20,9 +20,9 @@ from g12.tools.commands.arguments import (
     checked_ini,
     number_above,
     one_line,
+    samples_of_run,
 )
 from g12.tools.errors import UsageError
-from g12.tools.headless.run import run_program
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.ended import traced
@@ -77,13 +77,9 @@ def main(arguments: list[str]) -> int:
 
 def proof_of(program: Path, ini: Ini, options: argparse.Namespace) -> Proof:
     """Return the proof of a program as LinuxCNC reads it."""
-    on_machine = (program, options.ini, options.tools, options.var)
-    samples = None
-    if options.run:
-        traced(*on_machine)
-        with working(f"running {program.name}, real time", clock=True):
-            run = run_program(*on_machine, override=options.override)
-        samples = run.samples
+    if options.run:  # an error of the program is told before its time is taken
+        traced(program, options.ini, options.tools, options.var)
+    samples = samples_of_run(program, options)
     with working(f"interpreting {program.name}") as tell:
         return prove(
             program,

@@ -19,7 +19,7 @@ from g12.tools.path.part import Part
 from g12.tools.preview.moves import Move
 from g12.tools.regress.edits import Change, Edit, Tolerance, edits_of
 from g12.tools.regress.recording_text import Recording, Step, number_text
-from g12.tools.units import UNITS
+from g12.tools.units import UNITS, counted_as
 
 DECIMALS = 6  # shown, where they tell two numbers apart
 LONG_RUN = 10  # edits; fewer are told together however they differ
@@ -170,11 +170,12 @@ class Phrases:
         if before and after:
             apart = self._apart(before, after)
             far = "" if apart is None else f", up to {apart:{DIGITS}} {self._name} apart"
-            return [f"{_count(before)} became {len(after)}{far}"]
+            return [f"{counted_as(len(before), 'move')} became {len(after)}{far}"]
         if not before and not after:
             return []
         there = "added" if after else "missing"
-        return [f"{_count(before or after)} {there}, {self._extent(before or after)}"]
+        count = counted_as(len(before or after), "move")
+        return [f"{count} {there}, {self._extent(before or after)}"]
 
     def _extent(self, moves: list[Move]) -> str:
         """Return from where to where moves go on each axis that they move."""
@@ -199,10 +200,6 @@ class Phrases:
 
 def _signed(size: str) -> str:
     return size if size.startswith("-") else f"+{size}"
-
-
-def _count(moves: Sequence[Move]) -> str:
-    return f"{len(moves)} move" if len(moves) == 1 else f"{len(moves)} moves"
 
 
 def _of_notes(steps: Sequence[Step], indices: tuple[int, ...], word: str) -> str:
@@ -246,7 +243,8 @@ def _endings(was: Recording, now: Recording, lost: list[Edit]) -> list[Differenc
     steps = tuple(index for edit in lost for index in edit.was)
     count = sum(isinstance(was.steps[index], Move) for index in steps)
     before = f", was refused at line {was.error.line}: {was.error.rule}" if was.error else ""
-    missing = f"; {count} moves are missing" if count else ""
+    verb = "is" if count == 1 else "are"
+    missing = f"; {counted_as(count, 'move')} {verb} missing" if count else ""
     text = f"refused: {now.error.rule}{missing}{before}"
     return [Difference("refused", text, was=steps, moves=count, line=now.error.line)]
 

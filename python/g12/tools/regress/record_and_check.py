@@ -225,11 +225,7 @@ def _tools_and_parameters(
     """
     asked_for = (
         (request.tools, baseline.tool_table, baseline.tools),
-        (
-            request.var,
-            baseline.var_file,
-            baseline.parameters,
-        ),
+        (request.var, baseline.var_file, baseline.parameters),
     )
     return tuple(
         source if source and (everything or given) and source.is_file() else copy

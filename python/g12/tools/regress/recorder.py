@@ -32,7 +32,7 @@ from g12.tools.regress.recording_text import (
     text_of,
 )
 from g12.tools.regress.recordings import Baseline
-from g12.tools.units import name_of_unit
+from g12.tools.units import counted_as, name_of_unit
 
 SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
 HASH_DIGITS = 16
@@ -257,7 +257,7 @@ def _finding(difference: Difference, was: Recording, now: Recording) -> RegressF
 def _summary(recording: Recording) -> str:
     moves = sum(isinstance(step, Move) for step in recording.steps)
     error = recording.error
-    return f"refused at line {error.line}: {error.rule}" if error else f"{moves} moves"
+    return f"refused at line {error.line}: {error.rule}" if error else counted_as(moves, "move")
 
 
 def _picture(job: Job, was: Recording, now: Recording, found, recorder: Recorder) -> str:

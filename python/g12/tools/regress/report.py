@@ -18,6 +18,7 @@ from g12.tools.regress.recorder import (
     RegressFinding,
     Result,
 )
+from g12.tools.units import counted_as
 
 SAYS = {
     NEW: "new",
@@ -39,7 +40,7 @@ def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str
         yield from lines_of_result(result)
     counts = Counter(result.verdict for result in results)
     said = ", ".join(f"{counts[verdict]} {say}" for verdict, say in SAYS.items() if counts[verdict])
-    yield f"{_counted(len(results), 'program')}: {said}"
+    yield f"{counted_as(len(results), 'program')}: {said}"
 
 
 def lines_of_result(result: Result) -> Iterator[str]:
@@ -60,7 +61,7 @@ def lines_of_result(result: Result) -> Iterator[str]:
 
 def _finding(program: str, finding: RegressFinding) -> Iterator[str]:
     counts = finding.kind in ("moved", "changed") and finding.moves
-    moves = f"{_counted(finding.moves, 'move')}: " if counts else ""
+    moves = f"{counted_as(finding.moves, 'move')}: " if counts else ""
     yield f"{program}{_where(finding)} {moves}{finding.text}"
     if finding.block:
         yield f"    {finding.block}"
@@ -75,10 +76,6 @@ def _where(finding: RegressFinding) -> str:
     more = f" and {len(others) - MOST_LINES} more" if len(others) > MOST_LINES else ""
     also = f" (also {shown}{more})" if others else ""
     return f":{first}{'' if finding.lines else ' as recorded'}:{also}"
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
 def json_report(results: Sequence[Result], notes: Sequence[str], good: bool) -> str:
