@@ -6,11 +6,13 @@ A judgement of its own is a generator here, called from the one of its kind of f
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import zip_longest
 
 from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.axis_limits import Overrun
 from g12.tools.verify.pocket import SAME_LEVEL, PocketFacts
+from g12.tools.verify.pocket_order import ENDS
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.wanted_circle import Cutter, Target
@@ -22,6 +24,8 @@ SAME_SPEED = 1.001
 WEAR = 0.05  # of its diameter: D differs from the loaded tool by more than an allowance for wear
 SAME_SIZE = 1e-4  # mm
 SAME_ANGLE = 1e-3  # degree
+SAME = 2e-3  # mm: circles of the same depth and radius
+MODES = {"_metric": ("G20", "G21"), "_absolute": ("G91", "G90"), "_units_per_rev": ("G94", "G95")}
 UNMEASURED = "a cycle cuts here that could not be measured"
 
 
@@ -31,8 +35,13 @@ def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> It
         yield "nothing is cut"
         return
     yield from wall_findings(facts, tolerance, unit)
-    yield from depth_findings(facts, tolerance, unit)
+    wrong_depth = list(depth_findings(facts, tolerance, unit))
+    yield from wrong_depth
     yield from schedule_findings(facts, unit)
+    if not wrong_depth:
+        yield from order_findings(facts, tolerance, unit)
+    yield from place_findings(facts, ENDS if wrong_depth else "", unit)
+    yield from left_findings(facts)
     for overrun in facts.overruns or ():
         if overrun.certain:
             yield overrun_text(overrun, unit)
@@ -79,15 +88,69 @@ def level_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator
 def schedule_findings(facts: PocketFacts, unit: Unit) -> Iterator[str]:
     """Yield what is wrong with how a pocket is cut: turns, passes and feeds."""
     asked = facts.target.schedule
+    if facts.feed:
+        yield "a move has the feed {}, not {}".format(*map(unit.text, facts.feed))
+    if facts.other_mode:
+        minute, turn = "per minute", "per revolution"
+        yield "a move has its feed {}, not {}".format(
+            *(minute, turn) if asked.rev else (turn, minute)
+        )
+    if facts.passes != asked.passes:
+        yield f"full circles along the wall: {facts.passes}, not {asked.passes}"
+        return
     rough = facts.circles[:-1] if asked.finish_turn else facts.circles
     if asked.turn and any(turn != asked.turn for turn in rough):
         yield "it turns the wrong way"
     if asked.finish_turn and asked.finish_turn not in facts.circles[-1:]:
         yield "its finish pass turns the wrong way"
-    if facts.passes != asked.passes:
-        yield f"full circles along the wall: {facts.passes}, not {asked.passes}"
-    if facts.feed:
-        yield "a move has the feed {}, not {}".format(*map(unit.text, facts.feed))
+
+
+def order_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
+    """Yield which circles are not those of the words, if their number along the wall is right."""
+    asked = facts.target.schedule
+    if asked.pitch and facts.growth > asked.pitch + SAME:
+        apart, pitch = unit.text(facts.growth), unit.text(asked.pitch)
+        yield f"its turns are {apart} apart, not {pitch} {unit.name}"
+    if not asked.circles or facts.passes != asked.passes or facts.deviation > tolerance:
+        return
+    for cut, wanted in zip_longest(facts.cut, asked.circles):
+        if cut is None or wanted is None or max(map(abs, map(float.__sub__, cut, wanted))) > SAME:
+            was, instead = (circle_text(circle, facts, unit) for circle in (cut, wanted))
+            yield f"{was} is cut in place of {instead}"
+            return
+
+
+def circle_text(circle: tuple[float, float] | None, facts: PocketFacts, unit: Unit) -> str:
+    """Return a circle of the tool's centre in words."""
+    if circle is None:
+        return "nothing"
+    depth = unit.text(facts.target.wall.height(circle[0]))
+    return f"a circle of {unit.text(circle[1])} {unit.name} (tool centre) at {depth}"
+
+
+def place_findings(facts: PocketFacts, told: str, unit: Unit) -> Iterator[str]:
+    """Yield what is not where the words want it: the first of each kind but what is ``told``."""
+    for what, found, asked in {place.what: place for place in facts.misplaced[::-1]}.values():
+        if what != told:
+            there, here = (place_text(point, unit) for point in (found, asked))
+            yield f"{what} {there}, not {here}"
+
+
+def place_text(point: Sequence[float], unit: Unit) -> str:
+    """Return a place on the machine in words."""
+    return " ".join(f"{letter}{unit.text(at)}" for letter, at in zip("XYZ", point))
+
+
+def left_findings(facts: PocketFacts) -> Iterator[str]:
+    """Yield what is left behind otherwise than the words ask; a feed only if all moves had it."""
+    for name, found, asked in facts.left_behind:
+        if name == "_feed":
+            if not facts.feed:
+                yield f"it leaves F{plain(found, 4)}, not F{plain(asked, 4)}"
+        elif name == "_motion_mode":
+            yield f"it leaves G{found / 10:g}, not G{asked / 10:g}"
+        else:
+            yield "it leaves {}, not {}".format(*(MODES[name][int(on)] for on in (found, asked)))
 
 
 def overrun_text(overrun: Overrun, unit: Unit) -> str:

@@ -22,6 +22,7 @@ from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.verify.axis_limits import Overrun
+from g12.tools.verify.pocket_order import LeftBehind, Misplaced, growth_of, misplaced
 from g12.tools.verify.wanted_circle import Target, Wall
 
 SECTORS = 720  # directions in which the wall is looked at
@@ -48,6 +49,9 @@ class PocketFacts:
     first move with another feed than the words ask for, ``feed`` is its feed and the one asked.
     ``overruns`` are the axes that would leave their travel, None if that is not known.
     ``off_path`` and ``off_rings`` are the real motion's largest deviations, None without a run.
+    ``cut`` is the depth and the radius of every full circle in its order, ``other_mode`` says
+    that a move has its feed per minute in place of per revolution, or the other way round;
+    ``growth`` is that of a spiral in a turn.
     """
 
     target: Target
@@ -68,7 +72,12 @@ class PocketFacts:
     pace: Pace
     off_path: float | None
     off_rings: float | None
+    cut: tuple[tuple[float, float], ...]
+    other_mode: bool
+    growth: float
+    misplaced: tuple[Misplaced, ...]
     overruns: tuple[Overrun, ...] | None = ()
+    left_behind: tuple[LeftBehind, ...] = ()
 
     @property
     def turns(self) -> tuple[int, ...]:
@@ -108,6 +117,7 @@ def measure_pocket(
     key = key_of(lines, target, tolerance)
     areas = known[key] = known.get(key) or areas_of(lines, wall, target.cutter.radius, tolerance)
     circles = [index for index in own if is_full_circle(moves[index])]
+    around = target, moves[own.start : own.stop], [index - own.start for index in circles]
     lengths = [moves[index].length for index in cutting] or [0.0]
     return PocketFacts(
         target,
@@ -124,6 +134,10 @@ def measure_pocket(
         pace=pace_of(own, cutting, path, real),
         off_path=real.largest(cutting) if real else None,
         off_rings=real.largest(circles) if real else None,
+        cut=tuple((depth_of(moves[index], wall), moves[index].radius) for index in circles),
+        other_mode=any(has_other_mode(moves[index], target) for index in own),
+        growth=growth_of(*around) if target.schedule.pitch else 0.0,
+        misplaced=misplaced(*around, tolerance),
     )
 
 
@@ -186,6 +200,19 @@ def feed_of(move: Move, target: Target) -> float | None:
     if move.kind == "arc":
         return feeds.arc
     return feeds.straight if is_cutting(move, target.wall) else feeds.plunge
+
+
+def depth_of(move: Move, wall: Wall) -> float:
+    """Return the depth that a move begins at."""
+    return float(wall.local(np.array(move.start))[0, 2])
+
+
+def has_other_mode(move: Move, target: Target) -> bool:
+    """Tell whether a move's feed is per revolution where it should be per minute, or else."""
+    if move.kind == "rapid" or not move.length:
+        return False
+    traverse = target.source.dialect == "yasnac" and move.kind == "feed"
+    return (move.feed_mode == "G95") != (target.schedule.rev and not traverse)
 
 
 def is_full_circle(move: Move) -> bool:

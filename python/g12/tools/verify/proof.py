@@ -33,6 +33,7 @@ from g12.tools.verify.findings import (
     section_findings,
 )
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
+from g12.tools.verify.pocket_order import left_otherwise
 from g12.tools.verify.rapids import Collision, collisions
 from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.wanted_circle import CircleReader, Target
@@ -147,9 +148,15 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
     """Return what a program's words ask for."""
     codes, program = Codes(subject.ini), subject.program
     blocks = executed_everywhere(tracer, program, subject.trace, codes, tools, parameters)
-    reader = CircleReader(codes, subject.trace.moves, subject.trace.diameters)
-    reading = subject.ini.settings.polar_x
-    polar = sections(tracer, program, codes, reading, blocks, parameters)
+    settings = subject.ini.settings
+    reader = CircleReader(
+        codes,
+        subject.trace.moves,
+        subject.trace.diameters,
+        spiral=settings.clearing == "spiral",
+        traverse=settings.yasnac_traverse * subject.ini.mm,
+    )
+    polar = sections(tracer, program, codes, settings.polar_x, blocks, parameters)
     return Asked(list(reader.targets(blocks)), polar)
 
 
@@ -182,7 +189,8 @@ def measured(
         own = range(block.at, block.end)
         facts = measure_pocket(target, own, path, moves, tolerances.pocket, real, known)
         overruns = None if there is None else tuple(overruns_of(block, there, travel))
-        pockets.append(replace(facts, overruns=overruns))
+        left = left_otherwise(block, target.leaves)
+        pockets.append(replace(facts, overruns=overruns, left_behind=left))
     c_limit = limits_of(subject.ini).axes[C]
     diameters = subject.trace.diameters
     polar = [

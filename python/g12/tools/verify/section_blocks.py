@@ -111,7 +111,8 @@ def feed_asked(move: Move, length: float) -> float | None:
     """Return the feed along the part that a move's F makes, whatever the axes can do."""
     if move.kind == "rapid" or length < LEAST_LENGTH:
         return None
-    return length / feed_length(move) * rate(move, 0.0) * 60.0
+    programmed = move.length if move.kind == "arc" else feed_length(move)
+    return length / programmed * rate(move, 0.0) * 60.0
 
 
 def turn_speed(section: SectionContour, moves: Sequence[Move], path: Track) -> float:

@@ -7,8 +7,9 @@ own, so that a pocket in any plane of a turned work coordinate system looks the 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +26,9 @@ POCKET = "circle_mill_pocket"  # the handler of the event's pocket
 ROUGH_FINISH = ((-1, -1), (1, 1), (-1, 1), (1, -1))  # turns of the event by D
 DYNAMIC = (41.1, 42.1)  # compensation whose D is a diameter
 SAME_DEPTH = 1e-6
+ROUNDING = 1e-6  # mm
+NARROWER = 0.254  # mm: an event's roughing width is the cutter's diameter less this
+EVENT_RETRACT = 2.54  # mm
 
 
 class CircleFeeds(NamedTuple):
@@ -102,7 +106,9 @@ class Schedule:
 
     ``passes`` says how often the finished circle is cut. ``turn`` is -1 for clockwise and +1 for
     counterclockwise, 0 if not checked; ``finish_turn`` that of a last circle which finishes the
-    wall, 0 without one. ``smooth`` is for cycles that turn no corner.
+    wall, 0 without one. ``smooth`` is for cycles that turn no corner. ``circles`` are the full
+    circles in their order, each the depth and the radius of the tool's centre; ``pitch`` is what
+    a spiral may grow by in a turn. ``rev`` says that the feed is per revolution.
     """
 
     levels: tuple[float, ...]
@@ -111,6 +117,9 @@ class Schedule:
     turn: int = 0
     finish_turn: int = 0
     smooth: bool = True
+    circles: tuple[tuple[float, float], ...] = ()
+    pitch: float | None = None
+    rev: bool = False
 
     @property
     def deepest(self) -> float:
@@ -118,19 +127,47 @@ class Schedule:
         return min(self.levels)
 
 
+class Places(NamedTuple):
+    """Where a cycle goes down, begins its circles and ends, in mm as seen from the wall's centre.
+
+    ``plunge`` is in the plane, ``lead`` the direction of a level's first circle's beginning.
+    Rapids go across at ``first`` or higher before the first cut, ``retract`` above a level (not
+    above ``first``) between levels, at ``last`` behind the last cut. ``end`` has three axes.
+    """
+
+    plunge: tuple[float, float] = (0.0, 0.0)
+    lead: tuple[float, float] = (1.0, 0.0)
+    first: float = 0.0
+    retract: float = 0.0
+    last: float = 0.0
+    end: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True)
 class Target:
-    """A circle to be cut: who asks for it, what is to be there, with what, and how."""
+    """A circle to be cut: who asks for it, what is to be there, with what, how, and where.
+
+    ``leaves`` is the state behind the block, as ``Block.left`` has it; what the words do not
+    say is not in it. ``places`` is None if they are not checked.
+    """
 
     source: Source
     wall: Wall
     cutter: Cutter
     schedule: Schedule
+    places: Places | None = None
+    leaves: Mapping[str, float] = field(default_factory=dict)
+
+
+Reading = tuple[Wall, Cutter, Schedule, Places]
 
 
 @dataclass
 class CircleReader:
-    """Reads blocks in the order of execution; remembers D and W as the control does."""
+    """Reads blocks in the order of execution; remembers D and W as the control does.
+
+    ``spiral`` and ``traverse`` (mm/min, 0 for rapids) are [G12] CLEARING and YASNAC_TRAVERSE.
+    """
 
     codes: Codes
     moves: Sequence[Move]
@@ -138,6 +175,8 @@ class CircleReader:
     offset: float | None = None  # radius of the D last commanded, mm
     number: int | None = None  # the tool that it named
     plane: float | None = None  # W last commanded, mm in program coordinates
+    spiral: bool = False
+    traverse: float = 0.0
 
     def targets(self, blocks: Sequence[Block]) -> Iterator[tuple[Block, Target]]:
         """Yield each block that cuts a circle with what it asks for."""
@@ -156,12 +195,14 @@ class CircleReader:
             EVENT: self._event,
         }
         view = BlockInMm(block, self.moves[block.at])
-        wall, cutter, schedule = read[cycle.dialect](view, cycle)
+        wall, cutter, schedule, places = read[cycle.dialect](view, cycle)
         name = self.codes.name_of(block.codes)
         source = Source(block.text.number, block.text.file, name, cycle.dialect)
-        return Target(source, replace(wall, face=view.zero()[2]), cutter, schedule)
+        wall, schedule = replace(wall, face=view.zero()[2]), replace(schedule, rev=view.rev)
+        leaves = view.leaves(schedule.feeds.arc)
+        return Target(source, wall, cutter, schedule, places, leaves)
 
-    def _haas(self, view: BlockInMm, cycle: Cycle) -> tuple[Wall, Cutter, Schedule]:
+    def _haas(self, view: BlockInMm, cycle: Cycle) -> Reading:
         words = view.words
         if "D" in words:
             self.offset, self.number = self._radius(words["D"]), round(words["D"])
@@ -171,10 +212,15 @@ class CircleReader:
         passes = int(words.get("L", 1))
         counts = (1,) if view.absolute or "Z" not in words else range(1, passes + 1)
         levels = tuple(view.height("Z", count) - view.start[2] for count in counts)
-        schedule = Schedule(levels, passes, CircleFeeds(*[view.feed()] * 3, None), cycle.turn)
-        return replace(wall, origin=view.centre(), cleared=cleared), cutter, schedule
+        feeds = CircleFeeds(*[view.feed()] * 3, None)
+        rings = haas_rings(view, self.spiral, offset)
+        circles = [(level, ring) for level in levels for ring in rings] * (passes // len(levels))
+        pitch = view.length("Q") if self.spiral and "Q" in words else None
+        schedule = Schedule(levels, passes, feeds, cycle.turn, circles=tuple(circles), pitch=pitch)
+        wall = replace(wall, origin=view.centre(), cleared=cleared)
+        return wall, cutter, schedule, Places(end=(0.0, 0.0, levels[-1]))
 
-    def _yasnac(self, view: BlockInMm, cycle: Cycle) -> tuple[Wall, Cutter, Schedule]:
+    def _yasnac(self, view: BlockInMm, cycle: Cycle) -> Reading:
         words = view.words
         offset = self._radius(words["D"]) if "D" in words else 0.0
         wall, cutter = self._inside(view, "I", offset, round(words.get("D", 0)))
@@ -184,15 +230,20 @@ class CircleReader:
         spiral = abs(view.length("I")) - abs(view.length("K")) - view.length("Q")
         inner = wall.radius - (max(0.0, spiral) if "K" in words else 0.0)
         wall = replace(wall, cleared=bore or core_of(cutter, inner), bore=bore)
-        feeds = CircleFeeds(None, view.feed(), None, None)
-        return wall, cutter, Schedule((0.0,), int(words.get("L", 1)), feeds, cycle.turn)
+        feeds = CircleFeeds(None, view.feed(), self.traverse or None, None)
+        passes = int(words.get("L", 1))
+        circles = ((0.0, abs(view.length("I")) - offset),) * passes
+        pitch = view.length("Q") if "Q" in words else None
+        schedule = Schedule((0.0,), passes, feeds, cycle.turn, circles=circles, pitch=pitch)
+        return wall, cutter, schedule, Places(lead=(math.copysign(1.0, words["I"]), 0.0))
 
-    def _mitsubishi(self, view: BlockInMm, cycle: Cycle) -> tuple[Wall, Cutter, Schedule]:
+    def _mitsubishi(self, view: BlockInMm, cycle: Cycle) -> Reading:
         number = view.words["D"]
         wall, cutter = self._inside(view, "I", self._radius(number), round(number))
         feeds = CircleFeeds(*[view.feed()] * 3, None)
-        schedule = Schedule((0.0,), 1, feeds, cycle.turn)
-        return replace(wall, cleared=core_of(cutter, wall.radius)), cutter, schedule
+        circles = ((0.0, abs(view.length("I")) - self._radius(number)),)
+        schedule = Schedule((0.0,), 1, feeds, cycle.turn, circles=circles)
+        return replace(wall, cleared=core_of(cutter, wall.radius)), cutter, schedule, Places()
 
     def _inside(
         self, view: BlockInMm, word: str, offset: float, number: int | None
@@ -204,7 +255,7 @@ class CircleReader:
             return Wall(view.start, view.axes, circle + loaded), cutter
         return Wall(view.start, view.axes, circle), Cutter(offset, view.tool, loaded, number)
 
-    def _event(self, view: BlockInMm, cycle: Cycle) -> tuple[Wall, Cutter, Schedule]:
+    def _event(self, view: BlockInMm, cycle: Cycle) -> Reading:
         event = coded_event(view, cycle) if cycle.handler else called_event(view)
         if "W" in event:
             self.plane = event["W"]
@@ -217,22 +268,39 @@ class CircleReader:
             radius, inner = radius + loaded, radius - loaded
         cleared = 0.0 if event.get("G", 0.0) == 7.0 else max(0.0, inner)
         wall = Wall(view.centre(), view.axes, radius, cleared, inside=side <= 0)
-        return (
-            wall,
-            Cutter(loaded, view.tool, loaded, **on_circle),
-            self._event_schedule(view, event),
-        )
+        cutter = Cutter(loaded, view.tool, loaded, **on_circle)
+        rings = event_rings(event, side, loaded)
+        schedule = self._event_schedule(view, event, (rings, event["R"] + side * loaded))
+        return wall, cutter, schedule, self._event_places(view, event, rings)
 
-    def _event_schedule(self, view: BlockInMm, event: Mapping[str, float]) -> Schedule:
+    def _event_places(
+        self, view: BlockInMm, event: Mapping[str, float], rings: Sequence[float]
+    ) -> Places:
+        is_pocket = event.get("G", 0.0) == 7.0
+        plane = self.plane or 0.0
+        first, last = (height - view.present("z") for height in (plane, event.get("O", plane)))
+        x, y, _ = view.axes @ (view.start - view.centre())
+        plunge = (0.0, 0.0 if is_pocket else -rings[-1])
+        return Places(plunge, (0.0, -1.0), first, EVENT_RETRACT, last, (x, y, last))
+
+    def _event_schedule(
+        self, view: BlockInMm, event: Mapping[str, float], radii: tuple[Sequence[float], float]
+    ) -> Schedule:
+        """Return how an event is cut; ``radii`` are those of a level's rings and the finish."""
         heights = event_levels(event, self.plane or 0.0, view.absolute)
         turn, finish_turn = ROUGH_FINISH[int(event.get("D", 0.0))]
+        rings, finish = radii
+        depths = [height - view.present("z") for height in heights]
+        circles = [(depth, ring) for depth in depths for ring in rings]
+        circles += [(depths[-1], finish)] * ("L" in event)
         return Schedule(
-            tuple(height - view.present("z") for height in heights),
+            tuple(depths),
             passes=1 if "L" in event else len(heights),
             feeds=event_feeds(event, view.feed()),
             turn=turn,
             finish_turn=finish_turn if "L" in event else 0,
             smooth=False,
+            circles=tuple(circles),
         )
 
     def _remember(self, block: Block) -> None:
@@ -265,6 +333,21 @@ class BlockInMm:
         absolute = bool(block.state["_absolute"])
         self.absolute = (absolute or 90.0 in block.codes) and 91.0 not in block.codes
         self._first = first
+        self.rev = self._per_revolution(block.codes)
+
+    def _per_revolution(self, codes: Sequence[float]) -> bool:
+        commanded = [code for code in codes if code in (93.0, 94.0, 95.0)]
+        return 95.0 in commanded if commanded else bool(self._state["_units_per_rev"])
+
+    def leaves(self, feed: float | None) -> dict[str, float]:
+        """Return the state that the block should leave; ``feed`` in mm, None if it is not known."""
+        left = {
+            "_metric": float(self.unit == 1.0),
+            "_absolute": float(self.absolute),
+            "_units_per_rev": float(self.rev),
+            "_motion_mode": self._state["_motion_mode"],
+        }
+        return left if feed is None else {**left, "_feed": feed / self.unit}
 
     def length(self, letter: str) -> float:
         """Return a length word in mm, 0 without it."""
@@ -329,13 +412,35 @@ def called_event(view: BlockInMm) -> dict[str, float]:
 
 def coded_event(view: BlockInMm, cycle: Cycle) -> dict[str, float]:
     """Return the entries of a G12.2 or G13.2 block, mm."""
-    letters = {"R": "R", "Z": "Z", "W": "I", "L": "Q", "K": "K", "P": "P"}
+    letters = {entry: entry for entry in "RZKPJ"} | {"W": "I", "O": "E", "L": "Q"}
     entries = {entry: view.length(word) for entry, word in letters.items() if word in view.words}
     if view.words.get("L") == 0.0:
         entries["L"] = -entries["L"]
     entries["D"], entries["C"] = view.words.get("D", 0.0), view.words["H"]
     entries["G"] = 7.0 if cycle.handler == POCKET else 0.0
     return entries
+
+
+def haas_rings(view: BlockInMm, spiral: bool, offset: float) -> list[float]:
+    """Return the radii of the tool centre's full circles in a level, outward."""
+    first, last = view.length("I"), view.length("K" if "K" in view.words else "I")
+    steps = steps_to(last - first, view.length("Q"))
+    between = [first + step * view.length("Q") for step in range(1 if spiral else steps)]
+    return [radius - offset for radius in (*between[:steps], last)]
+
+
+def event_rings(event: Mapping[str, float], side: int, cutter: float) -> list[float]:
+    """Return the radii of the tool centre's circles in a rough level, outward."""
+    rough = event["R"] + side * (cutter + abs(event.get("L", 0.0)))
+    if event.get("G", 0.0) != 7.0:
+        return [rough]
+    count = max(1, steps_to(rough, event.get("J", 2 * cutter - NARROWER)))
+    return [rough * (ring + 1) / count for ring in range(count)]
+
+
+def steps_to(distance: float, longest: float) -> int:
+    """Return how many steps that are not longer make a distance; a rest of nothing is none."""
+    return math.ceil((distance - ROUNDING) / longest) if distance > ROUNDING else 0
 
 
 def core_of(cutter: Cutter, wall: float) -> float:

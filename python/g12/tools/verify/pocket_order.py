@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where a cycle goes down, across and to its end, and what it leaves, against the words.
+
+Places are points in machine coordinates, mm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from g12.tools.preview.executed_blocks import Block
+from g12.tools.preview.moves import Move
+from g12.tools.verify.wanted_circle import Places, Target
+
+SAME_STATE = 1e-5  # relative: values are told with nine decimals
+ACROSS = 1e-6  # mm
+ENDS = "it ends at"
+
+
+class Misplaced(NamedTuple):
+    """Something that is at another place than the words ask for; ``what`` in words."""
+
+    what: str
+    found: tuple[float, ...]
+    asked: tuple[float, ...]
+
+
+class LeftBehind(NamedTuple):
+    """A modal value that a block left otherwise than its words ask, in program units."""
+
+    name: str
+    found: float
+    asked: float
+
+
+def left_otherwise(block: Block, leaves: Mapping[str, float]) -> tuple[LeftBehind, ...]:
+    """Return which modal values are not as they should be behind a block."""
+    return tuple(
+        LeftBehind(name, block.left[name], asked)
+        for name, asked in leaves.items()
+        if block.left and abs(block.left[name] - asked) > SAME_STATE * max(1.0, abs(asked))
+    )
+
+
+def misplaced(
+    target: Target, moves: Sequence[Move], circles: Sequence[int], tolerance: float
+) -> tuple[Misplaced, ...]:
+    """Return what is not where the words want it; ``circles`` are the full ones, by indices."""
+    places = target.places
+    if places is None or not moves:
+        return ()
+    starts, ends = (
+        target.wall.local(np.array([getattr(move, end)[:3] for move in moves]))
+        for end in ("start", "end")
+    )
+    found = [
+        *of_rapids(places, moves, starts, ends, circles),
+        *of_plunges(places, moves, starts, ends),
+        *of_leads(places, starts, circles),
+        (ENDS, ends[-1], np.array(places.end)),
+    ]
+    in_machine = target.wall.origin, target.wall.axes
+    return tuple(
+        Misplaced(
+            what, *(tuple(map(float, in_machine[0] + at @ in_machine[1])) for at in (was, to))
+        )
+        for what, was, to in found
+        if np.abs(was - to).max() > tolerance
+    )
+
+
+Found = Iterator["tuple[str, np.ndarray, np.ndarray]"]
+
+
+def growth_of(target: Target, moves: Sequence[Move], circles: Sequence[int]) -> float:
+    """Return by how much a spiral grows in a turn: twice the most of its half turns.
+
+    These are arcs between arcs that leave the centre out.
+    """
+    kinds = [move.kind for move in moves]
+    most = 0.0
+    for index in range(1, len(moves) - 1):
+        if kinds[index - 1 : index + 2] == ["arc"] * 3 and index not in circles:
+            points = target.wall.local(np.array([moves[index].start[:3], moves[index].end[:3]]))
+            start, end = np.hypot(*points[:, :2].T)
+            if min(start, end) > ACROSS:
+                most = max(most, 2 * abs(end - start))
+    return float(most)
+
+
+def of_rapids(
+    places: Places,
+    moves: Sequence[Move],
+    starts: np.ndarray,
+    ends: np.ndarray,
+    circles: Sequence[int],
+) -> Found:
+    """Yield the rapids: across at the height of their stage, down not below the first plane."""
+    for index, move in enumerate(moves):
+        start, end = starts[index], ends[index]
+        if move.kind != "rapid":
+            continue
+        if np.abs(end - start)[:2].max() > ACROSS:
+            height = height_across(places, index, starts, circles)
+            yield "a rapid goes across at", end, np.array([*end[:2], height])
+        elif end[2] < start[2]:
+            yield "a rapid goes down to", end, np.array([*end[:2], max(end[2], places.first)])
+
+
+def height_across(places: Places, index: int, starts: np.ndarray, circles: Sequence[int]) -> float:
+    """Return the height of a rapid across before, between or behind the circles."""
+    before = [circle for circle in circles if circle < index]
+    if not before:
+        return max(starts[0][2], places.first)
+    if len(before) == len(circles):
+        return places.last
+    return min(starts[before[-1]][2] + places.retract, places.first)
+
+
+def of_plunges(
+    places: Places, moves: Sequence[Move], starts: np.ndarray, ends: np.ndarray
+) -> Found:
+    """Yield the feed moves square to the plane: their place, and the first one's beginning."""
+    height = places.first
+    for move, start, end in zip(moves, starts, ends):
+        if move.kind == "feed" and np.abs(end - start)[:2].max() <= ACROSS < abs(end - start)[2]:
+            height = start[2] if height is None else height
+            yield "it goes down from", start, np.array([*places.plunge, height])
+            height = None
+
+
+def of_leads(places: Places, starts: np.ndarray, circles: Sequence[int]) -> Found:
+    """Yield where the first circle of each level begins."""
+    depth = None
+    for start in starts[list(circles)]:
+        if depth is None or abs(start[2] - depth) > ACROSS:
+            around = np.hypot(*start[:2]) * np.array(places.lead)
+            yield "a circle begins at", start, np.array([*around, start[2]])
+        depth = start[2]
