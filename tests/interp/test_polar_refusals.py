@@ -378,3 +378,14 @@ def test_the_next_program_runs(lathe):
     for _ in range(3):
         refused(lathe, section("G1 X15", "o1 repeat [2]", "U3 Z5", "o1 endrepeat"))
         assert feed_moves(lathe.trace_text(section("G1 X15", "U-1")))
+
+
+@pytest.mark.parametrize("lines", [1, 99])
+def test_a_file_that_is_changed_while_its_program_runs(lathe, tmp_path, lines):
+    """The interpreter goes on in what it has read: other lines are not those of the section."""
+    program = tmp_path / "cut.ngc"
+    change = f";py,open('{program}', 'w').write('G1 X3\\n' * {lines})"
+    program.write_text("\n".join(section("G1 X15", before=[change])))
+    traced = lathe.trace(program)
+    assert traced.error.text.endswith(": the file has been changed while the program runs")
+    assert [move.kind for move in traced.moves] == ["rapid"]

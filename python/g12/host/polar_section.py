@@ -71,6 +71,7 @@ class PolarSection:
         """Read, plan and move the section; yield where LinuxCNC has to wait for the machine."""
         self.frame.enter()
         try:
+            self._check_file()
             yield from self._read()
         except SystemError:  # how LinuxCNC hands a failed read or execute to Python
             self._put_back()
@@ -78,6 +79,12 @@ class PolarSection:
         except Exception:
             self._put_back()
             raise
+
+    def _check_file(self) -> None:
+        """Refuse a file that has been changed since the interpreter opened it."""
+        self.program.parse()
+        if block_of(self.reader.parsed).g[MOTION] not in self.codes.on:
+            raise self._refuse("the file has been changed while the program runs")
 
     def _put_back(self) -> None:
         """Undo what reading showed the interpreter; what moved, and its modes, stays."""

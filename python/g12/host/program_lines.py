@@ -101,7 +101,8 @@ class ProgramLines:
     def __init__(self, interp: object, known: ProgramFile | None = None) -> None:
         self.interp = interp
         self.home = self.source = read_source(interp.filename, known)
-        self.line = bisect_right(self.source.starts, interp.blocks[interp.remap_level].offset)
+        offset = interp.blocks[interp.remap_level].offset
+        self.line = bisect_right(self.source.starts, offset, hi=len(self.source.lines))
         self._in_file = self.line  # how far the interpreter has read its file
         interp.sequence_number = self.line
 
