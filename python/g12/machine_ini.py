@@ -145,6 +145,16 @@ def _axis(section: str, find: Find) -> Axis:
     return Axis(low, high, *speeds)
 
 
+def ranges_of(find: Find, letters: Iterable[str]) -> dict[str, tuple[float, float]]:
+    """Return the lowest and the highest position of axes by their letters, in machine units."""
+    low, high = AXIS_KEYS[:2]
+    sections = {letter: f"AXIS_{letter}" for letter in letters}
+    return {
+        letter: (number_in(find, section, *low), number_in(find, section, *high))
+        for letter, section in sections.items()
+    }
+
+
 def number_in(find: Find, section: str, key: str, default: float) -> float:
     """Return a value as a number, read as far as it is one: ``20 # mm`` is 20."""
     text = find(section, key)

@@ -42,7 +42,8 @@ from g12.cycles.common import (
     coordinate,
     steps_between,
 )
-from g12.cycles.context import Context, Tool
+from g12.cycles.context import XY, Context, Tool
+from g12.cycles.travel import CycleExtent
 from g12.cycles.words import Words
 from g12.errors import number
 
@@ -157,6 +158,11 @@ class SideFinish(NamedTuple):
     finish_arc: int
     entry_arc: int
 
+    @property
+    def radius(self) -> float:
+        """Return the tool centre's radius, 0 without the pass."""
+        return self.finish_radius if self.side_finish else 0.0
+
 
 class EventFeeds(NamedTuple):
     """Feeds per minute or revolution."""
@@ -175,6 +181,13 @@ class MillEvent(NamedTuple):
     side_finish: SideFinish
     feeds: EventFeeds
     message: str | None  # for the operator, never a refusal
+
+    def extent(self) -> CycleExtent:
+        """Return how far the cycle goes."""
+        place, final = self.place, self.depths.final_z
+        radius = max(self.roughing.rough_radius, self.side_finish.radius)
+        heights = (place.first_plane, place.second_plane, final)
+        return CycleExtent(XY, (place.x, place.y, final), radius, heights)
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/g12_circle_mill.ngc`."""

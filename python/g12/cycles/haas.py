@@ -35,7 +35,8 @@ from g12.cycles.common import (
     sound_tool,
     steps_between,
 )
-from g12.cycles.context import Context, Tool
+from g12.cycles.context import XY, Context, Tool
+from g12.cycles.travel import CycleExtent
 from g12.cycles.words import Words
 from g12.errors import number
 
@@ -59,6 +60,11 @@ class Pocket(NamedTuple):
     spiral: bool
     commanded_radius: float | None  # of the cutter that D names, None without D
     message: str | None  # for the operator, never a refusal
+
+    def extent(self) -> CycleExtent:
+        """Return how far the cycle goes."""
+        deepest = self.z + self.z_step * (self.levels - 1)
+        return CycleExtent(XY, (self.x, self.y, self.z), self.last_radius, (self.z, deepest))
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/g12_haas.ngc`, but for the direction."""

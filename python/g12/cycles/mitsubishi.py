@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 from g12.cycles.common import SMALLEST_RING_MM, check_modes, check_start, commanded_tool
 from g12.cycles.context import XY, XZ, YZ, Context, Tool
+from g12.cycles.travel import CycleExtent
 from g12.cycles.words import Words
 from g12.errors import number
 
@@ -36,6 +37,11 @@ class MitsubishiCircle(NamedTuple):
     plane: int
     centre: float
     radius: float
+
+    def extent(self, context: Context) -> CycleExtent:
+        """Return how far the cycle goes, from where the tool stands in ``context``."""
+        centre = (context.x, context.y, context.z)
+        return CycleExtent(context.plane, centre, self.radius)
 
 
 def plan_circle(words: Words, context: Context) -> MitsubishiCircle:

@@ -38,7 +38,8 @@ from g12.cycles.common import (
     sound_tool,
     steps_between,
 )
-from g12.cycles.context import Context, Tool
+from g12.cycles.context import XY, Context, Tool
+from g12.cycles.travel import CycleExtent
 from g12.cycles.words import Words
 from g12.errors import BlockRefusal, number
 
@@ -61,6 +62,10 @@ class YasnacCircle(NamedTuple):
     shrink: float  # share by which a half turn of the last turn grows less than the others
     radius: float
     circles: int
+
+    def extent(self, z: float) -> CycleExtent:
+        """Return how far the cycle goes, at the height ``z``."""
+        return CycleExtent(XY, (self.x, self.y, z), abs(self.radius))
 
 
 class Reach(NamedTuple):

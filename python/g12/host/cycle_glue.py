@@ -8,21 +8,27 @@ from __future__ import annotations
 
 import functools
 import itertools
+import os
 from pathlib import Path
 
 import emccanon
+import linuxcnc
 
 from g12.cycles.context import XY, XZ, YZ, Context, Tool
+from g12.cycles.travel import CycleExtent, MachineFrame, check_travel
 from g12.cycles.words import Words
 from g12.host.glue import (
     INCH,
     code_of_block,
     diameter_mode,
+    ini_file,
+    millimetres_per_machine_unit,
     millimetres_per_unit,
     program_units_per_machine_unit,
     settings_of_machine,
     spindle_speed,
 )
+from g12.machine_ini import ranges_of
 
 SETTINGS = settings_of_machine()
 
@@ -53,6 +59,7 @@ WORD_FIELDS = [
     for letter in LETTERS
 ]
 NO_L = -1  # a block's l_number without an L word
+LIMITS = ranges_of(linuxcnc.ini(ini_file() or os.devnull).find, "XYZ")
 
 
 class CycleState:
@@ -216,6 +223,31 @@ def snapshot(interp: object) -> Context:
         spindle_tool=tool_in_spindle(interp),
         last_radius=last_radius(interp),
         tool_in_table=functools.partial(tool_in_table, interp),
+    )
+
+
+def stay_within_limits(interp: object, words: Words, extent: CycleExtent) -> None:
+    """Refuse a cycle that leaves the machine's travel.
+
+    Not in a preview: it shows a program also before the work offset is set.
+    """
+    if interp.task:
+        check_travel(words, extent, machine_frame(interp), LIMITS)
+
+
+def machine_frame(interp: object) -> MachineFrame:
+    """Return where program coordinates lie on the machine: work offset, G92, rotation, tool."""
+    tool = interp.tool_offset
+    return MachineFrame(
+        shift=(interp.axis_offset_x, interp.axis_offset_y, interp.axis_offset_z),
+        rotation=interp.rotation_xy,
+        offset=(
+            interp.origin_offset_x + tool.x,
+            interp.origin_offset_y + tool.y,
+            interp.origin_offset_z + tool.z,
+        ),
+        unit=1 / program_units_per_machine_unit(interp),
+        millimetres=millimetres_per_machine_unit(),
     )
 
 

@@ -17,6 +17,7 @@ def prepare_haas(interp: object, arc: int) -> int:
     """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
     words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
     pocket = plan_pocket(words, context, cycle_glue.SETTINGS.clearing)
+    cycle_glue.stay_within_limits(interp, words, pocket.extent())
     hand = 1 if arc == COUNTERCLOCKWISE else -1
     cycle_glue.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
     if pocket.commanded_radius is not None:
@@ -40,7 +41,9 @@ def g13_haas(self, **words):
 
 def prepare_yasnac(interp: object, arc: int) -> int:
     """Check a Yasnac G12/G13 block and hand its circle to `ngc/g12_yasnac.ngc`."""
-    circle = yasnac.plan_circle(cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp))
+    words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
+    circle = yasnac.plan_circle(words, context)
+    cycle_glue.stay_within_limits(interp, words, circle.extent(context.z))
     cycle_glue.hand_over(
         interp,
         **circle._asdict(),
@@ -66,7 +69,9 @@ def g13_yasnac(self, **words):
 
 def prepare_mitsubishi(interp: object, arc: int) -> int:
     """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_mitsubishi.ngc`."""
-    circle = mitsubishi.plan_circle(cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp))
+    words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
+    circle = mitsubishi.plan_circle(words, context)
+    cycle_glue.stay_within_limits(interp, words, circle.extent(context))
     cycle_glue.hand_over(interp, **circle._asdict(), arc=arc)
     return INTERP_OK
 
@@ -89,10 +94,13 @@ def planned_event(interp: object, pocket: bool) -> circle_mill.MillEvent:
     plane = cycle_glue.first_plane(interp)
     entries = cycle_glue.entries_of_sub(interp, "circle_mill", len(circle_mill.ENTRIES))
     if entries is None:
-        return circle_mill.plan_code(words, context, plane, pocket)
-    words.check_known("no words inside o<circle_mill>")
-    call = Words("circle_mill", circle_mill.entries_by_letter(entries))
-    return circle_mill.plan_call(call, context, plane)
+        event = circle_mill.plan_code(words, context, plane, pocket)
+    else:
+        words.check_known("no words inside o<circle_mill>")
+        words = Words("circle_mill", circle_mill.entries_by_letter(entries))
+        event = circle_mill.plan_call(words, context, plane)
+    cycle_glue.stay_within_limits(interp, words, event.extent())
+    return event
 
 
 def prepare_circle_mill(interp: object, pocket: bool) -> int:

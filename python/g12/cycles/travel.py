@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Whether a cycle stays within the travel of the machine's axes, before anything of it moves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import cos, hypot, radians, sin
+from typing import NamedTuple
+
+from g12.cycles.common import ROUNDING_MM
+from g12.cycles.context import XY, XZ, YZ
+from g12.cycles.words import Words
+from g12.errors import number
+from g12.lengths import is_inch
+
+Point = tuple[float, float, float]  # X, Y, Z
+LETTERS = "XYZ"
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+DIRECTIONS = {XY: (X, Y), XZ: (Z, X), YZ: (Y, Z)}
+
+
+class CycleExtent(NamedTuple):
+    """The largest circle that a cycle's tool centre goes round, in program coordinates and units.
+
+    ``heights`` are where else along Z than in the centre it goes.
+    """
+
+    plane: str
+    centre: Point
+    radius: float
+    heights: tuple[float, ...] = ()
+
+    def points(self) -> list[Point]:
+        """Return the centre at each height."""
+        x, y, z = self.centre
+        return [(x, y, height) for height in self.heights or (z,)]
+
+
+class MachineFrame(NamedTuple):
+    """How program coordinates become the machine's.
+
+    Plus ``shift`` (G92), turned about Z by ``rotation`` degrees, plus ``offset`` (work and tool
+    offset), all in program units, which are ``unit`` machine units of ``millimetres`` each.
+    """
+
+    shift: Point
+    rotation: float
+    offset: Point
+    unit: float
+    millimetres: float
+
+    def position(self, point: Point) -> Point:
+        """Return a point in machine coordinates and units."""
+        turned = self._turned(*(value + plus for value, plus in zip(point, self.shift)))
+        x, y, z = (self.unit * (value + plus) for value, plus in zip(turned, self.offset))
+        return x, y, z
+
+    def half_widths(self, extent: CycleExtent) -> list[float]:
+        """Return how far the circle goes from its centre along each axis, in machine units."""
+        first, second = (self._turned(*along) for along in DIRECTIONS[extent.plane])
+        return [self.unit * extent.radius * hypot(*pair) for pair in zip(first, second)]
+
+    def _turned(self, x: float, y: float, z: float) -> Point:
+        turn = radians(self.rotation)
+        return x * cos(turn) - y * sin(turn), x * sin(turn) + y * cos(turn), z
+
+
+def check_travel(
+    words: Words,
+    extent: CycleExtent,
+    frame: MachineFrame,
+    limits: Mapping[str, tuple[float, float]],
+) -> None:
+    """Refuse a cycle that leaves the limits of an axis, its lowest and highest machine position."""
+    centres = [frame.position(point) for point in extent.points()]
+    rounding = ROUNDING_MM / frame.millimetres
+    for letter, places, width in zip(LETTERS, zip(*centres), frame.half_widths(extent)):
+        low, high = limits[letter]
+        for position, limit, side in (
+            (min(places) - width, low, -1),
+            (max(places) + width, high, 1),
+        ):
+            if side * (position - limit) > rounding:
+                raise words.refuse(_beyond(letter, position, limit, frame))
+
+
+def _beyond(letter: str, position: float, limit: float, frame: MachineFrame) -> str:
+    name = "in" if is_inch(frame.millimetres) else "mm"
+    other = "" if frame.unit == 1.0 else f" (G{20 if name == 'mm' else 21} is active)"
+    return (
+        f"the {letter} axis would go to {number(position)} {name}, beyond its limit"
+        f" {number(limit)} {name}{other}"
+    )
