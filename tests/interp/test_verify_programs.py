@@ -7,6 +7,7 @@ import shutil
 
 import pytest
 
+from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
 from g12.tools.verify.findings import pocket_findings, pocket_notes
 from g12.tools.verify.proof import prove
@@ -338,6 +339,13 @@ def test_another_tool_than_d_names_is_found(tmp_path):
 def test_units_changed_in_the_pockets_own_block(tmp_path):
     lines = [*MM, "G20 G0 X0 Y0 Z.1", "G21 G13 I8 K40 Q5 Z-12 D4 F500", "M2"]
     assert proof_of_text(tmp_path, lines).findings == []
+
+
+def test_a_program_that_moves_by_its_line_numbers_is_told_in_one_line(tmp_path):
+    condition = ["o1 if [#<_line> GT 6]", "G0 X5", "o1 endif"]
+    lines = [*MM, "G0 X0 Y0 Z1", "G12 I20 Z-1 D4", *condition, "M2"]
+    with pytest.raises(ProgramError, match="moves otherwise where lines are put between its own"):
+        proof_of_text(tmp_path, lines)
 
 
 # ---------------------------------------------------------------- polar sections

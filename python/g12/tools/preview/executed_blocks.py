@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Callable, NamedTuple
 
+from g12.tools.errors import ProgramError
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tracer
 
@@ -162,12 +163,17 @@ def read_lines(program: Path) -> list[Text]:
 
 
 def executed(
-    tracer: Tracer, program: Path, wanted: Wanted, parameters: Parameters = None
+    tracer: Tracer, program: Path, trace: Trace, wanted: Wanted, parameters: Parameters = None
 ) -> list[Block]:
-    """Return every execution of the blocks wanted, in order."""
+    """Return every execution of the blocks wanted, in order; ``trace`` is the program's."""
     texts = read_lines(program)
-    lines = watched(program, texts, wanted)
-    return blocks_in(tracer.trace_text(lines, parameters=parameters), texts)
+    copy = tracer.trace_text(watched(program, texts, wanted), parameters=parameters)
+    if len(copy.moves) != len(trace.moves):
+        raise ProgramError(
+            f"{program}: moves otherwise where lines are put between its own:"
+            " its blocks cannot be followed"
+        )
+    return blocks_in(copy, texts)
 
 
 def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) -> list[str]:

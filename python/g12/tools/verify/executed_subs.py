@@ -46,7 +46,7 @@ def executed_everywhere(
                 copy = other.trace_text(lines, parameters=parameters)
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
             return blocks_in(copy, texts)
-    return executed(tracer, program, codes.wanted, parameters)
+    return executed(tracer, program, trace, codes.wanted, parameters)
 
 
 def called_files(texts: Sequence[Text], ini: Ini) -> set[Path]:
