@@ -210,11 +210,19 @@ def dense(path: Track, move: Move) -> np.ndarray:
 def stretches_in(opening: Opening, points: np.ndarray, owner: np.ndarray) -> Iterator[np.ndarray]:
     """Yield the stretches of a path (indices) below an opening's top that pass through it."""
     low = (points[:, 2] < opening.top - SAME_HEIGHT) & (owner >= opening.first)
+    if not np.any(low & in_box(points, opening.area.bounds)):
+        return
     for below, group in groupby(np.arange(len(points)), lambda index: low[index]):
         stretch = np.array(list(group))
         inside = points[stretch[points[stretch, 2] > opening.floor - SAME_HEIGHT], :2]
         if below and any(map(prep(opening.area).contains, map(Point, inside))):
             yield stretch
+
+
+def in_box(points: np.ndarray, bounds: tuple[float, float, float, float]) -> np.ndarray:
+    """Tell which points (n, 3) lie within bounds: least X and Y, greatest X and Y."""
+    x, y = points[:, 0], points[:, 1]
+    return (bounds[0] <= x) & (x <= bounds[2]) & (bounds[1] <= y) & (y <= bounds[3])
 
 
 def hits(
