@@ -27,7 +27,7 @@ pytestmark = needs_kinematics
 
 X, Y, C = 0, 1, 5
 TOLERANCE = 0.002  # mm, of G64
-ON = ("M68 E3 Q0", "M68 E3 Q1", "M66 P3 L3 Q10", "G17")
+ON = ("M68 E2 Q0", "M68 E3 Q0", "M68 E3 Q1", "M66 P3 L3 Q10", "G17")
 OFF = ("M68 E3 Q0", "M66 P3 L4 Q10", "G18")
 START = ("G21 G18 G8 G90 G94 G64 P0.002 Q0", "G0 X25 Z2 C0")
 CIRCLE_AND_SQUARE = (
