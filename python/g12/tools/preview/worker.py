@@ -219,7 +219,9 @@ class Canon:
     def comment(self, text: str) -> None:
         """Begin without a feed, and forget the set-up when the program itself starts."""
         if text == FRESH:
-            interpreter_object().feed_rate = 0.0  # not by F0: a machine may have remapped F
+            this = interpreter_object()
+            this.feed_rate = 0.0  # not by F0: a machine may have remapped F
+            this.active_spindle = 0  # LinuxCNC leaves it unset, and reads it in G33 without $
         if text == MEANINGS_CHANGED:
             self._stand_where_the_interpreter_does()
         if text == START:
