@@ -38,7 +38,7 @@ AXES = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
 
 
 def setup_of(settings=Settings(), **found):  # noqa: B008 - it is frozen
-    return polar_setup(START._replace(**found), settings, AXES)
+    return polar_setup(START._replace(**found), settings, AXES, None)
 
 
 @pytest.mark.parametrize(
@@ -102,3 +102,8 @@ def test_rapids_have_a_feed_only_where_they_may():
     assert setup_of().words.rapid_feed is None
     allowed = Settings(polar_g0="feed", polar_g0_feed=500.0)
     assert setup_of(allowed, machine_unit=INCH).words.rapid_feed == pytest.approx(12700.0)
+
+
+def test_kinematics_are_refused_on_a_machine_without_them():
+    with pytest.raises(Refusal, match=r"needs \[KINS\] KINEMATICS = polar_xzc"):
+        setup_of(Settings(polar_kinematics="1"))
