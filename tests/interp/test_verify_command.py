@@ -3,9 +3,11 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from g12.tools.commands.main import main
+from g12.tools.verify.section_paths import ToolPath, ToolPaths
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
 
 MILL = str(SIM / "mill_mm_headless.ini")
@@ -77,6 +79,16 @@ def test_json_of_a_polar_section(capsys):
     assert section["radii"][0] == pytest.approx(13.5)
     assert 0 < section["deviation"] < 0.005 and section["c_speed"] < section["c_limit"] == 360
     assert section["pieces"] > 20 and section["shortest"] <= section["longest"]
+
+
+def test_a_contour_that_is_not_cut_is_told(written, capsys, monkeypatch):
+    nowhere = ToolPaths((), ToolPath(np.zeros(0, complex), np.zeros(0)), 0.0)
+    monkeypatch.setattr("g12.tools.verify.section.tool_paths_of", lambda *_: nowhere)
+    program = str(PROGRAMS / "polar" / "slot.ngc")
+    code, out, _ = verify(capsys, program, "--ini", LATHE)
+    assert code == 1 and "FINDING         the contour is not cut" in out
+    code, out, _ = verify(capsys, program, "--ini", LATHE, "--json")
+    assert code == 1 and json.loads(out)["sections"][0]["deviation"] is None
 
 
 def test_a_polar_section_is_told_as_it_is_programmed(written, capsys):

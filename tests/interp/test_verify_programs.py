@@ -402,6 +402,36 @@ def test_a_section_with_expressions_and_a_loop(tmp_path):
     assert facts.wanted[0] == pytest.approx(20 / math.sqrt(2), abs=1e-3)
 
 
+FLATS = [
+    "o100 sub",
+    "G0 C#1",
+    "G12.1",
+    "G1 C25 F2000",
+    "G41 X#2 F1000",
+    "Z-5",
+    "C-25",
+    "G40 X60 F2000",
+    "G13.1",
+    "G0 Z2",
+    "o100 endsub",
+    "G21 G18 G7 G40 G90 G94",
+    "T1 M6",
+    "G0 X60 Z2 C0",
+    "o100 call [0] [27]",
+    "o100 call [180] [30]",
+    "M2",
+]
+
+
+def test_a_section_in_a_sub_is_measured_at_every_call(tmp_path):
+    proof = proof_of_text(tmp_path, FLATS, "lathe_mm")
+    assert [facts.section.line for facts in proof.sections] == [3, 3]
+    assert proof.findings == [] and proof.unseen == []
+    assert [facts.wanted[0] for facts in proof.sections] == pytest.approx([13.5, 15])
+    assert all(0 < facts.deviation < proof.tolerances.polar for facts in proof.sections)
+    assert {facts.slowest_line for facts in proof.sections} <= {4, 5, 7, 8}
+
+
 def test_what_cannot_be_followed_is_a_finding(tmp_path):
     lines = [
         "G21 G18 G8 G40 G90 G94",

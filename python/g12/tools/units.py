@@ -22,8 +22,10 @@ class Unit(NamedTuple):
         return plain(length / self.mm, self.decimals)
 
     def fine(self, length: float) -> str:
-        """Return a small length in mm as text in this unit, with two digits that count."""
+        """Return a small length in mm as text in this unit, with two digits that count, or ∞."""
         value = length / self.mm
+        if not math.isfinite(value):
+            return "∞"
         first = math.floor(math.log10(abs(value))) if value else 0
         return plain(value, max(self.decimals, 1 - first) if abs(value) > 1e-7 else 1)
 

@@ -78,8 +78,8 @@ class Move(NamedTuple):
 
     ``kind`` is ``rapid``, ``feed``, ``arc`` or ``probe``.  ``line`` is what the interpreter says
     and a GUI highlights: in a subroutine that subroutine's line, in a Python remap 0 unless the
-    remap sets it.  ``block`` is the line of the program itself whose block makes the move; in a
-    G12.1 section that is the contour's block.
+    remap sets it, as a G12.1 section does: there it is the contour's block.  ``block`` is the line
+    of the program itself whose block makes the move, of a sub the line that calls it.
 
     ``feed`` is mm/min under ``feed_mode`` G94 and G93 (the interpreter resolves inverse time),
     mm/rev under G95; degrees for a straight move of rotary axes alone; 0 for a rapid.

@@ -6,6 +6,7 @@ A judgement of its own is a generator here, called from the one of its kind of f
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import zip_longest
 
@@ -225,7 +226,9 @@ def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> 
 
 def contour_findings(facts: SectionFacts, tolerance: float, unit: Unit) -> Iterator[str]:
     """Yield where a section leaves its contour in the plane."""
-    if facts.deviation > tolerance + LAST_DECIMAL:
+    if math.isinf(facts.deviation):
+        yield "the contour is not cut"
+    elif facts.deviation > tolerance + LAST_DECIMAL:
         yield f"the path is {unit.fine(facts.deviation)} {unit.name} off the contour"
     if facts.gouge > SAME_AREA:
         yield f"{gouged(facts, unit)} are gouged beyond the contour"

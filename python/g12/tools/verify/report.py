@@ -63,7 +63,7 @@ def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
         ("stepover", f"{stepover}, direction jump {plain(facts.jump, 2)}°"),
         ("depth", depth(facts, unit)),
         ("moves", spread(facts.shortest, facts.longest, unit)),
-        ("lowest feed", slowest(facts.pace, slow, proof, unit)),
+        ("lowest feed", slowest(facts.pace, slow, pocket_slowest_line(facts.pace, proof), unit)),
         *real_rows(facts, unit),
         ("time", time_text(facts.pace)),
     ]
@@ -91,7 +91,7 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
         ("gouged", gouged(facts, unit)),
         ("pieces", f"{facts.pieces}, {spread(facts.shortest, facts.longest, unit)}"),
         ("direction jump", f"{plain(facts.jump, 2)}° from piece to piece"),
-        ("lowest feed", slowest(facts.pace, slow, proof, unit)),
+        ("lowest feed", slowest(facts.pace, slow, facts.slowest_line, unit)),
         ("speed of C", f"{plain(facts.c_speed, 1)} degrees/s at most, {limit}"),
         ("time", time_text(facts.pace)),
     ]
@@ -157,9 +157,13 @@ def point_text(letters: str, point: Sequence[float], unit: Unit) -> str:
     return " ".join(f"{letter}{unit.text(at)}" for letter, at in zip(letters, point))
 
 
-def slowest(pace: Pace, where: str, proof: Proof, unit: Unit) -> str:
+def pocket_slowest_line(pace: Pace, proof: Proof) -> int:
+    """Return the program's line of the lowest feed."""
+    return proof.subject.trace.moves[pace.move].block
+
+
+def slowest(pace: Pace, where: str, line: int, unit: Unit) -> str:
     """Return the lowest feed and where it is in words."""
-    line = proof.subject.trace.moves[pace.move].block
     return f"{plain(pace.lowest / unit.mm, 1)} {unit.name}/min at {where} (line {line})"
 
 
@@ -219,7 +223,7 @@ def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
         "longest": facts.longest,
         "off_circles": facts.off_rings,
         "off_path": facts.off_path,
-        **pace_json(facts.pace, proof),
+        **pace_json(facts.pace, pocket_slowest_line(facts.pace, proof)),
         "notes": list(pocket_notes(facts)),
         "findings": list(pocket_findings(facts, proof.tolerances.pocket)),
     }
@@ -246,7 +250,7 @@ def section_json(facts: SectionFacts, proof: Proof) -> dict:
         "longest": facts.longest,
         "c_speed": facts.c_speed,
         "c_limit": finite(facts.c_limit),
-        **pace_json(facts.pace, proof),
+        **pace_json(facts.pace, facts.slowest_line),
         "notes": list(section_notes(facts, proof.sections[0])),
         "findings": list(section_findings(facts, proof.tolerances.polar)),
     }
@@ -263,12 +267,12 @@ def collision_json(hit: Collision) -> dict:
     }
 
 
-def pace_json(pace: Pace, proof: Proof) -> dict:
+def pace_json(pace: Pace, line: int) -> dict:
     """Return feed and time as plain values."""
     return {
         "lowest_feed": pace.lowest,
         "lowest_feed_at": [float(value) for value in pace.point],
-        "lowest_feed_line": proof.subject.trace.moves[pace.move].block,
+        "lowest_feed_line": line,
         "seconds": pace.seconds,
         "seconds_programmed": pace.expected,
     }

@@ -48,8 +48,8 @@ class SectionFacts:
 
     ``zero`` is the angle of C where the section begins, ``start_height`` Z there, ``lowest`` the
     lowest Z. ``slowest_at`` is the place of the lowest feed as the section's own X (a radius),
-    C and Z. ``depth_off`` and ``feed_off`` are the first Z and the first feed that are not the
-    words', ``turn_speed`` is what F asks of C where it turns in place.
+    C and Z, ``slowest_line`` its block. ``depth_off`` and ``feed_off`` are the first Z and the
+    first feed that are not the words', ``turn_speed`` is what F asks of C where it turns in place.
     """
 
     section: SectionContour
@@ -72,6 +72,7 @@ class SectionFacts:
     start_height: float
     lowest: float
     slowest_at: tuple[float, float, float]
+    slowest_line: int
     depth_off: OffWords | None
     feed_off: OffWords | None
     turn_speed: float
@@ -110,6 +111,7 @@ def measure_section(
         start_height=moves[section.at].start[Z],
         lowest=min(moves[index].end[Z] for index in own),
         slowest_at=plane.of_part(pace.point),
+        slowest_line=moves[pace.move].line,
         depth_off=depth_off(section, moves, path),
         feed_off=feed_off(section, moves, path),
         turn_speed=turn_speed(section, moves, path),
@@ -300,7 +302,7 @@ def jump_between_pieces(
     """Return the greatest change of direction between pieces of one block."""
     jumps = []
     for before, after in zip(across, across[1:]):
-        if moves[before].block == moves[after].block:
+        if moves[before].line == moves[after].line:
             one, other = (plane.tool_path(index, path, None).points for index in (before, after))
             turn = (other[1] - other[0]) / (one[-1] - one[-2])
             jumps.append(abs(np.degrees(np.angle(turn))))

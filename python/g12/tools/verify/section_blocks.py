@@ -47,7 +47,7 @@ def blocks_cut(section: SectionContour, moves: Sequence[Move]) -> Iterator[Block
     groups = [list(group) for _, group in groupby(section.elements, lambda element: element.line)]
     above = [section.z, *(group[-1].depth for group in groups)]
     at = 0
-    for line, own in groupby(range(section.at, section.end), lambda index: moves[index].block):
+    for line, own in groupby(range(section.at, section.end), lambda index: moves[index].line):
         rest = range(at, len(groups))
         found = next((index for index in rest if groups[index][0].line == line), None)
         if found is not None:

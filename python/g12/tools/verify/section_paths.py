@@ -122,8 +122,8 @@ def tool_paths_of(
     """Return the paths of moves at feed, given by their indices."""
     across = [index for index in cutting if goes_across(moves[index])]
     tool_paths = (
-        (block, as_one_path([plane.tool_path(index, path, real) for index in stretch]))
-        for block, stretch in groupby(across, key=lambda index: moves[index].block)
+        (line, as_one_path([plane.tool_path(index, path, real) for index in stretch]))
+        for line, stretch in groupby(across, key=lambda index: moves[index].line)
     )
     downward = [plane.tool_path(index, path, real) for index in cutting if index not in set(across)]
     plunges = [ToolPath(tool_path.points[-1:], tool_path.heights[-1:]) for tool_path in downward]

@@ -38,6 +38,11 @@ def _pocket(facts: PocketFacts, opened: OpenedProgram) -> PocketFacts:
 
 
 def _section(facts: SectionFacts, opened: OpenedProgram) -> SectionFacts:
-    section = facts.section
-    first, last = opened.source_line(section.line), opened.source_line(section.last)
-    return replace(facts, section=replace(section, line=first, last=last))
+    line, section = opened.source_line, facts.section
+    return replace(
+        facts,
+        section=replace(section, line=line(section.line), last=line(section.last)),
+        slowest_line=line(facts.slowest_line),
+        depth_off=facts.depth_off and facts.depth_off._replace(line=line(facts.depth_off.line)),
+        feed_off=facts.feed_off and facts.feed_off._replace(line=line(facts.feed_off.line)),
+    )
