@@ -89,7 +89,7 @@ INSIDE = [
     ("M6", f"M6 is refused: {TOOL}"),
     ("M61 Q1", f"M61 is refused: {TOOL}"),
     ("G1 G41 X5 D1", "D is refused: the radius is that of the loaded tool"),
-    ("G12.1", "G12.1 is already on"),
+    ("G12.1", "the section is already on"),
     ("M2", "G13.1 is missing: M2 comes before it"),
     ("M30", "G13.1 is missing: M30 comes before it"),
     ("G1 A5", f"A is refused: {AXES}"),
@@ -195,15 +195,15 @@ def test_an_error_in_a_called_sub(lathe):
 
 
 ENTRY = [
-    ("G93", "G12.1", "G12.1 needs G94 or G95, not G93"),
-    ("G19", "G12.1", "G12.1 needs G18 or G17, not G19"),
-    ("G96 D500 S100 M3", "G12.1", "G12.1 needs G97: with G96 the speed would change with X"),
-    ("G42 D1", "G12.1", "G12.1 needs G40: compensation is switched on inside"),
-    ("G10 L2 P1 R5", "G12.1", "G12.1 needs an unrotated work offset (G10 L2 R0)"),
-    ("G92 X0", "G12.1", "G12.1 needs the tool at X above zero, not at 0 (radius)"),
-    ("G92 X-3", "G12.1", "G12.1 needs the tool at X above zero, not at -3 (radius)"),
+    ("G93", "G12.1", "needs G94 or G95, not G93"),
+    ("G19", "G12.1", "needs G18 or G17, not G19"),
+    ("G96 D500 S100 M3", "G12.1", "needs G97: with G96 the speed would change with X"),
+    ("G42 D1", "G12.1", "needs G40: compensation is switched on inside"),
+    ("G10 L2 P1 R5", "G12.1", "needs an unrotated work offset (G10 L2 R0)"),
+    ("G92 X0", "G12.1", "needs the tool at X above zero, not at 0 (radius)"),
+    ("G92 X-3", "G12.1", "needs the tool at X above zero, not at -3 (radius)"),
     *[
-        ("", f"G12.1 {word}", "G12.1 stands alone in its block")
+        ("", f"G12.1 {word}", "stands alone in its block")
         for word in ("X5", "P3", "G90", "M8", "F50", "S100", "G4 P1", "T1", "G40", "C1 Z2")
     ],
 ]
@@ -221,7 +221,7 @@ def test_refused_entry(lathe, before, block, reason):
 def test_the_tool_still_beside_the_contour_after_g40(lathe):
     before = ["G18 G0 X60 Z50", "G42 D1 G1 X30 Z50", "X30 Z5", "G40"]
     traced = lathe.trace_text(section("G1 C12", before=before))
-    reason = "G12.1 needs a move after G40: the tool is still beside the programmed point"
+    reason = "needs a move after G40: the tool is still beside the programmed point"
     assert traced.error.text == f"G12.1 line 9: {reason}"
 
 
@@ -238,7 +238,7 @@ def test_bare_words_of_a_code_that_is_no_contour(lathe, cycle):
 @pytest.mark.parametrize("words", ["X7", "C90", "K3", "D5", "R2", "I1"])
 def test_words_beside_the_code_that_ends_no_section(lathe, words):
     traced = lathe.trace_text([FIRST, f"G13.1 {words}", "M2"])
-    assert traced.error.text == "G13.1 line 2: G13.1 stands alone in its block"
+    assert traced.error.text == "G13.1 line 2: stands alone in its block"
 
 
 @pytest.mark.parametrize(
@@ -260,7 +260,7 @@ def test_a_machine_without_a_c_axis():
     with Tracer(SIM / "lathe_mm.ini", overrides={"TRAJ": {"COORDINATES": "X Z"}}) as lathe:
         program = section("G1 X12", start="G0 X20 Z5")
         text, line = refused(lathe, program)
-    assert (text, line) == ("G12.1 line 5: G12.1 needs a machine with an X and a C axis", 5)
+    assert (text, line) == ("G12.1 line 5: needs a machine with an X and a C axis", 5)
 
 
 def test_a_comment_beside_the_codes_is_no_word(lathe):
@@ -388,4 +388,15 @@ def test_a_file_that_is_changed_while_its_program_runs(lathe, tmp_path, lines):
     program.write_text("\n".join(section("G1 X15", before=[change])))
     traced = lathe.trace(program)
     assert traced.error.text.endswith(": the file has been changed while the program runs")
+    assert [move.kind for move in traced.moves] == ["rapid"]
+
+
+def test_a_file_that_is_deleted_while_its_program_runs(lathe, tmp_path):
+    program = tmp_path / "cut.ngc"
+    delete = f";py,import os; os.unlink('{program}')"
+    program.write_text("\n".join(section("G1 X15", before=[delete])))
+    traced = lathe.trace(program)
+    assert traced.error.text == (
+        "G12.1: the program's file cannot be read while it runs: No such file or directory"
+    )
     assert [move.kind for move in traced.moves] == ["rapid"]

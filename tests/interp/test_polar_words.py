@@ -373,7 +373,7 @@ def test_both_pairs_of_codes_on_one_machine():
             refused = with_codes(on, "M9", "G1 X12")
             assert refused.error.text.startswith(f"{on} line 8: G13{on[3:]} is missing")
             refused = with_codes(on, "G13.1", "G12.3")
-            assert refused.error.text == f"{on} line 6: {on} is already on"
+            assert refused.error.text == f"{on} line 6: the section is already on"
 
 
 # ---------------------------------------------------------------- the machine's INI

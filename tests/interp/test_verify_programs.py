@@ -87,6 +87,11 @@ def test_samples_of_every_dialect_are_good(program, machine, radii):
     assert proof.findings == []
 
 
+@pytest.mark.parametrize("program", sorted((SIM / "samples").glob("*.ngc")), ids=lambda p: p.stem)
+def test_what_the_machines_open_first_is_good(program):
+    assert prove(program, ini(program.stem)).findings == []
+
+
 @pytest.mark.parametrize(
     "block",
     [

@@ -58,7 +58,7 @@ def test_where_no_section_begins(found, rule):
     check_section_start(START, "XZC")
     with pytest.raises(Refusal) as refused:
         check_section_start(START._replace(**found), "XZC")
-    assert str(refused.value).startswith(f"G12.1 line 7: G12.1 {rule}")
+    assert str(refused.value).startswith(f"G12.1 line 7: {rule}")
 
 
 def test_a_machine_needs_x_and_c():

@@ -57,8 +57,7 @@ def polar_on(self, **words) -> Iterator[int]:
     try:
         glue.forget_return(self)
         refuse_mdi(self)
-        program = ProgramLines(self, getattr(self, "g12_source", None))
-        self.g12_source = program.home
+        program = program_behind(self)
         yield from run_section(self, CallFrame(self, program.home.filename), program)
     except Exception as error:
         yield glue.refuse_block(self, error)
@@ -70,8 +69,7 @@ def polar_off(self, **words) -> int:
     """Do nothing: the handler of G13.1 outside a section, where it is a safety line."""
     block = self.blocks[self.remap_level]
     if any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS):
-        code = glue.code_of_block(self)
-        raise BlockRefusal(code, f"{code} stands alone in its block")
+        raise BlockRefusal(glue.code_of_block(self), "stands alone in its block")
     return INTERP_OK
 
 
@@ -80,6 +78,17 @@ def refuse_mdi(interp: object) -> None:
     if glue.in_mdi(interp):
         code = glue.code_of_block(interp)
         raise Refusal(f"{code} is not possible in MDI: it needs the lines behind it")
+
+
+def program_behind(interp: object) -> ProgramLines:
+    """Return the program that goes on behind the block; refuse one whose file is gone."""
+    try:
+        program = ProgramLines(interp, getattr(interp, "g12_source", None))
+    except OSError as problem:
+        rule = f"the program's file cannot be read while it runs: {problem.strerror}"
+        raise BlockRefusal(glue.code_of_block(interp), rule) from None
+    interp.g12_source = program.home
+    return program
 
 
 def run_section(interp: object, frame: CallFrame, program: ProgramLines) -> Iterator[int]:

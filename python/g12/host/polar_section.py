@@ -156,7 +156,7 @@ class PolarSection:
     def _check(self, block: SectionBlock) -> None:
         codes, place = self.codes, self.reader.place
         if block.g[MOTION] in codes.on:
-            raise place.refuse(f"{place.code} is already on")
+            raise place.refuse("the section is already on")
         if block.m[M_STOP] in (M2, M30):
             raise self._missing_off(f"M{block.m[M_STOP]} comes before it")
         check_block(block, self._rapid_allowed, place)

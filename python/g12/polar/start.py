@@ -30,18 +30,17 @@ class PolarSetup(NamedTuple):
 
 def check_section_start(start: SectionStart, axes: Collection[str]) -> None:
     """Refuse to begin a section where it cannot; ``axes`` are the letters of the machine's."""
-    code = start.place.code
-    above = f"{code} needs the tool at X above zero, not at {number(start.x)} (radius)"
-    beside = f"{code} needs a move after G40: the tool is still beside the programmed point"
+    above = f"needs the tool at X above zero, not at {number(start.x)} (radius)"
+    beside = "needs a move after G40: the tool is still beside the programmed point"
     rules = (
-        ({"X", "C"} <= set(axes), f"{code} needs a machine with an X and a C axis"),
-        (start.alone, f"{code} stands alone in its block"),
-        (not start.compensated, f"{code} needs G40: compensation is switched on inside"),
-        (not start.inverse_time, f"{code} needs G94 or G95, not G93"),
-        (not start.yz_plane, f"{code} needs G18 or G17, not G19"),
-        (not start.surface_speed, f"{code} needs G97: with G96 the speed would change with X"),
+        ({"X", "C"} <= set(axes), "needs a machine with an X and a C axis"),
+        (start.alone, "stands alone in its block"),
+        (not start.compensated, "needs G40: compensation is switched on inside"),
+        (not start.inverse_time, "needs G94 or G95, not G93"),
+        (not start.yz_plane, "needs G18 or G17, not G19"),
+        (not start.surface_speed, "needs G97: with G96 the speed would change with X"),
         (not start.offset_pending, beside),
-        (not start.rotated, f"{code} needs an unrotated work offset (G10 L2 R0)"),
+        (not start.rotated, "needs an unrotated work offset (G10 L2 R0)"),
         (start.x > 0, above),
     )
     for holds, rule in rules:
@@ -58,7 +57,7 @@ def polar_setup(
     """
     if settings.polar_kinematics == "1" and not face:
         raise start.place.refuse(
-            f"{start.place.code} needs [KINS] KINEMATICS = polar_xzc for [G12] POLAR_KINEMATICS = 1"
+            "needs [KINS] KINEMATICS = polar_xzc for [G12] POLAR_KINEMATICS = 1"
         )
     machine_unit_mm = start.machine_unit / start.millimetre
     tolerance = settings.tolerance(machine_unit_mm) * start.machine_unit
