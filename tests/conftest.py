@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import functools
 import shutil
 
 import pytest
@@ -17,19 +16,10 @@ settings.register_profile("g12", deadline=None, derandomize=True, database=None)
 settings.load_profile("g12")
 
 
-@functools.cache
 def missing(folder):
     """Return what this system lacks for the tests of a folder, None if nothing."""
-    if folder not in NEED_LINUXCNC:
-        return None
-    if not shutil.which("linuxcnc"):
-        return "LinuxCNC is not installed"
-    if folder == "sim":
-        from g12.tools.headless.namespaces import obstacle
-
-        why = obstacle()
-        return why and f"LinuxCNC cannot be isolated here: {why}"
-    return None
+    needed = folder in NEED_LINUXCNC and not shutil.which("linuxcnc")
+    return "LinuxCNC is not installed" if needed else None
 
 
 def pytest_collection_modifyitems(items):

@@ -20,7 +20,14 @@ import signal
 import sys
 import time
 
-from namespaces_init import IsolationError, copy_file, libc, raise_if_failed, write_text
+from namespaces_init import (
+    REFUSED,
+    IsolationError,
+    copy_file,
+    libc,
+    raise_if_failed,
+    write_text,
+)
 
 PR_SET_CHILD_SUBREAPER = 36
 IPC_RMID = 0
@@ -169,4 +176,4 @@ if __name__ == "__main__":
         sys.exit(main())
     except IsolationError as problem:
         print(problem, file=sys.stderr)
-        sys.exit(125)
+        sys.exit(REFUSED)

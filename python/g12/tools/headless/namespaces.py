@@ -17,13 +17,12 @@ import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import IO
 
 from g12.tools.system import PYTHON
 
 ISOLATE = Path(__file__).with_name("namespaces_init.py")
 CONTAINED = Path(__file__).with_name("contained_init.py")
-PROBE = "probe"  # asks ISOLATE whether it can
-PATIENCE = 60.0  # s
 NOBODY = "65534"  # LinuxCNC's realtime part refuses to be plain root
 NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "INI_FILE_NAME")
 
@@ -69,16 +68,9 @@ class Isolated:
             "covers": {covered: str(file) for covered, file in (covers or {}).items()},
             "scratch": str(self.folder),
         }
+        script = ISOLATE if has_namespaces() else CONTAINED
         with open(self.folder / "log.txt", "wb") as log:
-            self._process = subprocess.Popen(
-                [PYTHON, str(ISOLATE if has_namespaces() else CONTAINED)],
-                stdin=subprocess.PIPE,
-                stdout=log,
-                stderr=log,
-                start_new_session=True,
-            )
-        self._process.stdin.write(json.dumps(job).encode() + b"\n")
-        self._process.stdin.flush()
+            self._process = start(script, job, log)
 
     def exit_code(self) -> int | None:
         """Return the exit code, None while it runs."""
@@ -114,20 +106,23 @@ class Isolated:
 @functools.cache
 def has_namespaces() -> bool:
     """Tell whether this system allows namespaces, and the user if it does not."""
-    probed = subprocess.run([PYTHON, str(ISOLATE), PROBE], capture_output=True, text=True)
-    if probed.returncode:
-        why = (probed.stderr.strip().splitlines() or ["no reason given"])[-1]
+    nothing = {"command": ["true"], "environment": {}, "copies": {}, "covers": {}, "scratch": ""}
+    with (
+        tempfile.TemporaryFile("w+", encoding="utf-8") as log,
+        start(ISOLATE, nothing, log) as init,
+    ):
+        refused = init.wait()
+        log.seek(0)
+        why = (log.read().strip().splitlines() or ["no reason given"])[-1]
+    if refused:
         print(f"g12: without namespaces ({why}): one LinuxCNC at a time", file=sys.stderr)
-    return not probed.returncode
+    return not refused
 
 
-def obstacle() -> str | None:
-    """Return why LinuxCNC cannot be run apart from others here, None if it can."""
-    isolated = Isolated()
-    try:
-        isolated.launch(["true"], {})
-        return isolated.log().strip() if isolated.wait(PATIENCE) else None
-    except subprocess.TimeoutExpired:
-        return None  # slow under load: what was to be found out is not known, so it is tried
-    finally:
-        isolated.close()
+def start(script: Path, job: Mapping[str, object], log: IO) -> subprocess.Popen:
+    """Start a script with its job; it ends when its standard input is closed."""
+    streams = {"stdin": subprocess.PIPE, "stdout": log, "stderr": log}
+    process = subprocess.Popen([PYTHON, str(script)], **streams, start_new_session=True)
+    process.stdin.write(json.dumps(job).encode() + b"\n")
+    process.stdin.flush()
+    return process

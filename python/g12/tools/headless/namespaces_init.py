@@ -28,6 +28,7 @@ CLONE_NEWUSER, CLONE_NEWPID, CLONE_NEWNET = 0x10000000, 0x20000000, 0x40000000
 MS_BIND, MS_REC, MS_PRIVATE = 4096, 16384, 1 << 18
 PR_SET_PDEATHSIG = 1
 LARGEST_COPY = 1 << 20  # bytes; larger files are shared with the real directory
+REFUSED = 125  # exit code where a namespace or a mount cannot be had
 PRIVATE_IN_TMP = "linuxcnc."  # LinuxCNC's lock and log files
 
 libc = ctypes.CDLL(None, use_errno=True)
@@ -153,33 +154,21 @@ def supervise(child: int, scratch: str) -> int:
     return code
 
 
-def probe() -> int:
-    """Return 0 if namespaces and mounts can be had, else say why not."""
+def main() -> int:
+    """Run the job and return its exit code; only the supervising process comes back."""
+    job = json.loads(sys.stdin.readline())
     try:
         unshare()
-        raise_if_failed(libc.unshare(CLONE_NEWNS), "new mount namespace")
-        mount("none", "/", None, MS_REC | MS_PRIVATE)
-    except OSError as error:
-        print(error, file=sys.stderr)
-        return 1
-    return 0
-
-
-def main() -> int:
-    """Run the job and return its exit code."""
-    job = json.loads(sys.stdin.readline())
-    unshare()
-    child = os.fork()
-    if child:
-        return supervise(child, job["scratch"])
-    try:
+        child = os.fork()
+        if child:
+            return supervise(child, job["scratch"])
         code = first_process(job)
     except OSError as error:
-        print(f"isolation failed: {error}", file=sys.stderr)
-        code = 125
+        print(error, file=sys.stderr)
+        code = REFUSED
     sys.stderr.flush()
     os._exit(code & 0xFF)
 
 
 if __name__ == "__main__":
-    sys.exit(probe() if sys.argv[1:] else main())
+    sys.exit(main())
