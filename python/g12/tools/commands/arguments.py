@@ -78,12 +78,14 @@ def _reader(kind: type, is_good: Callable[[float], bool], wanted: str) -> Callab
     return read
 
 
-def add_program(parser: argparse.ArgumentParser) -> None:
-    """Add the words that name a program and its machine."""
+def program_parser(name: str, description: str, epilog: str) -> Parser:
+    """Return the parser of a command for a program, with the words that name it and its machine."""
+    parser = Parser(f"g12 {name}", description, epilog)
     parser.add_argument("program", type=Path, help="program file")
     parser.add_argument("--ini", type=Path, required=True, help="INI file of the machine")
     parser.add_argument("--tools", type=Path, help="tool table in place of the INI's")
     parser.add_argument("--var", type=Path, help=VAR_HELP)
+    return parser
 
 
 def add_run(parser: argparse.ArgumentParser, what: str) -> None:

@@ -14,11 +14,11 @@ from pathlib import Path
 from g12.tools.commands.arguments import (
     GOOD,
     Parser,
-    add_program,
     add_run,
     check_run,
     checked_ini,
     one_line,
+    program_parser,
     samples_of_run,
 )
 from g12.tools.errors import UsageError
@@ -44,8 +44,7 @@ exit code: 0 the picture is there, 1 the program has an error, 2 wrong use
 
 def command_parser() -> Parser:
     """Return the command's parser."""
-    parser = Parser(prog="g12 plot", description=__doc__, epilog=EXAMPLES)
-    add_program(parser)
+    parser = program_parser("plot", __doc__, EXAMPLES)
     parser.add_argument("-o", "--output", type=Path, required=True, help="a .png, .svg or .pdf")
     parser.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
     parser.add_argument("--feeds", action="store_true", help="colour paths by feed, not by depth")

@@ -58,11 +58,7 @@ def command_parser() -> Parser:
 
 
 def _add_record(actions) -> None:
-    parser = actions.add_parser(
-        "record",
-        help="keep what programs do",
-        epilog=RECORD_EXAMPLES,
-    )
+    parser = actions.add_parser("record", help="keep what programs do", epilog=RECORD_EXAMPLES)
     parser.set_defaults(run=run_record)
     parser.add_argument(
         "programs",
@@ -78,11 +74,7 @@ def _add_record(actions) -> None:
 
 
 def _add_check(actions) -> None:
-    parser = actions.add_parser(
-        "check",
-        help="tell what changed",
-        epilog=CHECK_EXAMPLES,
-    )
+    parser = actions.add_parser("check", help="tell what changed", epilog=CHECK_EXAMPLES)
     parser.set_defaults(run=run_check)
     parser.add_argument("names", nargs="*", metavar="PROGRAM", help="default: all recorded")
     _add_file(parser, "--programs", "folder with other versions of the programs", "DIR")

@@ -14,11 +14,10 @@ from g12.machine_ini import AXES
 from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
-    Parser,
-    add_program,
     checked_ini,
     number_above,
     one_line,
+    program_parser,
 )
 from g12.tools.headless.machine import Run
 from g12.tools.headless.run import run_anyhow
@@ -54,8 +53,7 @@ def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
 @one_line("run")
 def main(arguments: list[str]) -> int:
     """Run the command."""
-    parser = Parser(prog="g12 run", description=__doc__, epilog=EXAMPLES)
-    add_program(parser)
+    parser = program_parser("run", __doc__, EXAMPLES)
     timeout = {"type": number_above(0), "default": 600.0, "metavar": "SECONDS"}
     parser.add_argument("--timeout", **timeout, help="give up after this (default 600)")
     options = parser.parse_args(arguments)

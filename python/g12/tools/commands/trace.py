@@ -11,11 +11,10 @@ from __future__ import annotations
 from g12.machine_ini import AXES
 from g12.tools.commands.arguments import (
     GOOD,
-    Parser,
-    add_program,
     checked_ini,
     count_from,
     one_line,
+    program_parser,
 )
 from g12.tools.machine.filter import opened_program
 from g12.tools.preview.ended import ended, with_axes
@@ -51,8 +50,7 @@ def _moves(move: Move, axis: str) -> bool:
 @one_line("trace")
 def main(arguments: list[str]) -> int:
     """Run the command."""
-    parser = Parser(prog="g12 trace", description=__doc__, epilog=EXAMPLES)
-    add_program(parser)
+    parser = program_parser("trace", __doc__, EXAMPLES)
     digits = {"type": count_from(0), "default": 6, "metavar": "N"}
     parser.add_argument("--digits", **digits, help="decimals (default 6)")
     options = parser.parse_args(arguments)

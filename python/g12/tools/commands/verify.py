@@ -14,12 +14,12 @@ from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
     Parser,
-    add_program,
     add_run,
     check_run,
     checked_ini,
     number_above,
     one_line,
+    program_parser,
     samples_of_run,
 )
 from g12.tools.errors import UsageError
@@ -49,8 +49,7 @@ exit code: 0 everything is as programmed, 1 something is not, 2 wrong use
 
 def command_parser() -> Parser:
     """Return the command's words."""
-    parser = Parser(prog="g12 verify", description=__doc__, epilog=EXAMPLES)
-    add_program(parser)
+    parser = program_parser("verify", __doc__, EXAMPLES)
     parser.add_argument(
         "--tolerance", type=number_above(0), metavar="MM", help="in place of the usual ones"
     )
