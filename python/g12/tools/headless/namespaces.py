@@ -70,7 +70,7 @@ class Isolated:
         }
         script = ISOLATE if has_namespaces() else CONTAINED
         with open(self.folder / "log.txt", "wb") as log:
-            self._process = start(script, job, log)
+            self._process = started(script, job, log)
 
     def exit_code(self) -> int | None:
         """Return the exit code, None while it runs."""
@@ -109,7 +109,7 @@ def has_namespaces() -> bool:
     nothing = {"command": ["true"], "environment": {}, "copies": {}, "covers": {}, "scratch": ""}
     with (
         tempfile.TemporaryFile("w+", encoding="utf-8") as log,
-        start(ISOLATE, nothing, log) as init,
+        started(ISOLATE, nothing, log) as init,
     ):
         refused = init.wait()
         log.seek(0)
@@ -119,7 +119,7 @@ def has_namespaces() -> bool:
     return not refused
 
 
-def start(script: Path, job: Mapping[str, object], log: IO) -> subprocess.Popen:
+def started(script: Path, job: Mapping[str, object], log: IO) -> subprocess.Popen:
     """Start a script with its job; it ends when its standard input is closed."""
     streams = {"stdin": subprocess.PIPE, "stdout": log, "stderr": log}
     process = subprocess.Popen([PYTHON, str(script)], **streams, start_new_session=True)
