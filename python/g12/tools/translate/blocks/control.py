@@ -26,7 +26,7 @@ MEANINGS = {
     "G": (
         "dwell", "polar on", "polar off", "cylinder", "speed limit or origin", "local offset",
         "numbered offset", "offset by program", "exact stop", "macro call", "cancel cycle",
-        "drilling cycle", "pocket to Z",
+        "drilling cycle",
     ),
     "M": ("subprogram", "local subprogram", "return"),
 }  # fmt: skip

@@ -39,7 +39,6 @@ WORD_RULES = (
     polar.feed_again,
     motion.exact_stop,
     increments.incremental_words,
-    cycles.pocket,
     cycles.drilling_cycle,
     reference.machine_position,
     motion.motion_mode,

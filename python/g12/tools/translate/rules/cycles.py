@@ -36,17 +36,6 @@ def drilling_cycle(draft: Draft) -> None:
         drill(draft, draft.state.cycle, stored_words(draft))
 
 
-def pocket(draft: Draft) -> None:
-    """Give G12 and G13 without Z the height where the tool stands."""
-    code = draft.meanings.pop("pocket to Z", None)
-    if not code:
-        return
-    draft.put_first(code.text)
-    if "Z" not in draft.letters():
-        incremental = draft.sure("distance", f"{code.code} without Z") == "G91"
-        draft.words.append(ForeignWord("Z", "0" if incremental else "#5422", "expression"))
-
-
 def cancel(draft: Draft) -> None:
     """G80: leave it to the motion code beside it, or to the one that is needed next."""
     moving = set(draft.codes()) & MOTIONS or draft.axis_words()

@@ -85,7 +85,7 @@ def radius_offset(draft: Draft) -> None:
     word = next((word for word in draft.words if word.letter == "D"), None)
     if word:
         draft.change(radius=word.value)
-        if not USES_D.intersection(codes) and "pocket to Z" not in draft.meanings:
+        if not USES_D.intersection(codes):
             draft.take("D")
             draft.comments.append(word.text)
     if COMPENSATION.intersection(codes):
