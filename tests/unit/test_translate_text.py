@@ -207,7 +207,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G154", "G154 needs P and a whole number"),
         (HAAS, "G10 L5 P1 X1.", "G10 needs L2"),
         (HAAS, "G10 L12 P3 G91 R.1", "G10 for the diameter of T3"),
-        (HAAS, "M97 P5", "N5 is not in this file"),
+        (HAAS, "M97 P5", "N5 is not in this program: M97"),
         (HAAS, "M98", "M98 needs P"),
         (HAAS, "M99 P5", "M99 P, a return to another block"),
         (HAAS, "G65 P5 O1", "O1 cannot be an argument"),
@@ -258,6 +258,82 @@ def test_the_end_of_a_loop_is_a_way_to_its_beginning():
     assert sentence(HAAS, f"{MILL}#1=0\n{loop}").sentence.startswith(
         "G53 is absolute, but the dist"
     )
+
+
+# ---------------------------------------------------------------- the order of programs
+
+
+def test_a_main_program_behind_its_subprograms_is_written_first():
+    text = "%\nO5\nX1.\nM99\nO1 (MAIN)\nG20 G90 G0 X0\nM98 P5\nM30\n%\n"
+    assert lines(HAAS, text) == [
+        f"{' '.join(HAAS.start)} (%)",
+        "(O1)(MAIN) (line 5)",
+        "G20 G90 G0 X0 (line 6)",
+        "M98 P5 (line 7)",
+        "M30 (line 8)",
+        "O5 (line 2)",
+        "X1. (line 3)",
+        "M99 (line 4)",
+        "(%) (line 9)",
+    ]
+
+
+def test_a_subprogram_that_stands_above_its_call_is_written_below():
+    text = "G20 G90 G0 X0\nM98 P7\nM30\nO5\nX1.\nM99\nO6\nM99\nO7\nM98 P5\nM99\n"
+    written = [line for line in lines(HAAS, text) if line.startswith("O")]
+    assert written == ["O7 (line 9)", "O5 (line 4)"]
+
+
+def test_programs_that_are_in_order_stay():
+    text = "G0 G20 X0\nM98 P5\nM98 P6\nM30\nO6\nM98 P5\nM99\nO5\nX1.\nM99\n"
+    assert not any("(line" in line for line in lines(HAAS, text)[2:])
+
+
+def test_a_subprogram_that_is_reached_in_two_modes_is_written_for_each():
+    text = "M98 P5\nG91\nM98 P5\nM30\nO5\nG28 U5.\nM99\n"
+    own = read_control("okuma-lathe")
+    assert lines(own, f"G94 G0 X1.\n{text}")[3:] == [
+        "G91",
+        "M98 P10000005",
+        "M30",
+        "O5",
+        "G28 X[2 * #5420 + [5.]]",
+        "M99",
+        "O10000005 (line 6)",
+        "G28 X5. (line 7)",
+        "M99 (line 8)",
+    ]
+
+
+def test_the_copies_of_a_subprogram_are_copied_with_what_they_call():
+    text = "M98 P5\nG91\nM98 P5\nM30\nO5\nM98 P6\nM99\nO6\nG28 U5.\nM99\n"
+    written = lines(read_control("okuma-lathe"), f"G94 G0 X1.\n{text}")
+    calls = [line.partition(" (")[0] for line in written if line.startswith(("O", "M98"))]
+    assert calls == [
+        "M98 P5", "M98 P10000005", "O5", "M98 P6", "O6",
+        "O10000005", "M98 P10000006", "O10000006",
+    ]  # fmt: skip
+
+
+def test_m97_calls_a_block_of_its_own_program():
+    text = "O1\nG20 G90 G0 X0\nM98 P2\nM97 P100\nM30\n{}X1.\nM99\nO2\nM99\nN100 X5.\nM99\n"
+    assert "N100 X1. (line 6)" in lines(HAAS, text.format("N100 "))
+    refused = sentence(HAAS, text.format(""))
+    assert refused == (4, "N100 is not in this program: M97 calls a block of it")
+
+
+def test_a_block_number_that_two_programs_call_is_refused():
+    text = "G20 G0 X0\nM97 P9\nM98 P2\nM30\nN9 X1.\nM99\nO2\nM97 P9\nM99\nN9 X2.\nM99\n"
+    assert sentence(HAAS, text).sentence.startswith("N9 stands twice in this file")
+
+
+def test_many_programs_take_little_time():
+    count = 3000
+    subs = "".join(f"O{n}\nM98 P{n - 1}\nM99\n" for n in range(2, count))
+    start = time.process_time()
+    translated = lines(HAAS, f"G20 G0 X0\nM98 P{count - 1}\nM30\nO1\nM99\n{subs}")
+    assert translated[4] == f"O{count - 1} (line {3 * count - 3})"
+    assert time.process_time() - start < 5
 
 
 # ---------------------------------------------------------------- cylinder, builder's words

@@ -7,18 +7,18 @@ the last translation of each block holds on every way. A mode can only become un
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterator
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall
-from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
 from g12.tools.translate.rules import WORD_RULES
 from g12.tools.translate.rules.plain import is_plain
+from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.statements import STATEMENTS
-from g12.tools.translate.structure import MAIN, Structure
+from g12.tools.translate.structure import ENDS, MAIN, Structure
 
-ENDS = frozenset(("M2", "M30"))
 Progress = Callable[[int], None]
 
 
@@ -52,10 +52,26 @@ class FollowedProgram:
     def run(self) -> FollowedProgram:
         """Follow the main program from its first block until nothing new is found."""
         if self.drafts:
-            self._pending.append((0, start_state(self.control)))
+            self._pending.append((self.structure.main, start_state(self.control)))
         while self._pending:
             self._reach(*self._pending.pop())
         return self
+
+    @property
+    def callers(self) -> dict[int, set[int]]:
+        """The numbers of the programs that call each program."""
+        return {n: {self._inside[index] for index in behind} for n, behind in self._behind.items()}
+
+    def calls_of(self, numbers: Collection[int]) -> Iterator[tuple[int, int]]:
+        """Yield each block between some programs that calls one of them, and the called number."""
+        for number in numbers:
+            for index in self._behind[number]:
+                if self._inside[index] in numbers:
+                    yield index, number
+
+    def callers_of(self, number: int) -> list[int]:
+        """Return the blocks that call a program, in order."""
+        return sorted(self._behind.get(number, ()))
 
     def program_of(self, index: int) -> int:
         """Return the number of the program that a block is in."""
@@ -77,7 +93,15 @@ class FollowedProgram:
 
     def _translate(self, index: int, state: ModalState) -> Draft:
         block = self.structure.blocks[index]
-        draft = Draft(block, state, self.control, self._machine_codes, self.structure.entries)
+        draft = Draft(
+            block,
+            state,
+            self.control,
+            self._machine_codes,
+            self.structure.entries,
+            index,
+            self.structure.called_as.get(index, 0),
+        )
         try:
             problem = block.problem or self.structure.problems.get(index)
             if problem:
@@ -92,18 +116,19 @@ class FollowedProgram:
                 apply_rules(draft)
         except NotTranslated as refusal:
             draft.refusal = str(refusal)
+            draft.unsure = refusal.modes if isinstance(refusal, NotSure) else ()
         return draft
 
     def _head(self, draft: Draft, index: int) -> None:
         """Write the first block of a program."""
-        number = self.structure.starts.get(index)
+        number = self.structure.starts.get(index, MAIN)
         word = draft.take("O")
-        if number is None and not word.value.isdigit():
+        if number == MAIN and not word.value.isdigit():
             raise NotTranslated(f"{word.text}: the number of a program must be a whole number")
         name = f"O{number}" if self.kinds.get(number) != "macro" else f"o<macro_{number}> sub"
         self._end(draft, index)
         apply_rules(draft)
-        if number is None:
+        if number == MAIN:
             draft.comments.insert(0, word.text)
         else:
             draft.head = name
@@ -155,18 +180,22 @@ class FollowedProgram:
             self._go_on(index, self._exits[call.number])
 
     def _wrong_call(self, index: int, call: SubprogramCall, entry: int | None) -> str | None:
-        name = f"O{call.number}" if call.number < 1_000_000 else f"N{call.number - 1_000_000}"
+        name = self.structure.name_of(call.number)
+        if entry is None and call.number in self.structure.behind_tape:
+            return f"{name} stands behind the % that ends the program: take that % out"
+        if entry is None and call.number >= LOCAL_BLOCKS:
+            return f"{name} is not in this program: M97 calls a block of it"
         if entry is None:
-            return f"{name} is not in this file: put the subprogram behind the main program"
-        if entry <= index:
-            return f"{name} stands above this call: LinuxCNC wants a subprogram below its calls"
+            return f"{name} is not in this file: put the subprogram into it"
+        if call.number in self.structure.doubled:
+            return f"{name} stands twice in this file: give one of them another number"
         if self.kinds.get(call.number, call.kind) != call.kind:
             return f"{name} is called by G65 and by M98: LinuxCNC wants a copy of it for each"
         return None
 
     def _return(self, number: int, state: ModalState) -> None:
         if number == MAIN:
-            self._pending.append((0, state))  # M99 of the main program: from the top again
+            self._pending.append((self.structure.main, state))  # M99 there: from the top again
             return
         known = self._exits.get(number)
         state = merged(known, state) if known else state

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import printable
 from g12.tools.translate.follow import FollowedProgram
+from g12.tools.translate.order import WrittenRow
 
 LONGEST_LINE = 254  # characters that LinuxCNC reads of a line
 LONGEST_MARK = 20  # of them for "/ " and "(line 123456)"
@@ -46,13 +47,8 @@ def with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
     return [*lines, *pieces]
 
 
-def with_marks(lines: Sequence[str], line: int) -> list[str]:
-    """Return the lines of one line of the file: every further one says which it belongs to."""
-    return [lines[0], *(with_mark(text, line) for text in lines[1:])]
-
-
 def with_mark(text: str, line: int) -> str:
-    """Return a further line with its mark; LinuxCNC obeys the last comment of a block only."""
+    """Return a line with that of the file; LinuxCNC obeys only the last comment of a block."""
     return f"(line {line}) {text}" if OBEYED.search(text) else f"{text} (line {line})"
 
 
@@ -61,34 +57,34 @@ def as_comment(text: str) -> str:
     return f"(not reached: {printable(text.strip())[:LONGEST_COMMENT]})" if text.strip() else ""
 
 
-def output_lines(rows: Sequence[str], followed: FollowedProgram) -> Iterator[str]:
-    """Yield the lines of a program from the drafts of its blocks; none of them is refused."""
+def output_lines(
+    rows: Sequence[str], order: Iterable[WrittenRow], followed: FollowedProgram
+) -> Iterator[str]:
+    """Yield the lines of a program from the drafts of its blocks; none of them is refused.
+
+    ``order`` are the file's lines as they are written. From where they are not in their own order
+    any more every line says its number.
+    """
     start = " ".join(followed.control.start)
-    by_line = drafts_by_line(followed)
-    for line, row in enumerate(rows, 1):
-        lines = lines_of_row(row, by_line.get(line), followed)
-        if line == 1 and start:
-            lines = begun(start, lines, by_line.get(line))
-        yield from with_marks(lines, line)
+    in_place = True
+    for place, (line, indices) in enumerate(order, 1):
+        lines = lines_of_row(rows[line - 1], indices, followed)
+        if place == 1 and start:
+            lines = begun(start, lines)
+        in_place = in_place and place == line
+        yield from lines[:in_place]
+        yield from (with_mark(text, line) for text in lines[in_place:])
 
 
-def drafts_by_line(followed: FollowedProgram) -> dict[int, list[int]]:
-    """Return the indices of the blocks that each line has."""
-    by_line: dict[int, list[int]] = {}
-    for index, block in enumerate(followed.structure.blocks):
-        by_line.setdefault(block.line, []).append(index)
-    return by_line
-
-
-def lines_of_row(row: str, indices: Sequence[int] | None, followed: FollowedProgram) -> list[str]:
+def lines_of_row(row: str, indices: Sequence[int], followed: FollowedProgram) -> list[str]:
     """Return the lines of one line of the file."""
     lines: list[str] = []
-    for index in indices or ():
+    for index in indices:
         draft = followed.drafts[index]
         block = followed.structure.blocks[index]
         if draft:
             lines += draft.lines
-        elif block.words or block.kind not in ("words", "tape"):
+        elif block.words or block.problem or block.kind not in ("words", "tape"):
             return [as_comment(row)]
         else:
             tape = [f"%{block.label}"] if block.kind == "tape" else []
@@ -98,7 +94,7 @@ def lines_of_row(row: str, indices: Sequence[int] | None, followed: FollowedProg
     return lines if indices else [as_comment(row)]
 
 
-def begun(start: str, lines: list[str], indices: Sequence[int] | None) -> list[str]:
+def begun(start: str, lines: list[str]) -> list[str]:
     """Return the first line's lines with the codes that hold when a program begins."""
     first = lines[0] if lines else ""
     number = BLOCK_NUMBER.match(first)

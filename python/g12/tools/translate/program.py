@@ -10,8 +10,10 @@ from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import blocks_of, source_lines
+from g12.tools.translate.copies import followed_program
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.locals import unset_locals
+from g12.tools.translate.order import written_order
 from g12.tools.translate.output import lines_of, output_lines
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.structure import MAIN, structure_of
@@ -48,13 +50,27 @@ def translate_program(
     ]
     structure = structure_of(blocks, control)
     total = max(1, len(blocks))
-    followed = FollowedProgram(
-        structure, control, machine_codes, lambda index: progress(index / total)
-    ).run()
+    followed = followed_program(
+        structure, control, machine_codes, lambda index: progress(min(1, index / total))
+    )
     refused = sorted(set(refusals(followed)))
-    if not refused:
-        return Translation("\n".join([*output_lines(rows, followed), ""]), [])
-    return Translation("", refused)
+    if refused:
+        return Translation("", refused)
+    order = written_order(followed, len(rows))
+    if order.circular:
+        return Translation("", sorted(circular_calls(followed, order.circular)))
+    return Translation("\n".join([*output_lines(rows, order.rows, followed), ""]), [])
+
+
+def circular_calls(followed: FollowedProgram, circular: frozenset[int]) -> Iterator[RefusedBlock]:
+    """Yield the calls of programs that cannot be put below them."""
+    for index, number in followed.calls_of(circular):
+        name = followed.structure.name_of(number)
+        yield RefusedBlock(
+            followed.structure.blocks[index].line,
+            f"{name} cannot stand below this call: it calls itself, by way of others or not, or "
+            "there is something before its number on its line",
+        )
 
 
 def refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
@@ -90,5 +106,4 @@ def missing_end(followed: FollowedProgram, index: int) -> str | None:
         return f"N{following - LOCAL_BLOCKS} is called by M97 and also reached from above it"
     if number == MAIN:
         return None
-    name = f"N{number - LOCAL_BLOCKS}" if number > LOCAL_BLOCKS else f"O{number}"
-    return f"{name} ends here without M99"
+    return f"{followed.structure.name_of(number)} ends here without M99"

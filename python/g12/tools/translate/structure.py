@@ -3,68 +3,184 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import count
 
 from g12.tools.translate.blocks.control import Control
-from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
-from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
+from g12.tools.translate.blocks.lexer import ForeignBlock
+from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS, called_program
 
 MAIN = -1  # the number of the main program
 LOCAL = "local subprogram"
-CALLS = frozenset(("subprogram", LOCAL, "macro call"))
+CALLS = frozenset(("subprogram", "macro call"))
+ENDS = frozenset(("M2", "M30"))
+COPIES = 10_000_000  # the first copy of O100 is O10000100
 
 
 @dataclass
 class Structure:
     """The blocks of a file up to its end, by index.
 
-    ``tail`` are the blocks behind the closing ``%``. ``entries`` has the first block of each
-    program by its number, ``starts`` the numbers by the block; the main program is none of them.
-    ``partners`` joins each WHILE and its END, ``problems`` has what is wrong with a block,
-    ``last_returns`` the block in which each program returns for the last time.
+    ``tail`` are the blocks behind the closing ``%``, ``behind_tape`` the programs in them. ``main``
+    is the block that is reached first; ``entries`` has the first block of each other program by its
+    number, ``starts`` the numbers by the block, with MAIN for a main program that others stand
+    before. ``doubled`` are numbers that several programs have. ``partners`` joins each WHILE and
+    its END, ``problems`` has what is wrong with a block, ``last_returns`` the block in which each
+    program returns for the last time.
+
+    Behind the file's ``own`` blocks stand those of copies: programs that are called in modes that
+    differ, once for each. ``copies`` has the number that each is a copy of, ``called_as`` the
+    copy's number for the blocks that call one.
     """
 
-    blocks: Sequence[ForeignBlock]
+    blocks: list[ForeignBlock]
     tail: Sequence[ForeignBlock]
+    main: int = 0
     entries: dict[int, int] = field(default_factory=dict)
     starts: dict[int, int] = field(default_factory=dict)
+    doubled: set[int] = field(default_factory=set)
     partners: dict[int, int] = field(default_factory=dict)
     problems: dict[int, str] = field(default_factory=dict)
     last_returns: dict[int, int] = field(default_factory=dict)
+    copies: dict[int, int] = field(default_factory=dict)
+    called_as: dict[int, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.own = len(self.blocks)
+        self.behind_tape = frozenset(program_heads(self.tail).values())
 
     def add_entry(self, number: int, index: int) -> None:
         """Note that a program begins at a block."""
         if number in self.entries:
-            self.problems[index] = f"O{number} stands twice in the file"
+            self.doubled.add(number)
         else:
             self.entries[number] = index
             self.starts[index] = number
+
+    def add_copy(self, number: int, calls: Iterable[int]) -> None:
+        """Add a copy of a program, for some of the blocks that call it."""
+        start = self.entries[number]
+        blocks = self.blocks[start : self.end_of(start)]
+        base = len(self.blocks)
+        copy = next(n for k in count(1) if (n := number + k * COPIES) not in self.entries)
+        self.blocks += blocks
+        self.add_entry(copy, base)
+        self.copies[copy] = self.copies.get(number, number)
+        for index in range(start, start + len(blocks)):
+            if index in self.called_as:
+                self.called_as[base + index - start] = self.called_as[index]
+        self.called_as.update(dict.fromkeys(calls, copy))
+
+    def end_of(self, start: int) -> int:
+        """Return the index behind the last block of the program that begins at a block."""
+        end = min((index for index in self.starts if index > start), default=len(self.blocks))
+        tape = end == self.own and self.blocks[end - 1].kind == "tape"
+        return end - tape
+
+    def name_of(self, number: int) -> str:
+        """Return a program's number as in the file: O100, or N100 for a block that M97 calls."""
+        number = self.copies.get(number, number)
+        return f"N{number - LOCAL_BLOCKS}" if number >= LOCAL_BLOCKS else f"O{number}"
 
 
 def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
     """Return the structure of a file's blocks."""
     end = end_of_tape(blocks)
     structure = Structure(blocks[:end], blocks[end:])
-    codes = call_codes(control)
-    numbered: dict[int, int] = {}
-    local: set[int] = set()
-    started = False
-    for index, block in enumerate(structure.blocks):
+    heads = program_heads(structure.blocks)
+    main = start_of_main(structure, heads, control)
+    for index, number in heads.items():
+        if index != main:
+            structure.add_entry(number, index)
+        elif structure.entries:
+            structure.starts[index], structure.main = MAIN, index
+    add_local_programs(structure, heads, codes_meaning(control, LOCAL))
+    find_ends(structure, control)
+    return structure
+
+
+def find_ends(structure: Structure, control: Control) -> None:
+    """Note where loops and programs end."""
+    pair_loops(structure)
+    find_returns(structure, codes_meaning(control, "return"))
+
+
+def codes_meaning(control: Control, *meanings: str) -> frozenset[str]:
+    """Return the control's codes of some meanings."""
+    return frozenset(code for code, meaning in control.meanings.items() if meaning in meanings)
+
+
+def program_heads(blocks: Sequence[ForeignBlock]) -> dict[int, int]:
+    """Return the first block of each program, and its number; the first may have none (MAIN)."""
+    heads: dict[int, int] = {}
+    for index, block in enumerate(blocks):
         first = block.words[0] if block.words else None
         if first and first.letter == "O" and first.value.isdigit():
-            if started:
-                structure.add_entry(int(first.value), index)
-        elif first and first.letter == "N" and first.value.isdigit():
-            numbered.setdefault(int(first.value), index)
-        started = started or bool(block.words) or block.kind not in ("words", "tape")
-        if block.words:
-            local |= local_targets(block.words, codes)
-    for number in sorted(local & numbered.keys()):
-        structure.add_entry(LOCAL_BLOCKS + number, numbered[number])
-    pair_loops(structure)
-    find_returns(structure, {c for c, m in control.meanings.items() if m == "return"})
-    return structure
+            heads[index] = int(first.value)
+        elif not heads and (first or block.kind not in ("words", "tape")):
+            heads[index] = MAIN
+    return heads
+
+
+def start_of_main(structure: Structure, heads: dict[int, int], control: Control) -> int:
+    """Return the first block of the main program: of the first, unless others call that one.
+
+    Then it is the one that nobody calls; of several the one that has an end (M30).
+    """
+    first = next(iter(heads), 0)
+    if len(heads) < 2:
+        return first
+    called, ended = called_and_ended(structure.blocks, heads, control)
+    free = [index for index, number in heads.items() if number not in called]
+    if first in free and (first in ended or not ended.intersection(free)):
+        return first
+    found = [index for index in free if index in ended] or free
+    if len(found) > 1 or first in free:
+        names = " and ".join(f"O{heads[index]}" for index in dict.fromkeys((*free[:1], *found)))
+        structure.problems[first] = (
+            f"which program is to run, {names}? nobody calls them: put that one first"
+        )
+    return found[0] if len(found) == 1 and first not in free else first
+
+
+def called_and_ended(
+    blocks: Sequence[ForeignBlock], heads: dict[int, int], control: Control
+) -> tuple[set[int], set[int]]:
+    """Return the numbers that are called, and the first blocks of programs with M30 or M2."""
+    codes, numbers = codes_meaning(control, *CALLS), set(heads.values())
+    called: set[int] = set()
+    ended: set[int] = set()
+    head = -1
+    for index, block in enumerate(blocks):
+        head = index if index in heads else head
+        own = {word.code for word in block.words if word.letter in "GM" and word.kind == "number"}
+        if own & ENDS:
+            ended.add(head)
+        if own & codes:
+            called |= {called_program(n, control, numbers)[0] for n in numbers_of(block, "P")}
+    return called, ended
+
+
+def numbers_of(block: ForeignBlock, letter: str) -> set[int]:
+    """Return the whole numbers that a block has behind a letter."""
+    return {int(w.value) for w in block.words if w.letter == letter and w.value.isdigit()}
+
+
+def add_local_programs(structure: Structure, heads: dict[int, int], codes: frozenset[str]) -> None:
+    """Note the blocks that M97 calls, each in the program that the call stands in."""
+    head = -1
+    numbered: dict[tuple[int, int], int] = {}
+    wanted: set[tuple[int, int]] = set()
+    for index, block in enumerate(structure.blocks):
+        head = index if index in heads else head
+        first = block.words[0] if block.words else None
+        if first and first.letter == "N" and first.value.isdigit():
+            numbered.setdefault((head, int(first.value)), index)
+        if any(w.letter == "M" and w.kind == "number" and w.code in codes for w in block.words):
+            wanted |= {(head, number) for number in numbers_of(block, "P")}
+    for place in sorted(wanted & numbered.keys()):
+        structure.add_entry(LOCAL_BLOCKS + place[1], numbered[place])
 
 
 def end_of_tape(blocks: Sequence[ForeignBlock]) -> int:
@@ -77,21 +193,7 @@ def end_of_tape(blocks: Sequence[ForeignBlock]) -> int:
     return len(blocks)
 
 
-def call_codes(control: Control) -> dict[str, str]:
-    """Return the control's codes that call something, and what."""
-    return {code: meaning for code, meaning in control.meanings.items() if meaning in CALLS}
-
-
-def local_targets(words: Sequence[ForeignWord], codes: dict[str, str]) -> set[int]:
-    """Return the block numbers that a block calls as local subprograms."""
-    for word in words:
-        local = word.letter == "M" and word.kind == "number" and codes.get(word.code) == LOCAL
-        if local:
-            return {int(w.value) for w in words if w.letter == "P" and w.value.isdigit()}
-    return set()
-
-
-def find_returns(structure: Structure, codes: set[str]) -> None:
+def find_returns(structure: Structure, codes: frozenset[str]) -> None:
     """Note where each program returns for the last time."""
     number = MAIN
     for index, block in enumerate(structure.blocks):

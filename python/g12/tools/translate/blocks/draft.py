@@ -7,7 +7,7 @@ from collections.abc import Container
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.control import Control
-from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
 from g12.tools.translate.blocks.modal import UNSURE, ModalState
 
@@ -36,8 +36,10 @@ class Draft:
     calls and ``returns`` whether a subprogram ends here, by ``return_text``; ``head`` begins one;
     ``around`` are lines before and behind its own; ``is_settled`` means that the block is written
     for the distance mode that LinuxCNC is in, ``has_motion`` that its motion code is written;
-    ``programs`` are the numbers of the programs in the file; ``lines`` are those that it becomes,
-    ``refusal`` is why it is not translated, None if it is.
+    ``programs`` are the numbers of the programs in the file, ``called_as`` that of the copy that a
+    call is for, 0 if it is for none; ``index`` tells the block from all others; ``lines`` are those
+    that it becomes; ``refusal`` is why it is not translated, None if it is, and ``unsure`` the
+    modes that are not the same on every way, if that is why.
     """
 
     def __init__(
@@ -47,7 +49,10 @@ class Draft:
         control: Control,
         machine_codes: frozenset[str] | None = None,
         programs: Container[int] = (),
+        index: int = 0,
+        called_as: int = 0,
     ) -> None:
+        self.index, self.called_as = index, called_as
         self.block, self.state, self.control = block, state, control
         self.machine_codes = machine_codes
         self.words: list[ForeignWord] = list(block.words)
@@ -65,6 +70,7 @@ class Draft:
         self.programs = programs
         self.lines: list[str] = []
         self.refusal: str | None = None
+        self.unsure: tuple[str, ...] = ()
 
     def change(self, **modes: object) -> None:
         """Carry the state on."""
@@ -117,7 +123,7 @@ class Draft:
         value = getattr(self.state, group)
         if value == UNSURE:
             name = group.replace("_", " ")
-            raise NotTranslated(f"{why}, but the {name} here is not the same on every way")
+            raise NotSure(f"{why}, but the {name} here is not the same on every way", group)
         return value
 
     def written(self) -> str:

@@ -10,6 +10,14 @@ class NotTranslated(ValueError):
     """A word or a code that is not understood; the message is a sentence without the line."""
 
 
+class NotSure(NotTranslated):
+    """A block whose meaning hangs on ``modes`` that are not the same on every way to it."""
+
+    def __init__(self, sentence: str, *modes: str) -> None:
+        super().__init__(sentence)
+        self.modes = modes
+
+
 def excerpt(text: str) -> str:
     """Return text of a program short enough for a message."""
     return text if len(text) <= LONGEST_EXCERPT else f"{text[: LONGEST_EXCERPT - 1]}…"

@@ -66,8 +66,3 @@ def merged(one: ModalState, other: ModalState) -> ModalState:
     if one == other:
         return one
     return ModalState(*(a if a == b else UNSURE for a, b in zip(one, other)))
-
-
-def is_sure(mode: object) -> bool:
-    """Tell whether a mode is known on every way."""
-    return mode not in (UNSURE, UNKNOWN)

@@ -10,13 +10,14 @@ motion.
 from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
-from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
 from g12.tools.translate.rules.dwell import time_in_seconds
 from g12.tools.translate.rules.motion import CONSUMERS, MOTIONS
 
 KEPT = "ZRQP"
+CYCLE = ("cycle", "cycle_words", "own_motion")
 NEEDS = {"G73": "Q", "G83": "Q", "G82": "P", "G86": "P", "G89": "P"}
 
 
@@ -32,7 +33,7 @@ def drilling_cycle(draft: Draft) -> None:
         draft.change(cycle=UNKNOWN, cycle_words=())
     elif draft.state.cycle and draft.letters() & set("XYZR"):
         if draft.state.cycle == UNSURE:
-            raise NotTranslated("a drilling cycle is on, but not on every way to this block")
+            raise NotSure("a drilling cycle is on, but not on every way to this block", *CYCLE)
         drill(draft, draft.state.cycle, stored_words(draft))
 
 
@@ -66,7 +67,7 @@ def stored_words(draft: Draft) -> dict[str, str]:
     """Return what the cycle was given, by letter; ``@`` is the distance mode that it was under."""
     words = draft.state.cycle_words
     if words == UNSURE:
-        raise NotTranslated("a drilling cycle's words are not the same on every way to this block")
+        raise NotSure("a drilling cycle is not given the same on every way to this block", *CYCLE)
     return dict(words)
 
 
@@ -106,7 +107,7 @@ def absolute(draft: Draft, code: str, given: dict[str, str], under: str) -> None
 def repeat(draft: Draft, times: str) -> None:
     """Write how often: by L, or by a loop where LinuxCNC's L would stay in one place."""
     if times and draft.is_settled:
-        label = f"o<again_{draft.block.line}>"
+        label = f"o<again_{draft.index}>"
         draft.around = (f"{label} repeat [{times}]", f"{label} endrepeat")
     elif times:
         draft.words.append(word_of(f"L{times}"))

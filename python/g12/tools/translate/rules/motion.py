@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import Draft
-from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUPS, UNKNOWN, is_sure
+from g12.tools.translate.blocks.errors import NotSure, NotTranslated
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUPS, UNKNOWN, UNSURE
 
 MOTIONS = frozenset((*GROUPS["motion"], "G33"))
 CONSUMERS = frozenset(
@@ -55,8 +55,8 @@ def bare_words(draft: Draft) -> None:
         )
     if state.own_motion == AS_PROGRAMMED:
         return
-    if not is_sure(state.motion):
-        raise NotTranslated("words without G0 or G1, which is not the same on every way to here")
+    if state.motion == UNSURE:
+        raise NotSure("words without G0 or G1, which is not the same on every way here", "motion")
     draft.put_first(state.motion)
     draft.change(own_motion=AS_PROGRAMMED)
 

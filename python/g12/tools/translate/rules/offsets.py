@@ -15,7 +15,7 @@ from __future__ import annotations
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import UNKNOWN
 
 SLOT, SLOT_PARAMETER = "G59.3", 5381  # LinuxCNC's ninth system
 SYSTEMS = 99
@@ -148,11 +148,7 @@ def kept_offset(draft: Draft, incremental: bool) -> None:
         old = f"{parameter} + " if incremental else ""
         values.append(f"{parameter}=[{old}{word.value} * {SCALE}]")
     draft.after.append(" ".join(values))
-    if draft.state.offset == UNSURE:
-        raise NotTranslated(
-            "G10 L20, and which work offset is in force is not the same on every way"
-        )
-    if draft.state.offset in (f"P{number}", UNKNOWN):
+    if draft.sure("offset", "G10 L20 changes a work offset") in (f"P{number}", UNKNOWN):
         draft.after += [load_system(draft, number)] if draft.state.offset else []
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE, is_sure
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
 
 MOVING = frozenset("XYZABCUVWHF")
 PLANES = frozenset(("G17", "G18", "G19"))
@@ -89,8 +89,8 @@ def own_block(draft: Draft, code: str, lines: list[str]) -> None:
 
 def inside_polar(draft: Draft) -> None:
     """Rewrite the words between polar on and off."""
-    if draft.state.polar == UNSURE and draft.letters() & set("XYCUVH"):
-        raise NotTranslated("polar mode is on, but not on every way to this block")
+    if draft.letters() & set("XYCUVH"):
+        draft.sure("polar", "polar mode is on")
     if draft.state.polar != "on":
         return
     draft.words = [
@@ -148,7 +148,7 @@ def feed_again(draft: Draft) -> None:
     if draft.has_motion or state.own_feed == AS_PROGRAMMED or not draft.letters() & MOVING:
         return
     if "F" not in draft.letters():
-        if not is_sure(state.feed):
+        if draft.sure("feed", "a rapid of polar mode is before this block") == UNKNOWN:
             raise NotTranslated("a feed is wanted behind a rapid of polar mode: write F")
         draft.words.append(word_of(f"F{state.feed}"))
     if state.feed_mode not in draft.codes() and state.feed_mode != UNKNOWN:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.modal import UNKNOWN, is_sure
+from g12.tools.translate.blocks.modal import UNKNOWN
 
 
 def speed_limit(draft: Draft) -> None:
@@ -35,6 +35,7 @@ def limit_or_origin(draft: Draft, code: str) -> None:
 
 def limit_now(draft: Draft, code: str, limit: str) -> None:
     """Write the limit for the surface speed that is on."""
-    if not is_sure(draft.state.surface):
+    surface = draft.sure("surface", f"{code} S within G96")
+    if surface == UNKNOWN:
         raise NotTranslated(f"{code} S within G96, and the S of G96 is not known here")
-    draft.after.append(f"G96 S{draft.state.surface} D{limit}")
+    draft.after.append(f"G96 S{surface} D{limit}")

@@ -7,6 +7,9 @@ caller. G65 starts with its letters as #1 to #26 and gives the caller its own ba
 
 from __future__ import annotations
 
+from collections.abc import Container
+
+from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
@@ -47,10 +50,17 @@ def subprogram_call(draft: Draft, code: str, meaning: str) -> SubprogramCall:
     count = repeats.value if repeats else ""
     if meaning == "local subprogram":
         return SubprogramCall(LOCAL_BLOCKS + number, "sub", count)
-    digits = draft.control.value("subprograms", "repeat_digits", False)
-    if digits and number > 9999 and not count and number not in draft.programs:
-        count, number = str(number // 10000), number % 10000
+    if not count:
+        number, count = called_program(number, draft.control, draft.programs)
     return SubprogramCall(number, "sub", count)
+
+
+def called_program(number: int, control: Control, programs: Container[int]) -> tuple[int, str]:
+    """Return the program that M98 P calls and how often: P51001 can be O1001 five times."""
+    digits = control.value("subprograms", "repeat_digits", False)
+    if digits and number > 9999 and number not in programs:
+        return number % 10000, str(number // 10000)
+    return number, ""
 
 
 def macro_call(draft: Draft) -> SubprogramCall:
@@ -82,6 +92,8 @@ def check_point(draft: Draft, word: ForeignWord) -> None:
 
 def finish_call(draft: Draft) -> None:
     """Write the lines of a call or a return behind the block's other words."""
+    if draft.call and draft.called_as:
+        draft.call = draft.call._replace(number=draft.called_as)
     lines = call_lines(draft) if draft.call else []
     if draft.returns:
         lines.append(draft.return_text)
@@ -108,5 +120,5 @@ def call_lines(draft: Draft) -> list[str]:
     line = f"o<macro_{call.number}> call{values}"
     if not call.repeats:
         return [line]
-    label = f"o<again_{draft.block.line}>"
+    label = f"o<again_{draft.index}>"
     return [f"{label} repeat [{call.repeats}]", line, f"{label} endrepeat"]
