@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from g12.tools.headless.machine import Machine
-from g12.tools.preview.loading import linuxcnc_version
 from support.contour_geometry import (
     FROM_COLUMNS,
     deviation,
@@ -154,15 +153,29 @@ def test_the_manuals_flats_are_an_inch_apart(cuts):
         assert angle == pytest.approx(90, abs=0.05)
 
 
-@pytest.mark.xfail(
-    linuxcnc_version().startswith("2.10"),
-    reason="this planner lets C's speed jump between two pieces (measured: 111 to 38 °/s in 1 ms)",
-)
+@pytest.fixture(scope="module")
+def planner_keeps_limits(metric):
+    """Tell whether three plain moves of C, with nothing of the package, keep C's acceleration.
+
+    They do not where LinuxCNC stops at the full rate in front of a blend and then only blends at
+    half of it (f44628a478 of July 2026 to its issue 4539 of September, never in a release).
+    """
+    plain = ["G21 G90 G94 G64", "G0 X20 Z5 C0", "F18000", "G1 C3", "C6", "C9", "M2"]
+    return acceleration(metric.run_text(plain).samples.axes["C"]) <= C_ACCELERATION * 1.01
+
+
+def acceleration(positions):
+    """Return the largest, of positions sampled once a millisecond, per second squared."""
+    return np.abs(np.diff(positions, 2)).max() * 1e6
+
+
 @pytest.mark.parametrize("name", ["slot", "circles"])
-def test_c_keeps_its_limits_near_the_centre(cuts, name):
+def test_c_keeps_its_limits_near_the_centre(cuts, planner_keeps_limits, name):
     c = cuts(name).c
     assert np.abs(np.diff(c)).max() * 1000 <= C_SPEED * 1.001
-    assert np.abs(np.diff(c, 2)).max() * 1e6 <= C_ACCELERATION * 1.01
+    if not planner_keeps_limits:
+        pytest.xfail("this LinuxCNC exceeds C's acceleration in plain G1 moves (its issue 4539)")
+    assert acceleration(c) <= C_ACCELERATION * 1.01
 
 
 # ---------------------------------------------------------------- what an operator does
