@@ -10,6 +10,7 @@ The job is that of ``namespaces_init``; ``covers`` cannot be had.
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import json
 import os
@@ -29,7 +30,7 @@ from namespaces_init import (
     write_text,
 )
 
-PR_SET_CHILD_SUBREAPER = 36
+PR_SET_CHILD_SUBREAPER, PR_SET_NO_NEW_PRIVS = 36, 38
 IPC_RMID = 0
 LOCK = "/tmp/g12-linuxcnc.lock"  # held while one of ours runs
 LINUXCNC_LOCK = "/tmp/linuxcnc.lock"
@@ -51,7 +52,7 @@ def running() -> list[str]:
 
 def claimed() -> int:
     """Wait until no other of ours runs, and return what has to stay open."""
-    lock = os.open(LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+    lock = opened_lock()
     while not locked(lock):
         if select.select([sys.stdin], [], [], 0.1)[0]:
             raise IsolationError("nobody waits for this run any more")
@@ -62,6 +63,18 @@ def claimed() -> int:
             "keep another one apart from it"
         )
     return lock
+
+
+def opened_lock() -> int:
+    """Return the open lock file, which may be another user's."""
+    while True:
+        try:
+            lock = os.open(LOCK, os.O_RDONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC)
+            os.fchmod(lock, 0o444)
+            return lock
+        except FileExistsError:
+            with contextlib.suppress(FileNotFoundError):
+                return os.open(LOCK, os.O_RDONLY | os.O_CLOEXEC)
 
 
 def locked(file: int) -> bool:
@@ -149,7 +162,7 @@ def end_all(before: set[int]) -> None:
                 time.sleep(0.1)  # LinuxCNC's realtime part may be root's: it ends by itself
     for number in shared_memory() - before:
         libc.shmctl(number, IPC_RMID, None)
-    if os.path.exists(LINUXCNC_LOCK):
+    with contextlib.suppress(OSError):  # there is none, or it is an old one of another user's
         os.unlink(LINUXCNC_LOCK)
 
 
@@ -159,6 +172,8 @@ def main() -> int:
     lock = claimed()
     before = shared_memory()
     raise_if_failed(libc.prctl(PR_SET_CHILD_SUBREAPER, 1), "taking in orphans")
+    if os.geteuid():  # a setuid rtapi_app would lack root's right to the user's shared memory
+        raise_if_failed(libc.prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0), "staying an ordinary user")
     command = moved(job["command"], job)
     child = os.posix_spawnp(command[0], command, job["environment"])
     try:
