@@ -42,7 +42,7 @@ IN_INCHES = (
     "G20 G7 G18 G90 G94 G64 P0.0002 F100", "G0 X2 Z0 C0", "G12.1", "G1 X2 C1", "G3 X0 C1.5 R2",
     "G1 X-2 C0", "G13.1", "M2",
 )  # fmt: skip
-SOON = 0.2  # s until the machine is back from the face
+SOON = 2.0  # s until the machine is back from the face; a busy computer is told late
 
 
 @pytest.fixture(scope="module")
