@@ -300,6 +300,25 @@ def test_a_program_without_end_times_out_and_the_next_one_runs(mill):
     assert ends(mill.trace_text("G1 X1 F1")) == [near((1.0, 0.0, 0.0))]
 
 
+def test_an_ini_that_linuxcnc_does_not_read_is_told_and_never_passed_over(ini):
+    """2.10 reads nothing of such a file, and its interpreter goes on without the remaps."""
+    odd = ini.with_name("odd.ini")
+    odd.write_text(ini.read_text() + "a line without its sign\n")
+    asked = "import linuxcnc, sys; linuxcnc.ini(sys.argv[1])"
+    if subprocess.run([PYTHON, "-c", asked, odd], capture_output=True).returncode:
+        with pytest.raises(TraceFailure, match=r"does not read it: .*'a line without its sign'"):
+            Tracer(odd)
+    else:
+        assert ends(trace_text("G88.6 I2", odd)) == [near((2.0, 0.0, 0.0))]
+
+
+def test_an_include_of_an_include_is_the_comment_that_it_is_to_2_9(ini):
+    (ini.parent / "one.inc").write_text("[A]\n#INCLUDE two.inc\n")
+    odd = ini.with_name("odd.ini")
+    odd.write_text(ini.read_text() + "#INCLUDE one.inc\n")
+    assert ends(trace_text("G88.6 I2", odd)) == [near((2.0, 0.0, 0.0))]
+
+
 def test_a_machine_whose_python_does_not_load_says_so(ini, tmp_path):
     broken = tmp_path / "toplevel.py"
     broken.write_text("import nothing_of_that_name\n")

@@ -248,7 +248,7 @@ def test_a_line_too_long_to_be_read(found):
 def test_includes(found):
     text = GOOD + "#INCLUDE nowhere.inc\n#INCLUDE more.inc\n"
     unreadable, nested = found(text, files={"more_inc": "#INCLUDE deeper.inc\n"})
-    assert "nowhere.inc: LinuxCNC cannot read this file" in unreadable.text
+    assert "nowhere.inc: there is no such file to read" in unreadable.text
     assert nested.text.startswith("more.inc:1")
 
 

@@ -94,7 +94,8 @@ def unreadable_includes(config: Config, _codes: list[Code]) -> Iterator[Finding]
     for line in config.text.unreadable:
         yield warning(
             "include",
-            f"{line.place}: {line.text.strip()}: LinuxCNC cannot read this file and goes on",
+            f"{line.place}: {line.text.strip()}: there is no such file to read: "
+            "LinuxCNC 2.9 goes on, 2.10 does not start",
             "correct the file name or take the line out",
         )
 
@@ -105,7 +106,8 @@ def nested_includes(config: Config, _codes: list[Code]) -> Iterator[Finding]:
         if line.file != config.text.path and INCLUDE.match(line.text):
             yield warning(
                 "include",
-                f"{line.place}: {line.text.strip()}: an included file's #INCLUDE is only a comment",
+                f"{line.place}: {line.text.strip()}: an included file's #INCLUDE is only a comment "
+                "to LinuxCNC 2.9 and to this command; 2.10 reads that file",
                 f"put the #INCLUDE into {config.text.path.name} itself",
             )
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Machine INI files read the way LinuxCNC reads them.
 
-``#INCLUDE`` lines are expanded as the ``linuxcnc`` script does it: one level deep, relative to
-the INI's directory.  A value is looked up in the first section of its name only, as LinuxCNC
+``#INCLUDE`` lines are expanded as the ``linuxcnc`` script of 2.9 does it: one level deep, relative
+to the INI's directory.  A value is looked up in the first section of its name only, as LinuxCNC
 2.9 does; 2.10 reads all of them.
 """
 
@@ -150,13 +150,18 @@ def included_file(line: str, directory: Path) -> Path | None:
 
 
 def _expanded(lines: list[str], directory: Path):
-    """As the script does, a file that cannot be read is left out."""
+    """As the script does, a file that cannot be read is left out.
+
+    An included file's own #INCLUDE is made the comment that it is to 2.9, so that 2.10, which
+    would look for that file beside a copy, reads the same.
+    """
     for line in lines:
         included = included_file(line, directory)
         if not included:
             yield line
         elif os.access(included, os.R_OK):
-            yield from included.read_text(**ENCODING).splitlines()
+            for inner in included.read_text(**ENCODING).splitlines():
+                yield f"# {inner}" if INCLUDE.match(inner) else inner
 
 
 def _without(lines: Sequence[str], key: str) -> Iterator[str]:

@@ -467,6 +467,20 @@ def answered(machine: dict, tools: Tools, request: dict) -> dict:
         return {"failure": traceback.format_exc()}
 
 
+def ini_refused(machine: dict) -> str | None:
+    """Return why this LinuxCNC reads nothing of the INI; the interpreter would go on without it.
+
+    2.9 reads any file, 2.10 none with a line that it does not understand.
+    """
+    import linuxcnc
+
+    try:
+        linuxcnc.ini(machine["ini"])
+    except linuxcnc.error:
+        return f"LinuxCNC does not read it: {printed(machine['output']).rpartition(' error: ')[2]}"
+    return None
+
+
 def start(machine: dict, tools: Tools) -> dict:
     """Load the machine's Python modules and return its answer to a blank program.
 
@@ -479,6 +493,9 @@ def start(machine: dict, tools: Tools) -> dict:
     os.environ["INI_FILE_NAME"] = request["parameter_file"]
     no_end, _ = interpret({**machine, "setup": []}, tools, request)["error"]
     record_errors_of_handlers()
+    refused = ini_refused(machine)
+    if refused:
+        return {"error": (refused, 0)}
     os.environ["INI_FILE_NAME"] = machine["ini"]
     answer = answered(machine, tools, request)
     if answer.get("error") and answer["error"][0] == no_end:
