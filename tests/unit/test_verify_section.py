@@ -280,20 +280,8 @@ def test_a_section_that_never_goes_down_is_noted():
         measure(cut(around(TOOL)), square(-1)),
         measure(diving(around(TOOL), air=2.0, depth=-3.0), square(-1), z=2.0),
     )
-    assert list(section_notes(up, up)) == ["no move goes below the Z of G12.1"]
-    assert list(section_notes(down, down)) == [] and down.lowest == -3.0
-
-
-@pytest.mark.parametrize(("angle", "told"), [(90.0, "turned by 90°"), (360.0, "")])
-def test_another_zero_line_than_the_first_is_noted(angle, told):
-    found = []
-    for start in (0.0, angle):
-        hand = Hand().rapid(x=40.0, z=2.0, c=start).line(z=-3.0).line(c=start + 20.0)
-        found.append(measure(hand, [line(2, 40 + 0j, 40 * np.exp(1j * math.radians(20)))], z=2.0))
-    assert (found[1].zero, found[0].zero) == (angle, 0.0)
-    assert told in "".join(section_notes(found[1], found[0])) and bool(told) == any(
-        section_notes(found[1], found[0])
-    )
+    assert list(section_notes(up)) == ["no move goes below the Z of G12.1"]
+    assert list(section_notes(down)) == [] and down.lowest == -3.0
 
 
 def test_the_lowest_feed_is_placed_in_the_sections_own_plane():

@@ -12,6 +12,7 @@ from itertools import zip_longest
 
 from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.axis_limits import Overrun
+from g12.tools.verify.codes import EVENT
 from g12.tools.verify.pocket import SAME_LEVEL, PocketFacts
 from g12.tools.verify.pocket_order import ENDS
 from g12.tools.verify.rapids import Collision
@@ -67,6 +68,13 @@ def wall_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[
 def depth_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
     """Yield what is wrong with the depths that a pocket is cut at."""
     deepest = facts.target.schedule.deepest
+    if cuts_air(facts.target, tolerance):
+        at, start = (unit.text(facts.target.wall.height(depth)) for depth in (deepest, 0.0))
+        yield (
+            f"its depth Z{at} lies above Z{start}, where the tool comes from: it cuts air "
+            "(a lost minus sign?)"
+        )
+        return
     too_high = facts.depths[-1] - deepest
     if abs(too_high) > tolerance:
         yield f"the depth is off by {unit.fine(too_high)} {unit.name}"
@@ -74,6 +82,11 @@ def depth_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator
         yield f"it goes {unit.fine(deepest - facts.lowest)} {unit.name} below its depth"
     else:
         yield from level_findings(facts, max(tolerance, SAME_LEVEL), unit)
+
+
+def cuts_air(target: Target, tolerance: float) -> bool:
+    """Tell whether a pocket lies above where the tool comes from; an event begins at its W."""
+    return target.source.dialect != EVENT and target.schedule.deepest > tolerance
 
 
 def level_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
@@ -200,15 +213,19 @@ def pocket_notes(facts: PocketFacts, unit: Unit = MM) -> Iterator[str]:
         yield f"{other_tool(cutter, unit)}: measured with the cutter of D{cutter.named}"
 
 
-def section_notes(facts: SectionFacts, first: SectionFacts, unit: Unit = MM) -> Iterator[str]:
-    """Yield what a user should know of a section that is no fault; ``first`` is the program's."""
+def section_notes(facts: SectionFacts) -> Iterator[str]:
+    """Yield what a user should know of a section that is no fault."""
+    zero = facts.section.zero_line
+    if not zero.commanded and not zero.line:
+        angle = plain(facts.zero, 3)
+        yield f"no C word comes before it: its zero line is where C stands, at {angle}°"
     if facts.lowest >= facts.start_height - SAME_SIZE:
         yield "no move goes below the Z of G12.1"
-    turned = (facts.zero - first.zero + 180.0) % 360.0 - 180.0
-    if abs(turned) > SAME_ANGLE:
+    if facts.in_place.degrees > SAME_ANGLE:
+        degrees, seconds = plain(facts.in_place.degrees, 1), plain(facts.in_place.seconds, 1)
         yield (
-            f"its zero line is turned by {plain(turned, 3)}° against that of the program's first "
-            f"section (line {first.section.line})"
+            f"C turns in place at the centre, by {degrees}° in all: "
+            f"there the tool rubs for {seconds} s"
         )
     if not facts.tool and any(facts.sides):
         yield "the tool has no diameter: only its centre is measured"
@@ -219,9 +236,28 @@ def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> 
     if facts.section.doubt:
         yield f"the contour cannot be read from the words: {facts.section.doubt}"
         return
+    yield from mistake_findings(facts)
     yield from contour_findings(facts, tolerance, unit)
     yield from block_findings(facts, unit)
     yield from turn_findings(facts)
+
+
+def mistake_findings(facts: SectionFacts) -> Iterator[str]:
+    """Yield what a section's words most likely do not mean."""
+    zero, other = facts.section.zero_line, facts.other_side
+    if not zero.commanded and zero.turned:
+        yield (
+            f"C stands where line {zero.line} left it, turned by {plain(zero.turned, 1)}° "
+            "against that section: G0 C0 missing?"
+        )
+    if other is None:
+        return
+    instead = "G41" if other.side < 0 else "G42"
+    if other.inside is None:
+        yield f"the tool crosses the contour on its way in: {instead}?"
+    else:
+        here, there = ("inside", "outside")[:: 1 if other.inside else -1]
+        yield f"the tool is {here} the closed contour, it comes from {there}: {instead}?"
 
 
 def contour_findings(facts: SectionFacts, tolerance: float, unit: Unit) -> Iterator[str]:

@@ -38,6 +38,7 @@ from g12.tools.verify.rapids import Collision, collisions
 from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.wanted_circle import CircleReader, Target
 from g12.tools.verify.wanted_contour import SectionContour, sections
+from g12.tools.verify.zero_line import with_zero_lines
 
 POCKET_TOLERANCE = 0.005  # mm
 RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE
@@ -157,6 +158,7 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
         traverse=settings.yasnac_traverse * subject.ini.mm,
     )
     polar = sections(tracer, program, codes, settings.polar_x, blocks, parameters)
+    polar = with_zero_lines(polar, subject.trace.moves, program, codes, subject.ini)
     return Asked(list(reader.targets(blocks)), polar)
 
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from g12.tools.path.slowest import Pace
 from g12.tools.units import Unit, plain
 from g12.tools.verify.findings import (
+    SAME_AREA,
     UNMEASURED,
     collision_text,
     gouged,
@@ -57,7 +58,7 @@ def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
         ("centre", f"X{unit.text(x)} Y{unit.text(y)}, cutter ⌀ {unit.text(2 * cutter.radius)}"),
         ("radius", radius(facts, unit)),
         ("deviation", deviation(facts.deviation, proof.tolerances.pocket, unit)),
-        ("left inside", unit.area(facts.left)),
+        ("left inside", left_text(facts, unit)),
         ("gouged outside", unit.area(facts.gouge)),
         ("rings", f"{', '.join(unit.text(ring) for ring in facts.rings)} (tool centre), {turns}"),
         ("stepover", f"{stepover}, direction jump {plain(facts.jump, 2)}°"),
@@ -73,6 +74,15 @@ def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
     return paragraph(title, rows, list(pocket_notes(facts, unit)), found)
 
 
+def left_text(facts: PocketFacts, unit: Unit) -> str:
+    """Return what a pocket leaves inside its wall in words."""
+    core, area = facts.target.wall.core, unit.area(facts.left)
+    if not core:
+        return area
+    more = f", and {area}" if facts.left > SAME_AREA else ""
+    return f"a core of radius {unit.text(core)} {unit.name}, by design of a single ring{more}"
+
+
 def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
     """Return the paragraph of one polar section."""
     section = facts.section
@@ -86,6 +96,7 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
         ("X words", x_words(facts, proof)),
         ("depth", unit.text(facts.lowest)),
         ("from centre", sizes(facts.wanted, facts.reached, unit)),
+        *width_rows(facts, unit),
         ("deviation", deviation(facts.deviation, proof.tolerances.polar, unit)),
         ("left", unit.area(facts.left)),
         ("gouged", gouged(facts, unit)),
@@ -96,8 +107,16 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
         ("time", time_text(facts.pace)),
     ]
     found = list(section_findings(facts, proof.tolerances.polar, unit))
-    notes = list(section_notes(facts, proof.sections[0], unit))
+    notes = list(section_notes(facts))
     return paragraph(f"lines {section.line} to {section.last}: {section.code}", rows, notes, found)
+
+
+def width_rows(facts: SectionFacts, unit: Unit) -> list[tuple[str, str]]:
+    """Return the row that only a contour with parallel sides has: widths, the greatest first."""
+    texts = dict.fromkeys(tuple(map(unit.text, flat)) for flat in facts.flats)
+    asked, got = (", ".join(column) for column in zip(*texts)) if texts else ("", "")
+    text = f"programmed {asked}, reached {got} {unit.name}"
+    return [("across flats", text)] if texts else []
 
 
 def paragraph(title: str, rows: Sequence, notes: Sequence[str], found: Sequence[str]) -> str:
@@ -213,6 +232,7 @@ def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
         "reached": facts.reached,
         "deviation": finite(facts.deviation),
         "left": facts.left,
+        "core": facts.target.wall.core,
         "gouge": facts.gouge,
         "rings": list(facts.rings),
         "square_to": AXES[wall.plane],
@@ -240,6 +260,7 @@ def section_json(facts: SectionFacts, proof: Proof) -> dict:
         "lowest": facts.lowest,
         "radii": list(facts.wanted),
         "reached": list(facts.reached),
+        "across_flats": [list(flat) for flat in facts.flats],
         "deviation": finite(facts.deviation),
         "left": facts.left,
         "gouge": facts.gouge,
@@ -250,8 +271,9 @@ def section_json(facts: SectionFacts, proof: Proof) -> dict:
         "longest": facts.longest,
         "c_speed": facts.c_speed,
         "c_limit": finite(facts.c_limit),
+        "turned_in_place": facts.in_place._asdict(),
         **pace_json(facts.pace, facts.slowest_line),
-        "notes": list(section_notes(facts, proof.sections[0])),
+        "notes": list(section_notes(facts)),
         "findings": list(section_findings(facts, proof.tolerances.polar)),
     }
 

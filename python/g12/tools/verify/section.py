@@ -14,24 +14,30 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import groupby, product
+from itertools import groupby
 
 import numpy as np
-from shapely.geometry import LineString
-from shapely.ops import nearest_points
 
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import C, Z, spindle_angles
 from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
+from g12.tools.verify.closed_contour import MEETS, trimmed
 from g12.tools.verify.contour_distance import SAME, STEP, ContourDistances
-from g12.tools.verify.section_blocks import OffWords, depth_off, feed_off, turn_speed
+from g12.tools.verify.contour_side import OtherSide, other_side
+from g12.tools.verify.contour_width import across_flats
+from g12.tools.verify.section_blocks import (
+    InPlace,
+    OffWords,
+    depth_off,
+    feed_off,
+    turn_speed,
+    turned_in_place,
+)
 from g12.tools.verify.section_paths import Plane, ToolPaths, goes_across, tool_paths_of
 from g12.tools.verify.wanted_contour import Element, SectionContour
 
-LEADS = 3  # elements at either end of a contour that may be there to lead in or out
-MEETS = 1e-3
 TINY_PIECE = 1e-6
 
 
@@ -40,16 +46,20 @@ class SectionFacts:
     """What was measured of one section.
 
     ``wanted`` and ``reached`` are the contour's least and greatest distance from the spindle's
-    centre, where compensation is on if it is anywhere. ``deviation`` is the tool centre's
-    greatest distance from where it should be, ``jump`` the greatest change of direction from
-    piece to piece of one block, ``c_speed`` the highest speed of C and ``c_limit`` its limit,
+    centre, where compensation is on if it is anywhere, ``flats`` its widths between parallel sides,
+    programmed and reached; what leads to it and from it is no part of it. ``other_side`` says
+    that compensation takes the tool to the other side than it comes from. ``deviation`` is the
+    tool centre's greatest distance from where it should be, ``jump`` the greatest change of
+    direction from piece to piece of one block, ``c_speed`` the highest speed of C and
+    ``c_limit`` its limit,
     ``tool`` the cutter's radius. ``through`` says that the tool's centre goes beyond the contour:
     then ``gouge`` is only what lies next to it, and there is more.
 
     ``zero`` is the angle of C where the section begins, ``start_height`` Z there, ``lowest`` the
     lowest Z. ``slowest_at`` is the place of the lowest feed as the section's own X (a radius),
     C and Z, ``slowest_line`` its block. ``depth_off`` and ``feed_off`` are the first Z and the
-    first feed that are not the words', ``turn_speed`` is what F asks of C where it turns in place.
+    first feed that are not the words', ``turn_speed`` is what F asks of C where it turns in
+    place, ``in_place`` how far and how long it does below the part's face.
     """
 
     section: SectionContour
@@ -61,6 +71,8 @@ class SectionFacts:
     left: float
     gouge: float
     through: bool
+    flats: tuple[tuple[float, float], ...]
+    other_side: OtherSide | None
     jump: float
     pieces: int
     shortest: float
@@ -76,6 +88,7 @@ class SectionFacts:
     depth_off: OffWords | None
     feed_off: OffWords | None
     turn_speed: float
+    in_place: InPlace
 
 
 def measure_section(
@@ -115,6 +128,7 @@ def measure_section(
         depth_off=depth_off(section, moves, path),
         feed_off=feed_off(section, moves, path),
         turn_speed=turn_speed(section, moves, path),
+        in_place=turned_in_place(section, moves, path),
     )
 
 
@@ -133,6 +147,8 @@ def contour_facts(
         "left": sum(facts.left for facts in found),
         "gouge": sum(facts.gouge for facts in found),
         "through": any(facts.through for facts in found),
+        "flats": tuple(flat for facts in shaping for flat in facts.flats),
+        "other_side": other_side(section, tool),
     }
 
 
@@ -170,6 +186,7 @@ class StretchFacts:
     through: bool
     wanted: np.ndarray
     reached: np.ndarray
+    flats: Sequence[tuple[float, float]] = ()
 
 
 def measure_stretch(
@@ -185,7 +202,7 @@ def measure_stretch(
         return StretchFacts(float("inf"), 0.0, 0.0, False, nothing, nothing)
     side = stretch[0].side
     radius = tool if side else 0.0
-    points, nearest, left_of, steps = laid_along(stretch, paths)
+    points, nearest, left_of, own, steps = laid_along(stretch, paths)
     away = np.abs(points - nearest)
     wrong = left_of * side < -SAME
     off = np.where(wrong, -away, away) - radius
@@ -195,18 +212,22 @@ def measure_stretch(
     missed, lengths = missed_by(ContourDistances(stretch), side, radius, paths.below(np.inf))
     deviation = float(max(np.abs(off).max(), missed.max(initial=0.0)))
     wall = points + (nearest - points) * radius / np.maximum(away, 1e-12) if side else points
+    reach = np.abs(nearest[own]), np.abs(wall[own])
     if not side:
-        return StretchFacts(deviation, 0.0, 0.0, False, np.abs(nearest), np.abs(wall))
+        return StretchFacts(deviation, 0.0, 0.0, False, *reach)
     left = float(np.maximum(0.0, missed - tolerance) @ lengths)
     across = float(np.where(wrong, np.maximum(0.0, -off - tolerance), 0.0) @ steps)
     bite, lengths = bites(stretch, radius, paths)
     gouge = across + float(np.maximum(0.0, bite - tolerance) @ lengths)
     through = bool(wrong.any() or (bite > radius - STEP).any())
-    return StretchFacts(deviation, left, gouge, through, np.abs(nearest), np.abs(wall))
+    flats = across_flats(trimmed(stretch), nearest, wall)
+    return StretchFacts(deviation, left, gouge, through, *reach, flats)
 
 
 def laid_along(stretch: Sequence[Element], paths: ToolPaths) -> tuple[np.ndarray, ...]:
     """Return the tool centre's points, the contour's next to them, their sides, their steps.
+
+    Before the steps comes which of the contour's points are no lead to it or from it.
 
     Each block is compared with its own element and those before and after, as far as these are
     part of a closed contour: a later pass may cross the lead-in's extension.
@@ -222,8 +243,21 @@ def laid_along(stretch: Sequence[Element], paths: ToolPaths) -> tuple[np.ndarray
         elements = [stretch[index] for index in own] + [closed[index] for index in inside - own]
         contour = ContourDistances(elements)
         for tool_path in paths.of(line):
-            columns.append((tool_path, *contour.nearest(tool_path), shares_of(tool_path)))
+            nearest, sides = contour.nearest(tool_path)
+            parts = ([each[index] for index in inside] for each in (stretch, closed))
+            is_shape = on_shape(nearest, *parts)
+            columns.append((tool_path, nearest, sides, is_shape, shares_of(tool_path)))
     return tuple(np.concatenate(column) for column in zip(*columns))
+
+
+def on_shape(
+    points: np.ndarray, elements: Sequence[Element], closed: Sequence[Element]
+) -> np.ndarray:
+    """Tell which points of some elements are on what of these is no lead; see ``trimmed``."""
+    if sum(part.length for part in closed) > sum(element.length for element in elements) - SAME:
+        return np.ones(len(points), bool)
+    shape = ContourDistances(closed)
+    return shape.distances(points) < MEETS if shape.elements else np.zeros(len(points), bool)
 
 
 def shares_of(tool_path: np.ndarray) -> np.ndarray:
@@ -258,42 +292,6 @@ def bites(
     """
     points, lengths, _ = ContourDistances(trimmed(stretch)).samples
     return np.maximum(0.0, tool - paths.distances(points, paths.solid(stretch))), lengths
-
-
-def trimmed(stretch: Sequence[Element]) -> list[Element]:
-    """Return a contour without what sticks out where its end meets its beginning.
-
-    Elements that stick out as a whole are there with no length.
-    """
-    first, last = closing(stretch)
-    ends = np.concatenate([[0.0], np.cumsum([element.length for element in stretch])])
-    return [
-        element.part(*(np.clip((first, last), start, end) - start) / (end - start))
-        for element, start, end in zip(stretch, ends, ends[1:])
-    ]
-
-
-def closing(stretch: Sequence[Element]) -> tuple[float, float]:
-    """Return the lengths along a contour between which it is closed; else its whole length."""
-    ends = np.concatenate([[0.0], np.cumsum([element.length for element in stretch])])
-    count = len(stretch)
-    for i, j in product(range(min(count, LEADS)), range(count - 1, count - 1 - LEADS, -1)):
-        if j > i:
-            # Neighbours meet where they join: the later half of the second is looked at.
-            skipped = 0.5 if j == i + 1 else 0.0
-            one, other = as_line(stretch[i]), as_line(stretch[j].part(skipped, 1.0))
-            if one.distance(other) < MEETS:
-                here, there = nearest_points(one, other)
-                passed = ends[j] + skipped * stretch[j].length
-                return ends[i] + one.project(here), passed + other.project(there)
-    return 0.0, ends[-1]
-
-
-def as_line(element: Element) -> LineString:
-    """Return an element as a polyline."""
-    count = max(1, int(element.length / STEP)) if element.centre is not None else 1
-    points = (element.point(index / count) for index in range(count + 1))
-    return LineString([(point.real, point.imag) for point in points])
 
 
 def jump_between_pieces(

@@ -6,6 +6,7 @@ Lengths are millimetres, feeds mm/min along the part, C's speed degrees/s.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
@@ -29,6 +30,13 @@ class OffWords(NamedTuple):
     line: int
     found: float
     asked: float
+
+
+class InPlace(NamedTuple):
+    """Turns of C where the tool stays on its place on the part: degrees and seconds in all."""
+
+    degrees: float
+    seconds: float
 
 
 class BlockOfSection(NamedTuple):
@@ -117,9 +125,26 @@ def feed_asked(move: Move, length: float) -> float | None:
 
 def turn_speed(section: SectionContour, moves: Sequence[Move], path: Track) -> float:
     """Return the highest speed that F asks of C where it turns in place."""
-    in_place = (
-        moves[index]
+    in_place = turns_in_place(section, moves, path)
+    return max((rate(moves[index], 0.0) for index in in_place), default=0.0)
+
+
+def turned_in_place(section: SectionContour, moves: Sequence[Move], path: Track) -> InPlace:
+    """Return how far and how long C turns in place where the tool is below the part's face."""
+    face = moves[section.at].start[Z] - section.z
+    lowest = min(moves[index].end[Z] for index in range(section.at, section.end))
+    top = face - SAME_LEVEL if lowest < face - SAME_LEVEL else math.inf
+    low = [i for i in turns_in_place(section, moves, path) if moves[i].end[Z] < top]
+    angles = (abs(moves[index].end[C] - moves[index].start[C]) for index in low)
+    return InPlace(sum(angles), sum(path.seconds(index) for index in low))
+
+
+def turns_in_place(section: SectionContour, moves: Sequence[Move], path: Track) -> list[int]:
+    """Return the moves of a section at feed in which C turns and the tool stays on its place."""
+    return [
+        index
         for index in range(section.at, section.end)
-        if path.part_length(index) < TURN and moves[index].kind != "rapid"
-    )
-    return max((rate(move, 0.0) for move in in_place if move.start[C] != move.end[C]), default=0.0)
+        if moves[index].kind != "rapid"
+        and moves[index].start[C] != moves[index].end[C]
+        and path.part_length(index) < TURN
+    ]

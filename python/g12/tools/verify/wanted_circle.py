@@ -75,6 +75,11 @@ class Wall:
         """Return the index of the axis (0 for X) that is square to the circle's plane."""
         return int(np.argmax(np.abs(self.axes[2])))
 
+    @property
+    def core(self) -> float:
+        """Return the radius of what stands in the middle by design, 0 if nothing does."""
+        return 0.0 if self.bore or not self.inside else self.cleared
+
     def local(self, points: np.ndarray) -> np.ndarray:
         """Return points (n, 3) as seen from the centre along the plane's axes."""
         return (np.atleast_2d(points)[:, :3] - self.origin) @ self.axes.T

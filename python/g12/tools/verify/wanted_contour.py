@@ -14,6 +14,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 from g12.lengths import MM_PER_INCH
 from g12.tools.preview.executed_blocks import (
@@ -82,11 +83,28 @@ class Element:
         return 1j * along / (abs(along) or 1.0)
 
 
+class ZeroLine(NamedTuple):
+    """What has become of C since the section before, or since the program began.
+
+    ``commanded`` says that the program has put it where it stands. ``turned`` is by how many
+    degrees the zero line is turned against that of the section before, which ended in line
+    ``line``; 0 and 0 for the first.
+    """
+
+    commanded: bool
+    turned: float = 0.0
+    line: int = 0
+
+
+BEGUN = ZeroLine(True)
+
+
 @dataclass(frozen=True)
 class SectionContour:
     """One run through a section: first and last line, first move and the one after it, contour.
 
-    ``x`` and ``z`` are where it begins, in program coordinates. ``doubt`` tells why the contour
+    ``x``, ``z`` and ``c`` (degrees) are where it begins, ``left_c`` is where C stands behind it, in
+    program coordinates; ``zero_line`` tells how C came there. ``doubt`` tells why the contour
     could not be read from the words, if it could not. ``diameters`` says that X words are.
     """
 
@@ -100,6 +118,9 @@ class SectionContour:
     doubt: str = ""
     z: float = 0.0
     diameters: bool = False
+    c: float = 0.0
+    left_c: float = 0.0
+    zero_line: ZeroLine = BEGUN
 
 
 def sections(
@@ -183,7 +204,9 @@ def section_of(
     elements = tuple(element for block in group[1:] for element in pen.draw(block))
     code = next(f"G{code:g}" for code in first.codes if codes.polar(first.text))
     lines = first.text.number, last.text.number
-    return SectionContour(*lines, first.at, last.end, code, x, elements, doubt, z, diameters)
+    angles = first.state["_c"], last.left.get("_c", math.nan)
+    where = *lines, first.at, last.end, code
+    return SectionContour(*where, x, elements, doubt, z, diameters, *angles)
 
 
 class Pen:

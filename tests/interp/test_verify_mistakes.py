@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Mistakes in programs that are cut as they are written, and verify tells by name."""
+
+import pytest
+
+from g12.tools.machine.ini import read_ini
+from g12.tools.units import MM
+from g12.tools.verify.findings import section_notes
+from g12.tools.verify.proof import prove
+from g12.tools.verify.report import pocket_text, section_text
+from support.sim_machines import SIM
+
+MILL = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6", "G0 X0 Y0 Z1"]  # a 10 mm cutter
+LATHE = ["G21 G18 G7 G40 G90 G94", "T1 M6"]  # a 12 mm cutter
+LEAD_IN, LEAD_OUT = ["G12.1", "G1 C25 F2000", "G41 X27 F1000", "Z-5"], ["G40 X60 F2000", "G13.1"]
+FLAT = [*LEAD_IN, "C-25", *LEAD_OUT, "G0 Z2"]
+HEXAGON = ["C-7.7942", "X0 C-15.5885", "X-27 C-7.7942", "C7.7942", "X0 C15.5885", "X27 C7.7942"]
+SLOT = ["G12.1", "G1 Z-1 F800", "X-18", "X18", "Z2", "G13.1"]
+
+
+@pytest.fixture
+def proof_of(tmp_path):
+    """Return the proof of a program on a machine that knows o<turn>, which turns C to 0."""
+
+    def proof(*lines, machine="mill_mm"):
+        (tmp_path / "turn.ngc").write_text("o<turn> sub\nG0 C0\no<turn> endsub\nM2\n")
+        program = tmp_path / "program.ngc"
+        program.write_text("\n".join([*lines, "M2", ""]))
+        ini = read_ini(SIM / f"{machine}_headless.ini")
+        path = f"{ini.get('RS274NGC', 'SUBROUTINE_PATH')}:{tmp_path}"
+        return prove(program, ini.replaced({"RS274NGC": {"SUBROUTINE_PATH": path}}))
+
+    return proof
+
+
+def told(proof):
+    return [text for _, text in proof.findings]
+
+
+def notes(proof):
+    return [note for facts in proof.sections for note in section_notes(facts)]
+
+
+# ---------------------------------------------------------------- where C stands
+
+FORGOTTEN = "C stands where line 10 left it, turned by −39.8° against that section: G0 C0 missing?"
+
+
+@pytest.mark.parametrize(
+    ("between", "found"),
+    [
+        ([], [FORGOTTEN]),
+        (["G0 X60 Z5 (C0)"], [FORGOTTEN]),
+        (["G0 C0"], []),
+        (["G0 C180"], []),
+        (["G0 C-39.805571"], []),
+        (["G92 C0"], []),
+        (["G10 L20 P1 C0"], []),
+        (["o<turn> call"], []),
+        (["o1 if [1]", "G0 X60 C[10 - 10]", "o1 endif"], []),
+    ],
+)
+def test_a_forgotten_zero_line_is_found(between, found, proof_of):
+    proof = proof_of(*LATHE, "G0 X60 Z2 C0", *FLAT, *between, *FLAT, machine="lathe_mm")
+    assert (told(proof), notes(proof)) == (found, [])
+
+
+def test_two_sections_that_begin_at_the_same_angle_need_no_c(proof_of):
+    lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X18 Z2 C0"]
+    proof = proof_of(*lines, *SLOT, *SLOT, machine="lathe_mm")
+    assert len(proof.sections) == 2 and (told(proof), notes(proof)) == ([], RUBS * 2)
+
+
+def test_a_first_section_without_a_c_word_is_noted(proof_of):
+    proof = proof_of(*LATHE, "G0 X60 Z2", *FLAT, machine="lathe_mm")
+    assert told(proof) == []
+    assert notes(proof) == ["no C word comes before it: its zero line is where C stands, at 0°"]
+
+
+# ---------------------------------------------------------------- at the centre
+
+RUBS = ["C turns in place at the centre, by 360° in all: there the tool rubs for 1 s"]
+
+
+def test_how_long_a_tool_rubs_at_the_centre(proof_of):
+    lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X18 Z2 C0"]
+    proof = proof_of(*lines, *SLOT, machine="lathe_mm")
+    assert (told(proof), notes(proof)) == ([], RUBS)
+
+
+def test_a_turn_above_the_face_rubs_nothing(proof_of):
+    lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X18 Z2 C0", "G12.1", "G1 X-18 F800"]
+    proof = proof_of(*lines, "Z-1", "X-10", "G13.1", "G0 Z2", machine="lathe_mm")
+    assert (told(proof), notes(proof)) == ([], [])
+
+
+# ---------------------------------------------------------------- the wrong side
+
+
+@pytest.mark.parametrize("last", [["G40 X60 F2000"], ["Z2", "G40 X60 F2000"]])
+def test_compensation_on_the_wrong_side_of_a_part_is_named(last, proof_of):
+    lead = ["G12.1", "G1 C12 F2000", "G42 X27 F1000", "Z-5"]
+    proof = proof_of(
+        *LATHE, "G0 X60 Z2 C0", *lead, *HEXAGON, *last, "G13.1", "G0 Z2", machine="lathe_mm"
+    )
+    assert told(proof)[0] == "the tool is inside the closed contour, it comes from outside: G41?"
+
+
+def test_compensation_on_the_wrong_side_of_a_flat_is_named(proof_of):
+    lead = [line.replace("G41", "G42") for line in FLAT]
+    proof = proof_of(*LATHE, "G0 X60 Z2 C0", *lead, machine="lathe_mm")
+    assert told(proof)[0] == "the tool crosses the contour on its way in: G41?"
+
+
+def test_the_inside_of_a_closed_contour_from_inside_is_good(proof_of):
+    square = ["C20", "X-40", "C-20", "X40", "C0"]
+    lines = ["G12.1", "G1 X10 F1000", "Z-1", "G41 X40", *square, "G40 X10", "Z2", "G13.1"]
+    proof = proof_of(*LATHE, "G0 X60 Z2 C0", *lines, machine="lathe_mm")
+    assert told(proof) == []
+
+
+# ---------------------------------------------------------------- sizes
+
+
+def rows(text):
+    """Return a paragraph's rows as a dictionary."""
+    return dict(line.strip().split(None, 1) for line in text.splitlines()[1:-1])
+
+
+def test_the_size_of_a_contour_is_its_own_without_its_leads(proof_of):
+    lead = ["G12.1", "G1 C12 F2000", "G41 X27 F1000", "Z-5"]
+    proof = proof_of(*LATHE, "G0 X60 Z2 C0", *lead, *HEXAGON, *LEAD_OUT, machine="lathe_mm")
+    told = section_text(proof.sections[0], proof, MM)
+    assert "  from centre     programmed 13.5 to 15.588, reached 13.49" in told
+    assert "  across flats    programmed 27, reached 27 mm" in told
+
+
+def test_a_flat_alone_has_no_width(proof_of):
+    proof = proof_of(*LATHE, "G0 X60 Z2 C0", *FLAT, machine="lathe_mm")
+    assert "across flats" not in section_text(proof.sections[0], proof, MM)
+
+
+def test_a_single_ring_tells_of_its_core(proof_of):
+    proof = proof_of(*MILL, "G13 I20 Z-3 D4", "G13 I9 Z-3 D4", "G13 I6 K20 Q4 Z-3 D4")
+    first, second, third = (pocket_text(facts, proof, MM) for facts in proof.pockets)
+    assert "  left inside     a core of radius 10 mm, by design of a single ring" in first
+    assert "  left inside     0 mm²" in second and "  left inside     0 mm²" in third
+
+
+# ---------------------------------------------------------------- depth
+
+
+@pytest.mark.parametrize(
+    ("head", "block", "found"),
+    [
+        ([], "G13 I9 Z3 D4", "3 lies above Z1"),
+        (["G0 Z-4"], "G13 I9 Z-3 D4", "−3 lies above Z−4"),
+        (["G91"], "G13 I9 Z3 D4", "4 lies above Z1"),
+    ],
+)
+def test_a_lost_minus_sign_is_found(head, block, found, proof_of):
+    text = f"its depth Z{found}, where the tool comes from: it cuts air (a lost minus sign?)"
+    assert told(proof_of(*MILL, *head, block)) == [text]
+
+
+def test_a_pocket_at_the_present_depth_is_good(proof_of):
+    assert told(proof_of(*MILL, "G0 Z-4", "G13 I9 Z-4 D4", "G0 Z1")) == []
