@@ -44,6 +44,14 @@ net polar-program motion.coord-mode => polar-xzc.program
 net polar-stands motion.in-position => polar-xzc.stands
 net polar-type polar-xzc.type => motion.switchkins-type
 net polar-face polar-xzc.face => motion.digital-in-03
+net polar-jog polar-xzc.jog-inhibit => motion.jog-inhibit
+net polar-line motion.program-line => polar-xzc.program-line
+net polar-hold polar-xzc.hold => motion.feed-inhibit
+net polar-speed motion.requested-vel => polar-xzc.speed
+net polar-feed polar-xzc.feed => motion.adaptive-feed
+setp polar-xzc.acceleration [AXIS_X]MAX_ACCELERATION
+setp polar-xzc.c-speed [AXIS_C]MAX_VELOCITY
+setp polar-xzc.c-acceleration [AXIS_C]MAX_ACCELERATION
 .fi
 .RE
 
@@ -51,7 +59,12 @@ so that M68 E3 Q1 asks for the face and M68 E3 Q0 for X, Z and C. \\fBcentre\\fR
 of the X joint at which the tool is on the spindle's axis; it counts when the face is switched on.
 The guard switches only while the machine stands. It goes back to type 0 by itself when the
 machine is switched off, stopped in an emergency or jogged; then the request has to be taken back
-before a new one counts.
+before a new one counts. While the face is on and no program or MDI moves the machine, jogs are
+inhibited.
+
+M68 E3 Q2 asks for the face by hand: for lines of MDI, which nobody has looked at before. With M52
+P1 their speed is kept such that C can follow, the slower the nearer to the centre, and a move of a
+program's line is held.
 
 .B What is refused.
 A move that means nothing in the type in force fails: one to a Y other than 0 in type 0, and one
@@ -62,17 +75,29 @@ In the centre the angle of C is free. It stays what it was when the tool came, s
 centre in another direction than it came needs a turn of C in type 0 in between. LinuxCNC knows
 nothing of C's speed while it plans X and Y: feeds near the centre have to be chosen so that C can
 follow. The G12.1 of this package does both.
+
+.B LinuxCNC's own G12.1.
+Versions after 2.9 have G12.1 P1 and G13.1, which select the type without the guard's care. The
+module tells them that type 0 is X, Z and C.
 """;
 
 modparam dummy coordinates=XZC "letter of each joint";
 
-pin in float request "type that is asked for: 1 is the face, everything else X, Z and C";
+pin in float request "1 asks for the face, 2 for the face by hand, everything else for X, Z and C";
 pin in float centre "position of the X joint with the tool on the spindle's axis";
 pin in bit enabled "the machine is on: motion.motion-enabled";
 pin in bit program "a program or MDI moves the machine, not a jog: motion.coord-mode";
 pin in bit stands "the machine stands: motion.in-position";
+pin in s32 program_line "line of the move that is made, 0 in MDI: motion.program-line";
+pin in float speed "speed that is asked for: motion.requested-vel";
+pin in float acceleration "of the face's X and Y: [AXIS_X]MAX_ACCELERATION";
+pin in float c_speed "[AXIS_C]MAX_VELOCITY";
+pin in float c_acceleration "[AXIS_C]MAX_ACCELERATION";
 pin out float type "for motion.switchkins-type";
 pin out bit face "type 1 is in force";
+pin out bit jog_inhibit "type 1 is in force without a program or MDI: for motion.jog-inhibit";
+pin out bit hold "a program moves the face by hand: for motion.feed-inhibit";
+pin out float feed = 1.0 "share of the speed that C can follow by hand: for motion.adaptive-feed";
 
 function guard "Choose the type.";
 
@@ -93,7 +118,11 @@ author "the g12 package";
 #define AT_CENTRE 1e-6 /* machine units: so near to it the angle of C is free */
 #define NO_MOVE 1e-6   /* machine units or degrees: rounding of a word that was not given */
 
-enum { XZC, FACE };
+#define LAG (0.1 * DEGREE) /* of C by hand, where the planner's acceleration is more than C's */
+#define NEARER 1.2 /* that begins so much outside of where the two are equal */
+#define ASIDE 0.4  /* of the acceleration: the rest is for what the slide has to do beside it */
+
+enum { XZC, FACE, BY_HAND };
 static const char letters[] = "XYZABCUVW";
 
 static char *coordinates = "XZC";
@@ -104,6 +133,7 @@ static struct {
     int begins;     /* the face was switched on, and forward has not seen it yet */
     double origin;  /* of the face: position of the X joint */
     double zero;    /* of the face: C in degrees on its X axis */
+    double radius;  /* where the tool stands on the face */
     int joints;
     int axis[EMCMOT_MAX_JOINTS]; /* index of each joint's letter */
     int x, c;                    /* joints */
@@ -155,7 +185,7 @@ int kinematicsForward(const double *joint, EmcPose *pose,
     memset(pose, 0, sizeof(*pose));
     for (k = 0; k < state.joints; k++) *axis_of(pose, state.axis[k]) = joint[k];
     if (state.kind == FACE) {
-        radius = joint[state.x] - state.origin;
+        radius = state.radius = joint[state.x] - state.origin;
         angle = (joint[state.c] - state.zero) * DEGREE;
         pose->tran.x = state.origin + radius * cos(angle);
         pose->tran.y = radius * sin(angle);
@@ -206,21 +236,54 @@ int kinematicsSwitch(int kind)
     return 0;
 }
 
+/* LinuxCNC after 2.9 asks what a type is; -1 is no information, and type 0 is meant by G13.1. */
+int kinematicsTypeFlags(int kind)
+{
+#ifdef KINSTYPE_IDENTITY
+    if (kind == XZC) return KINSTYPE_IDENTITY;
+    if (kind == FACE) return KINSTYPE_PRIMARY;
+#endif
+    (void)kind;
+    return -1;
+}
+
 EXPORT_SYMBOL(kinematicsForward);
 EXPORT_SYMBOL(kinematicsInverse);
 EXPORT_SYMBOL(kinematicsType);
 EXPORT_SYMBOL(kinematicsSwitchable);
 EXPORT_SYMBOL(kinematicsSwitch);
+EXPORT_SYMBOL(kinematicsTypeFlags);
+
+/* Return the speed that C and the slide can follow at a distance from the centre, whatever the
+   direction: with its own acceleration A the planner turns C by up to A / r. Where that is more
+   than C's, speed grows with r only, so that a stop leaves C behind by LAG at most. */
+static double followed(const struct __comp_state *__comp_inst, double r)
+{
+    double most = sqrt(2.0) * acceleration, c_most = c_acceleration * DEGREE;
+    double near = NEARER * most / c_most, per_radius = sqrt(2.0 * LAG * c_most);
+    double v = per_radius * r;
+
+    if (r > near) {
+        v = sqrt(pow(per_radius * near, 2) + acceleration * (r - near)); /* half of it to brake */
+        v = fmin(v, sqrt(ASIDE * acceleration * r));
+    }
+    return fmin(v, 0.9 * c_speed * DEGREE * r);
+}
 
 /* A switch while a jog is under way would make the axes jump to where the jog stood before it. */
 FUNCTION(guard)
 {
     static int spent; /* the request ended by itself, and was not taken back since */
-    int asked = request == FACE;
+    int asked = request == FACE || request == BY_HAND, by_hand;
+    double most = c_acceleration > 0.0 ? followed(__comp_inst, state.radius) : 0.0;
 
     spent = asked && (spent || !enabled || !program);
     if (!enabled || (program && stands)) type = asked && !spent ? FACE : XZC;
     face = state.kind == FACE && !state.begins;
+    by_hand = face && request == BY_HAND;
+    jog_inhibit = face && !program;
+    hold = by_hand && program_line > 0;
+    feed = by_hand && speed > most ? most / speed : 1.0;
 }
 
 EXTRA_SETUP()

@@ -30,7 +30,10 @@ typedef struct EmcPose { PmCartesian tran; double a, b, c, u, v, w; } EmcPose;
 typedef unsigned long KINEMATICS_FORWARD_FLAGS;
 typedef unsigned long KINEMATICS_INVERSE_FLAGS;
 typedef enum { KINEMATICS_BOTH = 4 } KINEMATICS_TYPE;
-struct __comp_state { double request, centre, type; int enabled, program, stands, face; } pins;
+struct __comp_state {
+    double request, centre, type, speed, acceleration, c_speed, c_acceleration, feed;
+    int enabled, program, stands, face, program_line, jog_inhibit, hold;
+} pins;
 #define request (__comp_inst->request)
 #define centre (__comp_inst->centre)
 #define type (__comp_inst->type)
@@ -38,6 +41,14 @@ struct __comp_state { double request, centre, type; int enabled, program, stands
 #define program (__comp_inst->program)
 #define stands (__comp_inst->stands)
 #define face (__comp_inst->face)
+#define program_line (__comp_inst->program_line)
+#define speed (__comp_inst->speed)
+#define acceleration (__comp_inst->acceleration)
+#define c_speed (__comp_inst->c_speed)
+#define c_acceleration (__comp_inst->c_acceleration)
+#define jog_inhibit (__comp_inst->jog_inhibit)
+#define hold (__comp_inst->hold)
+#define feed (__comp_inst->feed)
 #define FUNCTION(name) static void name(struct __comp_state *__comp_inst)
 #define EXTRA_SETUP() \\
     static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extra_arg)
@@ -52,9 +63,22 @@ class Pose(ctypes.Structure):
     _fields_ = [(letter, ctypes.c_double) for letter in "xyzabcuvw"]
 
 
+NUMBERS = [
+    "request",
+    "centre",
+    "type",
+    "speed",
+    "acceleration",
+    "c_speed",
+    "c_acceleration",
+    "feed",
+]
+BITS = ["enabled", "program", "stands", "face", "program_line", "jog_inhibit", "hold"]
+
+
 class Pins(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_double) for name in ("request", "centre", "type")] + [
-        (name, ctypes.c_int) for name in ("enabled", "program", "stands", "face")
+    _fields_ = [(name, ctypes.c_double) for name in NUMBERS] + [
+        (name, ctypes.c_int) for name in BITS
     ]
 
 
@@ -66,6 +90,8 @@ class Kinematics:
         assert self.set_up("XZC") == 0
         self.pins.request = self.pins.centre = 0.0
         self.pins.enabled = self.pins.program = self.pins.stands = 1
+        self.pins.program_line = self.pins.speed = 0
+        self.pins.acceleration, self.pins.c_speed, self.pins.c_acceleration = 707, 360, 3600
         self.library.kinematicsSwitch(0)
         self.library.run_guard()
 
@@ -97,17 +123,21 @@ class Kinematics:
         return self.pins.type
 
 
-@pytest.fixture(scope="module")
-def library(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("kinematics")
+def compiled(folder, *options):
+    """Return the component as a library."""
     code = COMPONENT.read_text().partition("\n;;\n")[2]
     code = "\n".join(line for line in code.splitlines() if not line.startswith("#include"))
     source = folder / "polar_xzc.c"
     source.write_text(SURROUNDINGS + code + ENTRIES)
     command = ["cc", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function", "-O2", "-shared",
-               "-fPIC", "-o", folder / "polar_xzc.so", source, "-lm"]  # fmt: skip
+               "-fPIC", *options, "-o", folder / "polar_xzc.so", source, "-lm"]  # fmt: skip
     subprocess.run(command, check=True)
     return ctypes.CDLL(folder / "polar_xzc.so")
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory):
+    return compiled(tmp_path_factory.mktemp("kinematics"))
 
 
 @pytest.fixture
@@ -203,6 +233,12 @@ def test_only_two_types(kinematics):
     assert kinematics.library.kinematicsSwitch(2) == -1
 
 
+def test_type_0_is_declared_the_identity_where_linuxcnc_asks(library, tmp_path):
+    newer = compiled(tmp_path, "-DKINSTYPE_IDENTITY=4", "-DKINSTYPE_PRIMARY=8")
+    assert [newer.kinematicsTypeFlags(kind) for kind in (0, 1, 2)] == [4, 8, -1]
+    assert library.kinematicsTypeFlags(0) == -1
+
+
 # ---------------------------------------------------------------- the guard
 
 
@@ -235,3 +271,49 @@ def test_guard_goes_back_at_once_when_the_machine_is_off(kinematics):
 def test_guard_does_not_switch_under_a_jog(kinematics):
     kinematics.guard(request=1.0)
     assert kinematics.guard(program=0, request=0.0) == 1
+
+
+def test_no_jog_on_the_face(kinematics):
+    kinematics.guard(request=1.0)
+    kinematics.face(20, 0, 0)
+    kinematics.guard(program=0)
+    assert kinematics.pins.jog_inhibit
+    kinematics.guard(program=1, request=0.0)
+    kinematics.guard()
+    assert not kinematics.pins.jog_inhibit
+
+
+@pytest.mark.parametrize(("request_", "line", "held"), [(2.0, 7, 1), (2.0, 0, 0), (1.0, 7, 0)])
+def test_a_program_is_held_by_hand_only(kinematics, request_, line, held):
+    by_hand(kinematics, 20, request=request_, program_line=line)
+    assert kinematics.pins.hold == held
+
+
+def by_hand(kinematics, radius, request=2.0, speed=150.0, **pins):
+    """Return the speed that is left of what is asked for, at a distance from the centre."""
+    kinematics.guard(request=request)
+    kinematics.face(radius, 0, 0)
+    kinematics.guard(speed=speed, **pins)
+    return kinematics.pins.feed * speed
+
+
+def test_a_programs_feed_is_its_own(kinematics):
+    assert by_hand(kinematics, 1, request=1.0) == 150
+
+
+@settings(max_examples=300, deadline=None)
+@given(radius=st.floats(0.001, 300), speed=st.floats(0, 250))
+def test_c_and_the_slide_can_follow_by_hand(library, radius, speed):
+    left = by_hand(Kinematics(library), radius, speed=speed)
+    turning, planner, c_most = left / radius, 1000.0, math.radians(3600)
+    assert left <= speed
+    assert turning <= math.radians(360)
+    if (planner + left * turning) / radius > c_most:  # then no more than a lag stays behind a stop
+        assert turning**2 / (2 * c_most) <= math.radians(0.1001)
+    assert left * turning <= 0.293 * 1000  # beside 0.707 of the slide's acceleration on an arc
+    before = by_hand(Kinematics(library), radius + 0.01, speed=speed)
+    assert before**2 - left**2 <= 2 * 500 * 0.01 + 1e-6  # what can be braked there
+
+
+def test_speed_by_hand_far_out_is_that_of_the_program(kinematics):
+    assert by_hand(kinematics, 200, speed=150) == 150

@@ -12,8 +12,9 @@ import linuxcnc
 from interpreter import INTERP_OK, MODE_ABSOLUTE
 
 from g12.errors import BlockRefusal, Refusal
-from g12.host import glue
+from g12.host import face_by_hand, glue
 from g12.host.call_frame import CallFrame
+from g12.host.kinematics_switch import face_in_force
 from g12.host.polar_section import PolarSection
 from g12.host.program_lines import ProgramLines
 from g12.host.section_output import SectionOutput
@@ -39,6 +40,7 @@ INI = linuxcnc.ini(glue.ini_file() or os.devnull)
 REMAPS = {remap.code: remap for remap in remap_lines(INI.findall)}
 COORDINATES, AXES = set(coordinates_of(INI.find)), axes_of(INI.find, "XZC")
 FACE = face_of(INI.find)
+KINEMATICS = SETTINGS.polar_kinematics == "1"
 
 
 def check_at_start() -> None:
@@ -56,28 +58,46 @@ def polar_on(self, **words) -> Iterator[int]:
     """Read, plan and move a section: the handler of G12.1, which may have to wait."""
     try:
         glue.forget_return(self)
-        refuse_mdi(self)
-        program = program_behind(self)
-        yield from run_section(self, CallFrame(self, program.home.filename), program)
+        if glue.in_mdi(self):
+            yield from run_by_hand(self)
+        else:
+            program = program_behind(self)
+            yield from run_section(self, CallFrame(self, program.home.filename), program)
     except Exception as error:
         yield glue.refuse_block(self, error)
     yield INTERP_OK
 
 
-@glue.handler
-def polar_off(self, **words) -> int:
-    """Do nothing: the handler of G13.1 outside a section, where it is a safety line."""
-    block = self.blocks[self.remap_level]
-    if any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS):
-        raise BlockRefusal(glue.code_of_block(self), "stands alone in its block")
-    return INTERP_OK
+def polar_off(self, **words) -> Iterator[int]:
+    """End what G12.1 in MDI began: the handler of G13.1 outside a section.
+
+    Otherwise it is a safety line and does nothing. With a P word it is LinuxCNC's
+    ON_ABORT_COMMAND, which gets the reason behind it.
+    """
+    try:
+        glue.forget_return(self)
+        block = self.blocks[self.remap_level]
+        others = any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS)
+        if others or (block.p_flag and not FACE):
+            raise BlockRefusal(glue.code_of_block(self), "stands alone in its block")
+        if block.p_flag:
+            face_by_hand.abort(self)
+        elif KINEMATICS and self.task:
+            yield from face_by_hand.switch_off(self)
+    except Exception as error:
+        yield glue.refuse_block(self, error)
+    yield INTERP_OK
 
 
-def refuse_mdi(interp: object) -> None:
-    """Refuse a section in MDI, where the next line could be an old program's."""
-    if glue.in_mdi(interp):
-        code = glue.code_of_block(interp)
-        raise Refusal(f"{code} is not possible in MDI: it needs the lines behind it")
+def run_by_hand(interp: object) -> Iterator[int]:
+    """Switch on in MDI, where nothing behind can be read: it could be an old program's."""
+    start = start_of_section(interp, 0)
+    if not KINEMATICS:
+        rule = "is not possible in MDI: it needs the lines behind it"
+        raise BlockRefusal(start.place.code, rule)
+    check_section_start(start, COORDINATES)
+    polar_setup(start, SETTINGS, AXES, FACE)  # refuses what the machine cannot
+    yield from face_by_hand.switch_on(interp, start)
 
 
 def program_behind(interp: object) -> ProgramLines:
@@ -96,6 +116,8 @@ def run_section(interp: object, frame: CallFrame, program: ProgramLines) -> Iter
     try:
         start = start_of_section(interp, program.place)
         check_section_start(start, COORDINATES)
+        if KINEMATICS and interp.task and face_in_force():
+            raise start.place.refuse("is on already, by hand: G13.1 first")
         setup = polar_setup(start, SETTINGS, AXES, FACE)
         codes = codes_of_section(
             start.place.code, REMAPS.values(), polar_on.__name__, polar_off.__name__

@@ -17,6 +17,17 @@ from collections.abc import Container, Iterator, Sequence
 from typing import NamedTuple
 
 from g12.flat.contour import Arc, Plunge
+from g12.host.kinematics_switch import (
+    BY_PROGRAM,
+    INPUT_FOUND,
+    NOT_SWITCHED,
+    ON_THE_FACE,
+    has_switched,
+    modes_found,
+    to_axes,
+    to_face,
+    y_offset,
+)
 from g12.host.program_lines import error_text
 from g12.polar.face import FaceMove, FaceSwitch
 from g12.polar.plan import BlockMoves
@@ -31,11 +42,6 @@ TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
 MEANINGS_CHANGED = "g12: the axes mean something else now"  # for `g12.tools.preview.worker`
-CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66: polar_kinematics.hal
-SWITCHING = 10  # seconds that it may take at most, on a busy machine
-INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
-PLANES = {1: "G17", 2: "G19", 3: "G18"}  # interp.plane
-CENTRES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
 BLOCK_END = ""
 
 
@@ -220,37 +226,20 @@ class SectionOutput:
         interp.sequence_number = step.line
         found = interp.params[INPUT_FOUND]
         if step.on:
-            self._found = f"{PLANES[interp.plane]}{self._centres()}"
-            centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
-            interp.execute(f"M68E{CENTRE_OUTPUT}Q{decimal(centre / self.machine_unit)}")
-            interp.execute(f"M68E{FACE_OUTPUT}Q0")  # the last request may have ended by itself
-            interp.execute(f"M68E{FACE_OUTPUT}Q1")
-            yield f"M66P{FACE_INPUT}L3Q{SWITCHING}"
-            interp.execute("G17G91.1")
+            interp.g12_found = modes_found(interp)
+            yield from to_face(interp, self.machine_unit, BY_PROGRAM)
+            interp.execute(ON_THE_FACE)
         else:
-            interp.execute(self._found)
-            interp.execute(f"M68E{FACE_OUTPUT}Q0")
-            yield f"M66P{FACE_INPUT}L4Q{SWITCHING}"
-        self._check_switched(step)
+            interp.execute(interp.g12_found)
+            interp.g12_found = None
+            yield from to_axes(interp)
+        if not has_switched(interp):
+            raise SectionPlace(self.code, step.line).refuse(NOT_SWITCHED)
         interp.params[INPUT_FOUND] = found
         interp.current_x, interp.CC_current, interp.current_z = step.place
-        interp.current_y = -self._y_offset()
+        interp.current_y = -y_offset(interp)
         if not interp.task:
             self.canon.COMMENT(MEANINGS_CHANGED)
-
-    def _check_switched(self, step: FaceSwitch) -> None:
-        if self.interp.task and self.interp.params[INPUT_FOUND] == TIMED_OUT:
-            raise SectionPlace(self.code, step.line).refuse(
-                "the machine did not change its kinematics: is polar_kinematics.hal loaded?"
-            )
-
-    def _centres(self) -> str:
-        """Return the code in force that tells what I and J count from."""
-        return next(CENTRES[code] for code in self.interp.active_g_codes if code in CENTRES)
-
-    def _y_offset(self) -> float:
-        interp = self.interp
-        return interp.origin_offset_y + interp.axis_offset_y + interp.tool_offset.y
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
         """Hand over a line, an arc or a move of Z on the face."""
@@ -263,10 +252,10 @@ class SectionOutput:
         values = {"F": move.feed}
         if not isinstance(move, Plunge):
             values["X"] = move.x1 * self.x_factor
-            values["Y"] = move.c1 - self._y_offset()
+            values["Y"] = move.c1 - y_offset(interp)
         if isinstance(move, Arc):
             values["I"] = move.cx - interp.current_x
-            values["J"] = move.cc - self._y_offset() - interp.current_y
+            values["J"] = move.cc - y_offset(interp) - interp.current_y
         if move.z0 != move.z1:
             values["Z"] = move.z1
         interp.execute(words + "".join(f"{word}{value:.17f}" for word, value in values.items()))

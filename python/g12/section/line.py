@@ -36,14 +36,15 @@ FOREIGN = {"u": "x", "h": "c", "y": "c"}  # what the parser is given instead
 
 
 class SectionPlace(NamedTuple):
-    """Where something is refused: the section's code, and the line."""
+    """Where something is refused: the section's code, and the line (0 in MDI)."""
 
     code: str
     line: int
 
     def refuse(self, reason: str) -> Refusal:
         """Return the refusal of this line."""
-        return Refusal(f"{self.code} line {self.line}: {reason}")
+        line = f" line {self.line}" if self.line else ""
+        return Refusal(f"{self.code}{line}: {reason}")
 
 
 def line_named(error: Exception) -> int | None:

@@ -224,6 +224,10 @@ class Machine:
         """Go to where the axes are jogged."""
         self._ask("manual")
 
+    def jog(self, axis: int, speed: float) -> None:
+        """Jog an axis of `manual`, in units per second, until its speed is set to 0."""
+        self._ask("jog", axis, speed)
+
     def feed_override(self, scale: float) -> None:
         """Set the feed override; 1 is 100 %, and the INI's limit does not hold here."""
         self._ask("feed_override", scale)

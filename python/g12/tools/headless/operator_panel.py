@@ -12,6 +12,7 @@ from typing import Callable
 import linuxcnc
 
 TICK = 0.01  # s, between looks at the status
+AXIS_JOG = 0  # of an axis, not of a joint
 QUIET_LOOKS = 20  # without a joint homing: there was nothing to home, or it is done
 GRACE = 5.0  # s, for the machine to react to a command
 ERRORS = (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR)
@@ -129,6 +130,13 @@ class Panel:
     def manual(self) -> None:
         """Go to where the axes are jogged."""
         self._mode(linuxcnc.MODE_MANUAL)
+
+    def jog(self, axis: int, speed: float) -> None:
+        """Jog an axis, by its number, until it is stopped with a speed of 0."""
+        if speed:
+            self._do(self._command.jog, linuxcnc.JOG_CONTINUOUS, AXIS_JOG, axis, speed)
+        else:
+            self._do(self._command.jog, linuxcnc.JOG_STOP, AXIS_JOG, axis)
 
     def mdi(self, text: str) -> None:
         """Start one block of MDI."""

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The change between X, Z and C and the part's face (`configs/kinematics`), and back.
+
+The machine has to stand for it, and the interpreter to wait. What it is asked by, and what it
+answers with, is wired in polar_kinematics.hal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import linuxcnc
+
+from g12.section.modes import decimal
+
+CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
+OFF, BY_PROGRAM, BY_HAND = 0, 1, 2  # what is asked for
+SWITCHING = 10  # seconds that it may take at most, on a busy machine
+INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
+PLANES = {1: "G17", 2: "G19", 3: "G18"}  # interp.plane
+CENTRES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
+ON_THE_FACE = "G17G91.1"
+NOT_SWITCHED = "the machine did not change its kinematics: is polar_kinematics.hal loaded?"
+
+
+def face_in_force() -> bool:
+    """Tell whether the machine is on the face now."""
+    status = linuxcnc.stat()
+    status.poll()
+    return bool(status.din[FACE_INPUT])
+
+
+def modes_found(interp: object) -> str:
+    """Return the block that gives back what `ON_THE_FACE` changes."""
+    centres = next(CENTRES[code] for code in interp.active_g_codes if code in CENTRES)
+    return f"{PLANES[interp.plane]}{centres}"
+
+
+def to_face(interp: object, machine_unit: float, asked: int) -> Iterator[str]:
+    """Go to the face; yield the block to wait for.
+
+    ``machine_unit`` is one in program units.
+    """
+    centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
+    interp.execute(f"M68E{CENTRE_OUTPUT}Q{decimal(centre / machine_unit)}")
+    interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")  # the last request may have ended by itself
+    interp.execute(f"M68E{FACE_OUTPUT}Q{asked}")
+    yield f"M66P{FACE_INPUT}L3Q{SWITCHING}"
+
+
+def to_axes(interp: object) -> Iterator[str]:
+    """Go back to X, Z and C; yield the block to wait for."""
+    interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")
+    yield f"M66P{FACE_INPUT}L4Q{SWITCHING}"
+
+
+def has_switched(interp: object) -> bool:
+    """Tell behind the wait whether the machine has done it."""
+    return not interp.task or interp.params[INPUT_FOUND] != TIMED_OUT
+
+
+def y_offset(interp: object) -> float:
+    """Return what a program's Y lacks of the machine's, which is the face's: its centre is 0."""
+    return interp.origin_offset_y + interp.axis_offset_y + interp.tool_offset.y

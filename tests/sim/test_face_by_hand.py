@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12.1 in MDI with kinematics: X and Y move on the face, and nothing else does."""
+
+import time
+
+import numpy as np
+import pytest
+
+from g12.tools.headless.machine import Machine
+from support.kinematics import needs_kinematics
+from support.sim_machines import SIM
+
+pytestmark = needs_kinematics
+
+X, Y, C = 0, 1, 5
+C_SPEED, C_ACCELERATION, SLIDE = 360, 3600, 1000
+STANDING = "G21 G18 G8 G90 G94 G40 G64 P0.01 M52 P0"
+PROGRAM = ["G18 G90 G94", "G1 X30 Z1 F1000", "G1 X20", "M2"]
+
+
+@pytest.fixture(scope="module")
+def running():
+    with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
+        yield machine
+
+
+@pytest.fixture
+def lathe(running):
+    running.abort()
+    for block in (STANDING, "G10 L2 P1 X0 Y0 C0", "G0 Z5", "G0 X40 C30"):
+        running.mdi(block)
+    running.errors(), running.messages()
+    return running
+
+
+def on_the_face(machine):
+    return machine.get("polar-xzc.face")
+
+
+def place(machine):
+    """Return X, Y and C of the world in force, as a screen shows them."""
+    position = machine.stat().position
+    return pytest.approx((position[X], position[Y], position[C]), abs=1e-6)
+
+
+def slide_and_spindle(machine):
+    return pytest.approx([machine.get(f"joint.{joint}.pos-cmd") for joint in (0, 2)], abs=1e-6)
+
+
+def typed(machine, *blocks):
+    for block in blocks:
+        machine.mdi(block)
+        assert machine.errors() == [], block
+
+
+def test_lines_move_on_the_face_until_g13_1(lathe):
+    found = lathe.stat().modes
+    typed(lathe, "G12.1", "G1 X20 Y20 F3000")
+    assert place(lathe) == (20, 20, 30)
+    assert slide_and_spindle(lathe) == [800**0.5, 75]
+    typed(lathe, "G3 X-20 I-20 J-20", "G91 G1 X-10", "G90 G0 X-30 Y0")
+    assert slide_and_spindle(lathe) == [30, 210]
+    typed(lathe, "G13.1")
+    assert not on_the_face(lathe)
+    assert place(lathe) == (30, 0, 210)
+    there = lathe.stat().modes
+    assert set(there.gcodes) - {"G0"} == set(found.gcodes) - {"G0"}
+    assert there.mcodes == found.mcodes
+    typed(lathe, "G0 X40 C30")
+    assert place(lathe) == (40, 0, 30)
+
+
+def test_offsets_diameters_and_inches(lathe):
+    typed(lathe, "G10 L2 P1 X10 C20", "G20 G7", "G0 X2", "G12.1", "G1 X0 Y1 F100", "G13.1")
+    assert slide_and_spindle(lathe) == [35.4, 120]
+    typed(lathe, "G21 G8", "G10 L2 P1 X0 C0")
+
+
+@pytest.mark.parametrize("line", ["G0 X-40 Y-3", "G1 X-40 Y-0.3 F3000"])
+def test_c_can_follow_near_the_centre(lathe, line):
+    typed(lathe, "G12.1", f"G0 X40 {line.split()[2]}")
+    lathe.sample()
+    typed(lathe, line)
+    samples = lathe.samples()
+    x, c = samples.axes["X"], np.radians(samples.axes["C"])
+    assert np.abs(np.diff(c)).max() * 1e3 <= np.radians(C_SPEED) * 1.001
+    assert np.abs(np.diff(x, 2)).max() * 1e6 <= SLIDE * 1.01
+    assert np.degrees(left_behind(c)) <= 0.15
+    y = x * np.sin(c - np.radians(30))
+    assert np.abs(y - float(line.split()[2][1:])).max() <= 0.002
+
+
+def left_behind(command):
+    """Return how far a C axis lags that cannot accelerate more than the machine's."""
+    most, at, speed, worst = np.radians(C_ACCELERATION), command[0], 0.0, 0.0
+    for here, there in zip(command, command[1:]):
+        gap = here - at
+        wanted = (there - here) * 1e3 + np.sign(gap) * (2 * most * abs(gap)) ** 0.5
+        speed += np.clip(wanted - speed, -most * 1e-3, most * 1e-3)
+        at += speed * 1e-3
+        worst = max(worst, abs(there - at))
+    return worst
+
+
+def test_a_jog_is_refused(lathe):
+    typed(lathe, "G12.1", "G1 X20 Y20 F3000")
+    stood = slide_and_spindle(lathe)
+    lathe.manual()
+    lathe.wait_for(lambda status: status.task_mode == "manual")
+    lathe.jog(X, 10)
+    time.sleep(0.2)
+    lathe.jog(X, 0)
+    assert "jog-inhibit" in lathe.errors()[0].text
+    assert [lathe.get(f"joint.{joint}.pos-cmd") for joint in (0, 2)] == stood
+    typed(lathe, "G0 Z4")
+    assert slide_and_spindle(lathe) == [800**0.5, 75]
+
+
+def test_a_program_does_not_move_there(lathe):
+    typed(lathe, "G12.1", "G1 X20 Y20 F3000")
+    lathe.open_text(PROGRAM)
+    lathe.sample()
+    lathe.start()
+    time.sleep(0.5)
+    lathe.abort()
+    assert np.ptp(lathe.samples().axes["X"]) <= 0.005
+    lathe.wait_for(lambda _: not on_the_face(lathe))
+    lathe.errors()
+    run = lathe.run_text(["G1 Z4 F1000", *PROGRAM])
+    assert run.error is None
+    assert np.ptp(run.samples.axes["C"]) == 0
+
+
+def test_a_program_ends_it_by_g13_1(lathe):
+    typed(lathe, "G12.1", "G1 X20 Y20 F3000")
+    run = lathe.run_text(["G13.1", *PROGRAM])
+    assert run.error is None
+    assert place(lathe) == (20, 0, 75)
+    assert set(run.samples.line[run.samples.moving()]) == {3, 4}
+
+
+def test_a_section_is_refused_there(lathe):
+    typed(lathe, "G12.1", "G1 X20 Y20 F3000")
+    run = lathe.run_text(["G12.1", "G1 X10", "G13.1", "M2"])
+    assert run.error.text == "G12.1 line 1: is on already, by hand: G13.1 first"
+
+
+@pytest.mark.parametrize(
+    ("blocks", "refusal"),
+    [
+        (["G12.1", "G12.1"], "G12.1: is already on"),
+        (["G0 X0", "G12.1"], "G12.1: needs the tool at X above zero, not at 0 (radius)"),
+        (
+            ["G10 L2 P1 Y1", "G12.1"],
+            "G12.1: needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis",
+        ),
+        (["G12.1 X3"], "G12.1: stands alone in its block"),
+    ],
+)
+def test_refused(lathe, blocks, refusal):
+    typed(lathe, *blocks[:-1])
+    lathe.mdi(blocks[-1])
+    assert lathe.errors()[0].text == refusal
+
+
+@pytest.mark.parametrize("interrupt", ["abort", "estop", "M2"])
+def test_interrupted(lathe, interrupt):
+    typed(lathe, "G12.1")
+    lathe.mdi("G1 X20 Y20 F1000", wait=False)
+    time.sleep(0.3)
+    getattr(lathe, interrupt, lambda: typed(lathe, "M2", "G13.1", "G18"))()
+    if interrupt == "estop":
+        lathe.enable()
+    lathe.wait_for(lambda _: not on_the_face(lathe))
+    lathe.errors()
+    stood = [lathe.get(f"joint.{joint}.pos-cmd") for joint in (0, 2)]
+    assert "G18" in lathe.stat().modes.gcodes
+    typed(lathe, "G0 Z4")
+    assert slide_and_spindle(lathe) == stood
