@@ -37,6 +37,13 @@ def test_a_move_to_nowhere_is_none():
     assert contour.elements == []
 
 
+def test_a_feed_below_one_is_a_feed():
+    contour = started()
+    contour.line(c=3.0, line=1, feed=0.5)
+    contour.arc(1, i=-10.0, line=2, feed=1e-6)
+    assert [element.feed for element in contour.elements] == [0.5, 1e-6]
+
+
 def arc_of(turn, *end, **words):
     contour = started()
     contour.arc(turn, *end, line=1, feed=100.0, **words)

@@ -374,6 +374,16 @@ def round_to(turn, x, c, radius):
             "line 3: the tool of radius 2 cannot reach both lines 2 and 3: their corner is too "
             "tight",
         ),
+        (
+            [round_to(1, 12, 7, 1.5), to(12, 30)],
+            "line 2: the arc of radius 1.5 is smaller than the tool radius 2 (between lines 1 "
+            "and 3)",
+        ),
+        (
+            [to(20, 5), round_to(1, 20, 8, 1.5)],
+            "line 3: the arc of radius 1.5 is smaller than the tool radius 2 (between lines 2 "
+            "and 50)",
+        ),
         ([], "line 50: G40 follows G41 of line 1 with nothing between them to cut"),
     ],
 )

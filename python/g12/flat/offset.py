@@ -206,9 +206,9 @@ def _parallel(contour: Contour, move: Line | Arc) -> Line | Arc:
 
 def _neighbours(contour: Contour, move: Line | Arc) -> str:
     """Return the lines of the moves beside one, for a message."""
-    lines = [e.line for e in contour.elements if is_move(e)]
-    k = [e for e in contour.elements if is_move(e)].index(move)
-    return f"between lines {lines[max(k - 1, 0)]} and {lines[min(k + 1, len(lines) - 1)]}"
+    moves = [e for e in contour.elements if is_move(e)]
+    k = moves.index(move)  # a ramp is in front of it, and one behind
+    return f"between lines {moves[k - 1].line} and {moves[k + 1].line}"
 
 
 def _trimmed(contour: Contour, steps: list[_Step], k: int, start: Point, end: Point) -> tuple:
@@ -216,11 +216,10 @@ def _trimmed(contour: Contour, steps: list[_Step], k: int, start: Point, end: Po
     move, parallel = steps[k].move, steps[k].parallel
     first, last = along_start(parallel, start), along_end(parallel, end)
     if last - first < -SAME_PLACE:
-        lines = [steps[n].move.line for n in (k - 1, k + 1) if 0 <= n < len(steps)]
         contour.refuse(
             move.line,
             f"too short for the tool radius {number(abs(move.offset))} between its inside corners "
-            f"with lines {' and '.join(map(str, lines))}",
+            f"with lines {steps[k - 1].move.line} and {steps[k + 1].move.line}",
         )
     if last - first <= SAME_PLACE:
         return _in_place(move)

@@ -14,8 +14,9 @@ from g12.flat.simplify import with_points_left_out, without_short_moves
 from g12.polar.exact_stops import stops
 from g12.polar.face import FaceLimits, FaceMove, FaceSwitch, chosen, in_face, passed
 from g12.polar.feed import Position, pieces_with_feed
-from g12.polar.pieces import Law, split_move
+from g12.polar.pieces import Law, Split, split_move
 from g12.polar.pole import POLE, through_pole
+from g12.polar.spacing import MOST_PIECES, TooManyPieces
 
 CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
 STOP_SHARE = (
@@ -139,13 +140,13 @@ class _SlideAndSpindle:
         x, self.angle, z = contour.start
         self.steps: list = []
         self.place = Position(x, c + degrees(self.angle), z)
-        self._settings, self._entry = settings, c
+        self._contour, self._settings, self._entry = contour, settings, c
         self._face: float | None = None  # angle of its X axis, while the machine is on it
         self._laws: dict[tuple[float, bool], Law] = {}
 
     def cut(self, move: Line | Arc, stop: bool) -> None:
         """Add the pieces of a move in the plane."""
-        parts = split_move(move, self._law(move.feed, stop))
+        parts = self._split(move, self._law(move.feed, stop))
         if (move.x0, move.c0) == POLE:
             self._turn(move, parts.angles[0])
         turns = round((self.angle - parts.angles[0]) / (2 * pi))
@@ -153,6 +154,15 @@ class _SlideAndSpindle:
         pieces = pieces_with_feed(parts, self.place, move, entry, self._settings.least_x)
         self.angle = parts.angles[-1] + 2 * pi * turns
         self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", pieces, stop)
+
+    def _split(self, move: Line | Arc, law: Law) -> Split:
+        try:
+            return split_move(move, law)
+        except TooManyPieces:
+            self._contour.refuse(
+                move.line,
+                f"more than {MOST_PIECES} moves would be needed to stay within POLAR_TOLERANCE",
+            )
 
     def switch(self, line: int, face: bool) -> None:
         """Go to the face or back from it, if it is another way than before."""

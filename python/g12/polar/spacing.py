@@ -31,8 +31,13 @@ BULGE = 1.5  # deviations: of a piece between two ends moved off the path
 WHOLE_BULGE = 0.75  # deviations: of a piece with both ends exactly on the path
 LOSS = 0.18  # pieces: what is lost where an element ends exactly on the path
 WORTH_A_CUT = 0.5  # pieces: an apsis nearer to an end of the element is left alone
+MOST_PIECES = 100_000  # of an element: more would take LinuxCNC's time and memory
 
 Density = Callable[[float], "tuple[float, float]"]
+
+
+class TooManyPieces(Exception):
+    """An element would be cut into more than `MOST_PIECES`."""
 
 
 class Stretch(NamedTuple):
@@ -67,9 +72,11 @@ def spaced(stretch: Stretch, density: Density) -> tuple[list[float], list[float]
     """Return the places of the ends of an element's pieces, and how far each is off the path.
 
     ``density`` gives for a place the pieces per unit, and the part of the deviation, with the sign
-    of the side, that they use. The distances are returned as parts of the deviation, too.
+    of the side, that they use. The distances are returned as parts of the deviation, too. Raises
+    `TooManyPieces`.
     """
     parts = _parts(stretch, density)
+    _check_count(sum(part.count for part in parts))
     ends = [(stretch.start, 0.0)]
     for part in parts:
         lost = sum(part.losses)
@@ -114,8 +121,14 @@ def _part(a: float, b: float, losses: tuple[float, float], stretch: Stretch, den
         place += step
         places.append(place)
         shares.append(share)
+        _check_count(len(shares))
     count = len(shares) - (place - far) / step
     return _Part(a, places, shares, count, backwards, losses)
+
+
+def _check_count(pieces: float) -> None:
+    if pieces > MOST_PIECES:
+        raise TooManyPieces
 
 
 def _inner_ends(part: _Part, pieces: int, length: float) -> list[tuple[float, float]]:

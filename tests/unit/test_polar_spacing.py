@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Spacing by itself: shares of a deviation, and no element that takes pieces for ever."""
+
+import math
+
+import pytest
+
+from g12.errors import Refusal
+from g12.polar.plan import PolarSettings, plan
+from g12.polar.spacing import MOST_PIECES, Stretch, TooManyPieces, spaced
+from support.contour_geometry import Round
+from support.planned_cuts import programmed
+
+FINEST = PolarSettings(1e-5, 0.001, 1000.0, 3600.0, 21600.0)
+
+
+def stretch(start, end, *apsides):
+    return Stretch(start, end, list(apsides), abs)
+
+
+@pytest.mark.parametrize("density", [1e9, -1.0, 2e-5])
+def test_a_density_that_never_arrives_is_refused(density):
+    """The step is too short, goes the wrong way, or is nothing beside a far place."""
+    far = 1e300 if density == 2e-5 else 3.0
+    with pytest.raises(TooManyPieces):
+        spaced(stretch(1.0, far), lambda _: (density, 0.0))
+
+
+def test_the_most_pieces_are_made():
+    places, _ = spaced(stretch(0.0, 1.0), lambda _: (MOST_PIECES - 1.0, 1.0))
+    assert len(places) == MOST_PIECES + 1
+
+
+def test_an_arc_of_too_many_pieces_is_refused_with_its_line():
+    far = Round(1e6 + 0j, 1e5 + 0j, 2 * math.pi)
+    with pytest.raises(Refusal) as refused:
+        plan(programmed([far]), FINEST, c=0.0)
+    assert refused.value.message == (
+        "G12.1 line 1: more than 100000 moves would be needed to stay within POLAR_TOLERANCE"
+    )
+
+
+def test_a_circle_of_a_metre_is_cut_at_the_finest_tolerance():
+    around = Round(1000 + 0j, 100 + 0j, 2 * math.pi)
+    run = plan(programmed([around]), FINEST, c=0.0).steps[0]
+    assert 5_000 < len(run.pieces) < MOST_PIECES
