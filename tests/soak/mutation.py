@@ -30,10 +30,11 @@ SEED = 12
 ROOMS = ("cycles", "section", "flat", "polar")
 PARTS = ("python", "tests", "ngc", "configs", "pyproject.toml")
 CYCLES = ("words", "cycles_common", "cycles_travel", "haas", "yasnac", "mitsubishi", "circle_mill")
-SECTION = ("section_codes", "section_line", "section_output", "polar_start")
-FLAT = ("flat_contour", "flat_intersect", "flat_simplify", "flat_offset")
+SECTION = ("section_block_rules", "section_codes", "section_line", "section_output", "polar_start")
+FLAT = ("flat_contour", "flat_intersect", "flat_gouge", "flat_simplify", "flat_offset")
 POLAR = (
     *("polar_exact_stops", "polar_feed", "polar_soft_limits", "polar_start", "polar_spacing"),
+    "polar_pole",
     *("polar_face", "polar_plan"),
 )
 UNIT = {"cycles": CYCLES, "section": SECTION, "flat": (*FLAT, "polar_plan"), "polar": POLAR}

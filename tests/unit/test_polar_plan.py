@@ -139,6 +139,13 @@ def test_a_short_line_is_split_for_an_even_feed():
     assert all(speed == pytest.approx(100.0, rel=0.011) for cut in made for speed in cut.speeds)
 
 
+@pytest.mark.parametrize(("feed", "pieces"), [(60.0, 27), (250.0, 21), (1000.0, 21)])
+def test_an_even_feed_is_held_where_the_machine_is_quick_enough(feed, pieces):
+    """X has 1000 mm/s²: at F250 it takes 8 ms to gather speed, and the pieces near X0 are short."""
+    run = plan(programmed([Straight(1 + 0j, 20 + 20j)], feed=feed), LATHE, c=0.0).steps[0]
+    assert len(run.pieces) == pieces
+
+
 @pytest.mark.parametrize("length", [0.1 * count for count in range(1, 40)])
 def test_short_lines(length):
     assert deviation(Straight(20 + 0j, 20 + 1j * length), DRIVEN) <= TOLERANCE

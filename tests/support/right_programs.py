@@ -1,0 +1,333 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Random programs in which nothing is wrong, many pockets or sections in each.
+
+``chance`` is a `random.Random`. A program's modes are drawn once more for each pocket; pockets
+stand apart, and the tool goes from one to the next above all of them.
+"""
+
+import cmath
+import itertools
+import math
+
+INCH = 25.4
+CUTTERS = {"mm": {3: 6.0, 4: 10.0, 5: 12.0, 10: 20.0}, "inch": {1: 6.35, 2: 12.7, 4: 9.525}}  # mm
+PITCH = 60.0  # mm from pocket to pocket
+ROWS = 6
+OUT = -9999
+
+
+class Text:
+    """A program in the making; lengths are given in mm and written in its units."""
+
+    def __init__(self, chance, unit, *, polar=False):
+        self.chance, self.scale = chance, 1.0 if unit == "mm" else INCH
+        self.code = {"mm": "G21", "inch": "G20"}[unit]
+        plane = "G18" if polar else "G17"
+        self.lines = [f"{self.code} {plane} G40 G49 G54 G80 G90 G94 G91.1 G64 P{self.n(0.01)}"]
+
+    def n(self, mm):
+        """Return a length as it is written."""
+        return f"{mm / self.scale:.5f}".rstrip("0").rstrip(".")
+
+    def add(self, *words):
+        """Add a block."""
+        self.lines.append(" ".join(filter(None, words)))
+
+    def one_of(self, *values):
+        return self.chance.choice(values)
+
+    def between(self, least, most):
+        """Return a length that the program's decimals can write."""
+        return round(self.chance.uniform(least, most) / self.scale, 3) * self.scale
+
+    def shuffled(self, code, *words):
+        """Return a block with its words in any order."""
+        words = [word for word in words if word]
+        self.chance.shuffle(words)
+        return " ".join([code, *words])
+
+    def end(self):
+        self.add("G90", f"G0 Z{self.n(20)}")
+        self.add("M2")
+        return "\n".join([*self.lines, ""])
+
+
+def pocket_program(chance, unit, add_pocket, count):
+    """Return a program of ``count`` pockets that ``add_pocket(text, tool, cutter, x, y)`` adds."""
+    text, loaded = Text(chance, unit), None
+    for k in range(count):
+        if loaded is None or chance.random() < 0.1:
+            loaded = chance.choice(list(CUTTERS[unit]))
+            text.add(f"T{loaded} M6")
+            text.add("S2000 M3")
+            text.add("F" + text.n(text.between(100, 900)))
+        x, y = (PITCH * (place - (ROWS - 1) / 2) for place in (k % ROWS, k // ROWS))
+        text.add("G90 G0", f"Z{text.n(20)}")
+        add_pocket(text, loaded, CUTTERS[unit][loaded] / 2, x, y)
+    return text.end()
+
+
+def feed_mode(text):
+    """Draw a feed per minute, or per revolution, or none, which goes on as before."""
+    text.add(text.one_of("", f"F{text.n(text.between(100, 900))}"))
+    if text.chance.random() < 0.15:
+        text.add(f"G95 F{text.n(0.2)}")
+        return f"G94 F{text.n(500)}"
+    return ""
+
+
+def haas(text, tool, radius, x, y):
+    """A pocket in rings or in a spiral, a spring pass, one circle in a bored hole."""
+    first = radius + text.between(0.1, 1.8 * radius)
+    outward, levels = text.chance.random() < 0.8, text.one_of(1, 1, 2, 3)
+    incremental, centred = text.chance.random() < 0.4, text.chance.random() < 0.5
+    text.add("G0", f"X{text.n(0 if centred else x)} Y{text.n(0 if centred else y)}")
+    text.add(f"Z{text.n(1)}")
+    back = feed_mode(text)
+    words = [f"I{text.n(first)}", f"Z{text.n(-text.between(1.5, 4))}"]
+    if outward:
+        words.append(f"K{text.n(first + text.between(0.1, 28 - first))}")
+        words.append(f"Q{text.n(text.between(0.2, 1.9) * radius)}")
+    words.append(f"L{levels}" if levels > 1 else "")
+    words.append(f"D{tool}")
+    words.append(text.one_of("", f"F{text.n(text.between(100, 900))}") if not back else "")
+    if centred:
+        now = (0, 0) if incremental else (0, 0)
+        words += [f"X{text.n(x - now[0])}", f"Y{text.n(y - now[1])}"]
+    text.add(text.one_of("", "G61", f"G64 P{text.n(0.005)}"))
+    text.add("G91" if incremental else "")
+    text.add(text.shuffled(text.one_of("G12", "G13"), *words))
+    text.add("G90", back)
+
+
+def yasnac(text, tool, radius, x, y):
+    """A circle with or without a fast approach, in one turn or in a spiral."""
+    text.add("G0", f"X{text.n(x)} Y{text.n(y)}")
+    text.add(f"Z{text.n(1)}")
+    back = feed_mode(text)
+    text.add("G1", f"Z{text.n(-text.between(1, 4))}")
+    with_d = text.chance.random() < 0.8
+    offset, side = radius if with_d else 0.0, text.one_of(1, -1)
+    places = sorted(text.between(0.1, 25.0) + k * 0.1 for k in range(3))
+    near, first, last = places
+    spiral = text.chance.random() < 0.5
+    if text.chance.random() < 0.5 and near < radius:  # the plunge has cleared the tool's radius
+        text.add("(bored)")
+    words = [f"I{text.n(side * (last + offset))}"]
+    if spiral:
+        words.append(f"K{text.n(side * (first + offset))}")
+        words.append(f"Q{text.n(text.between(0.2, 1.9) * radius)}")
+    words.append(f"D{tool}" if with_d else "")
+    words.append(text.one_of("", "L1", "L2", "L3"))
+    text.add(text.shuffled(text.one_of("G12", "G13"), *words))
+    text.add(back)
+
+
+def mitsubishi(text, tool, radius, x, y):
+    """A full circle in any plane."""
+    text.add("G0", f"X{text.n(x)} Y{text.n(y)}")
+    text.add(f"Z{text.n(1)}")
+    back = feed_mode(text)
+    text.add("G1", f"Z{text.n(-text.between(1, 4))}")
+    plane, with_d = text.one_of("G17", "G17", "G18", "G19"), text.chance.random() < 0.8
+    circle = text.between(0.1, 20.0) + (radius if with_d else 0.0)
+    text.add(plane)
+    words = [f"I{text.n(text.one_of(1, -1) * circle)}", f"D{tool if with_d else 0}"]
+    text.add(text.shuffled(text.one_of("G12", "G13"), *words))
+    text.add("G17", back)
+
+
+def circle_mill(text, tool, radius, x, y):
+    """An event as a code or as a call, pocket or perimeter, with finishes and pecks."""
+    event = _event(text, radius, x, y)
+    text.add("G0", f"X{text.n(x + text.between(-9, 9))} Y{text.n(y + text.between(-9, 9))}")
+    call = text.chance.random() < 0.5
+    (_add_call if call else _add_code)(text, event)
+
+
+def _event(text, radius, x, y):
+    """Return the entries of an event by the letters of the control, in mm."""
+    pocket = text.chance.random() < 0.5
+    direction = text.chance.randrange(4)
+    left_is_inside = direction in (1, 3)
+    side = text.one_of("in", "out", "on") if not pocket else "in"
+    finish = text.between(0.1, 0.8) if side != "on" and text.chance.random() < 0.5 else None
+    deep = text.between(1, 7)
+    first = text.between(1, 4)
+    return {
+        "G": 7 if pocket else 0,
+        "X": x,
+        "Y": y,
+        "Z": -deep,
+        "W": first,
+        "O": text.one_of(None, first + text.between(0, 6)),
+        "R": radius + text.between(1, 18 - radius) if side == "in" else text.between(2, 18),
+        "D": direction,
+        "C": {"on": 0, "in": 1 if left_is_inside else 2, "out": 2 if left_is_inside else 1}[side],
+        "K": text.one_of(None, text.between(0.7, 4)),
+        "J": text.between(0.2 * radius, 1.8 * radius) if pocket and text.one_of(0, 1) else None,
+        "L": finish and text.one_of(1, -1) * finish,
+        "P": text.one_of(None, text.between(50, 300)),
+        "F": text.between(100, 900),
+        "V": text.one_of(None, text.between(100, 900)),
+    }
+
+
+def _add_call(text, event):
+    whole = "GDC"
+    values = (
+        OUT if value is None else value if letter in whole else text.n(value)
+        for letter, value in event.items()
+    )
+    text.add("o<circle_mill> call", *(f"[{value}]" for value in values))
+
+
+def _add_code(text, event):
+    names = {"W": "I", "O": "E", "C": "H"}
+    words = [
+        f"{names.get(letter, letter)}{value if letter in 'DC' else text.n(value)}"
+        for letter, value in event.items()
+        if value is not None and letter not in "GLV"
+    ]
+    if event["L"]:
+        words.append(f"Q{text.n(abs(event['L']))}")
+        words.append("" if event["L"] > 0 else "L0")
+    text.add(text.shuffled("G13.2" if event["G"] else "G12.2", *words))
+
+
+def dynapath(chance, count):
+    """Return event text in mm; W and F are carried on from event to event."""
+    text, lines = Text(chance, "mm"), []
+    for k in range(count):
+        x, y = (PITCH * (place - (ROWS - 1) / 2) for place in (k % ROWS, k // ROWS))
+        event = _event(text, 5.0, x, y)
+        if k and chance.random() < 0.3:
+            event["F"] = None
+        if event["L"] and event["L"] < 0:
+            event["L"] = f"/{text.n(-event['L'])}"
+        words = (
+            letter + (value if isinstance(value, str) else text.n(value))
+            for letter, value in event.items()
+            if value is not None
+        )
+        lines.append(f"N{10 * k}(4){''.join(words)}$")
+    return "\n".join([*lines, ""])
+
+
+# ---------------------------------------------------------------- polar sections
+
+AXIAL = {"mm": {1: 12.0, 2: 10.0, 3: 6.0}, "inch": {1: 12.7, 2: 9.525, 3: 6.35}}
+
+
+def polar_program(chance, unit, count):
+    """Return a program of sections: contours with compensation and without, some in subs."""
+    text = Text(chance, unit, polar=True)
+    text.diameter = chance.random() < 0.5
+    text.add("G7" if text.diameter else "G8", "G97 S500")
+    loaded = None
+    for k in range(count):
+        if loaded is None or chance.random() < 0.2:
+            loaded = chance.choice(list(AXIAL[unit]))
+            text.add(f"T{loaded} M6")
+        in_sub, times = chance.random() < 0.3, chance.choice([1, 1, 2, 3])
+        if in_sub:
+            text.add(f"o{100 + k} sub")
+            text.add(f"G0 X{_x(text, 60)} C#1")
+            _section(text, AXIAL[unit][loaded] / 2)
+            text.add(f"G0 Z{text.n(5)}")
+            text.add(f"o{100 + k} endsub")
+            for turn in range(times):
+                text.add(f"o{100 + k} call [{turn * 360 / times:g}]")
+        else:
+            text.add(f"G0 X{_x(text, 60)} Z{text.n(5)}", f"C{chance.choice([0, 0, 90, -45, 400])}")
+            _section(text, AXIAL[unit][loaded] / 2)
+            text.add(f"G0 Z{text.n(5)}")
+    return text.end()
+
+
+def _x(text, radius):
+    return text.n(radius * (2 if text.diameter else 1))
+
+
+def _section(text, cutter):
+    text.add("G12.1")
+    text.add(f"F{text.n(text.between(100, 1500))}")
+    kind = text.one_of("polygon", "polygon", "rounded", "free")
+    (_free if kind == "free" else _compensated)(text, cutter, kind == "rounded")
+    text.add("G13.1")
+
+
+def _to(text, point, words="G1"):
+    text.add(words, f"X{_x(text, point.real)}", f"C{text.n(point.imag)}")
+
+
+def _polygon(text):
+    """Return the corners of a convex polygon about the spindle or beside it, counterclockwise."""
+    chance = text.chance
+    count, radius = chance.randint(3, 8), chance.uniform(8, 25)
+    centre = complex(chance.uniform(-3, 3), chance.uniform(-3, 3))
+    gaps = [chance.uniform(0.6, 1.0) for _ in range(count)]
+    turned, angles = chance.uniform(0, 6), list(itertools.accumulate(gaps))
+    return [
+        centre + cmath.rect(radius, turned + angle / angles[-1] * 2 * math.pi) for angle in angles
+    ]
+
+
+def _compensated(text, cutter, rounded):
+    """A convex polygon from outside, from the middle of a side round; corners sharp or round."""
+    corners = _polygon(text)
+    clockwise = text.chance.random() < 0.5
+    if clockwise:
+        corners.reverse()
+    start = (corners[-1] + corners[0]) / 2
+    along = (corners[0] - corners[-1]) / abs(corners[0] - corners[-1])
+    out = along * (1j if clockwise else -1j)
+    reach = cutter + text.chance.uniform(1, 8)
+    _to(text, start + out * reach)
+    text.add("G41" if clockwise else "G42")
+    _to(text, start)
+    depths = sorted((text.between(0.5, 5) for _ in range(text.one_of(1, 1, 2))))
+    for depth in depths:
+        text.add(f"G1 Z{text.n(-depth)}", text.one_of("", f"F{text.n(text.between(100, 1500))}"))
+        for corner, following in zip(corners, [*corners[1:], corners[0]]):
+            _corner(text, corner, following, rounded, clockwise, corners)
+        _to(text, start)
+    text.add("G40")
+    _to(text, start + out * reach)
+
+
+def _corner(text, corner, following, rounded, clockwise, corners):
+    if not rounded:
+        return _to(text, corner)
+    before = corners[corners.index(corner) - 1]
+    a, b = (before - corner, following - corner)
+    a, b = a / abs(a), b / abs(b)
+    half = abs(cmath.phase(b / a)) / 2
+    leg = 1.5
+    radius = leg * math.tan(half)
+    _to(text, corner + leg * a)
+    end = corner + leg * b
+    code = "G2" if clockwise else "G3"
+    text.add(code, f"X{_x(text, end.real)} C{text.n(end.imag)} R{text.n(radius)}")
+    return None
+
+
+def _free(text, _):
+    """Lines, arcs and circles without compensation, anywhere on the face; Z in blocks alone."""
+    at = complex(60, 0)
+    for _ in range(text.chance.randint(1, 8)):
+        kind = text.one_of("line", "line", "arc", "circle", "z", "bare")
+        to = complex(text.between(-30, 30), text.between(-30, 30))
+        if kind == "z":
+            text.add(f"G1 Z{text.n(-text.between(0, 5))}")
+        elif kind == "circle":
+            arm = complex(text.between(-12, 12), text.between(1, 12))
+            text.add(text.one_of("G2", "G3"), f"I{text.n(arm.real)} J{text.n(arm.imag)}")
+        elif abs(to - at) > 1.0:
+            if kind == "arc":
+                radius = abs(to - at) * text.chance.uniform(0.55, 2) * text.one_of(1, -1)
+                words = f"X{_x(text, to.real)} C{text.n(to.imag)} R{text.n(radius)}"
+                text.add(text.one_of("G2", "G3"), words)
+            else:
+                _to(text, to)
+            at = to

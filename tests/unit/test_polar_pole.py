@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What is led through the spindle's centre, and what stands in its place."""
+
+import math
+
+import pytest
+
+from g12.flat.contour import Arc, Contour, Line, Mark, Plunge
+from g12.polar.pole import through_pole
+
+REACH = 0.0025
+
+
+def line(x0, c0, x1, c1, z0=0.0, z1=0.0):
+    return Line(3, 100.0, 0.0, x0, c0, z0, x1, c1, z1)
+
+
+def arc(cx, cc, x0, c0, sweep, z0=0.0, z1=0.0):
+    x, c = x0 - cx, c0 - cc
+    x1 = cx + x * math.cos(sweep) - c * math.sin(sweep)
+    c1 = cc + x * math.sin(sweep) + c * math.cos(sweep)
+    return Arc(3, 100.0, 0.0, x0, c0, z0, x1, c1, z1, cx, cc, sweep)
+
+
+def led(*path, reach=REACH, refused=False):
+    return through_pole(Contour(10.0, 0.0), list(path), reach, refused)
+
+
+def ends(parts):
+    """Return the ends of moves, one behind the other, and check that they are."""
+    for one, other in zip(parts, parts[1:]):
+        assert (one.x1, one.c1, one.z1) == pytest.approx((other.x0, other.c0, other.z0), abs=1e-12)
+    first, places = parts[0], [(part.x1, part.c1, part.z1) for part in parts]
+    return [(first.x0, first.c0, first.z0), *places]
+
+
+def test_marks_plunges_and_what_is_far_from_the_pole_stay():
+    path = [Mark(1, "M8"), line(10, 5, -10, 5), Plunge(2, 50.0, 0.0, -1.0), arc(0, 0, 5, 0, 3.0)]
+    assert led(*path) == path
+
+
+@pytest.mark.parametrize(("beside", "parts"), [(0.99, 2), (1.01, 1)])
+def test_a_line_that_comes_within_reach_is_two_radii(beside, parts):
+    c = beside * REACH
+    made = led(line(8, c, -2, c, 1.0, 2.0))
+    assert len(made) == parts
+    if parts == 2:
+        assert ends(made) == [(8, c, 1.0), pytest.approx((0, 0, 1.8)), (-2, c, 2.0)]
+        assert {(part.line, part.feed, part.offset) for part in made} == {(3, 100.0, 0.0)}
+
+
+@pytest.mark.parametrize(("x", "there"), [(0.99 * REACH, True), (1.01 * REACH, False)])
+def test_a_line_that_begins_or_ends_within_reach_begins_or_ends_there(x, there):
+    outwards, inwards = led(line(x, 0, 8, 6)), led(line(8, 6, x, 0))
+    assert ends(outwards)[0][:2] == ((0.0, 0.0) if there else (x, 0))
+    assert ends(inwards)[-1][:2] == ((0.0, 0.0) if there else (x, 0))
+    assert len(outwards) == len(inwards) == 1
+
+
+def test_a_line_inside_the_reach_is_no_way_but_for_its_z():
+    assert led(line(0, 0, 0.001, 0)) == []
+    assert led(line(0, 0, 0.001, 0, -1.0, -2.0)) == [Plunge(3, 100.0, -1.0, -2.0)]
+    assert led(line(0.001, 0, -0.001, 0, -1.0, -2.0)) == [Plunge(3, 100.0, -1.0, -2.0)]
+
+
+@pytest.mark.parametrize("sweep", [2 * math.pi, -2 * math.pi])
+@pytest.mark.parametrize(("beside", "passes"), [(0.0, 1), (0.9 * REACH, 1), (1.1 * REACH, 0)])
+def test_a_circle_through_the_pole(sweep, beside, passes):
+    """Radii take the place of what is within a fifth of the reach of them on either side."""
+    made = led(arc(5 + beside, 0, 10 + beside, 0, sweep, 0.0, -4.0))
+    assert [type(part) for part in made] == ([Arc, Line, Line, Arc] if passes else [Arc])
+    if passes:
+        first, to, fro, second = made
+        assert ends(made)[2] == pytest.approx((0.0, 0.0, -2.0))
+        assert (first.sweep, second.sweep) == pytest.approx((second.sweep, first.sweep))
+        length = math.hypot(to.x0, to.c0)
+        assert length**2 / 8 / 5 == pytest.approx(0.2 * REACH, rel=0.02) if not beside else True
+        assert math.hypot(fro.x1, fro.c1) == pytest.approx(length)
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_an_arc_from_the_pole_back_to_it(turn):
+    made = led(arc(5, 0, 0, 0, turn * 2 * math.pi, 0.0, -4.0))
+    assert [type(part) for part in made] == [Line, Arc, Line]
+    places = ends(made)
+    assert places[0][:2] == places[-1][:2] == (0.0, 0.0)
+    assert (places[0][2], places[-1][2]) == pytest.approx((0.0, -4.0))
+
+
+@pytest.mark.parametrize("sweep", [1.0, -1.0])
+def test_an_arc_that_ends_or_begins_at_the_pole_passes_it_once(sweep):
+    inwards = led(arc(5, 0, 5 - 5 * math.cos(sweep), 5 * math.sin(sweep), sweep))
+    assert [type(part) for part in inwards] == [Arc, Line]
+    assert ends(inwards)[-1][:2] == (0.0, 0.0)
+    outwards = led(arc(5, 0, 0, 0, sweep))
+    assert [type(part) for part in outwards] == [Line, Arc]
+    assert ends(outwards)[0][:2] == (0.0, 0.0)
+
+
+def test_an_arc_whose_circle_passes_the_pole_elsewhere_stays():
+    far = arc(5, 0, 10, 0, 2.0)
+    assert led(far) == [far]
+
+
+def test_a_small_circle_about_the_pole_is_not_led_through_it():
+    around = arc(0, 0, 2 * REACH, 0, 2 * math.pi)
+    assert led(around) == [around]
