@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Mutants of the planners against their tests: which ones nobody notices.
 
-    PYTHONPATH=tests python3 -m soak.mutation --count 200 [--rooms flat polar] [--jobs 2]
+    PYTHONPATH=tests /usr/bin/python3 -m soak.mutation --count 200 --jobs 2 2>survivors
+    PYTHONPATH=tests /usr/bin/python3 -m soak.mutation --again survivors
 
 Each mutant is put alone into a copy of the package. The tests of its module run first, then, if it
 has survived, programs on the interpreter. Running for ever or taking too much memory counts as
@@ -9,6 +10,8 @@ noticed: the test did not pass. The sample is shuffled once: a longer run tries 
 """
 
 import argparse
+import contextlib
+import functools
 import json
 import multiprocessing
 import os
@@ -16,6 +19,7 @@ import random
 import resource
 import shutil
 import signal
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -77,7 +81,11 @@ def cases(rooms=ROOMS):
 def equivalent():
     """Return the mutants that a reader found to behave the same, each with the reason."""
     table = tomllib.loads(Path(__file__).with_name("equivalent_mutants.toml").read_text())
-    return {f"{module} {name}": reason for module in table for name, reason in table[module].items()}
+    return {
+        f"{module} {name}": reason
+        for module, names in table.items()
+        for name, reason in names.items()
+    }
 
 
 def tests_of(module):
@@ -97,6 +105,7 @@ class Bench:
 
     def __init__(self, folder):
         self.folder = Path(tempfile.mkdtemp(dir=folder))
+        self._sound = set()
         for part in PARTS:
             copy = shutil.copytree if (ROOT / part).is_dir() else shutil.copy2
             copy(ROOT / part, self.folder / part)
@@ -104,49 +113,55 @@ class Bench:
     def noticed(self, case, *, interp):
         """Return in which tests a mutant is noticed: "unit", "interp", "" if nowhere."""
         path = self.folder / "python" / "g12" / case.module
-        source = (ROOT / "python" / "g12" / case.module).read_text()
-        path.write_text(mutated(source, case.mutant))
-        try:
-            for kind, tests in zip(("unit", "interp"), tests_of(case.module)):
-                tests = [test for test in tests if (self.folder / test).exists()]
-                if (kind == "unit" or interp) and not _pass(self.folder, tests):
+        source = path.read_text()
+        for kind, tests in zip(("unit", "interp"), tests_of(case.module)):
+            if kind == "interp" and not interp:
+                return ""
+            self._check(tests)
+            path.write_text(mutated(source, case.mutant))
+            try:
+                if not self._pass(tests):
                     return kind
-            return ""
-        finally:
-            path.write_text(source)
+            finally:
+                path.write_text(source)
+        return ""
 
+    def _check(self, tests):
+        """Raise if tests do not pass without a mutant, once for each list of them."""
+        if tuple(tests) not in self._sound and not self._pass(tests):
+            raise RuntimeError(f"fail without any mutant: {' '.join(tests)}")
+        self._sound.add(tuple(tests))
 
-def _pass(folder, tests):
-    """Return whether tests pass in a copy, in a process of their own."""
-    child = os.fork()
-    if child == 0:
-        _run(folder, tests)
-    deadline = time.monotonic() + SECONDS
-    while time.monotonic() < deadline:
-        if os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT):
-            break
-        time.sleep(0.02)
-    os.killpg(child, signal.SIGKILL)
-    return os.waitpid(child, 0)[1] == 0
+    def _pass(self, tests):
+        """Return whether tests pass in the copy, in a process of their own."""
+        child = os.fork()
+        if child == 0:
+            _run(self.folder, tests)
+        end = time.monotonic() + SECONDS
+        while not os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT):
+            if time.monotonic() > end:
+                break
+            time.sleep(0.02)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(child, signal.SIGKILL)
+        return os.waitpid(child, 0)[1] == 0
 
 
 def _run(folder, tests):
+    """Run tests in this process, quietly and within bounds, and end it."""
     import pytest
 
-    os.setsid()
-    os.chdir(folder)
-    os.environ["PYTHONPATH"] = os.pathsep.join(
-        filter(None, (str(folder / "python"), os.environ.get("PYTHONPATH")))
-    )
-    os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    os.dup2(nowhere, 2)
     code = 1
     try:
-        code = pytest.main(["-x", "-q", "--rootdir", str(folder), *tests])
+        os.setsid()
+        os.chdir(folder)
+        os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+        resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 1)
+        os.dup2(nowhere, 2)
+        code = pytest.main(["-x", "--rootdir", str(folder), *tests])
     finally:
         os._exit(code)
 
@@ -161,36 +176,46 @@ def _judge(job):
     return case, _bench.noticed(case, interp=interp)
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--count", type=int, default=100)
-    parser.add_argument("--skip", type=int, default=0)
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--rooms", nargs="+", default=ROOMS, choices=ROOMS)
-    parser.add_argument("--module")
-    parser.add_argument("--unit-only", action="store_true")
-    options = parser.parse_args()
+def run(chosen, *, jobs=1, interp=True, tell=print):
+    """Try mutants; return how many are noticed in which tests, and the names of the others."""
     import hypothesis  # noqa: F401  loaded once, for all mutants
     import numpy  # noqa: F401
     import pytest  # noqa: F401
     import shapely  # noqa: F401
 
     known = equivalent()
-    chosen = [c for c in cases(options.rooms) if options.module in (None, c.module)]
-    chosen = chosen[options.skip : options.skip + options.count]
     tried = [case for case in chosen if case.name not in known]
-    found = {"unit": 0, "interp": 0, "": 0}
+    found = {"equivalent": len(chosen) - len(tried), "unit": 0, "interp": 0, "survived": []}
     fork = multiprocessing.get_context("fork")
     with (
         tempfile.TemporaryDirectory(prefix="g12-mutants-") as folder,
-        fork.Pool(options.jobs, _begin, (folder,)) as pool,
+        fork.Pool(jobs, _begin, (folder,)) as pool,
     ):
-        jobs = [(case, not options.unit_only) for case in tried]
-        for case, where in pool.imap_unordered(_judge, jobs):
-            found[where] += 1
-            if not where:
-                print(f"survived: {case.mutant.line}: {case.name}", flush=True)
-    print(json.dumps({**found, "equivalent": len(chosen) - len(tried)}))
+        for case, where in pool.imap_unordered(_judge, [(case, interp) for case in tried]):
+            if where:
+                found[where] += 1
+            else:
+                found["survived"].append(case.name)
+                tell(f"line {case.mutant.line}: {case.name}")
+    return found
+
+
+def main():
+    """Print the mutants that survive, and how many there were."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--count", type=int, help="so many of the sample, from its start")
+    parser.add_argument("--rooms", nargs="+", default=ROOMS, choices=ROOMS)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--unit", action="store_true", help="without LinuxCNC")
+    parser.add_argument("--again", type=Path, help="those alone that this file names")
+    options = parser.parse_args()
+    chosen = cases(options.rooms)
+    if options.again:
+        text = options.again.read_text()
+        chosen = [case for case in chosen if f": {case.name}\n" in text]
+    tell = functools.partial(print, file=sys.stderr, flush=True)
+    found = run(chosen[: options.count], jobs=options.jobs, interp=not options.unit, tell=tell)
+    print(json.dumps(found))
 
 
 if __name__ == "__main__":

@@ -9,6 +9,8 @@ import cmath
 import itertools
 import math
 
+from g12.tools.dynapath import program_from_events
+
 INCH = 25.4
 CUTTERS = {"mm": {3: 6.0, 4: 10.0, 5: 12.0, 10: 20.0}, "inch": {1: 6.35, 2: 12.7, 4: 9.525}}  # mm
 PITCH = 60.0  # mm from pocket to pocket
@@ -52,7 +54,7 @@ class Text:
         return "\n".join([*self.lines, ""])
 
 
-def pocket_program(chance, unit, add_pocket, count):
+def pocket_program(chance, unit, count, add_pocket):
     """Return a program of ``count`` pockets that ``add_pocket(text, tool, cutter, x, y)`` adds."""
     text, loaded = Text(chance, unit), None
     for k in range(count):
@@ -77,7 +79,7 @@ def feed_mode(text):
 
 
 def haas(text, tool, radius, x, y):
-    """A pocket in rings or in a spiral, a spring pass, one circle in a bored hole."""
+    """Add a pocket in rings or in a spiral, a spring pass, one circle in a bored hole."""
     first = radius + text.between(0.1, 1.8 * radius)
     outward, levels = text.chance.random() < 0.8, text.one_of(1, 1, 2, 3)
     incremental, centred = text.chance.random() < 0.4, text.chance.random() < 0.5
@@ -91,9 +93,8 @@ def haas(text, tool, radius, x, y):
     words.append(f"L{levels}" if levels > 1 else "")
     words.append(f"D{tool}")
     words.append(text.one_of("", f"F{text.n(text.between(100, 900))}") if not back else "")
-    if centred:
-        now = (0, 0) if incremental else (0, 0)
-        words += [f"X{text.n(x - now[0])}", f"Y{text.n(y - now[1])}"]
+    if centred:  # the tool stands at X0 Y0
+        words += [f"X{text.n(x)}", f"Y{text.n(y)}"]
     text.add(text.one_of("", "G61", f"G64 P{text.n(0.005)}"))
     text.add("G91" if incremental else "")
     text.add(text.shuffled(text.one_of("G12", "G13"), *words))
@@ -101,20 +102,16 @@ def haas(text, tool, radius, x, y):
 
 
 def yasnac(text, tool, radius, x, y):
-    """A circle with or without a fast approach, in one turn or in a spiral."""
+    """Add a circle with or without a fast approach, in one turn or in a spiral."""
     text.add("G0", f"X{text.n(x)} Y{text.n(y)}")
     text.add(f"Z{text.n(1)}")
     back = feed_mode(text)
     text.add("G1", f"Z{text.n(-text.between(1, 4))}")
     with_d = text.chance.random() < 0.8
     offset, side = radius if with_d else 0.0, text.one_of(1, -1)
-    places = sorted(text.between(0.1, 25.0) + k * 0.1 for k in range(3))
-    near, first, last = places
-    spiral = text.chance.random() < 0.5
-    if text.chance.random() < 0.5 and near < radius:  # the plunge has cleared the tool's radius
-        text.add("(bored)")
+    first, last = sorted(text.between(0.1, 25.0) + k * 0.1 for k in range(2))
     words = [f"I{text.n(side * (last + offset))}"]
-    if spiral:
+    if text.chance.random() < 0.5:
         words.append(f"K{text.n(side * (first + offset))}")
         words.append(f"Q{text.n(text.between(0.2, 1.9) * radius)}")
     words.append(f"D{tool}" if with_d else "")
@@ -124,7 +121,7 @@ def yasnac(text, tool, radius, x, y):
 
 
 def mitsubishi(text, tool, radius, x, y):
-    """A full circle in any plane."""
+    """Add a full circle in any plane."""
     text.add("G0", f"X{text.n(x)} Y{text.n(y)}")
     text.add(f"Z{text.n(1)}")
     back = feed_mode(text)
@@ -138,7 +135,7 @@ def mitsubishi(text, tool, radius, x, y):
 
 
 def circle_mill(text, tool, radius, x, y):
-    """An event as a code or as a call, pocket or perimeter, with finishes and pecks."""
+    """Add an event as a code or as a call, pocket or perimeter, with finishes and pecks."""
     event = _event(text, radius, x, y)
     text.add("G0", f"X{text.n(x + text.between(-9, 9))} Y{text.n(y + text.between(-9, 9))}")
     call = text.chance.random() < 0.5
@@ -214,6 +211,12 @@ def dynapath(chance, count):
     return "\n".join([*lines, ""])
 
 
+def dynapath_program(chance, count):
+    """Return what LinuxCNC gets of event text."""
+    first = ["T4 M6", "G0 X0 Y0 Z20", ""]
+    return "\n".join(first) + program_from_events(dynapath(chance, count), "mm")
+
+
 # ---------------------------------------------------------------- polar sections
 
 AXIAL = {"mm": {1: 12.0, 2: 10.0, 3: 6.0}, "inch": {1: 12.7, 2: 9.525, 3: 6.35}}
@@ -274,7 +277,7 @@ def _polygon(text):
 
 
 def _compensated(text, cutter, rounded):
-    """A convex polygon from outside, from the middle of a side round; corners sharp or round."""
+    """Add a convex polygon, cut from the middle of a side round; corners sharp or round."""
     corners = _polygon(text)
     clockwise = text.chance.random() < 0.5
     if clockwise:
@@ -284,16 +287,14 @@ def _compensated(text, cutter, rounded):
     out = along * (1j if clockwise else -1j)
     reach = cutter + text.chance.uniform(1, 8)
     _to(text, start + out * reach)
-    text.add("G41" if clockwise else "G42")
-    _to(text, start)
-    depths = sorted((text.between(0.5, 5) for _ in range(text.one_of(1, 1, 2))))
+    _to(text, start, "G41 G1" if clockwise else "G42 G1")
+    depths = sorted(text.between(0.5, 5) for _ in range(text.one_of(1, 1, 2)))
     for depth in depths:
         text.add(f"G1 Z{text.n(-depth)}", text.one_of("", f"F{text.n(text.between(100, 1500))}"))
         for corner, following in zip(corners, [*corners[1:], corners[0]]):
             _corner(text, corner, following, rounded, clockwise, corners)
         _to(text, start)
-    text.add("G40")
-    _to(text, start + out * reach)
+    _to(text, start + out * reach, "G40 G1")
 
 
 def _corner(text, corner, following, rounded, clockwise, corners):
@@ -312,8 +313,8 @@ def _corner(text, corner, following, rounded, clockwise, corners):
     return None
 
 
-def _free(text, _):
-    """Lines, arcs and circles without compensation, anywhere on the face; Z in blocks alone."""
+def _free(text, *_):
+    """Add lines, arcs and circles without compensation, anywhere on the face; Z in blocks alone."""
     at = complex(60, 0)
     for _ in range(text.chance.randint(1, 8)):
         kind = text.one_of("line", "line", "arc", "circle", "z", "bare")
@@ -325,9 +326,35 @@ def _free(text, _):
             text.add(text.one_of("G2", "G3"), f"I{text.n(arm.real)} J{text.n(arm.imag)}")
         elif abs(to - at) > 1.0:
             if kind == "arc":
-                radius = abs(to - at) * text.chance.uniform(0.55, 2) * text.one_of(1, -1)
+                radius = abs(to - at) * text.chance.uniform(0.55, 0.9) * text.one_of(1, -1)
                 words = f"X{_x(text, to.real)} C{text.n(to.imag)} R{text.n(radius)}"
                 text.add(text.one_of("G2", "G3"), words)
             else:
                 _to(text, to)
             at = to
+
+
+# ---------------------------------------------------------------- each kind by its name
+
+MACHINES = {
+    "haas": "mill_mm",
+    "haas inch": "mill_inch",
+    "yasnac": "mill_yasnac_mm",
+    "mitsubishi": "mill_mitsubishi_mm",
+    "circle mill": "mill_mm",
+    "dynapath": "mill_mm",
+    "polar": "lathe_mm",
+    "polar inch": "lathe_inch",
+    "polar kinematics": "lathe_mm_kinematics",
+}
+POCKETS = {"yasnac": yasnac, "mitsubishi": mitsubishi, "circle mill": circle_mill}
+
+
+def right_program(kind, chance, count):
+    """Return a program of ``count`` pockets or sections of a kind of `MACHINES`."""
+    unit = "inch" if "inch" in kind else "mm"
+    if kind == "dynapath":
+        return dynapath_program(chance, count)
+    if kind.startswith("polar"):
+        return polar_program(chance, unit, count)
+    return pocket_program(chance, unit, count, POCKETS.get(kind, haas))

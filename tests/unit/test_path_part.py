@@ -77,6 +77,15 @@ def test_a_ring_sweeps_an_annulus():
     assert area == pytest.approx(math.pi * (23**2 - 17**2), rel=1e-4)
 
 
+@pytest.mark.parametrize("radius", [0.1, 2.4, 4.9])
+def test_a_ring_smaller_than_the_cutter_sweeps_all_of_its_disc(radius):
+    angles = np.linspace(0, 2 * math.pi, 400)
+    ring = np.stack([radius * np.cos(angles), radius * np.sin(angles), 0 * angles], axis=1)
+    ring[-1] = ring[0]
+    area = part.swept([ring], 5.0).area
+    assert area == pytest.approx(math.pi * (radius + 5) ** 2, rel=1e-3)
+
+
 def test_a_still_tool_sweeps_its_own_disc():
     area = part.swept([np.array([[7, 7, 0], [7, 7, -5.0]])], 2).area
     assert area == pytest.approx(math.pi * 4, rel=1e-3)

@@ -189,6 +189,8 @@ def test_words_that_are_refused(text, why):
     assert refusal(check_letters, split_line(text)) == why
 
 
-@pytest.mark.parametrize("text", ["X1 C1 Z1", "U1 H1", "X1 Y1", "G2 X1 R2", "I1 J2", "M66 P1 L3 Q2"])
+@pytest.mark.parametrize(
+    "text", ["X1 C1 Z1", "U1 H1", "X1 Y1", "G2 X1 R2", "I1 J2", "M66 P1 L3 Q2"]
+)
 def test_words_that_are_taken(text):
     assert refusal(check_letters, split_line(text)) is None

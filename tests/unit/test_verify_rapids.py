@@ -26,9 +26,12 @@ class Program(Hand):
         super().__init__()
         self.asked = []
 
-    def mill(self, rings=RINGS, depth=-3.0, cutter=3.0, **wanted):
+    def mill(self, rings=RINGS, depth=-3.0, cutter=3.0, down=None, **wanted):
         first, place = len(self.moves), np.array(self.at[:3])
-        self.next_block().pocket(rings, depth)
+        self.next_block()
+        if down is not None:
+            self.rapid(z=down)
+        self.pocket(rings, depth)
         wall = Wall(place, np.eye(3), rings[-1] + 3.0, **wanted)
         schedule = Schedule((depth,), 1, CircleFeeds(None, None, None, None))
         target = Target(Source(self.block, "", "G12", "haas"), wall, Cutter(cutter), schedule)
@@ -80,6 +83,12 @@ def test_a_pocket_that_is_not_below_z0_has_its_top_where_it_began():
     program = start(z=10).mill(depth=5.0).rapid(z=7).rapid(x=150)
     assert [hit.line for hit in program.found()] == [3]
     assert start(z=10).mill(depth=5.0).rapid(z=10).rapid(x=150).found() == []
+
+
+@pytest.mark.parametrize(("height", "count"), [(7, 0), (6, 1)])
+def test_the_top_is_where_a_cycle_begins_to_feed_behind_its_own_rapids(height, count):
+    program = start(z=30).mill([17], depth=5.0, down=7).rapid(z=height).rapid(x=150)
+    assert len(program.found()) == count
 
 
 def test_the_lowest_height_that_a_pocket_began_at_is_the_top():

@@ -5,9 +5,10 @@ The stock is not known, but a pocket has a wall, and perhaps a core. So: where a
 through a pocket, all of it that lies lower than the pocket's top must stay in what the program
 has cleared down to that height before.
 
-A pocket's top is the height from which the tool came down to it (the lowest such height of all
-pockets that still is above its first floor), or the program's Z0 if that is between this height
-and that floor. Circles cut from outside and those of other planes than XY have no such wall.
+A pocket's top is the height from which the tool was fed down to it (the lowest such height of all
+pockets that still is above its first floor), or the program's Z0 if that is between this floor and
+the height at which the tool came. Circles cut from outside and those of other planes than XY have
+no such wall.
 
 Lengths are millimetres, areas square millimetres, in machine coordinates.
 """
@@ -154,11 +155,17 @@ def openings_of(asked: Circles, moves: Sequence[Move], cleared: Cleared) -> Iter
     """Yield the pockets that rapids can leave through a wall."""
     found = ((block, target.wall) for block, target in asked)
     walled = [(block, wall) for block, wall in found if wall.inside and wall.plane == 2]
-    heights = [(height_before(block, moves), *floors_of(block, moves)) for block, _ in walled]
-    for (block, wall), (_, highest, lowest) in zip(walled, heights):
-        above = [height for height, _, _ in heights if height > highest + SAME_HEIGHT]
-        if above:
-            top = wall.face if highest < wall.face < min(above) else min(above)
+    came, fed = (
+        np.array([height(block, moves) for block, _ in walled])
+        for height in (height_before, height_of_feed)
+    )
+    for block, wall in walled:
+        highest, lowest = floors_of(block, moves)
+        least = highest + SAME_HEIGHT
+        if np.any(came > least):
+            top = min(came[came > least])
+            face = highest < wall.face < top
+            top = wall.face if face else min(fed[fed > least], default=top)
             yield Opening(block.at, cleared.of(cutting(block, moves)), top, lowest)
 
 
@@ -182,6 +189,12 @@ def height_before(block: Block, moves: Sequence[Move]) -> float:
         while index and not is_sideways(moves[index - 1]):
             index -= 1
     return moves[index].start[2]
+
+
+def height_of_feed(block: Block, moves: Sequence[Move]) -> float:
+    """Return the height at which the first feed of a block begins, behind its own rapids."""
+    own = (moves[index] for index in range(block.at, block.end))
+    return next((move.start[2] for move in own if move.kind != "rapid"), -np.inf)
 
 
 def chains_of(moves: Sequence[Move], openings: Sequence[Opening]) -> Iterator[list[int]]:

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Random programs in which nothing is wrong: verify has no finding in any of them."""
+
+import random
+import re
+
+import pytest
+
+from g12.tools.commands import main
+from g12.tools.machine.ini import read_ini
+from g12.tools.verify.proof import prove
+from soak import SEED, often
+from support.right_programs import MACHINES, right_program
+from support.sim_machines import SIM
+
+PIECES = 20  # pockets or sections in a program
+
+
+def machine_of(kind):
+    return SIM / f"{MACHINES[kind]}_headless.ini"
+
+
+def written(folder, kind, seed, count):
+    program = folder / f"right-{seed}.ngc"
+    program.write_text(right_program(kind, random.Random(seed), count))
+    return program
+
+
+@pytest.mark.parametrize("kind", MACHINES)
+def test_programs_as_they_are_read(kind, tmp_path):
+    ini = read_ini(machine_of(kind))
+    for number in range(often(8)):
+        seed = f"{SEED} {number}"
+        proof = prove(written(tmp_path, kind, seed, PIECES), ini)
+        assert len(proof.pockets) + len(proof.sections) >= PIECES, seed
+        assert proof.findings == [], seed
+
+
+@pytest.mark.parametrize("kind", MACHINES)
+def test_programs_as_they_run(kind, tmp_path, capsys):
+    """With feeds ten times as high, so that it does not take an hour."""
+    program = written(tmp_path, kind, f"{SEED} run", 2)
+    text = re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", program.read_text())
+    program.write_text(text)
+    code = main.main(["verify", str(program), "--ini", str(machine_of(kind)), "--run"])
+    assert code == 0, capsys.readouterr()
