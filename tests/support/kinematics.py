@@ -1,21 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Whether the kinematics of configs/kinematics are installed, and what needs them."""
 
-import re
-import shutil
-from pathlib import Path
-
 import pytest
 
+from g12.tools.install.kinematics_rules import module_installed
 
-def installed():
-    """Tell whether the LinuxCNC that the tests run finds the module."""
-    script = Path(shutil.which("linuxcnc")).read_text(encoding="utf-8", errors="replace")
-    folder = re.search(r"^LINUXCNC_RTLIB_DIR=(\S+)", script, re.MULTILINE)[1]
-    return Path(folder, "polar_xzc.so").exists()
-
-
-needs_kinematics = pytest.mark.skipif(not installed(), reason="first: make kinematics")
+needs_kinematics = pytest.mark.skipif(
+    not module_installed("polar_xzc"), reason="first: make kinematics"
+)
 
 
 def marked(inis):

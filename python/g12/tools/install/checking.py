@@ -12,8 +12,9 @@ from g12.settings import SECTION, TABLE
 from g12.tools.errors import UsageError
 from g12.tools.install import features
 from g12.tools.install.config import Config, load_config, remaps_in
+from g12.tools.install.findings import Finding
 from g12.tools.install.ini_edit import IniText
-from g12.tools.install.rules import Finding, codes_of, findings_of, translating_filters
+from g12.tools.install.rules import codes_of, findings_of, translating_filters
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Overrides
 

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from g12.tools.install import features, package_copy
 from g12.tools.install.config import Config, folder_from_ini
+from g12.tools.install.findings import problem
 from g12.tools.install.ini_edit import (
     BEGIN,
     END,
@@ -25,7 +26,7 @@ from g12.tools.install.ini_edit import (
     lines_with_ends,
     to_bytes,
 )
-from g12.tools.install.rules import installed_programs, odd_folder, problem
+from g12.tools.install.rules import installed_programs, odd_folder
 
 BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"
 NOTE = "# also by g12 install: "

@@ -18,12 +18,13 @@ from g12.machine_ini import Remap, remap_from_value
 from g12.settings import SECTION, settings_from_lines
 from g12.tools.install import features
 from g12.tools.install.config import MOST_FOLDERS, Config, folder_from_ini, subs_named
+from g12.tools.install.findings import Finding, note, problem, warning
 from g12.tools.install.ini_edit import IniLine
+from g12.tools.install.kinematics_rules import kinematics_findings
 from g12.tools.machine.ini import INCLUDE
 from g12.tools.system import CALL
 from g12.tools.translate.blocks.control import ControlError, read_control
 
-PROBLEM, WARNING, NOTE = "problem", "warning", "note"
 OLDEST = (2, 9)
 TRANSLATE = "translate"  # the command in a [FILTER] line
 LONGEST_LINE = 254  # LinuxCNC 2.9 reads no more of a line
@@ -43,16 +44,6 @@ STOPPING = {  # kinds that keep LinuxCNC itself from loading the config
 
 
 @dataclass(frozen=True)
-class Finding:
-    """Something the owner should know: ``kind`` is a short name that stays the same."""
-
-    level: str
-    kind: str
-    text: str
-    cure: str
-
-
-@dataclass(frozen=True)
 class Code:
     """A REMAP line of the package in a config, with the package's own line for it."""
 
@@ -65,25 +56,10 @@ class Code:
 Rule = Callable[[Config, "list[Code]"], Iterator[Finding]]
 
 
-def problem(kind: str, text: str, cure: str) -> Finding:
-    """Return a finding that keeps a code from working."""
-    return Finding(PROBLEM, kind, text, cure)
-
-
-def warning(kind: str, text: str, cure: str) -> Finding:
-    """Return a finding that will surprise."""
-    return Finding(WARNING, kind, text, cure)
-
-
 def codes_of(remaps: list[tuple[IniLine, Remap]]) -> list[Code]:
     """Return the REMAP lines that are the package's."""
     found = ((line, remap, features.model_of(remap)) for line, remap in remaps)
     return [Code(line, remap, *model) for line, remap, model in found if model]
-
-
-def note(kind: str, text: str, cure: str) -> Finding:
-    """Return a finding that is as it may be, but that the owner should know of."""
-    return Finding(NOTE, kind, text, cure)
 
 
 # The INI's lines.
@@ -507,6 +483,7 @@ def findings_of(config: Config) -> list[Finding]:
     """Return everything found; what nothing explains is LinuxCNC's own word."""
     codes = codes_of(config.remaps)
     found = [finding for rule in RULES for finding in rule(config, codes)]
+    found += kinematics_findings(config)
     if config.failure and not any(finding.kind in STOPPING for finding in found):
         found.append(
             problem(

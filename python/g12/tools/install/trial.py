@@ -10,9 +10,9 @@ from pathlib import Path
 
 from g12.tools.install import features
 from g12.tools.install.checking import check_config
+from g12.tools.install.findings import PROBLEM, Finding
 from g12.tools.install.ini_edit import IniText, other_inis
 from g12.tools.install.plan import InstallPlan, Refused
-from g12.tools.install.rules import PROBLEM, Finding
 from g12.tools.machine.ini import Ini, Overrides
 
 

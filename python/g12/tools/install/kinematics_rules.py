@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What can be wrong with the face's kinematics in a machine config (`configs/kinematics`).
+
+The rules look where `[G12] POLAR_KINEMATICS = 1` or `[KINS] KINEMATICS` asks for them. All that
+the page says has to be done is a rule here.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+from math import hypot
+from pathlib import Path
+from typing import NamedTuple
+
+from g12.errors import Refusal
+from g12.machine_ini import FACE_KINEMATICS, face_joints, face_of
+from g12.settings import settings_from_lines
+from g12.tools.install.config import Config, folder_from_ini
+from g12.tools.install.findings import Finding, problem, warning
+
+PAGE = "configs/kinematics/README.md"
+OWN_HAL = Path("configs/kinematics/polar_kinematics.hal")
+REQUEST = "polar-xzc.request"  # a pin that only a HAL file with the guard's lines names
+PINS = (
+    "motion.analog-out-02",
+    "motion.analog-out-03",
+    "motion.digital-in-03",
+    "motion.switchkins-type",
+    "motion.jog-inhibit",
+    "motion.feed-inhibit",
+    "motion.adaptive-feed",
+)
+NEEDED = {"num_aio": 4, "num_dio": 4}  # of motmod, which has four if it is not told
+LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
+SLACK = 1.001
+
+
+class HalLine(NamedTuple):
+    """A line of a HAL file without its comment, and where it is."""
+
+    text: str
+    place: str
+
+
+def module_installed(name: str) -> bool:
+    """Tell whether the LinuxCNC on this computer finds a realtime module."""
+    script = shutil.which("linuxcnc")
+    text = Path(script).read_text(encoding="utf-8", errors="replace") if script else ""
+    folder = re.search(r"^LINUXCNC_RTLIB_DIR=(\S+)", text, re.MULTILINE)
+    return bool(folder) and Path(folder[1], f"{name}.so").exists()
+
+
+def wanted(config: Config) -> bool:
+    """Tell whether a config asks for the face's kinematics."""
+    return uses_them(config) or bool(face_joints(config.ini.get))
+
+
+def uses_them(config: Config) -> bool:
+    """Tell whether G12.1 is to move X and Y; a wrong setting is another rule's finding."""
+    try:
+        return settings_from_lines(config.ini.lines).polar_kinematics == "1"
+    except Refusal:
+        return False
+
+
+def not_used(config: Config) -> Iterator[Finding]:
+    """Find a machine that has them for nothing."""
+    if not uses_them(config):
+        yield warning(
+            "kinematics-unused",
+            f"[KINS] KINEMATICS = {FACE_KINEMATICS}, but G12.1 makes pieces",
+            "add POLAR_KINEMATICS = 1 to [G12]",
+        )
+
+
+def module_missing(config: Config) -> Iterator[Finding]:
+    """Find a LinuxCNC without the module: the machine does not start."""
+    if not module_installed(FACE_KINEMATICS):
+        yield problem(
+            "no-kinematics",
+            f"LinuxCNC has no module {FACE_KINEMATICS}",
+            f"build it: make kinematics ({PAGE})",
+        )
+
+
+def joints_wrong(config: Config) -> Iterator[Finding]:
+    """Find a [KINS] that is not the module's."""
+    letters, asked = face_joints(config.ini.get), config.ini.get("KINS", "KINEMATICS")
+    if not letters:
+        yield problem(
+            "kins",
+            f"[KINS] KINEMATICS = {asked}: POLAR_KINEMATICS = 1 needs {FACE_KINEMATICS}",
+            f"KINEMATICS = {FACE_KINEMATICS} coordinates=XZC (the letters of your joints)",
+        )
+        return
+    joints = config.ini.get("KINS", "JOINTS", "0").strip()
+    once = len(set(letters)) == len(letters)
+    if not {"X", "C"} <= set(letters) or "Y" in letters or not once:
+        yield problem(
+            "kins",
+            f"[KINS] KINEMATICS: coordinates={letters}: X and C have to be there, Y may not, "
+            "every letter stands once",
+            "give each joint its letter: coordinates=XZC",
+        )
+    elif joints != str(len(letters)):
+        yield problem(
+            "kins",
+            f"[KINS] JOINTS = {joints}, but coordinates={letters} has {len(letters)}",
+            f"JOINTS = {len(letters)}, or one letter for each joint",
+        )
+
+
+def axes_wrong(config: Config) -> Iterator[Finding]:
+    """Find axes that are not those of the face."""
+    letters = face_joints(config.ini.get)
+    if not letters:
+        return
+    needed = {*letters, "Y"}
+    missing = [letter for letter in "XYZABCUVW" if letter in needed - set(config.ini.axes)]
+    if missing:
+        yield problem(
+            "coordinates",
+            f"[TRAJ] COORDINATES = {' '.join(config.ini.axes)} lacks {' '.join(missing)}",
+            "name every joint's letter, and Y, which no joint has",
+        )
+    for axis in "XY":
+        if not config.ini.all(f"AXIS_{axis}", "MAX_LIMIT"):
+            yield problem(
+                "face-axis",
+                f"[AXIS_{axis}] has no MAX_LIMIT: it is an axis of the face",
+                f"[AXIS_{axis}] with MIN_LIMIT, MAX_LIMIT, MAX_VELOCITY and MAX_ACCELERATION "
+                f"({PAGE})",
+            )
+
+
+def limits_wrong(config: Config) -> Iterator[Finding]:
+    """Find limits on the face that are not the slide's."""
+    if "X" not in face_joints(config.ini.get) or any(axes_wrong(config)):
+        return
+    try:
+        x, y, slide, _ = face_of(config.ini.get)
+    except Refusal as refusal:
+        yield problem("face-axis", refusal.message, "correct the value")
+        return
+    for letter, axis in (("X", x), ("Y", y)):
+        if axis.low > -slide.high or axis.high < slide.high:
+            yield warning(
+                "face-limits",
+                f"[AXIS_{letter}] MIN_LIMIT {axis.low:g} and MAX_LIMIT {axis.high:g} are less of "
+                f"the face than the slide reaches, {slide.high:g}",
+                f"MIN_LIMIT = {-slide.high:g} and MAX_LIMIT = {slide.high:g}: the slide keeps its "
+                "own limits",
+            )
+        if axis.velocity > slide.velocity * SLACK:
+            yield problem(
+                "face-speed",
+                f"[AXIS_{letter}] MAX_VELOCITY {axis.velocity:g} is more than the slide's "
+                f"{slide.velocity:g}",
+                f"MAX_VELOCITY = {slide.velocity:g}",
+            )
+    if hypot(x.acceleration, y.acceleration) > slide.acceleration * SLACK:
+        least = 0.7 * slide.acceleration
+        yield warning(
+            "face-acceleration",
+            f"[AXIS_X] and [AXIS_Y] MAX_ACCELERATION {x.acceleration:g} and {y.acceleration:g}: "
+            f"together more than the slide's {slide.acceleration:g}, so G12.1 makes pieces",
+            f"MAX_ACCELERATION = {least:g} in both",
+        )
+
+
+def hal_wrong(config: Config) -> Iterator[Finding]:
+    """Find the guard's HAL file missing, too early or in another's way."""
+    files = hal_files(config)
+    guards = [number for number, lines in enumerate(files) if names(lines, REQUEST)]
+    if not guards:
+        yield problem(
+            "kinematics-hal",
+            f"no HALFILE of [HAL] connects {FACE_KINEMATICS}: it would never leave X, Z and C",
+            f"add HALFILE = …/{OWN_HAL} behind the file that loads motion",
+        )
+        return
+    loading = [number for number, lines in enumerate(files) if names(lines, "motmod", "EMCMOT")]
+    if loading and guards[0] < loading[0]:
+        yield problem(
+            "kinematics-hal",
+            f"the HALFILE with {FACE_KINEMATICS} stands in front of the one that loads motion",
+            "move its HALFILE line behind that one",
+        )
+    others = [line for number, lines in enumerate(files) if number not in guards for line in lines]
+    yield from hal_in_the_way(others)
+
+
+def hal_in_the_way(lines: list[HalLine]) -> Iterator[Finding]:
+    """Find what other HAL files do that the guard's cannot live with."""
+    for text, place in lines:
+        for pin in PINS:
+            if pin in text.split():
+                yield problem(
+                    "pin-taken",
+                    f"{place}: {text}: {pin} is the kinematics'",
+                    "use another pin here, or change it in a copy of polar_kinematics.hal",
+                )
+        module = LOADS_KINEMATICS.match(text)
+        if module and module[1] != FACE_KINEMATICS:
+            yield problem(
+                "kins",
+                f"{place}: {text}: loads {module[1]}, whatever [KINS] says",
+                "loadrt [KINS]KINEMATICS",
+            )
+        for key, least in NEEDED.items():
+            told = re.search(rf"\b{key}=(\d+)", text)
+            if told and int(told[1]) < least:
+                yield problem(
+                    "few-pins",
+                    f"{place}: {text}: motion has too few inputs and outputs for the kinematics",
+                    f"{key}={least}, or take {key} out",
+                )
+
+
+def hal_files(config: Config) -> list[list[HalLine]]:
+    """Return the lines of each HAL file, in LinuxCNC's order; one that is not there has none."""
+    return [hal_lines(folder_from_ini(config.ini, value.split()[0]))
+            for value in config.ini.all("HAL", "HALFILE") if value.strip()]  # fmt: skip
+
+
+def hal_lines(path: Path) -> list[HalLine]:
+    """Return the lines of a HAL file that do something."""
+    try:
+        texts = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return []
+    bare = ((text.partition("#")[0].strip(), number) for number, text in enumerate(texts, 1))
+    return [HalLine(text, f"{path.name}:{number}") for text, number in bare if text]
+
+
+def names(lines: list[HalLine], *words: str) -> bool:
+    """Tell whether a HAL file has one of some words."""
+    return any(word in line.text for line in lines for word in words)
+
+
+def abort_wrong(config: Config) -> Iterator[Finding]:
+    """Find a machine that an abort leaves on the face."""
+    off = [remap.code for _, remap in config.remaps if "polar_off" in remap.handlers]
+    found = config.ini.get("RS274NGC", "ON_ABORT_COMMAND")
+    if off and (found or "").upper().split() != [off[0], "P"]:
+        there = f" = {found}" if found else " is missing"
+        yield problem(
+            "abort",
+            f"[RS274NGC] ON_ABORT_COMMAND{there}: an abort would leave the machine on the face",
+            f"ON_ABORT_COMMAND = {off[0]} P; what you have there now: {PAGE}",
+        )
+
+
+RULES = (
+    module_missing,
+    not_used,
+    joints_wrong,
+    axes_wrong,
+    limits_wrong,
+    hal_wrong,
+    abort_wrong,
+)
+
+
+def kinematics_findings(config: Config) -> Iterator[Finding]:
+    """Yield what is wrong with the face's kinematics, where a config asks for them."""
+    for rule in RULES if wanted(config) else ():
+        yield from rule(config)

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What `check` finds of the face's kinematics, mistake by mistake; no LinuxCNC is asked."""
+
+import pytest
+
+from g12.tools.commands import install
+from g12.tools.install import kinematics_rules
+from g12.tools.install.findings import PROBLEM
+from g12.tools.install.kinematics_rules import kinematics_findings
+from support.sim_machines import ROOT
+from support.small_configs import config_of, write_config
+
+MOTION = "loadrt [KINS]KINEMATICS\nloadrt [EMCMOT]EMCMOT num_joints=3 # motmod num_aio=1\n"
+GUARD = (ROOT / "configs/kinematics/polar_kinematics.hal").read_text()
+LATHE = """\
+[RS274NGC]
+REMAP = G12.1 modalgroup=1 python=polar_on
+REMAP = G13.1 modalgroup=1 python=polar_off
+ON_ABORT_COMMAND = G13.1 P
+
+[G12]
+POLAR_KINEMATICS = 1
+
+[KINS]
+JOINTS = 3
+KINEMATICS = polar_xzc coordinates=XZC
+
+[TRAJ]
+COORDINATES = X Y Z C
+
+[HAL]
+HALFILE = motion.hal
+HALFILE = polar.hal
+
+[AXIS_X]
+MIN_LIMIT = -200
+MAX_LIMIT = 200
+MAX_VELOCITY = 100
+MAX_ACCELERATION = 700
+
+[JOINT_0]
+MIN_LIMIT = -5
+MAX_LIMIT = 200
+MAX_VELOCITY = 100
+MAX_ACCELERATION = 1000
+
+[AXIS_Y]
+MIN_LIMIT = -200
+MAX_LIMIT = 200
+MAX_VELOCITY = 100
+MAX_ACCELERATION = 700
+"""
+MISTAKES = [  # what is changed of the INI, what is found, a part of what is said
+    ("KINEMATICS = polar_xzc coordinates=XZC", "KINEMATICS = trivkins coordinates=XZC", "kins",
+     "KINEMATICS = trivkins coordinates=XZC"),
+    ("coordinates=XZC", "coordinates=XYZC", "kins", "Y may not"),
+    ("coordinates=XZC", "coordinates=XZ", "kins", "C have to be there"),
+    ("JOINTS = 3", "JOINTS = 4", "kins", "JOINTS = 4, but"),
+    ("COORDINATES = X Y Z C", "COORDINATES = X Z C", "coordinates", "lacks Y"),
+    ("POLAR_KINEMATICS = 1", "POLAR_KINEMATICS = 0", "kinematics-unused", "makes pieces"),
+    ("ON_ABORT_COMMAND = G13.1 P\n", "", "abort", "ON_ABORT_COMMAND is missing"),
+    ("COMMAND = G13.1 P", "COMMAND = O <mine> call", "abort", "= O <mine> call"),
+    ("G13.1 modalgroup", "G13.3 modalgroup", "abort", "on the face"),
+    ("HALFILE = polar.hal\n", "", "kinematics-hal", "never leave"),
+    ("HALFILE = polar.hal", "HALFILE = gone.hal", "kinematics-hal", "never leave"),
+    ("HALFILE = motion.hal\nHALFILE = polar.hal", "HALFILE = polar.hal\nHALFILE = motion.hal",
+     "kinematics-hal", "in front of"),
+    ("[AXIS_Y]", "[AXIS_B]", "face-axis", "[AXIS_Y] has no MAX_LIMIT"),
+    ("MIN_LIMIT = -200", "MIN_LIMIT = -5", "face-limits", "MIN_LIMIT = -200"),
+    ("MAX_VELOCITY = 100", "MAX_VELOCITY = 150", "face-speed", "[AXIS_X] MAX_VELOCITY 150"),
+    ("MAX_ACCELERATION = 700", "MAX_ACCELERATION = 1000", "face-acceleration", "= 700 in both"),
+    ("MAX_ACCELERATION = 700", "MAX_ACCELERATION = 0", "face-axis", "must be above 0"),
+]  # fmt: skip
+IN_THE_WAY = [
+    ("net probe => motion.digital-in-03", "pin-taken"),
+    ("net lube motion.analog-out-03 => pump.speed", "pin-taken"),
+    ("net type somebody.type => motion.switchkins-type", "pin-taken"),
+    ("net torch thc.feed => motion.adaptive-feed", "pin-taken"),
+    ("net door => motion.feed-inhibit", "pin-taken"),
+    ("net door => motion.jog-inhibit", "pin-taken"),
+    ("loadrt trivkins coordinates=XZC", "kins"),
+    ("loadrt motmod num_joints=3 num_aio=2", "few-pins"),
+]
+
+
+@pytest.fixture
+def found(tmp_path, monkeypatch):
+    """Return a function: the findings about an INI and its HAL files."""
+
+    def find(text, motion=MOTION, installed=True):
+        monkeypatch.setattr(kinematics_rules, "module_installed", lambda _: installed)
+        ini = write_config(tmp_path, text, "lathe.ini", motion_hal=motion, polar_hal=GUARD)
+        return list(kinematics_findings(config_of(ini)))
+
+    return find
+
+
+def test_nothing_is_found_in_a_good_config(found):
+    assert found(LATHE) == []
+
+
+def test_a_lathe_without_is_not_looked_at(found):
+    text = LATHE.replace("polar_xzc", "trivkins").replace("= 1", "= 0")
+    assert found(text, installed=False) == []
+
+
+def test_the_module_is_missing(found):
+    (missing,) = found(LATHE, installed=False)
+    assert (missing.level, missing.kind) == (PROBLEM, "no-kinematics")
+    assert "make kinematics" in missing.cure
+
+
+@pytest.mark.parametrize(("good", "bad", "kind", "says"), MISTAKES)
+def test_mistake(found, good, bad, kind, says):
+    assert good in LATHE
+    findings = found(LATHE.replace(good, bad, 1))
+    assert {finding.kind for finding in findings} == {kind}
+    assert says in findings[0].text + findings[0].cure
+
+
+@pytest.mark.parametrize(("line", "kind"), IN_THE_WAY)
+def test_something_in_the_way(found, line, kind):
+    (finding,) = found(LATHE, motion=f"{MOTION}{line}\n")
+    assert (finding.level, finding.kind) == (PROBLEM, kind)
+    assert finding.text.startswith(f"motion.hal:3: {line}")
+
+
+def test_install_says_where_the_steps_are(tmp_path, capsys):
+    ini = write_config(tmp_path, LATHE)
+    with pytest.raises(SystemExit) as ended:
+        install.main([str(ini), "--with", "polar-kinematics"])
+    assert ended.value.code == 2
+    assert "six steps in configs/kinematics/README.md" in capsys.readouterr().err
