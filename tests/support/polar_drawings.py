@@ -40,7 +40,7 @@ def _compensated(first, contour, cutter, approach, leave=None):
 
 
 HEXAGON = lines(
-    (13.5, 12), (13.5, -7.7942), (0, -15.5885), (-13.5, -7.7942), (-13.5, 7.7942), (0, 15.5885),
+    (13.5, 18), (13.5, -7.7942), (0, -15.5885), (-13.5, -7.7942), (-13.5, 7.7942), (0, 15.5885),
     (13.5, 7.7942),
 )  # fmt: skip
 SQUARE = [
@@ -89,7 +89,7 @@ CIRCLES = {
 
 MILLIMETRES = {
     "hexagon": Drawing(
-        _compensated(10, HEXAGON, 6, {7: (30, 0), 8: (30, 12)}, (16, (30, 7.7942))), 6
+        _compensated(10, HEXAGON, 6, {7: (30, 0), 8: (30, 18)}, (16, (30, 7.7942))), 6
     ),
     "square": Drawing(_compensated(9, SQUARE, 5, {6: (30, 0), 7: (30, 5)}, (18, (30, 0))), 5),
     "slot": Drawing(SLOT, 3),

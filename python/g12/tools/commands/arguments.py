@@ -21,6 +21,7 @@ from g12.tools.path.samples import Samples
 from g12.tools.preview.tracer import TraceFailure
 from g12.tools.progress import working
 from g12.tools.system import CALL
+from g12.tools.verify.proof import StockText
 
 GOOD, FINDING, USAGE = 0, 1, 2
 VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"
@@ -86,6 +87,21 @@ def program_parser(name: str, description: str, epilog: str) -> Parser:
     parser.add_argument("--tools", type=Path, help="tool table in place of the INI's")
     parser.add_argument("--var", type=Path, help=VAR_HELP)
     return parser
+
+
+def add_stock(parser: argparse.ArgumentParser) -> None:
+    """Add the word that says what is cut."""
+    parser.add_argument(
+        "--stock",
+        metavar="SIZE",
+        help="a bar's diameter on a lathe (40), a block and a bore on a mill "
+        "(100x80x20, 100x80x20@-10,-10, bore 30); in the program's unit, or 40mm, 1.5in",
+    )
+
+
+def stock_of(options: argparse.Namespace) -> StockText | None:
+    """Return the stock that is said."""
+    return StockText(options.stock, options.units) if options.stock else None
 
 
 def add_run(parser: argparse.ArgumentParser, what: str) -> None:

@@ -15,11 +15,13 @@ from g12.tools.commands.arguments import (
     GOOD,
     Parser,
     add_run,
+    add_stock,
     check_run,
     checked_ini,
     one_line,
     program_parser,
     samples_of_run,
+    stock_of,
 )
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
@@ -30,13 +32,13 @@ from g12.tools.plot.scene import scene_of
 from g12.tools.preview.ended import traced
 from g12.tools.progress import working
 from g12.tools.units import UNITS
-from g12.tools.verify.proof import collisions_in, subject_of
+from g12.tools.verify.proof import seen_in, subject_of
 
 EXAMPLES = """\
 examples:
   g12 plot pocket.ngc --ini mill.ini -o pocket.png
   g12 plot pocket.ngc --ini mill.ini -o pocket.pdf --run --override 500
-  g12 plot flats.ngc --ini lathe.ini -o flats.svg --units inch
+  g12 plot flats.ngc --ini lathe.ini -o flats.svg --units inch --stock 1.5
 
 exit code: 0 the picture is there, 1 the program has an error, 2 wrong use
 """
@@ -48,6 +50,7 @@ def command_parser() -> Parser:
     parser.add_argument("-o", "--output", type=Path, required=True, help="a .png, .svg or .pdf")
     parser.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
     parser.add_argument("--feeds", action="store_true", help="colour paths by feed, not by depth")
+    add_stock(parser)
     add_run(parser, "run the program headless and draw its real motion over the programmed path")
     return parser
 
@@ -77,9 +80,7 @@ def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> None:
     samples = samples_of_run(program, options)
     with working(f"drawing {options.output.name}"):
         subject = subject_of(program, ini, trace, samples)
-        scene = replace(
-            scene_of(subject, options.units, options.feeds),
-            override=options.override,
-            collisions=tuple(collisions_in(subject, options.tools, options.var)),
-        )
+        hits, stock = seen_in(subject, options.tools, options.var, stock_of(options))
+        shown = {"override": options.override, "collisions": tuple(hits), "stock": stock}
+        scene = replace(scene_of(subject, options.units, options.feeds), **shown)
         style.save(picture_of(scene), options.output)

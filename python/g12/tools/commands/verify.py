@@ -15,12 +15,14 @@ from g12.tools.commands.arguments import (
     GOOD,
     Parser,
     add_run,
+    add_stock,
     check_run,
     checked_ini,
     number_above,
     one_line,
     program_parser,
     samples_of_run,
+    stock_of,
 )
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
@@ -36,11 +38,14 @@ EXAMPLES = """\
 examples:
   g12 verify pocket.ngc --ini mill.ini
   g12 verify flats.ngc --ini lathe.ini --run
+  g12 verify flats.ngc --ini lathe.ini --stock 40
+  g12 verify pocket.ngc --ini mill.ini --stock "100x80x20 bore 30"
   g12 verify pocket.ngc --ini mill.ini --json
 
 findings, beside sizes, areas and directions that are not as programmed:
   the loaded tool's diameter differs from that of D by more than 5 % (less is a note)
   a rapid leaves, below a pocket's top, what the program has cleared down to that height
+  with --stock: a rapid goes into it, something of the bar stands beyond a contour
   an axis leaves its travel, with the work offsets of --var or else of the machine's var file
 
 exit code: 0 everything is as programmed, 1 something is not, 2 wrong use
@@ -55,6 +60,7 @@ def command_parser() -> Parser:
     )
     parser.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
     parser.add_argument("--json", action="store_true", help="print values in mm for a program")
+    add_stock(parser)
     add_run(parser, "measure the real motion of a headless run")
     return parser
 
@@ -87,5 +93,6 @@ def proof_of(program: Path, ini: Ini, options: argparse.Namespace) -> Proof:
             parameters=options.var,
             samples=samples,
             tolerance=options.tolerance,
+            stock=stock_of(options),
             tell=tell,
         )

@@ -24,6 +24,7 @@ from g12.tools.plot.plan_view import (
     bounds_of,
     draw_paths,
     draw_plan,
+    draw_stock,
     few,
     floor,
     legend_entries,
@@ -111,6 +112,7 @@ def draw_mill(scene: Scene) -> Figure:
 def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float) -> None:
     """Draw the view along Y: what is removed at each level, seen through the part."""
     unit, top = scene.unit.mm, top_of(scene)
+    draw_stock(axes, scene, block_from_the_side(scene))
     for order, level in enumerate(reversed(levels)):
         shape = scaled(removed_at(level, max(top, level.z)), 1 / unit, 1 / unit, origin=(0, 0))
         style.fill(axes, shape, *floor(scene, level), 1 + order / 100)
@@ -118,6 +120,14 @@ def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float)
     draw_paths(axes, scene, levels, SIDE)
     true = abs(stretch - 1) < 0.02
     style.caption(axes, "Side" if true else f"Side, heights drawn {plain(stretch, 2)} : 1")
+
+
+def block_from_the_side(scene: Scene) -> BaseGeometry | None:
+    """Return a block as seen along Y, if it is known how deep it is."""
+    facts = scene.stock
+    if facts is None or facts.bottom is None:
+        return None
+    return box(facts.shape.bounds[0], facts.bottom, facts.shape.bounds[2], facts.top)
 
 
 def removed_at(level: Level, top: float) -> BaseGeometry:

@@ -105,6 +105,10 @@ def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.nda
         bounds = level.area.bounds
         low[:2], high[:2] = np.minimum(low[:2], bounds[:2]), np.maximum(high[:2], bounds[2:])
     high[2] = max(high[2], top_of(scene))
+    if scene.stock:
+        bounds, deep = scene.stock.shape.bounds, scene.stock.bottom
+        low = np.minimum(low, (*bounds[:2], low[2] if deep is None else deep))
+        high = np.maximum(high, (*bounds[2:], scene.stock.top))
     low[:2], high[:2] = with_near_rapids(scene, low[:2], high[:2])
     size = high - low
     margin = np.clip(MARGIN * max(size[:2]), PICTURE_CHORD, np.maximum(0.15 * size, PICTURE_CHORD))
@@ -136,12 +140,21 @@ def top_of(scene: Scene) -> float:
 def draw_plan(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
     """Draw the view along the tool's axis."""
     unit = scene.unit.mm
+    draw_stock(axes, scene, scene.stock.shape if scene.stock else None)
     for order, level in enumerate(levels):
         area = scaled(level.area, 1 / unit, 1 / unit, origin=(0, 0))
         style.fill(axes, area, *floor(scene, level), 1 + order / 100)
     draw_paths(axes, scene, levels, [0, 1])
     draw_plunges(axes, scene)
     draw_arrows(axes, scene)
+
+
+def draw_stock(axes: Axes, scene: Scene, shape: BaseGeometry | None) -> None:
+    """Draw what is cut as it is seen in a view."""
+    if shape is not None:
+        area = scaled(shape, 1 / scene.unit.mm, 1 / scene.unit.mm, origin=(0, 0))
+        style.fill(axes, area, style.STOCK, order=0.7)
+        style.fill(axes, area, "none", style.STOCK_EDGE, 2.2)
 
 
 def floor(scene: Scene, level: Level) -> tuple:
@@ -164,7 +177,7 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
         style.draw(axes, lines, shade, 2.6 if wide else width_for(scene))
     if scene.real is not None:
         draw_real(axes, scene, pair)
-    hit = [collision.path[:, pair] / unit for collision in scene.collisions]
+    hit = [collision.path[:, pair] / unit for collision in scene.hits]
     style.draw(axes, hit, style.CRASH, 3.0, 3.8)
 
 
@@ -281,15 +294,19 @@ def cutter_text(scene: Scene, tool: int) -> str:
 
 
 def motion_entries(scene: Scene) -> list:
-    """Return the legend's entries of rapids and of the real motion."""
+    """Return the legend's entries of the stock, of rapids and of the real motion."""
     listed = []
+    if scene.stock:
+        name = "bar" if scene.stock.stock.diameter else "stock"
+        text = f"{name} {scene.stock.stock.text}"
+        listed.append(style.swatch(style.STOCK, style.STOCK_EDGE, text))
     if any(move.kind == "rapid" for move in scene.moves):
         listed.append(style.stroke(style.RAPID, "rapid", 0.9, dashed=True))
     if scene.real is not None:
         listed.append(style.stroke(style.PATH, "programmed path", 2.6))
         listed.append(style.stroke(style.REAL, "real motion", 0.9))
         listed.append(style.marker(style.WORST, "largest deviation", 7, hollow=True))
-    if scene.collisions:
+    if scene.hits:
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
     return listed
 

@@ -15,6 +15,7 @@ from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import COMMENT
 from g12.tools.preview.moves import Move
 from g12.tools.units import Unit, plain, unit_of
+from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.proof import Proof, Subject
 from g12.tools.verify.rapids import Collision
 
@@ -29,8 +30,8 @@ class Scene:
     """A traced program on its machine; ``unit`` is shown.
 
     ``override`` is the feed override of the run in per cent. ``collisions`` are the rapids that
-    go through material, ``contour`` the largest deviation (mm) from the programmed contours of
-    polar sections, where that was measured.
+    go through material, ``stock`` what is cut and what happens to it, ``contour`` the largest
+    deviation (mm) from the programmed contours of polar sections, where these are known.
     """
 
     subject: Subject
@@ -39,6 +40,7 @@ class Scene:
     override: float = 100.0
     collisions: tuple[Collision, ...] = ()
     contour: float | None = None
+    stock: StockFacts | None = None
 
     @property
     def moves(self) -> Sequence[Move]:
@@ -54,6 +56,11 @@ class Scene:
     def real(self) -> Followed | None:
         """Return the real motion of the run, if there was one."""
         return self.subject.real
+
+    @property
+    def hits(self) -> tuple[Collision, ...]:
+        """Return the rapids that go through material or into the stock."""
+        return (*self.collisions, *(self.stock.rapids if self.stock else ()))
 
     @property
     def title(self) -> str:

@@ -37,6 +37,7 @@ WORST = "#c2255c"
 LIMIT = "#c2255c"
 CRASH = "#e03131"
 CONTOUR = "#1f2933"
+STOCK, STOCK_EDGE = "#f4eee3", "#b39a6b"
 STYLE = {
     "font.family": "DejaVu Sans",
     "font.size": 8.5,

@@ -13,6 +13,7 @@ from itertools import zip_longest
 from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.axis_limits import Overrun
 from g12.tools.verify.codes import EVENT
+from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import SAME_LEVEL, PocketFacts
 from g12.tools.verify.pocket_order import ENDS
 from g12.tools.verify.rapids import Collision
@@ -287,6 +288,28 @@ def turn_findings(facts: SectionFacts) -> Iterator[str]:
     speed = max(facts.c_speed, facts.turn_speed)
     if speed > facts.c_limit * SAME_SPEED:
         yield f"C turns at {speed:.4g} degrees/s, its limit is {facts.c_limit:.4g}"
+
+
+def stock_findings(facts: StockFacts, unit: Unit = MM) -> Iterator[tuple[int, str]]:
+    """Yield what is wrong with what a program does to its stock, each with its line."""
+    for hit in facts.rapids:
+        x, y, z = (unit.text(value) for value in hit.path[0])
+        yield hit.line, f"a rapid goes into the stock ({unit.area(hit.area)}) at X{x} Y{y} Z{z}"
+    for line, area, height in facts.standing:
+        at = unit.text(height - facts.top)
+        yield line, f"{unit.area(area)} of the bar stand beyond the contour at Z{at}"
+
+
+def stock_notes(facts: StockFacts, unit: Unit = MM) -> Iterator[str]:
+    """Yield what a user should know of a program in its stock."""
+    for line, place, share in facts.plunges:
+        x, y, _ = (unit.text(value) for value in place)
+        yield (
+            f"line {line}: it plunges with {plain(100 * share, 0)} % of the cutter into the stock, "
+            f"at X{x} Y{y}{' of the face' if facts.stock.diameter else ''}"
+        )
+    if facts.below:
+        yield f"the lowest cut is {unit.text(facts.below)} {unit.name} below the block"
 
 
 def collision_text(hit: Collision, unit: Unit = MM) -> str:

@@ -22,7 +22,7 @@ from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
-from g12.tools.units import MM, Unit
+from g12.tools.units import MM, Unit, unit_of
 from g12.tools.verify.axis_limits import overruns_of, travel_of
 from g12.tools.verify.codes import Codes
 from g12.tools.verify.executed_subs import executed_everywhere
@@ -31,11 +31,14 @@ from g12.tools.verify.findings import (
     collision_text,
     pocket_findings,
     section_findings,
+    stock_findings,
 )
+from g12.tools.verify.in_stock import InStock, StockFacts
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
 from g12.tools.verify.pocket_order import left_otherwise
 from g12.tools.verify.rapids import Collision, collisions
 from g12.tools.verify.section import SectionFacts, measure_section
+from g12.tools.verify.stock import read_stock
 from g12.tools.verify.wanted_circle import CircleReader, Target
 from g12.tools.verify.wanted_contour import SectionContour, sections
 from g12.tools.verify.zero_line import with_zero_lines
@@ -53,6 +56,13 @@ class Subject:
     trace: Trace
     path: Track
     real: Followed | None = None
+
+
+class StockText(NamedTuple):
+    """A stock as a user says it, and the name of the unit of its numbers; None: the program's."""
+
+    text: str
+    units: str | None = None
 
 
 class Asked(NamedTuple):
@@ -80,7 +90,7 @@ class Proof:
     """What was measured.
 
     ``unseen`` are lines whose blocks make a cycle cut that belongs to no pocket and no section
-    measured, and the cycle's code.
+    measured, and the cycle's code. ``stock`` is what happens to the stock, None if it is not known.
     """
 
     subject: Subject
@@ -89,6 +99,7 @@ class Proof:
     collisions: list[Collision]
     unseen: list[tuple[int, str]]
     tolerances: Tolerances
+    stock: StockFacts | None = None
 
     @property
     def findings(self) -> list[tuple[int, str]]:
@@ -108,6 +119,7 @@ class Proof:
             for text in section_findings(facts, self.tolerances.polar, unit)
         ]
         found += [(hit.line, collision_text(hit, unit)) for hit in self.collisions]
+        found += stock_findings(self.stock, unit) if self.stock else ()
         return found + [(line, UNMEASURED) for line, _ in self.unseen]
 
 
@@ -119,12 +131,14 @@ def prove(
     parameters: Parameters = None,
     samples: Samples | None = None,
     tolerance: float | None = None,
+    stock: StockText | None = None,
     tell: Tell = silent,
 ) -> Proof:
     """Return the proof of a program, of its real motion if there are samples of a run.
 
     ``parameters`` is what the program starts with; see ``Tracer.trace``. ``tolerance`` in mm
-    replaces both that of pockets and that of polar sections, ``tell`` is told what is being done.
+    replaces both that of pockets and that of polar sections, ``stock`` is what is cut. ``tell`` is
+    told what is being done.
     """
     polar = ini.settings.tolerance(ini.mm) * ini.mm + (RUN_ALLOWANCE if samples else 0.0)
     usual = Tolerances(POCKET_TOLERANCE, polar)
@@ -134,7 +148,8 @@ def prove(
         subject = subject_of(program, ini, trace, samples)
         asked = asked_of(tracer, subject, tools, parameters)
         there = moves_there(tracer, subject, parameters)
-    return measured(subject, asked, there, tolerances, tell)
+    proof = measured(subject, asked, there, tolerances, tell)
+    return replace(proof, stock=stock_facts(subject, asked, stock, proof.collisions))
 
 
 def subject_of(program: Path, ini: Ini, trace: Trace, samples: Samples | None = None) -> Subject:
@@ -205,16 +220,35 @@ def measured(
     return Proof(subject, pockets, polar, hits, unseen, tolerances)
 
 
-def collisions_in(
-    subject: Subject, tools: Tools = None, parameters: Parameters = None
-) -> list[Collision]:
-    """Return the rapids of a program that go through material, of its run if there is one."""
+def stock_facts(
+    subject: Subject, asked: Asked, stock: StockText | None, known: Sequence[Collision]
+) -> StockFacts | None:
+    """Return what a program does to its stock, None if none is said; ``known`` are told already.
+
+    Raises UsageError for a text that is no stock of the machine's.
+    """
+    if stock is None:
+        return None
+    unit, part = unit_of(subject.trace.modes.gcodes, stock.units), subject.path.part
+    said = read_stock(stock.text, part.turning, unit)
+    trace = subject.trace
+    return InStock(said, *asked, trace.moves, subject.path, trace.diameters).facts(known)
+
+
+def seen_in(
+    subject: Subject,
+    tools: Tools = None,
+    parameters: Parameters = None,
+    stock: StockText | None = None,
+) -> tuple[list[Collision], StockFacts | None]:
+    """Return what a picture shows beside the cuts: rapids through material, and the stock."""
     codes, moves = Codes(subject.ini), subject.trace.moves
-    if not any(codes.knows(move.remap) for move in moves):
-        return []
-    with Tracer(subject.ini, tools=tools) as tracer:
-        circles = asked_of(tracer, subject, tools, parameters).circles
-    return collisions(circles, moves, subject.path, subject.trace.diameters, subject.real)
+    asked = Asked([], [])
+    if any(codes.knows(move.remap) for move in moves):
+        with Tracer(subject.ini, tools=tools) as tracer:
+            asked = asked_of(tracer, subject, tools, parameters)
+    hits = collisions(asked.circles, moves, subject.path, subject.trace.diameters, subject.real)
+    return hits, stock_facts(subject, asked, stock, hits)
 
 
 def unseen_in(moves: Sequence[Move], codes: Codes, seen: Iterable[range]) -> list[tuple[int, str]]:

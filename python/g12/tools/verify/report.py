@@ -17,7 +17,10 @@ from g12.tools.verify.findings import (
     pocket_notes,
     section_findings,
     section_notes,
+    stock_findings,
+    stock_notes,
 )
+from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.rapids import Collision
@@ -44,7 +47,8 @@ def as_text(proof: Proof, unit: Unit) -> str:
         paragraph(f"line {hit.line}: rapid", [], [], [collision_text(hit, unit)])
         for hit in proof.collisions
     ]
-    return "\n\n".join([*pockets, *sections, *rapids, *unseen, verdict])
+    stock = [stock_text(proof.stock, unit)] if proof.stock else []
+    return "\n\n".join([*pockets, *sections, *rapids, *stock, *unseen, verdict])
 
 
 def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
@@ -72,6 +76,14 @@ def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
     line = f"line {source.line}{f' of {source.file}' if source.file else ''}"
     title = f"{line}: {source.code} ({source.dialect})"
     return paragraph(title, rows, list(pocket_notes(facts, unit)), found)
+
+
+def stock_text(facts: StockFacts, unit: Unit) -> str:
+    """Return the paragraph of the stock."""
+    low_x, low_y, high_x, high_y = (unit.text(value) for value in facts.shape.bounds)
+    rows = [("where", f"X{low_x} to X{high_x}, Y{low_y} to Y{high_y}, top Z{unit.text(facts.top)}")]
+    found = [f"line {line}: {text}" for line, text in stock_findings(facts, unit)]
+    return paragraph(f"stock: {facts.stock.text}", rows, list(stock_notes(facts, unit)), found)
 
 
 def left_text(facts: PocketFacts, unit: Unit) -> str:
@@ -211,6 +223,7 @@ def as_json(proof: Proof) -> str:
             "pockets": [pocket_json(facts, proof) for facts in proof.pockets],
             "sections": [section_json(facts, proof) for facts in proof.sections],
             "rapids": [collision_json(hit) for hit in proof.collisions],
+            "stock": proof.stock and stock_json(proof.stock),
             "unseen": [{"line": line, "code": code} for line, code in proof.unseen],
             "good": not proof.findings,
         },
@@ -286,6 +299,21 @@ def collision_json(hit: Collision) -> dict:
         "from": hit.path[0].tolist(),
         "to": hit.path[-1].tolist(),
         "findings": [collision_text(hit)],
+    }
+
+
+def stock_json(facts: StockFacts) -> dict:
+    """Return what happens to the stock as plain values."""
+    return {
+        "text": facts.stock.text,
+        "bounds": list(facts.shape.bounds),
+        "top": facts.top,
+        "below": facts.below,
+        "plunges": [plunge._asdict() for plunge in facts.plunges],
+        "standing": [standing._asdict() for standing in facts.standing],
+        "rapids": [collision_json(hit) for hit in facts.rapids],
+        "notes": list(stock_notes(facts)),
+        "findings": [f"line {line}: {text}" for line, text in stock_findings(facts)],
     }
 
 

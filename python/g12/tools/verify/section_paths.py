@@ -55,6 +55,11 @@ class Plane:
         there = cmath.rect(radius - self._shift, angle - math.radians(self._angle))
         return there.real, there.imag, point[2]
 
+    def on_part(self, points: np.ndarray) -> np.ndarray:
+        """Return points (complex) of the contour as points (complex) of the part."""
+        angles = np.angle(points) + math.radians(self._angle)
+        return (np.abs(points) + self._shift) * np.exp(1j * angles)
+
     def tool_path(self, index: int, path: Track, real: Followed | None) -> ToolPath:
         """Return the tool centre's path during a move: emitted, or as it was."""
         whole = path.positions[path.vertices(index)]

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from g12.tools.machine.filter import OpenedProgram
 from g12.tools.preview.source_lines import trace_in_source
+from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.section import SectionFacts
@@ -25,6 +26,7 @@ def proof_in_source(proof: Proof, opened: OpenedProgram) -> Proof:
         pockets=[_pocket(facts, opened) for facts in proof.pockets],
         sections=[_section(facts, opened) for facts in proof.sections],
         collisions=[replace(h, line=opened.source_line(h.line)) for h in proof.collisions],
+        stock=proof.stock and _stock(proof.stock, opened),
         unseen=[(opened.source_line(line), code) for line, code in proof.unseen],
     )
 
@@ -35,6 +37,15 @@ def _pocket(facts: PocketFacts, opened: OpenedProgram) -> PocketFacts:
         return facts
     source = replace(source, line=opened.source_line(source.line))
     return replace(facts, target=replace(facts.target, source=source))
+
+
+def _stock(facts: StockFacts, opened: OpenedProgram) -> StockFacts:
+    lists = {
+        name: tuple(each._replace(line=opened.source_line(each.line)) for each in values)
+        for name, values in (("plunges", facts.plunges), ("standing", facts.standing))
+    }
+    hits = tuple(replace(hit, line=opened.source_line(hit.line)) for hit in facts.rapids)
+    return replace(facts, rapids=hits, **lists)
 
 
 def _section(facts: SectionFacts, opened: OpenedProgram) -> SectionFacts:

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The bar or the block that is cut, as a user says it, and where it is.
+
+A bar turns about the spindle's centre, its face is the program's Z0. A block's top is the
+program's Z0; the program's X0 Y0 is its middle, or it is said where its corner is. A bore is in the
+middle of every pocket. Lengths are millimetres in machine coordinates but where a text is read.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+from shapely.geometry import Polygon, box
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
+
+from g12.lengths import MM_PER_INCH
+from g12.tools.errors import UsageError
+from g12.tools.path.part import disc
+from g12.tools.units import Unit
+from g12.tools.verify.wanted_circle import Wall
+
+NUMBER, SIGNED, UNIT_NAME = r"(\d+\.?\d*|\.\d+)", r"([-+]?(?:\d+\.?\d*|\.\d+))", r"\s*(mm|in)?"
+BAR = re.compile(rf"(?:bar\s*)?{NUMBER}{UNIT_NAME}")
+SIZES = rf"(?:block\s*)?{NUMBER}x{NUMBER}x{NUMBER}(?:@{SIGNED},{SIGNED})?"
+BLOCK = re.compile(rf"(?:{SIZES})?\s*(?:bore\s*{NUMBER})?{UNIT_NAME}")
+BAR_FORMS = "a bar's diameter: 40, 40mm, 1.5in"
+BLOCK_FORMS = "100x80x20 (X, Y, Z), 100x80x20@-10,-10 (with its corner), bore 30, or both"
+UNITS_MM = {"mm": 1.0, "in": MM_PER_INCH}
+
+
+class Stock(NamedTuple):
+    """A bar by its ``diameter``, or a block by its ``size`` in X, Y and Z; 0 and None if it is not.
+
+    ``corner`` is where the block's least X and Y are from the program's zero, None for a block in
+    the middle; ``bore`` the diameter of the holes in it.
+    """
+
+    text: str
+    diameter: float = 0.0
+    size: tuple[float, ...] | None = None
+    corner: tuple[float, ...] | None = None
+    bore: float = 0.0
+
+    def shape(self, zero: np.ndarray, walls: Iterable[Wall]) -> BaseGeometry:
+        """Return its area as seen along Z; ``zero`` is the program's, ``walls`` of its pockets.
+
+        Without a block only the pockets are known to be in something.
+        """
+        if self.diameter:
+            return disc((0.0, 0.0), self.diameter / 2)
+        flat = [wall for wall in walls if wall.inside and wall.plane == 2]
+        if self.size:
+            low = zero[:2] + np.array(self.corner or np.array(self.size[:2]) / -2)
+            whole = box(*low, *(low + np.array(self.size[:2])))
+        else:
+            whole = unary_union([Polygon(), *(disc(wall.origin, wall.radius) for wall in flat)])
+        bores = [disc(wall.origin, self.bore / 2) for wall in flat] if self.bore else []
+        return whole.difference(unary_union([Polygon(), *bores]))
+
+
+def read_stock(text: str, turning: bool, unit: Unit) -> Stock:
+    """Return the stock that a text says, for a machine that turns its part or a mill.
+
+    A number without a unit is in ``unit``. Raises UsageError with the forms that there are.
+    """
+    words = " ".join(text.lower().replace("×", "x").split())
+    match = (BAR if turning else BLOCK).fullmatch(words)
+    numbers = match and [group and float(group) for group in match.groups()[:-1]]
+    if not match or not any(numbers) or any(number == 0 for number in numbers[:3]):
+        forms = BAR_FORMS if turning else BLOCK_FORMS
+        raise UsageError(f"--stock {text!r} is not {forms}")
+    mm = UNITS_MM.get(match.groups()[-1], unit.mm)
+    sizes = [number and number * mm for number in numbers]
+    if turning:
+        return Stock(words, diameter=sizes[0])
+    size = tuple(sizes[:3]) if sizes[0] else None
+    corner = tuple(sizes[3:5]) if sizes[3] is not None else None
+    return Stock(words, size=size, corner=corner, bore=sizes[5] or 0.0)
