@@ -10,10 +10,10 @@ import numpy as np
 
 from bench import Figure
 from bench.haas import cpu_seconds
-from g12.tools.headless.machine import Machine
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from support.contour_geometry import deviation, outward, spaced
+from support.operated_machine import Machine
 from support.polar_drawings import HEXAGON, INCHES, MILLIMETRES
 from support.polar_programs import Cut, feed_moves
 from support.sim_machines import PROGRAMS, SIM

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from shapely.geometry import MultiLineString, Point
 
-from g12.tools.headless.machine import Machine
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry
+from support.operated_machine import Machine
 from support.refusals import at_line
 from support.sim_machines import BRISK, SIM
 

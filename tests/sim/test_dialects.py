@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from g12.tools.headless.machine import Machine
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry
+from support.operated_machine import Machine
 from support.sim_machines import BRISK, PROGRAMS, SIM
 
 MILLS = {

@@ -4,8 +4,8 @@
 import pytest
 
 from g12.tools.commands import main
-from g12.tools.headless.machine import smoke
 from support.foreign_programs import FOREIGN
+from support.operated_machine import smoke
 from support.sim_machines import SIM
 
 PROGRAM = "%\nO5 (SLOT)\nG20 G90 G54 G00 X.1 Y0\nG01 X.3 F90.\nM31\nG53 X.5\nM30\n%\n"

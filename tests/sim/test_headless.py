@@ -11,9 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from g12.tools.headless.machine import Machine, StartupError, Timeout, run
+from g12.tools.headless.machine import StartupError, Timeout
 from g12.tools.headless.namespaces import PYTHON, Isolated
+from g12.tools.headless.run import run_anyhow
 from g12.tools.preview.tracer import trace_text
+from support.operated_machine import Machine
 from support.sim_machines import ROOT, SIM, with_package
 
 EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
@@ -87,7 +89,7 @@ def test_program_stops_are_passed_over(machine):
 def test_tools_and_parameters_are_the_ones_given(tmp_path):
     program = tmp_path / "program.ngc"
     program.write_text("G21 T7 M6\n(DEBUG, #5410)\nG0 X1\nM2\n")
-    result = run(program, SIM / "mill_mm.ini", tools={7: 3.5}, parameters={5221: 10.0})
+    result = run_anyhow(program, SIM / "mill_mm.ini", {7: 3.5}, {5221: 10.0})
     assert result.error is None
     assert result.messages[0].text == "3.500000"
     assert result.position[0] == pytest.approx(11.0)

@@ -10,10 +10,11 @@ import pytest
 from shapely.geometry import LineString, Point
 
 from g12.tools.commands import install, uninstall
-from g12.tools.headless.machine import Machine
 from g12.tools.install.checking import check_config
 from g12.tools.install.findings import PROBLEM
 from g12.tools.install.ini_edit import IniText
+from g12.tools.install.rules import PROBLEM
+from support.operated_machine import Machine
 from support.small_configs import with_lines
 
 IN_PLACE = os.environ.get("EMC2_HOME")  # the folder of a LinuxCNC that runs in place

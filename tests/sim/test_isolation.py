@@ -8,8 +8,9 @@ import threading
 
 import pytest
 
-from g12.tools.headless.machine import Machine, StartupError, Timeout
+from g12.tools.headless.machine import StartupError, Timeout
 from g12.tools.headless.namespaces import Isolated, has_namespaces
+from support.operated_machine import Machine
 from support.sim_machines import SIM
 
 

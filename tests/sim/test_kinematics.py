@@ -8,7 +8,6 @@ import time
 import numpy as np
 import pytest
 
-from g12.tools.headless.machine import Machine
 from g12.tools.preview.tracer import Tracer
 from support.contour_geometry import (
     FROM_COLUMNS,
@@ -19,6 +18,7 @@ from support.contour_geometry import (
     outward,
 )
 from support.kinematics import needs_kinematics
+from support.operated_machine import Machine
 from support.polar_drawings import HEXAGON, MILLIMETRES
 from support.polar_programs import FEED, ROUND, Cut
 from support.sim_machines import PROGRAMS, SIM

@@ -7,10 +7,10 @@ import time
 
 import pytest
 
-from g12.tools.headless.machine import Machine, smoke
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import read_ini
 from support.kinematics import marked
+from support.operated_machine import Machine, smoke
 from support.sim_machines import SIM
 
 INIS = sorted(SIM.glob("*.ini"))

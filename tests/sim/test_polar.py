@@ -6,7 +6,6 @@ import math
 import numpy as np
 import pytest
 
-from g12.tools.headless.machine import Machine
 from support.contour_geometry import (
     FROM_COLUMNS,
     deviation,
@@ -15,6 +14,7 @@ from support.contour_geometry import (
     fitted_line,
     lines,
 )
+from support.operated_machine import Machine
 from support.polar_drawings import INCHES, MILLIMETRES
 from support.polar_programs import FEED, FIRST, Cut, section
 from support.sim_machines import PROGRAMS, SIM

@@ -3,7 +3,7 @@
 
 import time
 
-from g12.tools.headless.machine import Machine
+from support.operated_machine import Machine
 from support.sim_machines import SIM
 
 SECONDS = 10.0

@@ -3,7 +3,7 @@
 
 import pytest
 
-from g12.tools.headless.machine import Machine
+from support.operated_machine import Machine
 from support.refusals import at_line
 from support.sim_machines import BRISK, SIM
 

@@ -6,8 +6,8 @@ import time
 
 import pytest
 
-from g12.tools.headless.machine import Machine
 from soak import SEED, often
+from support.operated_machine import Machine
 from support.sim_machines import SIM
 
 PROGRAMS = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The operator's side of a running LinuxCNC: enable, home, MDI, cycle start and the rest.
+"""The operator's side of a running LinuxCNC: enable, home, cycle start.
 
 Used inside a LinuxCNC session, by the headless screen and by the recording screen.
 """
@@ -12,7 +12,6 @@ from typing import Callable
 import linuxcnc
 
 TICK = 0.01  # s, between looks at the status
-AXIS_JOG = 0  # of an axis, not of a joint
 QUIET_LOOKS = 20  # without a joint homing: there was nothing to home, or it is done
 GRACE = 5.0  # s, for the machine to react to a command
 ERRORS = (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR)
@@ -20,12 +19,6 @@ TASK_MODES = {
     linuxcnc.MODE_MANUAL: "manual",
     linuxcnc.MODE_AUTO: "auto",
     linuxcnc.MODE_MDI: "mdi",
-}
-INTERPRETER = {
-    linuxcnc.INTERP_IDLE: "idle",
-    linuxcnc.INTERP_READING: "reading",
-    linuxcnc.INTERP_PAUSED: "paused",
-    linuxcnc.INTERP_WAITING: "waiting",
 }
 
 
@@ -94,11 +87,6 @@ class Panel:
         self._do(self._command.state, linuxcnc.STATE_ON)
         self.wait(lambda stat: stat.enabled, GRACE, "machine power")
 
-    def estop(self) -> None:
-        """Press the emergency stop."""
-        self._do(self._command.state, linuxcnc.STATE_ESTOP)
-        self.wait(lambda stat: not stat.enabled, GRACE, "e-stop")
-
     def home(self, timeout: float = 60.0) -> None:
         """Home all joints: in the INI's sequence, and then those that have none."""
         self._mode(linuxcnc.MODE_MANUAL)
@@ -127,66 +115,20 @@ class Panel:
 
     # Running.
 
-    def manual(self) -> None:
-        """Go to where the axes are jogged."""
-        self._mode(linuxcnc.MODE_MANUAL)
-
-    def jog(self, axis: int, speed: float) -> None:
-        """Jog an axis, by its number, until it is stopped with a speed of 0."""
-        if speed:
-            self._do(self._command.jog, linuxcnc.JOG_CONTINUOUS, AXIS_JOG, axis, speed)
-        else:
-            self._do(self._command.jog, linuxcnc.JOG_STOP, AXIS_JOG, axis)
-
-    def mdi(self, text: str) -> None:
-        """Start one block of MDI."""
-        self._mode(linuxcnc.MODE_MDI)
-        self._do(self._command.mdi, text)
-
     def open(self, program: str) -> None:
         """Load a program file."""
         self._mode(linuxcnc.MODE_AUTO)
         self._do(self._command.program_open, program)
         self.wait(lambda stat: stat.file == program, GRACE, f"opening of {program}")
 
-    def start(self, line: int = 0) -> None:
-        """Cycle start, or run from ``line``."""
+    def start(self) -> None:
+        """Cycle start."""
         self._mode(linuxcnc.MODE_AUTO)
-        self._do(self._command.auto, linuxcnc.AUTO_RUN, line)
-
-    def step(self) -> None:
-        """Run one block and pause."""
-        self._mode(linuxcnc.MODE_AUTO)
-        self._do(self._command.auto, linuxcnc.AUTO_STEP)
-
-    def pause(self) -> None:
-        """Feed hold."""
-        self._do(self._command.auto, linuxcnc.AUTO_PAUSE)
-
-    def resume(self) -> None:
-        """Go on after a pause."""
-        self._do(self._command.auto, linuxcnc.AUTO_RESUME)
-
-    def abort(self) -> None:
-        """Stop everything and wait until it stands."""
-        self._do(self._command.abort)
-        self.wait_idle(GRACE)
+        self._do(self._command.auto, linuxcnc.AUTO_RUN, 0)
 
     def feed_override(self, scale: float) -> None:
         """Set the feed override; 1 is 100 %."""
         self._do(self._command.feedrate, scale)
-
-    def optional_stop(self, on: bool) -> None:
-        """Let M1 stop the program."""
-        self._do(self._command.set_optional_stop, on)
-
-    def block_delete(self, on: bool) -> None:
-        """Let blocks that begin with / be skipped."""
-        self._do(self._command.set_block_delete, on)
-
-    def wait_idle(self, timeout: float) -> None:
-        """Wait until the interpreter is done and the axes stand."""
-        self.wait(self.is_idle, timeout, "end of motion")
 
     def finish(self, timeout: float) -> None:
         """Wait until the program is done, passing over program stops (M0, M1)."""
@@ -194,7 +136,7 @@ class Panel:
 
     def _pass_stop(self, stat) -> bool:
         if stat.interp_state == linuxcnc.INTERP_PAUSED:
-            self.resume()
+            self._do(self._command.auto, linuxcnc.AUTO_RESUME)
         return False
 
     @staticmethod

@@ -15,10 +15,9 @@ from multiprocessing.connection import Connection
 
 import hal
 
-from g12.tools.headless.operator_panel import INTERPRETER, TASK_MODES, Panel, PanelTimeout
+from g12.tools.headless.operator_panel import Panel, PanelTimeout
 
 DEPTH = 20000  # samples in HAL's buffer: 20 s at 1 kHz
-PATIENCE = 5.0  # s, for milltask to come up
 DRAIN = 0.05  # s between looks into it
 THREAD = "servo-thread"
 MOTION = (
@@ -72,10 +71,12 @@ class Sampler:
 class RecordingScreen:
     """The requests a runner can make, beside those of ``Panel``."""
 
+    panel_kind = Panel
+
     def __init__(self, positions: list[str]) -> None:
         self.sampler = Sampler(positions)
         self._drained = 0.0
-        self.panel = Panel(self.tick)
+        self.panel = self.panel_kind(self.tick)
 
     def tick(self) -> None:
         """Keep HAL's buffer from running over."""
@@ -84,50 +85,30 @@ class RecordingScreen:
             self._drained = time.monotonic()
 
     def answer(self, name: str, *arguments):
-        """Do what a request asks."""
-        own = getattr(self, f"do_{name}", None)
-        return own(*arguments) if own else getattr(self.panel, name)(*arguments)
+        """Do what a request asks: a method here, or of the panel."""
+        return getattr(self if hasattr(self, name) else self.panel, name)(*arguments)
 
-    def do_stat(self) -> dict:
-        """Return the status as plain values."""
-        self.panel.wait(lambda stat: stat.task_mode in TASK_MODES, PATIENCE, "milltask")
-        stat = self.panel.look()
+    def run(self, program: str, timeout: float) -> dict:
+        """Run a program to its end; return what was recorded and said, and how it ended."""
+        panel = self.panel
+        panel.open(program)
+        panel.errors(), panel.messages()
+        self.sampler.start()
+        panel.start()
+        panel.finish(timeout)
+        recorded, stat = self.sampler.stop(), panel.look()
         return {
-            "task_mode": TASK_MODES[stat.task_mode],
-            "interp": INTERPRETER[stat.interp_state],
-            "enabled": bool(stat.enabled),
-            "homed": all(stat.homed[: stat.joints]),
-            "paused": bool(stat.paused),
-            "idle": self.panel.is_idle(stat),
-            "in_position": bool(stat.inpos),
+            "recorded": recorded,
             "position": tuple(stat.position),
-            "actual": tuple(stat.actual_position),
-            "current_line": stat.current_line,
-            "motion_line": stat.motion_line,
-            "read_line": stat.read_line,
-            "feed_override": stat.feedrate,
-            "tool": stat.tool_in_spindle,
-            "queue": stat.queue,
-            "modes": (stat.gcodes[1:], stat.mcodes[1:], stat.settings[1:]),
+            "modes": modes_of(stat),
+            "errors": panel.errors(),
+            "messages": panel.messages(),
         }
 
-    def do_get(self, pin: str):
-        """Return the value of a HAL pin."""
-        return hal.get_value(pin)
 
-    def do_set(self, pin: str, value) -> None:
-        """Set a HAL pin or parameter that nothing drives, or the signal a pin reads."""
-        signal = signals_by_pin().get(pin)
-        text = str(int(value)) if isinstance(value, bool) else str(value)
-        hal.set_s(signal, text) if signal else hal.set_p(pin, text)
-
-    def do_sample(self) -> None:
-        """Start sampling."""
-        self.sampler.start()
-
-    def do_samples(self) -> tuple[bytes, int]:
-        """Stop sampling and return what was recorded."""
-        return self.sampler.stop()
+def modes_of(stat) -> tuple[tuple, tuple, tuple]:
+    """Return the active G codes, M codes and settings of a status."""
+    return stat.gcodes[1:], stat.mcodes[1:], stat.settings[1:]
 
 
 def halcmd(*words: str) -> None:
@@ -152,12 +133,12 @@ def signals_by_pin() -> dict[str, str]:
     return {line[4]: line[6] for line in words if len(line) > 6}
 
 
-def serve_runner(address: str, positions: list[str]) -> None:
-    """Answer requests until the runner closes the connection."""
+def serve_runner(address: str, positions: list[str], kind: type = RecordingScreen) -> None:
+    """Answer requests until the runner closes the connection, by a screen of that kind."""
     with socket.socket(socket.AF_UNIX) as client:
         client.connect(address)
         connection = Connection(client.detach())
-    screen = RecordingScreen(positions)
+    screen = kind(positions)
     connection.send((True, "ready"))
     while True:
         while not connection.poll(DRAIN):

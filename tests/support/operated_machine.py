@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A headless LinuxCNC with an operator at it: MDI, cycle start, pause, step, HAL pins."""
+
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from g12.tools.headless import machine
+from g12.tools.headless.machine import Run, Timeout
+from g12.tools.headless.namespaces import Isolated
+from g12.tools.preview.moves import Error, Message, Modes, modes
+from g12.tools.preview.tracer import start_block, write_program
+from support.sim_machines import ROOT
+
+
+@dataclass(frozen=True)
+class Status:
+    """What LinuxCNC says of itself, in machine units.
+
+    ``task_mode`` is ``manual``, ``auto`` or ``mdi``; ``interp`` is ``idle``, ``reading``,
+    ``paused`` or ``waiting``; ``idle`` says that the interpreter is done and the axes stand.
+    ``position`` (commanded) and ``actual`` are nine floats in the order of X Y Z A B C U V W.
+    ``motion_line`` is the line of the move being made, ``read_line`` the one last read,
+    ``current_line`` what a screen highlights.
+    """
+
+    task_mode: str
+    interp: str
+    enabled: bool
+    homed: bool
+    paused: bool
+    idle: bool
+    in_position: bool
+    position: tuple[float, ...]
+    actual: tuple[float, ...]
+    current_line: int
+    motion_line: int
+    read_line: int
+    feed_override: float
+    tool: int
+    queue: int
+    modes: Modes
+
+
+class Machine(machine.Machine):
+    """The machine of the commands, and what an operator does with it step by step."""
+
+    screen_module = "support.operated_screen"
+    screen_folders = (*machine.Machine.screen_folders, str(ROOT / "tests"))
+
+    # Operating.
+
+    def mdi(self, text, *, wait=True, timeout=60.0) -> None:
+        """Execute one block of MDI; without ``wait`` only start it."""
+        self._ask("mdi", text)
+        if wait:
+            self.wait_idle(timeout)
+
+    def open_text(self, text) -> None:
+        """Load a program given as text or as lines."""
+        self._ask("open", str(write_program(text, self.folder / "programs" / "program.ngc")))
+
+    def start(self, line=0) -> None:
+        """Cycle start, or run from ``line``."""
+        self._ask("start_from", line)
+
+    def step(self) -> None:
+        """Run the next block and pause."""
+        self._ask("step")
+
+    def pause(self) -> None:
+        """Feed hold."""
+        self._ask("pause")
+
+    def resume(self) -> None:
+        """Go on after a pause."""
+        self._ask("resume")
+
+    def abort(self) -> None:
+        """Stop everything and wait until the axes stand."""
+        self._ask("abort")
+
+    def estop(self) -> None:
+        """Press the emergency stop; `enable` switches the machine on again, homed as it was."""
+        self._ask("estop")
+
+    def enable(self) -> None:
+        """Leave e-stop and switch the machine on."""
+        self._ask("enable")
+
+    def manual(self) -> None:
+        """Go to where the axes are jogged."""
+        self._ask("manual")
+
+    def jog(self, axis, speed) -> None:
+        """Jog an axis of `manual`, in units per second, until its speed is set to 0."""
+        self._ask("jog", axis, speed)
+
+    def optional_stop(self, on) -> None:
+        """Let M1 stop the program."""
+        self._ask("optional_stop", on)
+
+    def block_delete(self, on) -> None:
+        """Let blocks that begin with / be skipped."""
+        self._ask("block_delete", on)
+
+    def wait_idle(self, timeout=60.0) -> None:
+        """Wait until the interpreter is done and the axes stand."""
+        self._ask("wait_idle", timeout, timeout=timeout)
+
+    def wait_for(self, condition, timeout=60.0) -> Status:
+        """Wait until ``condition`` of the status holds, and return that status."""
+        end = time.monotonic() + timeout
+        while not condition(status := self.stat()):
+            if time.monotonic() > end:
+                raise Timeout(f"not within {timeout:g} s; last seen: {status}")
+            time.sleep(0.005)
+        return status
+
+    # Looking.
+
+    def stat(self) -> Status:
+        """Return the present status."""
+        values = self._ask("stat")
+        return Status(**{**values, "modes": modes(*values["modes"])})
+
+    def errors(self) -> list[Error]:
+        """Return the operator errors since the last call."""
+        return [Error(*said) for said in self._ask("errors")]
+
+    def messages(self) -> list[Message]:
+        """Return the operator messages that are no errors, since the last call."""
+        return [Message(line, text) for text, line in self._ask("messages")]
+
+    def get(self, pin):
+        """Return the value of a HAL pin, parameter or signal."""
+        return self._ask("get", pin)
+
+    def set(self, pin, value) -> None:
+        """Set a HAL parameter, a pin that nothing drives, or the signal that a pin reads."""
+        self._ask("set", pin, value)
+
+    def sample(self) -> None:
+        """Start recording the motion."""
+        self._ask("sample")
+
+    def samples(self):
+        """Stop recording and return the motion."""
+        return self._samples(*self._ask("samples"))
+
+    # Whole programs.
+
+    def run_text(self, text, timeout=600.0) -> Run:
+        """Run a program given as text or as lines; see ``run``."""
+        return self.run(write_program(text, self.folder / "program.ngc"), timeout)
+
+    def reset(self) -> None:
+        """Go back to how the machine came up: modes, G54, no tool, override, axes at 0, silence."""
+        self.abort()
+        self.feed_override(1.0)
+        zero = " ".join(f"{axis}0" for axis in self.axes)
+        turn = " R0" if {"X", "Y"} <= set(self.axes) else ""
+        modes_at_start = f"{start_block(self.mm)} G40 G49 G8 G91.1 G97"
+        up = ["G53 G0 Z0"] if "Z" in self.axes else []
+        away = ["T0 M6"] if self.stat().tool else []
+        offsets = ["G92.1", f"G10 L2 P1 {zero}{turn}"]
+        for block in ("M2", modes_at_start, *offsets, *away, *up, f"G53 G0 {zero}", "M2"):
+            self.mdi(block)
+        self.errors(), self.messages()
+
+
+def smoke(ini, program=None, timeout=600.0) -> tuple[int, str]:
+    """Run ``linuxcnc -r INI [PROGRAM]`` as it stands, isolated; return its exit code and log."""
+    path = Path(ini).absolute()
+    command = ["linuxcnc", "-r", str(path)]
+    isolated = Isolated()
+    try:
+        named = [str(Path(program).absolute())] if program else []
+        isolated.launch([*command, *named], copies={path.parent: {}})
+        return isolated.wait(timeout), isolated.log()
+    except subprocess.TimeoutExpired as error:
+        raise Timeout(f"{path}: no end within {timeout:g} s\n{isolated.log()}") from error
+    finally:
+        isolated.close()

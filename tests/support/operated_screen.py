@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The recording screen with an operator: what a test does with a machine, inside LinuxCNC."""
+
+import hal
+import linuxcnc
+
+from g12.tools.headless import recording_screen
+from g12.tools.headless.operator_panel import GRACE, TASK_MODES, Panel
+from g12.tools.headless.recording_screen import RecordingScreen, modes_of, signals_by_pin
+
+AXIS_JOG = 0  # of an axis, not of a joint
+PATIENCE = 5.0  # s, for milltask to come up
+INTERPRETER = {
+    linuxcnc.INTERP_IDLE: "idle",
+    linuxcnc.INTERP_READING: "reading",
+    linuxcnc.INTERP_PAUSED: "paused",
+    linuxcnc.INTERP_WAITING: "waiting",
+}
+
+
+class OperatedPanel(Panel):
+    """All that an operator does; the names are those of `operated_machine.Machine`."""
+
+    def estop(self):
+        self._do(self._command.state, linuxcnc.STATE_ESTOP)
+        self.wait(lambda stat: not stat.enabled, GRACE, "e-stop")
+
+    def manual(self):
+        self._mode(linuxcnc.MODE_MANUAL)
+
+    def jog(self, axis, speed):
+        if speed:
+            self._do(self._command.jog, linuxcnc.JOG_CONTINUOUS, AXIS_JOG, axis, speed)
+        else:
+            self._do(self._command.jog, linuxcnc.JOG_STOP, AXIS_JOG, axis)
+
+    def mdi(self, text):
+        self._mode(linuxcnc.MODE_MDI)
+        self._do(self._command.mdi, text)
+
+    def start_from(self, line):
+        self._mode(linuxcnc.MODE_AUTO)
+        self._do(self._command.auto, linuxcnc.AUTO_RUN, line)
+
+    def step(self):
+        self._mode(linuxcnc.MODE_AUTO)
+        self._do(self._command.auto, linuxcnc.AUTO_STEP)
+
+    def pause(self):
+        self._do(self._command.auto, linuxcnc.AUTO_PAUSE)
+
+    def resume(self):
+        self._do(self._command.auto, linuxcnc.AUTO_RESUME)
+
+    def abort(self):
+        self._do(self._command.abort)
+        self.wait_idle(GRACE)
+
+    def optional_stop(self, on):
+        self._do(self._command.set_optional_stop, on)
+
+    def block_delete(self, on):
+        self._do(self._command.set_block_delete, on)
+
+    def wait_idle(self, timeout):
+        self.wait(self.is_idle, timeout, "end of motion")
+
+
+class OperatedScreen(RecordingScreen):
+    """Answers what a test asks of LinuxCNC, HAL and the sampler too."""
+
+    panel_kind = OperatedPanel
+
+    def stat(self):
+        """Return the status as plain values."""
+        self.panel.wait(lambda stat: stat.task_mode in TASK_MODES, PATIENCE, "milltask")
+        stat = self.panel.look()
+        return {
+            "task_mode": TASK_MODES[stat.task_mode],
+            "interp": INTERPRETER[stat.interp_state],
+            "enabled": bool(stat.enabled),
+            "homed": all(stat.homed[: stat.joints]),
+            "paused": bool(stat.paused),
+            "idle": self.panel.is_idle(stat),
+            "in_position": bool(stat.inpos),
+            "position": tuple(stat.position),
+            "actual": tuple(stat.actual_position),
+            "current_line": stat.current_line,
+            "motion_line": stat.motion_line,
+            "read_line": stat.read_line,
+            "feed_override": stat.feedrate,
+            "tool": stat.tool_in_spindle,
+            "queue": stat.queue,
+            "modes": modes_of(stat),
+        }
+
+    def get(self, pin):
+        return hal.get_value(pin)
+
+    def set(self, pin, value):
+        signal = signals_by_pin().get(pin)
+        text = str(int(value)) if isinstance(value, bool) else str(value)
+        hal.set_s(signal, text) if signal else hal.set_p(pin, text)
+
+    def sample(self):
+        self.sampler.start()
+
+    def samples(self):
+        return self.sampler.stop()
+
+
+def serve_runner(address, positions):
+    recording_screen.serve_runner(address, positions, OperatedScreen)
