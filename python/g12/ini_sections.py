@@ -28,7 +28,7 @@ def section_extent(lines: Sequence[str], section: str) -> range:
     for index, line in enumerate(map(str.lstrip, lines), start=1):
         if first and line.startswith("["):
             return range(first, index - 1)
-        if not first and line.startswith(f"[{section}]"):
+        if line.startswith(f"[{section}]"):
             first = index
     return range(first, len(lines) if first else 0)
 

@@ -103,7 +103,7 @@ def translated(asked: argparse.Namespace, control: Control) -> str:
     path = asked.ini or os.environ.get("INI_FILE_NAME")
     ini = read_ini(path) if path else None
     codes = machine_codes(ini) if ini else None
-    pair = polar_pair(remap_lines(lambda *key: ini.all(*key))) if ini else None
+    pair = polar_pair(remap_lines(ini.all)) if ini else None
     control = replace(control, polar_codes=pair) if pair else control
     result = translate_program(text, control, codes, progress())
     if result.refused:
@@ -121,7 +121,7 @@ def refusal_sentence(refused: list[RefusedBlock]) -> str:
 
 def machine_codes(ini: Ini) -> frozenset[str]:
     """Return the M codes that a machine knows besides LinuxCNC's: REMAP lines and M1xx files."""
-    numbers = (remap.number for remap in remap_lines(lambda *key: ini.all(*key)))
+    numbers = (remap.number for remap in remap_lines(ini.all))
     remapped = {f"M{tenths // 10}" for letter, tenths in numbers if letter == "M"}
     return frozenset(remapped | {name for folder in code_folders(ini) for name in codes_in(folder)})
 

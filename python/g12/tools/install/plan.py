@@ -279,11 +279,6 @@ def is_ours(module: str | None) -> bool:
     return (module or "").split(".")[0] == "g12"
 
 
-def is_below(path: str | Path, folder: Path) -> bool:
-    """Tell whether a file is in a folder, links followed."""
-    return Path(path).resolve().is_relative_to(folder.resolve())
-
-
 def refuse_own_names(config: Config) -> None:
     """Refuse functions of the user's own that the import would replace."""
     handlers = {name for feature in features.FILES for name in features.functions_of(feature)}
@@ -309,7 +304,7 @@ def remap_on_path(config: Config) -> Path | None:
 
 def require_inside(config: Config, path: Path) -> None:
     """Refuse to change a file that is outside the config's folder."""
-    if not is_below(path, config.folder):
+    if not path.resolve().is_relative_to(config.folder.resolve()):
         raise refuse(
             "outside",
             f"{path} would have to change, which is outside the folder of {config.text.path.name}",

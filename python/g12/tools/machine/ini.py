@@ -96,10 +96,6 @@ class Ini:
         name = self.get(section, key)
         return self.directory / os.path.expanduser(name) if name else None
 
-    def words(self, section: str, key: str, default: str = "") -> list[str]:
-        """Return a value split at blanks."""
-        return self.get(section, key, default).split()
-
     def replaced(self, overrides: Overrides) -> Ini:
         """Return an INI with values replaced or added.
 
