@@ -13,7 +13,6 @@ from g12.tools.commands import install, uninstall
 from g12.tools.install.checking import check_config
 from g12.tools.install.findings import PROBLEM
 from g12.tools.install.ini_edit import IniText
-from g12.tools.install.rules import PROBLEM
 from support.operated_machine import Machine
 from support.small_configs import with_lines
 
