@@ -7,9 +7,9 @@ import time
 import numpy as np
 import pytest
 
-from g12.tools.headless.machine import Machine
 from soak import SEED, often
 from support.kinematics import needs_kinematics
+from support.operated_machine import Machine
 from support.sim_machines import SIM
 
 pytestmark = needs_kinematics
