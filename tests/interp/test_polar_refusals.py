@@ -4,7 +4,7 @@
 import pytest
 
 from g12.tools.preview.tracer import Tracer
-from support.polar_programs import FIRST, feed_moves, section, tracer
+from support.polar_programs import FIRST, feed_moves, section, texts, tracer
 from support.sim_machines import SIM
 
 REFERENCE = "the reference point is not in the plane"
@@ -354,6 +354,30 @@ def test_through_the_centre_where_that_is_refused():
         text, line = refused(lathe, section("G1 X-5"))
     assert text.startswith("G12.1 line 6: ")
     assert line == 6
+
+
+# A square pocket, from its corner or from the middle of a side, with a tool of 12 mm diameter.
+POCKET = ["C-10", "X-10", "C10", "X10"]
+
+
+@pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
+def test_a_contour_that_begins_in_its_inside_corner(machine):
+    with Tracer(SIM / f"{machine}.ini") as lathe:
+        text, line = refused(lathe, section("G1 X0", "G42 X10 C10", *POCKET, "G40 X0 C0"))
+        assert feed_moves(lathe.trace_text(section("G1 X0", "G42 X10", *POCKET, "C0", "G40 X0")))
+    assert text == (
+        "G12.1 line 11: the tool of radius 6 cannot follow both lines 8 and 11: beside one of them "
+        "it cuts into the other"
+    )
+    assert line == 11
+
+
+def test_leads_that_cross_are_told(lathe):
+    corner = ["G1 X20 C15", "G41 X10", *POCKET[:3], "X15", "G40 C20"]
+    told = texts(lathe.trace_text(section(*corner)))
+    assert told == [
+        "G12.1 line 11: lines 8 and 11 cross: taken for the leads of a contour that closes there"
+    ]
 
 
 def test_compensation_without_a_tool(lathe):

@@ -1,56 +1,238 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How near to a corner the tool's way is looked at for gouges. Every way is drawn by hand."""
+"""A contour that the tool would cut into on its own way is refused; what is right is cut.
 
+Judged by shapely: the way of the tool's centre against the part's outline.
+"""
+
+import cmath
 import math
+import random
+import time
 
 import pytest
 
-from g12.errors import Refusal
-from g12.flat.contour import Arc, Contour, Line
-from g12.flat.gouge import Cut, refuse_gouges
+from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.flat.contour import Contour
+from g12.flat.offset import tool_path
+from support.contour_geometry import Round, Straight, arc, lines
+from support.random_contours import (
+    TOLERANCE,
+    Drawn,
+    blind_path,
+    contour_of,
+    depth,
+    polygon,
+    rounded,
+    star,
+)
 
-TOLERANCE = 0.005
-RADIUS = 2.0
-FAR = 1000.0
+LEFT, RIGHT = 41, 42
 
 
-def line(x0, c0, x1, c1, number=1):
-    return Line(number, 100.0, RADIUS, x0, c0, 0.0, x1, c1, 0.0)
-
-
-def arc(cx, cc, radius, number=1):
-    """Return the upper half of a circle, counterclockwise."""
-    ends = (cx + radius, cc, 0.0, cx - radius, cc, 0.0)
-    return Arc(number, 100.0, RADIUS, *ends, cx, cc, math.pi)
-
-
-def is_refused(*cuts, tolerance=TOLERANCE):
+def refusal(contour):
+    """Return the message with which a contour is refused, or an empty text."""
     try:
-        refuse_gouges(Contour(10.0, 0.0), cuts, tolerance)
-    except Refusal as refusal:
-        assert "cannot follow both lines" in str(refusal)
-        return True
-    return False
+        tool_path(contour, contour.elements, TOLERANCE)
+    except Refusal as refused:
+        assert len(refused.message) < LONGEST_MESSAGE
+        return refused.message
+    return ""
 
 
-@pytest.mark.parametrize(("beyond", "refused"), [(1.9, False), (2.1, True)])
-def test_ways_that_cross_within_two_tolerances_of_their_corner_are_one_corner(beyond, refused):
-    beyond *= TOLERANCE
-    first = Cut(arc(FAR, 0, 5), None, line(-10, 0, beyond, 0))
-    second = Cut(arc(-FAR, 0, 5), None, line(0, -beyond, 0, 10))
-    assert is_refused(first, second) is refused
+def cut(shapes, side, radius):
+    """Return the refusal of a contour, and what is told of it."""
+    contour = contour_of(Drawn(shapes, side, radius, shapes))
+    return refusal(contour), contour.notes
 
 
-@pytest.mark.parametrize(("x", "refused"), [(-5.9, False), (-60.0, False), (-4.1, True)])
-def test_a_way_is_looked_at_for_two_radii_in_front_of_its_corner(x, refused):
-    """The arc behind the corner stands ``x`` along the way, no more than the radius beside it."""
-    first = Cut(line(-100, -RADIUS, 0, -RADIUS), None, line(-100, 0, 0, 0))
-    second = Cut(arc(x, -1.95, 0.05, 2), None, None)
-    assert is_refused(first, second) is refused
+# Contours made at random.
 
 
-@pytest.mark.parametrize(("x", "refused"), [(5.9, False), (60.0, False), (4.1, True)])
-def test_and_for_two_radii_behind_it(x, refused):
-    first = Cut(arc(x, -1.95, 0.05), None, None)
-    second = Cut(line(0, -RADIUS, 100, -RADIUS, 2), None, line(0, 0, 100, 0))
-    assert is_refused(first, second) is refused
+def drawn(draw, crossing):
+    corners = star(draw, draw.randint(3, 9))
+    if crossing:
+        draw.shuffle(corners)
+    shapes = polygon(corners)
+    if min(shape.length for shape in shapes) < 0.3:
+        return None
+    if draw.random() < 0.6:
+        shapes = rounded(draw, shapes)
+    return Drawn(shapes, draw.choice([LEFT, RIGHT]), draw.choice([0.3, 1.0, 3.0, 6.0]), shapes)
+
+
+@pytest.mark.parametrize(("crossing", "seeds"), [(False, 400), (True, 300)])
+def test_what_cuts_into_itself_is_refused_and_nothing_else(monkeypatch, crossing, seeds):
+    right = wrong = 0
+    for seed in range(seeds):
+        part = drawn(random.Random(seed), crossing)
+        if not part:
+            continue
+        contour = contour_of(part)
+        try:
+            deep = depth(blind_path(monkeypatch, contour), part)
+        except Refusal:  # a corner too tight: refused without a look at the whole
+            continue
+        if deep < 0.9 * TOLERANCE:
+            right += 1
+            assert refusal(contour) == "", seed
+        elif deep > 1.5 * TOLERANCE:
+            wrong += 1
+            assert "cuts into the other" in refusal(contour), seed
+    assert right > (40 if crossing else 150)
+    assert wrong > (50 if crossing else 4)
+
+
+# Contours that begin and end as they do in shops.
+
+SQUARE = [10 + 10j, 10 - 10j, -10 - 10j, -10 + 10j]  # clockwise: the tool is outside with G41
+
+
+def closed(corners):
+    return [Straight(*ends) for ends in zip(corners, [*corners[1:], corners[0]])]
+
+
+def test_a_pocket_that_begins_in_its_corner_is_refused():
+    text, _ = cut(closed(SQUARE), RIGHT, 3.0)
+    assert text == (
+        "G12.1 line 6: the tool of radius 3 cannot follow both lines 3 and 6: beside one of them "
+        "it cuts into the other"
+    )
+
+
+def test_a_part_may_begin_in_its_corner():
+    assert cut(closed(SQUARE), LEFT, 3.0) == ("", [])
+
+
+def test_a_slot_narrower_than_the_tool_is_refused_with_its_walls():
+    slot = [*lines((30, 20), (5, 20), (5, -10)), arc((2.5, -10), 2.5, 0, -180),
+            *lines((0, -10), (0, 20), (-30, 20))]  # fmt: skip
+    assert cut(slot, RIGHT, 2.4) == ("", [])
+    narrow = [Straight(30 + 20j, 5 + 20j), Straight(5 + 20j, 5 - 10j), Straight(5 - 10j, 1 - 20j)]
+    narrow += [Straight(1 - 20j, -9 - 20j), Straight(-9 - 20j, 0 - 10j), Straight(-10j, 20j)]
+    narrow += [Straight(20j, -30 + 20j)]
+    assert "cannot follow both lines 3 and 8" in cut(narrow, RIGHT, 2.6)[0]
+
+
+def extended(front, behind):
+    """Return the square from the middle of no side: both ends may stick out by some length."""
+    first, *_, last = sides = closed(SQUARE)
+    sides[0] = Straight(first.start + 1j * front, first.end)
+    sides[-1] = Straight(last.start, last.end + behind)
+    return sides
+
+
+@pytest.mark.parametrize(("front", "behind"), [(5.0, 0.0), (0.0, 5.0), (40.0, 0.0)])
+def test_a_lead_that_is_the_extension_of_a_side_is_none_of_the_part(front, behind):
+    assert cut(extended(front, behind), LEFT, 3.0) == ("", [])
+
+
+def test_leads_that_cross_are_told():
+    text, notes = cut(extended(5.0, 5.0), LEFT, 3.0)
+    assert not text
+    assert notes == [
+        "G12.1 line 6: lines 3 and 6 cross: taken for the leads of a contour that closes there"
+    ]
+
+
+@pytest.mark.parametrize("overlap", [0.0, 2.0])
+@pytest.mark.parametrize(("side", "inward"), [(LEFT, 1), (RIGHT, -1)])
+def test_a_contour_is_rolled_on_and_off_with_arcs(side, inward, overlap):
+    start = 10 + 0j
+    to_tool = 5.0 * inward
+    on = Round(start + to_tool + 5j, start + to_tool, 0.5 * math.pi * inward)
+    end = start - 1j * overlap
+    off = Round(end, end + to_tool, 0.5 * math.pi * inward)
+    ends = [start, *SQUARE[1:], SQUARE[0], end]
+    contour = [on, *(Straight(*pair) for pair in zip(ends, ends[1:])), off]
+    assert cut(contour, side, 3.0) == ("", [])
+
+
+def test_a_circle_may_be_led_on_to_by_a_line():
+    assert cut([Straight(10 - 20j, 10 + 0j), arc((0, 0), 10, 0, 360)], RIGHT, 3.0) == ("", [])
+    assert cut([Straight(10 - 3j, 10 + 0j), arc((0, 0), 10, 0, 360)], RIGHT, 3.0) == ("", [])
+
+
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+def test_a_contour_may_be_cut_twice(side):
+    sides = polygon(SQUARE)
+    assert cut([*sides, *sides], side, 3.0) == ("", [])
+
+
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+def test_a_spiral_runs_behind_itself(side):
+    turn = -math.pi if side == LEFT else math.pi  # the tool is outside
+    radii = [40.0 - 0.5 * k for k in range(60)]
+    at, shapes = 40 + 0j, []
+    for radius in radii:
+        way = 1 if at.real > 0 else -1
+        centre = at - way * radius
+        shapes.append(Round(at, centre, turn))
+        at = shapes[-1].end
+    assert cut(shapes, side, 6.0) == ("", [])
+
+
+def test_a_contour_that_crosses_itself_is_refused_whatever_the_angle():
+    for angle in (5, 10, 30, 60, 90, 120):
+        over = cmath.rect(40.0, math.radians(angle))
+        loop = [Straight(-40 + 0j, 0j), Straight(0j, 60 + 0j), Straight(60 + 0j, 60 - 30j)]
+        loop += [Straight(60 - 30j, -over), Straight(-over, over)]
+        loop += [Straight(over, over + 20j), Straight(over + 20j, over - 60 + 20j)]
+        for side in (LEFT, RIGHT):
+            assert cut(loop, side, 1.0)[0], (angle, side)
+
+
+# Heights.
+
+
+def levels(*depths, across=None):
+    """Return a boss, cut at some heights without a G40 between them; ``across``: a way above it."""
+    contour = Contour(20.0, 5.0)
+    contour.compensation(LEFT, 3.0, line=2)
+    contour.line(10.0, 0.0, line=2, feed=300.0)
+    for depth_of_cut in depths:
+        contour.line(z=depth_of_cut, line=3, feed=100.0)
+        for line, corner in enumerate([*SQUARE[1:], SQUARE[0], 10 + 0j], 4):
+            contour.line(corner.real, corner.imag, line=line, feed=300.0)
+        if across is not None:
+            contour.line(z=across, line=10, feed=300.0)
+            contour.line(x=-20.0, line=11, feed=300.0)
+            contour.line(z=depth_of_cut, line=14, feed=300.0)
+            contour.line(c=30.0, line=15, feed=300.0)
+    contour.compensation(40, 0.0, line=20)
+    contour.line(30.0 if across is None else -30.0, line=20, feed=300.0)
+    return contour
+
+
+def test_what_leads_through_the_air_is_no_part():
+    assert refusal(levels(-1.0, across=5.0)) == ""
+    assert "cuts into the other" in refusal(levels(-1.0, across=-1.0))
+
+
+def test_a_contour_may_be_cut_at_many_levels():
+    assert refusal(levels(-1.0, -2.0, -3.0)) == ""
+
+
+# How long it takes.
+
+
+def waves(count, radius=20.0, wave=2.0):
+    return [
+        cmath.rect(radius + wave * math.sin(10 * math.pi * k / count), 2 * math.pi * k / count)
+        for k in range(count + 1)
+    ]
+
+
+def seconds(shapes, side, radius):
+    contour = contour_of(Drawn(shapes, side, radius, shapes))
+    start = time.process_time()
+    assert refusal(contour) == ""
+    return time.process_time() - start
+
+
+def test_ten_thousand_elements_take_less_than_a_second():
+    points = waves(10000)
+    contour = [Straight(*pair) for pair in zip(points, points[1:])]
+    laps = polygon(SQUARE) * 2000
+    assert seconds(contour, RIGHT, 3.0) < 1.0
+    assert seconds(contour, LEFT, 3.0) < 1.0
+    assert seconds(laps, LEFT, 3.0) < 1.0

@@ -28,13 +28,13 @@ OUTSIDE, INSIDE = 42, 41  # of a part that is cut counterclockwise
 def compensated(shapes, side, radius):
     """Return the contour that cuts the shapes, from line 3 on, and the shapes as they lie there.
 
-    Everything is turned so that the tool comes from the positive X axis, square to the first shape.
+    Everything is turned so that the tool comes from the positive X axis, square to the first shape;
+    it leaves square to the last.
     """
-    first = shapes[0]
-    tangent = first.points(10001)[1] - first.start
-    square = 1j * tangent / abs(tangent) * (1 if side == 41 else -1)
-    come = first.start + square * (1.5 * radius + 0.5)
+    away = (1.5 * radius + 0.5) * (1j if side == 41 else -1j)
+    come = shapes[0].start + away * cmath.rect(1.0, shapes[0].headings()[0])
     shapes = [shape.turned(cmath.exp(-1j * cmath.phase(come))) for shape in shapes]
+    leave = shapes[-1].end + away * cmath.rect(1.0, shapes[-1].headings()[1])
     contour = Contour(abs(come), 3.0)
     contour.compensation(side, radius, line=1)
     contour.line(shapes[0].start.real, shapes[0].start.imag, line=1, feed=300.0)
@@ -42,7 +42,7 @@ def compensated(shapes, side, radius):
     for line, shape in enumerate(shapes, 3):
         add(contour, shape, line=line, feed=300.0)
     contour.compensation(40, 0.0, line=90)
-    contour.line(contour.x + 2 * radius + 1.0, line=90, feed=300.0)
+    contour.line(leave.real, leave.imag, line=90, feed=300.0)
     contour.close(line=91)
     return contour, shapes
 

@@ -101,20 +101,21 @@ def path_length(move: Line | Arc) -> float:
 
 def start_direction(move: Line | Arc) -> Point:
     """Return the unit vector of the motion in the plane at the move's start."""
-    return _direction(move, move.x0, move.c0)
+    return direction_at(move, (move.x0, move.c0))
 
 
 def end_direction(move: Line | Arc) -> Point:
     """Return the unit vector of the motion in the plane at the move's end."""
-    return _direction(move, move.x1, move.c1)
+    return direction_at(move, (move.x1, move.c1))
 
 
-def _direction(move: Line | Arc, x: float, c: float) -> Point:
+def direction_at(move: Line | Arc, place: Point) -> Point:
+    """Return the unit vector of the motion in the plane at a place of the move."""
     if isinstance(move, Line):
         tx, tc = move.x1 - move.x0, move.c1 - move.c0
     else:
         turn = 1.0 if move.sweep > 0.0 else -1.0
-        tx, tc = turn * (move.cc - c), turn * (x - move.cx)
+        tx, tc = turn * (move.cc - place[1]), turn * (place[0] - move.cx)
     length = hypot(tx, tc)
     return tx / length, tc / length
 
@@ -148,7 +149,8 @@ class Contour:
     radius mismatch of an arc that is forgiven, in program units.
 
     ``side`` is the compensation in force: 40, 41 or 42. ``start`` is where the machine stands,
-    which for a section that goes on where another was cut in two is not at C0.
+    which for a section that goes on where another was cut in two is not at C0. ``notes`` are what
+    the operator is told of it, though it is cut.
     """
 
     def __init__(
@@ -169,6 +171,7 @@ class Contour:
         self._offset = self._radius = 0.0
         self._switch: int | None = None  # line of the G40, G41 or G42 that waits for its G1
         self._switched_on = 0
+        self.notes: list[str] = []
 
     def refuse(self, line: int, reason: str) -> NoReturn:
         """Raise the refusal of a block of this section."""

@@ -1,108 +1,369 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Gouges: places where the tool, on its way beside one move of the contour, cuts into another.
+"""Gouges: places where the tool, on its way along a contour, cuts into that same contour.
 
-Tested against each other are neighbours, and moves that only moves shorter than the tool's radius
-lie between: there the tool swings round corners so near to each other that it may reach past the
-move in the middle. Of the tool's way only what is near their corner: a later pass may cross a move.
+Looked at is each stretch from the G41 or G42 to its G40, as a whole. A place of it is cut where the
+tool's centre comes nearer than the radius, less the tolerance. That is right
+
+- beyond the place where the contour closes: leads are no contour (`closing`);
+- where the contour itself runs on behind the place, the same way: a spiral, a finishing pass;
+- where the tool is above the place, or the contour runs through the air between two plunges.
+
+Everything else is refused, and so is a contour that crosses itself. Only told are leads that cross
+each other, and an open contour's first or last move that a later pass cuts from its far side.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Sequence
+from functools import reduce
+from itertools import accumulate, groupby
+from math import ceil, copysign, hypot, inf, sqrt
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.flat.contour import Arc, Contour, Line, path_length
-from g12.flat.intersect import cross_inside, least_distance, part_of_move
+from g12.flat.closing import closing_of
+from g12.flat.contour import (
+    SAME_PLACE,
+    Arc,
+    Contour,
+    Line,
+    Plunge,
+    Point,
+    direction_at,
+    is_move,
+    path_length,
+)
+from g12.flat.intersect import (
+    along_start,
+    common_places,
+    least_distance,
+    nearest_place,
+    part_of_move,
+    place_at,
+)
+from g12.flat.nearby import Boxes, apart, box_of, near_passes, straight_runs
 
-LOCAL = 2.0  # tool radii: so far from the corner the tool's way is tested
-BESIDE = 2.0  # tolerances: places so near to each other are one corner
+MEETING = 4.0  # tolerances: places so near to each other close a contour
+SAME_WAY = 0.9  # cosine of the angle between passes behind each other, at least
+CROSSED = 0.02  # of the tool's radius: so far a contour goes to both sides where it crosses itself
+BESIDE_CROSSING = (0.125, 0.25, 0.5, 1.0)  # of the tool's radius: there that is looked at
+RAMP = -1  # in place of an index
+# How a pass cuts a place: it touches the contour on the place's own side, or behind the place, or
+# there and goes the same way.
+NOT, FACING, BEHIND, PASSED = "", "facing", "behind", "passed"
+TURN_ON = 3  # moves: so many on either side of that which ran behind the last place are tried
 
 
 class Cut(NamedTuple):
-    """A move of the contour under compensation, and the way of the tool's centre for it.
+    """A move of the contour and the tool centre's ``path`` for it.
 
-    ``corner`` is the arc about the corner in front of it, ``path`` what is beside it; None where
-    there is none.
+    ``cut`` tells that it is under compensation at both ends: it is no ramp.
     """
 
     move: Line | Arc
-    corner: Arc | None
-    path: Line | Arc | None
+    path: tuple[Line | Arc | Plunge, ...]
+    cut: bool
 
 
-def refuse_gouges(contour: Contour, cuts: Sequence[Cut | None], tolerance: float) -> None:
+class _Place(NamedTuple):
+    """A place of the contour, its direction, and the unit vector to the tool's side."""
+
+    place: Point
+    way: Point
+    normal: Point
+
+
+class _Hit(NamedTuple):
+    """The tool, on its way for the move of ``line``, cuts into the contour.
+
+    ``lead``: that move, or the one it cuts, may be one to lead in or out. ``ramp``: that move is
+    the one with G40, G41 or G42.
+    """
+
+    line: int
+    lead: bool
+    ramp: bool = False
+
+
+def check_gouges(contour: Contour, cuts: Sequence[Cut], tolerance: float) -> None:
     """Refuse a contour along which the tool cuts deeper into it than the tolerance.
 
-    ``cuts`` has None for moves without compensation. Program units.
+    What is only told goes to the contour's ``notes``. Program units.
     """
-    for k in range(1, len(cuts)):
-        a, b = cuts[k - 1], cuts[k]
-        if a and b and _cross(a, b, tolerance):
-            _refuse(contour, a, b)
-    for a, b, corners in _across_short_moves(cuts):
-        if _gouges(a, b, corners, tolerance):
-            _refuse(contour, a, b)
+    at = 0
+    for cut, group in groupby(cuts, key=lambda cut: cut.cut):
+        stretch = list(group)
+        if cut:
+            ramps = [*cuts[max(at - 1, 0) : at], *cuts[at + len(stretch) :][:1]]
+            _Stretch(contour, stretch, tolerance).check(ramps)
+        at += len(stretch)
 
 
-def _cross(a: Cut, b: Cut, tolerance: float) -> bool:
-    """Return whether neighbours come too near to each other; two lines cannot."""
-    if isinstance(a.move, Line) and isinstance(b.move, Line):
-        return False
-    if a.path and b.path and cross_inside(a.path, b.path, BESIDE * tolerance):
-        return True
-    return _gouges(a, b, [b.corner] if b.corner else [], tolerance)
+class _Stretch:
+    """A contour from one ramp to the next."""
 
+    def __init__(self, contour: Contour, cuts: list[Cut], tolerance: float) -> None:
+        self._contour, self._cuts, self._tolerance = contour, cuts, tolerance
+        self._moves = [cut.move for cut in cuts]
+        self._offset = self._moves[0].offset
+        self._radius = abs(self._offset)
+        self._closing = closing_of(self._moves, max(MEETING * tolerance, 2 * contour.closing))
+        self._ends = [0.0, *accumulate(map(path_length, self._moves))]
+        self._boxes = [box_of(move) for move in self._moves]
+        self._behind = 0  # by so many moves another pass ran behind the last place, if one did
 
-def _gouges(a: Cut, b: Cut, corners: Sequence[Arc], tolerance: float) -> bool:
-    """Return whether the tool beside either move, or at corners between them, cuts the other."""
-    radius = abs(a.move.offset)
-    ways = [(corner, cut.move) for corner in corners for cut in (a, b)]
-    if a.path:
-        ways.append((_near(a.path, radius, True), b.move))
-    if b.path:
-        ways.append((_near(b.path, radius, False), a.move))
-    return any(least_distance(way, move) < radius - tolerance for way, move in ways)
+    def check(self, ramps: list[Cut]) -> None:
+        """Refuse the gouges of the stretch, or tell them."""
+        closing = self._closing
+        if closing.crossing:
+            self._note(
+                *self._lines(closing.first, self._moves[closing.last].line),
+                "cross: taken for the leads of a contour that closes there",
+            )
+        for index, passes in self._candidates(ramps):
+            hit = self._hit(index, passes)
+            if hit:
+                one, other = self._lines(index, hit.line)
+                if not hit.lead:
+                    self._contour.refuse(
+                        other,
+                        f"the tool of radius {number(self._radius)} cannot follow both lines {one} "
+                        f"and {other}: beside one of them it cuts into the other",
+                    )
+                if not closing.crossing:
+                    self._note(one, other, "cut into each other: one is taken for a lead")
 
+    def _lines(self, index: int, line: int) -> tuple[int, int]:
+        """Return two lines in their order, that of a move by its index."""
+        one, other = sorted((self._moves[index].line, line))
+        return one, other
 
-def _near(move: Line | Arc, radius: float, end: bool) -> Line | Arc:
-    """Return the part of a move that is near its end, or near its start."""
-    share = LOCAL * radius / path_length(move)
-    if share >= 1.0:
-        return move
-    return part_of_move(move, 1.0 - share, 1.0) if end else part_of_move(move, 0.0, share)
+    def _note(self, one: int, other: int, what: str) -> None:
+        text = f"{self._contour.code} line {other}: lines {one} and {other} {what}"
+        if text not in self._contour.notes:
+            self._contour.notes.append(text)
 
+    def _candidates(self, ramps: list[Cut]) -> Iterator[tuple[int, list[tuple]]]:
+        """Yield the moves that the tool may cut, by their index, and its passes near to each."""
+        heights = _heights(self._moves)
+        moves = Boxes([(index, self._moves[index]) for index in sorted(heights)])
+        passes = [Boxes(ways) for ways in self._passes(ramps)]
+        runs = straight_runs(self._moves)
+        for index, near in near_passes(moves, passes, self._radius, runs, self._is_behind):
+            low = [
+                passed
+                for passed in near
+                if min(passed[1].z0, passed[1].z1) <= heights[index] + SAME_PLACE
+            ]
+            about = index + self._behind
+            yield index, sorted(low, key=lambda passed: abs(passed[0] - about))
 
-def _across_short_moves(cuts: Sequence[Cut | None]) -> Iterator[tuple[Cut, Cut, list[Arc]]]:
-    """Yield moves that only short ones lie between, with the corner arcs there: one at least."""
-    for k, cut in enumerate(cuts):
-        if cut and cut.corner:
-            for i, j in _pairs(cuts, k):
-                corners = (between.corner for between in cuts[i + 1 : j + 1])
-                yield cuts[i], cuts[j], [corner for corner in corners if corner]
+    def _is_behind(self, index: int) -> bool:
+        """Return whether those passes run behind a move that did so, relative to it, before."""
+        move = self._part(index) if self._behind else None
+        if move is None:
+            return False
+        places: list[_Place] = self._places(move)
+        about = index + self._behind
+        for by in range(max(about - TURN_ON, 0), min(about + TURN_ON + 1, len(self._cuts))):
+            for way in filter(is_move, self._cuts[by].path):
+                places = [place for place in places if self._seen_from(place, (by, way)) != PASSED]
+        return not places
 
+    def _passes(self, ramps: list[Cut]) -> Iterator[list[tuple]]:
+        """Yield the tool's ways along the contour, each with its move's index, then the ramps'.
 
-def _pairs(cuts: Sequence[Cut | None], k: int) -> Iterator[tuple[int, int]]:
-    """Yield the moves in front of and behind corner ``k``, where it is the first between them."""
-    radius, before = abs(cuts[k].move.offset), 0.0
-    for i in range(k - 1, -1, -1):
-        if not cuts[i] or before >= radius:
-            return
-        between = before
-        for j in range(k, len(cuts)):
-            if not cuts[j] or between >= radius:
+        At the ends of an open contour there may be no material: its ramps may cut there.
+        """
+        yield _once(
+            (index, way) for index, cut in enumerate(self._cuts) for way in cut.path if is_move(way)
+        )
+        if self._closing.closed:
+            for ramp in ramps:
+                ways = [(RAMP, way) for way in ramp.path if is_move(way)]
+                if ways:
+                    yield ways
+
+    def _part(self, index: int) -> Line | Arc | None:
+        """Return what of a move belongs to the contour, None if it is all lead."""
+        first, last = self._closing.part(index, self._moves[index])
+        if last <= first:
+            return None
+        return part_of_move(self._moves[index], first, last)
+
+    def _hit(self, index: int, passes: list[tuple]) -> _Hit | None:
+        """Return one of the passes that cuts into a move where it must not, if any."""
+        move = self._part(index)
+        if move is None:
+            return None
+        for by, _ in passes:
+            if by not in (RAMP, index) and self._cross(index, move, by):
+                return _Hit(self._moves[by].line, False)
+        places = self._places(move)
+        hits: list[_Hit | None] = [None] * len(places)
+        for by, way in passes:
+            if not places:
                 break
-            if j > i + 1:
-                yield i, j
-            between += path_length(cuts[j].move)
-        if cuts[i].corner:
-            return
-        before += path_length(cuts[i].move)
+            if least_distance(way, move) < self._radius - self._tolerance:
+                places, hits = self._after(index, (by, way), places, hits)
+        return reduce(_worse, hits, None)
+
+    def _after(self, index: int, passed: tuple, places: list, hits: list) -> tuple[list, list]:
+        """Return those places of a move that no pass runs behind, and what hits them."""
+        kept_places, kept_hits = [], []
+        for place, hit in zip(places, hits):
+            seen = self._seen_from(place, passed)
+            if seen == PASSED:
+                self._behind = passed[0] - index
+                continue
+            if seen:
+                hit = _worse(hit, self._hit_of(index, passed, seen == BEHIND))
+            kept_places.append(place)
+            kept_hits.append(hit)
+        return kept_places, kept_hits
+
+    def _hit_of(self, index: int, passed: tuple, behind: bool) -> _Hit:
+        """Return the hit of a move by a pass that touches behind it, or does not."""
+        closing, (by, way) = self._closing, passed
+        if closing.crossing:
+            lead = all(k <= closing.first or k >= closing.last for k in (index, by))
+        else:
+            lead = not closing.closed and behind and index in (0, len(self._moves) - 1)
+        corner_before = by == index > 0  # the corner in front of a move belongs to both
+        return _Hit(self._moves[index - 1].line if corner_before else way.line, lead, by == RAMP)
+
+    def _seen_from(self, place: _Place, passed: tuple) -> str:
+        """Return how a pass cuts a place, as the names above tell; NOT where it does not."""
+        (x, c), by, way = place.place, *passed
+        px, pc = nearest_place(way, place.place)
+        if hypot(px - x, pc - c) >= self._radius - self._tolerance:
+            return NOT
+        if by == RAMP:
+            return FACING
+        tx, tc = direction_at(way, (px, pc))
+        touch_x, touch_c = px + self._offset * tc, pc - self._offset * tx
+        height = (touch_x - x) * place.normal[0] + (touch_c - c) * place.normal[1]
+        if height >= -self._tolerance:
+            return FACING
+        same_way = tx * place.way[0] + tc * place.way[1] > SAME_WAY
+        return PASSED if same_way else BEHIND
+
+    def _places(self, move: Line | Arc) -> list[_Place]:
+        """Return places along a move, so close that no cut falls between two of them."""
+        length = path_length(move)
+        step = sqrt(2.0 * self._radius * self._tolerance)
+        count = ceil(length / step)
+        inset = min(0.25, self._tolerance / length)
+        side = copysign(1.0, self._offset)
+        places = []
+        for k in range(count + 1):
+            place = place_at(move, inset + (1.0 - 2.0 * inset) * k / count)
+            tx, tc = direction_at(move, place)
+            places.append(_Place(place, (tx, tc), (-side * tc, side * tx)))
+        return places
+
+    # Where the contour crosses itself.
+
+    def _cross(self, index: int, move: Line | Arc, by: int) -> bool:
+        """Return whether the contour crosses itself at two of its moves."""
+        if apart(self._boxes[index], self._boxes[by], 0.0):
+            return False
+        other = self._part(by)
+        if other is None:
+            return False
+        return any(self._goes_through(index, place, by) for place in common_places(move, other))
+
+    def _goes_through(self, index: int, place: Point, by: int) -> bool:
+        """Return whether the contour goes from one side of itself to the other, at a place."""
+        here, there = (self._ends[k] + along_start(self._moves[k], place) for k in (index, by))
+        deep = max(MEETING * self._tolerance, CROSSED * self._radius)
+        loop = abs(here - there)
+        for share in BESIDE_CROSSING:
+            away = min(share * self._radius, 0.25 * loop)
+            about = self._about(here, 2.0 * away)
+            before, after = (
+                self._side_of(about, self._point(there + step)) for step in (-away, away)
+            )
+            if min(before, after) < -deep and max(before, after) > deep:
+                return True
+        return False
+
+    def _point(self, at: float) -> Point:
+        """Return the place at a length along the contour, from its start to its end."""
+        closing = self._closing
+        first = self._ends[closing.first] + closing.start
+        last = self._ends[closing.last] + closing.end
+        at = min(max(at, first), last)
+        index = min(max(bisect_right(self._ends, at) - 1, 0), len(self._moves) - 1)
+        part = (at - self._ends[index]) / path_length(self._moves[index])
+        return place_at(self._moves[index], min(part, 1.0))
+
+    def _side_of(self, indices: Iterable[int], point: Point) -> float:
+        """Return how far to the left of some moves of the contour a point is."""
+        nearest, side = inf, 0.0
+        for k in indices:
+            move = self._moves[k]
+            x, c = nearest_place(move, point)
+            away = hypot(point[0] - x, point[1] - c)
+            tx, tc = direction_at(move, (x, c))
+            across = tx * (point[1] - c) - tc * (point[0] - x)
+            if away < nearest - SAME_PLACE or (away <= nearest and abs(across) > abs(side)):
+                nearest, side = away, across
+        return side
+
+    def _about(self, middle: float, reach: float) -> range:
+        """Return the indices of the moves within a length of a place along the contour."""
+        first = bisect_right(self._ends, middle - reach) - 1
+        last = bisect_right(self._ends, middle + reach)
+        return range(max(first, 0), min(last, len(self._moves)))
 
 
-def _refuse(contour: Contour, a: Cut, b: Cut) -> None:
-    contour.refuse(
-        b.move.line,
-        f"the tool of radius {number(abs(b.move.offset))} cannot follow both lines {a.move.line} "
-        f"and {b.move.line}: beside one of them it cuts into the other",
-    )
+def _worse(one: _Hit | None, other: _Hit | None) -> _Hit | None:
+    """Return which of two hits is refused rather than told, and rather not a ramp's."""
+    hits = [hit for hit in (one, other) if hit]
+    return min(hits, key=lambda hit: (hit.lead, hit.ramp), default=None)
+
+
+def _once(passes: Iterable[tuple]) -> list[tuple]:
+    """Return passes without those that repeat another at the same depth or higher."""
+    kept: dict[tuple, tuple] = {}
+    for index, way in passes:
+        place = _in_plane(way)
+        if place not in kept or min(way.z0, way.z1) < min(kept[place][1].z0, kept[place][1].z1):
+            kept[place] = (kept[place][0] if place in kept else index), way
+    return list(kept.values())
+
+
+def _heights(moves: Sequence[Line | Arc]) -> dict[int, float]:
+    """Return the greatest Z of each move, by its index; of repeated ones only the first's index.
+
+    Moves in the air, between a plunge up and a plunge down, are not there.
+    """
+    heights: dict[int, float] = {}
+    first: dict[tuple, int] = {}
+    for index in _in_material(moves):
+        move = moves[index]
+        place = first.setdefault(_in_plane(move), index)
+        heights[place] = max(heights.get(place, -inf), move.z0, move.z1)
+    return heights
+
+
+def _in_material(moves: Sequence[Line | Arc]) -> Iterator[int]:
+    """Yield the indices of the moves that are not made in the air."""
+    levels: list[list[int]] = [[0]]
+    for index in range(1, len(moves)):
+        if abs(moves[index].z0 - moves[index - 1].z1) > SAME_PLACE:
+            levels.append([])
+        levels[-1].append(index)
+    for k, level in enumerate(levels):
+        lifted = k > 0 and moves[level[0]].z0 > moves[level[0] - 1].z1
+        lowered = k + 1 < len(levels) and moves[level[-1]].z1 > moves[level[-1] + 1].z0
+        if not (lifted and lowered):
+            yield from level
+
+
+def _in_plane(move: Line | Arc) -> tuple:
+    """Return what tells one move in the plane from another, rounding aside."""
+    places = (move.x0, move.c0, move.x1, move.c1, *move[9:])
+    return tuple(round(place / SAME_PLACE) for place in places)

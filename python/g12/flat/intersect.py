@@ -24,12 +24,16 @@ def crossing(a: Line | Arc, b: Line | Arc) -> Point | None:
     return best
 
 
-def cross_inside(a: Line | Arc, b: Line | Arc, margin: float) -> bool:
-    """Return whether two moves cross farther than ``margin`` from the ends of both."""
-    return any(
-        all(margin < along_start(move, place) < path_length(move) - margin for move in (a, b))
+def common_places(a: Line | Arc, b: Line | Arc) -> list[Point]:
+    """Return the places at which two moves cross or touch; none where they run on each other."""
+    return [
+        place
         for place in _crossings(a, b)
-    )
+        if all(
+            hypot(place[0] - x, place[1] - c) <= SAME_PLACE
+            for x, c in (nearest_place(move, place) for move in (a, b))
+        )
+    ]
 
 
 def place_at(move: Line | Arc, part: float) -> Point:
@@ -89,13 +93,25 @@ def _facing(a: Line | Arc, b: Line | Arc) -> list[Point]:
 
 def distance_from(move: Line | Arc, place: Point) -> float:
     """Return the distance of a place from a move."""
-    to_start = hypot(place[0] - move.x0, place[1] - move.c0)
-    if not _is_beside(move, place):
-        return min(to_start, hypot(place[0] - move.x1, place[1] - move.c1))
-    if isinstance(move, Arc):
-        return abs(hypot(place[0] - move.cx, place[1] - move.cc) - arc_radius(move))
-    along = along_start(move, place)
-    return sqrt(max(0.0, to_start * to_start - along * along))
+    x, c = nearest_place(move, place)
+    return hypot(place[0] - x, place[1] - c)
+
+
+def nearest_place(move: Line | Arc, place: Point) -> Point:
+    """Return the place on a move that is nearest to another."""
+    x, c = place
+    if isinstance(move, Line):
+        tx, tc = move.x1 - move.x0, move.c1 - move.c0
+        part = ((x - move.x0) * tx + (c - move.c0) * tc) / (tx * tx + tc * tc)
+        if 0.0 < part < 1.0:
+            return move.x0 + part * tx, move.c0 + part * tc
+        return (move.x0, move.c0) if part <= 0.0 else (move.x1, move.c1)
+    away = hypot(x - move.cx, c - move.cc)
+    if away and _is_beside(move, place):
+        scale = arc_radius(move) / away
+        return move.cx + (x - move.cx) * scale, move.cc + (c - move.cc) * scale
+    to_start, to_end = hypot(x - move.x0, c - move.c0), hypot(x - move.x1, c - move.c1)
+    return (move.x0, move.c0) if to_start <= to_end else (move.x1, move.c1)
 
 
 def _is_beside(move: Line | Arc, place: Point) -> bool:

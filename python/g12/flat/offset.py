@@ -9,7 +9,7 @@ neighbours:
 - ramp on: ends square to the start of the next element of the contour; ramp off: starts square to
   the end of the last one. Blocks without motion in the plane are looked through.
 
-What the tool cannot reach is refused; `gouge` tells how far that is looked for.
+What the tool cannot reach is refused, and so is a path that cuts into the contour (`gouge`).
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ from g12.flat.contour import (
     start_direction,
     sweep_between,
 )
-from g12.flat.gouge import BESIDE, Cut, refuse_gouges
+from g12.flat.gouge import Cut, check_gouges
 from g12.flat.intersect import PARALLEL, along_end, along_start, crossing
 
 JOINED = 0.04  # tolerances: moved by no more, parallels are joined without an arc
+BESIDE = 2.0  # tolerances: places so near to each other are one corner
 
 
 class _Step(NamedTuple):
@@ -74,20 +75,18 @@ def _centred(contour: Contour, moves: list, tolerance: float) -> list[tuple]:
     steps = _steps(contour, moves)
     joints = [_joint(contour, a, b, tolerance) for a, b in zip([None, *steps], steps)]
     joints.append(_Joint(_last_place(contour, steps), (0.0, 0.0)))
-    cuts: list[Cut | None] = []
-    paths = []
+    cuts = []
     for k, step in enumerate(steps):
         joint, end = joints[k], joints[k + 1].leave
         if not step.cut:
-            cuts.append(None)
-            paths.append(_uncut(step.move, joint.meet, end))
-            continue
-        corner = None if joint.corner is None else _corner_arc(step.move, joint)
-        beside = _trimmed(contour, steps, k, joint.meet, end)
-        cuts.append(Cut(step.move, corner, next(filter(is_move, beside), None)))
-        paths.append((corner, *beside) if corner else beside)
-    refuse_gouges(contour, cuts, tolerance)
-    return paths
+            path = _uncut(step.move, joint.meet, end)
+        else:
+            path = _trimmed(contour, steps, k, joint.meet, end)
+            if joint.corner is not None:
+                path = (_corner_arc(step.move, joint), *path)
+        cuts.append(Cut(step.move, path, step.cut))
+    check_gouges(contour, cuts, tolerance)
+    return [cut.path for cut in cuts]
 
 
 def _steps(contour: Contour, moves: list) -> list[_Step]:

@@ -11,7 +11,6 @@ import itertools
 import os
 from pathlib import Path
 
-import emccanon
 import linuxcnc
 
 from g12.cycles.context import XY, XZ, YZ, Context, Tool
@@ -280,8 +279,3 @@ def restore_modes(interp: object) -> None:
     interp.motion_mode = motion
     # a block after the assignment, or the active codes shown would still be the cycle's
     interp.execute(f"G{90 + distance} G{90 + centre}.1 G{7 if diameter else 8}")
-
-
-def message(text: str) -> None:
-    """Show the operator a message that is no error."""
-    emccanon.MESSAGE(text)

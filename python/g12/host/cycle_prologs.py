@@ -23,7 +23,7 @@ def prepare_haas(interp: object, arc: int) -> int:
     if pocket.commanded_radius is not None:
         cycle_glue.remember_radius(interp, pocket.commanded_radius)
     if pocket.message:
-        cycle_glue.message(pocket.message)
+        glue.message(pocket.message)
     return INTERP_OK
 
 
@@ -109,7 +109,7 @@ def prepare_circle_mill(interp: object, pocket: bool) -> int:
     cycle_glue.hand_over(interp, **event.locals())
     cycle_glue.remember_first_plane(interp, event.place.first_plane)
     if event.message:
-        cycle_glue.message(event.message)
+        glue.message(event.message)
     return INTERP_OK
 
 

@@ -155,3 +155,8 @@ def diameter_mode(interp: object) -> bool:
     """Tell whether G7 is active (the active codes are those before this block)."""
     commanded = interp.blocks[interp.remap_level].g_modes[DIAMETER]
     return (interp.active_g_codes[DIAMETER] if commanded == -1 else commanded) == G7
+
+
+def message(text: str) -> None:
+    """Show the operator a message that is no error."""
+    emccanon.MESSAGE(text)

@@ -12,6 +12,7 @@ from collections.abc import Generator, Iterator
 from enum import Enum
 
 from g12.errors import Refusal, number
+from g12.host import glue
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import MOVING, ProgramLines
 from g12.host.section_output import SectionOutput
@@ -244,6 +245,8 @@ class PolarSection:
         reader = self.reader
         plan = polar.plan(reader.contour, self.setup.plan, c=reader.start.c)
         self._check_limits(plan)
+        for note in plan.notes:
+            glue.message(note)
         reader.show_machine()
         self._phase = Phase.MOVING
         for waiting in self.output.run(plan.steps, reader.modes, reader.exact_lines):

@@ -64,12 +64,13 @@ class PolarPlan(NamedTuple):
 
     ``steps`` holds each :class:`BlockMoves` (on the face :class:`FaceMove`, with a
     :class:`FaceSwitch` in front and behind), and each mark's action, in order. ``place`` is where
-    the machine stands in the end.
+    the machine stands in the end. ``notes`` are for the operator.
     """
 
     steps: list
     place: Position
     angle: float  # of the C axis in the plane, radians
+    notes: list[str]
 
 
 def plan(contour: Contour, settings: PolarSettings, *, c: float) -> PolarPlan:
@@ -98,7 +99,7 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> PolarPlan:
         else:
             machine.cut(element, stop)
     machine.finish(path)
-    return PolarPlan(machine.steps, machine.place, machine.angle)
+    return PolarPlan(machine.steps, machine.place, machine.angle, contour.notes)
 
 
 def _centre_path(contour: Contour, tolerance: float) -> tuple[list, float]:
@@ -128,7 +129,7 @@ def resume(contour: Contour, planned: PolarPlan) -> Contour:
     ``c``.
     """
     following = copy(contour)
-    following.elements = []
+    following.elements, following.notes = [], []
     following.start = Start(planned.place.x, planned.angle, planned.place.z)
     return following
 

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Contours made at random for one tool, and how deep it cuts into them, as shapely measures it."""
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+from shapely.geometry import LineString
+
+from g12.flat import offset
+from g12.flat.contour import Contour, Line, is_move
+from support.contour_geometry import Round, Straight
+from support.planned_cuts import add
+
+TOLERANCE = 0.005
+FINE = 0.002  # of chords that stand for arcs
+
+
+class Drawn(NamedTuple):
+    """Shapes to cut with a tool, first a lead-in and last a lead-out, if any, and the part's."""
+
+    shapes: list
+    side: int
+    radius: float
+    body: list
+
+
+def away(drawn):
+    """Return the vector from the contour to the tool's side, long enough for a ramp."""
+    return (1.3 * drawn.radius + 0.2) * (1j if drawn.side == 41 else -1j)
+
+
+def contour_of(drawn, depth=-1.0):
+    """Return the contour with ramps square to its ends; it begins at no special place."""
+    first, last = drawn.shapes[0], drawn.shapes[-1]
+    start = first.start + away(drawn) * cmath.rect(1.0, first.headings()[0])
+    end = last.end + away(drawn) * cmath.rect(1.0, last.headings()[1])
+    contour = Contour(abs(start), depth)
+    contour.line(start.real, start.imag, line=1, feed=300.0)
+    contour.compensation(drawn.side, drawn.radius, line=2)
+    contour.line(first.start.real, first.start.imag, line=2, feed=300.0)
+    for line, shape in enumerate(drawn.shapes, 3):
+        add(contour, shape, line=line, feed=300.0)
+    contour.compensation(40, 0.0, line=9000)
+    contour.line(end.real, end.imag, line=9000, feed=300.0)
+    return contour
+
+
+def points_of(shape):
+    """Return points of a shape, or of an element of the tool's path."""
+    if isinstance(shape, (Straight, Round)):
+        bend, radius = (shape.sweep, shape.radius) if isinstance(shape, Round) else (0.0, 1.0)
+    elif isinstance(shape, Line):
+        shape = Straight(complex(shape.x0, shape.c0), complex(shape.x1, shape.c1))
+        bend, radius = 0.0, 1.0
+    else:
+        shape = Round(complex(shape.x0, shape.c0), complex(shape.cx, shape.cc), shape.sweep)
+        bend, radius = shape.sweep, shape.radius
+    return shape.points(2 + math.ceil(abs(bend) * math.sqrt(radius / FINE)))
+
+
+def as_shapely(shapes):
+    points = np.concatenate([points_of(shape) for shape in shapes])
+    return LineString(np.column_stack([points.real, points.imag]))
+
+
+def blind_path(monkeypatch, contour):
+    """Return the tool's path, compensated and its ramps, that nobody has looked at for gouges."""
+    with monkeypatch.context() as patch:
+        patch.setattr(offset, "check_gouges", lambda *_: None)
+        path = offset.tool_path(contour, contour.elements, TOLERANCE)
+    return [element for element in path if is_move(element) and element.line > 1]
+
+
+def depth(path, drawn):
+    """Return how deep the tool cuts into the part."""
+    return drawn.radius - as_shapely(path).distance(as_shapely(drawn.body))
+
+
+def polygon(corners):
+    """Return a closed polygon that begins in the middle of its first side."""
+    middle = 0.5 * (corners[0] + corners[1])
+    ends = [middle, *corners[1:], corners[0], middle]
+    return [Straight(*pair) for pair in zip(ends, ends[1:])]
+
+
+def star(draw, count):
+    """Return corners about a centre at random distances, counterclockwise."""
+    radii = [draw.uniform(4.0, 25.0) for _ in range(count)]
+    angles = sorted(draw.uniform(0.0, 2 * math.pi) for _ in range(count))
+    centre = complex(draw.uniform(-20, 20), draw.uniform(-20, 20))
+    return [centre + cmath.rect(r, a) for r, a in zip(radii, angles)]
+
+
+def rounded(draw, shapes):
+    """Return a polygon with some of its corners rounded off."""
+    made, ahead = [], shapes[0]
+    for following in shapes[1:]:
+        shape, ahead = ahead, following
+        before, after = shape.headings()[1], following.headings()[0]
+        turn = (after - before + math.pi) % (2 * math.pi) - math.pi
+        if draw.random() < 0.5 or abs(turn) < 0.05 or abs(turn) > 2.8:
+            made.append(shape)
+            continue
+        cut = draw.uniform(0.1, 0.45) * min(shape.length, following.length)
+        radius = math.copysign(cut / math.tan(abs(turn) / 2), turn)
+        start = shape.end - cmath.rect(cut, before)
+        corner = Round(start, start + 1j * cmath.rect(radius, before), turn)
+        made += [Straight(shape.start, start), corner]
+        ahead = Straight(corner.end, following.end)
+    return [*made, ahead]
