@@ -324,10 +324,13 @@ def test_too_tight_names_both_lines(lathe):
 
 def test_beyond_the_travel_of_x(lathe):
     text, line = refused(lathe, section("G1 X30", "X310", "X20"))
-    assert text == "G12.1 line 7: the X axis would go to 310, beyond its limit 300"
+    assert text == "G12.1 line 7: the X axis would go to 310 mm, beyond its limit 300 mm"
     assert line == 7
     text, _ = refused(lathe, section("G1 X30", "X620", first=FIRST.replace("G8 ", "G7 ")))
-    assert text == "G12.1 line 7: the X axis would go to 310 (radius), beyond its limit 300"
+    assert text == "G12.1 line 7: the X axis would go to 310 mm (radius), beyond its limit 300 mm"
+    metric = [line.replace("G21", "G20").replace("F100", "F4") for line in section("G1 X14")]
+    (text, _line) = refused(lathe, [line.replace("X20 Z5", "X1 Z1") for line in metric])
+    assert "to 355.6 mm, beyond its limit 300 mm (G20 is active)" in text
 
 
 def test_c_in_degrees_by_mistake(lathe):
@@ -337,7 +340,7 @@ def test_c_in_degrees_by_mistake(lathe):
 
 def test_beyond_the_travel_of_z(lathe):
     text, _ = refused(lathe, section("G1 X15", "Z-501"))
-    assert text == "G12.1 line 7: the Z axis would go to -501, beyond its limit -500"
+    assert text == "G12.1 line 7: the Z axis would go to -501 mm, beyond its limit -500 mm"
 
 
 def test_beyond_the_travel_of_c():
@@ -345,7 +348,7 @@ def test_beyond_the_travel_of_c():
         assert feed_moves(lathe.trace_text(section("G1 X12", "G3 I-12")))
         text, line = refused(lathe, section("G1 X12", "G3 I-12", "G3 X0 C12 R12"))
     assert text.startswith("G12.1 line 8: the C axis would go to 4")
-    assert text.endswith("beyond its limit 400")
+    assert text.endswith("beyond its limit 400 degrees")
     assert line == 8
 
 

@@ -406,7 +406,7 @@ def test_a_machine_unit_may_be_a_number():
 
 def test_the_first_of_repeated_limits_counts():
     refused = on_lathe("lathe_mm.ini", {"AXIS_X": {"MAX_LIMIT": [100, 300]}}, "G1 X150")
-    assert refused.error.text.endswith("the X axis would go to 150, beyond its limit 100")
+    assert refused.error.text.endswith("the X axis would go to 150 mm, beyond its limit 100 mm")
 
 
 def test_keywords_of_remap_lines_may_be_shortened(tmp_path):

@@ -190,6 +190,16 @@ def test_plot_writes_the_picture_asked_for(suffix, extra, written, tmp_path, cap
     assert capsys.readouterr() == (f"{path} written\n", "")
 
 
+def test_what_a_cycle_tells_the_operator_is_told_by_the_commands(written, tmp_path, capsys):
+    said = "line 4: G12: Q15 is greater than the tool diameter 10: material is left"
+    program, path = written(WIDE), str(tmp_path / "picture.png")
+    assert main(["plot", program, "--ini", MILL, "-o", path]) == 0
+    assert f"message, {said}" in capsys.readouterr().out
+    assert f"message, {said}" in verify(capsys, program, "--ini", MILL)[1]
+    (message,) = json.loads(verify(capsys, program, "--ini", MILL, "--json")[1])["messages"]
+    assert message["line"] == 4 and message["text"].startswith("G12: Q15 is greater")
+
+
 def test_plot_draws_any_program_and_a_lathe_with_c(written, tmp_path):
     for program, ini in ((written(PLAIN), MILL), (PROGRAMS / "polar" / "square.ngc", LATHE)):
         path = tmp_path / "picture.png"

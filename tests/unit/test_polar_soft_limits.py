@@ -16,7 +16,7 @@ AXES = {
 
 def travel(offset=0.0):
     scale = {"X": AxisScale(1.0, offset), "Z": AxisScale(1.0, 0.0), "C": AxisScale(1.0, 0.0)}
-    return SoftLimits(AXES, scale)
+    return SoftLimits(AXES, scale, "mm")
 
 
 def test_moves_within_the_travel():
@@ -30,12 +30,13 @@ def test_the_first_move_beyond_is_named_in_machine_coordinates():
         BlockMoves(3, "XC", [(290, 0, 0, 1)], False),
         BlockMoves(4, "XC", [(20, 0, 0, 1), (301, 0, 0, 1)], False),
     ]
-    assert travel().beyond(steps) == Beyond(4, "X", 301, 300)
-    assert travel(offset=20).beyond(steps) == Beyond(3, "X", 310, 300)
+    assert travel().beyond(steps) == Beyond(4, "X", 301, 300, "mm", False)
+    assert travel(offset=20).beyond(steps) == Beyond(3, "X", 310, 300, "mm", False)
 
 
 def test_inches_on_a_metric_machine():
     scales = {"X": AxisScale(25.4, -1.0), "Z": AxisScale(25.4, 0.0), "C": AxisScale(1.0, 0.0)}
-    beyond = SoftLimits(AXES, scales).beyond([BlockMoves(3, "XC", [(12, 0, 0, 1)], False)])
+    beyond = SoftLimits(AXES, scales, "mm").beyond([BlockMoves(3, "XC", [(12, 0, 0, 1)], False)])
     assert beyond.position == pytest.approx(12 * 25.4 - 1)
     assert beyond.limit == pytest.approx(300)
+    assert beyond.unit == "mm" and beyond.converted

@@ -260,8 +260,10 @@ class PolarSection:
         if beyond:
             diameter = beyond.axis == "X" and self.setup.words.diameter
             by_c = beyond.axis == "X" and self.program.has_letter(beyond.line, "CHY")
+            active = f"G{20 if beyond.unit == 'mm' else 21} is active"
             raise self.reader.place._replace(line=beyond.line).refuse(
-                f"the {beyond.axis} axis would go to {number(beyond.position)}"
-                f"{' (radius)' * diameter}, beyond its limit {number(beyond.limit)}"
+                f"the {beyond.axis} axis would go to {number(beyond.position)} {beyond.unit}"
+                f"{' (radius)' * diameter}, beyond its limit {number(beyond.limit)} {beyond.unit}"
+                f"{f' ({active})' * beyond.converted}"
                 f"{': C and H are lengths here, not degrees' * by_c}"
             )

@@ -19,18 +19,27 @@ class AxisScale(NamedTuple):
 
 
 class Beyond(NamedTuple):
-    """A move that an axis cannot make: where it would go, and its limit, in machine coordinates."""
+    """A move that an axis cannot make: where it would go, and its limit, in machine coordinates.
+
+    ``unit`` is theirs; ``converted`` says that the program's is another.
+    """
 
     line: int
     axis: str
     position: float
     limit: float
+    unit: str
+    converted: bool
 
 
 class SoftLimits:
-    """The travel of the axes X, C and Z, for moves in program coordinates."""
+    """The travel of the axes X, C and Z, for moves in program coordinates.
 
-    def __init__(self, axes: dict[str, Axis], scales: dict[str, AxisScale]) -> None:
+    ``unit`` is the machine's unit of length, ``mm`` or ``in``.
+    """
+
+    def __init__(self, axes: dict[str, Axis], scales: dict[str, AxisScale], unit: str) -> None:
+        self._unit = unit
         self._ranges = [
             (
                 letter,
@@ -62,4 +71,6 @@ class SoftLimits:
         )
         limit = limits[0] if position < limits[0] else limits[1]
         factor, offset = self._scales[letter]
-        return Beyond(line, letter, position * factor + offset, limit * factor + offset)
+        unit = "degrees" if letter == "C" else self._unit
+        there, end = (value * factor + offset for value in (position, limit))
+        return Beyond(line, letter, there, end, unit, factor != 1.0)

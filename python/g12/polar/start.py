@@ -8,6 +8,7 @@ from math import hypot, radians
 from typing import NamedTuple
 
 from g12.errors import number
+from g12.lengths import is_inch
 from g12.machine_ini import Axis, FaceAxes
 from g12.polar.face import FaceLimits
 from g12.polar.plan import PolarSettings
@@ -66,7 +67,7 @@ def polar_setup(
         _planning(start, settings, axes, tolerance)._replace(
             face=_face_limits(start, face, axes["C"]) if settings.polar_kinematics == "1" else None
         ),
-        SoftLimits(axes, _scales(start)),
+        SoftLimits(axes, _scales(start), "in" if is_inch(machine_unit_mm) else "mm"),
         tolerance,
     )
 

@@ -30,6 +30,8 @@ from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import scene_of
 from g12.tools.preview.ended import traced
+from g12.tools.preview.moves import Trace, message_lines
+from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.progress import working
 from g12.tools.units import UNITS
 from g12.tools.verify.proof import seen_in, subject_of
@@ -66,13 +68,15 @@ def main(arguments: list[str]) -> int:
     except style.PictureError as problem:
         raise UsageError(str(problem)) from None
     with opened_program(options.program, ini) as opened:
-        write_picture(opened.path, ini, options)
+        trace = trace_in_source(write_picture(opened.path, ini, options), opened)
     print(f"{options.output} written")
+    for line in message_lines(trace.messages):
+        print(line)
     return GOOD
 
 
-def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> None:
-    """Draw a program as LinuxCNC reads it."""
+def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Trace:
+    """Draw a program as LinuxCNC reads it; return what it does."""
     with working(f"interpreting {program.name}"):
         trace = traced(program, options.ini, options.tools, options.var)
         if not trace.moves:
@@ -84,3 +88,4 @@ def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> None:
         shown = {"override": options.override, "collisions": tuple(hits), "stock": stock}
         scene = replace(scene_of(subject, options.units, options.feeds), **shown)
         style.save(picture_of(scene), options.output)
+    return trace

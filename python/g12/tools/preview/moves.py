@@ -33,6 +33,12 @@ class Message(NamedTuple):
     text: str
 
 
+def message_lines(messages: Iterable[Message]) -> list[str]:
+    """Return messages as lines to be shown, each once."""
+    lines = (f"message, line {line}: {text.strip()}" for line, text in messages)
+    return list(dict.fromkeys(lines))
+
+
 class Event(NamedTuple):
     """What the program does between two moves, as text: ``tool 1``, ``S1000``, ``M8 on``.
 

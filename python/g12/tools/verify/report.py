@@ -7,6 +7,7 @@ import json
 from collections.abc import Sequence
 
 from g12.tools.path.slowest import Pace
+from g12.tools.preview.moves import message_lines
 from g12.tools.units import Unit, plain
 from g12.tools.verify.findings import (
     SAME_AREA,
@@ -48,7 +49,9 @@ def as_text(proof: Proof, unit: Unit) -> str:
         for hit in proof.collisions
     ]
     stock = [stock_text(proof.stock, unit)] if proof.stock else []
-    return "\n\n".join([*pockets, *sections, *rapids, *stock, *unseen, verdict])
+    messages = "\n".join(message_lines(proof.subject.trace.messages))
+    paragraphs = [*pockets, *sections, *rapids, *stock, *unseen, messages, verdict]
+    return "\n\n".join(filter(None, paragraphs))
 
 
 def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
@@ -225,6 +228,7 @@ def as_json(proof: Proof) -> str:
             "rapids": [collision_json(hit) for hit in proof.collisions],
             "stock": proof.stock and stock_json(proof.stock),
             "unseen": [{"line": line, "code": code} for line, code in proof.unseen],
+            "messages": [message._asdict() for message in proof.subject.trace.messages],
             "good": not proof.findings,
         },
         indent=2,
