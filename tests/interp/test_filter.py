@@ -120,4 +120,57 @@ def test_any_filter_is_applied(ini, tmp_path):
 
 def test_lines_that_a_filter_adds_say_theirs():
     rows = [b"G0", b"(a) (line 1)", b"G1 (line 7 of it)", b"", b"M2 (line 4)", b"(line 9) M2 (a)"]
-    assert lines_of_source(rows) == (1, 1, 2, 3, 4, 9)
+    assert lines_of_source([], rows) == (1, 1, 2, 3, 4, 9)
+
+
+POCKETS = "G20 G90 G0 X0 Y0\nT2 M6\nG0 Z.1\nG12 I.4 Z-.2 D2 F20\nG0 Z.1\nG12 I.1 Z-.2 D2 F20\nM2\n"
+
+
+@pytest.fixture
+def filtered(ini, tmp_path, capsys):
+    """Return a function: output and errors of a command on a program behind any filter."""
+
+    def tell(name, program, command, *words):
+        part = ini.parent / "parts" / "mill_inch.inc"
+        text = part.read_text().replace("[FILTER]\n", f"[FILTER]\nown = {command}\n")
+        part.with_name("own.inc").write_text(text)
+        own = ini.with_name("own.ini")
+        own.write_text(ini.read_text().replace("parts/mill_inch.inc", "parts/own.inc"))
+        path = tmp_path / "part.own"
+        path.write_text(program)
+        main.main([name, str(path), "--ini", str(own), *words])
+        said = capsys.readouterr()
+        return said.out, said.err.replace(str(path), "PROGRAM")
+
+    return tell
+
+
+@pytest.mark.parametrize(
+    ("command", "line"),
+    [("sed 's/I.4/I.5/'", 6), ("sed '3,4s/$/\\n(more)/'", 6), ("sed 1d", 6), ("sed 2,3d", 6)],
+)
+def test_lines_behind_any_filter_are_the_users(filtered, command, line):
+    _, errors = filtered("trace", POCKETS, command)
+    assert errors.startswith(f"g12 trace: PROGRAM:{line}: G12: I0.1 must be greater than"), errors
+    assert "[FILTER]" not in errors
+
+
+WRITTEN = "G20 G90 G0 X0\n(A)\nG1 X1 F9\nG1 X2\nT2 M6\nG12 I.1 Z-.2 D2 F20\nM2\n"
+
+
+@pytest.mark.parametrize("name", ["trace", "verify"])
+def test_lines_that_the_user_has_not_are_said_to_be_the_filters(filtered, tmp_path, name):
+    made = tmp_path / "made.ngc"
+    made.write_text(WRITTEN)
+    _, errors = filtered(name, "from nowhere\nimport nothing\n", f"sh -c 'cat {made}'")
+    assert f"g12 {name}: PROGRAM (filtered):6: G12: I0.1 must be greater" in errors
+
+
+def test_findings_in_lines_that_the_user_has_not_are_said_to_be_there(filtered, tmp_path):
+    made = tmp_path / "made.ngc"
+    made.write_text(WRITTEN.replace("I.1", "I.5").replace("G1 X1", "G0 Z1"))
+    out, errors = filtered("verify", "from nowhere\nimport nothing\n", f"sh -c 'cat {made}'")
+    assert "line 6: G12 (haas)" in out
+    assert errors.endswith(
+        "PROGRAM: lines are those of the program that the INI's [FILTER] makes of it\n"
+    )

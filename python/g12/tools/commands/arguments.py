@@ -15,6 +15,7 @@ from g12.tools.errors import ProgramError, UsageError
 from g12.tools.headless.machine import MachineError, StartupError
 from g12.tools.headless.run import run_program
 from g12.tools.machine.files import existing
+from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini, IniError, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
 from g12.tools.path.samples import Samples
@@ -129,6 +130,12 @@ def samples_of_run(program: Path, options: argparse.Namespace) -> Samples | None
     files = (options.ini, options.tools, options.var)
     with working(f"running {program.name}, real time", clock=True):
         return run_program(program, *files, override=options.override).samples
+
+
+def tell_whose_lines(name: str, opened: OpenedProgram) -> None:
+    """Say it, where the lines that a command names are not those of the user's file."""
+    if opened.note:
+        print(f"g12 {name}: {opened.note}", file=sys.stderr)
 
 
 def one_line(name: str) -> Callable:

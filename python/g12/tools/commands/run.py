@@ -18,6 +18,7 @@ from g12.tools.commands.arguments import (
     number_above,
     one_line,
     program_parser,
+    tell_whose_lines,
 )
 from g12.tools.headless.machine import Run
 from g12.tools.headless.run import run_anyhow
@@ -67,4 +68,5 @@ def main(arguments: list[str]) -> int:
     if result.error:
         text = opened.in_source(text_with_axes(result.error.text, options.ini))
         print(f"g12 run: {options.program}: {text}", file=sys.stderr)
+        tell_whose_lines("run", opened)
     return FINDING if result.error else GOOD

@@ -15,6 +15,7 @@ from g12.tools.commands.arguments import (
     count_from,
     one_line,
     program_parser,
+    tell_whose_lines,
 )
 from g12.tools.machine.filter import opened_program
 from g12.tools.preview.ended import ended, with_axes
@@ -57,10 +58,11 @@ def main(arguments: list[str]) -> int:
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
         found = trace(opened.path, options.ini, tools=options.tools, parameters=options.var)
+    tell_whose_lines("trace", opened)
     traced = with_axes(trace_in_source(found, opened), options.ini)
     for move in traced.moves:
         print(line_of(move, options.digits))
     for line, text in traced.messages:
         print(f"{line:6d} message {text}")
-    ended(options.program, traced)
+    ended(opened.name, traced)
     return GOOD

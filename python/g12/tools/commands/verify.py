@@ -23,6 +23,7 @@ from g12.tools.commands.arguments import (
     program_parser,
     samples_of_run,
     stock_of,
+    tell_whose_lines,
 )
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
@@ -73,6 +74,7 @@ def main(arguments: list[str]) -> int:
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
         proof = proof_in_source(proof_of(opened.path, ini, options), opened)
+    tell_whose_lines("verify", opened)
     if not (proof.pockets or proof.sections or proof.unseen):
         raise UsageError(f"{options.program}: has no pocket and no polar section to verify")
     unit = unit_of(proof.subject.trace.modes.gcodes, options.units)

@@ -20,7 +20,7 @@ if __name__ == "__main__":
 
 from g12.tools.errors import ProgramError
 from g12.tools.headless.operator_panel import Panel, PanelError
-from g12.tools.machine.filter import opened_program
+from g12.tools.machine.filter import OpenedProgram, opened_program
 from g12.tools.machine.ini import Ini, read_ini
 
 LONGEST_PROGRAM = 24 * 3600.0  # s
@@ -33,26 +33,29 @@ def program_to_run(ini: Ini, named: list[str]) -> Path | None:
     return ini.file("DISPLAY", "OPEN_FILE")
 
 
-def print_said(panel: Panel) -> bool:
+def print_said(panel: Panel, program: OpenedProgram | None) -> bool:
     """Print what LinuxCNC said; tell whether there was an error among it."""
     for text, _ in panel.messages():
         print(f"message: {text}", flush=True)
     errors = panel.errors()
     for text, _ in errors:
-        print(f"error: {text}", file=sys.stderr, flush=True)
+        told = program.in_source(text) if program else text
+        print(f"error: {told}", file=sys.stderr, flush=True)
+    if errors and program and program.note:
+        print(program.note, file=sys.stderr, flush=True)
     return bool(errors)
 
 
-def run_to_end(panel: Panel, program: Path | None) -> bool:
+def run_to_end(panel: Panel, program: OpenedProgram | None) -> bool:
     """Home the machine, run the program and tell whether it came to its end."""
     panel.enable()
     panel.home()
     if program is None:
-        return not print_said(panel)
-    panel.open(str(program))
+        return not print_said(panel, None)
+    panel.open(str(program.path))
     panel.start()
     panel.finish(LONGEST_PROGRAM)
-    return not print_said(panel)
+    return not print_said(panel, program)
 
 
 def main(arguments: list[str]) -> int:
@@ -66,7 +69,7 @@ def main(arguments: list[str]) -> int:
     panel = Panel()
     try:
         with opened_program(program, ini) if program else nullcontext() as opened:
-            worked = run_to_end(panel, opened and opened.path)
+            worked = run_to_end(panel, opened)
     except (PanelError, ProgramError) as error:
         print(f"error: {error}", file=sys.stderr)
         worked = False

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A program as LinuxCNC's screens open it: through the [FILTER] that the INI has for its suffix.
 
-Lines are those of the user's file: what a filter adds is marked ``(line 12)`` by `translate`, and
-any other filter's lines are counted as they come.
+Lines are those of the user's file: what `translate` adds it marks, ``(line 12)``; any other
+filter's lines are found in both texts. Where they cannot be, lines are those that the filter wrote,
+and it is said so.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from g12.tools.errors import ProgramError
+from g12.tools.machine.aligned_lines import aligned_lines
 from g12.tools.machine.ini import Ini
 
 MARK = re.compile(rb" \(line ([0-9]+)\)\s*$|^\(line ([0-9]+)\) ")
@@ -29,12 +31,36 @@ OWN_ERROR = re.compile(r"g12 \w+: ")
 class OpenedProgram:
     """A program: the user's file, what LinuxCNC reads of it, and for each line of that the user's.
 
-    Without a filter ``path`` is the user's file and ``lines`` is empty.
+    Without a filter ``path`` is the user's file; then, and where the user's lines are not known,
+    ``lines`` is empty.
     """
 
     source: Path
     path: Path
     lines: tuple[int, ...] = ()
+
+    @property
+    def is_filtered(self) -> bool:
+        """Whether LinuxCNC reads another text than the user's file."""
+        return self.path != self.source
+
+    @property
+    def listed(self) -> Path:
+        """The file whose lines are told."""
+        return self.source if self.lines else self.path
+
+    @property
+    def name(self) -> str:
+        """The user's file as it is named before a line."""
+        known = self.lines or not self.is_filtered
+        return f"{self.source}{'' if known else ' (filtered)'}"
+
+    @property
+    def note(self) -> str:
+        """What to say of the lines, "" if they are the user's."""
+        if self.lines or not self.is_filtered:
+            return ""
+        return f"{self.source}: lines are those of the program that the INI's [FILTER] makes of it"
 
     def source_line(self, line: int) -> int:
         """Return the line of the user's file that a line LinuxCNC reads belongs to."""
@@ -42,12 +68,12 @@ class OpenedProgram:
 
     def in_source(self, text: str) -> str:
         """Return a text about the program with the user's file and its lines in it."""
-        if not self.lines:
+        if not self.is_filtered:
             return text
         place = re.compile(rf"{re.escape(str(self.path))}(?::([0-9]+):)?")
         line = lambda match: f":{self.source_line(int(match[1]))}:" if match[1] else ""  # noqa: E731
         text = NAMED_LINE.sub(lambda m: f"{m[1]} {self.source_line(int(m[2]))}", text)
-        return place.sub(lambda match: f"{self.source}{line(match)}", text)
+        return place.sub(lambda match: f"{self.name}{line(match)}", text)
 
 
 def filter_for(program: Path, ini: Ini) -> str | None:
@@ -67,7 +93,8 @@ def opened_program(program: Path, ini: Ini) -> Iterator[OpenedProgram]:
         path = Path(folder, program.name)
         content = filtered(program, command, ini)
         path.write_bytes(content)
-        opened = OpenedProgram(program, path, lines_of_source(content.splitlines()))
+        lines = lines_of_source(program.read_bytes().splitlines(), content.splitlines())
+        opened = OpenedProgram(program, path, lines)
         try:
             yield opened
         except ProgramError as problem:
@@ -96,12 +123,14 @@ def filter_error(text: str, command: str, program: Path) -> str:
     return last.replace(str(program.absolute()), str(program))
 
 
-def lines_of_source(rows: Sequence[bytes]) -> tuple[int, ...]:
-    """Return the line of the user's file for each line of a filter's output."""
+def lines_of_source(source: Sequence[bytes], written: Sequence[bytes]) -> tuple[int, ...]:
+    """Return the line of the user's file for each line a filter has written, () if not known."""
+    marks = [MARK.search(row) for row in written]
+    if not any(marks):
+        return aligned_lines(source, written) or ()
     found: list[int] = []
     own = 0
-    for row in rows:
-        mark = MARK.search(row)
+    for mark in marks:
         own += not mark
         found.append(int(mark[1] or mark[2]) if mark else own)
     return tuple(found)

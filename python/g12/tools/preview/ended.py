@@ -21,7 +21,7 @@ def traced(program: Path, ini: Path, tools: Tools = None, parameters: Parameters
     return ended(program, with_axes(found, ini))
 
 
-def ended(program: Path, result: Trace) -> Trace:
+def ended(program: Path | str, result: Trace) -> Trace:
     """Return a trace that came to its end, or raise ProgramError."""
     if result.error:
         raise ProgramError(f"{program}:{result.error.line}: {result.error.rule}")

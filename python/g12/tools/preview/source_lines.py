@@ -11,7 +11,7 @@ from g12.tools.preview.moves import Trace
 
 def trace_in_source(found: Trace, opened: OpenedProgram) -> Trace:
     """Return a trace whose blocks, messages, events and error have the user's lines."""
-    if not opened.lines:
+    if not opened.is_filtered:
         return found
     line, error = opened.source_line, found.error
     return replace(

@@ -154,9 +154,9 @@ class Recorder:
         try:
             with opened_program(program, self._ini) as opened:
                 trace = trace_in_source(self._tracer.trace(opened.path, **options), opened)
+                return text_of(recording_of(trace, opened.listed, facts))
         except ProgramError as problem:
             raise TraceFailure(str(problem)) from None
-        return text_of(recording_of(trace, program, facts))
 
 
 class Recorders:

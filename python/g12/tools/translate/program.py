@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.lexer import blocks_of, source_lines
+from g12.tools.translate.blocks.lexer import ForeignBlock, blocks_of, source_lines
 from g12.tools.translate.copies import followed_program
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.locals import unset_locals
@@ -17,6 +17,8 @@ from g12.tools.translate.order import written_order
 from g12.tools.translate.output import lines_of, output_lines
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.structure import MAIN, structure_of
+
+READ, FOLLOWED = 0.5, 0.35  # shares of the time
 
 
 class RefusedBlock(NamedTuple):
@@ -45,13 +47,13 @@ def translate_program(
     ``progress`` is told the share that is done, 0 to 1.
     """
     rows = source_lines(text)
-    blocks = [
-        block for line, row in enumerate(rows, 1) for block in blocks_of(line, row, control.remarks)
-    ]
+    blocks = read_blocks(rows, control, progress)
     structure = structure_of(blocks, control)
-    total = max(1, len(blocks))
     followed = followed_program(
-        structure, control, machine_codes, lambda index: progress(min(1, index / total))
+        structure,
+        control,
+        machine_codes,
+        lambda index: progress(READ + FOLLOWED * min(1, index / len(blocks))),
     )
     refused = sorted(set(refusals(followed)))
     if refused:
@@ -60,6 +62,18 @@ def translate_program(
     if order.circular:
         return Translation("", sorted(circular_calls(followed, order.circular)))
     return Translation("\n".join([*output_lines(rows, order.rows, followed), ""]), [])
+
+
+def read_blocks(
+    rows: Sequence[str], control: Control, progress: Callable[[float], None]
+) -> list[ForeignBlock]:
+    """Return the blocks of a file's lines."""
+    blocks: list[ForeignBlock] = []
+    for line, row in enumerate(rows, 1):
+        blocks += blocks_of(line, row, control.remarks)
+        if line % 1000 == 0:
+            progress(READ * line / len(rows))
+    return blocks
 
 
 def circular_calls(followed: FollowedProgram, circular: frozenset[int]) -> Iterator[RefusedBlock]:

@@ -15,7 +15,7 @@ from g12.tools.verify.section import SectionFacts
 
 def proof_in_source(proof: Proof, opened: OpenedProgram) -> Proof:
     """Return a proof that names the user's file and its lines."""
-    if not opened.lines:
+    if not opened.is_filtered:
         return proof
     subject = proof.subject
     return replace(

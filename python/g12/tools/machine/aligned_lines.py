@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which line of a file each line that a filter has written comes from, told from both texts.
+
+Lines with the same block number, or the same text but for blanks and case, that stand once in each
+text are taken for one (the longest run of them in order). Between them as many lines as before are
+taken one by one; what is put in belongs to the line before it, what one line has become to that.
+Where a stretch of lines has become another number of lines, it is not known.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_left
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+BLOCK_NUMBER = re.compile(rb"/?N[0-9]+")
+
+
+def aligned_lines(source: Sequence[bytes], written: Sequence[bytes]) -> tuple[int, ...] | None:
+    """Return the line (from 1) of a file for each written line, None if that is not known."""
+    before, after = [_key(row) for row in source], [_key(row) for row in written]
+    found: list[int] = []
+    last = (-1, -1)
+    for pair in [*_anchors(before, after), (len(before), len(after))]:
+        stretch = range(last[0] + 1, pair[0])
+        lines = _lines_of_stretch(stretch, range(last[1] + 1, pair[1]), before, after)
+        if lines is None or (not source and written):
+            return None
+        found += [*lines, pair[0]]
+        last = pair
+    return tuple(line + 1 for line in found[: len(written)])
+
+
+def _key(row: bytes) -> bytes:
+    text = b"".join(row.upper().split())
+    number = BLOCK_NUMBER.match(text)
+    return number[0] if number else text
+
+
+def _anchors(before: Sequence[bytes], after: Sequence[bytes]) -> list[tuple[int, int]]:
+    """Return the indices of lines that stand once in both texts, in the order of both."""
+    once = _once(before), _once(after)
+    pairs = [(at, once[1][key]) for key, at in once[0].items() if key in once[1]]
+    return [pairs[index] for index in _longest_rising([there for _, there in pairs])]
+
+
+def _once(keys: Sequence[bytes]) -> dict[bytes, int]:
+    counted = Counter(keys)
+    return {key: at for at, key in enumerate(keys) if key and counted[key] == 1}
+
+
+def _longest_rising(values: Sequence[int]) -> list[int]:
+    """Return the indices of the longest rising run of values."""
+    ends: list[int] = []  # the least value that a run of each length ends with
+    at: list[int] = []
+    previous: list[int] = []
+    for index, value in enumerate(values):
+        place = bisect_left(ends, value)
+        previous.append(at[place - 1] if place else -1)
+        ends[place : place + 1] = [value]
+        at[place : place + 1] = [index]
+    run: list[int] = []
+    index = at[-1] if at else -1
+    while index >= 0:
+        run.append(index)
+        index = previous[index]
+    return run[::-1]
+
+
+def _lines_of_stretch(
+    stretch: range, written: range, before: Sequence[bytes], after: Sequence[bytes]
+) -> list[int] | None:
+    """Return the index of the source's line for each line between two anchors."""
+    head = list(_same(stretch, written, before, after))
+    stretch, written = stretch[len(head) :], written[len(head) :]
+    tail = list(_same(stretch[::-1], written[::-1], before, after))[::-1]
+    left, count = stretch[: len(stretch) - len(tail)], len(written) - len(tail)
+    if len(left) == count:
+        middle = list(left)
+    elif len(left) <= 1:
+        middle = [left[0] if left else max(0, left.start - 1)] * count
+    elif count == 0:
+        middle = []
+    else:
+        return None
+    return [*head, *middle, *tail]
+
+
+def _same(
+    stretch: range, written: range, before: Sequence[bytes], after: Sequence[bytes]
+) -> Iterator[int]:
+    """Yield the lines that are the same from the start on."""
+    for at, there in zip(stretch, written):
+        if before[at] != after[there]:
+            return
+        yield at
