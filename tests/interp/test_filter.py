@@ -8,7 +8,8 @@ import pytest
 from g12.tools.commands import main
 from g12.tools.machine.filter import filter_for, lines_of_source, opened_program
 from g12.tools.machine.ini import read_ini
-from support.sim_machines import PROGRAMS, ROOT, copy_of_machines
+from support.foreign_programs import FOREIGN
+from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
 
 POCKET = """\
 %
@@ -98,6 +99,25 @@ def test_a_recording_has_the_users_file_and_its_lines(ini, tmp_path, capsys):
     capsys.readouterr()
     assert main.main(["regress", "check", *words]) == 1
     assert "8" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("machine", "program"),
+    [
+        ("mill_inch", "haas-mill/counterbore"),
+        ("mill_mm", "haas-mill/homes"),
+        ("mill_yasnac_mm", "yasnac-mill/with_points"),
+        ("mill_mitsubishi_mm", "mitsubishi-mill/circle"),
+        ("lathe_inch", "manuals/sample"),
+        ("lathe_mm", "fanuc-lathe/hexagon"),
+    ],
+)
+@pytest.mark.parametrize("twin", ["", "_headless"])
+def test_each_machine_opens_programs_of_its_control(capsys, machine, program, twin):
+    path = FOREIGN / f"{program}.nc"
+    ini = SIM / f"{machine}{twin}.ini"
+    assert ".nc" in "".join(read_ini(ini).all("FILTER", "PROGRAM_EXTENSION"))
+    assert main.main(["trace", str(path), "--ini", str(ini)]) == 0, capsys.readouterr().err
 
 
 def test_a_program_without_a_filter_is_the_users_file(ini):
