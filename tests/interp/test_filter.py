@@ -108,7 +108,7 @@ def test_a_recording_has_the_users_file_and_its_lines(ini, tmp_path, capsys):
         ("mill_mm", "haas-mill/homes"),
         ("mill_yasnac_mm", "yasnac-mill/with_points"),
         ("mill_mitsubishi_mm", "mitsubishi-mill/circle"),
-        ("lathe_inch", "manuals/sample"),
+        ("lathe_inch", "fanuc-lathe/grooves"),
         ("lathe_mm", "fanuc-lathe/hexagon"),
     ],
 )
