@@ -9,7 +9,7 @@ from g12.tools.preview.tracer import Tracer
 from support import cut_geometry
 from support.operated_machine import Machine
 from support.refusals import at_line
-from support.sim_machines import BRISK, SIM
+from support.sim_machines import BRISK, SIM, machine_scope
 
 TOOLS = {1: 6.0, 2: 10.0}
 FIRST = "G21 G17 G40 G49 G54 G61 G80 G90 G91.1 G94 F8000"
@@ -23,7 +23,7 @@ OUTSIDE = "G12.2 X10 Y5 Z-1 I1 R5 H1 Q.2 L0"
 DEVIATION = 0.002  # mm, of the real motion in exact path mode at this feed
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope=machine_scope)
 def machine():
     with Machine(SIM / "mill_mm.ini", tools=TOOLS, overrides=BRISK) as running:
         running.mdi("T1 M6")

@@ -7,7 +7,7 @@ import pytest
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry
 from support.operated_machine import Machine
-from support.sim_machines import BRISK, PROGRAMS, SIM
+from support.sim_machines import BRISK, PROGRAMS, SIM, machine_scope
 
 MILLS = {
     "mill_yasnac_mm": ("yasnac/example.ngc", "G12 I50 R55 D10", "G12: R55 puts the tool centre"),
@@ -16,7 +16,7 @@ MILLS = {
 DEVIATION = 0.015  # mm, of the real motion: the programs blend with P0.01
 
 
-@pytest.fixture(scope="module", params=MILLS)
+@pytest.fixture(scope=machine_scope, params=MILLS)
 def mill(request):
     with Machine(SIM / f"{request.param}_headless.ini", overrides=BRISK) as machine:
         yield request.param, machine

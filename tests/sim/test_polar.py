@@ -16,24 +16,32 @@ from support.contour_geometry import (
 )
 from support.operated_machine import Machine
 from support.polar_drawings import INCHES, MILLIMETRES
-from support.polar_programs import FEED, FIRST, Cut, section
-from support.sim_machines import PROGRAMS, SIM
+from support.polar_programs import (
+    C_ACCELERATION,
+    FEED,
+    FIRST,
+    Cut,
+    accelerations,
+    exceeds_limits_itself,
+    section,
+)
+from support.sim_machines import PROGRAMS, SIM, machine_scope
 
 INCH = 25.4
 TOLERANCE = {"mm": 0.005, "inch": 0.0002}  # the default of POLAR_TOLERANCE
 SAMPLING = {"mm": 0.001, "inch": 0.001 / INCH}
 MANUAL_TOOLS = {1: 0.5, 8: 0.0}
 OVERRIDE = {"manual_a": 3, "manual_b": 2, "manual_sample": 3}  # they cut at 5 inches a minute
-C_SPEED, C_ACCELERATION = 360, 3600
+C_SPEED = 360
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope=machine_scope)
 def metric():
     with Machine(SIM / "lathe_mm.ini") as running:
         yield running
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope=machine_scope)
 def inch():
     with Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as running:
         yield running
@@ -58,14 +66,14 @@ def run_sample(machine, name, override=1.0):
     return Cut(run)
 
 
-@pytest.fixture(scope="module")
-def cuts(metric, inch):
+@pytest.fixture(scope=machine_scope)
+def cuts(request):
     """Every sample program, run once when it is asked for."""
     done = {}
 
     def cut(name):
         if name not in done:
-            machine = metric if name in MILLIMETRES else inch
+            machine = request.getfixturevalue("metric" if name in MILLIMETRES else "inch")
             done[name] = run_sample(machine, name, OVERRIDE.get(name, 1))
         return done[name]
 
@@ -153,29 +161,13 @@ def test_the_manuals_flats_are_an_inch_apart(cuts):
         assert angle == pytest.approx(90, abs=0.05)
 
 
-@pytest.fixture(scope="module")
-def planner_keeps_limits(metric):
-    """Tell whether three plain moves of C, with nothing of the package, keep C's acceleration.
-
-    They do not where LinuxCNC stops at the full rate in front of a blend and then only blends at
-    half of it (f44628a478 of July 2026 to its issue 4539 of September, never in a release).
-    """
-    plain = ["G21 G90 G94 G64", "G0 X20 Z5 C0", "F18000", "G1 C3", "C6", "C9", "M2"]
-    return acceleration(metric.run_text(plain).samples.axes["C"]) <= C_ACCELERATION * 1.01
-
-
-def acceleration(positions):
-    """Return the largest, of positions sampled once a millisecond, per second squared."""
-    return np.abs(np.diff(positions, 2)).max() * 1e6
-
-
 @pytest.mark.parametrize("name", ["slot", "circles"])
-def test_c_keeps_its_limits_near_the_centre(cuts, planner_keeps_limits, name):
+def test_c_keeps_its_limits_near_the_centre(cuts, request, name):
     c = cuts(name).c
     assert np.abs(np.diff(c)).max() * 1000 <= C_SPEED * 1.001
-    if not planner_keeps_limits:
+    if exceeds_limits_itself(request.getfixturevalue("metric")):
         pytest.xfail("this LinuxCNC exceeds C's acceleration in plain G1 moves (its issue 4539)")
-    assert acceleration(c) <= C_ACCELERATION * 1.01
+    assert accelerations(c).max() <= C_ACCELERATION * 1.01
 
 
 # ---------------------------------------------------------------- what an operator does

@@ -5,7 +5,7 @@ import pytest
 
 from support.operated_machine import Machine
 from support.refusals import at_line
-from support.sim_machines import BRISK, SIM
+from support.sim_machines import BRISK, SIM, machine_scope
 
 LIMITS = {"AXIS_X": (-100, 300), "AXIS_Y": (-200, 200), "AXIS_Z": (-50, 60)}
 OVERRIDES = BRISK | {
@@ -43,7 +43,7 @@ FITS = {
 }
 
 
-@pytest.fixture(scope="module", params=CASES)
+@pytest.fixture(scope=machine_scope, params=CASES)
 def mill(request, tmp_path_factory):
     table = tmp_path_factory.mktemp("tools") / "tool.tbl"
     table.write_text("T1 P1 D6 Z20\nT10 P10 D20\n")

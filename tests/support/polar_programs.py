@@ -12,6 +12,7 @@ from support.sim_machines import SIM
 FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 START = "G0 X20 Z5 C0"
 X, Z, C = 0, 2, 5
+C_ACCELERATION = 3600  # of the lathes, degrees/s²
 FEED, ROUND = 2, 3  # kinds of a sampled move: straight and circular
 
 
@@ -81,3 +82,20 @@ class Cut:
         chosen = values[self.lines == line]
         cut = int(len(chosen) * ends)
         return chosen[cut : len(chosen) - cut]
+
+
+def accelerations(positions):
+    """Return those of positions sampled once a millisecond, without signs, per second squared."""
+    return np.abs(np.diff(positions, 2)) * 1e6
+
+
+def exceeds_limits_itself(lathe):
+    """Tell whether three plain moves of C, with nothing of the package, exceed its acceleration.
+
+    They do where LinuxCNC comes to a blend at the full rate and then stops at half of it, ten
+    times beyond the limit: f44628a478 of July 2026 to its issue 4539 of September, in no release.
+    """
+    plain = ["G21 G18 G90 G94 G64", "G0 X20 Z5 C0", "F18000", "G1 C3", "C6", "C9", "M2"]
+    run = lathe.run_text(plain)
+    assert run.error is None
+    return accelerations(run.samples.axes["C"]).max() > C_ACCELERATION * 1.01

@@ -5,6 +5,8 @@ import os
 import shutil
 from pathlib import Path
 
+from g12.tools.headless.namespaces import has_namespaces
+
 ROOT = Path(__file__).resolve().parents[2]
 SIM = ROOT / "configs" / "sim"
 PROGRAMS = ROOT / "tests" / "programs"
@@ -13,6 +15,11 @@ BRISK = {  # overrides for a simulated mill in mm: real runs in a fraction of th
     section: {"MAX_ACCELERATION": 20000, "MAX_VELOCITY": 250}
     for section in ("JOINT_0", "JOINT_1", "JOINT_2", "AXIS_X", "AXIS_Y", "AXIS_Z")
 }
+
+
+def machine_scope(**_asked):
+    """Return how long a fixture keeps its machine: one test where only one machine can run."""
+    return "module" if has_namespaces() else "function"
 
 
 def copy_of_machines(folder):

@@ -2,16 +2,16 @@
 """Start a command where no namespaces can be had; run by ``namespaces`` as a program.
 
 The container, or whoever forbids them, is the isolation: one LinuxCNC runs at a time, others of
-this package wait for it, and a LinuxCNC of somebody else's is not disturbed but told.  What a
-private directory is elsewhere is here a copy in a tree of links that looks like the real one.
+this package wait for their turn, and a LinuxCNC of somebody else's is not disturbed but told.  What
+a private directory is elsewhere is here a copy in a tree of links that looks like the real one.
 
-The job is that of ``namespaces_init``; ``covers`` cannot be had.
+The job is that of ``namespaces_init``, and ``turn``, the open file whose lock says whose turn it
+is; ``covers`` cannot be had.
 """
 
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import json
 import os
 import re
@@ -32,7 +32,6 @@ from namespaces_init import (
 
 PR_SET_CHILD_SUBREAPER, PR_SET_NO_NEW_PRIVS = 36, 38
 IPC_RMID = 0
-LOCK = "/tmp/g12-linuxcnc.lock"  # held while one of ours runs
 LINUXCNC_LOCK = "/tmp/linuxcnc.lock"
 LINUXCNC = re.compile(r"milltask|linuxcncsvr|rtapi")  # names of its processes
 PATIENCE = 15.0  # s for LinuxCNC to clean up after itself
@@ -50,40 +49,14 @@ def running() -> list[str]:
     return [f"{name} ({number})" for number, name in names.items() if LINUXCNC.match(name)]
 
 
-def claimed() -> int:
-    """Wait until no other of ours runs, and return what has to stay open."""
-    lock = opened_lock()
-    while not locked(lock):
-        if select.select([sys.stdin], [], [], 0.1)[0]:
-            raise IsolationError("nobody waits for this run any more")
+def refuse_beside_another() -> None:
+    """Raise if somebody else's LinuxCNC runs here."""
     found = running()
     if found:
         raise IsolationError(
             f"a LinuxCNC runs here already, {found[0]}, and this system allows no namespaces to "
             "keep another one apart from it"
         )
-    return lock
-
-
-def opened_lock() -> int:
-    """Return the open lock file, which may be another user's."""
-    while True:
-        try:
-            lock = os.open(LOCK, os.O_RDONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC)
-            os.fchmod(lock, 0o444)
-            return lock
-        except FileExistsError:
-            with contextlib.suppress(FileNotFoundError):
-                return os.open(LOCK, os.O_RDONLY | os.O_CLOEXEC)
-
-
-def locked(file: int) -> bool:
-    """Take the lock of an open file if it is free; return whether it was."""
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True
 
 
 def mirrored(directory: str, files: dict[str, str], tree: str) -> str:
@@ -169,7 +142,8 @@ def end_all(before: set[int]) -> None:
 def main() -> int:
     """Run the job and return its exit code."""
     job = json.loads(sys.stdin.readline())
-    lock = claimed()
+    os.set_inheritable(job["turn"], False)  # it is held until this process ends
+    refuse_beside_another()
     before = shared_memory()
     raise_if_failed(libc.prctl(PR_SET_CHILD_SUBREAPER, 1), "taking in orphans")
     if os.geteuid():  # a setuid rtapi_app would lack root's right to the user's shared memory
@@ -180,7 +154,6 @@ def main() -> int:
         code = wait_for(child)
     finally:
         end_all(before)
-        os.close(lock)
     if select.select([sys.stdin], [], [], 0)[0]:  # closed: nobody is left to do it
         shutil.rmtree(job["scratch"], ignore_errors=True)
     return code & 0xFF

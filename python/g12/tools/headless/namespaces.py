@@ -7,6 +7,8 @@ this one closes its standard input, also by dying.
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
 import functools
 import json
 import os
@@ -23,12 +25,19 @@ from g12.tools.system import PYTHON
 
 ISOLATE = Path(__file__).with_name("namespaces_init.py")
 CONTAINED = Path(__file__).with_name("contained_init.py")
+LOCK = Path("/tmp/g12-linuxcnc.lock")  # without namespaces
 NOBODY = "65534"  # LinuxCNC's realtime part refuses to be plain root
 NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "INI_FILE_NAME")
 
 
+class OneAtATime(RuntimeError):
+    """A second process was to be started without namespaces while one's own still runs."""
+
+
 class Isolated:
     """One isolated process: ``folder`` is its scratch directory."""
+
+    _contained: Isolated | None = None  # the one of this program that has its turn
 
     def __init__(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="g12-", dir="/tmp"))
@@ -59,7 +68,8 @@ class Isolated:
 
         ``copies`` are directories of which it sees a private copy, with texts of files to
         stand there instead; ``covers`` files to be seen in place of others; ``environment``
-        adds variables, of which a screen's are otherwise not handed on.
+        adds variables, of which a screen's are otherwise not handed on.  Without namespaces it
+        waits until another program's turn ends.
         """
         job = {
             "command": list(command),
@@ -68,9 +78,13 @@ class Isolated:
             "covers": {covered: str(file) for covered, file in (covers or {}).items()},
             "scratch": str(self.folder),
         }
-        script = ISOLATE if has_namespaces() else CONTAINED
         with open(self.folder / "log.txt", "wb") as log:
-            self._process = started(script, job, log)
+            if has_namespaces():
+                self._process = started(ISOLATE, job, log)
+                return
+            with self._turn() as turn:
+                job["turn"] = turn.fileno()
+                self._process = started(CONTAINED, job, log, turn.fileno())
 
     def exit_code(self) -> int | None:
         """Return the exit code, None while it runs."""
@@ -89,7 +103,17 @@ class Isolated:
         if self._process:
             self._process.stdin.close()
             self._process.wait()
+        if Isolated._contained is self:
+            Isolated._contained = None
         shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _turn(self) -> IO:
+        if Isolated._contained:
+            raise OneAtATime("one LinuxCNC at a time: there are no namespaces here")
+        lock = lock_file()
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        Isolated._contained = self
+        return lock
 
     def _environment(self) -> dict[str, str]:
         kept = {key: value for key, value in os.environ.items() if key not in NO_SCREEN}
@@ -101,6 +125,15 @@ class Isolated:
             "PYTHONDONTWRITEBYTECODE": "1",
         }
         return {**kept, **private, **({"RTAPI_UID": NOBODY} if os.geteuid() == 0 else {})}
+
+
+def lock_file() -> IO:
+    """Open the file whose lock is held by the one whose turn it is; it may be another user's."""
+    while True:
+        with contextlib.suppress(FileNotFoundError):
+            return LOCK.open("rb")
+        with contextlib.suppress(FileExistsError), LOCK.open("xb"):
+            LOCK.chmod(0o444)
 
 
 @functools.cache
@@ -119,10 +152,14 @@ def has_namespaces() -> bool:
     return not refused
 
 
-def started(script: Path, job: Mapping[str, object], log: IO) -> subprocess.Popen:
-    """Start a script with its job; it ends when its standard input is closed."""
+def started(script: Path, job: Mapping[str, object], log: IO, *kept: int) -> subprocess.Popen:
+    """Start a script with its job; it ends when its standard input is closed.
+
+    ``kept`` are open files that it has too.
+    """
     streams = {"stdin": subprocess.PIPE, "stdout": log, "stderr": log}
-    process = subprocess.Popen([PYTHON, str(script)], **streams, start_new_session=True)
+    command = [PYTHON, str(script)]
+    process = subprocess.Popen(command, **streams, pass_fds=kept, start_new_session=True)
     process.stdin.write(json.dumps(job).encode() + b"\n")
     process.stdin.flush()
     return process
