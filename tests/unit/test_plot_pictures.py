@@ -15,12 +15,15 @@ from g12.tools.path.follow import follow, worst_of
 from g12.tools.plot import plan_view, style
 from g12.tools.plot.deviation import most_telling, window_lines
 from g12.tools.plot.face import programmed_history
-from g12.tools.plot.mill import Layout, removed_at
+from g12.tools.plot.labels import spread_out
+from g12.tools.plot.mill import Layout, cut_through, removed_at
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import clock, heading, scene_of
 from g12.tools.units import MM, UNITS, plain
 from g12.tools.verify.proof import subject_of
 from g12.tools.verify.rapids import Collision
+from g12.tools.verify.seen import Seen, StandingRings, WrongCutter
+from g12.tools.verify.wanted_circle import Cutter
 from support.made_moves import Hand, samples_of
 
 FAST = [line for axis in "XYZ" for line in (f"[AXIS_{axis}]", "MAX_VELOCITY = 1e12")]
@@ -188,8 +191,56 @@ def test_a_rapid_through_material_is_in_the_legend():
     shown = scene(pocket().rapid(x=90))
     hit = Collision(1, 1, 5.0, np.array([[60.0, 0, -4], [90, 0, -4]]))
     assert not any("material" in e.get_label() for e in plan_view.motion_entries(shown))
-    shown = replace(shown, collisions=(hit,))
+    shown = replace(shown, seen=Seen((hit,)))
     assert any("through material" in e.get_label() for e in plan_view.motion_entries(shown))
+
+
+def test_what_stands_and_another_cutter_than_d_are_in_the_legend_and_the_view():
+    area = Point(50, 0).buffer(30).difference(Point(50, 0).buffer(20))
+    ring = StandingRings(1, area, (50.0, 0.0), -4.0)
+    wrong = WrongCutter(1, (50.0, 0.0), Cutter(10.0, 4, 5.0, 6))
+    shown = replace(scene(pocket()), seen=Seen((), (ring,), (wrong,)))
+    told = [entry.get_label() for entry in plan_view.warning_entries(shown)]
+    assert told == ["material left standing", "T4 is not D6 (⌀ 20)"]
+    assert "are left standing" in next(text for _, text in shown.seen.warnings())
+    low, high = plan_view.bounds_of(shown, [])
+    assert low[0] < 20 and high[0] > 80 and low[1] < -30
+
+
+def test_what_stands_is_cut_through_the_pockets_middle_in_the_side_view():
+    shape = Point(50, 7).buffer(30).difference(Point(50, 7).buffer(20))
+    boxes = cut_through(StandingRings(1, shape, (50.0, 7.0), -4.0), 0.0)
+    assert [part.bounds for part in boxes.geoms] == [
+        pytest.approx((20, -4, 30, 0)),
+        pytest.approx((70, -4, 80, 0)),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("places", "found"),
+    [
+        ([0.0, 5.0], [0, 5]),
+        ([4.9, 5.0, 5.1], [4, 5, 6]),
+        ([0.0, 0.0, 9.0, 9.5], [-0.5, 0.5, 8.75, 9.75]),
+        ([1.0, 1.5, 2.0, 2.5], [0.25, 1.25, 2.25, 3.25]),
+        ([], []),
+    ],
+)
+def test_texts_that_would_cover_each_other_are_spread_out(places, found):
+    assert spread_out(places, 1.0) == pytest.approx(found)
+
+
+@pytest.mark.parametrize("count", [2, 8])
+def test_every_height_is_written_however_near_they_are(count):
+    hand = Hand().rapid(z=5)
+    for level in range(count):
+        hand.line(z=-0.1 * (level + 1)).line(x=100 * (level % 2))
+    hand.line(z=-90)
+    figure = picture_of(scene(hand))
+    side = figure.axes[1]
+    texts = [text.get_text() for text in side.texts]
+    assert texts[:2] == ["Z−90", f"Z{plain(-0.1 * count, 3)}"]
+    assert len(texts) == count + 1
 
 
 def both(hand, ini=MILL):
@@ -235,6 +286,13 @@ def test_the_history_of_c_obeys_its_limit():
     assert history.feed[-1] == pytest.approx(2 * np.pi * 10 * 60, rel=1e-3)
 
 
+def test_the_history_begins_where_the_first_rapid_ends():
+    hand = Hand().rapid(x=30, z=2).line(z=-3).line(c=90)
+    history = programmed_history(scene(hand, LATHE))
+    assert (history.time[0], history.x[0], history.z[0]) == (0, 30, 2)
+    assert history.z[-1] == -3 and not history.rapid[1:].any()
+
+
 def test_holes_in_an_area_stay_holes():
     outline = style.outline_of(Point(0, 0).buffer(10).difference(Point(0, 0).buffer(5)))
     assert outline.contains_point((7, 0))
@@ -258,7 +316,7 @@ def test_nothing_leaves_the_page_or_overlaps(size, window):
     if window and layout.below:
         assert y > 0 and y + 1.9 < side.y0 * layout.height
     elif window:
-        assert x > plan.x1 * layout.width
+        assert x > plan.x1 * layout.width + 0.7  # the heights stand between
 
 
 # ---------------------------------------------------------------- deviations

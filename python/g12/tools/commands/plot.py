@@ -24,17 +24,18 @@ from g12.tools.commands.arguments import (
     stock_of,
 )
 from g12.tools.errors import UsageError
-from g12.tools.machine.filter import opened_program
+from g12.tools.machine.filter import OpenedProgram, opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
-from g12.tools.plot.scene import scene_of
+from g12.tools.plot.scene import Scene, scene_of
 from g12.tools.preview.ended import traced
-from g12.tools.preview.moves import Trace, message_lines
+from g12.tools.preview.moves import message_lines
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.progress import working
 from g12.tools.units import UNITS
-from g12.tools.verify.proof import seen_in, subject_of
+from g12.tools.verify.proof import subject_of
+from g12.tools.verify.seen import seen_in
 
 EXAMPLES = """\
 examples:
@@ -68,15 +69,25 @@ def main(arguments: list[str]) -> int:
     except style.PictureError as problem:
         raise UsageError(str(problem)) from None
     with opened_program(options.program, ini) as opened:
-        trace = trace_in_source(write_picture(opened.path, ini, options), opened)
+        scene = write_picture(opened.path, ini, options)
     print(f"{options.output} written")
-    for line in message_lines(trace.messages):
+    for line in told_beside(scene, opened):
         print(line)
     return GOOD
 
 
-def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Trace:
-    """Draw a program as LinuxCNC reads it; return what it does."""
+def told_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
+    """Return what the picture shows in red, and the program's messages, with the user's lines."""
+    warnings = (
+        f"in red, line {opened.source_line(line)}: {text}"
+        for line, text in scene.seen.warnings(scene.unit)
+    )
+    trace = trace_in_source(scene.subject.trace, opened)
+    return [*dict.fromkeys(warnings), *message_lines(trace.messages)]
+
+
+def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Scene:
+    """Draw a program as LinuxCNC reads it; return what is drawn."""
     with working(f"interpreting {program.name}"):
         trace = traced(program, options.ini, options.tools, options.var)
         if not trace.moves:
@@ -84,8 +95,8 @@ def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Trace
     samples = samples_of_run(program, options)
     with working(f"drawing {options.output.name}"):
         subject = subject_of(program, ini, trace, samples)
-        hits, stock = seen_in(subject, options.tools, options.var, stock_of(options))
-        shown = {"override": options.override, "collisions": tuple(hits), "stock": stock}
-        scene = replace(scene_of(subject, options.units, options.feeds), **shown)
+        seen = seen_in(subject, options.tools, options.var, stock_of(options))
+        scene = scene_of(subject, options.units, options.feeds)
+        scene = replace(scene, override=options.override, seen=seen)
         style.save(picture_of(scene), options.output)
-    return trace
+    return scene

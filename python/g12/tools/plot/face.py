@@ -12,24 +12,34 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from g12.tools.path.part import C, X, Y, spindle_angles
+from g12.tools.path.part import C, X, Y, Z, spindle_angles
 from g12.tools.path.track import limits_of
 from g12.tools.plot import style
 from g12.tools.plot.deviation import SIZE, draw_window
-from g12.tools.plot.plan_view import bounds_of, draw_plan, legend_entries, mark_worst, milled_levels
+from g12.tools.plot.labels import spread_out
+from g12.tools.plot.plan_view import (
+    bounds_of,
+    draw_plan,
+    few,
+    legend_entries,
+    mark_worst,
+    milled_levels,
+    shown_moves,
+)
 from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
 
-WIDTH, HEIGHT = 11.6, 8.0
+WIDTH, HEIGHT = 11.9, 8.0
+LETTERS_APART = 0.11  # of the panel of Z
 HIGHER = 1.25  # with the window on the largest deviation
 LEFT, TOP = style.MARGIN, 1.05
 FACE = 5.0  # the side of the face's view
 PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
-PANEL, GAP = 1.32, 0.3  # high, between
+ROWS, PANEL, GAP = 5, 0.996, 0.3  # panels: how many, how high, between
 
 
 class History(NamedTuple):
-    """What the machine does over time, arrays of one value per moment.
+    """What the machine does over time, arrays of one value per moment: X (radius), Z, C, speeds.
 
     Seconds, mm, degrees, degrees/s, mm/min; ``wanted`` is the feed programmed along the part,
     not a number in rapids.
@@ -37,6 +47,7 @@ class History(NamedTuple):
 
     time: np.ndarray
     x: np.ndarray
+    z: np.ndarray
     c: np.ndarray
     c_speed: np.ndarray
     feed: np.ndarray
@@ -80,13 +91,14 @@ def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
 def draw_panels(figure: Figure, scene: Scene) -> None:
     """Draw X, C, the speed of C and the feed along the part over time."""
     history = real_history(scene) if scene.real is not None else programmed_history(scene)
-    panels = [panel_axes(figure, row) for row in range(4)]
-    x, c, c_speed, feed = panels
+    panels = [panel_axes(figure, row) for row in range(ROWS)]
+    x, z, c, c_speed, feed = panels
     colour = style.REAL if scene.real is not None else style.DEPTHS(0.5)
     drawn = {"color": colour, "linewidth": 1.0, "zorder": 3}
     name = scene.unit.name
     x.plot(history.time, history.x / scene.unit.mm, **drawn)
     style.caption(x, f"X (radius), {name}")
+    draw_depths(z, history, scene, drawn)
     c.plot(history.time, history.c, **drawn)
     style.caption(c, "C, degrees")
     c_speed.plot(history.time, history.c_speed, drawstyle="steps-pre", **drawn)
@@ -105,7 +117,7 @@ def draw_panels(figure: Figure, scene: Scene) -> None:
 def panel_axes(figure: Figure, row: int) -> Axes:
     """Return the axes of one panel over time, from the top."""
     height = figure.get_figheight()
-    panel = PANEL + (height - HEIGHT) / 4
+    panel = PANEL + (height - HEIGHT) / ROWS
     bottom = height - TOP - panel - row * (panel + GAP)
     return style.add_axes(figure, PANELS_LEFT, bottom, PANELS_WIDTH, panel)
 
@@ -123,7 +135,10 @@ def programmed_history(scene: Scene) -> History:
     wanted = np.where(rapid, np.nan, step)
     c_step = np.insert(c_speed, 0, c_speed[0])
     x = np.where(on_face.imag, np.abs(on_face), on_face.real)
-    return History(path.time, x, c, c_step, step, wanted, rapid)
+    z = path.positions[:, Z]
+    first = path.vertices(len(scene.moves) - len(shown_moves(scene))).start
+    columns = (path.time - path.time[first], x, z, c, c_step, step, wanted, rapid)
+    return History(*(column[first:] for column in columns))
 
 
 def real_history(scene: Scene) -> History:
@@ -134,8 +149,24 @@ def real_history(scene: Scene) -> History:
     rapid = np.array([move.kind == "rapid" for move in scene.moves])[real.move]
     feeds = np.array([scene.path.part_feed(index) for index in range(len(scene.moves))])
     wanted = np.where(rapid, np.nan, feeds[real.move]) * scene.override / 100.0
-    x, c = real.positions[:, X], real.positions[:, C]
-    return History(time, x, c, c_speed, real.part_speed() * 60, wanted, rapid)
+    x, z, c = (real.positions[:, axis] for axis in (X, Z, C))
+    return History(time, x, z, c, c_speed, real.part_speed() * 60, wanted, rapid)
+
+
+def draw_depths(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:
+    """Draw Z, with the depths at which something is cut."""
+    unit = scene.unit
+    axes.plot(history.time, history.z / unit.mm, **drawn)
+    style.caption(axes, f"Z, {unit.name}")
+    low, high = axes.get_ylim()
+    apart = LETTERS_APART * (high - low)
+    levels = few(milled_levels(scene))
+    depths = sorted(level.z / unit.mm for level in levels)
+    for depth, beside in zip(depths, spread_out(depths, apart)):
+        axes.axhline(depth, color=style.RAPID, linewidth=0.6, linestyle=(0, (1, 2)))
+        text = {"size": 6.5, "color": style.INK, "va": "center"}
+        place = axes.get_yaxis_transform()
+        axes.text(1.01, beside, plain(depth, unit.decimals), transform=place, **text)
 
 
 def draw_feed(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:

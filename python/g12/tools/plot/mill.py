@@ -12,12 +12,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from shapely.affinity import scale as scaled
-from shapely.geometry import MultiPoint, box
+from shapely.geometry import LineString, MultiPoint, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.tools.plot import style
 from g12.tools.plot.deviation import SIZE, draw_window
+from g12.tools.plot.labels import spread_out
 from g12.tools.plot.plan_view import (
     SAME_DEPTH,
     Level,
@@ -34,17 +35,20 @@ from g12.tools.plot.plan_view import (
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
+from g12.tools.verify.seen import StandingRings
 
 PAGE = 11.0  # wide
 WIDE = 2.0  # plans wider than this times their height have the legend below
 LEFT, RIGHT, TOP, BETWEEN, BOTTOM = style.MARGIN, 0.5, 1.05, 0.5, 0.55
-LEGEND = 2.35  # wide
+LEGEND = 2.75  # wide, the heights beside the side view included
 MOST_PLAN, LEAST_PLAN = 5.6, 1.2  # high
 MOST_SIDE, LEAST_SIDE = 3.2, 0.8
 ROW = 0.22  # a line of the legend
 COLUMNS = 4
 PLAN, SIDE = [0, 1], [0, 2]  # axes
-LETTER_HEIGHT = 0.11  # of the heights at the floors
+HEIGHTS = 0.75  # wide: the texts of the heights at the floors, and the lines to them
+LETTER_HEIGHT = 0.11
+LEADER = 0.2  # the lines to the texts
 WINDOW = SIZE + 0.75  # the window on the largest deviation, with its texts
 
 
@@ -82,7 +86,7 @@ class Layout:
 
     def window_corner(self) -> tuple[float, float]:
         """Return the lower left corner of the window on the largest deviation."""
-        beside = (LEFT + self.plan[0] + 0.35, BOTTOM)
+        beside = (LEFT + self.plan[0] + HEIGHTS, BOTTOM)
         return (self.width - RIGHT - SIZE, 0.4) if self.below else beside
 
 
@@ -116,15 +120,26 @@ def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float)
     for order, level in enumerate(reversed(levels)):
         shape = scaled(removed_at(level, max(top, level.z)), 1 / unit, 1 / unit, origin=(0, 0))
         style.fill(axes, shape, *floor(scene, level), 1 + order / 100)
+    for ring in scene.seen.rings:
+        style.hatch(axes, scaled(cut_through(ring, top), 1 / unit, 1 / unit, origin=(0, 0)))
     draw_heights(axes, scene, levels)
     draw_paths(axes, scene, levels, SIDE)
     true = abs(stretch - 1) < 0.02
     style.caption(axes, "Side" if true else f"Side, heights drawn {plain(stretch, 2)} : 1")
 
 
+def cut_through(ring: StandingRings, top: float) -> BaseGeometry:
+    """Return what stands in a pocket as a cut along X through the pocket's middle shows it."""
+    low, high = ring.shape.bounds[::2]
+    middle = ring.centre[1]
+    across = ring.shape.intersection(LineString([(low, middle), (high, middle)]))
+    lines = [line.bounds for line in getattr(across, "geoms", [across]) if line.length]
+    return unary_union([box(line[0], ring.floor, line[2], top) for line in lines])
+
+
 def block_from_the_side(scene: Scene) -> BaseGeometry | None:
     """Return a block as seen along Y, if it is known how deep it is."""
-    facts = scene.stock
+    facts = scene.seen.stock
     if facts is None or facts.bottom is None:
         return None
     return box(facts.shape.bounds[0], facts.bottom, facts.shape.bounds[2], facts.top)
@@ -143,14 +158,16 @@ def removed_at(level: Level, top: float) -> BaseGeometry:
 
 
 def draw_heights(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
-    """Write the height of each floor beside it, as far as there is room."""
-    apart = LETTER_HEIGHT / axes.get_figure().get_figheight() / axes.get_position().height
+    """Write the height of each floor beside it, apart from each other, with lines to the floors."""
+    page, place = axes.get_figure().get_size_inches(), axes.get_position()
+    apart = LETTER_HEIGHT / page[1] / place.height
+    inch = 1 / page[0] / place.width
     low, high = axes.get_ylim()
-    written: list[float] = []
-    for level in sorted(few(levels), key=lambda level: level is not levels[-1]):
-        share = (level.z / scene.unit.mm - low) / (high - low)
-        if all(abs(share - other) > apart for other in written):
-            place = {"transform": axes.transAxes, "va": "center", "clip_on": False}
-            text = f"Z{scene.unit.text(level.z)}"
-            axes.text(1.005, share, text, size=6.5, color=style.INK, **place)
-            written.append(share)
+    shown = sorted(few(levels), key=lambda level: level.z)
+    at = [(level.z / scene.unit.mm - low) / (high - low) for level in shown]
+    for level, share, beside in zip(shown, at, spread_out(at, apart)):
+        line = {"color": style.MUTED, "linewidth": 0.5, "clip_on": False}
+        ends = [1.0, 1.0 + LEADER * inch]
+        axes.plot(ends, [share, beside], transform=axes.transAxes, **line)
+        text = {"transform": axes.transAxes, "va": "center", "size": 6.5, "color": style.INK}
+        axes.text(ends[1] + 0.03 * inch, beside, f"Z{scene.unit.text(level.z)}", **text)

@@ -101,14 +101,15 @@ def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.nda
     shown = at_feed(scene) or range(len(scene.moves))
     points = np.concatenate([scene.path.points[scene.path.vertices(index)] for index in shown])
     low, high = points.min(axis=0), points.max(axis=0)
-    for level in levels:
-        bounds = level.area.bounds
+    for shape in (*(level.area for level in levels), *(ring.shape for ring in scene.seen.rings)):
+        bounds = shape.bounds
         low[:2], high[:2] = np.minimum(low[:2], bounds[:2]), np.maximum(high[:2], bounds[2:])
     high[2] = max(high[2], top_of(scene))
-    if scene.stock:
-        bounds, deep = scene.stock.shape.bounds, scene.stock.bottom
+    stock = scene.seen.stock
+    if stock:
+        bounds, deep = stock.shape.bounds, stock.bottom
         low = np.minimum(low, (*bounds[:2], low[2] if deep is None else deep))
-        high = np.maximum(high, (*bounds[2:], scene.stock.top))
+        high = np.maximum(high, (*bounds[2:], stock.top))
     low[:2], high[:2] = with_near_rapids(scene, low[:2], high[:2])
     size = high - low
     margin = np.clip(MARGIN * max(size[:2]), PICTURE_CHORD, np.maximum(0.15 * size, PICTURE_CHORD))
@@ -120,7 +121,7 @@ def with_near_rapids(
     scene: Scene, low: np.ndarray, high: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return a view's corners moved out to the ends of rapids that are not far away."""
-    ends = np.array([point for move in scene.moves for point in (move.start, move.end)])
+    ends = np.array([point for move in shown_moves(scene) for point in (move.start, move.end)])
     points = scene.path.part.points(ends)[:, :2]
     away = NEAR * max(high - low)
     near = points[np.all((points > low - away) & (points < high + away), axis=1)]
@@ -140,13 +141,23 @@ def top_of(scene: Scene) -> float:
 def draw_plan(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
     """Draw the view along the tool's axis."""
     unit = scene.unit.mm
-    draw_stock(axes, scene, scene.stock.shape if scene.stock else None)
+    draw_stock(axes, scene, scene.seen.stock.shape if scene.seen.stock else None)
     for order, level in enumerate(levels):
         area = scaled(level.area, 1 / unit, 1 / unit, origin=(0, 0))
         style.fill(axes, area, *floor(scene, level), 1 + order / 100)
     draw_paths(axes, scene, levels, [0, 1])
     draw_plunges(axes, scene)
     draw_arrows(axes, scene)
+    draw_warnings(axes, scene)
+
+
+def draw_warnings(axes: Axes, scene: Scene) -> None:
+    """Hatch what stands in pockets, and put a sign where the cutter is not D's."""
+    unit = scene.unit.mm
+    for ring in scene.seen.rings:
+        style.hatch(axes, scaled(ring.shape, 1 / unit, 1 / unit, origin=(0, 0)))
+    for wrong in scene.seen.cutters:
+        style.draw_sign(axes, np.array(wrong.centre) / unit)
 
 
 def draw_stock(axes: Axes, scene: Scene, shape: BaseGeometry | None) -> None:
@@ -164,10 +175,17 @@ def floor(scene: Scene, level: Level) -> tuple:
     return level.shade.floor, style.tint(level.shade.line, 0.35)
 
 
+def shown_moves(scene: Scene) -> Sequence[Move]:
+    """Return the moves without a first rapid, of which no trace knows where it begins."""
+    moves = scene.moves
+    unknown = scene.real is None and len(moves) > 1 and moves[0].kind == "rapid"
+    return moves[1:] if unknown else moves
+
+
 def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int]) -> None:
     """Draw rapids, programmed path and real motion in two of the part's axes."""
     unit = scene.unit.mm
-    rapids = (move for move in scene.moves if move.kind == "rapid")
+    rapids = (move for move in shown_moves(scene) if move.kind == "rapid")
     lines = (scene.path.part.polyline(move, PICTURE_CHORD) for move in rapids)
     style.draw_rapids(axes, once([line[:, pair] / unit for line in lines]))
     wide = scene.real is not None
@@ -177,7 +195,7 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
         style.draw(axes, lines, shade, 2.6 if wide else width_for(scene))
     if scene.real is not None:
         draw_real(axes, scene, pair)
-    hit = [collision.path[:, pair] / unit for collision in scene.hits]
+    hit = [collision.path[:, pair] / unit for collision in scene.seen.rapids]
     style.draw(axes, hit, style.CRASH, 3.0, 3.8)
 
 
@@ -296,9 +314,9 @@ def cutter_text(scene: Scene, tool: int) -> str:
 def motion_entries(scene: Scene) -> list:
     """Return the legend's entries of the stock, of rapids and of the real motion."""
     listed = []
-    if scene.stock:
-        name = "bar" if scene.stock.stock.diameter else "stock"
-        text = f"{name} {scene.stock.stock.text}"
+    if scene.seen.stock:
+        said = scene.seen.stock.stock
+        text = f"{'bar' if said.diameter else 'stock'} {said.text}"
         listed.append(style.swatch(style.STOCK, style.STOCK_EDGE, text))
     if any(move.kind == "rapid" for move in scene.moves):
         listed.append(style.stroke(style.RAPID, "rapid", 0.9, dashed=True))
@@ -306,8 +324,19 @@ def motion_entries(scene: Scene) -> list:
         listed.append(style.stroke(style.PATH, "programmed path", 2.6))
         listed.append(style.stroke(style.REAL, "real motion", 0.9))
         listed.append(style.marker(style.WORST, "largest deviation", 7, hollow=True))
-    if scene.hits:
+    return listed + warning_entries(scene)
+
+
+def warning_entries(scene: Scene) -> list:
+    """Return the legend's entries of what there is to warn of."""
+    listed = []
+    if scene.seen.rapids:
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
+    if scene.seen.rings:
+        listed.append(style.standing("material left standing"))
+    for cutter in dict.fromkeys(wrong.cutter for wrong in scene.seen.cutters):
+        size = scene.unit.text(2 * cutter.radius)
+        listed.append(style.sign(f"T{cutter.tool} is not D{cutter.named} (⌀ {size})"))
     return listed
 
 

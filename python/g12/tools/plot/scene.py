@@ -15,32 +15,31 @@ from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import COMMENT
 from g12.tools.preview.moves import Move
 from g12.tools.units import Unit, plain, unit_of
-from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.proof import Proof, Subject
-from g12.tools.verify.rapids import Collision
+from g12.tools.verify.seen import Seen
 
 HEAD_COMMENT = re.compile(r"\s*(?:[Oo]\d+\s*)?(?:\(([^()]*)\)|;\s*([^;]+))[\s;]*")
 MOTION = re.compile(r"[xyzabcuvw]", re.IGNORECASE)
 MOST_LINES = 20
 LONGEST_HEADING = 72
+NOTHING = Seen()
 
 
 @dataclass(frozen=True)
 class Scene:
     """A traced program on its machine; ``unit`` is shown.
 
-    ``override`` is the feed override of the run in per cent. ``collisions`` are the rapids that
-    go through material, ``stock`` what is cut and what happens to it, ``contour`` the largest
-    deviation (mm) from the programmed contours of polar sections, where these are known.
+    ``override`` is the feed override of the run in per cent. ``seen`` is what there is
+    to warn of and the stock, ``contour`` the largest deviation (mm) from the programmed contours
+    of polar sections, where these are known.
     """
 
     subject: Subject
     unit: Unit
     feed_colours: bool = False
     override: float = 100.0
-    collisions: tuple[Collision, ...] = ()
+    seen: Seen = NOTHING
     contour: float | None = None
-    stock: StockFacts | None = None
 
     @property
     def moves(self) -> Sequence[Move]:
@@ -56,11 +55,6 @@ class Scene:
     def real(self) -> Followed | None:
         """Return the real motion of the run, if there was one."""
         return self.subject.real
-
-    @property
-    def hits(self) -> tuple[Collision, ...]:
-        """Return the rapids that go through material or into the stock."""
-        return (*self.collisions, *(self.stock.rapids if self.stock else ()))
 
     @property
     def title(self) -> str:
@@ -91,7 +85,8 @@ def scene_of(subject: Subject, units: str | None = None, feed_colours: bool = Fa
 def scene_of_proof(proof: Proof, override: float = 100.0) -> Scene:
     """Return what to show of a program that was measured, its real motion included."""
     contour = max((facts.deviation for facts in proof.sections), default=None)
-    shown = {"collisions": tuple(proof.collisions), "contour": contour, "override": override}
+    seen = Seen(tuple(proof.collisions))
+    shown = {"seen": seen, "contour": contour, "override": override}
     return replace(scene_of(proof.subject), **shown)
 
 

@@ -71,6 +71,7 @@ FLOORS = colors.LinearSegmentedColormap.from_list(
 FEEDS = colors.LinearSegmentedColormap.from_list(
     "feed", ["#2b8a3e", "#94b82c", "#f2b705", "#e8590c", "#a61e4d"]
 )
+SIGN = {"marker": "^", "color": CRASH}
 DPI = 150
 LETTERS = 14.0  # of the subtitle to an inch
 MARGIN = 0.75  # inches left of titles and axes
@@ -218,6 +219,27 @@ def feed_colours(count: int) -> list[tuple]:
 def grey(colour) -> tuple[float, float, float]:
     """Return the light grey that stands for a floor where colours mean something else."""
     return (0.45 + 0.5 * float(np.mean(colors.to_rgb(colour))),) * 3
+
+
+def hatch(axes: Axes, area: BaseGeometry) -> None:
+    """Draw an area as material that stands though it was to be cut."""
+    fill(axes, area, "none", CRASH, 2.4, hatch="////")
+
+
+def draw_sign(axes: Axes, at: Sequence[float]) -> None:
+    """Draw a warning sign."""
+    axes.plot(*at, **SIGN, markersize=15, zorder=6)
+    axes.plot(*at, marker="$!$", color="white", markersize=6.5, zorder=6.1)
+
+
+def standing(text: str) -> Patch:
+    """Return the legend's entry of material that stands."""
+    return Patch(facecolor="none", edgecolor=CRASH, linewidth=0.7, hatch="////", label=text)
+
+
+def sign(text: str) -> Line2D:
+    """Return the legend's entry of a warning sign."""
+    return Line2D([], [], ls="", **SIGN, ms=9, label=text)
 
 
 def swatch(face, edge, text: str) -> Patch:

@@ -235,22 +235,6 @@ def stock_facts(
     return InStock(said, *asked, trace.moves, subject.path, trace.diameters).facts(known)
 
 
-def seen_in(
-    subject: Subject,
-    tools: Tools = None,
-    parameters: Parameters = None,
-    stock: StockText | None = None,
-) -> tuple[list[Collision], StockFacts | None]:
-    """Return what a picture shows beside the cuts: rapids through material, and the stock."""
-    codes, moves = Codes(subject.ini), subject.trace.moves
-    asked = Asked([], [])
-    if any(codes.knows(move.remap) for move in moves):
-        with Tracer(subject.ini, tools=tools) as tracer:
-            asked = asked_of(tracer, subject, tools, parameters)
-    hits = collisions(asked.circles, moves, subject.path, subject.trace.diameters, subject.real)
-    return hits, stock_facts(subject, asked, stock, hits)
-
-
 def unseen_in(moves: Sequence[Move], codes: Codes, seen: Iterable[range]) -> list[tuple[int, str]]:
     """Return each line and code that makes moves of a cycle outside the ranges seen."""
     known = {index for some in seen for index in some}

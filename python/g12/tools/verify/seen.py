@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a picture of a program warns of, beside what it cuts: the same that ``verify`` finds.
+
+Lengths are millimetres in machine coordinates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from shapely.affinity import translate
+from shapely.geometry.base import BaseGeometry
+
+from g12.tools.path.track import Track
+from g12.tools.preview.moves import Move
+from g12.tools.preview.tracer import Parameters, Tools, Tracer
+from g12.tools.units import MM, Unit
+from g12.tools.verify.codes import Codes
+from g12.tools.verify.findings import (
+    SAME_AREA,
+    collision_text,
+    is_wrong_tool,
+    other_tool,
+    stock_findings,
+)
+from g12.tools.verify.in_stock import StockFacts
+from g12.tools.verify.pocket import left_of
+from g12.tools.verify.proof import (
+    POCKET_TOLERANCE,
+    Asked,
+    StockText,
+    Subject,
+    asked_of,
+    stock_facts,
+)
+from g12.tools.verify.rapids import Circles, Cleared, Collision, collisions, cutting, floors_of
+from g12.tools.verify.wanted_circle import Cutter
+
+
+class StandingRings(NamedTuple):
+    """What stands in a pocket though it was to be cut: its line, area, and the floor's height.
+
+    ``centre`` is that of the pocket in X and Y.
+    """
+
+    line: int
+    shape: BaseGeometry
+    centre: tuple[float, float]
+    floor: float
+
+
+class WrongCutter(NamedTuple):
+    """A pocket that is cut with another cutter than D's: its line, its centre in X and Y."""
+
+    line: int
+    centre: tuple[float, float]
+    cutter: Cutter
+
+
+class Seen(NamedTuple):
+    """What there is to warn of, and the stock."""
+
+    collisions: tuple[Collision, ...] = ()
+    rings: tuple[StandingRings, ...] = ()
+    cutters: tuple[WrongCutter, ...] = ()
+    stock: StockFacts | None = None
+
+    @property
+    def rapids(self) -> tuple[Collision, ...]:
+        """Return the rapids that go through material or into the stock."""
+        return (*self.collisions, *(self.stock.rapids if self.stock else ()))
+
+    def warnings(self, unit: Unit = MM) -> Iterator[tuple[int, str]]:
+        """Yield what there is to warn of: the line, and a sentence."""
+        for hit in self.collisions:
+            yield hit.line, collision_text(hit, unit)
+        for line, shape, *_ in self.rings:
+            yield line, f"{unit.area(shape.area)} of material are left standing"
+        for line, _, cutter in self.cutters:
+            yield line, other_tool(cutter, unit)
+        yield from stock_findings(self.stock, unit) if self.stock else ()
+
+
+def seen_in(
+    subject: Subject,
+    tools: Tools = None,
+    parameters: Parameters = None,
+    stock: StockText | None = None,
+) -> Seen:
+    """Return what a picture of a traced program shows beside the cuts."""
+    codes, trace = Codes(subject.ini), subject.trace
+    asked = Asked([], [])
+    if any(codes.knows(move.remap) for move in trace.moves):
+        with Tracer(subject.ini, tools=tools) as tracer:
+            asked = asked_of(tracer, subject, tools, parameters)
+    hits = collisions(asked.circles, trace.moves, subject.path, trace.diameters, subject.real)
+    rings = standing_rings(asked.circles, trace.moves, subject.path, trace.diameters)
+    cutters = (
+        WrongCutter(target.source.line, tuple(map(float, target.wall.origin[:2])), target.cutter)
+        for _, target in asked.circles
+        if is_wrong_tool(target.cutter)
+    )
+    facts = stock_facts(subject, asked, stock, hits)
+    return Seen(tuple(hits), tuple(rings), tuple(cutters), facts)
+
+
+def standing_rings(
+    circles: Circles, moves: Sequence[Move], path: Track, diameters: dict[int, float]
+) -> Iterator[StandingRings]:
+    """Yield what stands in pockets in the plane XY."""
+    cleared = Cleared(circles, moves, path, diameters)
+    for block, target in circles:
+        wall, cutter = target.wall, target.cutter.radius
+        own = cutting(block, moves)
+        if wall.inside and wall.plane == 2 and own:
+            here = translate(cleared.of(own), *(-wall.origin[:2]))
+            left = left_of(wall, cutter, here, POCKET_TOLERANCE)
+            if left.area > SAME_AREA:
+                centre = tuple(map(float, wall.origin[:2]))
+                shape, floor = translate(left, *centre), floors_of(block, moves)[1]
+                yield StandingRings(target.source.line, shape, centre, floor)
