@@ -32,7 +32,7 @@ from g12.tools.verify.codes import Codes
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
 CONTOUR = "XYCUHIJRZ"
 FEED_MODES = {94.0: False, 98.0: False, 95.0: True, 99.0: True}  # code: per revolution
-SAVE, FORGET, RESTORE, SAVE_FOR_SUB = 70.0, 71.0, 72.0, 73.0
+SAVE, RESTORE, SAVE_FOR_SUB = 70.0, 72.0, 73.0
 POSITION = "#<_", "#54"  # position parameters, which the copy of the program cannot follow
 
 
@@ -260,8 +260,6 @@ class Pen:
     def _save_or_restore(self, code: float) -> None:
         if code in (SAVE, SAVE_FOR_SUB):
             self._saved = self.absolute, self.motion, self.feed, self.per_revolution, self.speed
-        elif code == FORGET:
-            self._saved = None
         elif code == RESTORE and self._saved:
             self.absolute, self.motion, self.feed, self.per_revolution, self.speed = self._saved
 
