@@ -294,6 +294,14 @@ def test_a_machine_that_does_not_start_says_why():
         Machine(SIM / "mill_mm.ini", overrides={"HAL": {"HALFILE": "nothing.hal"}})
 
 
+def test_homing_that_stands_still_is_not_waited_for():
+    still = {"JOINT_0": {"HOME": 5, "MAX_VELOCITY": 1e-9}}
+    with pytest.raises(
+        StartupError, match=r"homing stands still at joint 0 .*, joint 1 0 \(homed\),"
+    ):
+        Machine(SIM / "mill_mm.ini", overrides=still)
+
+
 def test_a_machine_that_cannot_be_switched_on_says_why():
     with pytest.raises(StartupError, match="release of e-stop"):
         Machine(

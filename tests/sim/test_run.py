@@ -21,14 +21,21 @@ from support.sim_machines import ROOT, SIM
             "G20 G90 F100\nG1 X.1 Y.25\n(MSG, there)\nM2\n",
             0,
             ["message: there", "ends at X0.1 Y0.25 Z0 (machine position, in)"],
-            "",
+            "running part.ngc in real time, about 0.2 s\n",
         ),
-        ("lathe_mm.ini", "M2\n", 0, ["ends at X0 Z0 C0 (machine position, mm and degrees)"], ""),
+        (
+            "lathe_mm.ini",
+            "M2\n",
+            0,
+            ["ends at X0 Z0 C0 (machine position, mm and degrees)"],
+            "running part.ngc in real time, about 0.0 s\n",
+        ),
         (
             "mill_mm.ini",
             "G21 G90 F3000\nG1 C5\nM2\n",
             1,
             ["ends at X0 Y0 Z0 (machine position, mm)"],
+            "running part.ngc in real time\n"
             "g12 run: PROGRAM: Bad character 'c' used: this INI's machine has axes X Y Z\n",
         ),
     ],
@@ -57,10 +64,20 @@ def test_a_program_that_cannot_be_opened_is_named_as_the_user_did(tmp_path, caps
     program = tmp_path / "part.ngc"
     program.write_text("")
     assert main.main(["run", str(program), "--ini", str(SIM / "mill_mm.ini")]) == 1
-    said = capsys.readouterr().err
+    running, said = capsys.readouterr().err.splitlines()
+    assert running == "running part.ngc in real time"
     assert f"of {program} " in said
     assert f"can't open {program}" in said
-    assert said.count("\n") == 1
+
+
+def test_a_run_with_an_override_tells_it_and_how_long_it_will_take(tmp_path, capsys):
+    program = tmp_path / "part.ngc"
+    program.write_text("G21 G90 F600\nG1 X50\nM2\n")  # 5 s at 100 %
+    words = ["run", str(program), "--ini", str(SIM / "mill_mm.ini"), "--override", "500"]
+    assert main.main(words) == 0
+    said = capsys.readouterr()
+    assert said.err == "running part.ngc at 500 % feed, about 1.0 s\n"
+    assert 1.0 < float(said.out.splitlines()[-1].split()[0]) < 1.5
 
 
 def test_an_interrupted_run_is_one_line(tmp_path, start):
@@ -71,4 +88,7 @@ def test_an_interrupted_run_is_one_line(tmp_path, start):
     time.sleep(5)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     _, said = process.communicate(timeout=20)
-    assert (process.returncode, said) == (130, "g12 run: interrupted\n")
+    assert (process.returncode, said) == (
+        130,
+        "running long.ngc in real time, about 5 min 0 s\ng12 run: interrupted\n",
+    )

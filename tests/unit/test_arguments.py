@@ -11,8 +11,9 @@ import pytest
 from g12.tools.commands import arguments, main
 from g12.tools.errors import UsageError
 from g12.tools.machine import tables
-from g12.tools.preview.ended import text_with_axes
-from support.sim_machines import ROOT
+from g12.tools.preview.ended import explained_text
+from g12.tools.system import CALL
+from support.sim_machines import ROOT, SIM
 from support.small_configs import MILL, TOOLS, write_config
 
 PROGRAM = str(ROOT / "python" / "g12")
@@ -132,10 +133,18 @@ def test_no_var_files(tmp_path, text):
 
 
 def test_an_axis_that_the_machine_lacks_is_explained(files):
-    said = text_with_axes("Bad character 'c' used", files.ini)
+    said = explained_text("Bad character 'c' used", files.ini)
     assert said == "Bad character 'c' used: this INI's machine has axes X Y Z"
-    for text in ("Bad character 'z' used", "Bad character 'q' used", "Unknown g code used"):
-        assert text_with_axes(text, files.ini) == text
+    for text in ("Bad character 'z' used", "Bad character 'q' used"):
+        assert explained_text(text, files.ini) == text
+
+
+def test_a_code_that_the_machine_lacks_points_to_what_is_set_up(files):
+    said = "Unknown g code used: of G12 and G13 this INI has"
+    see = f"see {CALL} check"
+    assert explained_text("Unknown g code used", files.ini) == f"{said} none; {see}"
+    polar = SIM / "lathe_mm.ini"
+    assert explained_text("Unknown g code used", polar) == f"{said} G12.1 G13.1; {see}"
 
 
 def test_events_that_are_not_there(tmp_path, capsys):

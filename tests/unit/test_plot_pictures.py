@@ -18,8 +18,8 @@ from g12.tools.plot.face import programmed_history
 from g12.tools.plot.labels import spread_out
 from g12.tools.plot.mill import Layout, cut_through, removed_at
 from g12.tools.plot.picture import picture_of
-from g12.tools.plot.scene import clock, heading, scene_of
-from g12.tools.units import MM, UNITS, plain
+from g12.tools.plot.scene import heading, scene_of
+from g12.tools.units import MM, UNITS, clock, plain
 from g12.tools.verify.proof import subject_of
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.seen import Seen, StandingRings, WrongCutter

@@ -19,9 +19,12 @@ from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini, IniError, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
 from g12.tools.path.samples import Samples
+from g12.tools.path.track import program_seconds
+from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import TraceFailure
 from g12.tools.progress import working
 from g12.tools.system import CALL
+from g12.tools.units import clock
 from g12.tools.verify.proof import StockText
 
 GOOD, FINDING, USAGE = 0, 1, 2
@@ -108,13 +111,14 @@ def stock_of(options: argparse.Namespace) -> StockText | None:
 def add_run(parser: argparse.ArgumentParser, what: str) -> None:
     """Add the words of commands that can also run the program."""
     parser.add_argument("--run", action="store_true", help=what)
-    parser.add_argument(
-        "--override",
-        type=number_above(0),
-        default=100.0,
-        metavar="PERCENT",
-        help="feed override of --run (default 100): real time is what a run takes",
-    )
+    add_override(parser, "of --run")
+
+
+def add_override(parser: argparse.ArgumentParser, whose: str) -> None:
+    """Add the feed override of a run."""
+    text = f"feed override {whose} (default 100): real time is what a run takes"
+    percent = {"type": number_above(0), "default": 100.0, "metavar": "PERCENT"}
+    parser.add_argument("--override", **percent, help=text)
 
 
 def check_run(options: argparse.Namespace) -> None:
@@ -123,12 +127,14 @@ def check_run(options: argparse.Namespace) -> None:
         raise UsageError("--override is the feed override of --run, which is not there")
 
 
-def samples_of_run(program: Path, options: argparse.Namespace) -> Samples | None:
-    """Return the real motion of a program if --run asks for it."""
+def samples_of_run(
+    program: Path, options: argparse.Namespace, trace: Trace | None, ini: Ini
+) -> Samples | None:
+    """Return the real motion of a program, of which this is the trace, if --run asks for it."""
     if not options.run:
         return None
     files = (options.ini, options.tools, options.var)
-    with working(f"running {program.name}, real time", clock=True):
+    with working(run_text(program, options.override, trace, ini), clock=True):
         return run_program(program, *files, override=options.override).samples
 
 
@@ -136,6 +142,14 @@ def tell_whose_lines(name: str, opened: OpenedProgram) -> None:
     """Say it, where the lines that a command names are not those of the user's file."""
     if opened.note:
         print(f"g12 {name}: {opened.note}", file=sys.stderr)
+
+
+def run_text(program: Path, override: float, trace: Trace | None, ini: Ini) -> str:
+    """Return what is said while a program runs: at what feed override, for about how long."""
+    pace = "in real time" if override == 100.0 else f"at {override:g} % feed"
+    if not trace or trace.error:
+        return f"running {program.name} {pace}"
+    return f"running {program.name} {pace}, about {clock(program_seconds(trace, ini, override))}"
 
 
 def one_line(name: str) -> Callable:

@@ -92,7 +92,7 @@ def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Scene
         trace = traced(program, options.ini, options.tools, options.var)
         if not trace.moves:
             raise UsageError(f"{options.program}: moves nothing, so there is nothing to draw")
-    samples = samples_of_run(program, options)
+    samples = samples_of_run(program, options, trace, ini)
     with working(f"drawing {options.output.name}"):
         subject = subject_of(program, ini, trace, samples)
         seen = seen_in(subject, options.tools, options.var, stock_of(options))

@@ -9,34 +9,41 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 from g12.machine_ini import AXES
 from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
+    add_override,
     checked_ini,
     number_above,
     one_line,
     program_parser,
+    run_text,
     tell_whose_lines,
 )
 from g12.tools.headless.machine import Run
 from g12.tools.headless.run import run_anyhow
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
-from g12.tools.preview.ended import text_with_axes
-from g12.tools.preview.moves import LINEAR
+from g12.tools.preview.ended import explained_text
+from g12.tools.preview.moves import LINEAR, Trace
+from g12.tools.preview.tracer import Parameters, Tools, TraceFailure, trace
+from g12.tools.progress import working
 from g12.tools.regress.recording_text import number_text
 from g12.tools.units import UNITS, name_of_unit
 
 EXAMPLES = """\
 examples:
   g12 run pocket.ngc --ini mill.ini
+  g12 run pocket.ngc --ini mill.ini --override 500
   g12 run pocket.ngc --ini mill.ini --tools other.tbl --timeout 3600
 
 exit code: 0 the program came to its end, 1 it did not, 2 wrong use
 """
 DECIMALS = 6
+PATIENCE = 20.0  # s, to find out how long a run will take
 
 
 def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
@@ -51,22 +58,32 @@ def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
     yield f"{result.seconds:.3f} s in motion"
 
 
+def preview_of(program: Path, ini: Path, tools: Tools, parameters: Parameters) -> Trace | None:
+    """Return what a program will do, None if that takes long to find out."""
+    try:
+        return trace(program, ini, tools=tools, parameters=parameters, timeout=PATIENCE)
+    except TraceFailure:
+        return None
+
+
 @one_line("run")
 def main(arguments: list[str]) -> int:
     """Run the command."""
     parser = program_parser("run", __doc__, EXAMPLES)
+    add_override(parser, "of the run")
     timeout = {"type": number_above(0), "default": 600.0, "metavar": "SECONDS"}
     parser.add_argument("--timeout", **timeout, help="give up after this (default 600)")
     options = parser.parse_args(arguments)
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
-        result = run_anyhow(
-            opened.path, options.ini, options.tools, options.var, timeout=options.timeout
-        )
+        files = (options.ini, options.tools, options.var)
+        text = run_text(options.program, options.override, preview_of(opened.path, *files), ini)
+        with working(text, clock=True):
+            result = run_anyhow(opened.path, *files, options.override, timeout=options.timeout)
     for line in lines_of_run(result, ini):
         print(line)
     if result.error:
-        text = opened.in_source(text_with_axes(result.error.text, options.ini))
+        text = opened.in_source(explained_text(result.error.text, options.ini))
         print(f"g12 run: {options.program}: {text}", file=sys.stderr)
         tell_whose_lines("run", opened)
     return FINDING if result.error else GOOD

@@ -18,7 +18,7 @@ from g12.tools.commands.arguments import (
     tell_whose_lines,
 )
 from g12.tools.machine.filter import opened_program
-from g12.tools.preview.ended import ended, with_axes
+from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.moves import Move
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import trace
@@ -59,7 +59,7 @@ def main(arguments: list[str]) -> int:
     with opened_program(options.program, ini) as opened:
         found = trace(opened.path, options.ini, tools=options.tools, parameters=options.var)
     tell_whose_lines("trace", opened)
-    traced = with_axes(trace_in_source(found, opened), options.ini)
+    traced = explained(trace_in_source(found, opened), options.ini)
     for move in traced.moves:
         print(line_of(move, options.digits))
     for line, text in traced.messages:

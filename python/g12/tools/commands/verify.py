@@ -84,9 +84,10 @@ def main(arguments: list[str]) -> int:
 
 def proof_of(program: Path, ini: Ini, options: argparse.Namespace) -> Proof:
     """Return the proof of a program as LinuxCNC reads it."""
+    trace = None
     if options.run:  # an error of the program is told before its time is taken
-        traced(program, options.ini, options.tools, options.var)
-    samples = samples_of_run(program, options)
+        trace = traced(program, options.ini, options.tools, options.var)
+    samples = samples_of_run(program, options, trace, ini)
     with working(f"interpreting {program.name}") as tell:
         return prove(
             program,

@@ -13,9 +13,9 @@ from g12.tools.headless.machine import MachineError, Run, StartupError
 from g12.tools.machine.ini import read_ini
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
-from g12.tools.plot.scene import Scene, clock, scene_of_proof
+from g12.tools.plot.scene import Scene, scene_of_proof
 from g12.tools.preview.tracer import TraceFailure
-from g12.tools.units import Unit, plain
+from g12.tools.units import Unit, clock, plain
 from g12.tools.verify.findings import SAME_AREA
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof, prove

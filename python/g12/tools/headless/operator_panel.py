@@ -12,7 +12,9 @@ from typing import Callable
 import linuxcnc
 
 TICK = 0.01  # s, between looks at the status
-QUIET_LOOKS = 20  # without a joint homing: there was nothing to home, or it is done
+QUIET = 1.0  # s, without a joint homing: there was nothing to home, or it is done
+STANDING = 5.0  # s, that no joint moves while one is homing: no home switch waits so long
+DECIMALS = 6  # of a joint's place
 GRACE = 5.0  # s, for the machine to react to a command
 ERRORS = (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR)
 TASK_MODES = {
@@ -98,17 +100,33 @@ class Panel:
         self.wait(self._homed, GRACE, "homing of every joint")
 
     def _home(self, joint: int, timeout: float) -> None:
-        """Home a joint, or all with -1, as far as LinuxCNC does."""
+        """Home a joint, or all with -1, as far as LinuxCNC does; refuse to wait for a stop."""
         self._do(self._command.home, joint)
-        quiet = 0
+        homing_at = moved_at = time.monotonic()
+        last = None
 
         def over(stat) -> bool:
-            nonlocal quiet
-            homing = any(one["homing"] for one in stat.joint[: stat.joints])
-            quiet = 0 if homing else quiet + 1
-            return self._homed(stat) or quiet > QUIET_LOOKS
+            nonlocal homing_at, moved_at, last
+            now, place = time.monotonic(), [round(at, DECIMALS) for at in stat.joint_position]
+            if place != last:
+                last, moved_at = place, now
+            if any(one["homing"] for one in stat.joint[: stat.joints]):
+                homing_at = now
+                if now - moved_at > STANDING:
+                    raise PanelError(f"homing stands still at {self._at_home(stat)}")
+            return self._homed(stat) or now - homing_at > QUIET
 
         self.wait(over, timeout, "end of homing")
+
+    def _at_home(self, stat) -> str:
+        places = zip(stat.joint_position[: stat.joints], stat.homed)
+        return (
+            ", ".join(
+                f"joint {number} {at:g}{' (homed)' * bool(homed)}"
+                for number, (at, homed) in enumerate(places)
+            )
+            + self._complaints()
+        )
 
     def _homed(self, stat) -> bool:
         return all(stat.homed[: stat.joints])

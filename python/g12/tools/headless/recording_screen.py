@@ -15,7 +15,7 @@ from multiprocessing.connection import Connection
 
 import hal
 
-from g12.tools.headless.operator_panel import Panel, PanelTimeout
+from g12.tools.headless.operator_panel import Panel, PanelError, PanelTimeout
 
 DEPTH = 20000  # samples in HAL's buffer: 20 s at 1 kHz
 DRAIN = 0.05  # s between looks into it
@@ -149,7 +149,8 @@ def serve_runner(address: str, positions: list[str], kind: type = RecordingScree
             return
         try:
             connection.send((True, screen.answer(*request)))
-        except PanelTimeout as error:
-            connection.send((False, ("timeout", str(error))))
+        except PanelError as error:
+            kind = "timeout" if isinstance(error, PanelTimeout) else "failure"
+            connection.send((False, (kind, str(error))))
         except Exception as error:
             connection.send((False, ("failure", f"{type(error).__name__}: {error}")))

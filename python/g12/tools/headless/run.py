@@ -8,7 +8,7 @@ from pathlib import Path
 
 from g12.tools.errors import ProgramError
 from g12.tools.headless.machine import Machine, MachineError, Run
-from g12.tools.preview.ended import text_with_axes
+from g12.tools.preview.ended import explained_text
 from g12.tools.preview.tracer import Parameters, Tools
 
 MOST_SECONDS = 24 * 3600.0
@@ -27,7 +27,7 @@ def run_program(
     """
     result = run_anyhow(program, ini, tools, parameters, override)
     if result.error:
-        raise ProgramError(f"{program}: {text_with_axes(result.error.text, ini)}")
+        raise ProgramError(f"{program}: {explained_text(result.error.text, ini)}")
     return result
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from g12.machine_ini import AXES
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import CHORD_ERROR, Part
-from g12.tools.preview.moves import LINEAR, Move
+from g12.tools.preview.moves import LINEAR, Move, Trace
 
 UNLIMITED = math.inf
 
@@ -81,6 +81,13 @@ def limits_of(ini: Ini) -> Limits:
     axes = [known[axis].velocity if axis in known else UNLIMITED for axis in AXES]
     path = ini.number("TRAJ", "MAX_LINEAR_VELOCITY", UNLIMITED) * ini.mm
     return Limits(tuple(map(float.__mul__, axes, scale)), path)
+
+
+def program_seconds(trace: Trace, ini: Ini, override: float = 100.0) -> float:
+    """Return about how long a program's moves take, at a feed override in per cent."""
+    limits, share = limits_of(ini), override / 100.0
+    moves = (move._replace(feed=move.feed * share) for move in trace.moves)
+    return sum(duration(move, limits, trace.modes.speed) for move in moves)
 
 
 def duration(move: Move, limits: Limits, spindle_speed: float = 0.0) -> float:

@@ -14,7 +14,7 @@ from g12.tools.path.follow import Followed
 from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import COMMENT
 from g12.tools.preview.moves import Move
-from g12.tools.units import Unit, plain, unit_of
+from g12.tools.units import Unit, clock, plain, unit_of
 from g12.tools.verify.proof import Proof, Subject
 from g12.tools.verify.seen import Seen
 
@@ -97,9 +97,3 @@ def heading(program: Path) -> str:
     found = (match[1] or match[2] for line in still if (match := HEAD_COMMENT.fullmatch(line)))
     text = next((text.strip() for text in found if "SPDX" not in text), "")
     return textwrap.shorten(text, LONGEST_HEADING, placeholder=" …")
-
-
-def clock(seconds: float) -> str:
-    """Return a time in words."""
-    minutes, rest = divmod(seconds, 60)
-    return f"{int(minutes)} min {rest:.0f} s" if minutes else f"{rest:.1f} s"

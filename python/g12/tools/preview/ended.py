@@ -7,18 +7,22 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+from g12.machine_ini import remap_lines
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tools, trace
+from g12.tools.system import CALL
 
+UNKNOWN_CODE = "Unknown g code used"
+OUR_CODE = re.compile(r"G1[23](?!\d)")
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
 
 def traced(program: Path, ini: Path, tools: Tools = None, parameters: Parameters = None) -> Trace:
     """Return the trace of a program that comes to its end, or raise ProgramError."""
     found = trace(program, ini, tools=tools, parameters=parameters)
-    return ended(program, with_axes(found, ini))
+    return ended(program, explained(found, ini))
 
 
 def ended(program: Path | str, result: Trace) -> Trace:
@@ -28,18 +32,22 @@ def ended(program: Path | str, result: Trace) -> Trace:
     return result
 
 
-def with_axes(result: Trace, ini: Path) -> Trace:
-    """Return a trace whose error names the machine's axes if the program asks for another one."""
+def explained(result: Trace, ini: Path) -> Trace:
+    """Return a trace whose error tells what LinuxCNC leaves out; see ``explained_text``."""
     error = result.error
     if not error:
         return result
-    return replace(result, error=error._replace(text=text_with_axes(error.text, ini)))
+    return replace(result, error=error._replace(text=explained_text(error.text, ini)))
 
 
-def text_with_axes(text: str, ini: Path) -> str:
-    """Return the interpreter's error, with the machine's axes if it is about another one."""
+def explained_text(text: str, ini: Path) -> str:
+    """Return the interpreter's error with what the machine has in place of what was asked for."""
+    machine = read_ini(ini)
     wanted = NO_AXIS.match(text)
-    axes = read_ini(ini).axes
-    if not wanted or wanted[1].upper() in axes:
-        return text
-    return f"{text}: this INI's machine has axes {' '.join(axes)}"
+    if wanted and wanted[1].upper() not in machine.axes:
+        return f"{text}: this INI's machine has axes {' '.join(machine.axes)}"
+    if text == UNKNOWN_CODE:
+        codes = [remap.code for remap in remap_lines(machine.all) if OUR_CODE.match(remap.code)]
+        there = " ".join(codes) or "none"
+        return f"{text}: of G12 and G13 this INI has {there}; see {CALL} check"
+    return text

@@ -17,7 +17,7 @@ from g12.tools.path.follow import Followed, follow
 from g12.tools.path.part import C, part_of_program
 from g12.tools.path.samples import Samples
 from g12.tools.path.track import Track, limits_of, track
-from g12.tools.preview.ended import ended, with_axes
+from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
@@ -144,7 +144,7 @@ def prove(
     usual = Tolerances(POCKET_TOLERANCE, polar)
     tolerances = usual if tolerance is None else Tolerances(tolerance, tolerance)
     with Tracer(ini, tools=tools) as tracer:
-        trace = ended(program, with_axes(tracer.trace(program, parameters=parameters), ini.path))
+        trace = ended(program, explained(tracer.trace(program, parameters=parameters), ini.path))
         subject = subject_of(program, ini, trace, samples)
         asked = asked_of(tracer, subject, tools, parameters)
         there = moves_there(tracer, subject, parameters)
