@@ -24,8 +24,9 @@ class Text:
     def __init__(self, chance, unit, *, polar=False):
         self.chance, self.scale = chance, 1.0 if unit == "mm" else INCH
         self.code = {"mm": "G21", "inch": "G20"}[unit]
-        plane = "G18" if polar else "G17"
-        self.lines = [f"{self.code} {plane} G40 G49 G54 G80 G90 G94 G91.1 G64 P{self.n(0.01)}"]
+        modes = "G18" if polar else "G17"
+        self.plane = self.between(1, 3)  # of events, above the part
+        self.lines = [f"{self.code} {modes} G40 G49 G54 G80 G90 G94 G91.1 G64 P{self.n(0.01)}"]
 
     def n(self, mm):
         """Return a length as it is written."""
@@ -150,14 +151,13 @@ def _event(text, radius, x, y):
     side = text.one_of("in", "out", "on") if not pocket else "in"
     finish = text.between(0.1, 0.8) if side != "on" and text.chance.random() < 0.5 else None
     deep = text.between(1, 7)
-    first = text.between(1, 4)
     return {
         "G": 7 if pocket else 0,
         "X": x,
         "Y": y,
         "Z": -deep,
-        "W": first,
-        "O": text.one_of(None, first + text.between(0, 6)),
+        "W": text.plane,
+        "O": text.one_of(None, text.plane + text.between(0, 6)),
         "R": radius + text.between(1, 18 - radius) if side == "in" else text.between(2, 18),
         "D": direction,
         "C": {"on": 0, "in": 1 if left_is_inside else 2, "out": 2 if left_is_inside else 1}[side],

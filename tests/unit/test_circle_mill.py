@@ -224,6 +224,14 @@ def test_entries_of_a_call():
     assert list(entries_by_letter(range(15))) == list("GXYZWORDCKJLPFV")
 
 
+def test_a_call_without_l_has_no_finish():
+    values = {key: value for key, value in NEEDED.items() if key != "I"} | {"W": 0.1, "C": 2}
+    event = call(**values, G=7)
+    assert not event.side_finish.side_finish
+    assert level_depths(event) == [-0.5]
+    assert max(ring_radii(event)) == 1.25
+
+
 def test_a_perimeter_is_the_default_of_the_call():
     values = {key: value for key, value in NEEDED.items() if key != "I"} | {"W": 0.1, "C": 2}
     assert not call(**values).roughing.pocket

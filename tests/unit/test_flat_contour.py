@@ -268,3 +268,20 @@ def test_compensation_must_be_off_at_the_end():
         Refusal, match=r"^G12\.3 line 9: G41 of line 1 is still on: G40 is missing$"
     ):
         contour.close(line=9)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (dict(x=2e6, i=1.0), "X2000000 is no length: at most 1000000"),
+        (dict(c=-2e6, i=1.0), "C-2000000 is no length: at most 1000000"),
+        (dict(z=2e6, i=1.0), "Z2000000 is no length: at most 1000000"),
+        (dict(i=2e6), "I2000000 is no length: at most 1000000"),
+        (dict(j=-2e6), "J-2000000 is no length: at most 1000000"),
+        (dict(x=1.0, radius=2e6), "R2000000 is no length: at most 1000000"),
+    ],
+)
+def test_an_arc_beyond_any_machine(words, message):
+    with pytest.raises(Refusal) as refused:
+        started().arc(1, line=7, feed=100.0, **words)
+    assert refused.value.message == f"G12.1 line 7: {message}"

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString
 
 from g12.flat.contour import Arc, Line
-from g12.flat.intersect import least_distance
+from g12.flat.intersect import along_end, along_start, crossing, least_distance
 
 SAGITTA = 2e-4
 
@@ -50,3 +50,66 @@ def test_least_distance(one, other):
     expected = polyline(one).distance(polyline(other))
     assert least_distance(one, other) == pytest.approx(expected, abs=3 * SAGITTA)
     assert least_distance(other, one) == pytest.approx(expected, abs=3 * SAGITTA)
+
+
+def arc_of(sweep, radius=3.0, centre=2 - 1j, first=0.4):
+    """Return an arc, and what gives the place at an angle behind its start, in its sense."""
+    turn = math.copysign(1.0, sweep)
+
+    def place(angle):
+        at = centre + radius * cmath.exp(1j * (first + turn * angle))
+        return at.real, at.imag
+
+    ends = (*place(0.0), 0.0, *place(abs(sweep)), 0.0)
+    return Arc(1, 1.0, 0.0, *ends, centre.real, centre.imag, sweep), place
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize(("sweep", "beside"), [(0.3, 1.5), (1.0, 1.0), (3.0, 1.0)])
+def test_places_along_an_arc_and_beside_its_ends(sweep, beside, turn):
+    arc, place = arc_of(turn * sweep)
+    for angle in (0.0, 0.5 * sweep, sweep):
+        assert along_start(arc, place(angle)) == pytest.approx(3 * angle, abs=1e-9)
+        assert along_end(arc, place(angle)) == pytest.approx(3 * angle, abs=1e-9)
+    assert along_start(arc, place(-beside)) == pytest.approx(-3 * beside)
+    assert along_end(arc, place(sweep + beside)) == pytest.approx(3 * (sweep + beside))
+
+
+@pytest.mark.parametrize("sweep", [2 * math.pi, -2 * math.pi])
+def test_a_place_in_front_of_a_circle_or_behind_it(sweep):
+    """The half radian next to an end belongs to what lies beyond it."""
+    arc, place = arc_of(sweep)
+    assert along_start(arc, place(-0.4)) == pytest.approx(-1.2)
+    assert along_start(arc, place(-0.6)) == pytest.approx(3 * (2 * math.pi - 0.6))
+    assert along_end(arc, place(0.4)) == pytest.approx(3 * (2 * math.pi + 0.4))
+    assert along_end(arc, place(0.6)) == pytest.approx(1.8)
+
+
+def test_of_two_crossings_the_one_nearest_to_the_corner():
+    """A line and an arc of radius 3 about the origin that meet at the left, half way up."""
+    left = (pytest.approx(-math.sqrt(9 - 2.25)), pytest.approx(1.5))
+    ends = (-3.0, 0.0, 0.0, 0.0, -3.0, 0.0)
+    assert (
+        crossing(
+            Line(1, 1.0, 0.0, 10.0, 1.5, 0.0, -3.0, 1.5, 0.0),
+            Arc(1, 1.0, 0.0, *ends, 0.0, 0.0, -1.5 * math.pi),
+        )
+        == left
+    )
+    ends = (3.0, 0.0, 0.0, 3 * math.cos(3.0), 3 * math.sin(3.0), 0.0)
+    assert (
+        crossing(
+            Arc(1, 1.0, 0.0, *ends, 0.0, 0.0, 3.0),
+            Line(1, 1.0, 0.0, -3.0, 1.5, 0.0, 10.0, 1.5, 0.0),
+        )
+        == left
+    )
+
+
+def test_moves_that_miss_each_other_have_no_crossing():
+    line = Line(1, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+    beyond = Line(1, 1.0, 0.0, 1.1, 1.0, 0.0, 1.1, -1.0, 0.0)
+    assert crossing(line, beyond) is None
+    assert crossing(beyond, line) is None
+    along = Line(1, 1.0, 0.0, 1.0, 1.0, 0.0, 2.0, 1.0, 0.0)
+    assert crossing(line, along) is None

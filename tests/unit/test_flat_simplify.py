@@ -11,7 +11,7 @@ from shapely.geometry import LineString
 
 from g12.errors import Refusal
 from g12.flat import simplify
-from g12.flat.contour import Contour, Line, is_move
+from g12.flat.contour import Arc, Contour, Line, is_move
 from g12.polar.plan import PolarSettings, plan
 from support.planned_cuts import cuts, path
 
@@ -155,3 +155,41 @@ def test_short_moves_in_a_corner_are_cut_right_or_refused(extra):
     if not refused(contour):
         near = range(3, 3 + len(points) - 1)
         assert depth(contour, points, 5.0, near) < 0.012
+
+
+# What stands between when a short move has gone.
+
+
+def line_to(x, c, at, number, z=0.0):
+    return Line(number, 600.0, 2.0, *at, z, x, c, z)
+
+
+def bend(at, to, number, sweep=0.5):
+    """Return an arc from place to place."""
+    start, end = complex(*at), complex(*to)
+    centre = (end - start * cmath.exp(1j * sweep)) / (1 - cmath.exp(1j * sweep))
+    return Arc(number, 600.0, 2.0, *at, 0.0, *to, 0.0, centre.real, centre.imag, sweep)
+
+
+SHORT = line_to(10.001, 5.0, (10.0, 5.0), 2)
+
+
+@pytest.mark.parametrize("follows", [line_to, bend])
+@pytest.mark.parametrize("before", [line_to, bend])
+def test_the_moves_beside_a_short_one_meet(before, follows):
+    one = line_to(10, 5, (0, 0), 1) if before is line_to else bend((0.0, 0.0), (10.0, 5.0), 1)
+    other = (
+        line_to(20, 0, (10.001, 5.0), 3)
+        if follows is line_to
+        else bend((10.001, 5.0), (20.0, 0.0), 3)
+    )
+    kept, moved = simplify.without_short_moves([one, SHORT, other], 0.0015)
+    assert moved == pytest.approx(0.001)
+    for a, b in zip(kept, kept[1:]):
+        assert (a.x1, a.c1) == (b.x0, b.c0)
+    if follows is line_to:  # it begins where the one before ends
+        assert kept == [one, other._replace(x0=10.0, c0=5.0)]
+    elif before is line_to:  # which ends where the arc begins
+        assert kept == [one._replace(x1=10.001), other]
+    else:  # arcs stay as they are, with a line between
+        assert kept == [one, SHORT._replace(line=3), other]

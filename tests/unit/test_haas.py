@@ -105,6 +105,11 @@ def test_a_bad_block_is_refused_by_name(words, message):
     assert refused.value.message == message
 
 
+def test_feed_per_revolution_of_a_spindle_that_turns():
+    assert plan(found=FOUND._replace(per_revolution=True, speed=100.0), I=0.75, Z=-1.0, D=1)
+    assert plan(found=FOUND._replace(per_revolution=False, speed=0.0), I=0.75, Z=-1.0, D=1)
+
+
 @pytest.mark.parametrize(
     ("modes", "message"),
     [

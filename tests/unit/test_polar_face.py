@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Which moves of a section go out as X and Y of the face, and what they ask of C and the slide."""
 
-from math import atan2, cos, hypot, inf, pi, radians, sin
+from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
 
 import numpy as np
 import pytest
@@ -181,3 +181,14 @@ def test_without_kinematics_all_is_pieces():
 def test_no_limits_no_pieces():
     free = LIMITS._replace(c_acceleration=inf, c_speed=inf, slide_acceleration=inf)
     assert is_able(line((0.001, -20), (0.001, 20)), free)
+
+
+def test_a_plunge_on_the_face_keeps_x_and_c():
+    drawn = contour((30, 20), (-30, 20))
+    drawn.elements.append(Plunge(9, 500.0, 0.0, -1.0))
+    made = plan(drawn, SETTINGS, c=10.0)
+    down, back = made.steps[-2:]
+    assert down.move == Plunge(9, 500.0, 0.0, -1.0)
+    assert [pytest.approx((hypot(30, 20), 10 + degrees(atan2(20, -30)), -1.0))] == down.pieces
+    assert back == FaceSwitch(9, False, made.place)
+    assert made.place.z == -1.0

@@ -332,6 +332,26 @@ def test_what_x_was_left_over_is_made_up_at_the_end():
     assert end[1] == around.pieces[-1][1]
 
 
+def test_what_was_left_over_is_made_up_at_the_feed_of_the_last_move():
+    contour = Contour(12.0, 0.0)
+    contour.line(10.0, line=1, feed=100.0)
+    end = Round(10 + 0j, 0.0004 + 0j, math.pi / 2).end
+    contour.arc(1, end.real, end.imag, i=-9.9996, line=2, feed=250.0)
+    rest = runs(plan(contour, LATHE, c=0.0))[-1]
+    assert (rest.line, len(rest.pieces), rest.pieces[0][3]) == (2, 1, 250.0)
+
+
+@pytest.mark.parametrize(("length", "pieces"), [(0.3, 1), (0.35, 2)])
+def test_a_line_beside_the_pole_is_one_piece_up_to_its_deviation(length, pieces):
+    """Square to the radius 5: a whole piece bulges by its length squared through 8 radii."""
+    half = 0.5 * length
+    first, last = 5 - 1j * half, 5 + 1j * half
+    corners = [abs(first) + 0j, first, last, 9 + 9j]
+    contour = programmed([Straight(*ends) for ends in zip(corners, corners[1:])])
+    (made,) = (run for run in runs(plan(contour, DRIVEN, c=0.0)) if run.line == 2)
+    assert len(made.pieces) == pieces
+
+
 def test_repeated_points_are_harmless():
     contour = Contour(10.0, 0.0)
     for line, x in enumerate([10.0, 20.0, 20.0, 20.0], 1):

@@ -105,3 +105,9 @@ def test_an_arc_whose_circle_passes_the_pole_elsewhere_stays():
 def test_a_small_circle_about_the_pole_is_not_led_through_it():
     around = arc(0, 0, 2 * REACH, 0, 2 * math.pi)
     assert led(around) == [around]
+
+
+def test_the_smallest_circle_through_the_pole():
+    first, *between, last = led(arc(0.003, 0, 0.006, 0, 2 * math.pi))
+    assert (first.x0, last.x1) == pytest.approx((0.006, 0.006))
+    assert between == [] or all(part.line == 3 for part in between)

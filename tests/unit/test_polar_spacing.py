@@ -44,3 +44,13 @@ def test_a_circle_of_a_metre_is_cut_at_the_finest_tolerance():
     around = Round(1000 + 0j, 100 + 0j, 2 * math.pi)
     run = plan(programmed([around]), FINEST, c=0.0).steps[0]
     assert 5_000 < len(run.pieces) < MOST_PIECES
+
+
+def test_an_apsis_is_an_end_of_pieces_and_off_the_path_by_its_share():
+    """Four pieces long and four used on each side: the losses of the outer ends come on top."""
+    places, shares = spaced(stretch(-4.0, 4.0, 0.0), lambda _: (1.0, 0.5))
+    assert 0.0 in places
+    length = 4.0 / (5 - 0.18)
+    assert shares[places.index(0.0)] == pytest.approx(0.5 * length**2)
+    assert shares[0] == shares[-1] == 0.0
+    assert shares[1:-1] == pytest.approx([0.5 * length**2] * (len(shares) - 2))

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a section goes by: from what it finds, the settings and the machine's axes."""
 
+from math import radians
+
 import pytest
 
 from g12.errors import Refusal
-from g12.machine_ini import Axis
+from g12.machine_ini import Axis, FaceAxes
+from g12.polar.face import FaceLimits
 from g12.polar.start import check_section_start, polar_setup
 from g12.section.line import SectionPlace
 from g12.section.modes import SectionModes
@@ -61,6 +64,10 @@ def test_where_no_section_begins(found, rule):
     assert str(refused.value).startswith(f"G12.1 line 7: {rule}")
 
 
+def test_a_section_may_begin_near_the_centre():
+    check_section_start(START._replace(x=1e-3), "XZC")
+
+
 def test_a_machine_needs_x_and_c():
     with pytest.raises(Refusal, match="needs a machine with an X and a C axis"):
         check_section_start(START, "XYZ")
@@ -107,3 +114,21 @@ def test_rapids_have_a_feed_only_where_they_may():
 def test_kinematics_are_refused_on_a_machine_without_them():
     with pytest.raises(Refusal, match=r"needs \[KINS\] KINEMATICS = polar_xzc"):
         setup_of(Settings(polar_kinematics="1"))
+
+
+@pytest.mark.parametrize(("override", "kept"), [(1.5, 1.5), (0.5, 1.0)])
+def test_what_the_axes_of_the_face_allow(override, kept):
+    x, y, slide = (Axis(-1.0, 1.0, 9.0, acceleration) for acceleration in (30.0, 40.0, 20.0))
+    axes = {**AXES, "C": Axis(-9.0, 9.0, 50.0, 700.0)}
+    start = START._replace(machine_unit=INCH)
+    kinematics = Settings(polar_kinematics="1")
+    made = polar_setup(start, kinematics, axes, FaceAxes(x, y, slide, override))
+    assert made.plan.face == FaceLimits(
+        acceleration=pytest.approx(50.0 * INCH),
+        round_acceleration=pytest.approx(30.0 * INCH),
+        slide_acceleration=pytest.approx(20.0 * INCH),
+        c_acceleration=radians(700.0),
+        c_speed=radians(50.0),
+        override=kept,
+    )
+    assert polar_setup(start, Settings(), axes, FaceAxes(x, y, slide, 1.0)).plan.face is None

@@ -276,3 +276,14 @@ def test_decimals_have_no_exponents(value, text):
 def test_the_line_that_a_refusal_names():
     assert line_named(HERE.refuse("x")) == 7
     assert line_named(Refusal("G12.1 line 3 of flat.ngc: x")) is None
+
+
+@pytest.mark.parametrize("text", ["g1x9", "x9c9.0", "g1c09", "m9", "g1x9z9f9"])
+def test_only_a_g_is_an_exact_stop(text):
+    line = split_line(text)
+    assert (line.text, line.exact_stop, line.rewritten) == (text, False, False)
+
+
+def test_a_letter_without_a_value_hides_nothing():
+    assert list(split_words("gx1")) == [("g", ""), ("x", "1")]
+    assert list(split_words("#x1")) == [("#", ""), ("x", "1")]
