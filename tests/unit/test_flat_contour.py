@@ -285,3 +285,15 @@ def test_an_arc_beyond_any_machine(words, message):
     with pytest.raises(Refusal) as refused:
         started().arc(1, line=7, feed=100.0, **words)
     assert refused.value.message == f"G12.1 line 7: {message}"
+
+
+@pytest.mark.parametrize("words", [dict(i=-10.0), dict(radius=10.0)])
+def test_the_other_reading_of_x_counts_for_start_and_end(words):
+    """From (20, 0) to (12, 8): with half of each X it is a tenth of a circle about the spindle."""
+    contour = Contour(20.0, 0.0)
+    words = words if "i" in words else dict(radius=4.7)
+    with pytest.raises(Refusal) as refused:
+        contour.arc(1, 12.0, 8.0, line=1, feed=100.0, **words)
+    assert refused.value.message.endswith(
+        "it would close with X read as a diameter (POLAR_X = diameter)"
+    )

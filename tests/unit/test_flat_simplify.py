@@ -11,7 +11,7 @@ from shapely.geometry import LineString
 
 from g12.errors import Refusal
 from g12.flat import simplify
-from g12.flat.contour import Arc, Contour, Line, is_move
+from g12.flat.contour import Arc, Contour, Line, Plunge, is_move
 from g12.polar.plan import PolarSettings, plan
 from support.planned_cuts import cuts, path
 
@@ -193,3 +193,14 @@ def test_the_moves_beside_a_short_one_meet(before, follows):
         assert kept == [one._replace(x1=10.001), other]
     else:  # arcs stay as they are, with a line between
         assert kept == [one, SHORT._replace(line=3), other]
+
+
+def test_of_a_short_move_its_z_is_kept():
+    one, other = line_to(10, 5, (0, 0), 1), line_to(20, 0, (10.001, 5.0), 3)
+    kept, _ = simplify.without_short_moves([one, SHORT._replace(z1=-1.0), other], 0.0015)
+    assert kept == [one, Plunge(2, 600.0, 0.0, -1.0), other._replace(x0=10.0, c0=5.0)]
+
+
+def test_points_there_and_back_are_no_line():
+    there, back = line_to(5, 0, (0, 0), 1), line_to(0, 0, (5, 0), 2)
+    assert simplify.with_points_left_out([there, back], 10.0) == ([there, back], 0.0)

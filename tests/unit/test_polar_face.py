@@ -192,3 +192,12 @@ def test_a_plunge_on_the_face_keeps_x_and_c():
     assert [pytest.approx((hypot(30, 20), 10 + degrees(atan2(20, -30)), -1.0))] == down.pieces
     assert back == FaceSwitch(9, False, made.place)
     assert made.place.z == -1.0
+
+
+@pytest.mark.parametrize("first", [0.3, 1.0, 2.2])
+@pytest.mark.parametrize(("share", "able"), [(0.999, False), (1.001, True)])
+def test_an_arc_is_looked_at_where_it_is_nearest_to_the_pole(first, share, able):
+    """A circle of radius 10 about X20 passes the pole at 10, wherever it begins."""
+    free = FaceLimits(1e9, 1e9, inf, inf, share * (1000.0 / 60.0) / 10.0, 1.0)
+    assert is_able(arc((20, 0), 10, first, 2 * pi), free) is able
+    assert is_able(arc((20, 0), 10, first, -2 * pi), free) is able

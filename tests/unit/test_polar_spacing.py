@@ -6,6 +6,7 @@ import math
 import pytest
 
 from g12.errors import Refusal
+from g12.polar.pieces import Law, _arc_density, _line_density
 from g12.polar.plan import PolarSettings, plan
 from g12.polar.spacing import MOST_PIECES, Stretch, TooManyPieces, spaced
 from support.contour_geometry import Round
@@ -54,3 +55,16 @@ def test_an_apsis_is_an_end_of_pieces_and_off_the_path_by_its_share():
     assert shares[places.index(0.0)] == pytest.approx(0.5 * length**2)
     assert shares[0] == shares[-1] == 0.0
     assert shares[1:-1] == pytest.approx([0.5 * length**2] * (len(shares) - 2))
+
+
+@pytest.mark.parametrize(
+    "density",
+    [lambda law: _line_density(3.0, 0.005, law), lambda law: _arc_density(9, 0.4, 0.005, law)],
+)
+def test_pieces_made_shorter_for_an_even_feed_use_a_share_of_the_deviation(density):
+    """What a piece bulges by goes with the square of its length."""
+    longest, even = (density(Law(0.005, ripple, 1e9, 1e9)) for ripple in (1e9, 1e-4))
+    for place in (0.3, 0.8, 1.2, 2.0):
+        (pieces, share), (more, less) = longest(place), even(place)
+        assert more > 2 * pieces
+        assert less == pytest.approx(share * (pieces / more) ** 2)

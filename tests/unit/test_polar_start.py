@@ -8,6 +8,8 @@ import pytest
 from g12.errors import Refusal
 from g12.machine_ini import Axis, FaceAxes
 from g12.polar.face import FaceLimits
+from g12.polar.plan import BlockMoves
+from g12.polar.soft_limits import Beyond
 from g12.polar.start import check_section_start, polar_setup
 from g12.section.line import SectionPlace
 from g12.section.modes import SectionModes
@@ -132,3 +134,22 @@ def test_what_the_axes_of_the_face_allow(override, kept):
         override=kept,
     )
     assert polar_setup(start, Settings(), axes, FaceAxes(x, y, slide, 1.0)).plan.face is None
+
+
+@pytest.mark.parametrize(
+    ("place", "beyond"),
+    [
+        ((98.9, 9.9, 97.9), None),
+        ((99.5, 0.0, 0.0), Beyond(3, "X", 100.5, 100.0)),
+        ((0.0, 11.0, 0.0), Beyond(3, "C", 101.0, 100.0)),
+        ((0.0, 0.0, 98.5), Beyond(3, "Z", 100.5, 100.0)),
+    ],
+)
+def test_the_travel_is_that_of_the_machine_with_its_offsets(place, beyond):
+    made = setup_of().limits.beyond([BlockMoves(3, "XCZ", [(*place, 1.0)], False)])
+    assert made == beyond
+
+
+def test_a_path_through_the_pole_may_be_refused():
+    assert setup_of(Settings(polar_pole="refuse")).plan.pole_refused
+    assert not setup_of().plan.pole_refused

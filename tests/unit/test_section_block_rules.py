@@ -154,7 +154,8 @@ def test_m_codes_with_their_words(code, words):
 @pytest.mark.parametrize("motion", [20, 30])
 def test_an_arc_has_no_turns(motion):
     why = "P is refused: an arc inside the section has no turns"
-    assert refusal(check_block, block(motion=motion, P=1.0, I=2.0), False) == why
+    for word in ("X", "C", "Z", "I", "J"):
+        assert refusal(check_block, block(motion=motion, P=1.0, **{word: 2.0}), False) == why
     assert refusal(check_block, block(motion=10, P=1.0, X=2.0), False) is None
     assert refusal(check_block, block(0, 40, motion=motion, P=1.0), False) is None  # a dwell
 

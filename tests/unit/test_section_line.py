@@ -287,3 +287,15 @@ def test_only_a_g_is_an_exact_stop(text):
 def test_a_letter_without_a_value_hides_nothing():
     assert list(split_words("gx1")) == [("g", ""), ("x", "1")]
     assert list(split_words("#x1")) == [("#", ""), ("x", "1")]
+
+
+def test_codes_are_g_and_m_with_a_plain_number():
+    assert split_line("g1x2m3f4").codes == (("G", 10), ("M", 30))
+    assert split_line("g#1m[2]g91.1").codes == (("G", 911),)
+
+
+@pytest.mark.parametrize("text", ["o1if[1]", ";py,1", "g1(a", "m98p1"])
+def test_a_line_that_is_not_split_says_nothing_of_its_words(text):
+    line = split_line(text)
+    assert (line.letters, line.codes, line.assignments, line.spindle) == ((), (), "", "")
+    assert (line.rewritten, line.relative, line.exact_stop) == (False, "", False)

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Commands get random programs, right ones with random damage: none ever shows a traceback."""
+
+import random
+
+import pytest
+
+from g12.tools.commands import main
+from soak import SEED, often
+from support.right_programs import MACHINES, right_program
+from support.sim_machines import SIM
+from support.small_configs import write_config
+
+WORDS = {
+    "verify": ["verify", "PROGRAM", "--ini", "INI"],
+    "verify json": ["verify", "PROGRAM", "--ini", "INI", "--json"],
+    "plot": ["plot", "PROGRAM", "--ini", "INI", "--output", "FOLDER/picture.png"],
+    "trace": ["trace", "PROGRAM", "--ini", "INI"],
+    "regress": ["regress", "record", "PROGRAM", "--ini", "INI", "-d", "FOLDER/kept"],
+    "regress check": ["regress", "check", "-d", "FOLDER/kept"],
+}
+LINES = [
+    *("G12.1", "G13.1", "G41", "G41 G1 X5", "G40", "G12", "G13 I5", "G13 I9 K20 Q3 Z-1", "G20"),
+    *("G12.2 X0 Y0 Z-1 I1 R9 H0", "o<circle_mill> call", "o<circle_mill> call [7] [1]", "M2", "%"),
+    *("G91", "G90", "G7", "G95 F.1", "G93", "G18", "T99 M6", "T0 M6", "G92 X1 Y2", "G52 X1", "M6"),
+    *("G10 L2 P1 R30", "G54", "G55", "o1 if [1]", "o1 endif", "o9 sub", "o9 endsub", "o9 call"),
+    *(
+        "o<nowhere> call",
+        "M98 P1",
+        "M99",
+        "(PY, x)",
+        "(ABORT, over)",
+        "(MSG, here)",
+        ";py,1",
+        "M70",
+    ),
+    *("#1=2", "#<a>=[1/0]", "G1 X#<none>", "G1 X[#1", "M66 P0 L3 Q1", "G4 P.1", "M0", "M1", "M72"),
+    *("G2 X5 R1", "G3 I1", "G33 Z-1 K1", "G38.2 Z-1", "G81 Z-1 R1", "G53 G0 Z0", "F0", "S0", "G96"),
+    *(
+        "N5",
+        "/G0 X1",
+        "G0 C90",
+        "G0 X0",
+        "G1 X0 C0",
+        "U1 H1",
+        "G28",
+        "G43 H1",
+        "\N{DEGREE SIGN}",
+        "",
+    ),
+]
+NUMBERS = ["0", "-1", "1e6", "99999", ".0001", "-.5", "[1/3]", "#5420", "", "1.2.3", "nan"]
+
+
+def damaged(chance, text):
+    """Return a program with some lines or numbers changed."""
+    lines = text.splitlines()
+    for _ in range(chance.randint(0, 4)):
+        at = chance.randrange(len(lines))
+        act = chance.randrange(6)
+        if act == 0:
+            del lines[at]
+        elif act == 1:
+            lines.insert(at, chance.choice(LINES))
+        elif act == 2:
+            lines.insert(at, chance.choice(lines))
+        elif act == 3:
+            other = chance.randrange(len(lines))
+            lines[at], lines[other] = lines[other], lines[at]
+        elif act == 4:
+            lines[at] = changed(chance, lines[at])
+        else:
+            del lines[chance.randrange(len(lines) // 2, len(lines)) :]
+        lines = lines or [""]
+    return "\n".join(lines) + chance.choice(["\n", ""])
+
+
+def changed(chance, line):
+    """Return a line with a word's number changed, or without the word."""
+    words = line.split(" ")
+    at = chance.randrange(len(words))
+    words[at] = words[at][:1] + chance.choice(NUMBERS) if chance.random() < 0.7 else ""
+    return " ".join(words)
+
+
+def check_said(capsys, code, what):
+    """Check what a command printed: no traceback, and why it ended as it did."""
+    said = capsys.readouterr()
+    assert code in (0, 1, 2), what
+    for shown in ("Traceback", "fault of the package"):
+        assert shown not in said.out + said.err, f"{what}: {said}"
+    if code == 2:
+        assert said.err.startswith("g12 "), f"{what}: {said}"
+
+
+@pytest.mark.parametrize("kind", MACHINES)
+def test_programs(kind, tmp_path, capsys):
+    chance = random.Random(f"{SEED} {kind}")
+    named = {"INI": str(SIM / f"{MACHINES[kind]}_headless.ini"), "FOLDER": str(tmp_path)}
+    for number in range(often(20)):
+        program = tmp_path / f"{kind} {number}.ngc"
+        program.write_text(damaged(chance, right_program(kind, chance, chance.randint(1, 3))))
+        named["PROGRAM"] = str(program)
+        for command, words in WORDS.items():
+            for name, value in named.items():
+                words = [word.replace(name, value) for word in words]
+            check_said(
+                capsys, main.main(words), f"{command} {number} of {SEED}\n{program.read_text()}"
+            )
+
+
+def test_configs(tmp_path, capsys):
+    """`check` of an INI with random damage."""
+    chance = random.Random(SEED)
+    good = write_config(tmp_path).read_text()
+    for number in range(often(200)):
+        ini = tmp_path / f"{number}.ini"
+        ini.write_text(damaged(chance, good + "REMAP = G12 modalgroup=1 prolog=g12_haas\n" * 2))
+        check_said(capsys, main.main(["check", str(ini)]), f"check {number} of {SEED}")
