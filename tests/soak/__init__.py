@@ -10,3 +10,15 @@ SEED = int(os.environ.get("SOAK_SEED", "0"))
 def often(each_ten_minutes):
     """Return how often something is done, at least once."""
     return max(1, round(each_ten_minutes * MINUTES / 10))
+
+
+class Tried:
+    """Counts what a test tries, for what `more_examples` says at the end."""
+
+    def __init__(self, request, what):
+        self._number = [0]
+        request.node.user_properties.append((f"soak: {what}", self._number))
+
+    def one(self):
+        """Count one more."""
+        self._number[0] += 1

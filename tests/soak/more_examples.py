@@ -1,24 +1,69 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A plugin of pytest: the properties of the normal tests are tried with far more examples.
 
-Other ones each time; a failure is reduced by hypothesis and printed with what repeats it.
+Other ones each time; a failure is reduced by hypothesis and printed with what repeats it.  What was
+tried is counted, and said at the end.
 """
 
+from collections import Counter
+from functools import wraps
+
+import pytest
 from hypothesis import HealthCheck, settings
 
 from soak import often
 
-EXAMPLES = {"interp": 10_000, "unit": 1_000, "soak": 10_000}  # in ten minutes, by folder
+EXAMPLES = {"interp": 10_000, "unit": 1_000, "soak": 10_000}  # of a file in ten minutes, by folder
+TRIED = {  # by file
+    "test_haas": "blocks of Haas",
+    "test_yasnac": "blocks of Yasnac",
+    "test_mitsubishi": "blocks of Mitsubishi",
+    "test_circle_mill": "circle mill events and calls",
+    "test_polar_plan": "polar contours",
+    "test_flat_offset": "polar contours with compensation",
+    "test_flat_simplify": "contours with short moves",
+    "soak_text": "hostile files",
+}
+COUNTED = "soak: "  # begins the name of a report's property
 
 
+@pytest.hookimpl(trylast=True)  # behind the choice of -k
 def pytest_collection_modifyitems(items):
-    for item in items:
-        if hasattr(item.obj, "hypothesis"):
-            item.obj._hypothesis_internal_use_settings = settings(
-                max_examples=often(EXAMPLES[item.path.parent.name]),
-                deadline=None,
-                derandomize=False,
-                database=None,
-                print_blob=True,
-                suppress_health_check=list(HealthCheck),
-            )
+    properties = [item for item in items if hasattr(item.obj, "hypothesis")]
+    files = Counter(item.path for item in properties)
+    for item in properties:
+        share = 1 if item.path.parent.name == "soak" else files[item.path]
+        item.obj._hypothesis_internal_use_settings = settings(
+            max_examples=often(EXAMPLES[item.path.parent.name] / share),
+            deadline=None,
+            derandomize=False,
+            database=None,
+            print_blob=True,
+            suppress_health_check=list(HealthCheck),
+        )
+        item.obj.hypothesis.inner_test = counted(item)
+
+
+def counted(item):
+    """Return a property's test that counts the examples it holds for."""
+    test, held = item.obj.hypothesis.inner_test, []
+    item.user_properties.append((COUNTED + TRIED[item.path.stem], held))
+
+    @wraps(test)
+    def counting(*arguments, **words):
+        test(*arguments, **words)
+        held[:] = [sum(held) + 1]
+
+    return counting
+
+
+def pytest_terminal_summary(terminalreporter):
+    reports = [*terminalreporter.getreports("passed"), *terminalreporter.getreports("failed")]
+    tried = Counter()
+    for report in reports:
+        for name, number in report.user_properties:
+            if name.startswith(COUNTED):
+                tried[name.removeprefix(COUNTED)] += sum(number)
+    terminalreporter.section("tried")
+    for name, number in sorted(tried.items()):
+        terminalreporter.write_line(f"{number:8,} {name}")

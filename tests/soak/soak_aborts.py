@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from soak import SEED, often
+from soak import SEED, Tried, often
 from support.operated_machine import Machine
 from support.sim_machines import SIM
 
@@ -19,8 +19,8 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_aborts(name):
-    program = PROGRAMS[name]
+def test_aborts(name, request):
+    program, tried = PROGRAMS[name], Tried(request, "aborts in a real run, and the program again")
     chance = random.Random(SEED)
     with Machine(SIM / f"{name}.ini") as machine:
         whole = machine.run_text(program)
@@ -40,3 +40,4 @@ def test_aborts(name):
             assert again.error is None, seed
             assert again.position == pytest.approx(whole.position, abs=1e-6), seed
             assert again.modes == whole.modes, seed
+            tried.one()

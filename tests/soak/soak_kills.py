@@ -8,7 +8,7 @@ import time
 
 from g12.tools.regress.recording_text import read_recording
 from g12.tools.system import PYTHON
-from soak import SEED, often
+from soak import SEED, Tried, often
 from support.sim_machines import PROGRAMS, ROOT, SIM
 from support.small_configs import write_config
 
@@ -38,8 +38,8 @@ def content_of(folder):
     return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_installs(tmp_path):
-    chance = random.Random(SEED)
+def test_installs(tmp_path, request):
+    chance, tried = random.Random(SEED), Tried(request, "kill -9 of install, mended by install")
     ini = write_config(tmp_path)
     before = content_of(tmp_path)
     words = ("install", ini, "--with", "haas")
@@ -57,10 +57,12 @@ def test_installs(tmp_path):
         assert ini.read_bytes() == before[ini], seed
         left = set(content_of(tmp_path)) - set(before)
         assert not [path for path in left if not path.name.startswith(".")], seed
+        tried.one()
 
 
-def test_recordings(tmp_path):
+def test_recordings(tmp_path, request):
     chance = random.Random(SEED)
+    tried = Tried(request, "kill -9 of regress record, mended by it")
     shutil.copytree(PROGRAMS / "haas", tmp_path / "nc", ignore=shutil.ignore_patterns("regress"))
     words = ("regress", "record", "nc", "--ini", SIM / "mill_inch.ini", "-d", "kept")
     lasts = seconds_of(*words, cwd=tmp_path)
@@ -74,3 +76,4 @@ def test_recordings(tmp_path):
         mended = g12(*words, cwd=tmp_path)
         assert mended.returncode == 0, f"{seed}: {mended.stderr}"
         assert g12("regress", "check", "-d", "kept", cwd=tmp_path).returncode == 0, seed
+        tried.one()

@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from soak import SEED, often
+from soak import SEED, Tried, often
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
 from support.sim_machines import SIM
@@ -26,8 +26,9 @@ X_SPEED, C_SPEED = 150, 360
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_aborts_with_kinematics(name):
+def test_aborts_with_kinematics(name, request):
     program, chance = PROGRAMS[name], random.Random(SEED)
+    tried = Tried(request, "aborts with kinematics, and the program again")
     with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
         whole = machine.run_text(program)
         assert whole.error is None
@@ -48,6 +49,7 @@ def test_aborts_with_kinematics(name):
             assert again.error is None, seed
             keeps_its_limits(again.samples, seed)
             assert again.modes == whole.modes, seed
+            tried.one()
 
 
 def interrupt(machine, chance):
