@@ -51,3 +51,24 @@ def test_another_linuxcnc_is_left_alone(contained, tmp_path):
     assert "a LinuxCNC runs here already, milltask (" in done.stderr
     assert done.stderr.count("\n") == 2
     assert "milltask" in done.stdout
+
+
+def test_the_tool_change_dialogue_is_covered_beside_a_configs_own_programs(contained, tmp_path):
+    """LinuxCNC puts the config's own bin in front of PATH."""
+    (tmp_path / "machine" / "bin").mkdir(parents=True)
+    for program in (tmp_path / "machine" / "bin" / "own", tmp_path / "dialogue"):
+        program.write_text(f"#!/bin/sh\necho this is {program.name}\n")
+        program.chmod(0o755)
+    code = f"""if True:
+        from pathlib import Path
+        from g12.tools.headless.namespaces import Isolated
+        machine, isolated = Path("{tmp_path}/machine"), Isolated()
+        dialogue = "{tmp_path}/dialogue"
+        shown = ["sh", "-c", "$0/bin/own; $0/bin/hal_manualtoolchange", f"{{machine}}/."]
+        isolated.launch(shown, {{machine: {{}}}}, {{"/usr/bin/hal_manualtoolchange": dialogue}})
+        assert isolated.wait(60) == 0
+        print(isolated.log())
+        isolated.close()"""
+    done = contained(f"PYTHONPATH={ROOT}/python {PYTHON} -c '{code}'")
+    assert done.stdout.split("\n")[:2] == ["this is own", "this is dialogue"]
+    assert [path.name for path in (tmp_path / "machine" / "bin").iterdir()] == ["own"]

@@ -6,7 +6,7 @@ this package wait for their turn, and a LinuxCNC of somebody else's is not distu
 a private directory is elsewhere is here a copy in a tree of links that looks like the real one.
 
 The job is that of ``namespaces_init``, and ``turn``, the open file whose lock says whose turn it
-is; ``covers`` cannot be had.
+is; of the files that ``covers`` names only programs can be had.
 """
 
 from __future__ import annotations
@@ -92,11 +92,24 @@ def moved(command: list[str], job: dict) -> list[str]:
     tree = os.path.join(job["scratch"], "tree")
     for directory, files in job["copies"].items():
         copy = mirrored(directory, files, tree)
+        put_in_front(job["covers"], os.path.join(copy, "bin"))
         command = [
             copy + word[len(directory) :] if word.startswith(f"{directory}/") else word
             for word in command
         ]
     return command
+
+
+def put_in_front(covers: dict[str, str], folder: str) -> None:
+    """Give a config its ``bin``, where LinuxCNC looks for programs first, with these in it."""
+    own = os.path.realpath(folder)
+    if os.path.islink(folder):
+        os.unlink(folder)
+    os.makedirs(folder, exist_ok=True)
+    for covered, file in covers.items():
+        os.symlink(file, os.path.join(folder, os.path.basename(covered)))
+    if os.path.isdir(own):
+        link_entries(own, folder, besides="")
 
 
 def shared_memory() -> set[int]:
