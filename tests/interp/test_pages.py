@@ -23,7 +23,13 @@ PROGRAM = re.compile(r"(?:^ {4}.*\n)+?^ {4}M2\n", re.MULTILINE)
 def program_of(page):
     """Return the first program of a page, the code block that ends with M2."""
     text = (ROOT / page).read_text(encoding="utf-8")
-    return re.sub("^ {4}", "", PROGRAM.search(text)[0], flags=re.MULTILINE)
+    return programs_in(text)[0]
+
+
+def programs_in(text):
+    """Return the programs in a page's text."""
+    found = (match[0] for match in PROGRAM.finditer(text))
+    return [re.sub("^ {4}", "", program, flags=re.MULTILINE) for program in found]
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -35,3 +41,20 @@ def test_the_first_program_of_a_page_cuts_what_it_says(page, tmp_path, capsys):
     assert main(["verify", str(program), "--ini", str(ini), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert len(told["pockets"]) + len(told["sections"]) == cuts
+
+
+@pytest.mark.parametrize(("number", "flats"), [(1, [[27.0] * 3]), (2, [[], []])])
+def test_further_programs_of_polar_cut_their_shapes_from_a_bar(number, flats, tmp_path, capsys):
+    text = (ROOT / "ngc" / "polar.md").read_text(encoding="utf-8")
+    program = tmp_path / "page.ngc"
+    program.write_text(programs_in(text)[number], encoding="utf-8")
+    words = [str(program), "--ini", str(SIM / "lathe_mm_headless.ini"), "--stock", "40"]
+    assert main(["verify", *words, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [[asked for asked, _ in part["across_flats"]] for part in told["sections"]] == [
+        pytest.approx(sizes) for sizes in flats
+    ]
+    assert [part["reached"][0] for part in told["sections"]] == pytest.approx(
+        [13.5] * len(flats), abs=0.005
+    )
+    assert told["stock"]["notes"] == []

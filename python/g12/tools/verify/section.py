@@ -202,7 +202,7 @@ def measure_stretch(
         return StretchFacts(float("inf"), 0.0, 0.0, False, nothing, nothing)
     side = stretch[0].side
     radius = tool if side else 0.0
-    points, nearest, left_of, own, steps = laid_along(stretch, paths)
+    points, nearest, left_of, own, steps = laid_along(stretch, paths, radius)
     away = np.abs(points - nearest)
     wrong = left_of * side < -SAME
     off = np.where(wrong, -away, away) - radius
@@ -224,13 +224,16 @@ def measure_stretch(
     return StretchFacts(deviation, left, gouge, through, *reach, flats)
 
 
-def laid_along(stretch: Sequence[Element], paths: ToolPaths) -> tuple[np.ndarray, ...]:
+def laid_along(
+    stretch: Sequence[Element], paths: ToolPaths, radius: float
+) -> tuple[np.ndarray, ...]:
     """Return the tool centre's points, the contour's next to them, their sides, their steps.
 
     Before the steps comes which of the contour's points are no lead to it or from it.
 
     Each block is compared with its own element and those before and after, as far as these are
-    part of a closed contour: a later pass may cross the lead-in's extension.
+    part of a closed contour: a later pass may cross the lead-in's extension. Where one line makes
+    both, in a loop, a point is held to what it is nearer to.
     """
     closed = trimmed(stretch)
     columns = []
@@ -241,13 +244,29 @@ def laid_along(stretch: Sequence[Element], paths: ToolPaths) -> tuple[np.ndarray
         inside = indices.difference((-1, len(stretch)))
         own = {index for index in inside if stretch[index].line == line}
         elements = [stretch[index] for index in own] + [closed[index] for index in inside - own]
-        contour = ContourDistances(elements)
+        contours = [ContourDistances(elements)]
+        if len(own) > 1:
+            contours.append(ContourDistances([closed[index] for index in inside]))
         for tool_path in paths.of(line):
-            nearest, sides = contour.nearest(tool_path)
+            nearest, sides = next_to(contours, tool_path, stretch[0].side, radius)
             parts = ([each[index] for index in inside] for each in (stretch, closed))
             is_shape = on_shape(nearest, *parts)
             columns.append((tool_path, nearest, sides, is_shape, shares_of(tool_path)))
     return tuple(np.concatenate(column) for column in zip(*columns))
+
+
+def next_to(
+    contours: Sequence[ContourDistances], tool_path: np.ndarray, side: int, radius: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points next to a path, and its side, of the contour that each point fits best."""
+    found = [contour.nearest(tool_path) for contour in contours if contour.elements]
+    if len(found) == 1:
+        return found[0]
+    nearest, sides = (np.array(column) for column in zip(*found))
+    away = np.abs(tool_path - nearest)
+    off = np.abs(np.where(sides * side < -SAME, -away, away) - radius)
+    best = (off.argmin(axis=0), np.arange(len(tool_path)))
+    return nearest[best], sides[best]
 
 
 def on_shape(
