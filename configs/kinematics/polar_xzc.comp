@@ -57,7 +57,7 @@ setp polar-xzc.c-acceleration [AXIS_C]MAX_ACCELERATION
 
 so that M68 E3 Q1 asks for the face and M68 E3 Q0 for X, Z and C. \\fBcentre\\fR is the position
 of the X joint at which the tool is on the spindle's axis; it counts when the face is switched on.
-The guard switches only while the machine stands. It goes back to type 0 by itself when the
+The guard switches only when the machine has stood for ten cycles. It goes back to type 0 by itself when the
 machine is switched off, stopped in an emergency or jogged; then the request has to be taken back
 before a new one counts. While the face is on and no program or MDI moves the machine, jogs are
 inhibited.
@@ -120,6 +120,7 @@ author "the g12 package";
 
 #define LAG (0.1 * DEGREE) /* of C by hand, where the planner's acceleration is more than C's */
 #define NEARER 1.2 /* that begins so much outside of where the two are equal */
+#define SETTLED 10 /* cycles of standing: LinuxCNC smooths the joints' way over the last few */
 #define ASIDE 0.4  /* of the acceleration: the rest is for what the slide has to do beside it */
 
 enum { XZC, FACE, BY_HAND };
@@ -274,11 +275,13 @@ static double followed(const struct __comp_state *__comp_inst, double r)
 FUNCTION(guard)
 {
     static int spent; /* the request ended by itself, and was not taken back since */
+    static int standing;
     int asked = request == FACE || request == BY_HAND, by_hand;
     double most = c_acceleration > 0.0 ? followed(__comp_inst, state.radius) : 0.0;
 
     spent = asked && (spent || !enabled || !program);
-    if (!enabled || (program && stands)) type = asked && !spent ? FACE : XZC;
+    standing = stands ? standing + (standing < SETTLED) : 0;
+    if (!enabled || (program && standing == SETTLED)) type = asked && !spent ? FACE : XZC;
     face = state.kind == FACE && !state.begins;
     by_hand = face && request == BY_HAND;
     jog_inhibit = face && !program;

@@ -231,6 +231,108 @@ def test_modes_behind_g13_1_are_those_of_a_section_in_pieces(plane, modes):
     assert ways[0].modes == ways[1].modes
 
 
+CORNERS = np.array([40 + 30j, -40 + 30j, -40 - 30j, 40 - 30j])
+SQUARE = ["G1 X40 C30 F3000", "X-40", "C-30", "X40", "C0"]
+ROUGHLY = ["G21 G18 G8 G90 G94 G64 P0.05 Q0", "G0 X45 Z2 C0", "G12.1"]
+
+
+def off_the_corners(samples):
+    """Return by how much each corner was cut, in mm."""
+    points = samples.axes["X"] * np.exp(1j * np.radians(samples.axes["C"]))
+    return np.abs(points[:, None] - CORNERS).min(axis=0)
+
+
+@pytest.mark.parametrize(
+    ("exact", "sharp"),
+    [("", [0, 0, 0, 0]), ("G61", [1, 1, 1, 1]), ("G61.1", [1, 1, 1, 1]), ("G9", [0, 1, 0, 0])],
+)
+def test_exact_paths_and_stops_on_the_face(lathe, exact, sharp):
+    square = [SQUARE[0], f"G9 {SQUARE[1]}", *SQUARE[2:]] if exact == "G9" else [exact, *SQUARE]
+    run = lathe.run_text([*ROUGHLY, *square, "G13.1", "M2"])
+    assert run.error is None
+    assert (off_the_corners(run.samples) < 0.001).tolist() == [bool(corner) for corner in sharp]
+    assert off_the_corners(run.samples).max() <= 0.052  # G64 P0.05
+
+
+def test_blocks_that_wait_cut_a_section_in_two(lathe):
+    waiting = [line for block in SQUARE for line in (block, "M66 P0 L0")]
+    run = lathe.run_text([*ROUGHLY, *waiting, "G13.1", "M2"])
+    assert run.error is None
+    assert off_the_corners(run.samples).max() <= 0.001
+    assert place(lathe) == (40, 0, 360)
+
+
+def test_m2_inside_is_refused_before_it_moves(lathe):
+    run = lathe.run_text([*ROUGHLY, SQUARE[0], "M2", *SQUARE[1:], "G13.1"])
+    assert run.error.text == "G12.1 line 5: G13.1 is missing: M2 comes before it"
+    assert not on_the_face(lathe)
+    assert set(run.samples.line[run.samples.moving()]) <= {2}
+
+
+def test_pause_on_the_face(lathe):
+    lathe.open_text([*ROUGHLY, *SQUARE, "G13.1", "M2"])
+    lathe.start()
+    lathe.wait_for(lambda status: status.motion_line == 5)
+    lathe.pause()
+    lathe.wait_for(lambda status: status.in_position or lathe.get("motion.current-vel") == 0)
+    stood = lathe.stat().position
+    time.sleep(0.2)
+    assert lathe.stat().position == stood
+    assert on_the_face(lathe)
+    lathe.resume()
+    lathe.wait_idle()
+    assert lathe.errors() == []
+    assert place(lathe) == (40, 0, 360)
+
+
+def test_single_steps_on_the_face(lathe):
+    lathe.open_text([*ROUGHLY, *SQUARE, "G13.1", "G0 Z5", "M2"])
+    stood = []
+    for _ in range(20):
+        lathe.step()
+        lathe.wait_for(lambda status: status.paused or status.idle)
+        time.sleep(0.05)
+        status = lathe.wait_for(lambda status: not lathe.get("motion.current-vel"))
+        stood.append(complex(status.position[X], status.position[Y]))
+        if status.idle and status.position[2] == 5:
+            break
+    assert np.abs(np.array(stood)[:, None] - CORNERS).min(axis=0).max() <= 0.001
+    assert lathe.errors() == []
+    assert not on_the_face(lathe)
+
+
+RUN_FROM = [*ROUGHLY, *SQUARE, "G13.1", "G0 Z5", "M2"]
+
+
+@pytest.mark.parametrize("line", [4, 6, 10])
+def test_run_from_line_runs_the_section_where_it_begins(lathe, line):
+    lathe.mdi("G0 X45 Z2 C0")
+    lathe.open_text(RUN_FROM)
+    lathe.sample()
+    lathe.start(line)
+    lathe.wait_for(lambda status: status.position[2] == 5)
+    lathe.wait_idle()
+    samples = lathe.samples()
+    assert lathe.errors() == []
+    assert samples.line[samples.moving()][0] == 4
+    assert off_the_corners(samples).max() <= 0.052
+    assert not on_the_face(lathe)
+
+
+@pytest.mark.parametrize("away", ["X46", "Z3", "C1"])
+def test_run_from_line_is_refused_elsewhere(lathe, away):
+    lathe.mdi("G0 X45 Z2 C0")
+    lathe.mdi(f"G0 {away}")
+    lathe.open_text(RUN_FROM)
+    lathe.sample()
+    lathe.start(10)
+    lathe.wait_for(lambda status: status.interp == "idle" and lathe.stat().idle)
+    time.sleep(0.5)
+    assert "the tool is not where the section begins" in lathe.errors()[0].text
+    assert not lathe.samples().moving().any()
+    assert not on_the_face(lathe)
+
+
 def test_program_ends_off_the_face(lathe):
     run = lathe.run_text(CIRCLE_AND_SQUARE)
     assert run.error is None

@@ -115,10 +115,11 @@ class Kinematics:
         return self.forward(*joints)
 
     def guard(self, **pins):
-        """Set pins, run a cycle, obey the type as motion would; return it."""
+        """Set pins, run ten cycles, obey the type as motion would; return it."""
         for name, value in pins.items():
             setattr(self.pins, name, value)
-        self.library.run_guard()
+        for _ in range(10):
+            self.library.run_guard()
         self.library.kinematicsSwitch(int(self.pins.type))
         return self.pins.type
 
@@ -254,6 +255,16 @@ def test_guard_waits_until_the_machine_stands(kinematics):
     assert kinematics.guard(stands=1) == 0
 
 
+def test_guard_waits_until_the_joints_are_where_they_go(kinematics):
+    kinematics.guard(request=1.0, stands=0)
+    kinematics.pins.stands = 1
+    types = []
+    for _ in range(10):
+        kinematics.library.run_guard()
+        types.append(kinematics.pins.type)
+    assert types == [0] * 9 + [1]
+
+
 @pytest.mark.parametrize("pin", ["enabled", "program"])
 def test_guard_lets_a_request_count_once(kinematics, pin):
     kinematics.guard(request=1.0)
@@ -291,6 +302,7 @@ def test_a_program_is_held_by_hand_only(kinematics, request_, line, held):
 
 def by_hand(kinematics, radius, request=2.0, speed=150.0, **pins):
     """Return the speed that is left of what is asked for, at a distance from the centre."""
+    kinematics.guard(request=0.0)
     kinematics.guard(request=request)
     kinematics.face(radius, 0, 0)
     kinematics.guard(speed=speed, **pins)

@@ -14,6 +14,7 @@ from g12.polar.face import (
     FaceMove,
     FaceSwitch,
     chosen,
+    flows_into,
     in_face,
     is_able,
     passed,
@@ -53,6 +54,23 @@ def test_far_from_the_pole_a_move_is_able():
 )
 def test_near_the_pole_it_is_not(move):
     assert not is_able(move, LIMITS)
+
+
+@pytest.mark.parametrize(
+    ("following", "flows"),
+    [
+        (line((20, 10), (0, 10)), True),
+        (line((20, 10), (0, 10.1)), False),
+        (line((20, 10), (40, 10)), False),
+        (arc((20, 0), 10, pi / 2, 1), True),
+        (arc((20, 20), 10, -pi / 2, -1), True),
+        (arc((20, 20), 10, -pi / 2, 1), False),
+        (Plunge(1, 100.0, 0.0, -1.0), False),
+    ],
+)
+def test_an_arc_that_flows_into_what_follows(following, flows):
+    assert flows_into(arc((20, 0), 10, 0, pi / 2), following) is flows
+    assert not flows_into(line((0, 10), (20, 10)), following)
 
 
 def test_along_a_radius_it_is_however_near_it_comes():

@@ -29,7 +29,7 @@ from g12.host.kinematics_switch import (
     y_offset,
 )
 from g12.host.program_lines import error_text
-from g12.polar.face import FaceMove, FaceSwitch
+from g12.polar.face import FaceMove, FaceSwitch, flows_into
 from g12.polar.plan import BlockMoves
 from g12.section.block_rules import G1
 from g12.section.line import SectionPlace
@@ -41,6 +41,11 @@ G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
+SAME_PLACE = 1e-3  # program units or degrees
+ELSEWHERE = (
+    "the tool is not where the section begins: "
+    "with kinematics, Run from line cannot pass over a section"
+)
 MEANINGS_CHANGED = "g12: the axes mean something else now"  # for `g12.tools.preview.worker`
 BLOCK_END = ""
 
@@ -78,6 +83,10 @@ class PathControl:
         own_tolerance = code == G64 and settings[TOLERANCE] > 0
         self._within = self._commanded if own_tolerance else self.smooth
         self._in_force, self._blending = self._commanded, self._tolerances
+
+    def renew(self) -> None:
+        """Have the next one commanded in any case: Run from line passes over what set it."""
+        self._in_force = ""
 
     def inside(self) -> None:
         """Set what blends the pieces of one block."""
@@ -229,17 +238,26 @@ class SectionOutput:
             interp.g12_found = modes_found(interp)
             yield from to_face(interp, self.machine_unit, BY_PROGRAM)
             interp.execute(ON_THE_FACE)
+            self.path.renew()
         else:
             interp.execute(interp.g12_found)
             interp.g12_found = None
             yield from to_axes(interp)
         if not has_switched(interp):
             raise SectionPlace(self.code, step.line).refuse(NOT_SWITCHED)
+        if step.on and interp.task and self._is_elsewhere(step.place):
+            yield from to_axes(interp)
+            raise SectionPlace(self.code, step.line).refuse(ELSEWHERE)
         interp.params[INPUT_FOUND] = found
         interp.current_x, interp.CC_current, interp.current_z = step.place
         interp.current_y = -y_offset(interp)
         if not interp.task:
             self.canon.COMMENT(MEANINGS_CHANGED)
+
+    def _is_elsewhere(self, place: tuple[float, float, float]) -> bool:
+        """Tell whether the machine, which the interpreter has just asked, stands elsewhere."""
+        off = (abs(there - planned) for there, planned in zip(self._stands(), place))
+        return max(off) > SAME_PLACE
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
         """Hand over a line, an arc or a move of Z on the face."""
@@ -247,6 +265,8 @@ class SectionOutput:
         block_ends = not isinstance(following, FaceMove) or following.line != step.line
         interp.sequence_number = step.line
         self.path.inside()
+        if isinstance(following, FaceMove) and flows_into(move, following.move):
+            self.path.set(EXACT_PATH)  # nothing to blend, and 2.10 slows an arc for what might be
         self.path.at_end(False, exact_stop, block_ends)
         words = "G1" if not isinstance(move, Arc) else "G3" if move.sweep > 0.0 else "G2"
         values = {"F": move.feed}

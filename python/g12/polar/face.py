@@ -35,6 +35,7 @@ from g12.flat.intersect import height_at, place_at
 
 LOOKS = 16  # places on a line, and on each quarter of an arc, that are looked at
 WORTH_IT = 0.1  # seconds: two switches cost about as much
+SAME_DIRECTION = 1e-6  # radians
 SLACK = 1.0 + 1e-9  # rounding: X and Y together may have just what the slide has
 
 
@@ -158,6 +159,14 @@ def _part_at(move: Arc, side: float) -> float:
     turn = 1 if move.sweep > 0.0 else -1
     centre = (move.cx, move.cc)
     return sweep_between((move.x0, move.c0), place, centre, turn) / move.sweep
+
+
+def flows_into(move: object, following: object) -> bool:
+    """Return whether an arc goes on in its own direction: nothing stops or is blended there."""
+    if not isinstance(move, Arc) or not isinstance(following, (Line, Arc)):
+        return False
+    (x0, c0), (x1, c1) = end_direction(move), start_direction(following)
+    return x0 * x1 + c0 * c1 > 0.0 and abs(x0 * c1 - c0 * x1) <= SAME_DIRECTION
 
 
 def in_face(move: Line | Arc | Plunge, angle: float) -> Line | Arc | Plunge:
