@@ -78,7 +78,7 @@ def goes_up_only(machine, number, seed):
     assert machine.errors() == [], seed
     samples = machine.samples()
     assert max(np.ptp(samples.axes[axis]) for axis in "XC") <= 1e-9, seed
-    assert samples.axes["Z"][-1] == pytest.approx(6), seed
+    assert samples.axes["Z"][-1] == pytest.approx(6, abs=1e-3), seed
 
 
 def keeps_its_limits(samples, seed):
