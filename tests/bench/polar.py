@@ -23,8 +23,6 @@ SAMPLES = PROGRAMS / "polar"
 MANUAL_TOOLS = {1: 0.5, 8: 0.0}
 TOLERANCE = {"mm": 0.005, "inch": 0.0002 * MM_PER_INCH}
 LINES, PAIRS = 10000, 7
-FACE_FEEDS = ((1000, 1.02), (2000, 1.05), (3000, 1.05))
-ROUNDING = 1e-3
 HEXAGON_BLOCKS, FLAT_BLOCKS = range(10, 16), (14, 15, 16)
 
 
@@ -36,12 +34,6 @@ def figures():
             yield real_deviation(lathe, name, "mm", MILLIMETRES[name])
         yield against_ideal(lathe, "hexagon", 1.0, "F250", HEXAGON_BLOCKS, MILLIMETRES)
         yield against_equal_angles(lathe)
-    with Machine(SIM / "lathe_mm.ini") as pieces, Machine(SIM / "lathe_mm_kinematics.ini") as face:
-        for feed, most in FACE_FEEDS:
-            yield by_kinematics(face, pieces, feed, most)
-        yield deviation_on_face(face)
-        for name in ("slot", "circles"):
-            yield from spindle_limits(face, name)
     with Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as lathe:
         for name in INCHES:
             yield real_deviation(lathe, name, "inch", INCHES[name])
@@ -65,7 +57,7 @@ def real_deviation(lathe, name, units, drawing):
 
 def against_ideal(lathe, name, scale, feed, blocks, drawings):
     """Compare the time of a contour at F250 with its length over the feed."""
-    program = _at_feed((SAMPLES / f"{name}.ngc").read_text(), feed, blocks)
+    program = at_feed((SAMPLES / f"{name}.ngc").read_text(), feed, blocks)
     seconds = seconds_in(lathe.run_text(program), blocks)
     length = scale * sum(piece.length for block in blocks for piece in drawings[name].path[block])
     return Figure(
@@ -77,54 +69,10 @@ def against_ideal(lathe, name, scale, feed, blocks, drawings):
     )
 
 
-def by_kinematics(face, pieces, feed, most):
-    """Compare the time of the hexagon on the face with its length over the feed."""
-    program = _at_feed((SAMPLES / "hexagon.ngc").read_text(), f"F{feed}", HEXAGON_BLOCKS)
-    path = MILLIMETRES["hexagon"].path
-    length = sum(piece.length for block in HEXAGON_BLOCKS for piece in path[block])
-    ours, theirs = (
-        seconds_in(lathe.run_text(program), HEXAGON_BLOCKS) / (length / feed * 60)
-        for lathe in (face, pieces)
-    )
-    return Figure(
-        f"polar with kinematics: hexagon against the ideal at F{feed}",
-        ours,
-        most,
-        "",
-        f"with pieces {theirs:.3f}",
-    )
-
-
-def deviation_on_face(face):
-    """Compare the motion of the hexagon at F3000, G64 P0.002, with its drawing."""
-    program = _at_feed((SAMPLES / "hexagon.ngc").read_text(), "F3000", HEXAGON_BLOCKS)
-    program[1] += " P0.002"  # of G64
-    cut = Cut(face.run_text(program))
-    return Figure(
-        "polar with kinematics: real motion against the hexagon at F3000, G64 P0.002",
-        deviation(MILLIMETRES["hexagon"].pieces, cut.points, 0.1)[0],
-        0.002,
-        " mm",
-        f"{len(cut.points)} samples",
-    )
-
-
-def spindle_limits(face, name):
-    """Yield C's highest speed and acceleration in a program near the pole, as shares."""
-    samples = face.run(SAMPLES / f"{name}.ngc").samples
-    steps = np.diff(samples.axes["C"])[samples.kind[1:] != 0]
-    for what, most in (
-        ("speed", np.abs(steps).max() * 1e3 / 360),
-        ("acceleration", np.abs(np.diff(steps)).max() * 1e6 / 3600),
-    ):
-        title = f"polar with kinematics: C's {what} against its limit, {name}"
-        yield Figure(title, most, 1.0 + ROUNDING, "", f"{len(steps)} samples")
-
-
 def against_equal_angles(lathe):
     """Compare the hexagon at F1000 with the coarsest equal angles of the same tolerance."""
     text = (SAMPLES / "hexagon.ngc").read_text()
-    ours = seconds_in(lathe.run_text(_at_feed(text, "F1000", HEXAGON_BLOCKS)), HEXAGON_BLOCKS)
+    ours = seconds_in(lathe.run_text(at_feed(text, "F1000", HEXAGON_BLOCKS)), HEXAGON_BLOCKS)
     pieces = [piece for group in outward(HEXAGON, 6) for piece in group]
     points = np.concatenate([equal_angles(piece) for piece in pieces])
     lathe.mdi("G21 G90 G94 G8 G0 Z5")
@@ -229,7 +177,7 @@ def seconds_in(run, blocks):
     return np.isin(run.samples.line, list(blocks)).sum() * 0.001
 
 
-def _at_feed(text, feed, blocks):
+def at_feed(text, feed, blocks):
     """Return a sample program whose blocks run at another feed."""
     lines = text.splitlines()
     for block in blocks:

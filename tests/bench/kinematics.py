@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12.1 with kinematics beside G12.1 with pieces, and what a post-processor makes of it."""
+
+import math
+
+import numpy as np
+
+from bench import Figure
+from bench.polar import (
+    HEXAGON_BLOCKS,
+    MANUAL_TOOLS,
+    SAMPLES,
+    at_feed,
+    equal_angles,
+    seconds_in,
+)
+from support.contour_geometry import Round, deviation, outward
+from support.operated_machine import Machine
+from support.polar_drawings import HEXAGON, INCHES, MILLIMETRES
+from support.polar_programs import Cut
+from support.sim_machines import SIM
+
+FEEDS = ((1000, 1.02), (2000, 1.05), (3000, 1.05))  # and the most of the ideal time
+ROUNDING = 1e-3
+NO_SLOWER = 1.02  # than pieces, where nothing else is promised
+CIRCLE = Round(30, 20, 2 * math.pi)  # r 10, 20 off the axis
+SLOT_BLOCK, SLOT_LENGTH = (6,), 36.0  # of slot.ngc: through the pole
+
+
+def figures():
+    """Yield the rows of kinematics and pieces side by side."""
+    with Machine(SIM / "lathe_mm.ini") as pieces, Machine(SIM / "lathe_mm_kinematics.ini") as face:
+        for feed, most in FEEDS:
+            yield hexagon(face, pieces, feed, most)
+        for feed, _ in FEEDS:
+            yield circle(face, pieces, feed)
+            yield slot(face, pieces, feed)
+        yield deviation_on_face(face)
+        for name in ("slot", "circles"):
+            yield from spindle_limits(face, name)
+    with (
+        Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as pieces,
+        Machine(SIM / "lathe_inch_kinematics.ini", tools=MANUAL_TOOLS) as face,
+    ):
+        for name in INCHES:
+            yield manual(face, pieces, name)
+
+
+def hexagon(face, pieces, feed, most):
+    """Compare the hexagon on the face with its length over the feed."""
+    program = at_feed((SAMPLES / "hexagon.ngc").read_text(), f"F{feed}", HEXAGON_BLOCKS)
+    path = MILLIMETRES["hexagon"].path
+    ideal = sum(piece.length for block in HEXAGON_BLOCKS for piece in path[block]) / feed * 60
+    ours, others = (
+        seconds_in(lathe.run_text(program), HEXAGON_BLOCKS) / ideal for lathe in (face, pieces)
+    )
+    around = [piece for group in outward(HEXAGON, 6) for piece in group]
+    return Figure(
+        f"polar with kinematics: hexagon against the ideal at F{feed}",
+        ours,
+        most,
+        "",
+        f"with pieces {others:.3f}, {posted(pieces, around, feed)}",
+    )
+
+
+def circle(face, pieces, feed):
+    """Compare the times of a circle beside the axis."""
+    program = ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", f"G3 I-10 F{feed}", "G13.1", "M2"]
+    return beside(
+        f"circle r 10, 20 off the axis, F{feed}",
+        [seconds_in(lathe.run_text(program), (4,)) for lathe in (face, pieces)],
+        CIRCLE.length / feed * 60,
+        posted(pieces, [CIRCLE], feed),
+    )
+
+
+def slot(face, pieces, feed):
+    """Compare the times of a slot through the pole, where C has to turn."""
+    program = at_feed((SAMPLES / "slot.ngc").read_text(), f"F{feed}", SLOT_BLOCK)
+    return beside(
+        f"slot through the pole, F{feed}",
+        [seconds_in(lathe.run_text(program), SLOT_BLOCK) for lathe in (face, pieces)],
+        SLOT_LENGTH / feed * 60,
+        "C turns in place for 0.6 s",
+    )
+
+
+def manual(face, pieces, name):
+    """Compare the times of a manual's whole program."""
+    runs = [lathe.run(SAMPLES / f"{name}.ngc") for lathe in (face, pieces)]
+    assert [run.error for run in runs] == [None, None]
+    ours, others = (run.seconds for run in runs)
+    return Figure(
+        f"polar both ways: {name}, with kinematics against pieces",
+        ours / others,
+        NO_SLOWER,
+        "",
+        f"{ours:.2f} s and {others:.2f} s",
+    )
+
+
+def beside(what, seconds, ideal, more):
+    """Return the row of two times."""
+    ours, others = seconds
+    return Figure(
+        f"polar both ways: {what}, with kinematics against pieces",
+        ours / others,
+        NO_SLOWER,
+        "",
+        f"against the ideal {ours / ideal:.3f} and {others / ideal:.3f}, {more}",
+    )
+
+
+def posted(lathe, pieces, feed):
+    """Tell the time of what posts do: equal angles of C within the tolerance, F as programmed.
+
+    In G94 LinuxCNC takes F for X alone, so the speed on the part is another one.
+    """
+    points = np.concatenate([equal_angles(piece) for piece in pieces])
+    start = pieces[0].start
+    blocks, c = [], math.degrees(np.angle(start))
+    head = ["G21 G18 G8 G90 G94 G64 P0.0025", f"G0 X{abs(start):.6f} Z2 C{c:.6f}", f"F{feed}"]
+    for x, angle in zip(points[:, 0], np.degrees(np.unwrap(points[:, 1]))):
+        blocks.append(f"G1 X{x:.3f} C{angle:.3f}")  # the decimals of a post
+    run = lathe.run_text([*head, *blocks, "M2"])
+    seconds = seconds_in(run, range(4, 4 + len(blocks)))
+    ideal = sum(piece.length for piece in pieces) / feed * 60
+    off = deviation(pieces, Cut(run).points, 0.1)[0]
+    return f"a post's {len(blocks)} blocks {seconds / ideal:.3f} ({off:.3f} mm off)"
+
+
+def deviation_on_face(face):
+    """Compare the motion of the hexagon at F3000, G64 P0.002, with its drawing."""
+    program = at_feed((SAMPLES / "hexagon.ngc").read_text(), "F3000", HEXAGON_BLOCKS)
+    program[1] += " P0.002"  # of G64
+    cut = Cut(face.run_text(program))
+    return Figure(
+        "polar with kinematics: real motion against the hexagon at F3000, G64 P0.002",
+        deviation(MILLIMETRES["hexagon"].pieces, cut.points, 0.1)[0],
+        0.002,
+        " mm",
+        f"{len(cut.points)} samples",
+    )
+
+
+def spindle_limits(face, name):
+    """Yield C's highest speed and acceleration in a program near the pole, as shares."""
+    samples = face.run(SAMPLES / f"{name}.ngc").samples
+    steps = np.diff(samples.axes["C"])[samples.kind[1:] != 0]
+    for what, most in (
+        ("speed", np.abs(steps).max() * 1e3 / 360),
+        ("acceleration", np.abs(np.diff(steps)).max() * 1e6 / 3600),
+    ):
+        title = f"polar with kinematics: C's {what} against its limit, {name}"
+        yield Figure(title, most, 1.0 + ROUNDING, "", f"{len(steps)} samples")
