@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import pytest
 from g12.tools.commands import check, install, uninstall
 from g12.tools.install import features
 from g12.tools.preview.tracer import Tracer, trace_text
+from g12.tools.system import CALL
 from support.sim_machines import ROOT, SIM
 from support.small_configs import HAAS, LATHE, MILL, content_of, with_lines, write_config
 
@@ -150,13 +152,33 @@ def installed(ini, *arguments):
     return install.main([str(ini), "--with", *arguments])
 
 
-@pytest.mark.parametrize("feature", features.FILES)
-def test_every_feature_installs_runs_and_goes(tmp_path, capsys, feature):
+NEXT = """\
+next: restart LinuxCNC, then try in MDI or with a program:
+  {}
+to take it out again: {} uninstall {}
+"""
+
+
+@pytest.mark.parametrize(
+    ("feature", "first"),
+    [
+        ("haas", "G12    is answered with what it needs; nothing moves"),
+        ("yasnac", "G12    is answered with what it needs; nothing moves"),
+        ("mitsubishi", "G12    is answered with what it needs; nothing moves"),
+        ("circle-mill", "G12.2  is answered with what it needs; nothing moves"),
+        ("polar", "G13.1  does nothing, and is no error"),
+        ("polar-g12.3", "G13.3  does nothing, and is no error"),
+        ("programs-haas-mill", "open a .nc program of haas-mill"),
+    ],
+)
+def test_every_feature_installs_runs_and_goes(tmp_path, capsys, feature, first):
     polar = feature in features.POLAR
     ini = write_config(tmp_path, LATHE if polar else MILL)
     before = content_of(tmp_path)
     assert installed(ini, feature) == 0
-    assert "+REMAP = " in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "+REMAP = " in said or "+nc = python3 g12/python/g12 translate" in said
+    assert said.endswith(NEXT.format(first, CALL, ini))
     assert kinds(ini, capsys) == []
     settled = content_of(tmp_path)
     assert installed(ini, feature) == 0
@@ -323,7 +345,9 @@ def test_a_dry_run_shows_everything_and_writes_nothing(tmp_path, capsys):
     said = capsys.readouterr().out
     assert "+REMAP = G13 " in said
     assert "from g12.remap import *" in said
-    assert said.endswith("dry run: nothing was written\n")
+    *_, size, end = said.splitlines()
+    assert re.fullmatch(rf"{tmp_path}/g12: would get the package, \d{{3}} files, \d\.\d MB", size)
+    assert end == "dry run: nothing was written"
     assert content_of(tmp_path) == before
 
 

@@ -11,10 +11,11 @@ from g12.tools.errors import UsageError
 from g12.tools.install import features, package_copy
 from g12.tools.install.config import Config, load_config
 from g12.tools.install.ini_edit import IniText
-from g12.tools.install.plan import InstallPlan, make_plan, names_copy, refuse
+from g12.tools.install.plan import FILTERED, InstallPlan, make_plan, names_copy, refuse
 from g12.tools.install.rules import codes_of, findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
+from g12.tools.system import CALL
 
 SOME = 3  # missing files are named
 BEFORE = {"no-linuxcnc", "python-fails", "does-not-load"}  # what keeps a config from being read
@@ -46,11 +47,34 @@ def install(text: IniText, wanted: Sequence[str], dry_run: bool) -> Iterator[str
     for path, content in changes.items():
         yield from difference(path, content)
     if dry_run:
+        if old_copy:
+            yield f"{config.folder / package_copy.NAME}: would get {size_of_package()}"
         yield "dry run: nothing was written"
         return
     yield from write_changes(plan, config.folder)
     for warning in warnings:
         yield f"{warning.level} [{warning.kind}]: {warning.text}; cure: {warning.cure}"
+    yield from next_steps(text.path, wanted)
+
+
+def size_of_package() -> str:
+    """Return in words how large the copy is."""
+    sizes = [len(content) for content in package_copy.package_files().values()]
+    return f"the package, {len(sizes)} files, {sum(sizes) / 1e6:.1f} MB"
+
+
+def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
+    """Yield what to do once the features are there: a first try that moves nothing, and back."""
+    yield "next: restart LinuxCNC, then try in MDI or with a program:"
+    for feature in wanted:
+        if feature in features.POLAR:
+            yield f"  {features.remaps_of(feature)[1].code:6} does nothing, and is no error"
+        elif feature in features.FILES:
+            code = features.remaps_of(feature)[0].code
+            yield f"  {code:6} is answered with what it needs; nothing moves"
+        else:
+            yield f"  open a .{FILTERED} program of {features.PROGRAMS[feature]}"
+    yield f"to take it out again: {CALL} uninstall {ini}"
 
 
 def readable_config(text: IniText) -> Config:
@@ -110,7 +134,7 @@ def bring_copy_up_to_date(copy: Path) -> list[str]:
         return []
     aside = package_copy.write_copy(copy)
     kept = [f"{copy / name}: your version, kept beside the new one" for name in aside]
-    return [f"{copy}: the package, {len(package_copy.package_files())} files", *kept]
+    return [f"{copy}: {size_of_package()}", *kept]
 
 
 def out_of_date(copy: Path) -> bool:

@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from g12.ini_sections import entries_of
 from g12.tools.install import features
 from g12.tools.install.checking import check_config
 from g12.tools.install.findings import PROBLEM, Finding
@@ -70,7 +71,18 @@ def trial_values(plan: InstallPlan, ini: Ini, scratch: Path) -> Overrides:
     return {
         "RS274NGC": {"SUBROUTINE_PATH": folders or None},
         "PYTHON": {"TOPLEVEL": toplevel, **paths},
+        "FILTER": trial_filters(plan, ini, scratch),
     }
+
+
+def trial_filters(plan: InstallPlan, ini: Ini, scratch: Path) -> dict[str, str]:
+    """Return the lines of [FILTER] that name the copy, as they are for the trial."""
+    found = {}
+    for _, key, value in entries_of(ini.lines, "FILTER"):
+        words = [relocated(plan, word, scratch) for word in value.split()]
+        if words != value.split():
+            found[key] = " ".join(words)
+    return found
 
 
 def relocated(plan: InstallPlan, name: str, scratch: Path) -> str:
