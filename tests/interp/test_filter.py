@@ -83,8 +83,8 @@ def test_what_the_filter_refuses_is_told(told, command):
 
 
 def test_a_picture_is_drawn(told, tmp_path):
-    code, _, errors = told("plot", POCKET, "-o", str(tmp_path / "part.svg"))
-    assert (code, errors) == (0, "")
+    code, _, _ = told("plot", POCKET, "-o", str(tmp_path / "part.svg"))
+    assert (code, (tmp_path / "part.svg").exists()) == (0, True)
 
 
 def test_a_recording_has_the_users_file_and_its_lines(ini, tmp_path, capsys):

@@ -40,6 +40,17 @@ CONSTRUCTS = [
      "G83 X2 Z.5 R.9 Q.2\nG81 X3 Z.5 R.9\nG80\nG0"),
     ("fanuc-mill", "G81 X2. Z.5 R.9\nG91 X.5 K2\nG80 G90",
      "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0"),
+    ("haas-mill", "#1=2.\nWHILE[#1LT4]DO1\nG81 X#1 Z.5 R.9\n#1=#1+1.\nEND1\nG80",
+     "G81 X2 Z.5 R.9\nX3\nG80\nG0"),
+    ("haas-mill", "G81 Z.5 R.9 L0\nM98 P5\nG83 Z.6 R.9 Q.2 L0\nM98 P5\nM30\nO5\nX2.\nX3.\nG80\nM99",
+     "G81 X2 Z.5 R.9\nX3\nG80\nG0\nG83 X2 Z.6 R.9 Q.2\nX3\nG80\nG0"),
+    # what needs nothing done, with the words that are its own
+    ("haas-mill", "G187 P1 E.01\nG103 P1\nX2.\nG103", "X2"),
+    ("fanuc-mill", "G5.1 Q1\nG8 P1\nG1 X2.\nG5.1 Q0", "G1 X2"),
+    ("fanuc-lathe", "G22 X90. Z90. I-9. K-9.\nG26\nG1 X45.", "G1 X45"),
+    # subprograms in any order, in one mode and in two
+    ("haas-mill", "M98 P5\nG91 G1\nM98 P5\nG90\nM30\nO4\nX2.\nM99\nO5\nG53 G90 Z1.\nM98 P4\nM99",
+     "G53 G0 Z1\nX2\nG53 Z1\nG1 X2"),
     # cutter compensation and lengths
     ("haas-mill", "T2 M6\nD2\nG41 G1 X2.\nY3.\nG40 X4.",
      "T2 M6\nG41 D2 G1 X2\nY3\nG40 X4"),
@@ -105,7 +116,8 @@ def test_a_construct_moves_the_same_and_leaves_the_same_modes(tracers, control, 
         return
     kind = read_control(control).machine
     (_, head), tail = HEADS[kind], TAILS[kind]
-    wanted = tracer.trace_text(f"{head}{own}\n{tail}", alone=True)
+    end = "M30\n" if "\nM30\n" in foreign else ""
+    wanted = tracer.trace_text(f"{head}{own}\n{tail}{end}", alone=True)
     assert_same_part(traced, wanted)
     assert traced.modes.gcodes == wanted.modes.gcodes
     assert traced.modes.feed == pytest.approx(wanted.modes.feed)

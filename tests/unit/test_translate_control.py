@@ -43,6 +43,12 @@ def test_a_file_changes_what_it_is_based_on(control):
     assert (own.value("dwell", "cycle"), own.value("dwell", "milliseconds")) == ("seconds", "P")
 
 
+def test_a_comment_can_take_words_with_it(control):
+    own = control('[m_codes]\ncomment = ["M60-M62 P Q"]\nM77 = "comment R"\n')
+    assert [own.meanings[code] for code in ("M61", "M77")] == ["comment P Q", "comment R"]
+    assert "nothing to do, kept as comments, with their P Q: M60 M61 M62" in listing_of(own)
+
+
 def test_a_file_may_be_based_on_a_file_beside_it(tmp_path):
     (tmp_path / "one.toml").write_text('based_on = "haas-mill"\n[m_codes]\nM88 = "M7"\n')
     (tmp_path / "two.toml").write_text('based_on = "one.toml"\ndecimals = "whole"\n')

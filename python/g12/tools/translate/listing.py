@@ -36,11 +36,18 @@ def _codes(meanings: Mapping[str, str]) -> Iterator[str]:
         if meaning.startswith(REFUSED):
             yield f"refused {codes}: {meaning.removeprefix(REFUSED)}"
         else:
-            yield from _wrapped(f"{HEADINGS.get(meaning, meaning)}:", codes.split())
+            yield from _wrapped(f"{_heading(meaning)}:", codes.split())
+
+
+def _heading(meaning: str) -> str:
+    kind, *letters = meaning.split(" ") if meaning.startswith("comment") else [meaning]
+    beside = f", with their {' '.join(letters)}" if letters else ""
+    return f"{HEADINGS.get(kind, kind)}{beside}"
 
 
 def _order(meaning: str) -> tuple[int, str]:
-    first = [*HEADINGS].index(meaning) if meaning in HEADINGS else len(HEADINGS)
+    kind = "comment" if meaning.startswith("comment") else meaning
+    first = [*HEADINGS].index(kind) if kind in HEADINGS else len(HEADINGS)
     return first + meaning.startswith(REFUSED), meaning
 
 

@@ -5,7 +5,7 @@ Every key is known, every value legal, no code has two meanings: whatever else s
 refused with its line. What a code does is one of
 
 - ``same``: LinuxCNC's own code of that number does the same
-- ``comment``: nothing is left to do, it stays as a comment
+- ``comment``: nothing is left to do, it stays as a comment; ``comment P E`` with its P and E words
 - ``machine``: the builder's; the machine itself must know it (a REMAP line, an M1xx file)
 - ``refuse: sentence``: refused, the sentence says what to do instead
 - a name of MEANINGS: a rule of the translation
@@ -68,6 +68,7 @@ TABLES: dict[str, dict[str, object]] = {
 OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that number is not
     f"M{n}" for n in (*range(10), 19, 30, *range(48, 54), *range(60, 74))
 )
+COMMENT = re.compile(r"comment( [A-Z])*")
 PATTERN = re.compile(r"R*T+O+")
 
 
@@ -252,15 +253,17 @@ class _Checked:
             listed = key in ("same", "comment", "machine")
             if listed != isinstance(value, list):
                 self._refuse(key, f"{key} must be a {'list of codes' if listed else 'text'}")
-            for code in value if listed else [key]:
-                for one in self._each(letter, str(code), key):
+            for entry in value if listed else [key]:
+                code, *words = str(entry).split(" ") if key == "comment" else [str(entry)]
+                meaning = " ".join([key, *words]) if listed else value
+                for one in self._each(letter, code, key):
                     if one in meanings:
                         self._refuse(key, f"{one} has two meanings")
                     if one in OWNED and "machine" in (key, value):
                         self._refuse(
                             key, f"{one} is LinuxCNC's own: no machine can give it a meaning"
                         )
-                    meanings[one] = key if listed else self._meaning(letter, key, value)
+                    meanings[one] = self._meaning(letter, key, meaning)
         return meanings
 
     def _each(self, letter: str, code: str, key: str) -> list[str]:
@@ -275,7 +278,7 @@ class _Checked:
         return [code]
 
     def _meaning(self, letter: str, key: str, value: str) -> str:
-        known = value in ("same", "comment", "machine", *MEANINGS[letter])
+        known = value in ("same", "machine", *MEANINGS[letter]) or COMMENT.fullmatch(value)
         if not known and not value.startswith("refuse: ") and not OWN_CODES.fullmatch(value):
             names = ", ".join(("same", "comment", "machine", "refuse: …", *MEANINGS[letter]))
             self._refuse(key, f'{key} = "{value}" must be one of {names}, or codes of LinuxCNC')

@@ -257,7 +257,10 @@ def _end(line: int, text: str) -> ForeignBlock:
 
 
 def _goto(line: int, text: str) -> ForeignBlock:
-    raise NotTranslated("GOTO is not translated: write the loop as WHILE […] DO1 … END1")
+    raise NotTranslated(
+        "GOTO is not translated: write a loop as WHILE […] DO1 … END1, "
+        "a choice as IF […] THEN #… = …"
+    )
 
 
 def _call(line: int, text: str) -> ForeignBlock:
@@ -284,6 +287,11 @@ def _word(text: str, at: int) -> tuple[ForeignWord, int]:
         return _plain_word(plain.groups()), plain.end()
     named = NAMED_WORD.match(text, at)
     letter, start = (named[1], named.end()) if named else (text[at], at + 1)
+    if letter == ",":
+        raise NotTranslated(
+            f"{excerpt(text[at:])}: a corner that is broken or rounded by a word: write its line "
+            "or arc as a block"
+        )
     if not ("A" <= letter[0] <= "Z"):
         raise NotTranslated(f"{excerpt(text[at:])} does not start with a word")
     if start >= len(text) or "A" <= text[start] <= "Z":

@@ -23,6 +23,7 @@ from g12.tools.translate.rules import (
 )
 
 WORD_RULES = (
+    codes.keep_as_comments,
     codes.map_codes,
     modes.follow_modes,
     polar.plane_letters,

@@ -11,8 +11,19 @@ from g12.tools.translate.blocks.lexer import ForeignWord
 RULES = frozenset((*MEANINGS["G"], *MEANINGS["M"]))
 
 
+def keep_as_comments(draft: Draft) -> None:
+    """Make comments of the codes that need nothing done, and of the words that are theirs."""
+    for word in [w for w in draft.words if w.letter in "GM" and w.kind == "number"]:
+        meaning, *letters = draft.control.meanings.get(word.code, "").split(" ")
+        if meaning != "comment" or word.code in (draft.machine_codes or ()):
+            continue
+        own = [w for w in draft.words if w.letter in letters]
+        draft.words = [w for w in draft.words if w is not word and w not in own]
+        draft.comments.append(" ".join([word.code, *(w.text for w in own)]))
+
+
 def map_codes(draft: Draft) -> None:
-    """Replace every code, keep it, make it a comment, hand it to its rule, or refuse it."""
+    """Replace every code, keep it, hand it to its rule, or refuse it."""
     named = draft.control.tables.get("words", {})
     words: list[ForeignWord] = []
     for word in draft.words:
@@ -33,9 +44,6 @@ def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
         return [word]
     if meaning == "same":
         return [word]
-    if meaning == "comment":
-        draft.comments.append(code)
-        return []
     if meaning in RULES:
         return handed_over(draft, meaning, word)
     if meaning == "machine":

@@ -57,7 +57,9 @@ def begin(draft: Draft, code: str) -> None:
     motions = draft.take_codes(MOTIONS)
     if motions:
         draft.change(motion=motions[0])
-    kept = stored_words(draft)
+    given = {word.letter for word in draft.words}
+    is_complete = draft.state.cycle_words == UNSURE and given >= {"Z", "R", *NEEDS.get(code, "")}
+    kept = {} if is_complete else stored_words(draft)
     if code != draft.state.cycle:
         draft.change(cycle=code)
     drill(draft, code, kept)

@@ -28,17 +28,18 @@ def class_of(draft: Draft, word: ForeignWord) -> str:
     letter = word.letter
     if letter == "F":
         return "feed_rev" if draft.state.feed_mode == "G95" else "feed"
-    if (
-        letter == "K"
-        and is_cycle(draft)
-        and draft.control.value("subprograms", "cycle_repeat") == "K"
-    ):
-        return ""
+    if letter in "IJK" and is_cycle(draft) and not is_arc(draft):
+        return ""  # K counts there, the others are refused
     if letter in "HC" and draft.control.is_lathe:
         return "length" if draft.state.polar == "on" else "angle"
     if letter in ANGLES:
         return "angle"
     return "length" if letter in LENGTHS else ""
+
+
+def is_arc(draft: Draft) -> bool:
+    """Tell whether the block ends a cycle with an arc."""
+    return not {"G2", "G3"}.isdisjoint(draft.codes())
 
 
 def is_cycle(draft: Draft) -> bool:

@@ -51,6 +51,9 @@ def refuse_leftovers(draft: Draft) -> None:
         seen.add(word.letter)
         inside = draft.state.polar != "off" and word.letter in "UH"
         if word.letter in AXIS_NUMBERS and word.letter not in axes and not inside:
-            raise NotTranslated(f"{word.text}: this control's machine has the axes {axes}")
+            raise NotTranslated(
+                f"{word.text}: this control's machine has the axes {axes}; for another one say "
+                f'axes = "{axes}{word.letter}" in a control of your own'
+            )
         if word.letter not in LETTERS and word.letter not in AXIS_NUMBERS and not inside:
             raise NotTranslated(f"{word.text} is not understood in this block")

@@ -20,6 +20,7 @@ def motion_mode(draft: Draft) -> None:
     if "G53" in codes or draft.state.cycle or draft.has_motion:
         return
     motion = next((code for code in codes if code in MOTIONS), "")
+    refuse_rounding(draft, motion or draft.state.motion)
     if CONSUMERS.intersection(codes):
         if motion and (draft.axis_words() or "G28" in codes or "G30" in codes):
             keep_for_later(draft, motion)
@@ -29,6 +30,13 @@ def motion_mode(draft: Draft) -> None:
         draft.change(motion=motion, own_motion=AS_PROGRAMMED)
     elif moves(draft):
         bare_words(draft)
+
+
+def refuse_rounding(draft: Draft, motion: str) -> None:
+    """Refuse the R of a straight line, a corner that some controls round."""
+    straight = motion in ("G0", "G1") and not CONSUMERS.intersection(draft.codes())
+    if straight and "R" in draft.letters() and draft.axis_words():
+        raise NotTranslated(f"R beside {motion}: write the arc of the corner as a block")
 
 
 def moves(draft: Draft) -> bool:

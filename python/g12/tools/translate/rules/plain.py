@@ -37,7 +37,8 @@ def is_plain(draft: Draft) -> bool:
         elif letter == "F":
             modes["feed"] = value
     motion = modes.get("motion", state.motion)
-    if motion not in MOTIONS or control.meanings.get(motion) != "same":
+    arc = motion in ("G2", "G3") or "R" not in seen
+    if not arc or motion not in MOTIONS or control.meanings.get(motion) != "same":
         return False
     if any(getattr(state, mode) != value for mode, value in modes.items()):
         draft.change(**modes)
