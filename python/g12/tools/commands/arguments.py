@@ -24,7 +24,7 @@ from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import TraceFailure
 from g12.tools.progress import working
 from g12.tools.system import CALL
-from g12.tools.units import clock
+from g12.tools.units import UNITS, clock
 from g12.tools.verify.proof import StockText
 
 GOOD, FINDING, USAGE = 0, 1, 2
@@ -93,25 +93,24 @@ def program_parser(name: str, description: str, epilog: str) -> Parser:
     return parser
 
 
-def add_stock(parser: argparse.ArgumentParser) -> None:
-    """Add the word that says what is cut."""
+def cut_parser(name: str, description: str, epilog: str, run: str) -> Parser:
+    """Return the parser of a command for what a program cuts; ``run`` says what --run is for."""
+    parser = program_parser(name, description, epilog)
+    parser.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
     parser.add_argument(
         "--stock",
         metavar="SIZE",
         help="a bar's diameter on a lathe (40), a block and a bore on a mill "
         "(100x80x20, 100x80x20@-10,-10, bore 30); in the program's unit, or 40mm, 1.5in",
     )
+    parser.add_argument("--run", action="store_true", help=run)
+    add_override(parser, "of --run")
+    return parser
 
 
 def stock_of(options: argparse.Namespace) -> StockText | None:
     """Return the stock that is said."""
     return StockText(options.stock, options.units) if options.stock else None
-
-
-def add_run(parser: argparse.ArgumentParser, what: str) -> None:
-    """Add the words of commands that can also run the program."""
-    parser.add_argument("--run", action="store_true", help=what)
-    add_override(parser, "of --run")
 
 
 def add_override(parser: argparse.ArgumentParser, whose: str) -> None:

@@ -14,12 +14,10 @@ from pathlib import Path
 from g12.tools.commands.arguments import (
     GOOD,
     Parser,
-    add_run,
-    add_stock,
     check_run,
     checked_ini,
+    cut_parser,
     one_line,
-    program_parser,
     samples_of_run,
     stock_of,
 )
@@ -33,7 +31,6 @@ from g12.tools.preview.ended import traced
 from g12.tools.preview.moves import message_lines
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.progress import working
-from g12.tools.units import UNITS
 from g12.tools.verify.proof import subject_of
 from g12.tools.verify.seen import seen_in
 
@@ -49,12 +46,10 @@ exit code: 0 the picture is there, 1 the program has an error, 2 wrong use
 
 def command_parser() -> Parser:
     """Return the command's parser."""
-    parser = program_parser("plot", __doc__, EXAMPLES)
+    run = "run the program headless and draw its real motion over the programmed path"
+    parser = cut_parser("plot", __doc__, EXAMPLES, run)
     parser.add_argument("-o", "--output", type=Path, required=True, help="a .png, .svg or .pdf")
-    parser.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
     parser.add_argument("--feeds", action="store_true", help="colour paths by feed, not by depth")
-    add_stock(parser)
-    add_run(parser, "run the program headless and draw its real motion over the programmed path")
     return parser
 
 

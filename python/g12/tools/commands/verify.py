@@ -14,13 +14,11 @@ from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
     Parser,
-    add_run,
-    add_stock,
     check_run,
     checked_ini,
+    cut_parser,
     number_above,
     one_line,
-    program_parser,
     samples_of_run,
     stock_of,
     tell_whose_lines,
@@ -30,7 +28,7 @@ from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.ended import traced
 from g12.tools.progress import working
-from g12.tools.units import UNITS, unit_of
+from g12.tools.units import unit_of
 from g12.tools.verify.proof import Proof, prove
 from g12.tools.verify.report import as_json, as_text
 from g12.tools.verify.source_lines import proof_in_source
@@ -55,14 +53,11 @@ exit code: 0 everything is as programmed, 1 something is not, 2 wrong use
 
 def command_parser() -> Parser:
     """Return the command's words."""
-    parser = program_parser("verify", __doc__, EXAMPLES)
+    parser = cut_parser("verify", __doc__, EXAMPLES, "measure the real motion of a headless run")
     parser.add_argument(
         "--tolerance", type=number_above(0), metavar="MM", help="in place of the usual ones"
     )
-    parser.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
     parser.add_argument("--json", action="store_true", help="print values in mm for a program")
-    add_stock(parser)
-    add_run(parser, "measure the real motion of a headless run")
     return parser
 
 
