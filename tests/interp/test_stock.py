@@ -113,6 +113,13 @@ def test_what_of_the_bar_stands_beyond_a_flat_is_found(told):
     assert segment - 50 * 12 - 450 < area < segment - 50 * 12  # the leads cut some of it
 
 
+def test_a_section_above_the_bar_leaves_all_of_it(told):
+    flat = [line for line in FLAT if line != "Z-5"]
+    code, _, (text,) = told("40", *FACE, *flat, ini=LATHE)
+    segment = 20**2 * math.acos(13.5 / 20) - 13.5 * math.sqrt(20**2 - 13.5**2)
+    assert code == 1 and float(text.split()[2]) == pytest.approx(segment, rel=1e-3)
+
+
 def test_a_rapid_into_the_bar_is_found(told):
     lines = [*FLAT, "G0 C180", "G12.1", "G1 C25 F2000", "G13.1", "G0 Z-3", "X20", "Z2"]
     code, _, found = told("40", *FACE, *lines, ini=LATHE)

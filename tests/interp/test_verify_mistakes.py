@@ -163,5 +163,44 @@ def test_a_lost_minus_sign_is_found(head, block, found, proof_of):
     assert told(proof_of(*MILL, *head, block)) == [text]
 
 
+@pytest.mark.parametrize(
+    ("z", "found"),
+    [("Z5", ["its contour at Z5 lies above Z2"]), ("Z2", []), ("Z-5", [])],
+)
+def test_a_lost_minus_sign_of_a_section_is_found(z, found, proof_of):
+    flat = [z if line == "Z-5" else line for line in FLAT]
+    texts = told(proof_of(*LATHE, "G0 X60 Z2 C0", *flat, machine="lathe_mm"))
+    assert [text.partition(",")[0] for text in texts] == found
+
+
+def test_a_section_at_the_depth_it_begins_at_is_good(proof_of):
+    flat = [line for line in FLAT if line != "Z-5"]
+    lines = ["G0 X60 Z2 C0", "G1 Z-5 F1000", *flat[:-2], "Z2", "G13.1"]
+    assert told(proof_of(*LATHE, *lines, machine="lathe_mm")) == []
+
+
+def test_a_section_in_a_sub_names_the_line_that_calls_it(proof_of):
+    lines = ["o100 sub", *FLAT, "o100 endsub", *LATHE, "G0 X60 Z2 C0", "o100 call"]
+    proof = proof_of(*lines, machine="lathe_mm")
+    title = section_text(proof.sections[0], proof, MM).splitlines()[0]
+    assert title == "lines 2 to 8, called in line 14: G12.1"
+
+
 def test_a_pocket_at_the_present_depth_is_good(proof_of):
     assert told(proof_of(*MILL, "G0 Z-4", "G13 I9 Z-4 D4", "G0 Z1")) == []
+
+
+# ---------------------------------------------------------------- the travel
+
+
+@pytest.mark.parametrize(
+    ("second", "found"),
+    [
+        ("G0 X3000", ["the X axis would go to 3004, its limit is 500 mm"]),
+        ("G55 G0 X3000", []),
+        ("G0 X300", []),
+    ],
+)
+def test_pockets_farther_apart_than_the_travel_are_found(second, found, proof_of):
+    block = "G13 I9 Z-3 D4"
+    assert told(proof_of(*MILL, block, "G0 Z1", second, block, "G0 Z1")) == found

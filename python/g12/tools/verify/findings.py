@@ -19,6 +19,7 @@ from g12.tools.verify.pocket_order import ENDS
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.wanted_circle import Cutter, Target
+from g12.tools.verify.wanted_contour import SectionContour
 
 LAST_DECIMAL = 0.0005  # mm: arcs whose words are rounded do not close any better
 SAME_AREA = 0.01  # mm², less is rounding
@@ -29,6 +30,7 @@ SAME_SIZE = 1e-4  # mm
 SAME_ANGLE = 1e-3  # degree
 SAME = 2e-3  # mm: circles of the same depth and radius
 MODES = {"_metric": ("G20", "G21"), "_absolute": ("G91", "G90"), "_units_per_rev": ("G94", "G95")}
+LOST_MINUS = "lies above Z{}, where the tool comes from: it cuts air (a lost minus sign?)"
 UNMEASURED = "a cycle cuts here that could not be measured"
 
 
@@ -71,10 +73,7 @@ def depth_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator
     deepest = facts.target.schedule.deepest
     if cuts_air(facts.target, tolerance):
         at, start = (unit.text(facts.target.wall.height(depth)) for depth in (deepest, 0.0))
-        yield (
-            f"its depth Z{at} lies above Z{start}, where the tool comes from: it cuts air "
-            "(a lost minus sign?)"
-        )
+        yield f"its depth Z{at} {LOST_MINUS.format(start)}"
         return
     too_high = facts.depths[-1] - deepest
     if abs(too_high) > tolerance:
@@ -176,7 +175,8 @@ def overrun_text(overrun: Overrun, unit: Unit) -> str:
 
 def gouged(facts: SectionFacts, unit: Unit) -> str:
     """Return the gouged area of a section in words: of a deep one only a part is measured."""
-    return f"{'at least ' if facts.through else ''}{unit.area(facts.gouge)}"
+    least = facts.through and facts.gouge > SAME_AREA
+    return f"{'at least ' if least else ''}{unit.area(facts.gouge)}"
 
 
 def is_wrong_tool(cutter: Cutter) -> bool:
@@ -238,9 +238,18 @@ def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> 
         yield f"the contour cannot be read from the words: {facts.section.doubt}"
         return
     yield from mistake_findings(facts)
+    yield from air_findings(facts.section, unit)
     yield from contour_findings(facts, tolerance, unit)
     yield from block_findings(facts, unit)
     yield from turn_findings(facts)
+
+
+def air_findings(section: SectionContour, unit: Unit) -> Iterator[str]:
+    """Yield that a compensated contour lies as a whole above where the tool comes from."""
+    depths = [each.depth for each in section.elements if each.side and not each.ramp]
+    if depths and min(depths) > section.z + SAME_LEVEL:
+        at, start = unit.text(min(depths)), unit.text(section.z)
+        yield f"its contour at Z{at} {LOST_MINUS.format(start)}"
 
 
 def mistake_findings(facts: SectionFacts) -> Iterator[str]:

@@ -150,9 +150,10 @@ class InStock:
             height = min(self._moves[index].end[Z] for index in own)
             plane = Plane(section, self._moves[section.at])
             asked = (beyond(stretch, plane, self.shape) for stretch in stretches_of(section))
-            cleared = self.cleared.before(len(self._moves), height)
+            in_air = height > self.top - SAME_HEIGHT
+            cleared = Polygon() if in_air else self.cleared.before(len(self._moves), height)
             left = unary_union([area for area in asked if area]).difference(cleared)
-            if height < self.top - SAME_HEIGHT and left.area > LEAST_AREA:
+            if left.area > LEAST_AREA:
                 yield Standing(section.line, left.area, height)
 
 

@@ -23,7 +23,7 @@ from g12.tools.preview.moves import Move, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import MM, Unit, unit_of
-from g12.tools.verify.axis_limits import overruns_of, travel_of
+from g12.tools.verify.axis_limits import has_one_zero, overruns_of, travel_of, widths_of
 from g12.tools.verify.codes import Codes
 from g12.tools.verify.executed_subs import executed_everywhere
 from g12.tools.verify.findings import (
@@ -201,11 +201,13 @@ def measured(
     """Return what is measured of a program; ``there`` are its moves on the machine, if known."""
     moves, path, real = subject.trace.moves, subject.path, subject.real
     travel, known = travel_of(subject.ini), {}
+    together = there is not None and has_one_zero(subject.trace.events)
+    widths = widths_of((block for block, _ in asked.circles), there) if together else {}
     pockets = []
     for block, target in counted(asked.circles, "measuring pocket", tell):
         own = range(block.at, block.end)
         facts = measure_pocket(target, own, path, moves, tolerances.pocket, real, known)
-        overruns = None if there is None else tuple(overruns_of(block, there, travel))
+        overruns = None if there is None else tuple(overruns_of(block, there, travel, widths))
         left = left_otherwise(block, target.leaves)
         pockets.append(replace(facts, overruns=overruns, left_behind=left))
     c_limit = limits_of(subject.ini).axes[C]

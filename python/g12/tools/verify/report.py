@@ -123,7 +123,10 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
     ]
     found = list(section_findings(facts, proof.tolerances.polar, unit))
     notes = list(section_notes(facts))
-    return paragraph(f"lines {section.line} to {section.last}: {section.code}", rows, notes, found)
+    call = proof.subject.trace.moves[section.at].block
+    called = "" if section.line <= call <= section.last else f", called in line {call}"
+    title = f"lines {section.line} to {section.last}{called}: {section.code}"
+    return paragraph(title, rows, notes, found)
 
 
 def width_rows(facts: SectionFacts, unit: Unit) -> list[tuple[str, str]]:
