@@ -42,27 +42,35 @@ class Choice:
 
 @dataclass(frozen=True)
 class Number:
-    """A setting that is a finite number, from ``least`` on; without one, above zero."""
+    """A setting that is a finite number, from ``least`` on; without one, above zero.
+
+    ``most`` is the greatest that is legal, if there is one.
+    """
 
     default: float | None
     least: float | None = None
+    most: float = math.inf
 
     def read(self, text: str) -> float:
         """Return the number, or raise ValueError."""
         value = float(text.replace("_", " "))  # Python alone would take 1_0 for 10
         enough = value > 0 if self.least is None else value >= self.least
-        if not (enough and math.isfinite(value)):
+        if not (enough and math.isfinite(value) and value <= self.most):
             raise ValueError(text)
         return value
 
     @property
     def legal(self) -> str:
         """The legal values, for the start-up error."""
-        return "a number above 0" if self.least is None else f"a number from {number(self.least)}"
+        above = "a number above 0" if self.least is None else f"a number from {number(self.least)}"
+        return above if math.isinf(self.most) else f"{above}, {number(self.most)} at most"
 
 
 TABLE: dict[str, Choice | Number] = {
     "CLEARING": Choice("rings", ("rings", "spiral")),
+    "ENTRY": Choice("plunge", ("plunge", "helix")),
+    "ENTRY_ANGLE": Number(3.0, most=45.0),
+    "PLUNGE_FEED": Number(100.0, most=100.0),
     "YASNAC_TRAVERSE": Number(0.0, least=0.0),
     "POLAR_X": Choice("inherit", ("inherit", "diameter", "radius")),
     "POLAR_Z": Choice("refuse", ("refuse", "allow")),
@@ -78,11 +86,15 @@ TABLE: dict[str, Choice | Number] = {
 class Settings:
     """The settings of section ``[G12]``.
 
-    Lengths and feeds are in machine units (per minute). ``None`` means that the default
+    Lengths and feeds are in machine units (per minute), ``entry_angle`` in degrees,
+    ``plunge_feed`` in per cent of F. ``None`` means that the default
     depends on the machine: a tolerance of 0.005 mm or 0.0002 in.
     """
 
     clearing: str = TABLE["CLEARING"].default
+    entry: str = TABLE["ENTRY"].default
+    entry_angle: float = TABLE["ENTRY_ANGLE"].default
+    plunge_feed: float = TABLE["PLUNGE_FEED"].default
     yasnac_traverse: float = TABLE["YASNAC_TRAVERSE"].default
     polar_x: str = TABLE["POLAR_X"].default
     polar_z: str = TABLE["POLAR_Z"].default

@@ -50,6 +50,9 @@ def test_the_tolerance_is_in_machine_units(text, mm, tolerance):
     ("key", "value", "message"),
     [
         ("CLEARING", "zigzag", "[G12] CLEARING = zigzag: must be rings or spiral"),
+        ("ENTRY", "ramp", "[G12] ENTRY = ramp: must be plunge or helix"),
+        ("ENTRY_ANGLE", "46", "[G12] ENTRY_ANGLE = 46: must be a number above 0, 45 at most"),
+        ("PLUNGE_FEED", "0", "[G12] PLUNGE_FEED = 0: must be a number above 0, 100 at most"),
         ("POLAR_TOLERANCE", "0", "[G12] POLAR_TOLERANCE = 0: must be a number from 0.00001"),
         ("POLAR_TOLERANCE", "nan", "[G12] POLAR_TOLERANCE = nan: must be a number from 0.00001"),
         (

@@ -6,7 +6,9 @@ Source: Haas Mill Operator's Manual, "G12 Circular Pocket Milling CW / G13 CCW".
 The motions of `ngc/g12_haas.ngc`, per level:
 
 1. with X or Y in the block: rapid to the centre at the present Z (before the first level)
-2. feed to the level's Z in the centre; without Z in the block it is the present one
+2. feed to the level's Z in the centre; without Z in the block it is the present one. Or, with a
+   helix: a half circle onto it, down along it (`entry`), once round, and as a half turn onto the
+   first ring, if that is larger; 3 is done then, and 4 too if the ring is the helix's own
 3. half circle from the centre to (+b, 0), turning the way of the cut, tangent to the ring
 4. full circle of radius b
 5. for each further ring: a tangent link outward, then its full circle; the last is K exactly
@@ -17,7 +19,7 @@ A tool-centre radius b is the programmed radius less the tool radius.
 Rules, in the order of the checks: G17 and the modes of `check_modes`; every word known; I
 required; K and Q together, both above 0; L whole, from 1; without X and Y `check_start`; D whole,
 from 0, in the tool table, or a cutter known without it; I above 0, greater than the tool radius by
-a ring that can be cut, less than K; not too many circles.
+a ring that can be cut, less than K; not too many circles; a helix that comes down.
 """
 
 from __future__ import annotations
@@ -36,6 +38,15 @@ from g12.cycles.common import (
     steps_between,
 )
 from g12.cycles.context import XY, Context, Tool
+from g12.cycles.entry import (
+    CLEARED,
+    STRAIGHT_DOWN,
+    Descent,
+    Helix,
+    PocketEntry,
+    check_helix,
+    helix_of,
+)
 from g12.cycles.travel import CycleExtent
 from g12.cycles.words import Words
 from g12.errors import number
@@ -58,6 +69,11 @@ class Pocket(NamedTuple):
     first_grow: float  # by how much the first link grows
     shrink: float  # by which share of that the last one is shorter
     spiral: bool
+    helix: Helix
+    descent: Descent  # to the first level
+    next_descent: Descent  # to each further one
+    feed: float
+    plunge_feed: float
     commanded_radius: float | None  # of the cutter that D names, None without D
     message: str | None  # for the operator, never a refusal
 
@@ -68,7 +84,7 @@ class Pocket(NamedTuple):
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/g12_haas.ngc`, but for the direction."""
-        spring = not self.z_step
+        goes_on = not self.z_step or self.next_descent.turns
         return {
             "x": self.x,
             "y": self.y,
@@ -80,12 +96,30 @@ class Pocket(NamedTuple):
             "links": self.links,
             "growth": self.first_grow / self.first_radius,
             "shrink": self.shrink,
-            "keep": self.first_radius / self.last_radius if spring else 0.0,
+            "keep": self.first_radius / self.last_radius if goes_on else 0.0,
             "rings": not self.spiral,
+            "feed": self.feed,
+            "plunge_feed": self.plunge_feed,
+            **self._helix_locals(),
+        }
+
+    def _helix_locals(self) -> dict[str, float]:
+        radius, last = self.helix.radius, self.helix.last
+        return {
+            "turns": self.descent.turns,
+            "fall": self.descent.fall,
+            "next_turns": self.next_descent.turns,
+            "next_fall": self.next_descent.fall,
+            "helix": radius,
+            "last_turns": last,
+            "easing": 1 / (last + 1),
+            "outward": self.first_radius / radius if radius else 1.0,
         }
 
 
-def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pocket:
+def plan_pocket(
+    words: Words, context: Context, clearing: str = "rings", entry: PocketEntry = STRAIGHT_DOWN
+) -> Pocket:
     """Return the pocket of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context)
     words.check_known(KNOWN_WORDS)
@@ -106,13 +140,17 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
     growth = stepover / 2 if clearing == "spiral" else stepover
     links = steps_between(first, finished, growth, context.length(ROUNDING_MM))
     check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
+    z = coordinate(depth, context.z, context)
+    z_step = depth or 0.0 if context.incremental else 0.0
+    helix = helix_of(entry, first - cutter.radius, cutter.radius)
+    check_helix(words, helix, context.z - z, cutter.radius)
     last_grow = finished - first - growth * (links - 1)
     return Pocket(
         x=x,
         y=y,
         move_to_centre=centre_word,
-        z=coordinate(depth, context.z, context),
-        z_step=depth or 0.0 if context.incremental else 0.0,
+        z=z,
+        z_step=z_step,
         levels=levels,
         first_radius=first - cutter.radius,
         last_radius=finished - cutter.radius,
@@ -120,9 +158,14 @@ def plan_pocket(words: Words, context: Context, clearing: str = "rings") -> Pock
         first_grow=min(growth, finished - first),
         shrink=1 - last_grow / growth if links > 1 else 0.0,
         spiral=clearing == "spiral",
+        helix=helix,
+        descent=helix.descent(context.z - z),
+        next_descent=helix.descent(-z_step),
+        feed=context.feed,
+        plunge_feed=context.feed * entry.feed / 100.0,
         commanded_radius=cutter.radius if with_d else None,
         message=upward(words, depth, context)
-        or left_material(words, outward, first, cutter, context),
+        or left_material(words, outward, first, cutter, context, CLEARED * entry.helix),
     )
 
 
@@ -189,8 +232,11 @@ def left_material(
     first: float,
     cutter: Tool,
     context: Context,
+    helix: float,
 ) -> str | None:
     """Return the operator message of a pocket that leaves material standing, or None.
+
+    ``helix`` is the greatest radius of one in tool radii, 0 without.
 
     The control's own sample programs do this, so it is no error. With D0 the cutter's size
     is not known, and a single circle may well finish a bored hole: no message then.
@@ -203,10 +249,12 @@ def left_material(
             f"{words.code}: Q{number(stepover)} is greater than the tool diameter"
             f" {number(2 * cutter.radius)}: material is left between the rings"
         )
-    # the plunge clears the tool radius, the first ring begins at I - 2 tool radii
-    if first > 3 * cutter.radius + rounding:
+    # the entry clears the tool radius and the helix, the first ring begins at I - 2 tool radii
+    most = 3 + helix
+    if first > most * cutter.radius + rounding:
+        left = "a ring is left about the centre" if helix else "a core is left in the centre"
         return (
-            f"{words.code}: I{number(first)} is greater than 1.5 x the tool diameter"
-            f" {number(2 * cutter.radius)}: a core is left in the centre"
+            f"{words.code}: I{number(first)} is greater than {number(most / 2)} x the tool diameter"
+            f" {number(2 * cutter.radius)}: {left}"
         )
     return None

@@ -14,6 +14,7 @@ from pathlib import Path
 import linuxcnc
 
 from g12.cycles.context import XY, XZ, YZ, Context, Tool
+from g12.cycles.entry import PocketEntry
 from g12.cycles.travel import CycleExtent, MachineFrame, check_travel
 from g12.cycles.words import Words
 from g12.host.glue import (
@@ -30,6 +31,7 @@ from g12.host.glue import (
 from g12.machine_ini import ranges_of
 
 SETTINGS = settings_of_machine()
+ENTRY = PocketEntry(SETTINGS.entry == "helix", SETTINGS.entry_angle, SETTINGS.plunge_feed)
 
 # indices into a block's g_modes
 MODAL_0, TOOL_LENGTH, PATH_CONTROL, SPINDLE = 0, 8, 13, 14

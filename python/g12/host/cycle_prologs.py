@@ -16,7 +16,7 @@ CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
 def prepare_haas(interp: object, arc: int) -> int:
     """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
     words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
-    pocket = plan_pocket(words, context, cycle_glue.SETTINGS.clearing)
+    pocket = plan_pocket(words, context, cycle_glue.SETTINGS.clearing, cycle_glue.ENTRY)
     cycle_glue.stay_within_limits(interp, words, pocket.extent())
     hand = 1 if arc == COUNTERCLOCKWISE else -1
     cycle_glue.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)

@@ -15,6 +15,7 @@ from g12.tools.verify.axis_limits import Overrun
 from g12.tools.verify.codes import EVENT
 from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import SAME_LEVEL, PocketFacts
+from g12.tools.verify.pocket_entry import entry_findings
 from g12.tools.verify.pocket_order import ENDS
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.section import SectionFacts
@@ -43,6 +44,7 @@ def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> It
     wrong_depth = list(depth_findings(facts, tolerance, unit))
     yield from wrong_depth
     yield from schedule_findings(facts, unit)
+    yield from entry_findings(facts.helix, facts.target.schedule.helix, unit)
     if not wrong_depth:
         yield from order_findings(facts, tolerance, unit)
     yield from place_findings(facts, ENDS if wrong_depth else "", unit)

@@ -22,6 +22,7 @@ from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.verify.axis_limits import Overrun
+from g12.tools.verify.pocket_entry import HelixFacts, falls, helices_of, helix_facts
 from g12.tools.verify.pocket_order import LeftBehind, Misplaced, growth_of, misplaced
 from g12.tools.verify.wanted_circle import Target, Wall
 
@@ -51,7 +52,7 @@ class PocketFacts:
     ``off_path`` and ``off_rings`` are the real motion's largest deviations, None without a run.
     ``cut`` is the depth and the radius of every full circle in its order, ``other_mode`` says
     that a move has its feed per minute in place of per revolution, or the other way round;
-    ``growth`` is that of a spiral in a turn.
+    ``growth`` is that of a spiral in a turn, ``helix`` None where the tool goes straight down.
     """
 
     target: Target
@@ -76,6 +77,7 @@ class PocketFacts:
     other_mode: bool
     growth: float
     misplaced: tuple[Misplaced, ...]
+    helix: HelixFacts | None = None
     overruns: tuple[Overrun, ...] | None = ()
     left_behind: tuple[LeftBehind, ...] = ()
 
@@ -108,14 +110,20 @@ def measure_pocket(
 
     ``known`` are areas measured before, to which those of this pocket are added.
     """
-    wall, cutting = target.wall, [index for index in own if is_cutting(moves[index], target.wall)]
-    if real:
-        lines = real_lines(wall, cutting, moves, real)
-    else:
-        lines = emitted_lines(wall, cutting, moves, path)
+    wall = target.wall
+    entries = helices_of(own, moves, wall)
+    down = {index for entry in entries for index in (entry.lead, *entry.falling)}
+    across = [index for index in own if is_cutting(moves[index], wall)]
+    cutting = [index for index in across if index not in down]
+    lines, falling = (
+        real_lines(wall, some, moves, real) if real else emitted_lines(wall, some, moves, path)
+        for some in (cutting, [index for index in across if index in down])
+    )
     known = {} if known is None else known
-    key = key_of(lines, target, tolerance)
-    areas = known[key] = known.get(key) or areas_of(lines, wall, target.cutter.radius, tolerance)
+    key = key_of(lines, target, tolerance) + key_of(falling, target, tolerance)
+    areas = known[key] = known.get(key) or areas_of(
+        lines, wall, target.cutter.radius, tolerance, falling
+    )
     circles = [index for index in own if is_full_circle(moves[index])]
     around = target, moves[own.start : own.stop], [index - own.start for index in circles]
     lengths = [moves[index].length for index in cutting] or [0.0]
@@ -123,6 +131,7 @@ def measure_pocket(
         target,
         **areas._asdict(),
         jump=direction_jump([moves[index] for index in own], target),
+        helix=helix_facts(entries, moves, wall),
         rings=tuple(dict.fromkeys(round(moves[index].radius, 6) for index in circles)),
         depths=tuple(sorted(lines, reverse=True)),
         circles=tuple(int(math.copysign(1, moves[index].turns)) for index in circles),
@@ -149,14 +158,20 @@ def key_of(lines: Lines, target: Target, tolerance: float) -> tuple:
     return (*size, blake2b(b"".join(line.tobytes() for line in every)).digest())
 
 
-def areas_of(lines: Lines, wall: Wall, cutter: float, tolerance: float) -> PocketAreas:
-    """Return what a cutter of a radius makes of a wall along the tool's path at each depth."""
+def areas_of(
+    lines: Lines, wall: Wall, cutter: float, tolerance: float, falling: Lines
+) -> PocketAreas:
+    """Return what a cutter of a radius makes of a wall along the tool's path at each depth.
+
+    ``falling`` is its path on the way down.
+    """
     levels = sorted(lines, reverse=True)
     deepest = lines[levels[-1]] if levels else []
     points = np.concatenate(deepest) if deepest else np.zeros((0, 3))
     radii = radii_of(points, wall, cutter)
     floor = swept(deepest, cutter)
     above = [line for level in levels[:-1] for line in lines[level]]
+    above += [line for some in falling.values() for line in some]
     every = floor.union(swept(above, cutter)) if above else floor
     reached = (radii.max() if wall.inside else radii.min()) if len(points) else 0.0
     return PocketAreas(
@@ -198,7 +213,7 @@ def feed_of(move: Move, target: Target) -> float | None:
     """Return the feed that the words ask for along a move that does not finish the wall."""
     feeds = target.schedule.feeds
     if move.kind == "arc":
-        return feeds.arc
+        return feeds.plunge if falls(move, target.wall) else feeds.arc
     return feeds.straight if is_cutting(move, target.wall) else feeds.plunge
 
 
@@ -339,13 +354,15 @@ def is_pass(line: np.ndarray) -> bool:
 def direction_jump(moves: Sequence[Move], target: Target) -> float:
     """Return the largest change of direction between cutting moves that follow each other.
 
-    Yasnac's straight moves are its fast ones to and from the approach, whatever their feed.
+    Yasnac's straight moves are its fast ones to and from the approach, whatever their feed. Where
+    a helix begins the tool comes from the flat.
     """
     moves = [move for move in moves if target.source.dialect != "yasnac" or move.kind != "feed"]
     jumps = [
         angle_between(before.tangent(1.0), after.tangent(0.0))
         for before, after in zip(moves, moves[1:])
         if is_cutting(before, target.wall) and is_cutting(after, target.wall)
+        if falls(before, target.wall) or not falls(after, target.wall)
     ]
     return max(jumps, default=0.0)
 

@@ -59,7 +59,7 @@ def misplaced(
     found = [
         *of_rapids(places, moves, starts, ends, circles),
         *of_plunges(places, moves, starts, ends),
-        *of_leads(places, starts, circles),
+        *of_leads(places, starts, circles[:1] if target.schedule.helix else circles),
         (ENDS, ends[-1], np.array(places.end)),
     ]
     in_machine = target.wall.origin, target.wall.axes
@@ -78,15 +78,17 @@ Found = Iterator["tuple[str, np.ndarray, np.ndarray]"]
 def growth_of(target: Target, moves: Sequence[Move], circles: Sequence[int]) -> float:
     """Return by how much a spiral grows in a turn: twice the most of its half turns.
 
-    These are arcs between arcs that leave the centre out.
+    These are arcs between arcs that leave the centre out, and a helix from which one comes.
     """
     kinds = [move.kind for move in moves]
+    helix = target.schedule.helix
+    inside = helix.radius * (1.0 + SAME_STATE) if helix and helix.within else ACROSS
     most = 0.0
     for index in range(1, len(moves) - 1):
         if kinds[index - 1 : index + 2] == ["arc"] * 3 and index not in circles:
             points = target.wall.local(np.array([moves[index].start[:3], moves[index].end[:3]]))
             start, end = np.hypot(*points[:, :2].T)
-            if min(start, end) > ACROSS:
+            if min(start, end) > inside:
                 most = max(most, 2 * abs(end - start))
     return float(most)
 

@@ -171,6 +171,8 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
         subject.trace.diameters,
         spiral=settings.clearing == "spiral",
         traverse=settings.yasnac_traverse * subject.ini.mm,
+        helix_angle=settings.entry_angle if settings.entry == "helix" else None,
+        plunge_share=settings.plunge_feed / 100,
     )
     polar = sections(tracer, program, codes, settings.polar_x, blocks, parameters)
     polar = with_zero_lines(polar, subject.trace.moves, program, codes, subject.ini)

@@ -23,6 +23,7 @@ from g12.tools.verify.findings import (
 )
 from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import PocketFacts
+from g12.tools.verify.pocket_entry import entry_text
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.section import SectionFacts
@@ -70,6 +71,7 @@ def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
         ("rings", f"{', '.join(unit.text(ring) for ring in facts.rings)} (tool centre), {turns}"),
         ("stepover", f"{stepover}, direction jump {plain(facts.jump, 2)}°"),
         ("depth", depth(facts, unit)),
+        *([("entry", entry_text(facts.helix, unit))] if facts.helix else []),
         ("moves", spread(facts.shortest, facts.longest, unit)),
         ("lowest feed", slowest(facts.pace, slow, pocket_slowest_line(facts.pace, proof), unit)),
         *real_rows(facts, unit),

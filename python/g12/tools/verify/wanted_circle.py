@@ -27,6 +27,7 @@ ROUGH_FINISH = ((-1, -1), (1, 1), (-1, 1), (1, -1))  # turns of the event by D
 DYNAMIC = (41.1, 42.1)  # compensation whose D is a diameter
 SAME_DEPTH = 1e-6
 ROUNDING = 1e-6  # mm
+HELIX_SHARE = 0.9  # of the cutter's radius: as large is a helix at most
 NARROWER = 0.254  # mm: an event's roughing width is the cutter's diameter less this
 EVENT_RETRACT = 2.54  # mm
 
@@ -105,6 +106,18 @@ class Cutter:
     circle: float = 0.0
 
 
+class HelixAsked(NamedTuple):
+    """The helices to go down along: how often, the tool centre's radius, the greatest angle.
+
+    ``within``: the first ring is larger.
+    """
+
+    count: int
+    radius: float
+    angle: float
+    within: bool
+
+
 @dataclass(frozen=True)
 class Schedule:
     """How a circle is to be cut: at which depths along the third axis, how often, how fast.
@@ -113,7 +126,8 @@ class Schedule:
     counterclockwise, 0 if not checked; ``finish_turn`` that of a last circle which finishes the
     wall, 0 without one. ``smooth`` is for cycles that turn no corner. ``circles`` are the full
     circles in their order, each the depth and the radius of the tool's centre; ``pitch`` is what
-    a spiral may grow by in a turn. ``rev`` says that the feed is per revolution.
+    a spiral may grow by in a turn. ``rev`` says that the feed is per revolution. ``helix`` is None
+    for a cycle that goes straight down.
     """
 
     levels: tuple[float, ...]
@@ -125,6 +139,7 @@ class Schedule:
     circles: tuple[tuple[float, float], ...] = ()
     pitch: float | None = None
     rev: bool = False
+    helix: HelixAsked | None = None
 
     @property
     def deepest(self) -> float:
@@ -171,7 +186,9 @@ Reading = tuple[Wall, Cutter, Schedule, Places]
 class CircleReader:
     """Reads blocks in the order of execution; remembers D and W as the control does.
 
-    ``spiral`` and ``traverse`` (mm/min, 0 for rapids) are [G12] CLEARING and YASNAC_TRAVERSE.
+    ``spiral`` and ``traverse`` (mm/min, 0 for rapids) are [G12] CLEARING and YASNAC_TRAVERSE;
+    ``helix_angle`` (degrees) is ENTRY_ANGLE, None for ENTRY = plunge, ``plunge_share`` of F the
+    feed down.
     """
 
     codes: Codes
@@ -182,6 +199,8 @@ class CircleReader:
     plane: float | None = None  # W last commanded, mm in program coordinates
     spiral: bool = False
     traverse: float = 0.0
+    helix_angle: float | None = None
+    plunge_share: float = 1.0
 
     def targets(self, blocks: Sequence[Block]) -> Iterator[tuple[Block, Target]]:
         """Yield each block that cuts a circle with what it asks for."""
@@ -217,13 +236,32 @@ class CircleReader:
         passes = int(words.get("L", 1))
         counts = (1,) if view.absolute or "Z" not in words else range(1, passes + 1)
         levels = tuple(view.height("Z", count) - view.start[2] for count in counts)
-        feeds = CircleFeeds(*[view.feed()] * 3, None)
+        feed = view.feed()
+        feeds = CircleFeeds(None if feed is None else feed * self.plunge_share, feed, feed, None)
         rings = haas_rings(view, self.spiral, offset)
         circles = [(level, ring) for level in levels for ring in rings] * (passes // len(levels))
+        helix, circles = self._helix(levels, rings[0], offset, circles)
         pitch = view.length("Q") if self.spiral and "Q" in words else None
-        schedule = Schedule(levels, passes, feeds, cycle.turn, circles=tuple(circles), pitch=pitch)
+        schedule = Schedule(
+            levels, passes, feeds, cycle.turn, circles=tuple(circles), pitch=pitch, helix=helix
+        )
         wall = replace(wall, origin=view.centre(), cleared=cleared)
         return wall, cutter, schedule, Places(end=(0.0, 0.0, levels[-1]))
+
+    def _helix(
+        self, levels: Sequence[float], ring: float, offset: float, circles: list
+    ) -> tuple[HelixAsked | None, list]:
+        """Return the helices to a pocket's levels, and its circles with those that end them."""
+        if self.helix_angle is None:
+            return None, circles
+        radius = min(ring, HELIX_SHARE * offset) if offset else ring
+        down = [level for level, above in zip(levels, (0.0, *levels)) if level < above - ROUNDING]
+        within = radius < ring - ROUNDING
+        if within:
+            first = {level: circles.index((level, ring)) for level in down}
+            for level in reversed(down):
+                circles.insert(first[level], (level, radius))
+        return HelixAsked(len(down), radius, self.helix_angle, within), circles
 
     def _yasnac(self, view: BlockInMm, cycle: Cycle) -> Reading:
         words = view.words

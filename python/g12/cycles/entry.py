@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How a cycle goes down into the material: straight, or along a helix about its centre.
+
+The helix is made of half turns. All fall alike, but for the last few, whose slope is less and less
+so that the tool turns no corner where it comes to the level; there it goes once round. It ends
+where it began. Lengths are in program units.
+"""
+
+from __future__ import annotations
+
+from math import atan, ceil, pi, radians, tan
+from typing import NamedTuple
+
+from g12.cycles.words import Words
+from g12.errors import number
+
+CLEARED = 0.9  # of the cutter's radius: a helix as large leaves no core
+LEAST_CORNER = radians(0.99)  # between half turns
+MOST_HALF_TURNS = 2000
+
+
+class PocketEntry(NamedTuple):
+    """The machine's choice: [G12] ENTRY, ENTRY_ANGLE in degrees, PLUNGE_FEED in per cent of F."""
+
+    helix: bool = False
+    angle: float = 3.0
+    feed: float = 100.0
+
+
+STRAIGHT_DOWN = PocketEntry()
+
+
+class Descent(NamedTuple):
+    """A way down by some height: ``turns`` half turns that fall by ``fall`` each, then the last.
+
+    No turns: straight down.
+    """
+
+    turns: int = 0
+    fall: float = 0.0
+
+
+class Helix(NamedTuple):
+    """Helices of one radius: ``last`` half turns at their end are less and less steep."""
+
+    radius: float = 0.0
+    slope: float = 0.0
+    last: int = 0
+
+    def descent(self, height: float) -> Descent:
+        """Return the way down by a height, no steeper than the slope and a whole turn long."""
+        if not self.radius or height <= 0.0:
+            return Descent()
+        rest = 0.5 * self.last
+        turns = max(1, ceil(height / (pi * self.radius * self.slope) - rest))
+        turns += (turns + self.last) % 2
+        return Descent(turns, height / (turns + rest))
+
+
+def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
+    """Return the helix for a first ring of the tool's centre and a cutter, both by their radius."""
+    if not entry.helix:
+        return Helix()
+    slope = tan(radians(entry.angle))
+    radius = min(first, CLEARED * cutter) if cutter else first
+    return Helix(radius, slope, ceil(atan(slope) / LEAST_CORNER) - 1)
+
+
+def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> None:
+    """Refuse a helix so narrow that it would hardly come down; ``cutter`` is its radius."""
+    turns = helix.descent(height).turns
+    if turns <= MOST_HALF_TURNS:
+        return
+    least = height / (pi * helix.slope * (MOST_HALF_TURNS - 2))
+    if cutter and least > CLEARED * cutter:
+        fits = f"{number(height * CLEARED * cutter / least)} down fits at most"
+    else:
+        fits = f"I from {number(cutter + least)} fits"
+    raise words.refuse(
+        f"a helix of radius {number(helix.radius)} needs {turns // 2} turns for {number(height)}, "
+        f"the most is {MOST_HALF_TURNS // 2}: {fits}, or [G12] ENTRY = plunge"
+    )
