@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G12.1 with kinematics beside G12.1 with pieces, and what a post-processor makes of it."""
 
+import cmath
 import math
 
 import numpy as np
@@ -23,7 +24,10 @@ from support.sim_machines import SIM
 FEEDS = ((1000, 1.02), (2000, 1.05), (3000, 1.05))  # and the most of the ideal time
 ROUNDING = 1e-3
 NO_SLOWER = 1.02  # than pieces, where nothing else is promised
-CIRCLE = Round(30, 20, 2 * math.pi)  # r 10, 20 off the axis
+THIRD = 2 * math.pi / 3  # C turns the other way in between
+CIRCLE = [  # r 10, 20 off the axis
+    Round(20 + 10 * cmath.rect(1, turn), 20, THIRD) for turn in (0, THIRD, 2 * THIRD)
+]
 SLOT_BLOCK, SLOT_LENGTH = (6,), 36.0  # of slot.ngc: through the pole
 
 
@@ -70,8 +74,8 @@ def circle(face, pieces, feed):
     return beside(
         f"circle r 10, 20 off the axis, F{feed}",
         [seconds_in(lathe.run_text(program), (4,)) for lathe in (face, pieces)],
-        CIRCLE.length / feed * 60,
-        posted(pieces, [CIRCLE], feed),
+        sum(piece.length for piece in CIRCLE) / feed * 60,
+        posted(pieces, CIRCLE, feed),
     )
 
 

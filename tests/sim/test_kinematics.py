@@ -171,6 +171,17 @@ def test_g12_1_is_on_the_contour_and_within_the_limits(lathe, name):
         assert accelerations(run.samples.axes["C"])[cutting[2:]].max() <= C_ACCELERATION * 1.01
 
 
+def test_a_long_move_beside_the_pole_is_pieces_only_near_it(lathe):
+    run = lathe.run_text([*ROUGHLY, "G1 X10 C-60 F3000 G61", "C60", "X45 C0", "G13.1", "M2"])
+    assert run.error is None
+    beside = run.samples.line == 5
+    x, c = run.samples.axes["X"], np.radians(run.samples.axes["C"])
+    assert np.abs(x * np.cos(c) - 10)[beside].max() <= 0.006
+    assert beside.sum() * 0.001 <= 4.9  # 4.05 s on a quiet computer; pieces alone take 5.5 s
+    assert np.abs(np.diff(c, 2)).max() * 1e6 <= np.radians(3600) * 1.01
+    keeps_its_limits(run.samples)
+
+
 @pytest.mark.parametrize(("feed", "most"), [(1000, 1.02), (3000, 1.05)])
 def test_g12_1_keeps_the_feed(lathe, feed, most):
     in_arcs = min(feed, 60 * speed_in_an_arc(lathe, 6, feed))

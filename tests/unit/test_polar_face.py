@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.flat.contour import Arc, Contour, Line, Mark, Plunge
+from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, path_length
 from g12.polar.face import (
     FaceLimits,
     FaceMove,
@@ -17,6 +17,7 @@ from g12.polar.face import (
     flows_into,
     in_face,
     is_able,
+    parted,
     passed,
 )
 from g12.polar.plan import BlockMoves, PolarSettings, plan
@@ -54,6 +55,32 @@ def test_far_from_the_pole_a_move_is_able():
 )
 def test_near_the_pole_it_is_not(move):
     assert not is_able(move, LIMITS)
+
+
+@pytest.mark.parametrize(
+    "move",
+    [line((10, -150), (10, 150), feed=3000.0), arc((60, 0), 55, 0, 2 * pi, feed=3000.0)],
+)
+def test_a_long_move_is_parted_where_c_cannot_follow(move):
+    parts, stopping = parted([move], [True], LIMITS)
+    assert [is_able(part, LIMITS) for part in parts] == [True, False, True]
+    assert stopping == [False, False, True]
+    assert sum(map(path_length, parts)) == pytest.approx(path_length(move))
+    assert path_length(parts[1]) < 0.5 * path_length(move)
+    for before, after in zip(parts, parts[1:]):
+        assert (before.x1, before.c1) == pytest.approx((after.x0, after.c0))
+
+
+@pytest.mark.parametrize(
+    "move",
+    [
+        line((40, -20), (40, 20)),  # all on the face
+        line((10, -10), (10, 10)),  # nothing on it
+        line((10, -30), (10, 30), feed=3000.0),  # not worth the way there
+    ],
+)
+def test_other_moves_stay_whole(move):
+    assert parted([move, Mark(1, None)], [False, False], LIMITS)[0] == [move, Mark(1, None)]
 
 
 @pytest.mark.parametrize(
@@ -187,8 +214,10 @@ def test_the_part_beside_the_pole_is_made_of_pieces_and_the_face_begins_anew():
     made = plan(contour((30, 20), (3, 20), (3, -30), (30, -30), (30, 0)), SETTINGS, c=0.0)
     assert [step.on for step in made.steps if isinstance(step, FaceSwitch)] == [True, False] * 2
     assert {step.line for step in made.steps if isinstance(step, BlockMoves)} == {9}
-    again = next(step for step in made.steps if isinstance(step, FaceMove) and step.line == 10)
-    assert (again.move.x0, again.move.c0) == pytest.approx((hypot(3, 30), 0.0), abs=0.002)
+    switch, again = made.steps[-5:-3]
+    assert (again.line, again.move.c0) == (9, pytest.approx(0.0, abs=0.002))
+    assert again.move.x0 == pytest.approx(switch.place[0])
+    assert 3 < again.move.x0 < hypot(3, 30)
 
 
 def test_without_kinematics_all_is_pieces():

@@ -31,10 +31,11 @@ from g12.flat.contour import (
     start_direction,
     sweep_between,
 )
-from g12.flat.intersect import height_at, place_at
+from g12.flat.intersect import height_at, part_of_move, place_at
 
 LOOKS = 16  # places on a line, and on each quarter of an arc, that are looked at
 WORTH_IT = 0.1  # seconds: two switches cost about as much
+WORTH_PARTING = 0.5  # seconds: the two ways there, and two stops
 SAME_DIRECTION = 1e-6  # radians
 SLACK = 1.0 + 1e-9  # rounding: X and Y together may have just what the slide has
 
@@ -89,12 +90,48 @@ def chosen(path: list, limits: FaceLimits) -> list[bool]:
     return on_face
 
 
+def parted(path: list, stopping: list[bool], limits: FaceLimits) -> tuple[list, list[bool]]:
+    """Return a path whose moves are parted where C can no longer follow them on the face.
+
+    ``stopping`` tells of each element whether it ends in a stop; so does what is returned.
+    """
+    elements: list = []
+    stops: list[bool] = []
+    for element, stop in zip(path, stopping):
+        parts = _stretches(element, limits) if is_move(element) else [element]
+        elements += parts
+        stops += [*[False] * (len(parts) - 1), stop]
+    return elements, stops
+
+
+def _stretches(move: Line | Arc, limits: FaceLimits) -> list[Line | Arc]:
+    """Return a move in parts, where a part of it can be followed and is worth the way there."""
+    if is_able(move, limits):
+        return [move]
+    places = (0.0, *_parts(move))
+    able = [_is_followed(move, part, limits) for part in places]
+    cuts, begin = {0.0, 1.0}, 0
+    for index, followed in enumerate([*able, False]):
+        if not followed:
+            first, last = places[begin], places[max(begin, index - 1)]
+            if (last - first) * _seconds(move) >= WORTH_PARTING:
+                cuts |= {first, last}
+            begin = index + 1 if index + 1 < len(places) else index
+    ends = sorted(cuts)
+    return [part_of_move(move, first, last) for first, last in zip(ends, ends[1:])]
+
+
 def _seconds(element: object) -> float:
     return 60.0 * path_length(element) / element.feed if is_move(element) else 0.0
 
 
 def is_able(move: Line | Arc, limits: FaceLimits) -> bool:
     """Return whether C and the slide can follow a move on the face, wherever it is stopped."""
+    return all(_is_followed(move, part, limits) for part in (0.0, *_parts(move)))
+
+
+def _is_followed(move: Line | Arc, part: float, limits: FaceLimits) -> bool:
+    """Return whether C and the slide can follow a move at one of its places."""
     most, speed = limits.acceleration, limits.override * move.feed / 60.0
     curving = 0.0
     if isinstance(move, Arc):
@@ -103,11 +140,7 @@ def is_able(move: Line | Arc, limits: FaceLimits) -> bool:
         curving = speed * speed / radius
     left = sqrt(max(0.0, most * most - curving * curving))
     at_speed, standing = _Going(speed, curving, left), _Going(0.0, 0.0, most)
-    return all(
-        _can_follow(move, part, going, limits)
-        for part in (0.0, *_parts(move))
-        for going in (at_speed, standing)
-    )
+    return all(_can_follow(move, part, going, limits) for going in (at_speed, standing))
 
 
 class _Going(NamedTuple):

@@ -12,7 +12,7 @@ from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, Start, is_move
 from g12.flat.offset import tool_path
 from g12.flat.simplify import with_points_left_out, without_short_moves
 from g12.polar.exact_stops import stops
-from g12.polar.face import FaceLimits, FaceMove, FaceSwitch, chosen, in_face, passed
+from g12.polar.face import FaceLimits, FaceMove, FaceSwitch, chosen, in_face, parted, passed
 from g12.polar.feed import Position, pieces_with_feed
 from g12.polar.pieces import Law, Split, split_move
 from g12.polar.pole import POLE, through_pole
@@ -87,7 +87,10 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> PolarPlan:
         path, ROUNDING_SHARE * tolerance, settings.x_acceleration, radians(settings.c_acceleration)
     )
     machine = _SlideAndSpindle(contour, settings, c)
-    faced = chosen(path, settings.face) if settings.face else [False] * len(path)
+    faced = [False] * len(path)
+    if settings.face:
+        path, stopping = parted(path, stopping, settings.face)
+        faced = chosen(path, settings.face)
     for element, stop, face in zip(path, stopping, faced):
         machine.switch(element.line, face)
         if isinstance(element, Mark):
