@@ -293,6 +293,19 @@ def test_the_history_begins_where_the_first_rapid_ends():
     assert history.z[-1] == -3 and not history.rapid[1:].any()
 
 
+@pytest.mark.parametrize(
+    ("hand", "left"),
+    [
+        (lambda: Hand().rapid(x=5).rapid(z=2).rapid(x=9).line(z=-1), 2),
+        (lambda: Hand().rapid(x=5).rapid(x=9).line(z=-1), 2),
+        (lambda: Hand().line(z=-1).rapid(z=5).line(x=3), 3),
+        (lambda: Hand().rapid(x=5).rapid(z=2), 2),
+    ],
+)
+def test_rapids_from_nobody_knows_where_are_not_shown(hand, left):
+    assert len(plan_view.shown_moves(scene(hand()))) == left
+
+
 def test_holes_in_an_area_stay_holes():
     outline = style.outline_of(Point(0, 0).buffer(10).difference(Point(0, 0).buffer(5)))
     assert outline.contains_point((7, 0))

@@ -7,7 +7,7 @@ Lengths are millimetres until they are drawn.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import groupby
+from itertools import groupby, takewhile
 from typing import NamedTuple
 
 import numpy as np
@@ -176,10 +176,16 @@ def floor(scene: Scene, level: Level) -> tuple:
 
 
 def shown_moves(scene: Scene) -> Sequence[Move]:
-    """Return the moves without a first rapid, of which no trace knows where it begins."""
+    """Return the moves without the first rapids, of which no trace knows where they begin.
+
+    These are the first one, and those up to where Z is commanded.
+    """
     moves = scene.moves
-    unknown = scene.real is None and len(moves) > 1 and moves[0].kind == "rapid"
-    return moves[1:] if unknown else moves
+    rapids = list(takewhile(lambda move: move.kind == "rapid", moves))
+    if scene.real is not None or not rapids or len(rapids) == len(moves):
+        return moves
+    down = (index for index, move in enumerate(rapids) if move.start[2] != move.end[2])
+    return moves[next(down, 0) + 1 :]
 
 
 def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int]) -> None:
