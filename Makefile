@@ -7,7 +7,7 @@ SEED := $(shell date +%s)
 # What make soak tries: its own, and the properties of the normal tests.
 SOAKED := tests/soak/soak_*.py tests/interp/test_haas.py tests/interp/test_yasnac.py \
 	tests/interp/test_mitsubishi.py tests/interp/test_circle_mill.py tests/unit/test_polar_plan.py \
-	tests/unit/test_flat_offset.py tests/unit/test_flat_simplify.py -k "any or keeps or aborts or installs or recordings or short_moves"
+	tests/unit/test_flat_offset.py tests/unit/test_flat_simplify.py -k "any or keeps or soak_ or short_moves"
 JOBS := $(shell nproc)
 
 # RIP=DIR uses the LinuxCNC that was built to run in place in DIR, instead of an installed one.

@@ -97,7 +97,7 @@ def check_said(capsys, code, what):
 def test_programs(kind, tmp_path, capsys):
     chance = random.Random(f"{SEED} {kind}")
     named = {"INI": str(SIM / f"{MACHINES[kind]}_headless.ini"), "FOLDER": str(tmp_path)}
-    for number in range(often(20)):
+    for number in range(often(8)):
         program = tmp_path / f"{kind} {number}.ngc"
         program.write_text(damaged(chance, right_program(kind, chance, chance.randint(1, 3))))
         named["PROGRAM"] = str(program)
@@ -113,7 +113,7 @@ def test_configs(tmp_path, capsys):
     """`check` of an INI with random damage."""
     chance = random.Random(SEED)
     good = write_config(tmp_path).read_text()
-    for number in range(often(200)):
+    for number in range(often(100)):
         ini = tmp_path / f"{number}.ini"
         ini.write_text(damaged(chance, good + "REMAP = G12 modalgroup=1 prolog=g12_haas\n" * 2))
         check_said(capsys, main.main(["check", str(ini)]), f"check {number} of {SEED}")

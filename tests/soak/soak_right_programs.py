@@ -29,7 +29,7 @@ def written(folder, kind, seed, count):
 @pytest.mark.parametrize("kind", MACHINES)
 def test_programs_as_they_are_read(kind, tmp_path):
     ini = read_ini(machine_of(kind))
-    for number in range(often(8)):
+    for number in range(often(4)):
         seed = f"{SEED} {number}"
         proof = prove(written(tmp_path, kind, seed, PIECES), ini)
         assert len(proof.pockets) + len(proof.sections) >= PIECES, seed
