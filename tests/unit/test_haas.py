@@ -246,3 +246,23 @@ def test_a_table_diameter_with_conversion_noise_changes_nothing():
     with pytest.raises(Refusal, match="greater than the tool radius"):
         plan(found=noisy, I=0.125, Z=-1.0, D=1)
     assert math.isclose(plan(found=noisy, I=0.3, K=1.0, Q=0.4, Z=-1.0, D=1).links, 2)
+
+
+def test_the_locals_of_the_subroutine():
+    rings = plan(X=1.0, Y=2.0, I=0.75, K=1.5, Q=0.5, Z=-0.5, D=1, found=FOUND).locals()
+    assert rings == {
+        "x": 1.0,
+        "y": 2.0,
+        "move_to_centre": True,
+        "z": -0.5,
+        "z_step": 0.0,
+        "levels": 1,
+        "first_radius": 0.625,
+        "links": 2,
+        "growth": 0.8,
+        "shrink": 0.5,
+        "keep": pytest.approx(0.625 / 1.375),
+        "rings": True,
+    }
+    deeper = plan(I=0.75, K=1.5, Q=0.5, Z=-0.5, L=2, D=1, found=FOUND._replace(incremental=True))
+    assert (deeper.locals()["z_step"], deeper.locals()["keep"]) == (-0.5, 0.0)
