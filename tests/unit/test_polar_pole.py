@@ -107,7 +107,8 @@ def test_a_small_circle_about_the_pole_is_not_led_through_it():
     assert led(around) == [around]
 
 
-def test_the_smallest_circle_through_the_pole():
-    first, *between, last = led(arc(0.003, 0, 0.006, 0, 2 * math.pi))
-    assert (first.x0, last.x1) == pytest.approx((0.006, 0.006))
+@pytest.mark.parametrize("radius", [0.003, 0.0009])
+def test_the_smallest_circles_through_the_pole(radius):
+    first, *between, last = led(arc(radius, 0, 2 * radius, 0, 2 * math.pi))
+    assert max(map(abs, (first.x0, last.x1))) <= 2 * radius + 1e-12
     assert between == [] or all(part.line == 3 for part in between)
