@@ -299,3 +299,8 @@ def test_a_line_that_is_not_split_says_nothing_of_its_words(text):
     line = split_line(text)
     assert (line.letters, line.codes, line.assignments, line.spindle) == ((), (), "", "")
     assert (line.rewritten, line.relative, line.exact_stop) == (False, "", False)
+
+
+@pytest.mark.parametrize("code", [70, 71, 72, 73])
+def test_saved_modes_are_the_section_s_own(code):
+    assert action_text(block(m={7: code, 8: 8}), split_line(f"m{code}m8")) == "M8"
