@@ -250,7 +250,7 @@ def test_a_table_diameter_with_conversion_noise_changes_nothing():
 
 def test_the_locals_of_the_subroutine():
     rings = plan(X=1.0, Y=2.0, I=0.75, K=1.5, Q=0.5, Z=-0.5, D=1, found=FOUND).locals()
-    assert rings == {
+    wanted = {
         "x": 1.0,
         "y": 2.0,
         "move_to_centre": True,
@@ -264,5 +264,6 @@ def test_the_locals_of_the_subroutine():
         "keep": pytest.approx(0.625 / 1.375),
         "rings": True,
     }
+    assert {name: rings[name] for name in wanted} == wanted
     deeper = plan(I=0.75, K=1.5, Q=0.5, Z=-0.5, L=2, D=1, found=FOUND._replace(incremental=True))
     assert (deeper.locals()["z_step"], deeper.locals()["keep"]) == (-0.5, 0.0)
