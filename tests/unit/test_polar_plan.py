@@ -300,6 +300,14 @@ def hexagon(feed, flat=13.5, tool=6.0):
     return contour
 
 
+@pytest.mark.parametrize(("away", "pieces"), [(2.0, 36), (5.0, 56), (9.0, 72)])
+def test_a_circle_beside_the_spindle_needs_no_more_pieces_where_it_curves_like_a_spiral(
+    away, pieces
+):
+    circle = Round(complex(away + 10), complex(away), 2 * math.pi)
+    assert len(runs(plan(programmed([circle]), DRIVEN, c=0.0))[0].pieces) <= pieces
+
+
 def test_a_circle_about_the_spindle_is_one_piece():
     contour = programmed([Round(10 + 0j, 0j, -2 * math.pi)], feed=300.0)
     (run,) = runs(plan(contour, LATHE, c=15.0))
