@@ -73,6 +73,13 @@ def test_what_install_copies_needs_nothing_else_to_be_read():
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_every_page_with_a_command_says_how_it_is_called_where_it_is_installed(page):
+    text = " ".join(page.read_text(encoding="utf-8").split())
+    if "python3 python/g12" in text and page.parent != ROOT / "tests":
+        assert re.search(r"Debian package.*`g12`", text)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_every_command_and_option_that_a_page_shows_exists(page, capsys):
     for command, rest in COMMAND.findall(page.read_text(encoding="utf-8")):
         with pytest.raises(SystemExit) as ended:

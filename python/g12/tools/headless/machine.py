@@ -38,6 +38,8 @@ PACKAGE = Path(__file__).resolve().parents[3]  # the directory that holds the pa
 MARGIN = 10.0  # s that an answer may take beyond the timeout asked for
 NS_PER_S = 1e9
 LOG_LINES = 60
+FAREWELL = "LinuxCNC terminated with an error"  # behind it only where to read the same
+SHUTTING_DOWN = ("Shutting down", "Note: Using POSIX")
 
 SCREEN_NAME = "g12-recording-screen"
 SCREEN = {"DISPLAY": SCREEN_NAME}
@@ -249,7 +251,7 @@ class Machine:
         raise self._startup_error("LinuxCNC did not come up in time")
 
     def _startup_error(self, what: str) -> StartupError:
-        last = "\n".join(self.log().splitlines()[-LOG_LINES:])
+        last = "\n".join(telling_lines(self.log())[-LOG_LINES:])
         return StartupError(f"{self.ini.path}: {what}; its log ends:\n{last}")
 
     # Talking to the recording screen.
@@ -279,3 +281,11 @@ def position_pins(ini: Ini) -> dict[str, str]:
     if joints:
         return {letter: f"joint.{joint}.pos-cmd" for joint, letter in enumerate(joints)}
     return {letter: f"axis.{letter.lower()}.pos-cmd" for letter in ini.axes}
+
+
+def telling_lines(log: str) -> list[str]:
+    """Return the lines of LinuxCNC's log up to the last that says what went wrong."""
+    lines = log.partition(FAREWELL)[0].splitlines()
+    while lines and lines[-1].startswith(SHUTTING_DOWN):
+        lines.pop()
+    return lines or log.splitlines()
