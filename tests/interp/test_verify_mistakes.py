@@ -97,12 +97,10 @@ def test_a_turn_above_the_face_rubs_nothing(proof_of):
 # ---------------------------------------------------------------- the wrong side
 
 
-@pytest.mark.parametrize("last", [["G40 X60 F2000"], ["Z2", "G40 X60 F2000"]])
-def test_compensation_on_the_wrong_side_of_a_part_is_named(last, proof_of):
-    lead = ["G12.1", "G1 C12 F2000", "G42 X27 F1000", "Z-5"]
-    proof = proof_of(
-        *LATHE, "G0 X60 Z2 C0", *lead, *HEXAGON, *last, "G13.1", "G0 Z2", machine="lathe_mm"
-    )
+def test_compensation_on_the_wrong_side_of_a_part_is_named(proof_of):
+    lead = ["G12.1", "G1 C0 F2000", "G42 X60 F1000", "Z-5"]
+    square = ["C-30", "X-60", "C30", "X60", "C0", "Z2", "G40 X100", "G13.1"]
+    proof = proof_of(*LATHE, "G0 X100 Z2 C0", *lead, *square, machine="lathe_mm")
     assert told(proof)[0] == "the tool is inside the closed contour, it comes from outside: G41?"
 
 
