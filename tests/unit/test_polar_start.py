@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a section goes by: from what it finds, the settings and the machine's axes."""
 
-from math import radians
+from math import radians, sqrt
 
 import pytest
 
@@ -124,6 +124,8 @@ def test_what_the_axes_of_the_face_allow(override, kept):
     start = START._replace(machine_unit=INCH)
     kinematics = Settings(polar_kinematics="1")
     made = polar_setup(start, kinematics, axes, FaceAxes(x, y, slide, override))
+    nearest = 20.0 * INCH / radians(700.0)
+    chord = sqrt(8.0 * made.tolerance * nearest)
     assert made.plan.face == FaceLimits(
         acceleration=pytest.approx(50.0 * INCH),
         round_acceleration=pytest.approx(30.0 * INCH),
@@ -131,6 +133,7 @@ def test_what_the_axes_of_the_face_allow(override, kept):
         c_acceleration=radians(700.0),
         c_speed=radians(50.0),
         override=kept,
+        pieces_speed=pytest.approx(0.7 * sqrt(20.0 * INCH * chord)),
     )
     assert polar_setup(start, Settings(), axes, FaceAxes(x, y, slide, 1.0)).plan.face is None
 

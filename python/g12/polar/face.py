@@ -35,7 +35,7 @@ from g12.flat.intersect import height_at, part_of_move, place_at
 
 LOOKS = 16  # places on a line, and on each quarter of an arc, that are looked at
 WORTH_IT = 0.1  # seconds: two switches cost about as much
-WORTH_PARTING = 0.5  # seconds: the two ways there, and two stops
+WORTH_PARTING = 1.0  # seconds: the ways there and back, and their stops
 SAME_DIRECTION = 1e-6  # radians
 SLACK = 1.0 + 1e-9  # rounding: X and Y together may have just what the slide has
 
@@ -49,6 +49,7 @@ class FaceLimits(NamedTuple):
     c_acceleration: float  # radians per second squared
     c_speed: float  # radians per second
     override: float  # the most that the operator may turn the feed up by
+    pieces_speed: float = 0.0  # about what pieces reach: below it nothing is gained by parting
 
 
 class FaceSwitch(NamedTuple):
@@ -106,7 +107,7 @@ def parted(path: list, stopping: list[bool], limits: FaceLimits) -> tuple[list, 
 
 def _stretches(move: Line | Arc, limits: FaceLimits) -> list[Line | Arc]:
     """Return a move in parts, where a part of it can be followed and is worth the way there."""
-    if is_able(move, limits):
+    if move.feed / 60.0 <= limits.pieces_speed or is_able(move, limits):
         return [move]
     places = (0.0, *_parts(move))
     able = [_is_followed(move, part, limits) for part in places]

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from math import hypot, radians
+from math import hypot, radians, sqrt
 from typing import NamedTuple
 
 from g12.errors import number
@@ -17,6 +17,7 @@ from g12.section.start import SectionStart, WordRules
 from g12.settings import Settings
 
 LEAST_X_MM = 0.001  # a smaller part in X makes LinuxCNC 2.9 get the feed of a piece wrong
+PIECES_SHARE = 0.7  # of what a chord's length and the acceleration allow: measured
 CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
 
 
@@ -65,7 +66,9 @@ def polar_setup(
     return PolarSetup(
         _word_rules(start, settings),
         _planning(start, settings, axes, tolerance)._replace(
-            face=_face_limits(start, face, axes["C"]) if settings.polar_kinematics == "1" else None
+            face=_face_limits(start, face, axes["C"], tolerance)
+            if settings.polar_kinematics == "1"
+            else None
         ),
         SoftLimits(axes, _scales(start), "in" if is_inch(machine_unit_mm) else "mm"),
         tolerance,
@@ -98,15 +101,19 @@ def _planning(
     )
 
 
-def _face_limits(start: SectionStart, face: FaceAxes, c: Axis) -> FaceLimits:
+def _face_limits(start: SectionStart, face: FaceAxes, c: Axis, tolerance: float) -> FaceLimits:
+    slide = face.slide.acceleration * start.machine_unit
+    nearest = slide / radians(c.acceleration)  # to the pole that the face is good for
+    chord = sqrt(8.0 * tolerance * nearest)
     x, y = (axis.acceleration * start.machine_unit for axis in (face.x, face.y))
     return FaceLimits(
         acceleration=hypot(x, y),
         round_acceleration=min(x, y),
-        slide_acceleration=face.slide.acceleration * start.machine_unit,
+        slide_acceleration=slide,
         c_acceleration=radians(c.acceleration),
         c_speed=radians(c.velocity),
         override=max(1.0, face.override),
+        pieces_speed=PIECES_SHARE * sqrt(slide * chord),
     )
 
 
