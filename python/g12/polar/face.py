@@ -35,7 +35,7 @@ from g12.flat.intersect import height_at, part_of_move, place_at
 
 LOOKS = 16  # places on a line, and on each quarter of an arc, that are looked at
 WORTH_IT = 0.1  # seconds: two switches cost about as much
-WORTH_PARTING = 1.0  # seconds: the ways there and back, and their stops
+WORTH_PARTING = 0.5  # seconds: the ways there and back, and their stops
 SAME_DIRECTION = 1e-6  # radians
 SLACK = 1.0 + 1e-9  # rounding: X and Y together may have just what the slide has
 
