@@ -331,6 +331,12 @@ def test_a_block_number_that_two_programs_call_is_refused():
     assert sentence(HAAS, text).sentence.startswith("N9 stands twice in this file")
 
 
+@pytest.mark.parametrize("head", ["", "%\n"])
+def test_a_local_subprogram_that_begins_the_file_is_refused(head):
+    refused = sentence(HAAS, f"{head}N100 G20 G0 X1.\nM97 P100\nM30\n")
+    assert refused.sentence.startswith("N100 ")
+
+
 def test_many_programs_take_little_time():
     count = 3000
     subs = "".join(f"O{n}\nM98 P{n - 1}\nM99\n" for n in range(2, count))

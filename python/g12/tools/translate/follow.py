@@ -65,7 +65,7 @@ class FollowedProgram:
     def calls_of(self, numbers: Collection[int]) -> Iterator[tuple[int, int]]:
         """Yield each block between some programs that calls one of them, and the called number."""
         for number in numbers:
-            for index in self._behind[number]:
+            for index in self.callers_of(number):
                 if self._inside[index] in numbers:
                     yield index, number
 
