@@ -25,7 +25,7 @@ def found(tmp_path):
     """Return a function: the findings about an INI with everything else in order."""
 
     def find(text, remap=HANDLERS, remap_file="remap.py", files=(), **facts):
-        names = ("g12_haas", "g12_circle_mill", "circle_mill", "g12_skipped_over")
+        names = ("g12_haas", "g12_helix", "g12_circle_mill", "circle_mill", "g12_skipped_over")
         subs = {f"ngc__{name}_ngc": "" for name in names}
         ini = write_config(tmp_path, text, toplevel_py="", **subs, **dict(files))
         package = tmp_path / "python" / "g12"
@@ -130,16 +130,17 @@ def test_half_a_pair_whose_other_code_is_the_users(found):
 
 
 def test_a_sub_that_is_nowhere(found):
-    (missing,) = found(GOOD.replace("SUBROUTINE_PATH = ngc\n", ""))
-    assert missing.kind == "no-sub"
-    assert "g12_haas.ngc" in missing.text
+    missing = found(GOOD.replace("SUBROUTINE_PATH = ngc\n", ""))
+    assert kinds(missing) == ["no-sub"] * 2
+    told = "".join(finding.text for finding in missing)
+    assert "g12_haas.ngc" in told and "g12_helix.ngc" in told
 
 
 def test_only_the_first_ten_folders_count(found, tmp_path):
     for number in range(10):
         (tmp_path / f"f{number}").mkdir()
     ten = ":".join(f"f{number}" for number in range(10))
-    assert kinds(found(GOOD.replace("= ngc\n", f"= {ten}:ngc\n"))) == ["no-sub"]
+    assert kinds(found(GOOD.replace("= ngc\n", f"= {ten}:ngc\n"))) == ["no-sub"] * 2
     nine = f"nowhere:{ten[3:]}"
     assert kinds(found(GOOD.replace("= ngc\n", f"= {nine}:ngc\n"))) == []
 
@@ -154,7 +155,8 @@ def test_another_file_of_a_subs_name_in_front_of_it(found, place):
 
 def test_a_blank_in_the_path_of_the_subs(found):
     text = GOOD.replace("= ngc\n", "= my subs\n")
-    (blank,) = found(text, files={"my subs__g12_haas_ngc": ""})
+    subs = {"my subs__g12_haas_ngc": "", "my subs__g12_helix_ngc": ""}
+    (blank,) = found(text, files=subs)
     assert blank.kind == "blank-in-path"
     assert "' '" in blank.text
 
@@ -258,7 +260,7 @@ def test_linuxcncs_own_word_only_where_nothing_else_explains_it(found):
     (failure,) = found(GOOD, failure=said)
     assert failure.kind == "does-not-load"
     assert "'x' is no function - 10:REMAP = M6" in failure.text
-    assert kinds(found(GOOD.replace("= ngc\n", "= typo\n"), failure=said)) == ["no-sub"]
+    assert kinds(found(GOOD.replace("= ngc\n", "= typo\n"), failure=said)) == ["no-sub"] * 2
 
 
 def test_last_words_are_never_empty():

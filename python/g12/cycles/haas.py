@@ -7,8 +7,8 @@ The motions of `ngc/g12_haas.ngc`, per level:
 
 1. with X or Y in the block: rapid to the centre at the present Z (before the first level)
 2. feed to the level's Z in the centre; without Z in the block it is the present one. Or, with a
-   helix: a half circle onto it, down along it (`entry`), once round, and as a half turn onto the
-   first ring, if that is larger; 3 is done then, and 4 too if the ring is the helix's own
+   helix (`ngc/g12_helix.ngc`): a half circle onto it, down along it (`entry`), once round, and as
+   a half turn onto the first ring, if that is larger; 3 is done then, and 4 too
 3. half circle from the centre to (+b, 0), turning the way of the cut, tangent to the ring
 4. full circle of radius b
 5. for each further ring: a tangent link outward, then its full circle; the last is K exactly
@@ -100,20 +100,19 @@ class Pocket(NamedTuple):
             "rings": not self.spiral,
             "feed": self.feed,
             "plunge_feed": self.plunge_feed,
-            **self._helix_locals(),
+            "turns": self.descent.turns,
+            **(self._helix_locals() if self.descent.turns else {}),
         }
 
     def _helix_locals(self) -> dict[str, float]:
-        radius, last = self.helix.radius, self.helix.last
+        outward = self.first_radius / self.helix.radius
         return {
-            "turns": self.descent.turns,
             "fall": self.descent.fall,
             "next_turns": self.next_descent.turns,
             "next_fall": self.next_descent.fall,
-            "helix": radius,
-            "last_turns": last,
-            "easing": 1 / (last + 1),
-            "outward": self.first_radius / radius if radius else 1.0,
+            "last_turns": self.helix.last,
+            "outward": outward,
+            "side": -1 if outward > 1 else 1,
         }
 
 

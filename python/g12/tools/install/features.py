@@ -39,6 +39,7 @@ MEANING = {
 }
 SHARED = {"cycle_done"}  # the epilog of every cycle does not tell which one it is
 SUBS = {  # what a program, or a handler, calls besides the codes
+    "haas": ("g12_helix",),
     "circle-mill": ("circle_mill",),
     **dict.fromkeys(POLAR, ("g12_skipped_over",)),
 }
