@@ -97,7 +97,8 @@ class Move(NamedTuple):
     1 or -1 for anything up to a full circle) and ``rotation`` the angle of the work coordinate
     system about Z in degrees, which turns G18 and G19 planes.
 
-    ``remap`` is the remapped code that makes the move, ``G12``, "" without one.
+    ``remap`` is the remapped code that makes the move, ``G12``, "" without one. ``exact`` says that
+    it ends in an exact path or stop (G61, G61.1), not blended into the next.
     """
 
     kind: str
@@ -114,6 +115,7 @@ class Move(NamedTuple):
     turns: int = 0
     rotation: float = 0.0
     remap: str = ""
+    exact: bool = False
 
     @property
     def radius(self) -> float:

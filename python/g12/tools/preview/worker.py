@@ -42,6 +42,7 @@ STATE = (
 SPINDLE_MODE = 13  # place of G96, G97 in the active G codes
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 FEED_MODES = ("G94", "G93", "G95")
+CONTINUOUS = 3  # CANON_CONTINUOUS: G64
 DIAMETER = 10  # place in what the preview asks for of a tool
 TOOL_FUNCTIONS = {  # with their types as C++ names them
     "tooldata_init": "b",
@@ -345,7 +346,7 @@ class Canon:
         state = (self.plane, self.spindle[0], self.length)
         place = (kind, self.line, self.lines.now(), start, self.position)
         remap = self.lines.remap()
-        self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation, remap))
+        self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation, remap, is_exact()))
         if remap:
             self.files |= self.lines.files()
 
@@ -384,6 +385,13 @@ def conditions(state) -> tuple:
         "M8 on" if this.flood else "M8 off",
         f"M{state.overrides}",
     )
+
+
+def is_exact() -> bool:
+    """Tell whether moves end in an exact path or stop (G61, G61.1)."""
+    import emccanon
+
+    return emccanon.GET_EXTERNAL_MOTION_CONTROL_MODE() != CONTINUOUS
 
 
 def in_mm(position) -> tuple:
