@@ -159,3 +159,19 @@ def test_a_height_is_looked_up_without_looking_at_every_move(monkeypatch):
     monkeypatch.setattr(cleared, "_area", None)
     areas = {cleared.before(last, height).area for height in np.linspace(-2.9, 9.0, 300)}
     assert len(areas) == 1
+
+
+def test_a_rapid_down_into_the_floor_is_found():
+    program = start().mill(depth=-2.0).rapid(z=2).rapid(z=-4.0).mill(depth=-1.0)
+    (hit,) = program.found()
+    assert hit.area == pytest.approx(np.pi * 9, rel=0.02) and hit.path[0][2] == -4
+
+
+def test_a_rapid_down_to_the_floor_is_good():
+    assert start().mill(depth=-2.0).rapid(z=2).rapid(z=-2).mill(depth=-2.0).found() == []
+
+
+def test_a_rapid_down_is_good_where_the_first_cycle_began_with_one():
+    program = Program().rapid(x=50, z=10).mill(depth=-0.5).rapid(z=10)
+    program.rapid(x=150, z=10).rapid(z=-3).mill([17], depth=0.0)
+    assert program.rapid(z=2).rapid(z=-6).mill([17], depth=0.0).rapid(z=10).found() == []

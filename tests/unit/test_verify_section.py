@@ -20,6 +20,7 @@ from g12.tools.verify.findings import (
     turn_findings,
 )
 from g12.tools.verify.section import measure_section
+from g12.tools.verify.section_motion import SectionAxes
 from g12.tools.verify.wanted_contour import Element, SectionContour
 from support.made_moves import LIMITS, Hand, samples_of
 
@@ -27,6 +28,7 @@ FACE = Part(turning=True)
 TOLERANCE = 0.006
 TOOL = 6.0
 CORNERS = [20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j, 20 + 0j]  # counterclockwise from 20+0j
+AXES = SectionAxes(1000.0, 1000.0, math.radians(3600.0), 360.0)
 
 
 def line(number, start, end, side=0, ramp=False):
@@ -83,7 +85,7 @@ def measure(hand, elements, real=None, **options):
     path = track(FACE, hand.moves, LIMITS)
     found = section(elements, end=len(hand.moves), **options)
     run = follow(path, hand.moves, real(path), 1.0) if real else None
-    return measure_section(found, path, hand.moves, {1: 2 * TOOL}, 360.0, TOLERANCE, run)
+    return measure_section(found, path, hand.moves, {1: 2 * TOOL}, AXES, TOLERANCE, run)
 
 
 def findings(facts):

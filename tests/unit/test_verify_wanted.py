@@ -23,7 +23,7 @@ from g12.tools.preview.moves import Event
 from g12.tools.verify import wanted_circle, wanted_contour
 from g12.tools.verify.codes import Codes
 from g12.tools.verify.wanted_circle import CircleReader
-from g12.tools.verify.wanted_contour import Pen
+from g12.tools.verify.wanted_contour import Pen, WordReading
 from support.made_moves import Hand
 
 REMAPS = (
@@ -296,7 +296,7 @@ def test_the_event_puts_the_cutter_where_the_manual_says(direction, compensation
 
 def drawn(*lines, reading="inherit", **state):
     """Return the elements that lines inside a section describe; it begins at X20."""
-    pen = Pen(block("G12.1", **{"_x": 20, **state}), reading)
+    pen = Pen(block("G12.1", **{"_x": 20, "_motion_mode": 10, **state}), WordReading(reading))
     return [e for number, line in enumerate(lines, 2) for e in pen.draw(block(line, number))]
 
 

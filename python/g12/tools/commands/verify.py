@@ -70,7 +70,7 @@ def main(arguments: list[str]) -> int:
     with opened_program(options.program, ini) as opened:
         proof = proof_in_source(proof_of(opened.path, ini, options), opened)
     tell_whose_lines("verify", opened)
-    if not (proof.pockets or proof.sections or proof.unseen):
+    if not (proof.pockets or proof.sections or proof.unseen or proof.still):
         raise UsageError(f"{options.program}: has no pocket and no polar section to verify")
     unit = unit_of(proof.subject.trace.modes.gcodes, options.units)
     print(as_json(proof) if options.json else as_text(proof, unit))

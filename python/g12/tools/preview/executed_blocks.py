@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Callable, NamedTuple
 
 from g12.tools.errors import ProgramError
-from g12.tools.preview.moves import Trace
+from g12.tools.preview.moves import Event, Trace
 from g12.tools.preview.tracer import Parameters, Tracer
 
 TAG = "g12-verify"
@@ -71,7 +71,8 @@ class Block:
     ``words`` maps letters to values in program units (G and M words aside, which are ``codes``
     and ``m_codes``; the arguments of a call are ``arguments``), ``state`` is what the block
     found: ``_x`` …, ``left`` what it left, empty where the program ended in it.
-    ``at`` is the index of its first move and ``end`` that of the first move after it.
+    ``at`` is the index of its first move and ``end`` that of the first move after it. ``events``
+    are those since the block before it was done, its own included.
     """
 
     text: Text
@@ -83,6 +84,7 @@ class Block:
     at: int
     end: int
     left: dict[str, float] = field(default_factory=dict)
+    events: tuple[Event, ...] = ()
 
 
 Wanted = Callable[[Text], bool]
@@ -169,11 +171,16 @@ def executed(
     texts = read_lines(program)
     copy = tracer.trace_text(watched(program, texts, wanted), parameters=parameters)
     if len(copy.moves) != len(trace.moves):
-        raise ProgramError(
-            f"{program}: moves otherwise where lines are put between its own:"
-            " its blocks cannot be followed"
-        )
+        raise moves_otherwise(program)
     return blocks_in(copy, texts)
+
+
+def moves_otherwise(program: Path) -> ProgramError:
+    """Return the error of a program whose copies do not do what it does itself."""
+    return ProgramError(
+        f"{program}: moves otherwise where lines are put between its own:"
+        " its blocks cannot be followed"
+    )
 
 
 def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) -> list[str]:
@@ -213,24 +220,25 @@ def after(text: Text, skip: int = 0) -> Iterator[str]:
 
 def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
     """Return the blocks that a trace tells of."""
-    told = [
-        (event.at, *event.text.split(f"{TAG} ", 1)[1].split())
-        for event in trace.events
-        if TAG in event.text
-    ]
     found: list[Block] = []
     values: dict[int, float] = {}
+    since: list[Event] = []
     opened: tuple | None = None
-    for at, kind, number, *rest in told:
+    for event in trace.events:
+        if TAG not in event.text:
+            since.append(event)
+            continue
+        kind, number, *rest = event.text.split(f"{TAG} ", 1)[1].split()
         if kind == "begin":
-            values, opened = {}, (at, texts[int(number) - 1], [float(v) for v in rest])
+            values, opened = {}, (event.at, texts[int(number) - 1], [float(v) for v in rest])
         elif kind == "value":
             values[int(number)] = float(rest[0])
         elif opened:
-            found.append(_block(*opened, values, at, [float(value) for value in rest]))
-            opened = None
+            left = [float(value) for value in rest]
+            found.append(_block(*opened, values, event.at, left, since))
+            opened, since = None, []
     if opened:  # the program ended in it, with M2
-        found.append(_block(*opened, values, len(trace.moves), []))
+        found.append(_block(*opened, values, len(trace.moves), [], since))
     return found
 
 
@@ -241,6 +249,7 @@ def _block(
     values: dict[int, float],
     end: int,
     left: list[float],
+    events: list[Event],
 ) -> Block:
     told = [
         (letter, values.get(index, float(value) if is_number(value) else 0.0))
@@ -254,4 +263,5 @@ def _block(
         at,
         end,
         dict(zip(STATE, left)),
+        tuple(events),
     )

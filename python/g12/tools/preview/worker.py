@@ -346,7 +346,9 @@ class Canon:
         state = (self.plane, self.spindle[0], self.length)
         place = (kind, self.line, self.lines.now(), start, self.position)
         remap = self.lines.remap()
-        self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation, remap, is_exact()))
+        self.moves.append(
+            (*place, feed, mode, *state, centre, turns, self.rotation, remap, is_exact())
+        )
         if remap:
             self.files |= self.lines.files()
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from g12.machine_ini import Remap, remap_lines
+from g12.machine_ini import Remap, code_number, remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import Text
 
@@ -45,11 +45,17 @@ class Codes:
         lines = remap_lines(ini.all)
         found = ((line.number[1] / 10, cycle_of_line(line)) for line in lines)
         self._cycles = {code: cycle for code, cycle in found if cycle}
-        self._ours = {line.number[1] / 10 for line in lines if line.keywords.get("ngc") in SUBS}
+        ours = (cycle_of_line(line) or line.keywords.get("ngc") in SUBS for line in lines)
+        self._ours = {line.number for line, its in zip(lines, ours) if its}
+        self._remapped = {line.number for line in lines}
 
     def knows(self, code: str) -> bool:
         """Tell whether a remapped code, as ``Move.remap`` has it, is one of the package."""
-        return code[:1] == "G" and float(code[1:]) in self._ours | self._cycles.keys()
+        return code_number(code) in self._ours
+
+    def remaps(self, code: str) -> bool:
+        """Tell whether a code has another meaning than LinuxCNC's own."""
+        return code_number(code) in self._remapped
 
     def cycle_of(self, call: str, codes: Sequence[float]) -> Cycle | None:
         """Return the cycle that a block calls or commands, polar interpolation aside."""

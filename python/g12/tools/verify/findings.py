@@ -16,7 +16,7 @@ from g12.tools.verify.codes import EVENT
 from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import SAME_LEVEL, PocketFacts
 from g12.tools.verify.pocket_entry import entry_findings
-from g12.tools.verify.pocket_order import ENDS
+from g12.tools.verify.pocket_order import ENDS, LeftBehind
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.wanted_circle import Cutter, Target
@@ -32,13 +32,14 @@ SAME_ANGLE = 1e-3  # degree
 SAME = 2e-3  # mm: circles of the same depth and radius
 MODES = {"_metric": ("G20", "G21"), "_absolute": ("G91", "G90"), "_units_per_rev": ("G94", "G95")}
 LOST_MINUS = "lies above Z{}, where the tool comes from: it cuts air (a lost minus sign?)"
+NOT_CUT = "nothing is cut"
 UNMEASURED = "a cycle cuts here that could not be measured"
 
 
 def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:
     """Yield what is wrong with a pocket."""
     if not facts.depths:
-        yield "nothing is cut"
+        yield NOT_CUT
         return
     yield from wall_findings(facts, tolerance, unit)
     wrong_depth = list(depth_findings(facts, tolerance, unit))
@@ -147,9 +148,12 @@ def circle_text(circle: tuple[float, float] | None, facts: PocketFacts, unit: Un
 def place_findings(facts: PocketFacts, told: str, unit: Unit) -> Iterator[str]:
     """Yield what is not where the words want it: the first of each kind but what is ``told``."""
     for what, found, asked in {place.what: place for place in facts.misplaced[::-1]}.values():
-        if what != told:
-            there, here = (place_text(point, unit) for point in (found, asked))
-            yield f"{what} {there}, not {here}"
+        if found is None:
+            yield f"{what} {place_text(asked, unit)}"
+        elif asked is None:
+            yield f"{what} {place_text(found, unit)}, where the cycle has it not"
+        elif what != told:
+            yield f"{what} {place_text(found, unit)}, not {place_text(asked, unit)}"
 
 
 def place_text(point: Sequence[float], unit: Unit) -> str:
@@ -159,14 +163,22 @@ def place_text(point: Sequence[float], unit: Unit) -> str:
 
 def left_findings(facts: PocketFacts) -> Iterator[str]:
     """Yield what is left behind otherwise than the words ask; a feed only if all moves had it."""
-    for name, found, asked in facts.left_behind:
-        if name == "_feed":
-            if not facts.feed:
-                yield f"it leaves F{plain(found, 4)}, not F{plain(asked, 4)}"
-        elif name == "_motion_mode":
-            yield f"it leaves G{found / 10:g}, not G{asked / 10:g}"
-        else:
-            yield "it leaves {}, not {}".format(*(MODES[name][int(on)] for on in (found, asked)))
+    for left in facts.left_behind:
+        if left.name != "_feed" or not facts.feed:
+            yield left_text(left)
+
+
+def left_text(left: LeftBehind) -> str:
+    """Return in words what is left behind otherwise than the words ask, in program units."""
+    name, found, asked = left
+    if name in MODES:
+        was, instead = (MODES[name][int(on)] for on in (found, asked))
+    elif name == "_motion_mode":
+        was, instead = (f"G{mode / 10:g}" for mode in (found, asked))
+    else:
+        letter = name.removeprefix("_")[0].upper()
+        was, instead = (f"{letter}{plain(value, 4)}" for value in (found, asked))
+    return f"it leaves {was}, not {instead}"
 
 
 def overrun_text(overrun: Overrun, unit: Unit) -> str:
@@ -244,6 +256,8 @@ def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> 
     yield from contour_findings(facts, tolerance, unit)
     yield from block_findings(facts, unit)
     yield from turn_findings(facts)
+    yield from motion_findings(facts, unit)
+    yield from state_findings(facts)
 
 
 def air_findings(section: SectionContour, unit: Unit) -> Iterator[str]:
@@ -321,6 +335,38 @@ def stock_notes(facts: StockFacts, unit: Unit = MM) -> Iterator[str]:
         )
     if facts.below:
         yield f"the lowest cut is {unit.text(facts.below)} {unit.name} below the block"
+
+
+def motion_findings(facts: SectionFacts, unit: Unit) -> Iterator[str]:
+    """Yield how a section's lines follow each other otherwise than they should."""
+    if facts.order_off:
+        line, what, lengths = facts.order_off
+        size = f" {unit.name}" if lengths else ""
+        yield f"line {line}: {what.format(*map(unit.text, lengths))}{size}"
+    for line, what, off in facts.motion_off:
+        by = f", rounded by {unit.fine(off)} {unit.name} or more" if off else ""
+        yield f"line {line}: it {what}{by}"
+
+
+def state_findings(facts: SectionFacts) -> Iterator[str]:
+    """Yield what a section does besides moving, or leaves, otherwise than its words ask."""
+    if facts.act_off:
+        line, text, found, asked = facts.act_off
+        if asked is None:
+            yield f"{text} comes {place_of_act(found)}, where the program has it not"
+        elif found is None:
+            yield f"line {line}: {text} does not come"
+        else:
+            yield f"line {line}: {text} comes {place_of_act(found)}, not {place_of_act(asked)}"
+    for left in facts.left_behind:
+        yield left_text(left)
+    if len(set(facts.section.paths)) > 1:
+        yield "it leaves {}, not {}".format(*facts.section.paths)
+
+
+def place_of_act(line: int) -> str:
+    """Return in words where something happens: behind a line that is cut."""
+    return f"behind line {line}" if line else "at the start"
 
 
 def collision_text(hit: Collision, unit: Unit = MM) -> str:

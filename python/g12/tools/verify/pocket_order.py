@@ -13,19 +13,24 @@ import numpy as np
 
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.wanted_circle import Places, Target
+from g12.tools.verify.wanted_circle import Places, Target, Wall
 
 SAME_STATE = 1e-5  # relative: values are told with nine decimals
 ACROSS = 1e-6  # mm
+SAME_FAST = 0.002  # mm
+KINDS = {"rapid": "rapid", "feed": "straight move", "probe": "probing move"}
 ENDS = "it ends at"
 
 
 class Misplaced(NamedTuple):
-    """Something that is at another place than the words ask for; ``what`` in words."""
+    """Something that is at another place than the words ask for; ``what`` in words.
+
+    ``found`` is None where it is not there at all, ``asked`` where it is not in the words.
+    """
 
     what: str
-    found: tuple[float, ...]
-    asked: tuple[float, ...]
+    found: tuple[float, ...] | None
+    asked: tuple[float, ...] | None
 
 
 class LeftBehind(NamedTuple):
@@ -62,17 +67,21 @@ def misplaced(
         *of_leads(places, starts, circles[:1] if target.schedule.helix else circles),
         (ENDS, ends[-1], np.array(places.end)),
     ]
-    in_machine = target.wall.origin, target.wall.axes
+    strays = of_fast(places, moves, starts, ends) if places.fast is not None else ()
+    wrong = [place for place in found if np.abs(place[1] - place[2]).max() > tolerance]
     return tuple(
-        Misplaced(
-            what, *(tuple(map(float, in_machine[0] + at @ in_machine[1])) for at in (was, to))
-        )
-        for what, was, to in found
-        if np.abs(was - to).max() > tolerance
+        Misplaced(what, in_machine(target.wall, was), in_machine(target.wall, to))
+        for what, was, to in (*wrong, *strays)
     )
 
 
+def in_machine(wall: Wall, place: np.ndarray | None) -> tuple[float, ...] | None:
+    """Return a place as seen from a wall's centre in machine coordinates."""
+    return None if place is None else tuple(map(float, wall.origin + place @ wall.axes))
+
+
 Found = Iterator["tuple[str, np.ndarray, np.ndarray]"]
+Strays = Iterator["tuple[str, np.ndarray | None, np.ndarray | None]"]
 
 
 def growth_of(target: Target, moves: Sequence[Move], circles: Sequence[int]) -> float:
@@ -110,6 +119,28 @@ def of_rapids(
             yield "a rapid goes across at", end, np.array([*end[:2], height])
         elif end[2] < start[2]:
             yield "a rapid goes down to", end, np.array([*end[:2], max(end[2], places.first)])
+
+
+def of_fast(places: Places, moves: Sequence[Move], starts: np.ndarray, ends: np.ndarray) -> Strays:
+    """Yield the fast moves that are missing, not in the words, or not fast.
+
+    Links from ring to ring are straight moves at feed: only those that a fast move should be, or
+    that stand in its place, are looked at.
+    """
+    waiting = list(places.fast)
+    for move, start, end in zip(moves, starts, ends):
+        across = np.abs(end - start)[:2].max() > ACROSS
+        if move.kind == "arc" or not across:
+            continue
+        next_one = next(iter(waiting), None)
+        if next_one and np.abs(np.array(next_one) - [start[:2], end[:2]]).max() <= SAME_FAST:
+            waiting.pop(0)
+            if move.kind != places.straight:
+                yield f"a {KINDS[places.straight]} goes as a {KINDS[move.kind]} to", end, None
+        elif move.kind == "rapid" or places.straight == "feed":
+            yield f"a {KINDS[move.kind]} goes to", end, None
+    for _, place in waiting:
+        yield f"a {KINDS[places.straight]} is missing to", None, np.array([*place, ends[-1][2]])
 
 
 def height_across(places: Places, index: int, starts: np.ndarray, circles: Sequence[int]) -> float:

@@ -8,13 +8,13 @@ LinuxCNC makes of it; the cycles' own planning has no part in it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
-from g12.tools.path.part import C, part_of_program
+from g12.tools.path.part import part_of_program
 from g12.tools.path.samples import Samples
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.ended import ended, explained
@@ -27,6 +27,7 @@ from g12.tools.verify.axis_limits import has_one_zero, overruns_of, travel_of, w
 from g12.tools.verify.codes import Codes
 from g12.tools.verify.executed_subs import executed_everywhere
 from g12.tools.verify.findings import (
+    NOT_CUT,
     UNMEASURED,
     collision_text,
     pocket_findings,
@@ -38,9 +39,10 @@ from g12.tools.verify.pocket import PocketFacts, measure_pocket
 from g12.tools.verify.pocket_order import left_otherwise
 from g12.tools.verify.rapids import Collision, collisions
 from g12.tools.verify.section import SectionFacts, measure_section
+from g12.tools.verify.section_motion import axes_of_section
 from g12.tools.verify.stock import read_stock
 from g12.tools.verify.wanted_circle import CircleReader, Target
-from g12.tools.verify.wanted_contour import SectionContour, sections
+from g12.tools.verify.wanted_contour import SectionContour, WordReading, sections
 from g12.tools.verify.zero_line import with_zero_lines
 
 POCKET_TOLERANCE = 0.005  # mm
@@ -66,10 +68,14 @@ class StockText(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """What a program asks for: circles, each with the block that does, and polar sections."""
+    """What a program asks for: circles, each with the block that does, and polar sections.
+
+    ``still`` are the line and the code of each cycle that moves nothing, though it should.
+    """
 
     circles: list[tuple[Block, Target]]
     sections: list[SectionContour]
+    still: list[tuple[int, str]]
 
     @property
     def moves(self) -> list[range]:
@@ -90,7 +96,8 @@ class Proof:
     """What was measured.
 
     ``unseen`` are lines whose blocks make a cycle cut that belongs to no pocket and no section
-    measured, and the cycle's code. ``stock`` is what happens to the stock, None if it is not known.
+    measured, and the cycle's code; ``still`` those of cycles that move nothing. ``stock`` is what
+    happens to the stock, None if it is not known.
     """
 
     subject: Subject
@@ -100,6 +107,7 @@ class Proof:
     unseen: list[tuple[int, str]]
     tolerances: Tolerances
     stock: StockFacts | None = None
+    still: list[tuple[int, str]] = field(default_factory=list)
 
     @property
     def findings(self) -> list[tuple[int, str]]:
@@ -120,7 +128,8 @@ class Proof:
         ]
         found += [(hit.line, collision_text(hit, unit)) for hit in self.collisions]
         found += stock_findings(self.stock, unit) if self.stock else ()
-        return found + [(line, UNMEASURED) for line, _ in self.unseen]
+        found += [(line, UNMEASURED) for line, _ in self.unseen]
+        return found + [(line, NOT_CUT) for line, _ in self.still]
 
 
 def prove(
@@ -174,9 +183,18 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
         helix_angle=settings.entry_angle if settings.entry == "helix" else None,
         plunge_share=settings.plunge_feed / 100,
     )
-    polar = sections(tracer, program, codes, settings.polar_x, blocks, parameters)
+    rapid_feed = settings.polar_g0_feed and settings.polar_g0_feed * subject.ini.mm
+    reading = WordReading(settings.polar_x, rapid_feed)
+    polar = sections(tracer, program, codes, reading, blocks, parameters)
+    still = [
+        (block.text.number, codes.name_of(block.codes))
+        for block in blocks
+        if block.at == block.end and codes.cycle_of(block.text.call, block.codes)
+    ]
+    still += [(each.line, each.code) for each in polar if each.elements and each.at == each.end]
+    polar = [each for each in polar if each.end > each.at]
     polar = with_zero_lines(polar, subject.trace.moves, program, codes, subject.ini)
-    return Asked(list(reader.targets(blocks)), polar)
+    return Asked(list(reader.targets(blocks)), polar, still)
 
 
 def moves_there(tracer: Tracer, subject: Subject, parameters: Parameters) -> Sequence[Move] | None:
@@ -212,16 +230,16 @@ def measured(
         overruns = None if there is None else tuple(overruns_of(block, there, travel, widths))
         left = left_otherwise(block, target.leaves)
         pockets.append(replace(facts, overruns=overruns, left_behind=left))
-    c_limit = limits_of(subject.ini).axes[C]
     diameters = subject.trace.diameters
+    axes = axes_of_section(subject.ini) if asked.sections else None
     polar = [
-        measure_section(each, path, moves, diameters, c_limit, tolerances.polar, real)
+        measure_section(each, path, moves, diameters, axes, tolerances.polar, real)
         for each in counted(asked.sections, "measuring section", tell)
     ]
     tell("looking for rapids through material")
     hits = collisions(asked.circles, moves, path, diameters, real)
     unseen = unseen_in(moves, Codes(subject.ini), asked.moves)
-    return Proof(subject, pockets, polar, hits, unseen, tolerances)
+    return Proof(subject, pockets, polar, hits, unseen, tolerances, still=asked.still)
 
 
 def stock_facts(
@@ -236,7 +254,9 @@ def stock_facts(
     unit, part = unit_of(subject.trace.modes.gcodes, stock.units), subject.path.part
     said = read_stock(stock.text, part.turning, unit)
     trace = subject.trace
-    return InStock(said, *asked, trace.moves, subject.path, trace.diameters).facts(known)
+    return InStock(
+        said, asked.circles, asked.sections, trace.moves, subject.path, trace.diameters
+    ).facts(known)
 
 
 def unseen_in(moves: Sequence[Move], codes: Codes, seen: Iterable[range]) -> list[tuple[int, str]]:

@@ -5,6 +5,9 @@ The stock is not known, but a pocket has a wall, and perhaps a core. So: where a
 through a pocket, all of it that lies lower than the pocket's top must stay in what the program
 has cleared down to that height before.
 
+A rapid straight down is one of them too, but where the program came down to its first cycle by a
+rapid: there it takes the part for bored.
+
 A pocket's top is the height from which the tool was fed down to it (the lowest such height of all
 pockets that still is above its first floor), or the program's Z0 if that is between this floor and
 the height at which the tool came. Circles cut from outside and those of other planes than XY have
@@ -140,12 +143,13 @@ def collisions(
     """Return the rapids that go through material; those of a run if there is one."""
     cleared = Cleared(asked, moves, path, diameters)
     openings = list(openings_of(asked, moves, cleared))
+    bored = bored_places(asked, moves, openings)
     found: dict[int, Collision] = {}
     for chain in chains_of(moves, openings):
         points, owner = path_along(chain, moves, path, real)
         for opening in openings:
             for stretch in stretches_in(opening, points, owner):
-                for hit in hits(points[stretch], owner[stretch], moves, cleared):
+                for hit in hits(points[stretch], owner[stretch], moves, cleared, bored):
                     known = found.get(hit.move)
                     found[hit.move] = hit if known is None or known.area < hit.area else known
     return [found[move] for move in sorted(found)]
@@ -239,16 +243,49 @@ def in_box(points: np.ndarray, bounds: tuple[float, float, float, float]) -> np.
 
 
 def hits(
-    points: np.ndarray, owner: np.ndarray, moves: Sequence[Move], cleared: Cleared
+    points: np.ndarray,
+    owner: np.ndarray,
+    moves: Sequence[Move],
+    cleared: Cleared,
+    bored: Sequence[complex],
 ) -> Iterator[Collision]:
     """Yield the collisions along points, one for each move."""
     for index in np.unique(owner):
         own, radius = points[owner == index], cleared.radius(index)
-        if np.ptp(own[:, :2], axis=0).max() > ALLOWED:
-            hit = bites_of(own, index, radius, cleared)
-            area = unary_union([piece for _, piece in hit]).area if hit else 0.0
-            if area > LEAST_AREA:
-                yield Collision(index, moves[index].block, area, np.array([at for at, _ in hit]))
+        if np.ptp(own[:, :2], axis=0).max() <= ALLOWED:
+            own = own[np.argmin(own[:, 2])][None] if plunges(moves[index], bored) else own[:0]
+        hit = bites_of(own, index, radius, cleared)
+        area = unary_union([piece for _, piece in hit]).area if hit else 0.0
+        if area > LEAST_AREA:
+            yield Collision(index, moves[index].block, area, np.array([at for at, _ in hit]))
+
+
+def plunges(move: Move, bored: Sequence[complex]) -> bool:
+    """Tell whether a rapid goes down where the program does not take the part for bored."""
+    place = complex(*move.end[:2])
+    return move.end[2] < move.start[2] and all(abs(place - hole) > ALLOWED for hole in bored)
+
+
+def bored_places(
+    asked: Circles, moves: Sequence[Move], openings: Sequence[Opening]
+) -> list[complex]:
+    """Return where a program comes down to a first cycle by a rapid below the top of its pocket.
+
+    There is a hole, or the rapid would have met the part: it goes deeper later on as well.
+    """
+    tops = {opening.first: opening.top for opening in openings}
+    seen: list[complex] = []
+    bored: list[complex] = []
+    for block, target in asked:
+        before = block.at - 1
+        place = complex(*moves[block.at].start[:2])
+        bored += [place] * bool(target.wall.bore)
+        if before >= 0 and all(abs(place - other) > ALLOWED for other in seen):
+            down = moves[before]
+            below = down.end[2] < min(down.start[2], tops.get(block.at, -np.inf)) - SAME_HEIGHT
+            bored += [place] * (below and down.kind == "rapid")
+        seen.append(place)
+    return bored
 
 
 def bites_of(points: np.ndarray, index: int, radius: float, cleared: Cleared) -> list:

@@ -10,6 +10,7 @@ from g12.tools.path.slowest import Pace
 from g12.tools.preview.moves import message_lines
 from g12.tools.units import Unit, plain
 from g12.tools.verify.findings import (
+    NOT_CUT,
     SAME_AREA,
     UNMEASURED,
     collision_text,
@@ -45,6 +46,7 @@ def as_text(proof: Proof, unit: Unit) -> str:
     unseen = [
         paragraph(f"line {line}: {code}", [], [], [UNMEASURED]) for line, code in proof.unseen
     ]
+    unseen += [paragraph(f"line {line}: {code}", [], [], [NOT_CUT]) for line, code in proof.still]
     rapids = [
         paragraph(f"line {hit.line}: rapid", [], [], [collision_text(hit, unit)])
         for hit in proof.collisions
@@ -234,6 +236,7 @@ def as_json(proof: Proof) -> str:
             "stock": proof.stock and stock_json(proof.stock),
             "unseen": [{"line": line, "code": code} for line, code in proof.unseen],
             "messages": [message._asdict() for message in proof.subject.trace.messages],
+            "still": [{"line": line, "code": code} for line, code in proof.still],
             "good": not proof.findings,
         },
         indent=2,

@@ -27,15 +27,20 @@ from g12.tools.verify.closed_contour import MEETS, trimmed
 from g12.tools.verify.contour_distance import SAME, STEP, ContourDistances
 from g12.tools.verify.contour_side import OtherSide, other_side
 from g12.tools.verify.contour_width import across_flats
+from g12.tools.verify.pocket_order import LeftBehind
 from g12.tools.verify.section_blocks import (
     InPlace,
+    OffOrder,
     OffWords,
     depth_off,
     feed_off,
+    order_off,
     turn_speed,
     turned_in_place,
 )
+from g12.tools.verify.section_motion import OffMotion, SectionAxes, motion_off
 from g12.tools.verify.section_paths import Plane, ToolPaths, goes_across, tool_paths_of
+from g12.tools.verify.section_state import OffAct, act_off, left_behind
 from g12.tools.verify.wanted_contour import Element, SectionContour
 
 TINY_PIECE = 1e-6
@@ -60,6 +65,8 @@ class SectionFacts:
     C and Z, ``slowest_line`` its block. ``depth_off`` and ``feed_off`` are the first Z and the
     first feed that are not the words', ``turn_speed`` is what F asks of C where it turns in
     place, ``in_place`` how far and how long it does below the part's face.
+    ``order_off``, ``motion_off`` and ``act_off`` are the first lines and acts that are not in
+    their place, rapids and corners that are blended, ``left_behind`` is what is left otherwise.
     """
 
     section: SectionContour
@@ -89,6 +96,10 @@ class SectionFacts:
     feed_off: OffWords | None
     turn_speed: float
     in_place: InPlace
+    order_off: OffOrder | None = None
+    motion_off: tuple[OffMotion, ...] = ()
+    act_off: OffAct | None = None
+    left_behind: tuple[LeftBehind, ...] = ()
 
 
 def measure_section(
@@ -96,11 +107,11 @@ def measure_section(
     path: Track,
     moves: Sequence[Move],
     diameters: dict[int, float],
-    limit: float,
+    axes: SectionAxes,
     tolerance: float,
     real: Followed | None = None,
 ) -> SectionFacts:
-    """Return the facts of a section; ``limit`` is C's greatest speed, degrees/s."""
+    """Return the facts of a section that moves."""
     plane = Plane(section, moves[section.at])
     own = range(section.at, section.end)
     cutting = [i for i in own if moves[i].kind != "rapid" and path.part_length(i) > TINY_PIECE]
@@ -119,7 +130,7 @@ def measure_section(
         longest=max(lengths),
         pace=pace,
         c_speed=c_speed_of(own, path, plane, real),
-        c_limit=limit,
+        c_limit=axes.c_speed,
         zero=moves[section.at].start[C],
         start_height=moves[section.at].start[Z],
         lowest=min(moves[index].end[Z] for index in own),
@@ -129,6 +140,10 @@ def measure_section(
         feed_off=feed_off(section, moves, path),
         turn_speed=turn_speed(section, moves, path),
         in_place=turned_in_place(section, moves, path),
+        order_off=order_off(section, moves, path),
+        motion_off=tuple(motion_off(section, moves, path, axes, tolerance)),
+        act_off=act_off(section, moves),
+        left_behind=left_behind(section),
     )
 
 

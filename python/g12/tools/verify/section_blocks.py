@@ -21,6 +21,7 @@ from g12.tools.verify.wanted_contour import Element, SectionContour
 SAME_LEVEL = 1e-3  # mm
 SAME_FEED = 0.01
 LEAST_LENGTH = 0.02  # mm: the feed of a shorter piece is rounding
+SHORT = 0.02  # mm: less of a line may be rounding
 TURN = 1e-6  # mm along the part: C turns in place
 
 
@@ -39,6 +40,14 @@ class InPlace(NamedTuple):
     seconds: float
 
 
+class OffOrder(NamedTuple):
+    """A line that is not cut in its place, or not as long: ``what`` in words for ``lengths``."""
+
+    line: int
+    what: str
+    lengths: tuple[float, ...] = ()
+
+
 class BlockOfSection(NamedTuple):
     """The moves (indices) of one block, or of equal lines in a row, and what they should make.
 
@@ -50,17 +59,71 @@ class BlockOfSection(NamedTuple):
     moves: list[int]
 
 
-def blocks_cut(section: SectionContour, moves: Sequence[Move]) -> Iterator[BlockOfSection]:
-    """Yield the blocks of a section that moved, in order."""
+def drawn_blocks(section: SectionContour) -> list[tuple[list[Element], float]]:
+    """Return the elements of each block, or of equal lines in a row, and Z in front of them."""
     groups = [list(group) for _, group in groupby(section.elements, lambda element: element.line)]
-    above = [section.z, *(group[-1].depth for group in groups)]
+    return list(zip(groups, [section.z, *(group[-1].depth for group in groups)]))
+
+
+def blocks_moved(
+    section: SectionContour, moves: Sequence[Move]
+) -> Iterator[tuple[list[int], int | None]]:
+    """Yield the moves (indices) of each line in turn, with the drawn block that they make.
+
+    That is an index into ``drawn_blocks``, None where no block of the line is left.
+    """
+    lines = [elements[0].line for elements, _ in drawn_blocks(section)]
     at = 0
     for line, own in groupby(range(section.at, section.end), lambda index: moves[index].line):
-        rest = range(at, len(groups))
-        found = next((index for index in rest if groups[index][0].line == line), None)
+        found = next((index for index in range(at, len(lines)) if lines[index] == line), None)
+        at = at if found is None else found + 1
+        yield list(own), found
+
+
+def blocks_cut(section: SectionContour, moves: Sequence[Move]) -> Iterator[BlockOfSection]:
+    """Yield the blocks of a section that moved, in order."""
+    drawn = drawn_blocks(section)
+    for own, found in blocks_moved(section, moves):
         if found is not None:
-            at = found + 1
-            yield BlockOfSection(groups[found], above[found], list(own))
+            yield BlockOfSection(*drawn[found], own)
+
+
+def order_off(section: SectionContour, moves: Sequence[Move], path: Track) -> OffOrder | None:
+    """Return the first line that is not cut, or not where the words have it, or not as long."""
+    drawn, cut = drawn_blocks(section), 0
+    for own, found in blocks_moved(section, moves):
+        length = sum(map(path.part_length, own))
+        if found is None and length > SHORT:
+            return OffOrder(moves[own[0]].line, "is cut where the program has it not")
+        if found is not None:
+            missing, cut = not_cut(drawn[cut:found]), found + 1
+            off = missing or length_off(*drawn[found], length)
+            if off:
+                return off
+    return not_cut(drawn[cut:])
+
+
+def not_cut(drawn: Sequence[tuple[list[Element], float]]) -> OffOrder | None:
+    """Return the first of some blocks that is more than rounding, as one that is not cut."""
+    missing = (elements for elements, above in drawn if length_wanted(elements, above) > SHORT)
+    return next((OffOrder(elements[0].line, "is not cut") for elements in missing), None)
+
+
+def length_off(elements: Sequence[Element], above: float, length: float) -> OffOrder | None:
+    """Return what a block's length is if it is not the words'; not of a compensated one."""
+    asked = length_wanted(elements, above)
+    if any(element.side or element.ramp for element in elements):
+        return None
+    if abs(length - asked) <= SHORT + SAME_FEED * asked:
+        return None
+    return OffOrder(elements[0].line, "its path is {}, not {}", (length, asked))
+
+
+def length_wanted(group: Sequence[Element], above: float) -> float:
+    """Return the length of elements that follow each other from a height on."""
+    heights = [above, *(element.depth for element in group)]
+    rises = [after - before for before, after in zip(heights, heights[1:])]
+    return sum(math.hypot(element.length, rise) for element, rise in zip(group, rises))
 
 
 def depth_off(section: SectionContour, moves: Sequence[Move], path: Track) -> OffWords | None:

@@ -90,7 +90,7 @@ def seen_in(
 ) -> Seen:
     """Return what a picture of a traced program shows beside the cuts."""
     codes, trace = Codes(subject.ini), subject.trace
-    asked = Asked([], [])
+    asked = Asked([], [], [])
     if any(codes.knows(move.remap) for move in trace.moves):
         with Tracer(subject.ini, tools=tools) as tracer:
             asked = asked_of(tracer, subject, tools, parameters)

@@ -28,6 +28,7 @@ def proof_in_source(proof: Proof, opened: OpenedProgram) -> Proof:
         collisions=[replace(h, line=opened.source_line(h.line)) for h in proof.collisions],
         stock=proof.stock and _stock(proof.stock, opened),
         unseen=[(opened.source_line(line), code) for line, code in proof.unseen],
+        still=[(opened.source_line(line), code) for line, code in proof.still],
     )
 
 
@@ -56,4 +57,7 @@ def _section(facts: SectionFacts, opened: OpenedProgram) -> SectionFacts:
         slowest_line=line(facts.slowest_line),
         depth_off=facts.depth_off and facts.depth_off._replace(line=line(facts.depth_off.line)),
         feed_off=facts.feed_off and facts.feed_off._replace(line=line(facts.feed_off.line)),
+        order_off=facts.order_off and facts.order_off._replace(line=line(facts.order_off.line)),
+        act_off=facts.act_off and facts.act_off._replace(line=line(facts.act_off.line)),
+        motion_off=tuple(off._replace(line=line(off.line)) for off in facts.motion_off),
     )

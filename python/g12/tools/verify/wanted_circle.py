@@ -25,6 +25,7 @@ LEFT_OUT = -9999.0
 POCKET = "circle_mill_pocket"  # the handler of the event's pocket
 ROUGH_FINISH = ((-1, -1), (1, 1), (-1, 1), (1, -1))  # turns of the event by D
 DYNAMIC = (41.1, 42.1)  # compensation whose D is a diameter
+CENTRE = (0.0, 0.0)
 SAME_DEPTH = 1e-6
 ROUNDING = 1e-6  # mm
 HELIX_SHARE = 0.9  # of the cutter's radius: as large is a helix at most
@@ -153,6 +154,8 @@ class Places(NamedTuple):
     ``plunge`` is in the plane, ``lead`` the direction of a level's first circle's beginning.
     Rapids go across at ``first`` or higher before the first cut, ``retract`` above a level (not
     above ``first``) between levels, at ``last`` behind the last cut. ``end`` has three axes.
+    ``fast`` are the fast moves in the plane, each from and to a place: rapids, or moves at
+    ``straight`` feed; None where they are judged by those heights alone.
     """
 
     plunge: tuple[float, float] = (0.0, 0.0)
@@ -161,6 +164,8 @@ class Places(NamedTuple):
     retract: float = 0.0
     last: float = 0.0
     end: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    fast: tuple[tuple[tuple[float, float], tuple[float, float]], ...] | None = ()
+    straight: str = "rapid"
 
 
 @dataclass(frozen=True)
@@ -246,7 +251,9 @@ class CircleReader:
             levels, passes, feeds, cycle.turn, circles=tuple(circles), pitch=pitch, helix=helix
         )
         wall = replace(wall, origin=view.centre(), cleared=cleared)
-        return wall, cutter, schedule, Places(end=(0.0, 0.0, levels[-1]))
+        begin = view.axes @ (view.start - wall.origin)
+        there = (((begin[0], begin[1]), CENTRE),) if np.hypot(*begin[:2]) > ROUNDING else ()
+        return wall, cutter, schedule, Places(end=(0.0, 0.0, levels[-1]), fast=there)
 
     def _helix(
         self, levels: Sequence[float], ring: float, offset: float, circles: list
@@ -278,7 +285,12 @@ class CircleReader:
         circles = ((0.0, abs(view.length("I")) - offset),) * passes
         pitch = view.length("Q") if "Q" in words else None
         schedule = Schedule((0.0,), passes, feeds, cycle.turn, circles=circles, pitch=pitch)
-        return wall, cutter, schedule, Places(lead=(math.copysign(1.0, words["I"]), 0.0))
+        side = math.copysign(1.0, words["I"])
+        approach = (side * (abs(view.length("R") or view.length("J")) - offset), 0.0)
+        is_fast = bore and abs(approach[0]) > ROUNDING
+        fast = ((CENTRE, approach), (approach, CENTRE)) if is_fast else ()
+        straight = "feed" if self.traverse else "rapid"
+        return wall, cutter, schedule, Places(lead=(side, 0.0), fast=fast, straight=straight)
 
     def _mitsubishi(self, view: BlockInMm, cycle: Cycle) -> Reading:
         number = view.words["D"]
@@ -324,7 +336,7 @@ class CircleReader:
         first, last = (height - view.present("z") for height in (plane, event.get("O", plane)))
         x, y, _ = view.axes @ (view.start - view.centre())
         plunge = (0.0, 0.0 if is_pocket else -rings[-1])
-        return Places(plunge, (0.0, -1.0), first, EVENT_RETRACT, last, (x, y, last))
+        return Places(plunge, (0.0, -1.0), first, EVENT_RETRACT, last, (x, y, last), None)
 
     def _event_schedule(
         self, view: BlockInMm, event: Mapping[str, float], radii: tuple[Sequence[float], float]

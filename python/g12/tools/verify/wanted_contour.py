@@ -10,9 +10,11 @@ axis is X where the section begins.
 
 from __future__ import annotations
 
+import cmath
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,15 +26,24 @@ from g12.tools.preview.executed_blocks import (
     after,
     before,
     blocks_in,
+    is_number,
+    moves_otherwise,
     read_lines,
 )
+from g12.tools.preview.moves import Event
 from g12.tools.preview.tracer import Parameters, Tracer
 from g12.tools.verify.codes import Codes
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
 CONTOUR = "XYCUHIJRZ"
+ACTING_M = {*map(float, (3, 4, 5, 7, 8, 9, 48, 49, 50, 51, 52, 53)), *map(float, range(100, 200))}
+DWELL, EXACT_HERE = 4.0, 9.0
+PATHS = {61.0: True, 61.1: True, 64.0: False}  # code: exact
+SPINDLE = re.compile(r"\$\s*(#?-?[\d.]+|#<[^>]*>)")
+ACTS = re.compile(r"(M\d|S|dwell (?!0$)|message )")  # of what a trace tells: what a section does
 FEED_MODES = {94.0: False, 98.0: False, 95.0: True, 99.0: True}  # code: per revolution
 SAVE, RESTORE, SAVE_FOR_SUB = 70.0, 72.0, 73.0
+SAME_PLACE = 0.01  # mm
 POSITION = "#<_", "#54"  # position parameters, which the copy of the program cannot follow
 
 
@@ -43,6 +54,7 @@ class Element:
     ``side`` is +1 with the tool on the left (G41), -1 on the right, 0 without compensation;
     ``ramp`` says that compensation is switched on or off along it. ``depth`` is Z at its end,
     ``feed`` along it in mm/min, None where the words do not say. A move of Z alone has no length.
+    ``exact`` says whether it ends in an exact path or stop, None as it was before the section.
     """
 
     line: int
@@ -54,6 +66,7 @@ class Element:
     centre: complex | None = None
     sweep: float = 0.0
     feed: float | None = None
+    exact: bool | None = None
 
     @property
     def length(self) -> float:
@@ -99,6 +112,24 @@ class ZeroLine(NamedTuple):
 BEGUN = ZeroLine(True)
 
 
+class WordReading(NamedTuple):
+    """How a machine reads a section's words: [G12] POLAR_X, and POLAR_G0_FEED in mm/min."""
+
+    x: str
+    rapid_feed: float | None = None
+
+
+class Act(NamedTuple):
+    """Something that a section does besides moving, as a trace tells it, and its block's line.
+
+    ``drawn`` is how many elements of the contour come before it.
+    """
+
+    line: int
+    text: str
+    drawn: int
+
+
 @dataclass(frozen=True)
 class SectionContour:
     """One run through a section: first and last line, first move and the one after it, contour.
@@ -106,6 +137,11 @@ class SectionContour:
     ``x``, ``z`` and ``c`` (degrees) are where it begins, ``left_c`` is where C stands behind it, in
     program coordinates; ``zero_line`` tells how C came there. ``doubt`` tells why the contour
     could not be read from the words, if it could not. ``diameters`` says that X words are.
+
+    ``stopped`` says that a dwell comes between it and the move in front of it.
+    ``acts`` are what it is to do besides moving, ``told`` what a trace tells of the section.
+    ``leaves`` is the state behind it that the words ask for, as ``Block.left`` has it, and
+    ``left`` the one that was found; ``paths`` are G61 or G64 as found and as asked, if known.
     """
 
     line: int
@@ -121,49 +157,82 @@ class SectionContour:
     c: float = 0.0
     left_c: float = 0.0
     zero_line: ZeroLine = BEGUN
+    stopped: bool = True
+    acts: tuple[Act, ...] = ()
+    told: tuple[Event, ...] = ()
+    leaves: Mapping[str, float] = field(default_factory=dict)
+    left: Mapping[str, float] = field(default_factory=dict)
+    paths: tuple[str, ...] = ()
 
 
 def sections(
     tracer: Tracer,
     program: Path,
     codes: Codes,
-    reading: str,
+    reading: WordReading,
     blocks: Sequence[Block],
     parameters: Parameters = None,
 ) -> list[SectionContour]:
     """Return the sections in the order they are run.
 
-    ``reading`` is [G12] POLAR_X, ``blocks`` the program's own, which say where sections begin.
+    ``blocks`` are the program's own, which say where sections begin.
     """
-    ends = [(group[0], group[-1]) for group in grouped(blocks, codes)]
-    if not ends:
+    found = list(grouped(blocks, codes))
+    if not found:
         return []
     texts = read_lines(program)
     lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
     flat = [line for some in flattened(texts, codes, lines) for line in some]
     copy = tracer.trace_text(flat, parameters=parameters)
-    groups = grouped(blocks_in(copy, texts), codes)
+    copied = blocks_in(copy, texts)
+    groups = list(grouped(copied, codes))
+    if [own[0].text for own in found] != [group[0].text for group in groups]:
+        raise moves_otherwise(program)
     doubts = doubts_of(texts, codes, lines)
+    paths = zip(*(paths_behind(some, codes) for some in (blocks, copied)))
     return [
-        section_of(first, last, group, codes, reading, doubts.get(first.text.number, ""))
-        for (first, last), group in zip(ends, groups)
+        replace(
+            section_of(own, group, codes, reading, doubts.get(own[0].text.number, "")),
+            paths=() if restores(group) else path,
+        )
+        for own, group, path in zip(found, groups, paths)
     ]
 
 
 def flattened(
     texts: Sequence[Text], codes: Codes, lines: Sequence[str]
 ) -> Iterator[tuple[str, ...]]:
-    """Yield the lines that stand for each line in the copy without the sections' motion."""
+    """Yield the lines that stand for each line in the copy without the sections' motion.
+
+    What a line does besides moving stays: LinuxCNC itself tells of it.
+    """
     inside = False
     for text, line in zip(texts, lines):
         switch = codes.polar(text)
         if switch or (inside and text.words and not text.control and not text.too_long):
             slash = "/" if text.deleted else ""
-            kept = tuple(slash + assignment for assignment in text.assignments)
+            acting = "" if switch else acting_words(text, line, codes)
+            kept = tuple(slash + words for words in (acting, *text.assignments) if words)
             yield (*before(text), *kept, *after(text))
         else:
             yield (line,)
         inside = inside if not switch else switch == "on"
+
+
+def acting_words(text: Text, line: str, codes: Codes) -> str:
+    """Return those words of a line that act on the machine without motion, dwells included."""
+    acting = [
+        f"M{value}"
+        for letter, value in text.words
+        if letter == "M" and is_number(value) and float(value) in ACTING_M
+        if not codes.remaps(f"M{value}")
+    ]
+    dwells = [f"G{code:g}" for code in text.codes if code == DWELL or code in PATHS]
+    arguments = "PQ" if acting or dwells else ""
+    words = [letter + value for letter, value in text.words if letter in "S" + arguments]
+    spindle = SPINDLE.search(line)
+    found = [*dwells, *acting, *words]
+    return " ".join([*found, spindle[0]] if found and spindle else found)
 
 
 def grouped(blocks: Sequence[Block], codes: Codes) -> Iterator[list[Block]]:
@@ -195,32 +264,75 @@ def doubts_of(texts: Sequence[Text], codes: Codes, lines: Sequence[str]) -> dict
     return doubts
 
 
+def paths_behind(blocks: Sequence[Block], codes: Codes) -> list[str]:
+    """Return G61 or G64 and its tolerances as in force behind each section."""
+    path, inside, found = "", False, []
+    for block in blocks:
+        path = next((e.text for e in block.events[::-1] if e.text.startswith("G6")), path)
+        switch = codes.polar(block.text)
+        if switch == "off" and inside:
+            found.append(path)
+        inside = switch == "on" if switch else inside
+    return found
+
+
+def restores(group: Sequence[Block]) -> bool:
+    """Tell whether a section gives saved modes back, of which its copy knows nothing."""
+    return any(code in (RESTORE, SAVE_FOR_SUB) for block in group for code in block.m_codes)
+
+
 def section_of(
-    first: Block, last: Block, group: Sequence[Block], codes: Codes, reading: str, doubt: str
+    own: Sequence[Block], group: Sequence[Block], codes: Codes, reading: WordReading, doubt: str
 ) -> SectionContour:
-    """Return the section between two blocks of the program that executed blocks describe."""
+    """Return the section that executed blocks describe; ``own`` are the program's own of it."""
+    first, last = own[0], own[-1]
+    told = tuple(event for block in own[1:] for event in block.events)
     pen = Pen(first, reading)
     x, z, diameters = pen.at.real, pen.depth, pen.x_unit < pen.unit
-    elements = tuple(element for block in group[1:] for element in pen.draw(block))
-    code = next(f"G{code:g}" for code in first.codes if codes.polar(first.text))
-    lines = first.text.number, last.text.number
-    angles = first.state["_c"], last.left.get("_c", math.nan)
-    where = *lines, first.at, last.end, code
-    return SectionContour(*where, x, elements, doubt, z, diameters, *angles)
+    elements: list[Element] = []
+    acts: list[Act] = []
+    for block in group[1:]:
+        texts = (event.text for event in block.events if ACTS.match(event.text))
+        acts += [Act(block.text.number, text, len(elements)) for text in texts]
+        elements += pen.draw(block)
+    return SectionContour(
+        first.text.number,
+        last.text.number,
+        first.at,
+        last.end,
+        next(f"G{code:g}" for code in first.codes if codes.polar(first.text)),
+        x,
+        tuple(elements),
+        doubt,
+        z,
+        diameters,
+        first.state["_c"],
+        last.left.get("_c", math.nan),
+        stopped=any(
+            event.at == first.at and event.text.startswith("dwell")
+            for event in (*first.events, *told)
+        ),
+        acts=tuple(acts),
+        told=told,
+        leaves=pen.leaves(first.state),
+        left=last.left,
+    )
 
 
 class Pen:
     """Follows the words of a section's blocks, as the mode's rules say."""
 
-    def __init__(self, first: Block, reading: str) -> None:
+    def __init__(self, first: Block, reading: WordReading) -> None:
         state = first.state
         self.unit = 1.0 if state["_metric"] else MM_PER_INCH
-        diameter = {"diameter": True, "radius": False}.get(reading, state["_lathe_diameter_mode"])
+        diameter = {"diameter": True, "radius": False}.get(reading.x, state["_lathe_diameter_mode"])
         self.x_unit = self.unit / 2 if diameter else self.unit
         self.at = complex(state["_x"] * self.unit, 0.0)
         self.depth = state["_z"] * self.unit
         self.absolute = bool(state["_absolute"])
-        self.motion, self.side, self.changes = 1.0, 0, False
+        self.motion, self.side, self.changes = state["_motion_mode"] / 10, 0, False
+        self.rapid_feed = reading.rapid_feed
+        self.exact: bool | None = None
         self.feed = None if state["_feed"] == FORGOTTEN else state["_feed"] * self.unit
         self.per_revolution, self.speed = bool(state["_units_per_rev"]), state["_rpm"]
         self._saved: tuple | None = None  # by M70 and M73
@@ -245,17 +357,40 @@ class Pen:
         if end != self.at or centre is not None:
             line = block.text.number
             ramp, self.changes = self.changes, False
-            at, feed = self.at, self._feed()
-            yield Element(line, at, end, self.side, ramp, self.depth, centre, sweep, feed)
+            form = self.at, end, self.side, ramp, self.depth, centre, sweep
+            yield Element(line, *form, self._feed(), self._exact(block))
         elif depth != self.depth:
-            yield Element(block.text.number, end, end, 0, False, self.depth, feed=self._feed())
+            still = Element(block.text.number, end, end, 0, False, self.depth)
+            yield replace(still, feed=self._feed(), exact=self._exact(block))
         self.at = end
 
+    def leaves(self, state: Mapping[str, float]) -> dict[str, float]:
+        """Return the state behind the section, of which ``state`` is the one before it.
+
+        Not C where the tool is in the centre, nor a feed that is not known.
+        """
+        radius, angle = cmath.polar(self.at)
+        left = {
+            "_metric": state["_metric"],
+            "_absolute": float(self.absolute),
+            "_units_per_rev": float(self.per_revolution),
+            "_motion_mode": 10 * self.motion,
+            "_x": radius / self.unit,
+            "_z": self.depth / self.unit,
+        }
+        left |= {"_c": state["_c"] + math.degrees(angle)} if radius > SAME_PLACE else {}
+        return left if self.feed is None else {**left, "_feed": self.feed / self.unit}
+
     def _feed(self) -> float | None:
-        """Return the feed in mm per minute; that of a G0 is not in the words."""
-        if self.feed is None or self.motion == 0.0:
+        """Return the feed in mm per minute."""
+        if self.motion == 0.0:
+            return self.rapid_feed
+        if self.feed is None:
             return None
         return self.feed * (self.speed if self.per_revolution else 1.0)
+
+    def _exact(self, block: Block) -> bool | None:
+        return True if EXACT_HERE in block.codes else self.exact
 
     def _save_or_restore(self, code: float) -> None:
         if code in (SAVE, SAVE_FOR_SUB):
@@ -271,6 +406,8 @@ class Pen:
             self.motion = code
         elif code in (90.0, 91.0):
             self.absolute = code == 90.0
+        elif code in PATHS:
+            self.exact = PATHS[code]
         elif code in FEED_MODES:
             self.per_revolution = FEED_MODES[code]
 

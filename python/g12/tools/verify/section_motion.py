@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How the moves of a polar section follow each other: no rapid, stops at corners and nowhere else.
+
+LinuxCNC blends two moves by starting the second while the first slows down, each with half the
+acceleration a. Where the path turns by the angle d at the speed v, the tool passes the corner at
+sin(d / 2) v**2 / (2 a). With a C axis in motion, G64 P limits none of it: only an exact path or
+stop does. The speeds are those that F and the axes allow, of the accelerations the greatest counts:
+a corner that is told of is rounded by more. On the face of the kinematics G64 P holds. Chords make
+corners too: so it must be one of the words between two lines, or C that turns in place.
+
+Lengths are millimetres along the part.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import groupby, islice
+from typing import NamedTuple
+
+import numpy as np
+
+from g12.machine_ini import face_joints
+from g12.tools.machine.ini import Ini
+from g12.tools.path.part import C
+from g12.tools.path.track import Track
+from g12.tools.preview.moves import Move
+from g12.tools.verify.wanted_contour import Element, SectionContour
+
+STILL = 1e-7  # mm: C turns in place
+SMOOTH = math.radians(1.0)
+CORNER = math.radians(15.0)  # chords of an arc make smaller ones
+
+
+class SectionAxes(NamedTuple):
+    """What a machine's axes can do: accelerations of X and Z in mm, of C in radians, per second².
+
+    ``c_speed`` is C's greatest speed, degrees/s; ``face`` tells of the kinematics of the face.
+    """
+
+    x: float
+    z: float
+    c: float
+    c_speed: float
+    face: bool = False
+
+    def along(self, direction: np.ndarray, place: np.ndarray) -> float:
+        """Return the greatest acceleration along a direction (3,) at a place (3,) of the part."""
+        radius = max(math.hypot(*place[:2]), STILL)
+        radial = abs(direction[:2] @ place[:2]) / radius
+        around = abs(direction[1] * place[0] - direction[0] * place[1]) / radius
+        slide = max(radial, abs(direction[2])) / max(self.x, self.z)
+        return 1.0 / max(slide, around / (radius * self.c), 1e-12)
+
+
+class Joint(NamedTuple):
+    """Where a move of a section ends and another begins.
+
+    ``into`` and ``out`` are the directions (3,), zero where C turns in place.
+    """
+
+    place: np.ndarray
+    into: np.ndarray
+    out: np.ndarray
+
+    @property
+    def half_sine(self) -> float:
+        """The sine of half the angle that the path turns by."""
+        return float(np.linalg.norm(self.out - self.into)) / 2
+
+
+class OffMotion(NamedTuple):
+    """A line whose motion is not as it should be: ``what`` in words, with ``off`` in mm or None."""
+
+    line: int
+    what: str
+    off: float | None = None
+
+
+def axes_of_section(ini: Ini) -> SectionAxes:
+    """Return what the axes of an INI can do."""
+    x, z, c = (ini.axis_limits[letter].acceleration for letter in "XZC")
+    speed, face = ini.axis_limits["C"].velocity, bool(face_joints(ini.get))
+    return SectionAxes(x * ini.mm, z * ini.mm, math.radians(c), speed, face)
+
+
+def motion_off(
+    section: SectionContour,
+    moves: Sequence[Move],
+    path: Track,
+    axes: SectionAxes,
+    tolerance: float,
+) -> Iterator[OffMotion]:
+    """Yield the first of each kind of motion that is not as it should be."""
+    own = range(section.at, section.end)
+    rapids = (index for index in own if moves[index].kind == "rapid")
+    yield from islice((OffMotion(moves[index].line, "is a rapid") for index in rapids), 1)
+    if is_blended_into(section, moves):
+        yield OffMotion(section.line, "begins while the move in front of it slows down")
+    yield from islice(rounded(section, moves, path, axes, tolerance), 1)
+    yield from islice(stopped_inside(section, moves, path), 1)
+    yield from islice(not_exact(section, moves), 1)
+
+
+def is_blended_into(section: SectionContour, moves: Sequence[Move]) -> bool:
+    """Tell whether the move in front of a section is blended into its first one."""
+    return section.at > 0 and not (section.stopped or moves[section.at - 1].exact)
+
+
+def rounded(
+    section: SectionContour,
+    moves: Sequence[Move],
+    path: Track,
+    axes: SectionAxes,
+    tolerance: float,
+) -> Iterator[OffMotion]:
+    """Yield the corners that blending rounds by more than a tolerance, the section's end first.
+
+    On the kinematics' face, and where it is gone to or left, there is other motion than C's.
+    """
+    end = section.end - 1
+    if section.end < len(moves) and not (moves[end].exact or axes.face):
+        yield OffMotion(moves[end].line, "ends while the move behind the section begins")
+    lengths = lengths_of_lines(section, moves, path)
+    corners = corners_of(section)
+    for index in sharp_joints(section, path):
+        one, other = moves[index], moves[index + 1]
+        if one.exact or (axes.face and not (turns(one) and turns(other))):
+            continue
+        joint = joint_behind(index, path)
+        if not (joint.into.any() and joint.out.any()):
+            yield OffMotion(one.line, "goes on while C turns in place")
+        elif corners.get((one.line, other.line)) and joint.half_sine > math.sin(CORNER / 2):
+            off = rounding(joint, index, path, axes, lengths)
+            if off > tolerance:
+                yield OffMotion(one.line, "ends in a corner without an exact stop", off)
+
+
+def corners_of(section: SectionContour) -> dict[tuple[int, int], bool]:
+    """Tell by the lines of neighbours whether the tool's path has a corner between them.
+
+    An outside corner of a compensated contour becomes an arc.
+    """
+    return {
+        (one.line, other.line): is_corner(one, other)
+        for one, other in zip(section.elements, section.elements[1:])
+        if one.line != other.line
+    }
+
+
+def is_corner(one: Element, other: Element) -> bool:
+    """Tell whether the tool's path turns where an element meets the next one."""
+    leave, meet = one.normal(1.0), other.normal(0.0)
+    if not (leave and meet) or one.ramp or other.ramp:
+        return True
+    turned = cmath.phase(meet / leave)
+    return abs(turned) > CORNER and turned * one.side >= 0.0
+
+
+def rounding(
+    joint: Joint, index: int, path: Track, axes: SectionAxes, lengths: dict[int, float]
+) -> float:
+    """Return by how much a corner behind a move is rounded at least; see the formula above.
+
+    A line too short to reach its feed is as fast as its ``lengths`` allow.
+    """
+    into, out = (axes.along(direction, joint.place) for direction in (joint.into, joint.out))
+    speed = min(path.part_feed(index), path.part_feed(index + 1)) / 60.0
+    square = min(speed * speed, into * lengths[index], out * lengths[index + 1])
+    return joint.half_sine * square / (2.0 * max(into, out))
+
+
+def stopped_inside(
+    section: SectionContour, moves: Sequence[Move], path: Track
+) -> Iterator[OffMotion]:
+    """Yield the lines inside which the tool stops where the path goes straight on."""
+    often = {line for line, count in Counter(lines_drawn(section)).items() if count > 1}
+    for index in range(section.at, section.end - 1):
+        line = moves[index].line
+        if moves[index].exact and moves[index + 1].line == line and line not in often:
+            joint = joint_behind(index, path)
+            if joint.into.any() and joint.out.any() and joint.half_sine < SMOOTH:
+                yield OffMotion(line, "stops inside")
+
+
+def not_exact(section: SectionContour, moves: Sequence[Move]) -> Iterator[OffMotion]:
+    """Yield the lines with G9, or under G61, that do not end in an exact stop."""
+    before = section.at > 0 and moves[section.at - 1].exact
+    exact = {
+        element.line: before if element.exact is None else element.exact
+        for element in section.elements
+    }
+    for line, run in groupby(range(section.at, section.end), lambda index: moves[index].line):
+        if exact.get(line) and not moves[list(run)[-1]].exact:
+            yield OffMotion(line, "does not end in the exact stop that the words ask for")
+
+
+def lines_drawn(section: SectionContour) -> list[int]:
+    """Return the line of each element of a section's contour."""
+    return [element.line for element in section.elements]
+
+
+def lengths_of_lines(
+    section: SectionContour, moves: Sequence[Move], path: Track
+) -> dict[int, float]:
+    """Return for each move of a section the length of the moves of one line that it is among."""
+    lengths = {}
+    for _, run in groupby(range(section.at, section.end), lambda index: moves[index].line):
+        indices = list(run)
+        lengths.update(dict.fromkeys(indices, sum(map(path.part_length, indices))))
+    return lengths
+
+
+def turns(move: Move) -> bool:
+    """Tell whether a move turns C."""
+    return move.start[C] != move.end[C]
+
+
+def joint_behind(index: int, path: Track) -> Joint:
+    """Return the joint between a move and the one after it."""
+    one, other = (path.points[path.vertices(each)] for each in (index, index + 1))
+    return Joint(one[-1], *(directions_of(points)[0] for points in (one[-2:], other[:2])))
+
+
+def sharp_joints(section: SectionContour, path: Track) -> list[int]:
+    """Return the moves behind which the path turns, or C turns in place."""
+    begin, end = path.vertices(section.at).start, path.vertices(section.end - 1).stop
+    owner, directions = path.move[begin:end], directions_of(path.points[begin:end])
+    ends = np.flatnonzero(np.diff(owner[1:])) + 1
+    turned = np.linalg.norm(directions[ends] - directions[ends - 1], axis=1) / 2
+    return [int(owner[each]) for each in ends[turned > math.sin(SMOOTH / 2)]]
+
+
+def directions_of(points: np.ndarray) -> np.ndarray:
+    """Return the directions (n - 1, 3) between points (n, 3), zero between equal ones."""
+    steps = np.diff(points, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)[:, None]
+    return np.where(lengths > STILL, steps / np.maximum(lengths, STILL), 0.0)
