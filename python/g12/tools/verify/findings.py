@@ -165,10 +165,10 @@ def left_findings(facts: PocketFacts) -> Iterator[str]:
     """Yield what is left behind otherwise than the words ask; a feed only if all moves had it."""
     for left in facts.left_behind:
         if left.name != "_feed" or not facts.feed:
-            yield left_text(left)
+            yield leaving_text(left)
 
 
-def left_text(left: LeftBehind) -> str:
+def leaving_text(left: LeftBehind) -> str:
     """Return in words what is left behind otherwise than the words ask, in program units."""
     name, found, asked = left
     if name in MODES:
@@ -359,7 +359,7 @@ def state_findings(facts: SectionFacts) -> Iterator[str]:
         else:
             yield f"line {line}: {text} comes {place_of_act(found)}, not {place_of_act(asked)}"
     for left in facts.left_behind:
-        yield left_text(left)
+        yield leaving_text(left)
     if len(set(facts.section.paths)) > 1:
         yield "it leaves {}, not {}".format(*facts.section.paths)
 

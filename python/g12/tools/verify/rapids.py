@@ -279,11 +279,13 @@ def bored_places(
     for block, target in asked:
         before = block.at - 1
         place = complex(*moves[block.at].start[:2])
-        bored += [place] * bool(target.wall.bore)
+        if target.wall.bore:
+            bored.append(place)
         if before >= 0 and all(abs(place - other) > ALLOWED for other in seen):
             down = moves[before]
             below = down.end[2] < min(down.start[2], tops.get(block.at, -np.inf)) - SAME_HEIGHT
-            bored += [place] * (below and down.kind == "rapid")
+            if below and down.kind == "rapid":
+                bored.append(place)
         seen.append(place)
     return bored
 

@@ -40,7 +40,7 @@ from g12.tools.verify.section_blocks import (
 )
 from g12.tools.verify.section_motion import OffMotion, SectionAxes, motion_off
 from g12.tools.verify.section_paths import Plane, ToolPaths, goes_across, tool_paths_of
-from g12.tools.verify.section_state import OffAct, act_off, left_behind
+from g12.tools.verify.section_state import OffAct, act_off, left_by_section
 from g12.tools.verify.wanted_contour import Element, SectionContour
 
 TINY_PIECE = 1e-6
@@ -143,7 +143,7 @@ def measure_section(
         order_off=order_off(section, moves, path),
         motion_off=tuple(motion_off(section, moves, path, axes, tolerance)),
         act_off=act_off(section, moves),
-        left_behind=left_behind(section),
+        left_behind=left_by_section(section),
     )
 
 

@@ -67,17 +67,17 @@ def different(told: Sequence[Done], asked: Sequence[Done], lines: Sequence[int])
     return OffAct(lines[0], asked[0].text, same[0].behind if same else None, asked[0].behind)
 
 
-def left_behind(section: SectionContour) -> tuple[LeftBehind, ...]:
+def left_by_section(section: SectionContour) -> tuple[LeftBehind, ...]:
     """Return which positions and modes a section leaves otherwise than its words ask."""
     left, mm = section.left, 1.0 if section.leaves.get("_metric", True) else MM_PER_INCH
     allowed = {"_x": SAME_PLACE / mm, "_z": SAME_PLACE / mm, "_c": SAME_ANGLE}
     return tuple(
         LeftBehind(name, left[name], asked)
         for name, asked in section.leaves.items()
-        if left and apart(name, left[name], asked) > allowed.get(name, SAME_STATE * abs(asked))
+        if left and value_off(name, left[name], asked) > allowed.get(name, SAME_STATE * abs(asked))
     )
 
 
-def apart(name: str, found: float, asked: float) -> float:
+def value_off(name: str, found: float, asked: float) -> float:
     """Return how far two values are from each other, angles in whatever turn they are."""
     return abs(math.remainder(found - asked, 360.0) if name == "_c" else found - asked)
