@@ -61,8 +61,12 @@ class Track:
 
     def part_length(self, index: int) -> float:
         """Return the length along the part of a move, mm."""
-        points = self.points[self.vertices(index)]
-        return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+        return float(self._part_lengths[index]) if index < len(self._part_lengths) else 0.0
+
+    @cached_property
+    def _part_lengths(self) -> np.ndarray:
+        steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        return np.bincount(self.move[1:], weights=steps)
 
     def seconds(self, index: int) -> float:
         """Return the time of a move."""

@@ -65,6 +65,7 @@ def misplaced(
         *of_rapids(places, moves, starts, ends, circles),
         *of_plunges(places, moves, starts, ends),
         *of_leads(places, starts, circles[:1] if target.schedule.helix else circles),
+        *of_entry(places, moves, ends),
         (ENDS, ends[-1], np.array(places.end)),
     ]
     strays = of_fast(places, moves, starts, ends) if places.fast is not None else ()
@@ -163,6 +164,13 @@ def of_plunges(
             height = start[2] if height is None else height
             yield "it goes down from", start, np.array([*places.plunge, height])
             height = None
+
+
+def of_entry(places: Places, moves: Sequence[Move], ends: np.ndarray) -> Found:
+    """Yield where the first arc ends, if a spiral begins there."""
+    arcs = [end for move, end in zip(moves, ends) if move.kind == "arc"]
+    if places.entry and arcs:
+        yield "its spiral begins at", arcs[0], np.array([*places.entry, arcs[0][2]])
 
 
 def of_leads(places: Places, starts: np.ndarray, circles: Sequence[int]) -> Found:

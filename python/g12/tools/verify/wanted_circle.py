@@ -155,7 +155,8 @@ class Places(NamedTuple):
     Rapids go across at ``first`` or higher before the first cut, ``retract`` above a level (not
     above ``first``) between levels, at ``last`` behind the last cut. ``end`` has three axes.
     ``fast`` are the fast moves in the plane, each from and to a place: rapids, or moves at
-    ``straight`` feed; None where they are judged by those heights alone.
+    ``straight`` feed; None where they are judged by those heights alone. ``entry`` is where the
+    first arc ends, None where a full circle begins there.
     """
 
     plunge: tuple[float, float] = (0.0, 0.0)
@@ -166,6 +167,7 @@ class Places(NamedTuple):
     end: tuple[float, float, float] = (0.0, 0.0, 0.0)
     fast: tuple[tuple[tuple[float, float], tuple[float, float]], ...] | None = ()
     straight: str = "rapid"
+    entry: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -290,7 +292,9 @@ class CircleReader:
         is_fast = bore and abs(approach[0]) > ROUNDING
         fast = ((CENTRE, approach), (approach, CENTRE)) if is_fast else ()
         straight = "feed" if self.traverse else "rapid"
-        return wall, cutter, schedule, Places(lead=(side, 0.0), fast=fast, straight=straight)
+        entry = (side * (abs(view.length("K")) - offset), 0.0) if "K" in words else None
+        places = Places(lead=(side, 0.0), fast=fast, straight=straight, entry=entry)
+        return wall, cutter, schedule, places
 
     def _mitsubishi(self, view: BlockInMm, cycle: Cycle) -> Reading:
         number = view.words["D"]
