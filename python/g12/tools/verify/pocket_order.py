@@ -64,6 +64,7 @@ def misplaced(
     found = [
         *of_rapids(places, moves, starts, ends, circles),
         *of_plunges(places, moves, starts, ends),
+        *of_depths(moves, starts, ends, () if target.schedule.helix else circles),
         *of_leads(places, starts, circles[:1] if target.schedule.helix else circles),
         *of_entry(places, moves, ends),
         (ENDS, ends[-1], np.array(places.end)),
@@ -164,6 +165,17 @@ def of_plunges(
             height = start[2] if height is None else height
             yield "it goes down from", start, np.array([*places.plunge, height])
             height = None
+
+
+def of_depths(
+    moves: Sequence[Move], starts: np.ndarray, ends: np.ndarray, circles: Sequence[int]
+) -> Found:
+    """Yield the feed moves straight down, which the next circle's depth ends."""
+    for index, move in enumerate(moves):
+        following = next((circle for circle in circles if circle > index), None)
+        down = move.kind == "feed" and starts[index][2] - ends[index][2] > ACROSS
+        if down and following is not None:
+            yield "it goes down to", ends[index], np.array([*ends[index][:2], starts[following][2]])
 
 
 def of_entry(places: Places, moves: Sequence[Move], ends: np.ndarray) -> Found:
