@@ -100,7 +100,8 @@ def motion_off(
     if is_blended_into(section, moves):
         yield OffMotion(section.line, "begins while the move in front of it slows down")
     yield from islice(rounded(section, moves, path, axes, tolerance), 1)
-    yield from islice(stopped_inside(section, moves, path), 1)
+    if not axes.face:  # to go there and back the machine stands, also inside a line
+        yield from islice(stopped_inside(section, moves, path), 1)
     yield from islice(not_exact(section, moves), 1)
 
 
