@@ -16,7 +16,7 @@ from g12.tools.verify.codes import EVENT
 from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import SAME_LEVEL, PocketFacts
 from g12.tools.verify.pocket_entry import entry_findings
-from g12.tools.verify.pocket_order import ENDS, LeftBehind
+from g12.tools.verify.pocket_order import DOWN_TO, ENDS, LeftBehind
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.wanted_circle import Cutter, Target
@@ -48,7 +48,7 @@ def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> It
     yield from entry_findings(facts.helix, facts.target.schedule.helix, unit)
     if not wrong_depth:
         yield from order_findings(facts, tolerance, unit)
-    yield from place_findings(facts, ENDS if wrong_depth else "", unit)
+    yield from place_findings(facts, (ENDS, DOWN_TO) if wrong_depth else (), unit)
     yield from left_findings(facts)
     for overrun in facts.overruns or ():
         if overrun.certain:
@@ -145,14 +145,14 @@ def circle_text(circle: tuple[float, float] | None, facts: PocketFacts, unit: Un
     return f"a circle of {unit.text(circle[1])} {unit.name} (tool centre) at {depth}"
 
 
-def place_findings(facts: PocketFacts, told: str, unit: Unit) -> Iterator[str]:
+def place_findings(facts: PocketFacts, told: Sequence[str], unit: Unit) -> Iterator[str]:
     """Yield what is not where the words want it: the first of each kind but what is ``told``."""
     for what, found, asked in {place.what: place for place in facts.misplaced[::-1]}.values():
         if found is None:
             yield f"{what} {place_text(asked, unit)}"
         elif asked is None:
             yield f"{what} {place_text(found, unit)}, where the cycle has it not"
-        elif what != told:
+        elif what not in told:
             yield f"{what} {place_text(found, unit)}, not {place_text(asked, unit)}"
 
 

@@ -19,7 +19,7 @@ SAME_STATE = 1e-5  # relative: values are told with nine decimals
 ACROSS = 1e-6  # mm
 SAME_FAST = 0.002  # mm
 KINDS = {"rapid": "rapid", "feed": "straight move", "probe": "probing move"}
-ENDS = "it ends at"
+ENDS, DOWN_TO = "it ends at", "it goes down to"
 
 
 class Misplaced(NamedTuple):
@@ -175,7 +175,7 @@ def of_depths(
         following = next((circle for circle in circles if circle > index), None)
         down = move.kind == "feed" and starts[index][2] - ends[index][2] > ACROSS
         if down and following is not None:
-            yield "it goes down to", ends[index], np.array([*ends[index][:2], starts[following][2]])
+            yield DOWN_TO, ends[index], np.array([*ends[index][:2], starts[following][2]])
 
 
 def of_entry(places: Places, moves: Sequence[Move], ends: np.ndarray) -> Found:
