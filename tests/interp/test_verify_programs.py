@@ -483,7 +483,7 @@ def test_a_cycle_that_cuts_too_large_is_found(sabotaged, tmp_path):
 
 
 def test_a_cycle_that_cuts_too_shallow_is_found(sabotaged, tmp_path):
-    found = broken(sabotaged, tmp_path, "G1 Z#<z>", "G1 Z[#<z> + 0.1]")
+    found = broken(sabotaged, tmp_path, "Z#<z> #<z>", "Z[#<z> + 0.1] #<z>")
     assert found == ["the depth is off by 0.1 mm"]
 
 
@@ -495,9 +495,9 @@ def test_a_cycle_that_turns_the_wrong_way_is_found(sabotaged, tmp_path):
 @pytest.mark.parametrize(
     ("good", "bad", "found"),
     [
-        ("    G1 Z#<z> ", "    G1 Z[#<z> - 5]\n    G1 Z#<z> ", "it goes 5 mm below its depth"),
+        ("      G1 F#<p", "      G1 Z[#<z> - 5]\n      G1 F#<p", "it goes 5 mm below its depth"),
         ("repeat [#<levels>]", "repeat [1]", "full circles along the wall: 1, not 2"),
-        ("  o<level> repeat", "  F[2 * #<_feed>]\n  o<level> repeat", "the feed 1200, not 600"),
+        ("  o<level> repeat", "  #<feed> = 1200\n  o<level> repeat", "the feed 1200, not 600"),
     ],
 )
 def test_a_haas_cycle_that_moves_otherwise_is_found(good, bad, found, sabotaged, tmp_path):
