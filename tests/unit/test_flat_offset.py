@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Polygon
 
@@ -180,12 +180,17 @@ def drawings(draw):
 
 @settings(max_examples=300, deadline=None)
 @given(drawings(), st.sampled_from([41, 42]), st.sampled_from([0.1, 1.0, 4.0]))
-def test_any_contour_is_cut_at_the_tools_radius_or_refused(shapes, side, radius):
+@example([Round(0j, -1 - 1j, -4.5), Straight(Round(0j, -1 - 1j, -4.5).end, 5 + 1j)], 41, 0.1)
+def test_any_contour_is_cut_at_the_tools_radius_or_refused_or_told(shapes, side, radius):
+    contour, shapes = compensated(shapes, side, radius)
     try:
-        made, shapes = along_the_part(shapes, side, radius)
+        moves = plan(contour, EXACT, c=0.0)
     except Refusal as refusal:
         assert str(refusal).startswith("G12.1 line ")
         return
+    if contour.notes:  # where the leads of a contour cut
+        return
+    made = [cut for cut in cuts(contour, moves) if 3 <= cut.line < 90]
     beside = {cut.line: cut.run for cut in made}  # the last run of a line; others turn at corners
     for cut in made:
         index = cut.line - 3
