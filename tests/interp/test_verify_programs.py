@@ -386,6 +386,13 @@ def test_the_size_of_the_hexagon():
     assert facts.reached[0] == pytest.approx(13.5, abs=0.005)
 
 
+@pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
+def test_short_pieces_close_by_the_centre_are_longer_than_their_line(machine, tmp_path):
+    lines = ["G21 G18 G7 G90 G94 G64 P0.01", "G0 X120 Z5 C0", "G12.1", "F1008.844"]
+    lines += ["G1 X-57.93351 C0.11121", "G13.1", "M2"]
+    assert not proof_of_text(tmp_path, lines, machine).findings
+
+
 def test_a_section_with_expressions_and_a_loop(tmp_path):
     lines = [
         "G21 G18 G8 G40 G90 G94",
@@ -495,7 +502,7 @@ def test_a_cycle_that_turns_the_wrong_way_is_found(sabotaged, tmp_path):
 @pytest.mark.parametrize(
     ("good", "bad", "found"),
     [
-        ("      G1 F#<p", "      G1 Z[#<z> - 5]\n      G1 F#<p", "it goes 5 mm below its depth"),
+        ("      G1 Z#<z>", "      G1 Z[#<z> - 5]\n      G1 Z#<z>", "it goes 5 mm below its depth"),
         ("repeat [#<levels>]", "repeat [1]", "full circles along the wall: 1, not 2"),
         ("  o<level> repeat", "  #<feed> = 1200\n  o<level> repeat", "the feed 1200, not 600"),
     ],

@@ -11,6 +11,7 @@ from __future__ import annotations
 from math import atan, ceil, pi, radians, tan
 from typing import NamedTuple
 
+from g12.cycles.context import Context
 from g12.cycles.words import Words
 from g12.errors import number
 
@@ -57,6 +58,31 @@ class Helix(NamedTuple):
         return Descent(turns, height / (turns + rest))
 
 
+class WayDown(NamedTuple):
+    """How a pocket's levels are reached: the first, each further one; F in the plane and down."""
+
+    helix: Helix
+    first: Descent
+    further: Descent
+    feed: float
+    plunge_feed: float
+
+    def locals(self, first_radius: float) -> dict[str, float]:
+        """Return the named locals of `ngc/g12_haas.ngc` that are about it."""
+        common = {"feed": self.feed, "plunge_feed": self.plunge_feed, "turns": self.first.turns}
+        if not self.first.turns:
+            return common
+        outward = first_radius / self.helix.radius
+        return common | {
+            "fall": self.first.fall,
+            "next_turns": self.further.turns,
+            "next_fall": self.further.fall,
+            "last_turns": self.helix.last,
+            "outward": outward,
+            "side": -1 if outward > 1 else 1,
+        }
+
+
 def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
     """Return the helix for a first ring of the tool's centre and a cutter, both by their radius."""
     if not entry.helix:
@@ -64,6 +90,20 @@ def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
     slope = tan(radians(entry.angle))
     radius = min(first, CLEARED * cutter) if cutter else first
     return Helix(radius, slope, ceil(atan(slope) / LEAST_CORNER) - 1)
+
+
+def way_down(
+    words: Words, context: Context, entry: PocketEntry, first: float, cutter: float, heights: tuple
+) -> WayDown:
+    """Return the way down in a pocket, or refuse a helix that hardly comes down.
+
+    ``first`` is the radius of the first ring of the tool's centre, ``cutter`` the cutter's, and
+    ``heights`` are those of the first level and of each further one.
+    """
+    helix = helix_of(entry, first, cutter)
+    check_helix(words, helix, heights[0], cutter)
+    descents = (helix.descent(height) for height in heights)
+    return WayDown(helix, *descents, context.feed, context.feed * entry.feed / 100.0)
 
 
 def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> None:

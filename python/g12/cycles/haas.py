@@ -38,15 +38,7 @@ from g12.cycles.common import (
     steps_between,
 )
 from g12.cycles.context import XY, Context, Tool
-from g12.cycles.entry import (
-    CLEARED,
-    STRAIGHT_DOWN,
-    Descent,
-    Helix,
-    PocketEntry,
-    check_helix,
-    helix_of,
-)
+from g12.cycles.entry import CLEARED, STRAIGHT_DOWN, PocketEntry, WayDown, way_down
 from g12.cycles.travel import CycleExtent
 from g12.cycles.words import Words
 from g12.errors import number
@@ -69,11 +61,7 @@ class Pocket(NamedTuple):
     first_grow: float  # by how much the first link grows
     shrink: float  # by which share of that the last one is shorter
     spiral: bool
-    helix: Helix
-    descent: Descent  # to the first level
-    next_descent: Descent  # to each further one
-    feed: float
-    plunge_feed: float
+    down: WayDown
     commanded_radius: float | None  # of the cutter that D names, None without D
     message: str | None  # for the operator, never a refusal
 
@@ -84,7 +72,7 @@ class Pocket(NamedTuple):
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/g12_haas.ngc`, but for the direction."""
-        goes_on = not self.z_step or self.next_descent.turns
+        goes_on = not self.z_step or self.down.further.turns
         return {
             "x": self.x,
             "y": self.y,
@@ -98,21 +86,7 @@ class Pocket(NamedTuple):
             "shrink": self.shrink,
             "keep": self.first_radius / self.last_radius if goes_on else 0.0,
             "rings": not self.spiral,
-            "feed": self.feed,
-            "plunge_feed": self.plunge_feed,
-            "turns": self.descent.turns,
-            **(self._helix_locals() if self.descent.turns else {}),
-        }
-
-    def _helix_locals(self) -> dict[str, float]:
-        outward = self.first_radius / self.helix.radius
-        return {
-            "fall": self.descent.fall,
-            "next_turns": self.next_descent.turns,
-            "next_fall": self.next_descent.fall,
-            "last_turns": self.helix.last,
-            "outward": outward,
-            "side": -1 if outward > 1 else 1,
+            **self.down.locals(self.first_radius),
         }
 
 
@@ -135,15 +109,13 @@ def plan_pocket(
     cutter, source = choose_cutter(words, context)
     check_radii(words, context, first, outward, cutter, source)
 
-    finished, stepover = outward or (first, first)
-    growth = stepover / 2 if clearing == "spiral" else stepover
-    links = steps_between(first, finished, growth, context.length(ROUNDING_MM))
-    check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
+    finished, links, first_grow, shrink = links_outward(
+        words, first, outward, clearing, levels, context
+    )
     z = coordinate(depth, context.z, context)
     z_step = depth or 0.0 if context.incremental else 0.0
-    helix = helix_of(entry, first - cutter.radius, cutter.radius)
-    check_helix(words, helix, context.z - z, cutter.radius)
-    last_grow = finished - first - growth * (links - 1)
+    heights = context.z - z, -z_step
+    down = way_down(words, context, entry, first - cutter.radius, cutter.radius, heights)
     return Pocket(
         x=x,
         y=y,
@@ -154,17 +126,35 @@ def plan_pocket(
         first_radius=first - cutter.radius,
         last_radius=finished - cutter.radius,
         links=links,
-        first_grow=min(growth, finished - first),
-        shrink=1 - last_grow / growth if links > 1 else 0.0,
+        first_grow=first_grow,
+        shrink=shrink,
         spiral=clearing == "spiral",
-        helix=helix,
-        descent=helix.descent(context.z - z),
-        next_descent=helix.descent(-z_step),
-        feed=context.feed,
-        plunge_feed=context.feed * entry.feed / 100.0,
+        down=down,
         commanded_radius=cutter.radius if with_d else None,
         message=upward(words, depth, context)
         or left_material(words, outward, first, cutter, context, CLEARED * entry.helix),
+    )
+
+
+def links_outward(
+    words: Words,
+    first: float,
+    outward: tuple[float, float] | None,
+    clearing: str,
+    levels: int,
+    context: Context,
+) -> tuple[float, int, float, float]:
+    """Return the finished radius, the links to it, the first one's growth, and `Pocket.shrink`."""
+    finished, stepover = outward or (first, first)
+    growth = stepover / 2 if clearing == "spiral" else stepover
+    links = steps_between(first, finished, growth, context.length(ROUNDING_MM))
+    check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
+    last_grow = finished - first - growth * (links - 1)
+    return (
+        finished,
+        links,
+        min(growth, finished - first),
+        1 - last_grow / growth if links > 1 else 0.0,
     )
 
 

@@ -119,23 +119,15 @@ def measure_pocket(
         real_lines(wall, some, moves, real) if real else emitted_lines(wall, some, moves, path)
         for some in (cutting, [index for index in across if index in down])
     )
-    known = {} if known is None else known
-    key = key_of(lines, target, tolerance) + key_of(falling, target, tolerance)
-    areas = known[key] = known.get(key) or areas_of(
-        lines, wall, target.cutter.radius, tolerance, falling
-    )
+    areas = areas_once(lines, falling, target, tolerance, {} if known is None else known)
     circles = [index for index in own if is_full_circle(moves[index])]
-    around = target, moves[own.start : own.stop], [index - own.start for index in circles]
     lengths = [moves[index].length for index in cutting] or [0.0]
     return PocketFacts(
         target,
         **areas._asdict(),
         jump=direction_jump([moves[index] for index in own], target),
         helix=helix_facts(entries, moves, wall),
-        rings=tuple(dict.fromkeys(round(moves[index].radius, 6) for index in circles)),
         depths=tuple(sorted(lines, reverse=True)),
-        circles=tuple(int(math.copysign(1, moves[index].turns)) for index in circles),
-        passes=passes_of([moves[index] for index in circles], wall),
         lowest=lowest_of(own, path, wall),
         feed=wrong_feed([moves[index] for index in own], target),
         shortest=min(lengths),
@@ -143,11 +135,35 @@ def measure_pocket(
         pace=pace_of(own, cutting, path, real),
         off_path=real.largest(cutting) if real else None,
         off_rings=real.largest(circles) if real else None,
-        cut=tuple((depth_of(moves[index], wall), moves[index].radius) for index in circles),
         other_mode=any(has_other_mode(moves[index], target) for index in own),
-        growth=growth_of(*around) if target.schedule.pitch else 0.0,
-        misplaced=misplaced(*around, tolerance),
+        **circle_facts(target, own, circles, moves, tolerance),
     )
+
+
+def circle_facts(
+    target: Target, own: range, circles: list[int], moves: Sequence[Move], tolerance: float
+) -> dict[str, object]:
+    """Return those members of ``PocketFacts`` that are about its full circles."""
+    around = target, moves[own.start : own.stop], [index - own.start for index in circles]
+    cut = [moves[index] for index in circles]
+    return {
+        "rings": tuple(dict.fromkeys(round(move.radius, 6) for move in cut)),
+        "circles": tuple(int(math.copysign(1, move.turns)) for move in cut),
+        "passes": passes_of(cut, target.wall),
+        "cut": tuple((depth_of(move, target.wall), move.radius) for move in cut),
+        "growth": growth_of(*around) if target.schedule.pitch else 0.0,
+        "misplaced": misplaced(*around, tolerance),
+    }
+
+
+def areas_once(
+    lines: Lines, falling: Lines, target: Target, tolerance: float, known: dict[tuple, PocketAreas]
+) -> PocketAreas:
+    """Return the areas of a pocket, which is measured unless ``known`` has one like it."""
+    key = key_of(lines, target, tolerance) + key_of(falling, target, tolerance)
+    if key not in known:
+        known[key] = areas_of(lines, target.wall, target.cutter.radius, tolerance, falling)
+    return known[key]
 
 
 def key_of(lines: Lines, target: Target, tolerance: float) -> tuple:

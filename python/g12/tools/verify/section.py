@@ -136,15 +136,28 @@ def measure_section(
         lowest=min(moves[index].end[Z] for index in own),
         slowest_at=plane.of_part(pace.point),
         slowest_line=moves[pace.move].line,
-        depth_off=depth_off(section, moves, path),
-        feed_off=feed_off(section, moves, path),
-        turn_speed=turn_speed(section, moves, path),
-        in_place=turned_in_place(section, moves, path),
-        order_off=order_off(section, moves, path),
-        motion_off=tuple(motion_off(section, moves, path, axes, tolerance)),
-        act_off=act_off(section, moves),
-        left_behind=left_by_section(section),
+        **block_facts(section, path, moves, axes, tolerance),
     )
+
+
+def block_facts(
+    section: SectionContour,
+    path: Track,
+    moves: Sequence[Move],
+    axes: SectionAxes,
+    tolerance: float,
+) -> dict[str, object]:
+    """Return those members of ``SectionFacts`` that compare the moves with the blocks' words."""
+    return {
+        "depth_off": depth_off(section, moves, path),
+        "feed_off": feed_off(section, moves, path, tolerance),
+        "turn_speed": turn_speed(section, moves, path),
+        "in_place": turned_in_place(section, moves, path),
+        "order_off": order_off(section, moves, path),
+        "motion_off": tuple(motion_off(section, moves, path, axes, tolerance)),
+        "act_off": act_off(section, moves),
+        "left_behind": left_by_section(section),
+    }
 
 
 def contour_facts(

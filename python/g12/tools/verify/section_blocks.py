@@ -167,15 +167,29 @@ def heights_wanted(block: BlockOfSection, points: np.ndarray, heights: np.ndarra
     return wanted
 
 
-def feed_off(section: SectionContour, moves: Sequence[Move], path: Track) -> OffWords | None:
-    """Return the first feed along the part that is not the words'."""
+def feed_off(
+    section: SectionContour, moves: Sequence[Move], path: Track, tolerance: float
+) -> OffWords | None:
+    """Return the first feed along the part that is not the words'.
+
+    A piece may be longer than what it is for, by the bow that its tolerance allows.
+    """
     for block in blocks_cut(section, moves):
         feeds = {element.feed for element in block.elements}
         for index in block.moves if None not in feeds else ():
-            found = feed_asked(moves[index], path.part_length(index))
-            if found and all(abs(found / feed - 1) > SAME_FEED for feed in feeds):
+            length = path.part_length(index)
+            found = feed_asked(moves[index], length)
+            if found and not any(
+                -SAME_FEED <= found / feed - 1 <= SAME_FEED + bow(length, tolerance)
+                for feed in feeds
+            ):
                 return OffWords(block.elements[0].line, found, min(feeds))
     return None
+
+
+def bow(length: float, height: float) -> float:
+    """Return by what share a flat bow is longer than its chord."""
+    return 8.0 / 3.0 * (height / length) ** 2
 
 
 def feed_asked(move: Move, length: float) -> float | None:
