@@ -125,7 +125,9 @@ def test_a_python_oword_in_front_of_the_event(tmp_path, capsys):
 def test_linuxcnc_finds_no_subs_below_a_blank(tmp_path, capsys):
     folder = tmp_path / "my mill"
     folder.mkdir()
-    ini = write_config(folder, GOOD.replace(f"{ROOT}/ngc", "ngc"), ngc__g12_haas_ngc="")
+    ini = write_config(
+        folder, GOOD.replace(f"{ROOT}/ngc", "ngc"), ngc__g12_haas_ngc="", ngc__g12_helix_ngc=""
+    )
     assert kinds(ini, capsys) == ["blank-in-path"]
 
 

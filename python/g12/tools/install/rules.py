@@ -227,14 +227,15 @@ def halves(config: Config, codes: list[Code]) -> Iterator[Finding]:
 
 def missing_subs(config: Config, codes: list[Code]) -> Iterator[Finding]:
     """Find NGC subs that LinuxCNC does not find: it does not start."""
-    for name in needed_subs(codes):
-        if not subs_named(config.ini, name):
-            yield problem(
-                "no-sub",
-                f"{name}.ngc is in none of the folders LinuxCNC looks in",
-                "add the package's folder ngc to SUBROUTINE_PATH in [RS274NGC] "
-                f"(the first such line counts, and its first {MOST_FOLDERS} folders); {MEND}",
-            )
+    missing = [f"{name}.ngc" for name in needed_subs(codes) if not subs_named(config.ini, name)]
+    if missing:
+        yield problem(
+            "no-sub",
+            f"{' and '.join(missing)} {'are' if missing[1:] else 'is'} in none of the folders "
+            "LinuxCNC looks in",
+            "add the package's folder ngc to SUBROUTINE_PATH in [RS274NGC] "
+            f"(the first such line counts, and its first {MOST_FOLDERS} folders); {MEND}",
+        )
 
 
 def blanks_in_path(config: Config, codes: list[Code]) -> Iterator[Finding]:
