@@ -286,7 +286,7 @@ def test_a_bad_setting_does_not_hinder_uninstall(tmp_path, capsys):
             with_lines(MILL, "RS274NGC", f"SUBROUTINE_PATH = {':'.join(TEN_FOLDERS)}\n"),
             {f"{folder}__x_ngc": "" for folder in TEN_FOLDERS},
             "haas",
-            "g12_haas.ngc is in none of the folders",
+            "g12_haas.ngc and g12_helix.ngc are in none of the folders",
         ),
         (with_lines(MILL, "RS274NGC", "REMAP = M400 python=x\n"), {}, "haas", "does not load"),
         (
