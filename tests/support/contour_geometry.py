@@ -15,6 +15,11 @@ TRACK = 200  # points looked at together
 FROM_COLUMNS = np.array([1, 1j])
 
 
+def phase(vector):
+    """Return the direction of a vector; `cmath.phase` fails where it underflows (Python 3.13)."""
+    return math.atan2(vector.imag, vector.real)
+
+
 class Straight(NamedTuple):
     """A line of the drawing."""
 
@@ -33,7 +38,7 @@ class Straight(NamedTuple):
 
     def headings(self):
         """Return the direction at both ends, radians."""
-        angle = cmath.phase(self.end - self.start)
+        angle = phase(self.end - self.start)
         return angle, angle
 
     def aside(self, by):
@@ -78,7 +83,7 @@ class Round(NamedTuple):
 
     def headings(self):
         """Return the direction at both ends, radians."""
-        first = cmath.phase(self.start - self.centre) + math.copysign(math.pi / 2, self.sweep)
+        first = phase(self.start - self.centre) + math.copysign(math.pi / 2, self.sweep)
         return first, first + self.sweep
 
     def aside(self, by):

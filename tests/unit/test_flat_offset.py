@@ -16,7 +16,7 @@ from shapely.geometry import LineString, Polygon
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat.contour import Contour
 from g12.polar.plan import BlockMoves, PolarSettings, plan
-from support.contour_geometry import Round, Straight, distance_from_path
+from support.contour_geometry import Round, Straight, distance_from_path, phase
 from support.planned_cuts import SAGITTA, add, cuts, path
 
 TOLERANCE = 0.005
@@ -33,7 +33,7 @@ def compensated(shapes, side, radius):
     """
     away = (1.5 * radius + 0.5) * (1j if side == 41 else -1j)
     come = shapes[0].start + away * cmath.rect(1.0, shapes[0].headings()[0])
-    shapes = [shape.turned(cmath.exp(-1j * cmath.phase(come))) for shape in shapes]
+    shapes = [shape.turned(cmath.exp(-1j * phase(come))) for shape in shapes]
     leave = shapes[-1].end + away * cmath.rect(1.0, shapes[-1].headings()[1])
     contour = Contour(abs(come), 3.0)
     contour.compensation(side, radius, line=1)
