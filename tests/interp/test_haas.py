@@ -115,6 +115,14 @@ def test_every_level_of_g91_begins_at_plus_x(inch):
             assert arc.end[:2] == pytest.approx((0.175 * INCH, 0), abs=1e-9)
 
 
+def test_a_spring_pass_begins_on_the_first_ring_however_large_the_pocket(inch):
+    traced = cut(inch, "G0 X0 Y0 Z-.1", "G12 I.1252 K2.5 Q.2 L2 D1")
+    radii = cut_geometry.radii(traced.moves)
+    levels = radii[: len(radii) // 2], radii[len(radii) // 2 :]
+    assert levels[0][0] == pytest.approx(0.0002 * INCH) and len(levels[0]) == 13
+    assert levels[1] == pytest.approx(levels[0])
+
+
 def test_golden_incremental_levels(inch):
     traced = cut(inch, "G0 Z.1", "G13 G91 Z-.5 I.4 K2. Q.4 L4 D2")
     circles = cut_geometry.full_circles(traced.moves)

@@ -144,6 +144,17 @@ def test_half_of_the_feed_down_and_all_of_it_elsewhere():
     assert found.modes.feed == pytest.approx(254.0)
 
 
+def test_a_slow_plunge_however_little_a_revolution_feeds():
+    feed = 0.00015  # LinuxCNC's EQ takes numbers 0.0001 apart for equal
+    with tracer("G20", "rings", ENTRY="plunge", PLUNGE_FEED=50) as machine:
+        first, *lines = program("G13", "I.4 Z-.3 D1")
+        found = traced(machine, [first, f"G95 S1000 F{feed}", *lines])
+    moves = [move for move in found.moves if move.kind != "rapid"]
+    down = {move.feed for move in falling(moves)}
+    plane = {move.feed for move in moves if move not in falling(moves)}
+    assert [*down, *plane] == pytest.approx([feed / 2 * 25.4, feed * 25.4])
+
+
 @pytest.mark.parametrize(
     ("words", "fits"),
     [

@@ -176,6 +176,15 @@ def test_any_valid_block_cuts_its_circle(metric, circle):
     assert distance.max() <= circle["radius"] + 1e-6
 
 
+def test_an_approach_however_short_is_made_and_taken_back(inch):
+    approach = 0.00006  # inches: LinuxCNC's NE takes it for 0
+    offset = 0.5 * TOOLS[10] / mode_matrix.INCH
+    traced = cut(inch, "G20 F10", "G0 X1 Y2 Z-.1", f"G12 I1.5 R{offset + approach:.9f} D10")
+    *_, last = traced.moves
+    assert last.start[0] - last.end[0] == pytest.approx(approach * mode_matrix.INCH, rel=1e-3)
+    assert last.end[:2] == pytest.approx((1 * mode_matrix.INCH, 2 * mode_matrix.INCH), abs=1e-9)
+
+
 def check_circles(found, circle):
     assert len(found) == circle["circles"]
     for each in found:

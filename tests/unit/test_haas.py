@@ -262,8 +262,11 @@ def test_the_locals_of_the_subroutine():
         "growth": 0.8,
         "shrink": 0.5,
         "keep": pytest.approx(0.625 / 1.375),
+        "again": 0.0,
+        "slow": False,
         "rings": True,
     }
     assert {name: rings[name] for name in wanted} == wanted
     deeper = plan(I=0.75, K=1.5, Q=0.5, Z=-0.5, L=2, D=1, found=FOUND._replace(incremental=True))
-    assert (deeper.locals()["z_step"], deeper.locals()["keep"]) == (-0.5, 0.0)
+    found = deeper.locals()
+    assert [found[name] for name in ("z_step", "keep", "again")] == [-0.5, 0.0, 0.625]

@@ -69,7 +69,12 @@ class WayDown(NamedTuple):
 
     def locals(self, first_radius: float) -> dict[str, float]:
         """Return the named locals of `ngc/g12_haas.ngc` that are about it."""
-        common = {"feed": self.feed, "plunge_feed": self.plunge_feed, "turns": self.first.turns}
+        common = {
+            "turns": self.first.turns,
+            "slow": self.plunge_feed < self.feed,
+            "feed": self.feed,
+            "plunge_feed": self.plunge_feed,
+        }
         if not self.first.turns:
             return common
         outward = first_radius / self.helix.radius
@@ -103,7 +108,7 @@ def way_down(
     helix = helix_of(entry, first, cutter)
     check_helix(words, helix, heights[0], cutter)
     descents = (helix.descent(height) for height in heights)
-    return WayDown(helix, *descents, context.feed, context.feed * entry.feed / 100.0)
+    return WayDown(helix, *descents, context.feed, context.feed * (entry.feed / 100.0))
 
 
 def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> None:

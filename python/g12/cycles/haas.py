@@ -85,6 +85,7 @@ class Pocket(NamedTuple):
             "growth": self.first_grow / self.first_radius,
             "shrink": self.shrink,
             "keep": self.first_radius / self.last_radius if goes_on else 0.0,
+            "again": 0.0 if goes_on else self.first_radius,
             "rings": not self.spiral,
             **self.down.locals(self.first_radius),
         }
