@@ -172,24 +172,32 @@ def feed_off(
 ) -> OffWords | None:
     """Return the first feed along the part that is not the words'.
 
-    A piece may be longer than what it is for, by the bow that its tolerance allows.
+    A piece may be longer than what it is for: the feed of this one may be right as well.
     """
     for block in blocks_cut(section, moves):
         feeds = {element.feed for element in block.elements}
         for index in block.moves if None not in feeds else ():
-            length = path.part_length(index)
-            found = feed_asked(moves[index], length)
+            found = feed_asked(moves[index], path.part_length(index))
+            least = (1.0 - longer_by(index, path, tolerance)) * (found or 0.0)
             if found and not any(
-                -SAME_FEED <= found / feed - 1 <= SAME_FEED + bow(length, tolerance)
+                found >= (1.0 - SAME_FEED) * feed and least <= (1.0 + SAME_FEED) * feed
                 for feed in feeds
             ):
                 return OffWords(block.elements[0].line, found, min(feeds))
     return None
 
 
-def bow(length: float, height: float) -> float:
-    """Return by what share a flat bow is longer than its chord."""
-    return 8.0 / 3.0 * (height / length) ** 2
+def longer_by(index: int, path: Track, tolerance: float) -> float:
+    """Return the greatest share of a move's length by which it is longer than what it is for.
+
+    That is no shorter than the chord, and no farther away than a flat bow of the tolerance:
+    8 / 3 (tolerance / length)**2.
+    """
+    points, length = path.points[path.vertices(index)], path.part_length(index)
+    if length < LEAST_LENGTH:
+        return 0.0
+    bow = 8.0 / 3.0 * (tolerance / length) ** 2
+    return min(1.0 - float(np.linalg.norm(points[-1] - points[0])) / length, bow)
 
 
 def feed_asked(move: Move, length: float) -> float | None:
