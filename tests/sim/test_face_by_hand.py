@@ -6,22 +6,18 @@ import time
 import numpy as np
 import pytest
 
-from support.kinematics import needs_kinematics
-from support.operated_machine import Machine
-from support.sim_machines import SIM
+from support.kinematics import needs_kinematics, on_the_face, place
+from support.operated_machine import kept_machine
 
 pytestmark = needs_kinematics
 
-X, Y, C = 0, 1, 5
+X = 0
 C_SPEED, C_ACCELERATION, SLIDE = 360, 3600, 1000
 STANDING = "G21 G18 G8 G90 G94 G40 G64 P0.01 M52 P0"
 PROGRAM = ["G18 G90 G94", "G1 X30 Z1 F1000", "G1 X20", "M2"]
 
 
-@pytest.fixture(scope="module")
-def running():
-    with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
-        yield machine
+running = kept_machine("lathe_mm_kinematics")
 
 
 @pytest.fixture
@@ -31,16 +27,6 @@ def lathe(running):
         running.mdi(block)
     running.errors(), running.messages()
     return running
-
-
-def on_the_face(machine):
-    return machine.get("polar-xzc.face")
-
-
-def place(machine):
-    """Return X, Y and C of the world in force, as a screen shows them."""
-    position = machine.stat().position
-    return pytest.approx((position[X], position[Y], position[C]), abs=1e-6)
 
 
 def slide_and_spindle(machine):

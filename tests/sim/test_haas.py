@@ -9,9 +9,9 @@ from shapely.geometry import MultiLineString, Point
 
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry
-from support.operated_machine import Machine
+from support.operated_machine import Machine, kept_machine
 from support.refusals import at_line
-from support.sim_machines import BRISK, SIM, machine_scope
+from support.sim_machines import BRISK, SIM
 
 TOOLS = {1: 6.0, 2: 10.0}
 FIRST = "G21 G17 G40 G49 G54 G61 G80 G90 G91.1 G94 F4000"
@@ -19,10 +19,7 @@ POCKET = "G13 X10 Y5 I5 K12 Q3 Z-1 D1"
 DEVIATION = 0.002  # mm, of the real motion in exact path mode at this feed
 
 
-@pytest.fixture(scope=machine_scope)
-def machine():
-    with Machine(SIM / "mill_mm.ini", tools=TOOLS) as running:
-        yield running
+machine = kept_machine("mill_mm", tools=TOOLS)
 
 
 @pytest.fixture(scope="module")

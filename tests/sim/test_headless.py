@@ -15,8 +15,8 @@ from g12.tools.headless.machine import StartupError, Timeout
 from g12.tools.headless.namespaces import PYTHON, Isolated
 from g12.tools.headless.run import run_anyhow
 from g12.tools.preview.tracer import trace_text
-from support.operated_machine import Machine
-from support.sim_machines import ROOT, SIM, machine_scope, with_package
+from support.operated_machine import Machine, kept_machine
+from support.sim_machines import ROOT, SIM, with_package
 
 EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
 NOBODY = 65534
@@ -24,10 +24,7 @@ LINES = [f"G1 X{10 * (number % 2)}" for number in range(1, 20)]
 BACK_AND_FORTH = ["G21 G90 G64 F4000", *LINES, "M2"]  # line n+1 moves to LINES[n-1]
 
 
-@pytest.fixture(scope=machine_scope)
-def running():
-    with Machine(SIM / "mill_mm.ini") as machine:
-        yield machine
+running = kept_machine("mill_mm")
 
 
 @pytest.fixture

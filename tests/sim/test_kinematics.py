@@ -17,8 +17,8 @@ from support.contour_geometry import (
     distance,
     outward,
 )
-from support.kinematics import needs_kinematics
-from support.operated_machine import Machine
+from support.kinematics import needs_kinematics, on_the_face, place
+from support.operated_machine import kept_machine
 from support.polar_drawings import HEXAGON, MILLIMETRES
 from support.polar_programs import (
     C_ACCELERATION,
@@ -28,11 +28,11 @@ from support.polar_programs import (
     accelerations,
     exceeds_limits_itself,
 )
-from support.sim_machines import PROGRAMS, SIM, machine_scope
+from support.sim_machines import PROGRAMS, SIM
 
 pytestmark = needs_kinematics
 
-X, Y, C = 0, 1, 5
+X, Y = 0, 1
 TOLERANCE = 0.002  # mm, of G64
 ON = ("M68 E2 Q0", "M68 E3 Q0", "M68 E3 Q1", "M66 P3 L3 Q10", "G17")
 OFF = ("M68 E3 Q0", "M66 P3 L4 Q10", "G18")
@@ -52,10 +52,7 @@ IN_INCHES = (
 SOON = 2.0  # s until the machine is back from the face; a busy computer is told late
 
 
-@pytest.fixture(scope=machine_scope)
-def running():
-    with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
-        yield machine
+running = kept_machine("lathe_mm_kinematics")
 
 
 @pytest.fixture
@@ -68,16 +65,6 @@ def lathe(running):
     running.mdi("G0 X20 C30")
     running.errors(), running.messages()
     return running
-
-
-def place(machine):
-    """Return X, Y and C of the world that is in force."""
-    position = machine.stat().position
-    return pytest.approx((position[X], position[Y], position[C]), abs=1e-6)
-
-
-def on_the_face(machine):
-    return machine.get("polar-xzc.face")
 
 
 def switch_on(machine):

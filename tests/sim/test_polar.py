@@ -14,7 +14,7 @@ from support.contour_geometry import (
     fitted_line,
     lines,
 )
-from support.operated_machine import Machine
+from support.operated_machine import Machine, kept_machine
 from support.polar_drawings import INCHES, MILLIMETRES
 from support.polar_programs import (
     C_ACCELERATION,
@@ -35,16 +35,8 @@ OVERRIDE = {"manual_a": 3, "manual_b": 2, "manual_sample": 3}  # they cut at 5 i
 C_SPEED = 360
 
 
-@pytest.fixture(scope=machine_scope)
-def metric():
-    with Machine(SIM / "lathe_mm.ini") as running:
-        yield running
-
-
-@pytest.fixture(scope=machine_scope)
-def inch():
-    with Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as running:
-        yield running
+metric = kept_machine("lathe_mm")
+inch = kept_machine("lathe_inch", tools=MANUAL_TOOLS)
 
 
 @pytest.fixture

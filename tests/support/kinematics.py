@@ -10,6 +10,17 @@ needs_kinematics = pytest.mark.skipif(
 )
 
 
+def on_the_face(machine):
+    """Tell whether X and Y are those of the face."""
+    return machine.get("polar-xzc.face")
+
+
+def place(machine):
+    """Return X, Y and C of the world in force, as a screen shows them."""
+    x, y, _, _, _, c, *_ = machine.stat().position
+    return pytest.approx((x, y, c), abs=1e-6)
+
+
 def marked(inis):
     """Return INI files as parameters of a test, those with the kinematics marked."""
     marks = {True: needs_kinematics, False: ()}

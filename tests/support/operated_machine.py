@@ -6,12 +6,14 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
+
 from g12.tools.headless import machine
 from g12.tools.headless.machine import Run, Timeout
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.preview.moves import Error, Message, Modes, modes
 from g12.tools.preview.tracer import start_block, write_program
-from support.sim_machines import ROOT
+from support.sim_machines import ROOT, SIM, machine_scope
 
 
 @dataclass(frozen=True)
@@ -168,6 +170,17 @@ class Machine(machine.Machine):
         for block in ("M2", modes_at_start, *offsets, *away, *up, f"G53 G0 {zero}", "M2"):
             self.mdi(block)
         self.errors(), self.messages()
+
+
+def kept_machine(name, **options):
+    """Return a fixture: a simulated machine, for as long as `machine_scope` says."""
+
+    @pytest.fixture(scope=machine_scope)
+    def running():
+        with Machine(SIM / f"{name}.ini", **options) as machine:
+            yield machine
+
+    return running
 
 
 def smoke(ini, program=None, timeout=600.0) -> tuple[int, str]:

@@ -17,10 +17,9 @@ from shapely.geometry import Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from g12.lengths import MM_PER_INCH
 from g12.tools.errors import UsageError
 from g12.tools.path.part import disc
-from g12.tools.units import Unit
+from g12.tools.units import UNITS, Unit
 from g12.tools.verify.wanted_circle import Wall
 
 NUMBER, SIGNED, UNIT_NAME = r"(\d+\.?\d*|\.\d+)", r"([-+]?(?:\d+\.?\d*|\.\d+))", r"\s*(mm|in)?"
@@ -29,7 +28,7 @@ SIZES = rf"(?:block\s*)?{NUMBER}x{NUMBER}x{NUMBER}(?:@{SIGNED},{SIGNED})?"
 BLOCK = re.compile(rf"(?:{SIZES})?\s*(?:bore\s*{NUMBER})?{UNIT_NAME}")
 BAR_FORMS = "a bar's diameter: 40, 40mm, 1.5in"
 BLOCK_FORMS = "100x80x20 (X, Y, Z), 100x80x20@-10,-10 (with its corner), bore 30, or both"
-UNITS_MM = {"mm": 1.0, "in": MM_PER_INCH}
+UNITS_MM = {unit.name: unit.mm for unit in UNITS.values()}
 
 
 class Stock(NamedTuple):
