@@ -46,6 +46,16 @@ def place_samples(folder: Path) -> None:
             for old, new in MOVED:
                 text = text.replace(old, new)
         (folder / name).write_text(text, encoding="utf-8")
+    (folder / "README").write_text(readme(sorted(folder.glob("*.ini"))), encoding="utf-8")
+
+
+def readme(machines: list[Path]) -> str:
+    """Return what the configuration selector shows beside a machine: what each one is."""
+    told = []
+    for ini in machines:
+        first = ini.read_text(encoding="utf-8").splitlines()[0]
+        told.append(f"{ini.stem}\n  {first.removeprefix('# ')}\n")
+    return "Circular pockets and polar interpolation, simulated.\n\n" + "\n".join(told)
 
 
 if __name__ == "__main__":
