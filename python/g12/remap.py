@@ -17,7 +17,13 @@ CYCLES = (
     "g13_yasnac",
 )
 POLAR = ("polar_off", "polar_on")
-__all__ = [*CYCLES, *POLAR]  # what `from g12.remap import *` brings into a user's own remap
+CYLINDER = ("cylinder_mode",)
+__all__ = [
+    *CYCLES,
+    *POLAR,
+    *CYLINDER,
+]  # what `from g12.remap import *` brings into a user's own remap
 
 globals().update(loaded_handlers("g12.host.cycle_prologs", CYCLES))
 globals().update(loaded_handlers("g12.host.polar_handlers", POLAR))
+globals().update(loaded_handlers("g12.host.cylinder_handlers", CYLINDER))

@@ -79,6 +79,8 @@ TABLE: dict[str, Choice | Number] = {
     "POLAR_TOLERANCE": Number(None, least=0.00001),  # less than any machine's step
     "POLAR_POLE": Choice("rotate", ("rotate", "refuse")),
     "POLAR_KINEMATICS": Choice("0", ("0", "1")),
+    "CYLINDER_WORD": Choice("radius", ("radius", "diameter")),
+    "CYLINDER_X": Choice("refuse", ("refuse", "allow")),
 }
 
 
@@ -103,6 +105,8 @@ class Settings:
     polar_tolerance: float | None = TABLE["POLAR_TOLERANCE"].default
     polar_pole: str = TABLE["POLAR_POLE"].default
     polar_kinematics: str = TABLE["POLAR_KINEMATICS"].default
+    cylinder_word: str = TABLE["CYLINDER_WORD"].default
+    cylinder_x: str = TABLE["CYLINDER_X"].default
 
     def tolerance(self, millimetres: float) -> float:
         """Return POLAR_TOLERANCE in machine units, which are ``millimetres`` long."""

@@ -22,15 +22,15 @@ sys.path.insert(0, "{python}")
 sys.modules["{module}"] = None
 import remap
 """
-HALVES = ["g12.cycles.words", "g12.polar.spacing"]
+HALVES = ["g12.cycles.words", "g12.polar.pieces"]
 PROGRAMS = {  # of the half whose codes they use
     "g12.cycles.words": ("mill_mm", ["F600", "G0 X0 Y0", "G12 I20 D1 Z-1", "M2"]),
-    "g12.polar.spacing": (
+    "g12.polar.pieces": (
         "lathe_mm",
         ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "G1 X15", "G13.1", "M2"],
     ),
 }
-SHORT = "from g12.host import polar_section\npolar_section.MOST_LINES = 99\n"
+SHORT = "from g12.host import section_run\nsection_run.MOST_LINES = 99\n"
 
 
 def test_an_endless_loop_ends(tmp_path):

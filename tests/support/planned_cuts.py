@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.flat.contour import Contour
-from g12.polar.plan import BlockMoves
+from g12.moves.steps import BlockMoves
 from support.contour_geometry import Straight
 
 SAGITTA = 2e-4  # of the chords that stand for a piece

@@ -15,7 +15,8 @@ from shapely.geometry import LineString, Polygon
 
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat.contour import Contour
-from g12.polar.plan import BlockMoves, PolarSettings, plan
+from g12.moves.steps import BlockMoves
+from g12.polar.plan import PolarSettings, plan
 from support.contour_geometry import Round, Straight, distance_from_path, phase
 from support.planned_cuts import SAGITTA, add, cuts, path
 

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, path_length
+from g12.moves.steps import BlockMoves
 from g12.polar.face import (
     FaceLimits,
     FaceMove,
@@ -20,7 +21,7 @@ from g12.polar.face import (
     parted,
     passed,
 )
-from g12.polar.plan import BlockMoves, PolarSettings, plan
+from g12.polar.plan import PolarSettings, plan
 
 LIMITS = FaceLimits(1000.0, 707.0, 1000.0, radians(3600.0), radians(360.0), 1.0)
 SETTINGS = PolarSettings(0.005, 0.001, 707.0, 3600.0, 21600.0, face=LIMITS)

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from g12.errors import Refusal
 from g12.flat.contour import Contour
-from g12.polar.plan import BlockMoves, PolarSettings, plan, resume
+from g12.moves.steps import BlockMoves
+from g12.polar.plan import PolarSettings, plan
 from support.contour_geometry import Round, Straight, distance, distance_from_path
 from support.planned_cuts import SAGITTA, cuts, path, programmed
 
@@ -466,7 +467,7 @@ def test_goes_on_after_a_block_that_waits_for_the_machine():
     whole = [Straight(20 + 0j, 5 + 10j), Round(5 + 10j, 0j, 3.0)]
     first = programmed(whole[:1])
     planned = plan(first, LATHE, c=30.0)
-    second = resume(first, planned)
+    second = first.continued(planned.end)
     assert (second.x, second.c) == (5.0, 10.0)
     end = whole[1].end
     second.arc(1, end.real, end.imag, i=-5.0, j=-10.0, line=2, feed=250.0)

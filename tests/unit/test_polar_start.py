@@ -7,8 +7,8 @@ import pytest
 
 from g12.errors import Refusal
 from g12.machine_ini import Axis, FaceAxes
+from g12.moves.steps import BlockMoves
 from g12.polar.face import FaceLimits
-from g12.polar.plan import BlockMoves
 from g12.polar.start import check_section_start, polar_setup
 from g12.section.line import SectionPlace
 from g12.section.modes import SectionModes
@@ -18,6 +18,7 @@ from g12.settings import Settings
 INCH = 25.4
 START = SectionStart(
     place=SectionPlace("G12.1", 7),
+    words={},
     alone=True,
     level=1,
     x=20.0,

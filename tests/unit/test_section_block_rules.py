@@ -4,6 +4,7 @@
 import pytest
 
 from g12.errors import Refusal
+from g12.polar.words import POLAR_WORDS
 from g12.section.block_rules import SectionBlock, check_block, check_codes, check_letters
 from g12.section.line import SectionPlace, split_line
 
@@ -62,10 +63,10 @@ def tenths(codes):
     return [round(float(code) * 10) for code in codes.split()]
 
 
-def refusal(check, *arguments):
+def refusal(check, given, *arguments):
     """Return why something is refused, None if it is not."""
     try:
-        check(*arguments, HERE)
+        check(given, POLAR_WORDS, *arguments, HERE)
     except Refusal as refused:
         return refused.message.removeprefix("G12.1 line 7: ")
     return None
@@ -170,7 +171,7 @@ def test_one_kind_of_feed(first, second):
 @pytest.mark.parametrize("letter", "ABVW@^")
 def test_axes_that_a_section_does_not_know(letter):
     why = f"{letter} is refused: the section's words are X, C (or Y), Z, U and H"
-    assert refusal(check_letters, split_line(f"G1 {letter}1")) == why
+    assert refusal(check_letters, split_line(f"G1 {letter}1", POLAR_WORDS)) == why
 
 
 @pytest.mark.parametrize(
@@ -187,11 +188,11 @@ def test_axes_that_a_section_does_not_know(letter):
     ],
 )
 def test_words_that_are_refused(text, why):
-    assert refusal(check_letters, split_line(text)) == why
+    assert refusal(check_letters, split_line(text, POLAR_WORDS)) == why
 
 
 @pytest.mark.parametrize(
     "text", ["X1 C1 Z1", "U1 H1", "X1 Y1", "G2 X1 R2", "I1 J2", "M66 P1 L3 Q2"]
 )
 def test_words_that_are_taken(text):
-    assert refusal(check_letters, split_line(text)) is None
+    assert refusal(check_letters, split_line(text, POLAR_WORDS)) is None

@@ -6,8 +6,9 @@ import re
 import pytest
 
 from g12.errors import Refusal
-from g12.section.block_rules import SectionBlock, alone, check_block, check_letters
-from g12.section.line import SectionPlace, is_plain, line_named, split_line, split_words
+from g12.polar.words import POLAR_WORDS
+from g12.section.block_rules import SectionBlock, alone, check_block, check_letters, m_code_alone
+from g12.section.line import SectionPlace, line_named, split_line, split_words
 from g12.section.modes import (
     SectionModes,
     action_text,
@@ -34,7 +35,7 @@ def block(*, g=(), m=(), motion=-1, **words):
     "raw", ["G1 X1.5 C-2. F20", "x1c2", "N10 G03 X-1 I-2.5 J+3", "G2R.5X1", "F5", "X1 \r", "Z-.375"]
 )
 def test_plain_lines(raw):
-    assert is_plain(raw)
+    assert POLAR_WORDS.plain(raw)
 
 
 @pytest.mark.parametrize(
@@ -43,7 +44,7 @@ def test_plain_lines(raw):
      "X1;a", "/X1", "O1 sub", "M3", "#1=2", "%", "G13 X1", "G1G91X1", "S5", "K1", "X٣"],
 )  # fmt: skip
 def test_lines_that_are_not_plain(raw):
-    assert not is_plain(raw)
+    assert not POLAR_WORDS.plain(raw)
 
 
 @pytest.mark.parametrize(
@@ -65,23 +66,27 @@ def test_lines_that_are_not_plain(raw):
     ],
 )
 def test_what_the_parser_does_not_know_is_rewritten(raw, text):
-    line = split_line(raw)
+    line = split_line(raw, POLAR_WORDS)
     assert line.text == text
     assert line.rewritten
 
 
 def test_what_the_parser_knows_stays():
-    line = split_line("G1 X1 (U) #1=2")
+    line = split_line("G1 X1 (U) #1=2", POLAR_WORDS)
     assert (line.rewritten, line.text) == (False, "g1x1#1=2")
 
 
 def test_u_and_h_are_relative_and_y_is_not():
-    relative = [split_line(raw).relative for raw in ("U1 C2", "X1 H2", "U1 H2", "X1 Y2")]
+    relative = [
+        split_line(raw, POLAR_WORDS).relative for raw in ("U1 C2", "X1 H2", "U1 H2", "X1 Y2")
+    ]
     assert relative == ["X", "C", "XC", ""]
 
 
 def test_parts_of_a_line():
-    line = split_line("/#1=2 G9 M3 S[#1] $1 #<ab>=sin[30] (one) X1 (two; three) ; (four)")
+    line = split_line(
+        "/#1=2 G9 M3 S[#1] $1 #<ab>=sin[30] (one) X1 (two; three) ; (four)", POLAR_WORDS
+    )
     assert line.comments == ("one", "two; three")
     assert line.assignments == "#1=2#<ab>=sin[30]"
     assert line.spindle == "$1"
@@ -116,7 +121,7 @@ def test_parts_of_a_line():
     ],
 )
 def test_o_words(raw, kind):
-    assert split_line(raw).control == kind
+    assert split_line(raw, POLAR_WORDS).control == kind
 
 
 def test_words_are_split_at_their_values():
@@ -131,30 +136,30 @@ def test_words_are_split_at_their_values():
     "raw", ["X[1", "X#<a", "X", "=", "]", "#", "#1=", "x#", "[[[", "G1 X5 (abc"]
 )
 def test_broken_lines_are_left_to_the_parser(raw):
-    assert split_line(raw).text == raw.replace(" ", "").lower()
+    assert split_line(raw, POLAR_WORDS).text == raw.replace(" ", "").lower()
 
 
 @pytest.mark.parametrize("letter", "ABDKTVW@^")
 def test_letters_a_section_does_not_know(letter):
     with pytest.raises(Refusal, match=re.escape(f"G12.1 line 7: {letter} is refused: ")):
-        check_letters(split_line(f"G1 {letter}5"), HERE)
+        check_letters(split_line(f"G1 {letter}5", POLAR_WORDS), POLAR_WORDS, HERE)
 
 
 @pytest.mark.parametrize("raw", ["X1 U2", "C1 H2", "Y1 C2", "Y1 H2"])
 def test_two_words_for_one_axis(raw):
     with pytest.raises(Refusal, match="only one of them"):
-        check_letters(split_line(raw), HERE)
+        check_letters(split_line(raw, POLAR_WORDS), POLAR_WORDS, HERE)
 
 
 def test_accepted_codes():
     for codes in ({0: 40}, {1: 10, 2: 180, 3: 910, 7: 410}, {5: 950, 10: 990}, {13: 611, 14: 970}):
-        check_block(block(g=codes, m={7: 3, 8: 8}), False, HERE)
+        check_block(block(g=codes, m={7: 3, 8: 8}), POLAR_WORDS, False, HERE)
 
 
 def test_g0_is_accepted_where_it_is_a_feed():
-    check_block(block(g={1: 0}), True, HERE)
+    check_block(block(g={1: 0}), POLAR_WORDS, True, HERE)
     with pytest.raises(Refusal, match="G0 is refused"):
-        check_block(block(g={1: 0}), False, HERE)
+        check_block(block(g={1: 0}), POLAR_WORDS, False, HERE)
 
 
 @pytest.mark.parametrize(
@@ -173,7 +178,7 @@ def test_g0_is_accepted_where_it_is_a_feed():
 )
 def test_arguments_are_checked_before_anything_moves(code, words, reason):
     with pytest.raises(Refusal, match=re.escape(f"G12.1 line 7: {reason}")):
-        check_block(block(m={5: code}, **words), False, HERE)
+        check_block(block(m={5: code}, **words), POLAR_WORDS, False, HERE)
 
 
 @pytest.mark.parametrize(
@@ -187,7 +192,7 @@ def test_arguments_are_checked_before_anything_moves(code, words, reason):
     ],
 )
 def test_arguments_that_linuxcnc_takes(code, words):
-    check_block(block(m={5: code}, **words), False, HERE)
+    check_block(block(m={5: code}, **words), POLAR_WORDS, False, HERE)
 
 
 def test_modes_act_as_they_are_read():
@@ -226,11 +231,11 @@ def test_feed_modes(codes, words, expected):
     ],
 )
 def test_what_is_no_motion(given, text):
-    assert action_text(block(**given), split_line("")) == text
+    assert action_text(block(**given), split_line("", POLAR_WORDS)) == text
 
 
 def test_the_spindle_word_goes_along():
-    assert action_text(block(m={7: 3}, S=5.0), split_line("M3 S5 $-1")) == "M3S5$-1"
+    assert action_text(block(m={7: 3}, S=5.0), split_line("M3 S5 $-1", POLAR_WORDS)) == "M3S5$-1"
 
 
 def test_stops():
@@ -243,9 +248,9 @@ def test_alone():
     assert not alone(block(g={1: 131, 3: 900}))
     assert not alone(block(g={1: 131}, m={8: 8}))
     assert not alone(block(g={1: 131}, X=1.0))
-    assert alone(block(m={10: 410}, P=3.0), 410)
-    assert not alone(block(m={10: 410}, X=3.0), 410)
-    assert not alone(block(m={10: 410, 8: 8}), 410)
+    assert m_code_alone(block(m={10: 410}, P=3.0), 410)
+    assert not m_code_alone(block(m={10: 410}, X=3.0), 410)
+    assert not m_code_alone(block(m={10: 410, 8: 8}), 410)
 
 
 VALUES = {"1": 2.0, "5420": 12.5, "_x": -3.25, "ab": 7.0}
@@ -280,7 +285,7 @@ def test_the_line_that_a_refusal_names():
 
 @pytest.mark.parametrize("text", ["g1x9", "x9c9.0", "g1c09", "m9", "g1x9z9f9"])
 def test_only_a_g_is_an_exact_stop(text):
-    line = split_line(text)
+    line = split_line(text, POLAR_WORDS)
     assert (line.text, line.exact_stop, line.rewritten) == (text, False, False)
 
 
@@ -290,17 +295,17 @@ def test_a_letter_without_a_value_hides_nothing():
 
 
 def test_codes_are_g_and_m_with_a_plain_number():
-    assert split_line("g1x2m3f4").codes == (("G", 10), ("M", 30))
-    assert split_line("g#1m[2]g91.1").codes == (("G", 911),)
+    assert split_line("g1x2m3f4", POLAR_WORDS).codes == (("G", 10), ("M", 30))
+    assert split_line("g#1m[2]g91.1", POLAR_WORDS).codes == (("G", 911),)
 
 
 @pytest.mark.parametrize("text", ["o1if[1]", ";py,1", "g1(a", "m98p1"])
 def test_a_line_that_is_not_split_says_nothing_of_its_words(text):
-    line = split_line(text)
+    line = split_line(text, POLAR_WORDS)
     assert (line.letters, line.codes, line.assignments, line.spindle) == ((), (), "", "")
     assert (line.rewritten, line.relative, line.exact_stop) == (False, "", False)
 
 
 @pytest.mark.parametrize("code", [70, 71, 72, 73])
 def test_saved_modes_are_the_section_s_own(code):
-    assert action_text(block(m={7: code, 8: 8}), split_line(f"m{code}m8")) == "M8"
+    assert action_text(block(m={7: code, 8: 8}), split_line(f"m{code}m8", POLAR_WORDS)) == "M8"

@@ -5,7 +5,7 @@ import pytest
 
 from g12.errors import Refusal
 from g12.host.section_output import BLOCK_END, STOP_HERE, Action, SectionOutput
-from g12.polar.plan import BlockMoves
+from g12.moves.steps import BlockMoves
 from g12.section.modes import SectionModes
 
 MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)

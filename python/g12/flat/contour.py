@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The programmed contour: lines and arcs in the flat X-C plane, each with the block it comes from.
+"""The programmed contour: lines and arcs in a flat plane, each with the block it comes from.
 
-X is the distance from the spindle's centre line (a radius value, whatever the X words meant), C
-the length at right angles to it; both and Z in program units, with their origin in the spindle's
-centre. An angle grows from +X to +C; a positive sweep is counterclockwise (G3), in radians.
+The plane has the axes x and c, and z at right angles to it, all in program units. On a part's face
+they are X (a radius value, whatever the X words meant), C as a length, and Z, with their origin in
+the spindle's centre; on a cylinder C as a length, Z, and X. An angle grows from +x to +c; a
+positive sweep is counterclockwise (G3), in radians.
 """
 
 from __future__ import annotations
 
+from copy import copy
 from math import atan2, copysign, hypot, pi, sqrt
 from typing import NamedTuple, NoReturn
 
@@ -74,8 +76,20 @@ class Mark(NamedTuple):
     action: object
 
 
+class PlaneNames(NamedTuple):
+    """What a program calls the axes of the plane, and an arc's centre, for messages."""
+
+    x: str
+    c: str
+    z: str
+    centre: str
+
+
+FACE = PlaneNames("X", "C", "Z", "I and J")
+
+
 class Start(NamedTuple):
-    """Where the machine stands: X radius value, angle of C in the plane in radians, Z."""
+    """Where the machine stands: X radius value, angle of C in radians, Z."""
 
     x: float
     angle: float
@@ -142,32 +156,35 @@ def sweep_between(start: Point, end: Point, centre: Point, turn: int) -> float:
 class Contour:
     """Collects the blocks of one section, in order, and refuses those that cannot be a contour.
 
-    ``x`` (radius value, above zero), ``c`` and ``z`` are the programmed position, readable at any
-    time; a section starts at C0, wherever the C axis stands. ``code`` names the section in
-    messages. ``diameter`` tells whether the program's X words are diameters: the values passed in
-    are always radius values, but a message has to say which reading was meant. ``closing`` is the
-    radius mismatch of an arc that is forgiven, in program units.
+    ``x``, ``c`` and ``z`` are the programmed position in the plane, readable at any time.
+    ``code`` and ``names`` are for messages. ``diameter`` tells whether the program's words for x
+    are diameters, None where they cannot be: the values passed in never are, but a message has to
+    say which reading was meant. ``closing`` is the radius mismatch of an arc that is forgiven, in
+    program units.
 
-    ``side`` is the compensation in force: 40, 41 or 42. ``start`` is where the machine stands,
-    which for a section that goes on where another was cut in two is not at C0. ``notes`` are what
-    the operator is told of it, though it is cut.
+    ``side`` is the compensation in force: 40, 41 or 42. ``start`` is where the machine stands: by
+    default on a face, at its zero line. ``notes`` are what the operator is told of it, though it is
+    cut.
     """
 
     def __init__(
         self,
         x: float,
         z: float,
+        c: float = 0.0,
         *,
         code: str = "G12.1",
-        diameter: bool = False,
+        names: PlaneNames = FACE,
+        diameter: bool | None = False,
         closing: float = 0.0,
+        start: Start | None = None,
     ) -> None:
-        self.x, self.c, self.z = x, 0.0, z
-        self.code, self.diameter, self.closing = code, diameter, closing
+        self.x, self.c, self.z = x, c, z
+        self.code, self.names, self.diameter, self.closing = code, names, diameter, closing
         self.elements: list[Line | Arc | Plunge | Mark] = []
-        self._end = (x, 0.0, z)  # of the elements; less than SAME_PLACE from the position
+        self._end = (x, c, z)  # of the elements; less than SAME_PLACE from the position
         self.side = 40
-        self.start = Start(x, 0.0, z)
+        self.start = start or Start(x, 0.0, z)
         self._offset = self._radius = 0.0
         self._switch: int | None = None  # line of the G40, G41 or G42 that waits for its G1
         self._switched_on = 0
@@ -192,7 +209,7 @@ class Contour:
         c1 = self.c if c is None else c
         z1 = self.z if z is None else z
         if max(abs(x1), abs(c1), abs(z1)) > LARGEST:
-            self._check_lengths(line, X=x1, C=c1, Z=z1)
+            self._check_place(line, x1, c1, z1)
         length = hypot(x1 - x0, c1 - c0)
         self._check_feed(feed, line)
         self._check_switch(line, length)
@@ -226,7 +243,9 @@ class Contour:
         self._check_arc(turn, i, j, radius, line, feed)
         end = (self.x if x is None else x, self.c if c is None else c)
         z1 = self.z if z is None else z
-        self._check_lengths(line, X=end[0], C=end[1], Z=z1, I=i, J=j, R=radius)
+        self._check_place(line, *end, z1)
+        centre = dict(zip(self.names.centre.split(" and "), (i, j)))
+        self._check_lengths(line, **centre, R=radius)
         if radius is None:
             centre, sweep = self._about_centre(turn, end, i or 0.0, j or 0.0, line)
         else:
@@ -251,6 +270,15 @@ class Contour:
         self._switched_on = line
         self._switch = line
         self.side = side
+
+    def continued(self, start: Start) -> Contour:
+        """Return an empty contour that goes on where this one ended and the machine stands.
+
+        For a section that is cut in two by a block that waits for the machine.
+        """
+        following = copy(self)
+        following.elements, following.notes, following.start = [], [], start
+        return following
 
     def mark(self, action: object, *, line: int) -> None:
         """Add a block without motion."""
@@ -278,6 +306,9 @@ class Contour:
                 f"G{self.side} of line {self._switched_on} is on",
             )
 
+    def _check_place(self, line: int, x: float, c: float, z: float) -> None:
+        self._check_lengths(line, **{self.names.x: x, self.names.c: c, self.names.z: z})
+
     def _check_lengths(self, line: int, **words: float | None) -> None:
         for word, value in words.items():
             if value is not None and abs(value) > LARGEST:
@@ -290,7 +321,8 @@ class Contour:
 
     def _check_waiting(self) -> None:
         if self._switch is not None:
-            self.refuse(self._switch, f"G{self.side} needs a G1 with X or C in its own block")
+            either = f"{self.names.x} or {self.names.c}"
+            self.refuse(self._switch, f"G{self.side} needs a G1 with {either} in its own block")
 
     def _check_switch(self, line: int, length: float) -> None:
         """Check the G1 that switches compensation on or off."""
@@ -312,12 +344,12 @@ class Contour:
         if self._switch is not None:
             self.refuse(line, f"G{self.side} with {name}: compensation is switched by a G1 only")
         if radius is not None and (i is not None or j is not None):
-            self.refuse(line, f"{name}: either R or I and J, not both")
+            self.refuse(line, f"{name}: either R or {self.names.centre}, not both")
         if radius is None and not i and not j:
-            self.refuse(line, f"{name} needs R, or the centre in I and J")
+            self.refuse(line, f"{name} needs R, or the centre in {self.names.centre}")
 
     def _about_centre(self, turn, end, i, j, line):
-        """Return centre and sweep of an arc with I and J, the centre equally far from both ends."""
+        """Return centre and sweep of an arc about a centre, which is equally far from both ends."""
         start, centre = self._end[:2], (self.x + i, self.c + j)
         if hypot(end[0] - start[0], end[1] - start[1]) <= SAME_PLACE:
             return centre, turn * 2 * pi
@@ -337,7 +369,7 @@ class Contour:
         half = 0.5 * hypot(end[0] - start[0], end[1] - start[1])
         name = f"{_name(turn)} R{number(radius)}"
         if 2.0 * half <= SAME_PLACE:
-            self.refuse(line, f"{name}: a full circle needs I and J, not R")
+            self.refuse(line, f"{name}: a full circle needs {self.names.centre}, not R")
         if not self._spans(half, radius):
             self.refuse(
                 line,
@@ -366,6 +398,8 @@ class Contour:
 
     def _hint(self, closes, end, *words) -> str:
         """Return which other reading of the X words, if any, would close the arc."""
+        if self.diameter is None:
+            return ""
         other, ratio = ("radius", 2.0) if self.diameter else ("diameter", 0.5)
         for x0 in (self.x * ratio, self.x):
             if closes(x0, end[0] * ratio, end[1], *words):

@@ -29,8 +29,8 @@ from g12.host.kinematics_switch import (
     y_offset,
 )
 from g12.host.program_lines import error_text
+from g12.moves.steps import BlockMoves
 from g12.polar.face import FaceMove, FaceSwitch, flows_into
-from g12.polar.plan import BlockMoves
 from g12.section.block_rules import G1
 from g12.section.line import SectionPlace
 from g12.section.modes import SectionModes, decimal

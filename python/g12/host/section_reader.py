@@ -8,13 +8,14 @@ the section, so that a program reads them from #5420, #<_x> or #<_feed>.
 
 from __future__ import annotations
 
-from operator import attrgetter
+from math import radians
+from operator import attrgetter, itemgetter
 
 import emccanon
 from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
 
 from g12.errors import number
-from g12.flat.contour import Contour
+from g12.flat.contour import Contour, PlaneNames, Start
 from g12.host.program_lines import ProgramLines, error_text
 from g12.host.section_output import BLOCK_END, PER_MINUTE, PER_REVOLUTION, Action
 from g12.section.block_rules import (
@@ -50,7 +51,7 @@ MOTIONS = (G0, G1, G2, G3)
 MOST_FEED = 1e9  # program units per minute
 
 WORDS = [
-    (letter, f"{letter.lower()}_flag", f"{letter.lower()}_number") for letter in "XCZIJRFSPQLE"
+    (letter, f"{letter.lower()}_flag", f"{letter.lower()}_number") for letter in "XCZIJRKFSPQLE"
 ]
 plain_words = attrgetter(
     "f_flag", "f_number", "motion_to_be", *(name for word in WORDS[:6] for name in word[1:])
@@ -75,18 +76,39 @@ class SectionReader:
         self.parsed = interp.blocks[0]
         self.modes = start.modes
         self._spindle, self._speeds = start.spindle, list(start.speeds)
-        self.contour = Contour(
-            start.x,
-            start.z,
-            code=start.place.code,
-            diameter=rules.diameter,
-            closing=rules.closing,
-        )
+        known = rules.words
+        self._to_plane = itemgetter(*("XCZ".index(axis) for axis in known.plane))
+        self._to_axes = itemgetter(*(known.plane.index(axis) for axis in "XCZ"))
+        self._own_c = not known.c_is_length
+        self.contour = self._contour(start, rules)
         self.exact_lines: set[int] = set()  # of G9
         self._moved = 0  # the line of the last move
         self._saved: dict[int, SectionModes] = {}  # by M70 and M73, at each call level
         self._restored_on_return: set[int] = set()
         self.remember_machine()
+
+    def _contour(self, start: SectionStart, rules: WordRules) -> Contour:
+        """Return the empty contour that begins where the machine stands."""
+        known = rules.words
+        angle = start.c if self._own_c else 0.0
+        x, c, z = self._to_plane((start.x, angle * rules.c_scale, start.z))
+        return Contour(
+            x,
+            z,
+            c,
+            code=start.place.code,
+            names=PlaneNames(*known.plane, known.centre_name),
+            diameter=rules.diameter if known.plane[0] == "X" else None,
+            closing=rules.closing,
+            start=Start(start.x, radians(angle), start.z),
+        )
+
+    @property
+    def programmed(self) -> tuple[float, float, float]:
+        """The programmed position as words would tell it: X (radius value), C, Z."""
+        contour = self.contour
+        x, c, z = self._to_axes((contour.x, contour.c, contour.z))
+        return x, c / self.rules.c_scale, z
 
     @property
     def place(self) -> SectionPlace:
@@ -127,14 +149,13 @@ class SectionReader:
 
     def show_plane(self) -> None:
         """Show the interpreter the programmed position."""
-        interp, contour = self.interp, self.contour
-        interp.current_x, interp.current_z, interp.CC_current = contour.x, contour.z, contour.c
+        interp = self.interp
+        interp.current_x, interp.CC_current, interp.current_z = self.programmed
 
     def has_moved(self) -> bool:
         """Tell whether the interpreter has left the position that it was shown."""
-        interp, contour = self.interp, self.contour
-        stands = interp.current_x, interp.CC_current, interp.current_z
-        return stands != (contour.x, contour.c, contour.z)
+        interp = self.interp
+        return (interp.current_x, interp.CC_current, interp.current_z) != self.programmed
 
     def plain_line(self, raw: str) -> None:
         """Take a line of nothing but numbers behind G1 to G3, F and the words of a move."""
@@ -156,6 +177,7 @@ class SectionReader:
                 i if has_i else None,
                 j if has_j else None,
                 r if has_r else None,
+                None,
             )
 
     def with_spindle(self, line: TextLine) -> TextLine:
@@ -215,7 +237,7 @@ class SectionReader:
         if block.g[COMPENSATION] != NO_CODE:
             self._compensate(block.g[COMPENSATION] // 10)
         if block.moves:
-            words = [block.words.get(letter) for letter in "XCZIJR"]
+            words = [block.words.get(letter) for letter in "XCZIJRK"]
             self._move(block.motion, *words, line.relative)
         self._mark(stop_text(block))
 
@@ -264,6 +286,7 @@ class SectionReader:
         i: float | None,
         j: float | None,
         r: float | None,
+        k: float | None,
         relative: str = "",
     ) -> None:
         """Add a move; the words are the program's, None where there is none."""
@@ -273,19 +296,36 @@ class SectionReader:
             raise self.place.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
         if x is not None:
             x *= self.rules.x_scale
-            if modes.incremental or "X" in relative:
-                x += contour.x
-        if c is not None and (modes.incremental or "C" in relative):
-            c += contour.c
+        if c is not None:
+            c *= self.rules.c_scale
+        x, c, z = self._to_plane((x, c, z))
+        i, j = self._centre(i, j, k)
         if z is not None:
-            self._check_z(x, c, i, j)
-            z += contour.z if modes.incremental else 0.0
+            self._check_third(x, c, i, j)
+        if modes.incremental or relative:
+            x, c, z = self._absolute(x, c, z, "XCZ" if modes.incremental else relative)
         line = self.program.place
         if G1 < motion <= G3:
             turn = 1 if motion == G3 else -1
             contour.arc(turn, x, c, z, i=i, j=j, radius=r, line=line, feed=self._feed())
         else:
             contour.line(x, c, z, line=line, feed=self._feed() if motion else self._rapid_feed())
+
+    def _centre(
+        self, i: float | None, j: float | None, k: float | None
+    ) -> tuple[float | None, float | None]:
+        """Return the words of an arc's centre, along the plane's first and second axis."""
+        if not self._own_c:
+            return i, j
+        return (i if j is None else j), k
+
+    def _absolute(self, x: float | None, c: float | None, z: float | None, relative: str) -> tuple:
+        """Return coordinates of the plane, those of the ``relative`` axes as increments."""
+        contour, plane = self.contour, self.rules.words.plane
+        return tuple(
+            value + here if value is not None and axis in relative else value
+            for axis, value, here in zip(plane, (x, c, z), (contour.x, contour.c, contour.z))
+        )
 
     def _keep_apart(self) -> None:
         """Mark the end of a block where the next one's line has the same number, as in a loop."""
@@ -294,9 +334,9 @@ class SectionReader:
             self._keep(Action(line, BLOCK_END, None))
         self._moved = line
 
-    def _check_z(self, *others: float | None) -> None:
-        if not self.rules.z_with_x and any(other is not None for other in others):
-            raise self.place.refuse("Z needs a block of its own, or [G12] POLAR_Z = allow")
+    def _check_third(self, *others: float | None) -> None:
+        if not self.rules.third_with_others and any(other is not None for other in others):
+            raise self.place.refuse(self.rules.words.own_block)
 
     def _feed(self) -> float:
         """Return the feed along the part in program units per minute."""

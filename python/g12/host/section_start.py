@@ -19,12 +19,17 @@ INVERSE_TIME = 1  # feed_mode
 G96 = 960
 
 
-def start_of_section(interp: object, line: int) -> SectionStart:
-    """Return what a section finds that begins with the block being remapped, on ``line``."""
+def start_of_section(interp: object, line: int, words: str = "") -> SectionStart:
+    """Return what a section finds that begins with the block being remapped, on ``line``.
+
+    ``words`` are the letters that the block may have.
+    """
+    block = interp.blocks[interp.remap_level]
     machine_unit = glue.program_units_per_machine_unit(interp)
     return SectionStart(
         place=SectionPlace(glue.code_of_block(interp), line),
-        alone=_stands_alone(interp),
+        words=block_of(block).words,
+        alone=_stands_alone(block, words),
         level=interp.call_level,
         x=interp.current_x,
         c=interp.CC_current,
@@ -46,10 +51,9 @@ def start_of_section(interp: object, line: int) -> SectionStart:
     )
 
 
-def _stands_alone(interp: object) -> bool:
-    block = interp.blocks[interp.remap_level]
+def _stands_alone(block: object, words: str) -> bool:
     others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
-    return alone(block_of(block)) and not others
+    return alone(block_of(block), words) and not others
 
 
 def _modes(interp: object) -> SectionModes:

@@ -32,7 +32,8 @@ from math import atan, atan2, ceil, copysign, cos, floor, hypot, pi, sin, sqrt
 from typing import NamedTuple
 
 from g12.flat.contour import Arc, Line, arc_radius
-from g12.polar.spacing import BULGE, WHOLE_BULGE, Density, Stretch, spaced
+from g12.moves.feed import Split
+from g12.moves.spacing import BULGE, WHOLE_BULGE, Density, Stretch, spaced
 
 RADIAL = 1e-9  # program units: a line that close to the pole is a radius
 
@@ -49,17 +50,6 @@ class Law(NamedTuple):
     ripple: float
     x_hold: float
     c_hold: float
-
-
-class Split(NamedTuple):
-    """The ends of an element's pieces, its start first.
-
-    Radius, angle in radians, continuous over the element, and length of the path up to there.
-    """
-
-    radii: list[float]
-    angles: list[float]
-    lengths: list[float]
 
 
 def split_move(move: Line | Arc, law: Law) -> Split:

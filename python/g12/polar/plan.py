@@ -3,29 +3,27 @@
 
 from __future__ import annotations
 
-from copy import copy
+from functools import partial
 from math import copysign, degrees, hypot, pi, radians, remainder
 from typing import NamedTuple
 
-from g12.errors import Refusal
-from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, Start, is_move
-from g12.flat.offset import tool_path
-from g12.flat.simplify import with_points_left_out, without_short_moves
-from g12.polar.exact_stops import stops
-from g12.polar.face import FaceLimits, FaceMove, FaceSwitch, chosen, in_face, parted, passed
-from g12.polar.feed import Position, pieces_with_feed
-from g12.polar.pieces import Law, Split, split_move
-from g12.polar.pole import POLE, through_pole
-from g12.polar.spacing import MOST_PIECES, TooManyPieces
-
-CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
-STOP_SHARE = (
-    0.7  # of the tolerance: a move that stops starts quicker, and cuts deeper into the path
+from g12.flat.centre_path import centre_path
+from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, Point, is_move
+from g12.moves.exact_stops import Direction, stops
+from g12.moves.feed import pieces_with_feed
+from g12.moves.steps import (
+    LEFT_OVER,
+    ROUNDING_SHARE,
+    Position,
+    SectionPlan,
+    StepMaker,
+    chord_deviation,
 )
-ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the pieces' own deviation
-SHORT_SHARE = 0.3  # of the tolerance: a shorter move under compensation is rounding
+from g12.polar.face import FaceLimits, FaceMove, FaceSwitch, chosen, in_face, parted, passed
+from g12.polar.pieces import Law, split_move
+from g12.polar.pole import POLE, through_pole
+
 POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
-LEFT_OVER = 1e-3  # of the least step in X: less than that is rounding
 SAME_ANGLE = 1e-9  # radians
 RIPPLE = 0.01  # by so much may the speed differ from F inside a piece
 
@@ -42,50 +40,22 @@ class PolarSettings(NamedTuple):
     face: FaceLimits | None = None  # POLAR_KINEMATICS = 1
 
 
-class BlockMoves(NamedTuple):
-    """G1 moves of one block, one after the other, all in G90 and G94.
-
-    ``axes`` is "XC", "XCZ" or "Z": the words to write. Each piece is ``(x, c, z, feed)``: X radius
-    value, C in degrees, continuous over the section (it may leave 0..360), and F as G94 wants it:
-    for the X and Z part of the move, or in degrees per minute where neither changes; it may be
-    small, so write it with six significant digits. A piece that keeps X repeats the same number.
-    With ``stop`` the last piece must end in an exact stop (G61), because LinuxCNC would round the
-    corner by more than the tolerance.
-    """
-
-    line: int
-    axes: str
-    pieces: list[tuple[float, float, float, float]]
-    stop: bool
-
-
-class PolarPlan(NamedTuple):
-    """The moves of a section.
-
-    ``steps`` holds each :class:`BlockMoves` (on the face :class:`FaceMove`, with a
-    :class:`FaceSwitch` in front and behind), and each mark's action, in order. ``place`` is where
-    the machine stands in the end. ``notes`` are for the operator.
-    """
-
-    steps: list
-    place: Position
-    angle: float  # of the C axis in the plane, radians
-    notes: list[str]
-
-
-def plan(contour: Contour, settings: PolarSettings, *, c: float) -> PolarPlan:
+def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
     """Return the moves of a whole section.
 
     ``c`` is the C axis in degrees at the plane's zero angle. Raises Refusal, naming the blocks by
     their lines, when the contour cannot be cut as programmed.
     """
-    path, moved = _centre_path(contour, settings.tolerance)
+    path, moved = centre_path(contour, settings.tolerance)
     tolerance = settings.tolerance - moved
     settings = settings._replace(tolerance=tolerance)
     path = through_pole(contour, path, POLE_SHARE * tolerance, settings.pole_refused)
-    stopping = stops(
-        path, ROUNDING_SHARE * tolerance, settings.x_acceleration, radians(settings.c_acceleration)
+    quick = partial(
+        quickness,
+        x_acceleration=settings.x_acceleration,
+        c_acceleration=settings.c_acceleration,
     )
+    stopping = stops(path, ROUNDING_SHARE * tolerance, quick)
     machine = _SlideAndSpindle(contour, settings, c)
     faced = [False] * len(path)
     if settings.face:
@@ -102,55 +72,38 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> PolarPlan:
         else:
             machine.cut(element, stop)
     machine.finish(path)
-    return PolarPlan(machine.steps, machine.place, machine.angle, contour.notes)
+    return SectionPlan(machine.steps, machine.place, machine.angle, contour.notes)
 
 
-def _centre_path(contour: Contour, tolerance: float) -> tuple[list, float]:
-    """Return the path of the tool's centre, and by how much the contour was moved for it.
+def quickness(
+    direction: Direction, place: Point, *, x_acceleration: float, c_acceleration: float
+) -> float:
+    """Return the acceleration along a direction at a place that neither axis exceeds.
 
-    Points nearer to each other than their last decimal allows make corners that no tool reaches:
-    where a contour would be refused, it is tried without them.
+    ``c_acceleration`` in degrees per second squared. 0 at the pole, where C would have to jump.
     """
-    limit = SHORT_SHARE * tolerance
-    meant, moved = without_short_moves(contour.elements, limit)
-    try:
-        return tool_path(contour, meant, tolerance - moved), moved
-    except Refusal as refusal:
-        fewer, left_out = with_points_left_out(meant, limit - moved)
-        if len(fewer) == len(meant):
-            raise
-        try:
-            return tool_path(contour, fewer, tolerance - moved - left_out), moved + left_out
-        except Refusal:
-            raise refusal from None
+    if place == POLE:
+        return 0.0
+    radius = hypot(*place)
+    radial = abs(direction[0] * place[0] + direction[1] * place[1]) / radius
+    around = abs(direction[1] * place[0] - direction[0] * place[1]) / radius
+    slide = max(radial, abs(direction[2])) / x_acceleration
+    return 1.0 / max(slide, around / (radius * radians(c_acceleration)))
 
 
-def resume(contour: Contour, planned: PolarPlan) -> Contour:
-    """Return an empty contour that goes on where a planned one ended.
-
-    For a section that is cut in two by a block that waits for the machine. Plan it with the same
-    ``c``.
-    """
-    following = copy(contour)
-    following.elements, following.notes = [], []
-    following.start = Start(planned.place.x, planned.angle, planned.place.z)
-    return following
-
-
-class _SlideAndSpindle:
+class _SlideAndSpindle(StepMaker):
     """The X slide and the C axis, making one element after the other."""
 
     def __init__(self, contour: Contour, settings: PolarSettings, c: float) -> None:
         x, self.angle, z = contour.start
-        self.steps: list = []
-        self.place = Position(x, c + degrees(self.angle), z)
-        self._contour, self._settings, self._entry = contour, settings, c
+        super().__init__(contour, Position(x, c + degrees(self.angle), z))
+        self._settings, self._entry = settings, c
         self._face: float | None = None  # angle of its X axis, while the machine is on it
         self._laws: dict[tuple[float, bool], Law] = {}
 
     def cut(self, move: Line | Arc, stop: bool) -> None:
         """Add the pieces of a move in the plane."""
-        parts = self._split(move, self._law(move.feed, stop))
+        parts = self._split(split_move, move, self._law(move.feed, stop))
         if (move.x0, move.c0) == POLE:
             self._turn(move, parts.angles[0])
         turns = round((self.angle - parts.angles[0]) / (2 * pi))
@@ -158,15 +111,6 @@ class _SlideAndSpindle:
         pieces = pieces_with_feed(parts, self.place, move, entry, self._settings.least_x)
         self.angle = parts.angles[-1] + 2 * pi * turns
         self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", pieces, stop)
-
-    def _split(self, move: Line | Arc, law: Law) -> Split:
-        try:
-            return split_move(move, law)
-        except TooManyPieces:
-            self._contour.refuse(
-                move.line,
-                f"more than {MOST_PIECES} moves would be needed to stay within POLAR_TOLERANCE",
-            )
 
     def switch(self, line: int, face: bool) -> None:
         """Go to the face or back from it, if it is another way than before."""
@@ -208,18 +152,13 @@ class _SlideAndSpindle:
             piece = (x, self._entry + degrees(self.angle), z, self._settings.c_speed)
             self._run(move.line, "XC", [piece], True)
 
-    def _run(self, line: int, axes: str, pieces: list, stop: bool) -> None:
-        if pieces:
-            self.steps.append(BlockMoves(line, axes, pieces, stop))
-            self.place = Position(*pieces[-1][:3])
-
     def _law(self, feed: float, stop: bool) -> Law:
         law = self._laws.get((feed, stop))
         if law is None:
             settings = self._settings
             hold = 0.5 / (feed / 60.0) ** 2
             law = self._laws[feed, stop] = Law(
-                (STOP_SHARE if stop else CHORD_SHARE) * settings.tolerance,
+                chord_deviation(settings.tolerance, stop),
                 RIPPLE,
                 hold * settings.x_acceleration,
                 hold * radians(settings.c_acceleration),

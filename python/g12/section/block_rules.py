@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from g12.section.line import SectionPlace, TextLine
+from g12.section.words import SectionWords
 
 NO_CODE = -1
 # Modal groups of the G codes, as the parser numbers them, and two of the M codes.
@@ -23,7 +24,6 @@ STATE_CODES = SAVE, FORGET, RESTORE, SAVE_FOR_SUB = 70, 71, 72, 73
 KNOWN_G = {
     NON_MODAL: {G4},
     MOTION: {G0, G1, G2, G3},
-    PLANE: {170, 180},
     DISTANCE: {900, 910},
     CENTRE: {911},
     FEED: {940, 950},
@@ -52,24 +52,17 @@ REFUSED_G = {  # the others that LinuxCNC knows
 }
 GROUP_OF_G = {code: group for group, codes in REFUSED_G.items() for code in codes} | {G0: MOTION}
 FEED_MODES = {940: False, 980: False, 950: True, 990: True}  # code: per revolution
-AXES = ("X", "C", "Z")
-MOVING_WORDS = (*AXES, "I", "J")
-ORIGIN = "the origin must stay in the spindle's centre"
-OTHER_AXES = "the section's words are X, C (or Y), Z, U and H"
-TOOL = "the tool cannot change inside the section"
+MOVING_WORDS = ("X", "C", "Z", "I", "J", "K")
+NO_TOOL_CHANGE = "the tool cannot change inside the section"
+OWN_RADIUS = "the radius is that of the loaded tool"
 REASON_OF_GROUP = {
-    NON_MODAL: ORIGIN,
     MOTION: "only G1, G2 and G3 move inside the section",
-    PLANE: "the section's plane is X-C",
-    CENTRE: "I and J are always incremental inside the section",
     FEED: "the feed of a section is G94 or G95 (G98 or G99)",
     UNITS: "the units cannot change inside the section",
     COMPENSATION: "the radius is that of the loaded tool: G41 or G42 without D",
     LENGTH: "the tool length offset cannot change inside the section",
-    WORK_OFFSET: ORIGIN,
     SPINDLE: "the spindle keeps its speed inside the section (G97)",
     DIAMETER: "X cannot change between diameter and radius inside the section",
-    SHIFT: ORIGIN,
 }
 REASON_OF_G = {
     G0: "a rapid leaves the contour. Is the section's end missing above? "
@@ -81,17 +74,11 @@ REASON_OF_G = {
     301: "the reference point is not in the plane",
     530: "machine coordinates are not those of the plane",
 }
-REASON_OF_M = {6: TOOL, 61: TOOL}
+REASON_OF_M = dict.fromkeys((6, 61), NO_TOOL_CHANGE)
 NEEDED_WORD = {62: "P", 63: "P", 64: "P", 65: "P", 67: "E", 68: "E"}
 ORIENT = 19
 WAIT_FOR_INPUT, AT_ONCE = 66, 0  # M66, and the L that does not wait
 LONGEST_WAIT = "Q above zero, the longest wait in seconds"
-REASON_OF_WORD = {
-    **dict.fromkeys("ABVW@^", OTHER_AXES),
-    "T": TOOL,
-    "D": "the radius is that of the loaded tool",
-    "K": "the centre of an arc in the X-C plane is I and J",
-}
 
 
 class SectionBlock(NamedTuple):
@@ -108,34 +95,41 @@ class SectionBlock(NamedTuple):
         return any(letter in self.words for letter in MOVING_WORDS)
 
 
-def check_codes(codes: Iterable[tuple[str, int]], rapid_allowed: bool, place: SectionPlace) -> None:
+def check_codes(
+    codes: Iterable[tuple[str, int]],
+    known: SectionWords,
+    rapid_allowed: bool,
+    place: SectionPlace,
+) -> None:
     """Refuse codes as they are written: what is wrong is the code, whatever words stand with it.
 
     ``codes`` are letters, with numbers times ten. The parser would find fault with words first.
     """
     for letter, code in codes:
         if letter == "G" and code in GROUP_OF_G:
-            _check_g(GROUP_OF_G[code], code, rapid_allowed, place)
+            _check_g(GROUP_OF_G[code], code, known, rapid_allowed, place)
         elif letter == "M":
             _check_m(code // 10, place)
 
 
-def check_letters(line: TextLine, place: SectionPlace) -> None:
+def check_letters(line: TextLine, known: SectionWords, place: SectionPlace) -> None:
     """Refuse words that a section does not know, and two words for one axis."""
     for letter in line.letters:
-        if letter in REASON_OF_WORD:
-            raise place.refuse(f"{letter} is refused: {REASON_OF_WORD[letter]}")
-    for axis, letters in (("X", "XU"), ("C", "CYH")):
+        if letter in known.refused:
+            raise place.refuse(f"{letter} is refused: {known.refused[letter]}")
+    for axis, letters in known.letters:
         given = [letter for letter in letters if letter in line.letters]
         if len(given) > 1:
             raise place.refuse(f"{given[0]} and {given[1]} both move {axis}: only one of them")
 
 
-def check_block(block: SectionBlock, rapid_allowed: bool, place: SectionPlace) -> None:
+def check_block(
+    block: SectionBlock, known: SectionWords, rapid_allowed: bool, place: SectionPlace
+) -> None:
     """Refuse codes that have no place in a section, each with its reason."""
     for group, code in enumerate(block.g):
         if code != NO_CODE:
-            _check_g(group, code, rapid_allowed, place)
+            _check_g(group, code, known, rapid_allowed, place)
     for code in block.m:
         _check_m(code, place)
     _check_arguments(block, place)
@@ -145,10 +139,23 @@ def check_block(block: SectionBlock, rapid_allowed: bool, place: SectionPlace) -
         raise place.refuse("G94 and G98 are feed per minute, G95 and G99 per revolution: not both")
 
 
-def _check_g(group: int, code: int, rapid_allowed: bool, place: SectionPlace) -> None:
-    if code not in KNOWN_G.get(group, ()) or (code == G0 and not rapid_allowed):
-        reason = REASON_OF_G.get(code, REASON_OF_GROUP.get(group, "it is not known here"))
+def _check_g(
+    group: int, code: int, known: SectionWords, rapid_allowed: bool, place: SectionPlace
+) -> None:
+    taken = known.planes if group == PLANE else KNOWN_G.get(group, ())
+    if code not in taken or (code == G0 and not rapid_allowed):
+        reason = REASON_OF_G.get(code) or _reason_of_group(group, known)
         raise place.refuse(f"G{code / 10:g} is refused: {reason}")
+
+
+def _reason_of_group(group: int, known: SectionWords) -> str:
+    if group in (NON_MODAL, WORK_OFFSET, SHIFT):
+        return known.origin
+    if group == PLANE:
+        return f"the section's plane is {known.plane_name}"
+    if group == CENTRE:
+        return f"{known.centre_name} are always incremental inside the section"
+    return REASON_OF_GROUP.get(group, "it is not known here")
 
 
 def _check_m(code: int, place: SectionPlace) -> None:
@@ -187,10 +194,13 @@ def feed_modes(block: SectionBlock) -> set[bool]:
     return {FEED_MODES[code] for code in (block.g[FEED], block.g[RETRACT]) if code in FEED_MODES}
 
 
-def alone(block: SectionBlock, m_code: int = NO_CODE) -> bool:
-    """Tell whether the block holds only a motion code, or ``m_code`` and its arguments."""
-    if m_code == NO_CODE:
-        others = [*block.g[:MOTION], *block.g[MOTION + 1 :], *block.m]
-        return not block.words and max(others) == NO_CODE
+def alone(block: SectionBlock, words: str = "") -> bool:
+    """Tell whether the block holds only a motion code, and its ``words``."""
+    others = [*block.g[:MOTION], *block.g[MOTION + 1 :], *block.m]
+    return set(block.words) <= set(words) and max(others) == NO_CODE
+
+
+def m_code_alone(block: SectionBlock, m_code: int) -> bool:
+    """Tell whether the block holds only ``m_code`` and its arguments."""
     codes = [code for code in (*block.g, *block.m) if code != NO_CODE]
     return codes == [m_code] and set(block.words) <= set("PQLE")

@@ -7,19 +7,30 @@ from collections.abc import Collection
 from typing import NamedTuple
 
 from g12.machine_ini import Remap, code_number
+from g12.section.block_rules import MOTION, SectionBlock
 
 
 class SectionCodes(NamedTuple):
     """The codes of sections, as the parser numbers them: G12.1 is 121.
 
     ``off_code`` is the one that messages name. ``remapped`` tells of an M code whether it is
-    remapped to a sub (True) or to Python (False).
+    remapped to a sub (True) or to Python (False). ``word`` is the letter of a code that switches
+    both on and off: off where it is 0.
     """
 
     on: frozenset[int]
     off: frozenset[int]
     off_code: str
     remapped: dict[int, bool]
+    word: str = ""
+
+    def begins(self, block: SectionBlock) -> bool:
+        """Tell whether a block switches on."""
+        return block.g[MOTION] in self.on and not self.ends(block)
+
+    def ends(self, block: SectionBlock) -> bool:
+        """Tell whether a block switches off."""
+        return block.g[MOTION] in self.off and block.words.get(self.word, 0.0) == 0.0
 
 
 def codes_of_section(code: str, remaps: Collection[Remap], on: str, off: str) -> SectionCodes:
@@ -28,21 +39,30 @@ def codes_of_section(code: str, remaps: Collection[Remap], on: str, off: str) ->
     ``remaps`` are the REMAP lines, ``on`` and ``off`` the names of their handlers. Every code that
     is remapped to ``off`` ends a section.
     """
-    switching_on, switching_off = (
-        [remap.code for remap in remaps if remap.keywords.get("python") == handler]
-        for handler in (on, off)
-    )
+    switching_on, switching_off = (_codes_with(handler, remaps) for handler in (on, off))
     partner = f"G{float(code[1:]) + 1:g}"
     return SectionCodes(
         frozenset(map(_number_of, (code, *switching_on))),
         frozenset(map(_number_of, switching_off or [partner])),
         partner if partner in switching_off else (switching_off or [partner])[0],
-        {
-            remap.number[1] // 10: "ngc" in remap.keywords
-            for remap in remaps
-            if remap.number[0] == "M"
-        },
+        _remapped(remaps),
     )
+
+
+def codes_with_word(code: str, remaps: Collection[Remap], handler: str, word: str) -> SectionCodes:
+    """Return the codes for a section begun by ``code``, which 0 behind ``word`` ends."""
+    codes = frozenset(map(_number_of, (code, *_codes_with(handler, remaps))))
+    return SectionCodes(codes, codes, f"{code} {word}0", _remapped(remaps), word)
+
+
+def _codes_with(handler: str, remaps: Collection[Remap]) -> list[str]:
+    return [remap.code for remap in remaps if remap.keywords.get("python") == handler]
+
+
+def _remapped(remaps: Collection[Remap]) -> dict[int, bool]:
+    return {
+        remap.number[1] // 10: "ngc" in remap.keywords for remap in remaps if remap.number[0] == "M"
+    }
 
 
 def _number_of(code: str) -> int:

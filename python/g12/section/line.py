@@ -2,9 +2,9 @@
 """One line of a section: what the interpreter may parse of it, and what its words mean there.
 
 The interpreter's parser reads every value, expression and parameter. It does not know G9, U, nor H
-with a sign, nor Y on a lathe: `split_line` rewrites those (U to X, H and Y to C) and says what
-they meant. A line of plain words, as most lines of a program are, is told by `is_plain` and needs
-none of it.
+with a sign, nor Y or W on a lathe: `split_line` rewrites those (in polar mode U to X, H and Y to C)
+and says what they meant. A line of plain words, as most lines of a program are, is told by
+`SectionWords.plain` and needs none of it.
 """
 
 from __future__ import annotations
@@ -14,11 +14,9 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from g12.errors import Refusal
+from g12.section.words import SectionWords
 
 _NUMBER = r"[-+]?[\d.]+"
-is_plain: Callable[[str], object] = re.compile(
-    rf"(?:[Nn]\d+)?[ \t]*(?:(?:[XCZIJRFxczijrf]{_NUMBER}|[Gg]0?[123](?![\d.]))[ \t]*)+\r?", re.ASCII
-).fullmatch
 _COMMENT = re.compile(r"\(([^()]*)\)|;.*")
 _BLANKS = re.compile(r"\s+")
 _CONTROL = re.compile(r"/?(?:n[\d.]+)?(?:o|m0*(98|99)(?![\d.]))")
@@ -32,7 +30,14 @@ _CODE = re.compile(r"\d+(?:\.\d*)?")
 _NINE = re.compile(r"0*9(?:\.0*)?")
 _LINE_NAMED = re.compile(r" line (\d+):")
 PYTHON_LINE = ";py,"  # Interp::read_semicolon (interp_read.cc): at the very start of a line alone
-FOREIGN = {"u": "x", "h": "c", "y": "c"}  # what the parser is given instead
+
+
+def plain_line_of(letters: str) -> Callable[[str], object]:
+    """Return what tells a line of nothing but G1 to G3, and numbers behind some letters."""
+    either = letters + letters.lower()
+    return re.compile(
+        rf"(?:[Nn]\d+)?[ \t]*(?:(?:[{either}]{_NUMBER}|[Gg]0?[123](?![\d.]))[ \t]*)+\r?", re.ASCII
+    ).fullmatch
 
 
 class SectionPlace(NamedTuple):
@@ -60,8 +65,9 @@ class TextLine(NamedTuple):
     could not have read the line itself. ``control`` is the kind of an O-word ("sub", "call",
     "while", …; M98 is a "call" and M99 a "return"), "" on other lines. ``letters`` are the words
     as written, ``codes`` the G and M words with a plain number (letter, number times ten),
-    ``relative`` the axes given by U and H. A parsed block shows neither ``assignments`` nor the $
-    word, ``spindle``. ``python`` is a whole line of it, which LinuxCNC runs.
+    ``relative`` the axes given by increments of their own (U, W, H). A parsed block shows neither
+    ``assignments`` nor the $ word, ``spindle``. ``python`` is a whole line of it, which LinuxCNC
+    runs.
     """
 
     text: str
@@ -87,8 +93,8 @@ class TextLine(NamedTuple):
         return self.text[:1] == "/"
 
 
-def split_line(raw: str) -> TextLine:
-    """Return a raw line in its parts."""
+def split_line(raw: str, known: SectionWords) -> TextLine:
+    """Return a raw line in its parts; ``known`` are the words of its section."""
     if raw.startswith(PYTHON_LINE):
         return TextLine("", python=raw)
     bare = _BLANKS.sub("", _COMMENT.sub("", raw)).lower()
@@ -101,14 +107,14 @@ def split_line(raw: str) -> TextLine:
     words = list(split_words(bare.lstrip("/")))
     letters = tuple(letter.upper() for letter, _ in words)
     kept = [word for word in words if not _is_exact_stop(word)]
-    text = "".join(FOREIGN.get(letter, letter) + value for letter, value in kept)
+    text = "".join(known.foreign.get(letter, letter) + value for letter, value in kept)
     return TextLine(
         "/" * (bare[:1] == "/") + text,
         comments,
         letters=letters,
         codes=tuple(_codes_of(kept)),
-        rewritten=len(kept) < len(words) or not {"U", "H", "Y"}.isdisjoint(letters),
-        relative="X" * ("U" in letters) + "C" * ("H" in letters),
+        rewritten=len(kept) < len(words) or any(letter in known.foreign for letter, _ in kept),
+        relative="".join(known.relative.get(letter, "") for letter in letters),
         exact_stop=len(kept) < len(words),
         assignments=_words_of("#", words),
         spindle=_words_of("$", words),

@@ -7,13 +7,15 @@ from typing import NamedTuple
 
 from g12.section.line import SectionPlace
 from g12.section.modes import SectionModes
+from g12.section.words import SectionWords
 
 
 class SectionStart(NamedTuple):
     """What a section takes of the interpreter, once: all that its parts know of the machine.
 
-    Lengths are in program units. ``place`` is that of the block that switches on, ``alone`` tells
-    whether it holds nothing else, ``level`` is its call level. X is a radius value; C, where the
+    Lengths are in program units. ``place`` is that of the block that switches on, ``words`` are
+    those of the section in it, ``alone`` tells whether it holds nothing else, ``level`` is its call
+    level. X is a radius value; C, where the
     axis stands, is in degrees. ``machine_unit`` is the length of a machine unit, ``millimetre``
     that of 1 mm; ``offsets`` lead from program to machine coordinates (X, Z, and C in degrees).
     ``speeds`` are the commanded ones of all spindles in rpm, ``spindle`` is the number of the one
@@ -21,6 +23,7 @@ class SectionStart(NamedTuple):
     """
 
     place: SectionPlace
+    words: dict[str, float]
     alone: bool
     level: int
     x: float
@@ -46,12 +49,16 @@ class WordRules(NamedTuple):
     """How the words of a section are read; lengths and feeds in program units.
 
     ``diameter`` tells whether X words are diameters, ``x_scale`` turns a parsed one into a radius
-    value. ``rapid_feed`` is None where G0 is refused, ``closing`` the radius mismatch of an arc
-    that is forgiven.
+    value, ``c_scale`` a C word into a length.
+    ``third_with_others`` tells whether the axis at right angles to the plane may move together with
+    those in it. ``rapid_feed`` is None where G0 is refused, ``closing`` the radius mismatch of an
+    arc that is forgiven.
     """
 
+    words: SectionWords
     diameter: bool
     x_scale: float
-    z_with_x: bool
+    c_scale: float
+    third_with_others: bool
     rapid_feed: float | None
     closing: float

@@ -21,11 +21,13 @@ FILES = {
     "circle-mill": "circle_mill.inc",
     "polar": "polar.inc",
     "polar-g12.3": "polar_g12_3.inc",
+    "cylinder": "cylinder.inc",
 }
 PROGRAMS = {f"programs-{control}": control for control in shipped_controls()}
 NAMES = (*FILES, *PROGRAMS)
 ONE_OF = (("haas", "yasnac", "mitsubishi"), ("polar", "polar-g12.3"), tuple(PROGRAMS))
 POLAR = ("polar", "polar-g12.3")
+AXES = {**dict.fromkeys(POLAR, "XC"), "cylinder": "XZC"}  # of the machine; a mill's are XYZ
 MEANING = {
     "haas": "G12/G13 circular pocket, Haas words",
     "yasnac": "G12/G13 circle cutting, Yasnac words",
@@ -33,6 +35,7 @@ MEANING = {
     "circle-mill": "G12.2/G13.2 circle mill event, perimeter and pocket",
     "polar": "G12.1/G13.1 polar coordinate interpolation on and off",
     "polar-g12.3": "G12.3/G13.3 polar coordinate interpolation on and off",
+    "cylinder": "G7.1 (G07.1) cylindrical interpolation on and off",
     **{
         name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()
     },
@@ -41,7 +44,7 @@ SHARED = {"cycle_done"}  # the epilog of every cycle does not tell which one it 
 SUBS = {  # what a program, or a handler, calls besides the codes
     "haas": ("g12_helix",),
     "circle-mill": ("circle_mill",),
-    **dict.fromkeys(POLAR, ("g12_skipped_over",)),
+    **dict.fromkeys(AXES, ("g12_skipped_over",)),
 }
 
 CLOSE = 0.8  # share of letters in common that makes a name a misspelt one
@@ -87,6 +90,13 @@ def names_of(feature: str) -> list[str]:
     """Return the NGC subs that a feature's codes and programs call."""
     called = [remap.keywords["ngc"] for remap in remaps_of(feature) if "ngc" in remap.keywords]
     return list(dict.fromkeys([*called, *SUBS.get(feature, ())]))
+
+
+def harmless(feature: str) -> str | None:
+    """Return what does nothing in a program that is in no section, None for a cycle."""
+    if feature in POLAR:
+        return remaps_of(feature)[1].code
+    return f"{remaps_of(feature)[0].code} C0" if feature in AXES else None
 
 
 def functions_of(feature: str) -> list[str]:

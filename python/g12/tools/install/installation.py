@@ -67,8 +67,8 @@ def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
     """Yield what to do once the features are there: a first try that moves nothing, and back."""
     yield "next: restart LinuxCNC, then try in MDI or with a program:"
     for feature in wanted:
-        if feature in features.POLAR:
-            yield f"  {features.remaps_of(feature)[1].code:6} does nothing, and is no error"
+        if feature in features.AXES:
+            yield f"  {features.harmless(feature):6} does nothing, and is no error"
         elif feature in features.FILES:
             code = features.remaps_of(feature)[0].code
             yield f"  {code:6} is answered with what it needs; nothing moves"

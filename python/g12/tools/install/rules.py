@@ -378,7 +378,7 @@ def missing_axes(config: Config, codes: list[Code]) -> Iterator[Finding]:
     """Find axes that a code needs."""
     axes = config.ini.axes
     for feature in dict.fromkeys(code.feature for code in codes):
-        needed = "XC" if feature in features.POLAR else "XYZ"
+        needed = features.AXES.get(feature, "XYZ")
         missing = [axis for axis in needed if axis not in axes]
         if missing:
             yield problem(
@@ -413,7 +413,7 @@ def no_tool_table(config: Config, codes: list[Code]) -> Iterator[Finding]:
 
 def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[Finding]:
     """Find a tool table that cannot tell any cutter's radius."""
-    mill = any(code.feature not in features.POLAR for code in codes)
+    mill = any(code.feature not in features.AXES for code in codes)
     unknown = config.diameters is None or any(no_tool_table(config, codes))
     if mill and not unknown and not any(config.diameters.values()):
         yield warning(

@@ -6,15 +6,23 @@ tool passes the corner at sqrt(2) v t / 8.
 """
 
 import math
+from functools import partial
 
 import pytest
 
 from g12.flat.contour import Line, Mark, Plunge
-from g12.polar.exact_stops import stops
+from g12.moves import exact_stops
+from g12.polar.plan import quickness
 
 FEED = 600.0  # 10 per second
 C = 1000.0 / 30.0  # as quick as X at the corners, which are at radius 30
 ROUNDING = math.sqrt(2) * 10.0 * (2 * 10.0 / 1000.0) / 8
+
+
+def stops(path, rounding, x, c):
+    """Return where the tool stops on a face; accelerations per second squared, of C in radians."""
+    quick = partial(quickness, x_acceleration=x, c_acceleration=math.degrees(c))
+    return exact_stops.stops(path, rounding, quick)
 
 
 def line(x0, c0, x1, c1, z0=0.0, z1=0.0, feed=FEED):

@@ -18,6 +18,7 @@ A stop costs v / a in time, about as much as the blending.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import hypot, inf, sqrt
 
 from g12.flat.contour import (
@@ -30,18 +31,20 @@ from g12.flat.contour import (
     path_length,
     start_direction,
 )
-from g12.polar.pole import POLE
 
+Direction = tuple  # unit vector: along x and c of the plane, and z
 TANGENT = 1e-4  # half the angle between two directions that are one
 MOST_UNEQUAL = 2.2  # rounding where the second move is much quicker, relative to equal ones
 
 
-def stops(path: list, rounding: float, x_acceleration: float, c_acceleration: float) -> list[bool]:
+def stops(
+    path: list, rounding: float, acceleration: Callable[[Direction, Point], float]
+) -> list[bool]:
     """Return for each element of the tool centre's path whether the tool must stop at its end.
 
-    That is at the path's end, at the pole, and where the blending would leave the path by more
-    than ``rounding``. Accelerations in program units per second squared and radians per second
-    squared.
+    That is at the path's end, and where the blending would leave the path by more than
+    ``rounding``. ``acceleration`` gives for a direction and a place in the plane how quick the axes
+    are, in program units per second squared; where that is 0 they have to stop.
     """
     marked = [False] * len(path)
     following, stopping = None, True
@@ -50,27 +53,26 @@ def stops(path: list, rounding: float, x_acceleration: float, c_acceleration: fl
         if isinstance(element, Mark):
             continue
         if following is not None:
-            corner = _corner(element, following, x_acceleration, c_acceleration, stopping)
+            corner = _corner(element, following, acceleration, stopping)
             stopping = corner > rounding
         marked[k] = stopping
         following = element
     return marked
 
 
-def _corner(a, b, x_acceleration: float, c_acceleration: float, stopping: bool) -> float:
+def _corner(a, b, acceleration: Callable[[Direction, Point], float], stopping: bool) -> float:
     """Return the distance at which blending would pass the corner between two elements.
 
     ``stopping``: at the end of ``b``; such a move is not blended, and has all the acceleration.
     """
     place = _place(a, b)
-    if place == POLE:
-        return inf
     leave, meet = _direction(a, end_direction), _direction(b, start_direction)
+    from_a, from_b = acceleration(leave, place), acceleration(meet, place)
+    if not from_a:
+        return inf
     half_sine = 0.5 * sqrt(sum((p - q) ** 2 for p, q in zip(leave, meet)))
     if half_sine < TANGENT:
         return 0.0
-    from_a = _acceleration(leave, place, x_acceleration, c_acceleration)
-    from_b = _acceleration(meet, place, x_acceleration, c_acceleration)
     speed = max(a.feed, b.feed) / 60.0
     square = min(speed * speed, from_a * _length(a), from_b * _length(b))
     unequal = from_b * (1.0 + stopping) / from_a
@@ -100,12 +102,3 @@ def _length(element: Line | Arc | Plunge) -> float:
     """Return the length of an element in space."""
     along = 0.0 if isinstance(element, Plunge) else path_length(element)
     return hypot(along, element.z1 - element.z0)
-
-
-def _acceleration(direction, place: Point, x_acceleration: float, c_acceleration: float) -> float:
-    """Return the acceleration along a direction at a place that neither axis exceeds."""
-    radius = hypot(*place)
-    radial = abs(direction[0] * place[0] + direction[1] * place[1]) / radius
-    around = abs(direction[1] * place[0] - direction[0] * place[1]) / radius
-    slide = max(radial, abs(direction[2])) / x_acceleration
-    return 1.0 / max(slide, around / (radius * c_acceleration))

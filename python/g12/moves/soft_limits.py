@@ -7,8 +7,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from g12.machine_ini import Axis
-from g12.polar.face import FaceMove
-from g12.polar.plan import BlockMoves
+from g12.moves.steps import BlockMoves
 
 
 class AxisScale(NamedTuple):
@@ -53,15 +52,18 @@ class SoftLimits:
         self._scales = scales
 
     def beyond(self, steps: Iterable[BlockMoves | object]) -> Beyond | None:
-        """Return the first move that leaves the travel of an axis, None if all stay within."""
-        runs = [step for step in steps if isinstance(step, (BlockMoves, FaceMove))]
+        """Return the first move that leaves the travel of an axis, None if all stay within.
+
+        Steps without ``pieces`` move nothing.
+        """
+        runs = [step for step in steps if hasattr(step, "pieces")]
         columns = zip(*(piece[:3] for run in runs for piece in run.pieces))
         for (letter, limits), positions in zip(self._ranges, columns):
             if min(positions) < limits[0] or limits[1] < max(positions):
                 return self._first(runs, letter, limits)
         return None
 
-    def _first(self, runs: list[BlockMoves | FaceMove], letter: str, limits: list[float]) -> Beyond:
+    def _first(self, runs: list[BlockMoves], letter: str, limits: list[float]) -> Beyond:
         at = "XCZ".index(letter)
         line, position = next(
             (run.line, piece[at])

@@ -4,8 +4,8 @@
 import pytest
 
 from g12.machine_ini import Axis
-from g12.polar.plan import BlockMoves
-from g12.polar.soft_limits import AxisScale, Beyond, SoftLimits
+from g12.moves.soft_limits import AxisScale, Beyond, SoftLimits
+from g12.moves.steps import BlockMoves
 
 AXES = {
     "X": Axis(-10, 300, 150, 1000),

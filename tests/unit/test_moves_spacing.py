@@ -6,9 +6,9 @@ import math
 import pytest
 
 from g12.errors import Refusal
+from g12.moves.spacing import MOST_PIECES, Stretch, TooManyPieces, spaced
 from g12.polar.pieces import Law, _arc_density, _line_density
 from g12.polar.plan import PolarSettings, plan
-from g12.polar.spacing import MOST_PIECES, Stretch, TooManyPieces, spaced
 from support.contour_geometry import Round
 from support.planned_cuts import programmed
 

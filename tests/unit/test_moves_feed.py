@@ -6,10 +6,9 @@ import math
 import pytest
 
 from g12.flat.contour import Line
-from g12.polar.feed import Position, pieces_with_feed
-from g12.polar.pieces import Split
+from g12.moves.feed import Split, pieces_with_feed
 
-START = Position(10.0, 0.0, 0.0)
+START = (10.0, 0.0, 0.0)
 LEAST = 0.001
 
 
@@ -65,6 +64,6 @@ def test_a_piece_to_nowhere_leaves_its_time_to_the_next():
 
 def test_c_counts_from_where_it_stood_at_entry():
     ((_, c, _, _),) = pieces_with_feed(
-        Split([10.0, 12.0], [0.0, 1.0], [0.0, 5.0]), Position(10.0, 90.0, 0.0), move(), 90.0, LEAST
+        Split([10.0, 12.0], [0.0, 1.0], [0.0, 5.0]), (10.0, 90.0, 0.0), move(), 90.0, LEAST
     )
     assert c == pytest.approx(90.0 + math.degrees(1.0))

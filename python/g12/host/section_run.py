@@ -1,38 +1,40 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A section of polar coordinate interpolation: read to its end, planned as a whole, then moved.
+"""A section of interpolation: read to its end, planned as a whole, then moved.
 
-The handler of G12.1 goes on reading the program itself (`ProgramLines`). The interpreter parses
-every line and obeys O-words at once; what the other blocks do is collected (`SectionReader`).
-Behind G13.1 the contour is planned (`g12.polar.plan`) and handed over (`SectionOutput`).
+The handler of G12.1 or G7.1 goes on reading the program itself (`ProgramLines`). The interpreter
+parses every line and obeys O-words at once; what the other blocks do is collected
+(`SectionReader`). Behind the code that switches off the contour is planned (`g12.polar.plan`,
+`g12.cylinder.plan`) and handed over (`SectionOutput`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from enum import Enum
 
 from g12.errors import Refusal, number
+from g12.flat.contour import Contour
 from g12.host import glue
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import MOVING, ProgramLines
 from g12.host.section_output import SectionOutput
 from g12.host.section_reader import SectionReader, block_of
-from g12.polar import plan as polar
-from g12.polar.start import PolarSetup
+from g12.moves.setup import SectionSetup
+from g12.moves.steps import SectionPlan
 from g12.section.block_rules import (
     M2,
     M30,
     M_STOP,
-    MOTION,
     WAIT_FOR_INPUT,
     SectionBlock,
     alone,
     check_block,
     check_codes,
     check_letters,
+    m_code_alone,
 )
 from g12.section.codes import SectionCodes
-from g12.section.line import TextLine, is_plain, split_line
+from g12.section.line import TextLine, split_line
 
 WAITING_GROUP = 5
 MOST_LINES = 1_000_000  # LinuxCNC is deaf to an abort while a section is read
@@ -51,19 +53,21 @@ class Phase(Enum):
     DONE = "done"
 
 
-class PolarSection:
+class Section:
     """One section, from the block that switches on to the one that switches off."""
 
     def __init__(
         self,
         codes: SectionCodes,
-        setup: PolarSetup,
+        setup: SectionSetup,
+        plan: Callable[[Contour], SectionPlan],
         frame: CallFrame,
         program: ProgramLines,
         reader: SectionReader,
         output: SectionOutput,
     ) -> None:
-        self.codes, self.setup, self.frame, self.program = codes, setup, frame, program
+        self.codes, self.setup, self.plan = codes, setup, plan
+        self.frame, self.program = frame, program
         self.reader, self.output = reader, output
         self._phase = Phase.READING
         self._skipped_for = ""  # the O-word whose lines are skipped
@@ -84,7 +88,7 @@ class PolarSection:
     def _check_file(self) -> None:
         """Refuse a file that has been changed since the interpreter opened it."""
         self.program.parse()
-        if block_of(self.reader.parsed).g[MOTION] not in self.codes.on:
+        if not self.codes.begins(block_of(self.reader.parsed)):
             raise self._refuse("the file has been changed while the program runs")
 
     def _put_back(self) -> None:
@@ -94,12 +98,14 @@ class PolarSection:
 
     def _read(self) -> Iterator[int]:
         program, plain_line = self.program, self.reader.plain_line
+        known = self.setup.words.words
+        is_plain = known.plain
         for _ in range(MOST_LINES):
             raw = program.take()
             if raw is None:
                 self._end_of_file()
             elif not is_plain(raw):
-                yield from self._line(split_line(raw))
+                yield from self._line(split_line(raw, known))
                 if self._phase is Phase.DONE:
                     return
             elif self._phase is Phase.READING:
@@ -123,9 +129,9 @@ class PolarSection:
     def _words(self, line: TextLine) -> Iterator[int]:
         if line.text == "%":
             self._end_of_file()
-        place = self.reader.place
-        check_codes(line.codes, self._rapid_allowed, place)
-        check_letters(line, place)
+        place, known = self.reader.place, self.setup.words.words
+        check_codes(line.codes, known, self._rapid_allowed, place)
+        check_letters(line, known, place)
         if "#" in line.text:
             self.reader.show_plane()
         if line.rewritten:
@@ -133,7 +139,7 @@ class PolarSection:
         else:
             self.program.parse()
         block = block_of(self.reader.parsed)
-        if block.g[MOTION] in self.codes.off:
+        if self.codes.ends(block):
             self.reader.set_parameters(line)
             yield from self._finish(block)
         else:
@@ -156,13 +162,13 @@ class PolarSection:
 
     def _check(self, block: SectionBlock) -> None:
         codes, place = self.codes, self.reader.place
-        if block.g[MOTION] in codes.on:
+        if codes.begins(block):
             raise place.refuse("the section is already on")
         if block.m[M_STOP] in (M2, M30):
             raise self._missing_off(f"M{block.m[M_STOP]} comes before it")
-        check_block(block, self._rapid_allowed, place)
+        check_block(block, self.setup.words.words, self._rapid_allowed, place)
         for code in block.m:
-            if code in codes.remapped and not alone(block, code):
+            if code in codes.remapped and not m_code_alone(block, code):
                 raise place.refuse(
                     f"M{code} is remapped: inside a section it needs a block of its own"
                 )
@@ -225,12 +231,12 @@ class PolarSection:
         planned = yield from self._emit()
         yield from self.frame.execute_and_wait(text)
         self.reader.remember_machine()
-        self.reader.contour = polar.resume(self.reader.contour, planned)
+        self.reader.contour = self.reader.contour.continued(planned.end)
 
     def _finish(self, block: SectionBlock) -> Iterator[int]:
         """End the section at the block that switches off."""
         off = self.codes.off_code
-        if not alone(block):
+        if not alone(block, self.codes.word):
             raise self._refuse(f"{off} stands alone in its block")
         if not self.frame.is_current:
             raise self._missing_off("the sub called here has one, but not the code that it ends")
@@ -240,10 +246,10 @@ class PolarSection:
         self.frame.leave(self.program.line)
         self._phase = Phase.DONE
 
-    def _emit(self) -> Generator[int, None, polar.PolarPlan]:
+    def _emit(self) -> Generator[int, None, SectionPlan]:
         """Plan what was read, and hand it over; return the plan."""
         reader = self.reader
-        plan = polar.plan(reader.contour, self.setup.plan, c=reader.start.c)
+        plan = self.plan(reader.contour)
         self._check_limits(plan)
         for note in plan.notes:
             glue.message(note)
@@ -255,11 +261,12 @@ class PolarSection:
         reader.remember_machine()
         return plan
 
-    def _check_limits(self, plan: polar.PolarPlan) -> None:
+    def _check_limits(self, plan: SectionPlan) -> None:
         beyond = self.setup.limits.beyond(plan.steps)
         if beyond:
             diameter = beyond.axis == "X" and self.setup.words.diameter
-            by_c = beyond.axis == "X" and self.program.has_letter(beyond.line, "CHY")
+            lengths = self.setup.words.words.c_is_length
+            by_c = beyond.axis == "X" and lengths and self.program.has_letter(beyond.line, "CHY")
             active = f"G{20 if beyond.unit == 'mm' else 21} is active"
             raise self.reader.place._replace(line=beyond.line).refuse(
                 f"the {beyond.axis} axis would go to {number(beyond.position)} {beyond.unit}"

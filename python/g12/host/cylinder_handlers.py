@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The handler of G7.1, on and off, whatever code the REMAP line gives it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from interpreter import INTERP_OK
+
+from g12.cylinder.plan import plan
+from g12.cylinder.start import RADIUS, check_cylinder_start, cylinder_setup
+from g12.errors import BlockRefusal
+from g12.host import glue
+from g12.host.section_glue import (
+    AXES,
+    COORDINATES,
+    NOT_IN_MDI,
+    REMAPS,
+    SETTINGS,
+    SectionKind,
+    run_section,
+)
+from g12.section.codes import SectionCodes, codes_with_word
+
+
+def cylinder_mode(self, **words) -> Iterator[int]:
+    """Read, plan and move a section; outside one C0 is a safety line and does nothing."""
+    try:
+        glue.forget_return(self)
+        block = self.blocks[self.remap_level]
+        if not (block.c_flag and block.c_number == 0.0):
+            if glue.in_mdi(self):
+                raise BlockRefusal(glue.code_of_block(self), NOT_IN_MDI)
+            yield from run_section(self, CYLINDER)
+    except Exception as error:
+        yield glue.refuse_block(self, error)
+    yield INTERP_OK
+
+
+def _codes(code: str) -> SectionCodes:
+    return codes_with_word(code, REMAPS.values(), cylinder_mode.__name__, RADIUS)
+
+
+CYLINDER = SectionKind(
+    letters=RADIUS,
+    check=lambda start: check_cylinder_start(start, COORDINATES),
+    setup=lambda start: cylinder_setup(start, SETTINGS, AXES),
+    codes=_codes,
+    plan=lambda contour, setup, start: plan(contour, setup.plan),
+)

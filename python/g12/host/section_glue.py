@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the handlers of all kinds of sections share: the machine, and the way through a section."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import emccanon
+import linuxcnc
+from interpreter import MODE_ABSOLUTE
+
+from g12.errors import BlockRefusal
+from g12.flat.contour import Contour
+from g12.host import glue
+from g12.host.call_frame import CallFrame
+from g12.host.kinematics_switch import face_in_force
+from g12.host.program_lines import ProgramLines
+from g12.host.section_output import SectionOutput
+from g12.host.section_reader import SectionReader
+from g12.host.section_run import Section
+from g12.host.section_start import start_of_section
+from g12.machine_ini import axes_of, coordinates_of, face_of, remap_lines
+from g12.moves.setup import SectionSetup
+from g12.moves.steps import SectionPlan
+from g12.section.codes import SectionCodes
+from g12.section.line import line_named
+from g12.section.start import SectionStart
+
+SETTINGS = glue.settings_of_machine()
+INI = linuxcnc.ini(glue.ini_file() or os.devnull)
+REMAPS = {remap.code: remap for remap in remap_lines(INI.findall)}
+COORDINATES, AXES = set(coordinates_of(INI.find)), axes_of(INI.find, "XZC")
+FACE = face_of(INI.find)
+KINEMATICS = SETTINGS.polar_kinematics == "1"
+NOT_IN_MDI = "is not possible in MDI: it needs the lines behind it"
+
+
+class SectionKind(NamedTuple):
+    """What one kind of section does its own way.
+
+    ``letters`` are those of the block that switches on. ``check`` refuses to begin a section,
+    ``setup`` tells what it goes by, ``codes`` which codes (begun by the one named) are its own.
+    ``plan`` makes moves of what was read.
+    """
+
+    letters: str
+    check: Callable[[SectionStart], None]
+    setup: Callable[[SectionStart], SectionSetup]
+    codes: Callable[[str], SectionCodes]
+    plan: Callable[[Contour, SectionSetup, SectionStart], SectionPlan]
+
+
+def program_behind(interp: object) -> ProgramLines:
+    """Return the program that goes on behind the block; refuse one whose file is gone."""
+    try:
+        program = ProgramLines(interp, getattr(interp, "g12_source", None))
+    except OSError as problem:
+        rule = f"the program's file cannot be read while it runs: {problem.strerror}"
+        raise BlockRefusal(glue.code_of_block(interp), rule) from None
+    interp.g12_source = program.home
+    return program
+
+
+def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
+    """Run the section that begins with the block being remapped."""
+    program = program_behind(interp)
+    frame = CallFrame(interp, program.home.filename)
+    try:
+        yield from _section(interp, kind, frame, program).run()
+    except Exception as error:
+        line = line_named(error)
+        called = program.source is not program.home and not line
+        frame.give_up(line or program.line, called=called, behind=program.next_at_home)
+        raise
+
+
+def _section(interp: object, kind: SectionKind, frame: CallFrame, program: ProgramLines) -> Section:
+    """Return the section; refuse to begin it where it cannot."""
+    start = start_of_section(interp, program.place, kind.letters)
+    kind.check(start)
+    if KINEMATICS and interp.task and face_in_force():
+        raise start.place.refuse("the face is on already, by hand: G13.1 first")
+    setup = kind.setup(start)
+    output = SectionOutput(
+        interp,
+        start.place.code,
+        x_factor=2.0 if start.diameter else 1.0,
+        blending=setup.tolerance / 2,
+        machine_unit=start.machine_unit,
+        absolute=MODE_ABSOLUTE,
+        canon=emccanon,
+    )
+    return Section(
+        kind.codes(start.place.code),
+        setup,
+        lambda contour: kind.plan(contour, setup, start),
+        frame,
+        program,
+        SectionReader(interp, start, setup.words, program),
+        output,
+    )

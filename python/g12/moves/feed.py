@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pieces with their F words.
+
+LinuxCNC in G94 takes F for the X and Z part of a move, or for degrees per minute where only C
+moves. Every piece gets the F that makes it last as long as its part of the path at the programmed
+feed.
+
+Debian's 2.9.0~pre1 runs a piece too fast that moves a slide by next to nothing together with C. So
+a piece that would move it by less than ``least`` keeps it, to the last digit, and the next one
+takes the rest over.
+"""
+
+from __future__ import annotations
+
+from math import degrees, hypot
+from typing import NamedTuple
+
+LEAST_TURN = 1e-9  # degrees: no turn at all
+
+
+class Split(NamedTuple):
+    """The ends of an element's pieces, its start first.
+
+    Where the slide of the plane stands, angle of C in radians, continuous over the element, and
+    length of the path up to there.
+    """
+
+    slides: list[float]
+    angles: list[float]
+    lengths: list[float]
+
+
+def pieces_with_feed(
+    split: Split, start: tuple[float, float, float], move, entry: float, least: float
+) -> list[tuple]:
+    """Return the pieces ``(slide, c, other, F)`` of a move that the machine makes from ``start``.
+
+    ``start`` is where it stands: the plane's slide, C in degrees, and the other slide, which makes
+    the move's z. ``entry`` is the C angle in degrees at the plane's zero angle.
+    """
+    x, c, z = start
+    rise = (move.z1 - move.z0) / split.lengths[-1]
+    feed = move.feed / hypot(1.0, rise)
+    pieces, done = [], 0.0
+    for slide, angle, length in zip(split.slides[1:], split.angles[1:], split.lengths[1:]):
+        to_c = entry + degrees(angle)
+        turn = abs(to_c - c)
+        if turn < LEAST_TURN:
+            to_c, turn = c, 0.0
+        step = abs(slide - x)
+        if step < least and turn:
+            slide, step = x, 0.0
+        if rise:
+            to_z = move.z0 + rise * length
+            step = hypot(step, to_z - z)
+            z = to_z
+        distance = step or turn
+        if distance:
+            pieces.append((slide, to_c, z, feed * distance / (length - done)))
+            x, c, done = slide, to_c, length
+    return pieces

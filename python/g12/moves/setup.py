@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What sections of every kind take of what they find and of the machine's settings."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from typing import NamedTuple
+
+from g12.lengths import is_inch
+from g12.machine_ini import Axis
+from g12.moves.soft_limits import AxisScale, SoftLimits
+from g12.section.start import SectionStart, WordRules
+from g12.settings import Settings
+
+LEAST_MM = 0.001  # a smaller part of a slide makes LinuxCNC 2.9 get the feed of a piece wrong
+CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
+
+
+class SectionSetup(NamedTuple):
+    """What a section is read, planned and moved by; ``tolerance`` in program units.
+
+    ``plan`` are the settings of its planner.
+    """
+
+    words: WordRules
+    plan: NamedTuple
+    limits: SoftLimits
+    tolerance: float
+
+
+def check_entry(
+    start: SectionStart, axes: Collection[str], needed: str, rules: Iterable[tuple[bool, str]]
+) -> None:
+    """Refuse to begin a section where none can, or where one of its own ``rules`` is broken.
+
+    ``axes`` are the letters of the machine's, ``needed`` those of the section.
+    """
+    beside = "needs a move after G40: the tool is still beside the programmed point"
+    *others, last = needed
+    for holds, rule in (
+        (
+            set(needed) <= set(axes),
+            f"needs a machine with an {', '.join(others)} and a {last} axis",
+        ),
+        (start.alone, "stands alone in its block"),
+        (not start.compensated, "needs G40: compensation is switched on inside"),
+        (not start.inverse_time, "needs G94 or G95, not G93"),
+        (not start.surface_speed, "needs G97: with G96 the speed would change with X"),
+        (not start.offset_pending, beside),
+        (not start.rotated, "needs an unrotated work offset (G10 L2 R0)"),
+        *rules,
+    ):
+        if not holds:
+            raise start.place.refuse(rule)
+
+
+def tolerance_of(start: SectionStart, settings: Settings) -> float:
+    """Return how far the real path may be off the programmed one, in program units."""
+    return settings.tolerance(start.machine_unit / start.millimetre) * start.machine_unit
+
+
+def rapid_feed_of(start: SectionStart, settings: Settings) -> float | None:
+    """Return the feed of G0, None where it is refused."""
+    feeds = settings.polar_g0 == "feed"
+    return settings.polar_g0_feed * start.machine_unit if feeds else None
+
+
+def travel(start: SectionStart, axes: dict[str, Axis]) -> SoftLimits:
+    """Return the limits of X, Z and C for moves in program coordinates."""
+    unit = "in" if is_inch(start.machine_unit / start.millimetre) else "mm"
+    return SoftLimits(axes, _scales(start), unit)
+
+
+def _scales(start: SectionStart) -> dict[str, AxisScale]:
+    """Return how the program's X, Z and C become machine coordinates."""
+    factors = {"X": 1 / start.machine_unit, "Z": 1 / start.machine_unit, "C": 1.0}
+    return {
+        letter: AxisScale(factor, start.offsets[letter] * factor)
+        for letter, factor in factors.items()
+    }

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The moves of a planned section, in the order of the program. Lengths in program units."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from g12.flat.contour import Contour, Start
+from g12.moves.spacing import MOST_PIECES, TooManyPieces
+
+CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
+STOP_SHARE = (
+    0.7  # of the tolerance: a move that stops starts quicker, and cuts deeper into the path
+)
+ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the pieces' own deviation
+LEFT_OVER = 1e-3  # of the least step of a slide: less than that is rounding
+
+
+class Position(NamedTuple):
+    """Where the machine stands: X radius value, C in degrees, Z."""
+
+    x: float
+    c: float
+    z: float
+
+
+class BlockMoves(NamedTuple):
+    """G1 moves of one block, one after the other, all in G90 and G94.
+
+    ``axes`` is "XC", "ZC", "XCZ", "X" or "Z": the words to write. Each piece is
+    ``(x, c, z, feed)``: X radius value, C in degrees, continuous over the section (it may leave
+    0..360), and F as G94 wants it: for the X and Z part of the move, or in degrees per minute where
+    neither changes; it may be small, so write it with six significant digits. A piece that keeps a
+    slide where it is repeats the same number. With ``stop`` the last piece must end in an exact
+    stop (G61), because LinuxCNC would round the corner by more than the tolerance.
+    """
+
+    line: int
+    axes: str
+    pieces: list[tuple[float, float, float, float]]
+    stop: bool
+
+
+class SectionPlan(NamedTuple):
+    """The moves of a section.
+
+    ``steps`` holds each :class:`BlockMoves` (on the face moves and switches of its own,
+    `g12.polar.face`), and each mark's action, in order. ``place`` is where the machine stands
+    behind them, ``angle`` what its C is to the contour, in radians. ``notes`` are for the operator.
+    """
+
+    steps: list
+    place: Position
+    angle: float
+    notes: list[str]
+
+    @property
+    def end(self) -> Start:
+        """Where a contour that goes on behind this one starts."""
+        return Start(self.place.x, self.angle, self.place.z)
+
+
+class StepMaker:
+    """Makes the steps of a plan, one element of the tool centre's path after the other."""
+
+    def __init__(self, contour: Contour, place: Position) -> None:
+        self.steps: list = []
+        self.place = place
+        self._contour = contour
+
+    def _run(self, line: int, axes: str, pieces: list, stop: bool) -> None:
+        if pieces:
+            self.steps.append(BlockMoves(line, axes, pieces, stop))
+            self.place = Position(*pieces[-1][:3])
+
+    def _split(self, split, move, *laws):
+        """Return what ``split`` makes of a move; refuse one that would be cut too small."""
+        try:
+            return split(move, *laws)
+        except TooManyPieces:
+            self._contour.refuse(
+                move.line,
+                f"more than {MOST_PIECES} moves would be needed to stay within POLAR_TOLERANCE",
+            )
+
+
+def chord_deviation(tolerance: float, stop: bool) -> float:
+    """Return how far the pieces of a move may be off it; ``stop``: at its end."""
+    return (STOP_SHARE if stop else CHORD_SHARE) * tolerance
