@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The pictures beside the forms: what each entry measures, from above and from the side.
+
+    PYTHONPATH=python:tests python3 -m support.form_pictures
+
+draws them anew. ngcgui shows a picture of the form's name and halves one of 320 x 240 dots or
+more. Lengths here are shares of the plan view's half width, angles degrees.
+"""
+
+from __future__ import annotations
+
+from math import cos, radians, sin
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Arc, Circle, Rectangle
+
+NGC = Path(__file__).resolve().parents[2] / "ngc"
+UNITS = ("mm", "inch")
+DOTS, DOTS_PER_INCH = (319, 239), 100
+INK, FAINT, STOCK, CUT = "#1f2933", "#8d99a6", "#e9dcc3", "#ffffff"
+TOOL, PATH, WORD = "#c9d6df", "#1971c2", "#a61e4d"
+WORDS = {"fontsize": 6.4, "color": WORD, "ha": "center", "va": "center"}
+NOTE = {"fontsize": 5.8, "color": INK, "ha": "center"}
+PLATE = {"boxstyle": "square,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
+ARROW = {"arrowstyle": "<->", "lw": 0.6, "color": WORD, "shrinkA": 0, "shrinkB": 0,
+         "mutation_scale": 5}  # fmt: skip
+Point = tuple[float, float]
+
+
+def at(radius: float, angle: float) -> Point:
+    """Return a point by its distance from the centre and its direction in degrees."""
+    return radius * cos(radians(angle)), radius * sin(radians(angle))
+
+
+def views() -> tuple[Figure, Axes, Axes]:
+    """Return an empty picture with the view from above and the one from the side."""
+    figure = Figure(figsize=tuple(dots / DOTS_PER_INCH for dots in DOTS), dpi=DOTS_PER_INCH)
+    plan, side = figure.add_axes((0, 0, 0.63, 1)), figure.add_axes((0.63, 0, 0.37, 1))
+    for axes, left, right in ((plan, -1.15, 1.15), (side, -0.66, 0.9)):
+        axes.set(xlim=(left, right), ylim=(-1.3, 1.3), aspect="equal")
+        axes.axis("off")
+    plan.add_patch(Rectangle((-1.1, -1.06), 2.2, 2.12, facecolor=STOCK, edgecolor="none"))
+    return figure, plan, side
+
+
+def measure(axes: Axes, start: Point, end: Point, words: str, where: float = 0.5) -> None:
+    """Draw a line with arrows and what it measures, at a share of its length."""
+    axes.annotate("", start, end, arrowprops=ARROW, zorder=4)
+    place = [a + where * (b - a) for a, b in zip(start, end)]
+    axes.text(*place, words, bbox=PLATE, zorder=5, **WORDS)
+
+
+def circle(axes: Axes, radius: float, *, centre: Point = (0, 0), fill: str = "none",
+           line: str = INK, dashed: bool = False, width: float = 0.8) -> None:  # fmt: skip
+    """Draw a circle."""
+    style = {"ls": (0, (4, 3)) if dashed else "-", "lw": width}
+    axes.add_patch(Circle(centre, radius, facecolor=fill, edgecolor=line, **style))
+
+
+def turn(axes: Axes, radius: float, start: float, end: float) -> None:
+    """Draw an arc with an arrow at its end, the way the tool goes."""
+    axes.add_patch(Arc((0, 0), 2 * radius, 2 * radius, theta1=min(start, end),
+                       theta2=max(start, end), color=PATH, lw=1.1))  # fmt: skip
+    back = end - (6 if end > start else -6)
+    axes.annotate("", at(radius, end), at(radius, back),
+                  arrowprops={**ARROW, "arrowstyle": "-|>", "color": PATH})  # fmt: skip
+
+
+def cross(axes: Axes, words: str, place: Point = (0, -0.13)) -> None:
+    """Draw the centre and name it."""
+    axes.plot((-0.07, 0.07), (0, 0), color=INK, lw=0.6, zorder=6)
+    axes.plot((0, 0), (-0.07, 0.07), color=INK, lw=0.6, zorder=6)
+    axes.text(*place, words, bbox=PLATE, zorder=6, **WORDS)
+
+
+def section(side: Axes, heights: dict[str, float], levels: tuple[float, ...] = ()) -> None:
+    """Draw the workpiece in section: its top at 0.3, the pocket's floor at -0.5.
+
+    ``heights`` are the words at each height on the right.
+    """
+    side.add_patch(Rectangle((-0.66, -0.85), 1.02, 1.15, facecolor=STOCK, edgecolor=INK, lw=0.7))
+    side.add_patch(Rectangle((-0.46, -0.5), 0.62, 0.81, facecolor=CUT, edgecolor="none"))
+    side.plot((-0.46, -0.46, 0.16, 0.16), (0.3, -0.5, -0.5, 0.3), color=INK, lw=0.8)
+    side.add_patch(Rectangle((-0.27, -0.5), 0.24, 1.2, facecolor=TOOL, edgecolor=INK, lw=0.7))
+    for level in levels:
+        side.plot((-0.46, 0.16), (level, level), color=FAINT, lw=0.6, ls=(0, (4, 3)))
+    for words, height in heights.items():
+        side.plot((-0.6, 0.42), (height, height), color=WORD, lw=0.5, ls=(0, (2, 2)))
+        side.text(0.45, height, words, **{**WORDS, "ha": "left"})
+
+
+def haas() -> Figure:
+    """Return the picture of the Haas pocket's form."""
+    figure, plan, side = views()
+    circle(plan, 1.0, fill=CUT, width=1.2)
+    for radius in (0.4, 0.7):
+        circle(plan, radius, dashed=True, line=FAINT)
+    circle(plan, 0.26, centre=at(0.74, 0), fill=TOOL)
+    turn(plan, 0.74, 22, 75)
+    measure(plan, (0, 0), at(0.4, 140), "I", 0.55)
+    measure(plan, (0, 0), at(1.0, 205), "K", 0.62)
+    measure(plan, at(0.4, 290), at(0.7, 290), "Q")
+    cross(plan, "X Y")
+    plan.text(0, 1.12, "G  12 clockwise, 13 counterclockwise", **NOTE)
+    plan.text(*at(0.74, 0), "T", **WORDS)
+    section(side, {"retract": 0.85, "Z top": 0.3, "Z depth": -0.5}, (0.033, -0.233))
+    side.text(-0.54, -0.1, "L", **WORDS)
+    return figure
+
+
+def yasnac() -> Figure:
+    """Return the picture of the Yasnac circle's form."""
+    figure, plan, side = views()
+    circle(plan, 1.0, fill=CUT, width=1.2)
+    circle(plan, 0.62, dashed=True, line=FAINT)
+    circle(plan, 0.26, centre=at(0.74, 0), fill=TOOL)
+    turn(plan, 0.74, 22, 75)
+    plan.plot((0, 0.36), (0, 0), color=PATH, lw=1.1, ls=(0, (3, 2)))
+    measure(plan, (0, 0), at(0.62, 105), "R", 0.62)
+    measure(plan, (0, 0), at(1.0, 205), "I", 0.62)
+    measure(plan, (0, 0), at(0.5, 300), "K", 0.6)
+    measure(plan, at(0.5, 300), at(0.8, 300), "Q")
+    cross(plan, "X Y", (-0.05, -0.14))
+    plan.text(0, 1.12, "G  12 clockwise, 13 counterclockwise", **NOTE)
+    plan.text(*at(0.74, 0), "T", **WORDS)
+    plan.text(0, -1.2, "I below 0: begun on the −X side", **NOTE)
+    section(side, {"retract": 0.85, "rapid to": 0.42, "Z depth": -0.5})
+    return figure
+
+
+def mitsubishi() -> Figure:
+    """Return the picture of the Mitsubishi circle's form."""
+    figure, plan, side = views()
+    circle(plan, 1.0, fill=CUT, width=1.2)
+    circle(plan, 0.48, fill=STOCK, width=0.6, line=FAINT)
+    circle(plan, 0.26, centre=at(0.74, 0), fill=TOOL)
+    plan.add_patch(Arc((0.37, 0), 0.74, 0.74, theta1=180, theta2=360, color=PATH, lw=1.1))
+    turn(plan, 0.74, 22, 75)
+    measure(plan, (0, 0), at(1.0, 205), "I", 0.62)
+    cross(plan, "X Y", (-0.02, 0.14))
+    plan.text(0, 1.12, "G  12 clockwise, 13 counterclockwise", **NOTE)
+    plan.text(*at(0.74, 0), "T", **WORDS)
+    section(side, {"retract": 0.85, "rapid to": 0.42, "Z depth": -0.5})
+    return figure
+
+
+def circle_mill() -> Figure:
+    """Return the picture of the circle mill event's form."""
+    figure, plan, side = views()
+    circle(plan, 0.92, fill=CUT, width=1.2)
+    circle(plan, 0.8, dashed=True, line=FAINT)
+    for radius in (0.28, 0.56):
+        circle(plan, radius, line=PATH, width=0.6)
+    circle(plan, 0.24, centre=at(0.56, -90), fill=TOOL)
+    measure(plan, (0, 0), at(0.88, 205), "R", 0.6)
+    measure(plan, at(0.28, 60), at(0.56, 60), "J")
+    plan.annotate("L", at(0.8, 20), at(1.06, 20), arrowprops={**ARROW, "arrowstyle": "->"}, **WORDS)
+    cross(plan, "X Y", (0.0, 0.12))
+    plan.text(*at(0.56, -90), "T", **WORDS)
+    plan.text(0, 1.12, "C  0 on, 1 left, 2 right of the circle", **NOTE)
+    plan.text(0, -1.2, "D  0 CW, 1 CCW, 2 CW/CCW, 3 CCW/CW", **NOTE)
+    section(side, {"O": 0.85, "W": 0.42, "Z": -0.5}, (0.1, -0.2, -0.44))
+    measure(side, (-0.38, 0.42), (-0.38, 0.1), "K")
+    return figure
+
+
+PICTURES = {
+    "form_haas": haas,
+    "form_yasnac": yasnac,
+    "form_mitsubishi": mitsubishi,
+    "form_circle_mill": circle_mill,
+}
+
+
+def draw_all() -> None:
+    """Write every picture, for each unit's form the same."""
+    for name, picture in PICTURES.items():
+        figure = picture()
+        for unit in UNITS:
+            figure.savefig(NGC / f"{name}_{unit}.png", dpi=DOTS_PER_INCH, facecolor="white",
+                           metadata={"Software": None})  # fmt: skip
+
+
+if __name__ == "__main__":
+    draw_all()
