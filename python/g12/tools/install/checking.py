@@ -13,6 +13,7 @@ from g12.tools.errors import UsageError
 from g12.tools.install import features
 from g12.tools.install.config import Config, load_config, remaps_in
 from g12.tools.install.findings import Finding
+from g12.tools.install.forms import shown
 from g12.tools.install.ini_edit import IniText
 from g12.tools.install.rules import codes_of, findings_of, translating_filters
 from g12.tools.machine.files import existing
@@ -61,6 +62,7 @@ def check_report(config: Config, found: list[Finding]) -> dict:
             for code in codes
         ],
         "programs": {suffix: control for suffix, control, _ in translating_filters(config)},
+        "forms": shown(config),
         "other_remaps": {remap.code: remap.text for remap in others},
         "settings": settings_of(config),
         "findings": [asdict(finding) for finding in found],
@@ -77,6 +79,8 @@ def lines_of_check(report: dict) -> Iterator[str]:
         yield f"  {code['code']:6} {code['feature']:12} {meaning} ({code['line']})"
     for suffix, control in report["programs"].items():
         yield f"  .{suffix:5} {'programs':12} {control}"
+    for form in report["forms"]:
+        yield f"  {'':6} {'form':12} {form}"
     for code, text in report["other_remaps"].items():
         yield f"  {code:6} {'not ours':12} REMAP = {text}"
     for key, value in report["settings"].items():

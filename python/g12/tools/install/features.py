@@ -24,7 +24,8 @@ FILES = {
     "cylinder": "cylinder.inc",
 }
 PROGRAMS = {f"programs-{control}": control for control in shipped_controls()}
-NAMES = (*FILES, *PROGRAMS)
+FORMS = "forms"
+NAMES = (*FILES, FORMS, *PROGRAMS)
 ONE_OF = (("haas", "yasnac", "mitsubishi"), ("polar", "polar-g12.3"), tuple(PROGRAMS))
 POLAR = ("polar", "polar-g12.3")
 AXES = {**dict.fromkeys(POLAR, "XC"), "cylinder": "XZC"}  # of the machine; a mill's are XYZ
@@ -36,6 +37,7 @@ MEANING = {
     "polar": "G12.1/G13.1 polar coordinate interpolation on and off",
     "polar-g12.3": "G12.3/G13.3 polar coordinate interpolation on and off",
     "cylinder": "G7.1 (G07.1) cylindrical interpolation on and off",
+    FORMS: "pages to fill in, with pictures, for the codes that the machine has",
     **{
         name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()
     },

@@ -72,6 +72,8 @@ def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
         elif feature in features.FILES:
             code = features.remaps_of(feature)[0].code
             yield f"  {code:6} is answered with what it needs; nothing moves"
+        elif feature == features.FORMS:
+            yield "  fill in a form on its page, Create Feature, Finalize: the program is open"
         else:
             yield f"  open a .{FILTERED} program of {features.PROGRAMS[feature]}"
     yield f"to take it out again: {CALL} uninstall {ini}"

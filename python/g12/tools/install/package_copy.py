@@ -27,7 +27,9 @@ PAGES = (  # what a machinist reads beside the machine; they link to nothing els
 )
 CODE = (
     "ngc/*.ngc",
+    "ngc/*.png",
     "configs/include/*.inc",
+    "configs/include/forms.ui",
     "configs/kinematics/polar_*",
     "python/*.py",
     "python/g12/**/*.py",

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from g12.tools.install import features, package_copy
+from g12.tools.install import features, forms, package_copy
 from g12.tools.install.config import Config, folder_from_ini
 from g12.tools.install.findings import problem
 from g12.tools.install.ini_edit import (
@@ -26,7 +26,7 @@ from g12.tools.install.ini_edit import (
     lines_with_ends,
     to_bytes,
 )
-from g12.tools.install.rules import installed_programs, odd_folder
+from g12.tools.install.rules import codes_of, installed_programs, odd_folder
 
 BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"
 NOTE = "# also by g12 install: "
@@ -95,6 +95,7 @@ def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
     subs = subroutine_lines(plan, config, codes)
     remaps = [f"REMAP = {remap.text}" for remap in new_remaps(config, codes)]
     filters = filter_lines(plan, config, wanted)
+    pages = form_lines(plan, config, wanted)
     place = plan.text.end_of_section("RS274NGC")
     noted = {line.text for block in plan.text.blocks() for line in block}
     put_block(
@@ -102,6 +103,7 @@ def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
     )
     put_section(plan.text, "PYTHON", place, python)
     put_section(plan.text, "FILTER", place, filters)
+    put_section(plan.text, "DISPLAY", place, pages)
     for path in plan.changes():
         require_inside(config, path)
     return plan
@@ -232,6 +234,25 @@ def filter_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> li
         f"PROGRAM_EXTENSION = .{FILTERED} Programs of {control}",
         f"{FILTERED} = python3 {plan.prefix}/python/g12 translate --control {control}",
     ]
+
+
+def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
+    """Return the lines for [DISPLAY] that show the forms of the codes there and wanted."""
+    if features.FORMS not in wanted:
+        return []
+    screen = forms.screen_of(config)
+    if screen not in forms.SCREENS:
+        raise refuse(
+            "forms",
+            f"[DISPLAY] DISPLAY = {screen or 'nothing'}: install knows no forms for this screen",
+            f"with {', '.join(forms.SCREENS)} as the screen it does (configs/README.md)",
+        )
+    codes = dict.fromkeys([*(code.feature for code in codes_of(config.remaps)), *wanted])
+    if not forms.files_of(config, codes):
+        raise refuse(
+            "forms", "no code here has a form", "install a code with them: --with haas forms"
+        )
+    return forms.lines_for(config, list(codes), plan.prefix)
 
 
 def python_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:

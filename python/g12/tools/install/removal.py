@@ -9,7 +9,7 @@ from pathlib import Path
 
 from g12.ini_sections import key_and_value
 from g12.machine_ini import remap_from_value
-from g12.tools.install import package_copy
+from g12.tools.install import forms, package_copy
 from g12.tools.install.config import remaps_in
 from g12.tools.install.features import model_of
 from g12.tools.install.ini_edit import (
@@ -87,7 +87,7 @@ def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[IniLine]
 def is_by_install(line: IniLine) -> bool:
     """Tell whether a line between the markers is one that `install` puts there."""
     key, value = key_and_value(line.text)
-    if OWN_FILTER.fullmatch(line.text):
+    if OWN_FILTER.fullmatch(line.text) or forms.OWN_LINE.fullmatch(line.text):
         return True
     if key == "REMAP":
         return model_of(remap_from_value(value)) is not None

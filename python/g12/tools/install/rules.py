@@ -19,6 +19,7 @@ from g12.settings import SECTION, settings_from_lines
 from g12.tools.install import features
 from g12.tools.install.config import MOST_FOLDERS, Config, folder_from_ini, subs_named
 from g12.tools.install.findings import Finding, note, problem, warning
+from g12.tools.install.forms import form_findings
 from g12.tools.install.ini_edit import IniLine
 from g12.tools.install.kinematics_rules import kinematics_findings
 from g12.tools.machine.ini import INCLUDE
@@ -484,6 +485,7 @@ def findings_of(config: Config) -> list[Finding]:
     """Return everything found; what nothing explains is LinuxCNC's own word."""
     codes = codes_of(config.remaps)
     found = [finding for rule in RULES for finding in rule(config, codes)]
+    found += form_findings(config, {code.feature for code in codes})
     found += kinematics_findings(config)
     if config.failure and not any(finding.kind in STOPPING for finding in found):
         found.append(

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``install --with forms``: the lines of [DISPLAY], what `check` says of them, taking them out."""
+
+import pytest
+
+from g12.tools.install import features, forms, installation, package_copy, removal
+from g12.tools.install.checking import check_report, lines_of_check
+from g12.tools.install.ini_edit import IniText
+from g12.tools.install.plan import Refused, make_plan
+from g12.tools.install.rules import findings_of
+from support.small_configs import HAAS, MILL, config_of, with_lines, write_config
+
+AXIS = f"[DISPLAY]\nDISPLAY = axis\nCYCLE_TIME = 0.1\n\n{MILL}"
+GMOCCAPY = AXIS.replace("axis", "gmoccapy")
+QTVCP = AXIS.replace("axis", "qtvcp qtdragon")
+PAGES = "NGCGUI_SUBFILE = form_haas_mm.ngc\nNGCGUI_SUBFILE = form_circle_mill_mm.ngc\n"
+SUBS = {
+    f"g12/ngc/{name}.ngc": b"(a sub)\n"
+    for name in ("form_start", "form_end", "form_haas_mm", "form_haas_inch", "form_circle_mill_mm")
+}
+
+
+@pytest.fixture(autouse=True)
+def small_package(monkeypatch):
+    files = {name.removeprefix("g12/"): content for name, content in SUBS.items()}
+    page = (features.ROOT / forms.PAGE).read_bytes()
+    package = {"python/g12/__init__.py": b"", forms.PAGE: page, **files}
+    monkeypatch.setattr(package_copy, "package_files", lambda: package)
+
+
+def put_in(ini, *wanted):
+    """Install without asking LinuxCNC."""
+    config = config_of(ini)
+    return installation.write_changes(make_plan(config, wanted), config.folder)
+
+
+def told(ini):
+    """Return what `check` finds about forms."""
+    return [finding.text for finding in findings_of(config_of(ini)) if finding.kind == "form"]
+
+
+@pytest.mark.parametrize(
+    ("screen", "lines"),
+    [
+        (AXIS, f"TKPKG = Ngcgui 1.0\n{PAGES}"),
+        (QTVCP, f"NGCGUI_SUBFILE_PATH = g12/ngc\n{PAGES}"),
+        (
+            GMOCCAPY,
+            "EMBED_TAB_NAME = Forms\nEMBED_TAB_LOCATION = ntb_user_tabs\n"
+            f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} g12/configs/include/forms.ui\n{PAGES}",
+        ),
+    ],
+)
+def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, lines):
+    ini = write_config(tmp_path, screen)
+    before = ini.read_bytes()
+    put_in(ini, "haas", "circle-mill", "forms")
+    display = ini.read_text().partition("[RS274NGC]")[0]
+    assert lines in display
+    assert display.count("[DISPLAY]") == 1
+    assert told(ini) == []
+    put_in(ini, "forms")
+    assert ini.read_text().count("NGCGUI_SUBFILE =") == 2
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert ini.read_bytes() == before
+
+
+def test_forms_of_codes_that_are_there_and_in_the_machines_unit(tmp_path):
+    ini = write_config(tmp_path, AXIS.replace("= mm", "= inch"))
+    put_in(ini, "haas")
+    put_in(ini, "forms")
+    assert "NGCGUI_SUBFILE = form_haas_inch.ngc" in ini.read_text()
+    assert "circle_mill" not in ini.read_text()
+
+
+def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
+    own = "TKPKG = Ngcgui 1.0\nNGCGUI_SUBFILE = simp.ngc\nNGCGUI_SUBFILE = form_haas_mm.ngc\n"
+    ini = write_config(tmp_path, with_lines(AXIS, "DISPLAY", own))
+    put_in(ini, "haas", "forms")
+    text = ini.read_text()
+    assert text.count("TKPKG") == text.count("form_haas_mm") == 1
+    assert told(ini) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted", "why"),
+    [
+        (MILL, ["haas"], "DISPLAY = nothing"),
+        (AXIS.replace("axis", "tklinuxcnc"), ["haas"], "DISPLAY = tklinuxcnc"),
+        (AXIS, [], "no code here has a form"),
+    ],
+)
+def test_refused_where_nothing_would_be_shown(tmp_path, text, wanted, why):
+    with pytest.raises(Refused) as refused:
+        make_plan(config_of(write_config(tmp_path, text)), [*wanted, "forms"])
+    assert why in refused.value.args[0].text
+
+
+def shown_in(tmp_path, screen, lines, remaps=HAAS):
+    """Return what `check` finds about forms in a config set up by hand."""
+    text = with_lines(with_lines(screen, "DISPLAY", lines), "RS274NGC", remaps)
+    files = {
+        name.replace("/", "__").replace(".", "_"): text.decode() for name, text in SUBS.items()
+    }
+    text = with_lines(text, "RS274NGC", "SUBROUTINE_PATH = g12/ngc\n")
+    return told(write_config(tmp_path, text, **files))
+
+
+HAAS_PAGE = "NGCGUI_SUBFILE = form_haas_mm.ngc\n"
+TK = "TKPKG = Ngcgui 1.0\n"
+
+
+@pytest.mark.parametrize(
+    ("screen", "lines", "remaps", "finding"),
+    [
+        (AXIS, HAAS_PAGE, HAAS, "TKPKG = nothing: AXIS shows no forms"),
+        (AXIS, f"TKPKG = ngcgui 1.0\n{HAAS_PAGE}", HAAS, "TKPKG = ngcgui: AXIS shows no"),
+        (AXIS, f"{TK}NGCGUI_SUBFILE = form_hass_mm.ngc\n", HAAS, "form_hass_mm.ngc is in none of"),
+        (AXIS, f"{TK}{HAAS_PAGE}", "", "form_haas_mm.ngc: the codes of haas are not set up"),
+        (GMOCCAPY, HAAS_PAGE, HAAS, "gmoccapy shows no forms"),
+        (
+            GMOCCAPY,
+            f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} nowhere.ui\n{HAAS_PAGE}",
+            HAAS,
+            "gmoccapy shows no forms",
+        ),
+        (QTVCP, HAAS_PAGE, HAAS, "NGCGUI_SUBFILE_PATH = nothing: form_haas_mm.ngc is not there"),
+        (QTVCP, f"NGCGUI_SUBFILE_PATH = .\n{HAAS_PAGE}", HAAS, "= .: form_haas_mm.ngc is not"),
+    ],
+)
+def test_what_keeps_forms_from_being_shown_is_found(tmp_path, screen, lines, remaps, finding):
+    found = shown_in(tmp_path, screen, lines, remaps)
+    assert len(found) == 1
+    assert finding in found[0]
+
+
+def test_a_form_in_order_is_told_and_no_finding(tmp_path):
+    assert shown_in(tmp_path, AXIS, f"{TK}{HAAS_PAGE}NGCGUI_SUBFILE = simp.ngc\n") == []
+    config = config_of(tmp_path / "mill.ini")
+    assert "         form         form_haas_mm" in lines_of_check(check_report(config, []))
