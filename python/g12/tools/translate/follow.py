@@ -17,7 +17,7 @@ from g12.tools.translate.rules import WORD_RULES
 from g12.tools.translate.rules.plain import is_plain
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.statements import STATEMENTS
-from g12.tools.translate.structure import ENDS, MAIN, Structure
+from g12.tools.translate.structure import MAIN, Structure, programs_of_blocks, ways_from
 
 Progress = Callable[[int], None]
 
@@ -26,7 +26,7 @@ class FollowedProgram:
     """The drafts of a program's blocks, None where a block is never reached.
 
     ``falls_off`` are the blocks behind which a program is over without an end of its own,
-    ``kinds`` how each program is called.
+    ``has_end`` tells whether any end is reached, ``kinds`` how each program is called.
     """
 
     def __init__(
@@ -41,6 +41,7 @@ class FollowedProgram:
         count = len(structure.blocks)
         self.drafts: list[Draft | None] = [None] * count
         self.falls_off: set[int] = set()
+        self.has_end = False
         self.kinds: dict[int, str] = {}
         self.calls: dict[int, list[Draft]] = {}
         self._states: list[ModalState | None] = [None] * count
@@ -88,7 +89,7 @@ class FollowedProgram:
         draft = self._translate(index, state)
         self.drafts[index] = draft
         if self.structure.blocks[index].skipped:
-            self._go_on(index, state)
+            self._arrive(index, index + 1, state)
         self._leave(index, draft)
 
     def _translate(self, index: int, state: ModalState) -> Draft:
@@ -102,6 +103,8 @@ class FollowedProgram:
             index,
             self.structure.called_as.get(index, 0),
         )
+        draft.jumps = index in self.structure.jumps.targets
+        draft.asked = self.structure.asked
         try:
             problem = block.problem or self.structure.problems.get(index)
             if problem:
@@ -114,6 +117,8 @@ class FollowedProgram:
             else:
                 self._end(draft, index)
                 apply_rules(draft)
+            if not statement:
+                draft.after += self.structure.jumps.at.get(index, ())
         except NotTranslated as refusal:
             draft.refusal = str(refusal)
             draft.unsure = refusal.modes if isinstance(refusal, NotSure) else ()
@@ -137,31 +142,42 @@ class FollowedProgram:
         """Tell the draft how a return is written here."""
         number = self._inside[index]
         if self.kinds.get(number) == "macro":
-            last = self.structure.last_returns.get(number) == index
+            last = self.structure.last_returns.get(number) == index and not self._parted(index)
             draft.return_text = f"o<macro_{number}> {'endsub' if last else 'return'}"
+
+    def _parted(self, index: int) -> bool:
+        """Tell whether a block is in what jumps part, so that no program can end with it."""
+        return any(first <= index <= last for first, last in self.structure.jumps.spans)
+
+    def ends_of_macros(self) -> dict[int, str]:
+        """Return the end that a macro needs behind its last block, if that is no return."""
+        ends = {}
+        for number in (n for n, kind in self.kinds.items() if kind == "macro"):
+            last = self.structure.last_returns.get(number, -1)
+            if self._parted(last):
+                behind = self.structure.end_of(self.structure.entries[number])
+                ends[behind - 1] = f"o<macro_{number}> endsub"
+        return ends
 
     def _leave(self, index: int, draft: Draft) -> None:
         """Go on to the blocks that can follow."""
-        block, state = draft.block, draft.state
-        codes = {word.code for word in draft.words if word.letter == "M" and word.kind == "number"}
         if draft.call:
             self._call(index, draft, draft.call)
         elif draft.returns:
-            self._return(self._inside[index], state)
-        elif codes & ENDS:
-            pass
-        elif block.kind == "while" and index in self.structure.partners:
-            self._go_on(index, state)
-            self._go_on(self.structure.partners[index], state)
-        elif block.kind == "end" and index in self.structure.partners:
-            self._pending.append((self.structure.partners[index], state))
+            self._return(self._inside[index], draft.state)
+        elif draft.ends:
+            self.has_end = True
         else:
-            self._go_on(index, state)
+            self._go_on(index, draft.state)
 
     def _go_on(self, index: int, state: ModalState) -> None:
-        following = index + 1
-        if following >= len(self.drafts) or following in self.structure.starts:
+        for behind, following in ways_from(self.structure, index):
+            self._arrive(behind, following, state)
+
+    def _arrive(self, index: int, following: int, state: ModalState) -> None:
+        if following == index + 1 and self.structure.is_over(following):
             self.falls_off.add(index)
+            self.has_end = self.has_end or self._inside[index] == MAIN
         else:
             self._pending.append((following, state))
 
@@ -195,6 +211,7 @@ class FollowedProgram:
 
     def _return(self, number: int, state: ModalState) -> None:
         if number == MAIN:
+            self.has_end = True
             self._pending.append((self.structure.main, state))  # M99 there: from the top again
             return
         known = self._exits.get(number)
@@ -216,12 +233,3 @@ def start_state(control: Control) -> ModalState:
     """Return the modes that hold when a program begins."""
     known = {GROUP_OF[code]: code for code in control.start if code in GROUP_OF}
     return ModalState(**known)
-
-
-def programs_of_blocks(structure: Structure) -> list[int]:
-    """Return the number of the program that each block is in."""
-    inside, number = [], MAIN
-    for index in range(len(structure.blocks)):
-        number = structure.starts.get(index, number)
-        inside.append(number)
-    return inside

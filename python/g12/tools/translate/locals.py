@@ -1,50 +1,97 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Local variables of macros: one that no call gives and no line sets is empty on the control.
 
-There an empty variable makes its word vanish; LinuxCNC takes 0. So such a macro is refused.
+There an empty variable makes its word vanish; LinuxCNC takes 0. So such a macro is refused, unless
+it has asked before, with #0, whether the variable is empty.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
 
 from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.expressions import SHARED
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.rules.subprograms import ARGUMENTS
+from g12.tools.translate.structure import asked_by, ways_from
 
 LETTERS = {number: letter for letter, number in ARGUMENTS.items()}
 
 
 def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
-    """Yield line and sentence for each block that reads a variable nothing has set."""
-    given = {n: given_by_all(calls) for n, calls in followed.calls.items()}
+    """Yield line and sentence for each block that reads a variable which may be empty."""
+    macros = {number for number, kind in followed.kinds.items() if kind == "macro"}
+    given: dict[int, frozenset[int]] = {}
+    for number in macros:
+        given.update(given_in(followed, number))
     for index, block in enumerate(followed.structure.blocks):
         number = followed.program_of(index)
-        if followed.kinds.get(number) != "macro" or not followed.drafts[index]:
-            continue
-        for variable in sorted(read_by(block) - given[number]):
-            yield block.line, unset_sentence(number, variable)
-        given[number] |= {set_by(block)}
+        if index in given:
+            for variable in sorted(read_by(block) - given[index]):
+                yield block.line, unset_sentence(number, variable)
+        elif number not in macros and followed.drafts[index] and asked_by(block):
+            yield block.line, "#0, the empty variable, is translated in a program of G65 only"
+    yield from shared_locals(followed)
 
 
-def given_by_all(calls: list[Draft]) -> set[int]:
+def given_in(followed: FollowedProgram, number: int) -> dict[int, frozenset[int]]:
+    """Return the variables that surely have a value before each block of a macro."""
+    entry = followed.structure.entries[number]
+    given = {entry: given_by_all(followed.calls[number])}
+    pending = [entry]
+    while pending:
+        index = pending.pop()
+        for following, values in passed_on(followed, index, given[index]):
+            common = given.get(following, values) & values
+            if given.get(following) != common:
+                given[following] = common
+                pending.append(following)
+    return given
+
+
+def passed_on(
+    followed: FollowedProgram, index: int, given: frozenset[int]
+) -> Iterator[tuple[int, frozenset[int]]]:
+    """Yield the blocks behind one, and the variables that have a value there."""
+    draft, block = followed.drafts[index], followed.structure.blocks[index]
+    over = draft is None or draft.returns or draft.ends
+    ways = [] if over else [following for _, following in ways_from(followed.structure, index)]
+    condition = block.expression
+    for following in {*ways, *([index + 1] if block.skipped else [])}:
+        known = given | set_by(block)
+        if condition and block.kind in ("goto", "while"):
+            onward = (following == index + 1) == (block.kind == "while")
+            known |= condition.set_if_true if onward else condition.set_if_false
+        if not followed.structure.is_over(following):
+            yield following, known
+
+
+def given_by_all(calls: list[Draft]) -> frozenset[int]:
     """Return the variables that every call of a macro gives."""
     found = [{variable for variable, _ in draft.call.arguments} for draft in calls]
-    return set.intersection(*found)
+    return frozenset(set.intersection(*found))
 
 
-def read_by(block: ForeignBlock) -> set[int]:
+def read_by(block: ForeignBlock) -> frozenset[int]:
     """Return the local variables that a block reads."""
-    read = set().union(*(word.read for word in block.words))
-    for part in (block, block.then):
-        read |= part.expression.read if part and part.expression else set()
-    return read
+    read = frozenset().union(*(word.read for word in block.words))
+    if block.expression:
+        read |= block.expression.read
+    then = block.then.expression if block.then else None
+    return read | (then.read - block.expression.set_if_true if then else frozenset())
 
 
-def set_by(block: ForeignBlock) -> int:
-    """Return the variable that a block sets whatever happens, 0 if none."""
-    return block.variable if block.kind == "assign" and not block.skipped else 0
+def set_by(block: ForeignBlock) -> frozenset[int]:
+    """Return the variables that surely have a value behind a block because of it."""
+    if block.skipped:
+        return frozenset()
+    if block.kind == "assign":
+        return frozenset((block.variable,))
+    if block.kind == "if" and block.then.kind == "assign":
+        return block.expression.set_if_false & {block.then.variable}
+    return frozenset()
 
 
 def unset_sentence(number: int, variable: int) -> str:
@@ -52,3 +99,19 @@ def unset_sentence(number: int, variable: int) -> str:
     letter = LETTERS.get(variable)
     name = f"#{variable} ({letter} of the call)" if letter else f"#{variable}"
     return f"O{number} reads {name}, which not every G65 P{number} gives: it would be 0 on LinuxCNC"
+
+
+def shared_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
+    """Yield the blocks that use #31 to #33, where several programs do: LinuxCNC has them once."""
+    users: dict[int, set[int]] = defaultdict(set)
+    for index, block in enumerate(followed.structure.blocks):
+        for variable in SHARED.intersection(used_by(block)):
+            users[variable].add(followed.program_of(index))
+            if len(users[variable]) > 1:
+                yield block.line, f"#{variable} is used in two programs: LinuxCNC has it once"
+
+
+def used_by(block: ForeignBlock) -> Iterable[int]:
+    """Return the local variables that a block reads, asks for or sets."""
+    parts = [block, block.then] if block.then else [block]
+    return {*read_by(block), *asked_by(block), *(part.variable for part in parts)}

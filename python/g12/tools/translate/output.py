@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.lexer import printable
+from g12.tools.translate.blocks.lexer import ForeignBlock, printable
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.order import WrittenRow
 
@@ -16,6 +16,7 @@ LONGEST_LINE = 254  # characters that LinuxCNC reads of a line
 LONGEST_MARK = 20  # of them for "/ " and "(line 123456)"
 LONGEST_COMMENT = 200
 OBEYED = re.compile(r"\((MSG|ABORT), ")
+NUMBERED = re.compile("(N[0-9]+ )?")
 BLOCK_NUMBER = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments behind it
 
 
@@ -49,7 +50,10 @@ def with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
 
 def with_mark(text: str, line: int) -> str:
     """Return a line with that of the file; LinuxCNC obeys only the last comment of a block."""
-    return f"(line {line}) {text}" if OBEYED.search(text) else f"{text} (line {line})"
+    if not OBEYED.search(text):
+        return f"{text} (line {line})"
+    number = NUMBERED.match(text)[0]
+    return f"{number}(line {line}) {text[len(number) :]}"
 
 
 def as_comment(text: str) -> str:
@@ -66,9 +70,10 @@ def output_lines(
     any more every line says its number.
     """
     start = " ".join(followed.control.start)
+    ends = followed.ends_of_macros()
     in_place = True
     for place, (line, indices) in enumerate(order, 1):
-        lines = lines_of_row(rows[line - 1], indices, followed)
+        lines = lines_of_row(rows[line - 1], indices, followed, ends)
         if place == 1 and start:
             lines = begun(start, lines)
         in_place = in_place and place == line
@@ -76,22 +81,33 @@ def output_lines(
         yield from (with_mark(text, line) for text in lines[in_place:])
 
 
-def lines_of_row(row: str, indices: Sequence[int], followed: FollowedProgram) -> list[str]:
-    """Return the lines of one line of the file."""
+def lines_of_row(
+    row: str, indices: Sequence[int], followed: FollowedProgram, ends: Mapping[int, str]
+) -> list[str]:
+    """Return the lines of one line of the file; ``ends`` are what macros need behind a block."""
     lines: list[str] = []
+    told = False
     for index in indices:
-        draft = followed.drafts[index]
-        block = followed.structure.blocks[index]
-        if draft:
-            lines += draft.lines
-        elif block.words or block.problem or block.kind not in ("words", "tape"):
-            return [as_comment(row)]
-        else:
-            tape = [f"%{block.label}"] if block.kind == "tape" else []
-            lines += with_comments([], [*tape, *block.comments])
+        draft, jumps = followed.drafts[index], followed.structure.jumps
+        own = draft.lines if draft else unreached(followed.structure.blocks[index])
+        if own is None:
+            own = [] if told else [as_comment(row)]
+            told = True
+        heads = 1 if draft and draft.head else 0
+        lines += [*own[:heads], *jumps.before.get(index, ()), *own[heads:]]
+        lines += jumps.behind.get(index, ())
+        lines += [ends[index]] if index in ends else []
         if index in followed.falls_off:
             lines.append("M2")
     return lines if indices else [as_comment(row)]
+
+
+def unreached(block: ForeignBlock) -> list[str] | None:
+    """Return the lines of a block that is never reached, None if there are words in it."""
+    if block.words or block.problem or block.kind not in ("words", "tape"):
+        return None
+    tape = [f"%{block.label}"] if block.kind == "tape" else []
+    return with_comments([], [*tape, *block.comments])
 
 
 def begun(start: str, lines: list[str]) -> list[str]:

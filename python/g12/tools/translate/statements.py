@@ -28,11 +28,13 @@ def assignment_text(block: ForeignBlock) -> str:
 
 def while_loop(draft: Draft, index: int, structure: Structure) -> None:
     """Write the head of a loop."""
+    refuse_skipped(draft)
     labelled(draft, f"o<while_{index}> while {draft.block.expression.text}")
 
 
 def end_of_loop(draft: Draft, index: int, structure: Structure) -> None:
     """Write the end of a loop."""
+    refuse_skipped(draft)
     labelled(draft, f"o<while_{structure.partners[index]}> endwhile")
 
 
@@ -42,6 +44,16 @@ def if_then(draft: Draft, index: int, structure: Structure) -> None:
     text = assignment_text(then) if then.kind == "assign" else block_of_stop(draft, then.label)
     labelled(draft, f"o<if_{index}> if {draft.block.expression.text}")
     draft.after += [text, f"o<if_{index}> endif"]
+
+
+def goto(draft: Draft, index: int, structure: Structure) -> None:
+    """Write a jump, with its condition if it has one."""
+    lines = structure.jumps.at[index]
+    condition = draft.block.expression
+    if condition:
+        lines = [f"o<if_{index}> if {condition.text}", *lines, f"o<if_{index}> endif"]
+    labelled(draft, lines[0])
+    draft.after += lines[1:]
 
 
 def stop(draft: Draft, index: int, structure: Structure) -> None:
@@ -62,8 +74,12 @@ def labelled(draft: Draft, text: str) -> None:
     """Write an O-word; a block number before it becomes a comment."""
     draft.comments = [*(word.text for word in draft.block.words), *draft.comments]
     draft.words = [line_as_word(text)]
+
+
+def refuse_skipped(draft: Draft) -> None:
+    """Refuse half a loop."""
     if draft.block.skipped:
-        raise NotTranslated("a loop or a condition cannot be skipped with /")
+        raise NotTranslated("the head or the end of a loop cannot be skipped with /")
 
 
 STATEMENTS = {
@@ -72,5 +88,6 @@ STATEMENTS = {
     "while": while_loop,
     "end": end_of_loop,
     "if": if_then,
+    "goto": goto,
     "stop": stop,
 }

@@ -3,18 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 
 from g12.tools.translate.blocks.control import Control
+from g12.tools.translate.blocks.draft import ENDS
 from g12.tools.translate.blocks.lexer import ForeignBlock
+from g12.tools.translate.jumps import Jumps, find_jumps
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS, called_program
 
 MAIN = -1  # the number of the main program
 LOCAL = "local subprogram"
 CALLS = frozenset(("subprogram", "macro call"))
-ENDS = frozenset(("M2", "M30"))
 COPIES = 10_000_000  # the first copy of O100 is O10000100
 
 
@@ -27,7 +28,8 @@ class Structure:
     number, ``starts`` the numbers by the block, with MAIN for a main program that others stand
     before. ``doubled`` are numbers that several programs have. ``partners`` joins each WHILE and
     its END, ``problems`` has what is wrong with a block, ``last_returns`` the block in which each
-    program returns for the last time.
+    program returns for the last time, ``jumps`` where GOTO and M99 P lead, ``asked`` the variables
+    that each program compares with #0.
 
     Behind the file's ``own`` blocks stand those of copies: programs that are called in modes that
     differ, once for each. ``copies`` has the number that each is a copy of, ``called_as`` the
@@ -43,6 +45,8 @@ class Structure:
     partners: dict[int, int] = field(default_factory=dict)
     problems: dict[int, str] = field(default_factory=dict)
     last_returns: dict[int, int] = field(default_factory=dict)
+    jumps: Jumps = field(default_factory=Jumps)
+    asked: dict[int, frozenset[int]] = field(default_factory=dict)
     copies: dict[int, int] = field(default_factory=dict)
     called_as: dict[int, int] = field(default_factory=dict)
 
@@ -78,6 +82,10 @@ class Structure:
         tape = end == self.own and self.blocks[end - 1].kind == "tape"
         return end - tape
 
+    def is_over(self, index: int) -> bool:
+        """Tell whether a program is over before a block: behind its last one."""
+        return index >= len(self.blocks) or index in self.starts
+
     def name_of(self, number: int) -> str:
         """Return a program's number as in the file: O100, or N100 for a block that M97 calls."""
         number = self.copies.get(number, number)
@@ -95,15 +103,97 @@ def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
             structure.add_entry(number, index)
         elif structure.entries:
             structure.starts[index], structure.main = MAIN, index
-    add_local_programs(structure, heads, codes_meaning(control, LOCAL))
+    add_local_programs(structure, heads, control)
     find_ends(structure, control)
     return structure
 
 
 def find_ends(structure: Structure, control: Control) -> None:
-    """Note where loops and programs end."""
+    """Note where loops and programs end, and where jumps lead."""
     pair_loops(structure)
     find_returns(structure, codes_meaning(control, "return"))
+    programs = programs_of_blocks(structure)
+    structure.jumps = find_jumps(
+        structure.blocks, programs, structure.partners, dict(jumping(structure, programs, control))
+    )
+    structure.problems.update(structure.jumps.problems)
+    for number, block in zip(programs, structure.blocks):
+        asked = asked_by(block)
+        if asked:
+            structure.asked[number] = structure.asked.get(number, frozenset()) | asked
+
+
+def asked_by(block: ForeignBlock) -> frozenset[int]:
+    """Return the variables that a block compares with #0."""
+    return block.expression.asked if block.expression else frozenset()
+
+
+def programs_of_blocks(structure: Structure) -> list[int]:
+    """Return the number of the program that each block is in."""
+    inside, number = [], MAIN
+    for index in range(len(structure.blocks)):
+        number = structure.starts.get(index, number)
+        inside.append(number)
+    return inside
+
+
+def jumping(
+    structure: Structure, programs: Sequence[int], control: Control
+) -> Iterator[tuple[int, int]]:
+    """Yield the blocks that jump, GOTO and the main program's M99 P, and the N that each names."""
+    returns, calls = codes_meaning(control, "return"), codes_meaning(control, *CALLS, LOCAL)
+    places = places_of_returns(structure, programs, returns)
+    for index, block in enumerate(structure.blocks):
+        if block.kind == "goto":
+            yield index, int(block.label)
+        elif programs[index] == MAIN and has_code(block, returns):
+            yield from ((index, number) for number in numbers_of(block, "P"))
+        elif has_code(block, calls):
+            called = structure.called_as.get(index) or called_by(block, control, structure.entries)
+            yield from ((index, number) for number in places.get(called, ()))
+
+
+def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
+    """Yield the ways on from a block that neither calls nor ends: the last block on it, the next.
+
+    A WHILE leads behind its END, too.
+    """
+    kind, partner = structure.blocks[index].kind, structure.partners.get(index)
+    target = structure.jumps.targets.get(index)
+    if target is not None:
+        yield index, target
+    if partner is not None and kind == "end":
+        yield index, partner
+    elif target is None or structure.blocks[index].expression:
+        yield index, index + 1
+    if partner is not None and kind == "while":
+        yield partner, partner + 1
+
+
+def places_of_returns(
+    structure: Structure, programs: Sequence[int], returns: frozenset[str]
+) -> dict[int, set[int]]:
+    """Return the N number to which each program returns by M99 P; it must be one."""
+    places: dict[int, set[int]] = {}
+    for index, block in enumerate(structure.blocks):
+        if programs[index] != MAIN and has_code(block, returns):
+            named = numbers_of(block, "P")
+            if places.setdefault(programs[index], named) != named:
+                structure.problems[index] = "M99 with and without P in one program, or two P"
+    return places
+
+
+def called_by(block: ForeignBlock, control: Control, numbers: Collection[int]) -> int:
+    """Return the number of the program that a block calls, as far as it is written plainly."""
+    own = numbers_of(block, "P")
+    if own and not has_code(block, codes_meaning(control, LOCAL)):
+        return called_program(min(own), control, numbers)[0]
+    return LOCAL_BLOCKS + min(own or numbers_of(block, "Q"), default=0)
+
+
+def has_code(block: ForeignBlock, codes: frozenset[str]) -> bool:
+    """Tell whether a block has one of some codes."""
+    return any(w.letter in "GM" and w.kind == "number" and w.code in codes for w in block.words)
 
 
 def codes_meaning(control: Control, *meanings: str) -> frozenset[str]:
@@ -167,8 +257,9 @@ def numbers_of(block: ForeignBlock, letter: str) -> set[int]:
     return {int(w.value) for w in block.words if w.letter == letter and w.value.isdigit()}
 
 
-def add_local_programs(structure: Structure, heads: dict[int, int], codes: frozenset[str]) -> None:
-    """Note the blocks that M97 calls, each in the program that the call stands in."""
+def add_local_programs(structure: Structure, heads: dict[int, int], control: Control) -> None:
+    """Note the blocks that M97 or M98 Q calls, each in the program that the call stands in."""
+    local, calls = codes_meaning(control, LOCAL), codes_meaning(control, "subprogram")
     head = -1
     numbered: dict[tuple[int, int], int] = {}
     wanted: set[tuple[int, int]] = set()
@@ -177,8 +268,10 @@ def add_local_programs(structure: Structure, heads: dict[int, int], codes: froze
         first = block.words[0] if block.words else None
         if first and first.letter == "N" and first.value.isdigit():
             numbered.setdefault((head, int(first.value)), index)
-        if any(w.letter == "M" and w.kind == "number" and w.code in codes for w in block.words):
+        if has_code(block, local):
             wanted |= {(head, number) for number in numbers_of(block, "P")}
+        elif has_code(block, calls):
+            wanted |= {(head, number) for number in numbers_of(block, "Q")}
     for place in sorted(wanted & numbered.keys()):
         structure.add_entry(LOCAL_BLOCKS + place[1], numbered[place])
 
@@ -198,7 +291,7 @@ def find_returns(structure: Structure, codes: frozenset[str]) -> None:
     number = MAIN
     for index, block in enumerate(structure.blocks):
         number = structure.starts.get(index, number)
-        if any(w.letter == "M" and w.kind == "number" and w.code in codes for w in block.words):
+        if has_code(block, codes):
             structure.last_returns[number] = index
 
 

@@ -28,7 +28,7 @@ MEANINGS = {
         "numbered offset", "offset by program", "exact stop", "macro call", "cancel cycle",
         "drilling cycle",
     ),
-    "M": ("subprogram", "local subprogram", "return"),
+    "M": ("subprogram", "local subprogram", "return", "orientation"),
 }  # fmt: skip
 OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$[0-9]+))*")
 CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Mapping
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.control import Control
@@ -12,6 +12,7 @@ from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
 from g12.tools.translate.blocks.modal import UNSURE, ModalState
 
 AXIS_NUMBERS = {"X": 1, "Y": 2, "Z": 3, "A": 4, "B": 5, "C": 6}
+ENDS = frozenset(("M2", "M30"))
 PARTNERS = {"U": "X", "V": "Y", "W": "Z", "H": "C"}  # a lathe's increments
 
 
@@ -33,11 +34,13 @@ class Draft:
     ``words`` are those that will be its own line; ``meanings`` the codes that a rule of the
     translation owns, by their meaning; ``before`` and ``after`` further lines; ``comments`` what is
     kept as text; ``state`` the modes before the block, which the rules carry on; ``call`` what it
-    calls and ``returns`` whether a subprogram ends here, by ``return_text``; ``head`` begins one;
+    calls, ``returns`` whether a subprogram ends here, by ``return_text``, and ``jumps`` whether
+    another block than the next one follows; ``head`` begins a program;
     ``around`` are lines before and behind its own; ``is_settled`` means that the block is written
     for the distance mode that LinuxCNC is in, ``has_motion`` that its motion code is written;
     ``programs`` are the numbers of the programs in the file, ``called_as`` that of the copy that a
-    call is for, 0 if it is for none; ``index`` tells the block from all others; ``lines`` are those
+    call is for, 0 if it is for none; ``asked`` has the variables that each program compares with #0;
+    ``index`` tells the block from all others; ``lines`` are those
     that it becomes; ``refusal`` is why it is not translated, None if it is, and ``unsure`` the
     modes that are not the same on every way, if that is why.
     """
@@ -62,12 +65,14 @@ class Draft:
         self.comments: list[str] = list(block.comments)
         self.call: SubprogramCall | None = None
         self.returns = False
+        self.jumps = False
         self.return_text = "M99"
         self.head = ""
         self.around: tuple[str, str] | None = None
         self.is_settled = False
         self.has_motion = False
         self.programs = programs
+        self.asked: Mapping[int, frozenset[int]] = {}
         self.lines: list[str] = []
         self.refusal: str | None = None
         self.unsure: tuple[str, ...] = ()
@@ -79,6 +84,12 @@ class Draft:
     def codes(self) -> list[str]:
         """Return the G codes of the block, as LinuxCNC's."""
         return [w.code for w in self.words if w.letter == "G" and w.kind == "number"]
+
+    @property
+    def ends(self) -> bool:
+        """Whether the program ends with the block, by M2, M30 or an alarm."""
+        alarm = self.block.kind == "stop" and self.block.label == "3000"
+        return alarm or any(w.letter == "M" and w.kind == "number" and w.code in ENDS for w in self.words)
 
     def letters(self) -> set[str]:
         """Return the letters of the words that are left."""

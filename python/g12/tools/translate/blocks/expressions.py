@@ -5,7 +5,7 @@ What differs from LinuxCNC and is written anew or refused:
 
 - FIX and FUP go towards and away from zero there, down and up here: written with ABS and a sign.
 - AND, OR and XOR work on bits there and on truth here: only between bracketed comparisons.
-- #0, the empty variable, has no counterpart.
+- #0, the empty variable, has no counterpart: a macro can ask whether one of its own is EMPTY.
 """
 
 from __future__ import annotations
@@ -22,7 +22,10 @@ LONGER_NAMES = {"SQR": "SQRT"}
 COMPARING = frozenset(("EQ", "NE", "GT", "GE", "LT", "LE"))
 JOINING = frozenset(("AND", "OR", "XOR"))
 DEEPEST = 8  # brackets within brackets
-LOCAL = range(1, 31)  # what LinuxCNC keeps apart in every call
+LOCAL = range(1, 34)  # of one call, as LinuxCNC keeps them up to #30
+SHARED = frozenset((31, 32, 33))  # which LinuxCNC has once for all calls
+EMPTY = "-999999999"  # what a macro is given for an empty variable that it asks for
+EMPTY_VARIABLE = re.compile(r"#0+(?![0-9.])")
 COMMON = (range(100, 200), range(500, 1000))
 POSITION = {5041: 5420, 5042: 5421, 5043: 5422}  # where the tool stands, X Y Z
 
@@ -31,13 +34,18 @@ class Expression(NamedTuple):
     """An expression as LinuxCNC reads it.
 
     ``read`` are the numbers of the local variables in it, ``is_condition`` tells whether its
-    value is true or false, ``end`` is the index behind it in the text.
+    value is true or false, ``end`` is the index behind it in the text. ``asked`` are the local
+    variables that it compares with #0; those of ``set_if_true`` and ``set_if_false`` have a value
+    if the condition is true, and if it is false.
     """
 
     text: str
     read: frozenset[int]
     is_condition: bool
     end: int
+    asked: frozenset[int] = frozenset()
+    set_if_true: frozenset[int] = frozenset()
+    set_if_false: frozenset[int] = frozenset()
 
 
 def value_from(text: str, start: int) -> Expression:
@@ -66,7 +74,9 @@ def _operand(text: str, start: int, depth: int) -> Expression:
         at += 1
     sign = "-" * (text[start:at].count("-") % 2)
     found = _unsigned(text, at, depth)
-    return found._replace(text=sign + found.text, is_condition=found.is_condition and not sign)
+    if not sign:
+        return found
+    return Expression(sign + found.text, found.read, False, found.end, found.asked)
 
 
 def _unsigned(text: str, at: int, depth: int) -> Expression:
@@ -86,7 +96,7 @@ def _unsigned(text: str, at: int, depth: int) -> Expression:
 def _variable(text: str, at: int, depth: int) -> Expression:
     if text.startswith("[", at + 1):
         index = _brackets(text, at + 1, depth)
-        return index._replace(text=f"#{index.text}", is_condition=False)
+        return Expression(f"#{index.text}", index.read, False, index.end, index.asked)
     digits = re.compile(r"[0-9]+").match(text, at + 1)
     if not digits:
         raise NotTranslated(f"{excerpt(text[at:])} is no variable: # and a number")
@@ -103,9 +113,11 @@ def variable_number(digits: str) -> int:
     if number in POSITION:
         return POSITION[number]
     if number == 0:
-        raise NotTranslated("#0, the empty variable, does not exist on LinuxCNC: give it a value")
+        raise NotTranslated(
+            "#0, the empty variable, is translated in #… EQ #0 and #… NE #0 only, for #1 to #33"
+        )
     raise NotTranslated(
-        f"#{digits[:9]} means something else on LinuxCNC: variables are #1 to #30, "
+        f"#{digits[:9]} means something else on LinuxCNC: variables are #1 to #33, "
         "#100 to #199 and #500 to #999"
     )
 
@@ -120,7 +132,8 @@ def _brackets(text: str, start: int, depth: int) -> Expression:
 
 
 def _function(name: str, text: str, at: int, depth: int) -> Expression:
-    argument = _brackets(text, at, depth)._replace(is_condition=False)
+    inner = _brackets(text, at, depth)
+    argument = Expression(inner.text, inner.read, False, inner.end, inner.asked)
     if name == "ATAN":
         return _arc_tangent(argument, text, depth)
     if name in ("FIX", "FUP"):
@@ -133,26 +146,60 @@ def _arc_tangent(argument: Expression, text: str, depth: int) -> Expression:
     if not text.startswith("/[", argument.end):
         return argument._replace(text=f"ATAN{argument.text}/[1]")
     below = _brackets(text, argument.end + 1, depth)
-    read = argument.read | below.read
-    return Expression(f"ATAN{argument.text}/{below.text}", read, False, below.end)
+    read, asked = argument.read | below.read, argument.asked | below.asked
+    return Expression(f"ATAN{argument.text}/{below.text}", read, False, below.end, asked)
 
 
 def _chain(text: str, start: int, depth: int) -> Expression:
     """Return values with operators between them."""
     first = _operand(text, start, depth)
-    parts, operators, read, at = [first], [], first.read, first.end
+    question = _empty_question(first, text)
+    if question:
+        return question
+    parts, operators, at = [first], [], first.end
     while operator := OPERATOR.match(text, at):
         part = _operand(text, operator.end(), depth)
         parts.append(part)
         operators.append(operator[0])
-        read, at = read | part.read, part.end
+        at = part.end
     _check_operators(parts, operators)
-    written = [first.text]
+    return _joined(parts, operators) if operators else first
+
+
+def _empty_question(first: Expression, text: str) -> Expression | None:
+    """Return the question whether a local variable is empty, None if it is no such question."""
+    operator = re.compile("EQ|NE").match(text, first.end)
+    empty = operator and EMPTY_VARIABLE.match(text, operator.end())
+    if not empty or len(first.read) != 1 or first.text != f"#{min(first.read)}":
+        return None
+    asked, is_equal = first.read, operator[0] == "EQ"
+    return Expression(
+        f"{first.text} {operator[0]} {EMPTY}",
+        frozenset(),
+        True,
+        empty.end(),
+        asked,
+        frozenset() if is_equal else asked,
+        asked if is_equal else frozenset(),
+    )
+
+
+def _joined(parts: list[Expression], operators: list[str]) -> Expression:
+    """Return an expression of several parts."""
+    written = [parts[0].text]
     for operator, part in zip(operators, parts[1:]):
         written += (operator, part.text)
-    is_condition = any(o in COMPARING or o in JOINING for o in operators)
-    is_condition = is_condition or (len(parts) == 1 and first.is_condition)
-    return Expression(" ".join(written), read, is_condition, at)
+    is_all, is_any = "AND" in operators, "OR" in operators
+    none: frozenset[int] = frozenset()
+    return Expression(
+        " ".join(written),
+        none.union(*(part.read for part in parts)),
+        any(o in COMPARING or o in JOINING for o in operators),
+        parts[-1].end,
+        none.union(*(part.asked for part in parts)),
+        none.union(*(part.set_if_true for part in parts)) if is_all else none,
+        none.union(*(part.set_if_false for part in parts)) if is_any else none,
+    )
 
 
 def _check_operators(parts: list[Expression], operators: list[str]) -> None:

@@ -28,7 +28,10 @@ PLAIN_WORD = re.compile(r"([A-Z])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
 CODE_NUMBER = re.compile(r"([0-9]+)\.?([0-9]*)")
 NAMED_WORD = re.compile(r"([A-Z]{2})=")
 SKIP = re.compile(r"/([0-9]?)")
-STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])")
+STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])|RTS$")
+NAMED_PROGRAM = re.compile(r"O([A-PR-Z][A-PR-Z0-9]{1,3})$")  # Q is how often, in a call
+CALLED_PROGRAM = re.compile(r"O([0-9]{1,8}|[A-PR-Z][A-PR-Z0-9]{1,3})(?:Q([0-9]{1,4}))?")
+NAMED_PROGRAMS = 5_000_000  # O and a name of up to four characters is a number above this
 ASSIGNMENT = re.compile(r"#([0-9]+)=")
 OBEYED = re.compile(r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I)
 BRACES = str.maketrans("{}", "()")  # remarks in some manuals; a comment has round ones
@@ -81,8 +84,9 @@ class ForeignBlock(NamedTuple):
     """One block of a program, or what stands in its place.
 
     ``kind`` is ``words``, ``tape`` (a ``%``), ``assign`` (``variable`` = ``expression``),
-    ``while``, ``do``, ``end``, ``if`` (``expression`` and the assignment ``then``) or ``goto``.
-    ``line`` counts from 1; ``label`` is the number of DO and END; ``problem`` is why the block
+    ``while``, ``do``, ``end``, ``if`` (``expression`` and the assignment ``then``), ``stop`` or
+    ``goto`` (``expression`` if it has a condition).
+    ``line`` counts from 1; ``label`` is the number of DO, END and GOTO; ``problem`` is why the block
     could not be read, None if it could.
     """
 
@@ -176,7 +180,8 @@ def printable(comment: str) -> str:
 
 def _block(line: int, text: str, comments: tuple[str, ...]) -> ForeignBlock:
     try:
-        return _parsed(line, text)._replace(comments=comments)
+        block = _parsed(line, text)
+        return block._replace(comments=block.comments + comments)
     except NotTranslated as problem:
         return ForeignBlock(line, comments=comments, problem=str(problem))
 
@@ -207,7 +212,10 @@ def _statement(line: int, text: str) -> ForeignBlock:
         return _parsed(line, rest[1:])._replace(skipped=True)
     statement = STATEMENT.match(rest)
     if statement:
-        block = READERS[statement[1]](line, rest[statement.end() :])
+        block = READERS[statement[0]](line, rest[statement.end() :])
+    elif NAMED_PROGRAM.match(rest):
+        number = program_number(rest[1:])
+        block = ForeignBlock(line, words=(ForeignWord("O", number),), comments=(rest,))
     elif ASSIGNMENT.match(rest):
         block = _assignment(line, rest)
     else:
@@ -229,9 +237,9 @@ def _if(line: int, text: str) -> ForeignBlock:
     condition = bracketed_from(text, 0)
     rest = text[condition.end :]
     if rest.startswith("GOTO"):
-        return _goto(line, rest)
+        return _goto(line, rest[4:])._replace(expression=condition)
     if not rest.startswith("THEN"):
-        raise NotTranslated("IF without THEN: only IF […] THEN #… = … is translated")
+        raise NotTranslated("IF […] needs THEN and an assignment, or GOTO, behind it")
     then = _parsed(line, rest[4:])
     if then.kind not in ("assign", "stop"):
         raise NotTranslated("behind THEN only an assignment is translated, #… = …")
@@ -257,17 +265,40 @@ def _end(line: int, text: str) -> ForeignBlock:
 
 
 def _goto(line: int, text: str) -> ForeignBlock:
-    raise NotTranslated(
-        "GOTO is not translated: write a loop as WHILE […] DO1 … END1, "
-        "a choice as IF […] THEN #… = …"
-    )
+    if not re.fullmatch("[0-9]{1,9}", text):
+        raise NotTranslated(f"GOTO {excerpt(text)}: only a number of a block is translated")
+    return ForeignBlock(line, "goto", label=text)
 
 
 def _call(line: int, text: str) -> ForeignBlock:
-    raise NotTranslated("CALL is not translated: write a subprogram of the file with M98 P")
+    """Return CALL of an Okuma control, with Q how often, as the M98 that it is."""
+    match = CALLED_PROGRAM.fullmatch(text)
+    if not match:
+        raise NotTranslated(f"CALL{excerpt(text)}: only a program and Q, how often, are translated")
+    words = [ForeignWord("M", "98"), ForeignWord("P", program_number(match[1]))]
+    words += [ForeignWord("L", match[2])] if match[2] else []
+    return ForeignBlock(line, words=tuple(words))
 
 
-READERS = {"IF": _if, "WHILE": _while, "DO": _do, "END": _end, "GOTO": _goto, "CALL": _call}
+def _return(line: int, text: str) -> ForeignBlock:
+    """Return RTS of an Okuma control as the M99 that it is."""
+    return ForeignBlock(line, words=(ForeignWord("M", "99"),))
+
+
+def program_number(name: str) -> str:
+    """Return the number of a program by its name; names of letters are numbers, too."""
+    return name if name.isdigit() else str(NAMED_PROGRAMS + int(name, 36))
+
+
+READERS = {
+    "IF": _if,
+    "WHILE": _while,
+    "DO": _do,
+    "END": _end,
+    "GOTO": _goto,
+    "CALL": _call,
+    "RTS": _return,
+}
 
 
 def _words(text: str) -> tuple[ForeignWord, ...]:

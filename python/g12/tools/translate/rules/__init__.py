@@ -25,6 +25,7 @@ from g12.tools.translate.rules import (
 WORD_RULES = (
     codes.keep_as_comments,
     codes.map_codes,
+    spindle.orientation,
     modes.follow_modes,
     polar.plane_letters,
     subprograms.call_macro,
@@ -44,6 +45,7 @@ WORD_RULES = (
     reference.machine_position,
     motion.motion_mode,
     motion.distance_mode,
+    spindle.stop_behind_a_cut,
     modes.refuse_leftovers,
     subprograms.finish_call,
 )

@@ -24,6 +24,7 @@ def keep_as_comments(draft: Draft) -> None:
 
 def map_codes(draft: Draft) -> None:
     """Replace every code, keep it, hand it to its rule, or refuse it."""
+    part_builders_codes(draft)
     named = draft.control.tables.get("words", {})
     words: list[ForeignWord] = []
     for word in draft.words:
@@ -34,15 +35,29 @@ def map_codes(draft: Draft) -> None:
     draft.words = words
 
 
+def part_builders_codes(draft: Draft) -> None:
+    """Write all builder's codes but the last on lines before: LinuxCNC takes one in a block."""
+    found = [w for w in draft.words if w.letter == "M" and w.kind == "number" and is_own(draft, w)]
+    for word in found[:-1]:
+        draft.before += [one.text for one in mapped(draft, word)]
+        draft.words = [other for other in draft.words if other is not word]
+
+
+def is_own(draft: Draft, word: ForeignWord) -> bool:
+    """Tell whether a code is one that the machine has besides LinuxCNC's."""
+    meaning = draft.control.meanings.get(word.code, "")
+    known = word.code in (draft.machine_codes or ()) and meaning not in RULES
+    return known or meaning == "machine"
+
+
 def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
     """Return the words in place of one code."""
     if word.kind != "number":
         raise NotTranslated(f"{word.letter}{word.value}: a code must be a number")
     code, control = word.code, draft.control
     meaning = control.meanings.get(code, "")
-    if code in (draft.machine_codes or ()) and meaning not in RULES:
-        return [word]
-    if meaning == "same":
+    known = code in (draft.machine_codes or ()) and meaning not in RULES
+    if known or meaning == "same":
         return [word]
     if meaning in RULES:
         return handed_over(draft, meaning, word)

@@ -81,11 +81,10 @@ def distance_mode(draft: Draft) -> None:
 
 
 def exact_stop(draft: Draft) -> None:
-    """Keep G9 in polar mode, which has it; elsewhere LinuxCNC has none for one block."""
+    """Keep G9 in polar mode, which has it; elsewhere a dwell of no time ends the move in a stop."""
     code = draft.meanings.pop("exact stop", None)
-    if code and draft.state.polar != "on":
-        raise NotTranslated(
-            f"{code.code}, an exact stop for one block: write G61 and G64 around it"
-        )
-    if code:
+    if code and draft.state.polar == "on":
         draft.put_first("G9")
+    elif code:
+        draft.comments.append(code.code)
+        draft.after.append("G4 P0")

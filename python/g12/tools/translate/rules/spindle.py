@@ -1,11 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G50 S and G92 S: the speed limit, which LinuxCNC takes as D beside G96; with axes the origin."""
+"""The spindle: its speed limit, its orientation, and when it stops.
+
+G50 S and G92 S are the limit, which LinuxCNC takes as D beside G96; with axes the origin.
+"""
 
 from __future__ import annotations
 
-from g12.tools.translate.blocks.draft import Draft, word_of
+from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN
+
+LONGEST_WAIT = "Q30"  # s, then LinuxCNC says that the spindle is not oriented
+STOPS = frozenset(("M5", "M9"))
+RAPIDS = frozenset(("G0", "G28", "G30", "G53"))
+POCKETS = frozenset(("G12", "G13", "G12.2", "G13.2"))
 
 
 def speed_limit(draft: Draft) -> None:
@@ -39,3 +47,35 @@ def limit_now(draft: Draft, code: str, limit: str) -> None:
     if surface == UNKNOWN:
         raise NotTranslated(f"{code} S within G96, and the S of G96 is not known here")
     draft.after.append(f"G96 S{surface} D{limit}")
+
+
+def orientation(draft: Draft) -> None:
+    """Write M19 so that LinuxCNC waits for it: at the machine's own place, or at R or P degrees."""
+    code = draft.meanings.pop("orientation", None)
+    if not code:
+        return
+    angles = [word for letter in "RP" if (word := draft.take(letter))]
+    if len(angles) > 1:
+        raise NotTranslated(f"{code.code} with R and P: one of them is its angle")
+    line = " ".join(["M19", *(f"R{word.value}" for word in angles), LONGEST_WAIT])
+    if draft.alone():
+        draft.words.append(line_as_word(line))
+    else:
+        draft.before.append(line)
+
+
+def stop_behind_a_cut(draft: Draft) -> None:
+    """Write M5 and M9 of a block that cuts behind it: LinuxCNC would stop before the move."""
+    stops = [w for w in draft.words if w.letter == "M" and w.kind == "number" and w.code in STOPS]
+    if not stops or not cuts(draft):
+        return
+    draft.words = [word for word in draft.words if word not in stops]
+    draft.after.insert(0, " ".join(word.text for word in stops))
+
+
+def cuts(draft: Draft) -> bool:
+    """Tell whether a block moves at a feed."""
+    codes, state = set(draft.codes()), draft.state
+    if codes & RAPIDS or not draft.letters() & set("XYZABCIJKR"):
+        return False
+    return bool(codes & POCKETS or state.cycle or state.motion in ("G1", "G2", "G3", "G33"))

@@ -2,7 +2,7 @@
 """Calls and returns: M98 and M97 as LinuxCNC's numbered programs, G65 as an O-word with arguments.
 
 LinuxCNC's own M98 P L, O100 and M99 do what M98 does on a macro control, #1 to #30 shared with the
-caller. G65 starts with its letters as #1 to #26 and gives the caller its own back: an O-word sub.
+caller. M98 Q calls a block of its own program, as M97 does. G65 starts with its letters as #1 to #26 and gives the caller its own back: an O-word sub.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections.abc import Container
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.expressions import EMPTY
 from g12.tools.translate.blocks.lexer import ForeignWord
 
 ARGUMENTS = dict(zip("ABCIJKDEFHMQRSTUVWXYZ", (*range(1, 10), 11, 13, *range(17, 27))))
@@ -36,19 +37,19 @@ def call_macro(draft: Draft) -> None:
             draft.call = subprogram_call(draft, code.code, meaning)
     code = draft.meanings.pop("return", None)
     if code:
-        if "P" in draft.letters():
-            raise NotTranslated(
-                f"{code.code} P, a return to another block, is a jump: not translated"
-            )
-        draft.returns = True
+        draft.returns = not (draft.take("P") and draft.jumps)
 
 
 def subprogram_call(draft: Draft, code: str, meaning: str) -> SubprogramCall:
     """Return the call of M98 or M97."""
-    number = called_number(draft, code, draft.take("P"))
+    local = meaning == "local subprogram"
+    start = None if local else draft.take("Q")
+    if start and "P" in draft.letters():
+        raise NotTranslated(f"{code} P with {start.text}: a program is called from its beginning")
+    number = called_number(draft, code, start or draft.take("P"))
     repeats = draft.take("L")
     count = repeats.value if repeats else ""
-    if meaning == "local subprogram":
+    if local or start:
         return SubprogramCall(LOCAL_BLOCKS + number, "sub", count)
     if not count:
         number, count = called_program(number, draft.control, draft.programs)
@@ -115,7 +116,8 @@ def call_lines(draft: Draft) -> list[str]:
     call = draft.call
     if call.kind == "sub":
         return [f"M98 P{call.number}{f' L{call.repeats}' if call.repeats else ''}"]
-    given = dict(call.arguments)
+    empty = dict.fromkeys(draft.asked.get(call.number, ()), EMPTY)
+    given = {**empty, **dict(call.arguments)}
     values = "".join(f" [{given.get(n, '0')}]" for n in range(1, max(given, default=0) + 1))
     line = f"o<macro_{call.number}> call{values}"
     if not call.repeats:
