@@ -67,6 +67,25 @@ CONSTRUCTS = [
     ("haas-mill", "#100=1\nWHILE[#100LT4]DO1\nG91 G1 X.1\n#100=#100+1\nEND1\nG90",
      "G91 G1 X.1\nX.1\nX.1\nG90"),
     ("haas-mill", "#1=2.\nIF[#1 EQ 2]THEN #1=2.5\nX#1", "X2.5"),
+    # jumps: over blocks, back, out of loops, crossing, by M99 P, and programs called by M98 Q
+    ("haas-mill", "#1=3\nIF[#1GT2]GOTO5\nX9.\nN5 G1 X2.", "G1 X2"),
+    ("haas-mill", "#1=1\nIF[#1GT2]GOTO5\nX9.\nN5 G1 X2.", "X9\nG1 X2"),
+    ("haas-mill", "#1=0\nN5 G91 X.1\n#1=#1+1\nIF[#1LT3]GOTO5\nG90", "G91 X.1\nX.1\nX.1\nG90"),
+    ("haas-mill", "#1=0\nN5 IF[#1GE2]GOTO7\nG1 X#1\n#1=#1+1\nGOTO5\nN7 Y5.", "G1 X0\nX1\nY5"),
+    ("haas-mill", "#1=2\nIF[#1EQ1]GOTO5\nG1 X4.\nGOTO6\nN5 G0 X5.\nN6 Y4.", "G1 X4\nY4"),
+    ("haas-mill", "#1=1\nIF[#1EQ1]GOTO5\nG1 X4.\nGOTO6\nN5 G1 X5.\nN6 Y4.", "G1 X5\nY4"),
+    ("haas-mill", "#1=0\nWHILE[#1LT9]DO1\n#1=#1+1\nIF[#1EQ2]GOTO3\nIF[#1GT3]GOTO4\nG1 X#1\n"
+     "N3 END1\nN4 Y4.", "G1 X1\nX3\nY4"),
+    ("haas-mill", "G1 X5.\nM99 P7\nX9.\nN7 Y5.", "G1 X5\nY5"),
+    ("haas-mill", "/GOTO5\nG1 X5.\nN5 Y5.", "G1 X5\nY5"),
+    ("haas-mill", "M98 P5\nX9.\nN7 Y5.\nM30\nO5\nG1 X5.\nM99 P7", "G1 X5\nY5"),
+    ("fanuc-mill", "M98 Q5 L2\nG90\nM98 Q6\nM30\nN5 G91 G1 X.5\nM99\nN6 G0 Y3.\nM99",
+     "G91 G1 X.5\nX.5\nG90\nG0 Y3"),
+    ("haas-mill", "G65 P5 A2. B1.\nG65 P5 A4.\nM30\nO5\nIF[#2EQ#0]GOTO9\nG1 Y#2\nGOTO8\n"
+     "N9 #2=7.\nG1 Y#2\nN8 X#1\nM99", "G1 Y1\nX2\nY7\nX4"),
+    ("haas-mill", "G65 P5 A2.\nM30\nO5\nGOTO8\nN7 Y3.\nM99\nN8 G1 X#1\nGOTO7", "G1 X2\nY3"),
+    ("haas-mill", "T2 M6\nM3 S100\nG1 X2. M9\nX3. M5", "T2 M6\nM3 S100\nG1 X2\nM9\nX3\nM5"),
+    ("haas-mill", "G9 G1 X2.\nG0 X3.", "G1 X2\nG4 P0\nG0 X3"),
     # a lathe's words
     ("fanuc-lathe", "G98 G1 X45. F100.\nG99 F.3", "G94 G1 X45 F100\nG95 F.3"),
     ("fanuc-lathe", "G1 U-5. W-2.", "G1 X45 Z3"),

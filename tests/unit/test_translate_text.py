@@ -199,7 +199,6 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G4 P-1", "P-1: a time below 0"),
         (FANUC, "G4 P1.5", "P1.5: milliseconds have no decimal point"),
         (FANUC, "G4 X5", "X5 has no decimal point: thousandths or seconds?"),
-        (HAAS, "G9 X1.", "G9, an exact stop for one block"),
         (HAAS, "G30 P3 Z0", "G30 P3: LinuxCNC has two reference points"),
         (HAAS, "G91 G53 Z0", "G53 under G91"),
         (HAAS, "G81 R.1", "G81 without Z"),
@@ -213,17 +212,24 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G10 L12 P3 G91 R.1", "G10 for the diameter of T3"),
         (HAAS, "M97 P5", "N5 is not in this program: M97"),
         (HAAS, "M98", "M98 needs P"),
-        (HAAS, "M99 P5", "M99 P, a return to another block"),
+        (HAAS, "M98 P5 Q7", "M98 P with Q7: a program is called from its beginning"),
+        (HAAS, "M99 P5", "there is no N5 in this program"),
+        (HAAS, "GOTO 5", "there is no N5 in this program"),
+        (HAAS, "GOTO#1", "GOTO #1: only a number of a block is translated"),
+        (HAAS, "M19 R1. P2", "M19 with R and P"),
         (HAAS, "G65 P5 O1", "O1 cannot be an argument"),
         (HAAS, "G65 P5 X1", "X1 has no decimal point: write X1."),
-        (HAAS, "IF[1 EQ 1] G0 X1.", "IF without THEN"),
+        (HAAS, "IF[1 EQ 1] G0 X1.", "IF […] needs THEN and an assignment, or GOTO"),
         (HAAS, "IF[1 EQ 1] THEN G0 X1.", "behind THEN only an assignment"),
         (HAAS, "WHILE[1 EQ 1]", "WHILE […] needs DO"),
         (HAAS, "DO1", "DO without WHILE"),
         (HAAS, "END1", "END1 without WHILE"),
         (HAAS, "WHILE[1 EQ 1]DO1", "WHILE […] DO1 has no END1"),
         (HAAS, "#1=#4001", "#4001 means something else"),
-        (HAAS, "#3000=1 (STOP)\nG0 X#0", "X has no value: #0, the empty variable"),
+        (HAAS, "G0 X#0", "X has no value: #0, the empty variable"),
+        (HAAS, "#1=#0", "#0, the empty variable, is translated in #… EQ #0"),
+        (HAAS, "G0 X[#1EQ#0]", "X: #0, the empty variable, is translated in conditions only"),
+        (HAAS, "IF[#1EQ#0]THEN#1=2.", "#0, the empty variable, is translated in a program of G65"),
         (HAAS, "#1=[#2 AND 3]", "AND is translated between comparisons"),
         (HAAS, "#1=1 EQ 2 EQ 3", "two comparisons in a row"),
         (HAAS, "#1=BIN[#2]", "BIN[#2] stands where a value"),
@@ -246,6 +252,108 @@ def test_what_is_refused_is_told(control, block, start):
     refused = sentence(control, f"{head}{block}\nM30\n")
     assert refused.line == 2 + 1 + block.count("\n")
     assert refused.sentence.startswith(start)
+
+
+@pytest.mark.parametrize(
+    ("blocks", "line", "start"),
+    [
+        ("GOTO5\nWHILE[#1LT2]DO1\nN5 X1.\nEND1", 3, "N5 is in a loop: no jump leads into"),
+        ("N5 X1.\nGOTO5", 4, "the program goes round for ever"),
+        ("/WHILE[#1LT2]DO1\nEND1", 3, "the head or the end of a loop cannot be skipped"),
+        ("M98 P5\nM30\nO5\nGOTO6\nM99\nO6\nN6 M99", 6, "there is no N6 in this program"),
+        ("M98 P5\nN1 M30\nO5\n/M99\nM99 P1", 7, "M99 with and without P in one program"),
+        ("M98 P5 L2\nN1 M30\nO5\nM99 P1", 3, "the called program returns by M99 P"),
+        ("G65 P5\nG65 P6\nM30\nO5\n#31=1\nM99\nO6\n#31=1\nM99", 10, "#31 is used in two pr"),
+        ("G65 P5\nM30\nO5\nIF[#1EQ2]GOTO9\n#2=1\nN9 X#2\nM99", 6, "O5 reads #1 (A of"),
+        ("G65 P5 A1.\nM30\nO5\nIF[#1EQ2]GOTO9\n#2=1\nN9 X#2\nM99", 8, "O5 reads #2 (B of"),
+    ],
+)  # fmt: skip
+def test_jumps_and_variables_that_are_not_sound(blocks, line, start):
+    refused = sentence(HAAS, f"{MILL}{blocks}\nM30\n")
+    assert (refused.line, refused.sentence[: len(start)]) == (line, start)
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        "G65 P5\nM30\nO5\nIF[#2EQ#0]GOTO9\nX#2\nN9 M99",
+        "G65 P5\nM30\nO5\nIF[[#2EQ#0]OR[#3EQ#0]]GOTO9\nX#2 Y#3\nN9 M99",
+        "G65 P5\nM30\nO5\nIF[[#2NE#0]AND[#3NE#0]]GOTO9\nM99\nN9 X#2 Y#3\nM99",
+        "G65 P5\nM30\nO5\nIF[#2EQ#0]THEN#2=3.\nX#2\nM99",
+        "G65 P5\nM30\nO5\nIF[#2NE#0]THEN#3=#2\nM99",
+        "G65 P5\nM30\nO5\nWHILE[#2EQ#0]DO1\n#2=1\nEND1\nX#2\nM99",
+        "G65 P5\nM30\nO5\nGOTO8\nN7 X#2\nM99\nN8 #2=1\nGOTO7\n",
+    ],
+)
+def test_a_macro_that_asks_for_empty_variables(blocks):
+    assert lines(HAAS, f"{MILL}{blocks}\n")
+
+
+def test_a_jump_leaves_the_lines_between_at_their_numbers():
+    text = "N1 G1 X1. F9.\n#1=#1+1\nIF[#1LT3]GOTO1\nX2.\nM30\n"
+    assert behind(HAAS, text) == [
+        "#<jump_2>=0",
+        "o<jump_2> do (line 3)",
+        "o<jump_2_0> if [#<jump_2> LE 0] (line 3)",
+        "N1 G1 X1. F9. (line 3)",
+        "#1=[#1 + 1]",
+        "o<if_4> if [#1 LT 3]",
+        "#<jump_2>=0 (line 5)",
+        "o<jump_2> continue (line 5)",
+        "o<if_4> endif (line 5)",
+        "o<jump_2_0> endif (line 5)",
+        "#<jump_2>=-1 (line 5)",
+        "o<jump_2> while [#<jump_2> GE 0] (line 5)",
+        "X2.",
+        "M30",
+    ]
+
+
+def test_builders_codes_in_one_block_have_lines_of_their_own():
+    assert behind(LATHE, "N5 G0 X1. M35 M36 M8 M37\nM30\n")[:3] == [
+        "M35", "M36 (line 3)", "N5 G0 X1. M8 M37 (line 3)",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("block", "written"),
+    [
+        ("G1 X1. F9. M9", ["G1 X1. F9.", "M9 (line 3)"]),
+        ("G3 X1. R1. F9. M5 M9", ["G3 X1. R1. F9.", "M5 M9 (line 3)"]),
+        ("G12 I1. F9. D1 M9", ["G12 I1. F9. D1", "M9 (line 3)"]),
+        ("G0 X1. M9", ["G0 X1. M9"]),
+        ("G1 F9. M9", ["G1 F9. M9"]),
+    ],
+)
+def test_spindle_and_coolant_stop_behind_a_cut(block, written):
+    assert behind(HAAS, f"{block}\nM30\n")[:-1] == written
+
+
+def test_the_orientation_of_the_spindle():
+    assert behind(HAAS, "M19\nG0 X1. M19 R90.\nM19 P45\nM30\n")[:4] == [
+        "M19 Q30", "M19 R90. Q30", "G0 X1. (line 4)", "M19 R45 Q30",
+    ]  # fmt: skip
+
+
+def test_a_number_whose_unit_is_not_said():
+    refused = sentence(FANUC, "G0 X0\nG1 X1. F60\n")
+    assert refused.sentence.endswith("hangs on G20 or G21, and neither is said before (--units)")
+
+
+def test_subprograms_with_names():
+    okuma = read_control("okuma-lathe")
+    text = "G0 X50. Z5.\nCALL OSUB1 Q2\nCALL O12\nM2\nOSUB1\nX40.\nRTS\nO12\nX41.\nRTS\n"
+    assert behind(okuma, text, "(HEAD)\n") == [
+        "G0 X50. Z5.", "M98 P6345645 L2", "M98 P12", "M2", "O6345645 (OSUB1)", "X40.", "M99",
+        "O12", "X41.", "M99",
+    ]  # fmt: skip
+    assert sentence(okuma, "CALL OSUBX1\n").sentence.startswith("CALLOSUBX1: only a program and Q")
+
+
+def test_a_line_of_which_a_part_is_never_reached():
+    assert behind(HAAS, "X1.; M30; X2.\n") == [
+        "X1.", "M30 (line 3)", "(not reached: X1., M30, X2.) (line 3)",
+    ]  # fmt: skip
 
 
 def test_a_speed_limit_within_surface_speed_is_written_at_once():

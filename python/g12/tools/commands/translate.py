@@ -21,6 +21,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from g12.lengths import is_inch
 from g12.machine_ini import Remap, code_number, remap_lines
 from g12.tools.commands.arguments import GOOD, Parser, one_line
 from g12.tools.errors import ProgramError, UsageError
@@ -41,6 +42,7 @@ examples:
 exit code: 0 the program is printed, 1 a block is refused, 2 wrong use
 """
 USER_CODE = re.compile(r"M(1[0-9]{2})")
+SAYS_UNITS = re.compile(r"G\s*0*(2[01])(?![0-9.])", re.IGNORECASE)
 UNITS = {"inch": "G20", "mm": "G21"}
 POLAR_HANDLERS = ("polar_on", "polar_off")
 PROGRESS_EVERY = 0.2  # s
@@ -105,10 +107,18 @@ def translated(asked: argparse.Namespace, control: Control) -> str:
     codes = machine_codes(ini) if ini else None
     pair = polar_pair(remap_lines(ini.all)) if ini else None
     control = replace(control, polar_codes=pair) if pair else control
+    if ini and not asked.units and not SAYS_UNITS.search(text):
+        control = replace(control, start=(*control.start, units_code(ini)))
     result = translate_program(text, control, codes, progress())
     if result.refused:
         raise ProgramError(f"{asked.program}:{refusal_sentence(result.refused)}")
     return result.text
+
+
+def units_code(ini: Ini) -> str:
+    """Return the code of the units that a machine begins in."""
+    startup = SAYS_UNITS.findall(ini.get("RS274NGC", "RS274NGC_STARTUP_CODE") or "")
+    return f"G{startup[-1]}" if startup else "G20" if is_inch(ini.mm) else "G21"
 
 
 def refusal_sentence(refused: list[RefusedBlock]) -> str:

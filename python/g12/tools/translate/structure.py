@@ -125,7 +125,8 @@ def find_ends(structure: Structure, control: Control) -> None:
 
 def asked_by(block: ForeignBlock) -> frozenset[int]:
     """Return the variables that a block compares with #0."""
-    return block.expression.asked if block.expression else frozenset()
+    parts = [part.expression for part in (block, block.then) if part and part.expression]
+    return frozenset().union(*(part.asked for part in parts))
 
 
 def programs_of_blocks(structure: Structure) -> list[int]:

@@ -39,10 +39,10 @@ class Draft:
     ``around`` are lines before and behind its own; ``is_settled`` means that the block is written
     for the distance mode that LinuxCNC is in, ``has_motion`` that its motion code is written;
     ``programs`` are the numbers of the programs in the file, ``called_as`` that of the copy that a
-    call is for, 0 if it is for none; ``asked`` has the variables that each program compares with #0;
-    ``index`` tells the block from all others; ``lines`` are those
-    that it becomes; ``refusal`` is why it is not translated, None if it is, and ``unsure`` the
-    modes that are not the same on every way, if that is why.
+    call is for, 0 if it is for none; ``asked`` has what each program compares with #0; ``index``
+    tells the block from all others; ``lines`` are those that it becomes; ``refusal`` is why it is
+    not translated, None if it is, and ``unsure`` the modes that are not the same on every way, if
+    that is why.
     """
 
     def __init__(
@@ -88,8 +88,9 @@ class Draft:
     @property
     def ends(self) -> bool:
         """Whether the program ends with the block, by M2, M30 or an alarm."""
-        alarm = self.block.kind == "stop" and self.block.label == "3000"
-        return alarm or any(w.letter == "M" and w.kind == "number" and w.code in ENDS for w in self.words)
+        if self.block.kind == "stop" and self.block.label == "3000":
+            return True
+        return any(w.letter == "M" and w.kind == "number" and w.code in ENDS for w in self.words)
 
     def letters(self) -> set[str]:
         """Return the letters of the words that are left."""

@@ -85,8 +85,8 @@ class ForeignBlock(NamedTuple):
 
     ``kind`` is ``words``, ``tape`` (a ``%``), ``assign`` (``variable`` = ``expression``),
     ``while``, ``do``, ``end``, ``if`` (``expression`` and the assignment ``then``), ``stop`` or
-    ``goto`` (``expression`` if it has a condition).
-    ``line`` counts from 1; ``label`` is the number of DO, END and GOTO; ``problem`` is why the block
+    ``goto`` (``expression`` if it has a condition). ``line`` counts from 1; ``label`` is the number
+    of DO, END and GOTO; ``problem`` is why the block
     could not be read, None if it could.
     """
 
@@ -331,6 +331,8 @@ def _word(text: str, at: int) -> tuple[ForeignWord, int]:
         value = value_from(text, start)
     except NotTranslated as problem:
         raise NotTranslated(f"{letter} has no value: {problem}") from None
+    if value.asked:
+        raise NotTranslated(f"{letter}: #0, the empty variable, is translated in conditions only")
     kind = "number" if re.fullmatch(r"-?[0-9.]+", value.text) else "expression"
     return ForeignWord(letter, value.text, kind, value.read), value.end
 

@@ -54,6 +54,11 @@ def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
     least, rule = least_increment(draft, kind), draft.control.decimals
     if rule == "whole" or least == 1:
         return word
+    if rule == "" and not least and 1 in both_increments(draft, kind):
+        raise NotTranslated(
+            f"{word.text} has no decimal point: what it is then hangs on G20 or G21, and neither "
+            "is said before (--units)"
+        )
     if rule == "":
         raise NotTranslated(
             f"{word.text} has no decimal point, and the control does not say what it is then: "
@@ -72,7 +77,12 @@ def least_increment(draft: Draft, kind: str) -> float:
     unit = UNIT.get(draft.sure("units", "a number has no decimal point"))
     if unit:
         return float(draft.control.value("increments", f"{kind}_{unit}", 0))
-    both = {float(draft.control.value("increments", f"{kind}_{u}", 0)) for u in ("mm", "inch")}
+    both = both_increments(draft, kind)
     if draft.control.decimals == "least" and len(both) > 1:
         raise NotTranslated("a number has no decimal point before G20 or G21 is said")
     return both.pop() if len(both) == 1 else 0.0
+
+
+def both_increments(draft: Draft, kind: str) -> set[float]:
+    """Return the increments of a class in millimetres and in inches."""
+    return {float(draft.control.value("increments", f"{kind}_{u}", 0)) for u in ("mm", "inch")}

@@ -2,7 +2,8 @@
 """Calls and returns: M98 and M97 as LinuxCNC's numbered programs, G65 as an O-word with arguments.
 
 LinuxCNC's own M98 P L, O100 and M99 do what M98 does on a macro control, #1 to #30 shared with the
-caller. M98 Q calls a block of its own program, as M97 does. G65 starts with its letters as #1 to #26 and gives the caller its own back: an O-word sub.
+caller. M98 Q calls a block of its own program, as M97 does. G65 starts with its letters as #1 to
+#26 and gives the caller its own back: an O-word sub.
 """
 
 from __future__ import annotations
@@ -95,6 +96,8 @@ def finish_call(draft: Draft) -> None:
     """Write the lines of a call or a return behind the block's other words."""
     if draft.call and draft.called_as:
         draft.call = draft.call._replace(number=draft.called_as)
+    if draft.call and draft.call.repeats and draft.jumps:
+        raise NotTranslated("the called program returns by M99 P: it can be called once only")
     lines = call_lines(draft) if draft.call else []
     if draft.returns:
         lines.append(draft.return_text)
