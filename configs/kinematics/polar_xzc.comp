@@ -15,6 +15,10 @@ and arcs on the part, planned by LinuxCNC with its whole look-ahead. C's zero li
 stands when the type is switched on: there the tool is at X, Y0. C turns on over full turns,
 and the slide never goes below the centre.
 
+A tool that does not pass the spindle's axis stands beside the X axis of the machine, by
+\\fBpolar-xzc.tool-offset\\fR, above zero on the side to which C turns the part's X axis. Then the face
+begins at X, Y \\fBtool-offset\\fR, and what is nearer to the centre than that cannot be reached.
+
 Load it in place of trivkins:
 
 .RS
@@ -56,7 +60,8 @@ setp polar-xzc.c-acceleration [AXIS_C]MAX_ACCELERATION
 .RE
 
 so that M68 E3 Q1 asks for the face and M68 E3 Q0 for X, Z and C. \\fBcentre\\fR is the position
-of the X joint at which the tool is on the spindle's axis; it counts when the face is switched on.
+of the X joint at which the tool is on the spindle's axis; it counts when the face is switched on,
+as \\fBtool-offset\\fR does.
 The guard switches only when the machine has stood for ten cycles. It goes back to type 0 by itself when the
 machine is switched off, stopped in an emergency or jogged; then the request has to be taken back
 before a new one counts. While the face is on and no program or MDI moves the machine, jogs are
@@ -85,6 +90,7 @@ modparam dummy coordinates=XZC "letter of each joint";
 
 pin in float request "1 asks for the face, 2 for the face by hand, everything else for X, Z and C";
 pin in float centre "position of the X joint with the tool on the spindle's axis";
+pin in float tool_offset "of the tool from the X line: [G12]POLAR_TOOL_OFFSET";
 pin in bit enabled "the machine is on: motion.motion-enabled";
 pin in bit program "a program or MDI moves the machine, not a jog: motion.coord-mode";
 pin in bit stands "the machine stands: motion.in-position";
@@ -134,7 +140,8 @@ static struct {
     int begins;     /* the face was switched on, and forward has not seen it yet */
     double origin;  /* of the face: position of the X joint */
     double zero;    /* of the face: C in degrees on its X axis */
-    double radius;  /* where the tool stands on the face */
+    double beside;  /* the X line stands the tool */
+    double slide;   /* where the slide stands, from the origin */
     int joints;
     int axis[EMCMOT_MAX_JOINTS]; /* index of each joint's letter */
     int x, c;                    /* joints */
@@ -177,7 +184,7 @@ static void begin_face(const double *joint)
 int kinematicsForward(const double *joint, EmcPose *pose,
                       const KINEMATICS_FORWARD_FLAGS *fflags, KINEMATICS_INVERSE_FLAGS *iflags)
 {
-    double radius, angle;
+    double slide, angle;
     int k;
 
     (void)fflags;
@@ -186,10 +193,10 @@ int kinematicsForward(const double *joint, EmcPose *pose,
     memset(pose, 0, sizeof(*pose));
     for (k = 0; k < state.joints; k++) *axis_of(pose, state.axis[k]) = joint[k];
     if (state.kind == FACE) {
-        radius = state.radius = joint[state.x] - state.origin;
+        slide = state.slide = joint[state.x] - state.origin;
         angle = (joint[state.c] - state.zero) * DEGREE;
-        pose->tran.x = state.origin + radius * cos(angle);
-        pose->tran.y = radius * sin(angle);
+        pose->tran.x = state.origin + slide * cos(angle) - state.beside * sin(angle);
+        pose->tran.y = slide * sin(angle) + state.beside * cos(angle);
         pose->c = state.zero;
     }
     return 0;
@@ -200,7 +207,7 @@ int kinematicsInverse(const EmcPose *pose, double *joint,
                       const KINEMATICS_INVERSE_FLAGS *iflags, KINEMATICS_FORWARD_FLAGS *fflags)
 {
     EmcPose world = *pose;
-    double x, y, radius, present = joint[state.c];
+    double x, y, slide, reach, present = joint[state.c];
     int k;
 
     (void)iflags;
@@ -211,11 +218,13 @@ int kinematicsInverse(const EmcPose *pose, double *joint,
     if (state.kind == FACE) {
         x = world.tran.x - state.origin;
         y = world.tran.y;
-        radius = sqrt(x * x + y * y);
-        joint[state.x] = state.origin + radius;
+        reach = x * x + y * y - state.beside * state.beside; /* the slide's, squared */
+        if (reach < -AT_CENTRE * fabs(state.beside)) return -1;
+        slide = sqrt(fmax(reach, 0.0));
+        joint[state.x] = state.origin + slide;
         joint[state.c] = present;
-        if (radius > AT_CENTRE) {
-            joint[state.c] = state.zero + atan2(y, x) / DEGREE;
+        if (slide > AT_CENTRE || state.beside != 0.0) {
+            joint[state.c] = state.zero + (atan2(y, x) - atan2(state.beside, slide)) / DEGREE;
             joint[state.c] += 360.0 * floor((present - joint[state.c]) / 360.0 + 0.5);
         }
     }
@@ -234,6 +243,7 @@ int kinematicsSwitch(int kind)
     state.kind = kind;
     state.begins = kind == FACE;
     state.origin = centre;
+    state.beside = tool_offset;
     return 0;
 }
 
@@ -255,7 +265,7 @@ EXPORT_SYMBOL(kinematicsSwitchable);
 EXPORT_SYMBOL(kinematicsSwitch);
 EXPORT_SYMBOL(kinematicsTypeFlags);
 
-/* Return the speed that C and the slide can follow at a distance from the centre, whatever the
+/* Return the speed that C and the slide can follow where the slide is at r, whatever the
    direction: with its own acceleration A the planner turns C by up to A / r. Where that is more
    than C's, speed grows with r only, so that a stop leaves C behind by LAG at most. */
 static double followed(const struct __comp_state *__comp_inst, double r)
@@ -268,7 +278,9 @@ static double followed(const struct __comp_state *__comp_inst, double r)
         v = sqrt(pow(per_radius * near, 2) + acceleration * (r - near)); /* half of it to brake */
         v = fmin(v, sqrt(ASIDE * acceleration * r));
     }
-    return fmin(v, 0.9 * c_speed * DEGREE * r);
+    v = fmin(v, 0.9 * c_speed * DEGREE * r);
+    if (state.beside == 0.0) return v;
+    return v * r / sqrt(r * r + state.beside * state.beside); /* the slide is so much faster */
 }
 
 /* A switch while a jog is under way would make the axes jump to where the jog stood before it. */
@@ -277,7 +289,7 @@ FUNCTION(guard)
     static int spent; /* the request ended by itself, and was not taken back since */
     static int standing;
     int asked = request == FACE || request == BY_HAND, by_hand;
-    double most = c_acceleration > 0.0 ? followed(__comp_inst, state.radius) : 0.0;
+    double most = c_acceleration > 0.0 ? followed(__comp_inst, state.slide) : 0.0;
 
     spent = asked && (spent || !enabled || !program);
     standing = stands ? standing + (standing < SETTLED) : 0;

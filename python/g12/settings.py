@@ -42,7 +42,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Number:
-    """A setting that is a finite number, from ``least`` on; without one, above zero.
+    """A setting that is a finite number, from ``least`` on (-inf: any); without one, above zero.
 
     ``most`` is the greatest that is legal, if there is one.
     """
@@ -62,6 +62,8 @@ class Number:
     @property
     def legal(self) -> str:
         """The legal values, for the start-up error."""
+        if self.least == -math.inf:
+            return "a number"
         above = "a number above 0" if self.least is None else f"a number from {number(self.least)}"
         return above if math.isinf(self.most) else f"{above}, {number(self.most)} at most"
 
@@ -79,6 +81,7 @@ TABLE: dict[str, Choice | Number] = {
     "POLAR_TOLERANCE": Number(None, least=0.00001),  # less than any machine's step
     "POLAR_POLE": Choice("rotate", ("rotate", "refuse")),
     "POLAR_KINEMATICS": Choice("0", ("0", "1")),
+    "POLAR_TOOL_OFFSET": Number(0.0, least=-math.inf),
     "CYLINDER_WORD": Choice("radius", ("radius", "diameter")),
     "CYLINDER_X": Choice("refuse", ("refuse", "allow")),
 }
@@ -105,6 +108,7 @@ class Settings:
     polar_tolerance: float | None = TABLE["POLAR_TOLERANCE"].default
     polar_pole: str = TABLE["POLAR_POLE"].default
     polar_kinematics: str = TABLE["POLAR_KINEMATICS"].default
+    polar_tool_offset: float = TABLE["POLAR_TOOL_OFFSET"].default
     cylinder_word: str = TABLE["CYLINDER_WORD"].default
     cylinder_x: str = TABLE["CYLINDER_X"].default
 

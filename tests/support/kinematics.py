@@ -3,10 +3,11 @@
 
 import pytest
 
-from g12.tools.install.kinematics_rules import module_installed
+from g12.tools.install.kinematics_rules import module_has, module_installed
 
 needs_kinematics = pytest.mark.skipif(
-    not module_installed("polar_xzc"), reason="first: make kinematics"
+    not (module_installed("polar_xzc") and module_has(".tool-offset")),
+    reason="first: make kinematics",
 )
 
 

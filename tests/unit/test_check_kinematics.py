@@ -70,6 +70,10 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
     ("MAX_VELOCITY = 100", "MAX_VELOCITY = 150", "face-speed", "[AXIS_X] MAX_VELOCITY 150"),
     ("MAX_ACCELERATION = 700", "MAX_ACCELERATION = 1000", "face-acceleration", "= 700 in both"),
     ("MAX_ACCELERATION = 700", "MAX_ACCELERATION = 0", "face-axis", "must be above 0"),
+    ("POLAR_KINEMATICS = 1", "POLAR_KINEMATICS = 1\nPOLAR_TOOL_OFFSET = 8", "tool-offset",
+     "POLAR_TOOL_OFFSET = 8, but polar-xzc.tool-offset is 0"),
+    ("HALFILE = polar.hal", "HALFILE = polar.hal\nHALCMD = setp polar-xzc.tool-offset 0.02",
+     "tool-offset", "POLAR_TOOL_OFFSET = 0, but polar-xzc.tool-offset is 0.02"),
 ]  # fmt: skip
 IN_THE_WAY = [
     ("net probe => motion.digital-in-03", "pin-taken"),
@@ -123,6 +127,26 @@ def test_something_in_the_way(found, line, kind):
     (finding,) = found(LATHE, motion=f"{MOTION}{line}\n")
     assert (finding.level, finding.kind) == (PROBLEM, kind)
     assert finding.text.startswith(f"motion.hal:3: {line}")
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["setp polar-xzc.tool-offset [G12]POLAR_TOOL_OFFSET", "setp polar-xzc.tool-offset -0.02"],
+)
+def test_the_tool_offset_that_both_know(found, monkeypatch, line):
+    text = LATHE.replace("[KINS]", "POLAR_TOOL_OFFSET = -0.02\n\n[KINS]")
+    monkeypatch.setattr(kinematics_rules, "module_file", lambda _: None)
+    assert found(text, motion=f"{MOTION}{line}\n") == []
+
+
+def test_a_module_without_a_tool_offset(found, monkeypatch, tmp_path):
+    (tmp_path / "polar_xzc.so").write_bytes(b"%s.centre")
+    monkeypatch.setattr(kinematics_rules, "module_file", lambda _: tmp_path / "polar_xzc.so")
+    text = LATHE.replace("[KINS]", "POLAR_TOOL_OFFSET = 8\n\n[KINS]")
+    line = (ROOT / "configs/kinematics/polar_tool_offset.hal").read_text()
+    (old,) = found(text, motion=MOTION + line)
+    assert (old.level, old.kind) == (PROBLEM, "no-kinematics")
+    assert "make kinematics" in old.cure
 
 
 def test_install_says_where_the_steps_are(tmp_path, capsys):

@@ -31,11 +31,12 @@ typedef unsigned long KINEMATICS_FORWARD_FLAGS;
 typedef unsigned long KINEMATICS_INVERSE_FLAGS;
 typedef enum { KINEMATICS_BOTH = 4 } KINEMATICS_TYPE;
 struct __comp_state {
-    double request, centre, type, speed, acceleration, c_speed, c_acceleration, feed;
+    double request, centre, tool_offset, type, speed, acceleration, c_speed, c_acceleration, feed;
     int enabled, program, stands, face, program_line, jog_inhibit, hold;
 } pins;
 #define request (__comp_inst->request)
 #define centre (__comp_inst->centre)
+#define tool_offset (__comp_inst->tool_offset)
 #define type (__comp_inst->type)
 #define enabled (__comp_inst->enabled)
 #define program (__comp_inst->program)
@@ -66,6 +67,7 @@ class Pose(ctypes.Structure):
 NUMBERS = [
     "request",
     "centre",
+    "tool_offset",
     "type",
     "speed",
     "acceleration",
@@ -88,7 +90,7 @@ class Kinematics:
     def __init__(self, library):
         self.library, self.pins = library, Pins.in_dll(library, "pins")
         assert self.set_up("XZC") == 0
-        self.pins.request = self.pins.centre = 0.0
+        self.pins.request = self.pins.centre = self.pins.tool_offset = 0.0
         self.pins.enabled = self.pins.program = self.pins.stands = 1
         self.pins.program_line = self.pins.speed = 0
         self.pins.acceleration, self.pins.c_speed, self.pins.c_acceleration = 707, 360, 3600
@@ -189,13 +191,33 @@ def test_a_centre_off_the_joints_zero(kinematics):
     zero=st.floats(-90000, 90000),
     turn=st.floats(-4000, 4000),
     ahead=st.floats(-170, 170),
+    beside=st.sampled_from([0.0, 0.02, -12.0]),
 )
-def test_round_trip(library, radius, zero, turn, ahead):
+def test_round_trip(library, radius, zero, turn, ahead, beside):
     kinematics = Kinematics(library)
+    kinematics.pins.tool_offset = beside
     kinematics.face(50, 0, zero)
     pose = kinematics.forward(radius, 1, zero + turn)
     there = kinematics.inverse(pose, 7, 7, zero + turn + ahead)
     assert there == pytest.approx((radius, 1, zero + turn), abs=1e-7)
+
+
+def test_the_face_of_a_tool_beside_the_x_line(kinematics):
+    kinematics.pins.tool_offset = 10.0
+    pose = kinematics.face(20, 5, 30)
+    assert (pose.x, pose.y, pose.c) == (20, 10, 30)
+    pose = kinematics.forward(20, 5, 120)
+    assert (pose.x, pose.y) == pytest.approx((-10, 20))
+    pose.x, pose.y = 0.0, 10.0 + 1e-9
+    assert kinematics.inverse(pose, 20, 5, 120) == pytest.approx((0, 5, 30), abs=0.002)
+    pose.y = 9.999
+    assert kinematics.inverse(pose, 20, 5, 120) is None
+
+
+def test_the_tool_offset_counts_when_the_face_is_switched_on(kinematics):
+    kinematics.face(20, 0, 0)
+    kinematics.pins.tool_offset = 10.0
+    assert kinematics.forward(20, 0, 0).y == 0
 
 
 def test_c_goes_on_over_the_full_turns(kinematics):
@@ -300,9 +322,9 @@ def test_a_program_is_held_by_hand_only(kinematics, request_, line, held):
     assert kinematics.pins.hold == held
 
 
-def by_hand(kinematics, radius, request=2.0, speed=150.0, **pins):
-    """Return the speed that is left of what is asked for, at a distance from the centre."""
-    kinematics.guard(request=0.0)
+def by_hand(kinematics, radius, request=2.0, speed=150.0, tool_offset=0.0, **pins):
+    """Return the speed that is left of what is asked for, with the slide at a place."""
+    kinematics.guard(request=0.0, tool_offset=tool_offset)
     kinematics.guard(request=request)
     kinematics.face(radius, 0, 0)
     kinematics.guard(speed=speed, **pins)
@@ -325,6 +347,22 @@ def test_c_and_the_slide_can_follow_by_hand(library, radius, speed):
     assert left * turning <= 0.293 * 1000  # beside 0.707 of the slide's acceleration on an arc
     before = by_hand(Kinematics(library), radius + 0.01, speed=speed)
     assert before**2 - left**2 <= 2 * 500 * 0.01 + 1e-6  # what can be braked there
+
+
+@pytest.mark.parametrize("slide", [0.1, 1.0, 5.0, 20.0])
+def test_by_hand_beside_the_x_line_the_slide_is_as_fast_as_before(library, slide):
+    before = by_hand(Kinematics(library), slide)
+    left = by_hand(Kinematics(library), slide, tool_offset=8.0)
+    kinematics = Kinematics(library)
+    kinematics.pins.tool_offset = 8.0
+    there = complex(*xy(kinematics.face(slide, 0, 0)))
+    tangent = kinematics.inverse(Pose(x=abs(there) + 1e-6, y=0.0), slide, 0, 0)
+    assert left == pytest.approx(before * slide / abs(there))
+    assert (tangent[0] - slide) / 1e-6 * left == pytest.approx(before, rel=0.01)
+
+
+def xy(pose):
+    return pose.x, pose.y
 
 
 def test_speed_by_hand_far_out_is_that_of_the_program(kinematics):

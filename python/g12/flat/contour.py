@@ -160,7 +160,8 @@ class Contour:
     ``code`` and ``names`` are for messages. ``diameter`` tells whether the program's words for x
     are diameters, None where they cannot be: the values passed in never are, but a message has to
     say which reading was meant. ``closing`` is the radius mismatch of an arc that is forgiven, in
-    program units.
+    program units. ``beside``: the tool itself stands so far from there along the second axis, until
+    the first G1 takes it to its programmed end.
 
     ``side`` is the compensation in force: 40, 41 or 42. ``start`` is where the machine stands: by
     default on a face, at its zero line. ``notes`` are what the operator is told of it, though it is
@@ -178,11 +179,12 @@ class Contour:
         diameter: bool | None = False,
         closing: float = 0.0,
         start: Start | None = None,
+        beside: float = 0.0,
     ) -> None:
         self.x, self.c, self.z = x, c, z
         self.code, self.names, self.diameter, self.closing = code, names, diameter, closing
         self.elements: list[Line | Arc | Plunge | Mark] = []
-        self._end = (x, c, z)  # of the elements; less than SAME_PLACE from the position
+        self._end = (x, c + beside, z)  # of the elements; else less than SAME_PLACE away
         self.side = 40
         self.start = start or Start(x, 0.0, z)
         self._offset = self._radius = 0.0
@@ -210,7 +212,8 @@ class Contour:
         z1 = self.z if z is None else z
         if max(abs(x1), abs(c1), abs(z1)) > LARGEST:
             self._check_place(line, x1, c1, z1)
-        length = hypot(x1 - x0, c1 - c0)
+        across = x is not None or c is not None
+        length = hypot(x1 - x0, c1 - c0) if across else 0.0
         self._check_feed(feed, line)
         self._check_switch(line, length)
         if length > SAME_PLACE:
@@ -339,8 +342,14 @@ class Contour:
         self._switch = None
 
     def _check_arc(self, turn, i, j, radius, line, feed) -> None:
-        name = _name(turn)
+        name, beside = _name(turn), abs(self._end[1] - self.c)
         self._check_feed(feed, line)
+        if beside > SAME_PLACE:
+            self.refuse(
+                line,
+                f"{name} needs a G1 with X or C before it: the tool stands {number(beside)} "
+                "beside X's line (POLAR_TOOL_OFFSET)",
+            )
         if self._switch is not None:
             self.refuse(line, f"G{self.side} with {name}: compensation is switched by a G1 only")
         if radius is not None and (i is not None or j is not None):

@@ -21,6 +21,7 @@ from g12.host.kinematics_switch import (
     face_in_force,
     has_switched,
     modes_found,
+    other_offset,
     to_axes,
     to_face,
     y_offset,
@@ -33,8 +34,8 @@ MDI_LINE = 0  # of the moves that follow, by which polar_xzc knows them
 TYPED = 1  # call level of a block that stands in no sub
 
 
-def switch_on(interp: object, start: SectionStart) -> Iterator[int]:
-    """Go to the face where a section could begin."""
+def switch_on(interp: object, start: SectionStart, beside: float) -> Iterator[int]:
+    """Go to the face where a section could begin, with the tool ``beside`` the X line."""
     code = start.place.code
     if interp.call_level != TYPED:
         raise BlockRefusal(code, "is a line of its own in MDI, not of a sub")
@@ -45,6 +46,10 @@ def switch_on(interp: object, start: SectionStart) -> Iterator[int]:
     interp.g12_found = modes_found(interp) + adaptive_feed(interp)
     asked = to_face(interp, start.machine_unit, BY_HAND)
     yield from _switch(interp, code, CallFrame(interp, glue.NO_FILE), MDI_LINE, asked)
+    wrong = other_offset(interp, beside)
+    if wrong:
+        yield from switch_off(interp)
+        raise BlockRefusal(code, wrong)
     interp.execute(f"{ON_THE_FACE}M52P1")
 
 

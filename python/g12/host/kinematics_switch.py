@@ -11,12 +11,14 @@ from collections.abc import Iterator
 
 import linuxcnc
 
+from g12.errors import number
 from g12.section.modes import decimal
 
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
 OFF, BY_PROGRAM, BY_HAND = 0, 1, 2  # what is asked for
 SWITCHING = 10  # seconds that it may take at most, on a busy machine
 INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
+SAME_OFFSET = 1e-4  # program units
 PLANES = {1: "G17", 2: "G19", 3: "G18"}  # interp.plane
 CENTRES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
 ON_THE_FACE = "G17G91.1"
@@ -62,3 +64,18 @@ def has_switched(interp: object) -> bool:
 def y_offset(interp: object) -> float:
     """Return what a program's Y lacks of the machine's, which is the face's: its centre is 0."""
     return interp.origin_offset_y + interp.axis_offset_y + interp.tool_offset.y
+
+
+def other_offset(interp: object, beside: float) -> str:
+    """Return what is wrong where the kinematics have the tool elsewhere beside the X line, else "".
+
+    The machine stands on the face at its beginning; ``beside`` is what the settings say, both in
+    program units.
+    """
+    found = interp.current_y + y_offset(interp)
+    if abs(found - beside) <= SAME_OFFSET:
+        return ""
+    return (
+        f"the kinematics have the tool {number(found)} beside X's line (polar-xzc.tool-offset), "
+        f"POLAR_TOOL_OFFSET {number(beside)}: setp polar-xzc.tool-offset [G12]POLAR_TOOL_OFFSET"
+    )

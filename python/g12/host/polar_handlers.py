@@ -83,8 +83,8 @@ def run_by_hand(interp: object) -> Iterator[int]:
     if not KINEMATICS:
         raise BlockRefusal(start.place.code, NOT_IN_MDI)
     check_section_start(start, COORDINATES)
-    _setup(start)  # refuses what the machine cannot
-    yield from face_by_hand.switch_on(interp, start)
+    setup = _setup(start)  # refuses what the machine cannot
+    yield from face_by_hand.switch_on(interp, start, setup.words.beside)
 
 
 def _setup(start: SectionStart) -> SectionSetup:

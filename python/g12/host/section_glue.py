@@ -91,6 +91,7 @@ def _section(interp: object, kind: SectionKind, frame: CallFrame, program: Progr
         machine_unit=start.machine_unit,
         absolute=MODE_ABSOLUTE,
         canon=emccanon,
+        beside=setup.words.beside,
     )
     return Section(
         kind.codes(start.place.code),

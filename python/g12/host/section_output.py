@@ -24,6 +24,7 @@ from g12.host.kinematics_switch import (
     ON_THE_FACE,
     has_switched,
     modes_found,
+    other_offset,
     to_axes,
     to_face,
     y_offset,
@@ -127,8 +128,8 @@ class SectionOutput:
     """Hands steps to the interpreter.
 
     ``code`` names the section in refusals. ``x_factor`` turns a radius value into an X word (2
-    under G7); ``blending`` and ``machine_unit`` are in program units. ``absolute`` is the
-    interpreter's name of G90, ``canon`` its canonical functions.
+    under G7); ``blending``, ``machine_unit`` and ``beside`` (of the tool from the X line) are in
+    program units. ``absolute`` is the interpreter's name of G90, ``canon`` its canonical functions.
     """
 
     def __init__(
@@ -141,10 +142,11 @@ class SectionOutput:
         machine_unit: float,
         absolute: object,
         canon: object,
+        beside: float = 0.0,
     ) -> None:
         self.interp, self.code = interp, code
         self.x_factor, self.absolute, self.canon = x_factor, absolute, canon
-        self.machine_unit = machine_unit
+        self.machine_unit, self.beside = machine_unit, beside
         self.path = PathControl(interp, f"G64P{decimal(blending)}Q0")
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
@@ -245,19 +247,23 @@ class SectionOutput:
             yield from to_axes(interp)
         if not has_switched(interp):
             raise SectionPlace(self.code, step.line).refuse(NOT_SWITCHED)
-        if step.on and interp.task and self._is_elsewhere(step.place):
+        wrong = self._wrong_place(step.place) if step.on and interp.task else ""
+        if wrong:
             yield from to_axes(interp)
-            raise SectionPlace(self.code, step.line).refuse(ELSEWHERE)
+            raise SectionPlace(self.code, step.line).refuse(wrong)
         interp.params[INPUT_FOUND] = found
         interp.current_x, interp.CC_current, interp.current_z = step.place
-        interp.current_y = -y_offset(interp)
+        interp.current_y = step.on * self.beside - y_offset(interp)
         if not interp.task:
             self.canon.COMMENT(MEANINGS_CHANGED)
 
-    def _is_elsewhere(self, place: tuple[float, float, float]) -> bool:
-        """Tell whether the machine, which the interpreter has just asked, stands elsewhere."""
+    def _wrong_place(self, place: tuple[float, float, float]) -> str:
+        """Return why the machine, which the interpreter has just asked, is not where it was meant.
+
+        "" if it is.
+        """
         off = (abs(there - planned) for there, planned in zip(self._stands(), place))
-        return max(off) > SAME_PLACE
+        return ELSEWHERE if max(off) > SAME_PLACE else other_offset(self.interp, self.beside)
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
         """Hand over a line, an arc or a move of Z on the face."""

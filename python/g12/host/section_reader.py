@@ -101,6 +101,7 @@ class SectionReader:
             diameter=rules.diameter if known.plane[0] == "X" else None,
             closing=rules.closing,
             start=Start(start.x, radians(angle), start.z),
+            beside=rules.beside,
         )
 
     @property

@@ -12,11 +12,15 @@ the acceleration a along the radius and b around it, C and the slide need
 An arc needs v**2 / R towards its centre. What the planner has beside that it uses along the path,
 up to speed or down, wherever the operator may stop the feed: so it counts all along. A move stays
 off the face, and is made of pieces, when one of these would be beyond its limit anywhere on it.
+
+With the tool beside the X line by p, r is where the slide stands, u and a go along it and w and b
+around it. The slide's speed is u + p w / r, b is more by p (w / r)**2, and the slide's acceleration
+by p times C's.
 """
 
 from __future__ import annotations
 
-from math import atan2, ceil, cos, hypot, pi, sin, sqrt
+from math import atan2, ceil, cos, hypot, inf, pi, sin, sqrt
 from typing import NamedTuple
 
 from g12.flat.contour import (
@@ -32,6 +36,7 @@ from g12.flat.contour import (
     sweep_between,
 )
 from g12.flat.intersect import height_at, part_of_move, place_at
+from g12.polar.beside import along_and_around, stand
 
 LOOKS = 16  # places on a line, and on each quarter of an arc, that are looked at
 WORTH_IT = 0.1  # seconds: two switches cost about as much
@@ -50,6 +55,8 @@ class FaceLimits(NamedTuple):
     c_speed: float  # radians per second
     override: float  # the most that the operator may turn the feed up by
     pieces_speed: float = 0.0  # about what pieces reach: below it nothing is gained by parting
+    slide_speed: float = inf
+    beside: float = 0.0  # the X line is the tool, towards C+
 
 
 class FaceSwitch(NamedTuple):
@@ -153,21 +160,26 @@ class _Going(NamedTuple):
 
 
 def _can_follow(move: Line | Arc, part: float, going: _Going, limits: FaceLimits) -> bool:
-    x, c = place_at(move, part)
-    radius = hypot(x, c)
-    if radius <= SAME_PLACE:
+    place, beside = place_at(move, part), limits.beside
+    if hypot(*place) <= abs(beside) + SAME_PLACE:
         return False
-    tx, tc = end_direction(move._replace(x1=x, c1=c)) if part else start_direction(move)
-    along, around = (tx * x + tc * c) / radius, (tc * x - tx * c) / radius
+    slide, way = stand(place, beside)
+    direction = (
+        end_direction(move._replace(x1=place[0], c1=place[1])) if part else (start_direction(move))
+    )
+    along, around = along_and_around(direction, way)
     left_hand = 1.0 if isinstance(move, Arc) and move.sweep > 0.0 else -1.0
-    inward, beside = going.curving * left_hand * -around, going.curving * left_hand * along
-    turning = going.speed * around / radius
-    pushed = abs(beside - 2.0 * turning * going.speed * along) + going.left * abs(around)
-    lifted = abs(inward + turning * turning * radius) + going.left * abs(along)
+    inward, aside = going.curving * left_hand * -around, going.curving * left_hand * along
+    turning = going.speed * around / slide
+    share = beside / slide * around
+    sliding = going.speed * (along + share)
+    pushed = (aside - 2.0 * turning * sliding + beside * turning * turning) / slide
+    lifted = inward + turning * turning * slide + beside * pushed
     return (
         abs(turning) <= limits.c_speed
-        and pushed / radius <= limits.c_acceleration
-        and lifted <= limits.slide_acceleration * SLACK
+        and abs(sliding) <= limits.slide_speed * SLACK
+        and abs(pushed) + going.left * abs(around) / slide <= limits.c_acceleration
+        and abs(lifted) + going.left * abs(along + share) <= limits.slide_acceleration * SLACK
     )
 
 
@@ -221,16 +233,16 @@ def _turned(x: float, c: float, angle: float) -> tuple[float, float]:
     return x * cos(angle) - c * sin(angle), x * sin(angle) + c * cos(angle)
 
 
-def passed(move: Line | Arc, angle: float) -> list[tuple[float, float, float]]:
-    """Return places that a move passes: distance from the pole, angle in radians, Z.
+def passed(move: Line | Arc, angle: float, beside: float = 0.0) -> list[tuple[float, float, float]]:
+    """Return places that a move passes: where the slide stands, C's angle in radians, Z.
 
     The farthest one and the end are among them. ``angle`` is that at the start; the angles go on
     from there without a jump.
     """
-    places, before = [], (move.x0, move.c0)
+    places, (_, before) = [], stand((move.x0, move.c0), beside)
     for part in _parts(move) if isinstance(move, Arc) else (1.0,):
-        x, c = place_at(move, part)
+        slide, (x, c) = stand(place_at(move, part), beside)
         angle += atan2(before[0] * c - before[1] * x, before[0] * x + before[1] * c)
-        places.append((hypot(x, c), angle, height_at(move, part)))
+        places.append((slide, angle, height_at(move, part)))
         before = x, c
     return places

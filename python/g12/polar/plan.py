@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from functools import partial
-from math import copysign, degrees, hypot, pi, radians, remainder
+from math import copysign, degrees, pi, radians, remainder
 from typing import NamedTuple
 
 from g12.flat.centre_path import centre_path
 from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, Point, is_move
 from g12.moves.exact_stops import Direction, stops
-from g12.moves.feed import pieces_with_feed
+from g12.moves.feed import Split, pieces_with_feed
 from g12.moves.steps import (
     LEFT_OVER,
     ROUNDING_SHARE,
@@ -19,6 +19,7 @@ from g12.moves.steps import (
     StepMaker,
     chord_deviation,
 )
+from g12.polar.beside import along_and_around, check_reach, split_beside, stand
 from g12.polar.face import FaceLimits, FaceMove, FaceSwitch, chosen, in_face, parted, passed
 from g12.polar.pieces import Law, split_move
 from g12.polar.pole import POLE, through_pole
@@ -38,6 +39,7 @@ class PolarSettings(NamedTuple):
     c_speed: float  # degrees per minute, for a turn in place at X0
     pole_refused: bool = False  # POLAR_POLE = refuse
     face: FaceLimits | None = None  # POLAR_KINEMATICS = 1
+    beside: float = 0.0  # POLAR_TOOL_OFFSET
 
 
 def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
@@ -49,11 +51,15 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
     path, moved = centre_path(contour, settings.tolerance)
     tolerance = settings.tolerance - moved
     settings = settings._replace(tolerance=tolerance)
-    path = through_pole(contour, path, POLE_SHARE * tolerance, settings.pole_refused)
+    if settings.beside:
+        check_reach(contour, path, settings.beside, tolerance)
+    else:
+        path = through_pole(contour, path, POLE_SHARE * tolerance, settings.pole_refused)
     quick = partial(
         quickness,
         x_acceleration=settings.x_acceleration,
         c_acceleration=settings.c_acceleration,
+        beside=settings.beside,
     )
     stopping = stops(path, ROUNDING_SHARE * tolerance, quick)
     machine = _SlideAndSpindle(contour, settings, c)
@@ -76,19 +82,24 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
 
 
 def quickness(
-    direction: Direction, place: Point, *, x_acceleration: float, c_acceleration: float
+    direction: Direction,
+    place: Point,
+    *,
+    x_acceleration: float,
+    c_acceleration: float,
+    beside: float = 0.0,
 ) -> float:
     """Return the acceleration along a direction at a place that neither axis exceeds.
 
-    ``c_acceleration`` in degrees per second squared. 0 at the pole, where C would have to jump.
+    ``c_acceleration`` in degrees per second squared, the tool is ``beside`` X's line. 0 at the
+    pole, where C would have to jump.
     """
     if place == POLE:
         return 0.0
-    radius = hypot(*place)
-    radial = abs(direction[0] * place[0] + direction[1] * place[1]) / radius
-    around = abs(direction[1] * place[0] - direction[0] * place[1]) / radius
-    slide = max(radial, abs(direction[2])) / x_acceleration
-    return 1.0 / max(slide, around / (radius * radians(c_acceleration)))
+    slide, way = stand(place, beside)
+    along, around = along_and_around(direction[:2], way)
+    moved = max(abs(along + beside / slide * around), abs(direction[2]))
+    return 1.0 / max(moved / x_acceleration, abs(around) / (slide * radians(c_acceleration)))
 
 
 class _SlideAndSpindle(StepMaker):
@@ -103,7 +114,7 @@ class _SlideAndSpindle(StepMaker):
 
     def cut(self, move: Line | Arc, stop: bool) -> None:
         """Add the pieces of a move in the plane."""
-        parts = self._split(split_move, move, self._law(move.feed, stop))
+        parts = self._split(self._split_move, move, self._law(move.feed, stop))
         if (move.x0, move.c0) == POLE:
             self._turn(move, parts.angles[0])
         turns = round((self.angle - parts.angles[0]) / (2 * pi))
@@ -111,6 +122,10 @@ class _SlideAndSpindle(StepMaker):
         pieces = pieces_with_feed(parts, self.place, move, entry, self._settings.least_x)
         self.angle = parts.angles[-1] + 2 * pi * turns
         self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", pieces, stop)
+
+    def _split_move(self, move: Line | Arc, law: Law) -> Split:
+        beside = self._settings.beside
+        return split_beside(move, law, beside) if beside else split_move(move, law)
 
     def switch(self, line: int, face: bool) -> None:
         """Go to the face or back from it, if it is another way than before."""
@@ -123,9 +138,9 @@ class _SlideAndSpindle(StepMaker):
         if isinstance(move, Plunge):
             places = [(*self.place[:2], move.z1)]
         else:
-            there = passed(move, self.angle)
+            there = passed(move, self.angle, self._settings.beside)
             self.angle = there[-1][1]
-            places = [(radius, self._entry + degrees(angle), z) for radius, angle, z in there]
+            places = [(slide, self._entry + degrees(angle), z) for slide, angle, z in there]
         self.steps.append(FaceMove(move.line, in_face(move, self._face), places))
         self.place = Position(*places[-1])
 
@@ -137,9 +152,11 @@ class _SlideAndSpindle(StepMaker):
         """Come back from the face; add what the last piece left over of X."""
         self.switch(path[-1].line if path else 0, face=False)
         moves = [element for element in path if is_move(element)]
-        radius = hypot(moves[-1].x1, moves[-1].c1) if moves else self.place.x
-        if abs(radius - self.place.x) > LEFT_OVER * self._settings.least_x:
-            self._run(moves[-1].line, "XC", [(radius, *self.place[1:], moves[-1].feed)], True)
+        slide = self.place.x
+        if moves:
+            slide, _ = stand((moves[-1].x1, moves[-1].c1), self._settings.beside)
+        if abs(slide - self.place.x) > LEFT_OVER * self._settings.least_x:
+            self._run(moves[-1].line, "XC", [(slide, *self.place[1:], moves[-1].feed)], True)
 
     def _turn(self, move: Line | Arc, angle: float) -> None:
         """Add a turn in place, the shorter way; of two equal ways the one that unwinds C."""

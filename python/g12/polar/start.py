@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from math import hypot, radians, sqrt
+from math import hypot, inf, radians, sqrt
 
 from g12.errors import number
 from g12.machine_ini import Axis, FaceAxes
@@ -48,7 +48,7 @@ def polar_setup(
     return SectionSetup(
         _word_rules(start, settings),
         _planning(start, settings, axes, tolerance)._replace(
-            face=_face_limits(start, face, axes["C"], tolerance)
+            face=_face_limits(start, settings, face, axes["C"])
             if settings.polar_kinematics == "1"
             else None
         ),
@@ -68,6 +68,7 @@ def _word_rules(start: SectionStart, settings: Settings) -> WordRules:
         third_with_others=settings.polar_z == "allow",
         rapid_feed=rapid_feed_of(start, settings),
         closing=CLOSING_MM * start.millimetre,
+        beside=settings.polar_tool_offset * start.machine_unit,
     )
 
 
@@ -81,11 +82,14 @@ def _planning(
         c_acceleration=axes["C"].acceleration,
         c_speed=axes["C"].velocity * 60,
         pole_refused=settings.polar_pole == "refuse",
+        beside=settings.polar_tool_offset * start.machine_unit,
     )
 
 
-def _face_limits(start: SectionStart, face: FaceAxes, c: Axis, tolerance: float) -> FaceLimits:
+def _face_limits(start: SectionStart, settings: Settings, face: FaceAxes, c: Axis) -> FaceLimits:
+    tolerance = tolerance_of(start, settings)
     slide = face.slide.acceleration * start.machine_unit
+    beside = settings.polar_tool_offset * start.machine_unit
     nearest = slide / radians(c.acceleration)  # to the pole that the face is good for
     chord = sqrt(8.0 * tolerance * nearest)
     x, y = (axis.acceleration * start.machine_unit for axis in (face.x, face.y))
@@ -97,4 +101,6 @@ def _face_limits(start: SectionStart, face: FaceAxes, c: Axis, tolerance: float)
         c_speed=radians(c.velocity),
         override=max(1.0, face.override),
         pieces_speed=PIECES_SHARE * sqrt(slide * chord),
+        slide_speed=face.slide.velocity * start.machine_unit if beside else inf,  # else X's own
+        beside=beside,
     )

@@ -52,7 +52,7 @@ class WordRules(NamedTuple):
     value, ``c_scale`` a C word into a length.
     ``third_with_others`` tells whether the axis at right angles to the plane may move together with
     those in it. ``rapid_feed`` is None where G0 is refused, ``closing`` the radius mismatch of an
-    arc that is forgiven.
+    arc that is forgiven, ``beside`` how far the tool stands from the X line towards C+.
     """
 
     words: SectionWords
@@ -62,3 +62,4 @@ class WordRules(NamedTuple):
     third_with_others: bool
     rapid_feed: float | None
     closing: float
+    beside: float = 0.0

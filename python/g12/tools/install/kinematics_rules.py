@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from g12.errors import Refusal
+from g12.ini_sections import leading_number
 from g12.machine_ini import FACE_KINEMATICS, face_joints, face_of
 from g12.settings import settings_from_lines
 from g12.tools.install.config import Config, folder_from_ini
@@ -22,6 +23,9 @@ from g12.tools.install.findings import Finding, problem, warning
 
 PAGE = "configs/kinematics/README.md"
 OWN_HAL = Path("configs/kinematics/polar_kinematics.hal")
+OFFSET_HAL = Path("configs/kinematics/polar_tool_offset.hal")
+OFFSET = "polar-xzc.tool-offset"
+SETS_OFFSET = re.compile(rf"(?:setp\s+)?{re.escape(OFFSET)}\s*(?:=|\s)\s*(\S+)")
 REQUEST = "polar-xzc.request"  # a pin that only a HAL file with the guard's lines names
 PINS = (
     "motion.analog-out-02",
@@ -44,12 +48,24 @@ class HalLine(NamedTuple):
     place: str
 
 
-def module_installed(name: str) -> bool:
-    """Tell whether the LinuxCNC on this computer finds a realtime module."""
+def module_file(name: str) -> Path | None:
+    """Return the file of a realtime module of the LinuxCNC on this computer, None without one."""
     script = shutil.which("linuxcnc")
     text = Path(script).read_text(encoding="utf-8", errors="replace") if script else ""
     folder = re.search(r"^LINUXCNC_RTLIB_DIR=(\S+)", text, re.MULTILINE)
-    return bool(folder) and Path(folder[1], f"{name}.so").exists()
+    file = Path(folder[1], f"{name}.so") if folder else None
+    return file if file and file.exists() else None
+
+
+def module_installed(name: str) -> bool:
+    """Tell whether the LinuxCNC on this computer finds a realtime module."""
+    return module_file(name) is not None
+
+
+def module_has(text: str) -> bool:
+    """Tell whether the installed kinematics hold a text; where none are, it is not their fault."""
+    file = module_file(FACE_KINEMATICS)
+    return file is None or text.encode() in file.read_bytes()
 
 
 def wanted(config: Config) -> bool:
@@ -240,6 +256,45 @@ def names(lines: list[HalLine], *words: str) -> bool:
     return any(word in line.text for line in lines for word in words)
 
 
+def offset_wrong(config: Config) -> Iterator[Finding]:
+    """Find kinematics that have the tool elsewhere beside the X line than G12.1 has it."""
+    try:
+        wanted_offset = settings_from_lines(config.ini.lines).polar_tool_offset
+    except Refusal:
+        return
+    told = [told_offset(line.text, wanted_offset) for line in all_hal(config)]
+    found = next((value for value in reversed(told) if value is not None), 0.0)
+    if found != wanted_offset:
+        yield problem(
+            "tool-offset",
+            f"[G12] POLAR_TOOL_OFFSET = {wanted_offset:g}, but {OFFSET} is {found:g}: "
+            "G12.1 is refused",
+            f"HALFILE = …/{OFFSET_HAL} behind the file that loads motion, and nothing else for it",
+        )
+    elif wanted_offset and not module_has(OFFSET.removeprefix("polar-xzc")):
+        yield problem(
+            "no-kinematics",
+            f"LinuxCNC's module {FACE_KINEMATICS} is older than this package: it has no {OFFSET}",
+            f"build it again: make kinematics ({PAGE})",
+        )
+
+
+def told_offset(text: str, wanted_offset: float) -> float | None:
+    """Return what a HAL line gives the offset's pin, None if it is another line."""
+    match = SETS_OFFSET.fullmatch(text)
+    if not match:
+        return None
+    if match[1] in ("[G12]POLAR_TOOL_OFFSET", "[G12](POLAR_TOOL_OFFSET)"):
+        return wanted_offset
+    return leading_number(match[1]) or 0.0
+
+
+def all_hal(config: Config) -> list[HalLine]:
+    """Return the lines of all HAL files, and those of HALCMD behind them."""
+    lines = [line for lines in hal_files(config) for line in lines]
+    return [*lines, *(HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD"))]
+
+
 def abort_wrong(config: Config) -> Iterator[Finding]:
     """Find a machine that an abort leaves on the face."""
     off = [remap.code for _, remap in config.remaps if "polar_off" in remap.handlers]
@@ -260,6 +315,7 @@ RULES = (
     axes_wrong,
     limits_wrong,
     hal_wrong,
+    offset_wrong,
     abort_wrong,
 )
 

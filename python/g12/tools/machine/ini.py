@@ -73,6 +73,14 @@ class Ini:
         """The settings of section [G12]."""
         return self._asked(lambda: settings_from_lines(self.lines))
 
+    @property
+    def tool_beside(self) -> float:
+        """How far the tool stands from the X line, mm; 0 where the settings are wrong."""
+        try:
+            return self.settings.polar_tool_offset * self.mm
+        except IniError:
+            return 0.0
+
     def _asked(self, question: Callable[[], T]) -> T:
         try:
             return question()

@@ -16,7 +16,7 @@ import numpy as np
 
 from g12.machine_ini import AXES
 from g12.tools.path.nearest import on_segments, shares_along
-from g12.tools.path.part import plane_axes
+from g12.tools.path.part import Y, plane_axes
 from g12.tools.path.samples import Samples
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import LINEAR, Move
@@ -91,6 +91,7 @@ def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) ->
     """
     moving = samples.moving()
     axes = _positions(samples, unit)[moving]
+    axes[:, Y] += path.part.beside  # where the joints stand the tool is beside them
     there = path.part.points(axes)
     windows = windows_of(path, moves, samples.line[moving])
     segment = _segments(path.axis_points, there, windows.on_its_line)

@@ -13,7 +13,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from shapely.geometry import LineString, MultiLineString, Point
@@ -34,10 +34,12 @@ X, Y, Z, C = 0, 1, 2, 5
 class Part:
     """How machine positions relate to the part; ``turning`` if a work spindle turns it as C.
 
-    A lathe has a Y only on the face of its kinematics, which C, standing, has turned.
+    A lathe has a Y only on the face of its kinematics, which C, standing, has turned; elsewhere Y
+    is how far the tool stands ``beside`` the X line, mm.
     """
 
     turning: bool
+    beside: float = 0.0
 
     def points(self, positions: np.ndarray) -> np.ndarray:
         """Return part points (n, 3) of machine positions (n, 9)."""
@@ -76,13 +78,15 @@ class Part:
 
 def part_of(ini: Ini) -> Part:
     """Return how the machine of an INI holds its part: X and C without a joint of Y is a lathe."""
-    return Part(turning="C" in ini.axes and ("Y" not in ini.axes or bool(face_joints(ini.get))))
+    turning = "C" in ini.axes and ("Y" not in ini.axes or bool(face_joints(ini.get)))
+    return Part(turning, ini.tool_beside)
 
 
 def part_of_program(ini: Ini, moves: Iterable[Move]) -> Part:
     """Return how a program sees its part: on a lathe, C turns it if it moves at all."""
     turned = any(move.start[axis] != move.end[axis] for move in moves for axis in (Y, C))
-    return Part(turning=part_of(ini).turning and turned)
+    part = part_of(ini)
+    return replace(part, turning=part.turning and turned)
 
 
 def face_turn(move: Move) -> float:
@@ -91,12 +95,24 @@ def face_turn(move: Move) -> float:
     return cmath.phase(end * start.conjugate()) if start.imag or end.imag else 0.0
 
 
-def spindle_angles(on_face: np.ndarray, c: np.ndarray) -> np.ndarray:
+def slide_places(points: np.ndarray, beside: float) -> np.ndarray:
+    """Return where the X slide is, as points (complex) of the plane that C turns, for the tool's.
+
+    Off the face, where the tool is ``beside`` the X line, that is on the real axis.
+    """
+    radius = np.maximum(np.abs(points), 1e-12)
+    slide = np.sqrt(np.maximum(radius**2 - beside**2, 0.0))
+    turned = slide * points * (slide - 1j * beside) / radius**2
+    return np.where(np.abs(points.imag - beside) < 1e-12, points.real, turned)
+
+
+def spindle_angles(points: np.ndarray, c: np.ndarray, beside: float = 0.0) -> np.ndarray:
     """Return where the C axis stands, degrees, for points (complex) that the face turned by ``c``.
 
     On the face C follows their angle. Where both change at once, the axes only take on another
-    meaning, and C stands.
+    meaning, and C stands. ``beside`` is how far the tool stands from the X line.
     """
+    on_face = slide_places(points, beside)
     turned = np.degrees(np.angle(on_face[1:] * np.conj(on_face[:-1])))
     turned[(on_face.imag[1:] == 0.0) & (on_face.imag[:-1] == 0.0)] = 0.0
     changed = np.diff(c)

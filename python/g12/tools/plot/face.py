@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from g12.tools.path.part import C, X, Y, Z, spindle_angles
+from g12.tools.path.part import C, X, Y, Z, slide_places, spindle_angles
 from g12.tools.path.track import limits_of
 from g12.tools.plot import style
 from g12.tools.plot.deviation import SIZE, draw_window
@@ -127,14 +127,15 @@ def programmed_history(scene: Scene) -> History:
     path = scene.path
     seconds = np.maximum(np.diff(path.time), 1e-12)
     on_face = path.positions[:, X] + 1j * path.positions[:, Y]
-    c = spindle_angles(on_face, path.positions[:, C])
+    c = spindle_angles(on_face, path.positions[:, C], path.part.beside)
     c_speed = np.abs(np.diff(c)) / seconds
     feed = np.linalg.norm(np.diff(path.points, axis=0), axis=1) / seconds
     rapid = np.array([move.kind == "rapid" for move in scene.moves])[path.move]
     step = np.insert(feed, 0, feed[0]) * 60
     wanted = np.where(rapid, np.nan, step)
     c_step = np.insert(c_speed, 0, c_speed[0])
-    x = np.where(on_face.imag, np.abs(on_face), on_face.real)
+    slide = slide_places(on_face, path.part.beside)
+    x = np.where(slide.imag, np.abs(slide), slide.real)
     z = path.positions[:, Z]
     first = path.vertices(len(scene.moves) - len(shown_moves(scene))).start
     columns = (path.time - path.time[first], x, z, c, c_step, step, wanted, rapid)

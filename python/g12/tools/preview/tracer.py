@@ -240,6 +240,7 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
         "tool_table": str(write_tools(tools, ini, folder / "tool.tbl")),
         "random": ini.get("EMCIO", "RANDOM_TOOLCHANGER", "0") not in ("0", ""),
         "units": 1.0 / unit,
+        "beside": ini.tool_beside,
         "axis_mask": sum(1 << AXES.index(letter) for letter in ini.axes),
         "setup": [start_block(unit), *([startup] if startup else [])],
     }

@@ -176,7 +176,9 @@ class Canon:
         self.in_force: tuple = ()
         self.pitch = ""
         self.line = 0
-        self.tip = self.position = NO_OFFSET  # in program and in machine coordinates
+        self.on_face = False  # of the kinematics, where Y tells where the tool is
+        self.tip = NO_OFFSET  # in program coordinates
+        self.position = self._beside_x(NO_OFFSET)  # in machine coordinates
         self.work = self.g92 = self.length = NO_OFFSET
         self.rotation, self.cos, self.sin = 0.0, 1.0, 0.0
         self.plane = 17
@@ -224,6 +226,7 @@ class Canon:
             this.feed_rate = 0.0  # not by F0: a machine may have remapped F
             this.active_spindle = 0  # LinuxCNC leaves it unset, and reads it in G33 without $
         if text == MEANINGS_CHANGED:
+            self.on_face = not self.on_face
             self._stand_where_the_interpreter_does()
         if text == START:
             self.started = True
@@ -365,7 +368,12 @@ class Canon:
         """Machine coordinates of a point in program coordinates, both in mm."""
         x, y, *rest = map(float.__add__, tip, self.g92)
         turned = (x * self.cos - y * self.sin, x * self.sin + y * self.cos, *rest)
-        return tuple(map(float.__add__, turned, self.work))
+        return self._beside_x(tuple(map(float.__add__, turned, self.work)))
+
+    def _beside_x(self, position: tuple) -> tuple:
+        """Return where the tool is, on a lathe whose tool stands beside the X line."""
+        x, y, *rest = position
+        return (x, y if self.on_face else y + self.machine["beside"], *rest)
 
 
 def conditions(state) -> tuple:

@@ -184,7 +184,7 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
         plunge_share=settings.plunge_feed / 100,
     )
     rapid_feed = settings.polar_g0_feed and settings.polar_g0_feed * subject.ini.mm
-    reading = WordReading(settings.polar_x, rapid_feed)
+    reading = WordReading(settings.polar_x, rapid_feed, subject.ini.tool_beside)
     polar = sections(tracer, program, codes, reading, blocks, parameters)
     still = [
         (block.text.number, codes.name_of(block.codes))

@@ -362,5 +362,6 @@ def c_speed_of(own: Sequence[int], path: Track, plane: Plane, real: Followed | N
         return float(np.abs(np.gradient(angle, time)).max()) if len(time) > 1 else 0.0
     vertices = slice(path.vertices(own[0]).start, path.vertices(own[-1]).stop)
     positions, seconds = path.positions[vertices], np.maximum(np.diff(path.time[vertices]), 1e-12)
-    turned = np.diff(spindle_angles(plane.on_face(positions), positions[:, C]))
+    on_face = plane.on_face(positions)
+    turned = np.diff(spindle_angles(on_face, positions[:, C], path.part.beside))
     return float((np.abs(turned) / seconds).max(initial=0.0))

@@ -37,7 +37,8 @@ CORNER = math.radians(15.0)  # chords of an arc make smaller ones
 class SectionAxes(NamedTuple):
     """What a machine's axes can do: accelerations of X and Z in mm, of C in radians, per second².
 
-    ``c_speed`` is C's greatest speed, degrees/s; ``face`` tells of the kinematics of the face.
+    ``c_speed`` is C's greatest speed, degrees/s; ``face`` tells of the kinematics of the face,
+    ``beside`` how far the tool stands from the X line, mm.
     """
 
     x: float
@@ -45,14 +46,17 @@ class SectionAxes(NamedTuple):
     c: float
     c_speed: float
     face: bool = False
+    beside: float = 0.0
 
     def along(self, direction: np.ndarray, place: np.ndarray) -> float:
         """Return the greatest acceleration along a direction (3,) at a place (3,) of the part."""
-        radius = max(math.hypot(*place[:2]), STILL)
-        radial = abs(direction[:2] @ place[:2]) / radius
-        around = abs(direction[1] * place[0] - direction[0] * place[1]) / radius
-        slide = max(radial, abs(direction[2])) / max(self.x, self.z)
-        return 1.0 / max(slide, around / (radius * self.c), 1e-12)
+        tool, heading = complex(*place[:2]), complex(*direction[:2])
+        radius = max(abs(tool), STILL)
+        slide = max(math.sqrt(max(0.0, radius**2 - self.beside**2)), STILL)
+        seen = heading * tool.conjugate() * (slide + 1j * self.beside) / radius**2
+        moved = abs(seen.real + self.beside / slide * seen.imag)
+        linear = max(moved, abs(direction[2])) / max(self.x, self.z)
+        return 1.0 / max(linear, abs(seen.imag) / (slide * self.c), 1e-12)
 
 
 class Joint(NamedTuple):
@@ -83,7 +87,7 @@ def axes_of_section(ini: Ini) -> SectionAxes:
     """Return what the axes of an INI can do."""
     x, z, c = (ini.axis_limits[letter].acceleration for letter in "XZC")
     speed, face = ini.axis_limits["C"].velocity, bool(face_joints(ini.get))
-    return SectionAxes(x * ini.mm, z * ini.mm, math.radians(c), speed, face)
+    return SectionAxes(x * ini.mm, z * ini.mm, math.radians(c), speed, face, ini.tool_beside)
 
 
 def motion_off(

@@ -35,7 +35,8 @@ from g12.tools.preview.tracer import Parameters, Tracer
 from g12.tools.verify.codes import Codes
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
-CONTOUR = "XYCUHIJRZ"
+ACROSS = "XYCUHIJR"
+CONTOUR = f"{ACROSS}Z"
 ACTING_M = {*map(float, (3, 4, 5, 7, 8, 9, 48, 49, 50, 51, 52, 53)), *map(float, range(100, 200))}
 DWELL, EXACT_HERE = 4.0, 9.0
 PATHS = {61.0: True, 61.1: True, 64.0: False}  # code: exact
@@ -113,10 +114,14 @@ BEGUN = ZeroLine(True)
 
 
 class WordReading(NamedTuple):
-    """How a machine reads a section's words: [G12] POLAR_X, and POLAR_G0_FEED in mm/min."""
+    """How a machine reads a section's words: [G12] POLAR_X, and POLAR_G0_FEED in mm/min.
+
+    ``beside`` is POLAR_TOOL_OFFSET in mm: there the tool is where a section begins.
+    """
 
     x: str
     rapid_feed: float | None = None
+    beside: float = 0.0
 
 
 class Act(NamedTuple):
@@ -328,6 +333,7 @@ class Pen:
         diameter = {"diameter": True, "radius": False}.get(reading.x, state["_lathe_diameter_mode"])
         self.x_unit = self.unit / 2 if diameter else self.unit
         self.at = complex(state["_x"] * self.unit, 0.0)
+        self.beside, self.tool = reading.beside, self.at + 1j * reading.beside
         self.depth = state["_z"] * self.unit
         self.absolute = bool(state["_absolute"])
         self.motion, self.side, self.changes = state["_motion_mode"] / 10, 0, False
@@ -354,28 +360,33 @@ class Pen:
             self._to(words, "C" if "C" in words else "Y", "H", self.at.imag, self.unit),
         )
         centre, sweep = self._turn(words, end)
-        if end != self.at or centre is not None:
+        if not any(letter in words for letter in ACROSS):
+            end = self.tool
+        if end != self.tool or centre is not None:
             line = block.text.number
             ramp, self.changes = self.changes, False
-            form = self.at, end, self.side, ramp, self.depth, centre, sweep
+            form = self.tool, end, self.side, ramp, self.depth, centre, sweep
             yield Element(line, *form, self._feed(), self._exact(block))
         elif depth != self.depth:
             still = Element(block.text.number, end, end, 0, False, self.depth)
             yield replace(still, feed=self._feed(), exact=self._exact(block))
-        self.at = end
+        if end != self.tool or centre is not None:
+            self.at = self.tool = end
 
     def leaves(self, state: Mapping[str, float]) -> dict[str, float]:
         """Return the state behind the section, of which ``state`` is the one before it.
 
         Not C where the tool is in the centre, nor a feed that is not known.
         """
-        radius, angle = cmath.polar(self.at)
+        radius, angle = cmath.polar(self.tool)
+        slide = math.sqrt(max(0.0, radius**2 - self.beside**2))
+        angle -= math.atan2(self.beside, slide)
         left = {
             "_metric": state["_metric"],
             "_absolute": float(self.absolute),
             "_units_per_rev": float(self.per_revolution),
             "_motion_mode": 10 * self.motion,
-            "_x": radius / self.unit,
+            "_x": slide / self.unit,
             "_z": self.depth / self.unit,
         }
         left |= {"_c": state["_c"] + math.degrees(angle)} if radius > SAME_PLACE else {}

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""[G12] POLAR_TOOL_OFFSET in a headless LinuxCNC: the part is the same, seen from the joints."""
+
+import numpy as np
+import pytest
+
+from support.contour_geometry import Round, Straight, distance, distance_from_path
+from support.kinematics import needs_kinematics
+from support.operated_machine import Machine
+from support.polar_drawings import MILLIMETRES
+from support.sim_machines import PROGRAMS, copy_of_machines
+
+HEXAGON = PROGRAMS / "polar" / "hexagon.ngc"
+AROUND = range(10, 16)  # its lines between the ramps
+WAYS = [
+    pytest.param("lathe_mm", 8.0),
+    pytest.param("lathe_mm_kinematics", 8.0, marks=needs_kinematics),
+    pytest.param("lathe_mm_kinematics", -3.0, marks=needs_kinematics),
+]
+ARCS = (
+    "G20 G7 G18 G90 G94 G64 P0.0002 F60", "G0 X3 Z0 C0", "G12.1", "G1 X2.4 C0", "G3 X0 C1.2 R1.2",
+    "G1 X-2 C0.5", "G2 X-2 C0.5 I-0.4", "G1 X2.4 C0.6", "G13.1", "M2",
+)  # fmt: skip
+DRAWN = [  # what it is to cut, inches
+    Straight(1.5 - 0.3j, 1.2 + 0j),
+    Round(1.2 + 0j, 0j, np.pi / 2),
+    Straight(1.2j, -1 + 0.5j),
+    Round(-1 + 0.5j, -1.4 + 0.5j, -2 * np.pi),
+    Straight(-1 + 0.5j, 1.2 + 0.6j),
+]
+
+
+def machine_with(folder, name, offset):
+    """Return the INI of a simulated machine with a tool beside the X line."""
+    ini = copy_of_machines(folder) / f"{name}.ini"
+    text = ini.read_text()
+    if "kinematics" in name:
+        hal = "HALFILE = ../kinematics/polar_kinematics.hal\n"
+        text = text.replace(hal, f"{hal}HALFILE = ../kinematics/polar_tool_offset.hal\n")
+        text = text.replace("[G12]\n", f"[G12]\nPOLAR_TOOL_OFFSET = {offset}\n")
+    else:
+        text += f"\n[G12]\nPOLAR_TOOL_OFFSET = {offset}\n"
+    ini.write_text(text)
+    return ini
+
+
+def on_the_part(samples, offset):
+    """Return where the tool was on the part, complex, for joints X and C."""
+    assert samples.axes["X"].min() >= 0.0
+    return (samples.axes["X"] + 1j * offset) * np.exp(1j * np.radians(samples.axes["C"]))
+
+
+@pytest.mark.parametrize(("name", "offset"), WAYS)
+def test_the_hexagon_is_the_same_on_the_part(tmp_path, name, offset):
+    with Machine(machine_with(tmp_path, name, offset)) as lathe:
+        run = lathe.run(HEXAGON)
+    assert run.error is None
+    points = on_the_part(run.samples, offset)[np.isin(run.samples.line, AROUND)]
+    drawn = [piece for line in AROUND for piece in MILLIMETRES["hexagon"].path[line]]
+    assert distance(points, drawn).max() <= 0.006
+    corners = np.array([piece.start for piece in drawn])
+    assert distance_from_path(corners, points).max() <= 0.006
+
+
+@pytest.mark.parametrize(
+    "name", ["lathe_inch", pytest.param("lathe_inch_kinematics", marks=needs_kinematics)]
+)
+def test_lines_and_arcs_in_inches(tmp_path, name):
+    with Machine(machine_with(tmp_path, name, -0.3)) as lathe:
+        run = lathe.run_text(ARCS)
+    assert run.error is None
+    points = on_the_part(run.samples, -0.3)[run.samples.line > 3]
+    assert distance(points, DRAWN).max() <= 0.00024
+    ends = np.array([piece.end for piece in DRAWN])
+    assert distance_from_path(ends, points).max() <= 0.00024
+
+
+@needs_kinematics
+def test_kinematics_that_know_another_offset_are_refused(tmp_path):
+    ini = machine_with(tmp_path, "lathe_mm_kinematics", 8.0)
+    ini.write_text(ini.read_text().replace("HALFILE = ../kinematics/polar_tool_offset.hal\n", ""))
+    with Machine(ini) as lathe:
+        run = lathe.run(HEXAGON)
+        assert "kinematics have the tool 0 beside X's line (polar-xzc.tool-offset)" in (
+            run.error.text
+        )
+        assert set(run.samples.line[run.samples.moving()]) <= {5}
+        assert not lathe.get("polar-xzc.face")
+        lathe.mdi("G12.1")
+        assert "POLAR_TOOL_OFFSET 8" in lathe.errors()[-1].text
+        assert not lathe.get("polar-xzc.face")
+
+
+@needs_kinematics
+def test_in_mdi_the_face_is_where_the_tool_is(tmp_path):
+    with Machine(machine_with(tmp_path, "lathe_mm_kinematics", 8.0)) as lathe:
+        lathe.mdi("G21 G8 G90 G94 F1000")
+        lathe.mdi("G0 X30 C0")
+        lathe.mdi("G12.1")
+        assert lathe.stat().position[:2] == pytest.approx((30, 8), abs=1e-6)
+        lathe.sample()
+        lathe.mdi("G1 X20 Y20")
+        lathe.mdi("G1 X0 Y9")
+        points = on_the_part(lathe.samples(), 8.0)
+        drawn = [Straight(30 + 8j, 20 + 20j), Straight(20 + 20j, 9j)]
+        assert distance(points, drawn).max() <= 0.04  # C may lag by 0.1 degree behind a stop
+        lathe.mdi("G1 X0 Y7")
+        assert any("kinematicsInverse" in error.text for error in lathe.errors())

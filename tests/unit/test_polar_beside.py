@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A tool beside the X line: what X and C make of it on the part, and what cannot be reached."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+
+from g12.errors import Refusal
+from g12.flat.contour import Contour, Line
+from g12.moves.steps import BlockMoves
+from g12.polar.face import FaceLimits, is_able, passed
+from g12.polar.plan import PolarSettings, plan
+from support.contour_geometry import Round, Straight, distance, distance_from_path
+from support.planned_cuts import add
+
+TOLERANCE = 0.005
+LATHE = PolarSettings(TOLERANCE, 1e-9, 1000.0, 3600.0, 21600.0)
+LIMITS = FaceLimits(1000.0, 707.0, 1000.0, math.radians(3600.0), math.radians(360.0), 1.0)
+
+offsets = st.sampled_from([0.02, -0.5, 3.0, -10.0]) | st.floats(-15.0, 15.0).filter(bool)
+coordinate = st.floats(-30.0, 30.0)
+point = st.builds(complex, coordinate, coordinate)
+sweep = st.floats(0.05, 6.28) | st.sampled_from([math.pi, 2 * math.pi])
+arc = st.tuples(point, st.builds(math.copysign, sweep, st.sampled_from([1, -1])))
+
+
+@st.composite
+def drawings(draw):
+    """Draw a tool's offset, and shapes that a line leads to from where it stands."""
+    beside = draw(offsets)
+    at = complex(draw(st.floats(0.1, 30.0)), beside)
+    shapes = [Straight(at, draw(point))]
+    for element in draw(st.lists(point | arc, max_size=4)):
+        at = shapes[-1].end
+        straight = isinstance(element, complex)
+        shapes.append(Straight(at, element) if straight else Round(at, *element))
+        assume(straight or shapes[-1].radius > 0.02)
+    assume(min(shape.length for shape in shapes) > 0.01)
+    return beside, shapes
+
+
+def contour_of(beside, shapes):
+    contour = Contour(shapes[0].start.real, 0.0, beside=beside)
+    for line, shape in enumerate(shapes, 1):
+        add(contour, shape, line=line, feed=250.0)
+    return contour
+
+
+def on_the_part(contour, beside, planned):
+    """Return the tool's path that X and C make, complex."""
+    x, c = contour.start.x, 0.0
+    parts, points = np.linspace(0.0, 1.0, 60), []
+    for run in planned.steps:
+        for to_x, to_c, _, _ in run.pieces:
+            slide, turn = x + (to_x - x) * parts, np.radians(c + (to_c - c) * parts)
+            assert slide.min() >= 0.0
+            points.append((slide + 1j * beside) * np.exp(1j * turn))
+            x, c = to_x, to_c
+    return np.concatenate(points)
+
+
+@settings(max_examples=100, deadline=None)
+@given(drawings())
+@example((10.0, [Straight(5 + 10j, 5 + 10.006j)]))
+@example((3.0, [Straight(20 + 3j, 3.006j), Straight(3.006j, -20 + 3.006j)]))  # along the slide
+@example((-3.0, [Straight(20 - 3j, 3.006j), Straight(3.006j, -20 + 3.006j)]))
+@example((3.0, [Straight(20 + 3j, 9 + 0j), Round(9 + 0j, 0j, 2 * math.pi)]))
+@example((3.0, [Straight(20 + 3j, 8 + 0j), Round(8 + 0j, 2.4 + 0j, -2 * math.pi)]))
+def test_the_tool_is_on_the_contour_or_it_is_refused(drawn):
+    beside, shapes = drawn
+    nearest = min(abs(shape.points(2000)).min() for shape in shapes)
+    contour = contour_of(beside, shapes)
+    try:
+        planned = plan(contour, LATHE._replace(beside=beside), c=0.0)
+    except Refusal as refusal:
+        assert "POLAR_TOOL_OFFSET" in refusal.message
+        assert nearest < abs(beside) + TOLERANCE + 1e-3
+        return
+    assert nearest >= abs(beside)
+    made = on_the_part(contour, beside, planned)
+    assert distance(made, shapes).max() <= TOLERANCE
+    assert distance_from_path(np.concatenate([s.points(40) for s in shapes]), made).max() <= 0.0053
+
+
+def test_every_piece_lasts_as_long_as_its_path_at_the_feed():
+    shapes = [Straight(40 + 8j, 15 + 0j), Straight(15 + 0j, 15 - 20j), Straight(15 - 20j, -9 - 20j)]
+    contour = contour_of(8.0, shapes)
+    planned = plan(contour, LATHE._replace(beside=8.0), c=0.0)
+    x, c, seconds = 40.0, 0.0, 0.0
+    for to_x, to_c, _, feed in (piece for run in planned.steps for piece in run.pieces):
+        seconds += (abs(to_x - x) or abs(to_c - c)) / feed * 60
+        x, c = to_x, to_c
+    assert seconds == pytest.approx(sum(shape.length for shape in shapes) / 250 * 60, rel=1e-3)
+    assert max(len(run.pieces) for run in planned.steps) < 40
+
+
+def test_an_arc_may_not_be_the_first():
+    contour = Contour(20.0, 0.0, beside=3.0)
+    with pytest.raises(
+        Refusal, match=r"line 7: G3 needs a G1 .* the tool stands 3 beside X's line"
+    ):
+        contour.arc(1, 0.0, 20.0, radius=20.0, line=7, feed=100.0)
+
+
+def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
+    contour = Contour(20.0, 0.0, beside=-3.0)
+    contour.line(10.0, 0.0, line=7, feed=100.0)
+    contour.line(2.9, 0.0, line=8, feed=100.0)
+    with pytest.raises(Refusal) as refused:
+        plan(contour, LATHE._replace(beside=-3.0), c=0.0)
+    assert refused.value.message == (
+        "G12.1 line 8: the tool's centre would come to 2.9 from the spindle's centre: it stands 3 "
+        "beside X's line (POLAR_TOOL_OFFSET) and comes no nearer than 3.005"
+    )
+
+
+def test_an_arc_right_behind_a_plunge_is_still_the_first():
+    contour = Contour(20.0, 0.0, beside=3.0)
+    contour.line(z=-1.0, line=6, feed=100.0)
+    with pytest.raises(Refusal, match="line 7"):
+        contour.arc(1, 0.0, 20.0, radius=20.0, line=7, feed=100.0)
+
+
+places = st.tuples(st.floats(-60, 60), st.floats(-60, 60))
+
+
+@settings(max_examples=200, deadline=None)
+@given(places, places, st.floats(100, 6000), offsets)
+def test_on_the_face_an_able_line_keeps_c_and_the_slide_within_their_limits(a, b, feed, beside):
+    move = Line(1, feed, 0.0, *a, 0.0, *b, 0.0)
+    assume(math.dist(a, b) > 0.1)
+    limits = LIMITS._replace(beside=beside, slide_speed=120.0)
+    if not is_able(move, limits):
+        return
+    points = np.linspace(complex(*a), complex(*b), 2000)
+    step = abs(points[1] - points[0]) / (feed / 60)
+    slide, angle = axes_of(points, beside)
+    assert np.abs(np.diff(angle)).max() / step <= LIMITS.c_speed * 1.02
+    assert np.abs(np.diff(slide)).max() / step <= 120.0 * 1.02
+    assert np.abs(np.diff(angle, 2)).max() / step**2 <= LIMITS.c_acceleration * 1.02 + 1e-3
+    assert np.abs(np.diff(slide, 2)).max() / step**2 <= LIMITS.slide_acceleration * 1.02 + 1e-3
+    end = passed(move, angle[0], beside)[-1]
+    assert end[:2] == pytest.approx((slide[-1], angle[-1]), abs=1e-6)
+
+
+def axes_of(points, beside):
+    """Return where slide and C have to be for the tool to be at points."""
+    slide = np.sqrt(abs(points) ** 2 - beside**2)
+    return slide, np.unwrap(np.angle(points) - np.arctan2(beside, slide))
+
+
+def test_kinds_of_steps():
+    contour = Contour(30.0, 0.0, beside=8.0)
+    for line, (x, c) in enumerate([(30, 20), (-30, 20), (-30, 0)], 7):
+        contour.line(x, c, line=line, feed=2000.0)
+    face = plan(contour, LATHE._replace(beside=8.0, face=LIMITS._replace(beside=8.0)), c=10.0)
+    pieces = plan(contour, LATHE._replace(beside=8.0), c=10.0)
+    assert {type(step) for step in pieces.steps} == {BlockMoves}
+    assert not {type(step) for step in face.steps} & {BlockMoves}
+    assert face.place == pytest.approx(pieces.place)
+    slide = math.sqrt(30**2 - 8**2)
+    assert face.place[:2] == pytest.approx((slide, 190 - math.degrees(math.atan2(8, slide))))
