@@ -120,6 +120,13 @@ def test_many_points_in_a_row_are_looked_at_once():
     assert len(looked) < 100 * len(line)
 
 
+def test_a_ramp_does_not_become_one_line_with_a_contour_that_goes_on_straight():
+    """The tool would go along on the contour itself where it should be beside it."""
+    points = [(20.0, -20.0), (20.0, 0.0), (19.0, 0.0), (19.0, 20.0), (10.0, 30.0)]
+    contour = programmed(*points, side=41, radius=3.0, start=(20.0, -30.0))
+    assert refused(contour)
+
+
 def test_the_z_of_a_move_left_out_is_kept():
     contour = Contour(30.0, 0.0)
     contour.compensation(41, 5.0, line=1)

@@ -61,11 +61,13 @@ def with_points_left_out(elements: Sequence, limit: float) -> tuple[list, float]
     contour at most. Program units.
     """
     kept: list = []
-    moved = 0.0
+    moved = offset = 0.0
     at = 0
     while at < len(elements):
-        last, away = _reach(elements, at, limit)
         element = elements[at]
+        beside = offset != 0.0  # else this is the ramp: it ends where the contour begins
+        last, away = _reach(elements, at, limit) if beside else (at, 0.0)
+        offset = element.offset if is_move(element) else offset
         if last > at:
             moved = max(moved, away)
             element = element._replace(x1=elements[last].x1, c1=elements[last].c1)
