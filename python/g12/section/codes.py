@@ -30,7 +30,8 @@ class SectionCodes(NamedTuple):
 
     def ends(self, block: SectionBlock) -> bool:
         """Tell whether a block switches off."""
-        return block.g[MOTION] in self.off and block.words.get(self.word, 0.0) == 0.0
+        off = not self.word or block.words.get(self.word) == 0.0
+        return off and block.g[MOTION] in self.off
 
 
 def codes_of_section(code: str, remaps: Collection[Remap], on: str, off: str) -> SectionCodes:
