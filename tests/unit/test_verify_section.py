@@ -2,6 +2,7 @@
 """Polar sections made by hand, right and wrong, and what is measured of them."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -77,7 +78,7 @@ def cut(ways, first=40 + 0j, last=40 + 0j):
     hand.polar(dense([first, ways[0][0]])[1:])
     for way in ways:
         hand.next_block().polar(way[1:])
-    hand.block = 9
+    hand.block = max(9, len(ways) + 2)
     return hand.polar(dense([ways[-1][-1], last])[1:])
 
 
@@ -147,6 +148,16 @@ def test_a_wrong_offset_is_found(wrong):
     found, other = (facts.gouge, facts.left) if wrong < 0 else (facts.left, facts.gouge)
     assert found == pytest.approx(band, rel=0.1)
     assert other == 0
+
+
+@pytest.mark.parametrize("wrong", [-0.02, 0.02])
+def test_what_is_off_in_every_lap_is_off_once(wrong):
+    (lead, *walls, away), ways = square(-1), around(TOOL + wrong)
+    once = measure(cut(ways), [lead, *walls, away])
+    laps = [replace(wall, line=wall.line + 5 * lap) for lap in range(4) for wall in walls]
+    found = measure(cut(4 * ways), [lead, *laps, replace(away, line=22)])
+    assert (found.left, found.gouge) == pytest.approx((once.left, once.gouge), rel=0.1)
+    assert len(ContourDistances(laps).elements) == len(walls)
 
 
 def test_the_wrong_side_is_found():

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -12,15 +12,19 @@ from g12.tools.path.nearest import on_segments
 from g12.tools.verify.wanted_contour import Element
 
 STEP = 0.05  # mm between points of the contour that are looked at
-CHUNK = 256
+CHUNK = 64  # points that lie together have few elements near them
 SAME = 1e-7
+PLACES = 6  # decimals of mm: what is equal to them is the same element, cut once more
 
 
 class ContourDistances:
-    """The elements of a contour, to measure the distance of many points at once."""
+    """The elements of a contour, to measure the distance of many points at once.
+
+    What is cut in several laps is there once.
+    """
 
     def __init__(self, elements: Sequence[Element]) -> None:
-        self.elements = [element for element in elements if element.length > SAME]
+        self.elements = each_once([element for element in elements if element.length > SAME])
         self.start = np.array([element.start for element in self.elements])
         self.end = np.array([element.end for element in self.elements])
         arcs = [element.centre is not None for element in self.elements]
@@ -46,26 +50,35 @@ class ContourDistances:
 
     def distances(self, points: np.ndarray) -> np.ndarray:
         """Return the distance of points to the contour."""
-        return np.abs(points - self.nearest(points)[0])
+        found = np.empty(len(points))
+        for part in chunks(points):
+            nearest = self._next_to(points[part], self._elements_near(points[part]))
+            found[part] = np.abs(points[part, None] - nearest).min(axis=1)
+        return found
 
     def nearest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the contour's point next to each point, and the side: above 0 is left of it."""
         found, side = np.empty(len(points), complex), np.empty(len(points))
-        for first in range(0, len(points), CHUNK):
-            part = slice(first, first + CHUNK)
+        for part in chunks(points):
             found[part], side[part] = self._nearest(points[part])
         return found, side
 
     def _nearest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         near = self._elements_near(points)
-        nearest = np.where(
-            self.arc[near], self._on_arcs(points, near), self._on_lines(points, near)
-        )
+        nearest = self._next_to(points, near)
         away = np.abs(points[:, None] - nearest)
         first = away.argmin(axis=1)[:, None]
         tied = away <= np.take_along_axis(away, first, axis=1) + SAME
         side = np.where(tied, self._sides(points, nearest, near), 0.0).sum(axis=1)
         return np.take_along_axis(nearest, first, axis=1)[:, 0], side
+
+    def _next_to(self, points: np.ndarray, near: np.ndarray) -> np.ndarray:
+        """Return the points (n, m) of some elements that are next to points."""
+        arc, found = self.arc[near], np.empty((len(points), len(near)), complex)
+        for those, on in ((arc, self._on_arcs), (~arc, self._on_lines)):
+            if those.any():
+                found[:, those] = on(points, near[those])
+        return found
 
     def _elements_near(self, points: np.ndarray) -> np.ndarray:
         """Return the elements that can be nearest to any of some points close together."""
@@ -101,6 +114,20 @@ class ContourDistances:
         along = np.where(self.arc[near], arcs, lines)
         along = along / np.maximum(np.abs(along), 1e-30)
         return (along.conj() * (points[:, None] - nearest)).imag
+
+
+def chunks(points: np.ndarray) -> Iterator[slice]:
+    """Yield the parts of points that are looked at together."""
+    return (slice(first, first + CHUNK) for first in range(0, len(points), CHUNK))
+
+
+def each_once(elements: Sequence[Element]) -> list[Element]:
+    """Return elements without those that run where an earlier one did, in the same direction."""
+    if len(elements) < 2:
+        return list(elements)
+    places = [(each.start, each.end, each.centre or 0.0, each.sweep) for each in elements]
+    _, first = np.unique(np.round(np.array(places, complex), PLACES), axis=0, return_index=True)
+    return [elements[index] for index in np.sort(first)]
 
 
 def as_vectors(points: np.ndarray) -> np.ndarray:

@@ -126,11 +126,12 @@ def tool_paths_of(
 ) -> ToolPaths:
     """Return the paths of moves at feed, given by their indices."""
     across = [index for index in cutting if goes_across(moves[index])]
+    down = sorted(set(cutting) - set(across))
     tool_paths = (
         (line, as_one_path([plane.tool_path(index, path, real) for index in stretch]))
         for line, stretch in groupby(across, key=lambda index: moves[index].line)
     )
-    downward = [plane.tool_path(index, path, real) for index in cutting if index not in set(across)]
+    downward = [plane.tool_path(index, path, real) for index in down]
     plunges = [ToolPath(tool_path.points[-1:], tool_path.heights[-1:]) for tool_path in downward]
     return ToolPaths(tool_paths, connected(plunges), plane.face)
 
