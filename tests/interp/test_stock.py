@@ -152,3 +152,28 @@ def test_a_stock_that_is_none_ends_with_2(capsys):
     program = str(PROGRAMS / "polar" / "hexagon.ngc")
     assert main(["verify", program, "--ini", LATHE, "--stock", "40x40"]) == 2
     assert "'40x40' is not a bar's diameter: 40, 40mm, 1.5in" in capsys.readouterr().err
+
+
+# ---------------------------------------------------------------- beside the stock
+
+MISSED = "line 4: it meets nothing of the stock"
+PLUNGES = "line 4: it plunges with 100 % of the cutter into the stock, at X40 Y0"
+FAR = [line.replace("X27", "X44") for line in FLAT]
+
+
+@pytest.mark.parametrize(
+    ("stock", "lines", "ini", "found"),
+    [
+        ("40", [*FACE, *FLAT, "G0 C0", *FAR], LATHE, ["line 13: it meets nothing of the stock"]),
+        ("40", [*FACE, *(line.replace("-5", "5") for line in FLAT)], LATHE, [MISSED]),
+        ("20x20x9", [*HEAD, "G0 X40 Y0 Z1", "G12 I9 Z-1 D4"], MILL, [MISSED]),
+        ("99x20x9", [*HEAD, "G0 X40 Y0 Z1", "G12 I9 Z-1 D4"], MILL, [PLUNGES]),
+    ],
+)
+def test_what_meets_nothing_of_the_stock_is_told(stock, lines, ini, found, told):
+    assert told(stock, *lines, ini=ini)[1] == found
+
+
+def test_a_lathe_program_that_turns_nothing_has_a_bar_too(told):
+    code, notes, _ = told("40", *FACE, "G12.1", "G1 Z-2 F300", "Z2", "G13.1", ini=LATHE)
+    assert (code, notes) == (0, [MISSED])

@@ -3,9 +3,10 @@
 
 import pytest
 
+from g12.tools.commands.main import main
 from g12.tools.machine.ini import read_ini
 from g12.tools.units import MM
-from g12.tools.verify.findings import section_notes
+from g12.tools.verify.findings import pocket_notes, section_notes
 from g12.tools.verify.proof import prove
 from g12.tools.verify.report import pocket_text, section_text
 from support.sim_machines import SIM
@@ -202,3 +203,44 @@ def test_a_pocket_at_the_present_depth_is_good(proof_of):
 def test_pockets_farther_apart_than_the_travel_are_found(second, found, proof_of):
     block = "G13 I9 Z-3 D4"
     assert told(proof_of(*MILL, block, "G0 Z1", second, block, "G0 Z1")) == found
+
+
+# ---------------------------------------------------------------- the spindle
+
+STANDS = "the spindle stands still: no M3 or M4 with an S comes before it"
+POCKET = "G13 I9 Z-2 D4 "
+
+
+@pytest.mark.parametrize(
+    ("lines", "stands"),
+    [
+        ([POCKET], True),
+        (["S900 M3", POCKET], False),
+        (["S900 M4", POCKET], False),
+        ([POCKET + "S900 M3"], False),
+        (["S900 M3", "M5", POCKET], True),
+        (["S900 M3", POCKET, "M5"], False),
+        (["M3", POCKET], True),
+        (["S900 M3", "M5", "M3", "G0 X1", POCKET], False),
+        (["M103 P1", POCKET], False),  # a user's code may turn a spindle
+    ],
+)
+def test_a_pocket_whose_spindle_stands_is_noted(lines, stands, proof_of):
+    proof = proof_of(*MILL, *lines)
+    assert told(proof) == []
+    assert list(pocket_notes(proof.pockets[0])) == [STANDS] * stands
+
+
+def test_nothing_is_said_of_the_spindle_where_there_are_several(tmp_path):
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*MILL, "S900 M3 $1", POCKET, "M2", ""]))
+    ini = read_ini(SIM / "mill_mm_headless.ini").replaced({"TRAJ": {"SPINDLES": "2"}})
+    assert list(pocket_notes(prove(program, ini).pockets[0])) == []
+
+
+def test_plot_says_once_that_the_spindle_stands(tmp_path, capsys):
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*MILL, POCKET, POCKET, "M2", ""]))
+    words = ["--ini", str(SIM / "mill_mm_headless.ini"), "-o", str(tmp_path / "picture.svg")]
+    assert main(["plot", str(program), *words]) == 0
+    assert f"\nnote, line 4: {STANDS}\n" in capsys.readouterr().out

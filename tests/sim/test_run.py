@@ -9,7 +9,8 @@ import time
 
 import pytest
 
-from g12.tools.commands import main
+from g12.tools.commands import main, run
+from g12.tools.machine.ini import read_ini
 from support.sim_machines import ROOT, SIM
 
 
@@ -92,3 +93,29 @@ def test_an_interrupted_run_is_one_line(tmp_path, start):
         130,
         "running long.ngc in real time, about 5 min 0 s\ng12 run: interrupted\n",
     )
+
+
+@pytest.mark.parametrize(
+    ("feed", "override", "seconds"),
+    [(600, 100, 600), (1, 100, 6000), (1, 500, 1200), (600, 1, 1000)],  # 50 mm
+)
+def test_a_run_is_waited_for_as_long_as_its_program_needs(feed, override, seconds, tmp_path):
+    program = tmp_path / "part.ngc"
+    program.write_text(f"G21 G90 F{feed}\nG1 X50\nM2\n")
+    ini = read_ini(SIM / "mill_mm.ini")
+    assert run.patience(run.preview_of(program, ini.path, None, None), ini, override) == (
+        pytest.approx(seconds)
+    )
+
+
+def test_dwells_are_waited_for(tmp_path):
+    program = tmp_path / "part.ngc"
+    program.write_text("G21 G90 F600\nG1 X5\nG4 P1000\nM2\n")
+    ini = read_ini(SIM / "mill_mm.ini")
+    preview = run.preview_of(program, ini.path, None, None)
+    assert run.patience(preview, ini, 500.0) == pytest.approx(2000.2)
+
+
+def test_a_run_of_unknown_length_has_the_usual_time():
+    ini = read_ini(SIM / "mill_mm.ini")
+    assert run.patience(None, ini, 100.0) == run.USUAL_TIMEOUT

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from shapely.geometry import Point
 
@@ -314,6 +315,17 @@ def test_holes_in_an_area_stay_holes():
 
 
 # ---------------------------------------------------------------- layout
+
+
+@pytest.mark.parametrize("apart", [30, 200])  # the legend beside and below
+def test_every_text_is_on_the_page(apart):
+    hand = Hand().rapid(z=5).pocket([5, 10], depth=-21.7351).rapid(z=5).rapid(x=apart)
+    figure = picture_of(scene(hand.pocket([5, 10], depth=-22.1239)))
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    inked, (width, height) = figure.get_tightbbox(canvas.get_renderer()), figure.get_size_inches()
+    assert inked.x0 >= 0 and inked.x1 <= width
+    assert inked.y0 >= 0 and inked.y1 <= height
 
 
 @pytest.mark.parametrize("size", [(10, 10, 5), (300, 20, 10), (5, 200, 3), (1, 1, 40), (9, 9, 0.1)])

@@ -31,6 +31,7 @@ from g12.tools.preview.ended import traced
 from g12.tools.preview.moves import message_lines
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.progress import working
+from g12.tools.verify.findings import SPINDLE_STANDS
 from g12.tools.verify.proof import subject_of
 from g12.tools.verify.seen import seen_in
 
@@ -72,13 +73,16 @@ def main(arguments: list[str]) -> int:
 
 
 def told_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
-    """Return what the picture shows in red, and the program's messages, with the user's lines."""
+    """Return what the picture shows in red, notes and messages, with the user's lines."""
     warnings = (
         f"in red, line {opened.source_line(line)}: {text}"
         for line, text in scene.seen.warnings(scene.unit)
     )
+    notes = (
+        f"note, line {opened.source_line(line)}: {SPINDLE_STANDS}" for line in scene.seen.still[:1]
+    )
     trace = trace_in_source(scene.subject.trace, opened)
-    return [*dict.fromkeys(warnings), *message_lines(trace.messages)]
+    return [*dict.fromkeys(warnings), *notes, *message_lines(trace.messages)]
 
 
 def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Scene:

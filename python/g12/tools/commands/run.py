@@ -27,6 +27,7 @@ from g12.tools.headless.machine import Run
 from g12.tools.headless.run import run_anyhow
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
+from g12.tools.path.track import program_seconds
 from g12.tools.preview.ended import explained_text
 from g12.tools.preview.moves import LINEAR, Trace
 from g12.tools.preview.tracer import Parameters, Tools, TraceFailure, trace
@@ -44,6 +45,7 @@ exit code: 0 the program came to its end, 1 it did not, 2 wrong use
 """
 DECIMALS = 6
 PATIENCE = 20.0  # s, to find out how long a run will take
+USUAL_TIMEOUT = 600.0  # s
 
 
 def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
@@ -66,20 +68,29 @@ def preview_of(program: Path, ini: Path, tools: Tools, parameters: Parameters) -
         return None
 
 
+def patience(preview: Trace | None, ini: Ini, override: float) -> float:
+    """Return for how many seconds a run is waited for, where the user does not say."""
+    if preview is None or preview.error:
+        return USUAL_TIMEOUT
+    return max(USUAL_TIMEOUT, 2 * program_seconds(preview, ini, override))
+
+
 @one_line("run")
 def main(arguments: list[str]) -> int:
     """Run the command."""
     parser = program_parser("run", __doc__, EXAMPLES)
     add_override(parser, "of the run")
-    timeout = {"type": number_above(0), "default": 600.0, "metavar": "SECONDS"}
-    parser.add_argument("--timeout", **timeout, help="give up after this (default 600)")
+    usual = f"{USUAL_TIMEOUT:g}, or twice what the program needs"
+    timeout = {"type": number_above(0), "metavar": "SECONDS"}
+    parser.add_argument("--timeout", **timeout, help=f"give up after this (default {usual})")
     options = parser.parse_args(arguments)
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
         files = (options.ini, options.tools, options.var)
-        text = run_text(options.program, options.override, preview_of(opened.path, *files), ini)
-        with working(text, clock=True):
-            result = run_anyhow(opened.path, *files, options.override, timeout=options.timeout)
+        preview = preview_of(opened.path, *files)
+        timeout = options.timeout or patience(preview, ini, options.override)
+        with working(run_text(options.program, options.override, preview, ini), clock=True):
+            result = run_anyhow(opened.path, *files, options.override, timeout=timeout)
     for line in lines_of_run(result, ini):
         print(line)
     if result.error:

@@ -19,6 +19,7 @@ from g12.tools.path.part import CHORD_ERROR, Part
 from g12.tools.preview.moves import LINEAR, Move, Trace
 
 UNLIMITED = math.inf
+DWELL = "dwell "  # an event, and the seconds behind it
 
 
 @dataclass(frozen=True)
@@ -88,10 +89,12 @@ def limits_of(ini: Ini) -> Limits:
 
 
 def program_seconds(trace: Trace, ini: Ini, override: float = 100.0) -> float:
-    """Return about how long a program's moves take, at a feed override in per cent."""
+    """Return about how long a program takes, at a feed override in per cent, with its dwells."""
     limits, share = limits_of(ini), override / 100.0
     moves = (move._replace(feed=move.feed * share) for move in trace.moves)
-    return sum(duration(move, limits, trace.modes.speed) for move in moves)
+    dwells = (event.text for event in trace.events if event.text.startswith(DWELL))
+    waiting = sum(float(text.removeprefix(DWELL)) for text in dwells)
+    return waiting + sum(duration(move, limits, trace.modes.speed) for move in moves)
 
 
 def duration(move: Move, limits: Limits, spindle_speed: float = 0.0) -> float:

@@ -46,7 +46,7 @@ MOST_SIDE, LEAST_SIDE = 3.2, 0.8
 ROW = 0.22  # a line of the legend
 COLUMNS = 4
 PLAN, SIDE = [0, 1], [0, 2]  # axes
-HEIGHTS = 0.75  # wide: the texts of the heights at the floors, and the lines to them
+HEIGHTS = 0.8  # wide: the texts of the heights at the floors, and the lines to them
 LETTER_HEIGHT = 0.11
 LEADER = 0.2  # the lines to the texts
 WINDOW = SIZE + 0.75  # the window on the largest deviation, with its texts
@@ -58,7 +58,8 @@ class Layout:
     def __init__(self, size: np.ndarray, rows: int, with_window: bool) -> None:
         width, height, depth = size
         self.below = width > WIDE * height
-        room = PAGE - LEFT - RIGHT - (0 if self.below else LEGEND)
+        beside = HEIGHTS if self.below else LEGEND + RIGHT
+        room = PAGE - LEFT - beside
         scale = min(room / width, MOST_PLAN / height)
         self.plan = (width * scale, max(LEAST_PLAN, height * scale))
         self.side = min(MOST_SIDE, max(LEAST_SIDE, depth * scale))
@@ -68,7 +69,7 @@ class Layout:
         foot = max(legend, window) if self.below else 0.0
         views = self.plan[1] + BETWEEN + self.side + BOTTOM
         self.height = TOP + max(views + foot, 0.0 if self.below else legend + window)
-        self.width = PAGE if self.below else LEFT + self.plan[0] + LEGEND + RIGHT
+        self.width = PAGE if self.below else LEFT + self.plan[0] + beside
         self.under = self.height - TOP - views
 
     def axes(self, figure: Figure) -> tuple[Axes, Axes]:

@@ -32,6 +32,7 @@ SAME_ANGLE = 1e-3  # degree
 SAME = 2e-3  # mm: circles of the same depth and radius
 MODES = {"_metric": ("G20", "G21"), "_absolute": ("G91", "G90"), "_units_per_rev": ("G94", "G95")}
 LOST_MINUS = "lies above Z{}, where the tool comes from: it cuts air (a lost minus sign?)"
+SPINDLE_STANDS = "the spindle stands still: no M3 or M4 with an S comes before it"
 NOT_CUT = "nothing is cut"
 UNMEASURED = "a cycle cuts here that could not be measured"
 
@@ -215,6 +216,8 @@ def pocket_notes(facts: PocketFacts, unit: Unit = MM) -> Iterator[str]:
     cutter = facts.target.cutter
     if cutter.word:
         yield "the tool's centre goes round on the circle, the wall is a tool radius farther"
+    if facts.spindle_stands:
+        yield SPINDLE_STANDS
     if facts.overruns is None:
         yield "its travel is not known: with the machine's var file the program moves otherwise"
     for overrun in facts.overruns or ():
@@ -333,6 +336,8 @@ def stock_notes(facts: StockFacts, unit: Unit = MM) -> Iterator[str]:
             f"line {line}: it plunges with {plain(100 * share, 0)} % of the cutter into the stock, "
             f"at X{x} Y{y}{' of the face' if facts.stock.diameter else ''}"
         )
+    for line in facts.missed:
+        yield f"line {line}: it meets nothing of the stock"
     if facts.below:
         yield f"the lowest cut is {unit.text(facts.below)} {unit.name} below the block"
 

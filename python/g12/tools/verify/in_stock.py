@@ -56,6 +56,7 @@ class StockFacts:
     """What a program does to its stock, whose top is at ``top``; ``shape`` is seen along Z.
 
     ``below`` is how far the lowest cut goes below a block, 0 if it does not.
+    ``missed`` are the lines of cycles and sections that meet nothing of it.
     """
 
     stock: Stock
@@ -65,6 +66,7 @@ class StockFacts:
     plunges: tuple[PlungeIntoStock, ...]
     standing: tuple[Standing, ...]
     below: float
+    missed: tuple[int, ...] = ()
 
     @property
     def bottom(self) -> float | None:
@@ -96,6 +98,8 @@ class InStock:
             if self.cleared.radius(index) and (not stock.diameter or moves[index].tool in tools)
         ]
         self._sections = sections
+        self._cuts = [(each.line, each) for each in sections]
+        self._cuts += [(target.source.line, block) for block, target in circles]
 
     def facts(self, known: Sequence[Collision]) -> StockFacts:
         """Return what happens to the stock but for the rapids that are known."""
@@ -109,7 +113,7 @@ class InStock:
         found = tuple(filter(None, rapids)), tuple(plunges.values()), standing
         facts = StockFacts(self._stock, self.shape, self.top, *found, 0.0)
         below = 0.0 if facts.bottom is None else max(0.0, facts.bottom - lowest)
-        return replace(facts, below=below)
+        return replace(facts, below=below, missed=tuple(self._missed()))
 
     def _bite(self, index: int, point: np.ndarray) -> BaseGeometry:
         """Return what of the stock is under a move's cutter there, not cleared before."""
@@ -143,6 +147,17 @@ class InStock:
         """Return the program's line of a move; a cycle's own lines are in its subroutine."""
         in_cycle = move.remap and all(move.remap != each.code for each in self._sections)
         return move.block if in_cycle else move.line
+
+    def _missed(self) -> Iterator[int]:
+        """Yield the lines of cycles and sections that meet nothing of the stock."""
+        for line, each in self._cuts:
+            own = [
+                index
+                for index in range(each.at, each.end)
+                if self.cleared.radius(index) and self._moves[index].end[Z] < self.top
+            ]
+            if self.cleared.of(own).intersection(self.shape).area < LEAST_AREA:
+                yield line
 
     def _standing(self) -> Iterator[Standing]:
         for section in self._sections:

@@ -53,6 +53,7 @@ class PocketFacts:
     ``cut`` is the depth and the radius of every full circle in its order, ``other_mode`` says
     that a move has its feed per minute in place of per revolution, or the other way round;
     ``growth`` is that of a spiral in a turn, ``helix`` None where the tool goes straight down.
+    ``spindle_stands`` says that no spindle turns, as far as the program tells.
     """
 
     target: Target
@@ -80,6 +81,7 @@ class PocketFacts:
     helix: HelixFacts | None = None
     overruns: tuple[Overrun, ...] | None = ()
     left_behind: tuple[LeftBehind, ...] = ()
+    spindle_stands: bool = False
 
     @property
     def turns(self) -> tuple[int, ...]:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
-from g12.tools.path.part import part_of_program
+from g12.tools.path.part import part_of, part_of_program
 from g12.tools.path.samples import Samples
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.ended import ended, explained
@@ -40,6 +40,7 @@ from g12.tools.verify.pocket_order import left_otherwise
 from g12.tools.verify.rapids import Collision, collisions
 from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
+from g12.tools.verify.spindle import stands_still
 from g12.tools.verify.stock import read_stock
 from g12.tools.verify.wanted_circle import CircleReader, Target
 from g12.tools.verify.wanted_contour import SectionContour, WordReading, sections
@@ -229,7 +230,8 @@ def measured(
         facts = measure_pocket(target, own, path, moves, tolerances.pocket, real, known)
         overruns = None if there is None else tuple(overruns_of(block, there, travel, widths))
         left = left_otherwise(block, target.leaves)
-        pockets.append(replace(facts, overruns=overruns, left_behind=left))
+        still = stands_still(subject.trace.events, block.end, subject.ini)
+        pockets.append(replace(facts, overruns=overruns, left_behind=left, spindle_stands=still))
     diameters = subject.trace.diameters
     axes = axes_of_section(subject.ini) if asked.sections else None
     polar = [
@@ -251,8 +253,8 @@ def stock_facts(
     """
     if stock is None:
         return None
-    unit, part = unit_of(subject.trace.modes.gcodes, stock.units), subject.path.part
-    said = read_stock(stock.text, part.turning, unit)
+    unit = unit_of(subject.trace.modes.gcodes, stock.units)
+    said = read_stock(stock.text, part_of(subject.ini).turning, unit)
     trace = subject.trace
     return InStock(
         said, asked.circles, asked.sections, trace.moves, subject.path, trace.diameters

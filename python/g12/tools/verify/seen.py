@@ -35,6 +35,7 @@ from g12.tools.verify.proof import (
     stock_facts,
 )
 from g12.tools.verify.rapids import Circles, Cleared, Collision, collisions, cutting, floors_of
+from g12.tools.verify.spindle import stands_still
 from g12.tools.verify.wanted_circle import Cutter
 
 
@@ -59,12 +60,13 @@ class WrongCutter(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What there is to warn of, and the stock."""
+    """What there is to warn of, the stock, and lines of pockets whose spindle stands."""
 
     collisions: tuple[Collision, ...] = ()
     rings: tuple[StandingRings, ...] = ()
     cutters: tuple[WrongCutter, ...] = ()
     stock: StockFacts | None = None
+    still: tuple[int, ...] = ()
 
     @property
     def rapids(self) -> tuple[Collision, ...]:
@@ -102,7 +104,12 @@ def seen_in(
         if is_wrong_tool(target.cutter)
     )
     facts = stock_facts(subject, asked, stock, hits)
-    return Seen(tuple(hits), tuple(rings), tuple(cutters), facts)
+    still = (
+        target.source.line
+        for block, target in asked.circles
+        if stands_still(trace.events, block.end, subject.ini)
+    )
+    return Seen(tuple(hits), tuple(rings), tuple(cutters), facts, tuple(still))
 
 
 def standing_rings(
