@@ -102,13 +102,32 @@ def test_compensation_on_the_wrong_side_of_a_part_is_named(proof_of):
     lead = ["G12.1", "G1 C0 F2000", "G42 X60 F1000", "Z-5"]
     square = ["C-30", "X-60", "C30", "X60", "C0", "Z2", "G40 X100", "G13.1"]
     proof = proof_of(*LATHE, "G0 X100 Z2 C0", *lead, *square, machine="lathe_mm")
-    assert told(proof)[0] == "the tool is inside the closed contour, it comes from outside: G41?"
+    assert told(proof)[0] == (
+        "the tool is inside the closed contour, it comes from outside: G41? "
+        "(else go inside before the line with G42)"
+    )
 
 
 def test_compensation_on_the_wrong_side_of_a_flat_is_named(proof_of):
     lead = [line.replace("G41", "G42") for line in FLAT]
     proof = proof_of(*LATHE, "G0 X60 Z2 C0", *lead, machine="lathe_mm")
     assert told(proof)[0] == "the tool crosses the contour on its way in: G41?"
+
+
+OVER = ["Z2", "G40 X-70", "G13.1"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (["G1 G41 X-27 C-25 F1000", "Z-5", "C25", *OVER], False),
+        ([*LEAD_IN[1:], "C-25", "Z2", "G40 X60", "G41 X-27 C-25", "Z-5", "C25", *OVER], False),
+        (["G1 Z-5 F1000", "G41 X-27 C-25", "C25", *OVER], True),
+    ],
+)
+def test_a_flat_that_is_approached_above_the_face(lines, found, proof_of):
+    proof = proof_of(*LATHE, "G0 X60 Z2 C0", "G12.1", *lines, machine="lathe_mm")
+    assert ("the tool crosses the contour" in " ".join(told(proof))) == found
 
 
 def test_the_inside_of_a_closed_contour_from_inside_is_good(proof_of):

@@ -6,11 +6,13 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 
 from g12.tools.commands import main, run
 from g12.tools.machine.ini import read_ini
+from g12.tools.preview.moves import Error
 from support.sim_machines import ROOT, SIM
 
 
@@ -37,7 +39,7 @@ from support.sim_machines import ROOT, SIM
             1,
             ["ends at X0 Y0 Z0 (machine position, mm)"],
             "running part.ngc in real time\n"
-            "g12 run: PROGRAM: Bad character 'c' used: this INI's machine has axes X Y Z\n",
+            "g12 run: PROGRAM:2: Bad character 'c' used: this INI's machine has axes X Y Z\n",
         ),
     ],
 )
@@ -106,6 +108,22 @@ def test_a_run_is_waited_for_as_long_as_its_program_needs(feed, override, second
     assert run.patience(run.preview_of(program, ini.path, None, None), ini, override) == (
         pytest.approx(seconds)
     )
+
+
+@pytest.mark.parametrize(
+    ("met", "text", "line"),
+    [
+        ("Bad character ',' used", "Bad character ',' used", 7),
+        ("Multiple i words on one line", "Multiple i words on one line", 7),
+        ("Bad character ',' used", "joint 0 following error", 0),
+        ("G13 line 7: K1 needs Q as well", "G13 line 7: K1 needs Q as well", 0),
+        ("G13 line 3 of sub.ngc: K1 needs Q", "G13 line 3 of sub.ngc: K1 needs Q", 0),
+    ],
+)
+def test_an_error_whose_text_names_no_line_has_that_of_the_preview(met, text, line):
+    preview = SimpleNamespace(error=Error(met, 7))
+    assert run.line_of(Error(text, 0), preview) == line
+    assert run.line_of(Error(text, 0), None) == 0
 
 
 def test_dwells_are_waited_for(tmp_path):

@@ -7,6 +7,7 @@ written. M0 and M1 are passed over.
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -29,7 +30,7 @@ from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.path.track import program_seconds
 from g12.tools.preview.ended import explained_text
-from g12.tools.preview.moves import LINEAR, Trace
+from g12.tools.preview.moves import LINEAR, Error, Trace
 from g12.tools.preview.tracer import Parameters, Tools, TraceFailure, trace
 from g12.tools.progress import working
 from g12.tools.regress.recording_text import number_text
@@ -44,6 +45,7 @@ examples:
 exit code: 0 the program came to its end, 1 it did not, 2 wrong use
 """
 DECIMALS = 6
+NAMED = re.compile(r"\bline \d")
 PATIENCE = 20.0  # s, to find out how long a run will take
 USUAL_TIMEOUT = 600.0  # s
 
@@ -75,6 +77,15 @@ def patience(preview: Trace | None, ini: Ini, override: float) -> float:
     return max(USUAL_TIMEOUT, 2 * program_seconds(preview, ini, override))
 
 
+def line_of(error: Error, preview: Trace | None) -> int:
+    """Return the line of an error that its text does not name, 0 if it does or is not known.
+
+    LinuxCNC's task does not tell it, but a preview has met the same error there.
+    """
+    met = preview and preview.error
+    return met.line if met and met.text == error.text and not NAMED.search(met.text) else 0
+
+
 @one_line("run")
 def main(arguments: list[str]) -> int:
     """Run the command."""
@@ -94,7 +105,9 @@ def main(arguments: list[str]) -> int:
     for line in lines_of_run(result, ini):
         print(line)
     if result.error:
+        line = opened.source_line(line_of(result.error, preview))
+        place = f"{options.program}:{line}" if line else options.program
         text = opened.in_source(explained_text(result.error.text, options.ini))
-        print(f"g12 run: {options.program}: {text}", file=sys.stderr)
+        print(f"g12 run: {place}: {text}", file=sys.stderr)
         tell_whose_lines("run", opened)
     return FINDING if result.error else GOOD

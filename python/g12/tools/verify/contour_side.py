@@ -2,7 +2,8 @@
 """Whether compensation has the tool on the side of a contour that it comes from.
 
 A tool that comes from outside of a closed contour is meant to stay outside of it; one that comes
-to an open contour is meant to stay on the side from which it comes. Points are complex, in mm.
+to an open contour is meant to stay on the side from which it comes, unless it goes over the part to
+the side away from the spindle's centre. Points are complex, in mm.
 """
 
 from __future__ import annotations
@@ -61,7 +62,16 @@ def side_taken(ramp: Element, contour: Sequence[Element], tool: float) -> OtherS
         inside = (area_within(points) > 0.0) == (ramp.side > 0)
         return OtherSide(ramp.side, inside) if inside != goes_round(points, ramp.start) else None
     beside = contour[0].start + contour[0].normal(0.0) * ramp.side * tool
-    return OtherSide(ramp.side, None) if crosses(ramp.start, beside, points) else None
+    wrong = crosses(ramp.start, beside, points) and not goes_over(ramp, contour, beside, points)
+    return OtherSide(ramp.side, None) if wrong else None
+
+
+def goes_over(
+    ramp: Element, contour: Sequence[Element], beside: complex, points: np.ndarray
+) -> bool:
+    """Tell whether a tool goes above an open contour to the side away from the centre."""
+    above = ramp.depth > min(element.depth for element in contour) + NEAR
+    return above and crosses(0j, beside, points)
 
 
 def area_within(points: np.ndarray) -> float:

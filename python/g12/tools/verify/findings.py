@@ -281,12 +281,13 @@ def mistake_findings(facts: SectionFacts) -> Iterator[str]:
         )
     if other is None:
         return
-    instead = "G41" if other.side < 0 else "G42"
+    other_code, instead = ("G42", "G41") if other.side < 0 else ("G41", "G42")
     if other.inside is None:
         yield f"the tool crosses the contour on its way in: {instead}?"
     else:
         here, there = ("inside", "outside")[:: 1 if other.inside else -1]
-        yield f"the tool is {here} the closed contour, it comes from {there}: {instead}?"
+        meant = f"else go {here} before the line with {other_code}"
+        yield f"the tool is {here} the closed contour, it comes from {there}: {instead}? ({meant})"
 
 
 def contour_findings(facts: SectionFacts, tolerance: float, unit: Unit) -> Iterator[str]:
