@@ -122,8 +122,8 @@ def test_a_run_is_waited_for_as_long_as_its_program_needs(feed, override, second
 )
 def test_an_error_whose_text_names_no_line_has_that_of_the_preview(met, text, line):
     preview = SimpleNamespace(error=Error(met, 7))
-    assert run.line_of(Error(text, 0), preview) == line
-    assert run.line_of(Error(text, 0), None) == 0
+    assert run.line_of_preview(Error(text, 0), preview) == line
+    assert run.line_of_preview(Error(text, 0), None) == 0
 
 
 def test_dwells_are_waited_for(tmp_path):

@@ -77,7 +77,7 @@ def patience(preview: Trace | None, ini: Ini, override: float) -> float:
     return max(USUAL_TIMEOUT, 2 * program_seconds(preview, ini, override))
 
 
-def line_of(error: Error, preview: Trace | None) -> int:
+def line_of_preview(error: Error, preview: Trace | None) -> int:
     """Return the line of an error that its text does not name, 0 if it does or is not known.
 
     LinuxCNC's task does not tell it, but a preview has met the same error there.
@@ -105,7 +105,7 @@ def main(arguments: list[str]) -> int:
     for line in lines_of_run(result, ini):
         print(line)
     if result.error:
-        line = opened.source_line(line_of(result.error, preview))
+        line = opened.source_line(line_of_preview(result.error, preview))
         place = f"{options.program}:{line}" if line else options.program
         text = opened.in_source(explained_text(result.error.text, options.ini))
         print(f"g12 run: {place}: {text}", file=sys.stderr)
