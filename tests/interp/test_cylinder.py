@@ -2,6 +2,7 @@
 """G7.1 on the stock interpreter: its words, its moves on the unrolled surface, every refusal."""
 
 import math
+import re
 from itertools import groupby
 
 import numpy as np
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 from g12.tools.preview.tracer import Tracer
 from support.contour_geometry import Round, Straight, distance
 from support.polar_programs import feed_moves, lines, texts
-from support.sim_machines import SIM
+from support.sim_machines import PROGRAMS, ROOT, SIM
 
 R = 20.0
 FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
@@ -227,6 +228,18 @@ def test_actions_keep_their_place_and_messages_are_shown(lathe):
 def test_waiting_for_an_input_cuts_the_section_in_two(lathe):
     traced = lathe.trace_text(section("G1 Z-5 C30", "M66 P0 L0", "C60", "G2 J5"))
     assert ends(traced) == [(22, -5, 30), (22, -5, 60), (22, -5, 60)]
+
+
+PAGE = re.compile(r"(?:^ {4}.*\n)+?^ {4}M2\n", re.MULTILINE)
+
+
+@pytest.mark.parametrize(("number", "name"), enumerate(["textbook", "cam_groove", "helix"]))
+def test_the_pages_programs_are_the_samples(lathe, number, name):
+    text = (ROOT / "ngc" / "cylinder.md").read_text(encoding="utf-8")
+    program = [match[0] for match in PAGE.finditer(text)][number].splitlines()
+    sample = (PROGRAMS / "cylinder" / f"{name}.ngc").read_text().splitlines()
+    there, here = (feed_moves(lathe.trace_text(text)) for text in (program, sample))
+    assert [move.end for move in there] == [move.end for move in here]
 
 
 # ---------------------------------------------------------------- compensation
