@@ -71,6 +71,18 @@ def test_json_has_the_same_in_millimetres(written, capsys):
     assert pocket["findings"]
 
 
+def test_json_tells_the_way_down(written, capsys):
+    (straight,) = json.loads(verify(capsys, written(WIDE), "--ini", MILL, "--json")[1])["pockets"]
+    assert straight["entry"] == {"way": "straight"}
+    program = str(SIM / "samples" / "mill_helix_mm.ngc")
+    code, out, _ = verify(capsys, program, "--ini", str(SIM / "mill_helix_mm.ini"), "--json")
+    one, two = (pocket["entry"] for pocket in json.loads(out)["pockets"])
+    assert code == 0
+    assert (one["way"], one["helices"], two["helices"]) == ("helix", 1, 2)
+    assert one["radius"] == pytest.approx(3) and two["least_radius"] == pytest.approx(4.5)
+    assert 1 < one["angle"] <= 3 and 1 < two["angle"] <= 3
+
+
 def test_json_of_a_polar_section(capsys):
     program = str(PROGRAMS / "polar" / "hexagon.ngc")
     code, out, _ = verify(capsys, program, "--ini", LATHE, "--json")

@@ -110,6 +110,16 @@ def test_many_moves_at_one_depth_are_one_level():
     assert level.shade == style.shades(1)[0]
 
 
+def test_half_turns_of_a_helix_belong_to_the_floor_that_they_lead_to():
+    hand = Hand().rapid(x=50).line(z=-2).arc(1, 53, 0, x=56)
+    shallow = hand.arc(1, 50, 0, x=44, z=-3).arc(1, 50, 0, x=56, z=-4).arc(1, 50, 0)
+    hand = shallow.rapid(z=1).rapid(x=150).line(z=-1).arc(1, 153, 0, x=156)
+    hand.arc(1, 150, 0, x=144, z=-2.5).arc(1, 150, 0, x=156, z=-5).arc(1, 150, 0)
+    levels = plan_view.milled_levels(scene(hand))
+    assert [level.z for level in levels] == pytest.approx([-1, -2, -4, -5])
+    assert levels[2].area.bounds[2] < 100 < levels[3].area.bounds[0]
+
+
 def test_drilling_sweeps_holes():
     hand = Hand().rapid(x=9).line(z=-5).rapid(z=1).rapid(x=30).line(z=-5)
     (level,) = plan_view.milled_levels(scene(hand))

@@ -53,7 +53,7 @@ def milled_levels(scene: Scene) -> list[Level]:
     cutting = [move for move in scene.moves if move.kind != "rapid" and removes(move)]
     if not cutting:
         return []
-    depth = np.array([lowest(move) for move in cutting])
+    depth = floors(cutting)
     found = sorted(set(np.round(depth / SAME_DEPTH) * SAME_DEPTH), reverse=True)
     if len(found) > MOST_LEVELS:
         found = list(np.linspace(depth.max(), depth.min(), BANDS))
@@ -65,6 +65,21 @@ def milled_levels(scene: Scene) -> list[Level]:
         for z, shade, group in zip(found, style.shades(len(found)), groups)
         if group
     ]
+
+
+def floors(moves: Sequence[Move]) -> np.ndarray:
+    """Return the depth that each move mills; turns of a helix mill the floor that they lead to."""
+    found: list[float] = []
+    for move in reversed(moves):
+        own = lowest(move)
+        leads_to = found[-1] if found and is_helical(move) else own
+        found.append(min(own, leads_to))
+    return np.array(found[::-1])
+
+
+def is_helical(move: Move) -> bool:
+    """Tell whether a move is an arc about the tool's axis that goes down."""
+    return move.kind == "arc" and move.plane == FLAT and move.end[2] < move.start[2] - SAME_DEPTH
 
 
 def lowest(move: Move) -> float:

@@ -103,3 +103,11 @@ def entry_text(facts: HelixFacts | None, unit: Unit) -> str:
     if facts is None:
         return "straight down"
     return f"helix of radius {unit.text(facts.greatest)} (tool centre), {facts.steepest:.3g}°"
+
+
+def entry_json(facts: HelixFacts | None) -> dict:
+    """Return how the tool comes down as plain values, radii in mm, the angle in degrees."""
+    if facts is None:
+        return {"way": "straight"}
+    radii = {"radius": facts.greatest, "least_radius": facts.least}
+    return {"way": "helix", "helices": facts.count, **radii, "angle": facts.steepest}

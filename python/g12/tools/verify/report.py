@@ -24,7 +24,7 @@ from g12.tools.verify.findings import (
 )
 from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import PocketFacts
-from g12.tools.verify.pocket_entry import entry_text
+from g12.tools.verify.pocket_entry import entry_json, entry_text
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.section import SectionFacts
@@ -262,6 +262,7 @@ def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
         "rings": list(facts.rings),
         "square_to": AXES[wall.plane],
         "depths": [wall.height(depth) for depth in facts.depths],
+        "entry": entry_json(facts.helix),
         "stepover": facts.stepover,
         "direction_jump": facts.jump,
         "shortest": facts.shortest,

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A Haas pocket with [G12] ENTRY = helix cut by a headless LinuxCNC: the real way down."""
+
+import math
+
+import numpy as np
+import pytest
+
+from g12.tools.preview.tracer import Tracer
+from support import cut_geometry
+from support.operated_machine import kept_machine
+from support.sim_machines import SIM
+
+TOOLS = {1: 10.0}
+FEED, SHARE = 2400.0, 0.6  # mm/min; [G12] PLUNGE_FEED of the machine is 60
+FIRST = f"G21 G17 G40 G49 G54 G64 P0.001 G80 G90 G91.1 G94 F{FEED:g}"
+START = "G0 X0 Y0 Z1"
+POCKET = "G13 X20 Y5 I9 K14 Q5 Z-3 D1"  # a helix of radius 4, which is the first ring
+CENTRE, HELIX, DEPTH, STEEPEST = (20, 5), 4.0, -3.0, 3.0
+DEVIATION = 0.002  # mm
+PERIOD = 0.001  # s between samples
+
+machine = kept_machine("mill_helix_mm", tools=TOOLS)
+
+
+@pytest.fixture(scope="module")
+def tracer():
+    with Tracer(SIM / "mill_helix_mm.ini", tools=TOOLS) as running:
+        yield running
+
+
+@pytest.fixture(autouse=True)
+def at_start(machine):
+    machine.reset()
+    machine.mdi(FIRST)
+    machine.mdi(START)
+
+
+def points_of(samples):
+    """Return where the tool was while it moved (n, 3)."""
+    return np.column_stack([samples.axes[axis] for axis in "XYZ"])[samples.moving()]
+
+
+def farthest_off(points, path):
+    """Return the largest distance of points (n, 3) from a polyline (m, 3)."""
+    start, along = path[:-1], np.diff(path, axis=0)
+    length = np.maximum((along**2).sum(axis=1), 1e-30)
+    found = 0.0
+    for point in points:
+        share = np.clip(((point - start) * along).sum(axis=1) / length, 0, 1)
+        off = point - start - share[:, None] * along
+        found = max(found, float((off**2).sum(axis=1).min()))
+    return math.sqrt(found)
+
+
+def check_path(samples, tracer):
+    """Check that the real motion below the start lies on the traced path."""
+    traced = tracer.trace_text([FIRST, START, POCKET])
+    assert traced.error is None, traced.error
+    path = cut_geometry.dense_points(cut_geometry.cutting(traced.moves), step=0.1)
+    points = points_of(samples)
+    assert farthest_off(points[points[:, 2] < 0.95][::20], path) < DEVIATION
+
+
+def on_the_way_down(points):
+    """Return the samples of the helix: where it falls at its own feed."""
+    radius = np.hypot(points[:, 0] - CENTRE[0], points[:, 1] - CENTRE[1])
+    height = points[:, 2]
+    return points[(height < 0.8) & (height > DEPTH + 0.1) & (np.abs(radius - HELIX) < 0.01)]
+
+
+def check_cut(samples, tracer):
+    """Check the real motion of `POCKET`: on the traced path, smooth, as deep, as fast as asked."""
+    check_path(samples, tracer)
+    points = points_of(samples)
+    assert points[:, 2].min() == pytest.approx(DEPTH, abs=1e-6)
+    down = on_the_way_down(points)
+    steps = np.diff(down, axis=0)
+    assert (steps[:, 2] <= 1e-9).all()
+    flat = np.hypot(steps[:, 0], steps[:, 1])
+    assert np.degrees(np.arctan2(-steps[:, 2], flat)).max() < STEEPEST + 0.01
+    speed = np.hypot(flat, steps[:, 2]) / PERIOD * 60
+    assert np.median(speed) == pytest.approx(SHARE * FEED, rel=0.005)
+    assert np.quantile(speed, 0.99) < SHARE * FEED * 1.001  # but where half turns meet
+
+
+def check_smooth(samples):
+    """Check that the direction turns no faster than round the narrowest arc; it stands nowhere."""
+    points = points_of(samples)
+    steps = np.diff(points[points[:, 2] < 0.5], axis=0)
+    length = np.linalg.norm(steps, axis=1)
+    inside = slice(20, -60)  # but for the stop at the end
+    assert length[inside].min() > 0.2 * SHARE * FEED / 60 * PERIOD
+    cosine = np.einsum("ij,ij->i", steps[1:], steps[:-1]) / (length[1:] * length[:-1])
+    turn = np.degrees(np.arccos(np.clip(cosine, -1, 1)))[inside]
+    assert turn.max() < math.degrees(length.max() / (HELIX / 2)) + 0.5
+
+
+@pytest.mark.parametrize("way", ["auto", "mdi"])
+def test_the_tool_goes_down_along_the_helix(machine, tracer, way):
+    if way == "mdi":
+        machine.sample()
+        machine.mdi(POCKET)
+        samples = machine.samples()
+        assert machine.errors() == []
+    else:
+        run = machine.run_text([FIRST, START, POCKET, "M2"])
+        assert run.error is None
+        samples = run.samples
+    check_cut(samples, tracer)
+    check_smooth(samples)
+
+
+def test_the_wall_and_the_floor_are_those_of_the_pocket(machine):
+    points = points_of(machine.run_text([FIRST, START, POCKET, "M2"]).samples)
+    cutting = points[points[:, 2] < 0.5]
+    radius = np.hypot(cutting[:, 0] - CENTRE[0], cutting[:, 1] - CENTRE[1])
+    assert radius.max() == pytest.approx(14 - 5, abs=DEVIATION)
+    assert radius[cutting[:, 2] > DEPTH + 0.001].max() < HELIX + DEVIATION
+    at_the_bottom = np.abs(cutting[:, 2] - DEPTH) < 1e-6
+    angles = np.arctan2(*(cutting[at_the_bottom] - (*CENTRE, 0))[:, 1::-1].T)
+    on_the_helix = np.abs(radius[at_the_bottom] - HELIX) < DEVIATION
+    assert (np.histogram(angles[on_the_helix], bins=72, range=(-math.pi, math.pi))[0] > 0).all()
+
+
+@pytest.mark.parametrize("way", ["auto", "mdi"])
+def test_abort_in_the_helix_then_up_and_the_pocket_again(machine, tracer, way):
+    blocks = [FIRST, START, POCKET, "M2"]
+    if way == "mdi":
+        machine.mdi(POCKET, wait=False)
+    else:
+        machine.open_text(blocks)
+        machine.start()
+    machine.wait_for(lambda status: status.position[2] < -1)
+    machine.abort()
+    held = machine.stat()
+    assert DEPTH < held.position[2] < -0.9
+    assert {"G17", "G21", "G90", "G91.1", "G94"} <= set(held.modes.gcodes)
+    assert held.modes.feed == pytest.approx(FEED) if way == "mdi" else True
+    machine.errors()
+    machine.mdi("G0 Z1")
+    check_cut(machine.run_text(blocks).samples, tracer)
+
+
+@pytest.mark.parametrize("lines", [1, 200], ids=["read to its end", "being read"])
+def test_what_an_abort_in_a_program_leaves_in_f(machine, lines):
+    """F is what LinuxCNC had read, or 0 behind the cycle's end: never faster than programmed."""
+    machine.open_text([FIRST, START, *[POCKET.replace("Z-3", "Z-60")] * lines, "M2"])
+    machine.start()
+    machine.wait_for(lambda status: status.position[2] < 0)
+    machine.abort()
+    machine.mdi("G90")
+    assert machine.stat().modes.feed <= FEED * (1 + 1e-9)
+    machine.mdi("G0 Z1")
+    machine.mdi(f"G91 G1 X1 F{FEED:g}")
+    assert machine.errors() == []
+    assert machine.stat().modes.feed == pytest.approx(FEED)
+
+
+def test_pause_in_the_helix(machine, tracer):
+    machine.open_text([FIRST, START, POCKET, "M2"])
+    machine.sample()
+    machine.start()
+    machine.wait_for(lambda status: status.position[2] < -1)
+    machine.pause()
+    held = machine.wait_for(lambda status: status.paused)
+    machine.resume()
+    machine.wait_idle()
+    assert DEPTH < held.position[2] < 0
+    check_path(machine.samples(), tracer)
+    assert machine.errors() == []
