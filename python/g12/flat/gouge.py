@@ -164,12 +164,22 @@ class _Stretch:
         move = self._part(index) if self._behind else None
         if move is None:
             return False
-        places: list[_Place] = self._places(move)
         about = index + self._behind
-        for by in range(max(about - TURN_ON, 0), min(about + TURN_ON + 1, len(self._cuts))):
-            for way in filter(is_move, self._cuts[by].path):
-                places = [place for place in places if self._seen_from(place, (by, way)) != PASSED]
-        return not places
+        near = range(max(about - TURN_ON, 0), min(about + TURN_ON + 1, len(self._cuts)))
+        passes = [
+            (by, way)
+            for by in sorted(near, key=lambda by: abs(by - about))
+            for way in filter(is_move, self._cuts[by].path)
+        ]
+        return all(self._is_passed(place, passes) for place in self._places(move))
+
+    def _is_passed(self, place: _Place, passes: list[tuple]) -> bool:
+        """Return whether one of some passes runs behind a place; the next is asked of it first."""
+        for at, passed in enumerate(passes):
+            if self._seen_from(place, passed) == PASSED:
+                passes.insert(0, passes.pop(at))
+                return True
+        return False
 
     def _passes(self, ramps: list[Cut]) -> Iterator[list[tuple]]:
         """Yield the tool's ways along the contour, each with its move's index, then the ramps'.
@@ -200,7 +210,7 @@ class _Stretch:
         for by, _ in passes:
             if by not in (RAMP, index) and self._cross(index, move, by):
                 return _Hit(self._moves[by].line, False)
-        places = self._places(move)
+        places = list(self._places(move))
         hits: list[_Hit | None] = [None] * len(places)
         for by, way in passes:
             if not places:
@@ -249,19 +259,17 @@ class _Stretch:
         same_way = tx * place.way[0] + tc * place.way[1] > SAME_WAY
         return PASSED if same_way else BEHIND
 
-    def _places(self, move: Line | Arc) -> list[_Place]:
-        """Return places along a move, so close that no cut falls between two of them."""
+    def _places(self, move: Line | Arc) -> Iterator[_Place]:
+        """Yield places along a move, so close that no cut falls between two of them."""
         length = path_length(move)
         step = sqrt(2.0 * self._radius * self._tolerance)
         count = ceil(length / step)
         inset = min(0.25, self._tolerance / length)
         side = copysign(1.0, self._offset)
-        places = []
         for k in range(count + 1):
             place = place_at(move, inset + (1.0 - 2.0 * inset) * k / count)
             tx, tc = direction_at(move, place)
-            places.append(_Place(place, (tx, tc), (-side * tc, side * tx)))
-        return places
+            yield _Place(place, (tx, tc), (-side * tc, side * tx))
 
     # Where the contour crosses itself.
 
