@@ -13,6 +13,7 @@ from g12.tools.commands import install, uninstall
 from g12.tools.install.checking import check_config
 from g12.tools.install.findings import PROBLEM
 from g12.tools.install.ini_edit import IniText
+from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
 from support.small_configs import with_lines
 
@@ -36,6 +37,7 @@ POCKET = ["G21 G17 G91 G94 G61 F1200", f"G13 I{RADIUS} Z-.5 D0", "M2"]
 SECTION = ["G21 G18 G8 G90 G94 G61 F1800", "G0 X20", "G12.1", "G1 X15 C0", "G3 X0 C15 R15",
            "G1 X20 C0", "G13.1", "M2"]  # fmt: skip
 DEVIATION = 0.02  # mm
+ROUND = ["G21 G18 G8 G90 G94 F1000", "G0 X60 C0", "G12.1", "G3 X0 C60 R60", "G13.1", "M2"]
 
 pytestmark = pytest.mark.skipif(not SAMPLES.is_dir(), reason="no sample configs here")
 
@@ -106,6 +108,31 @@ def test_a_section_on_a_sample_lathe(lathe):
     points = zip(x * np.cos(angle), x * np.sin(angle))
     assert max(contour.distance(Point(point)) for point in points) < DEVIATION
     assert np.degrees(angle).max() == pytest.approx(90, abs=0.1)
+
+
+@needs_kinematics
+def test_the_kinematics_of_the_face_on_a_sample_lathe(lathe, capsys):
+    before = tree(lathe.parent)
+    assert install.main([str(lathe), "--with", "polar", "polar-kinematics", "--dry-run"]) == 0
+    shown = capsys.readouterr().out
+    assert "+KINEMATICS = polar_xzc coordinates=XZC" in shown
+    assert "+# was: KINEMATICS = trivkins coordinates=XZC" in shown
+    assert tree(lathe.parent) == before
+    assert install.main([str(lathe), "--with", "polar", "polar-kinematics"]) == 0
+    assert install.main([str(lathe), "--with", "polar-kinematics"]) == 0
+    assert "installed already, nothing to do" in capsys.readouterr().out
+    _, found = check_config(IniText(lathe))
+    assert [finding for finding in found if finding.level == PROBLEM] == []
+    with Machine(lathe) as machine:
+        run = machine.run_text(ROUND, timeout=60)
+    assert run.error is None
+    assert (run.samples.kind == 3).sum() > 1000  # an arc of LinuxCNC's own
+    angle, x = np.radians(run.samples.axes["C"]), run.samples.axes["X"]
+    there = (x * np.exp(1j * angle))[run.samples.line == 4]
+    assert np.abs(np.abs(there) - 60).max() < DEVIATION
+    assert np.degrees(angle).max() == pytest.approx(90, abs=0.1)
+    assert uninstall.main([str(lathe)]) == 0
+    assert tree(lathe.parent) == before
 
 
 def test_a_sample_that_remaps_g13_is_refused_and_left_alone(sim, capsys):

@@ -3,7 +3,6 @@
 
 import pytest
 
-from g12.tools.commands import install
 from g12.tools.install import kinematics_rules
 from g12.tools.install.findings import PROBLEM
 from g12.tools.install.kinematics_rules import kinematics_findings
@@ -147,11 +146,3 @@ def test_a_module_without_a_tool_offset(found, monkeypatch, tmp_path):
     (old,) = found(text, motion=MOTION + line)
     assert (old.level, old.kind) == (PROBLEM, "no-kinematics")
     assert "make kinematics" in old.cure
-
-
-def test_install_says_where_the_steps_are(tmp_path, capsys):
-    ini = write_config(tmp_path, LATHE)
-    with pytest.raises(SystemExit) as ended:
-        install.main([str(ini), "--with", "polar-kinematics"])
-    assert ended.value.code == 2
-    assert "six steps in configs/kinematics/README.md" in capsys.readouterr().err

@@ -20,8 +20,6 @@ from g12.tools.install.installation import excluding, install
 from g12.tools.install.plan import Refused
 from g12.tools.progress import print_all
 
-BY_HAND = "polar-kinematics"
-STEPS = "six steps in configs/kinematics/README.md, and check tells what is missing or wrong"
 EXAMPLES = """\
 features:
 {features}
@@ -29,6 +27,7 @@ features:
 examples:
   g12 install ~/linuxcnc/configs/mill/mill.ini --with haas circle-mill
   g12 install lathe.ini --with polar --dry-run
+  g12 install lathe.ini --with polar polar-kinematics
 
 exit code: 0 done or nothing to do, 1 refused, 2 wrong use"""
 
@@ -60,8 +59,6 @@ def ini_and_features(ini: Path | None, words: Sequence[str]) -> tuple[Path | Non
 
 def wrong_words(ini: Path | None, wanted: Sequence[str]) -> str:
     """Return what is missing or unknown of the command line, "" if nothing is."""
-    if BY_HAND in wanted:
-        return f"{BY_HAND}: changes the machine's kinematics, which is yours to do: {STEPS}"
     known = ", ".join(features.NAMES)
     unknown = [f"{name!r} is none of {known}" for name in wanted if name not in features.NAMES]
     given = {"the INI": ini, "--with": wanted}

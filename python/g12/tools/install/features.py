@@ -25,7 +25,8 @@ FILES = {
 }
 PROGRAMS = {f"programs-{control}": control for control in shipped_controls()}
 FORMS = "forms"
-NAMES = (*FILES, FORMS, *PROGRAMS)
+KINEMATICS = "polar-kinematics"
+NAMES = (*FILES, KINEMATICS, FORMS, *PROGRAMS)
 ONE_OF = (("haas", "yasnac", "mitsubishi"), ("polar", "polar-g12.3"), tuple(PROGRAMS))
 POLAR = ("polar", "polar-g12.3")
 AXES = {**dict.fromkeys(POLAR, "XC"), "cylinder": "XZC"}  # of the machine; a mill's are XYZ
@@ -37,6 +38,7 @@ MEANING = {
     "polar": "G12.1/G13.1 polar coordinate interpolation on and off",
     "polar-g12.3": "G12.3/G13.3 polar coordinate interpolation on and off",
     "cylinder": "G7.1 (G07.1) cylindrical interpolation on and off",
+    KINEMATICS: "G12.1 in LinuxCNC's planner, on a lathe of the usual form (make kinematics)",
     FORMS: "pages to fill in, with pictures, for the codes that the machine has",
     **{
         name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()

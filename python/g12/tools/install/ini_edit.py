@@ -17,6 +17,7 @@ from g12.tools.machine.ini import Ini, IniError, included_file
 
 BEGIN = "# >>> g12 install"
 END = "# <<< g12 install"
+WAS = "# was: "
 LINE = re.compile(r"[^\n]*\n|[^\n]+")
 CONTINUED = re.compile(r"\\\r?\n?\Z")
 
@@ -186,6 +187,12 @@ class IniText:
             lines[-1] += end
             new[-1] = texts[-1]
         lines[place.index : place.index] = new
+
+    def put_in_place(self, line: IniLine, text: str, begin: str) -> None:
+        """Put an entry between markers in place of a line, which stays there as a comment."""
+        self.insert(Place(line.file, line.index + 1), [text, END])
+        self.replace(line, WAS + line.text)
+        self.insert(Place(line.file, line.index), [begin])
 
     def replace(self, line: IniLine, text: str) -> None:
         """Put another text in place of a line; its line end stays."""

@@ -72,6 +72,8 @@ def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
         elif feature in features.FILES:
             code = features.remaps_of(feature)[0].code
             yield f"  {code:6} is answered with what it needs; nothing moves"
+        elif feature == features.KINEMATICS:
+            yield "  home, G0 X20 C0, G12.1 in MDI: the screen shows the face; G13.1 goes back"
         elif feature == features.FORMS:
             yield "  fill in a form on its page, Create Feature, Finalize: the program is open"
         else:

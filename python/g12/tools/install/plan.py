@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from g12.tools.install import features, forms, package_copy
+from g12.tools.install import features, forms, kinematics_lines, package_copy
 from g12.tools.install.config import Config, folder_from_ini
 from g12.tools.install.findings import problem
 from g12.tools.install.ini_edit import (
@@ -26,6 +26,7 @@ from g12.tools.install.ini_edit import (
     lines_with_ends,
     to_bytes,
 )
+from g12.tools.install.kinematics_rules import uses_them
 from g12.tools.install.rules import codes_of, installed_programs, odd_folder
 
 BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"
@@ -96,14 +97,24 @@ def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
     remaps = [f"REMAP = {remap.text}" for remap in new_remaps(config, codes)]
     filters = filter_lines(plan, config, wanted)
     pages = form_lines(plan, config, wanted)
+    face = face_lines(plan, config, wanted)
     place = plan.text.end_of_section("RS274NGC")
     noted = {line.text for block in plan.text.blocks() for line in block}
     put_block(
-        plan.text, place, [*(note for note in plan.notes if note not in noted), *subs, *remaps]
+        plan.text,
+        place,
+        [
+            *(note for note in plan.notes if note not in noted),
+            *subs,
+            *remaps,
+            *face.pop("RS274NGC", []),
+        ],
     )
     put_section(plan.text, "PYTHON", place, python)
     put_section(plan.text, "FILTER", place, filters)
     put_section(plan.text, "DISPLAY", place, pages)
+    for section, lines in face.items():
+        put_section(plan.text, section, place, lines)
     for path in plan.changes():
         require_inside(config, path)
     return plan
@@ -253,6 +264,19 @@ def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list
             "forms", "no code here has a form", "install a code with them: --with haas forms"
         )
     return forms.lines_for(config, list(codes), plan.prefix)
+
+
+def face_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict[str, list[str]]:
+    """Change the entries that the face's kinematics need otherwise; return the lines to add."""
+    if features.KINEMATICS not in wanted or uses_them(config):
+        return {}
+    reasons = list(kinematics_lines.obstacles(config, plan.text, wanted))
+    if reasons:
+        raise Refused(*reasons)
+    for section, key, value in kinematics_lines.in_place(config):
+        line, _ = plan.text.entries(section, key)[0]
+        plan.text.put_in_place(line, f"{key} = {value}", BEGIN_LINE)
+    return kinematics_lines.added(config, wanted, plan.prefix)
 
 
 def python_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:

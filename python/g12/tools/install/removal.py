@@ -9,12 +9,13 @@ from pathlib import Path
 
 from g12.ini_sections import key_and_value
 from g12.machine_ini import remap_from_value
-from g12.tools.install import forms, package_copy
+from g12.tools.install import forms, kinematics_lines, package_copy
 from g12.tools.install.config import remaps_in
 from g12.tools.install.features import model_of
 from g12.tools.install.ini_edit import (
     BEGIN,
     END,
+    WAS,
     IniLine,
     IniText,
     is_entry,
@@ -33,7 +34,7 @@ OWN_ENDS = {
     "PATH_PREPEND": "/python",
     "PATH_APPEND": "/python",
 }
-HEADERS = {f"[{section}]": section for section in ("PYTHON", "FILTER")}
+HEADERS = {f"[{section}]": section for section in ("PYTHON", "FILTER", "G12", "AXIS_Y")}
 OWN_FILTER = re.compile(
     r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S+"
 )
@@ -72,22 +73,38 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
 
 def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[IniLine]:
     """Take the blocks out; return the lines of the user's between the markers, which stay."""
-    doomed = [line for block in blocks for line in block if is_by_install(line)]
+    doomed = [line for block in blocks for line in own_lines(block)]
+    was = [line for block in blocks for line in block if line.text.startswith(WAS)]
     headers = [line for block in blocks for line in block if line.text in HEADERS]
     for header in headers:
         section = text.section(HEADERS[header.text])
         others = (line for line in section if line not in (*doomed, *headers))
         if not any(is_entry(line.text) for line in others):
             doomed.append(header)
-    stay = [line for block in blocks for line in block if line not in (*doomed, *headers)]
+    gone = (*doomed, *headers, *was)
+    stay = [line for block in blocks for line in block if line not in gone]
+    for line in was:
+        text.replace(line, line.text[len(WAS) :])
     text.remove(doomed)
     return stay
+
+
+def own_lines(block: list[IniLine]) -> Iterator[IniLine]:
+    """Yield the lines of a block that `install` put there; they may stand in for another."""
+    texts = [line.text for line in block]
+    others = {key_and_value(text[len(WAS) :])[0] for text in texts if text.startswith(WAS)}
+    others |= set(kinematics_lines.LIMITS) if "[AXIS_Y]" in texts else set()
+    for line in block:
+        if is_by_install(line) or key_and_value(line.text)[0] in others - {""}:
+            yield line
 
 
 def is_by_install(line: IniLine) -> bool:
     """Tell whether a line between the markers is one that `install` puts there."""
     key, value = key_and_value(line.text)
     if OWN_FILTER.fullmatch(line.text) or forms.OWN_LINE.fullmatch(line.text):
+        return True
+    if kinematics_lines.OWN_LINE.fullmatch(line.text):
         return True
     if key == "REMAP":
         return model_of(remap_from_value(value)) is not None

@@ -67,10 +67,12 @@ def trial_values(plan: InstallPlan, ini: Ini, scratch: Path) -> Overrides:
         toplevel = str(module) if path == ini.file("PYTHON", "TOPLEVEL") else toplevel
         prepended.append(str(scratch / "own"))
     folders = ":".join(relocated(plan, name, scratch) for name in subs.split(":"))
+    files = [relocated(plan, name, scratch) for name in ini.all("HAL", "HALFILE")]
     paths = {"PATH_PREPEND": prepended, "PATH_APPEND": appended}
     return {
         "RS274NGC": {"SUBROUTINE_PATH": folders or None},
         "PYTHON": {"TOPLEVEL": toplevel, **paths},
+        "HAL": {"HALFILE": files} if files else {},
         "FILTER": trial_filters(plan, ini, scratch),
     }
 
@@ -103,7 +105,7 @@ def trial_modules(plan: InstallPlan, scratch: Path) -> Iterator[tuple[Path, byte
 
 def copy_package(scratch: Path) -> None:
     """Put the package into a folder; in ``package`` there it stands without other modules."""
-    for part in ("ngc", "python"):
+    for part in ("ngc", "python", "configs/kinematics"):
         shutil.copytree(features.ROOT / part, scratch / part)
     (scratch / "package").mkdir()
     (scratch / "package" / "g12").symlink_to(scratch / "python" / "g12")

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The face's kinematics put into a lathe's INI, where it has the usual form.
+
+That is a lathe on trivkins whose HAL files load `[KINS]KINEMATICS` and whose X, Z and C are joints
+of their own. Anything else keeps its files: `configs/kinematics/README.md` has the steps.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from math import isclose
+
+from g12.errors import Refusal
+from g12.ini_sections import leading_number
+from g12.machine_ini import FACE_KINEMATICS, coordinates_of
+from g12.settings import settings_from_lines
+from g12.tools.install import features
+from g12.tools.install.config import Config, folder_from_ini
+from g12.tools.install.findings import Finding, problem
+from g12.tools.install.ini_edit import CONTINUED, IniText
+from g12.tools.install.kinematics_rules import (
+    OFFSET_HAL,
+    OWN_HAL,
+    PAGE,
+    HalLine,
+    hal_files,
+    hal_in_the_way,
+    hal_lines,
+)
+
+SHARE = 0.7  # of the slide's acceleration, for X and Y each
+LIMITS = ("MIN_LIMIT", "MAX_LIMIT", "MAX_VELOCITY", "MAX_ACCELERATION")
+IN_PLACE = (  # entries that get another value
+    ("KINS", "KINEMATICS"),
+    ("TRAJ", "COORDINATES"),
+    ("AXIS_X", "MIN_LIMIT"),
+    ("AXIS_X", "MAX_ACCELERATION"),
+)
+LOADS = re.compile(r"loadrt\s+\[KINS\]\(?KINEMATICS\)?(\s|$)")
+CONTROLS = re.compile(r"addf\s+motion-controller\s+servo-thread(\s|$)")
+OWN_LINE = re.compile(
+    r"HALFILE = \S+/configs/kinematics/polar_(kinematics|tool_offset)\.hal"
+    r"|ON_ABORT_COMMAND = G\S+ P|POLAR_KINEMATICS = 1"
+)
+CURE = f"by hand: the steps in {PAGE}, and check tells what is missing or wrong"
+
+
+def left_alone(text: str) -> Finding:
+    """Return why `install` leaves a machine's kinematics alone."""
+    return problem(
+        "kinematics", f"{text}: install leaves the kinematics of this machine alone", CURE
+    )
+
+
+def obstacles(config: Config, text: IniText, wanted: Sequence[str]) -> Iterator[Finding]:
+    """Yield what keeps `install` from putting the kinematics in."""
+    if not code_off(config, wanted):
+        yield problem(
+            "kinematics", "there is no G12.1 here", "install --with polar polar-kinematics"
+        )
+    for reason in (*wrong_joints(config), *wrong_limits(config), *wrong_entries(config, text)):
+        yield left_alone(reason)
+    yield from (left_alone(reason) for reason in wrong_hal(config))
+    yield from hal_in_the_way(every_hal_line(config))
+
+
+def code_off(config: Config, wanted: Sequence[str]) -> str:
+    """Return the code that ends a section, "" where there is none."""
+    there = [remap.code for _, remap in config.remaps if "polar_off" in remap.handlers]
+    asked = [features.remaps_of(name)[1].code for name in wanted if name in features.POLAR]
+    return next(iter([*there, *asked]), "")
+
+
+def joints(config: Config) -> str:
+    """Return the letters of a trivkins machine's joints, "" where they are not told."""
+    module, *parameters = (config.ini.get("KINS", "KINEMATICS") or "").split() or [""]
+    named = dict(parameter.partition("=")[::2] for parameter in parameters)
+    known = module == "trivkins" and set(named) <= {"coordinates", "kinstype"}
+    return named.get("coordinates", "").upper() if known else ""
+
+
+def wrong_joints(config: Config) -> Iterator[str]:
+    """Yield what is unusual of [KINS] and [TRAJ]."""
+    letters, found = joints(config), config.ini.get("KINS", "KINEMATICS", "nothing")
+    axes = coordinates_of(config.ini.get)
+    if not letters:
+        yield f"[KINS] KINEMATICS = {found} is not trivkins coordinates=…"
+    elif not {"X", "C"} <= set(letters) or "Y" in letters or len(set(letters)) < len(letters):
+        yield f"[KINS] coordinates={letters} is not X and C, each once, without Y"
+    elif set(axes) != set(letters):
+        yield f"[TRAJ] COORDINATES = {' '.join(axes)} is not coordinates={letters}"
+    elif config.ini.get("KINS", "JOINTS", "").strip() != str(len(letters)):
+        yield f"[KINS] JOINTS is not {len(letters)}"
+
+
+def wrong_limits(config: Config) -> Iterator[str]:
+    """Yield what is unusual of the limits of X and C, and of an axis Y."""
+    letters = joints(config)
+    if "X" not in letters:
+        return
+    slide = f"JOINT_{letters.index('X')}"
+    needed = [*(("AXIS_X", key) for key in LIMITS), *((slide, key) for key in LIMITS)]
+    needed += [("AXIS_C", key) for key in LIMITS[2:]]
+    values = {place: leading_number(config.ini.get(*place) or "") for place in needed}
+    for (section, key), value in values.items():
+        if value is None:
+            yield f"[{section}] has no {key}"
+    ends = [values[section, "MAX_LIMIT"] for section in ("AXIS_X", slide)]
+    if None not in ends and (ends[0] <= 0.0 or not isclose(*ends)):
+        yield f"[AXIS_X] and [{slide}] have MAX_LIMIT {ends[0]:g} and {ends[1]:g}"
+    if any(config.ini.get("AXIS_Y", key) for key in LIMITS):
+        yield "there is an [AXIS_Y]"
+
+
+def wrong_entries(config: Config, text: IniText) -> Iterator[str]:
+    """Yield what is unusual of the lines that would change."""
+    if config.ini.get("RS274NGC", "ON_ABORT_COMMAND"):
+        yield "[RS274NGC] has an ON_ABORT_COMMAND"
+    for section, key in IN_PLACE:
+        for line, _ in text.entries(section, key)[:1]:
+            if line.file != text.path:
+                yield f"{line.place}: {key} stands in an included file"
+            elif CONTINUED.search(text.files[line.file][line.index]):
+                yield f"{line.place}: {key} goes on in the next line"
+
+
+def wrong_hal(config: Config) -> Iterator[str]:
+    """Yield what is unusual of the HAL files."""
+    names = [value.split()[0] for value in config.ini.all("HAL", "HALFILE") if value.strip()]
+    for name in names:
+        if not name.endswith(".hal") or not folder_from_ini(config.ini, name).is_file():
+            yield f"[HAL] HALFILE = {name} is no HAL file beside the INI"
+    if config.ini.get("HAL", "TWOPASS"):
+        yield "[HAL] TWOPASS is set"
+    lines = [line for lines in hal_files(config) for line in lines]
+    if any(line.text.startswith("source ") for line in lines):
+        yield "a HAL file has a source line"
+    if not any(LOADS.match(line.text) for line in lines):
+        yield "no HAL file has loadrt [KINS]KINEMATICS"
+    if not any(CONTROLS.match(line.text) for line in lines):
+        yield "no HAL file has addf motion-controller servo-thread"
+
+
+def every_hal_line(config: Config) -> list[HalLine]:
+    """Return the lines of all HAL files, those for behind the screen's start included."""
+    later = [folder_from_ini(config.ini, name) for name in config.ini.all("HAL", "POSTGUI_HALFILE")]
+    files = [*hal_files(config), *map(hal_lines, later)]
+    commands = (HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD"))
+    return [*(line for lines in files for line in lines), *commands]
+
+
+def in_place(config: Config) -> Iterator[tuple[str, str, str]]:
+    """Yield section, key and new value of the entries that change."""
+    letters = joints(config)
+    axes = coordinates_of(config.ini.get)
+    behind = axes.index("X") + 1
+    values = limits(config)
+    yield "KINS", "KINEMATICS", f"{FACE_KINEMATICS} coordinates={letters}"
+    yield "TRAJ", "COORDINATES", " ".join(f"{axes[:behind]}Y{axes[behind:]}")
+    yield "AXIS_X", "MIN_LIMIT", values["MIN_LIMIT"]
+    yield "AXIS_X", "MAX_ACCELERATION", values["MAX_ACCELERATION"]
+    if config.ini.get("G12", "POLAR_KINEMATICS"):
+        yield "G12", "POLAR_KINEMATICS", "1"
+
+
+def limits(config: Config) -> dict[str, str]:
+    """Return the limits of the face's X and Y."""
+    most, slide = config.ini.get("AXIS_X", "MAX_LIMIT"), f"JOINT_{joints(config).index('X')}"
+    quick = leading_number(config.ini.get(slide, "MAX_ACCELERATION"))
+    return {
+        "MIN_LIMIT": f"{-leading_number(most):.10g}",
+        "MAX_LIMIT": f"{leading_number(most):.10g}",
+        "MAX_VELOCITY": f"{leading_number(config.ini.get('AXIS_X', 'MAX_VELOCITY')):.10g}",
+        "MAX_ACCELERATION": f"{SHARE * quick:.10g}",
+    }
+
+
+def added(config: Config, wanted: Sequence[str], prefix: str) -> dict[str, list[str]]:
+    """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
+    try:
+        beside = settings_from_lines(config.ini.lines).polar_tool_offset
+    except Refusal:
+        beside = 0.0
+    files = [OWN_HAL, *([OFFSET_HAL] if beside else [])]
+    face = [] if config.ini.get("G12", "POLAR_KINEMATICS") else ["POLAR_KINEMATICS = 1"]
+    return {
+        "RS274NGC": [f"ON_ABORT_COMMAND = {code_off(config, wanted)} P"],
+        "HAL": [f"HALFILE = {prefix}/{file}" for file in files],
+        "G12": face,
+        "AXIS_Y": [f"{key} = {value}" for key, value in limits(config).items()],
+    }

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""install --with polar-kinematics: what it writes, gives back and leaves alone; no LinuxCNC."""
+
+import pytest
+
+from g12.tools.install import features, installation, package_copy, removal, trial
+from g12.tools.install.ini_edit import IniText
+from g12.tools.install.kinematics_rules import kinematics_findings
+from g12.tools.install.plan import Refused, make_plan
+from support.small_configs import config_of, content_of, write_config
+
+HAL = """\
+loadrt [KINS]KINEMATICS
+loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+net x joint.0.motor-pos-cmd => joint.0.motor-pos-fb
+"""
+LATHE = """\
+[RS274NGC]
+PARAMETER_FILE = lathe.var
+
+[TRAJ]
+COORDINATES =   X Z C
+LINEAR_UNITS = mm
+
+[KINS]
+KINEMATICS = trivkins coordinates=xzc kinstype=B
+JOINTS = 3
+
+[HAL]
+HALFILE = motion.hal
+POSTGUI_HALFILE = later.hal
+
+[AXIS_X]
+MIN_LIMIT = -5.0
+MAX_LIMIT = 200.0
+MAX_VELOCITY = 100
+MAX_ACCELERATION = 1000
+
+[JOINT_0]
+MIN_LIMIT = -5
+MAX_LIMIT = 200
+MAX_VELOCITY = 100
+MAX_ACCELERATION = 1000
+
+[AXIS_C]
+MAX_VELOCITY = 360
+MAX_ACCELERATION = 3600
+"""
+REFUSED = [  # what is changed of the INI, and what is said
+    ("trivkins coordinates=xzc kinstype=B", "trivkins", "is not trivkins coordinates=…"),
+    ("trivkins coordinates=xzc kinstype=B", "genhexkins", "is not trivkins coordinates=…"),
+    ("coordinates=xzc", "coordinates=xyzc", "without Y"),
+    ("coordinates=xzc", "coordinates=xxzc", "each once"),
+    ("COORDINATES =   X Z C", "COORDINATES = X Y Z C", "COORDINATES = X Y Z C is not"),
+    ("JOINTS = 3", "JOINTS = 4", "JOINTS is not 3"),
+    ("MAX_VELOCITY = 360\n", "", "[AXIS_C] has no MAX_VELOCITY"),
+    ("MIN_LIMIT = -5.0\n", "", "[AXIS_X] has no MIN_LIMIT"),
+    ("MAX_LIMIT = 200.0", "MAX_LIMIT = 150", "MAX_LIMIT 150 and 200"),
+    ("[AXIS_C]", "[AXIS_Y]\nMAX_LIMIT = 1\n[AXIS_C]", "there is an [AXIS_Y]"),
+    ("[TRAJ]", "ON_ABORT_COMMAND = O <mine> call\n[TRAJ]", "has an ON_ABORT_COMMAND"),
+    ("HALFILE = motion.hal", "HALFILE = motion.tcl", "HALFILE = motion.tcl is no HAL file"),
+    ("HALFILE = motion.hal", "HALFILE = LIB:core_sim.hal", "LIB:core_sim.hal is no HAL file"),
+    ("[HAL]", "[HAL]\nTWOPASS = on", "TWOPASS"),
+    ("xzc kinstype=B", "xzc \\\n kinstype=B", "goes on in the next line"),
+    ("[HAL]", "[HAL]\nHALCMD = net a => motion.adaptive-feed", "motion.adaptive-feed is the"),
+]
+HAL_REFUSED = [
+    ("[KINS]KINEMATICS", "trivkins coordinates=XZC", "no HAL file has loadrt [KINS]KINEMATICS"),
+    ("motion-controller servo-thread", "motion-controller fast", "addf motion-controller servo"),
+    ("net x", "source more.hal\nnet x", "a source line"),
+    ("net x", "net y => motion.digital-in-03\nnet x", "motion.digital-in-03 is the kinematics'"),
+]
+
+
+@pytest.fixture(autouse=True)
+def small_package(monkeypatch):
+    names = [f"configs/kinematics/polar_{name}.hal" for name in ("kinematics", "tool_offset")]
+    package = {name: (features.ROOT / name).read_bytes() for name in names}
+    monkeypatch.setattr(package_copy, "package_files", lambda: dict(package))
+
+
+def config_in(folder, text=LATHE, hal=HAL):
+    return write_config(folder, text, "lathe.ini", motion_hal=hal, later_hal="# nothing\n")
+
+
+def put_in(ini, *wanted):
+    config = config_of(ini)
+    return installation.write_changes(make_plan(config, wanted), config.folder)
+
+
+@pytest.mark.parametrize("polar", ["polar", "polar-g12.3"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        LATHE,
+        LATHE.rstrip(),
+        LATHE.replace("\n", "\r\n"),
+        LATHE + "\n[G12]\nPOLAR_KINEMATICS = 0 \nPOLAR_TOOL_OFFSET = 2\n",
+        LATHE.replace("COORDINATES =   X Z C", "COORDINATES =   X Z C  # mine").replace(
+            "[TRAJ]", "[G12]\nPOLAR_TOLERANCE = 0.01\n\n[TRAJ]"
+        ),
+    ],
+)
+def test_check_finds_nothing_and_uninstall_gives_every_byte_back(
+    tmp_path, monkeypatch, text, polar
+):
+    monkeypatch.setattr("g12.tools.install.kinematics_rules.module_file", lambda _: tmp_path)
+    monkeypatch.setattr("g12.tools.install.kinematics_rules.module_has", lambda _: True)
+    ini = config_in(tmp_path, text)
+    before = content_of(tmp_path)
+    put_in(ini, polar, features.KINEMATICS)
+    assert list(kinematics_findings(config_of(ini))) == []
+    assert config_of(ini).ini.axes == "XYZC"
+    put_in(ini, features.KINEMATICS)  # again: nothing
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert content_of(tmp_path) == before
+
+
+def test_what_is_written(tmp_path):
+    ini = config_in(tmp_path)
+    put_in(ini, "polar", features.KINEMATICS)
+    text = ini.read_text()
+    for lines in (
+        "# was: KINEMATICS = trivkins coordinates=xzc kinstype=B\n"
+        "KINEMATICS = polar_xzc coordinates=XZC\n# <<<",
+        "# was: COORDINATES =   X Z C\nCOORDINATES = X Y Z C\n# <<<",
+        "# was: MIN_LIMIT = -5.0\nMIN_LIMIT = -200\n# <<<",
+        "# was: MAX_ACCELERATION = 1000\nMAX_ACCELERATION = 700\n# <<<",
+        "[AXIS_Y]\nMIN_LIMIT = -200\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACCELERATION = 700\n",
+        "HALFILE = g12/configs/kinematics/polar_kinematics.hal\n# <<<",
+        "ON_ABORT_COMMAND = G13.1 P\n# <<<",
+        "[G12]\nPOLAR_KINEMATICS = 1\n",
+    ):
+        assert lines in text
+    assert "[JOINT_0]\nMIN_LIMIT = -5\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACC" in text
+
+
+def test_lines_of_the_users_between_the_markers_stay(tmp_path):
+    ini = config_in(tmp_path)
+    put_in(ini, "polar", features.KINEMATICS)
+    ini.write_text(
+        ini.read_text().replace("POLAR_KINEMATICS = 1\n", "POLAR_KINEMATICS = 1\nPOLAR_Z = allow\n")
+    )
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert ini.read_text() == LATHE + "[G12]\nPOLAR_Z = allow\n"
+
+
+@pytest.mark.parametrize(("usual", "unusual", "says"), REFUSED)
+def test_an_unusual_ini_is_refused_with_a_way_to_the_steps(tmp_path, usual, unusual, says):
+    assert usual in LATHE
+    refused_in(tmp_path, LATHE.replace(usual, unusual, 1), HAL, says)
+
+
+@pytest.mark.parametrize(("usual", "unusual", "says"), HAL_REFUSED)
+def test_unusual_hal_files_are_refused(tmp_path, usual, unusual, says):
+    assert usual in HAL
+    refused_in(tmp_path, LATHE, HAL.replace(usual, unusual, 1), says)
+
+
+def refused_in(folder, text, hal, says):
+    ini = config_in(folder, text, hal)
+    before = content_of(folder)
+    with pytest.raises(Refused) as refused:
+        put_in(ini, "polar", features.KINEMATICS)
+    found = refused.value.args
+    assert any(says in finding.text for finding in found), found
+    assert {finding.kind for finding in found} <= {"kinematics", "pin-taken", "kins"}
+    assert content_of(folder) == before
+
+
+def test_an_included_file_is_left_alone(tmp_path):
+    (tmp_path / "kins.inc").write_text(
+        "[KINS]\nKINEMATICS = trivkins coordinates=XZC\nJOINTS = 3\n"
+    )
+    begin, end = LATHE.index("[KINS]"), LATHE.index("[HAL]")
+    text = f"{LATHE[:begin]}#INCLUDE kins.inc\n{LATHE[end:]}"
+    refused_in(tmp_path, text, HAL, "kins.inc:2: KINEMATICS stands in an included file")
+
+
+def test_without_g12_1_it_says_how(tmp_path):
+    ini = config_in(tmp_path)
+    with pytest.raises(Refused) as refused:
+        put_in(ini, features.KINEMATICS)
+    assert "--with polar polar-kinematics" in refused.value.args[0].cure
+
+
+def test_the_trial_reads_the_hal_file_of_the_package(tmp_path):
+    config = config_of(config_in(tmp_path))
+    plan = make_plan(config, ["polar", features.KINEMATICS])
+    values = trial.trial_values(plan, plan.text.ini(), tmp_path / "scratch")
+    assert values["HAL"]["HALFILE"] == [
+        "motion.hal",
+        str(tmp_path / "scratch/configs/kinematics/polar_kinematics.hal"),
+    ]
