@@ -1,26 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G7.1 in a headless LinuxCNC: the samples' real motion on the unrolled surface."""
+"""G7.1 in a headless LinuxCNC: the samples' real motion, and what an operator does."""
+
+import math
 
 import numpy as np
 import pytest
 
-from support.contour_geometry import FROM_COLUMNS, deviation, distance
-from support.cylinder_drawings import DRAWINGS, Surface
-from support.operated_machine import Machine
+from support.contour_geometry import FROM_COLUMNS, deviation, distance, lines
+from support.cylinder_drawings import DRAWINGS, Surface, bend
+from support.operated_machine import kept_machine
 from support.polar_programs import C_ACCELERATION, accelerations, exceeds_limits_itself
-from support.sim_machines import PROGRAMS, SIM, machine_scope
+from support.sim_machines import PROGRAMS, machine_scope
 
 LIMIT = 0.005 + 0.001  # POLAR_TOLERANCE, and what sampling may add
 FEED = 1000.0  # the samples cut at 250 mm a minute
 C_SPEED = 360
 
 
-@pytest.fixture(scope=machine_scope)
-def lathe():
-    with Machine(
-        SIM / "lathe_mm.ini", overrides={"DISPLAY": {"MAX_FEED_OVERRIDE": "4"}}
-    ) as running:
-        yield running
+lathe = kept_machine("lathe_mm")
 
 
 @pytest.fixture(scope=machine_scope)
@@ -84,3 +81,139 @@ def test_c_keeps_its_limits(cuts, request, name):
     if exceeds_limits_itself(request.getfixturevalue("lathe")):
         pytest.xfail("this LinuxCNC exceeds C's acceleration in plain G1 moves (its issue 4539)")
     assert accelerations(c).max() <= C_ACCELERATION * 1.01
+
+
+# ---------------------------------------------------------------- what an operator does
+
+
+FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
+R = 20.0
+PART = ["G1 Z-8", "C40", "G3 Z-2 C60 R8", "G1 Z-10 C-30", "C0"]
+AROUND = math.pi / 180 * R
+OUTLINE = [
+    *lines((0, 0), (0, -8), (40 * AROUND, -8)),
+    *lines((60 * AROUND, -2), (-30 * AROUND, -10), (0, -10)),
+]
+BEND = bend((40 * AROUND, -8), (60 * AROUND, -2), 1, 8)
+
+
+def section(*body, feed="F2500", before=(), after=()):
+    """Return a program whose section holds ``body``, from line 6 on."""
+    start = [FIRST, "G0 X22 Z0 C0", "T3 M6", feed, *before]
+    return [*start, f"G07.1 C{R:g}", *body, "G07.1 C0", *after, "M2"]
+
+
+@pytest.fixture
+def ready(lathe):
+    lathe.abort()
+    lathe.mdi("G21 G90 G94 G40 G8 G64")
+    lathe.mdi("G0 X22 Z0 C0")
+    lathe.errors(), lathe.messages()
+    return lathe
+
+
+def on_the_part(samples):
+    """Tell whether every sample lies on the straight blocks or the arc of the part."""
+    points = Surface(samples, R).points @ FROM_COLUMNS
+    return distance(points, [*OUTLINE, BEND]).max() < LIMIT
+
+
+def test_auto(ready):
+    run = ready.run_text(section(*PART))
+    assert run.error is None
+    assert on_the_part(run.samples)
+    assert set(Surface(run, R).lines.tolist()) == {6, 7, 8, 9, 10}
+
+
+def test_pause_and_resume(ready):
+    ready.open_text(section(*PART))
+    ready.sample()
+    ready.start()
+    ready.wait_for(lambda status: status.motion_line == 8)
+    ready.pause()
+    held = ready.wait_for(lambda status: status.paused)
+    ready.resume()
+    ready.wait_idle()
+    samples = ready.samples()
+    assert held.motion_line == 8
+    assert on_the_part(samples)
+    assert Surface(samples, R).points[-1] == pytest.approx((0, -10), abs=1e-6)
+
+
+def test_abort_inside_and_running_again(ready):
+    ready.open_text(section(*PART))
+    ready.start()
+    ready.wait_for(lambda status: status.motion_line == 9)
+    ready.abort()
+    ready.wait_idle()
+    assert {"G90", "G94", "G64", "G40"} <= set(ready.stat().modes.gcodes)
+    ready.mdi("G0 X25")
+    assert ready.stat().position[0] == pytest.approx(25)
+    ready.mdi("G0 X22 Z0 C0")
+    assert ready.errors() == []
+    again = ready.run_text(section(*PART))
+    assert again.error is None
+    assert on_the_part(again.samples)
+
+
+def test_nothing_of_a_refused_section_moves(ready):
+    for body, line in (
+        (["G1 Z-5", "C12", "G28 H0"], 8),
+        (["G1 Z-5", "C90 X10"], 7),
+        (["G1 Z-5", "G1 Z-600"], 7),
+    ):
+        run = ready.run_text(section(*body))
+        assert run.error.text.startswith(f"G7.1 line {line}: ")
+        assert not (run.samples.kind == 2).any()
+    assert ready.run_text(section(*PART)).error is None
+
+
+def test_a_refused_section_leaves_the_modes_alone(ready):
+    run = ready.run_text(section("G91 G95 F.1 S100", "G1 Z-1", "G28", feed="F1500"))
+    assert run.error.text.startswith("G7.1 line 8: G28 is refused")
+    ready.mdi("G1 Z-1.5")
+    assert ready.stat().position[2] == pytest.approx(-1.5)
+    assert ready.errors() == []
+
+
+def test_mdi_is_refused(ready):
+    ready.run_text(section("G1 Z-1"))
+    ready.mdi("G07.1 C20")
+    assert [error.text for error in ready.errors()] == [
+        "G7.1: is not possible in MDI: it needs the lines behind it"
+    ]
+    ready.mdi("G07.1 C0")
+    assert ready.errors() == []
+
+
+def test_waiting_for_an_input_inside(ready):
+    ready.set("motion.digital-in-00", False)
+    ready.open_text(section("G1 Z-5 C30", "M66 P0 L3 Q5", "G1 C[30 + 15 * #5399]", "Z0"))
+    ready.sample()
+    ready.start()
+    ready.wait_for(lambda status: status.in_position and abs(status.position[2] + 5) < 1e-4)
+    ready.set("motion.digital-in-00", True)
+    ready.wait_idle()
+    assert ready.errors() == []
+    assert ready.stat().position[5] == pytest.approx(45)
+
+
+def test_run_from_a_line_behind_a_section(ready):
+    ready.open_text(section("G1 Z-5", after=["G1 Z-7", "C3"]))
+    ready.sample()
+    ready.start(8)
+    ready.wait_idle()
+    assert ready.errors() == []
+    assert set(Surface(ready.samples(), R).lines.tolist()) == {8, 9}
+
+
+def test_more_speed_than_c_has_only_slows_the_way_down(ready):
+    """At F30000 C would turn at 1400 degrees a second."""
+    run = ready.run_text(section("G1 Z-20 C720", "G3 Z0 R10", "G1 C0", feed="F30000"))
+    assert run.error is None
+    cut = Surface(run, R)
+    low, high = (720 * AROUND, -20), (720 * AROUND, 0)
+    shapes = [*lines((0, 0), low), bend(low, high, 1, 10), *lines(high, (0, 0))]
+    assert distance(cut.points @ FROM_COLUMNS, shapes).max() <= LIMIT
+    assert np.abs(np.diff(cut.c)).max() * 1000 <= C_SPEED * 1.001
+    assert cut.c.max() == pytest.approx(720, abs=60)

@@ -63,7 +63,7 @@ def _textbook():
     bends = {1: (-1, 30), 3: (1, 10), 5: (1, 75), 7: (-1, 75)}
     pieces = []
     for k, (start, end) in enumerate(zip(place, place[1:])):
-        pieces.append(_bend(start, end, *bends[k]) if k in bends else Straight(*_two(start, end)))
+        pieces.append(bend(start, end, *bends[k]) if k in bends else Straight(*_two(start, end)))
     return by_line(9, pieces)
 
 
@@ -71,7 +71,7 @@ def _two(start, end):
     return complex(*start), complex(*end)
 
 
-def _bend(start, end, turn, radius):
+def bend(start, end, turn, radius):
     """Return the arc of at most a half turn between two places."""
     a, b = _two(start, end)
     height = math.sqrt(radius**2 - abs(b - a) ** 2 / 4)
