@@ -171,12 +171,12 @@ to take it out again: {} uninstall {}
         ("circle-mill", "G12.2  is answered with what it needs; nothing moves"),
         ("polar", "G13.1  does nothing, and is no error"),
         ("polar-g12.3", "G13.3  does nothing, and is no error"),
+        ("cylinder", "G7.1 C0 does nothing, and is no error"),
         ("programs-haas-mill", "open a .nc program of haas-mill"),
     ],
 )
 def test_every_feature_installs_runs_and_goes(tmp_path, capsys, feature, first):
-    polar = feature in features.POLAR
-    ini = write_config(tmp_path, LATHE if polar else MILL)
+    ini = write_config(tmp_path, LATHE if feature in features.AXES else MILL)
     before = content_of(tmp_path)
     assert installed(ini, feature) == 0
     said = capsys.readouterr().out

@@ -92,6 +92,17 @@ def test_the_sub_of_polar_interpolation(found):
     assert missing.text.startswith("g12_skipped_over.ngc is in none of the folders")
 
 
+def test_cylindrical_interpolation_needs_its_sub_its_function_and_three_axes(found):
+    cylinder = lines_of("cylinder")
+    assert found(with_lines(LATHE, "RS274NGC", SUBS + cylinder) + PYTHON) == []
+    assert kinds(found(with_lines(LATHE, "RS274NGC", cylinder) + PYTHON)) == ["no-sub"]
+    misspelt = cylinder.replace("cylinder_mode", "cylinder_mod")
+    (wrong,) = found(with_lines(LATHE, "RS274NGC", SUBS + misspelt) + PYTHON)
+    assert (wrong.kind, "python=cylinder_mode" in wrong.text) == ("wrong-line", True)
+    (missing,) = found(with_lines(MILL, "RS274NGC", SUBS + cylinder) + PYTHON)
+    assert missing.text == "cylinder needs axis C; [TRAJ] COORDINATES has X Y Z"
+
+
 @pytest.mark.parametrize(
     ("change", "says"),
     [

@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Contours on the unrolled surface as moves of Z and C, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from g12.cylinder.plan import CylinderSettings, plan, split_on_cylinder
+from g12.cylinder.start import check_cylinder_start, cylinder_setup
+from g12.cylinder.words import CYLINDER_WORDS
+from g12.errors import Refusal
+from g12.flat.contour import Arc, Contour, Line, PlaneNames, Start
+from g12.machine_ini import Axis
+from g12.moves.steps import BlockMoves
+from g12.section.block_rules import SectionBlock
+from g12.section.codes import codes_with_word
+from g12.section.line import SectionPlace, split_line
+from g12.section.modes import SectionModes
+from g12.section.start import SectionStart
+from g12.settings import Settings
+
+RADIUS = 20.0
+MACHINE = CylinderSettings(RADIUS, 0.005, 0.001, 1000.0, 1000.0, 3600.0)
+AXES = {
+    "X": Axis(-10.0, 100.0, 50.0, 900.0),
+    "Z": Axis(-100.0, 100.0, 50.0, 1100.0),
+    "C": Axis(-720.0, 720.0, 360.0, 3600.0),
+}
+START = SectionStart(
+    place=SectionPlace("G7.1", 7),
+    words={"C": RADIUS},
+    alone=True,
+    level=1,
+    x=22.0,
+    c=30.0,
+    z=5.0,
+    machine_unit=1.0,
+    millimetre=1.0,
+    offsets={"X": 1.0, "Z": 2.0, "C": 90.0},
+    modes=SectionModes(False, False, 100.0, 0.0, 10),
+    spindle=0,
+    speeds=(0.0,),
+    tool_radius=3.0,
+    diameter=False,
+    yz_plane=True,
+    compensated=False,
+    offset_pending=False,
+    inverse_time=False,
+    surface_speed=False,
+    rotated=False,
+)
+
+
+def empty(c=0.0, z=0.0, x=22.0):
+    """Return the contour of a section that begins at C in degrees, Z and X."""
+    names = PlaneNames(*CYLINDER_WORDS.plane, CYLINDER_WORDS.centre_name)
+    start = Start(x, math.radians(c), z)
+    return Contour(math.radians(c) * RADIUS, x, z, names=names, diameter=None, start=start)
+
+
+def runs(contour, **changed):
+    steps = plan(contour, MACHINE._replace(**changed)).steps
+    return [step for step in steps if isinstance(step, BlockMoves)]
+
+
+def test_a_line_is_one_move_with_the_feed_of_the_surface():
+    """5 along and 20 pi round at F100; F is for Z, which makes 5 of the whole."""
+    contour = empty(c=30.0)
+    contour.line(math.radians(210) * RADIUS, 5.0, line=1, feed=100.0)
+    (run,) = runs(contour)
+    ((x, c, z, feed),) = run.pieces
+    assert (run.axes, x, c, z) == ("ZC", 22.0, pytest.approx(210.0), 5.0)
+    assert feed == pytest.approx(100.0 * 5.0 / math.hypot(5.0, math.pi * RADIUS))
+
+
+def test_round_about_alone_f_is_degrees():
+    contour = empty()
+    contour.line(math.radians(-90) * RADIUS, line=1, feed=100.0)
+    assert runs(contour)[0].pieces == [
+        (22.0, pytest.approx(-90.0), 0.0, pytest.approx(100.0 / (RADIUS * math.pi / 180)))
+    ]
+
+
+def test_a_little_z_is_left_to_the_next_move_and_to_the_end():
+    contour = empty()
+    contour.line(10.0, 0.0004, line=1, feed=100.0)
+    contour.line(20.0, 0.0008, line=2, feed=100.0)
+    made = [(run.line, run.axes, run.pieces[0][2]) for run in runs(contour)]
+    assert made == [(1, "ZC", 0.0), (2, "ZC", 0.0), (2, "Z", 0.0008)]
+
+
+def test_depth_is_a_move_of_x_alone_and_stops_where_the_corner_would_be_cut():
+    contour = empty()
+    contour.line(z=18.0, line=1, feed=100.0)
+    contour.line(10.0, line=2, feed=100.0)
+    contour.line(10.0, 9.0, line=3, feed=9000.0)
+    made = [(run.axes, run.stop) for run in runs(contour)]
+    assert made[0] == ("X", False) and made[-1] == ("ZC", True)
+    assert runs(contour)[0].pieces == [(18.0, 0.0, 0.0, 100.0)]
+    contour.elements[1] = contour.elements[1]._replace(feed=9000.0)
+    assert [run.stop for run in runs(contour)] == [True, True, True]
+
+
+@pytest.mark.parametrize(
+    ("direction", "slow"),
+    [("x", "x_acceleration"), ("z", "z_acceleration"), ("c", "c_acceleration")],
+)
+def test_the_slower_axis_decides_where_the_tool_stops(direction, slow):
+    """A right angle at F600, 1000 per second squared, that stops behind it is rounded by 0.07."""
+    corner = empty()
+    if direction == "x":
+        corner.line(z=12.0, line=1, feed=600.0)
+        corner.line(10.0, line=2, feed=600.0)
+    else:
+        corner.line(*((10.0, 0.0) if direction == "c" else (0.0, 10.0)), line=1, feed=600.0)
+        corner.line(10.0, 10.0, line=2, feed=600.0)
+    even = {"tolerance": 0.16, "c_acceleration": math.degrees(1000.0 / RADIUS)}
+    assert [run.stop for run in runs(corner, **even)] == [False, True]
+    slower = {slow: 0.4 * {**MACHINE._asdict(), **even}[slow]}
+    assert [run.stop for run in runs(corner, **{**even, **slower})] == [True, True]
+
+
+def test_a_section_cut_in_two_goes_on_where_the_machine_stands():
+    first = empty(c=350.0)
+    first.line(math.radians(400) * RADIUS, 7.0, line=1, feed=100.0)
+    planned = plan(first, MACHINE)
+    assert planned.place == pytest.approx((22.0, 400.0, 7.0))
+    second = first.continued(planned.end)
+    second.line(z=20.0, line=2, feed=100.0)
+    assert plan(second, MACHINE).steps[0].pieces == [(20.0, pytest.approx(400.0), 7.0, 100.0)]
+
+
+def test_an_arc_of_too_many_pieces_is_refused():
+    contour = empty()
+    contour.arc(1, j=9e5, line=3, feed=100.0)
+    with pytest.raises(Refusal, match="line 3: more than 100000 moves would be needed"):
+        plan(contour, MACHINE._replace(tolerance=1e-9))
+
+
+@settings(max_examples=150)
+@given(
+    size=st.floats(1e-3, 500.0),
+    sweep=st.floats(0.01, 2 * math.pi),
+    turn=st.sampled_from([1, -1]),
+    surface=st.floats(0.5, 300.0),
+    deviation=st.sampled_from([1e-4, 0.005, 0.1]),
+)
+def test_the_pieces_of_any_arc_keep_to_it(size, sweep, turn, surface, deviation):
+    """Chords between the ends are no farther from the circle than half as much again inside."""
+    start, end = ((size * math.cos(a), size * math.sin(a)) for a in (0.3, 0.3 + turn * sweep))
+    arc = Arc(1, 100.0, 0.0, *start, 0.0, *end, 0.0, 0.0, 0.0, turn * sweep)
+    split = split_on_cylinder(arc, surface, deviation)
+    places = np.array(split.angles) * surface + 1j * np.array(split.slides)
+    assert places[0] == pytest.approx(complex(*start)) and places[-1] == pytest.approx(
+        complex(*end)
+    )
+    middles = (places[1:] + places[:-1]) / 2
+    off = np.concatenate([abs(places), abs(middles)]) - size
+    assert abs(off).max() <= deviation * (1 + 1e-6) + 1e-9
+    assert split.lengths[-1] == pytest.approx(size * sweep)
+    angles = np.unwrap(np.angle(places))
+    assert (np.diff(angles) * turn > 0).all()
+
+
+def test_a_line_is_not_cut():
+    line = Line(1, 100.0, 0.0, 0.0, 0.0, 0.0, 1000.0, -50.0, 0.0)
+    split = split_on_cylinder(line, 10.0, 1e-6)
+    assert split.slides == [0.0, -50.0] and split.angles == [0.0, 100.0]
+
+
+# ---------------------------------------------------------------- how it begins, its words
+
+
+def setup_of(settings=Settings(), **found):  # noqa: B008 - it is frozen
+    return cylinder_setup(START._replace(**found), settings, AXES)
+
+
+def test_the_settings_of_a_section_are_in_program_units():
+    made = setup_of(machine_unit=1 / 25.4, millimetre=1 / 25.4)
+    assert made.tolerance == pytest.approx(0.005 / 25.4)
+    assert made.plan == CylinderSettings(
+        RADIUS,
+        pytest.approx(0.005 / 25.4),
+        pytest.approx(0.001 / 25.4),
+        pytest.approx(900 / 25.4),
+        pytest.approx(1100 / 25.4),
+        3600.0,
+    )
+    assert made.words.closing == pytest.approx(0.0127 / 25.4)
+
+
+def test_the_word_is_a_radius_or_a_diameter():
+    for word, radius in (("radius", 20.0), ("diameter", 10.0)):
+        made = setup_of(Settings(cylinder_word=word))
+        assert made.plan.radius == radius
+        assert made.words.c_scale == pytest.approx(radius * math.pi / 180)
+
+
+def test_polar_x_means_nothing_here_and_g0_what_it_means_there():
+    assert setup_of(Settings(polar_x="diameter")).words.x_scale == 1.0
+    assert setup_of(diameter=True).words.diameter
+    assert setup_of().words.rapid_feed is None
+    assert setup_of(Settings(polar_g0="feed", polar_g0_feed=500.0)).words.rapid_feed == 500.0
+
+
+def test_x_together_only_where_it_is_allowed():
+    assert not setup_of().words.third_with_others
+    assert setup_of(Settings(cylinder_x="allow")).words.third_with_others
+
+
+@pytest.mark.parametrize(
+    ("found", "rule"),
+    [
+        ({"alone": False}, "stands alone in its block"),
+        ({"compensated": True}, "needs G40: compensation is switched on inside"),
+        ({"inverse_time": True}, "needs G94 or G95, not G93"),
+        ({"surface_speed": True}, "needs G97: with G96 the speed would change with X"),
+        ({"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
+        ({"words": {}}, "needs C, the cylinder's radius; C0 ends a section"),
+        ({"words": {"C": -2.0}}, "C-2, the cylinder's radius, must be above 0 and at most 1000000"),
+    ],
+)
+def test_where_no_section_begins(found, rule):
+    with pytest.raises(Refusal) as refused:
+        check_cylinder_start(START._replace(**found), "XZC")
+    assert refused.value.message == f"G7.1 line 7: {rule}"
+
+
+def test_where_one_begins():
+    check_cylinder_start(START, "XZC")  # in G19, too
+    check_cylinder_start(START._replace(x=-1.0), "XYZC")
+    with pytest.raises(Refusal, match="needs a machine with an X, Z and a C axis"):
+        check_cylinder_start(START, "XC")
+
+
+def test_one_code_switches_on_and_off():
+    codes = codes_with_word("G7.1", [], "cylinder_mode", "C")
+
+    def block(g=71, **words):
+        return SectionBlock((-1, g), (), g, words)
+
+    assert codes.off_code == "G7.1 C0"
+    assert [codes.begins(block(**words)) for words in ({"C": 5.0}, {}, {"C": 0.0})] == [
+        True, True, False,
+    ]  # fmt: skip
+    assert codes.ends(block(C=0.0)) and not codes.ends(block(C=1.0)) and not codes.ends(block())
+    assert not codes.begins(block(g=72)) and not codes.ends(block(g=72, C=0.0))
+
+
+@pytest.mark.parametrize(
+    ("raw", "text", "relative"),
+    [("G1 W-5 H.3", "g1z-5c.3", "ZC"), ("U1", "x1", "X"), ("Z1 C[round[2]]", "z1c[round[2]]", "")],
+)
+def test_increments_are_rewritten(raw, text, relative):
+    line = split_line(raw, CYLINDER_WORDS)
+    assert (line.text, line.relative, line.rewritten) == (text, relative, bool(relative))
+
+
+@pytest.mark.parametrize(
+    ("raw", "plain"),
+    [
+        ("G3 Z1 C2 R3", True),
+        ("x-1.5 F200", True),
+        ("K1", False),
+        ("Z1 W1", False),
+        ("G2 J5", False),
+    ],
+)
+def test_which_lines_are_plain(raw, plain):
+    assert bool(CYLINDER_WORDS.plain(raw)) is plain
