@@ -1,24 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Commands get random programs, right ones with random damage: none ever shows a traceback."""
 
+import json
 import random
+import shutil
 
 import pytest
 
 from g12.tools.commands import main
+from g12.tools.translate.blocks.control import shipped_controls
 from soak import SEED, often
 from support.right_programs import MACHINES, right_program
 from support.sim_machines import SIM
 from support.small_configs import write_config
 
+ON = ["PROGRAM", "--ini", "INI"]
 WORDS = {
-    "verify": ["verify", "PROGRAM", "--ini", "INI"],
-    "verify json": ["verify", "PROGRAM", "--ini", "INI", "--json"],
-    "plot": ["plot", "PROGRAM", "--ini", "INI", "--output", "FOLDER/picture.png"],
-    "trace": ["trace", "PROGRAM", "--ini", "INI"],
-    "regress": ["regress", "record", "PROGRAM", "--ini", "INI", "-d", "FOLDER/kept"],
+    "trace": ["trace", *ON],
+    "plot": ["plot", *ON, "--output", "FOLDER/picture.png"],
+    "verify": ["verify", *ON],
+    "verify json": ["verify", *ON, "--json"],
+    "regress": ["regress", "record", *ON, "-d", "FOLDER/kept"],
     "regress check": ["regress", "check", "-d", "FOLDER/kept"],
+    "regress json": ["regress", "check", "-d", "FOLDER/kept", "--json"],
+    "translate": ["translate", "--control", "CONTROL", "PROGRAM"],
 }
+RUN = ["run", *ON, "--override", "1000", "--timeout", "30"]
+CONTROLS = shipped_controls()
 LINES = [
     *("G12.1", "G13.1", "G41", "G41 G1 X5", "G40", "G12", "G13 I5", "G13 I9 K20 Q3 Z-1", "G20"),
     *("G12.2 X0 Y0 Z-1 I1 R9 H0", "o<circle_mill> call", "o<circle_mill> call [7] [1]", "M2", "%"),
@@ -84,13 +92,24 @@ def changed(chance, line):
 
 
 def check_said(capsys, code, what):
-    """Check what a command printed: no traceback, and why it ended as it did."""
+    """Check what a command printed: no traceback, and why it ended as it did. Return it."""
     said = capsys.readouterr()
     assert code in (0, 1, 2), what
     for shown in ("Traceback", "fault of the package"):
         assert shown not in said.out + said.err, f"{what}: {said}"
-    if code == 2:
-        assert said.err.startswith("g12 "), f"{what}: {said}"
+    if code == 2:  # behind what a slow command says of its progress
+        assert said.err.splitlines()[-1].startswith("g12 "), f"{what}: {said}"
+    return said.out
+
+
+def check_codes(codes, damage, what):
+    """Check that the commands agree on a program."""
+    if codes["trace"] == 1:  # the program has an error
+        assert codes["plot"] == codes["verify"] == 1, what
+    assert codes["plot"] in (codes["trace"], 2), what  # 2: it moves nothing
+    assert codes["verify json"] == codes["verify"], what
+    assert (codes["regress check"], codes["regress json"]) == (0, 0), what
+    assert damage or codes["verify"] == 0, what
 
 
 @pytest.mark.parametrize("kind", MACHINES)
@@ -98,15 +117,26 @@ def test_programs(kind, tmp_path, capsys):
     chance = random.Random(f"{SEED} {kind}")
     named = {"INI": str(SIM / f"{MACHINES[kind]}_headless.ini"), "FOLDER": str(tmp_path)}
     for number in range(often(8)):
-        program = tmp_path / f"{kind} {number}.ngc"
-        program.write_text(damaged(chance, right_program(kind, chance, chance.randint(1, 3))))
-        named["PROGRAM"] = str(program)
-        for command, words in WORDS.items():
-            for name, value in named.items():
-                words = [word.replace(name, value) for word in words]
-            check_said(
-                capsys, main.main(words), f"{command} {number} of {SEED}\n{program.read_text()}"
-            )
+        program, text = tmp_path / f"{kind} {number}.ngc", right_program(kind, chance, 1)
+        damage = number % 8 > 0
+        program.write_text(damaged(chance, text) if damage else text)
+        named.update(PROGRAM=str(program), CONTROL=chance.choice(CONTROLS))
+        words = {**WORDS, "run": RUN} if number % 8 == 1 else WORDS
+        what, codes = f"{number} of {SEED}\n{program.read_text()}", {}
+        for command, pattern in words.items():
+            codes[command] = main.main([filled(word, named) for word in pattern])
+            said = check_said(capsys, codes[command], f"{command} {what}")
+            if "--json" in pattern and codes[command] < 2 and said:
+                json.loads(said)
+        check_codes(codes, damage, f"{codes} {what}")
+        shutil.rmtree(tmp_path / "kept")
+
+
+def filled(word, named):
+    """Return a word of a command with what its capitals stand for."""
+    for name, value in named.items():
+        word = word.replace(name, value)
+    return word
 
 
 def test_configs(tmp_path, capsys):
