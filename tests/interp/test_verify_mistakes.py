@@ -5,6 +5,7 @@ import pytest
 
 from g12.tools.commands.main import main
 from g12.tools.machine.ini import read_ini
+from g12.tools.plot.scene import scene_of_proof
 from g12.tools.units import MM
 from g12.tools.verify.findings import pocket_notes, section_notes
 from g12.tools.verify.proof import prove
@@ -222,6 +223,15 @@ def test_a_pocket_at_the_present_depth_is_good(proof_of):
 def test_pockets_farther_apart_than_the_travel_are_found(second, found, proof_of):
     block = "G13 I9 Z-3 D4"
     assert told(proof_of(*MILL, block, "G0 Z1", second, block, "G0 Z1")) == found
+
+
+# ---------------------------------------------------------------- in a picture
+
+
+def test_the_picture_of_a_proof_shows_what_stands_and_another_cutter(proof_of):
+    seen = scene_of_proof(proof_of(*MILL, "G12 I7 K40 Q15 Z-3 D5", "G0 Z1")).seen
+    assert [ring.line for ring in seen.rings] == [4] and seen.rings[0].shape.area > 100
+    assert [(cutter.line, cutter.cutter.named) for cutter in seen.cutters] == [(4, 5)]
 
 
 # ---------------------------------------------------------------- the spindle

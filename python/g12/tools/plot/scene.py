@@ -16,7 +16,7 @@ from g12.tools.preview.executed_blocks import COMMENT
 from g12.tools.preview.moves import Move
 from g12.tools.units import Unit, clock, plain, unit_of
 from g12.tools.verify.proof import Proof, Subject
-from g12.tools.verify.seen import Seen
+from g12.tools.verify.seen import Seen, seen_of_proof
 
 HEAD_COMMENT = re.compile(r"\s*(?:[Oo]\d+\s*)?(?:\(([^()]*)\)|;\s*([^;]+))[\s;]*")
 MOTION = re.compile(r"[xyzabcuvw]", re.IGNORECASE)
@@ -85,8 +85,7 @@ def scene_of(subject: Subject, units: str | None = None, feed_colours: bool = Fa
 def scene_of_proof(proof: Proof, override: float = 100.0) -> Scene:
     """Return what to show of a program that was measured, its real motion included."""
     contour = max((facts.deviation for facts in proof.sections), default=None)
-    seen = Seen(tuple(proof.collisions))
-    shown = {"seen": seen, "contour": contour, "override": override}
+    shown = {"seen": seen_of_proof(proof), "contour": contour, "override": override}
     return replace(scene_of(proof.subject), **shown)
 
 

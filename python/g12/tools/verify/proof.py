@@ -37,7 +37,7 @@ from g12.tools.verify.findings import (
 from g12.tools.verify.in_stock import InStock, StockFacts
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
 from g12.tools.verify.pocket_order import left_otherwise
-from g12.tools.verify.rapids import Collision, collisions
+from g12.tools.verify.rapids import Circles, Collision, collisions
 from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
 from g12.tools.verify.spindle import stands_still
@@ -98,7 +98,7 @@ class Proof:
 
     ``unseen`` are lines whose blocks make a cycle cut that belongs to no pocket and no section
     measured, and the cycle's code; ``still`` those of cycles that move nothing. ``stock`` is what
-    happens to the stock, None if it is not known.
+    happens to the stock, None if it is not known. ``circles`` are the pockets that were asked for.
     """
 
     subject: Subject
@@ -109,6 +109,7 @@ class Proof:
     tolerances: Tolerances
     stock: StockFacts | None = None
     still: list[tuple[int, str]] = field(default_factory=list)
+    circles: Circles = ()
 
     @property
     def findings(self) -> list[tuple[int, str]]:
@@ -241,7 +242,8 @@ def measured(
     tell("looking for rapids through material")
     hits = collisions(asked.circles, moves, path, diameters, real)
     unseen = unseen_in(moves, Codes(subject.ini), asked.moves)
-    return Proof(subject, pockets, polar, hits, unseen, tolerances, still=asked.still)
+    told = {"still": asked.still, "circles": asked.circles}
+    return Proof(subject, pockets, polar, hits, unseen, tolerances, **told)
 
 
 def stock_facts(

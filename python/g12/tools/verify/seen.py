@@ -29,6 +29,7 @@ from g12.tools.verify.pocket import left_of
 from g12.tools.verify.proof import (
     POCKET_TOLERANCE,
     Asked,
+    Proof,
     StockText,
     Subject,
     asked_of,
@@ -97,19 +98,31 @@ def seen_in(
         with Tracer(subject.ini, tools=tools) as tracer:
             asked = asked_of(tracer, subject, tools, parameters)
     hits = collisions(asked.circles, trace.moves, subject.path, trace.diameters, subject.real)
-    rings = standing_rings(asked.circles, trace.moves, subject.path, trace.diameters)
+    return seen_of(subject, asked.circles, hits, stock_facts(subject, asked, stock, hits))
+
+
+def seen_of_proof(proof: Proof) -> Seen:
+    """Return what a picture of a program that was measured shows beside the cuts."""
+    return seen_of(proof.subject, proof.circles, proof.collisions, proof.stock)
+
+
+def seen_of(
+    subject: Subject, circles: Circles, hits: Sequence[Collision], stock: StockFacts | None
+) -> Seen:
+    """Return what is seen of a program's circles, with what is known of rapids and the stock."""
+    trace = subject.trace
+    rings = standing_rings(circles, trace.moves, subject.path, trace.diameters)
     cutters = (
         WrongCutter(target.source.line, tuple(map(float, target.wall.origin[:2])), target.cutter)
-        for _, target in asked.circles
+        for _, target in circles
         if is_wrong_tool(target.cutter)
     )
-    facts = stock_facts(subject, asked, stock, hits)
     still = (
         target.source.line
-        for block, target in asked.circles
+        for block, target in circles
         if stands_still(trace.events, block.end, subject.ini)
     )
-    return Seen(tuple(hits), tuple(rings), tuple(cutters), facts, tuple(still))
+    return Seen(tuple(hits), tuple(rings), tuple(cutters), stock, tuple(still))
 
 
 def standing_rings(
