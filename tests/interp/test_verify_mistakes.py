@@ -9,7 +9,7 @@ from g12.tools.plot.scene import scene_of_proof
 from g12.tools.units import MM
 from g12.tools.verify.findings import pocket_notes, section_notes
 from g12.tools.verify.proof import prove
-from g12.tools.verify.report import pocket_text, section_text
+from g12.tools.verify.report import as_text, pocket_text, section_text
 from support.sim_machines import SIM
 
 MILL = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6", "G0 X0 Y0 Z1"]  # a 10 mm cutter
@@ -223,6 +223,23 @@ def test_a_pocket_at_the_present_depth_is_good(proof_of):
 def test_pockets_farther_apart_than_the_travel_are_found(second, found, proof_of):
     block = "G13 I9 Z-3 D4"
     assert told(proof_of(*MILL, block, "G0 Z1", second, block, "G0 Z1")) == found
+
+
+# ---------------------------------------------------------------- work offsets
+
+MOVED = "places are those of the machine: the program's zero is X2 Y0 Z−30"
+
+
+@pytest.mark.parametrize(
+    ("lines", "first"),
+    [
+        (["G10 L2 P1 X2 Z-30", "G0 X0 Y0 Z1", "G13 I9 Z-2 D4"], MOVED),
+        (["G92 X-2 Y0 Z31", "G13 I9 Z-2 D4"], MOVED),
+        (["G13 I9 Z-2 D4"], "line 4: G13 (haas)"),
+    ],
+)
+def test_where_the_programs_zero_is_is_said(lines, first, proof_of):
+    assert as_text(proof_of(*MILL, *lines), MM).splitlines()[0] == first
 
 
 # ---------------------------------------------------------------- in a picture

@@ -244,7 +244,7 @@ def test_real_motion_beside_the_path_is_found():
             "",
         ),
         (3.1, "", "T1 (⌀ 6.2) is not D2 (⌀ 6): measured with the cutter of D2"),
-        (0.0, "", "T1 has no diameter: measured with that of D2"),
+        (0.0, "", "T1 has no diameter: measured with the diameter of D2"),
     ],
 )
 def test_a_tool_that_is_not_that_of_d(loaded, found, noted):

@@ -226,7 +226,8 @@ def pocket_notes(facts: PocketFacts, unit: Unit = MM) -> Iterator[str]:
     if cutter.named is None or is_wrong_tool(cutter):
         return
     if not cutter.loaded:
-        yield f"T{max(cutter.tool, 0)} has no diameter: measured with that of D{cutter.named}"
+        lacks = f"T{cutter.tool} has no diameter" if cutter.tool > 0 else "no tool is loaded"
+        yield f"{lacks}: measured with the diameter of D{cutter.named}"
     elif abs(cutter.radius - cutter.loaded) > SAME_SIZE:
         yield f"{other_tool(cutter, unit)}: measured with the cutter of D{cutter.named}"
 

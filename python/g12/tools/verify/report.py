@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from g12.tools.path.slowest import Pace
 from g12.tools.preview.moves import message_lines
 from g12.tools.units import Unit, plain
+from g12.tools.verify.axis_limits import SAME_ZERO
 from g12.tools.verify.findings import (
     NOT_CUT,
     SAME_AREA,
@@ -22,7 +23,7 @@ from g12.tools.verify.findings import (
     stock_findings,
     stock_notes,
 )
-from g12.tools.verify.in_stock import StockFacts
+from g12.tools.verify.in_stock import StockFacts, zero_of
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.pocket_entry import entry_json, entry_text
 from g12.tools.verify.proof import Proof
@@ -53,8 +54,18 @@ def as_text(proof: Proof, unit: Unit) -> str:
     ]
     stock = [stock_text(proof.stock, unit)] if proof.stock else []
     messages = "\n".join(message_lines(proof.subject.trace.messages))
-    paragraphs = [*pockets, *sections, *rapids, *stock, *unseen, messages, verdict]
+    told = [*pockets, *sections, *rapids, *stock, *unseen]
+    paragraphs = [zero_text(proof, unit), *told, messages, verdict]
     return "\n\n".join(filter(None, paragraphs))
+
+
+def zero_text(proof: Proof, unit: Unit) -> str:
+    """Return where the program's zero is where it first cuts, "" if places are the program's."""
+    contours = [facts.section for facts in proof.sections]
+    zero = zero_of(proof.circles, contours, proof.subject.trace.moves)
+    if max(abs(zero)) < SAME_ZERO:
+        return ""
+    return f"places are those of the machine: the program's zero is {point_text(AXES, zero, unit)}"
 
 
 def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
