@@ -8,6 +8,7 @@ import shutil
 import pytest
 from hypothesis import settings
 
+from g12.tools import progress
 from g12.tools.headless.namespaces import OneAtATime
 from support.processes import kill_session, start_in_terminal
 
@@ -44,6 +45,14 @@ def scratch_home(tmp_path_factory):
     """Nothing that a test starts finds or leaves anything in the user's home."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("HOME", str(tmp_path_factory.mktemp("home")))
+        yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def unhurried():
+    """A command that a test calls says nothing of its progress, however slow the system is."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(progress, "LINE_TICK", 3600.0)
         yield
 
 
