@@ -50,7 +50,7 @@ def scratch_home(tmp_path_factory):
 
 @pytest.fixture(autouse=True, scope="session")
 def unhurried():
-    """A command that a test calls says nothing of its progress, however slow the system is."""
+    """Keep commands that a test calls from telling of their progress, however slow the system is."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(progress, "LINE_TICK", 3600.0)
         yield
