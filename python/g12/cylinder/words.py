@@ -15,7 +15,6 @@ from g12.section.words import SectionWords
 CYLINDER_WORDS = SectionWords(
     plane="CZX",
     c_is_length=False,
-    centre=("JI", "K"),
     letters=(("X", "XU"), ("Z", "ZW"), ("C", "CH"), ("the centre along C", "IJ")),
     foreign={"u": "x", "w": "z", "h": "c"},
     relative={"U": "X", "W": "Z", "H": "C"},

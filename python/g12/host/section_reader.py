@@ -300,7 +300,8 @@ class SectionReader:
         if c is not None:
             c *= self.rules.c_scale
         x, c, z = self._to_plane((x, c, z))
-        i, j = self._centre(i, j, k)
+        if self._own_c:
+            i, j = (i if j is None else j), k
         if z is not None:
             self._check_third(x, c, i, j)
         if modes.incremental or relative:
@@ -311,14 +312,6 @@ class SectionReader:
             contour.arc(turn, x, c, z, i=i, j=j, radius=r, line=line, feed=self._feed())
         else:
             contour.line(x, c, z, line=line, feed=self._feed() if motion else self._rapid_feed())
-
-    def _centre(
-        self, i: float | None, j: float | None, k: float | None
-    ) -> tuple[float | None, float | None]:
-        """Return the words of an arc's centre, along the plane's first and second axis."""
-        if not self._own_c:
-            return i, j
-        return (i if j is None else j), k
 
     def _absolute(self, x: float | None, c: float | None, z: float | None, relative: str) -> tuple:
         """Return coordinates of the plane, those of the ``relative`` axes as increments."""

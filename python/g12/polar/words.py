@@ -10,7 +10,6 @@ from g12.section.words import SectionWords
 POLAR_WORDS = SectionWords(
     plane="XCZ",
     c_is_length=True,
-    centre=("I", "J"),
     letters=(("X", "XU"), ("C", "CYH")),
     foreign={"u": "x", "h": "c", "y": "c"},
     relative={"U": "X", "H": "C"},

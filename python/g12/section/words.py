@@ -12,8 +12,8 @@ class SectionWords(NamedTuple):
 
     ``plane`` are the axes of its contour: first, second and, at right angles to the plane, the
     third. ``c_is_length``: C is a length in a plane that is laid through the axis where it stands;
-    else it is the axis's angle in degrees. ``centre`` are the letters of an arc's centre along the
-    first and the second axis. ``letters`` are those that move one axis, of which a block has one.
+    else it is the axis's angle in degrees. ``letters`` are those that move one axis, of which a
+    block has one.
 
     ``foreign`` are letters that the parser is not given as they are, and what it is given instead;
     ``relative`` those that are increments of an axis. ``plain`` tells a line that has nothing but
@@ -26,7 +26,6 @@ class SectionWords(NamedTuple):
 
     plane: str
     c_is_length: bool
-    centre: tuple[str, str]
     letters: tuple[tuple[str, str], ...]
     foreign: dict[str, str]
     relative: dict[str, str]
