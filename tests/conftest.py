@@ -50,7 +50,7 @@ def scratch_home(tmp_path_factory):
 
 @pytest.fixture(autouse=True, scope="session")
 def unhurried():
-    """Keep commands that a test calls from telling of their progress, however slow the system is."""
+    """Keep commands that a test calls from telling of their progress, on slow systems too."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(progress, "LINE_TICK", 3600.0)
         yield
