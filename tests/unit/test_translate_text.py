@@ -488,9 +488,18 @@ def test_cylinder():
     assert translated == ["G7.1 C25.", "G1 Z-5. C30.", "G7.1 C0", "M30"]
 
 
-def test_the_polar_codes_are_those_of_the_machine():
-    from dataclasses import replace
+@pytest.mark.parametrize(
+    ("control", "machine", "word"),
+    [("radius", "diameter", "[25. * 2]"), ("diameter", "radius", "[25. / 2]"),
+     ("diameter", "diameter", "25.")],
+)  # fmt: skip
+def test_the_word_of_the_cylinder_is_the_controls_and_the_machines(control, machine, word):
+    tables = {**LATHE.tables, "cylinder": {"word": control}}
+    other = replace(LATHE, tables=tables, cylinder_word=machine)
+    assert behind(other, "G107 C25.\nG107 C0\nM30\n")[0] == f"G7.1 C{word}"
 
+
+def test_the_polar_codes_are_those_of_the_machine():
     other = replace(LATHE, polar_codes=("G12.3", "G13.3"))
     assert behind(other, "G112\nG1 X40. F5.\nG113\nM30\n")[::2] == ["G12.3", "G13.3"]
 

@@ -107,6 +107,8 @@ def translated(asked: argparse.Namespace, control: Control) -> str:
     codes = machine_codes(ini) if ini else None
     pair = polar_pair(remap_lines(ini.all)) if ini else None
     control = replace(control, polar_codes=pair) if pair else control
+    if ini:
+        control = replace(control, cylinder_word=ini.settings.cylinder_word)
     if ini and not asked.units and not SAYS_UNITS.search(text):
         control = replace(control, start=(*control.start, units_code(ini)))
     result = translate_program(text, control, codes, progress())

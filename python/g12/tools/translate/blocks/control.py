@@ -83,7 +83,8 @@ class Control:
     ``axes`` are the machine's axes, ``start`` the codes that hold when a program begins,
     ``decimals`` what a number without a point is (``least`` increments, ``whole`` units, ``""`` if
     that is not known). ``meanings`` has the codes, ``tables`` the values of the file;
-    ``polar_codes`` are LinuxCNC's codes on the machine for polar mode on and off.
+    ``polar_codes`` are LinuxCNC's codes on the machine for polar mode on and off, ``cylinder_word``
+    is what C of G7.1 is there.
     """
 
     name: str
@@ -98,6 +99,7 @@ class Control:
     meanings: Mapping[str, str]
     tables: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     polar_codes: tuple[str, str] = ("G12.1", "G13.1")
+    cylinder_word: str = "radius"
 
     @property
     def is_lathe(self) -> bool:

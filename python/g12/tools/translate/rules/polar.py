@@ -64,13 +64,13 @@ def turn_off(draft: Draft, code: str) -> None:
 
 
 def cylinder(draft: Draft, code: str) -> None:
-    """Write G7.1 with the radius, 0 ends it."""
+    """Write G7.1 with the radius, or the diameter for a machine that wants it; 0 ends it."""
     word = draft.take("C") or draft.take("H")
     if not word:
         raise NotTranslated(f"{code} needs C, the radius of the cylinder, or C0")
-    value = word.value
-    if draft.control.value("cylinder", "word", "radius") == "diameter":
-        value = f"[{value} / 2]"
+    means, wanted = draft.control.value("cylinder", "word", "radius"), draft.control.cylinder_word
+    scale = "" if means == wanted else " / 2" if means == "diameter" else " * 2"
+    value = f"[{word.value}{scale}]" if scale and not is_zero(word) else word.value
     own_block(draft, code, [f"G7.1 C{value}"])
     on = not is_zero(word)
     draft.change(polar="cylinder" if on else "off", own_motion=UNSURE)
