@@ -91,8 +91,8 @@ def check_smooth(samples):
     length = np.linalg.norm(steps, axis=1)
     inside = slice(20, -60)  # but for the stop at the end
     assert length[inside].min() > 0.2 * SHARE * FEED / 60 * PERIOD
-    cosine = np.einsum("ij,ij->i", steps[1:], steps[:-1]) / (length[1:] * length[:-1])
-    turn = np.degrees(np.arccos(np.clip(cosine, -1, 1)))[inside]
+    along = (steps / np.maximum(length, 1e-12)[:, None])[inside]
+    turn = np.degrees(np.arccos(np.clip((along[1:] * along[:-1]).sum(axis=1), -1, 1)))
     assert turn.max() < math.degrees(length.max() / (HELIX / 2)) + 0.5
 
 

@@ -120,6 +120,14 @@ def test_half_turns_of_a_helix_belong_to_the_floor_that_they_lead_to():
     assert levels[2].area.bounds[2] < 100 < levels[3].area.bounds[0]
 
 
+def test_a_helix_on_a_lathes_face_belongs_to_its_floor():
+    way = [Hand().rapid(x=9, z=1)]
+    for step in range(1, 9):
+        way.append(way[-1].line(c=45.0 * step, z=1 - step / 2))
+    levels = plan_view.milled_levels(scene(way[-1].line(c=400.0), LATHE))
+    assert [level.z for level in levels] == pytest.approx([-3])
+
+
 def test_drilling_sweeps_holes():
     hand = Hand().rapid(x=9).line(z=-5).rapid(z=1).rapid(x=30).line(z=-5)
     (level,) = plan_view.milled_levels(scene(hand))

@@ -30,6 +30,7 @@ SAME_DEPTH = 1e-3
 MOST_LEVELS = 10  # with more, depths and feeds are shown in bands
 BANDS = 24
 MOST_ARROWS = 80
+C = 5  # of a position
 FLAT, ROUND = 17, 181  # the plane whose arcs keep their height, points of other arcs
 NEAR = 0.5  # of the view: rapids that end no farther outside are shown whole
 MANY = 20_000  # moves
@@ -78,8 +79,9 @@ def floors(moves: Sequence[Move]) -> np.ndarray:
 
 
 def is_helical(move: Move) -> bool:
-    """Tell whether a move is an arc about the tool's axis that goes down."""
-    return move.kind == "arc" and move.plane == FLAT and move.end[2] < move.start[2] - SAME_DEPTH
+    """Tell whether a move goes down about the tool's axis, or about the spindle's, on a face."""
+    about = (move.kind == "arc" and move.plane == FLAT) or move.end[C] != move.start[C]
+    return about and move.end[2] < move.start[2] - SAME_DEPTH
 
 
 def lowest(move: Move) -> float:
