@@ -242,6 +242,12 @@ def test_the_pages_programs_are_the_samples(lathe, number, name):
     assert [move.end for move in there] == [move.end for move in here]
 
 
+def test_the_sample_of_the_simulated_lathe_is_the_cam_groove(lathe):
+    texts_of = [SIM / "samples/lathe_mm_cylinder.ngc", PROGRAMS / "cylinder/cam_groove.ngc"]
+    there, here = (feed_moves(lathe.trace(text)) for text in texts_of)
+    assert [move.end for move in there] == [move.end for move in here]
+
+
 # ---------------------------------------------------------------- compensation
 
 
