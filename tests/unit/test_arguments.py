@@ -10,6 +10,7 @@ import pytest
 
 from g12.tools.commands import arguments, main
 from g12.tools.errors import UsageError
+from g12.tools.headless.machine import StartupError
 from g12.tools.machine import tables
 from g12.tools.preview.ended import explained_text
 from g12.tools.system import CALL
@@ -194,3 +195,21 @@ def test_a_pipe_that_breaks_elsewhere_is_told(monkeypatch, capsys):
     monkeypatch.setattr(main, "import_module", lambda _name: SimpleNamespace(main=broken))
     monkeypatch.setattr(main, "nobody_reads", lambda: False)
     assert ends(capsys, "run") == (1, "g12 run: [Errno 32] Broken pipe\n")
+
+
+@pytest.mark.parametrize(
+    ("log", "tells"),
+    [
+        (["Starting", "./c.hal:57: Pin 'iocontrol.0.lube' does not exist", "Recommend: both"], 1),
+        (["Starting", "ImportError: no module g12", "Shutting down"], 1),
+        (["Starting", "Shutting down"], 1),
+    ],
+)
+def test_of_a_log_that_line_is_told_that_tells_most(log, tells, capsys):
+    @arguments.one_line("run")
+    def command(_words):
+        raise StartupError("\n".join(["lathe.ini: LinuxCNC ended; its log ends:", *log]))
+
+    assert command([]) == 1
+    said = capsys.readouterr().err
+    assert said == f"g12 run: lathe.ini: LinuxCNC ended; its log ends: … {log[tells]}\n"

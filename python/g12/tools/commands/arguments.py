@@ -30,7 +30,8 @@ from g12.tools.verify.proof import StockText
 GOOD, FINDING, USAGE = 0, 1, 2
 VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"
 NAMED = re.compile(r"^( *)g12\b", re.MULTILINE)  # the command, at the beginning of a line
-RAISED = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:")  # how Python names what was raised
+# How Python names what was raised, and how LinuxCNC names a line of HAL that it cannot load.
+TELLING = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:|\S+\.(hal|tcl):\d+: ")
 
 
 class Parser(argparse.ArgumentParser):
@@ -189,5 +190,5 @@ def _text(problem: Exception) -> str:
     lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
     if len(lines) < 2:
         return "".join(lines)
-    raised = [line for line in lines if RAISED.match(line)]
-    return f"{lines[0]} … {(raised or lines)[-1]}"
+    telling = [line for line in lines if TELLING.match(line)]
+    return f"{lines[0]} … {(telling or lines)[-1]}"
