@@ -21,6 +21,7 @@ from support.sim_machines import ROOT, SIM, with_package
 EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
 NOBODY = 65534
 LINES = [f"G1 X{10 * (number % 2)}" for number in range(1, 20)]
+MARK = ";py,from interpreter import this; this.sequence_number = 1\n"
 BACK_AND_FORTH = ["G21 G90 G64 F4000", *LINES, "M2"]  # line n+1 moves to LINES[n-1]
 
 
@@ -117,6 +118,20 @@ def test_step_runs_block_by_block(machine):
         time.sleep(0.05)
         seen += [machine.wait_for(standing).position[0]] if machine.stat().motion_line else []
     assert seen == pytest.approx([10.0, 0.0, 10.0], abs=1e-6)
+    machine.abort()
+
+
+@pytest.mark.parametrize(("mark", "stops"), [("", [1, 2, 3, 9]), (MARK, [3, 9])])
+def test_moves_that_bear_one_line_are_one_step(mark, stops, machine):
+    """Why a cycle's moves bear the lines of its subroutine, not that of the program's block."""
+    moves = "".join(f"{mark}G1 X{x} F6000\n" for x in (1, 2, 3))
+    machine.open_text(f"G21 G90\no9 sub\n{moves}o9 endsub\no9 call\nG1 X9\nM2\n")
+    seen = []
+    while stops[-1] not in seen:
+        machine.step()
+        time.sleep(0.05)
+        seen += [round(machine.wait_for(standing).position[0], 6)]
+    assert [x for x in dict.fromkeys(seen) if x] == stops
     machine.abort()
 
 
