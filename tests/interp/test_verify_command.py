@@ -182,6 +182,18 @@ def test_plot_draws_a_rapid_through_material(written, tmp_path):
     assert "rapid through material" in path.read_text()
 
 
+def test_plot_tells_what_it_draws_in_red(written, tmp_path, capsys):
+    text, path = HEAD + "G12 I7 K40 Q15 Z-3 D5\nG0 X60\nM2\n", tmp_path / "x.svg"
+    assert main(["plot", written(text), "--ini", MILL, "-o", str(path)]) == 0
+    red = [line for line in capsys.readouterr().out.splitlines() if line.startswith("in red, line")]
+    for line, says in [
+        (5, "a rapid goes through"),
+        (4, "of material are left standing"),
+        (4, "the loaded tool T4 (⌀ 10) is not D5 (⌀ 12)"),
+    ]:
+        assert any(text.startswith(f"in red, line {line}: ") and says in text for text in red), says
+
+
 @pytest.mark.parametrize("command", ["verify", "plot"])
 @pytest.mark.parametrize("missing", ["program", "ini", "tools"])
 def test_missing_files_are_named(command, missing, written, tmp_path, capsys):

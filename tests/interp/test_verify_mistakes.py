@@ -225,6 +225,11 @@ def test_pockets_farther_apart_than_the_travel_are_found(second, found, proof_of
     assert told(proof_of(*MILL, block, "G0 Z1", second, block, "G0 Z1")) == found
 
 
+def test_no_rapid_goes_through_a_pocket_that_cuts_air(proof_of):
+    lines = ["G0 X9 Z30", "X0 Y0", "Z1", "G13 I9 Z5 D4", "G0 Z1", "X40", "G13 I9 Z-2", "G0 Z1"]
+    assert ["lost minus" in text for text in told(proof_of(*MILL[:2], *lines))] == [True]
+
+
 # ---------------------------------------------------------------- work offsets
 
 MOVED = "places are those of the machine: the program's zero is X2 Y0 Z−30"

@@ -156,17 +156,17 @@ def collisions(
 
 
 def openings_of(asked: Circles, moves: Sequence[Move], cleared: Cleared) -> Iterator[Opening]:
-    """Yield the pockets that rapids can leave through a wall."""
+    """Yield the pockets that rapids can leave through a wall; one that is fed up to cuts air."""
     found = ((block, target.wall) for block, target in asked)
     walled = [(block, wall) for block, wall in found if wall.inside and wall.plane == 2]
     came, fed = (
         np.array([height(block, moves) for block, _ in walled])
         for height in (height_before, height_of_feed)
     )
-    for block, wall in walled:
+    for (block, wall), begun in zip(walled, fed):
         highest, lowest = floors_of(block, moves)
         least = highest + SAME_HEIGHT
-        if np.any(came > least):
+        if np.any(came > least) and begun > highest - SAME_HEIGHT:
             top = min(came[came > least])
             face = highest < wall.face < top
             top = wall.face if face else min(fed[fed > least], default=top)
