@@ -162,6 +162,17 @@ to take it out again: {} uninstall {}
 """
 
 
+def test_a_dry_run_names_the_folder_and_its_size_and_writes_nothing(tmp_path, capsys):
+    ini = write_config(tmp_path)
+    before = content_of(tmp_path)
+    assert installed(ini, "haas", "--dry-run") == 0
+    *_, folder, last = capsys.readouterr().out.splitlines()
+    would = rf"{re.escape(str(tmp_path))}/g12: would get the package, \d+ files, \d\.\d MB"
+    assert re.fullmatch(would, folder), folder
+    assert last == "dry run: nothing was written"
+    assert content_of(tmp_path) == before
+
+
 @pytest.mark.parametrize(
     ("feature", "first"),
     [
