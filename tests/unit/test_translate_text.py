@@ -265,6 +265,7 @@ def test_what_is_refused_is_told(control, block, start):
         ("M98 P5\nN1 M30\nO5\n/M99\nM99 P1", 7, "M99 with and without P in one program"),
         ("M98 P5 L2\nN1 M30\nO5\nM99 P1", 3, "the called program returns by M99 P"),
         ("G65 P5\nG65 P6\nM30\nO5\n#31=1\nM99\nO6\n#31=1\nM99", 10, "#31 is used in two pr"),
+        ("G65 P5\nM30\nO5\nIF[#33EQ#0]GOTO9\nN9 M99", 6, "#33 EQ #0: no letter of G65"),
         ("G65 P5\nM30\nO5\nIF[#1EQ2]GOTO9\n#2=1\nN9 X#2\nM99", 6, "O5 reads #1 (A of"),
         ("G65 P5 A1.\nM30\nO5\nIF[#1EQ2]GOTO9\n#2=1\nN9 X#2\nM99", 8, "O5 reads #2 (B of"),
     ],

@@ -31,6 +31,8 @@ def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
         if index in given:
             for variable in sorted(read_by(block) - given[index]):
                 yield block.line, unset_sentence(number, variable)
+            for variable in sorted(asked_by(block) - LETTERS.keys()):
+                yield block.line, f"#{variable} EQ #0: no letter of G65 gives #{variable} a value"
         elif number not in macros and followed.drafts[index] and asked_by(block):
             yield block.line, "#0, the empty variable, is translated in a program of G65 only"
     yield from shared_locals(followed)
