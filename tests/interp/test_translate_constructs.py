@@ -67,6 +67,10 @@ CONSTRUCTS = [
     ("haas-mill", "#100=1\nWHILE[#100LT4]DO1\nG91 G1 X.1\n#100=#100+1\nEND1\nG90",
      "G91 G1 X.1\nX.1\nX.1\nG90"),
     ("haas-mill", "#1=2.\nIF[#1 EQ 2]THEN #1=2.5\nX#1", "X2.5"),
+    ("haas-mill", "#1=[-5.5 MOD 3]\n#2=[5.5 MOD 3]\nX#1 Y#2", "X-2.5 Y2.5"),
+    # the last D is a pocket's, wherever it stood; a T is no tool before its M6
+    ("haas-mill", "T2 M6\nG43 H2 D1 Z.5\nG12 I1. F9.\nD0\nG13 I1.", "T2 M6\nG43 H2 Z.5\n"
+     "G12 I1 D1 F9\nG13 I1 D0"),
     # jumps: over blocks, back, out of loops, crossing, by M99 P, and programs called by M98 Q
     ("haas-mill", "#1=3\nIF[#1GT2]GOTO5\nX9.\nN5 G1 X2.", "G1 X2"),
     ("haas-mill", "#1=1\nIF[#1GT2]GOTO5\nX9.\nN5 G1 X2.", "X9\nG1 X2"),

@@ -233,6 +233,10 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "IF[#1EQ#0]THEN#1=2.", "#0, the empty variable, is translated in a program of G65"),
         (HAAS, "#1=[#2 AND 3]", "AND is translated between comparisons"),
         (HAAS, "#1=1 EQ 2 EQ 3", "two comparisons in a row"),
+        (HAAS, "#1=#2*3 MOD 2", "MOD beside other operators"),
+        (HAAS, "G0 X[ROUND[#1]]", "X: ROUND in a word rounds to the least increment there"),
+        (HAAS, "T3\nG10 L12 P3 G91 R.1", "G10 for the diameter of T3"),
+        (HAAS, "T1 M6 T3", "T stands twice"),
         (HAAS, "#1=BIN[#2]", "BIN[#2] stands where a value"),
         (HAAS, "#1=[[[[[[[[[1]]]]]]]]]", "more than 8 brackets"),
         (HAAS, "#1=[1", "] is missing before the end"),
@@ -486,18 +490,45 @@ def test_the_feed_comes_back_behind_a_rapid_of_polar_mode():
 
 
 def test_cylinder():
-    translated = behind(LATHE, "G107 C25.\nG1 Z-5. C30.\nG7.1 C0\nM30\n")
-    assert translated == ["G7.1 C25.", "G1 Z-5. C30.", "G7.1 C0", "M30"]
+    translated = behind(LATHE, "G107 C25.\nG1 Z-5. C30.\nU1. W2. H3.\nG41 D1 Z0\nG7.1 C0\nM30\n",
+                        "(HEAD)\nT101\nG0 X50. Z5.\n")  # fmt: skip
+    assert translated == [
+        "G7.1 C25.", "G1 Z-5. C30.", "U1. W2. H3.", "G41 Z0", "G7.1 C0", "M30",
+    ]  # fmt: skip
+
+
+def test_a_cylinder_onto_which_y_is_mapped():
+    text = "G107 Y0 C0 {}\nG1 Y2. F9.\nG2 Y3. Z-1. J1. K0\nV1. W1.\nG107\nX3.\nM30\n"
+    translated = behind(HAAS_LATHE, text.format("R2."), "(HEAD)\nG20 G0 X1. Z1.\n")
+    assert translated == [
+        "G7.1 C2.",
+        "G1 C[[2.] * 57.295779513082 / 2.] F9.",
+        "G2 C[[3.] * 57.295779513082 / 2.] Z-1. J1. K0",
+        "H[[1.] * 57.295779513082 / 2.] W1.",
+        "G7.1 C0",
+        "G2 X3.",
+        "M30",
+    ]
+    assert behind(HAAS_LATHE, text.format("Q4."))[0] == "G7.1 C[4. / 2]"
+    refused = sentence(HAAS_LATHE, "G107 C25.\nM30\n").sentence
+    assert refused == "G107 needs Y0, C0 and R or Q, radius or diameter; alone it ends"
+    refused = sentence(HAAS_LATHE, "G0 X1.\nG107 Y0 C0 R2.\nG1 C3.\nM30\n").sentence
+    assert refused.startswith("C while Y is mapped onto the cylinder")
+
+
+def test_the_cylinders_code_and_word_are_those_of_the_machine():
+    other = replace(LATHE, cylinder_code=("G107", "diameter"))
+    assert behind(other, "G7.1 C25.\nG7.1 C0\nM30\n") == ["G107 C[2 * 25.]", "G107 C0", "M30"]
 
 
 @pytest.mark.parametrize(
     ("control", "machine", "word"),
-    [("radius", "diameter", "[25. * 2]"), ("diameter", "radius", "[25. / 2]"),
-     ("diameter", "diameter", "25.")],
+    [("radius", "diameter", "[2 * 25.]"), ("diameter", "radius", "[25. / 2]"),
+     ("diameter", "diameter", "[2 * [25. / 2]]")],
 )  # fmt: skip
 def test_the_word_of_the_cylinder_is_the_controls_and_the_machines(control, machine, word):
     tables = {**LATHE.tables, "cylinder": {"word": control}}
-    other = replace(LATHE, tables=tables, cylinder_word=machine)
+    other = replace(LATHE, tables=tables, cylinder_code=("G7.1", machine))
     assert behind(other, "G107 C25.\nG107 C0\nM30\n")[0] == f"G7.1 C{word}"
 
 

@@ -45,6 +45,7 @@ USER_CODE = re.compile(r"M(1[0-9]{2})")
 SAYS_UNITS = re.compile(r"G\s*0*(2[01])(?![0-9.])", re.IGNORECASE)
 UNITS = {"inch": "G20", "mm": "G21"}
 POLAR_HANDLERS = ("polar_on", "polar_off")
+CYLINDER_HANDLER = "cylinder_mode"
 PROGRESS_EVERY = 0.2  # s
 OTHERS_NAMED = 5
 
@@ -105,16 +106,23 @@ def translated(asked: argparse.Namespace, control: Control) -> str:
     path = asked.ini or os.environ.get("INI_FILE_NAME")
     ini = read_ini(path) if path else None
     codes = machine_codes(ini) if ini else None
-    pair = polar_pair(remap_lines(ini.all)) if ini else None
-    control = replace(control, polar_codes=pair) if pair else control
-    if ini:
-        control = replace(control, cylinder_word=ini.settings.cylinder_word)
+    control = with_codes_of(control, ini) if ini else control
     if ini and not asked.units and not SAYS_UNITS.search(text):
         control = replace(control, start=(*control.start, units_code(ini)))
     result = translate_program(text, control, codes, progress())
     if result.refused:
         raise ProgramError(f"{asked.program}:{refusal_sentence(result.refused)}")
     return result.text
+
+
+def with_codes_of(control: Control, ini: Ini) -> Control:
+    """Return a control with the machine's own codes for polar mode and cylinders."""
+    remaps = remap_lines(ini.all)
+    pair = polar_pair(remaps)
+    control = replace(control, polar_codes=pair) if pair else control
+    codes = [r.code for r in remaps if CYLINDER_HANDLER in r.handlers and r.code[0] == "G"]
+    word = ini.settings.cylinder_word
+    return replace(control, cylinder_code=(codes[0], word)) if codes else control
 
 
 def units_code(ini: Ini) -> str:

@@ -97,7 +97,7 @@ def refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
             yield RefusedBlock(draft.block.line, sentence)
     for index in followed.falls_off:
         sentence = missing_end(followed, index)
-        if sentence:
+        if sentence and not followed.drafts[index].refusal:
             yield RefusedBlock(followed.structure.blocks[index].line, sentence)
     if followed.structure.jumps.targets and not followed.has_end:
         block = followed.structure.blocks[max(followed.structure.jumps.targets)]

@@ -52,13 +52,15 @@ TABLES: dict[str, dict[str, object]] = {
         "seconds": str, "milliseconds": str, "with_point": ("seconds", "refuse"),
         "cycle": ("seconds", "milliseconds", "refuse"),
     },
-    "tools": {"patterns": list, "size": ("diameter", "radius")},
+    "tools": {
+        "patterns": list, "size": ("diameter", "radius"), "pocket": ("last", "own"),
+    },
     "reference": {"G28": ("stored",), "G30": ("stored",), "cancels_length": bool},
     "polar": {
         "x": ("diameter", "radius", "inherit", "say"), "rapid": ("refuse", "keep", "feed"),
         "rapid_feed_mm": float, "rapid_feed_inch": float,
     },
-    "cylinder": {"word": ("radius", "diameter")},
+    "cylinder": {"word": ("radius", "diameter", "mapped")},
     "subprograms": {"repeat_digits": bool, "cycle_repeat": str},
     "offsets": {"first_parameter": int},
     "words": None,
@@ -83,8 +85,8 @@ class Control:
     ``axes`` are the machine's axes, ``start`` the codes that hold when a program begins,
     ``decimals`` what a number without a point is (``least`` increments, ``whole`` units, ``""`` if
     that is not known). ``meanings`` has the codes, ``tables`` the values of the file;
-    ``polar_codes`` are LinuxCNC's codes on the machine for polar mode on and off, ``cylinder_word``
-    is what C of G7.1 is there.
+    ``polar_codes`` are LinuxCNC's codes on the machine for polar mode on and off,
+    ``cylinder_code`` is that for a cylinder, with what its C is (``radius`` or ``diameter``).
     """
 
     name: str
@@ -99,7 +101,7 @@ class Control:
     meanings: Mapping[str, str]
     tables: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     polar_codes: tuple[str, str] = ("G12.1", "G13.1")
-    cylinder_word: str = "radius"
+    cylinder_code: tuple[str, str] = ("G7.1", "radius")
 
     @property
     def is_lathe(self) -> bool:

@@ -4,6 +4,7 @@
 What differs from LinuxCNC and is written anew or refused:
 
 - FIX and FUP go towards and away from zero there, down and up here: written with ABS and a sign.
+- MOD has the sign of what is divided there, none here: written with ABS and a sign.
 - AND, OR and XOR work on bits there and on truth here: only between bracketed comparisons.
 - #0, the empty variable, has no counterpart: a macro can ask whether one of its own is EMPTY.
 """
@@ -189,6 +190,9 @@ def _joined(parts: list[Expression], operators: list[str]) -> Expression:
     written = [parts[0].text]
     for operator, part in zip(operators, parts[1:]):
         written += (operator, part.text)
+    if operators == ["MOD"]:
+        a, b = (part.text for part in parts)
+        written = [f"ABS[{a}] MOD {b} * [1 - 2 * [[{a}] LT 0]]"]
     is_all, is_any = "AND" in operators, "OR" in operators
     none: frozenset[int] = frozenset()
     return Expression(
@@ -211,5 +215,7 @@ def _check_operators(parts: list[Expression], operators: list[str]) -> None:
     ):
         name = sorted(joining)[0]
         raise NotTranslated(f"{name} is translated between comparisons in brackets only")
+    if "MOD" in operators and len(operators) > 1:
+        raise NotTranslated("MOD beside other operators: put brackets around it and its values")
     if sum(operator in COMPARING for operator in operators) > 1:
         raise NotTranslated("two comparisons in a row: put brackets around each")

@@ -331,6 +331,11 @@ def _word(text: str, at: int) -> tuple[ForeignWord, int]:
         value = value_from(text, start)
     except NotTranslated as problem:
         raise NotTranslated(f"{letter} has no value: {problem}") from None
+    if "ROUND[" in value.text:
+        raise NotTranslated(
+            f"{letter}: ROUND in a word rounds to the least increment there, to whole numbers on "
+            "LinuxCNC: take it out, nothing needs it"
+        )
     if value.asked:
         raise NotTranslated(f"{letter}: #0, the empty variable, is translated in conditions only")
     kind = "number" if re.fullmatch(r"-?[0-9.]+", value.text) else "expression"

@@ -31,11 +31,13 @@ class ModalState(NamedTuple):
     """The modes by the names of their groups, each as LinuxCNC's code.
 
     ``cycle`` is the drilling cycle in force and ``cycle_words`` what it was given, ``length`` the H
-    of G43 (``0``: none), ``tool`` the T word, ``offset`` the work offset, ``limit`` the spindle's
-    speed limit, ``surface`` the S of G96, ``radius`` the D word, ``feed`` the F word.
+    of G43 (``0``: none), ``tool`` the T word of what is loaded, ``next_tool`` that of the next M6,
+    ``offset`` the work offset, ``limit`` the spindle's speed limit, ``surface`` the S of G96,
+    ``radius`` the D word, ``feed`` the F word.
     ``own_motion``, ``own_distance`` and ``own_feed`` tell where LinuxCNC is in another mode than
     the program.
-    ``polar`` is ``on`` between polar (or cylinder) on and off.
+    ``polar`` is ``on`` between polar on and off, ``cylinder`` on a cylinder; ``mapped`` is the
+    radius of one whose angles are written as lengths.
     """
 
     motion: str = UNKNOWN
@@ -50,12 +52,14 @@ class ModalState(NamedTuple):
     cycle_words: tuple = ()
     length: str = UNKNOWN
     tool: str = UNKNOWN
+    next_tool: str = UNKNOWN
     offset: str = UNKNOWN
     limit: str = UNKNOWN
     surface: str = UNKNOWN
     radius: str = UNKNOWN
     feed: str = UNKNOWN
     polar: str = "off"
+    mapped: str = UNKNOWN
     own_motion: str = AS_PROGRAMMED
     own_distance: str = AS_PROGRAMMED
     own_feed: str = AS_PROGRAMMED

@@ -9,6 +9,7 @@ from __future__ import annotations
 from g12.tools.translate.rules import (
     codes,
     cycles,
+    cylinder,
     decimals,
     dwell,
     increments,
@@ -37,6 +38,8 @@ WORD_RULES = (
     offsets.offset_by_program,
     reference.reference_point,
     polar.switch_polar,
+    cylinder.switch_cylinder,
+    cylinder.on_the_surface,
     polar.inside_polar,
     polar.feed_again,
     motion.exact_stop,

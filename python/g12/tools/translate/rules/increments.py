@@ -3,7 +3,7 @@
 
 A block of increments alone goes under G91, and the next block of words goes back. Beside absolute
 words an increment is written from where the tool stands. Between polar on and off U and H are
-words of LinuxCNC's polar mode and stay.
+words of LinuxCNC's polar mode and stay, on a cylinder W is, too.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ def incremental_words(draft: Draft) -> None:
         return
     found = draft.increments()
     if draft.state.polar != "off":
-        found = [word for word in found if word.letter not in "UH"]
+        own = "UH" if draft.state.polar == "on" else "UWH"
+        found = [word for word in found if word.letter not in own]
         if found and len(draft.axis_words()) + len(draft.increments()) > len(found):
             raise NotTranslated(f"{found[0].text} beside other axes in polar mode")
     if not found:

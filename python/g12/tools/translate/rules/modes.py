@@ -7,6 +7,7 @@ from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUP_OF
 
+INSIDE = {"on": "UH", "cylinder": "UWH"}  # what polar mode and a cylinder have besides
 LETTERS = frozenset("NGMFSTDHIJKLPQR$")
 
 
@@ -49,7 +50,7 @@ def refuse_leftovers(draft: Draft) -> None:
         if word.letter in seen:
             raise NotTranslated(f"{word.letter} stands twice")
         seen.add(word.letter)
-        inside = draft.state.polar != "off" and word.letter in "UH"
+        inside = word.letter in INSIDE.get(draft.state.polar, "")
         if word.letter in AXIS_NUMBERS and word.letter not in axes and not inside:
             raise NotTranslated(
                 f"{word.text}: this control's machine has the axes {axes}; for another one say "

@@ -42,7 +42,7 @@ def refuse_rounding(draft: Draft, motion: str) -> None:
 def moves(draft: Draft) -> bool:
     """Tell whether words without a motion code move something."""
     inside = draft.state.polar != "off"
-    return bool(draft.letters() & (set("XYZABCUHIJR") if inside else set("XYZABC")))
+    return bool(draft.letters() & (set("XYZABCUWHIJR") if inside else set("XYZABC")))
 
 
 def keep_for_later(draft: Draft, motion: str) -> None:
@@ -81,9 +81,9 @@ def distance_mode(draft: Draft) -> None:
 
 
 def exact_stop(draft: Draft) -> None:
-    """Keep G9 in polar mode, which has it; elsewhere a dwell of no time ends the move in a stop."""
+    """Keep G9 in polar mode and on a cylinder; elsewhere a dwell of no time makes the stop."""
     code = draft.meanings.pop("exact stop", None)
-    if code and draft.state.polar == "on":
+    if code and draft.state.polar != "off":
         draft.put_first("G9")
     elif code:
         draft.comments.append(code.code)

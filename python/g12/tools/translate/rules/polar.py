@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Polar and cylindrical interpolation: G112, G137 and their like as G12.1/G13.1, G107 as G7.1.
+"""Polar interpolation: G112, G137 and their like as G12.1 and G13.1.
 
 X in polar mode is a diameter on most controls and a radius on some: G8 before and G7 behind make
 it a radius here. Y is C and V is H. A rapid in polar mode is what the control's file says.
@@ -18,8 +18,8 @@ RENAMED = {"Y": "C", "V": "H"}
 
 
 def switch_polar(draft: Draft) -> None:
-    """Write polar on, polar off and cylinder as LinuxCNC's codes, in blocks of their own."""
-    for meaning, write in (("polar on", turn_on), ("polar off", turn_off), ("cylinder", cylinder)):
+    """Write polar on and polar off as LinuxCNC's codes, in blocks of their own."""
+    for meaning, write in (("polar on", turn_on), ("polar off", turn_off)):
         if meaning in draft.meanings:
             write(draft, draft.meanings.pop(meaning).code)
 
@@ -63,19 +63,6 @@ def turn_off(draft: Draft, code: str) -> None:
         draft.change(polar="off", own_motion=UNSURE)
 
 
-def cylinder(draft: Draft, code: str) -> None:
-    """Write G7.1 with the radius, or the diameter for a machine that wants it; 0 ends it."""
-    word = draft.take("C") or draft.take("H")
-    if not word:
-        raise NotTranslated(f"{code} needs C, the radius of the cylinder, or C0")
-    means, wanted = draft.control.value("cylinder", "word", "radius"), draft.control.cylinder_word
-    scale = "" if means == wanted else " / 2" if means == "diameter" else " * 2"
-    value = f"[{word.value}{scale}]" if scale and not is_zero(word) else word.value
-    own_block(draft, code, [f"G7.1 C{value}"])
-    on = not is_zero(word)
-    draft.change(polar="cylinder" if on else "off", own_motion=UNSURE)
-
-
 def own_block(draft: Draft, code: str, lines: list[str]) -> None:
     """Write lines behind the block's other words, which must move nothing."""
     if draft.axis_words() or draft.letters() & set("UVWHIJKR"):
@@ -88,14 +75,15 @@ def own_block(draft: Draft, code: str, lines: list[str]) -> None:
 
 
 def inside_polar(draft: Draft) -> None:
-    """Rewrite the words between polar on and off."""
+    """Rewrite the words between polar (or cylinder) on and off."""
     if draft.letters() & set("XYCUVH"):
         draft.sure("polar", "polar mode is on")
-    if draft.state.polar != "on":
+    if draft.state.polar == "off":
         return
-    draft.words = [
-        word._replace(letter=RENAMED.get(word.letter, word.letter)) for word in draft.words
-    ]
+    if draft.state.polar == "on":
+        draft.words = [
+            word._replace(letter=RENAMED.get(word.letter, word.letter)) for word in draft.words
+        ]
     for letter in "CH":
         if sum(word.letter == letter for word in draft.words) > 1:
             raise NotTranslated(f"{letter} and its other name in one block")
@@ -122,7 +110,7 @@ def rapid(draft: Draft) -> None:
 def is_rapid(draft: Draft) -> bool:
     """Tell whether the block moves by rapid."""
     codes = {"G0", "G1", "G2", "G3"}.intersection(draft.codes())
-    moves = draft.letters() & set("XCZUH")
+    moves = draft.letters() & set("XCZUWH")
     return "G0" in codes or (bool(moves) and not codes and draft.state.motion == "G0")
 
 

@@ -11,7 +11,8 @@ from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN
 
 COMPENSATION = frozenset(("G41", "G42"))
-USES_D = frozenset(("G41", "G42", "G12", "G13"))
+POCKETS = frozenset(("G12", "G13"))
+USES_D = COMPENSATION | POCKETS
 
 
 def tool_and_offsets(draft: Draft) -> None:
@@ -21,9 +22,16 @@ def tool_and_offsets(draft: Draft) -> None:
     else:
         length_offset(draft)
         radius_offset(draft)
-        tool = next((word for word in draft.words if word.letter == "T"), None)
-        if tool:
-            draft.change(tool=tool.value.lstrip("0") or "0")
+        loaded_tool(draft)
+
+
+def loaded_tool(draft: Draft) -> None:
+    """Take note of the tool: T is the next one until M6."""
+    word = next((word for word in draft.words if word.letter == "T"), None)
+    if word:
+        draft.change(next_tool=word.value.lstrip("0") or "0")
+    if any(w.letter == "M" and w.kind == "number" and w.code == "M6" for w in draft.words):
+        draft.change(tool=draft.state.next_tool)
 
 
 def turret_word(draft: Draft) -> None:
@@ -90,6 +98,14 @@ def radius_offset(draft: Draft) -> None:
             draft.comments.append(word.text)
     if COMPENSATION.intersection(codes):
         compensation(draft, word)
+    elif not word and POCKETS.intersection(codes) and takes_last(draft):
+        value = draft.sure("radius", "a pocket without D takes the last one")
+        draft.words += [ForeignWord("D", value)] if value else []
+
+
+def takes_last(draft: Draft) -> bool:
+    """Tell whether a pocket without D has the last one."""
+    return draft.control.value("tools", "pocket") == "last"
 
 
 def compensation(draft: Draft, word: ForeignWord | None) -> None:

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Cylindrical interpolation: G107 and G132 as G7.1.
+
+Most controls give the cylinder's radius as C (or H) and angles as C. Haas maps an axis of lengths
+onto the cylinder instead, ``G107 Y0 C0 R25.``: Y is then the way along its surface.
+"""
+
+from __future__ import annotations
+
+from math import degrees
+
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.rules.polar import is_zero, own_block
+
+ANGLES = {"Y": "C", "V": "H"}
+SIZES = {"R": 1, "Q": 2}  # radius and diameter
+
+
+def switch_cylinder(draft: Draft) -> None:
+    """Write the cylinder's beginning and end as LinuxCNC's code."""
+    code = draft.meanings.pop("cylinder", None)
+    if not code:
+        return
+    if draft.control.value("cylinder", "word") == "mapped":
+        radius = mapped_radius(draft, code.code)
+        draft.change(mapped=radius)
+    else:
+        radius = named_radius(draft, code.code)
+    name, word = draft.control.cylinder_code
+    value = f"[2 * {radius}]" if radius and word == "diameter" else radius or "0"
+    own_block(draft, code.code, [f"{name} C{value}"])
+    draft.change(polar="cylinder" if radius else "off", own_motion=UNSURE)
+
+
+def named_radius(draft: Draft, code: str) -> str:
+    """Return the radius that C or H says, "" for the end of the cylinder."""
+    word = draft.take("C") or draft.take("H")
+    if not word:
+        raise NotTranslated(f"{code} needs C, the radius of the cylinder, or C0")
+    if is_zero(word):
+        return ""
+    half = draft.control.value("cylinder", "word", "radius") == "diameter"
+    return f"[{word.value} / 2]" if half else word.value
+
+
+def mapped_radius(draft: Draft, code: str) -> str:
+    """Return the radius of a cylinder that Y is mapped onto, "" for its end, the code alone."""
+    sizes = [(word, SIZES[letter]) for letter in SIZES if (word := draft.take(letter))]
+    axes = [word for letter in "YC" if (word := draft.take(letter))]
+    if not sizes and not axes:
+        return ""
+    if len(sizes) != 1 or len(axes) != 2 or not all(map(is_zero, axes)):
+        raise NotTranslated(f"{code} needs Y0, C0 and R or Q, radius or diameter; alone it ends")
+    ((word, times),) = sizes
+    return word.value if times == 1 else f"[{word.value} / 2]"
+
+
+def on_the_surface(draft: Draft) -> None:
+    """Write lengths along the surface of a mapped cylinder as angles."""
+    if draft.state.polar != "cylinder" or draft.state.mapped == UNKNOWN:
+        return
+    radius = draft.sure("mapped", "Y is mapped onto a cylinder")
+    if draft.letters() & {"C", "H"}:
+        raise NotTranslated("C while Y is mapped onto the cylinder: write the point as Y")
+    draft.words = [
+        ForeignWord(ANGLES[w.letter], f"[[{w.value}] * {degrees(1):.12f} / {radius}]", "expression")
+        if w.letter in ANGLES
+        else w
+        for w in draft.words
+    ]
