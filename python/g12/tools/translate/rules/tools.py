@@ -22,10 +22,10 @@ def tool_and_offsets(draft: Draft) -> None:
     else:
         length_offset(draft)
         radius_offset(draft)
-        loaded_tool(draft)
+        follow_tool(draft)
 
 
-def loaded_tool(draft: Draft) -> None:
+def follow_tool(draft: Draft) -> None:
     """Take note of the tool: T is the next one until M6."""
     word = next((word for word in draft.words if word.letter == "T"), None)
     if word:
