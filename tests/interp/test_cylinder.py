@@ -214,6 +214,22 @@ def test_o_words_parameters_and_two_sections(lathe):
     assert seconds(feed_moves(traced)[-1]) == pytest.approx(math.pi / 2 * 10 / 250 * 60)
 
 
+def test_sections_on_the_face_and_on_the_surface_in_one_program(lathe):
+    face = ["G12.1", "G1 X10", "C5 F100", "G13.1", "G0 X22 C0"]
+    traced = lathe.trace_text(section("G1 C90", before=face, after=["G0 C0", *face[:-1]]))
+    places = ends(traced)
+    corner = (round(math.hypot(10, 5), 6), 0.0, round(math.degrees(math.atan2(5, 10)), 6))
+    assert [places[1], places[2], places[-1]] == [corner, (22, 0, 90), corner]
+
+
+def test_rapids_as_feeds_where_they_are_allowed():
+    with opened(POLAR_G0="feed", POLAR_G0_FEED="4000") as tracer:
+        moves = feed_moves(tracer.trace_text(section("G0 C90", "G1 C0")))
+    assert [seconds(move) for move in moves] == pytest.approx(
+        [math.pi / 2 * R / feed * 60 for feed in (4000, 250)]
+    )
+
+
 def test_a_wrapped_axis_winds_too():
     with Tracer(SIM / "lathe_mm.ini", overrides={"AXIS_C": {"WRAPPED_ROTARY": "1"}}) as tracer:
         traced = tracer.trace_text(section("G1 C400", "C-100"))
