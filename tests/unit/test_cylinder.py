@@ -92,6 +92,13 @@ def test_a_little_z_is_left_to_the_next_move_and_to_the_end():
     assert made == [(1, "ZC", 0.0), (2, "ZC", 0.0), (2, "Z", 0.0008)]
 
 
+def test_a_little_depth_is_made_up_at_the_end():
+    contour = empty()
+    contour.line(10.0, 0.0, 21.9996, line=1, feed=100.0)
+    made = [(run.axes, run.pieces[0][0]) for run in runs(contour)]
+    assert made == [("XZC", 22.0), ("X", 21.9996)]
+
+
 def test_depth_is_a_move_of_x_alone_and_stops_where_the_corner_would_be_cut():
     contour = empty()
     contour.line(z=18.0, line=1, feed=100.0)

@@ -50,6 +50,14 @@ def test_what_x_would_move_too_little_goes_to_the_next_piece():
     assert made[1][3] == pytest.approx(0.0012 * 120.0)
 
 
+def test_what_the_other_slide_would_move_too_little_goes_to_a_later_piece():
+    """Debian's 2.9.0~pre1 would run the first piece three times too fast."""
+    made = pieces((10.0, 5.0, 1.0), (10.0, 20.0, 4.0), z1=-0.0016)
+    assert [piece[2] for piece in made] == [0.0, pytest.approx(-0.0016)]
+    assert made[0][3] == pytest.approx(5.0 * 120.0, rel=1e-6)
+    assert made[1][3] == pytest.approx(0.0016 * 120.0 / 3.0, rel=1e-6)
+
+
 def test_x_alone_may_move_as_little_as_it_likes():
     assert pieces((10.0002, 0.0, 0.0002)) == [(10.0002, 0.0, 0.0, pytest.approx(120.0))]
 

@@ -18,7 +18,6 @@ from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, pieces_with_feed
 from g12.moves.spacing import BULGE, Stretch, spaced
 from g12.moves.steps import (
-    LEFT_OVER,
     ROUNDING_SHARE,
     Position,
     SectionPlan,
@@ -92,11 +91,12 @@ class _Surface(StepMaker):
         self._run(move.line, "X", [(move.z1, *self.place[1:], move.feed)], stop)
 
     def finish(self, path: list) -> None:
-        """Add what the last piece left over of Z."""
-        moves = [element for element in path if is_move(element)]
-        if moves and abs(moves[-1].c1 - self.place.z) > LEFT_OVER * self._settings.least_z:
-            x, c, _ = self.place
-            self._run(moves[-1].line, "Z", [(x, c, moves[-1].c1, moves[-1].feed)], True)
+        """Add what the last pieces left over of Z and X."""
+        x, z = self.place.x, self.place.z
+        for element in path:
+            x = x if isinstance(element, Mark) else element.z1
+            z = element.c1 if is_move(element) else z
+        self._make_up(path, x, z, self._settings.least_z)
 
 
 def split_on_cylinder(move: Line | Arc, radius: float, deviation: float) -> Split:

@@ -47,15 +47,13 @@ def pieces_with_feed(
         turn = abs(to_c - c)
         if turn < LEAST_TURN:
             to_c, turn = c, 0.0
-        step = abs(slide - x)
-        if step < least and turn:
-            slide, step = x, 0.0
-        if rise:
-            to_z = move.z0 + rise * length
-            step = hypot(step, to_z - z)
-            z = to_z
-        distance = step or turn
+        to_z = move.z0 + rise * length if rise else z
+        if abs(slide - x) < least and turn:
+            slide = x
+        if hypot(slide - x, to_z - z) < least and turn:
+            to_z = z
+        distance = hypot(slide - x, to_z - z) or turn
         if distance:
-            pieces.append((slide, to_c, z, feed * distance / (length - done)))
-            x, c, done = slide, to_c, length
+            pieces.append((slide, to_c, to_z, feed * distance / (length - done)))
+            x, c, z, done = slide, to_c, to_z, length
     return pieces

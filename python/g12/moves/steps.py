@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from g12.flat.contour import Contour, Start
+from g12.flat.contour import Contour, Mark, Start
 from g12.moves.spacing import MOST_PIECES, TooManyPieces
 
 CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
@@ -72,6 +72,14 @@ class StepMaker:
         if pieces:
             self.steps.append(BlockMoves(line, axes, pieces, stop))
             self.place = Position(*pieces[-1][:3])
+
+    def _make_up(self, path: list, x: float, z: float, least: float) -> None:
+        """Add what the last pieces of a path left over of the slides, which belong at x and z."""
+        there = {"X": x - self.place.x, "Z": z - self.place.z}
+        axes = "".join(axis for axis, off in there.items() if abs(off) > LEFT_OVER * least)
+        if axes:
+            last = [element for element in path if not isinstance(element, Mark)][-1]
+            self._run(last.line, axes, [(x, self.place.c, z, last.feed)], True)
 
     def _split(self, split, move, *laws):
         """Return what ``split`` makes of a move; refuse one that would be cut too small."""

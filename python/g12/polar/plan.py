@@ -12,7 +12,6 @@ from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, Point, is_move
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, pieces_with_feed
 from g12.moves.steps import (
-    LEFT_OVER,
     ROUNDING_SHARE,
     Position,
     SectionPlan,
@@ -149,14 +148,15 @@ class _SlideAndSpindle(StepMaker):
         self._run(move.line, "Z", [(self.place.x, self.place.c, move.z1, move.feed)], stop)
 
     def finish(self, path: list) -> None:
-        """Come back from the face; add what the last piece left over of X."""
+        """Come back from the face; add what the last pieces left over of X and Z."""
         self.switch(path[-1].line if path else 0, face=False)
+        slide, z = self.place.x, self.place.z
+        for element in path:
+            z = z if isinstance(element, Mark) else element.z1
         moves = [element for element in path if is_move(element)]
-        slide = self.place.x
         if moves:
             slide, _ = stand((moves[-1].x1, moves[-1].c1), self._settings.beside)
-        if abs(slide - self.place.x) > LEFT_OVER * self._settings.least_x:
-            self._run(moves[-1].line, "XC", [(slide, *self.place[1:], moves[-1].feed)], True)
+        self._make_up(path, slide, z, self._settings.least_x)
 
     def _turn(self, move: Line | Arc, angle: float) -> None:
         """Add a turn in place, the shorter way; of two equal ways the one that unwinds C."""
