@@ -22,6 +22,7 @@ from g12.tools.preview.executed_blocks import (
 from g12.tools.preview.moves import Event
 from g12.tools.verify import wanted_circle, wanted_contour
 from g12.tools.verify.codes import Codes
+from g12.tools.verify.surface_pen import SurfacePen
 from g12.tools.verify.wanted_circle import CircleReader
 from g12.tools.verify.wanted_contour import Pen, WordReading
 from support.made_moves import Hand
@@ -32,6 +33,7 @@ REMAPS = (
     "REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done",
     "REMAP = G12.1 modalgroup=1 python=polar_on",
     "REMAP = G13.1 modalgroup=1 python=polar_off",
+    "REMAP = G7.1 modalgroup=1 python=cylinder_mode",
     "REMAP = M6 modalgroup=6 ngc=change",
 )
 CODES = Codes(Ini(Path("x.ini"), REMAPS))
@@ -211,8 +213,23 @@ def test_codes_know_cycles_and_sections_by_their_handlers():
     assert CODES.cycle_of("", (12.0,)).dialect == "haas"
     assert CODES.cycle_of("", (1.0,)) is None
     assert CODES.cycle_of("circle_mill", ()).dialect == "circle-mill"
-    assert CODES.polar(read_line(1, "G12.1")) == "on"
-    assert CODES.polar(read_line(1, "N5 G13.1")) == "off"
+    assert CODES.switch(read_line(1, "G12.1"), False) == "on"
+    assert CODES.switch(read_line(1, "N5 G13.1"), True) == "off"
+    assert CODES.switch(read_line(1, "G1 X5"), False) == ""
+
+
+@pytest.mark.parametrize(
+    ("line", "inside", "does"),
+    [
+        ("G07.1 C20", False, "on"),
+        ("G7.1 C0.", False, "off"),
+        ("G7.1", True, "off"),
+        ("G7.1 C#1", False, "on"),
+        ("G7.1 C#1", True, "off"),
+    ],
+)
+def test_one_code_switches_sections_on_a_cylinder_on_and_off(line, inside, does):
+    assert CODES.switch(read_line(1, line), inside) == does
     assert not CODES.wanted(read_line(1, "T1 M6"))
     assert CODES.wanted(read_line(1, "G[13] I5")) and CODES.wanted(read_line(1, "G#5 I5"))
     assert [CODES.knows(code) for code in ("G13", "G12.1", "G2", "M6", "")] == [True, True] + 3 * [
@@ -394,3 +411,56 @@ def test_motion_is_taken_out_of_the_copy_and_control_stays():
     flat = [line for some in wanted_contour.flattened(texts, CODES, lines) for line in some]
     kept = [line for line in flat if "DEBUG" not in line and VALUE not in line]
     assert kept == ["G0 X5", "#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile", "G0 X9"]
+
+
+# ---------------------------------------------------------------- contours on a cylinder
+
+DEGREE = math.radians(20)  # mm on a radius of 20
+
+
+def unrolled(*lines, radius="C20", reading="radius", **state):
+    """Return a pen on a cylinder, and what it draws; it begins at X24 C10 Z-5."""
+    place = {"_x": 24, "_z": -5, "_c": 10, "_motion_mode": 10}
+    first = block(f"G7.1 {radius}", **{**place, **state})
+    pen = SurfacePen(first, WordReading("inherit", surface=reading))
+    return pen, [e for number, line in enumerate(lines, 2) for e in pen.draw(block(line, number))]
+
+
+def test_on_a_cylinder_c_is_a_way_round_and_z_goes_up():
+    _, (one, two, three) = unrolled("C100", "Z7 H-30", "W3")
+    assert (one.start, one.end) == (10 * DEGREE - 5j, 100 * DEGREE - 5j)
+    assert [two.end, three.end] == pytest.approx([70 * DEGREE + 7j, 70 * DEGREE + 10j])
+
+
+def test_increments_on_a_cylinder():
+    _, (one, two) = unrolled("G91 C90 Z1", "C360")
+    assert two.end - one.start == pytest.approx(450 * DEGREE + 1j)
+
+
+@pytest.mark.parametrize(("g7", "depth"), [(0, 18.0), (1, 9.0)])
+def test_x_is_the_height_above_the_axis(g7, depth):
+    pen, (down, up) = unrolled("X18", "U2", _lathe_diameter_mode=g7)
+    assert (down.depth, down.length, up.depth) == (depth, 0.0, depth + (1 if g7 else 2))
+    assert pen.surface == 20.0
+
+
+def test_the_word_of_the_surface_may_be_its_diameter():
+    assert unrolled(radius="C40", reading="diameter")[0].surface == 20.0
+
+
+def test_arcs_on_a_cylinder_have_their_centre_along_c_and_z():
+    end = math.degrees(0.5)
+    for words in ("J10", "I10", "R10"):  # a quarter, clockwise as seen from outside
+        _, (arc,) = unrolled(f"G2 H{end:.9f} W10 {words}")
+        assert arc.centre == pytest.approx(10 * DEGREE + 10 - 5j)
+        assert arc.sweep == pytest.approx(-math.pi / 2)
+    _, (arc,) = unrolled(f"G3 H{end:.9f} W10 K10")
+    assert arc.centre == pytest.approx(10 * DEGREE + 5j)
+    assert arc.sweep == pytest.approx(math.pi / 2)
+
+
+def test_what_a_section_on_a_cylinder_leaves():
+    pen, _ = unrolled("C400 Z2 F300", "X18")
+    left = pen.leaves({"_metric": 1.0, "_c": 10.0})
+    place = [left[name] for name in ("_x", "_c", "_z", "_feed")]
+    assert place == pytest.approx([18, 400, 2, 300])

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 from g12.machine_ini import Remap, code_number, remap_lines
 from g12.tools.machine.ini import Ini
-from g12.tools.preview.executed_blocks import Text
+from g12.tools.preview.executed_blocks import Text, is_number
 
 CALL = "circle_mill"  # the event's sub, which programs may call
-EVENT, POLAR = "circle-mill", "polar"
+EVENT, POLAR, CYLINDER = "circle-mill", "polar", "cylinder"
+SECTIONS = (POLAR, CYLINDER)
 COMPENSATION = (41.0, 42.0, 41.1, 42.1)
 TURNS = {"g12": -1, "g13": 1}  # by what the handler's name begins with
 DIALECTS = ("haas", "yasnac", "mitsubishi")
@@ -21,6 +22,7 @@ DIALECT_OF_HANDLER = {
     "circle_mill_pocket": EVENT,
     "polar_on": POLAR,
     "polar_off": POLAR,
+    "cylinder_mode": CYLINDER,
 }
 DIALECT_OF_SUB = {f"g12_{name}": name for name in DIALECTS}
 SUBS = {*DIALECT_OF_SUB, "g12_circle_mill"}
@@ -58,26 +60,36 @@ class Codes:
         return code_number(code) in self._remapped
 
     def cycle_of(self, call: str, codes: Sequence[float]) -> Cycle | None:
-        """Return the cycle that a block calls or commands, polar interpolation aside."""
+        """Return the cycle that a block calls or commands, sections aside."""
         if call == CALL:
             return Cycle(EVENT)
         known = (self._cycles.get(code) for code in codes)
-        return next((cycle for cycle in known if cycle and cycle.dialect != POLAR), None)
+        return next((cycle for cycle in known if cycle and cycle.dialect not in SECTIONS), None)
 
     def name_of(self, codes: Sequence[float]) -> str:
         """Return the code among a block's that is a cycle; a call has the name of its sub."""
         return next((f"G{code:g}" for code in codes if code in self._cycles), CALL)
 
-    def polar(self, text: Text) -> str:
-        """Return ``on``, ``off`` or nothing: what a line does to polar interpolation."""
+    def section(self, text: Text) -> Cycle | None:
+        """Return what kind of section a line switches on or off, if it does."""
         known = filter(None, map(self._cycles.get, text.codes))
-        handler = next((cycle.handler for cycle in known if cycle.dialect == POLAR), "")
-        return handler.rpartition("_")[2]
+        return next((cycle for cycle in known if cycle.dialect in SECTIONS), None)
+
+    def switch(self, text: Text, inside: bool) -> str:
+        """Return ``on``, ``off`` or nothing: what a line does to a section, inside of one or not.
+
+        One code switches on by a cylinder's radius and off by 0.
+        """
+        found = self.section(text)
+        if found and found.dialect == CYLINDER:
+            radius = dict(text.words).get("C", "")
+            return "off" if inside or (is_number(radius) and not float(radius)) else "on"
+        return found.handler.rpartition("_")[2] if found else ""
 
     def wanted(self, text: Text) -> bool:
         """Tell whether a line's words matter for what is programmed, or may: G[12], G#1."""
         cycle = self.cycle_of(text.call, text.codes)
-        return bool(compensates(text.codes) or cycle or self.polar(text) or text.hides_code)
+        return bool(compensates(text.codes) or cycle or self.section(text) or text.hides_code)
 
 
 def compensates(codes: Sequence[float]) -> bool:

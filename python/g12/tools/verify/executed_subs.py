@@ -69,7 +69,7 @@ def called_files(texts: Sequence[Text], ini: Ini) -> set[Path]:
 
 def wanted_in_sub(text: Text, codes: Codes) -> bool:
     """Tell whether a line of a sub's own file matters."""
-    return codes.wanted(text) and not codes.polar(text)
+    return codes.wanted(text) and not codes.section(text)
 
 
 def write_copies(files: Sequence[Path], folder: Path, program: Path, codes: Codes) -> list[Text]:

@@ -31,7 +31,7 @@ SAME_SIZE = 1e-4  # mm
 SAME_ANGLE = 1e-3  # degree
 SAME = 2e-3  # mm: circles of the same depth and radius
 MODES = {"_metric": ("G20", "G21"), "_absolute": ("G91", "G90"), "_units_per_rev": ("G94", "G95")}
-LOST_MINUS = "lies above Z{}, where the tool comes from: it cuts air (a lost minus sign?)"
+LOST_MINUS = "lies above {}, where the tool comes from: it cuts air (a lost minus sign?)"
 SPINDLE_STANDS = "the spindle stands still: no M3 or M4 with an S comes before it"
 NOT_CUT = "nothing is cut"
 UNMEASURED = "a cycle cuts here that could not be measured"
@@ -77,7 +77,7 @@ def depth_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator
     deepest = facts.target.schedule.deepest
     if cuts_air(facts.target, tolerance):
         at, start = (unit.text(facts.target.wall.height(depth)) for depth in (deepest, 0.0))
-        yield f"its depth Z{at} {LOST_MINUS.format(start)}"
+        yield f"its depth Z{at} {LOST_MINUS.format(f'Z{start}')}"
         return
     too_high = facts.depths[-1] - deepest
     if abs(too_high) > tolerance:
@@ -239,7 +239,8 @@ def section_notes(facts: SectionFacts) -> Iterator[str]:
         angle = plain(facts.zero, 3)
         yield f"no C word comes before it: its zero line is where C stands, at {angle}°"
     if facts.lowest >= facts.start_height - SAME_SIZE:
-        yield "no move goes below the Z of G12.1"
+        letter = "X" if facts.section.surface else "Z"
+        yield f"no move goes below the {letter} of {facts.section.code}"
     if facts.in_place.degrees > SAME_ANGLE:
         degrees, seconds = plain(facts.in_place.degrees, 1), plain(facts.in_place.seconds, 1)
         yield (
@@ -251,7 +252,7 @@ def section_notes(facts: SectionFacts) -> Iterator[str]:
 
 
 def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:
-    """Yield what is wrong with a polar section."""
+    """Yield what is wrong with a section."""
     if facts.section.doubt:
         yield f"the contour cannot be read from the words: {facts.section.doubt}"
         return
@@ -267,9 +268,16 @@ def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> 
 def air_findings(section: SectionContour, unit: Unit) -> Iterator[str]:
     """Yield that a compensated contour lies as a whole above where the tool comes from."""
     depths = [each.depth for each in section.elements if each.side and not each.ramp]
-    if depths and min(depths) > section.z + SAME_LEVEL:
-        at, start = unit.text(min(depths)), unit.text(section.z)
-        yield f"its contour at Z{at} {LOST_MINUS.format(start)}"
+    if depths and min(depths) > section.height + SAME_LEVEL:
+        letter, at, start = heights_text(section, (min(depths), section.height), unit)
+        yield f"its contour at {letter}{at} {LOST_MINUS.format(letter + start)}"
+
+
+def heights_text(section: SectionContour, heights: Sequence[float], unit: Unit) -> list[str]:
+    """Return the letter of heights above a section's plane, and them as its words have them."""
+    factor = 2 if section.surface and section.diameters else 1
+    letter = "X" if section.surface else "Z"
+    return [letter, *(unit.text(factor * height) for height in heights)]
 
 
 def mistake_findings(facts: SectionFacts) -> Iterator[str]:
@@ -306,8 +314,9 @@ def contour_findings(facts: SectionFacts, tolerance: float, unit: Unit) -> Itera
 def block_findings(facts: SectionFacts, unit: Unit) -> Iterator[str]:
     """Yield which heights and feeds of a section's blocks are not the words'."""
     if facts.depth_off:
-        line, found, asked = facts.depth_off
-        yield f"line {line}: Z is {unit.text(found)}, not {unit.text(asked)} {unit.name}"
+        line, *heights = facts.depth_off
+        letter, found, asked = heights_text(facts.section, heights, unit)
+        yield f"line {line}: {letter} is {found}, not {asked} {unit.name}"
     if facts.feed_off:
         line, found, asked = facts.feed_off
         yield f"line {line}: the feed is {unit.text(found)}, not {unit.text(asked)} {unit.name}/min"

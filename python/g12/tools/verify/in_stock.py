@@ -177,7 +177,7 @@ def zero_of(
 ) -> np.ndarray:
     """Return the program's zero where it first cuts; on a lathe X is that of the spindle."""
     for section in sections:
-        return np.array([0.0, 0.0, moves[section.at].start[Z] - section.z])
+        return np.array([0.0, 0.0, moves[section.at].start[Z] - section.height])
     for block, _ in circles:
         return BlockInMm(block, moves[block.at]).zero()
     return np.zeros(3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Everything a program's pockets and polar sections can be held to, in one value.
+"""Everything a program's pockets and sections can be held to, in one value.
 
 What is asked for is read from the program's words, what is cut is measured from the motion that
 LinuxCNC makes of it; the cycles' own planning has no part in it.
@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
-from g12.tools.path.part import part_of, part_of_program
+from g12.tools.path.part import Part, part_of, part_of_program
 from g12.tools.path.samples import Samples
+from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.executed_blocks import Block
@@ -24,7 +26,7 @@ from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import MM, Unit, unit_of
 from g12.tools.verify.axis_limits import has_one_zero, overruns_of, travel_of, widths_of
-from g12.tools.verify.codes import Codes
+from g12.tools.verify.codes import CYLINDER, POLAR, Codes
 from g12.tools.verify.executed_subs import executed_everywhere
 from g12.tools.verify.findings import (
     NOT_CUT,
@@ -42,23 +44,34 @@ from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
 from g12.tools.verify.spindle import stands_still
 from g12.tools.verify.stock import read_stock
+from g12.tools.verify.surface_pen import SurfacePen
 from g12.tools.verify.wanted_circle import CircleReader, Target
-from g12.tools.verify.wanted_contour import SectionContour, WordReading, sections
+from g12.tools.verify.wanted_contour import Pen, SectionContour, WordReading, sections
 from g12.tools.verify.zero_line import with_zero_lines
 
 POCKET_TOLERANCE = 0.005  # mm
-RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE
+PENS = {POLAR: Pen, CYLINDER: SurfacePen}
+RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE, which is that of every section
 
 
 @dataclass(frozen=True)
 class Subject:
-    """A program on a machine, as traced: ``path`` is its track, ``real`` the motion of a run."""
+    """A program on a machine, as traced: ``path`` is its track, ``real`` the motion of a run.
+
+    ``samples`` are those of the run.
+    """
 
     program: Path
     ini: Ini
     trace: Trace
     path: Track
     real: Followed | None = None
+    samples: Samples | None = None
+
+    def on_surface(self, radius: float) -> Subject:
+        """Return the same on a cylinder's unrolled surface."""
+        part = Surface(turning=True, radius=radius)
+        return laid_on(part, self.program, self.ini, self.trace, self.samples)
 
 
 class StockText(NamedTuple):
@@ -69,7 +82,7 @@ class StockText(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """What a program asks for: circles, each with the block that does, and polar sections.
+    """What a program asks for: circles, each with the block that does, and sections.
 
     ``still`` are the line and the code of each cycle that moves nothing, though it should.
     """
@@ -148,7 +161,7 @@ def prove(
     """Return the proof of a program, of its real motion if there are samples of a run.
 
     ``parameters`` is what the program starts with; see ``Tracer.trace``. ``tolerance`` in mm
-    replaces both that of pockets and that of polar sections, ``stock`` is what is cut. ``tell`` is
+    replaces both that of pockets and that of sections, ``stock`` is what is cut. ``tell`` is
     told what is being done.
     """
     polar = ini.settings.tolerance(ini.mm) * ini.mm + (RUN_ALLOWANCE if samples else 0.0)
@@ -165,10 +178,16 @@ def prove(
 
 def subject_of(program: Path, ini: Ini, trace: Trace, samples: Samples | None = None) -> Subject:
     """Return a traced program with its path, and the samples of a run laid on that."""
-    moves = trace.moves
-    path = track(part_of_program(ini, moves), moves, limits_of(ini), trace.modes.speed)
-    real = follow(path, moves, samples, ini.mm) if samples else None
-    return Subject(program, ini, trace, path, real)
+    return laid_on(part_of_program(ini, trace.moves), program, ini, trace, samples)
+
+
+def laid_on(
+    part: Part, program: Path, ini: Ini, trace: Trace, samples: Samples | None = None
+) -> Subject:
+    """Return a traced program as a part sees it."""
+    path = track(part, trace.moves, limits_of(ini), trace.modes.speed)
+    real = follow(path, trace.moves, samples, ini.mm) if samples else None
+    return Subject(program, ini, trace, path, real, samples)
 
 
 def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Parameters) -> Asked:
@@ -186,17 +205,20 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
         plunge_share=settings.plunge_feed / 100,
     )
     rapid_feed = settings.polar_g0_feed and settings.polar_g0_feed * subject.ini.mm
-    reading = WordReading(settings.polar_x, rapid_feed, subject.ini.tool_beside)
-    polar = sections(tracer, program, codes, reading, blocks, parameters)
+    reading = WordReading(
+        settings.polar_x, rapid_feed, subject.ini.tool_beside, settings.cylinder_word
+    )
+    pens = {kind: partial(pen, reading=reading) for kind, pen in PENS.items()}
+    found = sections(tracer, program, codes, pens, blocks, parameters)
     still = [
         (block.text.number, codes.name_of(block.codes))
         for block in blocks
         if block.at == block.end and codes.cycle_of(block.text.call, block.codes)
     ]
-    still += [(each.line, each.code) for each in polar if each.elements and each.at == each.end]
-    polar = [each for each in polar if each.end > each.at]
-    polar = with_zero_lines(polar, subject.trace.moves, program, codes, subject.ini)
-    return Asked(list(reader.targets(blocks)), polar, still)
+    still += [(each.line, each.code) for each in found if each.elements and each.at == each.end]
+    found = [each for each in found if each.end > each.at]
+    found = with_zero_lines(found, subject.trace.moves, program, codes, subject.ini)
+    return Asked(list(reader.targets(blocks)), found, still)
 
 
 def moves_there(tracer: Tracer, subject: Subject, parameters: Parameters) -> Sequence[Move] | None:
@@ -233,17 +255,28 @@ def measured(
         left = left_otherwise(block, target.leaves)
         still = stands_still(subject.trace.events, block.end, subject.ini)
         pockets.append(replace(facts, overruns=overruns, left_behind=left, spindle_stands=still))
-    diameters = subject.trace.diameters
-    axes = axes_of_section(subject.ini) if asked.sections else None
-    polar = [
-        measure_section(each, path, moves, diameters, axes, tolerances.polar, real)
-        for each in counted(asked.sections, "measuring section", tell)
-    ]
+    found = measured_sections(subject, asked.sections, tolerances.polar, tell)
     tell("looking for rapids through material")
-    hits = collisions(asked.circles, moves, path, diameters, real)
+    hits = collisions(asked.circles, moves, path, subject.trace.diameters, real)
     unseen = unseen_in(moves, Codes(subject.ini), asked.moves)
     told = {"still": asked.still, "circles": asked.circles}
-    return Proof(subject, pockets, polar, hits, unseen, tolerances, **told)
+    return Proof(subject, pockets, found, hits, unseen, tolerances, **told)
+
+
+def measured_sections(
+    subject: Subject, asked: Sequence[SectionContour], tolerance: float, tell: Tell
+) -> list[SectionFacts]:
+    """Return what is measured of a program's sections, those on a cylinder on its surface."""
+    axes = axes_of_section(subject.ini) if asked else None
+    radii = {each.surface for each in asked}
+    views = {radius: subject.on_surface(radius) if radius else subject for radius in radii}
+    moves, diameters = subject.trace.moves, subject.trace.diameters
+    found = []
+    for each in counted(asked, "measuring section", tell):
+        view = views[each.surface]
+        facts = measure_section(each, view.path, moves, diameters, axes, tolerance, view.real)
+        found.append(facts)
+    return found
 
 
 def stock_facts(

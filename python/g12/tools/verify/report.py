@@ -114,18 +114,14 @@ def left_text(facts: PocketFacts, unit: Unit) -> str:
 
 
 def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
-    """Return the paragraph of one polar section."""
+    """Return the paragraph of one section."""
     section = facts.section
     sides = " and ".join(SIDES[side] for side in facts.sides if side) or "on the contour"
-    x, c, z = facts.slowest_at
-    slow = point_text("XCZ", (2 * x if section.diameters else x, c, z), unit)
+    slow = place_on_section(facts, unit)
     limit = f"limit {plain(facts.c_limit, 1)}"
     rows = [
         ("cutter", f"⌀ {unit.text(2 * facts.tool)}, {sides}"),
-        ("zero line", f"C {plain(facts.zero, 3)}"),
-        ("X words", x_words(facts, proof)),
-        ("depth", unit.text(facts.lowest)),
-        ("from centre", sizes(facts.wanted, facts.reached, unit)),
+        *plane_rows(facts, proof, unit),
         *width_rows(facts, unit),
         ("deviation", deviation(facts.deviation, proof.tolerances.polar, unit)),
         ("left", unit.area(facts.left)),
@@ -142,6 +138,32 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
     called = "" if section.line <= call <= section.last else f", called in line {call}"
     title = f"lines {section.line} to {section.last}{called}: {section.code}"
     return paragraph(title, rows, notes, found)
+
+
+def plane_rows(facts: SectionFacts, proof: Proof, unit: Unit) -> list[tuple[str, str]]:
+    """Return the rows that tell of a section's plane: where it lies, how deep and far it is cut."""
+    section, reached = facts.section, sizes(facts.wanted, facts.reached, unit)
+    if section.surface:
+        on = f"radius {unit.text(section.surface)}, starts at C{plain(section.c, 3)}"
+        modal = "diameters (G7)" if section.diameters else "radii (G8)"
+        below = section.surface - (facts.lowest - facts.start_height + section.height)
+        depth = ("depth", f"{unit.text(below)} below the surface")
+        return [("surface", on), ("X words", modal), depth, ("along Z", reached)]
+    return [
+        ("zero line", f"C {plain(facts.zero, 3)}"),
+        ("X words", x_words(facts, proof)),
+        ("depth", unit.text(facts.lowest)),
+        ("from centre", reached),
+    ]
+
+
+def place_on_section(facts: SectionFacts, unit: Unit) -> str:
+    """Return the place of the lowest feed as the section's words have it."""
+    x, c, z = facts.slowest_at
+    x = 2 * x if facts.section.diameters else x
+    if facts.section.surface:
+        return f"X{unit.text(x)} C{plain(c, 3)} Z{unit.text(z)}"
+    return point_text("XCZ", (x, c, z), unit)
 
 
 def width_rows(facts: SectionFacts, unit: Unit) -> list[tuple[str, str]]:
@@ -287,15 +309,16 @@ def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
 
 
 def section_json(facts: SectionFacts, proof: Proof) -> dict:
-    """Return one polar section as plain values."""
+    """Return one section as plain values."""
     return {
         "lines": [facts.section.line, facts.section.last],
         "code": facts.section.code,
         "cutter": 2 * facts.tool,
-        "zero_line": facts.zero,
+        "surface": facts.section.surface or None,
+        "zero_line": None if facts.section.surface else facts.zero,
         "x_words": "diameters" if facts.section.diameters else "radii",
         "lowest": facts.lowest,
-        "radii": list(facts.wanted),
+        "along_z" if facts.section.surface else "radii": list(facts.wanted),
         "reached": list(facts.reached),
         "across_flats": [list(flat) for flat in facts.flats],
         "deviation": finite(facts.deviation),

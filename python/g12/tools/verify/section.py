@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How well a polar section follows its contour, from the emitted or the real motion.
+"""How well a section follows its contour, from the emitted or the real motion.
 
-The contour's plane is that of complex numbers: the real axis is X where the section begins, and
-the plane turns with the part. Lengths are millimetres, areas square millimetres, angles degrees,
-C's speed degrees/s.
+The contour's plane is that of complex numbers. That of a polar section turns with the part, the
+real axis is X where the section begins; on a cylinder it is the unrolled surface. Lengths are
+millimetres, areas square millimetres, angles degrees, C's speed degrees/s.
 
 With compensation the tool's centre must stay one tool radius away from the contour, on the
 programmed side. ``gouge`` is what the cutter takes beyond the contour, ``left`` what it leaves of
@@ -19,7 +19,7 @@ from itertools import groupby
 import numpy as np
 
 from g12.tools.path.follow import Followed
-from g12.tools.path.part import C, Z, spindle_angles
+from g12.tools.path.part import C
 from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
@@ -39,7 +39,7 @@ from g12.tools.verify.section_blocks import (
     turned_in_place,
 )
 from g12.tools.verify.section_motion import OffMotion, SectionAxes, motion_off
-from g12.tools.verify.section_paths import Plane, ToolPaths, goes_across, tool_paths_of
+from g12.tools.verify.section_paths import Plane, ToolPaths, plane_of, tool_paths_of
 from g12.tools.verify.section_state import OffAct, act_off, left_by_section
 from g12.tools.verify.wanted_contour import Element, SectionContour
 
@@ -51,20 +51,19 @@ class SectionFacts:
     """What was measured of one section.
 
     ``wanted`` and ``reached`` are the contour's least and greatest distance from the spindle's
-    centre, where compensation is on if it is anywhere, ``flats`` its widths between parallel sides,
-    programmed and reached; what leads to it and from it is no part of it. ``other_side`` says
-    that compensation takes the tool to the other side than it comes from. ``deviation`` is the
-    tool centre's greatest distance from where it should be, ``jump`` the greatest change of
-    direction from piece to piece of one block, ``c_speed`` the highest speed of C and
-    ``c_limit`` its limit,
-    ``tool`` the cutter's radius. ``through`` says that the tool's centre goes beyond the contour:
-    then ``gouge`` is only what lies next to it, and there is more.
+    centre, on a cylinder Z, where compensation is on if it is anywhere, ``flats`` its widths
+    between parallel sides, programmed and reached; what leads to it and from it is no part of it.
+    ``other_side`` says that compensation takes the tool to the other side than it comes from.
+    ``deviation`` is the tool centre's greatest distance from where it should be, ``jump`` the
+    greatest change of direction from piece to piece of one block, ``c_speed`` the highest speed
+    of C and ``c_limit`` its limit, ``tool`` the cutter's radius. ``through`` says that the tool's
+    centre goes beyond the contour: then ``gouge`` is only what lies next to it, and there is more.
 
     ``zero`` is the angle of C where the section begins, ``start_height`` Z there, ``lowest`` the
-    lowest Z. ``slowest_at`` is the place of the lowest feed as the section's own X (a radius),
-    C and Z, ``slowest_line`` its block. ``depth_off`` and ``feed_off`` are the first Z and the
-    first feed that are not the words', ``turn_speed`` is what F asks of C where it turns in
-    place, ``in_place`` how far and how long it does below the part's face.
+    lowest Z, on a cylinder X. ``slowest_at`` is the place of the lowest feed as the section's own
+    X (a radius), C and Z, ``slowest_line`` its block. ``depth_off`` and ``feed_off`` are the first
+    Z (X on a cylinder) and the first feed that are not the words', ``turn_speed`` is what F asks
+    of C where it turns in place, ``in_place`` how far and how long it does below the part's face.
     ``order_off``, ``motion_off`` and ``act_off`` are the first lines and acts that are not in
     their place, rapids and corners that are blended, ``left_behind`` is what is left otherwise.
     """
@@ -111,11 +110,11 @@ def measure_section(
     tolerance: float,
     real: Followed | None = None,
 ) -> SectionFacts:
-    """Return the facts of a section that moves."""
-    plane = Plane(section, moves[section.at])
+    """Return the facts of a section that moves; ``path`` and ``real`` are those of its part."""
+    plane = plane_of(section, moves[section.at])
     own = range(section.at, section.end)
     cutting = [i for i in own if moves[i].kind != "rapid" and path.part_length(i) > TINY_PIECE]
-    across = [index for index in cutting if goes_across(moves[index])]
+    across = [index for index in cutting if plane.goes_across(moves[index])]
     tool = diameters.get(moves[section.at].tool, 0.0) / 2
     paths = tool_paths_of(plane, cutting, moves, path, real)
     lengths = [path.part_length(index) for index in across] or [0.0]
@@ -132,11 +131,11 @@ def measure_section(
         c_speed=c_speed_of(own, path, plane, real),
         c_limit=axes.c_speed,
         zero=moves[section.at].start[C],
-        start_height=moves[section.at].start[Z],
-        lowest=min(moves[index].end[Z] for index in own),
+        start_height=moves[section.at].start[section.third],
+        lowest=min(moves[index].end[section.third] for index in own),
         slowest_at=plane.of_part(pace.point),
         slowest_line=moves[pace.move].line,
-        **block_facts(section, path, moves, axes, tolerance),
+        **block_facts(section, path, moves, axes.of(section), tolerance),
     )
 
 
@@ -240,7 +239,7 @@ def measure_stretch(
     missed, lengths = missed_by(ContourDistances(stretch), side, radius, paths.below(np.inf))
     deviation = float(max(np.abs(off).max(), missed.max(initial=0.0)))
     wall = points + (nearest - points) * radius / np.maximum(away, 1e-12) if side else points
-    reach = np.abs(nearest[own]), np.abs(wall[own])
+    reach = paths.sizes(nearest[own]), paths.sizes(wall[own])
     if not side:
         return StretchFacts(deviation, 0.0, 0.0, False, *reach)
     left = float(np.maximum(0.0, missed - tolerance) @ lengths)
@@ -362,6 +361,5 @@ def c_speed_of(own: Sequence[int], path: Track, plane: Plane, real: Followed | N
         return float(np.abs(np.gradient(angle, time)).max()) if len(time) > 1 else 0.0
     vertices = slice(path.vertices(own[0]).start, path.vertices(own[-1]).stop)
     positions, seconds = path.positions[vertices], np.maximum(np.diff(path.time[vertices]), 1e-12)
-    on_face = plane.on_face(positions)
-    turned = np.diff(spindle_angles(on_face, positions[:, C], path.part.beside))
+    turned = np.diff(plane.angles(positions, path.part.beside))
     return float((np.abs(turned) / seconds).max(initial=0.0))

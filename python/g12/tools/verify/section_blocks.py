@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a polar section does block by block: heights and feeds against the words.
+"""What a section does block by block: heights and feeds against the words.
 
 Lengths are millimetres, feeds mm/min along the part, C's speed degrees/s.
 """
@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.tools.path.part import C, Z
+from g12.tools.path.part import C
 from g12.tools.path.track import Track, feed_length, rate
 from g12.tools.preview.moves import Move
 from g12.tools.verify.wanted_contour import Element, SectionContour
@@ -51,7 +51,7 @@ class OffOrder(NamedTuple):
 class BlockOfSection(NamedTuple):
     """The moves (indices) of one block, or of equal lines in a row, and what they should make.
 
-    ``above`` is Z in front of the block, program coordinates.
+    ``above`` is the height in front of the block, program coordinates: Z, of a cylinder X.
     """
 
     elements: list[Element]
@@ -60,9 +60,9 @@ class BlockOfSection(NamedTuple):
 
 
 def drawn_blocks(section: SectionContour) -> list[tuple[list[Element], float]]:
-    """Return the elements of each block, or of equal lines in a row, and Z in front of them."""
+    """Return the elements of each block, or of equal lines in a row, and the height in front."""
     groups = [list(group) for _, group in groupby(section.elements, lambda element: element.line)]
-    return list(zip(groups, [section.z, *(group[-1].depth for group in groups)]))
+    return list(zip(groups, [section.height, *(group[-1].depth for group in groups)]))
 
 
 def blocks_moved(
@@ -127,20 +127,20 @@ def length_wanted(group: Sequence[Element], above: float) -> float:
 
 
 def depth_off(section: SectionContour, moves: Sequence[Move], path: Track) -> OffWords | None:
-    """Return the first Z that is not as the words ask."""
-    face = moves[section.at].start[Z] - section.z
+    """Return the first height that is not as the words ask."""
+    face = moves[section.at].start[section.third] - section.height
     for block in blocks_cut(section, moves):
         off = depth_off_in(block, face, path)
         if off:
             return off
-    asked = section.elements[-1].depth if section.elements else section.z
-    found = moves[section.end - 1].end[Z] - face
+    asked = section.elements[-1].depth if section.elements else section.height
+    found = moves[section.end - 1].end[section.third] - face
     wrong = abs(found - asked) > SAME_LEVEL
     return OffWords(section.last, found, asked) if wrong else None
 
 
 def depth_off_in(block: BlockOfSection, face: float, path: Track) -> OffWords | None:
-    """Return the Z of a block that is farthest from what its words ask, if it is too far."""
+    """Return the height of a block that is farthest from what its words ask, if it is too far."""
     vertices = slice(path.vertices(block.moves[0]).start, path.vertices(block.moves[-1]).stop)
     heights = path.points[vertices, 2] - face
     wanted = heights_wanted(block, path.points[vertices], heights)
@@ -216,10 +216,10 @@ def turn_speed(section: SectionContour, moves: Sequence[Move], path: Track) -> f
 
 def turned_in_place(section: SectionContour, moves: Sequence[Move], path: Track) -> InPlace:
     """Return how far and how long C turns in place where the tool is below the part's face."""
-    face = moves[section.at].start[Z] - section.z
-    lowest = min(moves[index].end[Z] for index in range(section.at, section.end))
+    face = moves[section.at].start[section.third] - section.height
+    lowest = min(moves[index].end[section.third] for index in range(section.at, section.end))
     top = face - SAME_LEVEL if lowest < face - SAME_LEVEL else math.inf
-    low = [i for i in turns_in_place(section, moves, path) if moves[i].end[Z] < top]
+    low = [i for i in turns_in_place(section, moves, path) if moves[i].end[section.third] < top]
     angles = (abs(moves[index].end[C] - moves[index].start[C]) for index in low)
     return InPlace(sum(angles), sum(path.seconds(index) for index in low))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How the moves of a polar section follow each other: no rapid, stops at corners and nowhere else.
+"""How the moves of a section follow each other: no rapid, stops at corners and nowhere else.
 
 LinuxCNC blends two moves by starting the second while the first slows down, each with half the
 acceleration a. Where the path turns by the angle d at the speed v, the tool passes the corner at
@@ -38,7 +38,8 @@ class SectionAxes(NamedTuple):
     """What a machine's axes can do: accelerations of X and Z in mm, of C in radians, per second².
 
     ``c_speed`` is C's greatest speed, degrees/s; ``face`` tells of the kinematics of the face,
-    ``beside`` how far the tool stands from the X line, mm.
+    ``beside`` how far the tool stands from the X line, mm. ``surface`` is the radius
+    of the cylinder whose unrolled surface the part is, mm, 0 of its face.
     """
 
     x: float
@@ -47,9 +48,18 @@ class SectionAxes(NamedTuple):
     c_speed: float
     face: bool = False
     beside: float = 0.0
+    surface: float = 0.0
+
+    def of(self, section: SectionContour) -> SectionAxes:
+        """Return the same for a section: nothing but polar interpolation uses the kinematics."""
+        on_face = self.face and not section.surface
+        return self._replace(face=on_face, surface=section.surface)
 
     def along(self, direction: np.ndarray, place: np.ndarray) -> float:
         """Return the greatest acceleration along a direction (3,) at a place (3,) of the part."""
+        if self.surface:
+            limits = self.surface * self.c, self.z, self.x
+            return 1.0 / max(*(abs(direction) / limits), 1e-12)
         tool, heading = complex(*place[:2]), complex(*direction[:2])
         radius = max(abs(tool), STILL)
         slide = max(math.sqrt(max(0.0, radius**2 - self.beside**2)), STILL)

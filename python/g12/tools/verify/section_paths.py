@@ -1,22 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The paths of the tool's centre in a polar section, in the contour's plane, with their heights.
+"""The paths of the tool's centre in a section, in the contour's plane, with their heights.
 
-What the cutter does in the air is no gouge: above the part's face, which is the program's Z0 if
-the contour is cut below that; else above the highest level at which the contour is cut.
+What the cutter does in the air is no gouge: above the part's face, which is the program's Z0 (on a
+cylinder its surface) if the contour is cut below that; else above the highest level at which the
+contour is cut.
 """
 
 from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import chain, groupby
 from typing import NamedTuple
 
 import numpy as np
 
 from g12.tools.path.follow import Followed
-from g12.tools.path.part import C, X, Y, Z
+from g12.tools.path.part import C, X, Y, Z, spindle_angles
+from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.verify.contour_distance import ContourDistances
@@ -33,12 +35,18 @@ class ToolPath(NamedTuple):
 
 
 class Plane:
-    """Turns machine positions into points of the contour's plane; ``face`` is the program's Z0."""
+    """Turns machine positions into points of a polar contour's plane.
+
+    ``face`` is the program's Z0, ``axes`` are those that move the tool across the plane, and
+    ``third`` is the one at right angles to it.
+    """
+
+    axes, third = (X, Y, C), Z
 
     def __init__(self, section: SectionContour, first: Move) -> None:
-        self._shift = first.start[X] - section.x
+        self._shift = first.start[X] - section.start.real
         self._angle = first.start[C]
-        self.face = first.start[Z] - section.z
+        self.face = first.start[Z] - section.height
 
     def points(self, positions: np.ndarray) -> np.ndarray:
         """Return the points (complex) of machine positions (n, 9)."""
@@ -48,6 +56,14 @@ class Plane:
     def on_face(self, positions: np.ndarray) -> np.ndarray:
         """Return the points (complex) of machine positions, seen from the face that C turns."""
         return positions[:, X] - self._shift + 1j * positions[:, Y]
+
+    def angles(self, positions: np.ndarray, beside: float) -> np.ndarray:
+        """Return where the C axis stands, degrees, for a tool ``beside`` the X line."""
+        return spindle_angles(self.on_face(positions), positions[:, C], beside)
+
+    def sizes(self, points: np.ndarray) -> np.ndarray:
+        """Return how far points of the plane are from the spindle's centre."""
+        return np.abs(points)
 
     def of_part(self, point: Sequence[float]) -> tuple[float, float, float]:
         """Return X (radius), C and Z in the plane of a point of the part."""
@@ -64,23 +80,65 @@ class Plane:
         """Return the tool centre's path during a move: emitted, or as it was."""
         whole = path.positions[path.vertices(index)]
         positions = whole if real is None else real.positions[real.during(index)]
-        return ToolPath(self.points(positions), positions[:, Z])
+        return ToolPath(self.points(positions), positions[:, self.third])
+
+    def goes_across(self, move: Move) -> bool:
+        """Tell whether a move goes across the plane; the start of a full circle is its end."""
+        return move.kind == "arc" or any(move.start[axis] != move.end[axis] for axis in self.axes)
 
 
-def goes_across(move: Move) -> bool:
-    """Tell whether a move changes X, Y or C; the start of a full circle is its end."""
-    return move.kind == "arc" or any(move.start[axis] != move.end[axis] for axis in (X, Y, C))
+class SurfacePlane(Plane):
+    """Turns machine positions into points of a cylinder's unrolled surface.
+
+    To the right is the way round it, Z upwards; ``face`` is X of the surface.
+    """
+
+    axes, third = (C, Z), X
+
+    def __init__(self, section: SectionContour, first: Move) -> None:
+        self._part = Surface(turning=True, radius=section.surface)
+        self._shift = complex(*self._part.points(first.start)[0, :2]) - section.start
+        self.face = first.start[X] - section.height + section.surface
+
+    def points(self, positions: np.ndarray) -> np.ndarray:
+        """Return the points (complex) of machine positions (n, 9)."""
+        points = self._part.points(positions)
+        return points[:, 0] + 1j * points[:, 1] - self._shift
+
+    def angles(self, positions: np.ndarray, beside: float) -> np.ndarray:
+        """Return where the C axis stands at machine positions, degrees."""
+        return positions[:, C]
+
+    def sizes(self, points: np.ndarray) -> np.ndarray:
+        """Return where points of the plane are along Z."""
+        return points.imag
+
+    def of_part(self, point: Sequence[float]) -> tuple[float, float, float]:
+        """Return X (radius), C in degrees and Z of a point of the unrolled surface."""
+        there = complex(*point[:2]) - self._shift
+        x = point[2] - self.face + self._part.radius
+        return x, math.degrees(there.real / self._part.radius), there.imag
+
+
+def plane_of(section: SectionContour, first: Move) -> Plane:
+    """Return the plane of a section's contour; ``first`` is its first move."""
+    return (SurfacePlane if section.surface else Plane)(section, first)
 
 
 class ToolPaths:
     """The tool centre's paths during a section, each with the line of its block, and plunges."""
 
     def __init__(
-        self, tool_paths: Iterable[tuple[int, ToolPath]], plunges: ToolPath, face: float
+        self,
+        tool_paths: Iterable[tuple[int, ToolPath]],
+        plunges: ToolPath,
+        face: float,
+        sizes: Callable[[np.ndarray], np.ndarray] = np.abs,
     ) -> None:
         self._tool_paths: dict[int, list[ToolPath]] = {}
         self._plunges = plunges
         self._face = face
+        self.sizes = sizes
         self._distances: dict[float, ContourDistances] = {}
         for line, tool_path in tool_paths:
             if len(tool_path.points) > 1:
@@ -125,7 +183,7 @@ def tool_paths_of(
     real: Followed | None,
 ) -> ToolPaths:
     """Return the paths of moves at feed, given by their indices."""
-    across = [index for index in cutting if goes_across(moves[index])]
+    across = [index for index in cutting if plane.goes_across(moves[index])]
     down = sorted(set(cutting) - set(across))
     tool_paths = (
         (line, as_one_path([plane.tool_path(index, path, real) for index in stretch]))
@@ -133,7 +191,7 @@ def tool_paths_of(
     )
     downward = [plane.tool_path(index, path, real) for index in down]
     plunges = [ToolPath(tool_path.points[-1:], tool_path.heights[-1:]) for tool_path in downward]
-    return ToolPaths(tool_paths, connected(plunges), plane.face)
+    return ToolPaths(tool_paths, connected(plunges), plane.face, plane.sizes)
 
 
 def connected(tool_paths: Sequence[ToolPath]) -> ToolPath:

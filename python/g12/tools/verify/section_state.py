@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a polar section does besides moving, and what it leaves behind, against the words."""
+"""What a section does besides moving, and what it leaves behind, against the words."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The contour that a polar section's blocks describe, read once more apart from the planner.
+"""The contour that a section's blocks describe, read once more apart from the planner.
 
 A copy of the program is traced in which the section's motion is left out and every block tells
 its words instead; expressions, loops, calls and conditions are LinuxCNC's own doing.
 
-Lengths are millimetres, X a radius value; the contour's plane turns with the part, its first
-axis is X where the section begins.
+Lengths are millimetres, X a radius value. A polar contour's plane turns with the part, its first
+axis is X where the section begins; that of a section on a cylinder is in `surface_pen`.
 """
 
 from __future__ import annotations
@@ -13,12 +13,13 @@ from __future__ import annotations
 import cmath
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
 from g12.lengths import MM_PER_INCH
+from g12.tools.path.part import X, Z
 from g12.tools.preview.executed_blocks import (
     FORGOTTEN,
     Block,
@@ -35,8 +36,7 @@ from g12.tools.preview.tracer import Parameters, Tracer
 from g12.tools.verify.codes import Codes
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
-ACROSS = "XYCUHIJR"
-CONTOUR = f"{ACROSS}Z"
+CONTOUR = "XYCUHIJRZWK"
 ACTING_M = {*map(float, (3, 4, 5, 7, 8, 9, 48, 49, 50, 51, 52, 53)), *map(float, range(100, 200))}
 DWELL, EXACT_HERE = 4.0, 9.0
 PATHS = {61.0: True, 61.1: True, 64.0: False}  # code: exact
@@ -114,14 +114,16 @@ BEGUN = ZeroLine(True)
 
 
 class WordReading(NamedTuple):
-    """How a machine reads a section's words: [G12] POLAR_X, and POLAR_G0_FEED in mm/min.
+    """How a machine reads a section's words: by its [G12] settings.
 
-    ``beside`` is POLAR_TOOL_OFFSET in mm: there the tool is where a section begins.
+    ``x`` is POLAR_X, ``rapid_feed`` POLAR_G0_FEED in mm/min, ``beside`` POLAR_TOOL_OFFSET in mm:
+    there the tool is where a polar section begins. ``surface`` is CYLINDER_WORD.
     """
 
     x: str
     rapid_feed: float | None = None
     beside: float = 0.0
+    surface: str = "radius"
 
 
 class Act(NamedTuple):
@@ -139,9 +141,11 @@ class Act(NamedTuple):
 class SectionContour:
     """One run through a section: first and last line, first move and the one after it, contour.
 
-    ``x``, ``z`` and ``c`` (degrees) are where it begins, ``left_c`` is where C stands behind it, in
-    program coordinates; ``zero_line`` tells how C came there. ``doubt`` tells why the contour
-    could not be read from the words, if it could not. ``diameters`` says that X words are.
+    ``start`` in the contour's plane, ``height`` above it and ``c`` (degrees) are where it begins,
+    ``left_c`` is where C stands behind it, in program coordinates; ``zero_line`` tells how C came
+    there. ``doubt`` tells why the contour could not be read from the words, if it could not.
+    ``diameters`` says that X words are. ``surface`` is the radius of the cylinder whose unrolled
+    surface the plane is, 0 of a polar section.
 
     ``stopped`` says that a dwell comes between it and the move in front of it.
     ``acts`` are what it is to do besides moving, ``told`` what a trace tells of the section.
@@ -154,10 +158,10 @@ class SectionContour:
     at: int
     end: int
     code: str
-    x: float
+    start: complex
     elements: tuple[Element, ...]
     doubt: str = ""
-    z: float = 0.0
+    height: float = 0.0
     diameters: bool = False
     c: float = 0.0
     left_c: float = 0.0
@@ -168,19 +172,29 @@ class SectionContour:
     leaves: Mapping[str, float] = field(default_factory=dict)
     left: Mapping[str, float] = field(default_factory=dict)
     paths: tuple[str, ...] = ()
+    surface: float = 0.0
+
+    @property
+    def third(self) -> int:
+        """Return the axis at right angles to the contour's plane: X of a cylinder, else Z."""
+        return X if self.surface else Z
+
+
+Pens = Mapping[str, Callable[[Block], "Pen"]]
 
 
 def sections(
     tracer: Tracer,
     program: Path,
     codes: Codes,
-    reading: WordReading,
+    pens: Pens,
     blocks: Sequence[Block],
     parameters: Parameters = None,
 ) -> list[SectionContour]:
     """Return the sections in the order they are run.
 
-    ``blocks`` are the program's own, which say where sections begin.
+    ``blocks`` are the program's own, which say where sections begin. ``pens`` are those for each
+    kind of section.
     """
     found = list(grouped(blocks, codes))
     if not found:
@@ -197,7 +211,7 @@ def sections(
     paths = zip(*(paths_behind(some, codes) for some in (blocks, copied)))
     return [
         replace(
-            section_of(own, group, codes, reading, doubts.get(own[0].text.number, "")),
+            section_of(own, group, codes, pens, doubts.get(own[0].text.number, "")),
             paths=() if restores(group) else path,
         )
         for own, group, path in zip(found, groups, paths)
@@ -213,7 +227,7 @@ def flattened(
     """
     inside = False
     for text, line in zip(texts, lines):
-        switch = codes.polar(text)
+        switch = codes.switch(text, inside)
         if switch or (inside and text.words and not text.control and not text.too_long):
             slash = "/" if text.deleted else ""
             acting = "" if switch else acting_words(text, line, codes)
@@ -244,7 +258,7 @@ def grouped(blocks: Sequence[Block], codes: Codes) -> Iterator[list[Block]]:
     """Yield the blocks of each section, the one that switches it on first."""
     group: list[Block] = []
     for block in blocks:
-        switch = codes.polar(block.text)
+        switch = codes.switch(block.text, bool(group))
         if switch == "on":
             group = [block]
         elif group:
@@ -259,7 +273,7 @@ def doubts_of(texts: Sequence[Text], codes: Codes, lines: Sequence[str]) -> dict
     doubts: dict[int, str] = {}
     first = 0
     for text, line in zip(texts, lines):
-        first = {"on": text.number, "off": 0}.get(codes.polar(text), first)
+        first = {"on": text.number, "off": 0}.get(codes.switch(text, bool(first)), first)
         if first and text.call:
             doubts[first] = f"line {text.number} calls o<{text.call}>"
         elif first and text.too_long:
@@ -274,7 +288,7 @@ def paths_behind(blocks: Sequence[Block], codes: Codes) -> list[str]:
     path, inside, found = "", False, []
     for block in blocks:
         path = next((e.text for e in block.events[::-1] if e.text.startswith("G6")), path)
-        switch = codes.polar(block.text)
+        switch = codes.switch(block.text, inside)
         if switch == "off" and inside:
             found.append(path)
         inside = switch == "on" if switch else inside
@@ -287,29 +301,31 @@ def restores(group: Sequence[Block]) -> bool:
 
 
 def section_of(
-    own: Sequence[Block], group: Sequence[Block], codes: Codes, reading: WordReading, doubt: str
+    own: Sequence[Block], group: Sequence[Block], codes: Codes, pens: Pens, doubt: str
 ) -> SectionContour:
     """Return the section that executed blocks describe; ``own`` are the program's own of it."""
     first, last = own[0], own[-1]
     told = tuple(event for block in own[1:] for event in block.events)
-    pen = Pen(first, reading)
-    x, z, diameters = pen.at.real, pen.depth, pen.x_unit < pen.unit
+    kind = codes.section(first.text)
+    pen = pens[kind.dialect](first)
+    start, height, diameters = pen.at, pen.depth, pen.x_unit < pen.unit
     elements: list[Element] = []
     acts: list[Act] = []
     for block in group[1:]:
         texts = (event.text for event in block.events if ACTS.match(event.text))
         acts += [Act(block.text.number, text, len(elements)) for text in texts]
-        elements += pen.draw(block)
+        if block is not group[-1]:  # whose words are those of the code that switches off
+            elements += pen.draw(block)
     return SectionContour(
         first.text.number,
         last.text.number,
         first.at,
         last.end,
-        next(f"G{code:g}" for code in first.codes if codes.polar(first.text)),
-        x,
+        f"G{first.codes[0]:g}",
+        start,
         tuple(elements),
         doubt,
-        z,
+        height,
         diameters,
         first.state["_c"],
         last.left.get("_c", math.nan),
@@ -321,11 +337,15 @@ def section_of(
         told=told,
         leaves=pen.leaves(first.state),
         left=last.left,
+        surface=pen.surface,
     )
 
 
 class Pen:
-    """Follows the words of a section's blocks, as the mode's rules say."""
+    """Follows the words of a polar section's blocks, as the mode's rules say."""
+
+    surface = 0.0
+    across = "XYCUHIJR"  # the letters of moves in the plane
 
     def __init__(self, first: Block, reading: WordReading) -> None:
         state = first.state
@@ -354,13 +374,10 @@ class Pen:
         self.feed = words["F"] * self.unit if "F" in words else self.feed
         if not any(letter in words for letter in CONTOUR):
             return
-        depth, self.depth = self.depth, self._to(words, "Z", None, self.depth, self.unit)
-        end = complex(
-            self._to(words, "X", "U", self.at.real, self.x_unit),
-            self._to(words, "C" if "C" in words else "Y", "H", self.at.imag, self.unit),
-        )
+        depth, self.depth = self.depth, self._height(words)
+        end = self._place(words)
         centre, sweep = self._turn(words, end)
-        if not any(letter in words for letter in ACROSS):
+        if not any(letter in words for letter in self.across):
             end = self.tool
         if end != self.tool or centre is not None:
             line = block.text.number
@@ -376,21 +393,41 @@ class Pen:
     def leaves(self, state: Mapping[str, float]) -> dict[str, float]:
         """Return the state behind the section, of which ``state`` is the one before it.
 
-        Not C where the tool is in the centre, nor a feed that is not known.
+        Not a feed that is not known.
         """
-        radius, angle = cmath.polar(self.tool)
-        slide = math.sqrt(max(0.0, radius**2 - self.beside**2))
-        angle -= math.atan2(self.beside, slide)
         left = {
             "_metric": state["_metric"],
             "_absolute": float(self.absolute),
             "_units_per_rev": float(self.per_revolution),
             "_motion_mode": 10 * self.motion,
-            "_x": slide / self.unit,
-            "_z": self.depth / self.unit,
+            **self._position(state["_c"]),
         }
-        left |= {"_c": state["_c"] + math.degrees(angle)} if radius > SAME_PLACE else {}
         return left if self.feed is None else {**left, "_feed": self.feed / self.unit}
+
+    def _height(self, words: dict) -> float:
+        """Return how high above the plane a block ends."""
+        return self._to(words, "Z", None, self.depth, self.unit)
+
+    def _place(self, words: dict) -> complex:
+        """Return where in the plane a block ends."""
+        return complex(
+            self._to(words, "X", "U", self.at.real, self.x_unit),
+            self._to(words, "C" if "C" in words else "Y", "H", self.at.imag, self.unit),
+        )
+
+    def _arm(self, words: dict) -> complex | None:
+        """Return the way from an arc's start to its centre, if the words say it."""
+        if "I" in words or "J" in words:
+            return complex(words.get("I", 0.0), words.get("J", 0.0)) * self.unit
+        return None
+
+    def _position(self, c: float) -> dict[str, float]:
+        """Return X, Z and C, which was ``c`` before the section; not C of a tool in the centre."""
+        radius, angle = cmath.polar(self.tool)
+        slide = math.sqrt(max(0.0, radius**2 - self.beside**2))
+        angle -= math.atan2(self.beside, slide)
+        left = {"_x": slide / self.unit, "_z": self.depth / self.unit}
+        return {**left, "_c": c + math.degrees(angle)} if radius > SAME_PLACE else left
 
     def _feed(self) -> float | None:
         """Return the feed in mm per minute."""
@@ -433,10 +470,11 @@ class Pen:
         if self.motion not in (2.0, 3.0):
             return None, 0.0
         sign = 1.0 if self.motion == 3.0 else -1.0
+        arm = self._arm(words)
         if "R" in words:
             centre = centre_of(self.at, end, words["R"] * self.unit, sign)
-        elif "I" in words or "J" in words:
-            centre = self.at + complex(words.get("I", 0.0), words.get("J", 0.0)) * self.unit
+        elif arm is not None:
+            centre = self.at + arm
         else:
             return None, 0.0
         return centre, sweep_of(self.at - centre, end - centre, sign)

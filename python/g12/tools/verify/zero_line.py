@@ -18,7 +18,7 @@ from g12.tools.preview.executed_blocks import Text, read_lines
 from g12.tools.preview.moves import Move
 from g12.tools.verify.codes import Codes
 from g12.tools.verify.executed_subs import called_files
-from g12.tools.verify.wanted_contour import SectionContour, ZeroLine
+from g12.tools.verify.wanted_contour import BEGUN, SectionContour, ZeroLine
 
 SAME_ANGLE = 1e-3  # degree
 
@@ -30,14 +30,16 @@ def with_zero_lines(
     codes: Codes,
     ini: Ini,
 ) -> list[SectionContour]:
-    """Return the sections of a program, each with what has become of C before it."""
+    """Return the sections of a program, each polar one with what has become of C before it."""
     if not sections:
         return []
     lines = lines_with_c(read_lines(program), codes, ini)
-    return [
-        replace(each, zero_line=zero_line(before, each, moves, lines))
-        for before, each in zip([None, *sections], sections)
-    ]
+    polar = [each for each in sections if not each.surface]
+    found = {
+        each.at: zero_line(before, each, moves, lines)
+        for before, each in zip([None, *polar], polar)
+    }
+    return [replace(each, zero_line=found.get(each.at, BEGUN)) for each in sections]
 
 
 def lines_with_c(texts: Sequence[Text], codes: Codes, ini: Ini) -> set[int]:
@@ -47,12 +49,12 @@ def lines_with_c(texts: Sequence[Text], codes: Codes, ini: Ini) -> set[int]:
 
 
 def outside(texts: Iterable[Text], codes: Codes) -> Iterator[Text]:
-    """Yield the lines outside of sections."""
+    """Yield the lines outside of sections, of which C may be no axis."""
     inside = False
     for text in texts:
-        switch = codes.polar(text)
+        switch = codes.switch(text, inside)
         inside = switch == "on" if switch else inside
-        if not inside:
+        if not (inside or switch):
             yield text
 
 

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The part as its unrolled surface: what a tool that points at a turning part's axis cuts.
+
+Its points are the way round, which grows with C, along Z, and X as the height above the axis. So
+seen from outside: with Z upwards C grows to the right.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from g12.tools.path.part import C, Part, X, Z
+from g12.tools.preview.moves import Move
+
+LONGEST_PIECE, LEAST_PIECES = 0.5, 4  # mm, of a move
+
+
+@dataclass(frozen=True)
+class Surface(Part):
+    """The unrolled surface of a cylinder of ``radius``, mm.
+
+    What a move draws there is straight; it has points in between to measure by.
+    """
+
+    radius: float = 0.0
+
+    def points(self, positions: np.ndarray) -> np.ndarray:
+        """Return part points (n, 3) of machine positions (n, 9)."""
+        positions = np.atleast_2d(positions)
+        around = np.radians(positions[:, C]) * self.radius
+        return np.stack([around, positions[:, Z], positions[:, X]], axis=1)
+
+    def _pieces(self, move: Move, chord_error: float) -> int:
+        if move.kind == "arc":
+            return super()._pieces(move, chord_error)
+        start, end = self.points(np.array([move.start, move.end]))
+        return max(LEAST_PIECES, math.ceil(np.linalg.norm(end - start) / LONGEST_PIECE))

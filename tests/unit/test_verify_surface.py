@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Sections on a cylinder made by hand, right and wrong, and what is measured of them.
+
+The surface has the radius 20. The tool's centre is drawn on it unrolled: to the right the way
+round, upwards Z; X is the height.
+"""
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+
+from g12.tools.path.follow import follow
+from g12.tools.path.surface import Surface
+from g12.tools.path.track import Limits, track
+from g12.tools.verify.findings import section_findings, section_notes
+from g12.tools.verify.section import measure_section
+from g12.tools.verify.section_motion import SectionAxes
+from g12.tools.verify.wanted_contour import Element, SectionContour
+from support.made_moves import LIMITS, Hand, samples_of
+
+RADIUS, DEPTH, AIR, TOOL = 20.0, 18.0, 24.0, 3.0
+TOLERANCE = 0.006
+AXES = SectionAxes(1000.0, 1000.0, math.radians(3600.0), 360.0)
+RISE = 40 + 12j  # where a groove ends that begins at 0: along C, and by Z
+QUARTER = Element(4, 30 + 0j, 40 + 10j, 0, False, DEPTH, 30 + 10j, math.pi / 2, 600.0)
+
+
+class Unrolled(Hand):
+    """A hand that draws on the surface; C begins at 90 degrees and X at the height of the air."""
+
+    def __init__(self):
+        super().__init__()
+        self.rapid(x=AIR, z=-7.0, c=90.0)
+
+    def cut(self, *points, feed=600.0, number=None):
+        """Go straight to points of the contour's plane; the feed is that along the surface."""
+        self.block = number or self.block + 1
+        for point in points:
+            c, z = 90.0 + math.degrees(point.real / RADIUS), -7.0 + point.imag
+            length = math.hypot(math.radians(c - self.at[5]) * RADIUS, z - self.at[2])
+            moved = abs(z - self.at[2]) or abs(c - self.at[5])
+            self.feed = feed * moved / length
+            self.line(z=z, c=c)
+        return self
+
+    def down(self, x=DEPTH):
+        self.block, self.feed = self.block + 1, 200.0
+        return self.line(x=x)
+
+    def up(self):
+        return self.down(AIR)
+
+
+def drawn(*ends, side=0, first=3):
+    """Return the elements of a groove through points, plunge and retreat around it."""
+    elements = [Element(2, 0j, 0j, 0, False, DEPTH, feed=200.0)]
+    for number, (start, end) in enumerate(zip((0j, *ends), ends), first):
+        elements.append(Element(number, start, end, side, False, DEPTH, feed=600.0))
+    last = elements[-1]
+    return [*elements, Element(last.line + 1, last.end, last.end, 0, False, AIR, feed=200.0)]
+
+
+def facts_of(hand, elements, real=None):
+    moves = hand.moves
+    path = track(Surface(turning=True, radius=RADIUS), moves, LIMITS)
+    contour = SectionContour(
+        1, 9, 1, len(moves), "G7.1", 0j, tuple(elements), height=AIR, surface=RADIUS
+    )
+    run = follow(path, moves, real(path), 1.0) if real else None
+    return measure_section(contour, path, moves, {1: 2 * TOOL}, AXES, TOLERANCE, run)
+
+
+def findings(hand, elements):
+    for index, move in enumerate(hand.moves):
+        hand.moves[index] = move._replace(exact=True)
+    return " | ".join(section_findings(facts_of(hand, elements), TOLERANCE))
+
+
+def groove(feed=600.0, c=0.0, z=0.0):
+    """Return a groove with a corner, cut right but for what is named."""
+    wrong = complex(c, z)
+    return Unrolled().down().cut(30 + 0j + wrong, feed=feed).cut(RISE + wrong).up()
+
+
+ASKED = drawn(30 + 0j, RISE)
+
+
+def test_a_groove_of_lines_is_exact():
+    facts = facts_of(groove(), ASKED)
+    assert findings(groove(), ASKED) == ""
+    assert facts.deviation < 1e-9 and facts.pieces == 2
+    assert facts.wanted == facts.reached == pytest.approx((0, 12))
+    assert (facts.lowest, facts.start_height) == (DEPTH, AIR)
+    assert list(section_notes(facts)) == []
+
+
+@pytest.mark.parametrize(
+    ("hand", "found"),
+    [
+        (groove(z=0.05), "0.05 mm off the contour"),
+        (groove(c=0.05), "0.05 mm off the contour"),
+        (groove(feed=620.0), "line 3: the feed is 620, not 600 mm/min"),
+        (Unrolled().down(17.9).cut(30 + 0j).cut(RISE).up(), "line 2: X is 17.9, not 18 mm"),
+        (Unrolled().down().cut(RISE, number=4).up(), "line 3: is not cut"),
+        (Unrolled().down().cut(RISE, number=4).cut(30 + 0j, number=3).up(), "line 3"),
+    ],
+)
+def test_a_wrong_groove_is_found(hand, found):
+    assert found in findings(hand, ASKED)
+
+
+def test_c_too_fast_for_its_limit_is_found():
+    fast = [Element(**{**vars(each), "feed": None}) for each in ASKED]
+    hand = groove()
+    hand.moves[2] = hand.moves[2]._replace(feed=360 * 61.0)
+    limits = Limits((math.inf,) * 9, math.inf)
+    path = track(Surface(turning=True, radius=RADIUS), hand.moves, limits)
+    contour = SectionContour(1, 9, 1, len(hand.moves), "G7.1", 0j, tuple(fast), surface=RADIUS)
+    facts = measure_section(contour, path, hand.moves, {}, AXES, TOLERANCE)
+    assert facts.c_speed == pytest.approx(366)
+    assert "C turns at 366 degrees/s, its limit is 360" in section_findings(facts, TOLERANCE)
+
+
+def test_a_corner_that_is_blended_is_found():
+    facts = facts_of(groove(), ASKED)
+    whats = [off.what for off in facts.motion_off]
+    assert "ends in a corner without an exact stop" in whats
+
+
+def arc(count, radius=10.0):
+    """Return points along the quarter of an arc of QUARTER's centre."""
+    turns = np.linspace(0, math.pi / 2, count + 1)[1:]
+    return [30 + 10j + cmath.rect(radius, turn - math.pi / 2) for turn in turns]
+
+
+@pytest.mark.parametrize(("count", "off"), [(40, 0.002), (4, 0.19)])
+def test_the_pieces_of_an_arc(count, off):
+    hand = Unrolled().down().cut(30 + 0j).cut(*arc(count)).up()
+    line = drawn(30 + 0j)
+    facts = facts_of(hand, [*line[:2], QUARTER, line[2]])
+    assert facts.deviation == pytest.approx(10 * (1 - math.cos(math.pi / 4 / count)), rel=0.05)
+    assert (facts.deviation > TOLERANCE) == (off > TOLERANCE)
+    assert facts.jump == pytest.approx(90 / count)
+
+
+def wall(side):
+    """Return a wall along C from 10 to 40 with leads from Z and back."""
+    return [
+        Element(2, 10j, 0j, side, True, DEPTH, feed=600.0),
+        Element(3, 0j, 40 + 0j, side, False, DEPTH, feed=600.0),
+        Element(4, 40 + 0j, 40 + 10j, 0, True, DEPTH, feed=600.0),
+    ]
+
+
+def beside(away):
+    return Unrolled().rapid(z=3.0, x=DEPTH).cut(away * 1j).cut(40 + away * 1j).cut(40 + 10j)
+
+
+@pytest.mark.parametrize(
+    ("side", "away", "found"),
+    [
+        (1, TOOL, ""),
+        (1, TOOL - 0.1, "gouged beyond the contour"),
+        (1, TOOL + 0.1, "left standing"),
+        (-1, TOOL, "off the contour"),
+    ],
+)
+def test_compensation_keeps_the_cutter_on_its_side(side, away, found):
+    hand = beside(away)
+    contour = SectionContour(
+        1, 9, 2, len(hand.moves), "G7.1", 10j, tuple(wall(side)), height=DEPTH, surface=RADIUS
+    )
+    path = track(Surface(turning=True, radius=RADIUS), hand.moves, LIMITS)
+    facts = measure_section(contour, path, hand.moves, {1: 2 * TOOL}, AXES, TOLERANCE)
+    assert found in " | ".join(section_findings(facts, TOLERANCE))
+    assert bool(found) == (facts.deviation > TOLERANCE)
+
+
+def test_a_run_is_measured_on_the_surface():
+    facts = facts_of(groove(), ASKED, lambda path: samples_of(path, axes="XZC"))
+    assert facts.deviation < 0.05 and facts.pace.seconds > 5.0
