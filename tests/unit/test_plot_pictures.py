@@ -20,6 +20,7 @@ from g12.tools.plot.labels import spread_out
 from g12.tools.plot.mill import Layout, cut_through, removed_at
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import heading, scene_of
+from g12.tools.plot.unrolled import unrolled
 from g12.tools.units import MM, UNITS, clock, plain
 from g12.tools.verify.proof import subject_of
 from g12.tools.verify.rapids import Collision
@@ -48,6 +49,15 @@ def pocket():
 def flats():
     points = [complex(20, y) for y in (0, 5, 10)] + [complex(x, 10) for x in (10, 0, -10, -20)]
     return Hand().rapid(z=2).rapid(x=20).line(z=-3).polar(points).rapid(z=2)
+
+
+def groove():
+    hand = Hand().rapid(z=2).rapid(x=24).line(x=18)
+    return hand.line(c=90).line(z=-10, c=180).line(c=270).rapid(x=24)
+
+
+def on_surface(shown):
+    return replace(shown, seen=Seen(surface=20.0))
 
 
 def turned():
@@ -374,7 +384,7 @@ def with_real_motion(hand, ini, aside):
     for letter, value in aside.items():
         samples.axes[letter][middle] += value
     real = follow(shown.path, shown.moves, samples, 1.0)
-    return replace(shown, subject=replace(shown.subject, real=real))
+    return replace(shown, subject=replace(shown.subject, real=real, samples=samples))
 
 
 @pytest.mark.parametrize(
@@ -406,6 +416,16 @@ def test_the_window_tells_the_override_and_the_contour():
     assert "feed" not in "".join(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1]))
 
 
+def test_a_cylinder_is_drawn_unrolled():
+    shown = on_surface(scene(groove(), LATHE))
+    flat = unrolled(replace(shown, subject=shown.subject.on_surface(20.0)))
+    (level,) = plan_view.milled_levels(flat)
+    assert level.z == pytest.approx(18)
+    assert level.area.bounds == pytest.approx((-3, -13, 20 * np.radians(270) + 3, 5), abs=0.02)
+    assert flat.path.points[-1] == pytest.approx((20 * np.radians(270), -10, 24))
+    assert flat.path.part.letters == "CZX" and flat.path.time[-1] == shown.path.time[-1]
+
+
 # ---------------------------------------------------------------- files
 
 
@@ -422,6 +442,9 @@ SCENES = {
     "face": lambda: scene(flats(), LATHE),
     "face by feed": lambda: scene(flats(), LATHE, feed_colours=True),
     "face run": lambda: with_real_motion(flats(), LATHE, {"X": 0.01}),
+    "surface": lambda: on_surface(scene(groove(), LATHE)),
+    "surface by feed": lambda: on_surface(scene(groove(), LATHE, feed_colours=True, units="inch")),
+    "surface run": lambda: on_surface(with_real_motion(groove(), LATHE, {"X": 0.01})),
 }
 
 

@@ -41,6 +41,11 @@ class Part:
     turning: bool
     beside: float = 0.0
 
+    @property
+    def letters(self) -> str:
+        """The axes that its points tell of."""
+        return "XCZ" if self.turning else "XYZ"
+
     def points(self, positions: np.ndarray) -> np.ndarray:
         """Return part points (n, 3) of machine positions (n, 9)."""
         positions = np.atleast_2d(positions)

@@ -27,6 +27,11 @@ class Surface(Part):
 
     radius: float = 0.0
 
+    @property
+    def letters(self) -> str:
+        """The axes that its points tell of."""
+        return "CZX"
+
     def points(self, positions: np.ndarray) -> np.ndarray:
         """Return part points (n, 3) of machine positions (n, 9)."""
         positions = np.atleast_2d(positions)

@@ -20,7 +20,6 @@ SIZE = 1.9  # inches, the window's sides
 NEIGHBOURS = 3  # moves before and after that are drawn
 WINDOW = 6.0  # half the window's side, in deviations
 LEAST_WINDOW = 1e-4  # mm
-AXES_OF_PART = {False: "XYZ", True: "XCZ"}  # by whether the part turns
 
 
 def size_of(worst: Worst, unit: Unit) -> str:
@@ -50,7 +49,7 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
     axes.plot(*sampled.T, ".", color=style.REAL, markersize=3, zorder=3.5)
     gap = np.array([[0.0, 0.0], worst.point[pair] - origin])
     style.draw(axes, [gap], style.WORST, 1.8, 4.0)
-    title = f"Largest deviation{' from the pieces' if scene.path.part.turning else ''}"
+    title = f"Largest deviation{' from the pieces' if 'C' in scene.path.part.letters else ''}"
     style.frame_detail(axes, (0, 0), half, title, "\n".join(window_lines(worst, scene, pair)))
     _scale_bar(axes, half, unit)
 
@@ -58,8 +57,7 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
 def window_lines(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
     """Yield the lines below the window: size, place, feed; and what is off the contour itself."""
     fast = f" at {scene.override:g} % feed" if scene.override != 100.0 else ""
-    axes = AXES_OF_PART[scene.path.part.turning]
-    letters = " and ".join(axes[axis] for axis in pair)
+    letters = " and ".join(scene.path.part.letters[axis] for axis in pair)
     yield f"{size_of(worst, scene.unit)}{fast},"
     yield f"line {worst.move.block}, in {letters}"
     if scene.contour is not None:

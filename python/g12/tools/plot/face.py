@@ -6,6 +6,7 @@ Lengths are millimetres until they are drawn; those of the layout are inches on 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from g12.tools.plot import style
 from g12.tools.plot.deviation import SIZE, draw_window
 from g12.tools.plot.labels import spread_out
 from g12.tools.plot.plan_view import (
+    Level,
     bounds_of,
     draw_plan,
     few,
@@ -90,15 +92,23 @@ def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
 
 def draw_panels(figure: Figure, scene: Scene) -> None:
     """Draw X, C, the speed of C and the feed along the part over time."""
-    history = real_history(scene) if scene.real is not None else programmed_history(scene)
     panels = [panel_axes(figure, row) for row in range(ROWS)]
+    draw_history(panels, scene, milled_levels(scene), "part")
+
+
+def draw_history(panels: Sequence[Axes], scene: Scene, levels: Sequence[Level], along: str) -> None:
+    """Draw over time what the axes do, and the feed ``along`` the part or its surface.
+
+    The depths of ``levels`` are told beside Z.
+    """
+    history = real_history(scene) if scene.real is not None else programmed_history(scene)
     x, z, c, c_speed, feed = panels
     colour = style.REAL if scene.real is not None else style.DEPTHS(0.5)
     drawn = {"color": colour, "linewidth": 1.0, "zorder": 3}
     name = scene.unit.name
     x.plot(history.time, history.x / scene.unit.mm, **drawn)
     style.caption(x, f"X (radius), {name}")
-    draw_depths(z, history, scene, drawn)
+    draw_depths(z, history, scene, levels, drawn)
     c.plot(history.time, history.c, **drawn)
     style.caption(c, "C, degrees")
     c_speed.plot(history.time, history.c_speed, drawstyle="steps-pre", **drawn)
@@ -106,7 +116,7 @@ def draw_panels(figure: Figure, scene: Scene) -> None:
     draw_limit(c_speed, limit, f"limit {plain(limit, 1)}")
     style.caption(c_speed, "Speed of C, degrees/s")
     draw_feed(feed, history, scene, drawn)
-    style.caption(feed, f"Feed along the part, {name}/min")
+    style.caption(feed, f"Feed along the {along}, {name}/min")
     for axes in panels:
         shade_rapids(axes, history)
         axes.set_xlim(0, history.time[-1])
@@ -154,15 +164,16 @@ def real_history(scene: Scene) -> History:
     return History(time, x, z, c, c_speed, real.part_speed() * 60, wanted, rapid)
 
 
-def draw_depths(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:
+def draw_depths(
+    axes: Axes, history: History, scene: Scene, levels: Sequence[Level], drawn: dict
+) -> None:
     """Draw Z, with the depths at which something is cut."""
     unit = scene.unit
     axes.plot(history.time, history.z / unit.mm, **drawn)
     style.caption(axes, f"Z, {unit.name}")
     low, high = axes.get_ylim()
     apart = LETTERS_APART * (high - low)
-    levels = few(milled_levels(scene))
-    depths = sorted(level.z / unit.mm for level in levels)
+    depths = sorted(level.z / unit.mm for level in few(levels))
     for depth, beside in zip(depths, spread_out(depths, apart)):
         axes.axhline(depth, color=style.RAPID, linewidth=0.6, linestyle=(0, (1, 2)))
         text = {"size": 6.5, "color": style.INK, "va": "center"}

@@ -9,10 +9,13 @@ from g12.tools.plot.face import draw_face
 from g12.tools.plot.mill import draw_mill
 from g12.tools.plot.scene import Scene
 from g12.tools.plot.turning import draw_turn
+from g12.tools.plot.unrolled import draw_unrolled
 
 
 def picture_of(scene: Scene) -> Figure:
     """Return the picture of a scene."""
+    if scene.seen.surface:
+        return draw_unrolled(scene)
     if scene.path.part.turning:
         return draw_face(scene)
     lathe = "Y" not in scene.subject.ini.axes

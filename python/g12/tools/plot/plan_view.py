@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The view along the tool's axis, of a mill's part or of a lathe's face: swept floors and paths.
+"""The view along the tool's axis, of a mill's part or of a lathe's: swept floors and paths.
 
 Lengths are millimetres until they are drawn.
 """
@@ -365,8 +365,9 @@ def warning_entries(scene: Scene) -> list:
 
 def level_entries(scene: Scene, levels: Sequence[Level]) -> list:
     """Return the legend's entries of the depths."""
+    letter = scene.path.part.letters[2]
     return [
-        style.swatch(*floor(scene, level), f"swept at Z{scene.unit.text(level.z)}")
+        style.swatch(*floor(scene, level), f"swept at {letter}{scene.unit.text(level.z)}")
         for level in few(levels)
     ]
 

@@ -38,6 +38,7 @@ from g12.tools.verify.proof import (
 from g12.tools.verify.rapids import Circles, Cleared, Collision, collisions, cutting, floors_of
 from g12.tools.verify.spindle import stands_still
 from g12.tools.verify.wanted_circle import Cutter
+from g12.tools.verify.wanted_contour import SectionContour
 
 
 class StandingRings(NamedTuple):
@@ -61,13 +62,17 @@ class WrongCutter(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What there is to warn of, the stock, and lines of pockets whose spindle stands."""
+    """What there is to warn of, the stock, and lines of pockets whose spindle stands.
+
+    ``surface`` is the radius of the cylinder that the program cuts on, 0 without one.
+    """
 
     collisions: tuple[Collision, ...] = ()
     rings: tuple[StandingRings, ...] = ()
     cutters: tuple[WrongCutter, ...] = ()
     stock: StockFacts | None = None
     still: tuple[int, ...] = ()
+    surface: float = 0.0
 
     @property
     def rapids(self) -> tuple[Collision, ...]:
@@ -98,18 +103,24 @@ def seen_in(
         with Tracer(subject.ini, tools=tools) as tracer:
             asked = asked_of(tracer, subject, tools, parameters)
     hits = collisions(asked.circles, trace.moves, subject.path, trace.diameters, subject.real)
-    return seen_of(subject, asked.circles, hits, stock_facts(subject, asked, stock, hits))
+    facts = stock_facts(subject, asked, stock, hits)
+    return seen_of(subject, asked.circles, asked.sections, hits, facts)
 
 
 def seen_of_proof(proof: Proof) -> Seen:
     """Return what a picture of a program that was measured shows beside the cuts."""
-    return seen_of(proof.subject, proof.circles, proof.collisions, proof.stock)
+    sections = [facts.section for facts in proof.sections]
+    return seen_of(proof.subject, proof.circles, sections, proof.collisions, proof.stock)
 
 
 def seen_of(
-    subject: Subject, circles: Circles, hits: Sequence[Collision], stock: StockFacts | None
+    subject: Subject,
+    circles: Circles,
+    sections: Sequence[SectionContour],
+    hits: Sequence[Collision],
+    stock: StockFacts | None,
 ) -> Seen:
-    """Return what is seen of a program's circles, with what is known of rapids and the stock."""
+    """Return what is seen of a program's circles and sections, with what is known of rapids and the stock."""
     trace = subject.trace
     rings = standing_rings(circles, trace.moves, subject.path, trace.diameters)
     cutters = (
@@ -122,7 +133,14 @@ def seen_of(
         for block, target in circles
         if stands_still(trace.events, block.end, subject.ini)
     )
-    return Seen(tuple(hits), tuple(rings), tuple(cutters), stock, tuple(still))
+    surface = surface_of(sections)
+    return Seen(tuple(hits), tuple(rings), tuple(cutters), stock, tuple(still), surface)
+
+
+def surface_of(sections: Sequence[SectionContour]) -> float:
+    """Return the radius of the cylinder that sections are cut on; 0 if not all of them are."""
+    radii = [section.surface for section in sections]
+    return radii[0] if radii and all(radii) else 0.0
 
 
 def standing_rings(

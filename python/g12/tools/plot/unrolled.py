@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The picture of sections on a cylinder: its unrolled surface, and what the axes do.
+
+The surface is seen from outside, C to the right and Z upwards: there a lathe is a mill that cuts
+down along X. Lengths are millimetres until they are drawn; those of the layout are inches.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from g12.tools.path.part import Part
+from g12.tools.path.surface import Surface
+from g12.tools.path.track import Track
+from g12.tools.plot import style
+from g12.tools.plot.deviation import SIZE, draw_window
+from g12.tools.plot.face import draw_history
+from g12.tools.plot.plan_view import (
+    bounds_of,
+    draw_plan,
+    legend_entries,
+    mark_worst,
+    milled_levels,
+)
+from g12.tools.plot.scene import Scene
+from g12.tools.preview.moves import Move
+
+WIDTH, MOST, LEAST = 11.9, 4.6, 0.9  # of the page; the surface's height
+LEFT, RIGHT, TOP = style.MARGIN, 0.35, 1.3
+UNDER = 0.95  # the surface: its labels, and the captions of the panels
+PANEL, GAP, ROWS = 1.0, 0.32, 3
+BETWEEN = 0.75  # the two columns of panels
+BOTTOM = 0.5
+NICE_ANGLES = (1, 1.5, 1.8, 3, 3.6, 4.5, 9, 10)
+HIGHER = 1.2  # with the window on the largest deviation
+
+
+@dataclass(frozen=True)
+class Flat(Part):
+    """The surface as a mill's part, of moves that are unrolled."""
+
+    @property
+    def letters(self) -> str:
+        """The axes that its points tell of."""
+        return "CZX"
+
+
+def draw_unrolled(scene: Scene) -> Figure:
+    """Return the picture of a program that cuts on a cylinder."""
+    rolled = replace(scene, subject=scene.subject.on_surface(scene.seen.surface))
+    flat = unrolled(rolled)
+    levels = milled_levels(flat)
+    low, high = (corner[:2] for corner in bounds_of(flat, levels))
+    size = high - low
+    scale = min((WIDTH - LEFT - RIGHT) / size[0], MOST / size[1])
+    across, up = size[0] * scale, max(LEAST, size[1] * scale)
+    more = HIGHER if scene.real is not None else 0.0
+    page = TOP + up + UNDER + ROWS * (PANEL + GAP) + BOTTOM + more
+    figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
+    axes = style.add_axes(figure, LEFT, page - TOP - up, across, up)
+    frame_surface(axes, flat, low, high)
+    draw_plan(axes, flat, levels)
+    panels = panels_of(figure, page - TOP - up - UNDER)
+    draw_history(panels, rolled, [], "surface")
+    panels[ROWS - 1].tick_params(labelbottom=True)
+    panels[ROWS - 1].set_xlabel(panels[-1].get_xlabel())
+    column = LEFT + (WIDTH - LEFT - RIGHT + BETWEEN) / 2
+    entries = [
+        *legend_entries(flat, levels),
+        style.swatch(style.FAINT, None, "time spent in rapids"),
+    ]
+    top = page - TOP - up - UNDER - 2 * (PANEL + GAP) - GAP
+    style.draw_legend(figure, entries, column - 0.1, top, 1 if more else 2)
+    if scene.real is not None:
+        mark_worst(axes, flat, [0, 1])
+        draw_window(figure, (WIDTH - RIGHT - SIZE, 0.55), flat)
+    return figure
+
+
+def panels_of(figure: Figure, top: float) -> list[Axes]:
+    """Return the axes over time: X, Z and C in one column, the speeds in another."""
+    width = (WIDTH - LEFT - RIGHT - BETWEEN) / 2
+    places = [(0, row) for row in range(ROWS)] + [(1, row) for row in range(ROWS - 1)]
+    return [
+        style.add_axes(
+            figure,
+            LEFT + column * (width + BETWEEN),
+            top - PANEL - row * (PANEL + GAP),
+            width,
+            PANEL,
+        )
+        for column, row in places
+    ]
+
+
+def frame_surface(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray) -> None:
+    """Show a part of the surface, with C's angles above it."""
+    radius = scene.seen.surface / scene.unit.mm
+    style.frame(axes, low, high, scene.unit, ("along C", "Z"))
+    axes.set_aspect("equal", adjustable="datalim")
+    to_degrees = (lambda length: np.degrees(length / radius)), (lambda c: np.radians(c) * radius)
+    above = axes.secondary_xaxis("top", functions=to_degrees)
+    above.xaxis.set_major_locator(MaxNLocator(8, steps=NICE_ANGLES))
+    above.set_xlabel(f"C, degrees, on the radius {scene.unit.text(scene.seen.surface)}")
+
+
+def unrolled(scene: Scene) -> Scene:
+    """Return a scene on a cylinder's surface as that of a mill."""
+    subject, path = scene.subject, scene.path
+    moves = [unrolled_move(move, path.part) for move in scene.moves]
+    positions = as_positions(path.points)
+    flat = Track(Flat(turning=False), positions, np.zeros_like(positions), path.move, path.time)
+    trace = replace(subject.trace, moves=moves)
+    shown = scene.seen._replace(stock=None)
+    return replace(scene, subject=replace(subject, trace=trace, path=flat), seen=shown)
+
+
+def unrolled_move(move: Move, part: Surface) -> Move:
+    """Return a straight move on the surface as one of a mill."""
+    start, end = map(tuple, as_positions(part.points(np.array([move.start, move.end]))).tolist())
+    return move._replace(kind="feed" if move.kind == "arc" else move.kind, start=start, end=end)
+
+
+def as_positions(points: np.ndarray) -> np.ndarray:
+    """Return points (n, 3) as machine positions (n, 9) of a mill."""
+    return np.pad(points, ((0, 0), (0, 6)))
