@@ -120,7 +120,7 @@ def seen_of(
     hits: Sequence[Collision],
     stock: StockFacts | None,
 ) -> Seen:
-    """Return what is seen of a program's circles and sections, with what is known of rapids and the stock."""
+    """Return what is seen of circles and sections, with what is known of rapids and the stock."""
     trace = subject.trace
     rings = standing_rings(circles, trace.moves, subject.path, trace.diameters)
     cutters = (
