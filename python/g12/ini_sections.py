@@ -3,14 +3,20 @@
 
 The first section of a name is read, a backslash at a line's end continues it, and of several
 lines with one key the first counts.  (2.10 reads later sections of the name too.)
+``#INCLUDE`` is a line of its own: see ``with_included``.
 """
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
+INCLUDE = re.compile(r"\s*#INCLUDE\s+(\S.*)")
+EXPANDED = ".expanded"  # how the file ends that the linuxcnc script of 2.9 makes of an INI
+DEEPEST = 16  # files that include each other, as LinuxCNC 2.10 allows
 NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf)", re.IGNORECASE)
 
 
@@ -20,6 +26,28 @@ class Entry(NamedTuple):
     index: int
     key: str
     value: str
+
+
+def included_file(line: str, directory: Path) -> Path | None:
+    """Return the file that a line of an INI in ``directory`` includes, if it includes one."""
+    include = INCLUDE.match(line)
+    if not include:
+        return None
+    return directory / os.path.expandvars(os.path.expanduser(include.group(1).strip()))
+
+
+def with_included(path: Path, depth: int = 1) -> Iterator[str]:
+    """Yield the lines of the INI file that LinuxCNC runs with, of included files in their place.
+
+    2.10 reads the INI itself, and what an included file includes, beside that. 2.9 runs with a
+    file in which all is expanded: an ``#INCLUDE`` that is left in it is a comment.
+    """
+    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
+        included = None if path.suffix == EXPANDED else included_file(line, path.parent)
+        if not included:
+            yield line
+        elif depth < DEEPEST and os.access(included, os.R_OK):
+            yield from with_included(included, depth + 1)
 
 
 def section_extent(lines: Sequence[str], section: str) -> range:

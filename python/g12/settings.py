@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from g12.errors import Refusal, number
-from g12.ini_sections import entries_of
+from g12.ini_sections import entries_of, with_included
 from g12.lengths import is_inch
 
 SECTION = "G12"
@@ -138,10 +138,10 @@ def settings_from_lines(lines: Sequence[str]) -> Settings:
 
 
 def settings_from_ini(path: str | os.PathLike[str] | None) -> Settings:
-    """Return the settings of an (expanded) INI file; the defaults if there is no file."""
+    """Return the settings of an INI file; the defaults if there is no file."""
     if not path:
         return Settings()
-    lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = list(with_included(Path(path)))
     check_section(lines)
     return settings_from_lines(lines)
 

@@ -504,7 +504,7 @@ def test_a_cycle_that_turns_the_wrong_way_is_found(sabotaged, tmp_path):
     [
         ("      G1 Z#<z>", "      G1 Z[#<z> - 5]\n      G1 Z#<z>", "it goes 5 mm below its depth"),
         ("repeat [#<levels>]", "repeat [1]", "full circles along the wall: 1, not 2"),
-        ("  o<level> repeat", "  #<feed> = 1200\n  o<level> repeat", "the feed 1200, not 600"),
+        ("  o<level> repeat", "  F1200\n  o<level> repeat", "the feed 1200, not 600"),
     ],
 )
 def test_a_haas_cycle_that_moves_otherwise_is_found(good, bad, found, sabotaged, tmp_path):

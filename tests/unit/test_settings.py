@@ -28,6 +28,29 @@ def test_a_section_is_read(tmp_path):
     assert settings.polar_tolerance == 0.01
 
 
+def test_included_files_are_read_in_their_place_and_what_they_include(tmp_path):
+    ini = tmp_path / "machine.ini"
+    ini.write_text("[EMC]\n#INCLUDE more/codes.inc\nHALFILE = x.hal\n#INCLUDE missing.inc\n")
+    (tmp_path / "more").mkdir()
+    (tmp_path / "more" / "codes.inc").write_text("[G12]\n#INCLUDE deeper.inc\n[HAL]\n")
+    (tmp_path / "more" / "deeper.inc").write_text("CLEARING = spiral\n")
+    assert settings_from_ini(ini).clearing == "spiral"
+
+
+def test_files_that_include_each_other_come_to_an_end(tmp_path):
+    ini = tmp_path / "machine.ini"
+    ini.write_text("#INCLUDE machine.ini\n[G12]\n")
+    with pytest.raises(Refusal, match="twice"):
+        settings_from_ini(ini)
+
+
+def test_in_the_file_that_linuxcnc_expanded_an_include_is_a_comment(tmp_path):
+    ini = tmp_path / "machine.ini.expanded"
+    ini.write_text("[G12]\n#INCLUDE more.inc\n")
+    (tmp_path / "more.inc").write_text("CLEARING = spiral\n")
+    assert settings_from_ini(ini).clearing == "rings"
+
+
 def test_only_the_first_section_of_the_name_counts():
     text = "[G12]\nCLEARING = spiral\n[A]\n[G12]\nCLEARING = rings\n"
     assert list(entries_of(text.splitlines(), "G12")) == [(1, "CLEARING", "spiral")]

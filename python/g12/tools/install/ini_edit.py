@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from g12.ini_sections import entries_of, section_extent
-from g12.tools.machine.ini import Ini, IniError, included_file
+from g12.ini_sections import entries_of, included_file, section_extent
+from g12.tools.machine.ini import Ini, IniError
 
 BEGIN = "# >>> g12 install"
 END = "# <<< g12 install"

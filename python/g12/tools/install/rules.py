@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from g12.errors import Refusal
-from g12.ini_sections import entries_of, key_and_value
+from g12.ini_sections import INCLUDE, entries_of, key_and_value
 from g12.machine_ini import Remap, remap_from_value
 from g12.settings import SECTION, settings_from_lines
 from g12.tools.install import features
@@ -22,7 +22,6 @@ from g12.tools.install.findings import Finding, note, problem, warning
 from g12.tools.install.forms import form_findings
 from g12.tools.install.ini_edit import IniLine
 from g12.tools.install.kinematics_rules import kinematics_findings
-from g12.tools.machine.ini import INCLUDE
 from g12.tools.system import CALL
 from g12.tools.translate.blocks.control import ControlError, read_control
 

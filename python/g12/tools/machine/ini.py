@@ -16,13 +16,19 @@ from pathlib import Path
 from typing import Callable, TypeVar, Union
 
 from g12.errors import Refusal
-from g12.ini_sections import continued, entries_of, key_and_value, section_extent
+from g12.ini_sections import (
+    INCLUDE,
+    continued,
+    entries_of,
+    included_file,
+    key_and_value,
+    section_extent,
+)
 from g12.machine_ini import Axis, axes_of, coordinates_of, millimetres_of, number_in
 from g12.settings import Settings, settings_from_lines
 from g12.tools.errors import UsageError
 from g12.tools.machine.files import existing
 
-INCLUDE = re.compile(r"\s*#INCLUDE\s+(\S.*)")
 SECTIONS = re.compile(r"\s*\[(EMC|KINS|RS274NGC|TRAJ)\]", re.MULTILINE)  # of a machine's INI
 LONGEST_PART = 250
 ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
@@ -143,14 +149,6 @@ def read_machine_ini(path: Path) -> Ini:
     if not SECTIONS.search(ini.text):
         raise UsageError(f"{path}: is not a machine INI: no section [RS274NGC] or [TRAJ]")
     return ini
-
-
-def included_file(line: str, directory: Path) -> Path | None:
-    """Return the file that a line of an INI in ``directory`` includes, if it includes one."""
-    include = INCLUDE.match(line)
-    if not include:
-        return None
-    return directory / os.path.expandvars(os.path.expanduser(include.group(1).strip()))
 
 
 def _expanded(lines: list[str], directory: Path):
