@@ -30,7 +30,7 @@ def proof_of_text(tmp_path, lines, machine="mill_mm", **options):
     return prove(program, ini(machine), **options)
 
 
-MM = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6"]  # a 10 mm cutter
+MM = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6 S3000 M3"]  # a 10 mm cutter
 
 
 # ---------------------------------------------------------------- the manual's pockets
