@@ -27,7 +27,7 @@ class Position(NamedTuple):
 class BlockMoves(NamedTuple):
     """G1 moves of one block, one after the other, all in G90 and G94.
 
-    ``axes`` is "XC", "ZC", "XCZ", "X" or "Z": the words to write. Each piece is
+    ``axes`` are the words to write, as "XC", "XZC" or "Z". Each piece is
     ``(x, c, z, feed)``: X radius value, C in degrees, continuous over the section (it may leave
     0..360), and F as G94 wants it: for the X and Z part of the move, or in degrees per minute where
     neither changes; it may be small, so write it with six significant digits. A piece that keeps a
