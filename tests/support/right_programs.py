@@ -334,6 +334,71 @@ def _free(text, *_):
             at = to
 
 
+# ---------------------------------------------------------------- sections on a cylinder
+
+
+def cylinder_program(chance, unit, count):
+    """Return a program of sections on cylinders: grooves, arcs, turns, walls with compensation."""
+    text = Text(chance, unit, polar=True)
+    text.diameter = chance.random() < 0.5
+    text.add("G7" if text.diameter else "G8", "G97 S500")
+    for _ in range(count):
+        loaded = chance.choice(list(AXIAL[unit]))
+        radius = text.between(15, 60)
+        z, c = -text.between(20, 80), chance.choice([0, 90, -45, 400])
+        text.add(f"T{loaded} M6")
+        text.add(f"G0 X{_x(text, radius + 5)} Z{text.n(z)} C{c}")
+        text.add(f"G7.1 C{text.n(radius)}")
+        text.add(f"G1 X{_x(text, radius - text.between(0.5, 4))} F{text.n(text.between(50, 300))}")
+        text.add(f"F{text.n(text.between(100, 1500))}")
+        if chance.random() < 0.5:
+            _groove(text, radius, complex(radius * math.radians(c), z))
+        else:
+            _wall(text, radius, complex(radius * math.radians(c), z), AXIAL[unit][loaded] / 2)
+        text.add(f"G1 X{_x(text, radius + 5)}")
+        text.add("G7.1 C0")
+    return text.end()
+
+
+def _around(text, radius, point, words="G1", more=""):
+    """Add a block to a point of the unrolled surface, its first axis along C."""
+    c = f"C{math.degrees(point.real / radius):.5f}"
+    text.add(words, f"Z{text.n(point.imag)} {c}", more)
+
+
+def _groove(text, radius, at):
+    """Add lines and arcs through places anywhere, some of them turns away."""
+    for _ in range(text.chance.randint(1, 6)):
+        to = at + complex(text.between(-40, 40), text.between(-8, 8))
+        kind = text.one_of("line", "arc", "turns", "circle")
+        if kind == "arc" and abs(to - at) > 1.0:
+            bow = abs(to - at) * text.chance.uniform(0.55, 0.9) * text.one_of(1, -1)
+            _around(text, radius, to, text.one_of("G2", "G3"), f"R{text.n(bow)}")
+        elif kind == "circle":
+            text.add(text.one_of("G2", "G3"), f"J{text.n(text.between(1, 9))} K{text.n(2)}")
+            to = at
+        elif kind == "turns":
+            text.add("G1", f"W{text.n(text.between(1, 9))} H{text.one_of(-720, 540, 360)}")
+            return
+        else:
+            _around(text, radius, to)
+        at = to
+
+
+def _wall(text, radius, start, cutter):
+    """Add a wall along C with a step, the tool on the side that it comes from, and back."""
+    below = text.chance.random() < 0.5
+    away = (cutter + text.between(1, 8)) * (1j if below else -1j)
+    wall, ahead = start + away, text.between(10, 60)
+    to_the_right = text.chance.random() < 0.5
+    ahead = ahead if to_the_right else -ahead
+    left = below != to_the_right
+    _around(text, radius, wall, "G41 G1" if left else "G42 G1")
+    for part in (0.4, 1.0):
+        _around(text, radius, wall + part * ahead)
+    _around(text, radius, start + ahead, "G40 G1")
+
+
 # ---------------------------------------------------------------- each kind by its name
 
 MACHINES = {
@@ -346,6 +411,8 @@ MACHINES = {
     "polar": "lathe_mm",
     "polar inch": "lathe_inch",
     "polar kinematics": "lathe_mm_kinematics",
+    "cylinder": "lathe_mm",
+    "cylinder inch": "lathe_inch",
 }
 POCKETS = {"yasnac": yasnac, "mitsubishi": mitsubishi, "circle mill": circle_mill}
 
@@ -357,4 +424,6 @@ def right_program(kind, chance, count):
         return dynapath_program(chance, count)
     if kind.startswith("polar"):
         return polar_program(chance, unit, count)
+    if kind.startswith("cylinder"):
+        return cylinder_program(chance, unit, count)
     return pocket_program(chance, unit, count, POCKETS.get(kind, haas))

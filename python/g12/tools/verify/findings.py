@@ -349,6 +349,8 @@ def stock_notes(facts: StockFacts, unit: Unit = MM) -> Iterator[str]:
         )
     for line in facts.missed:
         yield f"line {line}: it meets nothing of the stock"
+    for line in facts.aside:
+        yield f"line {line}: a section on a cylinder is not compared with the stock"
     if facts.below:
         yield f"the lowest cut is {unit.text(facts.below)} {unit.name} below the block"
 

@@ -2,7 +2,8 @@
 """What a program does to its stock: rapids and plunges into it, and what it leaves standing.
 
 Lengths are millimetres, areas square millimetres, in machine coordinates; on a lathe those of the
-part's face. Only cutters with a diameter count, on a lathe those that cut polar sections.
+part's face. Only cutters with a diameter count, on a lathe those that cut polar sections; sections
+on a cylinder are not compared with the stock.
 """
 
 from __future__ import annotations
@@ -56,7 +57,8 @@ class StockFacts:
     """What a program does to its stock, whose top is at ``top``; ``shape`` is seen along Z.
 
     ``below`` is how far the lowest cut goes below a block, 0 if it does not.
-    ``missed`` are the lines of cycles and sections that meet nothing of it.
+    ``missed`` are the lines of cycles and sections that meet nothing of it, ``aside`` those of
+    sections on a cylinder.
     """
 
     stock: Stock
@@ -67,6 +69,7 @@ class StockFacts:
     standing: tuple[Standing, ...]
     below: float
     missed: tuple[int, ...] = ()
+    aside: tuple[int, ...] = ()
 
     @property
     def bottom(self) -> float | None:
@@ -86,6 +89,8 @@ class InStock:
         path: Track,
         diameters: dict[int, float],
     ) -> None:
+        self._aside = tuple(each.line for each in sections if each.surface)
+        sections = [each for each in sections if not each.surface]
         zero = zero_of(circles, sections, moves)
         self.cleared = Cleared(circles, moves, path, diameters)
         self.shape = stock.shape(zero, [target.wall for _, target in circles])
@@ -113,7 +118,7 @@ class InStock:
         found = tuple(filter(None, rapids)), tuple(plunges.values()), standing
         facts = StockFacts(self._stock, self.shape, self.top, *found, 0.0)
         below = 0.0 if facts.bottom is None else max(0.0, facts.bottom - lowest)
-        return replace(facts, below=below, missed=tuple(self._missed()))
+        return replace(facts, below=below, missed=tuple(self._missed()), aside=self._aside)
 
     def _bite(self, index: int, point: np.ndarray) -> BaseGeometry:
         """Return what of the stock is under a move's cutter there, not cleared before."""
