@@ -2,7 +2,6 @@
 """The forms: what ngcgui makes of them comes out as filled in; geometry from the moves alone."""
 
 import re
-from pathlib import Path
 
 import pytest
 from matplotlib.image import imread
@@ -238,12 +237,25 @@ def test_two_features_of_one_program(machine, tmp_path):
     assert {circle.x for circle in cut_geometry.full_circles(found.moves)} == {0, 80}
 
 
-def test_every_machine_shows_forms_of_its_own_codes_and_unit():
-    shown = {}
-    for ini in SIM.glob("*.ini"):
-        shown[ini.stem] = re.findall(r"^NGCGUI_SUBFILE = (\S+)$", ini.read_text(), re.MULTILINE)
-    for name, files in shown.items():
-        assert "lathe" in name or bool(files) != name.endswith("_headless"), name
-        unit = "inch" if "inch" in name else "mm"
-        assert all(Path(file).stem.endswith(f"_{unit}") for file in files), name
-        assert all((NGC / file).is_file() for file in files)
+SHOWN = {
+    ini: re.findall(r"^NGCGUI_SUBFILE = (\S+)\.ngc$", ini.read_text(), re.MULTILINE)
+    for ini in sorted(SIM.glob("*.ini"))
+}
+
+
+def test_every_machine_with_a_screen_shows_forms_of_its_own_unit():
+    for ini, forms in SHOWN.items():
+        assert "lathe" in ini.stem or bool(forms) != ini.stem.endswith("_headless"), ini
+        unit = "inch" if "inch" in ini.stem else "mm"
+        assert all(form.endswith(f"_{unit}") for form in forms), ini
+
+
+@pytest.mark.parametrize("ini", [ini for ini in SHOWN if SHOWN[ini]], ids=lambda ini: ini.stem)
+def test_the_defaults_are_right_for_the_machines_that_show_a_form(ini, tmp_path):
+    with Tracer(ini) as running:
+        for form in SHOWN[ini]:
+            program = filled_in(form, tmp_path / "auto.ngc")
+            found = running.trace_text(program.read_text().splitlines())
+            assert found.error is None, (form, found.error)
+            assert not found.messages
+            assert cut_geometry.cutting(found.moves)
