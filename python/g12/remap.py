@@ -18,12 +18,11 @@ CYCLES = (
 )
 POLAR = ("polar_off", "polar_on")
 CYLINDER = ("cylinder_mode",)
-__all__ = [
-    *CYCLES,
-    *POLAR,
-    *CYLINDER,
-]  # what `from g12.remap import *` brings into a user's own remap
+SHAPES = ("polar_shape", "polar_shape_done")
+# what `from g12.remap import *` brings into a user's own remap
+__all__ = [*CYCLES, *POLAR, *CYLINDER, *SHAPES]
 
 globals().update(loaded_handlers("g12.host.cycle_prologs", CYCLES))
 globals().update(loaded_handlers("g12.host.polar_handlers", POLAR))
 globals().update(loaded_handlers("g12.host.cylinder_handlers", CYLINDER))
+globals().update(loaded_handlers("g12.host.shape_handlers", SHAPES))

@@ -11,7 +11,7 @@ from support.sim_machines import ROOT
 PACKAGE = ROOT / "python" / "g12"
 LINUXCNC = ("interpreter", "emccanon", "linuxcnc", "hal", "gcode")
 PLANNERS = (
-    "g12.cycles", "g12.section", "g12.flat", "g12.moves", "g12.polar", "g12.cylinder",
+    "g12.cycles", "g12.shapes", "g12.section", "g12.flat", "g12.moves", "g12.polar", "g12.cylinder",
 )  # fmt: skip
 KINDS = ("g12.polar", "g12.cylinder")  # of sections
 WINGS = ("g12.host", "g12.tools", "g12.remap")

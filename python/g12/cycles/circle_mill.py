@@ -40,6 +40,7 @@ from g12.cycles.common import (
     check_count,
     check_modes,
     coordinate,
+    loaded_tool,
     steps_between,
 )
 from g12.cycles.context import XY, Context, Tool
@@ -266,7 +267,7 @@ def plan_event(entries: EventEntries) -> MillEvent:
     peck = words.take_positive("K")
     width = words.take_positive("J")
     plunge_feed = words.take_positive("P") or context.feed
-    tool = loaded_tool(entries)
+    tool = loaded_tool(words, context)
     roughing = roughing_of(entries, circle, tool, width)
     depths = depths_of(entries, depth, first_plane, peck)
     check_count(words, roughing.rings * depths.levels, "J and K make")
@@ -327,19 +328,6 @@ def planes_of(entries: EventEntries) -> tuple[float, float]:
             f" plane {spelling.first_plane}{number(first)}"
         )
     return first, second
-
-
-def loaded_tool(entries: EventEntries) -> Tool:
-    """Return the tool in the spindle, which must have a diameter."""
-    tool = entries.context.spindle_tool
-    if tool is None:
-        raise entries.refuse("no tool is loaded: its diameter sets the path")
-    if tool.radius <= 0:
-        raise entries.refuse(
-            f"T{tool.number} in the spindle needs a diameter above 0 in the tool table,"
-            f" not {number(2 * tool.radius)}"
-        )
-    return tool
 
 
 def roughing_of(

@@ -75,6 +75,19 @@ def sound_tool(words: Words, tool: Tool, source: str) -> Tool:
     return tool
 
 
+def loaded_tool(words: Words, context: Context) -> Tool:
+    """Return the tool in the spindle, which must have a diameter."""
+    tool = context.spindle_tool
+    if tool is None:
+        raise words.refuse("no tool is loaded: its diameter sets the path")
+    if tool.radius <= 0:
+        raise words.refuse(
+            f"T{tool.number} in the spindle needs a diameter above 0 in the tool table,"
+            f" not {number(2 * tool.radius)}"
+        )
+    return tool
+
+
 def check_count(words: Words, circles: int, cause: str) -> None:
     """Refuse steps so small that the block would never end; ``cause`` names their words."""
     if circles > MOST_CIRCLES:

@@ -26,7 +26,7 @@ class Words:
         self._left = dict(values)
         for letter, value in values.items():
             if not abs(value) <= LARGEST:
-                raise self.refuse(f"{letter}{number(value)} is beyond {number(LARGEST)}")
+                raise self.refuse(f"{self.written(letter, value)} is beyond {number(LARGEST)}")
 
     def __contains__(self, letter: str) -> bool:
         """Tell whether the word is in the block and not yet taken."""
@@ -35,6 +35,11 @@ class Words:
     def refuse(self, rule: str) -> BlockRefusal:
         """Return the refusal of this block for breaking ``rule`` (the caller raises it)."""
         return BlockRefusal(self.code, rule)
+
+    @staticmethod
+    def written(letter: str, value: float) -> str:
+        """Return a word as a program has it: ``I0.125``."""
+        return f"{letter}{number(value)}"
 
     def take(self, letter: str) -> float | None:
         """Return the word's value, or None if the block does not have it."""
@@ -50,7 +55,7 @@ class Words:
         """Return the word's value, which must be above zero, or None."""
         value = self.take(letter)
         if value is not None and not value > 0:
-            raise self.refuse(f"{letter}{number(value)} must be greater than 0")
+            raise self.refuse(f"{self.written(letter, value)} must be greater than 0")
         return value
 
     def require_positive(self, letter: str, meaning: str) -> float:
@@ -67,18 +72,19 @@ class Words:
         if value is None:
             return default
         if abs(value - round(value)) > WHOLE:
-            raise self.refuse(f"{letter}{number(value)} must be a whole number")
+            raise self.refuse(f"{self.written(letter, value)} must be a whole number")
         if round(value) < least:
-            raise self.refuse(f"{letter}{number(value)} must be at least {least}")
+            raise self.refuse(f"{self.written(letter, value)} must be at least {least}")
         if most is not None and round(value) > most:
-            raise self.refuse(f"{letter}{number(value)} must be at most {most}")
+            raise self.refuse(f"{self.written(letter, value)} must be at most {most}")
         return round(value)
 
     def has_pair(self, first: str, second: str) -> bool:
         """Tell whether two words are in the block; refuse one without the other."""
         if (first in self) != (second in self):
             present, absent = (first, second) if first in self else (second, first)
-            raise self.refuse(f"{present}{number(self._left[present])} needs {absent} as well")
+            given = self.written(present, self._left[present])
+            raise self.refuse(f"{given} needs {absent} as well")
         return first in self
 
     def take_pair(self, first: str, second: str) -> tuple[float, float] | None:
@@ -91,6 +97,5 @@ class Words:
         """Refuse a word that the dialect does not have; ``known`` lists its letters."""
         for letter, value in self._left.items():
             if letter not in known:
-                raise self.refuse(
-                    f"{letter}{number(value)} is not a word of this cycle, which knows {known}"
-                )
+                word = self.written(letter, value)
+                raise self.refuse(f"{word} is not a word of this cycle, which knows {known}")

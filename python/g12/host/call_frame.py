@@ -26,6 +26,24 @@ def kept(interp: object, text: str) -> str:
     return texts.setdefault(text, text)
 
 
+def locals_at(interp: object, level: int) -> dict[str, float]:
+    """Return the local parameters of a call level; level 0 has the global ones too."""
+    found, interp.call_level = interp.call_level, level
+    params = interp.params
+    values = {name: params[name] for name in params.locals() if name[0] != "_"}
+    interp.call_level = found
+    return values
+
+
+def set_locals_at(interp: object, level: int, values: dict[str, float]) -> None:
+    """Set local parameters of a call level."""
+    found, interp.call_level = interp.call_level, level
+    params = interp.params
+    for name, value in values.items():
+        params[name] = value
+    interp.call_level = found
+
+
 class CallFrame:
     """The frame of the handler at work, and of its caller, which is in the file ``home``."""
 
@@ -34,8 +52,9 @@ class CallFrame:
         self.level, self.remap_level = interp.call_level, interp.remap_level
         block = interp.blocks[self.remap_level]
         self._remap, self._phase = block.executing_remap, block.phase
+        self._interrupted = False  # a sub that MDI called, by a wait
         caller = interp.sub_context[self.level - 1]
-        self._name = kept(interp, caller.subname or "")
+        self.caller = kept(interp, caller.subname or "")
         caller.filename = kept(interp, home)  # or it is that of an earlier call
 
     @property
@@ -45,17 +64,18 @@ class CallFrame:
 
     def enter(self) -> None:
         """Show the caller's local parameters and labels to the lines that follow."""
-        self.interp.sub_context[self.level].subname = self._name
-        self._found = self._locals(self.level - 1)
-        self._set_locals(self.level, self._found)
+        self.interp.sub_context[self.level].subname = self.caller
+        self._found = locals_at(self.interp, self.level - 1)
+        set_locals_at(self.interp, self.level, self._found)
 
     def leave(self, line: int) -> None:
         """Give local parameters back to the caller, and the number of the line read last."""
-        changed = self._locals(self.level).items() - self._found.items()
-        self._set_locals(self.level - 1, dict(changed))
+        changed = locals_at(self.interp, self.level).items() - self._found.items()
+        set_locals_at(self.interp, self.level - 1, dict(changed))
         self._renumber(line)
         self.interp.sub_context[self.level - 1].sequence_number = line
         self.interp.sequence_number = line
+        self.interp.mdi_interrupt = self._interrupted
 
     def give_up(self, line: int, *, called: bool, behind: int | None) -> None:
         """Let an error be that of ``line``, and the line behind follow that begins at ``behind``.
@@ -87,6 +107,11 @@ class CallFrame:
         a remap, at the level where the handler was called. Else milltask crashes. Behind the wait
         the mark must go, or the next line would not be read either.
         (Without it: `test_waiting_for_an_input` in tests/sim/test_polar.py.)
+
+        In a sub that MDI has called, `Interp::_execute` marks the wait with ``mdi_interrupt``, to
+        read on in the sub behind it. It would as well behind each block executed here, so the mark
+        is put aside until the handler waits again or is done.
+        (Without it: `test_in_mdi` in tests/sim/test_shapes.py, with kinematics.)
         """
         interp = self.interp
         level, remap_level = interp.call_level, interp.remap_level
@@ -94,26 +119,11 @@ class CallFrame:
         interp.blocks[0].call_type = CALLED_AS_REMAP
         if interp.execute(text):
             interp.call_level, interp.remap_level = self.level, self.remap_level
+            interp.mdi_interrupt = self._interrupted
             yield INTERP_EXECUTE_FINISH
+            self._interrupted, interp.mdi_interrupt = interp.mdi_interrupt, False
             interp.call_level, interp.remap_level = level, remap_level
         interp.blocks[0].o_type, interp.blocks[0].call_type = NO_O_WORD, NOT_CALLED
-
-    def _locals(self, level: int) -> dict[str, float]:
-        """Return the local parameters of a call level; level 0 has the global ones too."""
-        interp, found = self.interp, self.interp.call_level
-        interp.call_level = level
-        params = interp.params
-        values = {name: params[name] for name in params.locals() if name[0] != "_"}
-        interp.call_level = found
-        return values
-
-    def _set_locals(self, level: int, values: dict[str, float]) -> None:
-        interp, found = self.interp, self.interp.call_level
-        interp.call_level = level
-        params = interp.params
-        for name, value in values.items():
-            params[name] = value
-        interp.call_level = found
 
     def _renumber(self, line: int) -> None:
         """Make the remapped block end on ``line``.

@@ -66,14 +66,16 @@ LIMITS = ranges_of(linuxcnc.ini(ini_file() or os.devnull).find, "XYZ")
 class CycleState:
     """What the package remembers of one interpreter; it lives on the interpreter object.
 
-    ``modes`` are those a cycle found and has to put back; ``radius_commanded`` tells a D of
-    radius 0 from no D at all, which the interpreter's own last compensation radius cannot.
+    ``modes`` are those a cycle found and has to put back, ``feed`` the F that a shape found;
+    ``radius_commanded`` tells a D of radius 0 from no D at all, which the interpreter's own last
+    compensation radius cannot.
     ``first_plane`` is the circle mill's modal reference plane in mm and the program that
     commanded it, as it was then.
     """
 
     def __init__(self) -> None:
         self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
+        self.feed = 0.0
         self.radius_commanded = False
         self.first_plane: tuple[float, tuple[str, int] | None] | None = None
 
@@ -267,7 +269,14 @@ def hand_over(interp: object, **locals_: float) -> None:
     params = interp.params
     for name, value in locals_.items():
         params[name] = value
-    state_of(interp).modes = (
+    note_modes(interp)
+
+
+def note_modes(interp: object) -> None:
+    """Note the modes that a cycle or a shape finds, and its F."""
+    state = state_of(interp)
+    state.feed = interp.feed_rate
+    state.modes = (
         interp.motion_mode,
         interp.distance_mode,
         interp.ijk_distance_mode,

@@ -31,14 +31,11 @@ from g12.section.start import SectionStart
 
 ADAPTIVE = 52  # active_m_codes
 MDI_LINE = 0  # of the moves that follow, by which polar_xzc knows them
-TYPED = 1  # call level of a block that stands in no sub
 
 
 def switch_on(interp: object, start: SectionStart, beside: float) -> Iterator[int]:
     """Go to the face where a section could begin, with the tool ``beside`` the X line."""
     code = start.place.code
-    if interp.call_level != TYPED:
-        raise BlockRefusal(code, "is a line of its own in MDI, not of a sub")
     if face_in_force():
         raise BlockRefusal(code, "is already on")
     if y_offset(interp):

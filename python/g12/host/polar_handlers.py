@@ -28,7 +28,9 @@ from g12.polar import plan as polar
 from g12.polar.start import check_section_start, polar_setup
 from g12.section.codes import SectionCodes, codes_of_section
 from g12.section.start import SectionStart
+from g12.shapes.entries import SUBS
 
+TYPED = 1  # call level of a block that stands in no sub
 DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could read them
 
 
@@ -47,10 +49,11 @@ def polar_on(self, **words) -> Iterator[int]:
     """Read, plan and move a section: the handler of G12.1, which may have to wait."""
     try:
         glue.forget_return(self)
-        if glue.in_mdi(self):
+        if glue.in_mdi(self) and self.call_level == TYPED:
             yield from run_by_hand(self)
         else:
-            yield from run_section(self, POLAR)
+            in_shape = self.sub_context[self.call_level - 1].subname in SUBS
+            yield from run_section(self, POLAR_IN_SHAPE if in_shape else POLAR)
     except Exception as error:
         yield glue.refuse_block(self, error)
     yield INTERP_OK
@@ -102,3 +105,12 @@ POLAR = SectionKind(
     codes=_codes,
     plan=lambda contour, setup, start: polar.plan(contour, setup.plan, c=start.c),
 )
+
+
+def _setup_of_shape(start: SectionStart) -> SectionSetup:
+    """Return the setup of a shape's section, whose tool goes down along a ramp."""
+    setup = _setup(start)
+    return setup._replace(words=setup.words._replace(third_with_others=True))
+
+
+POLAR_IN_SHAPE = POLAR._replace(setup=_setup_of_shape)

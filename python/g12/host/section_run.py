@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterator
 from enum import Enum
 
-from g12.errors import Refusal, number
+from g12.errors import Refusal
 from g12.flat.contour import Contour
 from g12.host import glue
 from g12.host.call_frame import CallFrame
@@ -264,13 +264,9 @@ class Section:
     def _check_limits(self, plan: SectionPlan) -> None:
         beyond = self.setup.limits.beyond(plan.steps)
         if beyond:
-            diameter = beyond.axis == "X" and self.setup.words.diameter
             lengths = self.setup.words.words.c_is_length
             by_c = beyond.axis == "X" and lengths and self.program.has_letter(beyond.line, "CHY")
-            active = f"G{20 if beyond.unit == 'mm' else 21} is active"
             raise self.reader.place._replace(line=beyond.line).refuse(
-                f"the {beyond.axis} axis would go to {number(beyond.position)} {beyond.unit}"
-                f"{' (radius)' * diameter}, beyond its limit {number(beyond.limit)} {beyond.unit}"
-                f"{f' ({active})' * beyond.converted}"
+                f"{beyond.text(self.setup.words.diameter)}"
                 f"{': C and H are lengths here, not degrees' * by_c}"
             )

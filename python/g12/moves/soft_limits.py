@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from g12.errors import number
 from g12.machine_ini import Axis
 from g12.moves.steps import BlockMoves
 
@@ -29,6 +30,16 @@ class Beyond(NamedTuple):
     limit: float
     unit: str
     converted: bool
+
+    def text(self, diameters: bool) -> str:
+        """Return it in words; ``diameters`` tells whether the program's X words are."""
+        active = f" (G{20 if self.unit == 'mm' else 21} is active)"
+        return (
+            f"the {self.axis} axis would go to {number(self.position)} {self.unit}"
+            f"{' (radius)' * (self.axis == 'X' and diameters)}, beyond its limit"
+            f" {number(self.limit)} {self.unit}"
+            f"{active * self.converted}"
+        )
 
 
 class SoftLimits:

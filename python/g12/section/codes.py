@@ -66,5 +66,11 @@ def _remapped(remaps: Collection[Remap]) -> dict[int, bool]:
     }
 
 
+def code_of_handler(remaps: Collection[Remap], handler: str) -> float | None:
+    """Return the number of the G code that is remapped to a handler, None if none is."""
+    found = (remap.code for remap in remaps if remap.keywords.get("python") == handler)
+    return next((_number_of(code) / 10 for code in found), None)
+
+
 def _number_of(code: str) -> int:
     return code_number(code)[1]

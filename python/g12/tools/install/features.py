@@ -14,6 +14,7 @@ from g12.tools.translate.blocks.control import shipped_controls
 ROOT = Path(__file__).resolve().parents[4]  # the folder that holds ngc, python and configs
 INCLUDES = ROOT / "configs" / "include"
 
+SHAPES = "polar-shapes"  # they need polar or polar-g12.3
 FILES = {
     "haas": "g12_haas.inc",
     "yasnac": "g12_yasnac.inc",
@@ -22,6 +23,7 @@ FILES = {
     "polar": "polar.inc",
     "polar-g12.3": "polar_g12_3.inc",
     "cylinder": "cylinder.inc",
+    SHAPES: "polar_shapes.inc",
 }
 PROGRAMS = {f"programs-{control}": control for control in shipped_controls()}
 FORMS = "forms"
@@ -29,7 +31,10 @@ KINEMATICS = "polar-kinematics"
 NAMES = (*FILES, KINEMATICS, FORMS, *PROGRAMS)
 ONE_OF = (("haas", "yasnac", "mitsubishi"), ("polar", "polar-g12.3"), tuple(PROGRAMS))
 POLAR = ("polar", "polar-g12.3")
-AXES = {**dict.fromkeys(POLAR, "XC"), "cylinder": "XZC"}  # of the machine; a mill's are XYZ
+AXES = {  # of the machine; a mill's are XYZ
+    **dict.fromkeys((*POLAR, SHAPES), "XC"),
+    "cylinder": "XZC",
+}
 MEANING = {
     "haas": "G12/G13 circular pocket, Haas words",
     "yasnac": "G12/G13 circle cutting, Yasnac words",
@@ -40,6 +45,7 @@ MEANING = {
     "cylinder": "G7.1 (G07.1) cylindrical interpolation on and off",
     KINEMATICS: "G12.1 in LinuxCNC's planner, on a lathe of the usual form (make kinematics)",
     FORMS: "pages to fill in, with pictures, for the codes that the machine has",
+    SHAPES: "G12.4/G13.4 in the subs polar_polygon, polar_slot and polar_pocket",
     **{
         name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()
     },
@@ -49,6 +55,7 @@ SUBS = {  # what a program, or a handler, calls besides the codes
     "haas": ("g12_helix",),
     "circle-mill": ("circle_mill",),
     **dict.fromkeys(AXES, ("g12_skipped_over",)),
+    SHAPES: ("polar_polygon", "polar_slot", "polar_pocket"),
 }
 
 CLOSE = 0.8  # share of letters in common that makes a name a misspelt one

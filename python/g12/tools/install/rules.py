@@ -389,6 +389,17 @@ def missing_axes(config: Config, codes: list[Code]) -> Iterator[Finding]:
             )
 
 
+def shapes_without_polar(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find the shapes on a machine without the polar interpolation that they are made of."""
+    known = {code.feature for code in codes}
+    if features.SHAPES in known and known.isdisjoint(features.POLAR):
+        yield problem(
+            "no-polar",
+            f"{features.SHAPES} needs polar or polar-g12.3: the subs use its codes",
+            f"run install again, with polar {features.SHAPES}",
+        )
+
+
 def no_tool_table(config: Config, codes: list[Code]) -> Iterator[Finding]:
     """Find a machine without a tool table: it starts, and has no tool."""
     name, database = (config.ini.get("EMCIO", key) for key in ("TOOL_TABLE", "DB_PROGRAM"))
@@ -474,6 +485,7 @@ RULES: tuple[Rule, ...] = (
     handlers_hidden,
     bad_settings,
     missing_axes,
+    shapes_without_polar,
     no_tool_table,
     tools_without_diameter,
     wrong_filters,

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G12.4 and G13.4, the first and the last block of the shapes' subs.
+
+G12.4 takes the entries of the call from the sub's named locals, checks the shape as a whole, and
+gives the sub the numbers of its motion; G13.4 puts back the modes that G12.4 found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from interpreter import INTERP_OK
+
+from g12.cycles.context import Context
+from g12.errors import BlockRefusal
+from g12.host import cycle_glue, glue
+from g12.host.call_frame import locals_at, set_locals_at
+from g12.host.kinematics_switch import face_in_force
+from g12.host.section_glue import AXES, COORDINATES, FACE, KINEMATICS, REMAPS, SETTINGS
+from g12.host.section_start import start_of_section
+from g12.moves.setup import SectionSetup
+from g12.moves.steps import BlockMoves
+from g12.polar.plan import POLE_SHARE
+from g12.polar.start import check_section_start, polar_setup
+from g12.section.codes import code_of_handler
+from g12.section.line import SectionPlace
+from g12.section.modes import decimal
+from g12.section.start import SectionStart
+from g12.shapes import polygon, round_pocket, slot
+from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine
+
+
+class Shape(NamedTuple):
+    """A shape: the names of its entries, and what plans it."""
+
+    entries: tuple[str, ...]
+    plan: Callable[[ShapeEntries, Context, ShapeMachine], NamedTuple]
+
+
+SHAPES = {
+    "polar_polygon": Shape(polygon.ENTRIES, polygon.plan_polygon),
+    "polar_slot": Shape(slot.ENTRIES, slot.plan_slot),
+    "polar_pocket": Shape(round_pocket.ENTRIES, round_pocket.plan_round_pocket),
+}
+
+
+@glue.handler
+def polar_shape(self, **words):
+    """Check the shape in whose sub it stands, and set the locals of its motion: G12.4."""
+    level = self.call_level - 1  # the sub's
+    name = self.sub_context[level].subname
+    if name not in SHAPES:
+        raise BlockRefusal(glue.code_of_block(self), f"stands in the subs {', '.join(SHAPES)}")
+    if KINEMATICS and self.task and face_in_force():
+        raise BlockRefusal(name, "G12.1 is on, by hand: G13.1 first")
+    start = start_of_shape(self, name)
+    setup = polar_setup(start, SETTINGS, AXES, FACE)
+    entries = ShapeEntries(name, SHAPES[name].entries, locals_at(self, level))
+    plan = SHAPES[name].plan(entries, cycle_glue.snapshot(self), shape_machine(setup))
+    stay_in_travel(entries, plan.extent(), setup)
+    set_locals_at(self, level, {**plan.locals(), **section_words(entries)})
+    cycle_glue.note_modes(self)
+    return INTERP_OK
+
+
+@glue.handler
+def polar_shape_done(self, **words):
+    """Put back the modes that the shape found, F among them: G13.4."""
+    cycle_glue.restore_modes(self)
+    self.execute(f"F{decimal(cycle_glue.state_of(self).feed)}")
+    return INTERP_OK
+
+
+def start_of_shape(interp: object, name: str) -> SectionStart:
+    """Return what the shape finds; refuse modes in which no section can begin."""
+    start = start_of_section(interp, 0)
+    line = glue.line_of_refusal(interp, BlockRefusal(name, ""))
+    start = start._replace(place=SectionPlace(name, line or 0), x=1.0)  # it goes there by itself
+    check_section_start(start, COORDINATES)
+    return start
+
+
+def shape_machine(setup: SectionSetup) -> ShapeMachine:
+    """Return what a shape has to know of the machine."""
+    return ShapeMachine(
+        diameters=setup.words.diameter,
+        entry_angle=SETTINGS.entry_angle,
+        plunge_share=SETTINGS.plunge_feed / 100,
+        pole=POLE_SHARE * setup.tolerance,
+        pole_refused=setup.plan.pole_refused,
+    )
+
+
+def section_words(entries: ShapeEntries) -> dict[str, float]:
+    """Return the locals by which the sub writes its section: its codes, and X words in G8."""
+    numbers = {name: code_of_handler(REMAPS.values(), name) for name in ("polar_on", "polar_off")}
+    for name, found in numbers.items():
+        if found is None:
+            raise entries.refuse(f"needs a REMAP line with python={name}")
+    return {**numbers, "x_word": 2 if SETTINGS.polar_x == "diameter" else 1}
+
+
+def stay_in_travel(entries: ShapeEntries, extent: Extent, setup: SectionSetup) -> None:
+    """Refuse a shape that leaves the travel of an axis."""
+    corners = [(x, c, z, 0.0) for x, c, z in zip(extent.x[::-1], extent.c, extent.z)]
+    beyond = setup.limits.beyond([BlockMoves(0, "XCZ", corners, False)])
+    if beyond:
+        raise entries.refuse(beyond.text(setup.words.diameter))

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The entries of a shape's call, by name, and what every shape makes of those that all have.
+
+Lengths are in program units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from g12.cycles.common import ROUNDING_MM, steps_between
+from g12.cycles.context import Context
+from g12.cycles.words import Words
+from g12.errors import number
+
+SUBS = ("polar_polygon", "polar_slot", "polar_pocket")
+LEFT_OUT = -9999.0
+CLEAR_MM = 1.0  # between the tool and the face, or the stock, where it comes down
+WIDEST = 0.75  # of the cutter's diameter: how far apart its rounds are at most
+MOST_LEVELS = 10_000
+MOST_ANGLE = 360.0  # LinuxCNC's limit of a position on a wrapped rotary axis
+
+
+class ShapeEntries(Words):
+    """The entries of one call, to be taken one by one; ``code`` is the name of the sub."""
+
+    def __init__(self, code: str, names: Sequence[str], values: Mapping[str, float]) -> None:
+        self._count = len(names)
+        super().__init__(code, {name: values[name] for name in names if values[name] != LEFT_OUT})
+
+    @staticmethod
+    def written(letter: str, value: float) -> str:
+        """Return an entry with its name: ``width 8``."""
+        return f"{letter} {number(value)}"
+
+    def require_positive(self, letter: str, meaning: str) -> float:
+        """Return an entry above zero; refuse a call without it."""
+        return self._above_zero(letter, self.require(letter, meaning))
+
+    def positive(self, letter: str, default: float) -> float:
+        """Return an entry above zero, or its default."""
+        value = self.take(letter)
+        return default if value is None else self._above_zero(letter, value)
+
+    def from_zero(self, letter: str) -> float:
+        """Return an entry that is zero or more, zero if it is left out."""
+        value = self.take(letter) or 0.0
+        if value < 0:
+            raise self.refuse(f"{self.written(letter, value)} must not be below 0")
+        return value
+
+    def angle(self, letter: str) -> float:
+        """Return an angle in degrees, zero if it is left out."""
+        value = self.take(letter) or 0.0
+        if abs(value) > MOST_ANGLE:
+            rule = f"must lie between -{number(MOST_ANGLE)} and {number(MOST_ANGLE)}"
+            raise self.refuse(f"{self.written(letter, value)} {rule}")
+        return value
+
+    def _above_zero(self, letter: str, value: float) -> float:
+        """Return a value above zero; LinuxCNC makes it 0 if the call is too short."""
+        if value > 0:
+            return value
+        call = f"a call has {self._count} entries, {number(LEFT_OUT)} leaves one out"
+        raise self.refuse(f"{self.written(letter, value)} must be greater than 0 ({call})")
+
+
+class ShapeMachine(NamedTuple):
+    """What a shape has to know of its machine.
+
+    ``diameters``: X words are diameters in a section. ``entry_angle`` in degrees is that of a ramp
+    or helix, ``plunge_share`` the part of F that the way down has unless the call says. A path
+    within ``pole`` of the spindle's centre runs through it; ``pole_refused`` says that none may.
+    """
+
+    diameters: bool
+    entry_angle: float
+    plunge_share: float
+    pole: float
+    pole_refused: bool
+
+
+class Levels(NamedTuple):
+    """How deep a shape is cut: all levels are alike."""
+
+    levels: int
+    step_down: float
+
+
+class Feeds(NamedTuple):
+    """Feeds per minute, or per revolution under G95."""
+
+    feed: float
+    plunge_feed: float
+
+
+class Heights(NamedTuple):
+    """Where the tool starts and ends, and where it goes on at a feed."""
+
+    start_z: float
+    near_z: float
+
+
+def levels_of(entries: ShapeEntries, context: Context) -> Levels:
+    """Return the levels: depth and depth_per_pass."""
+    depth = entries.require_positive("depth", "how deep, from the face at Z0")
+    most = entries.positive("depth_per_pass", depth)
+    levels = max(1, steps_between(0.0, depth, most, context.length(ROUNDING_MM)))
+    if levels > MOST_LEVELS:
+        rule = f"makes {levels} passes of depth {number(depth)}, the most is {MOST_LEVELS}"
+        raise entries.refuse(f"{entries.written('depth_per_pass', most)} {rule}")
+    return Levels(levels, depth / levels)
+
+
+def feeds_of(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> Feeds:
+    """Return the feeds: feed and plunge_feed."""
+    feed = entries.positive("feed", context.feed)
+    if not feed > 0:
+        raise entries.refuse("feed is missing, and no F is active")
+    if context.per_revolution and not context.speed:
+        raise entries.refuse("feed per revolution (G95) needs the spindle speed S")
+    return Feeds(feed, entries.positive("plunge_feed", feed * machine.plunge_share))
+
+
+def heights_of(entries: ShapeEntries, context: Context) -> Heights:
+    """Return the heights of a tool that stands above the face."""
+    if not context.z > 0:
+        rule = "a shape begins where the tool stands, which must be above the face at Z0"
+        raise entries.refuse(f"Z{number(context.z)}: {rule}")
+    return Heights(context.z, min(context.z, context.length(CLEAR_MM)))
+
+
+class Extent(NamedTuple):
+    """How far the tool's centre goes: X as a radius, Z, and C in degrees; lowest and highest."""
+
+    x: tuple[float, float]
+    z: tuple[float, float]
+    c: tuple[float, float]
+
+
+def rounds_between(first: float, last: float, cutter: float, rounding: float) -> int:
+    """Return how many rounds, none wider than the cutter can, lead from one radius to another."""
+    return steps_between(first, last, WIDEST * 2 * cutter, rounding)

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The rules and numbers of ``o<polar_polygon> call``: a polygon, or two flats, on a bar's end.
+
+The tool's centre goes round clockwise, outside the polygon. In a frame whose zero line runs
+through the middle of a corner, each round begins and ends at (``outside``, 0), clear of the stock:
+
+1. an arc about the spindle's centre, away from the zero line
+2. a straight way in that touches the corner's arc in its middle
+3. flat after flat, with an arc about each corner; where the flats reach out of the stock, an arc
+   about the spindle's centre takes the corner's place
+4. straight out where the last arc is on the zero line again, and back
+
+Rounds are the final one moved outward by equal steps, so that all of them are as far apart at a
+corner as at a flat. The way between them and the way down are clear of the stock.
+
+Rules, in the order of the checks: a tool with a diameter in the spindle; sides from 2;
+across_flats, stock_diameter above 0, the stock larger than the flats; corner_radius from 0, none
+with two flats, less than half of across_flats; depth, depth_per_pass above 0; allowance from 0,
+less than what there is to cut; feeds above 0; angle; the tool above the face.
+"""
+
+from __future__ import annotations
+
+from math import acos, cos, degrees, fmod, radians, sqrt, tan
+from typing import NamedTuple
+
+from g12.cycles.common import ROUNDING_MM, check_count, loaded_tool
+from g12.cycles.context import Context
+from g12.errors import number
+from g12.shapes.entries import (
+    CLEAR_MM,
+    Extent,
+    Feeds,
+    Heights,
+    Levels,
+    ShapeEntries,
+    ShapeMachine,
+    feeds_of,
+    heights_of,
+    levels_of,
+    rounds_between,
+)
+
+ENTRIES = (
+    "sides",
+    "across_flats",
+    "depth",
+    "stock_diameter",
+    "corner_radius",
+    "depth_per_pass",
+    "allowance",
+    "feed",
+    "plunge_feed",
+    "angle",
+)
+FLATS = 2  # sides that meet nowhere
+MOST_SIDES = 100
+FAR = 1e9  # half the length of a flat that no corner ends
+
+
+class PolygonForm(NamedTuple):
+    """A polygon: its flats are ``apothem`` from the centre, its corners rounded by ``radius``.
+
+    ``inner`` is the apothem of the polygon that the centres of the corners' arcs make, ``side``
+    half the length of its sides, ``corner`` how far its corners are from the centre.
+    """
+
+    sides: int
+    apothem: float
+    radius: float
+
+    @property
+    def inner(self) -> float:
+        """Return the apothem of the corners' centres."""
+        return self.apothem - self.radius
+
+    @property
+    def half_turn(self) -> float:
+        """Return half the angle from corner to corner in degrees."""
+        return 180.0 / self.sides
+
+    @property
+    def side(self) -> float:
+        """Return half the length of a flat."""
+        if self.sides == FLATS:
+            return FAR
+        return self.inner * tan(radians(self.half_turn))
+
+    @property
+    def corner(self) -> float:
+        """Return the distance of a corner's centre."""
+        return 0.0 if self.sides == FLATS else self.inner / cos(radians(self.half_turn))
+
+
+class PolygonRounds(NamedTuple):
+    """The rounds of the tool's centre by the distance of their flats from the spindle's centre.
+
+    ``rounds`` at every level, from ``apothem`` on inward by ``step``, and a ``finish`` round (1 or
+    0) at ``finish_apothem``. ``clip`` is how far a flat goes at most, ``outside`` where the rounds
+    begin.
+    """
+
+    rounds: int
+    apothem: float
+    step: float
+    finish: int
+    finish_apothem: float
+    clip: float
+    outside: float
+
+
+class PolygonPlan(NamedTuple):
+    """A polygon that is fit to cut. Lengths and feeds are in program units, angles in degrees."""
+
+    form: PolygonForm
+    rounds: PolygonRounds
+    levels: Levels
+    feeds: Feeds
+    heights: Heights
+    start_angle: float
+
+    def locals(self) -> dict[str, float]:
+        """Return the named locals of `ngc/polar_polygon.ngc` beside its entries."""
+        form = {name: getattr(self.form, name) for name in ("inner", "side", "corner", "half_turn")}
+        parts = (self.rounds, self.levels, self.feeds, self.heights)
+        numbers = {name: value for part in parts for name, value in part._asdict().items()}
+        return form | numbers | {"start_angle": self.start_angle}
+
+    def extent(self) -> Extent:
+        """Return how far the tool's centre goes; every round turns C once round, backwards."""
+        rounds, levels = self.rounds, self.levels
+        top = corner_distance(self.form, rounds.finish_apothem, rounds.clip)
+        lead = degrees(acos(min(1.0, top / rounds.outside)))
+        turns = levels.levels * rounds.rounds + rounds.finish
+        return Extent(
+            (min(rounds.finish_apothem, top), rounds.outside),
+            (-levels.levels * levels.step_down, self.heights.start_z),
+            (self.start_angle - 360.0 * turns - lead, self.start_angle + lead),
+        )
+
+
+def plan_polygon(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> PolygonPlan:
+    """Return the polygon of one call, or raise `Refusal`."""
+    cutter = loaded_tool(entries, context).radius
+    form, stock = form_of(entries)
+    levels = levels_of(entries, context)
+    rounds = rounds_of(entries, context, form, stock, cutter)
+    check_count(entries, rounds.rounds * levels.levels, "stock_diameter and depth_per_pass make")
+    feeds = feeds_of(entries, context, machine)
+    angle = fmod(entries.angle("angle") + form.half_turn, 360.0)
+    return PolygonPlan(form, rounds, levels, feeds, heights_of(entries, context), angle)
+
+
+def form_of(entries: ShapeEntries) -> tuple[PolygonForm, float]:
+    """Return the polygon and the stock's radius."""
+    if "sides" not in entries:
+        entries.require("sides", "how many, 2 for two flats")
+    sides = entries.take_whole("sides", least=FLATS, most=MOST_SIDES)
+    flats = entries.require_positive("across_flats", "the distance between two flats")
+    stock = entries.require_positive("stock_diameter", "the bar's")
+    if not stock > flats:
+        rule = f"must be greater than across_flats {number(flats)}"
+        raise entries.refuse(f"{entries.written('stock_diameter', stock)} {rule}")
+    radius = entries.from_zero("corner_radius")
+    if radius and sides == FLATS:
+        raise entries.refuse(
+            f"{entries.written('corner_radius', radius)}: two flats have no corners"
+        )
+    if not radius < flats / 2:
+        rule = f"must be less than half of across_flats {number(flats)}"
+        raise entries.refuse(f"{entries.written('corner_radius', radius)} {rule}")
+    return PolygonForm(sides, flats / 2, radius), stock / 2
+
+
+def rounds_of(
+    entries: ShapeEntries, context: Context, form: PolygonForm, stock: float, cutter: float
+) -> PolygonRounds:
+    """Return the rounds from the stock's radius to the polygon and its allowance."""
+    allowance = entries.from_zero("allowance")
+    height = stock - form.apothem - allowance
+    rounding = context.length(ROUNDING_MM)
+    if not height > rounding:
+        rule = f"must be less than the {number(stock - form.apothem)} from the stock to the flats"
+        raise entries.refuse(f"{entries.written('allowance', allowance)} {rule}")
+    rounds = max(1, rounds_between(0.0, height, cutter, rounding))
+    step = height / rounds
+    final = form.apothem + cutter
+    clip = stock + cutter + context.length(CLEAR_MM)
+    first = stock + cutter - step
+    tops = (corner_distance(form, first - index * step, clip) for index in range(rounds))
+    return PolygonRounds(
+        rounds=rounds,
+        apothem=first,
+        step=step,
+        finish=int(allowance > 0),
+        finish_apothem=final,
+        clip=clip,
+        outside=max(clip, *tops, corner_distance(form, final, clip)),
+    )
+
+
+def corner_distance(form: PolygonForm, apothem: float, clip: float) -> float:
+    """Return how far a round of the tool's centre is from the spindle's where it turns a corner."""
+    if sqrt(clip * clip - apothem * apothem) < form.side:
+        return clip
+    return form.corner + apothem - form.inner

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How a slot or a round pocket is cleared: down along its first ring, and outward.
+
+A ring of the tool's centre is two half turns counterclockwise, each a line of ``length`` (0 in a
+round pocket) and a half circle of the ring's radius. The first ring is so small that no core is
+left in it; the way down goes round it with a slope of [G12] ENTRY_ANGLE at most, and once more
+flat. A half circle of the mean radius leads from ring to ring and back, tangent to both.
+
+Lengths are in program units.
+"""
+
+from __future__ import annotations
+
+from math import ceil, inf, pi, radians, tan
+from typing import NamedTuple
+
+from g12.cycles.common import ROUNDING_MM, SMALLEST_RING_MM, check_count
+from g12.cycles.context import Context
+from g12.errors import number
+from g12.shapes.entries import Heights, Levels, ShapeEntries, ShapeMachine, rounds_between
+
+CLEARED = 0.9  # of the cutter's radius: a first ring as large leaves no core
+MOST_HALF_TURNS = 20_000
+
+
+class ClearingRings(NamedTuple):
+    """The rings of a level: ``further`` ones beyond the first, each larger by ``ring_step``.
+
+    Radii are those of the tool's centre. A ``finish`` ring (1 or 0) of ``finish_ring`` comes in
+    the end. A first ring of 0 is the line itself.
+    """
+
+    first_ring: float
+    ring_step: float
+    further: int
+    finish: int
+    finish_ring: float
+
+    @property
+    def largest(self) -> float:
+        """Return the radius of the largest ring."""
+        return self.finish_ring if self.finish else self.first_ring + self.further * self.ring_step
+
+    @property
+    def half_turns(self) -> int:
+        """Return how many half turns one level has beside its way down, the flat one included."""
+        return 2 + 3 * self.further + (1 if self.further else 0)
+
+
+class RampDown(NamedTuple):
+    """The way down to the first level, and to each further one: half turns, the fall of each.
+
+    ``line_share`` is the share of a half turn's fall that its line has.
+    """
+
+    first_turns: int
+    first_fall: float
+    next_turns: int
+    next_fall: float
+    line_share: float
+
+
+def clearing_rings(
+    entries: ShapeEntries, context: Context, width: str, size: float, cutter: float
+) -> ClearingRings:
+    """Return the rings for a slot or pocket whose entry ``width`` is ``size`` wide."""
+    allowance = entries.from_zero("allowance")
+    final, rough = size / 2 - cutter, size / 2 - cutter - allowance
+    if final < -context.length(ROUNDING_MM):
+        rule = f"must not be less than the cutter's {number(2 * cutter)}"
+        raise entries.refuse(f"{entries.written(width, size)} {rule}")
+    if rough < -context.length(ROUNDING_MM):
+        rule = f"the cutter of {number(2 * cutter)} does not fit between the walls that it leaves"
+        raise entries.refuse(f"{entries.written('allowance', allowance)}: {rule}")
+    smallest = context.length(SMALLEST_RING_MM)
+    if 0 < allowance < smallest:
+        rule = f"must be at least {number(smallest)}"
+        raise entries.refuse(f"{entries.written('allowance', allowance)} {rule}")
+    first = min(rough, CLEARED * cutter) if rough >= smallest else 0.0
+    further = rounds_between(first, rough, cutter, smallest) if first else 0
+    step = (rough - first) / further if further else 0.0
+    return ClearingRings(first, step, further, int(allowance > 0), max(final, 0.0))
+
+
+def ramp_of(
+    entries: ShapeEntries,
+    machine: ShapeMachine,
+    rings: ClearingRings,
+    levels: Levels,
+    heights: Heights,
+    length: float,
+) -> RampDown:
+    """Return the way down; ``length`` is that of a ring's straight side."""
+    round_ = pi * rings.first_ring
+    fall = (length + round_) * tan(radians(machine.entry_angle))
+    first, following = (
+        max(1, ceil(height / fall)) if height < MOST_HALF_TURNS * fall else inf
+        for height in (heights.near_z + levels.step_down, levels.step_down)
+    )
+    if first > MOST_HALF_TURNS:
+        rule = f"a ramp of {number(machine.entry_angle)} degrees needs more than {MOST_HALF_TURNS}"
+        raise entries.refuse(f"{rule} half turns of {number(length + round_)} for a pass")
+    check_count(entries, rings.further * levels.levels, "depth_per_pass makes")
+    return RampDown(
+        first,
+        (heights.near_z + levels.step_down) / first,
+        following,
+        levels.step_down / following,
+        length / (length + round_),
+    )
+
+
+def half_turns_in_all(rings: ClearingRings, levels: Levels, ramp: RampDown) -> int:
+    """Return how many half turns a shape has in all."""
+    down = ramp.first_turns + (levels.levels - 1) * ramp.next_turns
+    return down + levels.levels * rings.half_turns + 4 * rings.finish

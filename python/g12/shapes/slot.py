@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The rules and numbers of ``o<polar_slot> call``: a slot with round ends about the centre.
+
+The motion is that of `g12.shapes.rings`, along a line through the spindle's centre. A cutter as
+wide as the slot, or as what the allowance leaves of it, has a first ring of 0: it goes down to and
+fro along the line, through the centre.
+
+Rules, in the order of the checks: a tool with a diameter in the spindle; width, length above 0, the
+slot longer than wide; depth and depth_per_pass above 0; allowance from 0; room for the cutter;
+feeds above 0; angle; the tool above the face; not too long a way down; no way through the centre
+where [G12] POLAR_POLE refuses it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from g12.cycles.common import loaded_tool
+from g12.cycles.context import Context
+from g12.errors import number
+from g12.shapes.entries import (
+    Extent,
+    Feeds,
+    Heights,
+    Levels,
+    ShapeEntries,
+    ShapeMachine,
+    feeds_of,
+    heights_of,
+    levels_of,
+)
+from g12.shapes.rings import ClearingRings, RampDown, clearing_rings, half_turns_in_all, ramp_of
+
+ENTRIES = (
+    "width",
+    "length",
+    "depth",
+    "depth_per_pass",
+    "allowance",
+    "feed",
+    "plunge_feed",
+    "angle",
+)
+
+
+class SlotPlan(NamedTuple):
+    """A slot that is fit to cut; ``reach`` is how far the centre of each end is from the middle.
+
+    Lengths and feeds are in program units, ``start_angle`` in degrees.
+    """
+
+    reach: float
+    rings: ClearingRings
+    ramp: RampDown
+    levels: Levels
+    feeds: Feeds
+    heights: Heights
+    start_angle: float
+
+    def locals(self) -> dict[str, float]:
+        """Return the named locals of `ngc/polar_slot.ngc` beside its entries."""
+        parts = (self.rings, self.ramp, self.levels, self.feeds, self.heights)
+        numbers = {name: value for part in parts for name, value in part._asdict().items()}
+        return numbers | {"reach": self.reach, "start_angle": self.start_angle}
+
+    def extent(self) -> Extent:
+        """Return how far the tool's centre goes; every half turn turns C half round, onward."""
+        turned = 180.0 * (half_turns_in_all(self.rings, self.levels, self.ramp) + 1)
+        to_and_fro = not self.rings.first_ring
+        return Extent(
+            (self.rings.first_ring, self.reach + self.rings.largest),
+            (-self.levels.levels * self.levels.step_down, self.heights.start_z),
+            (self.start_angle - 180.0 * to_and_fro, self.start_angle + turned),
+        )
+
+
+def plan_slot(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> SlotPlan:
+    """Return the slot of one call, or raise `Refusal`."""
+    cutter = loaded_tool(entries, context).radius
+    width = entries.require_positive("width", "from wall to wall")
+    length = entries.require_positive("length", "over all")
+    if not length > width:
+        rule = f"must be greater than width {number(width)} (polar_pocket makes a round one)"
+        raise entries.refuse(f"{entries.written('length', length)} {rule}")
+    levels = levels_of(entries, context)
+    rings = clearing_rings(entries, context, "width", width, cutter)
+    feeds = feeds_of(entries, context, machine)
+    angle = entries.angle("angle")
+    heights = heights_of(entries, context)
+    reach = (length - width) / 2
+    ramp = ramp_of(entries, machine, rings, levels, heights, 2 * reach)
+    if machine.pole_refused and rings.first_ring <= machine.pole:
+        raise entries.refuse(
+            f"{entries.written('width', width)}: the cutter of {number(2 * cutter)} would pass"
+            " through the spindle's centre, which [G12] POLAR_POLE = refuse forbids"
+        )
+    return SlotPlan(reach, rings, ramp, levels, feeds, heights, angle)

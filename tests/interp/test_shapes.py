@@ -1,0 +1,370 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The shapes on a lathe's face: what they cut, by their emitted motion, and what they refuse."""
+
+import math
+
+import numpy as np
+import pytest
+from shapely.geometry import box
+
+from support.polar_programs import FIRST, tracer
+from support.shape_geometry import area_off, disc, distances, path_of, polygon, slot
+
+INCH = 25.4
+LEFT = -9999
+TOLERANCE = 0.006  # POLAR_TOLERANCE, and the polygons of the drawing
+NOTHING = 0.002  # mm², of what rounding leaves of areas
+CUTTER = {1: 6.0, 2: 5.0, 3: 3.0}
+POLYGON = dict(
+    sides=6, across_flats=27, depth=5, stock_diameter=40, corner_radius=LEFT, depth_per_pass=LEFT,
+    allowance=LEFT, feed=400, plunge_feed=LEFT, angle=LEFT,
+)  # fmt: skip
+SLOT = dict(
+    width=8, length=30, depth=4, depth_per_pass=LEFT, allowance=LEFT, feed=400, plunge_feed=LEFT,
+    angle=LEFT,
+)  # fmt: skip
+POCKET = dict(
+    x=LEFT, c=LEFT, diameter=20, depth=4, depth_per_pass=LEFT, allowance=LEFT, feed=400,
+    plunge_feed=LEFT,
+)  # fmt: skip
+SHAPES = {"polar_polygon": POLYGON, "polar_slot": SLOT, "polar_pocket": POCKET}
+
+
+@pytest.fixture(scope="module")
+def lathe():
+    with tracer() as opened:
+        yield opened
+
+
+def call(shape, **entries):
+    """Return a call of a shape; entries that are not named are those of the example."""
+    assert entries.keys() <= SHAPES[shape].keys()
+    values = {**SHAPES[shape], **entries}.values()
+    return f"o<{shape}> call {' '.join(f'[{value}]' for value in values)}"
+
+
+def program(*calls, tool=3, first=FIRST, start="G0 X40 Z5 C0", feed="F100", behind=()):
+    """Return a program of calls, the first of them in line 5."""
+    return [first, f"T{tool} M6", start, feed, *calls, *behind, "M2"]
+
+
+def trace(lathe, shape, tool=3, **entries):
+    traced = lathe.trace_text(program(call(shape, **entries), tool=tool))
+    assert traced.error is None, traced.error
+    return traced
+
+
+def cut(lathe, shape, tool=3, **entries):
+    """Return the path of a shape."""
+    return path_of(trace(lathe, shape, tool, **entries).moves)
+
+
+def roughed(path, standing, radius, allowance):
+    """Return a path up to where it comes nearer to what stays than its allowance."""
+    some = np.flatnonzero(path.z < -1e-6)[::4]
+    away = distances(path.points[some], standing) - radius
+    return path.before(int(some[np.argmax(away < allowance - 0.02)]))
+
+
+# ---------------------------------------------------------------- polygons
+
+
+POLYGONS = [
+    (1, {}),
+    (3, dict(sides=2, across_flats=20, stock_diameter=30, angle=30)),
+    (3, dict(sides=2, across_flats=3, stock_diameter=28)),
+    (1, dict(sides=3, across_flats=16, stock_diameter=50, corner_radius=2, angle=-45)),
+    (3, dict(sides=3, across_flats=30, stock_diameter=44)),
+    (3, dict(sides=4, across_flats=20, stock_diameter=24, corner_radius=1)),
+    (2, dict(sides=5, across_flats=25, stock_diameter=36, angle=10)),
+    (3, dict(sides=7, across_flats=25, stock_diameter=27, corner_radius=5)),
+    (3, dict(sides=8, across_flats=30, stock_diameter=54, angle=200)),
+]
+
+
+@pytest.mark.parametrize(("tool", "entries"), POLYGONS)
+def test_a_polygon_stands_on_the_bar(lathe, tool, entries):
+    asked = {**POLYGON, **entries}
+    path = cut(lathe, "polar_polygon", tool, depth_per_pass=3, **entries)
+    radius = max(asked["corner_radius"], 0)
+    drawn = polygon(asked["sides"], asked["across_flats"], radius, max(asked["angle"], -360))
+    if asked["angle"] == LEFT:
+        drawn = polygon(asked["sides"], asked["across_flats"], radius)
+    bar = disc(0, 0, asked["stock_diameter"])
+    for depth in (-2.5, -5):
+        standing = bar.difference(path.area(depth, CUTTER[tool]))
+        assert area_off(standing, drawn.intersection(bar), TOLERANCE) < NOTHING
+    assert path.z.min() == pytest.approx(-5, abs=1e-9)
+
+
+def test_across_flats_is_what_a_caliper_reads(lathe):
+    """Six sides: from flat to opposite flat; five: twice from the centre to a flat."""
+    for sides, across in ((6, 27), (5, 25)):
+        path = cut(lathe, "polar_polygon", sides=sides, across_flats=across)
+        deep = path.points[path.z <= -5 + 1e-6]
+        for index in range(sides):
+            normal = np.exp(2j * math.pi * index / sides)
+            near = (deep * normal.conjugate()).real[np.abs((deep / normal).imag) < 5]
+            assert near[near > 0].min() - CUTTER[3] == pytest.approx(across / 2, abs=0.005)
+
+
+def test_a_polygon_begins_ends_and_goes_down_outside_the_stock(lathe):
+    path = cut(lathe, "polar_polygon", depth_per_pass=2, allowance=0.3)
+    falls = np.flatnonzero((np.diff(path.z) < -1e-6) & (path.z[1:] < 0))
+    assert len(falls) >= 3
+    assert np.abs(path.points[falls]).min() >= 20 + CUTTER[3] + 0.99
+    begun = falls[0]
+    rises = begun + np.flatnonzero(np.diff(path.z[begun:]) > 1e-6)
+    assert np.abs(path.points[rises]).min() >= 20 + CUTTER[3] + 0.99
+
+
+@pytest.mark.parametrize(("tool", "entries"), POLYGONS[::3])
+def test_a_polygon_keeps_its_allowance_until_one_last_round(lathe, tool, entries):
+    asked = {**POLYGON, **entries}
+    path = cut(lathe, "polar_polygon", tool, allowance=0.5, depth_per_pass=2, **entries)
+    angle = 0 if asked["angle"] == LEFT else asked["angle"]
+    radius = max(asked["corner_radius"], 0)
+    drawn = polygon(asked["sides"], asked["across_flats"], radius, angle)
+    bar = disc(0, 0, asked["stock_diameter"])
+    rough = roughed(path, drawn, CUTTER[tool], 0.5)
+    standing = bar.difference(rough.area(-5, CUTTER[tool]))
+    assert area_off(standing, drawn.buffer(0.5, 180).intersection(bar), 0.03) < 10 * NOTHING
+    assert rough.z.min() == pytest.approx(-5, abs=1e-9)
+    assert area_off(bar.difference(path.area(-5, CUTTER[tool])), drawn & bar, TOLERANCE) < NOTHING
+    finish = path.points[len(rough.points) :]
+    turned = np.unwrap(np.angle(finish[np.abs(finish) > 0]))
+    assert abs(turned[-1] - turned[0]) < 2 * math.pi + 0.3
+
+
+def test_a_polygon_goes_round_clockwise(lathe):
+    path = cut(lathe, "polar_polygon")
+    assert np.unwrap(np.angle(path.points))[-1] < -2 * math.pi
+
+
+# ---------------------------------------------------------------- slots and pockets
+
+
+SLOTS = [
+    (3, {}),
+    (3, dict(width=6)),
+    (3, dict(width=20, length=45, angle=75)),
+    (2, dict(width=10.03, length=30)),
+    (3, dict(width=24, length=26, angle=-30)),
+]
+POCKETS = [
+    (3, {}),
+    (3, dict(diameter=6.5)),
+    (3, dict(x=10, c=-4, diameter=16)),
+    (3, dict(x=-12, c=5, diameter=10)),
+    (2, dict(x=4.5, c=0, diameter=28)),
+    (3, dict(x=0, c=2.7, diameter=30)),
+]
+
+
+def drawing_of(shape, entries):
+    asked = {name: 0 if value == LEFT else value for name, value in entries.items()}
+    if shape == "polar_slot":
+        return slot(asked["width"], asked["length"], asked["angle"])
+    return disc(asked["x"], asked["c"], asked["diameter"])
+
+
+HOLES = [("polar_slot", *each) for each in SLOTS] + [("polar_pocket", *each) for each in POCKETS]
+
+
+@pytest.mark.parametrize(("shape", "tool", "entries"), HOLES)
+def test_a_hole_is_cut_to_its_walls_and_nothing_stands_in_it(lathe, shape, tool, entries):
+    drawn = drawing_of(shape, {**SHAPES[shape], **entries})
+    path = cut(lathe, shape, tool, depth_per_pass=2, **entries)
+    for depth in (-2, -4):
+        assert area_off(path.area(depth, CUTTER[tool]), drawn, TOLERANCE) < NOTHING
+    assert area_off(path.area(-1e-3, CUTTER[tool]), drawn, TOLERANCE) < NOTHING
+    assert path.z.min() == pytest.approx(-4, abs=1e-9)
+
+
+@pytest.mark.parametrize(("shape", "tool", "entries"), HOLES)
+def test_the_tool_never_goes_straight_down_into_the_material(lathe, shape, tool, entries):
+    path = cut(lathe, shape, tool, depth_per_pass=1.5, **entries)
+    falling = (np.diff(path.z) < -1e-9) & (path.z[1:] < 0.999)
+    slope = np.diff(path.z)[falling] / np.abs(np.diff(path.points))[falling]
+    assert falling.any()
+    assert slope.min() >= -math.tan(math.radians(3)) * 1.03  # chords
+    rapid = np.flatnonzero(~path.feeding & (path.z < 0))
+    assert len(rapid) == 1 and np.all(np.diff(path.z[rapid[0] :]) >= 0)
+
+
+@pytest.mark.parametrize(("shape", "tool", "entries"), [HOLES[0], HOLES[2], HOLES[5], HOLES[7]])
+def test_a_hole_keeps_its_allowance_until_one_last_ring(lathe, shape, tool, entries):
+    drawn = drawing_of(shape, {**SHAPES[shape], **entries})
+    path = cut(lathe, shape, tool, depth_per_pass=2, allowance=0.4, **entries)
+    standing = box(-100, -100, 100, 100).difference(drawn)
+    rough = roughed(path, standing, CUTTER[tool], 0.4)
+    assert area_off(rough.area(-4, CUTTER[tool]), drawn.buffer(-0.4, 180), 0.03) < 10 * NOTHING
+    assert area_off(path.area(-4, CUTTER[tool]), drawn, TOLERANCE) < NOTHING
+
+
+def test_a_cutter_that_an_allowance_leaves_no_more_room_goes_to_and_fro_first(lathe):
+    path = cut(lathe, "polar_slot", width=6.4, allowance=0.2)
+    assert area_off(path.area(-4, CUTTER[3]), slot(6.4, 30), TOLERANCE) < NOTHING
+
+
+# ---------------------------------------------------------------- modes and units
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_every_mode_is_what_it_was(lathe, shape):
+    modes = dict(
+        first=FIRST.replace("G8 ", "G7 ").replace("G91.1", "G90.1"),
+        start="G0 X80 Z5 C0",
+        feed="G91 F100",
+    )
+    traced = lathe.trace_text(program(call(shape), behind=("X2", "G1 X2"), **modes))
+    assert traced.error is None, traced.error
+    plain = lathe.trace_text(program(**modes))
+    *_, rapid, fed = traced.moves
+    assert rapid.kind == "rapid" and rapid.end[0] - rapid.start[0] == pytest.approx(1)
+    assert fed.feed == 100
+    assert sorted(traced.modes.gcodes) == sorted([*plain.modes.gcodes[1:], "G1"])
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("mode", ["G7", "G8"])
+@pytest.mark.parametrize("setting", ["inherit", "diameter", "radius"])
+def test_lengths_are_the_same_in_g7_and_g8_but_for_x(shape, mode, setting):
+    diameters = setting == "diameter" or (setting, mode) == ("inherit", "G7")
+    entries = dict(x=20 if diameters else 10, c=3) if shape == "polar_pocket" else {}
+    first = FIRST.replace("G8 ", f"{mode} ")
+    with tracer(POLAR_X=setting) as lathe:
+        traced = lathe.trace_text(program(call(shape, **entries), first=first))
+        assert traced.error is None, traced.error
+    with tracer() as plain:
+        wanted = trace(plain, shape, **{**entries, "x": 10} if entries else {})
+    ours, theirs = (path_of(some.moves).points[-400:] for some in (traced, wanted))
+    assert np.abs(ours - theirs).max() < 1e-6
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_inches_and_millimetres_make_the_same_path(lathe, shape):
+    scaled = {
+        name: value if name in ("sides", "angle") or value == LEFT else value / INCH
+        for name, value in SHAPES[shape].items()
+    }
+    first = FIRST.replace("G21", "G20")
+    start = f"G0 X{40 / INCH:.12f} Z{5 / INCH:.12f} C0"
+    traced = lathe.trace_text(program(call(shape, **scaled), first=first, start=start))
+    assert traced.error is None, traced.error
+    ours, theirs = (path_of(some.moves).points for some in (traced, trace(lathe, shape)))
+    assert len(ours) == len(theirs) and np.abs(ours - theirs).max() < 1e-6
+
+
+# ---------------------------------------------------------------- refusals
+
+
+REFUSED = [
+    ("polar_polygon", dict(sides=LEFT), "sides is missing: how many, 2 for two flats"),
+    ("polar_polygon", dict(sides=1), "sides 1 must be at least 2"),
+    ("polar_polygon", dict(sides=2.5), "sides 2.5 must be a whole number"),
+    ("polar_polygon", dict(sides=101), "sides 101 must be at most 100"),
+    ("polar_polygon", dict(across_flats=0),
+     "across_flats 0 must be greater than 0 (a call has 10 entries, -9999 leaves one out)"),
+    ("polar_polygon", dict(across_flats=LEFT),
+     "across_flats is missing: the distance between two flats"),
+    ("polar_polygon", dict(depth=-5),
+     "depth -5 must be greater than 0 (a call has 10 entries, -9999 leaves one out)"),
+    ("polar_polygon", dict(stock_diameter=27),
+     "stock_diameter 27 must be greater than across_flats 27"),
+    ("polar_polygon", dict(corner_radius=-1), "corner_radius -1 must not be below 0"),
+    ("polar_polygon", dict(corner_radius=13.5),
+     "corner_radius 13.5 must be less than half of across_flats 27"),
+    ("polar_polygon", dict(sides=2, corner_radius=1), "corner_radius 1: two flats have no corners"),
+    ("polar_polygon", dict(allowance=6.5),
+     "allowance 6.5 must be less than the 6.5 from the stock to the flats"),
+    ("polar_polygon", dict(depth_per_pass=0.0001),
+     "depth_per_pass 0.0001 makes 50000 passes of depth 5, the most is 10000"),
+    ("polar_polygon", dict(feed=0),
+     "feed 0 must be greater than 0 (a call has 10 entries, -9999 leaves one out)"),
+    ("polar_polygon", dict(plunge_feed=-1),
+     "plunge_feed -1 must be greater than 0 (a call has 10 entries, -9999 leaves one out)"),
+    ("polar_polygon", dict(angle=361), "angle 361 must lie between -360 and 360"),
+    ("polar_polygon", dict(stock_diameter=1e7), "stock_diameter 10000000 is beyond 1000000"),
+    ("polar_polygon", dict(stock_diameter=600),
+     "the X axis would go to 304 mm, beyond its limit 300 mm"),
+    ("polar_polygon", dict(depth=501), "the Z axis would go to -501 mm, beyond its limit -500 mm"),
+    ("polar_slot", dict(width=5.9), "width 5.9 must not be less than the cutter's 6"),
+    ("polar_slot", dict(length=8),
+     "length 8 must be greater than width 8 (polar_pocket makes a round one)"),
+    ("polar_slot", dict(allowance=1.1),
+     "allowance 1.1: the cutter of 6 does not fit between the walls that it leaves"),
+    ("polar_slot", dict(allowance=0.001), "allowance 0.001 must be at least 0.00508"),
+    ("polar_slot", dict(depth=LEFT), "depth is missing: how deep, from the face at Z0"),
+    ("polar_pocket", dict(diameter=6),
+     "diameter 6 must leave the cutter room for a helix: at least 6.01016 and twice the allowance"),
+    ("polar_pocket", dict(diameter=6.02, depth=400),
+     "a ramp of 3 degrees needs more than 20000 half turns of 0.031416 for a pass"),
+    ("polar_pocket", dict(x=400), "the X axis would go to 407 mm, beyond its limit 300 mm"),
+]  # fmt: skip
+
+
+def refused(lathe, text):
+    """Return the message of a program that is refused before anything of the call moves."""
+    traced = lathe.trace_text(text)
+    assert traced.error is not None
+    assert all(move.line < 5 for move in traced.moves)
+    assert len(traced.error.text) <= 255
+    return traced.error.text
+
+
+@pytest.mark.parametrize(("shape", "entries", "rule"), REFUSED)
+def test_an_entry_is_refused_by_its_name(lathe, shape, entries, rule):
+    assert refused(lathe, program(call(shape, **entries))) == f"{shape} line 5: {rule}"
+
+
+@pytest.mark.parametrize(
+    ("changed", "rule"),
+    [
+        (dict(tool=0), "no tool is loaded: its diameter sets the path"),
+        (dict(start="G0 X40 Z0 C0"),
+         "Z0: a shape begins where the tool stands, which must be above the face at Z0"),
+        (dict(feed="G93"), "needs G94 or G95, not G93"),
+        (dict(feed="G19"), "needs G18 or G17, not G19"),
+        (dict(feed="G95 F.1"), "feed per revolution (G95) needs the spindle speed S"),
+        (dict(feed="G96 S100 M3"), "needs G97: with G96 the speed would change with X"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_shape_is_refused_where_no_section_can_begin(lathe, shape, changed, rule):
+    assert refused(lathe, program(call(shape), **changed)) == f"{shape} line 5: {rule}"
+
+
+def test_a_call_that_is_too_short_is_refused(lathe):
+    short = "o<polar_slot> call [8] [30] [4]"
+    assert refused(lathe, program(short)).startswith("polar_slot line 5: depth_per_pass 0 must be")
+
+
+def test_without_a_feed_anywhere(lathe):
+    text = program(call("polar_slot", feed=LEFT), feed="F0")
+    assert refused(lathe, text) == "polar_slot line 5: feed is missing, and no F is active"
+
+
+def test_the_code_stands_in_the_subs_alone(lathe):
+    assert refused(lathe, program("G12.4")) == (
+        "G12.4 line 5: stands in the subs polar_polygon, polar_slot, polar_pocket"
+    )
+
+
+@pytest.mark.parametrize(
+    ("shape", "entries", "why"),
+    [
+        ("polar_slot", dict(width=6), "width 6: the cutter of 6 would pass through"),
+        ("polar_pocket", dict(x=7), "a ring of the tool's centre would pass through"),
+    ],
+)
+def test_no_way_through_the_centre_where_it_is_refused(shape, entries, why):
+    with tracer(POLAR_POLE="refuse") as lathe:
+        assert refused(lathe, program(call(shape, **entries))).startswith(f"{shape} line 5: {why}")
+        for other in SHAPES:
+            assert lathe.trace_text(program(call(other))).error is None
+
+
+def test_behind_a_refused_call_the_same_call_with_good_entries_runs(lathe):
+    assert refused(lathe, program(call("polar_slot", width=1)))
+    assert lathe.trace_text(program(call("polar_slot"))).error is None
