@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The shapes on a lathe's face in a headless LinuxCNC: what real motion cuts, in pieces and with
-the face's kinematics, from a program and from MDI."""
+"""The shapes on a lathe's face: what real motion cuts, in pieces and with kinematics."""
 
 import numpy as np
 import pytest

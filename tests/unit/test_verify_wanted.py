@@ -393,7 +393,7 @@ def test_left_is_left():
 def test_what_cannot_be_followed_is_a_doubt(line, why):
     lines = ["G12.1", "G1 C5", line, "G13.1"]
     texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
-    assert why in wanted_contour.doubts_of(texts, CODES, lines)[1]
+    assert why in wanted_contour.doubts_of(texts, CODES, lines)["", 1]
 
 
 def test_motion_is_taken_out_of_the_copy_and_control_stays():

@@ -160,8 +160,12 @@ def _bracket_end(code: str, at: int) -> int:
 
 def read_lines(program: Path) -> list[Text]:
     """Return the lines of a program as text."""
-    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
-    return [read_line(number, line) for number, line in enumerate(lines, start=1)]
+    return [read_line(number, line) for number, line in enumerate(lines_of(program), start=1)]
+
+
+def lines_of(path: Path) -> list[str]:
+    """Return the lines of a file as they are written."""
+    return path.read_text(encoding="utf-8", errors="replace").splitlines()
 
 
 def executed(
@@ -185,12 +189,11 @@ def moves_otherwise(program: Path) -> ProgramError:
 
 def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) -> list[str]:
     """Return the lines of a file and those that tell of the blocks wanted; see ``before``."""
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     groups = (
         (*before(text, skip), line, *after(text, skip))
         if wanted(text) and not text.too_long
         else (line,)
-        for text, line in zip(texts, lines)
+        for text, line in zip(texts, lines_of(path))
     )
     return [line for group in groups for line in group]
 

@@ -26,6 +26,7 @@ DIALECT_OF_HANDLER = {
 }
 DIALECT_OF_SUB = {f"g12_{name}": name for name in DIALECTS}
 SUBS = {*DIALECT_OF_SUB, "g12_circle_mill"}
+NAMED = {"#<polar_on>": "polar_on", "#<polar_off>": "polar_off"}  # G codes as parameters
 
 
 class Cycle(NamedTuple):
@@ -71,7 +72,13 @@ class Codes:
         return next((f"G{code:g}" for code in codes if code in self._cycles), CALL)
 
     def section(self, text: Text) -> Cycle | None:
-        """Return what kind of section a line switches on or off, if it does."""
+        """Return what kind of section a line switches on or off, if it does.
+
+        The subs of the shapes have their section's codes as locals: see ``NAMED``.
+        """
+        for letter, value in text.words:
+            if letter == "G" and value in NAMED:
+                return Cycle(POLAR, NAMED[value])
         known = filter(None, map(self._cycles.get, text.codes))
         return next((cycle for cycle in known if cycle.dialect in SECTIONS), None)
 

@@ -9,11 +9,20 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 
 from g12.tools.machine.ini import Ini
-from g12.tools.preview.executed_blocks import Block, Text, blocks_in, executed, read_lines, watched
+from g12.tools.preview.executed_blocks import (
+    Block,
+    Text,
+    blocks_in,
+    executed,
+    lines_of,
+    read_lines,
+    watched,
+)
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer, write_program
 from g12.tools.verify.codes import CALL, Codes
@@ -29,24 +38,55 @@ def executed_everywhere(
 ) -> list[Block]:
     """Return every execution of the blocks that matter, in order.
 
-    ``trace`` is the program's. Polar sections count in the program only. Where LinuxCNC does not
-    take the copies, the blocks of the program are all.
+    ``trace`` is the program's. Where LinuxCNC does not take the copies, the blocks of the program
+    are all.
     """
     named = called_files(read_lines(program), tracer.ini)
-    files = [
-        file
-        for file in sorted({*map(Path, trace.files), *named})
-        if file.stem != CALL and any(wanted_in_sub(text, codes) for text in read_lines(file))
-    ]
+    files = files_with(codes.wanted, {*map(Path, trace.files), *named})
     if files:
-        with tempfile.TemporaryDirectory(prefix="g12-verify-") as folder:
-            texts = read_lines(program) + write_copies(files, Path(folder), program, codes)
-            lines = watched(program, texts, codes.wanted)
-            with Tracer(shadowed(tracer.ini, folder), tools=tools) as other:
-                copy = other.trace_text(lines, parameters=parameters)
+        copies = Copies(program, files, partial(watched, wanted=codes.wanted))
+        copy = copies.trace(tracer, tools, parameters)
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
-            return blocks_in(copy, texts)
+            return blocks_in(copy, copies.texts)
     return executed(tracer, program, trace, codes.wanted, parameters)
+
+
+class Copies:
+    """A program and files of subs, all of whose lines are replaced by others that tell of them.
+
+    ``copied`` makes a file's new lines of its path, its lines as text and the number of lines in
+    the files before it. ``texts`` are the lines of all, ``lines`` as they are
+    written.
+    """
+
+    def __init__(
+        self, program: Path, files: Sequence[Path], copied: Callable[..., Sequence[str]]
+    ) -> None:
+        self.texts, self.lines = read_lines(program), lines_of(program)
+        self._program = copied(program, self.texts, skip=0)
+        self._subs: dict[str, Sequence[str]] = {}
+        for file in files:
+            texts = [text._replace(file=file.name) for text in read_lines(file)]
+            self._subs[file.name] = copied(file, texts, skip=len(self.texts))
+            self.texts += texts
+            self.lines += lines_of(file)
+
+    def trace(self, tracer: Tracer, tools: Tools, parameters: Parameters) -> Trace:
+        """Return the trace of the copies; where subs are, by another tracer that finds them."""
+        if not self._subs:
+            return tracer.trace_text(self._program, parameters=parameters)
+        with tempfile.TemporaryDirectory(prefix="g12-verify-") as folder:
+            for name, lines in self._subs.items():
+                write_program(lines, Path(folder) / name)
+            with Tracer(shadowed(tracer.ini, folder), tools=tools) as other:
+                return other.trace_text(self._program, parameters=parameters)
+
+
+def files_with(wanted: Callable[[Text], bool], files: Iterable[Path]) -> list[Path]:
+    """Return those files of subs that have a line that matters; the event's own is a cycle."""
+    return [
+        file for file in sorted(files) if file.stem != CALL and any(map(wanted, read_lines(file)))
+    ]
 
 
 def called_files(texts: Sequence[Text], ini: Ini) -> set[Path]:
@@ -64,22 +104,6 @@ def called_files(texts: Sequence[Text], ini: Ini) -> set[Path]:
             if file and file not in found:
                 found.add(file)
                 waiting.append(read_lines(file))
-    return found
-
-
-def wanted_in_sub(text: Text, codes: Codes) -> bool:
-    """Tell whether a line of a sub's own file matters."""
-    return codes.wanted(text) and not codes.section(text)
-
-
-def write_copies(files: Sequence[Path], folder: Path, program: Path, codes: Codes) -> list[Text]:
-    """Write copies of files that tell of their blocks; return the lines of all as text."""
-    skip, found = len(read_lines(program)), []
-    for file in files:
-        texts = [text._replace(file=file.name) for text in read_lines(file)]
-        lines = watched(file, texts, lambda text: wanted_in_sub(text, codes), skip)
-        write_program(lines, folder / file.name)
-        skip, found = skip + len(texts), found + texts
     return found
 
 

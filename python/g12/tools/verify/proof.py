@@ -209,7 +209,7 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
         settings.polar_x, rapid_feed, subject.ini.tool_beside, settings.cylinder_word
     )
     pens = {kind: partial(pen, reading=reading) for kind, pen in PENS.items()}
-    found = sections(tracer, program, codes, pens, blocks, parameters)
+    found = sections(tracer, program, codes, pens, blocks, tools, parameters)
     still = [
         (block.text.number, codes.name_of(block.codes))
         for block in blocks

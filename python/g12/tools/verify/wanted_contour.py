@@ -15,6 +15,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,12 +29,14 @@ from g12.tools.preview.executed_blocks import (
     before,
     blocks_in,
     is_number,
+    lines_of,
     moves_otherwise,
     read_lines,
 )
 from g12.tools.preview.moves import Event
-from g12.tools.preview.tracer import Parameters, Tracer
+from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.verify.codes import Codes
+from g12.tools.verify.executed_subs import Copies, called_files, files_with
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
 CONTOUR = "XYCUHIJRZWK"
@@ -45,6 +48,7 @@ ACTS = re.compile(r"(M\d|S|dwell (?!0$)|message )")  # of what a trace tells: wh
 FEED_MODES = {94.0: False, 98.0: False, 95.0: True, 99.0: True}  # code: per revolution
 SAVE, RESTORE, SAVE_FOR_SUB = 70.0, 72.0, 73.0
 SAME_PLACE = 0.01  # mm
+Place = tuple[str, int]
 POSITION = "#<_", "#54"  # position parameters, which the copy of the program cannot follow
 
 
@@ -189,6 +193,7 @@ def sections(
     codes: Codes,
     pens: Pens,
     blocks: Sequence[Block],
+    tools: Tools,
     parameters: Parameters = None,
 ) -> list[SectionContour]:
     """Return the sections in the order they are run.
@@ -199,27 +204,33 @@ def sections(
     found = list(grouped(blocks, codes))
     if not found:
         return []
-    texts = read_lines(program)
-    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
-    flat = [line for some in flattened(texts, codes, lines) for line in some]
-    copy = tracer.trace_text(flat, parameters=parameters)
+    files = files_with(codes.section, called_files(read_lines(program), tracer.ini))
+    copies = Copies(program, files, partial(flattened_file, codes=codes))
+    copy = copies.trace(tracer, tools, parameters)
+    texts = copies.texts
     copied = blocks_in(copy, texts)
     groups = list(grouped(copied, codes))
     if [own[0].text for own in found] != [group[0].text for group in groups]:
         raise moves_otherwise(program)
-    doubts = doubts_of(texts, codes, lines)
+    doubts = doubts_of(texts, codes, copies.lines)
     paths = zip(*(paths_behind(some, codes) for some in (blocks, copied)))
     return [
         replace(
-            section_of(own, group, codes, pens, doubts.get(own[0].text.number, "")),
+            section_of(own, group, codes, pens, doubts.get(place_of(own[0].text), "")),
             paths=() if restores(group) else path,
         )
         for own, group, path in zip(found, groups, paths)
     ]
 
 
+def flattened_file(path: Path, texts: Sequence[Text], codes: Codes, skip: int) -> list[str]:
+    """Return the lines of a file without the sections' motion; see ``flattened``."""
+    groups = flattened(texts, codes, lines_of(path), skip)
+    return [line for group in groups for line in group]
+
+
 def flattened(
-    texts: Sequence[Text], codes: Codes, lines: Sequence[str]
+    texts: Sequence[Text], codes: Codes, lines: Sequence[str], skip: int = 0
 ) -> Iterator[tuple[str, ...]]:
     """Yield the lines that stand for each line in the copy without the sections' motion.
 
@@ -232,7 +243,7 @@ def flattened(
             slash = "/" if text.deleted else ""
             acting = "" if switch else acting_words(text, line, codes)
             kept = tuple(slash + words for words in (acting, *text.assignments) if words)
-            yield (*before(text), *kept, *after(text))
+            yield (*before(text, skip), *kept, *after(text, skip))
         else:
             yield (line,)
         inside = inside if not switch else switch == "on"
@@ -268,12 +279,13 @@ def grouped(blocks: Sequence[Block], codes: Codes) -> Iterator[list[Block]]:
             group = []
 
 
-def doubts_of(texts: Sequence[Text], codes: Codes, lines: Sequence[str]) -> dict[int, str]:
-    """Return, by a section's first line, what in it the copy of the program cannot follow."""
-    doubts: dict[int, str] = {}
-    first = 0
+def doubts_of(texts: Sequence[Text], codes: Codes, lines: Sequence[str]) -> dict[Place, str]:
+    """Return what the copy of the program cannot follow, by the place of a section's start."""
+    doubts: dict[Place, str] = {}
+    first: Place | None = None
     for text, line in zip(texts, lines):
-        first = {"on": text.number, "off": 0}.get(codes.switch(text, bool(first)), first)
+        switch = codes.switch(text, bool(first))
+        first = {"on": place_of(text), "off": None}.get(switch, first)
         if first and text.call:
             doubts[first] = f"line {text.number} calls o<{text.call}>"
         elif first and text.too_long:
@@ -281,6 +293,11 @@ def doubts_of(texts: Sequence[Text], codes: Codes, lines: Sequence[str]) -> dict
         elif first and any(name in line.replace(" ", "") for name in POSITION):
             doubts[first] = f"line {text.number} asks for a position"
     return doubts
+
+
+def place_of(text: Text) -> Place:
+    """Return the file of a sub, "" for the program, and the number of a line."""
+    return text.file, text.number
 
 
 def paths_behind(blocks: Sequence[Block], codes: Codes) -> list[str]:
