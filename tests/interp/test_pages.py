@@ -16,6 +16,7 @@ PAGES = {
     "ngc/mitsubishi.md": ("mill_mitsubishi_mm", 2),
     "ngc/circle_mill.md": ("mill_mm", 2),
     "ngc/polar.md": ("lathe_mm", 1),
+    "ngc/polar_shapes.md": ("lathe_mm", 3),
 }
 PROGRAM = re.compile(r"(?:^ {4}.*\n)+?^ {4}M2\n", re.MULTILINE)
 

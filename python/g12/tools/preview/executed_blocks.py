@@ -160,10 +160,12 @@ def _bracket_end(code: str, at: int) -> int:
 
 def read_lines(program: Path) -> list[Text]:
     """Return the lines of a program as text."""
-    return [read_line(number, line) for number, line in enumerate(lines_of(program), start=1)]
+    return [
+        read_line(number, line) for number, line in enumerate(lines_as_written(program), start=1)
+    ]
 
 
-def lines_of(path: Path) -> list[str]:
+def lines_as_written(path: Path) -> list[str]:
     """Return the lines of a file as they are written."""
     return path.read_text(encoding="utf-8", errors="replace").splitlines()
 
@@ -193,7 +195,7 @@ def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) ->
         (*before(text, skip), line, *after(text, skip))
         if wanted(text) and not text.too_long
         else (line,)
-        for text, line in zip(texts, lines_of(path))
+        for text, line in zip(texts, lines_as_written(path))
     )
     return [line for group in groups for line in group]
 

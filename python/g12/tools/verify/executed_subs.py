@@ -19,7 +19,7 @@ from g12.tools.preview.executed_blocks import (
     Text,
     blocks_in,
     executed,
-    lines_of,
+    lines_as_written,
     read_lines,
     watched,
 )
@@ -62,14 +62,14 @@ class Copies:
     def __init__(
         self, program: Path, files: Sequence[Path], copied: Callable[..., Sequence[str]]
     ) -> None:
-        self.texts, self.lines = read_lines(program), lines_of(program)
+        self.texts, self.lines = read_lines(program), lines_as_written(program)
         self._program = copied(program, self.texts, skip=0)
         self._subs: dict[str, Sequence[str]] = {}
         for file in files:
             texts = [text._replace(file=file.name) for text in read_lines(file)]
             self._subs[file.name] = copied(file, texts, skip=len(self.texts))
             self.texts += texts
-            self.lines += lines_of(file)
+            self.lines += lines_as_written(file)
 
     def trace(self, tracer: Tracer, tools: Tools, parameters: Parameters) -> Trace:
         """Return the trace of the copies; where subs are, by another tracer that finds them."""

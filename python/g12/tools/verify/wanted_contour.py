@@ -29,7 +29,7 @@ from g12.tools.preview.executed_blocks import (
     before,
     blocks_in,
     is_number,
-    lines_of,
+    lines_as_written,
     moves_otherwise,
     read_lines,
 )
@@ -225,7 +225,7 @@ def sections(
 
 def flattened_file(path: Path, texts: Sequence[Text], codes: Codes, skip: int) -> list[str]:
     """Return the lines of a file without the sections' motion; see ``flattened``."""
-    groups = flattened(texts, codes, lines_of(path), skip)
+    groups = flattened(texts, codes, lines_as_written(path), skip)
     return [line for group in groups for line in group]
 
 
