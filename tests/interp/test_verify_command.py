@@ -52,7 +52,7 @@ def test_a_finding_ends_with_1_and_is_told(written, capsys):
 def test_a_cycle_out_of_sight_is_no_good(capsys, written, tmp_path):
     machines = copy_of_machines(tmp_path)
     body = "o<flat> sub\nG12.1\nG1 X20 F500\nG13.1\no<flat> endsub\n"
-    (machines / "subs" / "flat.ngc").write_text(body)
+    (machines / "flat.ngc").write_text(body)
     program = written("G21 G18 G8 G40 G90 G94\nT3 M6\nG0 X30 Z2 C0\no<flat> call\nM2\n")
     lathe = str(machines / "lathe_mm_headless.ini")
     code, out, _ = verify(capsys, program, "--ini", lathe)

@@ -288,11 +288,28 @@ def test_a_block_as_long_as_linuxcnc_reads_is_measured(length, tmp_path):
 UNMEASURED = "a cycle cuts here that could not be measured"
 
 
-def test_a_section_in_another_file_is_a_finding(with_sub):
-    body = ["o<flat> sub", "G12.1", "G1 X20 F500", "C5", "G13.1", "o<flat> endsub", "M2"]
+def test_a_section_in_a_sub_of_another_file_is_measured(with_sub):
+    body = ["o<flat> sub", "G12.1", "G1 X#1 F500", "C5", "G13.1", "o<flat> endsub", "M2"]
+    lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X30 Z2 C40", "o<flat> call [20]"]
+    lines += ["G0 X30 C0", "o<flat> call [15]"]
+    proof = with_sub("flat", body, *lines, machine="lathe_mm")
+    assert [facts.section.elements[0].end for facts in proof.sections] == [20, 15]
+    assert [(facts.section.line, facts.section.last) for facts in proof.sections] == [(2, 5)] * 2
+    assert proof.findings == []
+
+
+def test_a_section_of_another_file_that_asks_for_a_position_is_in_doubt(with_sub):
+    body = ["o<flat> sub", "G12.1", "G1 X[#<_x> - 5] F500", "G13.1", "o<flat> endsub", "M2"]
     lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X30 Z2 C40", "o<flat> call"]
     proof = with_sub("flat", body, *lines, machine="lathe_mm")
-    assert proof.findings == [(4, UNMEASURED)]
+    assert [facts.section.doubt for facts in proof.sections] == ["line 3 asks for a position"]
+
+
+def test_the_shapes_come_out_as_programmed():
+    program = PROGRAMS / "polar" / "shapes.ngc"
+    proof = prove(program, ini("lathe_mm"))
+    assert [facts.section.code for facts in proof.sections] == ["G12.1"] * 3
+    assert proof.findings == []
 
 
 def test_a_sub_of_another_file_without_a_cycle_is_none(with_sub):
