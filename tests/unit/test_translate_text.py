@@ -353,6 +353,8 @@ def test_subprograms_with_names():
         "G0 X50. Z5.", "M98 P6345645 L2", "M98 P12", "M2", "O6345645 (OSUB1)", "X40.", "M99",
         "O12", "X41.", "M99",
     ]  # fmt: skip
+    missing = sentence(okuma, "CALL OSUB1\nM2\n").sentence
+    assert missing.startswith("O6345645 (OSUB1) is not in this file")
     assert sentence(okuma, "CALL OSUBX1\n").sentence.startswith("CALLOSUBX1: only a program and Q")
 
 

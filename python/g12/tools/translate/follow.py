@@ -199,7 +199,7 @@ class FollowedProgram:
         name = self.structure.name_of(call.number)
         if entry is None and call.number in self.structure.behind_tape:
             return f"{name} stands behind the % that ends the program: take that % out"
-        if entry is None and call.number >= LOCAL_BLOCKS:
+        if entry is None and name.startswith("N"):
             return f"{name} is not in this program: M97 calls a block of it"
         if entry is None:
             return f"{name} is not in this file: put the subprogram into it"

@@ -9,7 +9,12 @@ from typing import NamedTuple
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.lexer import ForeignBlock, blocks_of, source_lines
+from g12.tools.translate.blocks.lexer import (
+    NAMED_PROGRAMS,
+    ForeignBlock,
+    blocks_of,
+    source_lines,
+)
 from g12.tools.translate.copies import followed_program
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.locals import unset_locals
@@ -119,7 +124,7 @@ def missing_end(followed: FollowedProgram, index: int) -> str | None:
     """Return what is wrong with a program that ends behind a block without a word."""
     number = followed.program_of(index)
     following = followed.structure.starts.get(index + 1, 0)
-    if following > LOCAL_BLOCKS:
+    if LOCAL_BLOCKS <= following < NAMED_PROGRAMS:
         return f"N{following - LOCAL_BLOCKS} is called by M97 and also reached from above it"
     if number == MAIN:
         return None

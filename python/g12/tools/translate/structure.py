@@ -9,7 +9,7 @@ from itertools import count
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import ENDS
-from g12.tools.translate.blocks.lexer import ForeignBlock
+from g12.tools.translate.blocks.lexer import NAMED_PROGRAMS, ForeignBlock, program_name
 from g12.tools.translate.jumps import Jumps, find_jumps
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS, called_program
 
@@ -89,7 +89,8 @@ class Structure:
     def name_of(self, number: int) -> str:
         """Return a program's number as in the file: O100, or N100 for a block that M97 calls."""
         number = self.copies.get(number, number)
-        return f"N{number - LOCAL_BLOCKS}" if number >= LOCAL_BLOCKS else f"O{number}"
+        local = LOCAL_BLOCKS <= number < NAMED_PROGRAMS
+        return f"N{number - LOCAL_BLOCKS}" if local else program_name(number)
 
 
 def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:

@@ -37,6 +37,7 @@ OBEYED = re.compile(r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVI
 BRACES = str.maketrans("{}", "()")  # remarks in some manuals; a comment has round ones
 MINUS = "\N{MINUS SIGN}"
 EMPTY_CHARACTERS = "\ufeff\u200b\0"
+LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 MOST_DIGITS = 24
 PLANE_CODES = frozenset(("G17", "G18", "G19"))
 
@@ -288,6 +289,15 @@ def _return(line: int, text: str) -> ForeignBlock:
 def program_number(name: str) -> str:
     """Return the number of a program by its name; names of letters are numbers, too."""
     return name if name.isdigit() else str(NAMED_PROGRAMS + int(name, 36))
+
+
+def program_name(number: int) -> str:
+    """Return a program's number as a sentence says it, with the name that it may stand for."""
+    digits, left = "", number - NAMED_PROGRAMS
+    while left > 0:
+        digits, left = LETTERS[left % 36] + digits, left // 36
+    named = NAMED_PROGRAM.match(f"O{digits}")
+    return f"O{number} (O{digits})" if named else f"O{number}"
 
 
 READERS = {
