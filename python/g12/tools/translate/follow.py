@@ -15,7 +15,6 @@ from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
 from g12.tools.translate.rules import WORD_RULES
 from g12.tools.translate.rules.plain import is_plain
-from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.statements import STATEMENTS
 from g12.tools.translate.structure import MAIN, Structure, programs_of_blocks, ways_from
 
