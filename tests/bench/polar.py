@@ -23,6 +23,7 @@ SAMPLES = PROGRAMS / "polar"
 MANUAL_TOOLS = {1: 0.5, 8: 0.0}
 TOLERANCE = {"mm": 0.005, "inch": 0.0002 * MM_PER_INCH}
 LINES, PAIRS = 10000, 7
+LONGEST = 600  # s that a trace may take on a busy computer
 HEXAGON_BLOCKS, FLAT_BLOCKS = range(10, 16), (14, 15, 16)
 
 
@@ -135,7 +136,7 @@ def interpreting():
         "M2",
     ]
     with Tracer(SIM / "lathe_mm.ini") as tracer, tempfile.TemporaryDirectory() as folder:
-        moves = feed_moves(tracer.trace_text(section))
+        moves = feed_moves(tracer.trace_text(section, timeout=LONGEST))
         plain = [f"G1 X{move.end[0]:.6f} C{move.end[5]:.6f} F{move.feed:.4f}" for move in moves]
         scratch = Path(folder)
         programs = {"section": section, "plain": [*section[:2], *plain, "M2"], "empty": ["M2"]}
