@@ -16,6 +16,7 @@ from bench.polar import (
     seconds_in,
 )
 from support.contour_geometry import Round, deviation, outward
+from support.least_time import least_seconds
 from support.operated_machine import Machine
 from support.polar_drawings import HEXAGON, INCHES, MILLIMETRES
 from support.polar_programs import Cut
@@ -28,6 +29,7 @@ THIRD = 2 * math.pi / 3  # C turns the other way in between
 CIRCLE = [  # r 10, 20 off the axis
     Round(20 + 10 * cmath.rect(1, turn), 20, THIRD) for turn in (0, THIRD, 2 * THIRD)
 ]
+SLIDE, SPINDLE = (150.0, 1000.0), (math.radians(360), math.radians(3600))  # speed, acceleration
 SLOT_BLOCK, SLOT_LENGTH = (7,), 36.0  # of slot.ngc: through the pole
 
 
@@ -74,9 +76,15 @@ def circle(face, pieces, feed):
     return beside(
         f"circle r 10, 20 off the axis, F{feed}",
         [seconds_in(lathe.run_text(program), (4,)) for lathe in (face, pieces)],
-        sum(piece.length for piece in CIRCLE) / feed * 60,
-        posted(pieces, CIRCLE, feed),
+        ideal := sum(piece.length for piece in CIRCLE) / feed * 60,
+        f"the axes could do {least(CIRCLE, feed) / ideal:.3f}, {posted(pieces, CIRCLE, feed)}",
     )
+
+
+def least(pieces, feed):
+    """Return the least time that the slide's and C's own limits allow, whoever plans it."""
+    points = np.concatenate([piece.points(1000)[:-1] for piece in pieces])
+    return least_seconds(points, feed / 60, SLIDE, SPINDLE)
 
 
 def slot(face, pieces, feed):

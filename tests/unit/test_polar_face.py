@@ -81,7 +81,20 @@ def test_a_long_move_is_parted_where_c_cannot_follow(move):
     ],
 )
 def test_other_moves_stay_whole(move):
-    assert parted([move, Mark(1, None)], [False, False], LIMITS)[0] == [move, Mark(1, None)]
+    limits = LIMITS._replace(pieces_speed=30.0)
+    assert parted([move, Mark(1, None)], [False, False], limits)[0] == [move, Mark(1, None)]
+
+
+def test_parts_on_the_face_are_slower_where_that_is_quicker_than_pieces():
+    limits = LIMITS._replace(override=2.0, pieces_speed=20.0)
+    circle = arc((20, 0), 10, 0, 2 * pi, feed=3000.0)
+    there, beside, back = parted([circle], [True], limits)[0]
+    assert [is_able(part, limits) for part in (there, beside, back)] == [True, False, True]
+    assert beside.feed == 3000.0
+    whole, slower = (parted([circle], [True], limits._replace(override=by))[0] for by in (1.0, 2.0))
+    assert whole[0].feed == 3000.0
+    assert slower[0].feed < 3000.0 or path_length(slower[0]) < path_length(whole[0])
+    assert path_length(there) + path_length(beside) + path_length(back) == pytest.approx(20 * pi)
 
 
 def test_a_move_that_pieces_make_as_fast_stays_whole():

@@ -20,6 +20,7 @@ by p times C's.
 
 from __future__ import annotations
 
+from itertools import groupby
 from math import atan2, ceil, cos, hypot, inf, pi, sin, sqrt
 from typing import NamedTuple
 
@@ -41,6 +42,10 @@ from g12.polar.beside import along_and_around, stand
 LOOKS = 16  # places on a line, and on each quarter of an arc, that are looked at
 WORTH_IT = 0.1  # seconds: two switches cost about as much
 WORTH_PARTING = 0.5  # seconds: the ways there and back, and their stops
+SWITCHING = 0.25  # seconds: what they take
+SHARES = (1.0, 0.8, 0.64, 0.5)  # of the feed, at which C can follow nearer to the pole
+LEAST_SPEED = 1e-3  # program units per second
+LEAST_GAIN = 0.05  # of the time that pieces take
 SAME_DIRECTION = 1e-6  # radians
 SLACK = 1.0 + 1e-9  # rounding: X and Y together may have just what the slide has
 
@@ -113,20 +118,50 @@ def parted(path: list, stopping: list[bool], limits: FaceLimits) -> tuple[list, 
 
 
 def _stretches(move: Line | Arc, limits: FaceLimits) -> list[Line | Arc]:
-    """Return a move in parts, where a part of it can be followed and is worth the way there."""
+    """Return a move in parts, those on the face at a feed at which they can be followed."""
     if move.feed / 60.0 <= limits.pieces_speed or is_able(move, limits):
         return [move]
     places = (0.0, *_parts(move))
-    able = [_is_followed(move, part, limits) for part in places]
-    cuts, begin = {0.0, 1.0}, 0
-    for index, followed in enumerate([*able, False]):
-        if not followed:
-            first, last = places[begin], places[max(begin, index - 1)]
-            if (last - first) * _seconds(move) >= WORTH_PARTING:
-                cuts |= {first, last}
-            begin = index + 1 if index + 1 < len(places) else index
-    ends = sorted(cuts)
-    return [part_of_move(move, first, last) for first, last in zip(ends, ends[1:])]
+    ways = [_at_feed(move, places, share, limits) for share in SHARES]
+    runs, share, seconds = min(ways, key=lambda way: way[2])
+    if seconds > (1.0 - LEAST_GAIN) * _in_pieces(move, limits):
+        return [move]
+    cuts = sorted({0.0, 1.0, *(end for run in runs for end in run)})
+    parts = [part_of_move(move, first, last) for first, last in zip(cuts, cuts[1:])]
+    return [
+        _as_fast_as_followed(part, share, limits) if ends in runs else part
+        for part, ends in zip(parts, zip(cuts, cuts[1:]))
+    ]
+
+
+def _as_fast_as_followed(part: Line | Arc, least: float, limits: FaceLimits) -> Line | Arc:
+    """Return a part of a move at the most of its feed that is followed, the share ``least`` is."""
+    faster = (part._replace(feed=share * part.feed) for share in SHARES if share > least)
+    slowest = part._replace(feed=least * part.feed)
+    return next((one for one in faster if is_able(one, limits)), slowest)
+
+
+def _at_feed(
+    move: Line | Arc, places: tuple[float, ...], share: float, limits: FaceLimits
+) -> tuple[list[tuple[float, float]], float, float]:
+    """Return which parts of a move are worth the way to the face at a share of its feed.
+
+    With that share, and about how long the move takes, the rest in pieces.
+    """
+    slower, runs = move._replace(feed=share * move.feed), []
+    for followed, run in groupby(places, lambda part: _is_followed(slower, part, limits)):
+        first, *between = run
+        last = between[-1] if between else first
+        if followed and (last - first) * _seconds(slower) >= WORTH_PARTING:
+            runs.append((first, last))
+    on_face = sum(last - first for first, last in runs)
+    in_pieces = (1.0 - on_face) * _in_pieces(move, limits)
+    return runs, share, on_face * _seconds(slower) + in_pieces + SWITCHING * len(runs)
+
+
+def _in_pieces(move: Line | Arc, limits: FaceLimits) -> float:
+    """Return about how long pieces take, in seconds."""
+    return 60.0 * path_length(move) / min(move.feed, 60.0 * max(limits.pieces_speed, LEAST_SPEED))
 
 
 def _seconds(element: object) -> float:
