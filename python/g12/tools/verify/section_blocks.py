@@ -13,13 +13,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.tools.path.part import C
+from g12.tools.path.part import C, Y
 from g12.tools.path.track import Track, feed_length, rate
 from g12.tools.preview.moves import Move
+from g12.tools.verify.section_motion import turns
 from g12.tools.verify.wanted_contour import Element, SectionContour
 
 SAME_LEVEL = 1e-3  # mm
 SAME_FEED = 0.01
+LEAST_ON_FACE = 0.5  # of the feed: so slow may a part of a line be on the face of the kinematics
 LEAST_LENGTH = 0.02  # mm: the feed of a shorter piece is rounding
 SHORT = 0.02  # mm: less of a line may be rounding
 TURN = 1e-6  # mm along the part: C turns in place
@@ -176,15 +178,25 @@ def feed_off(
     """
     for block in blocks_cut(section, moves):
         feeds = {element.feed for element in block.elements}
+        turned = any(turns(moves[index]) for index in block.moves)
         for index in block.moves if None not in feeds else ():
             found = feed_asked(moves[index], path.part_length(index))
             least = (1.0 - longer_by(index, path, tolerance)) * (found or 0.0)
+            share = LEAST_ON_FACE if turned and is_on_face(moves[index]) else 1.0
             if found and not any(
-                found >= (1.0 - SAME_FEED) * feed and least <= (1.0 + SAME_FEED) * feed
+                found >= share * (1.0 - SAME_FEED) * feed and least <= (1.0 + SAME_FEED) * feed
                 for feed in feeds
             ):
                 return OffWords(block.elements[0].line, found, min(feeds))
     return None
+
+
+def is_on_face(move: Move) -> bool:
+    """Tell whether a move is one of X and Y, on the kinematics' face.
+
+    Where a line goes there in part only, C cannot follow all of it: that part may be slower.
+    """
+    return not turns(move) and (move.kind == "arc" or move.start[Y] != move.end[Y])
 
 
 def longer_by(index: int, path: Track, tolerance: float) -> float:
