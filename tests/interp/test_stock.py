@@ -177,3 +177,10 @@ def test_what_meets_nothing_of_the_stock_is_told(stock, lines, ini, found, told)
 def test_a_lathe_program_that_turns_nothing_has_a_bar_too(told):
     code, notes, _ = told("40", *FACE, "G12.1", "G1 Z-2 F300", "Z2", "G13.1", ini=LATHE)
     assert (code, notes) == (0, [MISSED])
+
+
+def test_a_section_on_a_cylinder_is_left_aside(told):
+    groove = ["G7.1 C20", "G1 X36 F500", "C90", "X60", "G7.1 C0"]
+    code, notes, findings = told("40", *FACE, *groove, ini=LATHE)
+    assert (code, findings) == (0, [])
+    assert notes == ["line 4: a section on a cylinder is not compared with the stock"]
