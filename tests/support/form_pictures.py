@@ -17,7 +17,7 @@ import matplotlib
 matplotlib.use("Agg")
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Arc, Circle, Rectangle
+from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 
 NGC = Path(__file__).resolve().parents[2] / "ngc"
 UNITS = ("mm", "inch")
@@ -169,11 +169,102 @@ def circle_mill() -> Figure:
     return figure
 
 
+def face() -> tuple[Figure, Axes, Axes]:
+    """Return a picture with a bar's end from the front and the bar from the side."""
+    figure, plan, side = views()
+    plan.patches[0].remove()
+    plan.annotate("", (1.12, 0), (0.98, 0), arrowprops={**ARROW, "arrowstyle": "-|>", "color": INK})
+    plan.text(1.04, -0.12, "C0", **NOTE)
+    return figure, plan, side
+
+
+def bar_from_the_side(side: Axes) -> None:
+    """Draw a bar that sticks out of a spindle, Z0 at its end, with something cut into it."""
+    side.add_patch(Rectangle((-0.6, -0.45), 0.65, 0.9, facecolor=STOCK, edgecolor=INK, lw=0.8))
+    side.add_patch(Rectangle((0.32, 0.02), 0.5, 0.22, facecolor=TOOL, edgecolor=INK, lw=0.7))
+    measure(side, (-0.25, -0.62), (0.05, -0.62), "")
+    side.text(-0.1, -0.78, "depth", bbox=PLATE, **WORDS)
+    measure(side, (0.05, 0.62), (0.32, 0.62), "")
+    side.text(0.2, 0.78, "retract", bbox=PLATE, **WORDS)
+    side.plot((0.05, 0.05), (-0.95, 1.0), color=WORD, lw=0.5, ls=(0, (2, 2)))
+    side.text(0.05, -1.08, "Z0", **WORDS)
+    side.text(0.57, 0.13, "T", **WORDS)
+
+
+def polygon() -> Figure:
+    """Return the picture of the polygon's form."""
+    figure, plan, side = face()
+    circle(plan, 0.95, fill=CUT, line=FAINT, dashed=True)
+    corners = [at(0.56 / cos(radians(30)), angle) for angle in range(30, 390, 60)]
+    plan.add_patch(Polygon(corners, closed=True, facecolor=STOCK, edgecolor=INK, lw=1.2))
+    circle(plan, 0.2, centre=at(0.76, 0), fill=TOOL)
+    plan.text(*at(0.76, 0), "T", **WORDS)
+    measure(plan, at(0.56, 120), at(0.56, 300), "across flats", 0.5)
+    measure(plan, (-0.95, -1.08), (0.95, -1.08), "stock diameter")
+    for x in (-0.95, 0.95):
+        plan.plot((x, x), (-1.12, 0), color=WORD, lw=0.4)
+    plan.annotate("corner", at(0.63, 150), (-0.8, 0.85), arrowprops={**ARROW, "arrowstyle": "->"},
+                  **WORDS)  # fmt: skip
+    plan.text(0.05, 1.1, "angle: C of the middle of a flat", **NOTE)
+    bar_from_the_side(side)
+    side.add_patch(Rectangle((-0.25, 0.24), 0.3, 0.21, facecolor=CUT, edgecolor=INK, lw=0.7))
+    side.add_patch(Rectangle((-0.25, -0.45), 0.3, 0.21, facecolor=CUT, edgecolor=INK, lw=0.7))
+    return figure
+
+
+def slot() -> Figure:
+    """Return the picture of the slot's form."""
+    figure, plan, side = face()
+    circle(plan, 0.95, fill=STOCK)
+    for end in (-0.5, 0.5):
+        circle(plan, 0.24, centre=(end, 0), fill=CUT, width=1.2)
+    plan.add_patch(Rectangle((-0.5, -0.24), 1.0, 0.48, facecolor=CUT, edgecolor="none"))
+    for y in (-0.24, 0.24):
+        plan.plot((-0.5, 0.5), (y, y), color=INK, lw=1.2)
+    circle(plan, 0.17, centre=(0.5, 0), fill=TOOL)
+    plan.text(0.5, 0, "T", **WORDS)
+    measure(plan, (-0.74, -0.5), (0.74, -0.5), "length")
+    for x in (-0.74, 0.74):
+        plan.plot((x, x), (-0.55, 0), color=WORD, lw=0.4)
+    measure(plan, (-0.2, -0.24), (-0.2, 0.24), "width")
+    plan.text(0.05, 1.1, "angle: C of the slot's middle line", **NOTE)
+    bar_from_the_side(side)
+    side.add_patch(Rectangle((-0.25, -0.11), 0.3, 0.22, facecolor=CUT, edgecolor=INK, lw=0.7))
+    return figure
+
+
+def face_pocket() -> Figure:
+    """Return the picture of the form of a round pocket on a face."""
+    figure, plan, side = face()
+    centre = (0.36, 0.3)
+    circle(plan, 0.95, fill=STOCK)
+    circle(plan, 0.34, centre=centre, fill=CUT, width=1.2)
+    circle(plan, 0.15, centre=(0.55, 0.3), fill=TOOL)
+    plan.text(0.55, 0.3, "T", **WORDS)
+    for x, y in ((0, 0), centre):
+        plan.plot((x - 0.07, x + 0.07), (y, y), color=INK, lw=0.6)
+        plan.plot((x, x), (y - 0.07, y + 0.07), color=INK, lw=0.6)
+    measure(plan, (0, -0.3), (0.36, -0.3), "")
+    plan.text(0.18, -0.45, "X / 2", **WORDS)
+    plan.plot((0, 0, 0.36, 0.36), (0, -0.35, -0.35, 0.3), color=WORD, lw=0.4, ls=(0, (2, 2)))
+    measure(plan, (-0.3, 0), (-0.3, 0.3), "C")
+    plan.plot((-0.35, 0.36), (0.3, 0.3), color=WORD, lw=0.4, ls=(0, (2, 2)))
+    plan.plot((-0.35, 0), (0, 0), color=WORD, lw=0.4, ls=(0, (2, 2)))
+    measure(plan, (0.02, 0.78), (0.7, 0.78), "diameter")
+    plan.text(0.05, 1.1, "X is a diameter, C a length", **NOTE)
+    bar_from_the_side(side)
+    side.add_patch(Rectangle((-0.25, -0.05), 0.3, 0.36, facecolor=CUT, edgecolor=INK, lw=0.7))
+    return figure
+
+
 PICTURES = {
     "form_haas": haas,
     "form_yasnac": yasnac,
     "form_mitsubishi": mitsubishi,
     "form_circle_mill": circle_mill,
+    "form_polygon": polygon,
+    "form_slot": slot,
+    "form_face_pocket": face_pocket,
 }
 
 

@@ -73,6 +73,13 @@ def test_forms_of_codes_that_are_there_and_in_the_machines_unit(tmp_path):
     assert "circle_mill" not in ini.read_text()
 
 
+def test_a_lathe_gets_the_forms_of_the_shapes(tmp_path):
+    ini = write_config(tmp_path, AXIS.replace("X Y Z", "X Z C"))
+    put_in(ini, "polar", "polar-shapes", "forms")
+    shown = ("form_polygon_mm", "form_slot_mm", "form_face_pocket_mm")
+    assert "".join(f"NGCGUI_SUBFILE = {form}.ngc\n" for form in shown) in ini.read_text()
+
+
 def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
     own = "TKPKG = Ngcgui 1.0\nNGCGUI_SUBFILE = simp.ngc\nNGCGUI_SUBFILE = form_haas_mm.ngc\n"
     ini = write_config(tmp_path, with_lines(AXIS, "DISPLAY", own))

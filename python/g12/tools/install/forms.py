@@ -20,9 +20,11 @@ OF = {  # the forms of a feature
     "yasnac": ("form_yasnac",),
     "mitsubishi": ("form_mitsubishi",),
     "circle-mill": ("form_circle_mill",),
+    "polar-shapes": ("form_polygon", "form_slot", "form_face_pocket"),
 }
 UNITS = ("inch", "mm")
 PARTS = ("form_start", "form_end")  # subs that forms call
+FACE_PARTS = ("form_face_start", "form_face_end")  # and those of a lathe's face
 NGCGUI = "Ngcgui"  # the Tcl package that AXIS loads
 TAB = "gladevcp -x {XID} "
 PAGE = "configs/include/forms.ui"
@@ -106,7 +108,8 @@ def form_findings(config: Config, features: set[str]) -> Iterator[Finding]:
 def form_finding(config: Config, form: str, features: set[str]) -> Iterator[Finding]:
     """Find what is wrong with one form."""
     own = {feature: names for feature, names in OF.items() if form.rpartition("_")[0] in names}
-    missing = [name for name in (form, *PARTS) if not subs_named(config.ini, name)]
+    parts = FACE_PARTS if "polar-shapes" in own else PARTS
+    missing = [name for name in (form, *parts) if not subs_named(config.ini, name)]
     if missing:
         known = [f"{name}_{unit}" for names in OF.values() for name in names for unit in UNITS]
         cure = "add the package's folder ngc to SUBROUTINE_PATH, or run install again"
