@@ -20,14 +20,16 @@ from shapely.geometry import LineString, MultiLineString, Point
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
+from g12.lengths import MM_PER_INCH
 from g12.machine_ini import face_joints
 from g12.tools.machine.ini import Ini
-from g12.tools.preview.moves import THIRD_AXIS, Move
+from g12.tools.preview.moves import THIRD_AXIS, Move, Trace
 
 CHORD_ERROR = 2e-4  # of the polylines that stand for curves
 LONGEST_ARC_CHORD = math.radians(10)
 DISC_SEGMENTS = 64  # per quarter of a swept disc
 X, Y, Z, C = 0, 1, 2, 5
+INCHES = 1  # length_units of the interpreter
 
 
 @dataclass(frozen=True)
@@ -35,11 +37,13 @@ class Part:
     """How machine positions relate to the part; ``turning`` if a work spindle turns it as C.
 
     A lathe has a Y only on the face of its kinematics, which C, standing, has turned; elsewhere Y
-    is how far the tool stands ``beside`` the X line, mm.
+    is how far the tool stands ``beside`` the X line, mm. The spindle's axis is at machine X
+    ``centre``.
     """
 
     turning: bool
     beside: float = 0.0
+    centre: float = 0.0
 
     @property
     def letters(self) -> str:
@@ -52,7 +56,7 @@ class Part:
         if not self.turning:
             return positions[:, :3]
         turn = np.exp(1j * np.radians(positions[:, C]))
-        points = (positions[:, X] + 1j * positions[:, Y]) * turn
+        points = (positions[:, X] - self.centre + 1j * positions[:, Y]) * turn
         return np.stack([points.real, points.imag, positions[:, Z]], axis=1)
 
     def machine_points(self, move: Move, chord_error: float = CHORD_ERROR) -> np.ndarray:
@@ -76,9 +80,16 @@ class Part:
         if move.kind == "arc":
             return arc_pieces(move.radius, move.sweep, chord_error)
         if self.turning:
-            turn = math.radians(move.end[C] - move.start[C]) + face_turn(move)
-            return arc_pieces(max(abs(move.start[X]), abs(move.end[X])), turn, chord_error)
+            turn = math.radians(move.end[C] - move.start[C]) + self._face_turn(move)
+            radius = max(abs(place[X] - self.centre) for place in (move.start, move.end))
+            return arc_pieces(radius, turn, chord_error)
         return 1
+
+    def _face_turn(self, move: Move) -> float:
+        """Return the angle, radians, that a straight move on the face goes about the spindle."""
+        places = (move.start, move.end)
+        start, end = (complex(place[X] - self.centre, place[Y]) for place in places)
+        return cmath.phase(end * start.conjugate()) if start.imag or end.imag else 0.0
 
 
 def part_of(ini: Ini) -> Part:
@@ -87,17 +98,19 @@ def part_of(ini: Ini) -> Part:
     return Part(turning, ini.tool_beside)
 
 
-def part_of_program(ini: Ini, moves: Iterable[Move]) -> Part:
-    """Return how a program sees its part: on a lathe, C turns it if it moves at all."""
-    turned = any(move.start[axis] != move.end[axis] for move in moves for axis in (Y, C))
+def part_of_program(ini: Ini, trace: Trace) -> Part:
+    """Return how a program sees its part: on a lathe, C turns it, about X0, if it moves at all."""
+    turned = any(move.start[axis] != move.end[axis] for move in trace.moves for axis in (Y, C))
     part = part_of(ini)
-    return replace(part, turning=part.turning and turned)
+    turning = part.turning and turned
+    return replace(part, turning=turning, centre=last_x0(trace) if turning else 0.0)
 
 
-def face_turn(move: Move) -> float:
-    """Return the angle, radians, that a straight move on the face goes about X0 Y0."""
-    start, end = (complex(place[X], place[Y]) for place in (move.start, move.end))
-    return cmath.phase(end * start.conjugate()) if start.imag or end.imag else 0.0
+def last_x0(trace: Trace) -> float:
+    """Return where the program's X0 is at its end, in machine coordinates, mm."""
+    state = trace.state
+    unit = MM_PER_INCH if state.get("length_units") == INCHES else 1.0
+    return trace.position[X] - state["current_x"] * unit if "current_x" in state else 0.0
 
 
 def slide_places(points: np.ndarray, beside: float) -> np.ndarray:

@@ -42,6 +42,7 @@ from g12.tools.verify.pocket_order import left_otherwise
 from g12.tools.verify.rapids import Circles, Collision, collisions
 from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
+from g12.tools.verify.section_paths import x0_of
 from g12.tools.verify.spindle import stands_still
 from g12.tools.verify.stock import read_stock
 from g12.tools.verify.surface_pen import SurfacePen
@@ -50,6 +51,7 @@ from g12.tools.verify.wanted_contour import Pen, SectionContour, WordReading, se
 from g12.tools.verify.zero_line import with_zero_lines
 
 POCKET_TOLERANCE = 0.005  # mm
+SAME_X0 = 1e-6  # mm
 PENS = {POLAR: Pen, CYLINDER: SurfacePen}
 RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE, which is that of every section
 
@@ -67,6 +69,14 @@ class Subject:
     path: Track
     real: Followed | None = None
     samples: Samples | None = None
+
+    def about(self, centre: float) -> Subject:
+        """Return the same with the spindle's axis at another machine X."""
+        part = self.path.part
+        if abs(part.centre - centre) < SAME_X0:
+            return self
+        part = replace(part, centre=centre)
+        return laid_on(part, self.program, self.ini, self.trace, self.samples)
 
     def on_surface(self, radius: float) -> Subject:
         """Return the same on a cylinder's unrolled surface."""
@@ -172,13 +182,15 @@ def prove(
         subject = subject_of(program, ini, trace, samples)
         asked = asked_of(tracer, subject, tools, parameters)
         there = moves_there(tracer, subject, parameters)
+    for first in [each for each in asked.sections if not each.surface][:1]:
+        subject = subject.about(x0_of(first, trace.moves[first.at]))
     proof = measured(subject, asked, there, tolerances, tell)
     return replace(proof, stock=stock_facts(subject, asked, stock, proof.collisions))
 
 
 def subject_of(program: Path, ini: Ini, trace: Trace, samples: Samples | None = None) -> Subject:
     """Return a traced program with its path, and the samples of a run laid on that."""
-    return laid_on(part_of_program(ini, trace.moves), program, ini, trace, samples)
+    return laid_on(part_of_program(ini, trace), program, ini, trace, samples)
 
 
 def laid_on(
@@ -268,12 +280,14 @@ def measured_sections(
 ) -> list[SectionFacts]:
     """Return what is measured of a program's sections, those on a cylinder on its surface."""
     axes = axes_of_section(subject.ini) if asked else None
-    radii = {each.surface for each in asked}
-    views = {radius: subject.on_surface(radius) if radius else subject for radius in radii}
+    radii = {each.surface for each in asked if each.surface}
+    views = {radius: subject.on_surface(radius) for radius in radii}
     moves, diameters = subject.trace.moves, subject.trace.diameters
     found = []
     for each in counted(asked, "measuring section", tell):
-        view = views[each.surface]
+        if not each.surface:
+            subject = subject.about(x0_of(each, moves[each.at]))
+        view = views.get(each.surface, subject)
         facts = measure_section(each, view.path, moves, diameters, axes, tolerance, view.real)
         found.append(facts)
     return found

@@ -44,7 +44,7 @@ class Plane:
     axes, third = (X, Y, C), Z
 
     def __init__(self, section: SectionContour, first: Move) -> None:
-        self._shift = first.start[X] - section.start.real
+        self._centre = x0_of(section, first)
         self._angle = first.start[C]
         self.face = first.start[Z] - section.height
 
@@ -55,7 +55,7 @@ class Plane:
 
     def on_face(self, positions: np.ndarray) -> np.ndarray:
         """Return the points (complex) of machine positions, seen from the face that C turns."""
-        return positions[:, X] - self._shift + 1j * positions[:, Y]
+        return positions[:, X] - self._centre + 1j * positions[:, Y]
 
     def angles(self, positions: np.ndarray, beside: float) -> np.ndarray:
         """Return where the C axis stands, degrees, for a tool ``beside`` the X line."""
@@ -67,14 +67,12 @@ class Plane:
 
     def of_part(self, point: Sequence[float]) -> tuple[float, float, float]:
         """Return X (radius), C and Z in the plane of a point of the part."""
-        radius, angle = math.hypot(*point[:2]), math.atan2(point[1], point[0])
-        there = cmath.rect(radius - self._shift, angle - math.radians(self._angle))
+        there = complex(*point[:2]) * cmath.rect(1.0, -math.radians(self._angle))
         return there.real, there.imag, point[2]
 
     def on_part(self, points: np.ndarray) -> np.ndarray:
         """Return points (complex) of the contour as points (complex) of the part."""
-        angles = np.angle(points) + math.radians(self._angle)
-        return (np.abs(points) + self._shift) * np.exp(1j * angles)
+        return points * cmath.rect(1.0, math.radians(self._angle))
 
     def tool_path(self, index: int, path: Track, real: Followed | None) -> ToolPath:
         """Return the tool centre's path during a move: emitted, or as it was."""
@@ -118,6 +116,11 @@ class SurfacePlane(Plane):
         there = complex(*point[:2]) - self._shift
         x = point[2] - self.face + self._part.radius
         return x, math.degrees(there.real / self._part.radius), there.imag
+
+
+def x0_of(section: SectionContour, first: Move) -> float:
+    """Return where X0, the spindle's axis, is for a polar section, in machine coordinates."""
+    return first.start[X] - section.start.real
 
 
 def plane_of(section: SectionContour, first: Move) -> Plane:
