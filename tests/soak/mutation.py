@@ -31,26 +31,38 @@ from soak.mutants import Mutant, mutants_of, mutated
 
 ROOT = Path(__file__).resolve().parents[2]
 SEED = 12
-ROOMS = ("cycles", "section", "flat", "polar")
+ROOMS = ("cycles", "section", "flat", "moves", "polar", "cylinder")
 PARTS = ("python", "tests", "ngc", "configs", "pyproject.toml")
-CYCLES = ("words", "cycles_common", "cycles_travel", "haas", "yasnac", "mitsubishi", "circle_mill")
-SECTION = ("section_block_rules", "section_codes", "section_line", "section_output", "polar_start")
-FLAT = ("flat_contour", "flat_intersect", "flat_gouge", "flat_simplify", "flat_offset")
-POLAR = (
-    *("polar_exact_stops", "polar_feed", "polar_soft_limits", "polar_start", "polar_spacing"),
-    "polar_pole",
-    *("polar_face", "polar_plan"),
+CYCLES = (
+    *("words", "cycles_common", "cycles_travel", "entry"),
+    *("haas", "yasnac", "mitsubishi", "circle_mill"),
 )
-UNIT = {"cycles": CYCLES, "section": SECTION, "flat": (*FLAT, "polar_plan"), "polar": POLAR}
+SECTION = ("section_block_rules", "section_codes", "section_line", "section_output", "polar_start")
+FLAT = (
+    *("flat_contour", "flat_intersect", "flat_nearby", "flat_gouge", "flat_simplify"),
+    "flat_offset",
+)
+MOVES = ("moves_exact_stops", "moves_feed", "moves_soft_limits", "moves_spacing")
+POLAR = ("polar_start", "polar_pole", "polar_beside", "polar_face", "polar_plan")
+UNIT = {
+    "cycles": CYCLES,
+    "section": SECTION,
+    "flat": (*FLAT, "polar_plan"),
+    "moves": (*MOVES, *POLAR),
+    "polar": (*MOVES, *POLAR),
+    "cylinder": MOVES,
+}
 SECTIONS = ("polar_words", "polar_refusals", "polar_reading")
 INTERP = {
-    "cycles": ("haas", "yasnac", "mitsubishi", "circle_mill"),
+    "cycles": ("haas", "haas_entry", "yasnac", "mitsubishi", "circle_mill"),
     "section": SECTIONS,
     "flat": (*SECTIONS, "verify_programs"),
-    "polar": (*SECTIONS, "verify_programs"),
+    "moves": (*SECTIONS, "cylinder"),
+    "polar": (*SECTIONS, "tool_offset", "verify_programs"),
+    "cylinder": ("cylinder",),
 }
-CPU_SECONDS = 60  # of one process; the tests of a room take less than half of it
-SECONDS = 900
+CPU_SECONDS = 180  # of one process; the tests of a room take less than half of it
+SECONDS = 1800
 MEMORY = 4 << 30
 
 
@@ -93,7 +105,7 @@ def tests_of(module):
     room, name = module.removesuffix(".py").split("/")
     unit, interp = UNIT[room], INTERP[room]
     first = [test for test in unit if test.endswith(name)]
-    own = [test for test in interp if test == name] or interp
+    own = [test for test in interp if name in test] or interp
     return (
         [f"tests/unit/test_{test}.py" for test in (*first, *(t for t in unit if t not in first))],
         [f"tests/interp/test_{test}.py" for test in own],

@@ -213,6 +213,16 @@ def test_the_feed_is_even_inside_a_piece_where_the_machine_can_hold_it(shapes):
             assert all(speed == pytest.approx(100.0, rel=0.02) for speed in cut.speeds)
 
 
+@pytest.mark.parametrize(
+    ("feed", "pieces"), [(600.0, [24, 25]), (1200.0, [16, 17]), (3000.0, [10, 11])]
+)
+def test_for_an_even_feed_pieces_are_no_shorter_than_the_machine_can_follow(feed, pieces):
+    # twice the square of the feed by the acceleration of X or C: at F3000 the tolerance decides
+    contour = programmed([Straight(20 + 0j, 2 + 8j), Straight(2 + 8j, -20 + 9j)], feed=feed)
+    planned = plan(contour, LATHE._replace(tolerance=0.05), c=0.0)
+    assert [len(run.pieces) for run in runs(planned)] == pieces
+
+
 def test_a_helix_has_its_feed_in_space():
     contour = Contour(10.0, 0.0)
     contour.arc(1, z=-20.0, i=-10.0, line=1, feed=300.0)

@@ -66,6 +66,13 @@ def test_where_no_section_begins(found, rule):
     assert str(refused.value).startswith(f"G12.1 line 7: {rule}")
 
 
+@pytest.mark.parametrize("millimetre", [1.0, 1 / INCH])
+def test_ends_that_rounded_words_leave_open_are_closed_in_any_unit(millimetre):
+    assert setup_of(millimetre=millimetre).words.closing == pytest.approx(
+        0.0005 * INCH * millimetre
+    )
+
+
 def test_a_section_may_begin_near_the_centre():
     check_section_start(START._replace(x=1e-3), "XZC")
 

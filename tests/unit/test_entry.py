@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The way down into a pocket by itself: how many half turns, how much each falls."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from g12.cycles.entry import (
+    STRAIGHT_DOWN,
+    Descent,
+    Helix,
+    PocketEntry,
+    helix_of,
+    way_down,
+)
+from g12.cycles.words import Words
+from g12.errors import Refusal
+from support.planner_context import MM
+
+HELIX = PocketEntry(helix=True, angle=3.0)
+
+
+@given(
+    radius=st.floats(0.01, 100),
+    slope=st.floats(0.01, 0.5),
+    last=st.integers(0, 20),
+    height=st.floats(0.001, 100),
+)
+def test_whole_turns_no_steeper_than_the_slope_make_the_height(radius, slope, last, height):
+    turns, fall = Helix(radius, slope, last).descent(height)
+    assert turns >= 1 and (turns + last) % 2 == 0
+    # those of the end fall less and less, by half of that in the middle
+    assert turns * fall + last * fall / 2 == pytest.approx(height)
+    assert fall <= math.pi * radius * slope * (1 + 1e-9)
+    if turns > 2:
+        assert height / (turns - 2 + last / 2) > math.pi * radius * slope * (1 - 1e-9)
+
+
+@pytest.mark.parametrize(("last", "turns"), [(0, 2), (1, 1), (2, 2), (3, 1)])
+def test_a_little_height_takes_as_few_half_turns_as_make_whole_ones(last, turns):
+    assert Helix(10.0, 0.1, last).descent(0.01).turns == turns
+
+
+def test_no_helix_goes_straight_down_and_nothing_up():
+    assert Helix().descent(5.0) == Descent(0, 0.0)
+    assert Helix(10.0, 0.1, 2).descent(0.0) == Helix(10.0, 0.1, 2).descent(-1.0) == Descent(0, 0.0)
+    assert STRAIGHT_DOWN == (False, 3.0, 100.0)
+    assert helix_of(STRAIGHT_DOWN, 3.0, 5.0) == Helix(0.0, 0.0, 0)
+
+
+@pytest.mark.parametrize(
+    ("first", "cutter", "radius"), [(3.0, 5.0, 3.0), (8.0, 5.0, 4.5), (8.0, 0.0, 8.0)]
+)
+def test_the_helix_is_as_large_as_leaves_no_core(first, cutter, radius):
+    assert helix_of(HELIX, first, cutter).radius == pytest.approx(radius)
+
+
+def test_the_last_half_turns_bend_by_less_than_a_degree_each():
+    assert [helix_of(PocketEntry(True, angle), 3.0, 5.0).last for angle in (0.5, 3, 10)] == [
+        0,
+        3,
+        10,
+    ]
+
+
+def down(first, heights, entry=HELIX):
+    return way_down(Words("G13", {}), MM._replace(feed=600.0), entry, first, 5.0, heights)
+
+
+@pytest.mark.parametrize(("first", "side"), [(3.0, 1), (8.0, -1)])
+def test_what_the_subroutine_is_told(first, side):
+    way = down(first, (3.0, 2.0))
+    told = way.locals(first)
+    assert told["side"] == side
+    assert told["outward"] == pytest.approx(first / min(first, 4.5))
+    assert (told["turns"], told["fall"]) == way.first == way.helix.descent(3.0)
+    assert (told["next_turns"], told["next_fall"]) == way.further == way.helix.descent(2.0)
+    assert (told["last_turns"], told["slow"]) == (3, False)
+
+
+@pytest.mark.parametrize(("share", "slow"), [(100.0, False), (40.0, True)])
+def test_straight_down_is_at_its_share_of_the_feed(share, slow):
+    told = down(3.0, (3.0, 2.0), PocketEntry(feed=share)).locals(3.0)
+    assert told == {"turns": 0, "slow": slow, "feed": 600.0, "plunge_feed": 6.0 * share}
+
+
+def test_a_helix_of_a_thousand_turns_is_refused_by_the_first_level_alone():
+    each = math.pi * 0.01 * math.tan(math.radians(3.0))
+    down(0.01, (1990 * each, 9999 * each))
+    with pytest.raises(Refusal, match=r"a helix of radius 0\.01 needs 1004 turns"):
+        down(0.01, (2010 * each, each))
