@@ -350,25 +350,43 @@ def test_modes_and_work_coordinates_do_not_matter(modes, offset, tmp_path):
     assert facts.target.wall.radius == pytest.approx(20, abs=1e-6)
 
 
-FLATS = ("G0 X30 Z2 C0", "G12.1", "G1 X20 C3 F900", "G42 X14 C0 F600", "Z-1 F200", "C10 F600")
-FLATS += ("X-10", "C-10", "X14", "C0", "G40 X20 C-3", "Z2", "G13.1")
+ROUND_A_FLAT = (
+    "G0 X30 Z2 C0",
+    "G12.1",
+    "G1 X20 C3 F900",
+    "G42 X14 C0 F600",
+    "Z-1 F200",
+    "C10 F600",
+)
+ROUND_A_FLAT += ("X-10", "C-10", "X14", "C0", "G40 X20 C-3", "Z2", "G13.1")
 
 
 @pytest.mark.parametrize("units", ["", "G20"])
 @pytest.mark.parametrize(
-    "offset", ["G10 L2 P1 X4 Z-3 C20", "G10 L2 P1 X-30", "G92 X35 Z4", "G55 G10 L2 P2 X-100 C9"]
+    "offset", ["G10 L2 P1 X4 Z-3 C20", "G10 L2 P1 X-9", "G92 X35 Z4", "G55 G10 L2 P2 X70 C9"]
 )
 def test_the_spindle_is_where_x0_is(offset, units, tmp_path):
     last = [units and "G20", "M2"]  # X0 is told in the units of the end
-    lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "S1000 M3", "G0 X31 Z9 C0", offset, *FLATS, *last]
+    lines = [
+        "G21 G18 G8 G40 G90 G94",
+        "T3 M6",
+        "S1000 M3",
+        "G0 X31 Z9 C0",
+        offset,
+        *ROUND_A_FLAT,
+        *last,
+    ]
     proof = proof_of_text(tmp_path, lines, "lathe_mm")
     assert proof.findings == [] and len(proof.sections) == 1
-    assert proof.sections[0].pace.lowest == pytest.approx(600, rel=0.01)
+    (facts,), moves = proof.sections, proof.subject.trace.moves
+    assert facts.pace.lowest == pytest.approx(600, rel=0.01)
+    x0 = moves[facts.section.at].start[0] - facts.section.x
+    assert proof.subject.path.part.centre == pytest.approx(x0)
 
 
 def test_each_section_is_seen_about_its_own_x0(tmp_path):
     begin = ["G21 G18 G8 G40 G90 G94", "T3 M6", "S1000 M3", "G0 Z5"]
-    lines = [*begin, "G10 L2 P1 X4", *FLATS, "G10 L2 P1 X-9 C30", *FLATS, "M2"]
+    lines = [*begin, "G10 L2 P1 X4", *ROUND_A_FLAT, "G10 L2 P1 X-9 C30", *ROUND_A_FLAT, "M2"]
     proof = proof_of_text(tmp_path, lines, "lathe_mm")
     assert proof.findings == [] and len(proof.sections) == 2
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Callable, NamedTuple
 
@@ -25,7 +25,7 @@ VALUE = "#<@>"  # short: a line that LinuxCNC reads has 252 characters at most
 LONGEST_LINE = 252
 STATE = (
     *("_x", "_y", "_z", "_c", "_metric", "_absolute", "_lathe_diameter_mode", "_feed"),
-    *("_units_per_rev", "_rpm", "_motion_mode"),
+    *("_units_per_rev", "_rpm", "_motion_mode", "_plane", "_ijk_absolute_mode"),
 )
 FORGOTTEN = 1.0  # F after the preview changed its units; see ``tracer``
 STATE_TEXT = "%.9f" + " ".join(f"#<{name}>" for name in STATE)
@@ -72,7 +72,7 @@ class Block:
     and ``m_codes``; the arguments of a call are ``arguments``), ``state`` is what the block
     found: ``_x`` …, ``left`` what it left, empty where the program ended in it.
     ``at`` is the index of its first move and ``end`` that of the first move after it. ``events``
-    are those since the block before it was done, its own included.
+    are those since the block before it was done, its own included, which are ``own_events``.
     """
 
     text: Text
@@ -85,6 +85,7 @@ class Block:
     end: int
     left: dict[str, float] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
+    own_events: tuple[Event, ...] = ()
 
 
 Wanted = Callable[[Text], bool]
@@ -228,6 +229,7 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
     found: list[Block] = []
     values: dict[int, float] = {}
     since: list[Event] = []
+    before = 0
     opened: tuple | None = None
     for event in trace.events:
         if TAG not in event.text:
@@ -235,12 +237,14 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
             continue
         kind, number, *rest = event.text.split(f"{TAG} ", 1)[1].split()
         if kind == "begin":
-            values, opened = {}, (event.at, texts[int(number) - 1], [float(v) for v in rest])
+            values, before = {}, len(since)
+            opened = event.at, texts[int(number) - 1], [float(v) for v in rest]
         elif kind == "value":
             values[int(number)] = float(rest[0])
         elif opened:
             left = [float(value) for value in rest]
-            found.append(_block(*opened, values, event.at, left, since))
+            block = _block(*opened, values, event.at, left, since)
+            found.append(replace(block, own_events=block.events[before:]))
             opened, since = None, []
     if opened:  # the program ended in it, with M2
         found.append(_block(*opened, values, len(trace.moves), [], since))

@@ -30,7 +30,13 @@ WEAR = 0.05  # of its diameter: D differs from the loaded tool by more than an a
 SAME_SIZE = 1e-4  # mm
 SAME_ANGLE = 1e-3  # degree
 SAME = 2e-3  # mm: circles of the same depth and radius
-MODES = {"_metric": ("G20", "G21"), "_absolute": ("G91", "G90"), "_units_per_rev": ("G94", "G95")}
+MODES = {
+    "_metric": ("G20", "G21"),
+    "_absolute": ("G91", "G90"),
+    "_units_per_rev": ("G94", "G95"),
+    "_lathe_diameter_mode": ("G8", "G7"),
+    "_ijk_absolute_mode": ("G91.1", "G90.1"),
+}
 LOST_MINUS = "lies above {}, where the tool comes from: it cuts air (a lost minus sign?)"
 SPINDLE_STANDS = "the spindle stands still: no M3 or M4 with an S comes before it"
 NOT_CUT = "nothing is cut"
@@ -51,6 +57,7 @@ def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> It
         yield from order_findings(facts, tolerance, unit)
     yield from place_findings(facts, (ENDS, DOWN_TO) if wrong_depth else (), unit)
     yield from left_findings(facts)
+    yield from (f"{text} comes in it, where the program has it not" for text in facts.acts)
     for overrun in facts.overruns or ():
         if overrun.certain:
             yield overrun_text(overrun, unit)
@@ -174,7 +181,7 @@ def leaving_text(left: LeftBehind) -> str:
     name, found, asked = left
     if name in MODES:
         was, instead = (MODES[name][int(on)] for on in (found, asked))
-    elif name == "_motion_mode":
+    elif name in ("_motion_mode", "_plane"):
         was, instead = (f"G{mode / 10:g}" for mode in (found, asked))
     else:
         letter = name.removeprefix("_")[0].upper()

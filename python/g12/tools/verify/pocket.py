@@ -53,7 +53,8 @@ class PocketFacts:
     ``cut`` is the depth and the radius of every full circle in its order, ``other_mode`` says
     that a move has its feed per minute in place of per revolution, or the other way round;
     ``growth`` is that of a spiral in a turn, ``helix`` None where the tool goes straight down.
-    ``spindle_stands`` says that no spindle turns, as far as the program tells.
+    ``spindle_stands`` says that no spindle turns, as far as the program tells, ``acts`` are what
+    the cycle does besides moving.
     """
 
     target: Target
@@ -81,6 +82,7 @@ class PocketFacts:
     helix: HelixFacts | None = None
     overruns: tuple[Overrun, ...] | None = ()
     left_behind: tuple[LeftBehind, ...] = ()
+    acts: tuple[str, ...] = ()
     spindle_stands: bool = False
 
     @property

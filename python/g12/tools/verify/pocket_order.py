@@ -6,6 +6,7 @@ Places are points in machine coordinates, mm.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -20,6 +21,9 @@ ACROSS = 1e-6  # mm
 SAME_FAST = 0.002  # mm
 KINDS = {"rapid": "rapid", "feed": "straight move", "probe": "probing move"}
 ENDS, DOWN_TO = "it ends at", "it goes down to"
+ACT = re.compile(r"(G|M\d|S|tool|dwell (?!0$))")  # of what a trace tells
+TOLD = {43.0, 43.1, 43.2, 49.0, *(54.0, 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59.3)}
+TOLD |= {61.0, 61.1, 64.0, 96.0, 97.0}  # codes of which a trace tells
 
 
 class Misplaced(NamedTuple):
@@ -48,6 +52,13 @@ def left_otherwise(block: Block, leaves: Mapping[str, float]) -> tuple[LeftBehin
         for name, asked in leaves.items()
         if block.left and abs(block.left[name] - asked) > SAME_STATE * max(1.0, abs(asked))
     )
+
+
+def acts_in(block: Block) -> tuple[str, ...]:
+    """Return what a block does besides moving, as a trace tells it, though it does not say so."""
+    says_more = block.m_codes or block.words.keys() & {"S", "T"} or set(block.codes) & TOLD
+    told = [] if says_more else [event.text for event in block.own_events]
+    return tuple(dict.fromkeys(text for text in told if ACT.match(text)))
 
 
 def misplaced(

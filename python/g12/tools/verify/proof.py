@@ -38,7 +38,7 @@ from g12.tools.verify.findings import (
 )
 from g12.tools.verify.in_stock import InStock, StockFacts
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
-from g12.tools.verify.pocket_order import left_otherwise
+from g12.tools.verify.pocket_order import acts_in, left_otherwise
 from g12.tools.verify.rapids import Circles, Collision, collisions
 from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
@@ -266,7 +266,8 @@ def measured(
         overruns = None if there is None else tuple(overruns_of(block, there, travel, widths))
         left = left_otherwise(block, target.leaves)
         still = stands_still(subject.trace.events, block.end, subject.ini)
-        pockets.append(replace(facts, overruns=overruns, left_behind=left, spindle_stands=still))
+        told = {"left_behind": left, "acts": acts_in(block), "spindle_stands": still}
+        pockets.append(replace(facts, overruns=overruns, **told))
     found = measured_sections(subject, asked.sections, tolerances.polar, tell)
     tell("looking for rapids through material")
     hits = collisions(asked.circles, moves, path, subject.trace.diameters, real)

@@ -18,7 +18,7 @@ from g12.lengths import MM_PER_INCH
 from g12.tools.path.part import plane_axes
 from g12.tools.preview.executed_blocks import FORGOTTEN, Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.codes import EVENT, Codes, Cycle, compensates
+from g12.tools.verify.codes import EVENT, Codes, Cycle, compensates, kept_state
 
 ENTRIES = "GXYZWORDCKJLPFV"
 LEFT_OUT = -9999.0
@@ -230,7 +230,7 @@ class CircleReader:
         name = self.codes.name_of(block.codes)
         source = Source(block.text.number, block.text.file, name, cycle.dialect)
         wall, schedule = replace(wall, face=view.zero()[2]), replace(schedule, rev=view.rev)
-        leaves = view.leaves(schedule.feeds.arc)
+        leaves = view.leaves(schedule.feeds.arc, self.moves[block.end - 1])
         return Target(source, wall, cutter, schedule, places, leaves)
 
     def _haas(self, view: BlockInMm, cycle: Cycle) -> Reading:
@@ -391,21 +391,29 @@ class BlockInMm:
         self.unit = next(changes, self._unit_before)
         absolute = bool(block.state["_absolute"])
         self.absolute = (absolute or 90.0 in block.codes) and 91.0 not in block.codes
-        self._first = first
+        self._first, self._codes = first, block.codes
         self.rev = self._per_revolution(block.codes)
 
     def _per_revolution(self, codes: Sequence[float]) -> bool:
         commanded = [code for code in codes if code in (93.0, 94.0, 95.0)]
         return 95.0 in commanded if commanded else bool(self._state["_units_per_rev"])
 
-    def leaves(self, feed: float | None) -> dict[str, float]:
-        """Return the state that the block should leave; ``feed`` in mm, None if it is not known."""
+    def leaves(self, feed: float | None, last: Move) -> dict[str, float]:
+        """Return the state that the block should leave behind its last move.
+
+        ``feed`` in mm, None if it is not known. The tool may end elsewhere, which is told by
+        itself: there the program's coordinates are those of its zero.
+        """
         left = {
             "_metric": float(self.unit == 1.0),
             "_absolute": float(self.absolute),
             "_units_per_rev": float(self.rev),
             "_motion_mode": self._state["_motion_mode"],
         }
+        left |= kept_state(self._state, self._codes)
+        if not self._state["_lathe_diameter_mode"]:
+            place = self._turned_back(np.array(last.end[:3]) - self.zero()) / self.unit
+            left |= dict(zip(("_x", "_y", "_z"), map(float, place)))
         return left if feed is None else {**left, "_feed": feed / self.unit}
 
     def length(self, letter: str) -> float:
@@ -452,9 +460,17 @@ class BlockInMm:
 
     def _turned(self, x: float, y: float, z: float) -> np.ndarray:
         """Return a direction of the program in machine coordinates."""
-        turn = np.radians(self._first.rotation)
-        cos, sin = np.cos(turn), np.sin(turn)
-        return np.array([x * cos - y * sin, x * sin + y * cos, z])
+        return turned(np.array([x, y, z]), self._first.rotation)
+
+    def _turned_back(self, way: np.ndarray) -> np.ndarray:
+        """Return a direction of the machine in program coordinates."""
+        return turned(way, -self._first.rotation)
+
+
+def turned(way: np.ndarray, degrees: float) -> np.ndarray:
+    """Return a direction turned about Z."""
+    cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return np.array([way[0] * cos - way[1] * sin, way[0] * sin + way[1] * cos, way[2]])
 
 
 def called_event(view: BlockInMm) -> dict[str, float]:

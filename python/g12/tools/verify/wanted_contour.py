@@ -35,7 +35,7 @@ from g12.tools.preview.executed_blocks import (
 )
 from g12.tools.preview.moves import Event
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
-from g12.tools.verify.codes import Codes
+from g12.tools.verify.codes import Codes, kept_state
 from g12.tools.verify.executed_subs import Copies, called_files, files_with
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
@@ -44,7 +44,9 @@ ACTING_M = {*map(float, (3, 4, 5, 7, 8, 9, 48, 49, 50, 51, 52, 53)), *map(float,
 DWELL, EXACT_HERE = 4.0, 9.0
 PATHS = {61.0: True, 61.1: True, 64.0: False}  # code: exact
 SPINDLE = re.compile(r"\$\s*(#?-?[\d.]+|#<[^>]*>)")
-ACTS = re.compile(r"(M\d|S|dwell (?!0$)|message )")  # of what a trace tells: what a section does
+ACTS = re.compile(
+    r"(M\d|S|G4[39]|G5\d|dwell (?!0$)|message )"
+)  # of what a trace tells: what a section does
 FEED_MODES = {94.0: False, 98.0: False, 95.0: True, 99.0: True}  # code: per revolution
 SAVE, RESTORE, SAVE_FOR_SUB = 70.0, 72.0, 73.0
 SAME_PLACE = 0.01  # mm
@@ -352,10 +354,17 @@ def section_of(
         ),
         acts=tuple(acts),
         told=told,
-        leaves=pen.leaves(first.state),
+        leaves={**pen.leaves(first.state), **kept_behind(group)},
         left=last.left,
         surface=pen.surface,
     )
+
+
+def kept_behind(group: Sequence[Block]) -> dict[str, float]:
+    """Return the modes that the blocks of a section leave as they are."""
+    if restores(group):
+        return {}
+    return kept_state(group[0].state, [code for block in group for code in block.codes])
 
 
 class Pen:
