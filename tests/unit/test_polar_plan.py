@@ -224,7 +224,7 @@ def test_for_an_even_feed_pieces_are_no_shorter_than_the_machine_can_follow(feed
 
 
 def test_what_the_pieces_leave_over_of_x_comes_last_and_stops():
-    # a quarter turn about a centre 0.2 micrometres beside the spindle's: no piece changes X by 0.001
+    # a quarter turn about a centre 0.0002 beside the spindle: no piece changes X by 0.001
     shape = Round(20 + 0j, 0.0002 + 0j, math.pi / 2)
     *turned, last = runs(plan(programmed([shape]), LATHE, c=0.0))
     assert {x for run in turned for x, *_ in run.pieces} == {20.0}
