@@ -380,7 +380,7 @@ def test_the_spindle_is_where_x0_is(offset, units, tmp_path):
     assert proof.findings == [] and len(proof.sections) == 1
     (facts,), moves = proof.sections, proof.subject.trace.moves
     assert facts.pace.lowest == pytest.approx(600, rel=0.01)
-    x0 = moves[facts.section.at].start[0] - facts.section.x
+    x0 = moves[facts.section.at].start[0] - facts.section.start.real
     assert proof.subject.path.part.centre == pytest.approx(x0)
 
 
