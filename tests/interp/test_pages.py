@@ -17,6 +17,7 @@ PAGES = {
     "ngc/circle_mill.md": ("mill_mm", 2),
     "ngc/polar.md": ("lathe_mm", 1),
     "ngc/polar_shapes.md": ("lathe_mm", 3),
+    "ngc/cylinder.md": ("lathe_mm", 1),
 }
 PROGRAM = re.compile(r"(?:^ {4}.*\n)+?^ {4}M2\n", re.MULTILINE)
 
