@@ -57,6 +57,7 @@ SAMPLES = (
     Sample("polar/manual_sample.ngc", "lathe_inch", 200.0, {8: 0.0}),
     Sample("polar/hexagon.ngc", "lathe_mm"),
     Sample("polar/slot.ngc", "lathe_mm"),
+    Sample("cylinder/cam_groove.ngc", "lathe_mm", 300.0),
     Sample("yasnac/example.ngc", "mill_yasnac_mm", 1500.0),
     Sample("mitsubishi/circle.ngc", "mill_mitsubishi_mm", 1000.0),
 )
