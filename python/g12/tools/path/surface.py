@@ -15,7 +15,7 @@ import numpy as np
 from g12.tools.path.part import C, Part, X, Z
 from g12.tools.preview.moves import Move
 
-LONGEST_PIECE, LEAST_PIECES = 0.5, 4  # mm, of a move
+LONGEST_PIECE, LEAST_PIECES, MOST_PIECES = 0.5, 4, 5000  # mm, of a move
 
 
 @dataclass(frozen=True)
@@ -42,4 +42,5 @@ class Surface(Part):
         if move.kind == "arc":
             return super()._pieces(move, chord_error)
         start, end = self.points(np.array([move.start, move.end]))
-        return max(LEAST_PIECES, math.ceil(np.linalg.norm(end - start) / LONGEST_PIECE))
+        pieces = math.ceil(np.linalg.norm(end - start) / LONGEST_PIECE)
+        return min(max(LEAST_PIECES, pieces), MOST_PIECES)
