@@ -25,7 +25,7 @@ def found(tmp_path):
     """Return a function: the findings about an INI with everything else in order."""
 
     def find(text, remap=HANDLERS, remap_file="remap.py", files=(), **facts):
-        names = ("g12_haas", "g12_helix", "g12_circle_mill", "circle_mill", "g12_skipped_over")
+        names = {name for feature in features.FILES for name in features.names_of(feature)}
         subs = {f"ngc__{name}_ngc": "" for name in names}
         ini = write_config(tmp_path, text, toplevel_py="", **subs, **dict(files))
         package = tmp_path / "python" / "g12"
@@ -90,6 +90,17 @@ def test_the_sub_of_polar_interpolation(found):
     (missing,) = found(with_lines(LATHE, "RS274NGC", lines_of("polar")) + PYTHON)
     assert missing.kind == "no-sub"
     assert missing.text.startswith("g12_skipped_over.ngc is in none of the folders")
+
+
+def test_shapes_need_their_subs_and_polar_interpolation(found):
+    shapes = lines_of("polar-shapes")
+    for pair in ("polar", "polar-g12.3"):
+        lines = SUBS + lines_of(pair) + shapes
+        assert found(with_lines(LATHE, "RS274NGC", lines) + PYTHON) == []
+    (alone,) = found(with_lines(LATHE, "RS274NGC", SUBS + shapes) + PYTHON)
+    assert (alone.kind, "needs polar or polar-g12.3" in alone.text) == ("no-polar", True)
+    lost = found(with_lines(LATHE, "RS274NGC", lines_of("polar") + shapes) + PYTHON)
+    assert set(kinds(lost)) == {"no-sub"} and "polar_slot.ngc" in str(lost)
 
 
 def test_cylindrical_interpolation_needs_its_sub_its_function_and_three_axes(found):
