@@ -28,7 +28,7 @@ from g12.polar import plan as polar
 from g12.polar.start import check_section_start, polar_setup
 from g12.section.codes import SectionCodes, codes_of_section
 from g12.section.start import SectionStart
-from g12.shapes.entries import SUBS
+from g12.shapes import SUBS
 
 TYPED = 1  # call level of a block that stands in no sub
 DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could read them

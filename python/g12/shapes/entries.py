@@ -14,7 +14,6 @@ from g12.cycles.context import Context
 from g12.cycles.words import Words
 from g12.errors import number
 
-SUBS = ("polar_polygon", "polar_slot", "polar_pocket")
 LEFT_OUT = -9999.0
 CLEAR_MM = 1.0  # between the tool and the face, or the stock, where it comes down
 WIDEST = 0.75  # of the cutter's diameter: how far apart its rounds are at most
