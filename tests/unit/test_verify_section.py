@@ -336,3 +336,33 @@ def test_another_depth_is_told_with_its_line(depths, line, found):
 
 def test_another_feed_is_told_with_its_line():
     assert blockwise((-1.0, -1.0), (700.0,)).feed_off == pytest.approx((1, 700.0, 600.0))
+
+
+def beside_centre(share, side=0, centre=None):
+    """Return what is off of one move in X and C by the centre, 6.7 % longer than its chord."""
+    hand = Hand().rapid(x=0.02).next_block()
+    hand.line(c=72.0)
+    chord = 2 * 0.02 * math.sin(math.radians(36))
+    hand.moves[-1] = hand.moves[-1]._replace(feed=share * 600.0 * 72.0 / chord)
+    ends = 0.02 + 0j, 0.02 * np.exp(1j * math.radians(72))
+    return measure(hand, [Element(2, *ends, side, False, 0.0, centre, feed=600.0)]).feed_off
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_spiral_beside_the_centre_lasts_as_long_as_its_chord(side):
+    assert beside_centre(1.0, side) is None
+    assert beside_centre(1.03, side) and beside_centre(1.1)
+
+
+def test_of_a_line_the_chord_alone_tells_the_feed():
+    assert beside_centre(0.97) == pytest.approx((2, 582.0, 600.0))
+    assert beside_centre(0.97, side=1) is None  # compensated it may be for a curve as well
+
+
+def test_a_long_curve_is_its_own_length_but_for_the_tolerance():
+    hand = Hand().rapid(x=10.0).next_block()
+    hand.line(c=57.3)
+    hand.moves[-1] = hand.moves[-1]._replace(feed=618.0 * 57.3 / (10.0 * math.radians(57.3)))
+    sweep = math.radians(57.3)
+    arc = Element(2, 10 + 0j, 10 * np.exp(1j * sweep), 0, False, 0.0, 0j, sweep, 600.0)
+    assert measure(hand, [arc]).feed_off == pytest.approx((2, 618.0, 600.0), rel=1e-4)

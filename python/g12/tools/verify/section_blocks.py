@@ -174,20 +174,22 @@ def feed_off(
 ) -> OffWords | None:
     """Return the first feed along the part that is not the words'.
 
-    A piece may be longer than what it is for: the feed of this one may be right as well.
+    A piece's feed is right if the piece lasts as long as what it is for.
     """
     for block in blocks_cut(section, moves):
         feeds = {element.feed for element in block.elements}
         turned = any(turns(moves[index]) for index in block.moves)
         for index in block.moves if None not in feeds else ():
-            found = feed_asked(moves[index], path.part_length(index))
-            least = (1.0 - longer_by(index, path, tolerance)) * (found or 0.0)
+            meant = lengths_meant(block, index, path, tolerance)
+            least, most = (feed_asked(moves[index], length) for length in meant)
             share = LEAST_ON_FACE if turned and is_on_face(moves[index]) else 1.0
-            if found and not any(
-                found >= share * (1.0 - SAME_FEED) * feed and least <= (1.0 + SAME_FEED) * feed
+            if path.part_length(index) < LEAST_LENGTH or not most:
+                continue
+            if not any(
+                most >= share * (1.0 - SAME_FEED) * feed and least <= (1.0 + SAME_FEED) * feed
                 for feed in feeds
             ):
-                return OffWords(block.elements[0].line, found, min(feeds))
+                return OffWords(block.elements[0].line, most, min(feeds))
     return None
 
 
@@ -199,25 +201,32 @@ def is_on_face(move: Move) -> bool:
     return not turns(move) and (move.kind == "arc" or move.start[Y] != move.end[Y])
 
 
-def longer_by(index: int, path: Track, tolerance: float) -> float:
-    """Return the greatest share of a move's length by which it is longer than what it is for.
+def lengths_meant(
+    block: BlockOfSection, index: int, path: Track, tolerance: float
+) -> tuple[float, float]:
+    """Return how long that is at the least and at the most which a move is for, mm.
 
-    That is no shorter than the chord, and no farther away than a flat bow of the tolerance:
-    8 / 3 (tolerance / length)**2.
+    A straight move in X and C is a spiral on the part. Of a line it makes the chord between its
+    ends, to the last digit. Of what is curved or compensated it makes no less than that, and no
+    less than its own path without 2 pi times the tolerance: of two curves that bend one way, one
+    within a distance of the other, the outer one is no longer by more (Steiner).
     """
     points, length = path.points[path.vertices(index)], path.part_length(index)
-    if length < LEAST_LENGTH:
+    chord = float(np.linalg.norm(points[-1] - points[0]))
+    if not any(each.side or each.ramp or each.centre is not None for each in block.elements):
+        return chord, chord
+    return max(chord, length - math.tau * tolerance), length
+
+
+def feed_asked(move: Move, length: float) -> float:
+    """Return the feed along the part that a move's F makes of a length, whatever the axes can do.
+
+    That of a rapid is 0.
+    """
+    if move.kind == "rapid":
         return 0.0
-    bow = 8.0 / 3.0 * (tolerance / length) ** 2
-    return min(1.0 - float(np.linalg.norm(points[-1] - points[0])) / length, bow)
-
-
-def feed_asked(move: Move, length: float) -> float | None:
-    """Return the feed along the part that a move's F makes, whatever the axes can do."""
-    if move.kind == "rapid" or length < LEAST_LENGTH:
-        return None
     programmed = move.length if move.kind == "arc" else feed_length(move)
-    return length / programmed * rate(move, 0.0) * 60.0
+    return length / programmed * rate(move, 0.0) * 60.0 if programmed else 0.0
 
 
 def turn_speed(section: SectionContour, moves: Sequence[Move], path: Track) -> float:
