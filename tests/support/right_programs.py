@@ -61,6 +61,7 @@ def pocket_program(chance, unit, count, add_pocket):
     for k in range(count):
         if loaded is None or chance.random() < 0.1:
             loaded = chance.choice(list(CUTTERS[unit]))
+            text.add("G90 G0", f"Z{text.n(20)}")  # a larger tool would not come out of the pocket
             text.add(f"T{loaded} M6")
             text.add("S2000 M3")
             text.add("F" + text.n(text.between(100, 900)))

@@ -338,20 +338,24 @@ def test_another_feed_is_told_with_its_line():
     assert blockwise((-1.0, -1.0), (700.0,)).feed_off == pytest.approx((1, 700.0, 600.0))
 
 
-def beside_centre(share, side=0, centre=None):
-    """Return what is off of one move in X and C by the centre, 6.7 % longer than its chord."""
-    hand = Hand().rapid(x=0.02).next_block()
-    hand.line(c=72.0)
-    chord = 2 * 0.02 * math.sin(math.radians(36))
-    hand.moves[-1] = hand.moves[-1]._replace(feed=share * 600.0 * 72.0 / chord)
-    ends = 0.02 + 0j, 0.02 * np.exp(1j * math.radians(72))
-    return measure(hand, [Element(2, *ends, side, False, 0.0, centre, feed=600.0)]).feed_off
+def beside_centre(share, side=0, x=0.02, turn=72.0):
+    """Return what is off of one move in X and C from X0.02, made as a line or for a curve.
+
+    With C alone it is 6.7 % longer than its chord.
+    """
+    hand = Hand().rapid(x=0.02).next_block().line(x=x, c=turn)
+    start, end = 0.02 + 0j, x * np.exp(1j * math.radians(turn))
+    programmed = abs(x - 0.02) or turn
+    feed = share * 600.0 * programmed / abs(end - start)
+    hand.moves[-1] = hand.moves[-1]._replace(feed=feed)
+    return measure(hand, [Element(2, start, end, side, False, 0.0, feed=600.0)]).feed_off
 
 
 @pytest.mark.parametrize("side", [0, 1])
-def test_a_spiral_beside_the_centre_lasts_as_long_as_its_chord(side):
-    assert beside_centre(1.0, side) is None
-    assert beside_centre(1.03, side) and beside_centre(1.1)
+@pytest.mark.parametrize(("x", "turn"), [(0.02, 72.0), (-0.004, 120.0)])
+def test_a_spiral_beside_the_centre_lasts_as_long_as_its_chord(side, x, turn):
+    assert beside_centre(1.0, side, x, turn) is None
+    assert beside_centre(1.03, side, x, turn) and beside_centre(1.1, side, x, turn)
 
 
 def test_of_a_line_the_chord_alone_tells_the_feed():
