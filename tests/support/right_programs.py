@@ -111,7 +111,8 @@ def yasnac(text, tool, radius, x, y):
     text.add("G1", f"Z{text.n(-text.between(1, 4))}")
     with_d = text.chance.random() < 0.8
     offset, side = radius if with_d else 0.0, text.one_of(1, -1)
-    first, last = sorted(text.between(0.1, 25.0) + k * 0.1 for k in range(2))
+    first, last = sorted(text.between(0.1, 25.0) for _ in range(2))
+    last = max(last, first + 0.1)
     words = [f"I{text.n(side * (last + offset))}"]
     if text.chance.random() < 0.5:
         words.append(f"K{text.n(side * (first + offset))}")

@@ -156,6 +156,11 @@ def test_one_ring_leaves_its_core_by_design():
     assert target("G13 I30 Z-2 D1", **HERE).wall.cleared == pytest.approx(24)
 
 
+def test_one_ring_beside_what_the_way_down_has_cleared_leaves_nothing():
+    assert target("G13 I14.9 Z-2 D2", **HERE).wall.cleared == 0
+    assert target("G13 I15.1 Z-2 D2", **HERE).wall.cleared == pytest.approx(5.1)
+
+
 def test_d0_puts_the_tool_centre_on_the_circle():
     found = target("G12 I4 Z-2 D0", **HERE)
     assert (found.wall.radius, found.cutter.radius) == (7, 3)
@@ -168,6 +173,9 @@ def test_d0_puts_the_tool_centre_on_the_circle():
         ("I50 D2", 40, 0),
         ("I50 K35 Q4 L2 D2", 29, 0),
         ("I50 K35 Q4", 36, 0),
+        ("I50 K9 Q4 D2", 0, 0),
+        ("I50 K13 Q4 D2", 7, 0),
+        ("I14 D2", 0, 0),
         ("I50 R40 D2", 40, 40),
         ("I50 R40", 43, 43),
     ],

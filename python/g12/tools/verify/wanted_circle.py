@@ -28,6 +28,7 @@ DYNAMIC = (41.1, 42.1)  # compensation whose D is a diameter
 CENTRE = (0.0, 0.0)
 SAME_DEPTH = 1e-6
 ROUNDING = 1e-6  # mm
+TOUCHING = 0.01  # mm: so far over each other two rings leave nothing
 HELIX_SHARE = 0.9  # of the cutter's radius: as large is a helix at most
 NARROWER = 0.254  # mm: an event's roughing width is the cutter's diameter less this
 EVENT_RETRACT = 2.54  # mm
@@ -239,7 +240,6 @@ class CircleReader:
             self.offset, self.number = self._radius(words["D"]), round(words["D"])
         offset = self._radius(view.tool) if self.offset is None else self.offset
         wall, cutter = self._inside(view, "K" if "K" in words else "I", offset, self.number)
-        cleared = 0.0 if "K" in words else core_of(cutter, wall.radius)
         passes = int(words.get("L", 1))
         counts = (1,) if view.absolute or "Z" not in words else range(1, passes + 1)
         levels = tuple(view.height("Z", count) - view.start[2] for count in counts)
@@ -252,7 +252,8 @@ class CircleReader:
         schedule = Schedule(
             levels, passes, feeds, cycle.turn, circles=tuple(circles), pitch=pitch, helix=helix
         )
-        wall = replace(wall, origin=view.centre(), cleared=cleared)
+        core = core_of(cutter, wall.radius, helix.radius if helix else 0.0)
+        wall = replace(wall, origin=view.centre(), cleared=0.0 if "K" in words else core)
         begin = view.axes @ (view.start - wall.origin)
         there = (((begin[0], begin[1]), CENTRE),) if np.hypot(*begin[:2]) > ROUNDING else ()
         return wall, cutter, schedule, Places(end=(0.0, 0.0, levels[-1]), fast=there)
@@ -518,9 +519,14 @@ def steps_to(distance: float, longest: float) -> int:
     return math.ceil((distance - ROUNDING) / longest) if distance > ROUNDING else 0
 
 
-def core_of(cutter: Cutter, wall: float) -> float:
-    """Return the radius of what one ring along a wall leaves standing by design."""
-    return max(0.0, wall - 2 * cutter.radius)
+def core_of(cutter: Cutter, wall: float, begun: float = 0.0) -> float:
+    """Return the radius of what one ring along a wall leaves standing by design.
+
+    The cutter begins in the centre, or on a circle of radius ``begun`` there: a ring that touches
+    what it clears there leaves nothing.
+    """
+    inner = wall - 2 * cutter.radius
+    return inner if inner > begun + cutter.radius - TOUCHING else 0.0
 
 
 def event_levels(event: Mapping[str, float], plane: float, absolute: bool) -> list[float]:
