@@ -302,6 +302,7 @@ INSIDE = [
     ("G7.1 C30", "the section is already on"),
     ("G7.1", "the section is already on"),
     ("G7.1 C0 Z5", "G7.1 C0 stands alone in its block"),
+    ("G7.1 H0", "G7.1 C0 stands alone in its block"),
     ("G17.1", "G17.1 is refused: the section's plane is Z-C"),
     ("G90.1", "G90.1 is refused: J and K are always incremental inside the section"),
     ("G54", f"G54 is refused: {STAYS}"),
@@ -389,6 +390,12 @@ def test_what_the_tool_cannot_cut_is_refused(lathe, body, line, why):
 )  # fmt: skip
 def test_refused_to_begin(lathe, given, why):
     assert refused(lathe, section("G1 Z5", **given)) == (f"G7.1 line 5: {why}", 5)
+
+
+@pytest.mark.parametrize("words", ["X7", "Z-5", "K3", "D5", "R2", "I1"])
+def test_words_beside_the_code_that_ends_no_section(lathe, words):
+    traced = lathe.trace_text([FIRST, f"G7.1 C0 {words}", "M2"])
+    assert traced.error.text == "G7.1 line 2: C0 stands alone in its block"
 
 
 def test_x_beyond_its_limit_is_a_radius_where_words_are_diameters(lathe):

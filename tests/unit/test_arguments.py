@@ -141,11 +141,11 @@ def test_an_axis_that_the_machine_lacks_is_explained(files):
 
 
 def test_a_code_that_the_machine_lacks_points_to_what_is_set_up(files):
-    said = "Unknown g code used: of G12 and G13 this INI has"
+    said = "Unknown g code used: of G12, G13 and G7.1 this INI has"
     see = f"see {CALL} check"
     assert explained_text("Unknown g code used", files.ini) == f"{said} none; {see}"
     polar = SIM / "lathe_mm.ini"
-    assert explained_text("Unknown g code used", polar) == f"{said} G12.1 G13.1; {see}"
+    assert explained_text("Unknown g code used", polar) == f"{said} G12.1 G13.1 G7.1 G12.4 G13.4; {see}"
 
 
 def test_events_that_are_not_there(tmp_path, capsys):

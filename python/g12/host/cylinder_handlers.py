@@ -22,13 +22,18 @@ from g12.host.section_glue import (
 )
 from g12.section.codes import SectionCodes, codes_with_word
 
+DROPPED_WORDS = "abdhijkruvwxyz"  # nothing else in a block with G7.1 could read them
+
 
 def cylinder_mode(self, **words) -> Iterator[int]:
     """Read, plan and move a section; outside one C0 is a safety line and does nothing."""
     try:
         glue.forget_return(self)
         block = self.blocks[self.remap_level]
-        if not (block.c_flag and block.c_number == 0.0):
+        if block.c_flag and block.c_number == 0.0:
+            if any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS):
+                raise BlockRefusal(glue.code_of_block(self), f"{RADIUS}0 stands alone in its block")
+        else:
             if glue.in_mdi(self):
                 raise BlockRefusal(glue.code_of_block(self), NOT_IN_MDI)
             yield from run_section(self, CYLINDER)

@@ -141,7 +141,7 @@ class Section:
         block = block_of(self.reader.parsed)
         if self.codes.ends(block):
             self.reader.set_parameters(line)
-            yield from self._finish(block)
+            yield from self._finish(line, block)
         else:
             self._check(block)
             yield from self._obey(line, block)
@@ -233,10 +233,10 @@ class Section:
         self.reader.remember_machine()
         self.reader.contour = self.reader.contour.continued(planned.end)
 
-    def _finish(self, block: SectionBlock) -> Iterator[int]:
+    def _finish(self, line: TextLine, block: SectionBlock) -> Iterator[int]:
         """End the section at the block that switches off."""
         off = self.codes.off_code
-        if not alone(block, self.codes.word):
+        if line.relative or not alone(block, self.codes.word):
             raise self._refuse(f"{off} stands alone in its block")
         if not self.frame.is_current:
             raise self._missing_off("the sub called here has one, but not the code that it ends")

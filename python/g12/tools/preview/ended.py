@@ -15,7 +15,7 @@ from g12.tools.preview.tracer import Parameters, Tools, trace
 from g12.tools.system import CALL
 
 UNKNOWN_CODE = "Unknown g code used"
-OUR_CODE = re.compile(r"G1[23](?!\d)")
+OUR_CODE = re.compile(r"G(?:1[23](?!\d)|7\.1$)")
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
 
@@ -49,5 +49,5 @@ def explained_text(text: str, ini: Path) -> str:
     if text == UNKNOWN_CODE:
         codes = [remap.code for remap in remap_lines(machine.all) if OUR_CODE.match(remap.code)]
         there = " ".join(codes) or "none"
-        return f"{text}: of G12 and G13 this INI has {there}; see {CALL} check"
+        return f"{text}: of G12, G13 and G7.1 this INI has {there}; see {CALL} check"
     return text
