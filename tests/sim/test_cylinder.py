@@ -70,7 +70,7 @@ def test_feed_is_the_speed_on_the_surface(cuts, name):
 @pytest.mark.parametrize("name", DRAWINGS)
 def test_a_section_takes_hardly_longer_than_its_length_at_f(cuts, name):
     blocks = DRAWINGS[name].contour
-    length = np.hypot(*np.diff(cuts(name).of(blocks), axis=0).T).sum()
+    length = sum(piece.length for piece in DRAWINGS[name].pieces)
     assert cuts(name).seconds(blocks) <= 1.05 * length / FEED * 60
 
 

@@ -144,8 +144,9 @@ def test_a_code_that_the_machine_lacks_points_to_what_is_set_up(files):
     said = "Unknown g code used: of G12, G13 and G7.1 this INI has"
     see = f"see {CALL} check"
     assert explained_text("Unknown g code used", files.ini) == f"{said} none; {see}"
-    polar = SIM / "lathe_mm.ini"
-    assert explained_text("Unknown g code used", polar) == f"{said} G12.1 G13.1 G7.1 G12.4 G13.4; {see}"
+    there = "G12.1 G13.1 G7.1 G12.4 G13.4"
+    lathe = SIM / "lathe_mm.ini"
+    assert explained_text("Unknown g code used", lathe) == f"{said} {there}; {see}"
 
 
 def test_events_that_are_not_there(tmp_path, capsys):
