@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from shapely.geometry import box
 
+from g12.tools.preview.tracer import Tracer
 from support.polar_programs import FIRST, tracer
 from support.shape_geometry import area_off, disc, distances, path_of, polygon, slot
+from support.sim_machines import SIM
 
 INCH = 25.4
 LEFT = -9999
@@ -294,6 +296,10 @@ REFUSED = [
      "length 8 must be greater than width 8 (polar_pocket makes a round one)"),
     ("polar_slot", dict(allowance=1.1),
      "allowance 1.1: the cutter of 6 does not fit between the walls that it leaves"),
+    ("polar_polygon", dict(stock_diameter=48, allowance=4.6),
+     "allowance 4.6 must be at most 4.5, what one round of the cutter of 6 takes"),
+    ("polar_slot", dict(width=24, allowance=6.1),
+     "allowance 6.1 must be at most 4.5, what one round of the cutter of 6 takes"),
     ("polar_slot", dict(allowance=0.001), "allowance 0.001 must be at least 0.00508"),
     ("polar_slot", dict(depth=LEFT), "depth is missing: how deep, from the face at Z0"),
     ("polar_pocket", dict(diameter=6),
@@ -363,6 +369,48 @@ def test_no_way_through_the_centre_where_it_is_refused(shape, entries, why):
         assert refused(lathe, program(call(shape, **entries))).startswith(f"{shape} line 5: {why}")
         for other in SHAPES:
             assert lathe.trace_text(program(call(other))).error is None
+
+
+@pytest.mark.parametrize(
+    ("shape", "entries", "nearest"),
+    [
+        ("polar_polygon", dict(sides=2, across_flats=3), "4.5"),
+        ("polar_slot", {}, "1"),
+        ("polar_slot", dict(width=24, length=25), "0.5"),
+        ("polar_pocket", {}, "1.35"),
+        ("polar_pocket", dict(x=4, diameter=16), "1"),
+    ],
+)
+def test_a_shape_nearer_to_the_centre_than_a_tool_beside_x_can_come_is_refused(
+    shape, entries, nearest
+):
+    with tracer(POLAR_TOOL_OFFSET="-5") as lathe:
+        assert refused(lathe, program(call(shape, **entries))) == (
+            f"{shape} line 5: the tool's centre would come to {nearest} from the spindle's centre,"
+            " where [G12] POLAR_TOOL_OFFSET lets it no nearer than 5.005"
+        )
+
+
+@pytest.mark.parametrize("stands", [0, 200])
+@pytest.mark.parametrize(
+    ("shape", "entries"),
+    [
+        ("polar_polygon", dict(sides=2, angle=-110)),
+        ("polar_slot", dict(angle=-30)),
+        ("polar_slot", dict(angle=360)),
+        ("polar_pocket", dict(x=15, c=-6, diameter=12)),
+    ],
+)
+def test_a_wrapped_c_axis_reads_no_sign_of_the_angle(shape, entries, stands):
+    """LinuxCNC turns a wrapped axis to C30 with C-30, in the other sense, and refuses C360."""
+    text = program(call(shape, **entries), start=f"G0 X40 Z5 C{stands}")
+    with Tracer(SIM / "lathe_mm.ini", overrides={"AXIS_C": {"WRAPPED_ROTARY": "1"}}) as lathe:
+        ours = lathe.trace_text(text)
+        assert ours.error is None, ours.error
+    with tracer() as plain:
+        theirs = plain.trace_text(program(call(shape, **entries)))
+    ours, theirs = (path_of(some.moves).points[-400:] for some in (ours, theirs))
+    assert np.abs(ours - theirs).max() < 1e-6
 
 
 def test_behind_a_refused_call_the_same_call_with_good_entries_runs(lathe):

@@ -28,7 +28,7 @@ from g12.section.line import SectionPlace
 from g12.section.modes import decimal
 from g12.section.start import SectionStart
 from g12.shapes import polygon, round_pocket, slot
-from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine
+from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, check_nearest
 
 
 class Shape(NamedTuple):
@@ -57,9 +57,14 @@ def polar_shape(self, **words):
     start = start_of_shape(self, name)
     setup = polar_setup(start, SETTINGS, AXES, FACE)
     entries = ShapeEntries(name, SHAPES[name].entries, locals_at(self, level))
-    plan = SHAPES[name].plan(entries, cycle_glue.snapshot(self), shape_machine(setup))
+    machine = shape_machine(setup)
+    plan = SHAPES[name].plan(entries, cycle_glue.snapshot(self), machine)
+    check_nearest(entries, plan.extent(), machine)
     stay_in_travel(entries, plan.extent(), setup)
-    set_locals_at(self, level, {**plan.locals(), **section_words(entries)})
+    numbers = plan.locals()
+    if self.c_axis_wrapped:  # a sign would be the way to turn, 360 is refused
+        numbers["start_angle"] = numbers["start_angle"] % 360.0 % 360.0  # of -1e-20 it is 360
+    set_locals_at(self, level, {**numbers, **section_words(entries)})
     cycle_glue.note_modes(self)
     return INTERP_OK
 
@@ -83,12 +88,14 @@ def start_of_shape(interp: object, name: str) -> SectionStart:
 
 def shape_machine(setup: SectionSetup) -> ShapeMachine:
     """Return what a shape has to know of the machine."""
+    beside = setup.words.beside
     return ShapeMachine(
         diameters=setup.words.diameter,
         entry_angle=SETTINGS.entry_angle,
         plunge_share=SETTINGS.plunge_feed / 100,
         pole=POLE_SHARE * setup.tolerance,
         pole_refused=setup.plan.pole_refused,
+        nearest=abs(beside) + setup.tolerance if beside else 0.0,
     )
 
 

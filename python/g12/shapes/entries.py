@@ -71,6 +71,7 @@ class ShapeMachine(NamedTuple):
     ``diameters``: X words are diameters in a section. ``entry_angle`` in degrees is that of a ramp
     or helix, ``plunge_share`` the part of F that the way down has unless the call says. A path
     within ``pole`` of the spindle's centre runs through it; ``pole_refused`` says that none may.
+    A tool beside the X line comes no nearer to that centre than ``nearest``.
     """
 
     diameters: bool
@@ -78,6 +79,7 @@ class ShapeMachine(NamedTuple):
     plunge_share: float
     pole: float
     pole_refused: bool
+    nearest: float = 0.0
 
 
 class Levels(NamedTuple):
@@ -136,6 +138,25 @@ class Extent(NamedTuple):
     x: tuple[float, float]
     z: tuple[float, float]
     c: tuple[float, float]
+
+
+def check_nearest(entries: ShapeEntries, extent: Extent, machine: ShapeMachine) -> None:
+    """Refuse a shape nearer to the spindle's centre than a tool beside the X line can come."""
+    if extent.x[0] < machine.nearest:
+        raise entries.refuse(
+            f"the tool's centre would come to {number(extent.x[0])} from the spindle's centre,"
+            f" where [G12] POLAR_TOOL_OFFSET lets it no nearer than {number(machine.nearest)}"
+        )
+
+
+def check_finish(entries: ShapeEntries, allowance: float, cutter: float) -> None:
+    """Refuse an allowance that one round of the cutter would not take away; it would stand."""
+    most = WIDEST * 2 * cutter
+    if allowance > most:
+        rule = f"must be at most {number(most)}, what one round of the cutter of"
+        raise entries.refuse(
+            f"{entries.written('allowance', allowance)} {rule} {number(2 * cutter)} takes"
+        )
 
 
 def rounds_between(first: float, last: float, cutter: float, rounding: float) -> int:

@@ -16,7 +16,8 @@ corner as at a flat. The way between them and the way down are clear of the stoc
 Rules, in the order of the checks: a tool with a diameter in the spindle; sides from 2;
 across_flats, stock_diameter above 0, the stock larger than the flats; corner_radius from 0, none
 with two flats, less than half of across_flats; depth, depth_per_pass above 0; allowance from 0,
-less than what there is to cut; feeds above 0; angle; the tool above the face.
+less than what there is to cut, and no more than one round takes; feeds above 0; angle; the tool
+above the face.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from g12.shapes.entries import (
     Levels,
     ShapeEntries,
     ShapeMachine,
+    check_finish,
     feeds_of,
     heights_of,
     levels_of,
@@ -182,6 +184,7 @@ def rounds_of(
     if not height > rounding:
         rule = f"must be less than the {number(stock - form.apothem)} from the stock to the flats"
         raise entries.refuse(f"{entries.written('allowance', allowance)} {rule}")
+    check_finish(entries, allowance, cutter)
     rounds = max(1, rounds_between(0.0, height, cutter, rounding))
     step = height / rounds
     final = form.apothem + cutter

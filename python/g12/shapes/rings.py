@@ -17,7 +17,14 @@ from typing import NamedTuple
 from g12.cycles.common import ROUNDING_MM, SMALLEST_RING_MM, check_count
 from g12.cycles.context import Context
 from g12.errors import number
-from g12.shapes.entries import Heights, Levels, ShapeEntries, ShapeMachine, rounds_between
+from g12.shapes.entries import (
+    Heights,
+    Levels,
+    ShapeEntries,
+    ShapeMachine,
+    check_finish,
+    rounds_between,
+)
 
 CLEARED = 0.9  # of the cutter's radius: a first ring as large leaves no core
 MOST_HALF_TURNS = 20_000
@@ -40,6 +47,12 @@ class ClearingRings(NamedTuple):
     def largest(self) -> float:
         """Return the radius of the largest ring."""
         return self.finish_ring if self.finish else self.first_ring + self.further * self.ring_step
+
+    @property
+    def radii(self) -> list[float]:
+        """Return the radii of all rings."""
+        rough = (self.first_ring + index * self.ring_step for index in range(self.further + 1))
+        return [*rough, self.largest]
 
     @property
     def half_turns(self) -> int:
@@ -72,6 +85,7 @@ def clearing_rings(
     if rough < -context.length(ROUNDING_MM):
         rule = f"the cutter of {number(2 * cutter)} does not fit between the walls that it leaves"
         raise entries.refuse(f"{entries.written('allowance', allowance)}: {rule}")
+    check_finish(entries, allowance, cutter)
     smallest = context.length(SMALLEST_RING_MM)
     if 0 < allowance < smallest:
         rule = f"must be at least {number(smallest)}"

@@ -59,10 +59,10 @@ class RoundPocketPlan(NamedTuple):
 
         C turns with each ring that goes round the spindle's centre, to and fro with the others.
         """
-        largest = self.rings.largest
+        largest, end = self.rings.largest, self.away + self.rings.first_ring / 2
         round_centre = largest >= self.away
         turned = 180.0 * (half_turns_in_all(self.rings, self.levels, self.ramp) + 1)
-        nearest = max(0.0, self.away - largest) if not round_centre else 0.0
+        nearest = min(end, *(abs(self.away - radius) for radius in self.rings.radii))
         return Extent(
             (nearest, self.away + largest),
             (-self.levels.levels * self.levels.step_down, self.heights.start_z),
@@ -99,8 +99,7 @@ def check_centre(
     entries: ShapeEntries, machine: ShapeMachine, rings: ClearingRings, away: float
 ) -> None:
     """Refuse a ring through the spindle's centre where the machine has none."""
-    radii = [rings.first_ring + index * rings.ring_step for index in range(rings.further + 1)]
-    through = any(abs(radius - away) <= machine.pole for radius in (*radii, rings.largest))
+    through = any(abs(radius - away) <= machine.pole for radius in rings.radii)
     if machine.pole_refused and through:
         raise entries.refuse(
             f"a ring of the tool's centre would pass through the spindle's centre, {number(away)}"

@@ -68,7 +68,7 @@ class SlotPlan(NamedTuple):
         turned = 180.0 * (half_turns_in_all(self.rings, self.levels, self.ramp) + 1)
         to_and_fro = not self.rings.first_ring
         return Extent(
-            (self.rings.first_ring, self.reach + self.rings.largest),
+            (min(self.rings.first_ring, self.reach), self.reach + self.rings.largest),
             (-self.levels.levels * self.levels.step_down, self.heights.start_z),
             (self.start_angle - 180.0 * to_and_fro, self.start_angle + turned),
         )
@@ -89,7 +89,7 @@ def plan_slot(entries: ShapeEntries, context: Context, machine: ShapeMachine) ->
     heights = heights_of(entries, context)
     reach = (length - width) / 2
     ramp = ramp_of(entries, machine, rings, levels, heights, 2 * reach)
-    if machine.pole_refused and rings.first_ring <= machine.pole:
+    if machine.pole_refused and min(rings.first_ring, reach) <= machine.pole:
         raise entries.refuse(
             f"{entries.written('width', width)}: the cutter of {number(2 * cutter)} would pass"
             " through the spindle's centre, which [G12] POLAR_POLE = refuse forbids"
