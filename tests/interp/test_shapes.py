@@ -138,6 +138,21 @@ def test_a_polygon_keeps_its_allowance_until_one_last_round(lathe, tool, entries
     assert abs(turned[-1] - turned[0]) < 2 * math.pi + 0.3
 
 
+@pytest.mark.parametrize(
+    ("tool", "entries"),
+    [
+        (1, dict(sides=5, across_flats=11.234563986852706, stock_diameter=11.259534595505796,
+                 depth_per_pass=1, allowance=0.006153094191158247)),
+        (2, dict(sides=4, across_flats=10.404578626517997, stock_diameter=20.65401114157037,
+                 allowance=4.60061625864364)),
+        (3, dict(sides=4, across_flats=10, stock_diameter=10.890423807377099)),
+    ],
+)  # fmt: skip
+def test_a_corner_where_a_round_begins_but_for_rounding(lathe, tool, entries):
+    """The sub and the planner add up the same corner; a lead of their difference was no arc."""
+    cut(lathe, "polar_polygon", tool, **entries)
+
+
 def test_a_polygon_goes_round_clockwise(lathe):
     path = cut(lathe, "polar_polygon")
     assert np.unwrap(np.angle(path.points))[-1] < -2 * math.pi

@@ -57,6 +57,7 @@ ENTRIES = (
 )
 FLATS = 2  # sides that meet nowhere
 MOST_SIDES = 100
+FLUSH = 1e-6  # what the sub's sums and those here differ by at most
 FAR = 1e9  # half the length of a flat that no corner ends
 
 
@@ -126,7 +127,7 @@ class PolygonPlan(NamedTuple):
         form = {name: getattr(self.form, name) for name in ("inner", "side", "corner", "half_turn")}
         parts = (self.rounds, self.levels, self.feeds, self.heights)
         numbers = {name: value for part in parts for name, value in part._asdict().items()}
-        return form | numbers | {"start_angle": self.start_angle}
+        return form | numbers | {"start_angle": self.start_angle, "flush": FLUSH}
 
     def extent(self) -> Extent:
         """Return how far the tool's centre goes; every round turns C once round, backwards."""
@@ -204,6 +205,6 @@ def rounds_of(
 
 def corner_distance(form: PolygonForm, apothem: float, clip: float) -> float:
     """Return how far a round of the tool's centre is from the spindle's where it turns a corner."""
-    if sqrt(clip * clip - apothem * apothem) < form.side:
+    if sqrt(clip * clip - apothem * apothem) + FLUSH < form.side:
         return clip
     return form.corner + apothem - form.inner
