@@ -3,6 +3,7 @@
 
 import cmath
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -243,6 +244,15 @@ def test_one_code_switches_sections_on_a_cylinder_on_and_off(line, inside, does)
     assert [CODES.knows(code) for code in ("G13", "G12.1", "G2", "M6", "")] == [True, True] + 3 * [
         False
     ]
+
+
+def test_a_radius_that_is_found_to_be_0_begins_no_section():
+    """G7.1 C#1 in a sub: the text of two blocks is the same, their values are not."""
+    text = read_line(1, "G7.1 C#1")
+    empty, full = (replace(block(f"G7.1 C{radius}"), text=text) for radius in (0, 20))
+    run = [empty, block("G1 Z-5"), block("G7.1 C0"), full, block("G7.1 C0")]
+    assert [group[0] for group in wanted_contour.grouped(run, CODES)] == [full]
+    assert len(wanted_contour.paths_behind(run, CODES)) == 1
 
 
 @pytest.mark.parametrize(("handler", "turn"), [("g12", -1), ("g13", 1)])

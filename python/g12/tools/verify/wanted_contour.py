@@ -271,7 +271,7 @@ def grouped(blocks: Sequence[Block], codes: Codes) -> Iterator[list[Block]]:
     """Yield the blocks of each section, the one that switches it on first."""
     group: list[Block] = []
     for block in blocks:
-        switch = codes.switch(block.text, bool(group))
+        switch = switched(block, codes, bool(group))
         if switch == "on":
             group = [block]
         elif group:
@@ -279,6 +279,12 @@ def grouped(blocks: Sequence[Block], codes: Codes) -> Iterator[list[Block]]:
         if switch == "off" and group:
             yield group
             group = []
+
+
+def switched(block: Block, codes: Codes, inside: bool) -> str:
+    """Return what a block did to a section; its text cannot tell that of G7.1 C#1 where #1 is 0."""
+    switch = codes.switch(block.text, inside)
+    return "off" if switch == "on" and block.words.get("C") == 0.0 else switch
 
 
 def doubts_of(texts: Sequence[Text], codes: Codes, lines: Sequence[str]) -> dict[Place, str]:
@@ -307,7 +313,7 @@ def paths_behind(blocks: Sequence[Block], codes: Codes) -> list[str]:
     path, inside, found = "", False, []
     for block in blocks:
         path = next((e.text for e in block.events[::-1] if e.text.startswith("G6")), path)
-        switch = codes.switch(block.text, inside)
+        switch = switched(block, codes, inside)
         if switch == "off" and inside:
             found.append(path)
         inside = switch == "on" if switch else inside
