@@ -93,11 +93,13 @@ def test_in_mdi(lathe):
 
 def test_an_abort_in_a_shape_and_the_same_call_again(lathe):
     lathe.reset()
-    lathe.open_text([*START, CALLS["flats"][0], "M2"])
+    lathe.open_text([*START, "G7", CALLS["flats"][0], "M2"])
     lathe.start()
     lathe.wait_for(lambda status: status.position[2] < -0.5)
     lathe.abort()
     lathe.errors()
+    lathe.mdi("G0 X50")
+    assert "G7" in lathe.stat().modes.gcodes and lathe.stat().position[0] == pytest.approx(25)
     run = lathe.run_text(["G0 Z5", *START, CALLS["flats"][0], "M2"])
     assert run.error is None
     check_cut("flats", real_path(run.samples))

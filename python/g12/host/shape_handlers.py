@@ -66,6 +66,7 @@ def polar_shape(self, **words):
         numbers["start_angle"] = numbers["start_angle"] % 360.0 % 360.0  # of -1e-20 it is 360
     set_locals_at(self, level, {**numbers, **section_words(entries)})
     cycle_glue.note_modes(self)
+    self.g12_diameters = "G7" if glue.diameter_mode(self) else "G8"  # for an abort
     return INTERP_OK
 
 
@@ -74,6 +75,7 @@ def polar_shape_done(self, **words):
     """Put back the modes that the shape found, F among them: G13.4."""
     cycle_glue.restore_modes(self)
     self.execute(f"F{decimal(cycle_glue.state_of(self).feed)}")
+    self.g12_diameters = None
     return INTERP_OK
 
 
