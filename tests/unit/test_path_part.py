@@ -45,6 +45,15 @@ def test_many_points_of_an_arc_are_those_of_the_move(plane):
     assert np.allclose(part.arc_points(move, fractions), each, atol=1e-12)
 
 
+@given(x=st.floats(-60, 60), turn=st.floats(-170, 170), start=st.floats(0, 60))
+def test_chords_of_a_spiral_stay_within_the_error(x, turn, start):
+    move = Hand().rapid(x=start).line(x=x, c=turn).moves[1]
+    line = FACE.polyline(move)[:, :2] @ [1, 1j]
+    share = (np.arange(len(line) - 1) + 0.5) / (len(line) - 1)
+    middle = (start + (x - start) * share) * np.exp(1j * np.radians(turn) * share)
+    assert np.abs(middle - (line[1:] + line[:-1]) / 2).max() < 1.5 * part.CHORD_ERROR
+
+
 def test_a_circle_becomes_a_closed_polyline_on_the_circle():
     line = MILL.polyline(Hand().rapid(x=10).arc(-1, 0, 0).moves[1])
     assert np.allclose(np.hypot(*line[:, :2].T), 10)
