@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from g12.tools.headless.machine import StartupError, Timeout
-from g12.tools.headless.namespaces import PYTHON, Isolated
+from g12.tools.headless.namespaces import PYTHON, Isolated, has_namespaces
 from g12.tools.headless.run import run_anyhow
 from g12.tools.preview.tracer import trace_text
 from support.operated_machine import Machine, kept_machine
@@ -22,6 +22,7 @@ EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
 NOBODY = 65534
 LINES = [f"G1 X{10 * (number % 2)}" for number in range(1, 20)]
 MARK = ";py,from interpreter import this; this.sequence_number = 1\n"
+PATIENCE = 15.0  # s that a container gives LinuxCNC to end by itself, and again behind SIGTERM
 BACK_AND_FORTH = ["G21 G90 G64 F4000", *LINES, "M2"]  # line n+1 moves to LINES[n-1]
 
 
@@ -221,7 +222,7 @@ def shared():
 def test_nothing_shared_with_the_system():
     before = shared()
     with Machine(SIM / "mill_mm.ini"):
-        assert shared() <= before
+        assert shared() <= before or not has_namespaces()  # a container is the isolation itself
     assert shared() <= before
 
 
@@ -278,7 +279,7 @@ def test_close_ends_what_hangs():
         time.sleep(0.05)
     started = time.monotonic()
     isolated.close()
-    assert time.monotonic() - started < 5.0
+    assert time.monotonic() - started < (5.0 if has_namespaces() else 2 * PATIENCE + 5.0)
     assert not processes_of(isolated.folder)
 
 

@@ -344,7 +344,8 @@ def stepover_of(lines: Sequence[np.ndarray]) -> float | None:
     """
     passes = [line for line in lines if is_pass(line)]
     gaps = gaps_between(np.concatenate(passes)) if passes else ()
-    paths = MultiLineString([line[:, :2] for line in lines]).simplify(COARSE, False)
+    paths = MultiLineString([line[:, :2] for line in lines])
+    paths = paths.simplify(COARSE, preserve_topology=False)
     return max((2 * paths.distance(Point(gap)) for gap in gaps), default=None)
 
 
