@@ -10,6 +10,7 @@ SOAKED := tests/soak/soak_*.py tests/interp/test_haas.py tests/interp/test_yasna
 	tests/unit/test_cylinder.py tests/unit/test_polar_plan.py \
 	tests/unit/test_flat_offset.py tests/unit/test_flat_simplify.py -k "any or keeps or soak_ or short_moves"
 JOBS := $(shell nproc)
+WORKERS := $(shell expr $$(nproc) + 1) # the tests of real motion wait more than they reckon
 
 # RIP=DIR uses the LinuxCNC that was built to run in place in DIR, instead of an installed one.
 IN_PLACE := $(if $(RIP),$(RIP)/scripts/rip-environment)
@@ -37,7 +38,7 @@ demo: setup
 
 test: setup
 	@echo "test: every test, on $(JOBS) cores"
-	@$(IN_PLACE) $(PYTHON) -m pytest -n $(JOBS) --dist loadfile
+	@$(IN_PLACE) $(PYTHON) -m pytest -n $(WORKERS) --dist loadfile
 
 test-on:
 	@sh .ci/test-on $(SUITE)
