@@ -18,9 +18,8 @@ from g12.moves.steps import BlockMoves
 from g12.section.block_rules import SectionBlock
 from g12.section.codes import codes_with_word
 from g12.section.line import SectionPlace, split_line
-from g12.section.modes import SectionModes
-from g12.section.start import SectionStart
 from g12.settings import Settings
+from support.section_starts import START as POLAR_START
 
 RADIUS = 20.0
 MACHINE = CylinderSettings(RADIUS, 0.005, 0.001, 1000.0, 1000.0, 3600.0)
@@ -29,28 +28,13 @@ AXES = {
     "Z": Axis(-100.0, 100.0, 50.0, 1100.0),
     "C": Axis(-720.0, 720.0, 360.0, 3600.0),
 }
-START = SectionStart(
+START = POLAR_START._replace(
     place=SectionPlace("G7.1", 7),
     words={"C": RADIUS},
-    alone=True,
-    level=1,
     x=22.0,
     c=30.0,
-    z=5.0,
-    machine_unit=1.0,
-    millimetre=1.0,
-    offsets={"X": 1.0, "Z": 2.0, "C": 90.0},
-    modes=SectionModes(False, False, 100.0, 0.0, 10),
-    spindle=0,
-    speeds=(0.0,),
     tool_radius=3.0,
-    diameter=False,
     yz_plane=True,
-    compensated=False,
-    offset_pending=False,
-    inverse_time=False,
-    surface_speed=False,
-    rotated=False,
 )
 
 

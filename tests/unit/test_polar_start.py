@@ -10,35 +10,10 @@ from g12.machine_ini import Axis, FaceAxes
 from g12.moves.steps import BlockMoves
 from g12.polar.face import FaceLimits
 from g12.polar.start import check_section_start, polar_setup
-from g12.section.line import SectionPlace
-from g12.section.modes import SectionModes
-from g12.section.start import SectionStart
 from g12.settings import Settings
+from support.section_starts import START
 
 INCH = 25.4
-START = SectionStart(
-    place=SectionPlace("G12.1", 7),
-    words={},
-    alone=True,
-    level=1,
-    x=20.0,
-    c=0.0,
-    z=5.0,
-    machine_unit=1.0,
-    millimetre=1.0,
-    offsets={"X": 1.0, "Z": 2.0, "C": 90.0},
-    modes=SectionModes(False, False, 100.0, 0.0, 10),
-    spindle=0,
-    speeds=(0.0,),
-    tool_radius=None,
-    diameter=False,
-    yz_plane=False,
-    compensated=False,
-    offset_pending=False,
-    inverse_time=False,
-    surface_speed=False,
-    rotated=False,
-)
 AXES = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
 
 

@@ -162,3 +162,8 @@ def check_finish(entries: ShapeEntries, allowance: float, cutter: float) -> None
 def rounds_between(first: float, last: float, cutter: float, rounding: float) -> int:
     """Return how many rounds, none wider than the cutter can, lead from one radius to another."""
     return steps_between(first, last, WIDEST * 2 * cutter, rounding)
+
+
+def locals_of(*parts: NamedTuple) -> dict[str, float]:
+    """Return the named locals of a shape's sub that parts of its plan hold, by their names."""
+    return {name: value for part in parts for name, value in part._asdict().items()}

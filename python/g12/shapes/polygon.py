@@ -40,6 +40,7 @@ from g12.shapes.entries import (
     feeds_of,
     heights_of,
     levels_of,
+    locals_of,
     rounds_between,
 )
 
@@ -125,9 +126,8 @@ class PolygonPlan(NamedTuple):
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/polar_polygon.ngc` beside its entries."""
         form = {name: getattr(self.form, name) for name in ("inner", "side", "corner", "half_turn")}
-        parts = (self.rounds, self.levels, self.feeds, self.heights)
-        numbers = {name: value for part in parts for name, value in part._asdict().items()}
-        return form | numbers | {"start_angle": self.start_angle, "flush": FLUSH}
+        parts = locals_of(self.rounds, self.levels, self.feeds, self.heights)
+        return form | parts | {"start_angle": self.start_angle, "flush": FLUSH}
 
     def extent(self) -> Extent:
         """Return how far the tool's centre goes; every round turns C once round, backwards."""

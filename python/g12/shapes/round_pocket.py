@@ -28,6 +28,7 @@ from g12.shapes.entries import (
     feeds_of,
     heights_of,
     levels_of,
+    locals_of,
 )
 from g12.shapes.rings import ClearingRings, RampDown, clearing_rings, half_turns_in_all, ramp_of
 
@@ -50,9 +51,8 @@ class RoundPocketPlan(NamedTuple):
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/polar_pocket.ngc` beside its entries."""
-        parts = (self.rings, self.ramp, self.levels, self.feeds, self.heights)
-        numbers = {name: value for part in parts for name, value in part._asdict().items()}
-        return numbers | {"away": self.away, "start_angle": self.start_angle}
+        parts = locals_of(self.rings, self.ramp, self.levels, self.feeds, self.heights)
+        return parts | {"away": self.away, "start_angle": self.start_angle}
 
     def extent(self) -> Extent:
         """Return how far the tool's centre goes.

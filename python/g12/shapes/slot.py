@@ -28,6 +28,7 @@ from g12.shapes.entries import (
     feeds_of,
     heights_of,
     levels_of,
+    locals_of,
 )
 from g12.shapes.rings import ClearingRings, RampDown, clearing_rings, half_turns_in_all, ramp_of
 
@@ -59,9 +60,8 @@ class SlotPlan(NamedTuple):
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/polar_slot.ngc` beside its entries."""
-        parts = (self.rings, self.ramp, self.levels, self.feeds, self.heights)
-        numbers = {name: value for part in parts for name, value in part._asdict().items()}
-        return numbers | {"reach": self.reach, "start_angle": self.start_angle}
+        parts = locals_of(self.rings, self.ramp, self.levels, self.feeds, self.heights)
+        return parts | {"reach": self.reach, "start_angle": self.start_angle}
 
     def extent(self) -> Extent:
         """Return how far the tool's centre goes; every half turn turns C half round, onward."""

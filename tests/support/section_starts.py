@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a section finds where nothing forbids it to begin: tests replace what they are about."""
+
+from g12.section.line import SectionPlace
+from g12.section.modes import SectionModes
+from g12.section.start import SectionStart
+
+START = SectionStart(
+    place=SectionPlace("G12.1", 7),
+    words={},
+    alone=True,
+    level=1,
+    x=20.0,
+    c=0.0,
+    z=5.0,
+    machine_unit=1.0,
+    millimetre=1.0,
+    offsets={"X": 1.0, "Z": 2.0, "C": 90.0},
+    modes=SectionModes(False, False, 100.0, 0.0, 10),
+    spindle=0,
+    speeds=(0.0,),
+    tool_radius=None,
+    diameter=False,
+    yz_plane=False,
+    compensated=False,
+    offset_pending=False,
+    inverse_time=False,
+    surface_speed=False,
+    rotated=False,
+)
