@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 from shapely.geometry import box
 
+from g12.cycles.context import Tool
+from g12.shapes import polygon as planned_polygon
+from g12.shapes import round_pocket
+from g12.shapes import slot as planned_slot
+from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.tools.preview.tracer import Tracer
+from support.planner_context import MM
 from support.polar_programs import FIRST, tracer
 from support.shape_geometry import area_off, disc, distances, path_of, polygon, slot
 from support.sim_machines import SIM
@@ -29,6 +35,12 @@ POCKET = dict(
     x=LEFT, c=LEFT, diameter=20, depth=4, depth_per_pass=LEFT, allowance=LEFT, feed=400,
     plunge_feed=LEFT,
 )  # fmt: skip
+PLANNERS = {
+    "polar_polygon": (planned_polygon.ENTRIES, planned_polygon.plan_polygon),
+    "polar_slot": (planned_slot.ENTRIES, planned_slot.plan_slot),
+    "polar_pocket": (round_pocket.ENTRIES, round_pocket.plan_round_pocket),
+}
+MACHINE = ShapeMachine(False, 3.0, 1.0, 0.0025, False)
 SHAPES = {"polar_polygon": POLYGON, "polar_slot": SLOT, "polar_pocket": POCKET}
 
 
@@ -222,6 +234,43 @@ def test_a_hole_keeps_its_allowance_until_one_last_ring(lathe, shape, tool, entr
 def test_a_cutter_that_an_allowance_leaves_no_more_room_goes_to_and_fro_first(lathe):
     path = cut(lathe, "polar_slot", width=6.4, allowance=0.2)
     assert area_off(path.area(-4, CUTTER[3]), slot(6.4, 30), TOLERANCE) < NOTHING
+
+
+# ---------------------------------------------------------------- travel
+
+
+TO_AND_FRO = (dict(width=6), dict(x=4.5, c=0, diameter=28), dict(x=0, c=2.7, diameter=30))
+
+
+FINISHED = [
+    ("polar_polygon", 1, dict(allowance=0.5)),
+    ("polar_slot", 3, dict(width=20, length=45, allowance=0.5)),
+    ("polar_pocket", 3, dict(x=1, c=1, diameter=25, allowance=0.5)),
+]
+
+
+@pytest.mark.parametrize(
+    ("shape", "tool", "entries"), [("polar_polygon", *each) for each in POLYGONS] + HOLES + FINISHED
+)
+def test_the_travel_that_is_checked_is_that_of_the_tool(lathe, shape, tool, entries):
+    """Less would let it run into a limit amid the cut, more would refuse what fits.
+
+    What goes to and fro through the centre, or begins beside it, might turn on and on.
+    """
+    every = dict(entries, depth_per_pass=2)
+    moves = trace(lathe, shape, tool, **every).moves
+    moves = moves[next(k for k, move in enumerate(moves) if move.end[2] < 5) :]
+    ends = np.array([end for move in moves for end in (move.start, move.end)])
+    found = MM._replace(z=5.0, spindle_tool=Tool(tool, CUTTER[tool]))
+    names, planner = PLANNERS[shape]
+    values = {**SHAPES[shape], **every}
+    extent = planner(ShapeEntries(shape, names, values), found, MACHINE).extent()
+    onward = math.inf if entries in TO_AND_FRO else 360
+    for within, places, off, spare in zip(
+        extent, ends.T[[0, 2, 5]], (0.005, 1e-9, 1e-6), (0.005, 1e-9, onward)
+    ):
+        assert within[0] - off <= places.min() <= within[0] + spare
+        assert within[1] - spare <= places.max() <= within[1] + off
 
 
 # ---------------------------------------------------------------- modes and units

@@ -31,7 +31,7 @@ from soak.mutants import Mutant, mutants_of, mutated
 
 ROOT = Path(__file__).resolve().parents[2]
 SEED = 12
-ROOMS = ("cycles", "section", "flat", "moves", "polar", "cylinder")
+ROOMS = ("cycles", "shapes", "section", "flat", "moves", "polar", "cylinder")
 PARTS = ("python", "tests", "ngc", "configs", "pyproject.toml")
 CYCLES = (
     *("words", "cycles_common", "cycles_travel", "entry"),
@@ -46,15 +46,17 @@ MOVES = ("moves_exact_stops", "moves_feed", "moves_soft_limits", "moves_spacing"
 POLAR = ("polar_start", "polar_pole", "polar_beside", "polar_face", "polar_plan")
 UNIT = {
     "cycles": CYCLES,
+    "shapes": ("shapes",),
     "section": SECTION,
     "flat": (*FLAT, "polar_plan"),
     "moves": (*MOVES, *POLAR),
     "polar": (*MOVES, *POLAR),
-    "cylinder": MOVES,
+    "cylinder": ("cylinder", *MOVES),
 }
 SECTIONS = ("polar_words", "polar_refusals", "polar_reading")
 INTERP = {
     "cycles": ("haas", "haas_entry", "yasnac", "mitsubishi", "circle_mill"),
+    "shapes": ("shapes",),
     "section": SECTIONS,
     "flat": (*SECTIONS, "verify_programs"),
     "moves": (*SECTIONS, "cylinder"),

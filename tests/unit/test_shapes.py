@@ -3,14 +3,15 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.cycles.context import Tool
-from g12.errors import Refusal
+from g12.errors import Refusal, number
 from g12.shapes import polygon, round_pocket, slot
-from g12.shapes.entries import LEFT_OUT, ShapeEntries, ShapeMachine
+from g12.shapes.entries import LEFT_OUT, ShapeEntries, ShapeMachine, check_nearest
 from support.planner_context import MM
 
 FOUND = MM._replace(z=5.0, spindle_tool=Tool(3, 3.0))
@@ -62,3 +63,301 @@ def test_x_of_a_pocket_is_a_diameter_where_x_words_are():
     values = [20, 3, 14, 4, *[LEFT_OUT] * 2, 400, LEFT_OUT]
     assert plan("polar_pocket", values, LATHE._replace(diameters=True)).away == math.hypot(10, 3)
     assert plan("polar_pocket", values).away == math.hypot(20, 3)
+
+
+# ---------------------------------------------------------------- what every shape has
+
+HEXAGON = dict(
+    sides=6, across_flats=27, depth=5, stock_diameter=40, corner_radius=LEFT_OUT,
+    depth_per_pass=LEFT_OUT, allowance=LEFT_OUT, feed=400, plunge_feed=LEFT_OUT, angle=LEFT_OUT,
+)  # fmt: skip
+SLOT = dict(
+    width=20, length=45, depth=4, depth_per_pass=LEFT_OUT, allowance=LEFT_OUT, feed=400,
+    plunge_feed=LEFT_OUT, angle=LEFT_OUT,
+)  # fmt: skip
+POCKET = dict(
+    x=10, c=3, diameter=16, depth=4, depth_per_pass=LEFT_OUT, allowance=LEFT_OUT, feed=400,
+    plunge_feed=LEFT_OUT,
+)  # fmt: skip
+EXAMPLES = {"polar_polygon": HEXAGON, "polar_slot": SLOT, "polar_pocket": POCKET}
+
+
+def planned(shape, machine=LATHE, found=FOUND, **entries):
+    """Return the plan of a shape; entries that are not named are those of the example."""
+    names, planner = PLANS[shape]
+    values = {**EXAMPLES[shape], **entries}
+    assert tuple(values) == names
+    return planner(ShapeEntries(shape, names, values), found, machine)
+
+
+def refusal(*arguments, **entries):
+    with pytest.raises(Refusal) as refused:
+        planned(*arguments, **entries)
+    return refused.value.message
+
+
+@pytest.mark.parametrize("shape", EXAMPLES)
+class TestEveryShape:
+    def test_passes_are_alike_and_no_deeper_than_asked(self, shape):
+        assert planned(shape, depth=5, depth_per_pass=2).levels == (3, pytest.approx(5 / 3))
+        assert planned(shape, depth=6, depth_per_pass=2).levels == (3, 2.0)
+        assert planned(shape, depth=5).levels == planned(shape, depth=5, depth_per_pass=9).levels
+        assert planned(shape, depth=5).levels == (1, 5.0)
+
+    def test_passes_that_never_end_are_refused(self, shape):
+        assert planned(shape, depth=1, depth_per_pass=1e-4).levels.levels == 10_000
+        assert refusal(shape, depth=1.0001, depth_per_pass=1e-4) == (
+            f"{shape}: depth_per_pass 0.0001 makes 10001 passes of depth 1.0001, the most is 10000"
+        )
+
+    def test_a_feed_is_that_of_the_call_or_the_active_one(self, shape):
+        assert planned(shape).feeds == (400, 400)
+        assert planned(shape, feed=LEFT_OUT).feeds == (300, 300)
+        slower = LATHE._replace(plunge_share=0.25)
+        assert planned(shape, slower).feeds == (400, 100)
+        assert planned(shape, slower, plunge_feed=90).feeds == (400, 90)
+
+    def test_it_goes_on_at_a_feed_from_a_millimetre_above_the_face(self, shape):
+        assert planned(shape).heights == (5.0, 1.0)
+        assert planned(shape, found=FOUND._replace(z=0.3)).heights == (0.3, 0.3)
+        inches = FOUND._replace(inch=True, spindle_tool=Tool(3, 3.0))
+        assert planned(shape, found=inches).heights == (5.0, pytest.approx(1 / 25.4))
+
+    def test_it_never_begins_at_the_face_or_below(self, shape):
+        rule = "a shape begins where the tool stands, which must be above the face at Z0"
+        for z in (0.0, -1.0):
+            assert refusal(shape, LATHE, FOUND._replace(z=z)) == f"{shape}: Z{z:g}: {rule}"
+        assert planned(shape, found=FOUND._replace(z=1e-3)).heights.near_z == 1e-3
+
+    def test_feed_per_revolution_needs_a_speed(self, shape):
+        turning = FOUND._replace(per_revolution=True)
+        rule = "feed per revolution (G95) needs the spindle speed S"
+        assert refusal(shape, LATHE, turning) == f"{shape}: {rule}"
+        assert planned(shape, found=turning._replace(speed=1e-3)).feeds.feed == 400
+
+    def test_without_any_feed(self, shape):
+        still = FOUND._replace(feed=0.0)
+        rule = "feed is missing, and no F is active"
+        assert refusal(shape, LATHE, still, feed=LEFT_OUT) == f"{shape}: {rule}"
+        assert planned(shape, found=still, feed=0.5).feeds.feed == 0.5
+
+    def test_an_allowance_that_one_round_does_not_take_would_stand(self, shape):
+        size = dict(polar_polygon="stock_diameter", polar_slot="width", polar_pocket="diameter")
+        wide = {size[shape]: 40.0}
+        assert planned(shape, allowance=4.5, **wide)
+        assert refusal(shape, allowance=4.6, **wide) == (
+            f"{shape}: allowance 4.6 must be at most 4.5, what one round of the cutter of 6 takes"
+        )
+
+    def test_it_comes_no_nearer_to_the_centre_than_a_tool_beside_x_can(self, shape):
+        names, _ = PLANS[shape]
+        entries = ShapeEntries(shape, names, EXAMPLES[shape])
+        extent = planned(shape).extent()
+        check_nearest(entries, extent, LATHE._replace(nearest=extent.x[0]))
+        with pytest.raises(Refusal, match="POLAR_TOOL_OFFSET lets it no nearer than"):
+            check_nearest(entries, extent, LATHE._replace(nearest=extent.x[0] + 1e-6))
+
+
+def test_an_angle_is_at_most_a_whole_turn():
+    for angle in (360, -360):
+        assert planned("polar_slot", angle=angle).start_angle == angle
+    rule = "must lie between -360 and 360"
+    assert refusal("polar_slot", angle=361) == f"polar_slot: angle 361 {rule}"
+    assert refusal("polar_slot", angle=-360.5) == f"polar_slot: angle -360.5 {rule}"
+
+
+# ---------------------------------------------------------------- slots and pockets
+
+HOLES = [
+    (shape, tool, {name: size}, allowance)
+    for shape, name in (("polar_slot", "width"), ("polar_pocket", "diameter"))
+    for tool in (2.0, 6.0)
+    for size in (tool + 0.5, 8.0, 11.3, 30.0)
+    for allowance in (LEFT_OUT, 0.2)
+]
+
+
+def hole(shape, tool, size, allowance, **found):
+    found = FOUND._replace(spindle_tool=Tool(3, tool / 2), **found)
+    return planned(shape, LATHE, found, allowance=allowance, depth_per_pass=1.5, **size)
+
+
+@pytest.mark.parametrize(("shape", "tool", "size", "allowance"), HOLES)
+def test_rings_lead_outward_to_the_wall_and_leave_no_core(shape, tool, size, allowance):
+    rings = hole(shape, tool, size, allowance).rings
+    (wanted,), left = size.values(), max(allowance, 0)
+    rough = [rings.first_ring + index * rings.ring_step for index in range(rings.further + 1)]
+    assert rough[-1] == pytest.approx((wanted - tool) / 2 - left)
+    assert 0 < rough[0] <= 0.9 * tool / 2
+    assert np.all(np.diff(rough) > 0) and np.all(np.diff(rough) <= 0.75 * tool)
+    assert rings.further < 1 + (rough[-1] - rough[0]) / (0.75 * tool)  # no more than needed
+    assert rings.finish == (left > 0)
+    assert rings.largest == pytest.approx((wanted - tool) / 2)
+    assert sorted(rings.radii)[-1] == rings.largest
+
+
+@pytest.mark.parametrize(("shape", "tool", "size", "allowance"), HOLES)
+def test_the_ramp_comes_down_in_as_few_half_turns_as_its_slope_lets(shape, tool, size, allowance):
+    made = hole(shape, tool, size, allowance)
+    ramp, levels = made.ramp, made.levels
+    line = 45 - size["width"] if shape == "polar_slot" else 0.0
+    half_turn = line + math.pi * made.rings.first_ring
+    steepest = half_turn * math.tan(math.radians(LATHE.entry_angle))
+    heights = (made.heights.near_z + levels.step_down, levels.step_down)
+    ways = ((ramp.first_turns, ramp.first_fall), (ramp.next_turns, ramp.next_fall))
+    for height, (turns, fall) in zip(heights, ways):
+        assert turns * fall == pytest.approx(height)
+        assert fall <= steepest * (1 + 1e-9)
+        assert (turns - 1) * steepest < height
+    assert ramp.line_share == pytest.approx(line / half_turn)
+
+
+def test_a_cutter_as_wide_as_the_slot_goes_along_its_line():
+    """Nothing but rounding, or less than a ring that LinuxCNC can cut, is left beside it."""
+    for width in (6.0, 6.0 - 1e-6, 6.0101):
+        rings = planned("polar_slot", width=width, length=30).rings
+        assert (rings.first_ring, rings.further) == (0.0, 0)
+        assert rings.largest == 0.0
+    assert planned("polar_slot", width=6.0103, length=30).rings.first_ring > 0.005
+    assert planned("polar_slot", width=6.4, length=30, allowance=0.2).rings[:3] == (0.0, 0.0, 0)
+    rule = "width 5.9999 must not be less than the cutter's 6"
+    assert refusal("polar_slot", width=5.9999, length=30) == f"polar_slot: {rule}"
+
+
+def test_a_cutter_fits_between_the_walls_that_an_allowance_leaves():
+    assert planned("polar_slot", width=8, length=30, allowance=1)
+    rule = "allowance 1.001: the cutter of 6 does not fit between the walls that it leaves"
+    assert refusal("polar_slot", width=8, length=30, allowance=1.001) == f"polar_slot: {rule}"
+
+
+def test_an_allowance_is_none_or_one_that_linuxcnc_can_cut():
+    assert planned("polar_slot", allowance=0).rings.finish == 0
+    assert planned("polar_slot", allowance=0.00509).rings.finish == 1
+    rule = "allowance 0.00507 must be at least 0.00508"
+    assert refusal("polar_slot", allowance=0.00507) == f"polar_slot: {rule}"
+    assert refusal("polar_slot", allowance=-0.1) == "polar_slot: allowance -0.1 must not be below 0"
+
+
+def test_a_pocket_has_room_for_a_helix():
+    assert planned("polar_pocket", diameter=6.0103).rings.first_ring > 0.005
+    rule = "must leave the cutter room for a helix: at least 6.01016 and twice the allowance"
+    assert refusal("polar_pocket", diameter=6.0101) == f"polar_pocket: diameter 6.0101 {rule}"
+    message = f"polar_pocket: diameter 7 {rule}"
+    assert refusal("polar_pocket", diameter=7, allowance=0.5) == message
+
+
+def test_a_way_down_that_never_ends_is_refused():
+    """0.01 round about the centre at 3 degrees falls by 0.0016 each half turn."""
+    fall = math.pi * 0.01 * math.tan(math.radians(3))
+    fits, too_deep = (turns * fall - 1.0 for turns in (19_999.5, 20_000.5))
+    assert planned("polar_pocket", diameter=6.02, depth=fits).ramp.first_turns == 20_000
+    rule = "a ramp of 3 degrees needs more than 20000 half turns of 0.031416 for a pass"
+    assert refusal("polar_pocket", diameter=6.02, depth=too_deep) == f"polar_pocket: {rule}"
+
+
+THIN = FOUND._replace(spindle_tool=Tool(3, 0.003))
+
+
+def test_circles_without_number_are_refused():
+    """A tool typed a thousand times too small must not hang the preview."""
+    pocket = dict(x=0, c=0, diameter=100, depth=8)
+    rings = planned("polar_pocket", LATHE, THIN, depth_per_pass=1, **pocket).rings.further
+    assert 8 * rings <= 100_000 < 10 * rings
+    assert refusal("polar_pocket", LATHE, THIN, depth_per_pass=0.8, **pocket) == (
+        f"polar_pocket: depth_per_pass makes {10 * rings} circles, the most is 100000"
+    )
+    rounds = planned("polar_polygon", LATHE, THIN, depth_per_pass=5 / 69).rounds.rounds
+    assert 69 * rounds <= 100_000 < 70 * rounds
+    assert refusal("polar_polygon", LATHE, THIN, depth_per_pass=5 / 70) == (
+        f"polar_polygon: stock_diameter and depth_per_pass make {70 * rounds} circles,"
+        " the most is 100000"
+    )
+
+
+def test_a_slot_is_longer_than_wide():
+    rule = "length 20 must be greater than width 20 (polar_pocket makes a round one)"
+    assert refusal("polar_slot", width=20, length=20) == f"polar_slot: {rule}"
+    assert planned("polar_slot", width=20, length=20.01).reach == pytest.approx(0.005)
+
+
+REFUSING = LATHE._replace(pole_refused=True)
+
+
+@pytest.mark.parametrize("allowance", [LEFT_OUT, 0.3])
+def test_no_ring_of_a_pocket_passes_through_the_centre_where_that_is_refused(allowance):
+    entries = dict(c=LEFT_OUT, diameter=30, allowance=allowance)
+    radii = planned("polar_pocket", **entries).rings.radii
+    for radius in radii:
+        for x in (radius - 0.002, radius, radius + 0.002):
+            planned("polar_pocket", x=x, **entries)
+            assert refusal("polar_pocket", REFUSING, x=x, **entries) == (
+                "polar_pocket: a ring of the tool's centre would pass through the spindle's"
+                f" centre, {number(x)} away, which [G12] POLAR_POLE = refuse forbids:"
+                " change the diameter or the cutter"
+            )
+        for x in (radius - 0.003, radius + 0.003):
+            planned("polar_pocket", REFUSING, x=x, **entries)
+
+
+@pytest.mark.parametrize(
+    ("width", "length", "through"),
+    [(6, 30, True), (6.02, 30, False), (20, 20.004, True), (20, 20.006, False)],
+)
+def test_no_slot_leads_through_the_centre_where_that_is_refused(width, length, through):
+    if not through:
+        planned("polar_slot", REFUSING, width=width, length=length)
+        return
+    assert refusal("polar_slot", REFUSING, width=width, length=length) == (
+        f"polar_slot: width {width}: the cutter of 6 would pass"
+        " through the spindle's centre, which [G12] POLAR_POLE = refuse forbids"
+    )
+
+
+# ---------------------------------------------------------------- polygons
+
+
+@pytest.mark.parametrize("sides", [3, 4, 5, 6, 100])
+def test_flats_and_corners_of_a_polygon(sides):
+    """A corner's centre lies where the ends of two flats lead to, at right angles to each."""
+    form = planned("polar_polygon", sides=sides, corner_radius=2).form
+    half = math.pi / sides
+    assert form.inner == 13.5 - 2
+    assert form.corner * np.exp(1j * half) == pytest.approx(form.inner + 1j * form.side)
+    assert math.radians(form.half_turn) == pytest.approx(half)
+
+
+@pytest.mark.parametrize(
+    ("entries", "outside"),
+    [
+        (dict(sides=3, across_flats=30, stock_diameter=44), 22 + 3 + 1),
+        (dict(sides=2, across_flats=20, stock_diameter=30), 15 + 3 + 1),
+        (dict(sides=4, across_flats=20, stock_diameter=20.1), 10.05 + 3 + 1),
+        (dict(corner_radius=2), 20 + 3 + 1),
+        # the first round of a small triangle in a large bar is 4.25 less deep than the stock
+        (dict(sides=3, across_flats=16, stock_diameter=50), 16 + (25 + 3 - 4.25) - 8),
+    ],
+)
+def test_rounds_begin_clear_of_the_stock_and_of_every_corner(entries, outside):
+    """Corners that would lie beyond the stock are not there."""
+    made = planned("polar_polygon", **entries)
+    assert made.rounds.outside == pytest.approx(outside)
+    assert made.extent().x[1] == made.rounds.outside
+
+
+def test_where_a_polygon_cannot_be():
+    for entries, rule in (
+        (dict(stock_diameter=27), "stock_diameter 27 must be greater than across_flats 27"),
+        (dict(corner_radius=13.5), "corner_radius 13.5 must be less than half of across_flats 27"),
+        (dict(sides=2, corner_radius=1), "corner_radius 1: two flats have no corners"),
+        (dict(sides=LEFT_OUT), "sides is missing: how many, 2 for two flats"),
+        (dict(sides=1), "sides 1 must be at least 2"),
+        (dict(sides=101), "sides 101 must be at most 100"),
+        (
+            dict(stock_diameter=30, allowance=1.5),
+            "allowance 1.5 must be less than the 1.5 from the stock to the flats",
+        ),
+    ):
+        assert refusal("polar_polygon", **entries) == f"polar_polygon: {rule}"
+    assert planned("polar_polygon", stock_diameter=30, allowance=1.499).rounds.rounds == 1
+    assert planned("polar_polygon", corner_radius=13.499)
+    assert planned("polar_polygon", sides=100) and planned("polar_polygon", sides=2)
