@@ -244,7 +244,9 @@ TO_AND_FRO = (dict(width=6), dict(x=4.5, c=0, diameter=28), dict(x=0, c=2.7, dia
 
 FINISHED = [
     ("polar_polygon", 1, dict(allowance=0.5)),
+    ("polar_polygon", 3, dict(sides=3, across_flats=20, stock_diameter=35.4)),
     ("polar_slot", 3, dict(width=20, length=45, allowance=0.5)),
+    ("polar_slot", 3, dict(allowance=0.2)),
     ("polar_pocket", 3, dict(x=1, c=1, diameter=25, allowance=0.5)),
 ]
 
@@ -265,7 +267,7 @@ def test_the_travel_that_is_checked_is_that_of_the_tool(lathe, shape, tool, entr
     names, planner = PLANNERS[shape]
     values = {**SHAPES[shape], **every}
     extent = planner(ShapeEntries(shape, names, values), found, MACHINE).extent()
-    onward = math.inf if entries in TO_AND_FRO else 360
+    onward = {"polar_polygon": 0.01}.get(shape, math.inf if entries in TO_AND_FRO else 180)
     for within, places, off, spare in zip(
         extent, ends.T[[0, 2, 5]], (0.005, 1e-9, 1e-6), (0.005, 1e-9, onward)
     ):

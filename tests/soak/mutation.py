@@ -37,7 +37,10 @@ CYCLES = (
     *("words", "cycles_common", "cycles_travel", "entry"),
     *("haas", "yasnac", "mitsubishi", "circle_mill"),
 )
-SECTION = ("section_block_rules", "section_codes", "section_line", "section_output", "polar_start")
+SECTION = (
+    *("section_block_rules", "section_codes", "section_line", "section_output"),
+    *("polar_start", "cylinder"),
+)
 FLAT = (
     *("flat_contour", "flat_intersect", "flat_nearby", "flat_gouge", "flat_simplify"),
     "flat_offset",

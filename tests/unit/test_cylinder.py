@@ -197,6 +197,10 @@ def test_polar_x_means_nothing_here_and_g0_what_it_means_there():
     assert setup_of(Settings(polar_g0="feed", polar_g0_feed=500.0)).words.rapid_feed == 500.0
 
 
+def test_a_tool_beside_the_x_line_is_a_matter_of_the_face():
+    assert setup_of().words.beside == 0.0
+
+
 def test_x_together_only_where_it_is_allowed():
     assert not setup_of().words.third_with_others
     assert setup_of(Settings(cylinder_x="allow")).words.third_with_others
@@ -223,6 +227,8 @@ def test_where_no_section_begins(found, rule):
 def test_where_one_begins():
     check_cylinder_start(START, "XZC")  # in G19, too
     check_cylinder_start(START._replace(x=-1.0), "XYZC")
+    for radius in (1e-3, 1e6):
+        check_cylinder_start(START._replace(words={"C": radius}), "XZC")
     with pytest.raises(Refusal, match="needs a machine with an X, Z and a C axis"):
         check_cylinder_start(START, "XC")
 

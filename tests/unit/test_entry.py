@@ -2,6 +2,7 @@
 """The way down into a pocket by itself: how many half turns, how much each falls."""
 
 import math
+import re
 
 import pytest
 from hypothesis import given
@@ -91,3 +92,30 @@ def test_a_helix_of_a_thousand_turns_is_refused_by_the_first_level_alone():
     down(0.01, (1990 * each, 9999 * each))
     with pytest.raises(Refusal, match=r"0\.01 needs 1004 turns for .*, the most is 1000: "):
         down(0.01, (2010 * each, each))
+
+
+@pytest.mark.parametrize(
+    ("cutter", "height", "advice"),
+    [
+        (5.0, 100.0, r"I from ([\d.]+) fits, or \[G12\] ENTRY = plunge"),
+        (0.0, 100.0, r"I from ([\d.]+) fits, or \[G12\] ENTRY = plunge"),
+        (5.0, 2000.0, r"([\d.]+) down fits at most, or \[G12\] ENTRY = plunge"),
+    ],
+)
+def test_the_advice_of_a_refused_helix_holds(cutter, height, advice):
+    """With D0 no size of the cutter limits the helix."""
+
+    def narrow(first, deep):
+        way_down(Words("G13", {}), MM, HELIX, first, cutter, (deep, 1.0))
+
+    with pytest.raises(Refusal) as refused:
+        narrow(0.01, height)
+    told = float(re.search(f"{advice}$", refused.value.message)[1])
+    if advice.startswith("I"):
+        narrow(told - cutter + 1e-4, height)
+        with pytest.raises(Refusal):
+            narrow(told - cutter - 0.005, height)
+    else:
+        narrow(100.0, told - 1e-2)
+        with pytest.raises(Refusal):
+            narrow(100.0, told * 1.005)

@@ -193,7 +193,6 @@ def test_rings_lead_outward_to_the_wall_and_leave_no_core(shape, tool, size, all
     assert rings.further < 1 + (rough[-1] - rough[0]) / (0.75 * tool)  # no more than needed
     assert rings.finish == (left > 0)
     assert rings.largest == pytest.approx((wanted - tool) / 2)
-    assert sorted(rings.radii)[-1] == rings.largest
 
 
 @pytest.mark.parametrize(("shape", "tool", "size", "allowance"), HOLES)
@@ -228,6 +227,11 @@ def test_a_cutter_fits_between_the_walls_that_an_allowance_leaves():
     assert planned("polar_slot", width=8, length=30, allowance=1)
     rule = "allowance 1.001: the cutter of 6 does not fit between the walls that it leaves"
     assert refusal("polar_slot", width=8, length=30, allowance=1.001) == f"polar_slot: {rule}"
+
+
+def test_a_pocket_is_no_smaller_than_the_cutter():
+    rule = "diameter 5.9 must not be less than the cutter's 6"
+    assert refusal("polar_pocket", diameter=5.9) == f"polar_pocket: {rule}"
 
 
 def test_an_allowance_is_none_or_one_that_linuxcnc_can_cut():
@@ -286,8 +290,10 @@ REFUSING = LATHE._replace(pole_refused=True)
 @pytest.mark.parametrize("allowance", [LEFT_OUT, 0.3])
 def test_no_ring_of_a_pocket_passes_through_the_centre_where_that_is_refused(allowance):
     entries = dict(c=LEFT_OUT, diameter=30, allowance=allowance)
-    radii = planned("polar_pocket", **entries).rings.radii
-    for radius in radii:
+    rings = planned("polar_pocket", **entries).rings
+    radii = [rings.first_ring + index * rings.ring_step for index in range(rings.further + 1)]
+    assert len(radii) >= 3
+    for radius in (*radii, 12.0):
         for x in (radius - 0.002, radius, radius + 0.002):
             planned("polar_pocket", x=x, **entries)
             assert refusal("polar_pocket", REFUSING, x=x, **entries) == (
@@ -349,7 +355,6 @@ def test_where_a_polygon_cannot_be():
         (dict(stock_diameter=27), "stock_diameter 27 must be greater than across_flats 27"),
         (dict(corner_radius=13.5), "corner_radius 13.5 must be less than half of across_flats 27"),
         (dict(sides=2, corner_radius=1), "corner_radius 1: two flats have no corners"),
-        (dict(sides=LEFT_OUT), "sides is missing: how many, 2 for two flats"),
         (dict(sides=1), "sides 1 must be at least 2"),
         (dict(sides=101), "sides 101 must be at most 100"),
         (
@@ -361,3 +366,25 @@ def test_where_a_polygon_cannot_be():
     assert planned("polar_polygon", stock_diameter=30, allowance=1.499).rounds.rounds == 1
     assert planned("polar_polygon", corner_radius=13.499)
     assert planned("polar_polygon", sides=100) and planned("polar_polygon", sides=2)
+
+
+@pytest.mark.parametrize(
+    ("shape", "name", "meaning"),
+    [
+        ("polar_polygon", "sides", "how many, 2 for two flats"),
+        ("polar_polygon", "across_flats", "the distance between two flats"),
+        ("polar_polygon", "stock_diameter", "the bar's"),
+        ("polar_slot", "width", "from wall to wall"),
+        ("polar_slot", "length", "over all"),
+        ("polar_pocket", "diameter", "the pocket's"),
+        *((shape, "depth", "how deep, from the face at Z0") for shape in EXAMPLES),
+    ],
+)
+def test_an_entry_without_a_default_is_missed_by_its_meaning(shape, name, meaning):
+    assert refusal(shape, **{name: LEFT_OUT}) == f"{shape}: {name} is missing: {meaning}"
+    count = len(PLANS[shape][0])
+    if name != "sides":
+        assert refusal(shape, **{name: 0}) == (
+            f"{shape}: {name} 0 must be greater than 0"
+            f" (a call has {count} entries, -9999 leaves one out)"
+        )

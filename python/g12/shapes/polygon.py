@@ -22,7 +22,7 @@ above the face.
 
 from __future__ import annotations
 
-from math import acos, cos, degrees, fmod, radians, sqrt, tan
+from math import acos, degrees, fmod, hypot, radians, sqrt, tan
 from typing import NamedTuple
 
 from g12.cycles.common import ROUNDING_MM, check_count, loaded_tool
@@ -93,7 +93,7 @@ class PolygonForm(NamedTuple):
     @property
     def corner(self) -> float:
         """Return the distance of a corner's centre."""
-        return 0.0 if self.sides == FLATS else self.inner / cos(radians(self.half_turn))
+        return hypot(self.inner, self.side)
 
 
 class PolygonRounds(NamedTuple):
@@ -132,14 +132,20 @@ class PolygonPlan(NamedTuple):
     def extent(self) -> Extent:
         """Return how far the tool's centre goes; every round turns C once round, backwards."""
         rounds, levels = self.rounds, self.levels
-        top = corner_distance(self.form, rounds.finish_apothem, rounds.clip)
-        lead = degrees(acos(min(1.0, top / rounds.outside)))
         turns = levels.levels * rounds.rounds + rounds.finish
         return Extent(
-            (min(rounds.finish_apothem, top), rounds.outside),
+            (rounds.finish_apothem, rounds.outside),
             (-levels.levels * levels.step_down, self.heights.start_z),
-            (self.start_angle - 360.0 * turns - lead, self.start_angle + lead),
+            (
+                self.start_angle - 360.0 * turns - self._lead(rounds.finish_apothem),
+                self.start_angle + self._lead(rounds.apothem),
+            ),
         )
+
+    def _lead(self, apothem: float) -> float:
+        """Return by what angle a round leads in beside the zero line, and out, in degrees."""
+        top = corner_distance(self.form, apothem, self.rounds.clip)
+        return degrees(acos(top / self.rounds.outside))
 
 
 def plan_polygon(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> PolygonPlan:

@@ -125,6 +125,7 @@ def ramp_of(
 
 
 def half_turns_in_all(rings: ClearingRings, levels: Levels, ramp: RampDown) -> int:
-    """Return how many half turns a shape has in all."""
+    """Return how many half turns a shape has in all; one leads back from any further rings."""
     down = ramp.first_turns + (levels.levels - 1) * ramp.next_turns
-    return down + levels.levels * rings.half_turns + 4 * rings.finish
+    finish = rings.finish * (3 if rings.further else 4)
+    return down + levels.levels * rings.half_turns + finish
