@@ -417,10 +417,17 @@ def test_without_a_feed_anywhere(lathe):
     assert refused(lathe, text) == "polar_slot line 5: feed is missing, and no F is active"
 
 
-def test_the_code_stands_in_the_subs_alone(lathe):
-    assert refused(lathe, program("G12.4")) == (
-        "G12.4 line 5: stands in the subs polar_polygon, polar_slot, polar_pocket"
+@pytest.mark.parametrize("code", ["G12.4", "G13.4"])
+def test_the_codes_stand_in_the_subs_alone(lathe, code):
+    assert refused(lathe, program(code)) == (
+        f"{code} line 5: stands in the subs polar_polygon, polar_slot, polar_pocket"
     )
+
+
+@pytest.mark.parametrize("code", ["G12.4", "G13.4"])
+def test_the_codes_stand_alone_in_their_blocks(lathe, code):
+    edited = ["o<polar_slot> sub", f"{code} X5", "o<polar_slot> endsub", "o<polar_slot> call"]
+    assert refused(lathe, program(*edited)) == f"{code} line 6: stands alone in its block"
 
 
 @pytest.mark.parametrize(

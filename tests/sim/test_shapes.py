@@ -38,6 +38,8 @@ CALLS = {  # the call, the depths of its passes, and what stands or is cut there
     ),
 }
 
+LONG = "o<polar_polygon> call [6] [27] [5] [40] [1] [.5] [-9999] [2000] [1000] [0]"
+
 
 @pytest.fixture(
     scope=machine_scope,
@@ -92,10 +94,11 @@ def test_in_mdi(lathe):
 
 
 def test_an_abort_in_a_shape_and_the_same_call_again(lathe):
+    """The call is longer than what LinuxCNC reads ahead: it is aborted inside the sub."""
     lathe.reset()
-    lathe.open_text([*START, "G7", CALLS["flats"][0], "M2"])
+    lathe.open_text([*START, "G7", LONG, "M2"])
     lathe.start()
-    lathe.wait_for(lambda status: status.position[2] < -0.5)
+    lathe.wait_for(lambda status: status.position[2] < 0)
     lathe.abort()
     lathe.errors()
     lathe.mdi("G0 X50")

@@ -69,9 +69,6 @@ def abort(interp: object) -> None:
     """
     interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")
     give_back_modes(interp)
-    diameters, interp.g12_diameters = getattr(interp, "g12_diameters", None), None
-    if diameters:
-        interp.execute(diameters)  # a shape was at work, in G8
     interp.toolchange_flag = True
 
 

@@ -29,7 +29,7 @@ def start_of_section(interp: object, line: int, words: str = "") -> SectionStart
     return SectionStart(
         place=SectionPlace(glue.code_of_block(interp), line),
         words=block_of(block).words,
-        alone=_stands_alone(block, words),
+        alone=stands_alone(block, words),
         level=interp.call_level,
         x=interp.current_x,
         c=interp.CC_current,
@@ -51,7 +51,8 @@ def start_of_section(interp: object, line: int, words: str = "") -> SectionStart
     )
 
 
-def _stands_alone(block: object, words: str) -> bool:
+def stands_alone(block: object, words: str = "") -> bool:
+    """Tell whether a block holds only its code, and those words."""
     others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
     return alone(block_of(block), words) and not others
 

@@ -18,7 +18,7 @@ from g12.host import cycle_glue, glue
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.kinematics_switch import face_in_force
 from g12.host.section_glue import AXES, COORDINATES, FACE, KINEMATICS, REMAPS, SETTINGS
-from g12.host.section_start import start_of_section
+from g12.host.section_start import stands_alone, start_of_section
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
 from g12.polar.plan import POLE_SHARE
@@ -49,9 +49,7 @@ SHAPES = {
 def polar_shape(self, **words):
     """Check the shape in whose sub it stands, and set the locals of its motion: G12.4."""
     level = self.call_level - 1  # the sub's
-    name = self.sub_context[level].subname
-    if name not in SHAPES:
-        raise BlockRefusal(glue.code_of_block(self), f"stands in the subs {', '.join(SHAPES)}")
+    name = shape_at_work(self)
     if KINEMATICS and self.task and face_in_force():
         raise BlockRefusal(name, "G12.1 is on, by hand: G13.1 first")
     start = start_of_shape(self, name)
@@ -64,19 +62,29 @@ def polar_shape(self, **words):
     numbers = plan.locals()
     if self.c_axis_wrapped:  # a sign would be the way to turn, 360 is refused
         numbers["start_angle"] = numbers["start_angle"] % 360.0 % 360.0  # of -1e-20 it is 360
-    set_locals_at(self, level, {**numbers, **section_words(entries)})
+    x_words = {"x_word": 1 + setup.words.diameter, "x_rapid": 1 + start.diameter}
+    set_locals_at(self, level, {**numbers, **x_words, **section_codes(entries)})
     cycle_glue.note_modes(self)
-    self.g12_diameters = "G7" if glue.diameter_mode(self) else "G8"  # for an abort
     return INTERP_OK
 
 
 @glue.handler
 def polar_shape_done(self, **words):
     """Put back the modes that the shape found, F among them: G13.4."""
+    shape_at_work(self)
     cycle_glue.restore_modes(self)
     self.execute(f"F{decimal(cycle_glue.state_of(self).feed)}")
-    self.g12_diameters = None
     return INTERP_OK
+
+
+def shape_at_work(interp: object) -> str:
+    """Return the name of the shape in whose sub the code stands; refuse it anywhere else."""
+    name, code = interp.sub_context[interp.call_level - 1].subname, glue.code_of_block(interp)
+    if name not in SHAPES:
+        raise BlockRefusal(code, f"stands in the subs {', '.join(SHAPES)}")
+    if not stands_alone(interp.blocks[interp.remap_level]):
+        raise BlockRefusal(code, "stands alone in its block")
+    return name
 
 
 def start_of_shape(interp: object, name: str) -> SectionStart:
@@ -101,13 +109,13 @@ def shape_machine(setup: SectionSetup) -> ShapeMachine:
     )
 
 
-def section_words(entries: ShapeEntries) -> dict[str, float]:
-    """Return the locals by which the sub writes its section: its codes, and X words in G8."""
+def section_codes(entries: ShapeEntries) -> dict[str, float]:
+    """Return the locals by which the sub begins and ends its section: the G codes."""
     numbers = {name: code_of_handler(REMAPS.values(), name) for name in ("polar_on", "polar_off")}
     for name, found in numbers.items():
         if found is None:
             raise entries.refuse(f"needs a REMAP line with python={name}")
-    return {**numbers, "x_word": 2 if SETTINGS.polar_x == "diameter" else 1}
+    return numbers
 
 
 def stay_in_travel(entries: ShapeEntries, extent: Extent, setup: SectionSetup) -> None:
