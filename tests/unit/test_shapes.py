@@ -12,6 +12,7 @@ from g12.cycles.context import Tool
 from g12.errors import Refusal, number
 from g12.shapes import polygon, round_pocket, slot
 from g12.shapes.entries import LEFT_OUT, ShapeEntries, ShapeMachine, check_nearest
+from g12.shapes.rings import half_turns_in_all
 from support.planner_context import MM
 
 FOUND = MM._replace(z=5.0, spindle_tool=Tool(3, 3.0))
@@ -105,7 +106,6 @@ class TestEveryShape:
         assert planned(shape, depth=5).levels == (1, 5.0)
 
     def test_passes_that_never_end_are_refused(self, shape):
-        assert planned(shape, depth=1, depth_per_pass=1e-4).levels.levels == 10_000
         assert refusal(shape, depth=1.0001, depth_per_pass=1e-4) == (
             f"{shape}: depth_per_pass 0.0001 makes 10001 passes of depth 1.0001, the most is 10000"
         )
@@ -259,23 +259,49 @@ def test_a_way_down_that_never_ends_is_refused():
     assert refusal("polar_pocket", diameter=6.02, depth=too_deep) == f"polar_pocket: {rule}"
 
 
-THIN = FOUND._replace(spindle_tool=Tool(3, 0.003))
+THIN = FOUND._replace(spindle_tool=Tool(3, 0.03))
 
 
-def test_circles_without_number_are_refused():
+@pytest.mark.parametrize(("shape", "per_half_turn"), [("polar_pocket", 1), ("polar_slot", 2)])
+def test_half_turns_without_number_are_refused(shape, per_half_turn):
     """A tool typed a thousand times too small must not hang the preview."""
-    pocket = dict(x=0, c=0, diameter=100, depth=8)
-    rings = planned("polar_pocket", LATHE, THIN, depth_per_pass=1, **pocket).rings.further
-    assert 8 * rings <= 100_000 < 10 * rings
-    assert refusal("polar_pocket", LATHE, THIN, depth_per_pass=0.8, **pocket) == (
-        f"polar_pocket: depth_per_pass makes {10 * rings} circles, the most is 100000"
+
+    def moves(levels):
+        made = planned(shape, LATHE, THIN, depth=0.5 * levels, depth_per_pass=0.5)
+        return per_half_turn * half_turns_in_all(made.rings, made.levels, made.ramp)
+
+    per_level = moves(3) - moves(2)
+    most = 2 + (100_000 - moves(2)) // per_level
+    assert moves(most) <= 100_000
+    count = moves(most) + per_level
+    deeper = dict(depth=0.5 * (most + 1), depth_per_pass=0.5)
+    assert refusal(shape, LATHE, THIN, **deeper) == (
+        f"{shape}: depth_per_pass makes {count} moves, the most is 100000"
     )
-    rounds = planned("polar_polygon", LATHE, THIN, depth_per_pass=5 / 69).rounds.rounds
-    assert 69 * rounds <= 100_000 < 70 * rounds
-    assert refusal("polar_polygon", LATHE, THIN, depth_per_pass=5 / 70) == (
-        f"polar_polygon: stock_diameter and depth_per_pass make {70 * rounds} circles,"
+
+
+@pytest.mark.parametrize("sides", [2, 6, 100])
+def test_rounds_without_number_are_refused(sides):
+    """Each has a line and an arc for every side, and six moves in and out."""
+    entries = dict(sides=sides, depth=8)
+    rounds = planned("polar_polygon", LATHE, THIN, **entries).rounds.rounds
+    moves = rounds * (2 * sides + 6)
+    most = 100_000 // moves
+    assert planned("polar_polygon", LATHE, THIN, depth_per_pass=8 / most, **entries)
+    assert refusal("polar_polygon", LATHE, THIN, depth_per_pass=8 / (most + 1), **entries) == (
+        f"polar_polygon: stock_diameter and depth_per_pass make {(most + 1) * moves} moves,"
         " the most is 100000"
     )
+
+
+def test_passes_of_a_polygon_may_be_ten_thousand():
+    flats = dict(sides=2, across_flats=36, depth=1, depth_per_pass=1e-4)
+    assert planned("polar_polygon", **flats).levels.levels == 10_000
+
+
+def test_a_cutter_of_next_to_nothing_hangs_nothing():
+    none = FOUND._replace(spindle_tool=Tool(3, 1e-7))
+    assert "moves, the most is" in refusal("polar_polygon", LATHE, none, stock_diameter=1e6)
 
 
 def test_a_slot_is_longer_than_wide():

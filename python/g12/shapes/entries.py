@@ -18,6 +18,7 @@ LEFT_OUT = -9999.0
 CLEAR_MM = 1.0  # between the tool and the face, or the stock, where it comes down
 WIDEST = 0.75  # of the cutter's diameter: how far apart its rounds are at most
 MOST_LEVELS = 10_000
+MOST_MOVES = 100_000  # some minutes to read, in which LinuxCNC hears of no abort
 MOST_ANGLE = 360.0  # LinuxCNC's limit of a position on a wrapped rotary axis
 
 
@@ -157,6 +158,12 @@ def check_finish(entries: ShapeEntries, allowance: float, cutter: float) -> None
         raise entries.refuse(
             f"{entries.written('allowance', allowance)} {rule} {number(2 * cutter)} takes"
         )
+
+
+def check_moves(entries: ShapeEntries, moves: int, cause: str) -> None:
+    """Refuse a shape of more moves than anyone means; ``cause`` names their entries."""
+    if moves > MOST_MOVES:
+        raise entries.refuse(f"{cause} {moves} moves, the most is {MOST_MOVES}")
 
 
 def rounds_between(first: float, last: float, cutter: float, rounding: float) -> int:

@@ -16,8 +16,8 @@ corner as at a flat. The way between them and the way down are clear of the stoc
 Rules, in the order of the checks: a tool with a diameter in the spindle; sides from 2;
 across_flats, stock_diameter above 0, the stock larger than the flats; corner_radius from 0, none
 with two flats, less than half of across_flats; depth, depth_per_pass above 0; allowance from 0,
-less than what there is to cut, and no more than one round takes; feeds above 0; angle; the tool
-above the face.
+less than what there is to cut, and no more than one round takes; not too many moves; feeds above 0;
+angle; the tool above the face.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from __future__ import annotations
 from math import acos, degrees, fmod, hypot, radians, sqrt, tan
 from typing import NamedTuple
 
-from g12.cycles.common import ROUNDING_MM, check_count, loaded_tool
+from g12.cycles.common import ROUNDING_MM, loaded_tool
 from g12.cycles.context import Context
 from g12.errors import number
 from g12.shapes.entries import (
@@ -37,6 +37,7 @@ from g12.shapes.entries import (
     ShapeEntries,
     ShapeMachine,
     check_finish,
+    check_moves,
     feeds_of,
     heights_of,
     levels_of,
@@ -82,6 +83,11 @@ class PolygonForm(NamedTuple):
     def half_turn(self) -> float:
         """Return half the angle from corner to corner in degrees."""
         return 180.0 / self.sides
+
+    @property
+    def moves(self) -> int:
+        """Return how many moves a round is made of, those in and out included."""
+        return 2 * self.sides + 6
 
     @property
     def side(self) -> float:
@@ -153,8 +159,7 @@ def plan_polygon(entries: ShapeEntries, context: Context, machine: ShapeMachine)
     cutter = loaded_tool(entries, context).radius
     form, stock = form_of(entries)
     levels = levels_of(entries, context)
-    rounds = rounds_of(entries, context, form, stock, cutter)
-    check_count(entries, rounds.rounds * levels.levels, "stock_diameter and depth_per_pass make")
+    rounds = rounds_of(entries, context, form, stock, cutter, levels.levels)
     feeds = feeds_of(entries, context, machine)
     angle = fmod(entries.angle("angle") + form.half_turn, 360.0)
     return PolygonPlan(form, rounds, levels, feeds, heights_of(entries, context), angle)
@@ -182,7 +187,12 @@ def form_of(entries: ShapeEntries) -> tuple[PolygonForm, float]:
 
 
 def rounds_of(
-    entries: ShapeEntries, context: Context, form: PolygonForm, stock: float, cutter: float
+    entries: ShapeEntries,
+    context: Context,
+    form: PolygonForm,
+    stock: float,
+    cutter: float,
+    levels: int,
 ) -> PolygonRounds:
     """Return the rounds from the stock's radius to the polygon and its allowance."""
     allowance = entries.from_zero("allowance")
@@ -193,6 +203,7 @@ def rounds_of(
         raise entries.refuse(f"{entries.written('allowance', allowance)} {rule}")
     check_finish(entries, allowance, cutter)
     rounds = max(1, rounds_between(0.0, height, cutter, rounding))
+    check_moves(entries, levels * rounds * form.moves, "stock_diameter and depth_per_pass make")
     step = height / rounds
     final = form.apothem + cutter
     clip = stock + cutter + context.length(CLEAR_MM)

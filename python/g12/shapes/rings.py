@@ -14,7 +14,7 @@ from __future__ import annotations
 from math import ceil, inf, pi, radians, tan
 from typing import NamedTuple
 
-from g12.cycles.common import ROUNDING_MM, SMALLEST_RING_MM, check_count
+from g12.cycles.common import ROUNDING_MM, SMALLEST_RING_MM
 from g12.cycles.context import Context
 from g12.errors import number
 from g12.shapes.entries import (
@@ -23,6 +23,7 @@ from g12.shapes.entries import (
     ShapeEntries,
     ShapeMachine,
     check_finish,
+    check_moves,
     rounds_between,
 )
 
@@ -114,14 +115,16 @@ def ramp_of(
     if first > MOST_HALF_TURNS:
         rule = f"a ramp of {number(machine.entry_angle)} degrees needs more than {MOST_HALF_TURNS}"
         raise entries.refuse(f"{rule} half turns of {number(length + round_)} for a pass")
-    check_count(entries, rings.further * levels.levels, "depth_per_pass makes")
-    return RampDown(
+    ramp = RampDown(
         first,
         (heights.near_z + levels.step_down) / first,
         following,
         levels.step_down / following,
         length / (length + round_),
     )
+    moves = half_turns_in_all(rings, levels, ramp) * (2 if length else 1)
+    check_moves(entries, moves, "depth_per_pass makes")
+    return ramp
 
 
 def half_turns_in_all(rings: ClearingRings, levels: Levels, ramp: RampDown) -> int:

@@ -6,8 +6,8 @@ through that centre.
 
 Rules, in the order of the checks: a tool with a diameter in the spindle; diameter above 0; depth
 and depth_per_pass above 0; allowance from 0; room for a helix; feeds above 0; the tool above the
-face; not too long a way down; no ring through the spindle's centre where [G12] POLAR_POLE refuses
-it.
+face; not too long a way down, not too many moves; no ring through the spindle's centre where
+[G12] POLAR_POLE refuses it.
 """
 
 from __future__ import annotations

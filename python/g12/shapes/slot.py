@@ -7,8 +7,8 @@ fro along the line, through the centre.
 
 Rules, in the order of the checks: a tool with a diameter in the spindle; width, length above 0, the
 slot longer than wide; depth and depth_per_pass above 0; allowance from 0; room for the cutter;
-feeds above 0; angle; the tool above the face; not too long a way down; no way through the centre
-where [G12] POLAR_POLE refuses it.
+feeds above 0; angle; the tool above the face; not too long a way down, not too many moves; no way
+through the centre where [G12] POLAR_POLE refuses it.
 """
 
 from __future__ import annotations
