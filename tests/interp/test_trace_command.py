@@ -12,6 +12,7 @@ import pytest
 from g12.tools.commands import main
 from support.processes import living, until
 from support.sim_machines import ROOT, SIM
+from support.small_configs import LATHE, with_lines, write_config
 
 INI = SIM / "mill_mm.ini"
 
@@ -132,3 +133,19 @@ def test_a_list_that_nobody_reads_to_its_end_is_no_error(tmp_path, start):
     os.close(read)
     _, errors = process.communicate(timeout=60)
     assert (process.returncode, errors) == (141, "")
+
+
+def test_an_error_is_told_with_what_the_package_said_when_linuxcnc_came_up(tmp_path, capsys):
+    python = "[PYTHON]\nTOPLEVEL = python/top.py\nPATH_APPEND = python\n"
+    ini = write_config(
+        tmp_path,
+        with_lines(LATHE, "RS274NGC", "REMAP = G12.1 modalgroup=1 python=polar_on\n") + python,
+        python__top_py="import sys, remap\nprint('g12: not this G12.1', file=sys.stderr)\n",
+        python__remap_py="def polar_on(self, **words):\n    return 0\n",
+    )
+    program = tmp_path / "part.ngc"
+    program.write_text("G21\nG4\nM2\n")
+    assert main.main(["trace", str(program), "--ini", str(ini)]) == 1
+    said = capsys.readouterr().err
+    assert "part.ngc:2: " in said
+    assert said.endswith(": not this G12.1\n")

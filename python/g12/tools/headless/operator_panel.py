@@ -17,6 +17,7 @@ STANDING = 5.0  # s, that no joint moves while one is homing: no home switch wai
 DECIMALS = 6  # of a joint's place
 GRACE = 5.0  # s, for the machine to react to a command
 ERRORS = (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR)
+NOTICE = "motion.switchkins-type is deprecated"  # once a session, by a LinuxCNC with its own G12.1
 TASK_MODES = {
     linuxcnc.MODE_MANUAL: "manual",
     linuxcnc.MODE_AUTO: "auto",
@@ -51,7 +52,8 @@ class Panel:
         said = self._channel.poll()
         while said:
             kind, text = said
-            heard = self._errors if kind in ERRORS else self._messages
+            wrong = kind in ERRORS and NOTICE not in text
+            heard = self._errors if wrong else self._messages
             heard.append((text.strip(), self._stat.read_line))
             said = self._channel.poll()
         return self._stat

@@ -11,11 +11,13 @@ from g12.machine_ini import remap_lines
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.moves import Trace
-from g12.tools.preview.tracer import Parameters, Tools, trace
+from g12.tools.preview.tracer import Parameters, Tools, Tracer, trace
 from g12.tools.system import CALL
 
 UNKNOWN_CODE = "Unknown g code used"
 OUR_CODE = re.compile(r"G(?:1[23](?!\d)|7\.1$)")
+POLAR = ("G12.1", "G13.1")
+SAID = re.compile(r"^g12: (.*)$", re.MULTILINE)  # by the package, when LinuxCNC comes up
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
 
@@ -43,11 +45,18 @@ def explained(result: Trace, ini: Path) -> Trace:
 def explained_text(text: str, ini: Path) -> str:
     """Return the interpreter's error with what the machine has in place of what was asked for."""
     machine = read_ini(ini)
+    codes = [remap.code for remap in remap_lines(machine.all) if OUR_CODE.match(remap.code)]
     wanted = NO_AXIS.match(text)
     if wanted and wanted[1].upper() not in machine.axes:
         return f"{text}: this INI's machine has axes {' '.join(machine.axes)}"
     if text == UNKNOWN_CODE:
-        codes = [remap.code for remap in remap_lines(machine.all) if OUR_CODE.match(remap.code)]
         there = " ".join(codes) or "none"
         return f"{text}: of G12, G13 and G7.1 this INI has {there}; see {CALL} check"
-    return text
+    said = said_at_start(ini) if set(POLAR) & set(codes) else ""
+    return f"{text}: {said}" if said else text
+
+
+def said_at_start(ini: Path) -> str:
+    """Return what the package says when LinuxCNC comes up with an INI: what cannot work there."""
+    with Tracer(ini) as tracer:
+        return "; ".join(SAID.findall(tracer.printed))
