@@ -8,9 +8,9 @@ import pytest
 
 from support.contour_geometry import FROM_COLUMNS, deviation, distance, lines
 from support.cylinder_drawings import DRAWINGS, Surface, bend
-from support.operated_machine import kept_machine
+from support.operated_machine import Machine, kept_machine
 from support.polar_programs import C_ACCELERATION, accelerations, exceeds_limits_itself
-from support.sim_machines import PROGRAMS, machine_scope
+from support.sim_machines import PROGRAMS, SIM, machine_scope
 
 LIMIT = 0.005 + 0.001  # POLAR_TOLERANCE, and what sampling may add
 FEED = 1000.0  # the samples cut at 250 mm a minute
@@ -184,6 +184,24 @@ def test_mdi_is_refused(ready):
     ]
     ready.mdi("G07.1 C0")
     assert ready.errors() == []
+
+
+def test_a_sub_that_mdi_calls_has_the_lines_behind(tmp_path):
+    groove = section(*PART[:2], "M66 P0 L0", *PART[2:])[4:-1]
+    text = ["o<groove> sub", *groove, "G0 X25", "o<groove> endsub"]
+    (tmp_path / "groove.ngc").write_text("\n".join(text) + "\n")
+    paths = {"RS274NGC": {"SUBROUTINE_PATH": f"../../ngc:subs:{tmp_path}"}}
+    with Machine(SIM / "lathe_mm.ini", overrides=paths) as lathe:
+        for block in (FIRST, "T3 M6", "G0 X22 Z0 C0", "F2500"):
+            lathe.mdi(block)
+        lathe.sample()
+        lathe.mdi("o<groove> call")
+        samples = lathe.samples()
+        lathe.mdi("G0 X30")
+        assert lathe.errors() == []
+        assert lathe.stat().position[0] == pytest.approx(30)
+    assert on_the_part(samples)
+    assert samples.axes["C"].max() > 60 and samples.axes["Z"].min() == pytest.approx(-10)
 
 
 def test_waiting_for_an_input_inside(ready):

@@ -18,6 +18,7 @@ from g12.host.section_glue import (
     REMAPS,
     SETTINGS,
     SectionKind,
+    is_typed,
     run_section,
 )
 from g12.section.codes import SectionCodes, codes_with_word
@@ -34,7 +35,7 @@ def cylinder_mode(self, **words) -> Iterator[int]:
             if any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS):
                 raise BlockRefusal(glue.code_of_block(self), f"{RADIUS}0 stands alone in its block")
         else:
-            if glue.in_mdi(self):
+            if is_typed(self):
                 raise BlockRefusal(glue.code_of_block(self), NOT_IN_MDI)
             yield from run_section(self, CYLINDER)
     except Exception as error:

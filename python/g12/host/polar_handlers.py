@@ -19,6 +19,7 @@ from g12.host.section_glue import (
     REMAPS,
     SETTINGS,
     SectionKind,
+    is_typed,
     run_section,
 )
 from g12.host.section_start import start_of_section
@@ -30,7 +31,6 @@ from g12.section.codes import SectionCodes, codes_of_section
 from g12.section.start import SectionStart
 from g12.shapes import SUBS
 
-TYPED = 1  # call level of a block that stands in no sub
 DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could read them
 
 
@@ -49,7 +49,7 @@ def polar_on(self, **words) -> Iterator[int]:
     """Read, plan and move a section: the handler of G12.1, which may have to wait."""
     try:
         glue.forget_return(self)
-        if glue.in_mdi(self) and self.call_level == TYPED:
+        if is_typed(self):
             yield from run_by_hand(self)
         else:
             in_shape = self.sub_context[self.call_level - 1].subname in SUBS

@@ -34,6 +34,7 @@ REMAPS = {remap.code: remap for remap in remap_lines(INI.findall)}
 COORDINATES, AXES = set(coordinates_of(INI.find)), axes_of(INI.find, "XZC")
 FACE = face_of(INI.find)
 KINEMATICS = SETTINGS.polar_kinematics == "1"
+TYPED = 1  # call level of a block that stands in no sub
 NOT_IN_MDI = "is not possible in MDI: it needs the lines behind it"
 
 
@@ -50,6 +51,11 @@ class SectionKind(NamedTuple):
     setup: Callable[[SectionStart], SectionSetup]
     codes: Callable[[str], SectionCodes]
     plan: Callable[[Contour, SectionSetup, SectionStart], SectionPlan]
+
+
+def is_typed(interp: object) -> bool:
+    """Tell whether the block being remapped was typed in MDI; a sub that MDI calls was not."""
+    return glue.in_mdi(interp) and interp.call_level == TYPED
 
 
 def program_behind(interp: object) -> ProgramLines:
