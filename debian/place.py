@@ -64,4 +64,5 @@ if __name__ == "__main__":
     shutil.copy("README.md", package / "README.md")
     unread = shutil.ignore_patterns("foreign", "regress")  # the demo reads the others
     shutil.copytree("tests/programs", package / "tests" / "programs", ignore=unread)
+    shutil.copytree(SIM, package / SIM)
     place_samples(samples)

@@ -202,6 +202,30 @@ def test_every_feature_installs_runs_and_goes(tmp_path, capsys, feature, first):
     assert content_of(tmp_path) == before
 
 
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("haas", "circle-mill"),
+        ("yasnac",),
+        ("mitsubishi",),
+        ("polar", "polar-shapes", "cylinder"),
+        ("polar-g12.3", "polar-shapes"),
+    ],
+)
+def test_what_install_says_to_try_does_what_it_says(tmp_path, capsys, names):
+    ini = write_config(tmp_path, LATHE if set(names) & set(features.AXES) else MILL)
+    assert installed(ini, *names) == 0
+    said = capsys.readouterr().out.partition("next: ")[2].splitlines()[1:-1]
+    assert len(said) == len(names)
+    for line in said:
+        block, words = re.fullmatch(r"  (.*?) +((?:is answered|does nothing).*)", line).groups()
+        tried = trace_text([block, "M2"], ini)
+        assert tried.moves == []
+        answer = tried.error.text if tried.error else "nothing"
+        first = re.sub(r"o<(.*)> call", r"\1", block)
+        assert answer.startswith(first if "is answered" in words else "nothing"), line
+
+
 @pytest.mark.parametrize("own", [False, True])
 def test_an_installed_pocket_is_that_of_the_simulated_mill(tmp_path, own):
     text = MILL + (OWN if own else "")

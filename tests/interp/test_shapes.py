@@ -420,7 +420,8 @@ def test_without_a_feed_anywhere(lathe):
 @pytest.mark.parametrize("code", ["G12.4", "G13.4"])
 def test_the_codes_stand_in_the_subs_alone(lathe, code):
     assert refused(lathe, program(code)) == (
-        f"{code} line 5: stands in the subs polar_polygon, polar_slot, polar_pocket"
+        f"{code} line 5: belongs into the subs polar_polygon, polar_slot and polar_pocket: "
+        "call one of them"
     )
 
 

@@ -161,6 +161,12 @@ def test_events_that_are_not_there(tmp_path, capsys):
     assert said.count("\n") == 1
 
 
+def test_a_folder_that_cannot_be_made(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    wanted = tmp_path / "file" / "pictures"
+    assert ends(capsys, "demo", "--output", wanted) == (2, f"g12 demo: {wanted}: Not a directory\n")
+
+
 def test_an_interrupt_is_one_line(monkeypatch, capsys):
     def interrupted(_arguments):
         raise KeyboardInterrupt

@@ -81,7 +81,9 @@ def shape_at_work(interp: object) -> str:
     """Return the name of the shape in whose sub the code stands; refuse it anywhere else."""
     name, code = interp.sub_context[interp.call_level - 1].subname, glue.code_of_block(interp)
     if name not in SHAPES:
-        raise BlockRefusal(code, f"stands in the subs {', '.join(SHAPES)}")
+        *names, last = SHAPES
+        where = f"belongs into the subs {', '.join(names)} and {last}: call one of them"
+        raise BlockRefusal(code, where)
     if not stands_alone(interp.blocks[interp.remap_level]):
         raise BlockRefusal(code, "stands alone in its block")
     return name

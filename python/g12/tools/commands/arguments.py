@@ -187,6 +187,8 @@ def checked_ini(options: argparse.Namespace) -> Ini:
 
 def _text(problem: Exception) -> str:
     """Return the problem in one line: what went wrong, of a long log only what tells most."""
+    if isinstance(problem, OSError) and problem.filename and problem.strerror:
+        return f"{problem.filename}: {problem.strerror}"
     lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
     if len(lines) < 2:
         return "".join(lines)

@@ -2,7 +2,8 @@
 """``g12 plot``: a picture of what a program cuts, for any LinuxCNC program and machine.
 
 A mill program is shown from above and from the side, with the area its cutters sweep; a program
-that turns C on the face of the part, and over time; a turning program in Z and X.
+that turns C on the face of the part, one whose sections are all on a cylinder on its unrolled
+surface, both over time too; a turning program in Z and X.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``g12 verify``: prove that a program's pockets and polar sections come out as programmed.
+"""``g12 verify``: prove that a program's pockets and sections come out as programmed.
 
-What is asked for is read from the program's words, what is cut is measured from the motion that
-LinuxCNC makes of it, or with --run from the real motion of a headless run.
+Sections are those of polar interpolation and those on a cylinder. What is asked for is read from
+the program's words, what is cut is measured from the motion that LinuxCNC makes of it, or with
+--run from the real motion of a headless run.
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ MEANING = {
     "cylinder": "G7.1 (G07.1) cylindrical interpolation on and off",
     KINEMATICS: "G12.1 in LinuxCNC's planner, on a lathe of the usual form (make kinematics)",
     FORMS: "pages to fill in, with pictures, for the codes that the machine has",
-    SHAPES: "G12.4/G13.4 in the subs polar_polygon, polar_slot and polar_pocket",
+    SHAPES: "o<polar_polygon>, o<polar_slot> and o<polar_pocket> call, by G12.4/G13.4",
     **{
         name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()
     },

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What `make deb` places: the demo's programs and machines are among it, and load."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from g12.tools.demo.samples import SAMPLES
+from support.sim_machines import ROOT
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """Place the folder that becomes /usr/share/linuxcnc-g12."""
+    folder = tmp_path_factory.mktemp("placed")
+    places = [str(folder / "package"), str(folder / "samples")]
+    paths = f"python:debian:{os.environ.get('PYTHONPATH', '')}"
+    place = [sys.executable, "debian/place.py", *places]
+    subprocess.run(place, cwd=ROOT, env={**os.environ, "PYTHONPATH": paths}, check=True)
+    return folder / "package"
+
+
+def placed(package, sample):
+    """Return the program and the machine of a sample in the package."""
+    return [package / path.relative_to(ROOT) for path in (sample.path, sample.ini)]
+
+
+def test_every_program_of_the_demo_and_its_machine_is_there(package):
+    files = [file for sample in SAMPLES for file in placed(package, sample)]
+    assert len(files) > 20
+    assert [file for file in files if not file.is_file()] == []
+
+
+@pytest.mark.parametrize("name", ["circle_mill/sample.ngc", "polar/hexagon.ngc"])
+def test_a_machine_of_the_demo_loads_from_there(package, name):
+    sample = next(sample for sample in SAMPLES if sample.program == name)
+    program, ini = placed(package, sample)
+    command = [sys.executable, package / "python" / "g12", "trace", program, "--ini", ini]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.count("\n") > 20
