@@ -417,6 +417,22 @@ def test_without_a_feed_anywhere(lathe):
     assert refused(lathe, text) == "polar_slot line 5: feed is missing, and no F is active"
 
 
+@pytest.mark.parametrize(
+    ("entries", "told"),
+    [
+        (dict(width=0.25, length=1), "width 0.25 must not be less than the cutter's 6.35 mm"),
+        (dict(width=7, allowance=0.5),
+         "allowance 0.5: the cutter of 6.35 mm does not fit between the walls that it leaves"),
+        (dict(width=24, allowance=5),
+         "allowance 5 must be at most 4.7625, what one round of the cutter of 6.35 mm takes"),
+    ],
+)  # fmt: skip
+def test_a_cutter_of_the_table_has_its_unit_where_the_programs_is_another(entries, told):
+    with Tracer(SIM / "lathe_inch.ini", tools={1: 0.25}) as inch:
+        text = program(call("polar_slot", **entries), tool=1, start="G0 X40 Z5 C0")
+        assert refused(inch, text) == f"polar_slot line 5: {told}"
+
+
 @pytest.mark.parametrize("code", ["G12.4", "G13.4"])
 def test_the_codes_stand_in_the_subs_alone(lathe, code):
     assert refused(lathe, program(code)) == (

@@ -5,9 +5,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from g12.cycles import circle_mill, haas, mitsubishi, yasnac
 from g12.cycles.common import COUNTLESS, steps_between
+from g12.cycles.context import Tool
+from g12.cycles.words import Words
+from g12.errors import Refusal
+from support.planner_context import MM
 
 TOLERANCE = 1e-6
+OTHER_UNITS = MM._replace(unit="mm", spindle_tool=Tool(1, 6.0))  # G21 on an inch machine
 
 
 @pytest.mark.parametrize(
@@ -39,3 +45,42 @@ def test_the_steps_are_enough_and_one_less_would_not_be(first, way, step):
     count = steps_between(first, first + way, step, TOLERANCE)
     assert count * step >= way - 2 * TOLERANCE
     assert (count - 1) * step < way
+
+
+def planned(planner, context, words, *more):
+    """Return what the operator is told."""
+    try:
+        return planner(Words("G12", words), context, *more).message
+    except Refusal as refusal:
+        return refusal.message
+
+
+@pytest.mark.parametrize(
+    ("planner", "words", "more", "told"),
+    [
+        (haas.plan_pocket, dict(I=0.5, D=1), (), "greater than the tool radius 6{} (D1)"),
+        (haas.plan_pocket, dict(I=6.001, D=1), (), "must exceed the tool radius 6{} (D1) by"),
+        (haas.plan_pocket, dict(I=7, K=30, Q=13, D=1), (), "tool diameter 12{}: material is left"),
+        (haas.plan_pocket, dict(I=19, K=30, Q=9, D=1), (), "x the tool diameter 12{}: a core"),
+        (yasnac.plan_circle, dict(I=0.5, D=1), (), "must exceed the tool radius 6{} (D1) in size"),
+        (yasnac.plan_circle, dict(I=9, R=1, D=1), (), "centre (tool radius 6{}, D1): it must be"),
+        (mitsubishi.plan_circle, dict(I=0.5, D=1), (), "greater than the tool radius 6{} (D1) by"),
+        (
+            circle_mill.plan_code,
+            dict(X=0, Y=0, Z=-1, I=1, H=2, R=0.5),
+            (None, True),
+            "greater than the tool radius 6{} (T1)",
+        ),
+        (
+            circle_mill.plan_code,
+            dict(X=0, Y=0, Z=-1, I=1, H=2, R=60, J=13.5),
+            (None, True),
+            "than the tool diameter 12{}: material is left",
+        ),
+    ],
+)
+def test_a_tools_size_has_its_unit_where_the_machines_is_another(planner, words, more, told):
+    """The table's numbers are the machine's: 0.5 may look right to who does not see the G21."""
+    assert told.format(" mm") in planned(planner, OTHER_UNITS, words, *more)
+    same = OTHER_UNITS._replace(unit="")
+    assert told.format("") in planned(planner, same, words, *more)

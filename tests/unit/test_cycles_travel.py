@@ -65,6 +65,13 @@ def test_the_circle_lies_in_its_plane(plane, axis):
     assert refusal(CycleExtent(plane, (0, 0, 0), 70), axes=wide) is None
 
 
+def test_an_inch_that_the_ini_rounds_is_an_inch():
+    """LINEAR_UNITS = 0.0393700787"""
+    frame = PLAIN._replace(unit=1 - 2e-9, millimetres=25.4)
+    said = refusal(CycleExtent("G17", (0, 0, 0), 400), frame)
+    assert said == "G12: the X axis would go to -399.999999 in, beyond its limit -100 in"
+
+
 def test_offsets_rotation_and_tool_are_those_of_the_machine():
     frame = MachineFrame((10.0, 0.0, -1.0), 90.0, (100.0, 50.0, 20.0), 1.0, 1.0)
     assert frame.position((30.0, 7.0, 2.0)) == pytest.approx((100 - 7, 50 + 40, 21))

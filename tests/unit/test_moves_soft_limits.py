@@ -40,3 +40,10 @@ def test_inches_on_a_metric_machine():
     assert beyond.position == pytest.approx(12 * 25.4 - 1)
     assert beyond.limit == pytest.approx(300)
     assert beyond.unit == "mm" and beyond.converted
+
+
+def test_an_inch_that_the_ini_rounds_is_an_inch():
+    """LINEAR_UNITS = 0.0393700787"""
+    scales = dict.fromkeys("XZC", AxisScale(1 - 2e-9, 0.0))
+    beyond = SoftLimits(AXES, scales, "in").beyond([BlockMoves(3, "XC", [(400, 0, 0, 1)], False)])
+    assert not beyond.converted

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from g12.errors import number
 from g12.lengths import MM_PER_INCH
 
 XY, YZ, XZ = "G17", "G19", "G18"
@@ -25,7 +26,8 @@ class Context(NamedTuple):
     ``speed`` is the commanded spindle speed in rpm. ``offset_pending`` tells that G40 came after
     the last move: the tool is still beside the programmed point by its radius.
     ``last_radius`` is the cutter radius of the last D commanded (None: none ever was),
-    ``tool_in_table(n)`` gives tool n or None.
+    ``tool_in_table(n)`` gives tool n or None. ``unit`` is the program's where the machine has
+    another, "mm" or "in": for sizes of the tool table in messages.
     """
 
     inch: bool
@@ -43,7 +45,12 @@ class Context(NamedTuple):
     spindle_tool: Tool | None
     last_radius: float | None
     tool_in_table: Callable[[int], Tool | None]
+    unit: str = ""
 
     def length(self, millimetres: float) -> float:
         """Return a length given in mm in program units."""
         return millimetres / MM_PER_INCH if self.inch else millimetres
+
+    def tool_size(self, length: float) -> str:
+        """Return a tool's radius or diameter for a message: ``3.175``, or ``3.175 mm``."""
+        return f"{number(length)} {self.unit}".rstrip()

@@ -190,13 +190,13 @@ def check_radii(
     if first <= cutter.radius + rounding:
         raise words.refuse(
             f"I{number(first)} must be greater than the tool radius"
-            f" {number(cutter.radius)} ({source})"
+            f" {context.tool_size(cutter.radius)} ({source})"
         )
     smallest = context.length(SMALLEST_RING_MM)
     if first - cutter.radius < smallest - rounding:
         raise words.refuse(
-            f"I{number(first)} must exceed the tool radius {number(cutter.radius)} ({source})"
-            f" by at least {number(smallest)}"
+            f"I{number(first)} must exceed the tool radius {context.tool_size(cutter.radius)}"
+            f" ({source}) by at least {number(smallest)}"
         )
     if outward and outward[0] <= first + rounding:
         raise words.refuse(f"I{number(first)} must be less than K{number(outward[0])}")
@@ -237,7 +237,7 @@ def left_material(
     if min(stepover, finished - first) > 2 * cutter.radius + rounding:
         return (
             f"{words.code}: Q{number(stepover)} is greater than the tool diameter"
-            f" {number(2 * cutter.radius)}: material is left between the rings"
+            f" {context.tool_size(2 * cutter.radius)}: material is left between the rings"
         )
     # the entry clears the tool radius and the helix, the first ring begins at I - 2 tool radii
     most = 3 + helix
@@ -245,6 +245,6 @@ def left_material(
         left = "a ring is left about the centre" if helix else "a core is left in the centre"
         return (
             f"{words.code}: I{number(first)} is greater than {number(most / 2)} x the tool diameter"
-            f" {number(2 * cutter.radius)}: {left}"
+            f" {context.tool_size(2 * cutter.radius)}: {left}"
         )
     return None

@@ -67,5 +67,5 @@ def check_radius(words: Words, context: Context, wanted: float, tool: Tool) -> N
     if abs(wanted) - tool.radius < smallest:
         raise words.refuse(
             f"I{number(wanted)} must be greater than the tool radius"
-            f" {number(tool.radius)} (D{tool.number}) by at least {number(smallest)}"
+            f" {context.tool_size(tool.radius)} (D{tool.number}) by at least {number(smallest)}"
         )

@@ -11,7 +11,7 @@ from g12.cycles.common import ROUNDING_MM
 from g12.cycles.context import XY, XZ, YZ
 from g12.cycles.words import Words
 from g12.errors import number
-from g12.lengths import is_inch
+from g12.lengths import converts, is_inch
 
 Point = tuple[float, float, float]  # X, Y, Z
 LETTERS = "XYZ"
@@ -86,7 +86,7 @@ def check_travel(
 
 def _beyond(letter: str, position: float, limit: float, frame: MachineFrame) -> str:
     name = "in" if is_inch(frame.millimetres) else "mm"
-    other = "" if frame.unit == 1.0 else f" (G{20 if name == 'mm' else 21} is active)"
+    other = f" (G{20 if name == 'mm' else 21} is active)" if converts(frame.unit) else ""
     return (
         f"the {letter} axis would go to {number(position)} {name}, beyond its limit"
         f" {number(limit)} {name}{other}"

@@ -140,15 +140,15 @@ def take_spiral(words: Words) -> tuple[float, float] | None:
 
 def reach_of(words: Words, context: Context, finished: float, tool: Tool) -> Reach:
     """Return the reach of a block; refuse a finished circle that the cutter cannot mill."""
-    cutter = f"tool radius {number(tool.radius)}, D{tool.number}" if tool.number else "no D"
+    size = context.tool_size(tool.radius)
+    cutter = f"tool radius {size}, D{tool.number}" if tool.number else "no D"
     smallest = context.length(SMALLEST_RING_MM)
     room = abs(finished) - tool.radius
     if abs(finished) < smallest:
         raise words.refuse(f"I{number(finished)} must not be 0")
     if room < smallest:
         raise words.refuse(
-            f"I{number(finished)} must exceed the tool radius {number(tool.radius)}"
-            f" (D{tool.number}) in size"
+            f"I{number(finished)} must exceed the tool radius {size} (D{tool.number}) in size"
         )
     offset = copysign(tool.radius, finished)
     return Reach(words, offset, cutter, context.length(ROUNDING_MM), smallest)

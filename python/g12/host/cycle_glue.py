@@ -28,6 +28,7 @@ from g12.host.glue import (
     settings_of_machine,
     spindle_speed,
 )
+from g12.lengths import converts
 from g12.machine_ini import ranges_of
 
 SETTINGS = settings_of_machine()
@@ -226,7 +227,15 @@ def snapshot(interp: object) -> Context:
         spindle_tool=tool_in_spindle(interp),
         last_radius=last_radius(interp),
         tool_in_table=functools.partial(tool_in_table, interp),
+        unit=other_unit(interp),
     )
+
+
+def other_unit(interp: object) -> str:
+    """Return the program's unit of length where the machine's is another, else ""."""
+    if not converts(program_units_per_machine_unit(interp)):
+        return ""
+    return "in" if interp.length_units == INCH else "mm"
 
 
 def stay_within_limits(interp: object, words: Words, extent: CycleExtent) -> None:

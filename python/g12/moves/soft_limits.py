@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from g12.errors import number
+from g12.lengths import converts
 from g12.machine_ini import Axis
 from g12.moves.steps import BlockMoves
 
@@ -86,4 +87,4 @@ class SoftLimits:
         factor, offset = self._scales[letter]
         unit = "degrees" if letter == "C" else self._unit
         there, end = (value * factor + offset for value in (position, limit))
-        return Beyond(line, letter, there, end, unit, factor != 1.0)
+        return Beyond(line, letter, there, end, unit, converts(factor))

@@ -150,14 +150,13 @@ def check_nearest(entries: ShapeEntries, extent: Extent, machine: ShapeMachine) 
         )
 
 
-def check_finish(entries: ShapeEntries, allowance: float, cutter: float) -> None:
+def check_finish(entries: ShapeEntries, context: Context, allowance: float, cutter: float) -> None:
     """Refuse an allowance that one round of the cutter would not take away; it would stand."""
     most = WIDEST * 2 * cutter
     if allowance > most:
         rule = f"must be at most {number(most)}, what one round of the cutter of"
-        raise entries.refuse(
-            f"{entries.written('allowance', allowance)} {rule} {number(2 * cutter)} takes"
-        )
+        size = context.tool_size(2 * cutter)
+        raise entries.refuse(f"{entries.written('allowance', allowance)} {rule} {size} takes")
 
 
 def check_moves(entries: ShapeEntries, moves: int, cause: str) -> None:

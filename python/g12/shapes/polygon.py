@@ -201,7 +201,7 @@ def rounds_of(
     if not height > rounding:
         rule = f"must be less than the {number(stock - form.apothem)} from the stock to the flats"
         raise entries.refuse(f"{entries.written('allowance', allowance)} {rule}")
-    check_finish(entries, allowance, cutter)
+    check_finish(entries, context, allowance, cutter)
     rounds = max(1, rounds_between(0.0, height, cutter, rounding))
     check_moves(entries, levels * rounds * form.moves, "stock_diameter and depth_per_pass make")
     step = height / rounds

@@ -81,12 +81,13 @@ def clearing_rings(
     allowance = entries.from_zero("allowance")
     final, rough = size / 2 - cutter, size / 2 - cutter - allowance
     if final < -context.length(ROUNDING_MM):
-        rule = f"must not be less than the cutter's {number(2 * cutter)}"
+        rule = f"must not be less than the cutter's {context.tool_size(2 * cutter)}"
         raise entries.refuse(f"{entries.written(width, size)} {rule}")
     if rough < -context.length(ROUNDING_MM):
-        rule = f"the cutter of {number(2 * cutter)} does not fit between the walls that it leaves"
+        size = context.tool_size(2 * cutter)
+        rule = f"the cutter of {size} does not fit between the walls that it leaves"
         raise entries.refuse(f"{entries.written('allowance', allowance)}: {rule}")
-    check_finish(entries, allowance, cutter)
+    check_finish(entries, context, allowance, cutter)
     smallest = context.length(SMALLEST_RING_MM)
     if 0 < allowance < smallest:
         rule = f"must be at least {number(smallest)}"

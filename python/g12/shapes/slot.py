@@ -91,7 +91,7 @@ def plan_slot(entries: ShapeEntries, context: Context, machine: ShapeMachine) ->
     ramp = ramp_of(entries, machine, rings, levels, heights, 2 * reach)
     if machine.pole_refused and min(rings.first_ring, reach) <= machine.pole:
         raise entries.refuse(
-            f"{entries.written('width', width)}: the cutter of {number(2 * cutter)} would pass"
+            f"{entries.written('width', width)}: the cutter of {context.tool_size(2 * cutter)} would pass"
             " through the spindle's centre, which [G12] POLAR_POLE = refuse forbids"
         )
     return SlotPlan(reach, rings, ramp, levels, feeds, heights, angle)
