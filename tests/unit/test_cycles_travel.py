@@ -66,7 +66,7 @@ def test_the_circle_lies_in_its_plane(plane, axis):
 
 
 def test_an_inch_that_the_ini_rounds_is_an_inch():
-    """LINEAR_UNITS = 0.0393700787"""
+    """As with LINEAR_UNITS = 0.0393700787."""
     frame = PLAIN._replace(unit=1 - 2e-9, millimetres=25.4)
     said = refusal(CycleExtent("G17", (0, 0, 0), 400), frame)
     assert said == "G12: the X axis would go to -399.999999 in, beyond its limit -100 in"

@@ -43,7 +43,7 @@ def test_inches_on_a_metric_machine():
 
 
 def test_an_inch_that_the_ini_rounds_is_an_inch():
-    """LINEAR_UNITS = 0.0393700787"""
+    """As with LINEAR_UNITS = 0.0393700787."""
     scales = dict.fromkeys("XZC", AxisScale(1 - 2e-9, 0.0))
     beyond = SoftLimits(AXES, scales, "in").beyond([BlockMoves(3, "XC", [(400, 0, 0, 1)], False)])
     assert not beyond.converted

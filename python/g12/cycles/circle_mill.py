@@ -101,6 +101,10 @@ class EventEntries(NamedTuple):
         """Return the refusal of this event for breaking ``rule`` (the caller raises it)."""
         return self.words.refuse(rule)
 
+    def tool_size(self, length: float) -> str:
+        """Return a tool's radius or diameter for a message."""
+        return self.context.tool_size(length)
+
 
 class EventCircle(NamedTuple):
     """The circle as programmed, and on which side of it the tool's centre goes round."""
@@ -354,7 +358,7 @@ def check_room(entries: EventEntries, circle: EventCircle, tool: Tool, radius: f
     finish = f" + {entries.spelling.finish}{number(entries.finish)}" if entries.finish else ""
     raise entries.refuse(
         f"R{number(circle.radius)} must be greater than the tool radius"
-        f" {entries.context.tool_size(tool.radius)} (T{tool.number}){finish}"
+        f" {entries.tool_size(tool.radius)} (T{tool.number}){finish}"
     )
 
 
@@ -365,8 +369,8 @@ def rings_of(entries: EventEntries, outermost: float, tool: Tool, width: float |
     least = length(SMALLEST_RING_MM)
     if widest < least:
         raise entries.refuse(
-            f"J is missing: its default, the tool diameter {entries.context.tool_size(2 * tool.radius)} less"
-            f" {number(length(NARROWER_MM))}, is too small"
+            f"J is missing: its default, the tool diameter {entries.tool_size(2 * tool.radius)}"
+            f" less {number(length(NARROWER_MM))}, is too small"
             if width is None
             else f"J{number(width)} must be at least {number(least)}"
         )
@@ -424,5 +428,6 @@ def left_material(entries: EventEntries, roughing: Roughing, tool: Tool) -> str 
         return None
     return (
         f"{entries.words.code}: the roughing width {number(roughing.roughing_width)} is greater"
-        f" than the tool diameter {entries.context.tool_size(2 * tool.radius)}: material is left between the rings"
+        f" than the tool diameter {entries.tool_size(2 * tool.radius)}: material is left between"
+        " the rings"
     )

@@ -90,8 +90,9 @@ def plan_slot(entries: ShapeEntries, context: Context, machine: ShapeMachine) ->
     reach = (length - width) / 2
     ramp = ramp_of(entries, machine, rings, levels, heights, 2 * reach)
     if machine.pole_refused and min(rings.first_ring, reach) <= machine.pole:
+        size = context.tool_size(2 * cutter)
         raise entries.refuse(
-            f"{entries.written('width', width)}: the cutter of {context.tool_size(2 * cutter)} would pass"
+            f"{entries.written('width', width)}: the cutter of {size} would pass"
             " through the spindle's centre, which [G12] POLAR_POLE = refuse forbids"
         )
     return SlotPlan(reach, rings, ramp, levels, feeds, heights, angle)
