@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks of a section as lines and arcs: what they mean, and which are refused."""
 
+import cmath
 import math
 
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat.contour import Arc, Contour, Line, Mark, Plunge
@@ -66,6 +69,25 @@ def test_arcs_to_the_top_of_a_circle(turn, words, centre, sweep):
     arc = arc_of(turn, 0.0, 10.0, **words)
     assert (arc.cx, arc.cc) == pytest.approx(centre, abs=1e-12)
     assert arc.sweep == pytest.approx(sweep)
+
+
+coordinate = st.floats(-30.0, 30.0)
+point = st.builds(complex, coordinate, coordinate)
+
+
+@given(point, point, st.floats(0.1, 6.2), st.sampled_from([1, -1]))
+def test_an_arc_anywhere_by_its_centre_and_by_its_radius(start, arm, angle, turn):
+    radius, centre = abs(arm), start + arm
+    assume(radius > 0.1 and abs(angle - math.pi) > 0.1)
+    end = centre - arm * cmath.exp(1j * turn * angle)
+    by_centre = dict(i=arm.real, j=arm.imag)
+    for words in (by_centre, dict(radius=math.copysign(radius, math.pi - angle))):
+        contour = Contour(start.real, 5.0, start.imag)
+        contour.arc(turn, end.real, end.imag, -2.0, line=1, feed=100.0, **words)
+        (arc,) = contour.elements
+        assert arc[3:9] == (start.real, start.imag, 5.0, end.real, end.imag, -2.0)
+        assert complex(arc.cx, arc.cc) == pytest.approx(centre, abs=1e-9)
+        assert arc.sweep == pytest.approx(turn * angle, abs=1e-9)
 
 
 @pytest.mark.parametrize("words", [dict(i=-3.0), dict(j=4.0), dict(i=-3.0, j=4.0)])
@@ -168,6 +190,10 @@ def ramp_on(contour):
             "G12.1 line 1: G3: either R or I and J, not both",
         ),
         (
+            [("arc", dict(turn=-1, x=3.0, j=-1.0, radius=4.0, **CUT))],
+            "G12.1 line 1: G2: either R or I and J, not both",
+        ),
+        (
             [("arc", dict(turn=-1, x=3.0, **CUT))],
             "G12.1 line 1: G2 needs R, or the centre in I and J",
         ),
@@ -226,8 +252,59 @@ def test_the_reading_of_x_that_closes_the_arc_is_named(reading):
     assert message.endswith(f"it would close with X read as a {reading} (POLAR_X = {reading})")
 
 
-def test_no_reading_is_named_that_does_not_close_the_arc():
-    assert refused([("arc", dict(turn=1, x=0.0, c=3.0, i=-8.0, **CUT))]).endswith("from the end")
+@pytest.mark.parametrize("words", [dict(i=-7.0), dict(radius=3.0)])
+def test_no_reading_is_named_that_does_not_close_the_arc(words):
+    """From (20, 5) to (12, 13), or to half of either X: neither a radius of 7 nor one of 3."""
+    contour = raised()
+    with pytest.raises(Refusal, match=r"(end|at least 5\.\d+)$"):
+        contour.arc(1, 12.0, 13.0, line=2, feed=100.0, **words)
+
+
+def test_where_the_section_began_x_is_known_whatever_its_words_mean():
+    """From the machine's X10 to a word of 8: a diameter, then the quarter has the radius 6."""
+    message = refused([("arc", dict(turn=1, x=8.0, c=6.0, i=-6.0, **CUT))])
+    assert message.endswith("it would close with X read as a diameter (POLAR_X = diameter)")
+
+
+def test_no_reading_is_named_where_no_word_is_a_diameter():
+    quarter = dict(turn=1, x=0.0, c=5.0, i=-5.0, **CUT)  # it would close from X5 on
+    assert refused([("arc", quarter)], diameter=None).endswith("from the end")
+
+
+# What LinuxCNC forgives any arc: a thousandth of its radius, or what rounded words need.
+ROUNDED = dict(closing=0.0127)
+
+
+@pytest.mark.parametrize(
+    ("radius", "options", "forgiven"),
+    [(10.0, {}, 0.01), (10.0, ROUNDED, 0.0127), (100.0, ROUNDED, 0.1)],
+)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_end_of_an_arc_may_be_off_its_circle_by_what_is_forgiven(
+    radius, options, forgiven, sign
+):
+    for share in (0.98, 1.02):
+        contour = Contour(radius, 0.0, **options)
+        end = radius + sign * share * forgiven
+        if share < 1.0:
+            contour.arc(1, 0.0, end, i=-radius, line=1, feed=100.0)
+            continue
+        with pytest.raises(Refusal, match="does not close"):
+            contour.arc(1, 0.0, end, i=-radius, line=1, feed=100.0)
+
+
+@pytest.mark.parametrize(
+    ("half", "options", "forgiven"), [(10.0, {}, 0.01), (1.0, ROUNDED, 0.00635)]
+)
+def test_the_radius_of_a_half_circle_may_be_too_small_by_what_is_forgiven(half, options, forgiven):
+    for share in (0.98, 1.02):
+        contour = Contour(half, 0.0, **options)
+        words = dict(radius=half - share * forgiven, line=1, feed=100.0)
+        if share < 1.0:
+            contour.arc(1, -half, 0.0, **words)
+            continue
+        with pytest.raises(Refusal, match="does not close"):
+            contour.arc(1, -half, 0.0, **words)
 
 
 @pytest.mark.parametrize(
@@ -243,6 +320,22 @@ def test_a_ramp_is_at_least_as_long_as_the_tool_radius(length, side, message):
     with pytest.raises(Refusal) as refusal:
         contour.line(c=length, z=-1.0, line=7, feed=100.0)
     assert refusal.value.message == f"G12.1 line 7: {message}"
+
+
+@pytest.mark.parametrize(("rounding", "taken"), [(0.9e-6, True), (1.1e-6, False)])
+def test_rounding_counts_neither_for_ramps_nor_for_ends(rounding, taken):
+    """Ends so near to each other are one place."""
+    contour = started()
+    contour.compensation(41, 2.0, line=1)
+    arc = dict(x=10.0 - rounding, c=0.0, radius=4.0, line=1, feed=100.0)
+    if taken:
+        contour.line(c=2.0 - rounding, line=1, feed=100.0)
+        with pytest.raises(Refusal, match="a full circle needs I and J"):
+            started().arc(1, **arc)
+        return
+    with pytest.raises(Refusal, match="must be at least the tool radius"):
+        contour.line(c=2.0 - rounding, line=1, feed=100.0)
+    started().arc(1, **arc)
 
 
 def test_the_ramp_off_is_as_long_too():
@@ -270,6 +363,17 @@ def test_compensation_must_be_off_at_the_end():
         contour.close(line=9)
 
 
+@pytest.mark.parametrize("word", ["x", "c", "z"])
+def test_a_line_beyond_any_machine(word):
+    contour = started()
+    with pytest.raises(Refusal) as refused:
+        contour.line(**{word: -2e6}, line=7, feed=100.0)
+    assert refused.value.message == (
+        f"G12.1 line 7: {word.upper()}-2000000 is no length: at most 1000000"
+    )
+    contour.line(**{word: 1e6}, line=7, feed=100.0)
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -287,13 +391,46 @@ def test_an_arc_beyond_any_machine(words, message):
     assert refused.value.message == f"G12.1 line 7: {message}"
 
 
-@pytest.mark.parametrize("words", [dict(i=-10.0), dict(radius=10.0)])
+@pytest.mark.parametrize("words", [dict(i=-10.0), dict(j=5.0), dict(radius=4.7)])
 def test_the_other_reading_of_x_counts_for_start_and_end(words):
-    """From (20, 0) to (12, 8): with half of each X it is a tenth of a circle about the spindle."""
-    contour = Contour(20.0, 0.0)
-    words = words if "i" in words else dict(radius=4.7)
+    """From (20, 5) to (12, 13): with half of each X an arc about (0, 5), or about (10, 10)."""
+    contour = raised()
     with pytest.raises(Refusal) as refused:
-        contour.arc(1, 12.0, 8.0, line=1, feed=100.0, **words)
+        contour.arc(1, 12.0, 13.0, line=2, feed=100.0, **words)
     assert refused.value.message.endswith(
         "it would close with X read as a diameter (POLAR_X = diameter)"
     )
+
+
+def raised():
+    """Return a contour that has come to (20, 5)."""
+    contour = Contour(20.0, 0.0)
+    contour.line(c=5.0, line=1, feed=100.0)
+    return contour
+
+
+# A tool that stands beside the programmed place until a G1 takes it there.
+
+
+@pytest.mark.parametrize("beside", [3.0, -3.0])
+@pytest.mark.parametrize("plunged", [False, True])
+def test_an_arc_cannot_be_the_first(beside, plunged):
+    contour = Contour(20.0, 0.0, beside=beside)
+    if plunged:
+        contour.line(z=-1.0, line=6, feed=100.0)
+    with pytest.raises(Refusal) as refused:
+        contour.arc(1, 0.0, 20.0, radius=20.0, line=7, feed=100.0)
+    assert refused.value.message == (
+        "G12.1 line 7: G3 needs a G1 with X or C before it: the tool stands 3 beside X's line "
+        "(POLAR_TOOL_OFFSET)"
+    )
+
+
+def test_behind_a_g1_an_arc_begins_where_that_was_programmed_to_end():
+    contour = Contour(20.0, 0.0, beside=3.0)
+    contour.line(30.0, line=6, feed=100.0)
+    contour.arc(1, 0.0, 30.0, i=-30.0, line=7, feed=100.0)
+    line, arc = contour.elements
+    assert (line.x0, line.c0, line.x1, line.c1) == (20.0, 3.0, 30.0, 0.0)
+    assert (arc.x0, arc.c0) == (30.0, 0.0)
+    assert arc.sweep == pytest.approx(math.pi / 2)

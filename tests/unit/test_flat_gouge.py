@@ -126,6 +126,18 @@ def test_a_lead_that_is_the_extension_of_a_side_is_none_of_the_part(front, behin
     assert cut(extended(front, behind), LEFT, 3.0) == ("", [])
 
 
+@pytest.mark.parametrize(("front", "behind"), [(40.0, -0.015), (-0.015, 40.0)])
+def test_a_contour_closes_though_rounding_left_a_gap(front, behind):
+    """Here of three tolerances, between the end of a side and the one that runs on beyond it."""
+    assert cut(extended(front, behind), LEFT, 3.0) == ("", [])
+    assert cut(extended(front, behind), RIGHT, 3.0)[0]
+
+
+def test_a_thin_fin_is_cut_all_round():
+    fin = lines((-30, 0), (0, 0), (0, 20), (0.1, 20), (0.1, 0), (30, 0))
+    assert cut(fin, LEFT, 3.0) == ("", [])
+
+
 def test_leads_that_cross_are_told():
     text, notes = cut(extended(5.0, 5.0), LEFT, 3.0)
     assert not text
@@ -156,6 +168,15 @@ def test_a_circle_may_be_led_on_to_by_a_line():
 def test_a_contour_may_be_cut_twice(side):
     sides = polygon(SQUARE)
     assert cut([*sides, *sides], side, 3.0) == ("", [])
+
+
+@pytest.mark.parametrize("allowance", [0.3, 1.5, 100.0, 500.0])
+def test_a_finishing_pass_runs_behind_the_one_before(allowance):
+    """What that leaves is in tolerances: at the last side it goes over into the finishing pass."""
+    left = 1.0 + 0.1 * allowance * TOLERANCE
+    rough = [left * corner for corner in (10 + 0j, *SQUARE[1:], SQUARE[0])]
+    both = [*rough, 10 + 0j, *SQUARE[1:], SQUARE[0], 10 + 0j]
+    assert cut([Straight(*pair) for pair in zip(both, both[1:])], LEFT, 3.0) == ("", [])
 
 
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
@@ -210,6 +231,125 @@ def test_what_leads_through_the_air_is_no_part():
 
 def test_a_contour_may_be_cut_at_many_levels():
     assert refusal(levels(-1.0, -2.0, -3.0)) == ""
+
+
+BOSS = [10 + 0j, *SQUARE[1:], SQUARE[0], 10 + 0j]
+WALL = [-40 - 30j, -40 + 0j, -11.5 + 0j, -11.5 + 30j]  # its corner is where the tool rounds BOSS
+AIR = 5.0
+
+
+def parts(*paths):
+    """Return paths cut one behind the other, through the air between them.
+
+    Each has its corners and the Z at each of them, or at all of them.
+    """
+    first = paths[0][0][0]
+    contour = Contour(40.0, AIR)
+    contour.line(first.real + 20.0, first.imag, line=1, feed=300.0)
+    contour.compensation(LEFT, 3.0, line=2)
+    contour.line(first.real, first.imag, line=2, feed=300.0)
+    for line, (corners, z) in enumerate(paths, 3):
+        heights = [z] * len(corners) if isinstance(z, float) else z
+        if line > 3:
+            contour.line(z=AIR, line=line, feed=300.0)
+            before = 2 * corners[0] - corners[1]  # straight on from there
+            for corner in (before, corners[0]):
+                contour.line(corner.real, corner.imag, line=line, feed=300.0)
+        contour.line(z=heights[0], line=line, feed=300.0)
+        for corner, height in zip(corners[1:], heights[1:]):
+            contour.line(corner.real, corner.imag, height, line=line, feed=300.0)
+    contour.compensation(40, 0.0, line=20)
+    end = 1.2 * paths[-1][0][-1] + 10
+    contour.line(end.real, end.imag, line=20, feed=300.0)
+    return contour
+
+
+@pytest.mark.parametrize(
+    ("paths", "deep"),
+    [
+        ([(BOSS, -1.0), (WALL, -2.0)], False),
+        ([(BOSS, -3.0), (WALL, -2.0)], True),
+        ([(BOSS, -1.0), (BOSS, -3.0), (WALL, -2.0)], True),
+        ([(BOSS, -3.0), (BOSS, -1.0), (WALL, -2.0)], True),
+        ([(WALL, -3.0), (BOSS, -2.0)], False),
+        ([(WALL, -1.0), (BOSS, -2.0)], True),
+        ([(WALL, -1.0), (WALL, -3.0), (BOSS, -2.0)], True),
+        ([(WALL, -3.0), (WALL, -1.0), (BOSS, -2.0)], True),
+        # down and up along the side of the boss, or along the wall to its corner
+        ([(BOSS, [-1.0, -5.0, -5.0, -1.0, -1.0, -1.0]), (WALL, -2.0)], True),
+        ([(BOSS, [-1.0, -1.0, -1.5, -1.0, -1.0, -1.0]), (WALL, -2.0)], False),
+        ([(WALL, [-5.0, -5.0, -1.0, -5.0]), (BOSS, -2.0)], True),
+        ([(WALL, [-5.0, -5.0, -2.5, -5.0]), (BOSS, -2.0)], False),
+    ],
+)
+def test_the_tool_cuts_what_is_as_high_as_its_tip_or_higher(paths, deep):
+    assert ("cuts into the other" in refusal(parts(*paths))) is deep
+
+
+ACROSS = [10 + 0j, -30 + 0j]
+BEYOND = [-30 + 0j, -30 - 10j, -50 - 10j, -50 + 10j]
+
+
+def levels_of(*paths):
+    """Return paths that go on into each other, each at its Z."""
+    (_, (first, *_)), *_ = paths
+    contour = Contour(first.real + 10.0, 10.0)
+    contour.line(first.real + 10.0, first.imag, line=1, feed=300.0)
+    contour.compensation(LEFT, 3.0, line=2)
+    contour.line(first.real, first.imag, line=2, feed=300.0)
+    line, at = 3, first
+    for z, corners in paths:
+        contour.line(z=z, line=line, feed=300.0)
+        for at in corners:
+            contour.line(at.real, at.imag, line=line, feed=300.0)
+            line += 1
+    contour.compensation(40, 0.0, line=20)
+    contour.line(at.real - 10.0, at.imag, line=20, feed=300.0)
+    return contour
+
+
+@pytest.mark.parametrize(
+    ("first", "across", "last", "through_the_air"),
+    [
+        (-1.0, 5.0, -1.0, True),
+        (-1.0, 5.0, 3.0, True),
+        (-1.0, -1.0, -1.0, False),
+        (-1.0, -3.0, -1.0, False),
+        (-1.0, 5.0, 5.0, False),  # beyond is a part at that height, and the way there one of it
+        (5.0, -1.0, -1.0, False),
+    ],
+)
+def test_a_way_is_through_the_air_from_a_lift_to_a_plunge(first, across, last, through_the_air):
+    contour = levels_of((first, BOSS), (across, ACROSS[1:]), (last, BEYOND[1:]))
+    assert (refusal(contour) == "") is through_the_air
+
+
+# What is cut at a level between two others: the tool rounds BOSS beside the end of a wall.
+WALL_FIRST = (
+    [-40 - 60j, -40 - 30j],
+    [-40 + 0j, -11.5 + 0j, -11.5 + 60j, 10 + 60j, 10 + 30j],
+    [10 - 10j, -10 - 10j, -10 + 5j],
+)
+BOSS_FIRST = (
+    [10 + 10j, 10 - 10j, -10 - 10j, -10 + 5j],
+    [-10 + 40j, -60 + 40j, -60 + 0j, -11.5 + 0j, -11.5 + 20j],
+    [-11.5 + 30j],
+)
+
+
+@pytest.mark.parametrize(
+    ("path", "heights", "deep"),
+    [
+        (WALL_FIRST, (-1.0, -2.0, -3.0), True),
+        (WALL_FIRST, (-3.0, -2.0, -3.0), False),
+        (WALL_FIRST, (-3.0, -2.0, -1.0), False),
+        (BOSS_FIRST, (-3.0, -2.0, -1.0), True),
+        (BOSS_FIRST, (-3.0, -2.0, -3.0), False),
+        (BOSS_FIRST, (-1.0, -2.0, -3.0), False),
+    ],
+)
+def test_a_level_is_a_part_unless_it_is_above_both_beside_it(path, heights, deep):
+    assert ("cuts into the other" in refusal(levels_of(*zip(heights, path)))) is deep
 
 
 # How long it takes.

@@ -4,14 +4,15 @@
 import cmath
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.flat.contour import Arc, Line
-from g12.flat.nearby import apart, box_of
+from g12.flat.nearby import apart, box_of, straight_runs
 
-BARE = (1, 100.0, 0.0)
+BARE = (1, 100.0, 2.0)
 coordinate = st.floats(-30.0, 30.0)
 point = st.builds(complex, coordinate, coordinate)
 
@@ -57,3 +58,58 @@ def test_the_box_of_a_line_is_that_of_its_ends(ends):
 def test_boxes_are_apart_by_more_than_a_reach(beside):
     for one, other in (((0, 0, 10, 10), beside), (beside, (0, 0, 10, 10))):
         assert apart(one, other, 1.9) and not apart(one, other, 2.0)
+
+
+# Runs of moves that cannot cut each other.
+
+
+@st.composite
+def contours(draw):
+    """Draw moves one behind the other."""
+    at, moves = 0j, []
+    for to in draw(st.lists(point, min_size=1, max_size=9)):
+        by, end = draw(st.sampled_from([0.0, 0.0, 1.0, -2.0, 4.0, -6.0])), at + to
+        if abs(to) < 0.01:
+            continue
+        moves.append(Line(*BARE, at.real, at.imag, 0.0, end.real, end.imag, 0.0))
+        if by:
+            moves[-1] = arc(at + to, at, by)
+            end = complex(moves[-1].x1, moves[-1].c1)
+        at = end
+    return moves
+
+
+def headings(moves):
+    """Return each move's own directions and those of the corner in front of it, without a jump."""
+    found, last = [], None
+    for move in moves:
+        span, bend = complex(move.x1 - move.x0, move.c1 - move.c0), 0.0
+        if isinstance(move, Arc):
+            bend = move.sweep
+            arm = complex(move.x0 - move.cx, move.c0 - move.cc)
+            span = arm * 1j * math.copysign(1.0, bend)
+        first = math.atan2(span.imag, span.real)
+        last = first if last is None else last
+        turn = (first - last + math.pi) % (2 * math.pi) - math.pi
+        found.append([last, last + turn, last + turn + bend])
+        last = found[-1][-1]
+    return found
+
+
+@given(contours())
+def test_a_straight_run_goes_on_until_directions_are_half_a_turn_apart(moves):
+    runs, angles = straight_runs(moves), headings(moves)
+    assert len(runs) == len(moves)
+    for first, last in enumerate(runs):
+        spread = [np.ptp(np.concatenate(angles[first : k + 1])) for k in range(first, len(moves))]
+        if all(abs(width - math.pi) > 0.002 for width in spread):
+            assert last == first - 1 + sum(width < math.pi for width in spread)
+
+
+@pytest.mark.parametrize("beside", [0.0, 0.0004, -0.0004])
+def test_no_run_goes_beyond_a_turn_back(beside):
+    """A corner of half a turn, or by a twentieth of a degree less, is no part of any run."""
+    back = 10 - 5 * cmath.exp(1j * beside)
+    ends = [(0, 0, 10, 0), (10, 0, back.real, back.imag), (back.real, back.imag, -5, back.imag)]
+    moves = [Line(*BARE, x0, c0, 0.0, x1, c1, 0.0) for x0, c0, x1, c1 in ends]
+    assert straight_runs(moves) == [0, 0, 2]

@@ -97,14 +97,6 @@ def test_every_piece_lasts_as_long_as_its_path_at_the_feed():
     assert max(len(run.pieces) for run in planned.steps) < 40
 
 
-def test_an_arc_may_not_be_the_first():
-    contour = Contour(20.0, 0.0, beside=3.0)
-    with pytest.raises(
-        Refusal, match=r"line 7: G3 needs a G1 .* the tool stands 3 beside X's line"
-    ):
-        contour.arc(1, 0.0, 20.0, radius=20.0, line=7, feed=100.0)
-
-
 def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
     contour = Contour(20.0, 0.0, beside=-3.0)
     contour.line(10.0, 0.0, line=7, feed=100.0)
@@ -115,13 +107,6 @@ def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
         "G12.1 line 8: the tool's centre would come to 2.9 from the spindle's centre: it stands 3 "
         "beside X's line (POLAR_TOOL_OFFSET) and comes no nearer than 3.005"
     )
-
-
-def test_an_arc_right_behind_a_plunge_is_still_the_first():
-    contour = Contour(20.0, 0.0, beside=3.0)
-    contour.line(z=-1.0, line=6, feed=100.0)
-    with pytest.raises(Refusal, match="line 7"):
-        contour.arc(1, 0.0, 20.0, radius=20.0, line=7, feed=100.0)
 
 
 places = st.tuples(st.floats(-60, 60), st.floats(-60, 60))

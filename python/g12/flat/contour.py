@@ -333,7 +333,7 @@ class Contour:
             return
         if self._switch != line or length <= SAME_PLACE:
             self._check_waiting()
-        if length < self._radius - 1e-6:
+        if length < self._radius - SAME_PLACE:
             self.refuse(
                 line,
                 f"the G1 with G{self.side} is {number(length)} long: it must be at least "
@@ -375,18 +375,18 @@ class Contour:
     def _with_radius(self, turn, end, radius, line):
         """Return centre and sweep of an arc with R."""
         start = self._end[:2]
-        half = 0.5 * hypot(end[0] - start[0], end[1] - start[1])
-        name = f"{_name(turn)} R{number(radius)}"
-        if 2.0 * half <= SAME_PLACE:
+        apart = hypot(end[0] - start[0], end[1] - start[1])
+        half, name = 0.5 * apart, f"{_name(turn)} R{number(radius)}"
+        if apart <= SAME_PLACE:
             self.refuse(line, f"{name}: a full circle needs {self.names.centre}, not R")
         if not self._spans(half, radius):
             self.refuse(
                 line,
-                f"{name} does not close: the ends are {number(2 * half)} apart, R must be at least "
+                f"{name} does not close: the ends are {number(apart)} apart, R must be at least "
                 f"{number(half)}{self._hint(self._radius_closes, end, radius)}",
             )
-        height = sqrt(max(0.0, radius * radius - half * half)) / (2 * half)
-        height *= copysign(turn, turn * radius)
+        height = sqrt(max(0.0, radius * radius - half * half)) / apart
+        height = copysign(height, turn * radius)
         centre = (
             0.5 * (start[0] + end[0]) - height * (end[1] - start[1]),
             0.5 * (start[1] + end[1]) + height * (end[0] - start[0]),

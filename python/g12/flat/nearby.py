@@ -11,10 +11,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from math import atan2, copysign, cos, pi
+from math import atan2, cos, pi
 
 from g12.flat.contour import Arc, Line, arc_radius, end_direction, start_direction
-from g12.flat.intersect import PARALLEL
 
 LEAF = 4  # moves in a box that is not divided
 STRAIGHT = pi - 1e-3  # directions within that angle
@@ -164,10 +163,7 @@ def _spans(moves: Sequence[Line | Arc]) -> list[tuple[float, float]]:
 
 
 def _turn(a: Line | Arc, b: Line | Arc) -> float:
-    """Return the angle from the end of a move to the next; a turn back is one about the tool."""
+    """Return the angle from the end of a move to the next."""
     ax, ac = end_direction(a)
     bx, bc = start_direction(b)
-    sine, cosine = ax * bc - ac * bx, ax * bx + ac * bc
-    if cosine < 0.0 and abs(sine) <= PARALLEL:
-        return copysign(pi, -b.offset)
-    return atan2(sine, cosine)
+    return atan2(ax * bc - ac * bx, ax * bx + ac * bc)
