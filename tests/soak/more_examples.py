@@ -19,6 +19,7 @@ TRIED = {  # by file
     "test_yasnac": "blocks of Yasnac",
     "test_mitsubishi": "blocks of Mitsubishi",
     "test_circle_mill": "circle mill events and calls",
+    "test_cylinder": "sections on a cylinder",
     "test_polar_plan": "polar contours",
     "test_flat_offset": "polar contours with compensation",
     "test_flat_simplify": "contours with short moves",
@@ -47,7 +48,7 @@ def pytest_collection_modifyitems(items):
 def counted(item):
     """Return a property's test that counts the examples it holds for."""
     test, held = item.obj.hypothesis.inner_test, []
-    item.user_properties.append((COUNTED + TRIED[item.path.stem], held))
+    item.user_properties.append((COUNTED + TRIED.get(item.path.stem, item.path.stem), held))
 
     @wraps(test)
     def counting(*arguments, **words):
