@@ -154,6 +154,8 @@ def test_the_pieces_of_any_arc_keep_to_it(size, sweep, turn, surface, deviation)
     assert split.lengths[-1] == pytest.approx(size * sweep)
     angles = np.unwrap(np.angle(places))
     assert (np.diff(angles) * turn > 0).all()
+    widest = math.sqrt(12 * deviation / size)  # the angle of a chord that bulges by 3/2 of it
+    assert len(places) - 1 <= sweep * max(1 / widest, 2.0) + 1.4
 
 
 def test_a_line_is_not_cut():

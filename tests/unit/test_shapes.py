@@ -25,49 +25,6 @@ PLANS = {
 ANY = st.sampled_from([LEFT_OUT, 0.0, -1.0, 1e-9, 2.0, 1e9]) | st.floats(-5, 60)
 
 
-def plan(shape, values, machine=LATHE):
-    names, planned = PLANS[shape]
-    return planned(ShapeEntries(shape, names, dict(zip(names, values))), FOUND, machine)
-
-
-@pytest.mark.parametrize("shape", PLANS)
-@given(values=st.lists(ANY, min_size=10, max_size=10))
-def test_any_entries_are_planned_or_refused_by_name(shape, values):
-    try:
-        made = plan(shape, values)
-    except Refusal as refusal:
-        assert refusal.message.startswith(f"{shape}: ") and len(refusal.message) <= 255
-    else:
-        assert all(math.isfinite(value) for value in made.locals().values())
-        low, high = zip(*made.extent())
-        assert all(least <= most for least, most in zip(low, high)) and low[0] >= 0
-
-
-def test_a_polygon_turns_c_once_with_every_round():
-    made = plan("polar_polygon", [6, 27, 5, 40, LEFT_OUT, 2, 0.5, 400, LEFT_OUT, 0])
-    turns = made.levels.levels * made.rounds.rounds + 1
-    low, high = made.extent().c
-    assert turns == 3 * 2 + 1
-    assert 30 <= high < 90 and -360 * turns - 60 < low <= 30 - 360 * turns
-
-
-def test_rounds_of_a_polygon_are_no_wider_than_three_quarters_of_the_cutter():
-    for stock in (28, 36.1, 45, 80):
-        made = plan("polar_polygon", [6, 27, 5, stock, *[LEFT_OUT] * 3, 400, LEFT_OUT, 0])
-        assert 0 < made.rounds.step <= 4.5
-        assert made.rounds.apothem - (made.rounds.rounds - 1) * made.rounds.step == pytest.approx(
-            13.5 + 3
-        )
-
-
-def test_x_of_a_pocket_is_a_diameter_where_x_words_are():
-    values = [20, 3, 14, 4, *[LEFT_OUT] * 2, 400, LEFT_OUT]
-    assert plan("polar_pocket", values, LATHE._replace(diameters=True)).away == math.hypot(10, 3)
-    assert plan("polar_pocket", values).away == math.hypot(20, 3)
-
-
-# ---------------------------------------------------------------- what every shape has
-
 HEXAGON = dict(
     sides=6, across_flats=27, depth=5, stock_diameter=40, corner_radius=LEFT_OUT,
     depth_per_pass=LEFT_OUT, allowance=LEFT_OUT, feed=400, plunge_feed=LEFT_OUT, angle=LEFT_OUT,
@@ -95,6 +52,57 @@ def refusal(*arguments, **entries):
     with pytest.raises(Refusal) as refused:
         planned(*arguments, **entries)
     return refused.value.message
+
+
+@pytest.mark.parametrize("shape", PLANS)
+@given(changed=st.dictionaries(st.integers(0, 9), ANY))
+def test_any_entries_are_planned_or_refused_by_name(shape, changed):
+    """Those of the example, but for some of them or all."""
+    entries = {
+        name: changed.get(k, value) for k, (name, value) in enumerate(EXAMPLES[shape].items())
+    }
+    try:
+        made = planned(shape, **entries)
+    except Refusal as refusal:
+        assert refusal.message.startswith(f"{shape}: ") and len(refusal.message) <= 255
+    else:
+        assert all(math.isfinite(value) for value in made.locals().values())
+        low, high = zip(*made.extent())
+        assert all(least <= most for least, most in zip(low, high)) and low[0] >= 0
+
+
+def test_a_polygon_turns_c_once_with_every_round():
+    made = planned("polar_polygon", depth_per_pass=2, allowance=0.5, angle=0)
+    turns = made.levels.levels * made.rounds.rounds + 1
+    low, high = made.extent().c
+    assert turns == 3 * 2 + 1
+    assert 30 <= high < 90 and -360 * turns - 60 < low <= 30 - 360 * turns
+
+
+def test_rounds_of_a_polygon_are_no_wider_than_three_quarters_of_the_cutter():
+    for stock in (28, 36.1, 45, 80):
+        made = planned("polar_polygon", stock_diameter=stock)
+        assert 0 < made.rounds.step <= 4.5
+        assert made.rounds.apothem - (made.rounds.rounds - 1) * made.rounds.step == pytest.approx(
+            13.5 + 3
+        )
+
+
+def test_x_of_a_pocket_is_a_diameter_where_x_words_are():
+    made = planned("polar_pocket", LATHE._replace(diameters=True), x=20)
+    assert made.away == math.hypot(10, 3)
+    assert planned("polar_pocket", x=20).away == math.hypot(20, 3)
+
+
+def test_a_polygon_keeps_its_allowance_for_one_more_round():
+    for allowance, finish in ((LEFT_OUT, 0), (0.0, 0), (0.5, 1)):
+        rounds = planned("polar_polygon", allowance=allowance).rounds
+        rough = rounds.apothem - (rounds.rounds - 1) * rounds.step
+        assert rough == pytest.approx(13.5 + 3 + max(allowance, 0))
+        assert (rounds.finish, rounds.finish_apothem) == (finish, 13.5 + 3)
+
+
+# ---------------------------------------------------------------- what every shape has
 
 
 @pytest.mark.parametrize("shape", EXAMPLES)

@@ -59,7 +59,7 @@ class Pocket(NamedTuple):
     last_radius: float
     links: int  # from ring to ring, or half turns of the spiral; the last ends at last_radius
     first_grow: float  # by how much the first link grows
-    shrink: float  # by which share of that the last one is shorter
+    shrink: float  # by which share of that the last of several is shorter
     spiral: bool
     down: WayDown
     commanded_radius: float | None  # of the cutter that D names, None without D
@@ -151,12 +151,7 @@ def links_outward(
     links = steps_between(first, finished, growth, context.length(ROUNDING_MM))
     check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
     last_grow = finished - first - growth * (links - 1)
-    return (
-        finished,
-        links,
-        min(growth, finished - first),
-        1 - last_grow / growth if links > 1 else 0.0,
-    )
+    return finished, links, min(growth, finished - first), 1 - last_grow / growth
 
 
 def choose_cutter(words: Words, context: Context) -> tuple[Tool, str]:

@@ -187,4 +187,4 @@ def half_turns_of(
     turns = steps_between(abs(first), abs(last), pitch, reach.rounding)
     rest = abs(last) - abs(first) - pitch * (turns - 1)
     growth = copysign(pitch if turns > 1 else rest, last) / 2
-    return first, 2 * turns, growth, 1 - rest / pitch if turns > 1 else 0.0
+    return first, 2 * turns, growth, 1 - rest / pitch
