@@ -15,7 +15,7 @@ from g12.errors import Refusal
 from g12.flat.contour import Arc, Contour, Line, PlaneNames, Start
 from g12.machine_ini import Axis
 from g12.moves.steps import BlockMoves
-from g12.section.block_rules import SectionBlock
+from g12.section.block_rules import SectionBlock, check_codes, check_letters
 from g12.section.codes import codes_with_word
 from g12.section.line import SectionPlace, split_line
 from g12.settings import Settings
@@ -134,20 +134,21 @@ def test_an_arc_of_too_many_pieces_is_refused():
 @settings(max_examples=150)
 @given(
     size=st.floats(1e-3, 500.0),
+    centre=st.complex_numbers(max_magnitude=300.0),
     sweep=st.floats(0.01, 2 * math.pi),
     turn=st.sampled_from([1, -1]),
     surface=st.floats(0.5, 300.0),
     deviation=st.sampled_from([1e-4, 0.005, 0.1]),
 )
-def test_the_pieces_of_any_arc_keep_to_it(size, sweep, turn, surface, deviation):
+def test_the_pieces_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, deviation):
     """Chords between the ends are no farther from the circle than half as much again inside."""
-    start, end = ((size * math.cos(a), size * math.sin(a)) for a in (0.3, 0.3 + turn * sweep))
-    arc = Arc(1, 100.0, 0.0, *start, 0.0, *end, 0.0, 0.0, 0.0, turn * sweep)
+    start, end = centre + size * np.exp(1j * np.array([0.3, 0.3 + turn * sweep]))
+    ends = start.real, start.imag, 0.0, end.real, end.imag, 0.0
+    arc = Arc(1, 100.0, 0.0, *ends, centre.real, centre.imag, turn * sweep)
     split = split_on_cylinder(arc, surface, deviation)
     places = np.array(split.angles) * surface + 1j * np.array(split.slides)
-    assert places[0] == pytest.approx(complex(*start)) and places[-1] == pytest.approx(
-        complex(*end)
-    )
+    assert places[[0, -1]] == pytest.approx([start, end])
+    places -= centre
     middles = (places[1:] + places[:-1]) / 2
     off = np.concatenate([abs(places), abs(middles)]) - size
     assert abs(off).max() <= deviation * (1 + 1e-6) + 1e-9
@@ -217,6 +218,7 @@ def test_x_together_only_where_it_is_allowed():
         ({"surface_speed": True}, "needs G97: with G96 the speed would change with X"),
         ({"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
         ({"words": {}}, "needs C, the cylinder's radius; C0 ends a section"),
+        ({"words": {"C": 0.0}}, "C0, the cylinder's radius, must be above 0 and at most 1000000"),
         ({"words": {"C": -2.0}}, "C-2, the cylinder's radius, must be above 0 and at most 1000000"),
     ],
 )
@@ -270,3 +272,38 @@ def test_increments_are_rewritten(raw, text, relative):
 )
 def test_which_lines_are_plain(raw, plain):
     assert bool(CYLINDER_WORDS.plain(raw)) is plain
+
+
+WORDS = "the section's words are Z, C, X, W, H and U"
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        *((f"{letter}1", f"{letter} is refused: {WORDS}") for letter in "ABVY@^"),
+        ("T1", "T is refused: the tool cannot change inside the section"),
+        ("D1", "D is refused: the radius is that of the loaded tool"),
+        ("X1 U1", "X and U both move X: only one of them"),
+        ("Z1 W1", "Z and W both move Z: only one of them"),
+        ("C1 H1", "C and H both move C: only one of them"),
+        ("I1 J1", "I and J both move the centre along C: only one of them"),
+        ("G17.1", "G17.1 is refused: the section's plane is Z-C"),
+        ("G90.1", "G90.1 is refused: J and K are always incremental inside the section"),
+        ("G54", "G54 is refused: the origin must stay where it is inside the section"),
+    ],
+)
+def test_words_that_are_refused(text, why):
+    line = split_line(text, CYLINDER_WORDS)
+    with pytest.raises(Refusal) as refused:
+        check_letters(line, CYLINDER_WORDS, START.place)
+        check_codes(line.codes, CYLINDER_WORDS, False, START.place)
+    assert refused.value.message == f"G7.1 line 7: {why}"
+
+
+@pytest.mark.parametrize(
+    "text", ["Z1 C2 X3 F4 S5 P6 R7", "W1 H2 U3", "J1 K2", "I1 K2", "G17", "G18", "G19", "M3"]
+)
+def test_words_that_are_taken(text):
+    line = split_line(text, CYLINDER_WORDS)
+    check_letters(line, CYLINDER_WORDS, START.place)
+    check_codes(line.codes, CYLINDER_WORDS, False, START.place)

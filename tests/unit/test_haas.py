@@ -193,6 +193,18 @@ def test_the_cutter_is_the_block_s_then_the_last_commanded_then_the_loaded_one()
     assert plan(I=0.75, Z=-1.0, D=0).first_radius == 0.75
 
 
+def test_a_refusal_tells_where_the_radius_comes_from():
+    last = FOUND._replace(last_radius=0.2)
+    for found, words, source in (
+        (FOUND, dict(D=2), "0.25 (D2)"),
+        (last, {}, "0.2 (the D last commanded)"),
+        (FOUND, {}, "0.125 (T1 in the spindle)"),
+    ):
+        with pytest.raises(Refusal) as refused:
+            plan(found=found, I=0.1, Z=-1.0, **words)
+        assert refused.value.message == f"G12: I0.1 must be greater than the tool radius {source}"
+
+
 def test_only_a_d_in_the_block_is_a_d_commanded():
     assert plan(I=0.75, Z=-1.0, D=2).commanded_radius == 0.25
     assert plan(I=0.75, Z=-1.0, D=0).commanded_radius == 0.0
