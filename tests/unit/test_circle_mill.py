@@ -163,7 +163,8 @@ def test_every_pair_is_a_perimeter(d, h):
     if finish:
         # outside, the entry arc turns against the cut, or it would not touch the wall
         assert event.side_finish.finish_arc == FINISH[d]
-        assert (event.side_finish.entry_arc == FINISH[d]) is inside
+        against = {CLOCKWISE: COUNTERCLOCKWISE, COUNTERCLOCKWISE: CLOCKWISE}[FINISH[d]]
+        assert event.side_finish.entry_arc == (FINISH[d] if inside else against)
 
 
 # ---------------------------------------------------------------- entries
@@ -408,6 +409,16 @@ def test_what_the_block_finds_must_be_fit(found, rule):
     with pytest.raises(Refusal) as refused:
         code(found=INCH._replace(**found), **NEEDED, H=2)
     assert refused.value.message == f"G13.2: {rule}"
+
+
+def test_sizes_as_small_as_a_refusal_says_that_they_may_be():
+    metric = dict(X=0.0, Y=0.0, Z=-5.0, I=2.0)
+    perimeter = code(found=METRIC, pocket=False, **metric, R=0.00508, H=0)
+    assert perimeter.roughing.rough_radius == 0.00508
+    finished = code(found=METRIC, **metric, R=40.0, H=2, Q=0.00508)
+    assert finished.side_finish.side_finish
+    narrow = code(found=METRIC, **metric, R=6.1, H=2, J=0.00508)
+    assert narrow.roughing.roughing_width <= 0.00508
 
 
 # ---------------------------------------------------------------- any valid event

@@ -36,6 +36,8 @@ def test_the_circle_lies_along_the_plane_s_first_axis(plane, circle):
         (dict(I=50.0, D=4), 50.0),
         (dict(I=50.0, D=3), 52.0),
         (dict(I=1.0, D=3), 3.0),
+        (dict(I=0.00508, D=0), 0.00508),
+        (dict(I=10.00508, D=2), pytest.approx(0.00508)),
     ],
 )
 def test_a_positive_offset_reduces_the_circle(words, radius):

@@ -100,6 +100,12 @@ def test_codes_that_nobody_knows(group, code):
     assert f"G{code / 10:g} is refused: " in refusal(check_block, block(group, code), False)
 
 
+def test_the_text_of_a_code_that_linuxcnc_does_not_know_is_left_to_the_parser():
+    known = {code for _, codes, _ in REFUSED for code in tenths(codes)} | {0}
+    for code in set(range(1000)) - known:
+        assert refusal(check_codes, [("G", code)], False) is None
+
+
 @pytest.mark.parametrize("code", [6, 61])
 def test_no_tool_changes(code):
     why = f"M{code} is refused: the tool cannot change inside the section"

@@ -39,6 +39,7 @@ def spiral_radii(circle):
         (dict(I=50.0, R=0.0), 0.0, 50.0),
         (dict(I=50.0, R=49.0, D=2), 39.0, 40.0),
         (dict(I=10.5, D=2), 0.0, 0.5),
+        (dict(I=0.00508), 0.0, 0.00508),
     ],
 )
 def test_the_circle_on_the_side_of_i(words, approach, radius):
@@ -58,6 +59,11 @@ def test_right_after_g40_no_circle_begins():
         plan(found=MM._replace(offset_pending=True), I=50.0, R=20.0, D=2)
     message = "G12: the tool still stands offset: after G40 move in X or Y first"
     assert refused.value.message == message
+
+
+def test_arcs_as_small_as_a_refusal_says_that_they_may_be():
+    circle = plan(I=50.0, R=20.0, K=20.0 + SMALLEST_RING_MM, Q=1.0, D=2)
+    assert circle.first - circle.approach == pytest.approx(SMALLEST_RING_MM)
 
 
 @pytest.mark.parametrize("rounding", [1e-11, -1e-11])

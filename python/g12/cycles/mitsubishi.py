@@ -17,7 +17,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from g12.cycles.common import SMALLEST_RING_MM, check_modes, check_start, commanded_tool
+from g12.cycles.common import (
+    ROUNDING_MM,
+    SMALLEST_RING_MM,
+    check_modes,
+    check_start,
+    commanded_tool,
+)
 from g12.cycles.context import XY, XZ, YZ, Context, Tool
 from g12.cycles.travel import CycleExtent
 from g12.cycles.words import Words
@@ -64,7 +70,7 @@ def plan_circle(words: Words, context: Context) -> MitsubishiCircle:
 def check_radius(words: Words, context: Context, wanted: float, tool: Tool) -> None:
     """Refuse a circle that the cutter fills."""
     smallest = context.length(SMALLEST_RING_MM)
-    if abs(wanted) - tool.radius < smallest:
+    if abs(wanted) - tool.radius < smallest - context.length(ROUNDING_MM):
         raise words.refuse(
             f"I{number(wanted)} must be greater than the tool radius"
             f" {context.tool_size(tool.radius)} (D{tool.number}) by at least {number(smallest)}"

@@ -93,7 +93,7 @@ class Reach(NamedTuple):
     def check_apart(self, letter: str, word: float, other: float, source: str) -> None:
         """Refuse a word whose position is nearer to another than the smallest arc."""
         apart = abs(self.position(word) - other)
-        if apart < self.smallest:
+        if apart < self.smallest - self.rounding:
             raise self.refuse(
                 letter,
                 word,

@@ -80,10 +80,11 @@ def clearing_rings(
     """Return the rings for a slot or pocket whose entry ``width`` is ``size`` wide."""
     allowance = entries.from_zero("allowance")
     final, rough = size / 2 - cutter, size / 2 - cutter - allowance
-    if final < -context.length(ROUNDING_MM):
+    rounding = context.length(ROUNDING_MM)
+    if final < -rounding:
         rule = f"must not be less than the cutter's {context.tool_size(2 * cutter)}"
         raise entries.refuse(f"{entries.written(width, size)} {rule}")
-    if rough < -context.length(ROUNDING_MM):
+    if rough < -rounding:
         size = context.tool_size(2 * cutter)
         rule = f"the cutter of {size} does not fit between the walls that it leaves"
         raise entries.refuse(f"{entries.written('allowance', allowance)}: {rule}")
@@ -92,7 +93,7 @@ def clearing_rings(
     if 0 < allowance < smallest:
         rule = f"must be at least {number(smallest)}"
         raise entries.refuse(f"{entries.written('allowance', allowance)} {rule}")
-    first = min(rough, CLEARED * cutter) if rough >= smallest else 0.0
+    first = min(rough, CLEARED * cutter) if rough > smallest - rounding else 0.0
     further = rounds_between(first, rough, cutter, smallest) if first else 0
     step = (rough - first) / further if further else 0.0
     return ClearingRings(first, step, further, int(allowance > 0), max(final, 0.0))
