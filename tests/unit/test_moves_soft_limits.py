@@ -34,6 +34,58 @@ def test_the_first_move_beyond_is_named_in_machine_coordinates():
     assert travel(offset=20).beyond(steps) == Beyond(3, "X", 310, 300, "mm", False)
 
 
+@pytest.mark.parametrize(
+    ("place", "beyond"),
+    [
+        ((-10.001, 0, 0), ("X", -10.001, -10)),
+        ((0, 720.001, 0), ("C", 720.001, 720)),
+        ((0, -360.001, 0), ("C", -360.001, -360)),
+        ((0, 0, 20.001), ("Z", 20.001, 20)),
+        ((0, 0, -200.001), ("Z", -200.001, -200)),
+        ((-11, 0, -201), ("X", -11, -10)),
+    ],
+)
+def test_every_axis_has_its_ends_and_may_stand_on_them(place, beyond):
+    axes = {**AXES, "C": Axis(-360, 720, 1, 1), "Z": Axis(-200, 20, 1, 1)}
+    limits = SoftLimits(axes, dict.fromkeys("XZC", AxisScale(1.0, 0.0)), "mm")
+    ends = [(-10, -360, -200, 1), (300, 720, 20, 1)]
+    within = BlockMoves(3, "XCZ", ends, False)
+    assert limits.beyond([within]) is None
+    out = BlockMoves(4, "XCZ", [*ends, (*place, 1)], False)
+    unit = "degrees" if beyond[0] == "C" else "mm"
+    assert limits.beyond([within, out]) == Beyond(4, *beyond, unit, False)
+
+
+@pytest.mark.parametrize(
+    ("beyond", "diameters", "text"),
+    [
+        (
+            Beyond(4, "X", 301, 300, "mm", False),
+            False,
+            "the X axis would go to 301 mm, beyond its limit 300 mm",
+        ),
+        (
+            Beyond(4, "X", 301, 300, "mm", True),
+            True,
+            "the X axis would go to 301 mm (radius), beyond its limit 300 mm (G20 is active)",
+        ),
+        (
+            Beyond(4, "Z", 5.5, 5, "in", True),
+            True,
+            "the Z axis would go to 5.5 in, beyond its limit 5 in (G21 is active)",
+        ),
+        (
+            Beyond(4, "C", 721, 720, "degrees", False),
+            True,
+            "the C axis would go to 721 degrees, beyond its limit 720 degrees",
+        ),
+    ],
+)
+def test_the_words_for_it(beyond, diameters, text):
+    """A machine shows the radius of X, in its own unit."""
+    assert beyond.text(diameters) == text
+
+
 def test_inches_on_a_metric_machine():
     scales = {"X": AxisScale(25.4, -1.0), "Z": AxisScale(25.4, 0.0), "C": AxisScale(1.0, 0.0)}
     beyond = SoftLimits(AXES, scales, "mm").beyond([BlockMoves(3, "XC", [(12, 0, 0, 1)], False)])

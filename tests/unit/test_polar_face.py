@@ -5,7 +5,7 @@ from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, path_length
@@ -165,14 +165,56 @@ def test_an_able_move_at_its_feed_keeps_c_and_the_slide_within_their_limits(move
     assert np.abs(np.diff(radius, 2)).max() / step**2 <= LIMITS.slide_acceleration * 1.02
 
 
-def motion(move):
+def share_of_limits(move, limits):
+    """Return how much of the limits a move takes, in numbers, wherever it goes on, stops or starts.
+
+    C and the slide are where they have to be for 2,000 places; how they change from one to the next
+    tells their speeds and accelerations, those along the path included.
+    """
+    points, speed = motion(move, limits)
+    slide = np.sqrt(abs(points) ** 2 - limits.beside**2)
+    angle = np.unwrap(np.angle(points) - np.arctan2(limits.beside, slide))
+    most, curving = limits.acceleration, 0.0
+    if isinstance(move, Arc):
+        most = limits.round_acceleration
+        curving = speed**2 / hypot(move.x0 - move.cx, move.c0 - move.cc)
+    left, step = np.sqrt(max(0.0, most**2 - curving**2)), abs(points[1] - points[0])
+    shares = []
+    for axis, fastest, quickest in (
+        (angle, limits.c_speed, limits.c_acceleration),
+        (slide, limits.slide_speed, limits.slide_acceleration),
+    ):
+        rate, bend = abs(np.gradient(axis, step)), abs(np.gradient(np.gradient(axis, step), step))
+        inner = slice(2, -2)
+        shares += [speed * rate.max() / fastest, most * rate.max() / quickest]
+        shares.append((speed**2 * bend + left * rate)[inner].max() / quickest)
+    return max(shares)
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    st.one_of(lines, arcs),
+    st.sampled_from([0.0, 0.0, 3.0, -10.0]),
+    st.sampled_from([inf, 60.0]),
+    st.floats(0.2, 5.0),
+)
+def test_a_move_is_able_if_its_place_that_asks_the_most_is(move, beside, slide_speed, quick):
+    limits = LIMITS._replace(
+        beside=beside, slide_speed=slide_speed, c_acceleration=quick * LIMITS.c_acceleration
+    )
+    assume(abs(motion(move)[0]).min() > abs(beside) + 0.5)
+    share = share_of_limits(move, limits)
+    assert is_able(move, limits) == (share < 1.0) or 0.97 < share < 1.1
+
+
+def motion(move, limits=LIMITS):
     """Return 2,000 places of a move, as complex numbers, and its speed per second."""
     parts, speed = np.linspace(0.0, 1.0, 2000), move.feed / 60.0
     start, end = complex(move.x0, move.c0), complex(move.x1, move.c1)
     if isinstance(move, Line):
         return start + parts * (end - start), speed
     centre = complex(move.cx, move.cc)
-    speed = min(speed, (LIMITS.round_acceleration * abs(start - centre)) ** 0.5)
+    speed = min(speed, (limits.round_acceleration * abs(start - centre)) ** 0.5)
     return centre + (start - centre) * np.exp(1j * parts * move.sweep), speed
 
 

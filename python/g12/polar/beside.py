@@ -12,8 +12,10 @@ from the pole the slide has to stand at s, and C to be turned by less than the p
     pole +---------------+---> e
                  s
 
-A place nearer to the pole than ``beside`` cannot be reached at all. Where the path makes the angle
-p with e, a straight move of X and C has the curvature
+A place nearer to the pole than ``beside`` cannot be reached at all, and none is tried: the path is
+farther from it by the tolerance, and pieces are off the path by less.
+
+Where the path makes the angle p with e, a straight move of X and C has the curvature
 
     sin p (1 + cos(p)**2 + beside / s cos p sin p) / s
 
@@ -75,15 +77,14 @@ def check_reach(contour: Contour, path: list, beside: float, tolerance: float) -
 def split_beside(move: Line | Arc, law: Law, beside: float) -> Split:
     """Return the pieces of a move of a tool beside the X line: where the slide stands, and C."""
     length = path_length(move)
-    deviation = min(law.deviation, 0.5 * (distance_from(move, POLE) - abs(beside)))
 
     def radius(at: float) -> float:
         return hypot(*place_at(move, at / length))
 
     stretch = Stretch(0.0, length, _apsides(move, length), radius)
-    places, shares = spaced(stretch, _density(move, deviation, law, beside))
+    places, shares = spaced(stretch, _density(move, law, beside))
     stands = [
-        stand(_moved(move, at / length, deviation * share), beside)
+        stand(_moved(move, at / length, law.deviation * share), beside)
         for at, share in zip(places, shares)
     ]
     return Split([slide for slide, _ in stands], _angles(stands), places)
@@ -122,11 +123,11 @@ def _apsides(move: Line | Arc, length: float) -> list[float]:
     return [place for place in places if 0.0 < place < length]
 
 
-def _density(move: Line | Arc, deviation: float, law: Law, beside: float) -> Density:
+def _density(move: Line | Arc, law: Law, beside: float) -> Density:
     """Return the pieces per unit of length, and the part of the deviation they use, to the left."""
     length, even = path_length(move), 0.5 / law.ripple
     own = copysign(1.0 / arc_radius(move), move.sweep) if isinstance(move, Arc) else 0.0
-    bulging, flat = 1.0 / (8.0 * BULGE * deviation), 1.0 / (18.0 * BULGE * deviation)
+    bulging, flat = 1.0 / (8.0 * BULGE * law.deviation), 1.0 / (18.0 * BULGE * law.deviation)
 
     def density(at: float) -> tuple[float, float]:
         place = place_at(move, min(max(at / length, 0.0), 1.0))
