@@ -12,7 +12,9 @@ import time
 import pytest
 
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.flat.contour import Contour
+from g12.flat.closing import closing_of
+from g12.flat.contour import Contour, is_move, path_length
+from g12.flat.intersect import place_at
 from g12.flat.offset import tool_path
 from support.contour_geometry import Round, Straight, arc, lines
 from support.random_contours import (
@@ -170,6 +172,21 @@ def test_a_contour_may_be_cut_twice(side):
     assert cut([*sides, *sides], side, 3.0) == ("", [])
 
 
+@pytest.mark.parametrize("radius", [0.3, 6.0])
+@pytest.mark.parametrize(("share", "deep"), [(0.9, False), (1.15, True)])
+def test_a_cut_deeper_than_the_tolerance_is_found_wherever_it_is(radius, share, deep):
+    """A round nose over a wall: on its way round it the tool cuts into the wall below."""
+    nose, low = 0.1, 2 * radius - share * TOLERANCE
+    high, end = low + 4 * radius, 5 * radius
+    for k in range(30):
+        at = 0.0137 * k * radius
+        slot = lines((-end, high), (-end, 0), (end, 0), (end, high), (at + nose, high),
+                     (at + nose, low + nose))  # fmt: skip
+        slot += [arc((at, low + nose), nose, 0, -180)]
+        slot += lines((at - nose, low + nose), (at - nose, high + 1))
+        assert ("cuts into the other" in cut(slot, LEFT, radius)[0]) is deep
+
+
 @pytest.mark.parametrize("allowance", [0.3, 1.5, 100.0, 500.0])
 def test_a_finishing_pass_runs_behind_the_one_before(allowance):
     """What that leaves is in tolerances: at the last side it goes over into the finishing pass."""
@@ -200,6 +217,138 @@ def test_a_contour_that_crosses_itself_is_refused_whatever_the_angle():
         loop += [Straight(over, over + 20j), Straight(over + 20j, over - 60 + 20j)]
         for side in (LEFT, RIGHT):
             assert cut(loop, side, 1.0)[0], (angle, side)
+
+
+# Where a contour closes, and which of its ends are leads.
+
+
+def closing(shapes, radius=3.0):
+    """Return where shapes that are cut one behind the other close, and their moves."""
+    contour = contour_of(Drawn(shapes, LEFT, radius, shapes))
+    moves = [move for move in contour.elements if is_move(move) and 3 <= move.line < 9000]
+    return closing_of(moves, NEAR), moves
+
+
+NEAR = 0.02
+
+
+def ends_of(shapes):
+    """Return whether shapes close, and from which place to which they are a contour."""
+    found, moves = closing(shapes)
+    places = (
+        place_at(moves[at], along / path_length(moves[at]))
+        for at, along in ((found.first, found.start), (found.last, found.end))
+    )
+    return found.closed, *(complex(*(round(value, 3) for value in place)) for place in places)
+
+
+def rolled(on, off, overlap):
+    """Return the square with an arc to lead on and one to lead off, and lines beyond them."""
+    start, end = 10 + 0j, 10 - 1j * overlap
+    arc_on = Round(start + 5 + 5j, start + 5, 0.5 * math.pi)
+    arc_off = Round(end, end + 5, 0.5 * math.pi)
+    corners = [start, *SQUARE[1:], SQUARE[0], end]
+    far, near = arc_on.start, arc_off.end
+    front = [Straight(far + 4 * k + 4, far + 4 * k) for k in reversed(range(on - 1))]
+    behind = [Straight(near + 4 * k, near + 4 * k + 4) for k in range(off - 1)]
+    return [*front, arc_on, *(Straight(*pair) for pair in zip(corners, corners[1:])), arc_off,
+            *behind]  # fmt: skip
+
+
+@pytest.mark.parametrize("overlap", [0.0, 2.0])
+@pytest.mark.parametrize(
+    ("on", "off", "closes"),
+    [(1, 3, True), (3, 1, True), (2, 2, True), (1, 4, False), (4, 1, False), (4, 4, False)],
+)
+def test_leads_have_up_to_three_moves(on, off, closes, overlap):
+    shapes = rolled(on, off, overlap)
+    assert closing(shapes)[0].closed is closes
+    assert (cut(shapes, LEFT, 3.0)[0] == "") is closes
+    if closes and not overlap:
+        assert ends_of(shapes) == (True, 10 + 0j, 10 + 0j)
+
+
+@pytest.mark.parametrize("behind", [False, True])
+@pytest.mark.parametrize(
+    ("lead", "radius", "closes"),
+    [(39.0, 6.0, True), (41.0, 6.0, False), (41.0, 4.9, True), (41.0, 5.1, False)],
+)
+def test_a_contour_is_half_as_long_as_its_leads_or_four_tool_radii(lead, radius, closes, behind):
+    """The square is 20 round; anything shorter is the spur of an open contour."""
+    corners = [5 + 0j, 0j, 5j, 5 + 5j]
+    first, second, third, last = closed(corners)
+    if behind:
+        last = Straight(last.start, last.end - 1j * lead)
+    else:
+        first = Straight(first.start + lead, first.end)
+    assert closing([first, second, third, last], radius)[0].closed is closes
+
+
+@pytest.mark.parametrize(("gap", "closes"), [(0.019, True), (0.021, False)])
+def test_places_near_to_each_other_close_a_contour(gap, closes):
+    around = Round(10 + 0j, 0j, -2 * math.pi + gap / 10)
+    assert closing([around])[0].closed is closes
+    sides = closed(SQUARE)
+    short = [*sides[:-1], Straight(sides[-1].start, sides[-1].end - gap)]
+    assert closing(short)[0].closed is closes
+
+
+def test_of_a_contour_that_does_not_close_all_is_contour():
+    zigzag = lines((0, 0), (20, 0), (20, 20), (40, 20))
+    found, _ = closing(zigzag)
+    assert found == (0, 0.0, 2, 20.0, False, False)
+
+
+def test_what_lies_beyond_the_closing_is_no_contour():
+    found, moves = closing(extended(5.0, 15.0))
+    assert found[:4] == (0, pytest.approx(5.0), 3, pytest.approx(20.0))
+    parts = [found.part(k, move) for k, move in enumerate(moves)]
+    assert parts == [
+        (pytest.approx(0.2), 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, pytest.approx(20 / 35)),
+    ]  # fmt: skip
+    led, moves = closing(rolled(2, 2, 0.0))
+    assert [led.part(k, moves[k])[1] > led.part(k, moves[k])[0] for k in (0, 2, 5, 8)] == [
+        False, True, True, False,
+    ]  # fmt: skip
+
+
+def crossing(shapes):
+    """Return whether a contour closes where it crosses itself."""
+    found, _ = closing(shapes)
+    return found.closed and found.crossing
+
+
+@pytest.mark.parametrize(
+    ("leads", "corners", "closes"),
+    [(0, 3, True), (1, 3, True), (1, 4, True), (2, 3, False), (2, 4, False)],
+)
+def test_leads_may_cross_with_one_move_beyond_them(leads, corners, closes):
+    ring = [20 * cmath.exp(-2j * math.pi * k / corners) for k in range(corners)]
+    first, *others, last = closed(ring)
+    overrun = 0.2
+    sides = [first.between(-overrun, 1.0), *others, last.between(0.0, 1.0 + overrun)]
+    for _ in range(leads):
+        before, behind = sides[0].start, sides[-1].end
+        sides = [Straight(1.1 * before, before), *sides, Straight(behind, 1.1 * behind)]
+    assert crossing(sides) is closes
+
+
+def test_two_sides_with_leads_are_no_contour():
+    bow = [Straight(-20 + 0j, 20 + 0j), Round(20 + 0j, 5 + 0j, -1.1 * math.pi)]
+    assert crossing(bow)
+    led = [Straight(-20 + 20j, -20 + 0j), *bow, Straight(bow[-1].end, 2 * bow[-1].end)]
+    assert not crossing(led)
+
+
+@pytest.mark.parametrize(("slope", "through"), [(0.06, True), (0.04, False), (-1.0, False)])
+def test_a_side_goes_through_where_two_others_join(slope, through):
+    """A lead comes to the corner from beyond the last side: from this side it does not cross it."""
+    first, *others, last = closed(SQUARE)
+    on = Straight(first.start + 20 + 20j * slope, first.start)
+    over = Straight(last.start, last.end + 5)
+    assert crossing([on, first, *others, over]) is through
+    flipped = [Straight(s.end * 1j, s.start * 1j) for s in (over, *reversed(others), first, on)]
+    assert crossing([Straight(z.start.conjugate(), z.end.conjugate()) for z in flipped]) is through
 
 
 # Heights.
