@@ -427,6 +427,8 @@ def parts(*paths):
         # down and up along the side of the boss, or along the wall to its corner
         ([(BOSS, [-1.0, -5.0, -5.0, -1.0, -1.0, -1.0]), (WALL, -2.0)], True),
         ([(BOSS, [-1.0, -1.0, -1.5, -1.0, -1.0, -1.0]), (WALL, -2.0)], False),
+        ([(BOSS, [-1.0, -5.0, -5.0, -1.0, -1.0, -1.0]), (BOSS, -2.0), (WALL, -3.0)], True),
+        ([(BOSS, -2.0), (BOSS, [-1.0, -5.0, -5.0, -1.0, -1.0, -1.0]), (WALL, -3.0)], True),
         ([(WALL, [-5.0, -5.0, -1.0, -5.0]), (BOSS, -2.0)], True),
         ([(WALL, [-5.0, -5.0, -2.5, -5.0]), (BOSS, -2.0)], False),
     ],

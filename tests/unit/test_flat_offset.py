@@ -15,6 +15,7 @@ from shapely.geometry import LineString, Polygon
 
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat.contour import Contour
+from g12.flat.offset import tool_path
 from g12.moves.steps import BlockMoves
 from g12.polar.plan import PolarSettings, plan
 from support.contour_geometry import Round, Straight, distance_from_path, phase
@@ -304,6 +305,33 @@ def test_a_line_hardly_beside_its_tangent_gets_no_corner_arc():
     contour.line(30.0, 10.0, line=4, feed=100.0)
     steps = plan(contour, LATHE, c=0.0).steps
     assert [step.line for step in steps] == [1, 2, 3, 4]
+
+
+@pytest.mark.parametrize(
+    ("bend", "by", "pieces"),
+    [
+        (0.0280, 0.0, 1),  # a 25th of the tolerance nearer to the corner than an arc
+        (0.0286, 0.0, 2),
+        (0.0049, 1.0, 1),  # gap of two tolerances
+        (0.0051, 1.0, 2),
+        (0.0049, -1.0, 1),
+        (0.0051, -1.0, 2),
+    ],
+)
+def test_parallels_are_joined_where_nobody_could_tell(bend, by, pieces):
+    """An outside corner of a few minutes of arc, from a line to a line or to an arc."""
+    way, corner = cmath.exp(1j * bend), 20 + 5j
+    follows = Round(corner, corner + 5j * by * way, by) if by else Straight(corner, corner + way)
+    contour = Contour(10.0, 0.0)
+    contour.compensation(42, 2.0, line=1)
+    contour.line(10.0, 5.0, line=1, feed=100.0)
+    contour.line(20.0, 5.0, line=2, feed=100.0)
+    add(contour, follows, line=3, feed=100.0)
+    contour.compensation(40, 0.0, line=4)
+    contour.line(30.0, -10.0, line=4, feed=100.0)
+    made = [move for move in tool_path(contour, contour.elements, TOLERANCE) if move.line == 3]
+    assert len(made) == pieces
+    assert abs(abs(complex(made[0].x0, made[0].c0) - corner) - 2.0) <= 0.04 * TOLERANCE
 
 
 def test_the_feed_is_that_of_the_tools_centre():

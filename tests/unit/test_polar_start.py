@@ -25,20 +25,23 @@ def setup_of(settings=Settings(), **found):  # noqa: B008 - it is frozen
     ("found", "rule"),
     [
         ({"alone": False}, "stands alone in its block"),
-        ({"compensated": True}, "needs G40"),
+        ({"compensated": True}, "needs G40: compensation is switched on inside"),
         ({"inverse_time": True}, "needs G94 or G95, not G93"),
         ({"yz_plane": True}, "needs G18 or G17, not G19"),
-        ({"surface_speed": True}, "needs G97"),
-        ({"offset_pending": True}, "needs a move after G40"),
-        ({"rotated": True}, "needs an unrotated work offset"),
-        ({"x": 0.0}, "needs the tool at X above zero, not at 0"),
+        ({"surface_speed": True}, "needs G97: with G96 the speed would change with X"),
+        (
+            {"offset_pending": True},
+            "needs a move after G40: the tool is still beside the programmed point",
+        ),
+        ({"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
+        ({"x": 0.0}, "needs the tool at X above zero, not at 0 (radius)"),
     ],
 )
 def test_where_no_section_begins(found, rule):
     check_section_start(START, "XZC")
     with pytest.raises(Refusal) as refused:
         check_section_start(START._replace(**found), "XZC")
-    assert str(refused.value).startswith(f"G12.1 line 7: {rule}")
+    assert str(refused.value) == f"G12.1 line 7: {rule}"
 
 
 @pytest.mark.parametrize("millimetre", [1.0, 1 / INCH])

@@ -80,7 +80,7 @@ def spaced(stretch: Stretch, density: Density) -> tuple[list[float], list[float]
     ends = [(stretch.start, 0.0)]
     for part in parts:
         lost = sum(part.losses)
-        pieces = max(1, ceil(part.count + lost - 1e-9))
+        pieces = ceil(part.count + lost - 1e-9)
         length = part.count / (pieces - lost)
         if part.losses[0] == 0.0:
             ends.append((part.cut, length**2 * density(part.cut)[1]))
