@@ -56,6 +56,28 @@ def test_the_line_of_a_refused_block(mill, program, text):
     assert len(refused.text) <= 255
 
 
+SECTION = ["G12.1", "G1 X#1 F500", "G4 P0", "G0 C5", "G13.1"]
+RAPID = "G0 is refused: a rapid leaves the contour."
+
+
+@pytest.mark.parametrize(
+    ("program", "text"),
+    [
+        (SECTION, "G12.1 line 5: "),
+        (["o9 sub", *SECTION, "o9 endsub", "o9 call [20]"], "G12.1 line 6: "),
+        (["o<flat> call [20]"], "G12.1 line 5 of flat.ngc: "),
+        (["o<outer> call"], "G12.1 line 5 of flat.ngc: "),
+    ],
+)
+def test_the_line_of_a_refused_section(tmp_path, program, text):
+    (tmp_path / "flat.ngc").write_text("\n".join(["o<flat> sub", *SECTION, "o<flat> endsub", ""]))
+    (tmp_path / "outer.ngc").write_text("o<outer> sub\n\no<flat> call [20]\no<outer> endsub\n")
+    paths = {"RS274NGC": {"SUBROUTINE_PATH": f"{tmp_path}:../../ngc:subs"}}
+    with Tracer(SIM / "lathe_mm.ini", tools={1: 6.0}, overrides=paths) as lathe:
+        refused = lathe.trace_text(["G21 G18 G8 G90 G94 G0 X30 Z2 C0", *program, "M2"]).error
+    assert refused.text.startswith(text + RAPID)
+
+
 def test_a_line_far_down_in_a_file_with_crlf_and_umlauts(mill, tmp_path):
     program = tmp_path / "long.ngc"
     lines = ["G21 G90 G17 F100", *["(Größe)"] * 100_000, "G12 I.1 Z-1 D1", "M2", ""]

@@ -77,9 +77,13 @@ def _line_at(interp: object, filename: str, offset: int, in_program: bool) -> in
             line = file.read(max(0, offset)).count(b"\n") + 1
     except OSError:  # an initial block of the INI is in no file
         return None
-    program = interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
-    own = in_program and filename == program
+    own = in_program and filename == running_file(interp)
     return line if own else LineOfFile(line, os.path.basename(filename))
+
+
+def running_file(interp: object) -> str:
+    """Return the name of the file of the program that runs, in its subs too."""
+    return interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
 
 
 def error_text(interp: object) -> str:

@@ -11,12 +11,12 @@ import emccanon
 import linuxcnc
 from interpreter import MODE_ABSOLUTE
 
-from g12.errors import BlockRefusal
+from g12.errors import BlockRefusal, Refusal
 from g12.flat.contour import Contour
 from g12.host import glue
 from g12.host.call_frame import CallFrame
 from g12.host.kinematics_switch import face_in_force
-from g12.host.program_lines import ProgramLines
+from g12.host.program_lines import LineOfFile, ProgramLines, running_file
 from g12.host.section_output import SectionOutput
 from g12.host.section_reader import SectionReader
 from g12.host.section_run import Section
@@ -25,7 +25,7 @@ from g12.machine_ini import axes_of, coordinates_of, face_of, remap_lines
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import SectionPlan
 from g12.section.codes import SectionCodes
-from g12.section.line import line_named
+from g12.section.line import line_named, with_line
 from g12.section.start import SectionStart
 
 SETTINGS = glue.settings_of_machine()
@@ -71,7 +71,7 @@ def program_behind(interp: object) -> ProgramLines:
 
 def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
     """Run the section that begins with the block being remapped."""
-    program = program_behind(interp)
+    program, running = program_behind(interp), running_file(interp)
     frame = CallFrame(interp, program.home.filename)
     try:
         yield from _section(interp, kind, frame, program).run()
@@ -79,6 +79,9 @@ def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
         line = line_named(error)
         called = program.source is not program.home and not line
         frame.give_up(line or program.line, called=called, behind=program.next_at_home)
+        if isinstance(error, Refusal) and line and program.home.filename != running:
+            file = os.path.basename(program.home.filename)
+            raise with_line(error, LineOfFile(line, file)) from None
         raise
 
 

@@ -58,6 +58,11 @@ def line_named(error: Exception) -> int | None:
     return int(named[1]) if named else None
 
 
+def with_line(refusal: Refusal, line: int) -> Refusal:
+    """Return a refusal with another text of the line that it names, which may tell its file."""
+    return Refusal(_LINE_NAMED.sub(lambda _: f" line {line}:", refusal.message, count=1))
+
+
 class TextLine(NamedTuple):
     """A raw line in parts.
 

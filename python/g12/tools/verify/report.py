@@ -135,8 +135,9 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
     found = list(section_findings(facts, proof.tolerances.polar, unit))
     notes = list(section_notes(facts))
     call = proof.subject.trace.moves[section.at].block
-    called = "" if section.line <= call <= section.last else f", called in line {call}"
-    title = f"lines {section.line} to {section.last}{called}: {section.code}"
+    own = not section.file and section.line <= call <= section.last
+    called = f"{f' of {section.file}' if section.file else ''}, called in line {call}"
+    title = f"lines {section.line} to {section.last}{'' if own else called}: {section.code}"
     return paragraph(title, rows, notes, found)
 
 
@@ -312,6 +313,7 @@ def section_json(facts: SectionFacts, proof: Proof) -> dict:
     """Return one section as plain values."""
     return {
         "lines": [facts.section.line, facts.section.last],
+        "file": facts.section.file or None,
         "code": facts.section.code,
         "cutter": 2 * facts.tool,
         "surface": facts.section.surface or None,

@@ -51,6 +51,8 @@ def _stock(facts: StockFacts, opened: OpenedProgram) -> StockFacts:
 
 def _section(facts: SectionFacts, opened: OpenedProgram) -> SectionFacts:
     line, section = opened.source_line, facts.section
+    if section.file:
+        return facts
     return replace(
         facts,
         section=replace(section, line=line(section.line), last=line(section.last)),

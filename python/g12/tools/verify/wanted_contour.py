@@ -147,6 +147,8 @@ class Act(NamedTuple):
 class SectionContour:
     """One run through a section: first and last line, first move and the one after it, contour.
 
+    ``file`` is the name of a sub's own, "" for the program.
+
     ``start`` in the contour's plane, ``height`` above it and ``c`` (degrees) are where it begins,
     ``left_c`` is where C stands behind it, in program coordinates; ``zero_line`` tells how C came
     there. ``doubt`` tells why the contour could not be read from the words, if it could not.
@@ -179,6 +181,7 @@ class SectionContour:
     left: Mapping[str, float] = field(default_factory=dict)
     paths: tuple[str, ...] = ()
     surface: float = 0.0
+    file: str = ""
 
     @property
     def third(self) -> int:
@@ -363,6 +366,7 @@ def section_of(
         leaves={**pen.leaves(first.state), **kept_behind(group)},
         left=last.left,
         surface=pen.surface,
+        file=first.text.file,
     )
 
 
