@@ -64,6 +64,11 @@ REFUSED = [  # what is changed of the INI, and what is said
     ("HALFILE = motion.hal", "HALFILE = LIB:core_sim.hal", "LIB:core_sim.hal is no HAL file"),
     ("[HAL]", "[HAL]\nTWOPASS = on", "TWOPASS"),
     ("xzc kinstype=B", "xzc \\\n kinstype=B", "goes on in the next line"),
+    (
+        "[HAL]",
+        "[G12]\nPOLAR_KINEMATICS = \\\n0\n[HAL]",
+        "POLAR_KINEMATICS goes on in the next line",
+    ),
     ("[HAL]", "[HAL]\nHALCMD = net a => motion.adaptive-feed", "motion.adaptive-feed is the"),
 ]
 HAL_REFUSED = [

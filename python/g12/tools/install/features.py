@@ -104,10 +104,10 @@ def names_of(feature: str) -> list[str]:
 
 
 def harmless(feature: str) -> str | None:
-    """Return what does nothing in a program that is in no section, None for a cycle."""
+    """Return what does nothing in a program that is in no section, None without sections."""
     if feature in POLAR:
         return remaps_of(feature)[1].code
-    return f"{remaps_of(feature)[0].code} C0" if feature in AXES else None
+    return f"{remaps_of(feature)[0].code} C0" if feature == "cylinder" else None
 
 
 def functions_of(feature: str) -> list[str]:

@@ -67,10 +67,11 @@ def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
     """Yield what to do once the features are there: a first try that moves nothing, and back."""
     yield "next: restart LinuxCNC, then try in MDI or with a program:"
     for feature in wanted:
-        if feature == features.SHAPES:
+        block = features.harmless(feature)
+        if block:
+            yield f"  {block:6} does nothing, and is no error"
+        elif feature == features.SHAPES:
             yield "  o<polar_polygon> call is answered with what it needs; nothing moves"
-        elif feature in features.AXES:
-            yield f"  {features.harmless(feature):6} does nothing, and is no error"
         elif feature in features.FILES:
             code = features.remaps_of(feature)[0].code
             yield f"  {code:6} is answered with what it needs; nothing moves"

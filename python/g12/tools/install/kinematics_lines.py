@@ -36,6 +36,7 @@ IN_PLACE = (  # entries that get another value
     ("TRAJ", "COORDINATES"),
     ("AXIS_X", "MIN_LIMIT"),
     ("AXIS_X", "MAX_ACCELERATION"),
+    ("G12", "POLAR_KINEMATICS"),  # where it is there
 )
 LOADS = re.compile(r"loadrt\s+\[KINS\]\(?KINEMATICS\)?(\s|$)")
 CONTROLS = re.compile(r"addf\s+motion-controller\s+servo-thread(\s|$)")
