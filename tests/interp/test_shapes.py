@@ -320,8 +320,10 @@ def test_inches_and_millimetres_make_the_same_path(lathe, shape):
     start = f"G0 X{40 / INCH:.12f} Z{5 / INCH:.12f} C0"
     traced = lathe.trace_text(program(call(shape, **scaled), first=first, start=start))
     assert traced.error is None, traced.error
-    ours, theirs = (path_of(some.moves).points for some in (traced, trace(lathe, shape)))
-    assert len(ours) == len(theirs) and np.abs(ours - theirs).max() < 1e-6
+    ours, theirs = (path_of(some.moves) for some in (traced, trace(lathe, shape)))
+    assert len(ours.points) == len(theirs.points)
+    assert np.abs(ours.points - theirs.points).max() < 1e-6
+    assert np.abs(ours.z - theirs.z).max() < 1e-6
 
 
 # ---------------------------------------------------------------- refusals

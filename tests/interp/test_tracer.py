@@ -118,6 +118,7 @@ def test_positions_are_mm_whatever_the_program_uses(mill):
 def test_an_inch_machine_gives_the_same(ini, mill):
     blocks = "G21 G1 X10 F100\nG20 X1\nG3 X2 R.5"
     inch = trace_text(blocks, ini, overrides={"TRAJ": {"LINEAR_UNITS": "inch"}})
+    assert len(inch.moves) == 3
     for one, other in zip(mill.trace_text(blocks).moves, inch.moves):
         assert one.end == near(other.end)
 

@@ -294,4 +294,5 @@ def test_plot_says_once_that_the_spindle_stands(tmp_path, capsys):
     program.write_text("\n".join([*MILL, POCKET, POCKET, "M2", ""]))
     words = ["--ini", str(SIM / "mill_mm_headless.ini"), "-o", str(tmp_path / "picture.svg")]
     assert main(["plot", str(program), *words]) == 0
-    assert f"\nnote, line 4: {STANDS}\n" in capsys.readouterr().out
+    said = capsys.readouterr().out.splitlines()
+    assert [line for line in said if STANDS in line] == [f"note, line 4: {STANDS}"]

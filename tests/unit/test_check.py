@@ -376,6 +376,7 @@ def test_the_report_for_programs_says_what_the_one_for_people_says(tmp_path):
     assert said["other_remaps"] == {"M400": "M400 modalgroup=10 ngc=m400"}
     assert said["settings"] == {"CLEARING": "spiral"}
     lines = "\n".join(lines_of_check(said))
+    assert said["findings"]
     assert all(
         finding["text"] in lines and finding["cure"] in lines for finding in said["findings"]
     )

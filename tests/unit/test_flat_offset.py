@@ -67,8 +67,8 @@ def check(shapes, side, radius):
     made, shapes = along_the_part(shapes, side, radius)
     made, part = path(made), outline(shapes)
     solid = Polygon(np.column_stack([part.real, part.imag]))
-    grown = solid.buffer(radius if side == OUTSIDE else -radius, resolution=100)
-    assume(isinstance(grown, Polygon) and not grown.is_empty)
+    grown = solid.buffer(radius if side == OUTSIDE else -radius, 100)
+    assert isinstance(grown, Polygon) and not grown.is_empty
     ring = np.array(grown.exterior.coords)
     ring = ring[:, 0] + 1j * ring[:, 1]
     slack = TOLERANCE + SAGITTA + 5e-4  # polygons for arcs

@@ -91,9 +91,12 @@ def test_parts_on_the_face_are_slower_where_that_is_quicker_than_pieces():
     there, beside, back = parted([circle], [True], limits)[0]
     assert [is_able(part, limits) for part in (there, beside, back)] == [True, False, True]
     assert beside.feed == 3000.0
-    whole, slower = (parted([circle], [True], limits._replace(override=by))[0] for by in (1.0, 2.0))
-    assert whole[0].feed == 3000.0
-    assert slower[0].feed < 3000.0 or path_length(slower[0]) < path_length(whole[0])
+    whole, slower = (
+        parted([circle], [True], LIMITS._replace(pieces_speed=speed))[0] for speed in (20.0, 5.0)
+    )
+    assert [part.feed for part in whole] == [3000.0] * 3
+    assert slower[0].feed == slower[2].feed < slower[1].feed == 3000.0
+    assert path_length(slower[0]) > path_length(whole[0])
     assert path_length(there) + path_length(beside) + path_length(back) == pytest.approx(20 * pi)
 
 

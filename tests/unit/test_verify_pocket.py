@@ -15,6 +15,7 @@ from g12.tools.path.track import track
 from g12.tools.units import UNITS
 from g12.tools.verify.findings import pocket_findings, pocket_notes
 from g12.tools.verify.pocket import measure_pocket
+from g12.tools.verify.pocket_entry import HelixFacts, entry_json
 from g12.tools.verify.wanted_circle import CircleFeeds, Cutter, Schedule, Source, Target, Wall
 from support.made_moves import LIMITS, Hand, samples_of
 
@@ -257,3 +258,9 @@ def test_a_tool_that_is_not_that_of_d(loaded, found, noted):
 def test_sizes_of_tools_are_told_in_the_units_asked_for():
     facts = measure(cut([5, 11, 17]), target(loaded=12.7, tool=1, named=2))
     assert "T1 (⌀ 1)" in next(pocket_findings(facts, TOLERANCE, UNITS["inch"]))
+
+
+def test_a_program_is_told_the_greatest_and_the_least_radius_of_the_helices():
+    told = entry_json(HelixFacts(count=2, least=1.0, greatest=2.0, steepest=3.0))
+    assert told == {"way": "helix", "helices": 2, "radius": 2.0, "least_radius": 1.0, "angle": 3.0}
+    assert entry_json(None) == {"way": "straight"}

@@ -7,6 +7,7 @@ round, upwards Z; X is the height.
 
 import cmath
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -178,6 +179,18 @@ def test_compensation_keeps_the_cutter_on_its_side(side, away, found):
     assert bool(found) == (facts.deviation > TOLERANCE)
 
 
+def run_beside(z):
+    """Return what makes samples of a run that is beside its path along Z."""
+
+    def run(path):
+        samples = samples_of(path, axes="XZC")
+        return replace(samples, axes={**samples.axes, "Z": samples.axes["Z"] + z})
+
+    return run
+
+
 def test_a_run_is_measured_on_the_surface():
-    facts = facts_of(groove(), ASKED, lambda path: samples_of(path, axes="XZC"))
-    assert facts.deviation < 0.05 and facts.pace.seconds > 5.0
+    runs = [run_beside(0.0), run_beside(0.03)]
+    right, beside = (facts_of(groove(), ASKED, run) for run in runs)
+    assert right.deviation < 0.001 and beside.deviation == pytest.approx(0.03)
+    assert right.pace.seconds > 5.0
