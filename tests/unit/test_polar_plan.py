@@ -124,6 +124,19 @@ def test_arcs_beside_the_pole(beside, radius):
         assert deviation(arc) <= TOLERANCE
 
 
+@pytest.mark.parametrize("beside", [0.0026, 0.003, -0.003, 0.1])
+@pytest.mark.parametrize("radius", [2.5e4, 2.5e5, 9e5])
+def test_arcs_beside_the_pole_that_are_nearly_lines(radius, beside):
+    """In as few pieces as a line: rounding must not make of 1e-12 of the radius what it likes."""
+    away, reach = radius - beside, math.sqrt(400.0 + 2 * radius * abs(beside))
+    height = math.sqrt(radius * radius - reach * reach) - away
+    arc = Round(reach + 1j * height, -1j * away, 2 * math.asin(reach / radius))
+    assert deviation(arc) <= TOLERANCE
+    contour = programmed([arc.turned(abs(arc.start) / arc.start)])
+    (run,) = runs(plan(contour, EXACT, c=0.0))
+    assert len(run.pieces) <= 45
+
+
 @pytest.mark.parametrize("away", [0.0023, 0.003, 0.006, 0.02, 0.05, 0.1, 0.25, 0.6, 1.5])
 @pytest.mark.parametrize("radius", [2.0, 15.0, 60.0])
 @pytest.mark.parametrize("sweep", [2.0, -4.0, 2 * math.pi])

@@ -210,13 +210,14 @@ class _Stretch:
         for by, _ in passes:
             if by not in (RAMP, index) and self._cross(index, move, by):
                 return _Hit(self._moves[by].line, False)
-        places = list(self._places(move))
+        nearest = self._radius - self._tolerance
+        near = (passed for passed in passes if least_distance(passed[1], move) < nearest)
+        passed = next(near, None)
+        places = list(self._places(move)) if passed else []
         hits: list[_Hit | None] = [None] * len(places)
-        for by, way in passes:
-            if not places:
-                break
-            if least_distance(way, move) < self._radius - self._tolerance:
-                places, hits = self._after(index, (by, way), places, hits)
+        while places and passed:
+            places, hits = self._after(index, passed, places, hits)
+            passed = next(near, None)
         return reduce(_worse, hits, None)
 
     def _after(self, index: int, passed: tuple, places: list, hits: list) -> tuple[list, list]:

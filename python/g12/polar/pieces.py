@@ -22,8 +22,8 @@ along it s = d u and r = d sqrt(m) with m = 1 + u**2, and the curvature of the s
 
 Arc of radius R about a centre e R from the pole: its place is the angle a about that centre, in the
 sense of the motion, 0 where it is farthest from the pole; r = R sqrt(m) with m = 1 + e**2 +
-2 e cos a, and the curvatures differ by p / (R m**2) with p = e (e**3 + (1 + 2 e**2) cos a +
-3 e cos(a)**2 + e**2 cos(a)**3).
+2 e cos a = (1 - e)**2 + 4 e cos(a / 2)**2. With w = 1 + e cos a = (m + 1 - e**2) / 2 the sine of p
+is w / sqrt(m), and the curvatures differ by (m**2 - w (2 m - w**2)) / (R m**2).
 """
 
 from __future__ import annotations
@@ -145,11 +145,6 @@ def _split_arc(move: Arc, law: Law) -> Split:
     )
 
 
-def _curvature_difference(q: float, e: float) -> float:
-    """Return p / e at the place a with cos a = ``q``."""
-    return e * e * e + q * (1.0 + 2.0 * e * e + e * q * (3.0 + e * q))
-
-
 def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density:
     """Return the pieces per radian, and the part of the deviation they use, above zero outside.
 
@@ -159,16 +154,17 @@ def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density
     flat = (min(e, 1.0) * radius / (18.0 * BULGE * deviation)) ** (1.0 / 3.0)
     even = 0.5 / law.ripple
     x_hold, c_hold = law.x_hold * radius, law.c_hold * radius * radius
-    m0 = 1.0 + e * e
+    nearest, inside = (1.0 - e) ** 2, (1.0 - e) * (1.0 + e)
 
     def density(a: float) -> tuple[float, float]:
-        q = cos(a)
-        m = m0 + 2.0 * e * q
-        p = e * _curvature_difference(q, e)
+        half = cos(0.5 * a)  # unlike cos a it tells places beside the pole from each other
+        m = nearest + 4.0 * e * half * half
+        w = 0.5 * (m + inside)
+        p = m * m - w * (2.0 * m - w * w)
         wanted = bulging * sqrt(abs(p)) / m
         growth = e * abs(sin(a)) / m
         pieces = max(wanted, growth, flat)
-        smooth = even * growth * (1.0 + e * q) ** 2 / m
+        smooth = even * growth * w * w / m
         if smooth > pieces:
             pieces = max(pieces, min(smooth, x_hold, c_hold * sqrt(m)))
         return pieces, copysign((wanted / pieces) ** 2, p)
