@@ -42,7 +42,14 @@ SECTION = (
     *("polar_start", "cylinder"),
 )
 FLAT = (
-    *("flat_contour", "flat_intersect", "flat_nearby", "flat_gouge", "flat_simplify"),
+    *(
+        "flat_contour",
+        "flat_intersect",
+        "flat_nearby",
+        "flat_gouge",
+        "flat_between",
+        "flat_simplify",
+    ),
     "flat_offset",
 )
 MOVES = ("moves_exact_stops", "moves_feed", "moves_soft_limits", "moves_spacing")

@@ -13,6 +13,7 @@ from math import hypot
 from typing import NamedTuple
 
 from g12.flat.contour import (
+    SAME_PLACE,
     Arc,
     Line,
     Point,
@@ -50,8 +51,9 @@ class Closing(NamedTuple):
         if not self.first <= index <= self.last:
             return 0.0, 0.0
         length = path_length(move)
-        start = self.start / length if index == self.first else 0.0
-        return start, self.end / length if index == self.last else 1.0
+        start = self.start if index == self.first else 0.0
+        end = self.end if index == self.last else length
+        return (start / length, end / length) if end - start > SAME_PLACE else (0.0, 0.0)
 
 
 def closing_of(moves: Sequence[Line | Arc], near: float) -> Closing:

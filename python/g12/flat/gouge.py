@@ -66,7 +66,7 @@ class Cut(NamedTuple):
     cut: bool
 
 
-class _Place(NamedTuple):
+class ContourPlace(NamedTuple):
     """A place of the contour, its direction, and the unit vector to the tool's side."""
 
     place: Point
@@ -91,12 +91,17 @@ def check_gouges(contour: Contour, cuts: Sequence[Cut], tolerance: float) -> Non
 
     What is only told goes to the contour's ``notes``. Program units.
     """
+    for stretch, ramps in stretches(cuts):
+        _Stretch(contour, stretch, tolerance).check(ramps)
+
+
+def stretches(cuts: Sequence[Cut]) -> Iterator[tuple[list[Cut], list[Cut]]]:
+    """Yield each contour between two ramps, and the ramps."""
     at = 0
     for cut, group in groupby(cuts, key=lambda cut: cut.cut):
         stretch = list(group)
         if cut:
-            ramps = [*cuts[max(at - 1, 0) : at], *cuts[at + len(stretch) :][:1]]
-            _Stretch(contour, stretch, tolerance).check(ramps)
+            yield stretch, [*cuts[max(at - 1, 0) : at], *cuts[at + len(stretch) :][:1]]
         at += len(stretch)
 
 
@@ -146,7 +151,7 @@ class _Stretch:
 
     def _candidates(self, ramps: list[Cut]) -> Iterator[tuple[int, list[tuple]]]:
         """Yield the moves that the tool may cut, by their index, and its passes near to each."""
-        heights = _heights(self._moves)
+        heights = greatest_heights(self._moves)
         moves = Boxes([(index, self._moves[index]) for index in sorted(heights)])
         passes = [Boxes(ways) for ways in self._passes(ramps)]
         runs = straight_runs(self._moves)
@@ -171,9 +176,9 @@ class _Stretch:
             for by in sorted(near, key=lambda by: abs(by - about))
             for way in filter(is_move, self._cuts[by].path)
         ]
-        return all(self._is_passed(place, passes) for place in self._places(move))
+        return all(self._is_passed(place, passes) for place in places_along(move, self._tolerance))
 
-    def _is_passed(self, place: _Place, passes: list[tuple]) -> bool:
+    def _is_passed(self, place: ContourPlace, passes: list[tuple]) -> bool:
         """Return whether one of some passes runs behind a place; the next is asked of it first."""
         for at, passed in enumerate(passes):
             if self._seen_from(place, passed) == PASSED:
@@ -186,7 +191,7 @@ class _Stretch:
 
         At the ends of an open contour there may be no material: its ramps may cut there.
         """
-        yield _once(
+        yield without_repeats(
             (index, way) for index, cut in enumerate(self._cuts) for way in cut.path if is_move(way)
         )
         if self._closing.closed:
@@ -213,7 +218,7 @@ class _Stretch:
         nearest = self._radius - self._tolerance
         near = (passed for passed in passes if least_distance(passed[1], move) < nearest)
         passed = next(near, None)
-        places = list(self._places(move)) if passed else []
+        places = list(places_along(move, self._tolerance)) if passed else []
         hits: list[_Hit | None] = [None] * len(places)
         while places and passed:
             places, hits = self._after(index, passed, places, hits)
@@ -244,7 +249,7 @@ class _Stretch:
         corner_before = by == index > 0  # the corner in front of a move belongs to both
         return _Hit(self._moves[index - 1].line if corner_before else way.line, lead, by == RAMP)
 
-    def _seen_from(self, place: _Place, passed: tuple) -> str:
+    def _seen_from(self, place: ContourPlace, passed: tuple) -> str:
         """Return how a pass cuts a place, as the names above tell; NOT where it does not."""
         (x, c), by, way = place.place, *passed
         px, pc = nearest_place(way, place.place)
@@ -259,18 +264,6 @@ class _Stretch:
             return FACING
         same_way = tx * place.way[0] + tc * place.way[1] > SAME_WAY
         return PASSED if same_way else BEHIND
-
-    def _places(self, move: Line | Arc) -> Iterator[_Place]:
-        """Yield places along a move, so close that no cut falls between two of them."""
-        length = path_length(move)
-        step = sqrt(2.0 * self._radius * self._tolerance)
-        count = ceil(length / step)
-        inset = min(0.25, self._tolerance / length)
-        side = copysign(1.0, self._offset)
-        for k in range(count + 1):
-            place = place_at(move, inset + (1.0 - 2.0 * inset) * k / count)
-            tx, tc = direction_at(move, place)
-            yield _Place(place, (tx, tc), (-side * tc, side * tx))
 
     # Where the contour crosses itself.
 
@@ -334,17 +327,33 @@ def _worse(one: _Hit | None, other: _Hit | None) -> _Hit | None:
     return min(hits, key=lambda hit: (hit.lead, hit.ramp), default=None)
 
 
-def _once(passes: Iterable[tuple]) -> list[tuple]:
+def place_count(move: Line | Arc, tolerance: float) -> int:
+    """Return how many places `places_along` yields."""
+    return ceil(path_length(move) / sqrt(2.0 * abs(move.offset) * tolerance)) + 1
+
+
+def places_along(move: Line | Arc, tolerance: float) -> Iterator[ContourPlace]:
+    """Yield places along a move, so close that no cut falls between two of them."""
+    last = place_count(move, tolerance) - 1
+    inset = min(0.25, tolerance / path_length(move))
+    side = copysign(1.0, move.offset)
+    for k in range(last + 1):
+        place = place_at(move, inset + (1.0 - 2.0 * inset) * k / last)
+        tx, tc = direction_at(move, place)
+        yield ContourPlace(place, (tx, tc), (-side * tc, side * tx))
+
+
+def without_repeats(passes: Iterable[tuple]) -> list[tuple]:
     """Return passes without those that repeat another at the same depth or higher."""
     kept: dict[tuple, tuple] = {}
     for index, way in passes:
-        place = _in_plane(way)
+        place = in_plane(way)
         if place not in kept or min(way.z0, way.z1) < min(kept[place][1].z0, kept[place][1].z1):
             kept[place] = (kept[place][0] if place in kept else index), way
     return list(kept.values())
 
 
-def _heights(moves: Sequence[Line | Arc]) -> dict[int, float]:
+def greatest_heights(moves: Sequence[Line | Arc]) -> dict[int, float]:
     """Return the greatest Z of each move, by its index; of repeated ones only the first's index.
 
     Moves in the air, between a plunge up and a plunge down, are not there.
@@ -353,7 +362,7 @@ def _heights(moves: Sequence[Line | Arc]) -> dict[int, float]:
     first: dict[tuple, int] = {}
     for index in _in_material(moves):
         move = moves[index]
-        place = first.setdefault(_in_plane(move), index)
+        place = first.setdefault(in_plane(move), index)
         heights[place] = max(heights.get(place, -inf), move.z0, move.z1)
     return heights
 
@@ -372,7 +381,7 @@ def _in_material(moves: Sequence[Line | Arc]) -> Iterator[int]:
             yield from level
 
 
-def _in_plane(move: Line | Arc) -> tuple:
+def in_plane(move: Line | Arc) -> tuple:
     """Return what tells one move in the plane from another, rounding aside."""
     places = (move.x0, move.c0, move.x1, move.c1, *move[9:])
     return tuple(round(place / SAME_PLACE) for place in places)

@@ -56,6 +56,15 @@ class Boxes:
         low_x, low_c, high_x, high_c = zip(*boxes)
         self.box = min(low_x), min(low_c), max(high_x), max(high_c)
 
+    def near(self, box: Box, reach: float) -> Iterator[tuple[int, Line | Arc]]:
+        """Yield the moves whose boxes are within ``reach`` of a box."""
+        waiting = [self]
+        while waiting:
+            node = waiting.pop()
+            if not apart(node.box, box, reach):
+                waiting.extend(node.halves)
+                yield from (item for item, way in node.items if not apart(way, box, reach))
+
 
 def near_passes(
     moves: Boxes,

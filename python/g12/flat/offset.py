@@ -9,7 +9,8 @@ neighbours:
 - ramp on: ends square to the start of the next element of the contour; ramp off: starts square to
   the end of the last one. Blocks without motion in the plane are looked through.
 
-What the tool cannot reach is refused, and so is a path that cuts into the contour (`gouge`).
+What the tool cannot reach is refused, and so is a path that cuts into its contour (`gouge`) or
+another one (`between`).
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from math import copysign, hypot
 from typing import NamedTuple, NoReturn
 
 from g12.errors import number
+from g12.flat.between import check_contours
 from g12.flat.contour import (
     SAME_PLACE,
     Arc,
@@ -86,6 +88,7 @@ def _centred(contour: Contour, moves: list, tolerance: float) -> list[tuple]:
                 path = (_corner_arc(step.move, joint), *path)
         cuts.append(Cut(step.move, path, step.cut))
     check_gouges(contour, cuts, tolerance)
+    check_contours(contour, cuts, tolerance)
     return [cut.path for cut in cuts]
 
 

@@ -1,0 +1,418 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Gouges between contours: the tool, on its way along one, cuts into what another leaves standing.
+
+The contours of a section, each from its G41 or G42 to its G40, are compared with each other. Cut
+places of a contour that follow each other are a run. It is meant where the other contour itself
+enters the first one's material: a finishing pass, a slot across a boss, a step. Else both leave
+standing what the tool of one takes away. That is refused where
+
+- neither of them enters the other one's material anywhere;
+- the contour that is cut closes, and is not cut from end to end;
+- what cuts it is no lead, and at a height at which it is cut itself;
+- the cut is deeper than an allowance for finishing can be: an offset that is too large on purpose
+  makes a way between two contours narrower by twice the allowance.
+
+Otherwise it is only told, one line for each two contours. Program units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+from math import copysign, hypot, inf, sqrt
+from typing import NamedTuple
+
+from g12.errors import number
+from g12.flat.closing import closing_of
+from g12.flat.contour import (
+    SAME_PLACE,
+    Arc,
+    Contour,
+    Line,
+    Point,
+    direction_at,
+    is_move,
+    path_length,
+)
+from g12.flat.gouge import (
+    MEETING,
+    RAMP,
+    Cut,
+    greatest_heights,
+    in_plane,
+    place_count,
+    places_along,
+    stretches,
+    without_repeats,
+)
+from g12.flat.intersect import (
+    along_start,
+    distance_from,
+    least_distance,
+    nearest_place,
+    part_of_move,
+    place_at,
+)
+from g12.flat.nearby import Box, Boxes, near_passes
+
+ALLOWANCE = 0.5  # of the tool's radius: what is cut deeper is none that a finishing pass takes off
+ENTERED = 2.0  # tolerances: so deep is what enters the material
+BESIDE_LAST = 3  # passes: so many on either side of the one that cut the last place are tried first
+COVERED = 0.98  # of the way on which the tool covers a place
+MOST = 15_000  # pairs of a move and a pass; what would need more is not compared
+EACH = 10  # pairs: so long takes the look for them in two contours
+
+
+class _Hit(NamedTuple):
+    """A place of a contour's move that a pass of another contour cuts.
+
+    ``order``: the places of a contour in their order. ``by``: where the pass stands among others.
+    """
+
+    order: int
+    index: int
+    place: Point
+    by: int
+
+
+class _Verdict(NamedTuple):
+    """A run that is not meant: the lines of both moves, how deep, and whether it is refused."""
+
+    line: int
+    by: int
+    deep: float
+    refused: bool
+
+
+def check_contours(contour: Contour, cuts: Sequence[Cut], tolerance: float) -> None:
+    """Refuse a contour on whose way the tool cuts into another one, or tell it in the ``notes``."""
+    followed = _in_plane_once(
+        _Followed(contour, stretch, ramps, tolerance) for stretch, ramps in stretches(cuts)
+    )
+    followed = [one for one in followed if one.heights and one.radius > tolerance]
+    if len(followed) < 2:
+        return
+    told: dict[tuple[int, int], _Verdict] = {}
+    for one, other, verdict in _verdicts(followed):
+        lines = sorted((verdict.line, verdict.by))
+        if verdict.refused:
+            contour.refuse(
+                lines[1],
+                f"the tool of radius {number(followed[one].radius)} cannot follow both lines "
+                f"{lines[0]} and {lines[1]}: beside one of them it cuts into the other",
+            )
+        pair = min(one, other), max(one, other)
+        if pair not in told or told[pair].deep < verdict.deep:
+            told[pair] = verdict
+    for verdict in told.values():
+        text = f"{contour.code} line {verdict.by}: the tool cuts {number(verdict.deep)} into the "
+        _note(contour, f"{text}contour of line {verdict.line}")
+
+
+def _note(contour: Contour, text: str) -> None:
+    if text not in contour.notes:
+        contour.notes.append(text)
+
+
+def _in_plane_once(followed: Iterator[_Followed]) -> list[_Followed]:
+    """Return contours without those that repeat another one at other heights."""
+    kept: dict[tuple, _Followed] = {}
+    for one in followed:
+        if one.signature in kept:
+            kept[one.signature].add_level(one)
+        else:
+            kept[one.signature] = one
+    return list(kept.values())
+
+
+def _verdicts(followed: list[_Followed]) -> Iterator[tuple[int, int, _Verdict]]:
+    """Yield what is not meant, with the numbers of the contour that is cut and the other one."""
+    meant, rest = {}, []  # runs, by the numbers of both contours
+    for one, other, meeting in _meetings(followed):
+        for run in meeting.runs():
+            if meeting.is_meant(run):
+                meant.setdefault((one, other), set()).update(hit.order for hit in run)
+            else:
+                rest.append((one, other, meeting, run))
+    for one, other, meeting, run in rest:
+        gone = set().union(*(orders for (wall, _), orders in meant.items() if wall == one))
+        left = [hit for hit in run if hit.order not in gone]
+        if left:
+            apart = (one, other) not in meant and (other, one) not in meant
+            yield one, other, meeting.verdict(left, apart)
+
+
+def _meetings(followed: list[_Followed]) -> Iterator[tuple[int, int, _Meeting]]:
+    """Yield the contours that are near to each other, as long as it takes no long time."""
+    rest = MOST
+    for one, others in _near_contours(followed):
+        for other in others:
+            meeting = _Meeting(followed[one], followed[other])
+            yield one, other, meeting
+            rest -= meeting.pairs + EACH
+            if rest <= 0:
+                return
+
+
+def _near_contours(followed: list[_Followed]) -> Iterator[tuple[int, list[int]]]:
+    """Yield each contour's number with those of the others whose tool may come near to it."""
+    walls = Boxes([(k, _diagonal(one.walls.box)) for k, one in enumerate(followed)])
+    passes = Boxes([(-1 - k, _diagonal(one.passes.box)) for k, one in enumerate(followed)])
+    reach = max(one.radius for one in followed)
+    for one, near in near_passes(walls, [passes], reach, (), lambda _: False):
+        yield one, sorted(-1 - other for other, _ in near if other != -1 - one)
+
+
+def _diagonal(box: Box) -> Line:
+    low_x, low_c, high_x, high_c = box
+    return Line(0, 0.0, 0.0, low_x, low_c, 0.0, high_x, high_c, 0.0)
+
+
+class _Followed:
+    """A contour with the tool's passes along it.
+
+    ``parts``: what of its moves may be cut, by their index; ``heights``: the greatest Z of each.
+    ``levels``: the heights at which the contour is cut. ``ways``: the passes, with the index of
+    the move that each is for.
+    """
+
+    def __init__(
+        self, contour: Contour, cuts: list[Cut], ramps: list[Cut], tolerance: float
+    ) -> None:
+        self.moves = [cut.move for cut in cuts]
+        self.tolerance, self.offset = tolerance, self.moves[0].offset
+        self.radius = abs(self.offset)
+        self.closing = closing_of(self.moves, max(MEETING * tolerance, 2 * contour.closing))
+        self.parts, self.heights = {}, {}
+        for index, height in sorted(greatest_heights(self.moves).items()):
+            first, last = self.closing.part(index, self.moves[index])
+            if first < last:
+                self.parts[index] = part_of_move(self.moves[index], first, last)
+                self.heights[index] = height
+        self.levels = {_level(self.moves[index].z1) for index in self.parts}
+        ways = [(k, way) for k, cut in enumerate(cuts) for way in cut.path if is_move(way)]
+        ways += [(RAMP, way) for ramp in ramps for way in ramp.path if is_move(way)]
+        self.ways = without_repeats(ways)
+        self.signature = self.offset, tuple(dict.fromkeys(map(in_plane, self.moves)))
+
+    def add_level(self, other: _Followed) -> None:
+        """Take over the heights of a contour that is the same in the plane."""
+        for index, height in other.heights.items():
+            self.heights[index] = max(height, self.heights.get(index, height))
+        self.levels |= other.levels
+        self.ways = without_repeats([*self.ways, *other.ways])
+
+    @cached_property
+    def first_places(self) -> dict[int, int]:
+        """The number of each part's first place; a number is left out where parts do not join."""
+        first, following = {}, 0
+        for index, part in self.parts.items():
+            first[index] = following
+            following += place_count(part, self.tolerance) + (index + 1 not in self.parts)
+        return first
+
+    @property
+    def count(self) -> int:
+        """How many places there are."""
+        return sum(place_count(part, self.tolerance) for part in self.parts.values())
+
+    @property
+    def last_place(self) -> int:
+        """The number of the last place."""
+        index = max(self.parts)
+        return self.first_places[index] + place_count(self.parts[index], self.tolerance) - 1
+
+    @cached_property
+    def walls(self) -> Boxes:
+        """What may be cut, by its index."""
+        return Boxes(list(self.parts.items()))
+
+    @cached_property
+    def passes(self) -> Boxes:
+        """The passes, by minus their number from 1, which `near_passes` takes for no move's."""
+        return Boxes([(-1 - number, way) for number, (_, way) in enumerate(self.ways)])
+
+    @cached_property
+    def balls(self) -> list[tuple[Point, float]]:
+        """A circle round each pass: centre and radius."""
+        return [_ball(way) for _, way in self.ways]
+
+    def height_of(self, point: Point, reach: float) -> float:
+        """Return how far a point is from the contour, below zero in its material.
+
+        Beyond the ends of an open contour nobody knows: -inf.
+        """
+        x, c = point
+        nearest, height, at_end = inf, -inf, False
+        for index, move in self.walls.near((x, c, x, c), reach):
+            px, pc = nearest_place(move, point)
+            away = hypot(x - px, c - pc)
+            if away > nearest + SAME_PLACE:
+                continue
+            tx, tc = direction_at(move, (px, pc))
+            across = copysign(1.0, self.offset) * (tx * (c - pc) - tc * (x - px))
+            if away < nearest - SAME_PLACE or abs(across) > abs(height):
+                height, at_end = across, self._is_end(index, px, pc)
+            nearest = min(nearest, away)
+        return -inf if at_end else copysign(nearest, height)
+
+    def _is_end(self, index: int, x: float, c: float) -> bool:
+        """Return whether a place of a move is an end of an open contour."""
+        if self.closing.closed:
+            return False
+        ends = []
+        if index == 0:
+            ends.append((self.moves[0].x0, self.moves[0].c0))
+        if index == len(self.moves) - 1:
+            ends.append((self.moves[-1].x1, self.moves[-1].c1))
+        return any(hypot(x - ex, c - ec) <= SAME_PLACE for ex, ec in ends)
+
+    def leads(self, index: int) -> bool:
+        """Return whether a pass for a move may be one to lead in or out."""
+        if index == RAMP:
+            return True
+        closing = self.closing
+        if closing.closed and not closing.crossing:
+            return not closing.first <= index <= closing.last
+        return not closing.first < index < closing.last
+
+
+class _Meeting:
+    """A contour, and the passes along another one that may cut it."""
+
+    def __init__(self, wall: _Followed, other: _Followed) -> None:
+        self._wall, self._other = wall, other
+        self._reach = other.radius - wall.tolerance
+        self.pairs = 0  # that were looked at
+        self._hits: list[_Hit] = []
+        self._last = 0  # pass that cut the last place
+
+    def runs(self) -> list[list[_Hit]]:
+        """Return the runs of the contour's places that the other one's passes cut."""
+        wall, other = self._wall, self._other
+        near = near_passes(wall.walls, [other.passes], self._reach, (), self._is_cut_on)
+        for index, passes in near:
+            self._cut(index, [-1 - number for number, _ in passes])
+        runs: list[list[_Hit]] = []
+        for hit in sorted(self._hits):
+            if runs and hit.order == runs[-1][-1].order + 1:
+                runs[-1].append(hit)
+            else:
+                runs.append([hit])
+        around = wall.closing.closed and len(runs) > 1
+        if around and runs[0][0].order == 0 and runs[-1][-1].order == wall.last_place:
+            runs[0] = runs.pop() + runs[0]
+        return runs
+
+    def is_meant(self, run: list[_Hit]) -> bool:
+        """Return whether the other contour enters the material anywhere in a run."""
+        if any(self._enters(hit.place, hit.by) for hit in run):
+            return True
+        for hit in run:
+            x, c = hit.place
+            passes = self._other.passes.near((x, c, x, c), self._reach)
+            if any(self._enters(hit.place, -1 - number) for number, _ in passes):
+                return True
+        return False
+
+    def verdict(self, run: list[_Hit], apart: bool) -> _Verdict:
+        """Return what to say of places that are not meant to be cut.
+
+        ``apart``: neither contour enters the other one's material anywhere.
+        """
+        wall, other = self._wall, self._other
+        deep, hit = max((self._depth(hit), hit) for hit in run)
+        index, way = other.ways[hit.by]
+        refused = (
+            apart
+            and wall.closing.closed
+            and len(run) < wall.count
+            and not other.leads(index)
+            and _level(way.z1) in wall.levels
+            and deep > ALLOWANCE * other.radius
+        )
+        return _Verdict(wall.moves[hit.index].line, way.line, deep, refused)
+
+    def _depth(self, hit: _Hit) -> float:
+        return self._other.radius - distance_from(self._other.ways[hit.by][1], hit.place)
+
+    def _is_cut_on(self, index: int) -> bool:
+        """Note the hits of a move if passes beside the one that cut last cut all of it."""
+        if not self._hits:
+            return False
+        first = max(self._last - BESIDE_LAST, 0)
+        beside = range(first, min(self._last + BESIDE_LAST + 1, len(self._other.ways)))
+        order = sorted(beside, key=lambda by: abs(by - self._last))
+        hits = list(self._hits_in(index, list(self._low(index, order))))
+        if None in hits:
+            return False
+        self.pairs += 1
+        self._hits += hits
+        return True
+
+    def _cut(self, index: int, passes: list[int]) -> None:
+        """Note which places of a move some passes cut."""
+        move = self._wall.parts[index]
+        (x, c), ball = _ball(move)
+        near = []
+        for by, way in self._low(index, passes):
+            (wx, wc), other = self._other.balls[by]
+            if hypot(wx - x, wc - c) < self._reach + ball + other:
+                self.pairs += 1
+                if least_distance(way, move) < self._reach:
+                    near.append((by, way))
+        if near:
+            self._hits += filter(None, self._hits_in(index, near))
+
+    def _low(self, index: int, passes: Iterable[int]) -> Iterator[tuple[int, Line | Arc]]:
+        """Yield those of some passes that are not above a move."""
+        height = self._wall.heights[index] + SAME_PLACE
+        for by in passes:
+            way = self._other.ways[by][1]
+            if way.z0 <= height or way.z1 <= height:
+                yield by, way
+
+    def _hits_in(self, index: int, passes: list) -> Iterator[_Hit | None]:
+        """Yield for each place of a move the hit by the first of some passes that cuts it."""
+        places = places_along(self._wall.parts[index], self._wall.tolerance)
+        for order, (at, *_) in enumerate(places, self._wall.first_places[index]):
+            found = None
+            for k, (by, way) in enumerate(passes):
+                if distance_from(way, at) < self._reach:
+                    found, self._last = _Hit(order, index, at, by), by
+                    passes.insert(0, passes.pop(k))
+                    break
+            yield found
+
+    def _enters(self, place: Point, by: int) -> bool:
+        """Return whether the other contour is in the material where a pass cuts a place."""
+        index, way = self._other.ways[by]
+        if index == RAMP:
+            return False
+        deep = -ENTERED * self._wall.tolerance
+        reach = 2.0 * (self._other.radius + self._wall.radius)
+        return any(
+            self._wall.height_of(touch, reach) < deep
+            for touch in _touches(way, place, self._other.offset)
+        )
+
+
+def _touches(way: Line | Arc, place: Point, offset: float) -> Iterator[Point]:
+    """Yield where the tool touches its contour while it cuts a place: first, last and between."""
+    x, c = nearest_place(way, place)
+    half = sqrt(max(offset * offset - (place[0] - x) ** 2 - (place[1] - c) ** 2, 0.0))
+    at, length = along_start(way, (x, c)), path_length(way)
+    for along in (at, at - COVERED * half, at + COVERED * half):
+        centre = place_at(way, min(max(along / length, 0.0), 1.0))
+        tx, tc = direction_at(way, centre)
+        yield centre[0] + offset * tc, centre[1] - offset * tx
+
+
+def _ball(move: Line | Arc) -> tuple[Point, float]:
+    """Return a circle round a move: centre and radius."""
+    return place_at(move, 0.5), 0.5 * path_length(move)
+
+
+def _level(z: float) -> int:
+    """Return a height that is the same but for rounding."""
+    return round(z / SAME_PLACE)

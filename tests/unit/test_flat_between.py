@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Contours of one section: what the tool of one cuts of another is found, what is right is cut.
+
+Judged by shapely: the way of the tool's centre along one contour against the other's outline.
+"""
+
+import cmath
+import math
+import random
+import time
+from collections import Counter
+
+import pytest
+from shapely.geometry import JOIN_STYLE, Polygon
+from shapely.geometry.polygon import orient
+
+from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.flat.closing import Closing
+from g12.flat.contour import Contour, Line
+from g12.flat.offset import tool_path
+from support.contour_geometry import Round, Straight
+from support.planned_cuts import add
+from support.random_contours import (
+    TOLERANCE,
+    Drawn,
+    as_shapely,
+    away,
+    blind_path,
+    contour_of,
+    depth,
+    polygon,
+    rounded,
+    star,
+)
+
+LEFT, RIGHT = 41, 42
+UP = 5.0
+SEEDS = range(250)
+DEEPEST_TOLD = 0.5  # of the tool's radius
+
+
+def section(*parts):
+    """Return a section of contours, each what is drawn and its Z."""
+    contour, line = Contour(90.0, UP), 1
+    for drawn, height in parts:
+        first, last = drawn.shapes[0], drawn.shapes[-1]
+        start = first.start + away(drawn) * cmath.rect(1.0, first.headings()[0])
+        end = last.end + away(drawn) * cmath.rect(1.0, last.headings()[1])
+        contour.line(start.real, start.imag, line=line, feed=300.0)
+        contour.line(z=height, line=line, feed=300.0)
+        contour.compensation(drawn.side, drawn.radius, line=line + 1)
+        contour.line(first.start.real, first.start.imag, line=line + 1, feed=300.0)
+        for behind, shape in enumerate(drawn.shapes, line + 2):
+            add(contour, shape, line=behind, feed=300.0)
+        line += 2 + len(drawn.shapes)
+        contour.compensation(40, 0.0, line=line)
+        contour.line(end.real, end.imag, line=line, feed=300.0)
+        contour.line(z=UP, line=line + 1, feed=300.0)
+        line += 2
+    return contour
+
+
+def found(*parts):
+    """Return the message with which a section is refused, if it is, and what is told of it."""
+    contour = section(*parts)
+    try:
+        tool_path(contour, contour.elements, TOLERANCE)
+    except Refusal as refused:
+        assert len(refused.message) < LONGEST_MESSAGE
+        return refused.message, contour.notes
+    assert all(len(note) < LONGEST_MESSAGE for note in contour.notes)
+    return "", contour.notes
+
+
+def boss(shapes, radius=6.0):
+    """Return what stands: the tool is outside of clockwise shapes."""
+    return Drawn(shapes, LEFT, radius, shapes)
+
+
+def pocket(shapes, radius=6.0):
+    """Return what is hollow: the tool is inside of clockwise shapes."""
+    return Drawn(shapes, RIGHT, radius, shapes)
+
+
+def circle(radius, at=0j):
+    return [Round(at + radius, at, -2 * math.pi)]
+
+
+def regular(count, radius, at=0j):
+    return polygon([at + cmath.rect(radius, -2 * math.pi * k / count) for k in range(count)])
+
+
+def slot(width, length, at=0j, turn=0.0):
+    across, along = 0.5j * width * cmath.rect(1, turn), 0.5 * (length - width) * cmath.rect(1, turn)
+    ends = [at + across, at + across + along, at - across + along]
+    return [
+        Straight(ends[0], ends[1]),
+        Round(ends[1], at + along, -math.pi),
+        Straight(ends[2], at - across - along),
+        Round(at - across - along, at - along, -math.pi),
+        Straight(at + across - along, ends[0]),
+    ]
+
+
+HEXAGON = boss(regular(6, 15.6))
+
+
+# What shops make.
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        [(HEXAGON, -5.0), (pocket(slot(14, 40, at=40.0)), -5.0)],  # a slot beside
+        [(boss(regular(6, 17.0)), -5.0), (HEXAGON, -5.0)],  # a roughing pass first
+        [(HEXAGON, -5.0), (boss(regular(6, 17.0)), -5.0)],
+        [(HEXAGON, -float(k)) for k in range(1, 6)],
+        [(HEXAGON, -5.0), (pocket(slot(14, 60, turn=0.5)), -5.0)],  # across, as deep
+        [(HEXAGON, -5.0), (pocket(slot(14, 60, turn=0.9)), -3.0)],
+        [(HEXAGON, -5.0), (pocket(circle(9.0), 4.0), -5.0)],
+        [(boss(circle(9.0), 2.0), -5.0), (pocket(circle(14.0), 2.0), -5.0)],  # a groove
+        [(pocket(circle(7.5)), -5.0), (pocket(slot(14.5, 50)), -5.0)],  # a hole to go down in
+    ],
+)
+@pytest.mark.parametrize("turned", [False, True])
+def test_what_is_right_is_cut_in_any_order(parts, turned):
+    assert found(*parts[:: -1 if turned else 1]) == ("", [])
+
+
+def test_a_pass_the_other_way_round_may_finish():
+    way_back = [Straight(side.end, side.start) for side in HEXAGON.shapes[::-1]]
+    finish = Drawn(way_back, RIGHT, 6.0, way_back)
+    assert found((boss(regular(6, 17.0)), -5.0), (finish, -5.0)) == ("", [])
+
+
+def test_four_flats_may_each_be_a_contour():
+    flats = [[Straight(turn * (13.5 + 25j), turn * (13.5 - 25j))] for turn in (1, 1j, -1, -1j)]
+    assert found(*((boss(flat), -5.0) for flat in flats)) == ("", [])
+
+
+def near(gap, *depths):
+    """Return a boss of eight sides, one of them 10 from the centre, and a round one beside it."""
+    corners = [cmath.rect(10 / math.cos(math.pi / 8), math.pi * (2 * k + 1) / 8) for k in range(8)]
+    start = polygon([*corners[3::-1], *corners[:3:-1]])  # in the middle of a far side
+    return [(boss(start, 3.0), depths[0]), (boss(circle(5.0, at=15.0 + gap), 3.0), depths[-1])]
+
+
+def test_a_gap_of_the_tools_width_is_enough():
+    assert found(*near(6.0, -5.0)) == ("", [])
+
+
+def test_a_deep_cut_into_another_contour_is_refused():
+    text, _ = found(*near(4.0, -5.0))
+    assert text == (
+        "G12.1 line 16: the tool of radius 3 cannot follow both lines 6 and 16: beside one of "
+        "them it cuts into the other"
+    )
+
+
+def test_a_shallow_one_may_be_an_allowance_and_is_told():
+    text, notes = found(*near(5.0, -5.0))
+    assert (text, notes) == ("", ["G12.1 line 16: the tool cuts 1 into the contour of line 6"])
+
+
+def test_what_another_depth_cuts_is_told():
+    text, notes = found(*near(4.0, -5.0, -6.0))
+    assert not text
+    assert len(notes) == 1
+
+
+def test_an_open_contour_may_end_in_the_air_and_is_told():
+    flat = boss([Straight(13.5 + 25j, 13.5 - 25j)])
+    text, notes = found((flat, -5.0), (boss(circle(5.0, at=25.0)), -5.0))
+    assert not text
+    assert notes
+
+
+def test_a_pip_in_a_pocket_is_told():
+    face = [(boss(circle(15.0)), -1.0), (boss(circle(5.0)), -1.0)]
+    assert not found(*face, (pocket(circle(10.0)), -1.0))[0]
+
+
+# Contours made at random.
+
+
+def shape(draw, at):
+    corners = star(draw, draw.randint(3, 8))
+    centre = sum(corners) / len(corners)
+    corners = clockwise(Polygon([(z.real, z.imag) for z in corners]))
+    made = polygon([0.5 * (corner - centre) + at for corner in corners])
+    if min(side.length for side in made) < 0.3:
+        return None
+    return rounded(draw, made) if draw.random() < 0.5 else made
+
+
+def clockwise(outline):
+    return [complex(*corner) for corner in orient(outline, -1.0).exterior.coords[:-1]]
+
+
+def outline(drawn):
+    return Polygon(as_shapely(drawn.body).coords)
+
+
+def enters(one, other):
+    """Return how far a contour goes into the material of another one."""
+    line, inside = as_shapely(one.body), outline(other)
+    left = line.intersection(inside) if other.side == LEFT else line.difference(inside)
+    parts = [part for part in getattr(left, "geoms", [left]) if part.length > 0.0]
+    places = (part.interpolate(k / 40, normalized=True) for part in parts for k in range(41))
+    return max(map(inside.exterior.distance, places), default=0.0)
+
+
+def two(draw):
+    """Return two contours, one beside or in the other, or None."""
+    radius = draw.choice([0.5, 1.0, 2.0, 4.0])
+    sides = draw.choice([(LEFT, LEFT), (LEFT, RIGHT), (RIGHT, RIGHT)])
+    places = 0j, cmath.rect(draw.uniform(0.0, 25.0), draw.uniform(0.0, 2 * math.pi))
+    shapes = [shape(draw, place) for place in places]
+    if None in shapes:
+        return None
+    return [Drawn(made, side, radius, made) for made, side in zip(shapes, sides)]
+
+
+def cut_depth(monkeypatch, parts):
+    """Return how deep the tool of one of two parts cuts the other, None if one cannot be cut."""
+    try:
+        paths = [blind_path(monkeypatch, contour_of(part)) for part in parts]
+    except Refusal:
+        return None
+    if any(refused(part) for part in parts):
+        return None
+    return max(depth(path, part) for path, part in zip(paths, parts[::-1]))
+
+
+def refused(part):
+    text, notes = found((part, -1.0))
+    return text or notes
+
+
+def test_what_cuts_into_another_is_found_and_nothing_else(monkeypatch):
+    count = Counter()
+    for seed in SEEDS:
+        draw = random.Random(seed)
+        parts = two(draw)
+        deep = cut_depth(monkeypatch, parts) if parts else None
+        if deep is None:
+            continue
+        text, notes = found(*((part, -1.0) for part in parts))
+        met = max(enters(*parts), enters(*parts[::-1]))
+        if 0.5 * TOLERANCE < met < 3.0 * TOLERANCE:
+            continue
+        if met > TOLERANCE:
+            count["met"] += 1
+            assert not text, seed  # one cuts of the other what is meant: told at most
+        elif deep < 0.9 * TOLERANCE:
+            count["right"] += 1
+            assert (text, notes) == ("", []), seed
+        elif deep > 1.5 * TOLERANCE:
+            count["wrong"] += 1
+            assert text or notes, seed
+            count["refused"] += bool(text)
+            assert not text or deep > DEEPEST_TOLD * parts[0].radius, seed
+    assert min(count["right"], count["wrong"], count["met"], count["refused"]) >= len(SEEDS) / 50
+
+
+def test_a_finishing_pass_may_cut_what_roughing_left(monkeypatch):
+    count = 0
+    for seed in SEEDS:
+        draw = random.Random(seed)
+        made, side = shape(draw, 0j), draw.choice([LEFT, RIGHT])
+        if not made:
+            continue
+        radius = draw.choice([0.5, 1.0, 2.0])
+        left = draw.uniform(0.05, 1.8) * radius  # the finishing pass takes it all
+        finish = Drawn(made, side, radius, made)
+        away_by = left if side == LEFT else -left
+        outside = outline(finish).buffer(away_by, join_style=JOIN_STYLE.mitre)
+        if outside.geom_type != "Polygon" or outside.is_empty or outside.interiors:
+            continue
+        rough = Drawn(polygon(clockwise(outside)), side, radius, [])
+        if refused(rough) or refused(finish):
+            continue
+        if depth(blind_path(monkeypatch, contour_of(rough)), finish) > 0.9 * TOLERANCE:
+            continue  # its ramp does, in a small pocket
+        parts = [(rough, -1.0), (finish, -1.0)]
+        draw.shuffle(parts)
+        count += 1
+        assert found(*parts) == ("", []), seed
+    assert count > len(SEEDS) / 4
+
+
+def test_what_is_only_rounding_of_a_move_is_no_part_of_a_contour():
+    move = Line(1, 300.0, 3.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0)
+    assert Closing(0, 2.0 - 1e-12, 4, 1.0, True, False).part(0, move) == (0.0, 0.0)
+    assert Closing(0, 1.0, 4, 1.0, True, False).part(0, move) == (0.5, 1.0)
+
+
+# How long it takes.
+
+
+def waves(count, radius, turns=10):
+    angles = [2 * math.pi * k / count for k in range(count + 1)]
+    points = [cmath.rect(radius + 2.0 * math.sin(turns * a / 2), -a) for a in angles]
+    return boss([Straight(*pair) for pair in zip(points, points[1:])], 3.0)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        [(waves(5000, 20.5), -1.0), (waves(5000, 20.0), -1.0)],
+        [(waves(200, 20.0 + 0.1 * k), -1.0 - k) for k in range(50)],
+    ],
+)
+def test_ten_thousand_elements_take_less_than_a_second(monkeypatch, parts):
+    contour = section(*parts)
+    assert len(contour.elements) > 9_900
+    took = seconds(contour)
+    assert contour.notes == []
+    monkeypatch.setattr("g12.flat.offset.check_contours", lambda *_: None)
+    assert took < max(1.0, 5 * seconds(contour))  # the latter on a busy machine
+
+
+def seconds(contour):
+    start = time.process_time()
+    tool_path(contour, contour.elements, TOLERANCE)
+    return time.process_time() - start
