@@ -6,6 +6,7 @@ import math
 import pytest
 
 from g12.cycles.context import Tool
+from g12.cycles.entry import PocketEntry
 from g12.cycles.haas import plan_pocket
 from g12.cycles.words import Words
 from g12.errors import Refusal
@@ -250,6 +251,20 @@ def test_material_left_is_a_message_not_an_error():
     assert plan(I=0.3, K=0.4, Q=0.5, Z=-1.0, D=1).message is None
     assert plan(I=0.75, Z=-1.0, D=1).message is None
     assert plan(I=0.3, K=1.5, Q=0.3, Z=-1.0, D=0).message is None
+
+
+def test_a_ring_is_left_about_the_centre_where_a_helix_does_not_reach():
+    """It clears its own radius, 0.9 of the cutter's, more than a straight way down."""
+
+    def message(first):
+        words = Words("G12", dict(I=first, K=1.5, Q=0.25, Z=-1.0, D=1))
+        return plan_pocket(words, FOUND, entry=PocketEntry(helix=True)).message
+
+    assert message(3.9 * 0.125) is None
+    assert message(3.9 * 0.125 + 1e-4) == (
+        "G12: I0.4876 is greater than 1.95 x the tool diameter 0.25:"
+        " a ring is left about the centre"
+    )
 
 
 def test_a_table_diameter_with_conversion_noise_changes_nothing():

@@ -111,7 +111,7 @@ def ramp_of(
     round_ = pi * rings.first_ring
     fall = (length + round_) * tan(radians(machine.entry_angle))
     first, following = (
-        max(1, ceil(height / fall)) if height < MOST_HALF_TURNS * fall else inf
+        ceil(height / fall) if height < MOST_HALF_TURNS * fall else inf
         for height in (heights.near_z + levels.step_down, levels.step_down)
     )
     if first > MOST_HALF_TURNS:
