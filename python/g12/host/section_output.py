@@ -6,6 +6,7 @@ While pieces go out the interpreter is in G90 G94 with C unwrapped, and blends t
 program can see it, or the machine waits.
 
 A move in front of the section would be blended into its first piece: a dwell of no time stops it.
+(Also under G61: what a move ends in is told by what was in force at it.)
 
 On the face (`configs/kinematics`) lines and arcs go out as they are, in X and Y. To go there and
 back the machine has to stand, and the interpreter to wait for it.
@@ -185,7 +186,7 @@ class SectionOutput:
         interp.motion_mode = modes.motion
 
     def _stop_in_front(self, steps: Sequence[BlockMoves | Action]) -> None:
-        if steps and not self._begun and not self.path.exact:
+        if steps and not self._begun:
             self.interp.sequence_number = steps[0].line
             self.interp.execute(STOP_HERE)
         self._begun = True
