@@ -14,6 +14,7 @@ import cmath
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from shapely.geometry import LineString, MultiLineString, Point
@@ -160,12 +161,16 @@ def arc_points(move: Move, fractions: np.ndarray) -> np.ndarray:
     """Return machine positions (n, 9) after fractions of an arc: ``Move.point`` of many."""
     axes, centre = plane_axes(move), np.array(move.centre)
     start, end = (axes @ (np.array(point[:3]) - centre) for point in (move.start, move.end))
-    growth = 1 + (np.hypot(*end[:2]) / np.hypot(*start[:2]) - 1) * fractions
-    cos, sin = np.cos(move.sweep * fractions), np.sin(move.sweep * fractions)
-    first, second = start[0] * cos - start[1] * sin, start[0] * sin + start[1] * cos
-    third = start[2] + (end[2] - start[2]) * fractions
-    points = np.outer(1 - fractions, move.start) + np.outer(fractions, move.end)
-    points[:, :3] = np.stack([first * growth, second * growth, third], axis=1) @ axes + centre
+    angles, radius = move.sweep * fractions, math.hypot(*start[:2])
+    growth = 1 + (math.hypot(*end[:2]) / radius - 1) * fractions
+    cos, sin = np.cos(angles) * growth, np.sin(angles) * growth
+    points, seen = np.empty((len(fractions), 9)), np.empty((len(fractions), 3))
+    points[:, 3:] = move.start[3:]
+    if move.start[3:] != move.end[3:]:
+        points[:, 3:] = np.outer(1 - fractions, move.start[3:]) + np.outer(fractions, move.end[3:])
+    seen[:, 0], seen[:, 1] = start[0] * cos - start[1] * sin, start[0] * sin + start[1] * cos
+    seen[:, 2] = start[2] + (end[2] - start[2]) * fractions
+    points[:, :3] = seen @ axes + centre
     return points
 
 
@@ -213,6 +218,13 @@ def is_sideways(move: Move) -> bool:
 
 def plane_axes(move: Move) -> np.ndarray:
     """Return the directions of a move's plane: first, second and third axis, as rows."""
-    cos, sin = np.cos(np.radians(move.rotation)), np.sin(np.radians(move.rotation))
+    return _axes_of_plane(move.plane, move.rotation)
+
+
+@lru_cache(maxsize=64)
+def _axes_of_plane(plane: int, rotation: float) -> np.ndarray:
+    cos, sin = np.cos(np.radians(rotation)), np.sin(np.radians(rotation))
     turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
-    return np.roll(turned, 2 - THIRD_AXIS[move.plane], axis=0)
+    axes = np.roll(turned, 2 - THIRD_AXIS[plane], axis=0)
+    axes.flags.writeable = False
+    return axes

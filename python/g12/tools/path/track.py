@@ -130,24 +130,36 @@ def track(
     limits: Limits,
     spindle_speed: float = 0.0,
     chord_error: float = CHORD_ERROR,
+    *,
+    own: range | None = None,
 ) -> Track:
-    """Return the polyline of moves."""
-    positions, offsets, owner, times = [], [], [], [0.0]
-    before = (0.0,) * 9
-    for index, move in enumerate(moves):
+    """Return the polyline of moves; of those ``own`` alone it says nothing of the others."""
+    own = range(len(moves)) if own is None else own
+    positions, offsets, owner, times = [], [], [], [np.zeros(1)]
+    before = moves[own.start - 1].tool_offset if own.start else (0.0,) * 9
+    for index in own:
+        move = moves[index]
         points = part.machine_points(move, chord_error)
-        skip = 1 if index else 0
-        share = np.linspace(0.0, 1.0, len(points))[:, None]
+        skip = 1 if index > own.start else 0
+        share = np.linspace(0.0, 1.0, len(points))
         positions.append(points[skip:])
-        offsets.append((np.array(before) * (1 - share) + np.array(move.tool_offset) * share)[skip:])
-        owner.append(np.full(len(points) - skip, index))
-        start, seconds = times[-1], duration(move, limits, spindle_speed)
-        times.extend(start + seconds * share[1:, 0])
+        offsets.append(offsets_between(before, move.tool_offset, share)[skip:])
+        owner.append(len(points) - skip)
+        times.append(times[-1][-1] + duration(move, limits, spindle_speed) * share[1:])
         before = move.tool_offset
     return Track(
         part,
         np.concatenate(positions or [np.zeros((1, 9))]),
         np.concatenate(offsets or [np.zeros((1, 9))]),
-        np.concatenate(owner or [np.zeros(1, int)]),
-        np.array(times),
+        np.repeat(own, owner) if owner else np.zeros(1, int),
+        np.concatenate(times),
     )
+
+
+def offsets_between(
+    before: Sequence[float], after: Sequence[float], share: np.ndarray
+) -> np.ndarray:
+    """Return tool length offsets (n, 9) at shares of a move on which they change."""
+    if before == after:
+        return np.broadcast_to(after, (len(share), len(after)))
+    return np.multiply.outer(1 - share, before) + np.multiply.outer(share, after)

@@ -173,8 +173,10 @@ class Move(NamedTuple):
 
     def _in_plane(self, position: Sequence[float]) -> tuple[float, float, float]:
         """First, second and third axis of the plane, seen from the centre of the arc."""
-        x, y, z = (value - origin for value, origin in zip(position, self.centre))
-        x, y = _turned(x, y, -self.rotation)
+        (x, y, z), (x0, y0, z0) = position[:3], self.centre
+        x, y, z = x - x0, y - y0, z - z0
+        if self.rotation:
+            x, y = _turned(x, y, -self.rotation)
         third = THIRD_AXIS[self.plane]
         return ((x, y, z) * 2)[third + 1 : third + 4]
 

@@ -76,7 +76,8 @@ def wall_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[
     if facts.left > SAME_AREA:
         yield f"{unit.area(facts.left)} of material are left standing"
     if target.schedule.smooth and facts.jump > MOST_JUMP:
-        yield f"the direction jumps by {facts.jump:.3g} degrees"
+        place = place_text(facts.jump_at, unit)
+        yield f"the direction jumps by {facts.jump:.3g} degrees at {place}"
 
 
 def depth_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
@@ -124,8 +125,9 @@ def schedule_findings(facts: PocketFacts, unit: Unit) -> Iterator[str]:
         yield f"full circles along the wall: {facts.passes}, not {asked.passes}"
         return
     rough = facts.circles[:-1] if asked.finish_turn else facts.circles
-    if asked.turn and any(turn != asked.turn for turn in rough):
-        yield "it turns the wrong way"
+    wrong = [cut for cut, turn in zip(facts.cut, rough) if asked.turn not in (0, turn)]
+    if wrong:
+        yield f"it turns the wrong way: {circle_text(wrong[0], facts, unit)}"
     if asked.finish_turn and asked.finish_turn not in facts.circles[-1:]:
         yield "its finish pass turns the wrong way"
 

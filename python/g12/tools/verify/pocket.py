@@ -13,7 +13,6 @@ from hashlib import blake2b
 from typing import NamedTuple
 
 import numpy as np
-from shapely.geometry import MultiLineString, Point
 from shapely.geometry.base import BaseGeometry
 
 from g12.tools.path.follow import Followed
@@ -22,15 +21,23 @@ from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.verify.axis_limits import Overrun
+from g12.tools.verify.pocket_cover import (
+    FINE,
+    SECTORS,
+    Segments,
+    Span,
+    clears,
+    farthest_of,
+    nearest_of,
+    polar,
+)
 from g12.tools.verify.pocket_entry import HelixFacts, falls, helices_of, helix_facts
 from g12.tools.verify.pocket_order import LeftBehind, Misplaced, growth_of, misplaced
 from g12.tools.verify.wanted_circle import Target, Wall
 
-SECTORS = 720  # directions in which the wall is looked at
 SAME_LEVEL = 1e-3
-FINE = 1e-5  # chord error of the polylines that stand for arcs
 ROUND = 4e-6  # the same of an arc with radius 1, so that every sector gets a point
-COARSE = 1e-4  # the same where distances are looked for many times
+COARSE = 1e-4  # to which the distance between passes is told
 SAME_FEED = 1e-6
 SAME_PLACE = 6  # decimals
 NEAR_CENTRE = 0.02  # of a move's own reach
@@ -52,6 +59,7 @@ class PocketFacts:
     ``off_path`` and ``off_rings`` are the real motion's largest deviations, None without a run.
     ``cut`` is the depth and the radius of every full circle in its order, ``other_mode`` says
     that a move has its feed per minute in place of per revolution, or the other way round;
+    ``jump`` is the greatest change of direction, at the place ``jump_at`` on the machine,
     ``growth`` is that of a spiral in a turn, ``helix`` None where the tool goes straight down.
     ``spindle_stands`` says that no spindle turns, as far as the program tells, ``acts`` are what
     the cycle does besides moving.
@@ -84,6 +92,7 @@ class PocketFacts:
     left_behind: tuple[LeftBehind, ...] = ()
     acts: tuple[str, ...] = ()
     spindle_stands: bool = False
+    jump_at: tuple[float, ...] | None = None
 
     @property
     def turns(self) -> tuple[int, ...]:
@@ -129,7 +138,7 @@ def measure_pocket(
     return PocketFacts(
         target,
         **areas._asdict(),
-        jump=direction_jump([moves[index] for index in own], target),
+        **direction_jump([moves[index] for index in own], target)._asdict(),
         helix=helix_facts(entries, moves, wall),
         depths=tuple(sorted(lines, reverse=True)),
         lowest=lowest_of(own, path, wall),
@@ -189,16 +198,13 @@ def areas_of(
     deepest = lines[levels[-1]] if levels else []
     points = np.concatenate(deepest) if deepest else np.zeros((0, 3))
     radii = radii_of(points, wall, cutter)
-    floor = swept(deepest, cutter)
-    above = [line for level in levels[:-1] for line in lines[level]]
-    above += [line for some in falling.values() for line in some]
-    every = floor.union(swept(above, cutter)) if above else floor
+    every = [line for some in (lines, falling) for level in some for line in some[level]]
     reached = (radii.max() if wall.inside else radii.min()) if len(points) else 0.0
     return PocketAreas(
         reached=float(reached),
         deviation=float(np.abs(radii - wall.radius).max()),
-        left=left_of(wall, cutter, floor, tolerance).area,
-        gouge=gouge_of(wall, every, tolerance).area,
+        left=area_left(wall, cutter, deepest, tolerance),
+        gouge=area_gouged(wall, cutter, every, tolerance),
         stepover=stepover_of(deepest),
     )
 
@@ -256,7 +262,9 @@ def is_full_circle(move: Move) -> bool:
 
 
 def is_cutting(move: Move, wall: Wall) -> bool:
-    """Tell whether a move feeds across the wall's plane."""
+    """Tell whether a move feeds across the wall's plane, which an arc does anyway."""
+    if move.kind == "arc":
+        return True
     across = wall.axes[:2] @ np.array(move.tangent(0.5))
     return move.kind != "rapid" and bool(np.hypot(*across) > 1e-6)
 
@@ -303,24 +311,39 @@ def radii_of(points: np.ndarray, wall: Wall, cutter: float) -> np.ndarray:
     far = np.zeros(SECTORS) if wall.inside else np.full(SECTORS, np.inf)
     if len(points):
         gather = np.maximum if wall.inside else np.minimum
-        gather.at(far, *polar(points))
+        sector, radius = polar(points)
+        order = np.argsort(sector.astype(np.int16), kind="stable")
+        sector, first = np.unique(sector[order], return_index=True)
+        far[sector] = gather.reduceat(radius[order], first)
     return far + cutter if wall.inside else far - cutter
 
 
-def polar(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the sector about the centre and the distance from it of points."""
-    turn = np.arctan2(points[:, 1], points[:, 0]) / (2 * np.pi) % 1.0
-    sector = np.minimum((turn * SECTORS).astype(int), SECTORS - 1)
-    return sector, np.hypot(points[:, 0], points[:, 1])
+def area_left(wall: Wall, cutter: float, lines: Sequence[np.ndarray], tolerance: float) -> float:
+    """Return the area of what paths leave standing; see ``left_of``."""
+    if clears(lines, cutter, wanted_of(wall, cutter, tolerance)):
+        return 0.0
+    return left_of(wall, cutter, swept(lines, cutter), tolerance).area
+
+
+def area_gouged(wall: Wall, cutter: float, lines: Sequence[np.ndarray], tolerance: float) -> float:
+    """Return the area of what paths cut beyond a wall; see ``gouge_of``."""
+    if wall.inside:
+        spared = farthest_of(lines) + cutter <= wall.radius + tolerance
+    else:
+        spared = nearest_of(lines) - cutter >= wall.radius - tolerance
+    return 0.0 if spared else gouge_of(wall, swept(lines, cutter), tolerance).area
+
+
+def wanted_of(wall: Wall, cutter: float, tolerance: float) -> Span:
+    """Return between which distances from the centre nothing may be left."""
+    if wall.inside:
+        return wall.cleared + tolerance, wall.radius - tolerance
+    return wall.radius + tolerance, wall.radius + 2 * cutter - tolerance
 
 
 def left_of(wall: Wall, cutter: float, floor: BaseGeometry, tolerance: float) -> BaseGeometry:
     """Return what is left standing at the deepest level, beyond the tolerance."""
-    if wall.inside:
-        wanted = ring(wall.cleared + tolerance, wall.radius - tolerance)
-    else:
-        wanted = ring(wall.radius + tolerance, wall.radius + 2 * cutter - tolerance)
-    return wanted.difference(floor)
+    return ring(*wanted_of(wall, cutter, tolerance)).difference(floor)
 
 
 def gouge_of(wall: Wall, area: BaseGeometry, tolerance: float) -> BaseGeometry:
@@ -343,27 +366,33 @@ def stepover_of(lines: Sequence[np.ndarray]) -> float | None:
     through the centre, which lead to the first ring and from the last, bound no gap.
     """
     passes = [line for line in lines if is_pass(line)]
-    gaps = gaps_between(np.concatenate(passes)) if passes else ()
-    paths = MultiLineString([line[:, :2] for line in lines])
-    paths = paths.simplify(COARSE, preserve_topology=False)
-    return max((2 * paths.distance(Point(gap)) for gap in gaps), default=None)
+    if not passes:
+        return None
+    most, paths = None, Segments(lines)
+    widths, middles = gaps_between(np.concatenate(passes))
+    for index in np.argsort(widths)[::-1]:
+        if most is not None and widths[index] <= most + COARSE:
+            break  # a gap is nowhere wider than straight outward
+        most = max(most or 0.0, 2 * paths.distance(middles[index]))
+    return most
 
 
-def gaps_between(points: np.ndarray) -> np.ndarray:
-    """Return the middle (n, 2) of the widest gap between passes in each direction."""
+def gaps_between(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the width of the widest gap between passes in each direction, and its middle (n, 2).
+
+    Directions without a gap are left out.
+    """
     sector, radius = polar(points)
-    order = np.lexsort((radius, sector))
+    order = np.argsort(sector + radius / (2 * radius.max()))
     sector, radius = sector[order], radius[order]
     gap = np.where(np.diff(sector) == 0, np.diff(radius), 0.0)
-    middles = []
-    for first, last in zip(*(np.searchsorted(sector, range(k, k + SECTORS)) for k in (0, 1))):
-        if last - first > 1:
-            index = first + int(np.argmax(gap[first : last - 1]))
-            if gap[index] > SAME_LEVEL:
-                angle = (sector[index] + 0.5) / SECTORS * 2 * np.pi
-                half = (radius[index] + radius[index + 1]) / 2
-                middles.append((half * np.cos(angle), half * np.sin(angle)))
-    return np.array(middles).reshape(-1, 2)
+    sectors, first = np.unique(sector[:-1], return_index=True)
+    most = np.zeros(SECTORS)
+    most[sectors] = np.maximum.reduceat(gap, first)
+    widest = np.flatnonzero((gap >= most[sector[:-1]]) & (gap > SAME_LEVEL))
+    middle = (radius[widest] + radius[widest + 1]) / 2
+    angle = (sector[widest] + 0.5) / SECTORS * 2 * np.pi
+    return gap[widest], np.stack([middle * np.cos(angle), middle * np.sin(angle)], axis=1)
 
 
 def is_pass(line: np.ndarray) -> bool:
@@ -372,20 +401,30 @@ def is_pass(line: np.ndarray) -> bool:
     return bool(radius.min() > NEAR_CENTRE * radius.max())
 
 
-def direction_jump(moves: Sequence[Move], target: Target) -> float:
+class DirectionJump(NamedTuple):
+    """A change of direction in degrees, and where it is: members of ``PocketFacts``."""
+
+    jump: float = 0.0
+    jump_at: tuple[float, ...] | None = None
+
+
+def direction_jump(moves: Sequence[Move], target: Target) -> DirectionJump:
     """Return the largest change of direction between cutting moves that follow each other.
 
     Yasnac's straight moves are its fast ones to and from the approach, whatever their feed. Where
     a helix begins the tool comes from the flat.
     """
     moves = [move for move in moves if target.source.dialect != "yasnac" or move.kind != "feed"]
+    cutting = [is_cutting(move, target.wall) for move in moves]
+    falling = [falls(move, target.wall) for move in moves]
     jumps = [
-        angle_between(before.tangent(1.0), after.tangent(0.0))
-        for before, after in zip(moves, moves[1:])
-        if is_cutting(before, target.wall) and is_cutting(after, target.wall)
-        if falls(before, target.wall) or not falls(after, target.wall)
+        DirectionJump(
+            angle_between(moves[at].tangent(1.0), moves[at + 1].tangent(0.0)), moves[at].end[:3]
+        )
+        for at in range(len(moves) - 1)
+        if cutting[at] and cutting[at + 1] and (falling[at] or not falling[at + 1])
     ]
-    return max(jumps, default=0.0)
+    return max(jumps, default=DirectionJump())
 
 
 def angle_between(one: Sequence[float], other: Sequence[float]) -> float:

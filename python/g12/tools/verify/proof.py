@@ -73,15 +73,25 @@ class Subject:
     def about(self, centre: float) -> Subject:
         """Return the same with the spindle's axis at another machine X."""
         part = self.path.part
-        if abs(part.centre - centre) < SAME_X0:
-            return self
-        part = replace(part, centre=centre)
-        return laid_on(part, self.program, self.ini, self.trace, self.samples)
+        same = abs(part.centre - centre) < SAME_X0
+        return self if same else self._laid_on(replace(part, centre=centre))
 
     def on_surface(self, radius: float) -> Subject:
         """Return the same on a cylinder's unrolled surface."""
-        part = Surface(turning=True, radius=radius)
-        return laid_on(part, self.program, self.ini, self.trace, self.samples)
+        return self._laid_on(Surface(turning=True, radius=radius))
+
+    def of_section(self, section: SectionContour) -> Subject:
+        """Return the same as the part of a section sees it; without a run its own moves alone."""
+        own = None if self.samples else range(section.at, section.end)
+        if section.surface:
+            return self._laid_on(Surface(turning=True, radius=section.surface), own)
+        part, centre = self.path.part, x0_of(section, self.trace.moves[section.at])
+        if abs(part.centre - centre) < SAME_X0:
+            return self
+        return self._laid_on(replace(part, centre=centre), own)
+
+    def _laid_on(self, part: Part, own: range | None = None) -> Subject:
+        return laid_on(part, self.program, self.ini, self.trace, self.samples, own)
 
 
 class StockText(NamedTuple):
@@ -194,10 +204,15 @@ def subject_of(program: Path, ini: Ini, trace: Trace, samples: Samples | None = 
 
 
 def laid_on(
-    part: Part, program: Path, ini: Ini, trace: Trace, samples: Samples | None = None
+    part: Part,
+    program: Path,
+    ini: Ini,
+    trace: Trace,
+    samples: Samples | None = None,
+    own: range | None = None,
 ) -> Subject:
-    """Return a traced program as a part sees it."""
-    path = track(part, trace.moves, limits_of(ini), trace.modes.speed)
+    """Return a traced program as a part sees it, or its ``own`` moves alone."""
+    path = track(part, trace.moves, limits_of(ini), trace.modes.speed, own=own)
     real = follow(path, trace.moves, samples, ini.mm) if samples else None
     return Subject(program, ini, trace, path, real, samples)
 
@@ -281,14 +296,12 @@ def measured_sections(
 ) -> list[SectionFacts]:
     """Return what is measured of a program's sections, those on a cylinder on its surface."""
     axes = axes_of_section(subject.ini) if asked else None
-    radii = {each.surface for each in asked if each.surface}
-    views = {radius: subject.on_surface(radius) for radius in radii}
     moves, diameters = subject.trace.moves, subject.trace.diameters
-    found = []
+    found, surfaces = [], {}
     for each in counted(asked, "measuring section", tell):
-        if not each.surface:
-            subject = subject.about(x0_of(each, moves[each.at]))
-        view = views.get(each.surface, subject)
+        view = surfaces.get(each.surface) or subject.of_section(each)
+        if each.surface and subject.samples:  # of a run: all of it, to be used again
+            surfaces[each.surface] = view
         facts = measure_section(each, view.path, moves, diameters, axes, tolerance, view.real)
         found.append(facts)
     return found

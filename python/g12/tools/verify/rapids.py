@@ -27,14 +27,15 @@ import numpy as np
 from shapely.geometry import Point
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
-from shapely.prepared import prep
+from shapely.prepared import PreparedGeometry, prep
 
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import disc, is_sideways, swept
 from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.wanted_circle import Target
+from g12.tools.verify.pocket_entry import helices_of
+from g12.tools.verify.wanted_circle import Target, Wall
 
 SAME_HEIGHT = 1e-3
 CHORD = 5e-3
@@ -44,6 +45,7 @@ LEAST_AREA = 0.05
 MOST_POINTS = 300  # of a rapid that are looked at
 
 Circles = Sequence[tuple[Block, Target]]
+Box = tuple[float, float, float, float]  # least X and Y, greatest X and Y
 
 
 @dataclass(frozen=True)
@@ -59,16 +61,6 @@ class Collision:
     path: np.ndarray
 
 
-@dataclass(frozen=True)
-class Opening:
-    """A pocket from its first move on: the area that is cut, its top and its first floor."""
-
-    first: int
-    area: BaseGeometry
-    top: float
-    floor: float
-
-
 class Cleared:
     """What a program has cleared, at any of its moves and any height."""
 
@@ -82,21 +74,21 @@ class Cleared:
         self._bores = [(block.at, target.wall) for block, target in asked if target.wall.bore]
         self._swept_by: dict[int, BaseGeometry] = {}
         self._floors: dict[int, np.ndarray] = {}
-        self._before: dict[tuple[int, int], BaseGeometry] = {}
+        self._before: dict[tuple, BaseGeometry] = {}
 
     def radius(self, index: int) -> float:
         """Return the radius of a move's cutter; in a pocket D's if the tool has none."""
         loaded = self._diameters.get(self._moves[index].tool, 0.0) / 2
         return loaded or self._cutters.get(index, 0.0)
 
-    def before(self, index: int, height: float) -> BaseGeometry:
-        """Return the area cleared down to a height before a move."""
+    def before(self, index: int, height: float, box: Box | None = None) -> BaseGeometry:
+        """Return the area cleared down to a height before a move; within a box it is all there."""
         if index not in self._floors:
             self._floors[index] = self._floors_before(index)
         floors = self._floors[index]
-        key = (index, int(np.searchsorted(floors, height + SAME_HEIGHT, side="right")))
+        key = (index, int(np.searchsorted(floors, height + SAME_HEIGHT, side="right")), box)
         if key not in self._before:
-            self._before[key] = self._area(index, floors[key[1] - 1] if key[1] else -np.inf)
+            self._before[key] = self._area(index, floors[key[1] - 1] if key[1] else -np.inf, box)
         return self._before[key]
 
     def _floors_before(self, index: int) -> np.ndarray:
@@ -104,14 +96,16 @@ class Cleared:
         bored = [wall.origin[2] for first, wall in self._bores if first <= index]
         return np.unique(np.concatenate([self._lowest[:index], bored]))
 
-    def _area(self, index: int, height: float) -> BaseGeometry:
-        cut = np.flatnonzero(self._lowest[:index] <= height)
+    def _area(self, index: int, height: float, box: Box | None) -> BaseGeometry:
+        cut = self._lowest[:index] <= height
+        if box:
+            cut &= meeting(self._boxes[:index], box)
         bored = [
             disc(wall.origin, wall.bore)
             for first, wall in self._bores
             if first <= index and wall.origin[2] <= height
         ]
-        return unary_union([*map(self._swept, cut), *bored]).buffer(ALLOWED)
+        return unary_union([*map(self._swept, np.flatnonzero(cut)), *bored]).buffer(ALLOWED)
 
     def of(self, indices: Sequence[int]) -> BaseGeometry:
         """Return the area that moves sweep."""
@@ -120,17 +114,48 @@ class Cleared:
     @cached_property
     def _lowest(self) -> np.ndarray:
         """The lowest height of each move at feed; a rapid clears nothing."""
-        heights = np.full(len(self._moves), np.inf)
-        for index, move in enumerate(self._moves):
-            if move.kind != "rapid":
-                heights[index] = self._path.points[self._path.vertices(index), 2].min()
-        return heights
+        lowest = self._least(np.minimum)[:, 2]
+        return np.where([move.kind != "rapid" for move in self._moves], lowest, np.inf)
+
+    @cached_property
+    def _boxes(self) -> np.ndarray:
+        """Bounds (n, 4) of what the moves sweep."""
+        reach = CHORD + ALLOWED + np.array(list(map(self.radius, range(len(self._moves)))))
+        least, most = (self._least(function)[:, :2] for function in (np.minimum, np.maximum))
+        return np.hstack([least - reach[:, None], most + reach[:, None]])
+
+    def _least(self, function: np.ufunc) -> np.ndarray:
+        """Return the least (n, 3) of the points of each move, or the greatest."""
+        owner, points = self._path.move, self._path.points
+        ends = np.append(0, np.flatnonzero(np.diff(owner)) + 1)
+        starts = self._path.part.points(np.array([move.start for move in self._moves]))
+        return function(function.reduceat(points, ends), starts)
 
     def _swept(self, index: int) -> BaseGeometry:
         if index not in self._swept_by:
             line = self._path.part.polyline(self._moves[index], CHORD)
             self._swept_by[index] = swept([line], max(self.radius(index), CHORD))
         return self._swept_by[index]
+
+
+@dataclass(frozen=True)
+class Opening:
+    """A pocket from its first move on: its top, its first floor, and the moves that cut it.
+
+    ``box`` are bounds of its area.
+    """
+
+    first: int
+    top: float
+    floor: float
+    cut: Sequence[int]
+    box: Box
+    cleared: Cleared
+
+    @cached_property
+    def area(self) -> PreparedGeometry:
+        """The area that is cut."""
+        return prep(self.cleared.of(self.cut))
 
 
 def collisions(
@@ -142,12 +167,13 @@ def collisions(
 ) -> list[Collision]:
     """Return the rapids that go through material; those of a run if there is one."""
     cleared = Cleared(asked, moves, path, diameters)
-    openings = list(openings_of(asked, moves, cleared))
+    openings = list(openings_of(asked, moves, cleared, path))
     bored = bored_places(asked, moves, openings)
     found: dict[int, Collision] = {}
     for chain in chains_of(moves, openings):
         points, owner = path_along(chain, moves, path, real)
-        for opening in openings:
+        risky = risky_points(points, owner, moves, bored)
+        for opening in met_by(points[risky], openings):
             for stretch in stretches_in(opening, points, owner):
                 for hit in hits(points[stretch], owner[stretch], moves, cleared, bored):
                     known = found.get(hit.move)
@@ -155,22 +181,38 @@ def collisions(
     return [found[move] for move in sorted(found)]
 
 
-def openings_of(asked: Circles, moves: Sequence[Move], cleared: Cleared) -> Iterator[Opening]:
+def openings_of(
+    asked: Circles, moves: Sequence[Move], cleared: Cleared, path: Track
+) -> Iterator[Opening]:
     """Yield the pockets that rapids can leave through a wall; one that is fed up to cuts air."""
     found = ((block, target.wall) for block, target in asked)
     walled = [(block, wall) for block, wall in found if wall.inside and wall.plane == 2]
-    came, fed = (
-        np.array([height(block, moves) for block, _ in walled])
-        for height in (height_before, height_of_feed)
-    )
+    came = np.array([height_before(block, moves, wall) for block, wall in walled])
+    fed = np.array([height_of_feed(block, moves) for block, _ in walled])
     for (block, wall), begun in zip(walled, fed):
-        highest, lowest = floors_of(block, moves)
+        highest, lowest = floors_of(block, moves, wall)
         least = highest + SAME_HEIGHT
         if np.any(came > least) and begun > highest - SAME_HEIGHT:
             top = min(came[came > least])
             face = highest < wall.face < top
             top = wall.face if face else min(fed[fed > least], default=top)
-            yield Opening(block.at, cleared.of(cutting(block, moves)), top, lowest)
+            cut = cutting(block, moves)
+            yield Opening(block.at, top, lowest, cut, bounds_of_cut(cut, path, cleared), cleared)
+
+
+def bounds_of_cut(cut: Sequence[int], path: Track, cleared: Cleared) -> Box:
+    """Return bounds of the area that moves which follow each other cut."""
+    points = path.points[path.vertices(cut[0]).start : path.vertices(cut[-1]).stop, :2]
+    reach = max(map(cleared.radius, cut)) + CHORD
+    return (*(points.min(axis=0) - reach), *(points.max(axis=0) + reach))
+
+
+def met_by(points: np.ndarray, openings: Sequence[Opening]) -> Iterator[Opening]:
+    """Yield the openings below whose top some points come, within their bounds."""
+    low = points[points[:, 2] < max((opening.top for opening in openings), default=-np.inf)]
+    for opening in openings if len(low) else ():
+        if (in_box(low, opening.box) & (low[:, 2] < opening.top)).any():
+            yield opening
 
 
 def cutting(block: Block, moves: Sequence[Move]) -> list[int]:
@@ -179,15 +221,18 @@ def cutting(block: Block, moves: Sequence[Move]) -> list[int]:
     return [i for i in own if moves[i].kind != "rapid" and is_sideways(moves[i])]
 
 
-def floors_of(block: Block, moves: Sequence[Move]) -> tuple[float, float]:
-    """Return the highest and the lowest floor that a block cuts."""
-    ends = [moves[index].end[2] for index in cutting(block, moves)] or [np.inf]
+def floors_of(block: Block, moves: Sequence[Move], wall: Wall) -> tuple[float, float]:
+    """Return the highest and the lowest floor that a block cuts; the way down is no floor."""
+    entries = helices_of(range(block.at, block.end), moves, wall)
+    down = {index for entry in entries for index in (entry.lead, *entry.falling)}
+    ends = [moves[index].end[2] for index in cutting(block, moves) if index not in down]
+    ends = ends or [np.inf]
     return max(ends), min(ends)
 
 
-def height_before(block: Block, moves: Sequence[Move]) -> float:
+def height_before(block: Block, moves: Sequence[Move], wall: Wall) -> float:
     """Return the height from which the tool came down to a pocket, its own plunge included."""
-    highest, _ = floors_of(block, moves)
+    highest, _ = floors_of(block, moves, wall)
     index = block.at
     if moves[index].start[2] <= highest + SAME_HEIGHT:
         while index and not is_sideways(moves[index - 1]):
@@ -227,17 +272,36 @@ def dense(path: Track, move: Move) -> np.ndarray:
 def stretches_in(opening: Opening, points: np.ndarray, owner: np.ndarray) -> Iterator[np.ndarray]:
     """Yield the stretches of a path (indices) below an opening's top that pass through it."""
     low = (points[:, 2] < opening.top - SAME_HEIGHT) & (owner >= opening.first)
-    if not np.any(low & in_box(points, opening.area.bounds)):
-        return
     for below, group in groupby(np.arange(len(points)), lambda index: low[index]):
         stretch = np.array(list(group))
         inside = points[stretch[points[stretch, 2] > opening.floor - SAME_HEIGHT], :2]
-        if below and any(map(prep(opening.area).contains, map(Point, inside))):
+        if below and any(map(opening.area.contains, map(Point, inside))):
             yield stretch
 
 
-def in_box(points: np.ndarray, bounds: tuple[float, float, float, float]) -> np.ndarray:
-    """Tell which points (n, 3) lie within bounds: least X and Y, greatest X and Y."""
+def risky_points(
+    points: np.ndarray, owner: np.ndarray, moves: Sequence[Move], bored: Sequence[complex]
+) -> np.ndarray:
+    """Tell which points (n, 3) are those of rapids that go sideways or plunge."""
+    risky = np.zeros(len(points), bool)
+    for index in np.unique(owner):
+        own = owner == index
+        risky[own] = is_across(points[own]) or plunges(moves[index], bored)
+    return risky
+
+
+def is_across(points: np.ndarray) -> bool:
+    """Tell whether a path goes sideways."""
+    return bool(np.ptp(points[:, :2], axis=0).max() > ALLOWED)
+
+
+def meeting(boxes: np.ndarray, box: Box) -> np.ndarray:
+    """Tell which boxes (n, 4) have a place in common with a box."""
+    return (boxes[:, :2] <= box[2:]).all(axis=1) & (boxes[:, 2:] >= box[:2]).all(axis=1)
+
+
+def in_box(points: np.ndarray, bounds: Box) -> np.ndarray:
+    """Tell which points (n, 3) lie within bounds."""
     x, y = points[:, 0], points[:, 1]
     return (bounds[0] <= x) & (x <= bounds[2]) & (bounds[1] <= y) & (y <= bounds[3])
 
@@ -252,8 +316,10 @@ def hits(
     """Yield the collisions along points, one for each move."""
     for index in np.unique(owner):
         own, radius = points[owner == index], cleared.radius(index)
-        if np.ptp(own[:, :2], axis=0).max() <= ALLOWED:
-            own = own[np.argmin(own[:, 2])][None] if plunges(moves[index], bored) else own[:0]
+        if not is_across(own):
+            if not plunges(moves[index], bored):
+                continue
+            own = own[np.argmin(own[:, 2])][None]
         hit = bites_of(own, index, radius, cleared)
         area = unary_union([piece for _, piece in hit]).area if hit else 0.0
         if area > LEAST_AREA:
@@ -293,9 +359,10 @@ def bored_places(
 def bites_of(points: np.ndarray, index: int, radius: float, cleared: Cleared) -> list:
     """Return the points of a rapid at which the cutter is in material, each with the area there."""
     found = []
+    box = (*(points[:, :2].min(axis=0) - radius), *(points[:, :2].max(axis=0) + radius))
     for point in points[:: len(points) // MOST_POINTS + 1]:
         cutter = Point(point[:2]).buffer(radius)
-        piece = cutter.difference(cleared.before(index, point[2]))
+        piece = cutter.difference(cleared.before(index, point[2], box))
         if piece.area > LEAST_AREA:
             found.append((point, piece))
     return found

@@ -156,5 +156,5 @@ def standing_rings(
             left = left_of(wall, cutter, here, POCKET_TOLERANCE)
             if left.area > SAME_AREA:
                 centre = tuple(map(float, wall.origin[:2]))
-                shape, floor = translate(left, *centre), floors_of(block, moves)[1]
+                shape, floor = translate(left, *centre), floors_of(block, moves, wall)[1]
                 yield StandingRings(target.source.line, shape, centre, floor)
