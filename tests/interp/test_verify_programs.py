@@ -508,6 +508,26 @@ def test_a_section_in_a_sub_is_measured_at_every_call(tmp_path):
     assert {facts.slowest_line for facts in proof.sections} <= {4, 5, 7, 8}
 
 
+AGAIN = ["G13.1", "G0 X30 C0"]
+FACE = ["G21 G18 G8 G40 G90 G94 G64", "T3 M6", "S1000 M3", "G0 X30 Z2 C0"]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["G12.1", "G95 F.5", "G1 X20 C5", "G94", "G13.1"],
+        ["G12.1", "G95 F.5", "G1 X20 C5", "G94 F300", "G95", "G13.1"],
+        ["G61", "G12.1", "G1 X20 C5 F500", *AGAIN, "G64", "G12.1", "G1 X15 C-5", "X9", "G13.1"],
+        ["G12.1", "G61", "G1 X20 C5 F500", "G64", *AGAIN, "G12.1", "G1 X15 C-5", "X9", "G13.1"],
+        ["G1 X28 F900", "G61", "G12.1", "G1 X28 C9", "G13.1"],
+        ["G61.1", "G1 X28 F900", "G64", "G12.1", "G1 X28 C9", "X20 C4", "G13.1"],
+    ],
+)
+def test_feed_and_path_control_before_in_and_behind_a_section(lines, tmp_path):
+    proof = proof_of_text(tmp_path, [*FACE, *lines, "G0 Z5", "M2"], "lathe_mm")
+    assert proof.findings == []
+
+
 def test_what_cannot_be_followed_is_a_finding(tmp_path):
     lines = [
         "G21 G18 G8 G40 G90 G94",
@@ -560,7 +580,7 @@ def test_a_cycle_that_cuts_too_shallow_is_found(sabotaged, tmp_path):
 
 def test_a_cycle_that_turns_the_wrong_way_is_found(sabotaged, tmp_path):
     found = broken(sabotaged, tmp_path, "G#<arc>", "G[5 - #<arc>]")
-    assert "it turns the wrong way" in found
+    assert "it turns the wrong way: a circle of 2 mm (tool centre) at −3" in found
 
 
 @pytest.mark.parametrize(
@@ -636,6 +656,17 @@ def test_a_circle_cut_where_the_tool_stands_was_come_down_to(tmp_path):
     lines = [*head, "G12 I30 D10", "G0 X100", "G12 I30 D10", "G0 Z5", "M2"]
     found = proof_of_text(tmp_path, lines, "mill_mitsubishi_mm").findings
     assert [line for line, _ in found] == [6]
+
+
+def test_a_rapid_above_pockets_with_a_helix_is_good(tmp_path):
+    program = tmp_path / "program.ngc"
+    pocket = "I10 K20 Q6 Z-3"
+    lines = [*MM, "G0 X0 Y0 Z1", f"G13 X30 {pocket} D4", "G0 Z1", f"G12 X90 Y9 {pocket}", "M2", ""]
+    program.write_text("\n".join(lines))
+    machine = ini("mill_mm").replaced({"G12": {"ENTRY": "helix"}})
+    assert prove(program, machine).findings == []
+    program.write_text("\n".join([*lines[:4], *lines[5:]]))
+    assert [line for line, _ in prove(program, machine).findings] == [5]
 
 
 # ---------------------------------------------------------------- the machine's travel

@@ -10,6 +10,8 @@ import itertools
 import math
 
 from g12.tools.dynapath import program_from_events
+from g12.tools.machine.ini import read_ini
+from support.sim_machines import SIM
 
 INCH = 25.4
 CUTTERS = {"mm": {3: 6.0, 4: 10.0, 5: 12.0, 10: 20.0}, "inch": {1: 6.35, 2: 12.7, 4: 9.525}}  # mm
@@ -49,6 +51,21 @@ class Text:
         self.chance.shuffle(words)
         return " ".join([code, *words])
 
+    def shift(self, *words):
+        """Move the program's zero: to another place by G10, or by G92 or G52 on top of that."""
+        at = " ".join(f"{letter}{self.n(self.between(*ends))}" for letter, *ends in words)
+        self.add(self.one_of("G10 L2 P1", "G10 L2 P1", "G52"), at)
+
+    def wrapped(self, first, name):
+        """Put the lines from ``first`` on into a sub, a condition or a loop, as often as not."""
+        body, kind = self.lines[first:], self.one_of("sub", "if", "repeat", "", "", "")
+        if not kind:
+            return
+        asked = {"sub": "", "if": " [#<_x> LT 9999]", "repeat": " [2]"}[kind]
+        self.lines[first:] = [f"o{name} {kind}{asked}", *body, f"o{name} end{kind}"]
+        if kind == "sub":
+            self.lines += [f"o{name} call"] * self.one_of(1, 2)
+
     def end(self):
         self.add("G90", f"G0 Z{self.n(20)}")
         self.add("M2")
@@ -66,8 +83,13 @@ def pocket_program(chance, unit, count, add_pocket):
             text.add("S2000 M3")
             text.add("F" + text.n(text.between(100, 900)))
         x, y = (PITCH * (place - (ROWS - 1) / 2) for place in (k % ROWS, k // ROWS))
+        if chance.random() < 0.15:
+            text.add("G90 G0", f"Z{text.n(20)}")
+            text.shift(("X", -20, 20), ("Y", -20, 20), ("Z", -3, 3))
+        first = len(text.lines)
         text.add("G90 G0", f"Z{text.n(20)}")
         add_pocket(text, loaded, CUTTERS[unit][loaded] / 2, x, y)
+        text.wrapped(first, 100 + k)
     return text.end()
 
 
@@ -224,9 +246,13 @@ def dynapath_program(chance, count):
 AXIAL = {"mm": {1: 12.0, 2: 10.0, 3: 6.0}, "inch": {1: 12.7, 2: 9.525, 3: 6.35}}
 
 
-def polar_program(chance, unit, count):
-    """Return a program of sections: contours with compensation and without, some in subs."""
+def polar_program(chance, unit, count, kind=""):
+    """Return a program of sections: contours with compensation and without, some in subs.
+
+    ``kind`` sloping: Z may change along lines, and G0 is a feed; beside: the centre is left out.
+    """
     text = Text(chance, unit, polar=True)
+    text.sloping, text.beside = kind == "sloping", kind == "beside"
     text.diameter = chance.random() < 0.5
     text.add("G7" if text.diameter else "G8", "G97 S500")
     loaded = None
@@ -235,6 +261,8 @@ def polar_program(chance, unit, count):
             loaded = chance.choice(list(AXIAL[unit]))
             text.add(f"T{loaded} M6")
         in_sub, times = chance.random() < 0.3, chance.choice([1, 1, 2, 3])
+        if chance.random() < 0.15:
+            text.shift(("X", 0, 8), ("Z", -3, 3))
         if in_sub:
             text.add(f"o{100 + k} sub")
             text.add(f"G0 X{_x(text, 60)} C#1")
@@ -255,15 +283,29 @@ def _x(text, radius):
 
 
 def _section(text, cutter):
+    text.rev = text.chance.random() < 0.15
+    text.add(text.one_of("", "G61", f"G64 P{text.n(0.01)}"))
     text.add("G12.1")
-    text.add(f"F{text.n(text.between(100, 1500))}")
-    kind = text.one_of("polygon", "polygon", "rounded", "free")
+    text.add("G95" if text.rev else "", _feed(text))
+    kind = text.one_of("polygon", "polygon", "rounded", "rounded" if text.beside else "free")
     (_free if kind == "free" else _compensated)(text, cutter, kind == "rounded")
+    text.add("G94" if text.rev else "")
     text.add("G13.1")
 
 
-def _to(text, point, words="G1"):
-    text.add(words, f"X{_x(text, point.real)}", f"C{text.n(point.imag)}")
+def _feed(text):
+    """Return an F word along the part, per minute or per revolution at S500."""
+    feed = text.between(100, 1500)
+    return f"F{feed / text.scale / 500:.5f}" if text.rev else f"F{text.n(feed)}"
+
+
+def _act(text):
+    """Add something that is no motion, or nothing."""
+    text.add(text.one_of("", "", "M8", "M9", "G4 P.2", "(MSG, on it)", "M101 P1 Q2", "G61", "G64"))
+
+
+def _to(text, point, words="G1", more=""):
+    text.add(words, f"X{_x(text, point.real)}", f"C{text.n(point.imag)}", more)
 
 
 def _polygon(text):
@@ -291,8 +333,10 @@ def _compensated(text, cutter, rounded):
     _to(text, start + out * reach)
     _to(text, start, "G41 G1" if clockwise else "G42 G1")
     depths = sorted(text.between(0.5, 5) for _ in range(text.one_of(1, 1, 2)))
+    depths += depths[-1:] * text.one_of(0, 0, 1)  # a spring pass
     for depth in depths:
-        text.add(f"G1 Z{text.n(-depth)}", text.one_of("", f"F{text.n(text.between(100, 1500))}"))
+        text.add(f"G1 Z{text.n(-depth)}", text.one_of("", _feed(text)))
+        _act(text)
         for corner, following in zip(corners, [*corners[1:], corners[0]]):
             _corner(text, corner, following, rounded, clockwise, corners)
         _to(text, start)
@@ -320,28 +364,34 @@ def _free(text, *_):
     at = complex(60, 0)
     for _ in range(text.chance.randint(1, 8)):
         kind = text.one_of("line", "line", "arc", "circle", "z", "bare")
+        slope = f"Z{text.n(-text.between(0, 5))}" if text.sloping and text.one_of(0, 1) else ""
+        _act(text)
         to = complex(text.between(-30, 30), text.between(-30, 30))
         if kind == "z":
             text.add(f"G1 Z{text.n(-text.between(0, 5))}")
         elif kind == "circle":
             arm = complex(text.between(-12, 12), text.between(1, 12))
-            text.add(text.one_of("G2", "G3"), f"I{text.n(arm.real)} J{text.n(arm.imag)}")
+            text.add(text.one_of("G2", "G3"), f"I{text.n(arm.real)} J{text.n(arm.imag)}", slope)
         elif abs(to - at) > 1.0:
             if kind == "arc":
                 radius = abs(to - at) * text.chance.uniform(0.55, 0.9) * text.one_of(1, -1)
                 words = f"X{_x(text, to.real)} C{text.n(to.imag)} R{text.n(radius)}"
-                text.add(text.one_of("G2", "G3"), words)
+                text.add(text.one_of("G2", "G3"), words, slope)
             else:
-                _to(text, to)
+                _to(text, to, "G0" if text.sloping and text.one_of(0, 0, 1) else "G1", slope)
             at = to
 
 
 # ---------------------------------------------------------------- sections on a cylinder
 
 
-def cylinder_program(chance, unit, count):
-    """Return a program of sections on cylinders: grooves, arcs, turns, walls with compensation."""
+def cylinder_program(chance, unit, count, sloping=False):
+    """Return a program of sections on cylinders: grooves, arcs, turns, walls with compensation.
+
+    ``sloping``: X may change along lines, and G7.1 has diameters.
+    """
     text = Text(chance, unit, polar=True)
+    text.sloping = sloping
     text.diameter = chance.random() < 0.5
     text.add("G7" if text.diameter else "G8", "G97 S500")
     for _ in range(count):
@@ -350,7 +400,10 @@ def cylinder_program(chance, unit, count):
         z, c = -text.between(20, 80), chance.choice([0, 90, -45, 400])
         text.add(f"T{loaded} M6")
         text.add(f"G0 X{_x(text, radius + 5)} Z{text.n(z)} C{c}")
-        text.add(f"G7.1 C{text.n(radius)}")
+        if chance.random() < 0.15:
+            text.shift(("X", -3, 3), ("Z", -9, 9))
+        text.add(text.one_of("", "G61", f"G64 P{text.n(0.01)}"))
+        text.add(f"G7.1 C{text.n(radius * (2 if sloping else 1))}")
         text.add(f"G1 X{_x(text, radius - text.between(0.5, 4))} F{text.n(text.between(50, 300))}")
         text.add(f"F{text.n(text.between(100, 1500))}")
         if chance.random() < 0.5:
@@ -370,12 +423,17 @@ def _around(text, radius, point, words="G1", more=""):
 
 def _groove(text, radius, at):
     """Add lines and arcs through places anywhere, some of them turns away."""
+    text.rev = False
     for _ in range(text.chance.randint(1, 6)):
         to = at + complex(text.between(-40, 40), text.between(-8, 8))
         kind = text.one_of("line", "arc", "turns", "circle")
+        _act(text)
+        slope = ""
+        if text.sloping and text.one_of(0, 1):
+            slope = f"X{_x(text, radius - text.between(0.5, 4))}"
         if kind == "arc" and abs(to - at) > 1.0:
             bow = abs(to - at) * text.chance.uniform(0.55, 0.9) * text.one_of(1, -1)
-            _around(text, radius, to, text.one_of("G2", "G3"), f"R{text.n(bow)}")
+            _around(text, radius, to, text.one_of("G2", "G3"), f"R{text.n(bow)} {slope}")
         elif kind == "circle":
             text.add(text.one_of("G2", "G3"), f"J{text.n(text.between(1, 9))} K{text.n(2)}")
             to = at
@@ -383,7 +441,7 @@ def _groove(text, radius, at):
             text.add("G1", f"W{text.n(text.between(1, 9))} H{text.one_of(-720, 540, 360)}")
             return
         else:
-            _around(text, radius, to)
+            _around(text, radius, to, more=slope)
         at = to
 
 
@@ -401,31 +459,113 @@ def _wall(text, radius, start, cutter):
     _around(text, radius, start + ahead, "G40 G1")
 
 
+# ---------------------------------------------------------------- shapes on the face
+
+
+def shapes_program(chance, unit, count):
+    """Return a program of polygons, slots and round pockets by their calls."""
+    text = Text(chance, unit, polar=True)
+    text.diameter = chance.random() < 0.5
+    text.add("G7" if text.diameter else "G8", "G97 S500", f"F{text.n(400)}")
+    for k in range(count):
+        if not k or chance.random() < 0.2:
+            loaded = chance.choice(list(AXIAL[unit]))
+            text.add(f"G0 X{_x(text, 60)} Z{text.n(9)}")
+            text.add(f"T{loaded} M6")
+        text.add(f"G0 X{_x(text, 60)} Z{text.n(5)}")
+        name, entries = chance.choice([_polygon_call, _slot_call, _pocket_call])(
+            text, AXIAL[unit][loaded] / 2
+        )
+        text.add(f"o<{name}> call", *(f"[{entry}]" for entry in entries))
+    return text.end()
+
+
+def _passes(text, depth, allowance):
+    """Return the entries from depth_per_pass on: pass, allowance, feed, plunge feed."""
+    n = text.n
+    feeds = (n(text.between(200, 900)), text.one_of(OUT, n(text.between(50, 200))))
+    return (text.one_of(OUT, n(depth / text.one_of(1, 2, 2.5))), allowance, *feeds)
+
+
+def _polygon_call(text, cutter):
+    across, sides, depth = text.between(12, 30), text.chance.randint(2, 9), text.between(1, 5)
+    stock, rounding = across + text.between(1, 12), text.one_of(0, text.between(0.5, 3))
+    finish = text.one_of(OUT, text.n(0.3))
+    entries = [sides, *map(text.n, (across, depth, stock, rounding * (sides > 2)))]
+    angle = text.chance.choice([OUT, 0, 30, -77.5])
+    return "polar_polygon", [*entries, *_passes(text, depth, finish), angle]
+
+
+def _slot_call(text, cutter):
+    width = 2 * cutter + text.one_of(0, text.between(0.5, 9))
+    length, depth = width + text.between(2, 20), text.between(1, 5)
+    finish = text.n(0.15) if width > 2 * cutter + 0.4 and text.one_of(0, 1) else OUT
+    entries = [text.n(value) for value in (width, length, depth)]
+    return "polar_slot", [*entries, *_passes(text, depth, finish), text.one_of(OUT, 0, 45, -120)]
+
+
+def _pocket_call(text, cutter):
+    diameter, depth = 2 * cutter + text.between(1, 20), text.between(1, 5)
+    x, c = text.one_of(0, text.between(-9, 9)), text.one_of(0, text.between(-9, 9))
+    finish = text.one_of(OUT, text.n(0.15))
+    entries = [_x(text, x), *map(text.n, (c, diameter, depth))]
+    return "polar_pocket", [*entries, *_passes(text, depth, finish)]
+
+
 # ---------------------------------------------------------------- each kind by its name
 
 MACHINES = {
     "haas": "mill_mm",
     "haas inch": "mill_inch",
+    "haas spiral": "mill_mm",
+    "haas helix": "mill_helix_mm",
+    "haas helix spiral": "mill_inch",
     "yasnac": "mill_yasnac_mm",
+    "yasnac traverse": "mill_yasnac_mm",
     "mitsubishi": "mill_mitsubishi_mm",
     "circle mill": "mill_mm",
     "dynapath": "mill_mm",
     "polar": "lathe_mm",
     "polar inch": "lathe_inch",
     "polar kinematics": "lathe_mm_kinematics",
+    "polar sloping": "lathe_mm",
+    "polar beside": "lathe_mm",
+    "polar beside kinematics": "lathe_mm_kinematics",
+    "shapes": "lathe_mm",
+    "shapes inch": "lathe_inch",
+    "shapes kinematics": "lathe_mm_kinematics",
     "cylinder": "lathe_mm",
     "cylinder inch": "lathe_inch",
+    "cylinder sloping": "lathe_mm",
+}
+SETTINGS = {  # of [G12], in place of the machine's
+    "haas spiral": {"CLEARING": "spiral", "PLUNGE_FEED": "40"},
+    "haas helix spiral": {"CLEARING": "spiral", "ENTRY": "helix", "ENTRY_ANGLE": "5"},
+    "yasnac traverse": {"YASNAC_TRAVERSE": "3000"},
+    "polar sloping": {"POLAR_Z": "allow", "POLAR_G0": "feed", "POLAR_G0_FEED": "2500"},
+    "polar beside": {"POLAR_TOOL_OFFSET": "0.4"},
+    "polar beside kinematics": {"POLAR_TOOL_OFFSET": "-0.7"},
+    "cylinder sloping": {"CYLINDER_X": "allow", "CYLINDER_WORD": "diameter"},
 }
 POCKETS = {"yasnac": yasnac, "mitsubishi": mitsubishi, "circle mill": circle_mill}
 
 
+def machine_of(kind):
+    """Return the machine of a kind with its settings."""
+    ini = read_ini(SIM / f"{MACHINES[kind]}_headless.ini")
+    return ini.replaced({"G12": SETTINGS.get(kind, {})})
+
+
 def right_program(kind, chance, count):
     """Return a program of ``count`` pockets or sections of a kind of `MACHINES`."""
-    unit = "inch" if "inch" in kind else "mm"
-    if kind == "dynapath":
+    what, more = kind.split()[0], kind.split()[1:]
+    unit = "inch" if MACHINES[kind].endswith("inch") else "mm"
+    if what == "dynapath":
         return dynapath_program(chance, count)
-    if kind.startswith("polar"):
-        return polar_program(chance, unit, count)
-    if kind.startswith("cylinder"):
-        return cylinder_program(chance, unit, count)
-    return pocket_program(chance, unit, count, POCKETS.get(kind, haas))
+    if what == "polar":
+        return polar_program(chance, unit, count, more[0] if more else "")
+    if what == "shapes":
+        return shapes_program(chance, unit, count)
+    if what == "cylinder":
+        return cylinder_program(chance, unit, count, "sloping" in more)
+    return pocket_program(chance, unit, count, POCKETS.get(kind.removesuffix(" traverse"), haas))

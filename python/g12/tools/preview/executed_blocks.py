@@ -176,7 +176,8 @@ def executed(
 ) -> list[Block]:
     """Return every execution of the blocks wanted, in order; ``trace`` is the program's."""
     texts = read_lines(program)
-    copy = tracer.trace_text(watched(program, texts, wanted), parameters=parameters)
+    lines = watched(program, texts, wanted)
+    copy = tracer.trace_text(lines, parameters=parameters, watch_offsets=True)
     if len(copy.moves) != len(trace.moves):
         raise moves_otherwise(program)
     return blocks_in(copy, texts)

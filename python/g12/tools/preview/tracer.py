@@ -81,6 +81,7 @@ class Tracer:
         ask: Iterable[int] = (),
         timeout: float = 60.0,
         alone: bool = False,
+        watch_offsets: bool = False,
     ) -> Trace:
         """Trace the file ``program``.
 
@@ -89,6 +90,8 @@ class Tracer:
         machine units) or a var file; without them all are 0.  ``ask`` names numbered parameters
         to report back.  ``timeout`` is in seconds.  ``alone`` makes sure that nothing is left
         of the program in Python modules of the machine that keep state between programs.
+        ``watch_offsets`` has an event tell, in front of each message, which work offsets are others
+        than at the message before, of G54 to G59.3 and G92.
         """
         request = {
             "program": str(Path(program).absolute()),
@@ -96,6 +99,7 @@ class Tracer:
             "setup": list(setup),
             "ask": list(ask),
             "alone": alone,
+            "watch_offsets": watch_offsets,
         }
         if not self._process:
             self._start()

@@ -40,6 +40,8 @@ STATE = (
     "CC_current", "current_tool", "call_level", "remap_level",
 )  # fmt: skip
 SPINDLE_MODE = 13  # place of G96, G97 in the active G codes
+OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)}  # from where on
+OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number behind is always the same
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 FEED_MODES = ("G94", "G93", "G95")
 CONTINUOUS = 3  # CANON_CONTINUOUS: G64
@@ -174,6 +176,8 @@ class Canon:
         self.events: list[tuple] = []
         self.files: set[str] = set()
         self.in_force: tuple = ()
+        self.watch_offsets = request.get("watch_offsets")
+        self.offsets: dict = {}
         self.pitch = ""
         self.line = 0
         self.on_face = False  # of the kinematics, where Y tells where the tool is
@@ -236,6 +240,8 @@ class Canon:
 
     def message(self, text: str) -> None:
         """Note a message to the operator."""
+        if self.watch_offsets:
+            self._note_offsets()
         self.messages.append((self.lines.now(), text))
         self._note(f"message {text}")
 
@@ -293,6 +299,13 @@ class Canon:
             known, self.pitch = self.pitch, pitch
             if pitch != known:
                 self._note(pitch)
+
+    def _note_offsets(self) -> None:
+        """Note which work offsets are not those of the message before."""
+        known, self.offsets = self.offsets, work_offsets()
+        for name, values in self.offsets.items():
+            if known and values != known[name]:
+                self._note(name)
 
     def _note(self, text: str) -> None:
         self.events.append((len(self.moves), self.lines.now(), text))
@@ -374,6 +387,15 @@ class Canon:
         """Return where the tool is, on a lathe whose tool stands beside the X line."""
         x, y, *rest = position
         return (x, y if self.on_face else y + self.machine["beside"], *rest)
+
+
+def work_offsets() -> dict[str, tuple]:
+    """Return all work offsets by what changes them."""
+    params = interpreter_object().params
+    return {
+        name: tuple(params[number] for number in range(first, first + OFFSET_LENGTH))
+        for name, first in OFFSETS.items()
+    }
 
 
 def conditions(state) -> tuple:

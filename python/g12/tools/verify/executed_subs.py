@@ -45,7 +45,7 @@ def executed_everywhere(
     files = files_with(codes.wanted, {*map(Path, trace.files), *named})
     if files:
         copies = Copies(program, files, partial(watched, wanted=codes.wanted))
-        copy = copies.trace(tracer, tools, parameters)
+        copy = copies.trace(tracer, tools, parameters, watch_offsets=True)
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
             return blocks_in(copy, copies.texts)
     return executed(tracer, program, trace, codes.wanted, parameters)
@@ -71,15 +71,15 @@ class Copies:
             self.texts += texts
             self.lines += lines_as_written(file)
 
-    def trace(self, tracer: Tracer, tools: Tools, parameters: Parameters) -> Trace:
+    def trace(self, tracer: Tracer, tools: Tools, parameters: Parameters, **options: bool) -> Trace:
         """Return the trace of the copies; where subs are, by another tracer that finds them."""
         if not self._subs:
-            return tracer.trace_text(self._program, parameters=parameters)
+            return tracer.trace_text(self._program, parameters=parameters, **options)
         with tempfile.TemporaryDirectory(prefix="g12-verify-") as folder:
             for name, lines in self._subs.items():
                 write_program(lines, Path(folder) / name)
             with Tracer(shadowed(tracer.ini, folder), tools=tools) as other:
-                return other.trace_text(self._program, parameters=parameters)
+                return other.trace_text(self._program, parameters=parameters, **options)
 
 
 def files_with(wanted: Callable[[Text], bool], files: Iterable[Path]) -> list[Path]:

@@ -202,9 +202,8 @@ def stopped_inside(
 
 def not_exact(section: SectionContour, moves: Sequence[Move]) -> Iterator[OffMotion]:
     """Yield the lines with G9, or under G61, that do not end in an exact stop."""
-    before = section.at > 0 and moves[section.at - 1].exact
     exact = {
-        element.line: before if element.exact is None else element.exact
+        element.line: section.exact if element.exact is None else element.exact
         for element in section.elements
     }
     for line, run in groupby(range(section.at, section.end), lambda index: moves[index].line):

@@ -45,7 +45,7 @@ DWELL, EXACT_HERE = 4.0, 9.0
 PATHS = {61.0: True, 61.1: True, 64.0: False}  # code: exact
 SPINDLE = re.compile(r"\$\s*(#?-?[\d.]+|#<[^>]*>)")
 ACTS = re.compile(
-    r"(M\d|S|G4[39]|G5\d|dwell (?!0$)|message )"
+    r"(M\d|S|G10|G4[39]|G5\d|G92|dwell (?!0$)|message )"
 )  # of what a trace tells: what a section does
 FEED_MODES = {94.0: False, 98.0: False, 95.0: True, 99.0: True}  # code: per revolution
 SAVE, RESTORE, SAVE_FOR_SUB = 70.0, 72.0, 73.0
@@ -159,6 +159,7 @@ class SectionContour:
     ``acts`` are what it is to do besides moving, ``told`` what a trace tells of the section.
     ``leaves`` is the state behind it that the words ask for, as ``Block.left`` has it, and
     ``left`` the one that was found; ``paths`` are G61 or G64 as found and as asked, if known.
+    ``exact`` says that G61 or G61.1 is in force where it begins.
     """
 
     line: int
@@ -180,6 +181,7 @@ class SectionContour:
     leaves: Mapping[str, float] = field(default_factory=dict)
     left: Mapping[str, float] = field(default_factory=dict)
     paths: tuple[str, ...] = ()
+    exact: bool = False
     surface: float = 0.0
     file: str = ""
 
@@ -223,8 +225,9 @@ def sections(
         replace(
             section_of(own, group, codes, pens, doubts.get(place_of(own[0].text), "")),
             paths=() if restores(group) else path,
+            exact=exact,
         )
-        for own, group, path in zip(found, groups, paths)
+        for own, group, path, exact in zip(found, groups, paths, exact_at_start(copied, codes))
     ]
 
 
@@ -319,6 +322,21 @@ def paths_behind(blocks: Sequence[Block], codes: Codes) -> list[str]:
         switch = switched(block, codes, inside)
         if switch == "off" and inside:
             found.append(path)
+        inside = switch == "on" if switch else inside
+    return found
+
+
+def exact_at_start(blocks: Sequence[Block], codes: Codes) -> list[bool]:
+    """Tell of each section whether G61 or G61.1 is in force where it begins.
+
+    ``blocks`` are those of the copy, where a section's events come behind its first block.
+    """
+    path, inside, found = "", False, []
+    for block in blocks:
+        path = next((e.text for e in block.events[::-1] if e.text.startswith("G6")), path)
+        switch = switched(block, codes, inside)
+        if switch == "on":
+            found.append(path.startswith("G61"))
         inside = switch == "on" if switch else inside
     return found
 
@@ -493,7 +511,8 @@ class Pen:
         elif code in PATHS:
             self.exact = PATHS[code]
         elif code in FEED_MODES:
-            self.per_revolution = FEED_MODES[code]
+            changed = self.per_revolution != FEED_MODES[code]
+            self.per_revolution, self.feed = FEED_MODES[code], 0.0 if changed else self.feed
 
     def _to(self, words: dict, letter: str, step: str | None, now: float, unit: float) -> float:
         """Return where a coordinate goes: by its word, by its incremental word, or nowhere."""
