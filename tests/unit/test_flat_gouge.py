@@ -148,6 +148,41 @@ def test_leads_that_cross_are_told():
     ]
 
 
+def backwards(shapes):
+    """Return lines the other way round."""
+    return [Straight(shape.end, shape.start) for shape in reversed(shapes)]
+
+
+def test_a_lead_that_crosses_the_other_may_not_cut_the_part():
+    """The square has a tower: its wall stands in the way of the tool that comes down from above."""
+    tower = lines((10, 50), (10, -10), (-10, -10), (-10, 40), (11, 40), (11, 20), (0, 20), (0, 10),
+                  (15, 10))  # fmt: skip
+    for shapes, side in ((tower, LEFT), (backwards(tower), RIGHT)):
+        assert "cuts into the other" in cut(shapes, side, 3.0)[0]
+    low = [corner if corner.real < 11 else corner - 3 for corner in (s.start for s in tower)]
+    clear = [Straight(*pair) for pair in zip(low, [*low[1:], 15 + 10j])]
+    for shapes, side in ((clear, LEFT), (backwards(clear), RIGHT)):
+        text, (note,) = cut(shapes, side, 3.0)
+        assert not text and "lines 3 and 10 cross" in note
+
+
+def test_the_end_of_an_open_contour_may_be_cut_from_its_far_side():
+    """Below a ledge the tool comes back to the line on which it went up, or will go down."""
+    hook = lines((0, -20), (0, 0), (20, 0), (20, -10), (1, -10))
+    first = "lines 3 and 6 cut into each other: one is taken for a lead"
+    assert cut(hook, LEFT, 3.0) == ("", [f"G12.1 line 6: {first}"])
+    assert cut(backwards(hook), RIGHT, 3.0) == ("", [f"G12.1 line 6: {first}"])
+    inner = [Straight(-20 - 20j, -20j), *hook]
+    for shapes, side in ((inner, LEFT), (backwards(inner), RIGHT)):
+        assert "cuts into the other" in cut(shapes, side, 3.0)[0]
+
+
+def test_the_end_of_an_open_contour_may_not_be_cut_from_its_own_side():
+    hook = lines((0, -20), (0, 0), (20, 0), (20, 20), (-4, 20), (-4, -15))
+    for shapes, side in ((hook, LEFT), (backwards(hook), RIGHT)):
+        assert "cuts into the other" in cut(shapes, side, 3.0)[0]
+
+
 @pytest.mark.parametrize("overlap", [0.0, 2.0])
 @pytest.mark.parametrize(("side", "inward"), [(LEFT, 1), (RIGHT, -1)])
 def test_a_contour_is_rolled_on_and_off_with_arcs(side, inward, overlap):

@@ -100,6 +100,26 @@ def test_parts_on_the_face_are_slower_where_that_is_quicker_than_pieces():
     assert path_length(there) + path_length(beside) + path_length(back) == pytest.approx(20 * pi)
 
 
+@pytest.mark.parametrize(("pieces_speed", "feed"), [(5.0, 1920.0), (10.0, 2400.0)])
+def test_the_slower_pieces_are_the_more_is_made_on_the_face_and_the_slower(pieces_speed, feed):
+    """Tried are 1, 0.8, 0.64 and 0.5 of F3000; none that is needlessly small is taken."""
+    limits = LIMITS._replace(override=1.2, pieces_speed=pieces_speed)
+    there, beside, back = parted([arc((20, 0), 10, 0, 2 * pi, feed=3000.0)], [True], limits)[0]
+    assert [part.feed for part in (there, beside, back)] == pytest.approx([feed, 3000.0, feed])
+    for part in (there, back):
+        assert is_able(part, limits)
+        assert not is_able(part._replace(feed=feed / 0.8), limits)
+
+
+def test_each_part_on_the_face_has_as_much_of_the_feed_as_it_can():
+    """In front of the pole a short part, which needs less feed to be worth it, behind it a long."""
+    limits = LIMITS._replace(pieces_speed=5.0)
+    parts = parted([line((-40, 8), (200, 8), feed=3000.0)], [True], limits)[0]
+    assert [part.feed for part in parts] == pytest.approx([2400.0, 3000.0, 3000.0])
+    assert [is_able(part, limits) for part in parts] == [True, False, True]
+    assert not is_able(parts[0]._replace(feed=3000.0), limits)
+
+
 def test_a_move_that_pieces_make_as_fast_stays_whole():
     move = line((10, -150), (10, 150), feed=1000.0)
     assert len(parted([move], [True], LIMITS)[0]) == 3
