@@ -86,6 +86,12 @@ def test_straight_on_is_no_corner_however_fast():
     assert stops(fast, 1e-6, 1000.0, C) == [False, True]
 
 
+@pytest.mark.parametrize(("bend", "stop"), [(1.9e-4, False), (2.1e-4, True)])
+def test_directions_that_differ_by_less_than_a_fifth_of_a_milliradian_are_one(bend, stop):
+    fast = [line(20, 0, 30, 0, feed=1e5), line(30, 0, 40, 10 * bend, feed=1e5)]
+    assert stops(fast, 1e-6, 1000.0, C) == [stop, True]
+
+
 def test_a_slope_counts_in_space():
     level_then_down = [line(20, 0, 30, 0), line(30, 0, 40, 0, 0.0, -10.0)]
     assert first_stops(level_then_down, 0.5 * ROUNDING)

@@ -106,6 +106,8 @@ def test_the_slower_pieces_are_the_more_is_made_on_the_face_and_the_slower(piece
     limits = LIMITS._replace(override=1.2, pieces_speed=pieces_speed)
     there, beside, back = parted([arc((20, 0), 10, 0, 2 * pi, feed=3000.0)], [True], limits)[0]
     assert [part.feed for part in (there, beside, back)] == pytest.approx([feed, 3000.0, feed])
+    places = 16 * path_length(there) / (5 * pi)  # of each quarter, 16 are looked at
+    assert places == pytest.approx(round(places))
     for part in (there, back):
         assert is_able(part, limits)
         assert not is_able(part._replace(feed=feed / 0.8), limits)
@@ -120,6 +122,44 @@ def test_each_part_on_the_face_has_as_much_of_the_feed_as_it_can():
     assert not is_able(parts[0]._replace(feed=3000.0), limits)
 
 
+def away_from_the_pole(length):
+    """Return a line that C can follow from some way on, and from which of its places on."""
+    move = line((10, 0), (10, length), feed=3000.0)
+    free = (k for k in range(16) if is_able(line((10, length * k / 16), (10, length)), FAST))
+    return move, length * next(free) / 16
+
+
+FAST = LIMITS._replace(override=3.0)  # at F1000, as at F3000 without
+
+
+def test_a_part_on_the_face_would_take_half_a_second_at_half_its_feed():
+    limits, shortest = LIMITS._replace(pieces_speed=1.0), inf
+    for length in np.arange(20.0, 60.0, 0.5):
+        move, _ = away_from_the_pole(length)
+        parts = parted([move], [True], limits)[0]
+        if len(parts) > 1:
+            shortest = min(shortest, path_length(parts[-1]) / 25.0)
+    assert 0.5 <= shortest < 0.6
+
+
+def test_a_move_is_parted_if_it_gains_a_twentieth_switching_included():
+    """Pieces go at 40 a second, on the face it is 50; a switch there and back takes a quarter."""
+    limits, found = LIMITS._replace(pieces_speed=40.0), set()
+    for length in np.arange(61.0, 200.0, 4.0):
+        move, near = away_from_the_pole(length)
+        gains = near / 40.0 + (length - near) / 50.0 + 0.25 <= 0.95 * length / 40.0
+        found.add(bool(gains))
+        assert (len(parted([move], [True], limits)[0]) > 1) == gains
+    assert found == {False, True}
+
+
+@pytest.mark.parametrize(("seconds", "worth"), [(0.09, False), (0.11, True)])
+def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
+    far = line((40, 0), (40, 10 * seconds), feed=600.0)
+    assert chosen([far], LIMITS) == [worth]
+    assert chosen([far, Mark(2, "M8"), far], LIMITS._replace()) == [2 * seconds > 0.1] * 3
+
+
 def test_a_move_that_pieces_make_as_fast_stays_whole():
     move = line((10, -150), (10, 150), feed=1000.0)
     assert len(parted([move], [True], LIMITS)[0]) == 3
@@ -131,6 +171,8 @@ def test_a_move_that_pieces_make_as_fast_stays_whole():
     [
         (line((20, 10), (0, 10)), True),
         (line((20, 10), (0, 10.1)), False),
+        (line((20, 10), (0, 10 + 20 * 0.9e-6)), True),
+        (line((20, 10), (0, 10 - 20 * 1.1e-6)), False),
         (line((20, 10), (40, 10)), False),
         (arc((20, 0), 10, pi / 2, 1), True),
         (arc((20, 20), 10, -pi / 2, -1), True),

@@ -307,6 +307,14 @@ def test_pieces_of_a_line_share_the_deviation():
     assert max(bulges) / min(bulges) < 1.1
 
 
+def test_pieces_use_the_tolerance_but_for_what_a_stop_takes():
+    side, on = Straight(20 + 0j, 20 + 30j), Straight(20 + 30j, 20 + 31j)
+    for shapes, least, most in (([side], 0.55, 0.7), ([side, on], 0.75, 0.96)):
+        contour = programmed(shapes)
+        made = [cut for cut in cuts(contour, plan(contour, DRIVEN, c=0.0)) if cut.line == 1]
+        assert least < distance(path(made), [side]).max() / TOLERANCE <= most
+
+
 @pytest.mark.parametrize(("feed", "most"), [(1000.0, 168), (250.0, 168)])
 def test_hexagon_needs_fewer_pieces_than_the_longest_piece_that_fits(feed, most):
     """27 mm across flats, 12 mm cutter: the longest pieces of half the deviation are 246."""
@@ -474,6 +482,15 @@ SMOOTH = [Round(20 + 0j, 15 + 0j, math.pi / 2), Straight(15 + 5j, 0 + 5j)]
 )
 def test_stops_where_blending_would_cut_the_corner(shapes, feed, lines):
     assert stopping_lines(shapes, feed) == lines
+
+
+@pytest.mark.parametrize(("feed", "stop"), [(111.0, False), (115.0, True)])
+def test_a_corner_is_rounded_by_half_the_tolerance_at_most(feed, stop):
+    """At right angles, with 1000 mm/s² and twice that where it stops: 0.0025 mm at 1.88 mm/s."""
+    contour = Contour(10.0, 0.0)
+    contour.line(20.0, line=1, feed=feed)
+    contour.line(z=-5.0, line=2, feed=feed)
+    assert [run.stop for run in runs(plan(contour, LATHE, c=0.0))] == [stop, True]
 
 
 def test_marks_keep_their_place_and_pieces_their_lines():
