@@ -504,6 +504,15 @@ def test_a_copy_that_is_killed_half_way_is_no_folder_g12(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_the_next_copy_takes_away_what_a_killed_one_began(tmp_path):
+    begun, users = tmp_path / ".g12.ab12cd_x", tmp_path / ".g12.mine1234"
+    for folder, name in ((begun, "ngc/g12_haas.ngc"), (begun, "ngc/.half.7"), (users, "notes")):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text("any")
+    package_copy.write_copy(tmp_path / "g12")
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".g12.mine1234", "g12"]
+
+
 def newer(monkeypatch, files):
     monkeypatch.setattr(package_copy, "package_files", lambda: dict(files))
 

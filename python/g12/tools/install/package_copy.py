@@ -135,6 +135,8 @@ def write_copy(folder: Path) -> list[str]:
 
     Returns under what names edited files were put aside for a newer version.
     """
+    for begun in abandoned(folder):
+        shutil.rmtree(begun)
     if folder.exists():
         return update_copy(folder)
     fresh = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
@@ -147,6 +149,17 @@ def write_copy(folder: Path) -> list[str]:
         shutil.rmtree(fresh)
         raise
     return []
+
+
+def abandoned(folder: Path) -> list[Path]:
+    """Return the copies beside a folder that `install` had begun when it was killed."""
+    ours = {*package_files(), MANIFEST}
+    return [
+        begun
+        for begun in folder.parent.glob(f".{folder.name}.????????")
+        if begun.is_dir()
+        and all(name in ours or Path(name).name.startswith(".") for name in files_below(begun))
+    ]
 
 
 def update_copy(folder: Path) -> list[str]:
