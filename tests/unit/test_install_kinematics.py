@@ -129,11 +129,14 @@ def test_what_is_written(tmp_path):
     text = ini.read_text()
     for lines in (
         "# was: KINEMATICS = trivkins coordinates=xzc kinstype=B\n"
+        "# now: KINEMATICS = polar_xzc coordinates=XZC\n"
         "KINEMATICS = polar_xzc coordinates=XZC\n# <<<",
-        "# was: COORDINATES =   X Z C\nCOORDINATES = X Y Z C\n# <<<",
-        "# was: MIN_LIMIT = -5.0\nMIN_LIMIT = -200\n# <<<",
-        "# was: MAX_ACCELERATION = 1000\nMAX_ACCELERATION = 700\n# <<<",
-        "[AXIS_Y]\nMIN_LIMIT = -200\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACCELERATION = 700\n",
+        "# was: COORDINATES =   X Z C\n# now: COORDINATES = X Y Z C\nCOORDINATES = X Y Z C\n# <<<",
+        "# was: MIN_LIMIT = -5.0\n# now: MIN_LIMIT = -200\nMIN_LIMIT = -200\n# <<<",
+        "# was: MAX_ACCELERATION = 1000\n# now: MAX_ACCELERATION = 700\nMAX_ACCELERATION = 700\n#",
+        "[AXIS_Y]\n# now: MIN_LIMIT = -200; MAX_LIMIT = 200; MAX_VELOCITY = 100; "
+        "MAX_ACCELERATION = 700\n"
+        "MIN_LIMIT = -200\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACCELERATION = 700\n",
         "HALFILE = g12/configs/kinematics/polar_kinematics.hal\n# <<<",
         "ON_ABORT_COMMAND = G13.1 P\n# <<<",
         "[G12]\nPOLAR_KINEMATICS = 1\n",
@@ -150,6 +153,46 @@ def test_lines_of_the_users_between_the_markers_stay(tmp_path):
     )
     list(removal.uninstall(IniText(ini), dry_run=False))
     assert ini.read_text() == LATHE + "[G12]\nPOLAR_Z = allow\n"
+
+
+EDITS = [  # what install wrote, what the user makes of it, and how often it is there
+    ("COORDINATES = X Y Z C\n# <<<", "COORDINATES = X Y Z C A\n# <<<", "COORDINATES = X Y Z C A"),
+    ("MIN_LIMIT = -200\n# <<<", "MIN_LIMIT = -150 \n# <<<", "MIN_LIMIT = -150 "),
+    ("ION = 700\nMAX_ACCELERATION = 700\n#", "ION = 700\nMAX_ACCELERATION = 500\n#", "ION = 500"),
+    ("coordinates=XZC\n# <<<", "coordinates=XZC # tried\n# <<<", "coordinates=XZC # tried"),
+    ("MAX_VELOCITY = 100\nMAX_ACCELERATION = 700\n", "MAX_VELOCITY = 80\nMAX_ACCELERATION = 700\n",
+     "MAX_VELOCITY = 80"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("ours", "theirs", "kept"), EDITS)
+def test_what_the_user_changed_since_stays_as_a_comment_and_is_told(tmp_path, ours, theirs, kept):
+    ini = config_in(tmp_path)
+    put_in(ini, "polar", features.KINEMATICS)
+    text = ini.read_text()
+    assert text.count(ours) == 1
+    ini.write_text(text.replace(ours, theirs))
+    said = list(removal.uninstall(IniText(ini), dry_run=False))
+    told = [line for line in said if "you changed it, it stays as a comment: " in line]
+    assert len(told) == 1
+    assert told[0].endswith(kept)
+    comments = [line for line in ini.read_text().splitlines() if line.startswith("# before unin")]
+    assert len(comments) == 1
+    assert comments[0].endswith(kept)
+    left = "".join(line for line in ini.read_text().splitlines(True) if not line.startswith("# be"))
+    assert left == LATHE
+    assert list(removal.uninstall(IniText(ini), dry_run=False)) == [
+        f"{ini}: nothing that install put in"
+    ]
+
+
+def test_an_ini_of_an_older_install_is_given_back(tmp_path):
+    ini = config_in(tmp_path)
+    put_in(ini, "polar", features.KINEMATICS)
+    lines = ini.read_text().splitlines(keepends=True)
+    ini.write_text("".join(line for line in lines if not line.startswith("# now: ")))
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert ini.read_text() == LATHE
 
 
 @pytest.mark.parametrize(("usual", "unusual", "says"), REFUSED)

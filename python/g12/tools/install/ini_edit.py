@@ -18,6 +18,8 @@ from g12.tools.machine.ini import Ini, IniError
 BEGIN = "# >>> g12 install"
 END = "# <<< g12 install"
 WAS = "# was: "
+NOW = "# now: "  # what was put in, several separated by NEXT: an edit is known by it
+NEXT = "; "
 LINE = re.compile(r"[^\n]*\n|[^\n]+")
 CONTINUED = re.compile(r"\\\r?\n?\Z")
 
@@ -190,7 +192,7 @@ class IniText:
 
     def put_in_place(self, line: IniLine, text: str, begin: str) -> None:
         """Put an entry between markers in place of a line, which stays there as a comment."""
-        self.insert(Place(line.file, line.index + 1), [text, END])
+        self.insert(Place(line.file, line.index + 1), [NOW + text, text, END])
         self.replace(line, WAS + line.text)
         self.insert(Place(line.file, line.index), [begin])
 

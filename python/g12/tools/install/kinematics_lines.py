@@ -18,7 +18,7 @@ from g12.settings import settings_from_lines
 from g12.tools.install import features
 from g12.tools.install.config import Config, folder_from_ini
 from g12.tools.install.findings import Finding, problem
-from g12.tools.install.ini_edit import CONTINUED, IniText
+from g12.tools.install.ini_edit import CONTINUED, NEXT, NOW, IniText
 from g12.tools.install.kinematics_rules import (
     OFFSET_HAL,
     OWN_HAL,
@@ -185,9 +185,10 @@ def added(config: Config, wanted: Sequence[str], prefix: str) -> dict[str, list[
         beside = 0.0
     files = [OWN_HAL, *([OFFSET_HAL] if beside else [])]
     face = [] if config.ini.get("G12", "POLAR_KINEMATICS") else ["POLAR_KINEMATICS = 1"]
+    axis = [f"{key} = {value}" for key, value in limits(config).items()]
     return {
         "RS274NGC": [f"ON_ABORT_COMMAND = {code_off(config, wanted)} P"],
         "HAL": [f"HALFILE = {prefix}/{file}" for file in files],
         "G12": face,
-        "AXIS_Y": [f"{key} = {value}" for key, value in limits(config).items()],
+        "AXIS_Y": [NOW + NEXT.join(axis), *axis],
     }

@@ -15,6 +15,8 @@ from g12.tools.install.features import model_of
 from g12.tools.install.ini_edit import (
     BEGIN,
     END,
+    NEXT,
+    NOW,
     WAS,
     IniLine,
     IniText,
@@ -35,6 +37,7 @@ OWN_ENDS = {
     "PATH_APPEND": "/python",
 }
 HEADERS = {f"[{section}]": section for section in ("PYTHON", "FILTER", "G12", "AXIS_Y")}
+EDITED = "# before uninstall: "
 OWN_FILTER = re.compile(
     r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S+"
 )
@@ -44,7 +47,7 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     """Take the package out of a machine config; yield what is shown."""
     blocks, copy = text.blocks(), text.path.parent / package_copy.NAME
     package_copy.listed(copy)  # refuses a damaged list before anything is written
-    stay = take_out_blocks(text, blocks)
+    said = take_out_blocks(text, blocks)
     shared = still_installed(text)
     if not blocks and (shared or not package_copy.is_copy(copy)):
         yield f"{text.path}: nothing that install put in"
@@ -56,8 +59,7 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     changes = {path: new for path, new in {**inis, **modules}.items() if new != path.read_bytes()}
     for path, content in changes.items():
         yield from difference(path, content)
-    for line in stay:
-        yield f"{line.place}: stays, it is not by install: {line.text}"
+    yield from said
     needing = sorted({line.place: line for line in lines_needing_package(text)}.values())
     for line in needing:
         yield f"{line.place}: still needs the package: {line.text.strip()}"
@@ -71,32 +73,62 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     yield from after_all(copy, shared, bool(needing))
 
 
-def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[IniLine]:
-    """Take the blocks out; return the lines of the user's between the markers, which stay."""
+def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
+    """Take the blocks out; return what is said of the user's lines between the markers.
+
+    They stay. An entry that the user gave another value than `install` stays as a comment, because
+    what was there before comes back.
+    """
     doomed = [line for block in blocks for line in own_lines(block)]
     was = [line for block in blocks for line in block if line.text.startswith(WAS)]
+    edited = [line for block in blocks for line in edited_lines(block)]
     headers = [line for block in blocks for line in block if line.text in HEADERS]
     for header in headers:
         section = text.section(HEADERS[header.text])
-        others = (line for line in section if line not in (*doomed, *headers))
+        others = (line for line in section if line not in (*doomed, *headers, *edited))
         if not any(is_entry(line.text) for line in others):
             doomed.append(header)
-    gone = (*doomed, *headers, *was)
+    gone = (*doomed, *headers, *was, *edited)
     stay = [line for block in blocks for line in block if line not in gone]
     for line in was:
         text.replace(line, line.text[len(WAS) :])
+    for line in edited:
+        text.replace(line, EDITED + line.text)
     text.remove(doomed)
-    return stay
+    return [
+        *(f"{line.place}: you changed it, it stays as a comment: {line.text}" for line in edited),
+        *(f"{line.place}: stays, it is not by install: {line.text}" for line in stay),
+    ]
 
 
 def own_lines(block: list[IniLine]) -> Iterator[IniLine]:
     """Yield the lines of a block that `install` put there; they may stand in for another."""
-    texts = [line.text for line in block]
-    others = {key_and_value(text[len(WAS) :])[0] for text in texts if text.startswith(WAS)}
-    others |= set(kinematics_lines.LIMITS) if "[AXIS_Y]" in texts else set()
+    edited = edited_lines(block)
+    standing_in = keys_standing_in(block)
     for line in block:
-        if is_by_install(line) or key_and_value(line.text)[0] in others - {""}:
+        stands_in = key_and_value(line.text)[0] in standing_in and line not in edited
+        if is_by_install(line) or stands_in:
             yield line
+
+
+def edited_lines(block: list[IniLine]) -> list[IniLine]:
+    """Return the entries of a block to which the user gave another value than `install`."""
+    notes = [line.text[len(NOW) :] for line in block if line.text.startswith(NOW)]
+    put_in = {text for note in notes for text in note.split(NEXT)}
+    standing_in = keys_standing_in(block) if put_in else set()
+    return [
+        line
+        for line in block
+        if key_and_value(line.text)[0] in standing_in and line.text not in put_in
+    ]
+
+
+def keys_standing_in(block: list[IniLine]) -> set[str]:
+    """Return the keys of a block's entries that `install` put in place of others, or of limits."""
+    texts = [line.text for line in block]
+    keys = {key_and_value(text[len(WAS) :])[0] for text in texts if text.startswith(WAS)}
+    keys |= set(kinematics_lines.LIMITS) if "[AXIS_Y]" in texts else set()
+    return keys - {""}
 
 
 def is_by_install(line: IniLine) -> bool:
@@ -110,7 +142,7 @@ def is_by_install(line: IniLine) -> bool:
         return model_of(remap_from_value(value)) is not None
     if key:
         return ":" not in value and value.endswith(OWN_ENDS.get(key, "\n"))
-    return line.text.startswith((BEGIN, NOTE, END))
+    return line.text.startswith((BEGIN, NOTE, NOW, END))
 
 
 def notes_in(blocks: list[list[IniLine]]) -> list[str]:
