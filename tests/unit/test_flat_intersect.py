@@ -8,10 +8,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely.geometry import LineString
+from shapely.geometry import LineString, Point
 
 from g12.flat.contour import Arc, Line
-from g12.flat.intersect import along_end, along_start, crossing, least_distance
+from g12.flat.intersect import (
+    along_end,
+    along_start,
+    common_places,
+    crossing,
+    least_distance,
+    part_of_move,
+)
 
 SAGITTA = 2e-4
 
@@ -50,6 +57,41 @@ def test_least_distance(one, other):
     expected = polyline(one).distance(polyline(other))
     assert least_distance(one, other) == pytest.approx(expected, abs=3 * SAGITTA)
     assert least_distance(other, one) == pytest.approx(expected, abs=3 * SAGITTA)
+
+
+def runs_on(one, other):
+    """Return whether two moves lie on one line, or on circles about one centre."""
+    if type(one) is not type(other):
+        return False
+    if isinstance(one, Arc):
+        return (one.cx, one.cc) == (other.cx, other.cc)
+    a, b = (complex(m.x1 - m.x0, m.c1 - m.c0) for m in (one, other))
+    return abs((a.conjugate() * b).imag) < 1e-9
+
+
+@settings(deadline=None, max_examples=300)
+@given(moves(), moves())
+def test_common_places(one, other):
+    places = [Point(place) for place in common_places(one, other)]
+    drawn = polyline(one), polyline(other)
+    assert all(line.distance(place) <= 2 * SAGITTA for line in drawn for place in places)
+    met = drawn[0].intersection(drawn[1])
+    if runs_on(one, other) or met.is_empty:
+        assert not runs_on(one, other) or not places
+        return
+    for place in getattr(met, "geoms", [met]):  # where they touch, chords cross beside it
+        assert min(place.distance(known) for known in places) < 0.15
+
+
+@given(moves(), st.floats(0.0, 0.4), st.floats(0.6, 1.0))
+def test_a_part_of_a_move_is_on_its_way_and_at_its_height(move, first, last):
+    part = part_of_move(move._replace(z0=1.0, z1=-3.0), first, last)
+    assert (part.z0, part.z1) == pytest.approx((1.0 - 4.0 * first, 1.0 - 4.0 * last))
+    whole, cut = polyline(move), polyline(part)
+    assert cut.length == pytest.approx((last - first) * whole.length, rel=1e-3)
+    for place, at in (((part.x0, part.c0), first), ((part.x1, part.c1), last)):
+        expected = whole.interpolate(at, normalized=True)
+        assert Point(place).distance(expected) < 0.02
 
 
 def arc_of(sweep, radius=3.0, centre=2 - 1j, first=0.4):
