@@ -167,6 +167,22 @@ def test_a_folder_that_cannot_be_made(tmp_path, capsys):
     assert ends(capsys, "demo", "--output", wanted) == (2, f"g12 demo: {wanted}: Not a directory\n")
 
 
+def test_the_command_is_named_as_it_was_typed(tmp_path):
+    """The copy that `install` makes stands in another folder."""
+    (tmp_path / "my g12").symlink_to(ROOT)
+    for folder, typed in (("my g12/", "'my g12/python/g12'"), (f"{ROOT}/", f"{ROOT}/python/g12")):
+        command = [sys.executable, f"{folder}python/g12"]
+        said = subprocess.run(
+            [*command, "nonsense"], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
+        assert said.stderr == f"g12: no command 'nonsense' (usage: python3 {typed} --help)\n"
+        said = subprocess.run(
+            [*command, "trace", "--help"], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
+        assert f"usage: python3 {typed} trace" in " ".join(said.stdout.split())
+        assert f"\n  python3 {typed} trace pocket.ngc --ini mill.ini" in said.stdout
+
+
 def test_an_interrupt_is_one_line(monkeypatch, capsys):
     def interrupted(_arguments):
         raise KeyboardInterrupt

@@ -3,6 +3,22 @@
 
 from __future__ import annotations
 
+import shlex
+import sys
+from pathlib import Path
+
 PYTHON = "/usr/bin/python3"  # LinuxCNC's Python modules belong to the system's Python
 DEBIAN_PACKAGE = "/usr/share/linuxcnc-g12/"
-CALL = "g12" if __file__.startswith(DEBIAN_PACKAGE) else "python3 python/g12"
+PROGRAM = Path(__file__).parents[1]  # the folder python/g12
+
+
+def call() -> str:
+    """Return how the commands are called: as it was typed, else as from the package's folder."""
+    if __file__.startswith(DEBIAN_PACKAGE):
+        return "g12"
+    typed = Path(sys.argv[0]) if sys.argv[:1] else Path()
+    is_own = typed.name == PROGRAM.name and typed.is_dir() and typed.samefile(PROGRAM)
+    return f"python3 {shlex.quote(sys.argv[0])}" if is_own else "python3 python/g12"
+
+
+CALL = call()

@@ -53,7 +53,7 @@ class Parser(argparse.ArgumentParser):
 
 def typed(text: str) -> str:
     """Return a text with ``g12`` at the beginning of its lines as it is typed on this system."""
-    return NAMED.sub(rf"\1{CALL}", text)
+    return NAMED.sub(lambda name: name[1] + CALL, text)
 
 
 def number_above(least: float) -> Callable[[str], float]:
