@@ -89,12 +89,6 @@ def test_samples_of_every_dialect_are_good(program, machine, radii):
     assert proof.findings == []
 
 
-@pytest.mark.parametrize("program", sorted((SIM / "samples").glob("*.ngc")), ids=lambda p: p.stem)
-def test_what_the_machines_open_first_is_good(program):
-    machine = program.stem.removesuffix("_cylinder")
-    assert prove(program, ini(machine)).findings == []
-
-
 @pytest.mark.parametrize(
     "block",
     [

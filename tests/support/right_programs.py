@@ -398,10 +398,10 @@ def cylinder_program(chance, unit, count, sloping=False):
         loaded = chance.choice(list(AXIAL[unit]))
         radius = text.between(15, 60)
         z, c = -text.between(20, 80), chance.choice([0, 90, -45, 400])
-        text.add(f"T{loaded} M6")
-        text.add(f"G0 X{_x(text, radius + 5)} Z{text.n(z)} C{c}")
         if chance.random() < 0.15:
             text.shift(("X", -3, 3), ("Z", -9, 9))
+        text.add(f"T{loaded} M6")
+        text.add(f"G0 X{_x(text, radius + 5)} Z{text.n(z)} C{c}")
         text.add(text.one_of("", "G61", f"G64 P{text.n(0.01)}"))
         text.add(f"G7.1 C{text.n(radius * (2 if sloping else 1))}")
         text.add(f"G1 X{_x(text, radius - text.between(0.5, 4))} F{text.n(text.between(50, 300))}")

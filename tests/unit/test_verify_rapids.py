@@ -175,3 +175,11 @@ def test_a_rapid_down_is_good_where_the_first_cycle_began_with_one():
     program = Program().rapid(x=50, z=10).mill(depth=-0.5).rapid(z=10)
     program.rapid(x=150, z=10).rapid(z=-3).mill([17], depth=0.0)
     assert program.rapid(z=2).rapid(z=-6).mill([17], depth=0.0).rapid(z=10).found() == []
+
+
+@pytest.mark.parametrize(("face", "count"), [(0.0, 0), (0.5, 2)])
+def test_where_the_machine_is_says_nothing_without_a_work_offset(face, count):
+    program = start().mill(face=face).rapid(z=-40).rapid(x=150).rapid(z=2).rapid(x=50)
+    down = len(program.moves) - 4
+    program.moves[down] = program.moves[down]._replace(by_machine=True)
+    assert len(program.found()) == count

@@ -98,7 +98,8 @@ class Move(NamedTuple):
     system about Z in degrees, which turns G18 and G19 planes.
 
     ``remap`` is the remapped code that makes the move, ``G12``, "" without one. ``exact`` says that
-    it ends in an exact path or stop (G61, G61.1), not blended into the next.
+    it ends in an exact path or stop (G61, G61.1), not blended into the next. ``by_machine`` says
+    that its block names a place of the machine (G53, G28, G30), which no work offset moves.
     """
 
     kind: str
@@ -116,6 +117,7 @@ class Move(NamedTuple):
     rotation: float = 0.0
     remap: str = ""
     exact: bool = False
+    by_machine: bool = False
 
     @property
     def radius(self) -> float:

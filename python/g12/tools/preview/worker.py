@@ -43,6 +43,7 @@ SPINDLE_MODE = 13  # place of G96, G97 in the active G codes
 OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)}  # from where on
 OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number behind is always the same
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
+BY_MACHINE = (280, 300, 530)
 FEED_MODES = ("G94", "G93", "G95")
 CONTINUOUS = 3  # CANON_CONTINUOUS: G64
 DIAMETER = 10  # place in what the preview asks for of a tool
@@ -362,9 +363,8 @@ class Canon:
         state = (self.plane, self.spindle[0], self.length)
         place = (kind, self.line, self.lines.now(), start, self.position)
         remap = self.lines.remap()
-        self.moves.append(
-            (*place, feed, mode, *state, centre, turns, self.rotation, remap, is_exact())
-        )
+        how = (is_exact(), goes_by_machine())
+        self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation, remap, *how))
         if remap:
             self.files |= self.lines.files()
 
@@ -417,6 +417,12 @@ def conditions(state) -> tuple:
         "M8 on" if this.flood else "M8 off",
         f"M{state.overrides}",
     )
+
+
+def goes_by_machine() -> bool:
+    """Tell whether a block that moves names a place of the machine: G53, G28, G30."""
+    this = interpreter_object()
+    return this.blocks[this.remap_level].g_modes[0] in BY_MACHINE
 
 
 def is_exact() -> bool:

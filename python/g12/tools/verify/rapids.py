@@ -169,16 +169,31 @@ def collisions(
     cleared = Cleared(asked, moves, path, diameters)
     openings = list(openings_of(asked, moves, cleared, path))
     bored = bored_places(asked, moves, openings)
+    has_zero = any(abs(target.wall.face) > SAME_HEIGHT for _, target in asked)
+    unknown = [] if has_zero else nowhere(moves)
     found: dict[int, Collision] = {}
     for chain in chains_of(moves, openings):
         points, owner = path_along(chain, moves, path, real)
         risky = risky_points(points, owner, moves, bored)
+        risky &= ~np.isin(owner, unknown)
         for opening in met_by(points[risky], openings):
             for stretch in stretches_in(opening, points, owner):
+                stretch = stretch[~np.isin(owner[stretch], unknown)]
                 for hit in hits(points[stretch], owner[stretch], moves, cleared, bored):
                     known = found.get(hit.move)
                     found[hit.move] = hit if known is None or known.area < hit.area else known
     return [found[move] for move in sorted(found)]
+
+
+def nowhere(moves: Sequence[Move]) -> list[int]:
+    """Return the moves at a height that only a work offset would tell: by G53, G28, G30."""
+    found, unknown = [], False
+    for index, move in enumerate(moves):
+        if move.start[2] != move.end[2]:
+            unknown = move.by_machine
+        if unknown:
+            found.append(index)
+    return found
 
 
 def openings_of(

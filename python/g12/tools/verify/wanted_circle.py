@@ -252,7 +252,8 @@ class CircleReader:
         schedule = Schedule(
             levels, passes, feeds, cycle.turn, circles=tuple(circles), pitch=pitch, helix=helix
         )
-        core = core_of(cutter, wall.radius, helix.radius if helix else 0.0)
+        begun = helix.radius if helix and helix.within else 0.0  # else it ends in the centre
+        core = core_of(cutter, wall.radius, begun)
         wall = replace(wall, origin=view.centre(), cleared=0.0 if "K" in words else core)
         begin = view.axes @ (view.start - wall.origin)
         there = (((begin[0], begin[1]), CENTRE),) if np.hypot(*begin[:2]) > ROUNDING else ()
