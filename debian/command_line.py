@@ -7,8 +7,8 @@ import argparse
 from importlib import import_module
 from unittest import mock
 
+from g12.tools.commands import arguments
 from g12.tools.commands.main import COMMANDS
-from g12.tools.system import CALL
 
 
 class Found(BaseException):
@@ -21,7 +21,8 @@ def parser_of(module: str) -> argparse.ArgumentParser:
     def found(parser: argparse.ArgumentParser, *_arguments: object) -> None:
         raise Found(parser)
 
-    with mock.patch.object(argparse.ArgumentParser, "parse_args", found):
+    typed = mock.patch.object(arguments, "CALL", "g12")
+    with typed, mock.patch.object(argparse.ArgumentParser, "parse_args", found):
         try:
             import_module(module).main([])
         except Found as carried:
@@ -41,7 +42,7 @@ def parser() -> argparse.ArgumentParser:
             name,
             help=summary,
             description=own.description,
-            epilog=own.epilog.replace(CALL, "g12"),
+            epilog=own.epilog,
             formatter_class=own.formatter_class,
             parents=[own],
             add_help=False,

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What `make deb` places: the demo's programs and machines are among it, and load."""
 
+import argparse
+import importlib
 import os
 import subprocess
 import sys
 
 import pytest
 
+from g12.tools.commands.main import COMMANDS
 from g12.tools.demo.samples import SAMPLES
 from support.sim_machines import ROOT
 
@@ -41,3 +44,20 @@ def test_a_machine_of_the_demo_loads_from_there(package, name):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.count("\n") > 20
+
+
+def texts_of(parser):
+    """Yield the help of a parser and of all below it."""
+    yield parser.format_help()
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for below in action.choices.values():
+                yield from texts_of(below)
+
+
+def test_the_manual_page_names_the_command_as_it_is_typed_there(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "debian"))
+    texts = list(texts_of(importlib.import_module("command_line").parser()))
+    assert len(texts) > len(COMMANDS)
+    assert [text for text in texts if "python3 python/g12" in text] == []
+    assert "g12 regress check [-h]" in " ".join(texts)
