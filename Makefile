@@ -18,6 +18,7 @@ IN_PLACE := $(if $(RIP),$(RIP)/scripts/rip-environment)
 .PHONY: help setup demo test test-on lint bench soak deb kinematics clean
 
 help:
+	@echo "make setup  install what is missing on Debian; demo, test and bench do so by themselves"
 	@echo "make demo   run the manuals' programs in headless LinuxCNC, pictures in build/demo"
 	@echo "make test   run every test"
 	@echo "make test-on SUITE=trixie   the same in a bare Debian of that name, as root"
