@@ -24,14 +24,14 @@ from support.sim_machines import ROOT, SIM
             "G20 G90 F100\nG1 X.1 Y.25\n(MSG, there)\nM2\n",
             0,
             ["message: there", "ends at X0.1 Y0.25 Z0 (machine position, in)"],
-            "running part.ngc in real time, about 0.2 s\n",
+            "running part.ngc in real time, 0.2 s without acceleration\n",
         ),
         (
             "lathe_mm.ini",
             "M2\n",
             0,
             ["ends at X0 Z0 C0 (machine position, mm and degrees)"],
-            "running part.ngc in real time, about 0.0 s\n",
+            "running part.ngc in real time, 0.0 s without acceleration\n",
         ),
         (
             "mill_mm.ini",
@@ -79,7 +79,7 @@ def test_a_run_with_an_override_tells_it_and_how_long_it_will_take(tmp_path, cap
     words = ["run", str(program), "--ini", str(SIM / "mill_mm.ini"), "--override", "500"]
     assert main.main(words) == 0
     said = capsys.readouterr()
-    assert said.err == "running part.ngc at 500 % feed, about 1.0 s\n"
+    assert said.err == "running part.ngc at 500 % feed, 1.0 s without acceleration\n"
     assert 1.0 < float(said.out.splitlines()[-1].split()[0]) < 1.5
 
 
@@ -93,7 +93,7 @@ def test_an_interrupted_run_is_one_line(tmp_path, start):
     _, said = process.communicate(timeout=20)
     assert (process.returncode, said) == (
         130,
-        "running long.ngc in real time, about 5 min 0 s\ng12 run: interrupted\n",
+        "running long.ngc in real time, 5 min 0 s without acceleration\ng12 run: interrupted\n",
     )
 
 

@@ -145,11 +145,12 @@ def tell_whose_lines(name: str, opened: OpenedProgram) -> None:
 
 
 def run_text(program: Path, override: float, trace: Trace | None, ini: Ini) -> str:
-    """Return what is said while a program runs: at what feed override, for about how long."""
+    """Return what is said while a program runs: at what feed override, and how long."""
     pace = "in real time" if override == 100.0 else f"at {override:g} % feed"
     if not trace or trace.error:
         return f"running {program.name} {pace}"
-    return f"running {program.name} {pace}, about {clock(program_seconds(trace, ini, override))}"
+    seconds = program_seconds(trace, ini, override)
+    return f"running {program.name} {pace}, {clock(seconds)} without acceleration"
 
 
 def one_line(name: str) -> Callable:

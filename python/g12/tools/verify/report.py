@@ -243,10 +243,10 @@ def slowest(pace: Pace, where: str, line: int, unit: Unit) -> str:
 
 
 def time_text(pace: Pace) -> str:
-    """Return the time in words."""
-    text = f"{plain(pace.seconds, 1)} s"
+    """Return the time in words; what is only reckoned knows no acceleration."""
+    programmed = f"{plain(pace.expected, 1)} s at the programmed feeds"
     same = pace.seconds == pace.expected
-    return text if same else f"{text}, {plain(pace.expected, 1)} s at the programmed feeds"
+    return programmed if same else f"{plain(pace.seconds, 1)} s, {programmed}"
 
 
 def real_rows(facts: PocketFacts, unit: Unit) -> list[tuple[str, str]]:
