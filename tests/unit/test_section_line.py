@@ -14,6 +14,7 @@ from g12.section.modes import (
     action_text,
     comment_text,
     decimal,
+    may_fail,
     modes_after,
     stop_text,
 )
@@ -239,6 +240,19 @@ def test_the_spindle_word_goes_along():
     assert action_text(block(m={7: 3}, S=5.0), split_line("M3 S5 $-1", POLAR_WORDS)) == "M3S5$-1"
 
 
+def test_a_spindle_word_without_a_code_is_nothing_to_do():
+    moving = block(g={1: 10}, X=1.0)
+    assert action_text(moving, split_line("G1 X1 $0", POLAR_WORDS)) == ""
+
+
+@pytest.mark.parametrize(
+    ("comment", "stops"),
+    [("ABORT,#1", True), (" abort,", True), ("PY,1/0", True), ("MSG,a", False), ("about", False)],
+)
+def test_comments_that_may_stop_the_program(comment, stops):
+    assert may_fail(comment) is stops
+
+
 def test_stops():
     assert stop_text(block(m={4: 1}, g={1: 10}, X=1.0)) == "M1"
     assert stop_text(block(m={7: 3})) == ""
@@ -263,6 +277,7 @@ VALUES = {"1": 2.0, "5420": 12.5, "_x": -3.25, "ab": 7.0}
         ("DEBUG,x #1", "(DEBUG,x 2.000000)"),
         (" print, %d#5420 %f#<_x> %.2f#<A B>", "( print, 12 -3.2500 7.00)"),
         ("log,#<none> and #9", "(log,###### and ###### )"),
+        ("abort,#1 is wrong", "(abort,2.000000 is wrong)"),
         ("MSG, #1", "(MSG, #1)"),
         ("a #1 comment", "(a #1 comment)"),
         ("debug,100% #1", "(debug,100% 2.000000)"),
