@@ -166,6 +166,13 @@ def test_many_depths_become_bands():
     levels = plan_view.milled_levels(scene(hand))
     assert len(levels) <= plan_view.BANDS
     assert len(plan_view.few(levels)) == plan_view.MOST_LEVELS
+    shown = scene(hand)
+    floors = [f"swept at Z{shown.unit.text(level.z)}" for level in (levels[0], levels[-1])]
+    for room in (14, 9, 2):
+        said = [entry.get_label() for entry in plan_view.legend_entries(shown, levels, room)]
+        depths = [label for label in said if label.startswith("swept")]
+        assert len(said) <= room or len(depths) == plan_view.LEAST_LEVELS
+        assert [depths[0], depths[-1]] == floors
 
 
 def test_the_view_holds_all_that_is_cut_but_not_far_rapids():

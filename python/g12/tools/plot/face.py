@@ -36,6 +36,7 @@ LETTERS_APART = 0.11  # of the panel of Z
 HIGHER = 1.25  # with the window on the largest deviation
 LEFT, TOP = style.MARGIN, 1.05
 FACE = 5.0  # the side of the face's view
+ROOM, ROOM_BESIDE_WINDOW = 14, 14  # entries of the legend: in two columns, in one
 PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
 ROWS, PANEL, GAP = 5, 0.996, 0.3  # panels: how many, how high, between
 
@@ -65,8 +66,9 @@ def draw_face(scene: Scene) -> Figure:
     face = style.add_axes(figure, LEFT, height - TOP - FACE, FACE, FACE)
     frame_face(face, scene, levels)
     draw_plan(face, scene, levels)
+    room = ROOM if scene.real is None else ROOM_BESIDE_WINDOW
     entries = [
-        *legend_entries(scene, levels),
+        *legend_entries(scene, levels, room - 1),
         style.swatch(style.FAINT, None, "time spent in rapids"),
     ]
     columns = 2 if scene.real is None else 1

@@ -27,6 +27,7 @@ from g12.tools.units import plain
 
 PICTURE_CHORD = 0.01
 SAME_DEPTH = 1e-3
+LEAST_LEVELS = 2  # in a legend that has no room for more
 MOST_LEVELS = 10  # with more, depths and feeds are shown in bands
 BANDS = 24
 MOST_ARROWS = 80
@@ -315,15 +316,17 @@ def elements(scene: Scene) -> list[np.ndarray]:
     return blocks
 
 
-def legend_entries(scene: Scene, levels: Sequence[Level]) -> list:
-    """Return the legend."""
-    listed = feed_entries(scene) if scene.feed_colours else []
-    listed += level_entries(scene, levels)
+def legend_entries(scene: Scene, levels: Sequence[Level], room: int | None = None) -> list:
+    """Return the legend; where there is ``room`` for so many entries only, with fewer depths."""
+    feeds = feed_entries(scene) if scene.feed_colours else []
+    listed = []
     for tool in sorted({scene.moves[index].tool for index in at_feed(scene)}):
         listed.append(style.marker(style.INK, cutter_text(scene, tool), CUTTER, hollow=True))
     if plunges_of(scene):
         listed.append(style.marker(style.INK, "plunge"))
-    return listed + motion_entries(scene)
+    listed += motion_entries(scene)
+    left = MOST_LEVELS if room is None else max(room - len(feeds) - len(listed), LEAST_LEVELS)
+    return [*feeds, *level_entries(scene, levels, min(left, MOST_LEVELS)), *listed]
 
 
 def cutter_text(scene: Scene, tool: int) -> str:
@@ -363,12 +366,12 @@ def warning_entries(scene: Scene) -> list:
     return listed
 
 
-def level_entries(scene: Scene, levels: Sequence[Level]) -> list:
+def level_entries(scene: Scene, levels: Sequence[Level], most: int) -> list:
     """Return the legend's entries of the depths."""
     letter = scene.path.part.letters[2]
     return [
         style.swatch(*floor(scene, level), f"swept at {letter}{scene.unit.text(level.z)}")
-        for level in few(levels)
+        for level in few(levels, most)
     ]
 
 
@@ -381,11 +384,11 @@ def feed_entries(scene: Scene) -> list:
     ]
 
 
-def few(items: Sequence) -> list:
-    """Return at most MOST_LEVELS of the items, the first and the last among them."""
-    if len(items) <= MOST_LEVELS:
+def few(items: Sequence, most: int = MOST_LEVELS) -> list:
+    """Return at most so many of the items, the first and the last among them."""
+    if len(items) <= most:
         return list(items)
-    return [items[i] for i in np.linspace(0, len(items) - 1, MOST_LEVELS).round().astype(int)]
+    return [items[i] for i in np.linspace(0, len(items) - 1, most).round().astype(int)]
 
 
 def mark_worst(axes: Axes, scene: Scene, pair: list[int]) -> Worst | None:
