@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from g12.errors import Refusal
+from g12.errors import LONGEST_BLOCK, Refusal
 from g12.polar.words import POLAR_WORDS
 from g12.section.block_rules import SectionBlock, alone, check_block, check_letters, m_code_alone
 from g12.section.line import SectionPlace, line_named, split_line, split_words
@@ -285,6 +285,12 @@ VALUES = {"1": 2.0, "5420": 12.5, "_x": -3.25, "ab": 7.0}
 )
 def test_reports_are_filled_in(comment, text):
     assert comment_text(comment, VALUES.get) == text
+
+
+def test_a_report_is_cut_to_a_line_that_linuxcnc_reads_and_no_shorter():
+    """A blank behind a # at its end, or a parameter would begin there."""
+    assert len(comment_text("print," + "#" * 300, VALUES.get)) == LONGEST_BLOCK
+    assert len(comment_text("print," + "x" * 300, VALUES.get)) == LONGEST_BLOCK - 1
 
 
 @pytest.mark.parametrize(
