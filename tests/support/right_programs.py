@@ -301,7 +301,7 @@ def _feed(text):
 
 def _act(text):
     """Add something that is no motion, or nothing."""
-    text.add(text.one_of("", "", "M8", "M9", "G4 P.2", "(MSG, on it)", "M101 P1 Q2", "G61", "G64"))
+    text.add(text.one_of("", "", "M8", "M9", "G4 P.2", "(MSG, on it)", "M7", "G61", "G64"))
 
 
 def _to(text, point, words="G1", more=""):
