@@ -113,8 +113,6 @@ def _apsides(move: Line | Arc, length: float) -> list[float]:
         dx, dc = (move.x1 - move.x0) / length, (move.c1 - move.c0) / length
         foot = -(move.x0 * dx + move.c0 * dc)
         return [foot] if 0.0 < foot < length else []
-    if hypot(move.cx, move.cc) == 0.0:
-        return []
     turn = copysign(1.0, move.sweep)
     from_start = atan2(move.cc, move.cx) - atan2(move.c0 - move.cc, move.x0 - move.cx)
     first = turn * from_start % pi
