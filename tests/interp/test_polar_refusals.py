@@ -375,6 +375,19 @@ def test_a_contour_that_begins_in_its_inside_corner(machine):
     assert line == 11
 
 
+@pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
+def test_a_contour_whose_tool_cuts_another_one(machine):
+    square = ["G1 X40", "G41 X10", *POCKET, "C0", "G40 X40"]
+    pin = ["G41 X28", "G2 X28 C0 I-5", "G1 G40 X40"]
+    with Tracer(SIM / f"{machine}.ini") as lathe:
+        text, line = refused(lathe, section(*square, *pin))
+    assert text == (
+        "G12.1 line 15: the tool of radius 6 cannot follow both lines 12 and 15: beside one of "
+        "them it cuts into the other"
+    )
+    assert line == 15
+
+
 def test_leads_that_cross_are_told(lathe):
     corner = ["G1 X20 C15", "G41 X10", *POCKET[:3], "X15", "G40 C20"]
     told = texts(lathe.trace_text(section(*corner)))
