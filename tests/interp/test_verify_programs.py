@@ -762,3 +762,12 @@ def test_a_part_on_the_face_may_be_slower_where_c_could_not_follow_it(tmp_path):
     assert min(move.feed for move in own if move.start[5] == move.end[5]) < 2999
     (facts,) = proof.sections
     assert list(section_findings(facts, 0.005)) == []
+
+
+def test_a_whole_line_on_the_face_may_be_slower_where_c_could_not_follow_it(tmp_path):
+    lines = ["G21 G18 G8 G90 G94 G64 P0.01", "T1 M6", "G0 X60 Z5 C-45", "G12.1", "F6637.24"]
+    lines += ["G1 X-15.50263 C-22.13613", "X-8 C-12", "X-20 F200", "G13.1", "M2"]
+    proof = proof_of_text(tmp_path, lines, "lathe_mm_kinematics")
+    (first, *_), turned = proof.sections, [m for m in proof.subject.trace.moves if m.line == 6]
+    assert max(move.feed for move in turned) < 6600 and len(turned) < 10
+    assert list(section_findings(first, 0.005)) == []

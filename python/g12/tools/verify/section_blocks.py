@@ -16,7 +16,7 @@ import numpy as np
 from g12.tools.path.part import C, Y
 from g12.tools.path.track import Track, feed_length, rate
 from g12.tools.preview.moves import Move
-from g12.tools.verify.section_motion import turns
+from g12.tools.verify.section_motion import SectionAxes, turns
 from g12.tools.verify.wanted_contour import Element, SectionContour
 
 SAME_LEVEL = 1e-3  # mm
@@ -24,6 +24,7 @@ SAME_FEED = 0.01
 LEAST_ON_FACE = 0.5  # of the feed: so slow may a part of a line be on the face of the kinematics
 LEAST_LENGTH = 0.02  # mm: the feed of a shorter piece is rounding
 SHORT = 0.02  # mm: less of a line may be rounding
+BEND = 3.0 * math.sqrt(3.0) / 8.0
 TURN = 1e-6  # mm along the part: C turns in place
 
 
@@ -170,7 +171,11 @@ def heights_wanted(block: BlockOfSection, points: np.ndarray, heights: np.ndarra
 
 
 def feed_off(
-    section: SectionContour, moves: Sequence[Move], path: Track, tolerance: float
+    section: SectionContour,
+    moves: Sequence[Move],
+    path: Track,
+    tolerance: float,
+    axes: SectionAxes,
 ) -> OffWords | None:
     """Return the first feed along the part that is not the words'.
 
@@ -179,10 +184,11 @@ def feed_off(
     for block in blocks_cut(section, moves):
         feeds = {element.feed for element in block.elements}
         turned = any(turns(moves[index]) for index in block.moves)
+        slow = turned or outruns_c(block, path, axes)
         for index in block.moves if None not in feeds else ():
             meant = lengths_meant(block, index, path, tolerance)
             least, most = (feed_asked(moves[index], length) for length in meant)
-            share = LEAST_ON_FACE if turned and is_on_face(moves[index]) else 1.0
+            share = LEAST_ON_FACE if slow and is_on_face(moves[index]) else 1.0
             if path.part_length(index) < LEAST_LENGTH or not most:
                 continue
             if not any(
@@ -191,6 +197,18 @@ def feed_off(
             ):
                 return OffWords(block.elements[0].line, most, min(feeds))
     return None
+
+
+def outruns_c(block: BlockOfSection, path: Track, axes: SectionAxes) -> bool:
+    """Tell whether a line passes the spindle so near that C cannot follow it at its feed.
+
+    At the distance d and the speed v C turns by v / d, on a straight line with (v / d)**2 times
+    3 sqrt(3) / 8 at the most.
+    """
+    vertices = slice(path.vertices(block.moves[0]).start, path.vertices(block.moves[-1]).stop)
+    nearest = max(float(np.hypot(*path.points[vertices, :2].T).min()), TURN)
+    turning = max(each.feed or 0.0 for each in block.elements) / 60.0 / nearest
+    return turning > math.radians(axes.c_speed) or turning**2 * BEND > axes.c
 
 
 def is_on_face(move: Move) -> bool:
