@@ -85,7 +85,8 @@ def pocket_program(chance, unit, count, add_pocket):
         x, y = (PITCH * (place - (ROWS - 1) / 2) for place in (k % ROWS, k // ROWS))
         if chance.random() < 0.15:
             text.add("G90 G0", f"Z{text.n(20)}")
-            text.shift(("X", -20, 20), ("Y", -20, 20), ("Z", -3, 3))
+            height = [("Z", -3, 3)] * (k == 0)  # later on others would stand higher than a rapid
+            text.shift(("X", -20, 20), ("Y", -20, 20), *height)
         first = len(text.lines)
         text.add("G90 G0", f"Z{text.n(20)}")
         add_pocket(text, loaded, CUTTERS[unit][loaded] / 2, x, y)
@@ -311,8 +312,8 @@ def _to(text, point, words="G1", more=""):
 def _polygon(text):
     """Return the corners of a convex polygon about the spindle or beside it, counterclockwise."""
     chance = text.chance
-    count, radius = chance.randint(3, 8), chance.uniform(8, 25)
-    centre = complex(chance.uniform(-3, 3), chance.uniform(-3, 3))
+    count, radius = chance.randint(6 if text.beside else 3, 8), chance.uniform(8, 25)
+    centre = complex(chance.uniform(-3, 3), chance.uniform(-3, 3)) * (not text.beside)
     gaps = [chance.uniform(0.6, 1.0) for _ in range(count)]
     turned, angles = chance.uniform(0, 6), list(itertools.accumulate(gaps))
     return [
