@@ -145,6 +145,7 @@ def spindle_angles(points: np.ndarray, c: np.ndarray, beside: float = 0.0) -> np
     turned = np.degrees(np.angle(on_face[1:] * np.conj(on_face[:-1])))
     turned[(on_face.imag[1:] == 0.0) & (on_face.imag[:-1] == 0.0)] = 0.0
     changed = np.diff(c)
+    changed = changed - 360.0 * np.round(changed / 360.0)  # whole turns: counted on the face
     steps = np.where((np.abs(turned) > 1e-9) & (changed != 0.0), 0.0, turned + changed)
     return c[0] + np.append(0.0, np.cumsum(steps))
 
