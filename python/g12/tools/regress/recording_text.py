@@ -43,7 +43,8 @@ FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/:'\"<>()]+/)+")
 BLOCK = re.compile(r"(\d+):(?: (.*))?")
 NO_G92 = "G92.2"  # recordings of earlier versions list it
 ERROR = re.compile(r"error at (\d+): (.*)")
-WORDS = r"((?: [XYZABCUVW][-\d.]+)*)"
+NUMBER = r"[-\d.]{1,40}"  # no machine is longer, and no float of it is infinite
+WORDS = rf"((?: [XYZABCUVW]{NUMBER})*)"
 MOVE = re.compile(
     rf"  (rapid|feed|arc|probe){WORDS}"
     rf"(?: centre{WORDS} turns (-?\d+)(?: G(18|19)(?: rotation ([-\d.]+))?)?)?"
