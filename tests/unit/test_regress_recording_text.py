@@ -147,6 +147,7 @@ def test_what_does_not_move_is_not_in_a_line():
         ("g12 trace 1", "g12 trace 9", "line 1: not 'g12 trace 1'"),
         ("units mm", "units cubits", "lines 2 to 5: not program, machine, linuxcnc, units"),
         ("  feed X1 F9", "  feed XX F9", "line 8: neither a move nor a note"),
+        ("  feed X1 F9", f"  feed X1 F{400 * '9'}", "line 8: neither a move nor a note"),
         ("  feed X1 F9", f"  feed X{400 * '9'} F9", "line 8: neither a move nor a note"),
         ("  feed X1 F9", "  arc X1 F9", "line 8: an arc without its centre"),
         ("  feed X1 F9", "<<<<<<< mine", "line 8: neither a line of the program nor its end"),

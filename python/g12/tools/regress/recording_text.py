@@ -47,8 +47,8 @@ NUMBER = r"[-\d.]{1,40}"  # no machine is longer, and no float of it is infinite
 WORDS = rf"((?: [XYZABCUVW]{NUMBER})*)"
 MOVE = re.compile(
     rf"  (rapid|feed|arc|probe){WORDS}"
-    rf"(?: centre{WORDS} turns (-?\d+)(?: G(18|19)(?: rotation ([-\d.]+))?)?)?"
-    r"(?: F([-\d.]+))?(?: (G9[345]))?"
+    rf"(?: centre{WORDS} turns (-?\d+)(?: G(18|19)(?: rotation ({NUMBER}))?)?)?"
+    rf"(?: F({NUMBER}))?(?: (G9[345]))?"
 )
 
 
