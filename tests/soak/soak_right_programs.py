@@ -10,15 +10,23 @@ from g12.tools.commands import main
 from g12.tools.verify.proof import prove
 from soak import SEED, often
 from support.right_programs import MACHINES, machine_of, right_program
-from support.sim_machines import copy_of_machines
+from support.sim_machines import ROOT, copy_of_machines
 
 PIECES = 20  # pockets or sections in a program
+KINEMATICS = ROOT / "configs" / "kinematics"
+OFFSET = "beside kinematics"  # in the name of a kind: the component has to know of the tool's place
 
 
 def written(folder, kind, seed, count):
     program = folder / f"right-{seed}.ngc"
     program.write_text(right_program(kind, random.Random(seed), count))
     return program
+
+
+def with_offset_pin(text):
+    """Return an INI that tells the kinematics where the tool stands, behind its other HAL files."""
+    *_, last = (line for line in text.splitlines() if line.startswith("HALFILE"))
+    return text.replace(last, f"{last}\nHALFILE = {KINEMATICS}/polar_tool_offset.hal")
 
 
 @pytest.mark.parametrize("kind", MACHINES)
@@ -38,6 +46,8 @@ def test_programs_as_they_run(kind, tmp_path, capsys):
     text = re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", program.read_text())
     program.write_text(text)
     ini = copy_of_machines(tmp_path) / "machine.ini"
-    ini.write_text(machine_of(kind).text)
+    ini.write_text(
+        with_offset_pin(machine_of(kind).text) if OFFSET in kind else machine_of(kind).text
+    )
     code = main.main(["verify", str(program), "--ini", str(ini), "--run"])
     assert code == 0, capsys.readouterr()
