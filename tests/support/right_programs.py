@@ -237,8 +237,8 @@ def dynapath(chance, count):
 
 
 def dynapath_program(chance, count):
-    """Return what LinuxCNC gets of event text."""
-    first = ["T4 M6", "G0 X0 Y0 Z20", ""]
+    """Return what LinuxCNC gets of event text, with rapids that do not round off their corners."""
+    first = ["T4 M6", "G21 G64 P0.01", "G0 X0 Y0 Z20", ""]
     return "\n".join(first) + program_from_events(dynapath(chance, count), "mm")
 
 
