@@ -136,7 +136,8 @@ def test_a_line_that_is_nearly_right(found, change, says):
 @pytest.mark.parametrize("names", ["prolog=g12_mine ngc=g12_mine", "python=haas", "ngc=pocket12"])
 def test_a_line_of_the_users_is_not_taken_for_a_misspelt_one(found, names):
     first = HAAS.splitlines()[0]
-    assert kinds(found(GOOD.replace(first, f"REMAP = G12 modalgroup=1 {names}"))) == ["half"]
+    text = GOOD.replace(first, f"REMAP = G12 modalgroup=1 {names}")
+    assert kinds(found(text, remap={**HANDLERS, "haas": "remap"})) == ["half"]
 
 
 def test_half_a_pair(found):
@@ -147,7 +148,8 @@ def test_half_a_pair(found):
 
 
 def test_half_a_pair_whose_other_code_is_the_users(found):
-    (half,) = found(GOOD.replace(HAAS.splitlines()[1], "REMAP = G13 modalgroup=1 python=mine"))
+    text = GOOD.replace(HAAS.splitlines()[1], "REMAP = G13 modalgroup=1 python=mine")
+    (half,) = found(text, remap={**HANDLERS, "mine": "remap"})
     assert "G13 means something else here (REMAP = G13 modalgroup=1 python=mine)" in half.text
 
 
@@ -380,3 +382,11 @@ def test_the_report_for_programs_says_what_the_one_for_people_says(tmp_path):
     assert all(
         finding["text"] in lines and finding["cure"] in lines for finding in said["findings"]
     )
+
+
+def test_a_remap_of_the_users_without_its_function_is_found_where_the_preview_tells_nothing(found):
+    text = GOOD.replace(HAAS, HAAS + "REMAP = M400 modalgroup=10 python=mine\n")
+    assert found(text, remap={**HANDLERS, "mine": "remap"}) == []
+    (lost,) = found(text)
+    assert lost.kind == "does-not-load"
+    assert lost.text.endswith("mill.ini:8: 'mine' is not a Python callable function")

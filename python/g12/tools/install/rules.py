@@ -498,15 +498,31 @@ def findings_of(config: Config) -> list[Finding]:
     found = [finding for rule in RULES for finding in rule(config, codes)]
     found += form_findings(config, {code.feature for code in codes})
     found += kinematics_findings(config)
-    if config.failure and not any(finding.kind in STOPPING for finding in found):
+    failure = config.failure or function_missing(config)
+    if failure and not any(finding.kind in STOPPING for finding in found):
         found.append(
             problem(
                 "does-not-load",
-                f"LinuxCNC does not load this config: {last_words(config.failure)}",
+                f"LinuxCNC does not load this config: {last_words(failure)}",
                 "correct the config until LinuxCNC starts",
             )
         )
     return found
+
+
+def function_missing(config: Config) -> str:
+    """Return what LinuxCNC says of a REMAP line whose function is missing, empty if none is.
+
+    The preview of 2.9.9 does not tell: it goes on without that line and all behind it.
+    """
+    python = config.python
+    if not python or python.error:
+        return ""
+    for line, remap in config.remaps:
+        name = remap.keywords.get("python")
+        if name and name not in python.remap:
+            return f"{line.place}: '{name}' is not a Python callable function"
+    return ""
 
 
 def last_words(failure: str) -> str:
