@@ -138,11 +138,15 @@ def test_four_flats_may_each_be_a_contour():
     assert found(*((boss(flat), -5.0) for flat in flats)) == ("", [])
 
 
-def near(gap, *depths):
-    """Return a boss of eight sides, one of them 10 from the centre, and a round one beside it."""
+def near(gap, *depths, begins=0):
+    """Return a boss of eight sides, one of them 10 from the centre, and a round one beside it.
+
+    It begins so many lines behind the middle of the far side.
+    """
     corners = [cmath.rect(10 / math.cos(math.pi / 8), math.pi * (2 * k + 1) / 8) for k in range(8)]
-    start = polygon([*corners[3::-1], *corners[:3:-1]])  # in the middle of a far side
-    return [(boss(start, 3.0), depths[0]), (boss(circle(5.0, at=15.0 + gap), 3.0), depths[-1])]
+    sides = polygon([*corners[3::-1], *corners[:3:-1]])  # in nine lines
+    sides = sides[begins:] + sides[:begins]
+    return [(boss(sides, 3.0), depths[0]), (boss(circle(5.0, at=15.0 + gap), 3.0), depths[-1])]
 
 
 def test_a_gap_of_the_tools_width_is_enough():
@@ -155,6 +159,12 @@ def test_a_deep_cut_into_another_contour_is_refused():
         "G12.1 line 16: the tool of radius 3 cannot follow both lines 6 and 16: beside one of "
         "them it cuts into the other"
     )
+
+
+@pytest.mark.parametrize("begins", range(9))
+def test_any_side_of_a_closed_contour_is_looked_at(begins):
+    text, _ = found(*near(4.0, -5.0, begins=begins))
+    assert f"cannot follow both lines {3 + (3 - begins) % 9} and 16" in text
 
 
 def test_a_shallow_one_may_be_an_allowance_and_is_told():

@@ -157,6 +157,7 @@ def test_a_move_is_parted_if_it_gains_a_twentieth_switching_included():
 def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
     far = line((40, 0), (40, 10 * seconds), feed=600.0)
     assert chosen([far], LIMITS) == [worth]
+    assert chosen([far, Mark(2, "M8")], LIMITS) == [worth] * 2  # which takes no time
     assert chosen([far, Mark(2, "M8"), far], LIMITS._replace()) == [2 * seconds > 0.1] * 3
 
 

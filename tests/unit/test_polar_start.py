@@ -138,6 +138,16 @@ def test_the_travel_is_that_of_the_machine_with_its_offsets(place, beyond):
     assert (made and made[:4]) == beyond
 
 
+@pytest.mark.parametrize(
+    ("machine_unit", "millimetre", "unit"),
+    [(1.0, 1.0, "mm"), (INCH, 1.0, "in"), (1.0, 1 / INCH, "in"), (1 / INCH, 1 / INCH, "mm")],
+)
+def test_the_travel_is_told_in_the_machines_unit(machine_unit, millimetre, unit):
+    limits = setup_of(machine_unit=machine_unit, millimetre=millimetre).limits
+    far = 200.0 * machine_unit
+    assert limits.beyond([BlockMoves(3, "XCZ", [(far, 0.0, 0.0, 1.0)], False)]).unit == unit
+
+
 def test_a_path_through_the_pole_may_be_refused():
     assert setup_of(Settings(polar_pole="refuse")).plan.pole_refused
     assert not setup_of().plan.pole_refused
