@@ -183,6 +183,7 @@ def drawings(draw):
 @settings(max_examples=300, deadline=None)
 @given(drawings(), st.sampled_from([41, 42]), st.sampled_from([0.1, 1.0, 4.0]))
 @example([Round(0j, -1 - 1j, -4.5), Straight(Round(0j, -1 - 1j, -4.5).end, 5 + 1j)], 41, 0.1)
+@example([Round(-2j, 0j, 4.0), Round(Round(-2j, 0j, 4.0).end, -1j, 3.0)], 41, 1.0)
 @example([Straight(0j, 1 + 0j), Straight(1 + 0j, -0.001j), Straight(-0.001j, -1 + 0j)], 42, 0.1)
 def test_any_contour_is_cut_at_the_tools_radius_or_refused_or_told(shapes, side, radius):
     contour, shapes = compensated(shapes, side, radius)
@@ -198,8 +199,8 @@ def test_any_contour_is_cut_at_the_tools_radius_or_refused_or_told(shapes, side,
     for cut in made:
         index = cut.line - 3
         near = shapes[max(index - 1, 0) : index + 2]  # lines nearly in line are cut as one
-        beside_part = np.min([shape.distance(cut.points) for shape in near], axis=0)
-        assert abs(beside_part - radius).max() <= TOLERANCE
+        off = np.min([abs(shape.distance(cut.points) - radius) for shape in near], axis=0)
+        assert off.max() <= TOLERANCE
         for neighbour in near_sides(shapes, index, radius, cut.run == beside[cut.line]):
             assert neighbour.distance(cut.points).min() >= radius - 2 * TOLERANCE
 
