@@ -198,11 +198,18 @@ def test_any_contour_is_cut_at_the_tools_radius_or_refused_or_told(shapes, side,
     beside = {cut.line: cut.run for cut in made}  # the last run of a line; others turn at corners
     for cut in made:
         index = cut.line - 3
-        near = shapes[max(index - 1, 0) : index + 2]  # lines nearly in line are cut as one
-        off = np.min([abs(shape.distance(cut.points) - radius) for shape in near], axis=0)
+        as_one = in_line(shapes, index)
+        off = np.min([abs(shape.distance(cut.points) - radius) for shape in as_one], axis=0)
         assert off.max() <= TOLERANCE
         for neighbour in near_sides(shapes, index, radius, cut.run == beside[cut.line]):
             assert neighbour.distance(cut.points).min() >= radius - 2 * TOLERANCE
+
+
+def in_line(shapes, index):
+    """Return a shape and the next one if they are nearly in line: such are cut as one."""
+    shape, *behind = shapes[index : index + 2]
+    turns = [cmath.phase(cmath.rect(1, b.headings()[0] - shape.headings()[1])) for b in behind]
+    return [shape, *(b for b, turn in zip(behind, turns) if abs(turn) < 0.01)]
 
 
 def near_sides(shapes, index, radius, with_next):
