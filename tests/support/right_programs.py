@@ -266,6 +266,7 @@ def polar_program(chance, unit, count, kind=""):
             text.shift(("X", 0, 8), ("Z", -3, 3))
         if in_sub:
             text.add(f"o{100 + k} sub")
+            text.add(f"G0 Z{text.n(5)}")  # zero may have been moved up to the tool
             text.add(f"G0 X{_x(text, 60)} C#1")
             _section(text, AXIAL[unit][loaded] / 2)
             text.add(f"G0 Z{text.n(5)}")
