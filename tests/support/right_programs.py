@@ -317,6 +317,8 @@ def _polygon(text):
     centre = complex(chance.uniform(-3, 3), chance.uniform(-3, 3)) * (not text.beside)
     gaps = [chance.uniform(0.6, 1.0) for _ in range(count)]
     turned, angles = chance.uniform(0, 6), list(itertools.accumulate(gaps))
+    if text.beside:  # the tool comes from X60 and stays on that side
+        turned = turned / 6 - 0.5 - gaps[0] / angles[-1] * math.pi
     return [
         centre + cmath.rect(radius, turned + angle / angles[-1] * 2 * math.pi) for angle in angles
     ]
