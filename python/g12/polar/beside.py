@@ -24,7 +24,7 @@ to the left, and the slide moves by cos p + beside / s sin p per unit of the pat
 
 from __future__ import annotations
 
-from math import atan2, copysign, floor, hypot, pi, sqrt
+from math import atan2, copysign, hypot, pi, sqrt
 
 from g12.errors import number
 from g12.flat.contour import (
@@ -116,8 +116,7 @@ def _apsides(move: Line | Arc, length: float) -> list[float]:
     turn = copysign(1.0, move.sweep)
     from_start = atan2(move.cc, move.cx) - atan2(move.c0 - move.cc, move.x0 - move.cx)
     first = turn * from_start % pi
-    count = floor((abs(move.sweep) - first) / pi) + 1
-    places = (arc_radius(move) * (first + k * pi) for k in range(max(0, count)))
+    places = (arc_radius(move) * (first + half) for half in (0.0, pi))
     return [place for place in places if 0.0 < place < length]
 
 

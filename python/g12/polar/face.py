@@ -29,6 +29,7 @@ from g12.flat.contour import (
     Arc,
     Line,
     Plunge,
+    Point,
     arc_radius,
     end_direction,
     is_move,
@@ -38,6 +39,7 @@ from g12.flat.contour import (
 )
 from g12.flat.intersect import height_at, part_of_move, place_at
 from g12.polar.beside import along_and_around, stand
+from g12.polar.pole import POLE
 
 LOOKS = 16  # places on a line, and on each quarter of an arc, that are looked at
 WORTH_IT = 0.1  # seconds: two switches cost about as much
@@ -223,23 +225,17 @@ def _parts(move: Line | Arc) -> list[float]:
     count = LOOKS
     if isinstance(move, Arc):
         count *= ceil(abs(move.sweep) / (pi / 2))
-        special = [_part_at(move, side) for side in (1.0, -1.0)]
+        special = [_part_towards(move, place) for place in (POLE, (2 * move.cx, 2 * move.cc))]
     else:
         dx, dc = move.x1 - move.x0, move.c1 - move.c0
         special = [-(move.x0 * dx + move.c0 * dc) / (dx * dx + dc * dc)]
     return sorted({k / count for k in range(1, count + 1)} | {k for k in special if 0.0 < k < 1.0})
 
 
-def _part_at(move: Arc, side: float) -> float:
-    """Return the part of an arc farthest from the pole (``side`` 1) or nearest (-1)."""
-    away = hypot(move.cx, move.cc)
-    if not away:
-        return 1.0
-    reach = side * arc_radius(move) / away
-    place = (move.cx * (1.0 + reach), move.cc * (1.0 + reach))
+def _part_towards(move: Arc, place: Point) -> float:
+    """Return the part of an arc at which it is in the direction of a place from its centre."""
     turn = 1 if move.sweep > 0.0 else -1
-    centre = (move.cx, move.cc)
-    return sweep_between((move.x0, move.c0), place, centre, turn) / move.sweep
+    return sweep_between((move.x0, move.c0), place, (move.cx, move.cc), turn) / move.sweep
 
 
 def flows_into(move: object, following: object) -> bool:
