@@ -273,6 +273,40 @@ def test_a_move_is_able_if_its_place_that_asks_the_most_is(move, beside, slide_s
     assert is_able(move, limits) == (share < 1.0) or 0.97 < share < 1.1
 
 
+@settings(max_examples=100, deadline=None)
+@given(st.one_of(lines, arcs), st.sampled_from([0.0, 3.0]), st.floats(0.05, 1.0))
+def test_what_is_able_does_not_depend_on_the_unit(move, beside, quick):
+    """In units of ten metres nothing is greater than 1."""
+    limits = LIMITS._replace(
+        beside=beside, slide_speed=60.0, c_acceleration=quick * LIMITS.c_acceleration
+    )
+    small = {name: 1e-4 * getattr(limits, name) for name in LENGTHS}
+    ends = {name: 1e-4 * getattr(move, name) for name in move._fields if name[:1] in "xc"}
+    scaled = move._replace(feed=1e-4 * move.feed, **ends)
+    assert is_able(scaled, limits._replace(**small)) == is_able(move, limits)
+
+
+LENGTHS = ("acceleration", "round_acceleration", "slide_acceleration", "slide_speed", "beside")
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.one_of(lines, arcs), st.floats(1.0, 3.0), st.sampled_from([0.5, 5.0, 20.0]))
+def test_parts_are_the_move_as_fast_as_they_can_be(move, override, pieces_speed):
+    """What is made of pieces has its whole feed, the rest as much as C can follow."""
+    limits = LIMITS._replace(override=override, pieces_speed=pieces_speed)
+    move = move._replace(feed=3.0 * move.feed)
+    parts, stopping = parted([move], [True], limits)
+    assert sum(map(path_length, parts)) == pytest.approx(path_length(move))
+    assert stopping == [*[False] * (len(parts) - 1), True]
+    for before, after in zip(parts, parts[1:]):
+        assert (before.x1, before.c1) == pytest.approx((after.x0, after.c0))
+    for part in parts:
+        feeds = (share * move.feed for share in (1.0, 0.8, 0.64, 0.5))
+        if is_able(part, limits):
+            feeds = (feed for feed in feeds if is_able(part._replace(feed=feed), limits))
+        assert part.feed == pytest.approx(next(feeds))
+
+
 def motion(move, limits=LIMITS):
     """Return 2,000 places of a move, as complex numbers, and its speed per second."""
     parts, speed = np.linspace(0.0, 1.0, 2000), move.feed / 60.0
@@ -369,10 +403,10 @@ def test_a_plunge_on_the_face_keeps_x_and_c():
     assert made.place.z == -1.0
 
 
-@pytest.mark.parametrize("first", [0.3, 1.0, 2.2])
-@pytest.mark.parametrize(("share", "able"), [(0.999, False), (1.001, True)])
-def test_an_arc_is_looked_at_where_it_is_nearest_to_the_pole(first, share, able):
+@pytest.mark.parametrize("sweep", [0.9, -0.9, 2 * pi, -2 * pi])
+@pytest.mark.parametrize("part", [2.5 / 16, 7.5 / 16, 13.5 / 16])
+@pytest.mark.parametrize(("share", "able"), [(0.9999, False), (1.0001, True)])
+def test_an_arc_is_looked_at_where_it_is_nearest_to_the_pole(sweep, part, share, able):
     """A circle of radius 10 about X20 passes the pole at 10, wherever it begins."""
     free = FaceLimits(1e9, 1e9, inf, inf, share * (1000.0 / 60.0) / 10.0, 1.0)
-    assert is_able(arc((20, 0), 10, first, 2 * pi), free) is able
-    assert is_able(arc((20, 0), 10, first, -2 * pi), free) is able
+    assert is_able(arc((20, 0), 10, pi - part * sweep, sweep), free) is able

@@ -124,6 +124,16 @@ def test_what_the_axes_of_the_face_allow(override, kept):
     assert polar_setup(start, Settings(), axes, FaceAxes(x, y, slide, 1.0)).plan.face is None
 
 
+def test_a_tool_beside_x_s_line_is_so_everywhere_and_the_slide_has_its_own_speed():
+    slide = Axis(-1.0, 1.0, 9.0, 20.0)
+    beside = Settings(polar_kinematics="1", polar_tool_offset=-2.0)
+    found = START._replace(machine_unit=INCH)
+    made = polar_setup(found, beside, AXES, FaceAxes(slide, slide, slide, 1.0))
+    assert made.words.beside == made.plan.beside == made.plan.face.beside == -2.0 * INCH
+    assert made.plan.face.slide_speed == pytest.approx(9.0 * INCH)
+    assert setup_of().words.beside == setup_of().plan.beside == 0.0
+
+
 @pytest.mark.parametrize(
     ("place", "beyond"),
     [

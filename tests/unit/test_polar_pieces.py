@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How long pieces may be at a place, and where on the path they end, measured by small steps."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+
+from g12.flat.contour import Arc, Line
+from g12.polar.beside import _curvature, _density, split_beside
+from g12.polar.pieces import Law, _arc_density, _line_density, split_move
+from support.axes_of_places import along, axes_of, bend, change_of_bend, places_of, rates
+from support.contour_geometry import Round, Straight
+
+INF = math.inf
+coordinate = st.floats(-30.0, 30.0)
+point = st.builds(complex, coordinate, coordinate)
+sweep = st.floats(0.3, 2 * math.pi).flatmap(lambda turn: st.sampled_from((turn, -turn)))
+lines = st.builds(Straight, point, point).filter(lambda line: line.length > 0.5)
+arcs = st.builds(Round, point, point, sweep).filter(lambda arc: arc.radius > 0.5)
+shapes = lines | arcs
+laws = st.builds(
+    Law,
+    st.sampled_from([1e-5, 0.005, 0.05]),
+    st.sampled_from([1e9, 0.01, 0.001]),
+    st.sampled_from([INF, 3.0, 0.5]),
+    st.sampled_from([INF, 0.3, 0.05]),
+)
+offsets = st.sampled_from([-8.0, -0.3, 2.0, 9.0])
+
+
+def move_of(shape):
+    """Return a shape as the planner's move."""
+    ends = (shape.start.real, shape.start.imag, 0.0, shape.end.real, shape.end.imag, 0.0)
+    if isinstance(shape, Straight):
+        return Line(1, 250.0, 0.0, *ends)
+    return Arc(1, 250.0, 0.0, *ends, shape.centre.real, shape.centre.imag, shape.sweep)
+
+
+def clear_of(shape, beside=0.0):
+    """Return whether the slide's travel along a shape is a tenth of what it reaches or more."""
+    away = abs(along(shape)(np.linspace(-0.1, 1.1, 300) * shape.length))
+    return away.min() > abs(beside) * 1.02 + 0.3
+
+
+def longest(measured, even, law, slide):
+    """Return the pieces per unit of the path: the fewest that keep every limit.
+
+    Those ``measured`` are kept in any case; the even feed by pieces that are no shorter than the
+    axes can follow.
+    """
+    return max(*measured, min(even, law.x_hold, law.c_hold * slide))
+
+
+def bulging(difference, law):
+    """Return the pieces per unit that bulge by 3/2 deviations."""
+    return math.sqrt(abs(difference) / (12.0 * law.deviation))
+
+
+def even_feed(slide, sliding, turning, law):
+    """Return the pieces per unit in which the speed is off its mean by the ripple at most.
+
+    With slide and C at even speeds the tool is faster by C's part the farther out it is.
+    """
+    return abs(sliding) / slide * (turning * slide) ** 2 / (2.0 * law.ripple)
+
+
+def share_of(difference, pieces, law):
+    return math.copysign((bulging(difference, law) / pieces) ** 2, difference)
+
+
+@settings(max_examples=150, deadline=None)
+@given(shapes, st.floats(0.0, 1.0), laws, offsets)
+def test_beside_x_s_line_pieces_are_as_long_as_the_first_limit_allows(shape, part, law, beside):
+    """They bulge, X and C turn by no radian, and where nothing bulges its change counts."""
+    assume(clear_of(shape, beside))
+    path, at = along(shape), part * shape.length
+    slide, sliding, turning = rates(path, at, beside)
+    difference, change = bend(path, at, beside), change_of_bend(path, at, beside)
+    measured = (
+        bulging(difference, law),
+        abs(sliding) / slide,
+        abs(turning),
+        (abs(change) / (27.0 * law.deviation)) ** (1 / 3),
+        1.0 / shape.length,
+    )
+    wanted = longest(measured, even_feed(slide, sliding, turning, law), law, slide)
+    pieces, share = _density(move_of(shape), law, beside)(at)
+    assert pieces == pytest.approx(wanted, rel=0.01)
+    assert share == pytest.approx(share_of(difference, pieces, law), abs=0.02)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.floats(1, 30), offsets, st.floats(-3.1, 3.1), st.sampled_from([-2.0, 1e-6, 0.7]))
+def test_how_a_move_of_x_and_c_curves_and_how_that_changes(slide, beside, heading, bent):
+    """C is 0 where the slide stands."""
+    unit, own = np.exp(1j * heading), bent / slide
+
+    def path(at):
+        return slide + 1j * beside + unit * (np.exp(1j * own * np.asarray(at)) - 1) / (1j * own)
+
+    curved, change = _curvature(slide, unit.real, unit.imag, beside, own)
+    assert curved - own == pytest.approx(bend(path, 0.0, beside), rel=1e-4, abs=1e-4 / slide)
+    assert change == pytest.approx(change_of_bend(path, 0.0, beside), rel=1e-2, abs=1e-2 / slide**2)
+
+
+@settings(max_examples=100, deadline=None)
+@given(lines, st.floats(0.0, 1.0), laws)
+def test_pieces_of_a_line_are_as_long_as_the_first_limit_allows(line, part, law):
+    """The place on a line is told by the tangent of the angle from the foot."""
+    foot = (line.start * np.conj(heading := (line.end - line.start) / line.length)).imag
+    distance = abs(foot)
+    assume(clear_of(line) and distance > 0.3)
+    path, at = along(line), part * line.length
+    slide, sliding, turning = rates(path, at)
+    difference = math.copysign(bend(path, at), 1.0)
+    even = even_feed(slide, sliding, turning, law)
+    wanted = longest((bulging(difference, law), abs(sliding) / slide), even, law, slide)
+    place = (path(at) * np.conj(heading)).real / distance
+    pieces, share = _line_density(distance, law.deviation, law)(place)
+    assert pieces / distance == pytest.approx(wanted, rel=0.01)
+    assert share == pytest.approx(share_of(difference, wanted, law), abs=0.02)
+
+
+@settings(max_examples=150, deadline=None)
+@given(arcs, st.floats(0.0, 1.0), laws)
+def test_pieces_of_an_arc_are_as_long_as_the_first_limit_allows(arc, part, law):
+    """The place is told by the angle from where it is farthest out, shares are above 0 outside."""
+    path, at, e = along(arc), part * arc.length, abs(arc.centre) / arc.radius
+    assume(clear_of(arc) and e > 0.01)
+    slide, sliding, turning = rates(path, at)
+    difference = bend(path, at)
+    flat = (min(e, 1.0) / (27.0 * law.deviation * arc.radius**2)) ** (1 / 3)
+    even = even_feed(slide, sliding, turning, law)
+    wanted = longest((bulging(difference, law), abs(sliding) / slide, flat), even, law, slide)
+    turn = math.copysign(1.0, arc.sweep)
+    place = turn * np.angle((path(at) - arc.centre) / arc.centre)
+    pieces, share = _arc_density(arc.radius, e, law.deviation, law)(place)
+    assert pieces / arc.radius == pytest.approx(wanted, rel=0.01)
+    assert share == pytest.approx(-turn * share_of(difference, wanted, law), abs=0.02)
+
+
+def turning_points(shape):
+    """Return the lengths at which a shape is nearest to the pole or farthest from it."""
+    every = np.linspace(0.0, shape.length, 1001)
+    square = abs(along(shape)(every)) ** 2
+    left, middle, right = square[:-2], square[1:-1], square[2:]
+    bent = left - 2.0 * middle + right
+    (at,) = np.nonzero(((left - middle) * (right - middle) >= 0.0) & (abs(bent) > 1e-7))
+    return every[at + 1] + 0.5 * every[1] * (left - right)[at] / bent[at]
+
+
+@settings(max_examples=150, deadline=None)
+@given(shapes, laws, st.just(0.0) | offsets)
+@example(Straight(0.6 + 5j, -4 + 5j), Law(1e-5, 0.01, 3.0, 3.0), 2.0)
+@example(Straight(4 + 5j, -0.6 + 5j), Law(1e-5, 0.01, 3.0, 3.0), 2.0)
+def test_ends_of_pieces_are_beside_the_path_where_their_lengths_tell(shape, law, beside):
+    """Inner ends are off to the side that pieces do not bulge to, the ends of the path are on it.
+
+    The angles go on from one to the next as they do along the path. Where X turns round a piece
+    ends, unless that is next to an end of the path.
+    """
+    assume(clear_of(shape, beside))
+    law = law._replace(ripple=0.01, x_hold=3.0, c_hold=3.0)
+    move, path = move_of(shape), along(shape)
+    split = split_beside(move, law, beside) if beside else split_move(move, law)
+    slides, angles, lengths = map(np.array, split)
+    assert (lengths[0], lengths[-1]) == pytest.approx((0.0, shape.length))
+    assert (np.diff(lengths) > 0).all()
+    on_path = path(lengths)
+    heading = path(lengths + 1e-3) - path(lengths - 1e-3)
+    off = (places_of(slides, angles, beside) - on_path) * np.conj(heading / abs(heading))
+    assert off[[0, -1]] == pytest.approx(0.0, abs=1e-9)
+    assert off.real == pytest.approx(0.0, abs=1e-9)
+    shares, side = off.imag[1:-1] / law.deviation, np.sign(bend(path, lengths, beside))
+    assert (abs(shares) <= 1.001).all()
+    turns = (side[1:-1] != side[:-2]) | (side[1:-1] != side[2:])
+    assert (turns | (shares * side[1:-1] > -1e-6)).all()
+    every = np.linspace(0.0, shape.length, 500)
+    turned = np.interp(lengths, every, axes_of(path(every), beside)[1])
+    assert np.diff(angles) == pytest.approx(np.diff(turned), abs=0.5)
+    for at in turning_points(shape):
+        k = np.searchsorted(lengths, at)
+        near = lengths[max(k - 1, 0) : k + 1]
+        assert abs(near - at).min() < 1e-3 or len(near) < 2 or k in (1, len(lengths) - 1)
+
+
+@settings(max_examples=100, deadline=None)
+@given(shapes, laws, st.just(0.0) | offsets)
+def test_the_way_back_is_cut_into_the_same_pieces(shape, law, beside):
+    """They are spaced from the end nearer to the pole, where they are shortest."""
+    assume(clear_of(shape, beside))
+    back = Straight(shape.end, shape.start)
+    if isinstance(shape, Round):
+        back = Round(shape.end, shape.centre, -shape.sweep)
+    there, again = (
+        split_beside(move_of(one), law, beside) if beside else split_move(move_of(one), law)
+        for one in (shape, back)
+    )
+    assert len(there.lengths) == len(again.lengths)
+    assert there.slides == pytest.approx(again.slides[::-1], abs=law.deviation)
+    assert there.lengths == pytest.approx([shape.length - at for at in again.lengths[::-1]])
