@@ -9,14 +9,23 @@ import math
 import random
 import time
 
+import numpy as np
 import pytest
 
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat.closing import closing_of
-from g12.flat.contour import Contour, is_move, path_length
-from g12.flat.intersect import place_at
+from g12.flat.contour import Arc, Contour, Line, direction_at, is_move, path_length
+from g12.flat.gouge import (
+    greatest_heights,
+    in_plane,
+    place_count,
+    places_along,
+    without_repeats,
+)
+from g12.flat.intersect import along_start, nearest_place, place_at
 from g12.flat.offset import tool_path
 from support.contour_geometry import Round, Straight, arc, lines
+from support.planned_cuts import add
 from support.random_contours import (
     TOLERANCE,
     Drawn,
@@ -254,6 +263,52 @@ def test_a_contour_that_crosses_itself_is_refused_whatever_the_angle():
             assert cut(loop, side, 1.0)[0], (angle, side)
 
 
+def wavy(side, wave, high):
+    """Return lines that go to both sides of a straight one, by some length in each direction."""
+    along = cmath.rect(1.0, side.headings()[0])
+    count = int(0.9 * side.length / wave)
+    middle = 0.5 * (side.start + side.end - (count - 0.5) * wave * along)
+    peaks = [middle + (0.5 * k * wave + 1j * (-1) ** k * high) * along for k in range(2 * count)]
+    corners = [side.start, *peaks, side.end]
+    return [Straight(*pair) for pair in zip(corners, corners[1:])]
+
+
+@pytest.mark.parametrize(
+    ("wave", "radius", "most"),
+    [(1.0, 6.0, 0.12), (2.0, 6.0, 0.12), (4.0, 6.0, 0.12), (4.0, 0.5, 4 * TOLERANCE)],
+)
+@pytest.mark.parametrize(("share", "found"), [(0.93, False), (1.07, True)])
+def test_a_pass_may_not_go_to_both_sides_of_another(wave, radius, most, share, found):
+    """Waves of some radii, a fiftieth of the radius or four tolerances to either side."""
+    first, *others = closed([0.4 * radius * corner for corner in SQUARE])
+    waves = wavy(first, wave * radius, share * most)
+    for one, other in (([first], waves), (waves, [first])):
+        for laps in (([*one, *others], [*other, *others]), ([*others, *one], [*others, *other])):
+            for heights in ((-1.0, -1.0), (-1.0, -2.0), (-2.0, -1.0)):
+                contour = stacked(radius, *zip(heights, laps))
+                assert ("cuts into the other" in refusal(contour)) is found
+
+
+def stacked(radius, *laps):
+    """Return laps outside of a part in one contour, each with its Z and its shapes."""
+    (_, (first, *_)), *_, (_, (*_, last)) = laps
+    start = first.start + 2j * radius * cmath.rect(1.0, first.headings()[0])
+    end = last.end + 2j * radius * cmath.rect(1.0, last.headings()[1])
+    contour = Contour(80.0, 5.0)
+    contour.line(start.real, start.imag, line=1, feed=300.0)
+    contour.compensation(LEFT, radius, line=2)
+    contour.line(first.start.real, first.start.imag, line=2, feed=300.0)
+    line = 3
+    for z, shapes in laps:
+        contour.line(z=z, line=line, feed=300.0)
+        for shape in shapes:
+            add(contour, shape, line=line, feed=300.0)
+            line += 1
+    contour.compensation(40, 0.0, line=line)
+    contour.line(end.real, end.imag, line=line, feed=300.0)
+    return contour
+
+
 # Where a contour closes, and which of its ends are leads.
 
 
@@ -267,9 +322,9 @@ def closing(shapes, radius=3.0):
 NEAR = 0.02
 
 
-def ends_of(shapes):
+def ends_of(shapes, radius=3.0):
     """Return whether shapes close, and from which place to which they are a contour."""
-    found, moves = closing(shapes)
+    found, moves = closing(shapes, radius)
     places = (
         place_at(moves[at], along / path_length(moves[at]))
         for at, along in ((found.first, found.start), (found.last, found.end))
@@ -329,9 +384,24 @@ def test_places_near_to_each_other_close_a_contour(gap, closes):
 
 
 def test_of_a_contour_that_does_not_close_all_is_contour():
-    zigzag = lines((0, 0), (20, 0), (20, 20), (40, 20))
-    found, _ = closing(zigzag)
-    assert found == (0, 0.0, 2, 20.0, False, False)
+    zigzag = lines((0, 0), (20, 0), (20, 20), (45, 20))
+    found, moves = closing(zigzag)
+    assert found == (0, 0.0, 2, 25.0, False, False)
+    assert [found.part(k, moves[0]) for k in (-1, 3)] == [(0.0, 0.0)] * 2
+
+
+def test_of_two_places_the_one_with_more_of_the_leads_beyond_it():
+    """The last side, an arc, goes through the first one twice."""
+    sides = [*lines((10, 40), (10, -10), (-10, -10), (-10, 10)), Round(-10 + 10j, 5 + 15j, 5.0)]
+    assert ends_of(sides) == (True, 10 + 0j, 10 + 0j)
+
+
+def test_a_contour_that_ends_where_it_began_closes_though_it_crosses_itself_beside_its_end():
+    """What is beyond that is shorter than four radii of the tool."""
+    sides = lines((0, 0), (0, 50), (3, 50))
+    sides += [Round(3 + 50j, 26.5 + 23.5j, cmath.phase((-26.5 - 23.5j) / (-23.5 + 26.5j)))]
+    for radius, start in ((1.0, 47j), (6.0, 0j)):
+        assert ends_of(sides, radius) == (True, start, start)
 
 
 def test_what_lies_beyond_the_closing_is_no_contour():
@@ -376,14 +446,17 @@ def test_two_sides_with_leads_are_no_contour():
 
 
 @pytest.mark.parametrize(("slope", "through"), [(0.06, True), (0.04, False), (-1.0, False)])
-def test_a_side_goes_through_where_two_others_join(slope, through):
+@pytest.mark.parametrize(("turned", "size"), [(0.0, 1.0), (0.7, 1.0), (2.5, 0.025)])
+def test_a_side_goes_through_where_two_others_join(slope, through, turned, size):
     """A lead comes to the corner from beyond the last side: from this side it does not cross it."""
     first, *others, last = closed(SQUARE)
     on = Straight(first.start + 20 + 20j * slope, first.start)
     over = Straight(last.start, last.end + 5)
-    assert crossing([on, first, *others, over]) is through
+    around = cmath.rect(size, turned)
+    assert crossing([s.turned(around) for s in (on, first, *others, over)]) is through
     flipped = [Straight(s.end * 1j, s.start * 1j) for s in (over, *reversed(others), first, on)]
-    assert crossing([Straight(z.start.conjugate(), z.end.conjugate()) for z in flipped]) is through
+    flipped = [Straight(s.start.conjugate(), s.end.conjugate()) for s in flipped]
+    assert crossing([s.turned(around) for s in flipped]) is through
 
 
 # Heights.
@@ -536,6 +609,66 @@ BOSS_FIRST = (
 )
 def test_a_level_is_a_part_unless_it_is_above_both_beside_it(path, heights, deep):
     assert ("cuts into the other" in refusal(levels_of(*zip(heights, path)))) is deep
+
+
+# What the looks at a contour have in common.
+
+
+def line(x0, c0, x1, c1, z0=-1.0, z1=-1.0, offset=3.0):
+    return Line(1, 300.0, offset, x0, c0, z0, x1, c1, z1)
+
+
+def circle(x, c, sweep=2 * math.pi, z=-1.0):
+    """Return a full circle from the origin, about a place."""
+    return Arc(1, 300.0, 3.0, 0.0, 0.0, z, 0.0, 0.0, z, x, c, sweep)
+
+
+def test_moves_are_one_in_the_plane_if_places_centre_and_sweep_are_the_same():
+    moves = [line(0.0, 0.0, 1.0, 0.0), line(0.0, 0.0, 0.0, 1.0), line(0.0, 0.0, 1.0, 1e-5)]
+    moves += [line(1.0, 0.0, 0.0, 0.0), line(0.0, 1e-5, 1.0, 0.0)]
+    moves += [circle(2.0, 0.0), circle(-2.0, 0.0), circle(0.0, 2.0), circle(2.0, 0.0, -2 * math.pi)]
+    assert len(set(map(in_plane, moves))) == len(moves)
+    for move in moves:
+        again = move._replace(line=7, feed=1.0, offset=-2.0, z0=3.0, z1=5.0, x0=move.x0 + 1e-9)
+        assert in_plane(again) == in_plane(move)
+
+
+@pytest.mark.parametrize("tolerance", [0.005, 0.1])
+@pytest.mark.parametrize("offset", [3.0, -0.4])
+@pytest.mark.parametrize(
+    "move",
+    [line(1.0, 2.0, 40.0, -7.0), line(1.0, 2.0, 1.0, 2.3), line(0.0, 0.0, 0.01, 0.0),
+     circle(-5.0, 3.0), circle(4.0, 0.0, -2 * math.pi)],
+)  # fmt: skip
+def test_no_cut_falls_between_two_places_of_a_move(move, offset, tolerance):
+    """A tool that is a tolerance deep in a line is so on a chord of its radius."""
+    places = list(places_along(move._replace(offset=offset), tolerance))
+    assert len(places) == place_count(move._replace(offset=offset), tolerance)
+    length, half_chord = path_length(move), math.sqrt(2.0 * abs(offset) * tolerance)
+    ways = [along_start(move, place) % length for (place, *_) in places]
+    assert np.allclose(ways, np.linspace(ways[0], ways[-1], len(ways)), atol=1e-9)
+    assert ways[0] == pytest.approx(length - ways[-1], abs=1e-9)
+    assert 0.0 < ways[0] == pytest.approx(min(tolerance, 0.25 * length))
+    assert len(ways) - 2 < length / half_chord <= len(ways) - 1
+    for place, way, normal in places:
+        assert place == pytest.approx(nearest_place(move, place))
+        assert way == direction_at(move, place)
+        left = complex(*normal) / complex(*way)
+        assert left == pytest.approx(math.copysign(1.0, offset) * 1j)
+
+
+def test_of_repeated_passes_the_deepest_is_kept_for_the_first_of_its_moves():
+    high, low = line(0.0, 0.0, 9.0, 0.0, -1.0, -1.0), line(0.0, 0.0, 9.0, 0.0, 0.0, -2.0)
+    other = line(0.0, 1.0, 9.0, 1.0)
+    assert without_repeats([(1, high), (2, other), (3, low)]) == [(1, low), (2, other)]
+    assert without_repeats([(1, low), (2, other), (3, high)]) == [(1, low), (2, other)]
+
+
+def test_a_repeated_move_is_as_high_as_any_of_them():
+    first, other = line(0.0, 0.0, 9.0, 0.0, -3.0, -2.0), line(9.0, 0.0, 9.0, 5.0, -2.0, -2.0)
+    for again in (first._replace(z0=-1.0), first._replace(z1=-1.0)):
+        assert greatest_heights([first, other, again]) == {0: -1.0, 1: -2.0}
+        assert greatest_heights([again, other, first]) == {0: -1.0, 1: -2.0}
 
 
 # How long it takes.
