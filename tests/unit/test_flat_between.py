@@ -102,6 +102,10 @@ def slot(width, length, at=0j, turn=0.0):
     ]
 
 
+def closed(corners):
+    return [Straight(*ends) for ends in zip(corners, [*corners[1:], corners[0]])]
+
+
 HEXAGON = boss(regular(6, 15.6))
 
 
@@ -125,6 +129,36 @@ HEXAGON = boss(regular(6, 15.6))
 @pytest.mark.parametrize("turned", [False, True])
 def test_what_is_right_is_cut_in_any_order(parts, turned):
     assert found(*parts[:: -1 if turned else 1]) == ("", [])
+
+
+def begun_at(drawn, k):
+    """Return a closed contour that begins with its k-th shape, or in the middle of that."""
+    shapes = drawn.shapes[k // 2 :] + drawn.shapes[: k // 2]
+    if k % 2:
+        middle, sweep = shapes[0].points(3)[1], getattr(shapes[0], "sweep", 0.0)
+        end = Straight(shapes[0].start, middle)
+        begin = Straight(middle, shapes[0].end)
+        if sweep:
+            end, begin = (Round(z, shapes[0].centre, sweep / 2) for z in (end.start, middle))
+        shapes = [begin, *shapes[1:], end]
+    return drawn._replace(shapes=shapes, body=shapes)
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (HEXAGON, boss(regular(6, 17.0))),
+        (HEXAGON, pocket(slot(14, 60, turn=0.5))),
+        (boss(circle(9.0), 2.0), pocket(circle(14.0), 2.0)),
+        (HEXAGON, boss(regular(5, 12.0, at=14.0 + 3j), 6.0)),
+    ],
+)
+def test_a_closed_contour_may_begin_anywhere(one, other):
+    for k in range(2 * len(one.shapes)):
+        for parts in ((begun_at(one, k), other), (other, begun_at(one, k))):
+            assert found(*((part, -5.0) for part in parts)) == ("", []), k
+    for k in range(2 * len(other.shapes)):
+        assert found((one, -5.0), (begun_at(other, k), -5.0)) == ("", []), k
 
 
 def test_a_pass_the_other_way_round_may_finish():
@@ -176,6 +210,52 @@ def test_what_another_depth_cuts_is_told():
     text, notes = found(*near(4.0, -5.0, -6.0))
     assert not text
     assert len(notes) == 1
+
+
+@pytest.mark.parametrize("depths", [(-3.0,), (-2.0, -4.0), (-4.0, -2.0), (-2.0, -3.0, -4.0)])
+@pytest.mark.parametrize("others", [(-3.0,), (-2.0,), (-1.0, -5.0), (-5.0, -4.0), (-4.0, -1.0)])
+def test_a_deep_cut_is_refused_where_both_are_cut_at_one_height(depths, others):
+    (one, _), (other, _) = near(4.0, -5.0)
+    cuts = [*((one, z) for z in depths), *((other, z) for z in others)]
+    for order in (cuts, cuts[::-1], cuts[::2] + cuts[1::2]):
+        text, notes = found(*order)
+        assert ("cuts into the other" in text) == bool({*depths} & {*others})
+        assert text or len(notes) == 1
+
+
+FACED = boss(closed([10 + 10j, 10 - 10j, -10 - 10j, -10 + 10j]), 3.0)
+FACE = Straight(14 - 20j, 14 + 20j)  # two radii from there would be 16
+IN_FRONT, BEHIND = Straight(40 - 20j, 14 - 20j), Straight(14 + 20j, 40 + 20j)
+BESIDE = [Straight(14 + 30j, 14 + 50j), Straight(14 + 50j, 40 + 50j), Straight(40 + 50j, 40 + 30j),
+          Straight(40 + 30j, 14 + 30j)]  # fmt: skip
+ROUND = [FACE, BEHIND, Straight(40 + 20j, 40 - 20j), IN_FRONT]
+
+
+@pytest.mark.parametrize(
+    ("shapes", "lead"),
+    [
+        ([FACE], True),
+        ([IN_FRONT, FACE], True),
+        ([FACE, BEHIND], True),
+        ([IN_FRONT, FACE, BEHIND], False),
+        (ROUND, False),
+        (ROUND[1:] + ROUND[:1], False),
+        (ROUND[2:] + ROUND[:2], False),
+        ([Straight(14 - 20j, 14 + 25j), Straight(14 + 25j, 14 + 30j), *BESIDE], True),
+        ([BESIDE[0].between(-2.5, 1.0), *BESIDE[1:3], BESIDE[3].between(0.0, 1.4)], True),
+        ([ROUND[3].between(-0.3, 1.0), *ROUND[:2], ROUND[2].between(0.0, 1.2)], False),
+        ([ROUND[0].between(-0.3, 1.0), *ROUND[1:3], ROUND[3].between(0.0, 1.0)], False),
+    ],
+)
+def test_what_cuts_may_be_a_lead_and_is_told(shapes, lead):
+    """What stands right of the square has a face that is too near to it, or a lead along that."""
+    way_back = [Straight(shape.end, shape.start) for shape in reversed(shapes)]
+    turned = [Straight(-shape.start, -shape.end) for shape in shapes]
+    for drawn in (boss(shapes, 3.0), boss(turned, 3.0), pocket(way_back, 3.0)):
+        for order in ([FACED, drawn], [drawn, FACED]):
+            text, notes = found(*((part, -5.0) for part in order))
+            assert bool(text) is not lead
+            assert any("the tool cuts" in note for note in notes) is lead
 
 
 def test_an_open_contour_may_end_in_the_air_and_is_told():

@@ -137,6 +137,16 @@ def test_a_lead_that_is_the_extension_of_a_side_is_none_of_the_part(front, behin
     assert cut(extended(front, behind), LEFT, 3.0) == ("", [])
 
 
+@pytest.mark.parametrize("turned", [-0.5, 0.0, 0.5])
+def test_a_lead_to_the_corner_where_a_contour_closes_crosses_nothing(turned):
+    lead = 20 * cmath.exp(1j * turned)
+    for corner in range(4):
+        around, way = [*SQUARE[corner:], *SQUARE[:corner]], 1 / 1j**corner
+        on, off = around[0] + 1j * lead * way, around[0] + lead.conjugate() * way
+        assert cut([Straight(on, around[0]), *closed(around)], LEFT, 3.0) == ("", [])
+        assert cut([*closed(around), Straight(around[0], off)], LEFT, 3.0) == ("", [])
+
+
 @pytest.mark.parametrize(("front", "behind"), [(40.0, -0.015), (-0.015, 40.0)])
 def test_a_contour_closes_though_rounding_left_a_gap(front, behind):
     """Here of three tolerances, between the end of a side and the one that runs on beyond it."""
