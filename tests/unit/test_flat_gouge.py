@@ -16,10 +16,12 @@ from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat.closing import closing_of
 from g12.flat.contour import Arc, Contour, Line, direction_at, is_move, path_length
 from g12.flat.gouge import (
+    Cut,
     greatest_heights,
     in_plane,
     place_count,
     places_along,
+    stretches,
     without_repeats,
 )
 from g12.flat.intersect import along_start, nearest_place, place_at
@@ -159,8 +161,10 @@ def test_a_thin_fin_is_cut_all_round():
     assert cut(fin, LEFT, 3.0) == ("", [])
 
 
-def test_leads_that_cross_are_told():
-    text, notes = cut(extended(5.0, 5.0), LEFT, 3.0)
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+def test_leads_that_cross_are_told(side):
+    """The tool inside cuts beyond one side with the lead of the other."""
+    text, notes = cut(extended(5.0, 5.0), side, 3.0)
     assert not text
     assert notes == [
         "G12.1 line 6: lines 3 and 6 cross: taken for the leads of a contour that closes there"
@@ -434,17 +438,21 @@ def crossing(shapes):
 
 
 @pytest.mark.parametrize(
-    ("leads", "corners", "closes"),
-    [(0, 3, True), (1, 3, True), (1, 4, True), (2, 3, False), (2, 4, False)],
+    ("on", "off", "corners", "closes"),
+    [
+        *((0, 0, 3, True), (1, 1, 3, True), (1, 1, 4, True), (2, 2, 3, False), (2, 2, 4, False)),
+        *((0, 1, 4, True), (1, 0, 4, True), (1, 2, 4, False), (2, 1, 4, False)),
+    ],
 )
-def test_leads_may_cross_with_one_move_beyond_them(leads, corners, closes):
+def test_leads_may_cross_with_one_move_beyond_them(on, off, corners, closes):
     ring = [20 * cmath.exp(-2j * math.pi * k / corners) for k in range(corners)]
     first, *others, last = closed(ring)
     overrun = 0.2
     sides = [first.between(-overrun, 1.0), *others, last.between(0.0, 1.0 + overrun)]
-    for _ in range(leads):
-        before, behind = sides[0].start, sides[-1].end
-        sides = [Straight(1.1 * before, before), *sides, Straight(behind, 1.1 * behind)]
+    for _ in range(on):
+        sides = [Straight(1.1 * sides[0].start, sides[0].start), *sides]
+    for _ in range(off):
+        sides = [*sides, Straight(sides[-1].end, 1.1 * sides[-1].end)]
     assert crossing(sides) is closes
 
 
@@ -453,6 +461,15 @@ def test_two_sides_with_leads_are_no_contour():
     assert crossing(bow)
     led = [Straight(-20 + 20j, -20 + 0j), *bow, Straight(bow[-1].end, 2 * bow[-1].end)]
     assert not crossing(led)
+
+
+@pytest.mark.parametrize(("share", "closes"), [(0.48, False), (0.55, True)])
+def test_two_moves_meet_in_the_second_half_of_the_last(share, closes):
+    """An arc that goes through the line before it, so far behind their joint."""
+    centre = 5 + 15j / math.tan(0.45 * math.pi)
+    bow = [Straight(-20 + 0j, 20 + 0j), Round(20 + 0j, centre, -0.9 * math.pi / share)]
+    assert closing(bow)[0].closed is closes
+    assert not closes or ends_of(bow) == (True, -10 + 0j, -10 + 0j)
 
 
 @pytest.mark.parametrize(("slope", "through"), [(0.06, True), (0.04, False), (-1.0, False)])
@@ -631,6 +648,22 @@ def line(x0, c0, x1, c1, z0=-1.0, z1=-1.0, offset=3.0):
 def circle(x, c, sweep=2 * math.pi, z=-1.0):
     """Return a full circle from the origin, about a place."""
     return Arc(1, 300.0, 3.0, 0.0, 0.0, z, 0.0, 0.0, z, x, c, sweep)
+
+
+@pytest.mark.parametrize(
+    ("under_compensation", "expected"),
+    [
+        ("", []),
+        ("---", []),
+        ("--++--", [("cd", "be")]),
+        ("-+--++-", [("b", "ac"), ("ef", "dg")]),
+        ("+-+", [("a", "b"), ("c", "b")]),
+    ],
+)
+def test_a_stretch_is_what_lies_between_two_ramps(under_compensation, expected):
+    cuts = [Cut(name, (), sign == "+") for name, sign in zip("abcdefg", under_compensation)]
+    found = [("".join(cut.move for cut in part) for part in pair) for pair in stretches(cuts)]
+    assert [tuple(pair) for pair in found] == expected
 
 
 def test_moves_are_one_in_the_plane_if_places_centre_and_sweep_are_the_same():
