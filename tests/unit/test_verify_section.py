@@ -334,6 +334,22 @@ def test_another_depth_is_told_with_its_line(depths, line, found):
     assert blockwise(depths, (600.0,)).depth_off == pytest.approx((line, found, -1.0))
 
 
+@pytest.mark.parametrize(
+    ("depth", "off", "end"),
+    [(-2.0, 0.006, None), (-2.0, 0.009, None), (-20.0, 0.009, None), (-2.0, 0.0, -2.003)],
+)
+def test_inside_a_line_that_changes_z_the_tolerance_holds_in_space(depth, off, end):
+    hand = Hand().rapid(x=40.0)
+    hand.line(x=30.0, z=depth / 2 + off).line(x=20.0, z=end or depth)
+    found = measure(hand, [Element(1, 40 + 0j, 20 + 0j, 0, False, depth, feed=600.0)]).depth_off
+    if end:
+        assert found == pytest.approx((1, end, depth))
+    elif off > 1e-3 + TOLERANCE * math.hypot(1.0, depth / 20.0):
+        assert found == pytest.approx((1, depth / 2 + off, depth / 2))
+    else:
+        assert found is None
+
+
 def test_another_feed_is_told_with_its_line():
     assert blockwise((-1.0, -1.0), (700.0,)).feed_off == pytest.approx((1, 700.0, 600.0))
 

@@ -148,7 +148,7 @@ def block_facts(
 ) -> dict[str, object]:
     """Return those members of ``SectionFacts`` that compare the moves with the blocks' words."""
     return {
-        "depth_off": depth_off(section, moves, path),
+        "depth_off": depth_off(section, moves, path, tolerance),
         "feed_off": feed_off(section, moves, path, tolerance, axes),
         "turn_speed": turn_speed(section, moves, path),
         "in_place": turned_in_place(section, moves, path),

@@ -129,11 +129,16 @@ def length_wanted(group: Sequence[Element], above: float) -> float:
     return sum(math.hypot(element.length, rise) for element, rise in zip(group, rises))
 
 
-def depth_off(section: SectionContour, moves: Sequence[Move], path: Track) -> OffWords | None:
-    """Return the first height that is not as the words ask."""
+def depth_off(
+    section: SectionContour, moves: Sequence[Move], path: Track, tolerance: float
+) -> OffWords | None:
+    """Return the first height that is not as the words ask.
+
+    The tolerance is that of the contour: inside a line that changes Z it holds in space.
+    """
     face = moves[section.at].start[section.third] - section.height
     for block in blocks_cut(section, moves):
-        off = depth_off_in(block, face, path)
+        off = depth_off_in(block, face, path, tolerance)
         if off:
             return off
     asked = section.elements[-1].depth if section.elements else section.height
@@ -142,32 +147,43 @@ def depth_off(section: SectionContour, moves: Sequence[Move], path: Track) -> Of
     return OffWords(section.last, found, asked) if wrong else None
 
 
-def depth_off_in(block: BlockOfSection, face: float, path: Track) -> OffWords | None:
+def depth_off_in(
+    block: BlockOfSection, face: float, path: Track, tolerance: float
+) -> OffWords | None:
     """Return the height of a block that is farthest from what its words ask, if it is too far."""
     vertices = slice(path.vertices(block.moves[0]).start, path.vertices(block.moves[-1]).stop)
     heights = path.points[vertices, 2] - face
-    wanted = heights_wanted(block, path.points[vertices], heights)
-    worst = int(np.abs(heights - wanted).argmax())
-    if abs(heights[worst] - wanted[worst]) <= SAME_LEVEL:
+    wanted, allowed = heights_wanted(block, path.points[vertices], heights, tolerance)
+    allowed[-1] = SAME_LEVEL
+    beyond = np.abs(heights - wanted) - allowed
+    worst = int(beyond.argmax())
+    if beyond[worst] <= 0.0:
         return None
     return OffWords(block.elements[0].line, float(heights[worst]), float(wanted[worst]))
 
 
-def heights_wanted(block: BlockOfSection, points: np.ndarray, heights: np.ndarray) -> np.ndarray:
-    """Return the heights that a block asks for at points along it.
+def heights_wanted(
+    block: BlockOfSection, points: np.ndarray, heights: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the heights that a block asks for at points along it, and how far off they may be.
 
     Z changes evenly along one element that is not compensated; else any height between those of
-    the elements will do but for the last.
+    the elements will do but for the last. A place may lie as far from a line in space as the
+    tolerance has it: the steeper, the more that is in Z.
     """
     first, last = block.elements[0], block.elements[-1]
     depths = [block.above, *(element.depth for element in block.elements)]
+    allowed = np.full(len(heights), SAME_LEVEL)
     if len(block.elements) == 1 and first.length and not (first.side or first.ramp):
         steps = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(steps)])
-        return block.above + (last.depth - block.above) * along / (along[-1] or 1.0)
+        rise = last.depth - block.above
+        if rise:
+            allowed += tolerance * math.hypot(1.0, rise / first.length)
+        return block.above + rise * along / (along[-1] or 1.0), allowed
     wanted = np.clip(heights, min(depths), max(depths))
     wanted[-1] = last.depth
-    return wanted
+    return wanted, allowed
 
 
 def feed_off(
