@@ -386,3 +386,21 @@ def test_a_long_curve_is_its_own_length_but_for_the_tolerance():
     sweep = math.radians(57.3)
     arc = Element(2, 10 + 0j, 10 * np.exp(1j * sweep), 0, False, 0.0, 0j, sweep, 600.0)
     assert measure(hand, [arc]).feed_off == pytest.approx((2, 618.0, 600.0), rel=1e-4)
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.93, True), (1.0, False), (1.07, True)])
+def test_chords_round_a_small_arc_last_as_long_as_it_does(share, found):
+    centre, radius, pieces = 20 + 0j, 0.125, 6
+    angle = math.pi / pieces
+    places = centre + radius * np.exp(1j * angle * np.arange(1, pieces + 1))
+    places[:-1] += (places[:-1] - centre) / radius * TOLERANCE  # outside of the arc
+    start = centre + radius
+    hand = Hand().rapid(x=start.real).next_block().polar(places)
+    for index in range(1, len(hand.moves)):
+        move = hand.moves[index]
+        programmed = abs(move.end[0] - move.start[0])
+        feed = share * 600.0 * programmed / (radius * angle)
+        hand.moves[index] = move._replace(feed=feed)
+    arc = Element(2, start, places[-1], 0, False, 0.0, centre, math.pi, 600.0)
+    facts = measure(hand, [arc], x=start.real)
+    assert bool(facts.feed_off) is found

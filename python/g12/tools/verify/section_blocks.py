@@ -202,15 +202,17 @@ def feed_off(
         turned = any(turns(moves[index]) for index in block.moves)
         slow = turned or outruns_c(block, path, axes)
         for index in block.moves if None not in feeds else ():
-            meant = lengths_meant(block, index, path, tolerance)
-            least, most = (feed_asked(moves[index], length) for length in meant)
-            share = LEAST_ON_FACE if slow and is_on_face(moves[index]) else 1.0
-            if path.part_length(index) < LEAST_LENGTH or not most:
+            if path.part_length(index) < LEAST_LENGTH:
                 continue
-            if not any(
-                most >= share * (1.0 - SAME_FEED) * feed and least <= (1.0 + SAME_FEED) * feed
-                for feed in feeds
-            ):
+            share = LEAST_ON_FACE if slow and is_on_face(moves[index]) else 1.0
+            least, most = lengths_meant(block, index, path, tolerance)
+            most = feed_asked(moves[index], most)
+            enough = [feed for feed in feeds if most >= share * (1.0 - SAME_FEED) * feed]
+            highest = (1.0 + SAME_FEED) * max(enough, default=0.0)
+            if not most or feed_asked(moves[index], least) <= highest:
+                continue
+            least -= drawn_in(block, index, path, tolerance)
+            if feed_asked(moves[index], least) > highest:
                 return OffWords(block.elements[0].line, most, min(feeds))
     return None
 
@@ -245,11 +247,35 @@ def lengths_meant(
     less than its own path without 2 pi times the tolerance: of two curves that bend one way, one
     within a distance of the other, the outer one is no longer by more (Steiner).
     """
-    points, length = path.points[path.vertices(index)], path.part_length(index)
-    chord = float(np.linalg.norm(points[-1] - points[0]))
-    if not any(each.side or each.ramp or each.centre is not None for each in block.elements):
+    chord, length = float(np.linalg.norm(chord_of(index, path))), path.part_length(index)
+    if is_straight(block):
         return chord, chord
     return max(chord, length - math.tau * tolerance), length
+
+
+def drawn_in(block: BlockOfSection, index: int, path: Track, tolerance: float) -> float:
+    """Return by how much the chord of a move is shorter on a curve within the tolerance, mm.
+
+    Where the path turns by an angle from chord to chord, both ends move by the tolerance towards
+    the inside of the curve.
+    """
+    if is_straight(block):
+        return 0.0
+    near = [at for at in (index - 1, index, index + 1) if at in block.moves]
+    chords = [chord_of(at, path) for at in near]
+    ways = [chord / max(float(np.linalg.norm(chord)), TURN) for chord in chords]
+    return tolerance * max((math.dist(*pair) for pair in zip(ways, ways[1:])), default=0.0)
+
+
+def is_straight(block: BlockOfSection) -> bool:
+    """Tell whether a block is lines without compensation."""
+    return not any(each.side or each.ramp or each.centre is not None for each in block.elements)
+
+
+def chord_of(index: int, path: Track) -> np.ndarray:
+    """Return the vector (3,) from the start of a move to its end, on the part."""
+    points = path.points[path.vertices(index)]
+    return points[-1] - points[0]
 
 
 def feed_asked(move: Move, length: float) -> float:
