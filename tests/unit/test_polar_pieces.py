@@ -202,3 +202,41 @@ def test_the_way_back_is_cut_into_the_same_pieces(shape, law, beside):
     assert len(there.lengths) == len(again.lengths)
     assert there.slides == pytest.approx(again.slides[::-1], abs=law.deviation)
     assert there.lengths == pytest.approx([shape.length - at for at in again.lengths[::-1]])
+
+
+def is_whole(line, law):
+    """Return whether one piece is off by 3/4 deviations at most and keeps the feed even enough.
+
+    As if the line were all the way as it is where it is nearest to the pole.
+    """
+    path, every = along(line), np.linspace(0.0, line.length, 401)
+    at = every[abs(path(every)).argmin()]
+    slide, _, turning = rates(path, at)
+    first, last = abs(line.start), abs(line.end)
+    growth = abs(last - first) / (first + last)
+    off = abs(bend(path, at)) * line.length**2 / 8.0
+    return off <= 0.75 * law.deviation and (turning * slide) ** 2 * growth <= law.ripple
+
+
+@pytest.mark.parametrize("law", [Law(0.005, 1e9, INF, INF), Law(1e9, 0.01, INF, INF)])
+@pytest.mark.parametrize("first", [-1.0, -0.04, 0.0, 0.3, 1.0, 2.5])
+@pytest.mark.parametrize("foot", [2.0, -30.0])
+def test_a_short_line_is_one_piece_while_that_keeps_the_limits(law, first, foot):
+    """It begins as far behind the foot of the pole's perpendicular, and back again."""
+    start = complex(foot, first * abs(foot))
+    low, high = 1e-3, 50.0
+    while high - low > 1e-4 * low:
+        middle = 0.5 * (low + high)
+        whole = is_whole(Straight(start, start + 1j * middle), law)
+        low, high = (middle, high) if whole else (low, middle)
+    for length, whole in ((0.99 * low, True), (1.01 * low, False)):
+        ends = (start, start + 1j * length)
+        for line in (Straight(*ends), Straight(*ends[::-1])):
+            assert (len(split_move(move_of(line), law).lengths) == 2) is whole
+
+
+@pytest.mark.parametrize(("away", "whole"), [(0.0024, True), (0.0026, False)])
+def test_an_arc_is_one_piece_if_its_radii_differ_by_less_than_the_deviation(away, whole):
+    circle = Round(complex(10 + away), complex(away), 2 * math.pi)
+    split = split_move(move_of(circle), Law(0.005, 1e9, INF, INF))
+    assert (len(split.lengths) == 2) is whole
