@@ -3,6 +3,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from g12.errors import Refusal
@@ -68,3 +69,36 @@ def test_pieces_made_shorter_for_an_even_feed_use_a_share_of_the_deviation(densi
         (pieces, share), (more, less) = longest(place), even(place)
         assert more > 2 * pieces
         assert less == pytest.approx(share * (pieces / more) ** 2)
+
+
+@pytest.mark.parametrize(("start", "end"), [(0.5, 4.0), (-4.0, -0.5), (-3.0, 4.0)])
+@pytest.mark.parametrize("fine", [2.9, 7.3, 40.0])
+def test_pieces_are_equal_parts_of_the_density_but_for_what_the_ends_lose(start, end, fine):
+    """An end that is exactly on the path loses 0.18 pieces; an apsis, at 0 here, loses none."""
+    apsides = [0.0] if start * end < 0.0 else []
+    steps = []
+
+    def density(place):
+        steps.append(place)
+        return fine / (1.0 + 0.2 * abs(place)), 0.1 * (5.0 + place)
+
+    places, shares = spaced(Stretch(start, end, apsides, abs), density)
+    assert max(map(abs, steps)) < max(abs(start), abs(end)) + 1.0 / fine
+    every = np.linspace(start, end, 4001)
+    pieces = np.append(0.0, np.cumsum(abs(np.diff(every)) * fine / (1.0 + 0.2 * abs(every[1:]))))
+    measured = np.interp(places, every, pieces)
+    cuts = [start, *apsides, end]
+    for first, last in zip(cuts, cuts[1:]):
+        inside = slice(places.index(first), places.index(last) + 1)
+        lost = 0.18 * ((first == start) + (last == end))
+        gaps, count = np.diff(measured[inside]), measured[inside][-1] - measured[inside][0]
+        assert len(gaps) - 1.02 < count + lost < len(gaps) + 0.02
+        length = count / (len(gaps) - lost)
+        whole = np.full(len(gaps), length)
+        whole[0] -= 0.18 * length * (first == start)
+        whole[-1] -= 0.18 * length * (last == end)
+        assert gaps == pytest.approx(whole, rel=0.02, abs=0.02)
+        inner = slice(inside.start + 1, inside.stop - 1)
+        off = [length**2 * 0.1 * (5.0 + place) for place in places[inner]]
+        assert shares[inner] == pytest.approx(off, rel=0.03, abs=0.02)
+    assert shares[0] == shares[-1] == 0.0
