@@ -59,7 +59,7 @@ UNIT = {
     "shapes": ("shapes",),
     "section": SECTION,
     "flat": (*FLAT, "polar_plan"),
-    "moves": (*MOVES, *POLAR),
+    "moves": (*MOVES, *POLAR, "cylinder"),
     "polar": (*MOVES, *POLAR),
     "cylinder": ("cylinder", *MOVES),
 }

@@ -109,6 +109,19 @@ def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
     )
 
 
+def test_z_goes_down_and_up_beside_x_s_line_as_on_it():
+    contour = Contour(30.0, 0.0, beside=8.0)
+    contour.line(20.0, 5.0, line=1, feed=100.0)
+    for line, z in enumerate((-1.0, -2.0, 5.0), 2):
+        contour.line(z=z, line=line, feed=60.0)
+    _, *plunges = plan(contour, LATHE._replace(beside=8.0), c=0.0).steps
+    assert [(run.axes, run.pieces[0][2], run.stop) for run in plunges] == [
+        ("Z", -1.0, False),
+        ("Z", -2.0, False),
+        ("Z", 5.0, True),
+    ]
+
+
 @pytest.mark.parametrize(("feed", "quick"), [(60.0, 1.0), (250.0, 1e-6)])
 @pytest.mark.parametrize(
     "shape",

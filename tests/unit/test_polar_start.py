@@ -56,8 +56,11 @@ def test_a_section_may_begin_near_the_centre():
 
 
 def test_a_machine_needs_x_and_c():
-    with pytest.raises(Refusal, match="needs a machine with an X and a C axis"):
-        check_section_start(START, "XYZ")
+    check_section_start(START, "XC")
+    for axes in ("XYZ", "ZC"):
+        with pytest.raises(Refusal) as refused:
+            check_section_start(START, axes)
+        assert refused.value.message == "G12.1 line 7: needs a machine with an X and a C axis"
 
 
 @pytest.mark.parametrize(

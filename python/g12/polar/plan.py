@@ -91,10 +91,12 @@ def quickness(
     """Return the acceleration along a direction at a place that neither axis exceeds.
 
     ``c_acceleration`` in degrees per second squared, the tool is ``beside`` X's line. 0 at the
-    pole, where C would have to jump.
+    pole, where C would have to jump; straight down and up Z counts as quick as X at any place.
     """
     if place == POLE:
         return 0.0
+    if not any(direction[:2]):
+        return x_acceleration
     slide, way = stand(place, beside)
     along, around = along_and_around(direction[:2], way)
     moved = max(abs(along + beside / slide * around), abs(direction[2]))
