@@ -169,6 +169,12 @@ def test_feed_is_in_mm_or_degrees_per_minute(mill, block, feed, mode):
     assert move.feed_mode == mode
 
 
+def test_rounding_in_z_is_no_motion(mill):
+    *_, turn = mill.trace_text("G20 G94 G1 Z[0.1 + 0.2] F10\nG1 Z0.3 C90 F45").moves
+    assert turn.start[2] != turn.end[2] == near(0.3 * 25.4)
+    assert turn.feed == near(45.0)
+
+
 def test_a_rapid_has_no_feed(mill):
     (move,) = mill.trace_text("G0 X1").moves
     assert (move.kind, move.feed) == ("rapid", 0.0)

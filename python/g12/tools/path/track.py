@@ -19,6 +19,7 @@ from g12.tools.path.part import CHORD_ERROR, Part
 from g12.tools.preview.moves import LINEAR, Move, Trace
 
 UNLIMITED = math.inf
+STILL = 1e-8  # mm or degrees: of less LinuxCNC makes nothing (CART_FUZZ)
 DWELL = "dwell "  # an event, and the seconds behind it
 
 
@@ -121,7 +122,7 @@ def feed_length(move: Move) -> float:
     """Return the length that a move's feed is for: of X Y Z, else of U V W, else degrees."""
     change = np.subtract(move.end, move.start)
     lengths = (math.hypot(*change[:3]), math.hypot(*change[6:]), math.hypot(*change[3:6]))
-    return next((length for length in lengths if length > 1e-9), 0.0)
+    return next((length for length in lengths if length >= STILL), 0.0)
 
 
 def track(

@@ -27,6 +27,7 @@ EMPTY = (-1, *[0.0] * 12, 0)  # no tool yet
 UNLOADED = (0, *[0.0] * 12, 0)  # after T0 M6
 NO_OFFSET = (0.0,) * 9
 LINEAR = (0, 1, 2, 6, 7, 8)
+STILL = 1e-8  # mm: of less LinuxCNC makes nothing (CART_FUZZ)
 METRIC = 2
 MEANINGS_CHANGED = "g12: the axes mean something else now"  # what `g12.host` says then
 PLANES = {1: 17, 2: 19, 3: 18}
@@ -354,7 +355,7 @@ class Canon:
     def _rate(self, target: tuple) -> float:
         """Feed of a straight move: degrees per minute if only rotary axes move."""
         tip = in_mm(target)
-        still = all(tip[axis] == self.tip[axis] for axis in LINEAR)
+        still = all(abs(tip[axis] - self.tip[axis]) < STILL for axis in LINEAR)
         return self.program_feed if still else self.feed
 
     def _move(self, kind: str, tip: tuple, feed: float, centre=None, turns=0) -> None:
