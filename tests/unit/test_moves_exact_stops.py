@@ -60,8 +60,10 @@ def test_a_move_that_stops_gathers_speed_twice_as_quickly():
 def test_short_moves_do_not_reach_their_feed():
     """On 0.025 the speed is 5 per second: half the speed, a quarter of the rounding."""
     short = [line(20, 0, 20.025, 0), line(20.025, 0, 20.025, 10)]
-    assert first_stops(short, 0.24 * ROUNDING)
-    assert not first_stops(short, 0.26 * ROUNDING)
+    then_short = [line(20, 0, 30, 0), line(30, 0, 30, 0.025)]
+    for bend in (short, then_short):
+        assert first_stops(bend, 0.245 * ROUNDING)
+        assert not first_stops(bend, 0.255 * ROUNDING)
 
 
 @pytest.mark.parametrize(("feed", "stop"), [(FEED, False), (1.1 * FEED, True)])
@@ -74,6 +76,49 @@ def test_a_plunge_is_at_right_angles_to_the_plane():
     plunge = [line(20, 0, 30, 0), Plunge(2, FEED, 0.0, -5.0), line(30, 0, 40, 0)]
     assert stops(plunge, 0.99 * ROUNDING, 1000.0, C) == [True, True, True]
     assert stops(plunge, 2.01 * ROUNDING, 1000.0, C) == [False, False, True]
+
+
+def test_a_move_that_gathers_speed_more_slowly_is_rounded_as_one_that_is_as_quick():
+    gathering = [line(20, 0, 10, 0), line(10, 0, 10, -5)]
+    assert first_stops(gathering, 0.99 * ROUNDING, c=20.0)
+    assert not first_stops(gathering, 1.01 * ROUNDING, c=20.0)
+
+
+@pytest.mark.parametrize("depth", [-5.0, 5.0])
+@pytest.mark.parametrize(("share", "stop"), [(0.99, True), (1.01, False)])
+def test_a_plunge_is_a_right_angle_up_and_down(depth, share, stop):
+    down = [line(20, 0, 30, 0), Plunge(2, FEED, 0.0, depth), line(30, 0, 30, 5)]
+    assert stops([*down, line(30, 5, 30, 5.1)], share * ROUNDING, 1000.0, C)[:2] == [stop, stop]
+
+
+@pytest.mark.parametrize(("share", "stop"), [(0.99, True), (1.01, False)])
+def test_a_short_plunge_does_not_reach_its_feed(share, stop):
+    """0.025 deep: half the speed, a quarter of the rounding."""
+    down = [Plunge(1, FEED, -7.0, -7.025), line(30, 0, 30, 5), line(30, 5, 30, 5.1)]
+    assert stops(down, 0.25 * share * ROUNDING, 1000.0, C)[0] is stop
+
+
+ALONG_X, ALONG_C = [line(20, 0, 30, 0), (40, 0)], [line(30, -5, 30, 0), (30, 10)]
+
+
+@pytest.mark.parametrize(("level", "on"), [ALONG_X, ALONG_C])
+@pytest.mark.parametrize("rise", [0.5, -1.0, 3.0])
+@pytest.mark.parametrize(("share", "stop"), [(0.99, True), (1.01, False)])
+def test_a_slope_has_its_angle_and_its_axes_in_space(level, on, rise, share, stop):
+    """X, Z and C are as quick as each other here: the steeper of both parts takes all of it."""
+    slope = line(30, 0, *on, 2.0, 2.0 + 10.0 * rise)
+    bend, steep = math.atan(rise), max(1.0, abs(rise)) / math.hypot(1.0, rise)
+    rounding = share * abs(math.sin(bend / 2)) * 10.0**2 / 2000.0
+    far = (2 * on[0] - 30, 2 * on[1])
+    onwards = line(*on, *far, slope.z1, slope.z1 + 10.0 * rise)
+    up = [level._replace(z0=2.0, z1=2.0), slope, onwards]
+    assert stops(up, rounding / steep, 1000.0, C)[0] is stop
+    beyond = line(level.x0, level.c0, 2 * level.x0 - 30, 2 * level.c0, 2.0, 2.0)
+    assert stops([*map(turned_back, up[::-1]), beyond], rounding * steep, 1000.0, C)[1] is stop
+
+
+def turned_back(move):
+    return line(move.x1, move.c1, move.x0, move.c0, move.z1, move.z0)
 
 
 def test_down_and_up_again_is_a_turn_back():

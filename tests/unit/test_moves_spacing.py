@@ -97,8 +97,26 @@ def test_pieces_are_equal_parts_of_the_density_but_for_what_the_ends_lose(start,
         whole = np.full(len(gaps), length)
         whole[0] -= 0.18 * length * (first == start)
         whole[-1] -= 0.18 * length * (last == end)
-        assert gaps == pytest.approx(whole, rel=0.02, abs=0.02)
+        assert gaps == pytest.approx(whole, abs=0.008)
         inner = slice(inside.start + 1, inside.stop - 1)
         off = [length**2 * 0.1 * (5.0 + place) for place in places[inner]]
-        assert shares[inner] == pytest.approx(off, rel=0.03, abs=0.02)
+        assert shares[inner] == pytest.approx(off, abs=0.008)
     assert shares[0] == shares[-1] == 0.0
+
+
+@pytest.mark.parametrize(("near", "cut"), [(0.49, False), (0.51, True)])
+def test_an_apsis_nearer_to_an_end_than_half_a_piece_is_left_alone(near, cut):
+    for start, end, apsis in ((3.0 - near, 9.0, 3.0), (-9.0, -3.0 + near, -3.0)):
+        places, _ = spaced(stretch(start, end, apsis), lambda _: (1.0, 0.5))
+        assert (apsis in places) is cut
+
+
+def test_what_is_whole_but_for_rounding_takes_no_piece_more():
+    for count in range(2, 40):
+        places, _ = spaced(stretch(0.0, count - 0.36), lambda _: (1.0, 1.0))
+        assert len(places) == count + 1
+
+
+def test_the_parts_of_an_element_count_together():
+    with pytest.raises(TooManyPieces):
+        spaced(stretch(-1.0, 1.0, 0.0), lambda _: (0.6 * MOST_PIECES, 1.0))

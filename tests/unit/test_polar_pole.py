@@ -111,6 +111,14 @@ def test_a_small_circle_about_the_pole_is_not_led_through_it():
     assert led(around) == [around]
 
 
+@pytest.mark.parametrize("radius", [0.003, 0.0039])
+def test_of_a_small_circle_a_sixth_on_either_side_is_replaced_at_most(radius):
+    first, to, fro, last = led(arc(radius, 0, 2 * radius, 0, 2 * math.pi))
+    assert math.hypot(to.x0, to.c0) == pytest.approx(radius)
+    assert math.hypot(fro.x1, fro.c1) == pytest.approx(radius)
+    assert (first.sweep, last.sweep) == pytest.approx((2 / 3 * math.pi, 2 / 3 * math.pi))
+
+
 @pytest.mark.parametrize("radius", [0.003, 0.0009])
 def test_the_smallest_circles_through_the_pole(radius):
     first, *between, last = led(arc(radius, 0, 2 * radius, 0, 2 * math.pi))
@@ -165,7 +173,7 @@ def test_what_is_led_through_the_pole_is_the_move_but_for_its_reach(move):
     """In order, as high as it, never farther from it; what is farther from the pole stays."""
     whole, heights = points(move, 4001)
     near, step = abs(whole).min(), abs(whole[1] - whole[0])
-    assume(abs(near - REACH) > step and abs(whole).max() > 10 * REACH)
+    assume(step and abs(near - REACH) > step and abs(whole).max() > 10 * REACH)
     made = [at_pole(part) for part in led(move)]
     places = ends(made)
     assert [places[0][2], places[-1][2]] == pytest.approx([0.0, -4.0], abs=1e-9)

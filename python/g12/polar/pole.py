@@ -17,7 +17,6 @@ from g12.flat.contour import (
     Plunge,
     arc_radius,
     is_move,
-    path_length,
     sweep_between,
 )
 from g12.flat.intersect import height_at, part_of_move, place_at
@@ -47,8 +46,6 @@ def through_pole(contour: Contour, path: list, reach: float, refused: bool) -> l
 def _led(move: Line | Arc, reach: float) -> list | None:
     """Return what replaces a move that comes within ``reach`` of the pole, None for others."""
     r0, r1 = hypot(move.x0, move.c0), hypot(move.x1, move.c1)
-    if r0 + r1 - path_length(move) > 2.0 * reach:
-        return None
     ends = [float(k) for k, radius in enumerate((r0, r1)) if radius <= reach]
     if isinstance(move, Line):
         return _replaced(move, ends[:1] or _line_passes(move, reach), 1.0, reach)
