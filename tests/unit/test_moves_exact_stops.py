@@ -21,7 +21,7 @@ ROUNDING = math.sqrt(2) * 10.0 * (2 * 10.0 / 1000.0) / 8
 
 def stops(path, rounding, x, c):
     """Return where the tool stops on a face; accelerations per second squared, of C in radians."""
-    quick = partial(quickness, x_acceleration=x, c_acceleration=math.degrees(c))
+    quick = partial(quickness, x_acceleration=x, c_acceleration=math.degrees(c), beside=0.0)
     return exact_stops.stops(path, rounding, quick)
 
 

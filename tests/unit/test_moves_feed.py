@@ -4,6 +4,8 @@
 import math
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from g12.flat.contour import Line
 from g12.moves.feed import Split, pieces_with_feed
@@ -75,3 +77,35 @@ def test_c_counts_from_where_it_stood_at_entry():
         Split([10.0, 12.0], [0.0, 1.0], [0.0, 5.0]), (10.0, 90.0, 0.0), move(), 90.0, LEAST
     )
     assert c == pytest.approx(90.0 + math.degrees(1.0))
+
+
+step = st.sampled_from([0.0, 0.0004, -0.0007, 0.0015, -0.3, 2.0])
+turn = st.sampled_from([0.0, 1e-12, 0.01, -3.0, 40.0])
+ends = st.lists(st.tuples(step, turn, st.floats(0.01, 5.0)), min_size=1, max_size=8)
+
+
+@settings(max_examples=150, deadline=None)
+@given(ends, st.sampled_from([0.0, -0.002, -4.0]), st.sampled_from([0.0, 90.0]))
+def test_all_pieces_together_last_as_long_as_the_path(steps, rise, entry):
+    """None turns C and moves the slides by less than the least step, and none does nothing."""
+    slides, turns, lengths = ([first] for first in (10.0, 0.0, 0.0))
+    for by, turned, long in steps:
+        slides.append(slides[-1] + by)
+        turns.append(turns[-1] + turned)
+        lengths.append(lengths[-1] + long)
+    split = Split(slides, [math.radians(angle) for angle in turns], lengths)
+    start, along = (10.0, entry, -5.0), move(-5.0 + rise)._replace(z0=-5.0)
+    made, at = pieces_with_feed(split, start, along, entry, LEAST), start
+    space, minutes = math.hypot(1.0, rise / lengths[-1]) / 120.0, 0.0
+    for piece in made:
+        slid, turned = math.hypot(piece[0] - at[0], piece[2] - at[2]), abs(piece[1] - at[1])
+        assert slid or turned
+        assert not turned or not slid or slid > 0.999 * LEAST
+        minutes += (slid or turned) / piece[3]
+        assert min(abs(minutes - length * space) for length in lengths) < 1e-9
+        done = lengths[min(range(len(lengths)), key=lambda k: abs(minutes - lengths[k] * space))]
+        assert abs(piece[2] - (-5.0 + rise * done / lengths[-1])) <= LEAST
+        at = piece
+    if made:
+        assert at[0] == pytest.approx(slides[-1], abs=LEAST)
+        assert at[1] == pytest.approx(entry + turns[-1], abs=1e-9)

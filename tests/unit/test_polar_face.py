@@ -372,6 +372,21 @@ def test_a_section_goes_to_the_face_and_back():
     assert made.angle == pytest.approx(pi)
 
 
+def test_arcs_on_the_face_leave_the_machine_at_their_end():
+    """Clockwise over three quarters of a circle, C goes from 0 to 90 about a centre far out."""
+    drawn = Contour(60.0, 0.0)
+    drawn.arc(-1, 40.0, 20.0, i=-20.0, line=7, feed=1000.0)
+    drawn.line(40.0, 30.0, -1.0, line=8, feed=1000.0)
+    made = plan(drawn, SETTINGS, c=10.0)
+    there, arc_on, line_on, back = made.steps
+    for step, (x, c), z in ((arc_on, (40, 20), 0.0), (line_on, (40, 30), -1.0)):
+        assert step.pieces[-1] == pytest.approx((hypot(x, c), 10 + degrees(atan2(c, x)), z))
+    assert len(arc_on.pieces) > 40
+    assert made.place == pytest.approx(line_on.pieces[-1])
+    assert (there.place, back.place) == ((60.0, 10.0, 0.0), made.place)
+    assert hypot(line_on.move.x0, line_on.move.c0) == pytest.approx(hypot(40, 20))
+
+
 def test_the_part_beside_the_pole_is_made_of_pieces_and_the_face_begins_anew():
     made = plan(contour((30, 20), (3, 20), (3, -30), (30, -30), (30, 0)), SETTINGS, c=0.0)
     assert [step.on for step in made.steps if isinstance(step, FaceSwitch)] == [True, False] * 2

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from g12.errors import Refusal
 from g12.flat.contour import Contour
 from g12.moves.steps import BlockMoves
-from g12.polar.plan import PolarSettings, plan
+from g12.polar.plan import PolarSettings, _SlideAndSpindle, plan, quickness
+from support.axes_of_places import rates
 from support.contour_geometry import Round, Straight, distance, distance_from_path
 from support.planned_cuts import SAGITTA, cuts, path, programmed
 
@@ -524,6 +525,70 @@ def test_goes_on_after_a_block_that_waits_for_the_machine():
     after = plan(second, LATHE, c=30.0)
     assert distance(path(cuts(second, after, 30.0)), whole[1:]).max() <= TOLERANCE
     assert after.place.c == pytest.approx(plan(programmed(whole), LATHE, c=30.0).place.c)
+
+
+def test_the_next_section_begins_where_c_stands():
+    first = plan(programmed([Straight(20 + 0j, 5 + 10j)]), LATHE, c=30.0)
+    second = programmed([Straight(20 + 0j, 5 + 10j)]).continued(first.end)
+    second.line(z=-2.0, line=2, feed=60.0)
+    (run,) = runs(plan(second, LATHE, c=30.0))
+    assert run.axes == "Z"
+    assert run.pieces[0][1] == first.place.c == pytest.approx(30 + math.degrees(math.atan2(10, 5)))
+
+
+def test_what_the_pieces_leave_over_of_both_slides_comes_last():
+    contour = Contour(10.0, 0.0)
+    end = Round(10 + 0j, 0.0004 + 0j, math.pi / 2).end
+    contour.arc(1, end.real, end.imag, 0.0003, i=-9.9996, line=2, feed=250.0)
+    *_, rest = runs(plan(contour, LATHE, c=0.0))
+    assert (rest.axes, rest.stop) == ("XZ", True)
+    assert (rest.pieces[0][0], rest.pieces[0][2]) == (abs(end), 0.0003)
+    contour = Contour(10.0, 0.0)
+    contour.arc(1, 0.0, 10.0, 0.0003, i=-10.0, line=2, feed=250.0)
+    assert runs(plan(contour, LATHE, c=0.0))[-1].axes == "Z"
+
+
+def test_z_alone_is_a_section_too():
+    contour = Contour(10.0, 0.0)
+    contour.line(z=-3.0, line=1, feed=50.0)
+    planned = plan(contour, LATHE, c=15.0)
+    assert planned.steps == [BlockMoves(1, "Z", [(10.0, 15.0, -3.0, 50.0)], True)]
+    assert planned.place == (10.0, 15.0, -3.0)
+
+
+def test_nothing_is_no_motion():
+    assert plan(Contour(10.0, 0.0), LATHE, c=12.0).steps == []
+
+
+@pytest.mark.parametrize(("stop", "share"), [(True, 0.7), (False, 0.96)])
+def test_what_limits_the_pieces_at_a_feed(stop, share):
+    """Pieces are no shorter than the way on which X or C gathers the speed and loses it."""
+    machine = _SlideAndSpindle(Contour(10.0, 0.0), LATHE, 0.0)
+    deviation, ripple, x_hold, c_hold = machine._law(600.0, stop)
+    assert (deviation, ripple) == (pytest.approx(share * TOLERANCE), 0.01)
+    assert 1.0 / x_hold == pytest.approx(2.0 * 10.0**2 / 1000.0)
+    assert 1.0 / c_hold == pytest.approx(2.0 * 10.0**2 / math.radians(3600.0))
+
+
+@settings(max_examples=80, deadline=None)
+@given(
+    st.builds(complex, st.floats(9.0, 40.0), st.floats(-40.0, 40.0)),
+    st.floats(-3.1, 3.1),
+    st.floats(-1.5, 1.5),
+    st.sampled_from([0.0, 2.0, -8.0]),
+)
+def test_no_axis_exceeds_its_acceleration_along_any_direction(place, heading, slope, beside):
+    unit = cmath.rect(math.cos(slope), heading)
+    _, sliding, turning = rates(lambda at: place + unit * np.asarray(at), 0.0, beside)
+    needs = (abs(sliding) / 500.0, abs(math.sin(slope)) / 500.0, abs(turning) / math.radians(900.0))
+    quick = quickness(
+        (unit.real, unit.imag, math.sin(slope)),
+        (place.real, place.imag),
+        x_acceleration=500.0,
+        c_acceleration=900.0,
+        beside=beside,
+    )
+    assert quick == pytest.approx(1.0 / max(needs), rel=1e-3)
 
 
 def test_a_plan_without_motion_is_its_marks():

@@ -95,6 +95,12 @@ def test_x_words_are_diameters_or_radii(g7, meant, diameter, scale):
     assert (words.diameter, words.x_scale) == (diameter, scale)
 
 
+def test_z_goes_with_x_and_c_only_where_it_may():
+    assert not setup_of().words.third_with_others
+    assert setup_of(Settings(polar_z="allow")).words.third_with_others
+    assert setup_of().words.c_scale == 1.0  # a length in the plane's own unit
+
+
 def test_rapids_have_a_feed_only_where_they_may():
     assert setup_of().words.rapid_feed is None
     allowed = Settings(polar_g0="feed", polar_g0_feed=500.0)
@@ -157,8 +163,11 @@ def test_the_travel_is_that_of_the_machine_with_its_offsets(place, beyond):
 )
 def test_the_travel_is_told_in_the_machines_unit(machine_unit, millimetre, unit):
     limits = setup_of(machine_unit=machine_unit, millimetre=millimetre).limits
-    far = 200.0 * machine_unit
-    assert limits.beyond([BlockMoves(3, "XCZ", [(far, 0.0, 0.0, 1.0)], False)]).unit == unit
+    far, off = 200.0 * machine_unit, START.offsets
+    for axis, place in (("X", (far, 0.0, 0.0)), ("Z", (0.0, 0.0, far))):
+        beyond = limits.beyond([BlockMoves(3, "XCZ", [(*place, 1.0)], False)])
+        assert (beyond.axis, beyond.unit) == (axis, unit)
+        assert beyond.position == pytest.approx(200.0 + off[axis] / machine_unit)
 
 
 def test_a_path_through_the_pole_may_be_refused():

@@ -86,7 +86,7 @@ def quickness(
     *,
     x_acceleration: float,
     c_acceleration: float,
-    beside: float = 0.0,
+    beside: float,
 ) -> float:
     """Return the acceleration along a direction at a place that neither axis exceeds.
 
