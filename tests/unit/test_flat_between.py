@@ -15,6 +15,7 @@ from shapely.geometry import JOIN_STYLE, Polygon
 from shapely.geometry.polygon import orient
 
 from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.flat import between
 from g12.flat.closing import Closing
 from g12.flat.contour import Contour, Line
 from g12.flat.offset import tool_path
@@ -80,6 +81,12 @@ def boss(shapes, radius=6.0):
 def pocket(shapes, radius=6.0):
     """Return what is hollow: the tool is inside of clockwise shapes."""
     return Drawn(shapes, RIGHT, radius, shapes)
+
+
+def way_back(drawn):
+    """Return lines that are cut the other way round, from the same side."""
+    shapes = [Straight(shape.end, shape.start) for shape in reversed(drawn.shapes)]
+    return drawn._replace(shapes=shapes, body=shapes, side=LEFT + RIGHT - drawn.side)
 
 
 def circle(radius, at=0j):
@@ -162,9 +169,7 @@ def test_a_closed_contour_may_begin_anywhere(one, other):
 
 
 def test_a_pass_the_other_way_round_may_finish():
-    way_back = [Straight(side.end, side.start) for side in HEXAGON.shapes[::-1]]
-    finish = Drawn(way_back, RIGHT, 6.0, way_back)
-    assert found((boss(regular(6, 17.0)), -5.0), (finish, -5.0)) == ("", [])
+    assert found((boss(regular(6, 17.0)), -5.0), (way_back(HEXAGON), -5.0)) == ("", [])
 
 
 def test_four_flats_may_each_be_a_contour():
@@ -249,9 +254,8 @@ ROUND = [FACE, BEHIND, Straight(40 + 20j, 40 - 20j), IN_FRONT]
 )
 def test_what_cuts_may_be_a_lead_and_is_told(shapes, lead):
     """What stands right of the square has a face that is too near to it, or a lead along that."""
-    way_back = [Straight(shape.end, shape.start) for shape in reversed(shapes)]
     turned = [Straight(-shape.start, -shape.end) for shape in shapes]
-    for drawn in (boss(shapes, 3.0), boss(turned, 3.0), pocket(way_back, 3.0)):
+    for drawn in (boss(shapes, 3.0), boss(turned, 3.0), way_back(boss(shapes, 3.0))):
         for order in ([FACED, drawn], [drawn, FACED]):
             text, notes = found(*((part, -5.0) for part in order))
             assert bool(text) is not lead
@@ -263,6 +267,17 @@ def test_an_open_contour_may_end_in_the_air_and_is_told():
     text, notes = found((flat, -5.0), (boss(circle(5.0, at=25.0)), -5.0))
     assert not text
     assert notes
+
+
+@pytest.mark.parametrize(("end", "told"), [(20.0, False), (40.0, True)])
+def test_what_another_cuts_at_the_end_of_an_open_contour_may_be_air(end, told):
+    """One comes up to a wall, beyond its end or not, with the tool on this side of it."""
+    wall = boss([Straight(-20j, 1j * end)], 3.0)
+    across = pocket([Straight(-25 + 25j, -1 + 25j)], 3.0)
+    for one in (wall, way_back(wall)):
+        for other in (across, way_back(across)):
+            text, notes = found((one, -5.0), (other, -5.0))
+            assert not text and bool(notes) is told
 
 
 def test_a_pip_in_a_pocket_is_told():
@@ -386,6 +401,15 @@ def test_what_is_only_rounding_of_a_move_is_no_part_of_a_contour():
 
 
 # How long it takes.
+
+
+@pytest.mark.parametrize(("most", "compared"), [(88, False), (89, True)])
+def test_what_would_take_too_long_is_not_compared(monkeypatch, most, compared):
+    """Only the last two of six come near to each other, but the boxes round any two beside do."""
+    places = [cmath.rect(along, math.pi / 4) for along in (0.0, 20.0, 40.0, 60.0, 80.0, 94.0)]
+    bosses = [boss(circle(5.0, at=place), 3.0) for place in places]
+    monkeypatch.setattr(between, "MOST", most)  # each of the others takes eleven, both ways
+    assert bool(found(*((one, -5.0) for one in bosses))[0]) is compared
 
 
 def waves(count, radius, turns=10):
