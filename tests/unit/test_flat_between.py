@@ -40,13 +40,13 @@ SEEDS = range(250)
 DEEPEST_TOLD = 0.5  # of the tool's radius
 
 
-def section(*parts):
-    """Return a section of contours, each what is drawn and its Z."""
+def section(*parts, ramp=None):
+    """Return a section of contours, each what is drawn and its Z; ``ramp``: to it and from it."""
     contour, line = Contour(90.0, UP), 1
     for drawn, height in parts:
         first, last = drawn.shapes[0], drawn.shapes[-1]
-        start = first.start + away(drawn) * cmath.rect(1.0, first.headings()[0])
-        end = last.end + away(drawn) * cmath.rect(1.0, last.headings()[1])
+        start = first.start + (ramp or away(drawn)) * cmath.rect(1.0, first.headings()[0])
+        end = last.end + (ramp or away(drawn)) * cmath.rect(1.0, last.headings()[1])
         contour.line(start.real, start.imag, line=line, feed=300.0)
         contour.line(z=height, line=line, feed=300.0)
         contour.compensation(drawn.side, drawn.radius, line=line + 1)
@@ -61,9 +61,9 @@ def section(*parts):
     return contour
 
 
-def found(*parts):
+def found(*parts, ramp=None):
     """Return the message with which a section is refused, if it is, and what is told of it."""
-    contour = section(*parts)
+    contour = section(*parts, ramp=ramp)
     try:
         tool_path(contour, contour.elements, TOLERANCE)
     except Refusal as refused:
@@ -272,12 +272,45 @@ def test_an_open_contour_may_end_in_the_air_and_is_told():
 @pytest.mark.parametrize(("end", "told"), [(20.0, False), (40.0, True)])
 def test_what_another_cuts_at_the_end_of_an_open_contour_may_be_air(end, told):
     """One comes up to a wall, beyond its end or not, with the tool on this side of it."""
-    wall = boss([Straight(-20j, 1j * end)], 3.0)
-    across = pocket([Straight(-25 + 25j, -1 + 25j)], 3.0)
-    for one in (wall, way_back(wall)):
-        for other in (across, way_back(across)):
+    wall = [Straight(-20j, 1 + 0j), Straight(1 + 0j, 1j * end)]
+    across = [Straight(-25 + 25j, -1 + 25j)]
+    at, turn = 7 + 3j, cmath.rect(1.0, 0.4)
+    wall, across = ([Straight(*(at + turn * z for z in s)) for s in one] for one in (wall, across))
+    for one in (boss(wall, 3.0), way_back(boss(wall, 3.0))):
+        for other in (pocket(across, 3.0), way_back(pocket(across, 3.0))):
             text, notes = found((one, -5.0), (other, -5.0))
             assert not text and bool(notes) is told
+
+
+@pytest.mark.parametrize("levels", [(-3.0,), (-4.0, -3.0), (-3.0, -4.0)])
+@pytest.mark.parametrize(("height", "told"), [(-2.0, False), (-3.0, True), (-3.5, True)])
+def test_a_wall_is_as_high_as_the_highest_of_its_levels(levels, height, told):
+    """A line ends 2 in front of the square: the tool there cuts it, or passes above it."""
+    beside = boss([Straight(60 + 0j, 12 + 0j)], 3.0)
+    for parts in ([(FACED, z) for z in levels] + [(beside, height)],
+                  [(beside, height)] + [(FACED, z) for z in levels]):  # fmt: skip
+        text, notes = found(*parts)
+        assert not text and bool(notes) is told
+
+
+@pytest.mark.parametrize(("tolerances", "told"), [(0.9, False), (1.8, True), (2.2, False)])
+def test_what_enters_the_material_by_two_tolerances_is_meant(tolerances, told):
+    x = 10.0 - tolerances * TOLERANCE
+    again = boss([Straight(x + 8j, x - 8j)], 3.0)
+    for parts in ((FACED, again), (again, FACED)):
+        text, notes = found(*((part, -5.0) for part in parts))
+        assert not text and bool(notes) is told
+
+
+def test_a_ramp_that_cuts_another_contour_is_told():
+    beside = boss([Round(20 + 0j, 25 + 0j, -2 * math.pi)], 3.0)
+    assert found((FACED, -5.0), (beside, -5.0)) == ("", [])
+    text, notes = found((FACED, -5.0), (beside, -5.0), ramp=11j)
+    assert not text and len(notes) == 1
+
+
+def test_a_tool_smaller_than_the_tolerance_cuts_into_nothing():
+    assert found((boss(circle(5.0), 0.8 * TOLERANCE), -5.0)) == ("", [])
 
 
 def test_a_pip_in_a_pocket_is_told():

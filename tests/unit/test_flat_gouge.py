@@ -277,13 +277,15 @@ def test_a_contour_that_crosses_itself_is_refused_whatever_the_angle():
             assert cut(loop, side, 1.0)[0], (angle, side)
 
 
-def wavy(side, wave, high):
-    """Return lines that go to both sides of a straight one, by some length in each direction."""
+def wavy(side, wave, high, count):
+    """Return lines along a straight one that go to both sides of it, by some length each."""
     along = cmath.rect(1.0, side.headings()[0])
-    count = int(0.9 * side.length / wave)
-    middle = 0.5 * (side.start + side.end - (count - 0.5) * wave * along)
-    peaks = [middle + (0.5 * k * wave + 1j * (-1) ** k * high) * along for k in range(2 * count)]
-    corners = [side.start, *peaks, side.end]
+    first = 0.5 * (side.start + side.end - count * wave * along)
+    peaks = [
+        first + (0.25 * wave * (2 * k + 1) + 1j * (-1) ** k * high) * along
+        for k in range(2 * count)
+    ]
+    corners = [side.start, first, *peaks, first + count * wave * along, side.end]
     return [Straight(*pair) for pair in zip(corners, corners[1:])]
 
 
@@ -291,11 +293,12 @@ def wavy(side, wave, high):
     ("wave", "radius", "most"),
     [(1.0, 6.0, 0.12), (2.0, 6.0, 0.12), (4.0, 6.0, 0.12), (4.0, 0.5, 4 * TOLERANCE)],
 )
+@pytest.mark.parametrize("count", [1, None])
 @pytest.mark.parametrize(("share", "found"), [(0.93, False), (1.07, True)])
-def test_a_pass_may_not_go_to_both_sides_of_another(wave, radius, most, share, found):
+def test_a_pass_may_not_go_to_both_sides_of_another(wave, radius, most, share, found, count):
     """Waves of some radii, a fiftieth of the radius or four tolerances to either side."""
     first, *others = closed([0.4 * radius * corner for corner in SQUARE])
-    waves = wavy(first, wave * radius, share * most)
+    waves = wavy(first, wave * radius, share * most, count or int(7.0 / wave))
     for one, other in (([first], waves), (waves, [first])):
         for laps in (([*one, *others], [*other, *others]), ([*others, *one], [*others, *other])):
             for heights in ((-1.0, -1.0), (-1.0, -2.0), (-2.0, -1.0)):
@@ -321,6 +324,11 @@ def stacked(radius, *laps):
     contour.compensation(40, 0.0, line=line)
     contour.line(end.real, end.imag, line=line, feed=300.0)
     return contour
+
+
+def test_a_contour_that_hardly_crosses_itself_behind_a_corner_is_refused():
+    sliver = lines((13.28, 9.154), (13.809, 10.3136), (14.0905, 9.9972), (8.608, 15.3087))
+    assert "cuts into the other" in cut(sliver, LEFT, 1.0)[0]
 
 
 # Where a contour closes, and which of its ends are leads.

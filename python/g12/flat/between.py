@@ -244,7 +244,7 @@ class _Followed:
         """
         x, c = point
         nearest, height, at_end = inf, -inf, False
-        for index, move in self.walls.near((x, c, x, c), reach):
+        for _, move in self.walls.near((x, c, x, c), reach):
             px, pc = nearest_place(move, point)
             away = hypot(x - px, c - pc)
             if away > nearest + SAME_PLACE:
@@ -252,25 +252,20 @@ class _Followed:
             tx, tc = direction_at(move, (px, pc))
             across = copysign(1.0, self.offset) * (tx * (c - pc) - tc * (x - px))
             if away < nearest - SAME_PLACE or abs(across) > abs(height):
-                height, at_end = across, self._is_end(index, px, pc)
+                height, at_end = across, self._is_end(px, pc)
             nearest = min(nearest, away)
         return -inf if at_end else copysign(nearest, height)
 
-    def _is_end(self, index: int, x: float, c: float) -> bool:
-        """Return whether a place of a move is an end of an open contour."""
+    def _is_end(self, x: float, c: float) -> bool:
+        """Return whether a place is an end of an open contour."""
         if self.closing.closed:
             return False
-        ends = []
-        if index == 0:
-            ends.append((self.moves[0].x0, self.moves[0].c0))
-        if index == len(self.moves) - 1:
-            ends.append((self.moves[-1].x1, self.moves[-1].c1))
+        first, last = self.moves[0], self.moves[-1]
+        ends = (first.x0, first.c0), (last.x1, last.c1)
         return any(hypot(x - ex, c - ec) <= SAME_PLACE for ex, ec in ends)
 
     def leads(self, index: int) -> bool:
-        """Return whether a pass for a move may be one to lead in or out."""
-        if index == RAMP:
-            return True
+        """Return whether a pass for a move may be one to lead in or out; RAMP's always is."""
         closing = self.closing
         if closing.closed and not closing.crossing:
             return not closing.first <= index <= closing.last
