@@ -302,6 +302,17 @@ def test_what_enters_the_material_by_two_tolerances_is_meant(tolerances, told):
         assert not text and bool(notes) is told
 
 
+def test_one_cut_may_be_meant_and_another_of_the_same_contour_told():
+    """A slot across a bar, and beside the bar a face that is too near to it."""
+    bar = boss(closed([10 + 30j, 10 - 30j, -10 - 30j, -10 + 30j]), 3.0)
+    corners = [40 + 5j, 14 + 5j, 14 + 45j, -30 + 45j, -30 - 20j, 40 - 20j]
+    slot_and_face = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
+    for k in range(8):
+        right = 3 + (-(k // 2) % 4 or k % 2 * 4)  # its line; of two halves the second one's
+        note = f"G12.1 line {12 + k % 2}: the tool cuts 2 into the contour of line {right}"
+        assert found((begun_at(bar, k), -5.0), (slot_and_face, -5.0)) == ("", [note])
+
+
 def test_a_ramp_that_cuts_another_contour_is_told():
     beside = boss([Round(20 + 0j, 25 + 0j, -2 * math.pi)], 3.0)
     assert found((FACED, -5.0), (beside, -5.0)) == ("", [])
