@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How long pieces may be at a place, and where on the path they end, measured by small steps."""
 
+import cmath
 import math
 
 import numpy as np
@@ -126,6 +127,7 @@ def test_pieces_of_a_line_are_as_long_as_the_first_limit_allows(line, part, law)
 
 @settings(max_examples=150, deadline=None)
 @given(arcs, st.floats(0.0, 1.0), laws)
+@example(Round(0.6 + cmath.rect(0.5, 1.5), 0.6 + 0j, 0.3), 0.5, Law(0.05, 1e9, INF, INF))
 def test_pieces_of_an_arc_are_as_long_as_the_first_limit_allows(arc, part, law):
     """The place is told by the angle from where it is farthest out, shares are above 0 outside."""
     path, at, e = along(arc), part * arc.length, abs(arc.centre) / arc.radius
@@ -219,7 +221,7 @@ def is_whole(line, law):
 
 
 @pytest.mark.parametrize("law", [Law(0.005, 1e9, INF, INF), Law(1e9, 0.01, INF, INF)])
-@pytest.mark.parametrize("first", [-1.0, -0.04, 0.0, 0.3, 1.0, 2.5])
+@pytest.mark.parametrize("first", [-1.0, -0.04, 0.0, 0.3, 0.98, 2.5])
 @pytest.mark.parametrize("foot", [2.0, -30.0])
 def test_a_short_line_is_one_piece_while_that_keeps_the_limits(law, first, foot):
     """It begins as far behind the foot of the pole's perpendicular, and back again."""
@@ -240,3 +242,24 @@ def test_an_arc_is_one_piece_if_its_radii_differ_by_less_than_the_deviation(away
     circle = Round(complex(10 + away), complex(away), 2 * math.pi)
     split = split_move(move_of(circle), Law(0.005, 1e9, INF, INF))
     assert (len(split.lengths) == 2) is whole
+
+
+HALF_WAY = Round(20.006 + 0j, 10.006 + 0j, math.pi)  # to 0.006 beside the pole
+
+
+@pytest.mark.parametrize(
+    ("shape", "deviation"),
+    [
+        (Straight(0.006 - 5j, 0.006 + 5j), 0.003),
+        (Round(20.006 + 0j, 10.006 + 0j, -2 * math.pi), 0.003),
+        (HALF_WAY, 0.003),
+        (HALF_WAY.between(0.0, 0.9997), 0.5 * abs(HALF_WAY.between(0.0, 0.9997).end)),
+        (HALF_WAY.between(1.0, 0.0), 0.003),
+        (HALF_WAY.between(0.9, 0.1), 0.005),
+        (HALF_WAY.between(0.1, 0.9), 0.005),
+    ],
+)
+def test_no_end_is_farther_off_than_half_the_way_to_the_pole(shape, deviation):
+    split = split_move(move_of(shape), Law(0.005, 1e9, INF, INF))
+    off = abs(places_of(*map(np.array, split[:2])) - along(shape)(np.array(split.lengths)))
+    assert 0.8 * deviation < off.max() <= deviation * 1.0001

@@ -41,7 +41,7 @@ class TooManyPieces(Exception):
 
 
 class Stretch(NamedTuple):
-    """The places of an element: its ends, and the apsides between them.
+    """The places of an element: its ends, and the apsides, of which those between them count.
 
     ``nearness`` tells which of two places is nearer to the pole.
     """

@@ -108,16 +108,15 @@ def _angles(stands: list[tuple[float, Point]]) -> list[float]:
 
 
 def _apsides(move: Line | Arc, length: float) -> list[float]:
-    """Return the places inside a move that are nearest to the pole or farthest from it."""
+    """Return the places of a move, or beyond its ends, nearest to the pole or farthest from it."""
     if isinstance(move, Line):
         dx, dc = (move.x1 - move.x0) / length, (move.c1 - move.c0) / length
         foot = -(move.x0 * dx + move.c0 * dc)
-        return [foot] if 0.0 < foot < length else []
+        return [foot]
     turn = copysign(1.0, move.sweep)
     from_start = atan2(move.cc, move.cx) - atan2(move.c0 - move.cc, move.x0 - move.cx)
     first = turn * from_start % pi
-    places = (arc_radius(move) * (first + half) for half in (0.0, pi))
-    return [place for place in places if 0.0 < place < length]
+    return [arc_radius(move) * (first + half) for half in (0.0, pi)]
 
 
 def _density(move: Line | Arc, law: Law, beside: float) -> Density:

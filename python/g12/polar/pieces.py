@@ -28,7 +28,7 @@ is w / sqrt(m), and the curvatures differ by (m**2 - w (2 m - w**2)) / (R m**2).
 
 from __future__ import annotations
 
-from math import atan, atan2, ceil, copysign, cos, floor, hypot, pi, sin, sqrt
+from math import atan, atan2, copysign, cos, hypot, pi, sin, sqrt
 from typing import NamedTuple
 
 from g12.flat.contour import Arc, Line, arc_radius
@@ -74,9 +74,8 @@ def _split_line(move: Line, law: Law) -> Split:
     foot = atan2(c0, x0) - turn * atan(u0)
     if _is_one_piece(u0, u1, distance, deviation, abs(r1 - r0) / (r0 + r1), law.ripple):
         return Split([r0, r1], [foot + turn * atan(u0), foot + turn * atan(u1)], [0.0, length])
-    apsides = [0.0] if u0 < 0.0 < u1 else []
     density = _line_density(distance, deviation, law)
-    places, shares = spaced(Stretch(u0, u1, apsides, abs), density)
+    places, shares = spaced(Stretch(u0, u1, [0.0], abs), density)
     moved = [distance - deviation * share for share in shares]
     radii = [d * sqrt(1.0 + u * u) for d, u in zip(moved, places)]
     radii[0], radii[-1] = r0, r1
@@ -135,9 +134,7 @@ def _split_arc(move: Arc, law: Law) -> Split:
     if 2.0 * away > deviation:
         e = away / radius
         density = _arc_density(radius, e, deviation, law)
-        apsides = [k * pi for k in range(floor(a0 / pi) + 1, ceil(a1 / pi))]
-        stretch = Stretch(a0, a1, apsides, cos)
-        places, shares = spaced(stretch, density)
+        places, shares = spaced(Stretch(a0, a1, [0.0, pi, 2 * pi], cos), density)
     radii, angles = _arc_polar(radius, away, deviation, places, shares)
     radii[0], radii[-1] = r0, r1
     return Split(
