@@ -18,7 +18,7 @@ from support.planned_cuts import add, programmed
 
 TOLERANCE = 0.005
 LATHE = PolarSettings(TOLERANCE, 1e-9, 1000.0, 3600.0, 21600.0)
-LIMITS = FaceLimits(1000.0, 707.0, 1000.0, math.radians(3600.0), math.radians(360.0), 1.0)
+LIMITS = FaceLimits(1000.0, 707.0, 1000.0, math.radians(3600.0), math.radians(360.0), 1.0, 0.0)
 
 offsets = st.sampled_from([0.02, -0.5, 3.0, -10.0]) | st.floats(-15.0, 15.0).filter(bool)
 coordinate = st.floats(-30.0, 30.0)

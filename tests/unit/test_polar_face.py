@@ -23,7 +23,7 @@ from g12.polar.face import (
 )
 from g12.polar.plan import PolarSettings, plan
 
-LIMITS = FaceLimits(1000.0, 707.0, 1000.0, radians(3600.0), radians(360.0), 1.0)
+LIMITS = FaceLimits(1000.0, 707.0, 1000.0, radians(3600.0), radians(360.0), 1.0, 0.0)
 SETTINGS = PolarSettings(0.005, 0.001, 707.0, 3600.0, 21600.0, face=LIMITS)
 ROUNDING = 1e-6
 
@@ -153,7 +153,7 @@ def test_a_move_is_parted_if_it_gains_a_twentieth_switching_included():
     assert found == {False, True}
 
 
-@pytest.mark.parametrize(("seconds", "worth"), [(0.09, False), (0.11, True)])
+@pytest.mark.parametrize(("seconds", "worth"), [(0.0995, False), (0.1005, True)])
 def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
     far = line((40, 0), (40, 10 * seconds), feed=600.0)
     assert chosen([far], LIMITS) == [worth]
@@ -188,6 +188,13 @@ def test_an_arc_that_flows_into_what_follows(following, flows):
 
 def test_along_a_radius_it_is_however_near_it_comes():
     assert is_able(line((30, 0), (1, 0)), LIMITS)
+
+
+@pytest.mark.parametrize(("slide_speed", "able"), [(50.0, True), (49.99, False)])
+def test_along_a_radius_the_slide_goes_as_fast_as_it_can(slide_speed, able):
+    limits = LIMITS._replace(slide_speed=slide_speed)
+    assert is_able(line((30, 0), (10, 0), feed=3000.0), limits) is able
+    assert is_able(line((-3, 4), (-6, 8), feed=3000.0), limits) is able
 
 
 def test_a_higher_feed_needs_more_room():
@@ -423,5 +430,5 @@ def test_a_plunge_on_the_face_keeps_x_and_c():
 @pytest.mark.parametrize(("share", "able"), [(0.9999, False), (1.0001, True)])
 def test_an_arc_is_looked_at_where_it_is_nearest_to_the_pole(sweep, part, share, able):
     """A circle of radius 10 about X20 passes the pole at 10, wherever it begins."""
-    free = FaceLimits(1e9, 1e9, inf, inf, share * (1000.0 / 60.0) / 10.0, 1.0)
+    free = FaceLimits(1e9, 1e9, inf, inf, share * (1000.0 / 60.0) / 10.0, 1.0, 0.0)
     assert is_able(arc((20, 0), 10, pi - part * sweep, sweep), free) is able

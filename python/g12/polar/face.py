@@ -31,6 +31,7 @@ from g12.flat.contour import (
     Plunge,
     Point,
     arc_radius,
+    direction_at,
     end_direction,
     is_move,
     path_length,
@@ -61,7 +62,7 @@ class FaceLimits(NamedTuple):
     c_acceleration: float  # radians per second squared
     c_speed: float  # radians per second
     override: float  # the most that the operator may turn the feed up by
-    pieces_speed: float = 0.0  # about what pieces reach: below it nothing is gained by parting
+    pieces_speed: float  # about what pieces reach: below it nothing is gained by parting
     slide_speed: float = inf
     beside: float = 0.0  # the X line is the tool, towards C+
 
@@ -201,12 +202,9 @@ def _can_follow(move: Line | Arc, part: float, going: _Going, limits: FaceLimits
     if hypot(*place) <= abs(beside) + SAME_PLACE:
         return False
     slide, way = stand(place, beside)
-    direction = (
-        end_direction(move._replace(x1=place[0], c1=place[1])) if part else (start_direction(move))
-    )
-    along, around = along_and_around(direction, way)
-    left_hand = 1.0 if isinstance(move, Arc) and move.sweep > 0.0 else -1.0
-    inward, aside = going.curving * left_hand * -around, going.curving * left_hand * along
+    along, around = along_and_around(direction_at(move, place), way)
+    leftwards = going.curving if isinstance(move, Arc) and move.sweep > 0.0 else -going.curving
+    inward, aside = -leftwards * around, leftwards * along
     turning = going.speed * around / slide
     share = beside / slide * around
     sliding = going.speed * (along + share)
