@@ -60,7 +60,7 @@ UNIT = {
     "section": SECTION,
     "flat": (*FLAT, "polar_plan"),
     "moves": (*MOVES, *POLAR, "cylinder"),
-    "polar": (*MOVES, *POLAR),
+    "polar": (*MOVES, *POLAR, "section_line", "section_block_rules"),
     "cylinder": ("cylinder", *MOVES),
 }
 SECTIONS = ("polar_words", "polar_refusals", "polar_reading")

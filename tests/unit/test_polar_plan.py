@@ -202,6 +202,20 @@ def test_inches_make_the_same_moves():
             assert (x_inch * 25.4, c_inch) == pytest.approx((x, c), abs=1e-7)
 
 
+def test_what_is_left_out_of_a_contour_is_taken_from_the_tolerance():
+    """A step of 0.0013 in a side is left out under compensation."""
+    step = 0.0013
+    contour = Contour(30.0, -15.0)
+    contour.compensation(41, 5.0, line=1)
+    for line, (x, c) in enumerate(
+        [(20, -15), (20, -14), (20, 0), (20 + step, 0), (20 + step, 15), (20 + step, 16)], 1
+    ):
+        contour.line(x, c, line=line, feed=250.0)
+    made = [cut for cut in cuts(contour, plan(contour, DRIVEN, c=0.0)) if cut.line in (3, 5)]
+    side = [Straight(15 - 14j, 15 + 0j), Straight(15 + step + 0j, 15 + step + 15j)]
+    assert 0.6 * TOLERANCE < distance(path(made), side).max() <= TOLERANCE
+
+
 # At its feed.
 
 

@@ -42,7 +42,7 @@ def test_plain_lines(raw):
 @pytest.mark.parametrize(
     "raw",
     ["", " ", "G0 X1", "G12.1", "G1.5", "G10", "G9 X1", "U1", "H1", "Y1", "X#1", "X[1]", "X1 (a)",
-     "X1;a", "/X1", "O1 sub", "M3", "#1=2", "%", "G13 X1", "G1G91X1", "S5", "K1", "X٣"],
+     "X1;a", "/X1", "O1 sub", "M3", "#1=2", "%", "G13 X1", "G1G91X1", "S5", "K1", "@1", "X٣"],
 )  # fmt: skip
 def test_lines_that_are_not_plain(raw):
     assert not POLAR_WORDS.plain(raw)
