@@ -76,6 +76,17 @@ def test_a_little_z_is_left_to_the_next_move_and_to_the_end():
     assert made == [(1, "ZC", 0.0), (2, "ZC", 0.0), (2, "Z", 0.0008)]
 
 
+def test_pieces_that_keep_z_stay_within_the_tolerance():
+    """Two circles, one after the other: without a stop pieces are as far off as they may be."""
+    contour, arm = empty(), 3.186 + 2j
+    for line in (1, 2):
+        contour.arc(1, 0.0, 0.0, i=arm.real, j=arm.imag, line=line, feed=100.0)
+    places = [
+        math.radians(c) * RADIUS + 1j * z for run in runs(contour) for _, c, z, _ in run.pieces
+    ]
+    assert abs(abs(np.array(places) - arm) - abs(arm)).max() < 0.005
+
+
 def test_a_little_depth_is_made_up_at_the_end():
     contour = empty()
     contour.line(10.0, 0.0, 21.9996, line=1, feed=100.0)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from g12.errors import Refusal
 from g12.flat.contour import Contour
-from g12.moves.steps import BlockMoves
+from g12.moves.steps import BlockMoves, chord_deviation
 from g12.polar.plan import PolarSettings, _SlideAndSpindle, plan, quickness
 from support.axes_of_places import rates
 from support.contour_geometry import Round, Straight, distance, distance_from_path
@@ -570,16 +570,36 @@ def test_z_alone_is_a_section_too():
     assert planned.place == (10.0, 15.0, -3.0)
 
 
+def test_pieces_that_keep_x_stay_within_the_tolerance():
+    """Two circles, one after the other: without a stop pieces are as far off as they may be."""
+    centre, size = 30.8521 - 0.1765j, abs(5.3802 - 0.1765j)
+    contour = Contour(25.4718, 0.0)
+    for line in (1, 2):
+        contour.arc(1, 25.4718, 0.0, i=5.3802, j=-0.1765, line=line, feed=300.0)
+    made = cuts(contour, plan(contour, LATHE, c=0.0))
+    assert any(cut.radius[0] == cut.radius[1] for cut in made)
+    assert abs(abs(path(made) - centre) - size).max() < TOLERANCE
+
+
 def test_nothing_is_no_motion():
     assert plan(Contour(10.0, 0.0), LATHE, c=12.0).steps == []
 
 
-@pytest.mark.parametrize(("stop", "share"), [(True, 0.7), (False, 0.96)])
-def test_what_limits_the_pieces_at_a_feed(stop, share):
+@pytest.mark.parametrize(
+    ("stop", "kept", "share"),
+    [(True, 0.0, 0.7), (False, 0.0, 0.96), (True, 0.2, 0.7), (False, 0.2, 0.768), (True, 2, 0.48)],
+)
+def test_how_far_off_pieces_may_be(stop, kept, share):
+    """By what is left of the tolerance where a slide is kept, half of it at the least."""
+    deviation = chord_deviation(TOLERANCE, stop, kept * TOLERANCE)
+    assert deviation == pytest.approx(share * TOLERANCE)
+
+
+def test_what_limits_the_pieces_at_a_feed():
     """Pieces are no shorter than the way on which X or C gathers the speed and loses it."""
     machine = _SlideAndSpindle(Contour(10.0, 0.0), LATHE, 0.0)
-    deviation, ripple, x_hold, c_hold = machine._law(600.0, stop)
-    assert (deviation, ripple) == (pytest.approx(share * TOLERANCE), 0.01)
+    deviation, ripple, x_hold, c_hold = machine._law(600.0, 0.003)
+    assert (deviation, ripple) == (0.003, 0.01)
     assert 1.0 / x_hold == pytest.approx(2.0 * 10.0**2 / 1000.0)
     assert 1.0 / c_hold == pytest.approx(2.0 * 10.0**2 / math.radians(3600.0))
 

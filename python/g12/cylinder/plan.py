@@ -22,7 +22,6 @@ from g12.moves.steps import (
     Position,
     SectionPlan,
     StepMaker,
-    chord_deviation,
 )
 
 FEWEST = 2.0  # pieces per radian of an arc: fewer would not be like it any more
@@ -80,8 +79,8 @@ class _Surface(StepMaker):
     def cut(self, move: Line | Arc, stop: bool) -> None:
         """Add the pieces of a move on the surface."""
         settings, (x, c, z) = self._settings, self.place
-        deviation = chord_deviation(settings.tolerance, stop)
-        split = self._split(split_on_cylinder, move, settings.radius, deviation)
+        split_by = partial(split_on_cylinder, move, settings.radius)
+        split = self._split(move, split_by, settings.tolerance, stop, settings.least_z)
         made = pieces_with_feed(split, (z, c, x), move, 0.0, settings.least_z)
         axes = "ZC" if move.z0 == move.z1 else "XZC"
         self._run(move.line, axes, [(x, c, z, feed) for z, c, x, feed in made], stop)

@@ -30,6 +30,15 @@ class Split(NamedTuple):
     lengths: list[float]
 
 
+def keeps_slide(split: Split, least: float) -> bool:
+    """Tell whether a piece of an element turns C and moves the slide by less than the least."""
+    slides, angles = split.slides, split.angles
+    return any(
+        abs(x1 - x0) < least and x1 != x0 and abs(a1 - a0) > LEAST_TURN
+        for x0, x1, a0, a1 in zip(slides, slides[1:], angles, angles[1:])
+    )
+
+
 def pieces_with_feed(
     split: Split, start: tuple[float, float, float], move, entry: float, least: float
 ) -> list[tuple]:

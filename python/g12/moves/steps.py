@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
-from g12.flat.contour import Contour, Mark, Start
+from g12.flat.contour import Arc, Contour, Line, Mark, Start
+from g12.moves.feed import Split, keeps_slide
 from g12.moves.spacing import MOST_PIECES, TooManyPieces
 
 CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
@@ -81,10 +83,24 @@ class StepMaker:
             last = [element for element in path if not isinstance(element, Mark)][-1]
             self._run(last.line, axes, [(x, self.place.c, z, last.feed)], True)
 
-    def _split(self, split, move, *laws):
-        """Return what ``split`` makes of a move; refuse one that would be cut too small."""
+    def _split(
+        self,
+        move: Line | Arc,
+        split: Callable[[float], Split],
+        tolerance: float,
+        stop: bool,
+        least: float,
+    ) -> Split:
+        """Return what ``split`` makes of a move; refuse one that would be cut too small.
+
+        That is asked for a deviation, once more where a piece would move its slide by less than
+        ``least``: such a piece keeps it, and is that much farther off.
+        """
         try:
-            return split(move, *laws)
+            made = split(chord_deviation(tolerance, stop))
+            if keeps_slide(made, least):
+                made = split(chord_deviation(tolerance, stop, least))
+            return made
         except TooManyPieces:
             self._contour.refuse(
                 move.line,
@@ -92,6 +108,10 @@ class StepMaker:
             )
 
 
-def chord_deviation(tolerance: float, stop: bool) -> float:
-    """Return how far the pieces of a move may be off it; ``stop``: at its end."""
-    return (STOP_SHARE if stop else CHORD_SHARE) * tolerance
+def chord_deviation(tolerance: float, stop: bool, kept: float = 0.0) -> float:
+    """Return how far the pieces of a move may be off it; ``stop``: at its end.
+
+    ``kept`` is by how much a piece that keeps a slide where it is may be off besides.
+    """
+    left = max(tolerance - kept, 0.5 * tolerance)
+    return min((STOP_SHARE if stop else CHORD_SHARE) * tolerance, CHORD_SHARE * left)

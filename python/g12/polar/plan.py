@@ -16,7 +16,6 @@ from g12.moves.steps import (
     Position,
     SectionPlan,
     StepMaker,
-    chord_deviation,
 )
 from g12.polar.beside import along_and_around, check_reach, split_beside, stand
 from g12.polar.face import FaceLimits, FaceMove, FaceSwitch, chosen, in_face, parted, passed
@@ -111,21 +110,23 @@ class _SlideAndSpindle(StepMaker):
         super().__init__(contour, Position(x, c + degrees(self.angle), z))
         self._settings, self._entry = settings, c
         self._face: float | None = None  # angle of its X axis, while the machine is on it
-        self._laws: dict[tuple[float, bool], Law] = {}
+        self._laws: dict[tuple[float, float], Law] = {}
 
     def cut(self, move: Line | Arc, stop: bool) -> None:
         """Add the pieces of a move in the plane."""
-        parts = self._split(self._split_move, move, self._law(move.feed, stop))
+        settings = self._settings
+        split = partial(self._split_move, move)
+        parts = self._split(move, split, settings.tolerance, stop, settings.least_x)
         if (move.x0, move.c0) == POLE:
             self._turn(move, parts.angles[0])
         turns = round((self.angle - parts.angles[0]) / (2 * pi))
         entry = self._entry + 360.0 * turns
-        pieces = pieces_with_feed(parts, self.place, move, entry, self._settings.least_x)
+        pieces = pieces_with_feed(parts, self.place, move, entry, settings.least_x)
         self.angle = parts.angles[-1] + 2 * pi * turns
         self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", pieces, stop)
 
-    def _split_move(self, move: Line | Arc, law: Law) -> Split:
-        beside = self._settings.beside
+    def _split_move(self, move: Line | Arc, deviation: float) -> Split:
+        law, beside = self._law(move.feed, deviation), self._settings.beside
         return split_beside(move, law, beside) if beside else split_move(move, law)
 
     def switch(self, line: int, face: bool) -> None:
@@ -171,13 +172,13 @@ class _SlideAndSpindle(StepMaker):
             piece = (x, self._entry + degrees(self.angle), z, self._settings.c_speed)
             self._run(move.line, "XC", [piece], True)
 
-    def _law(self, feed: float, stop: bool) -> Law:
-        law = self._laws.get((feed, stop))
+    def _law(self, feed: float, deviation: float) -> Law:
+        law = self._laws.get((feed, deviation))
         if law is None:
             settings = self._settings
             hold = 0.5 / (feed / 60.0) ** 2
-            law = self._laws[feed, stop] = Law(
-                chord_deviation(settings.tolerance, stop),
+            law = self._laws[feed, deviation] = Law(
+                deviation,
                 RIPPLE,
                 hold * settings.x_acceleration,
                 hold * radians(settings.c_acceleration),
