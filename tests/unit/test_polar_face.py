@@ -142,14 +142,15 @@ def test_a_part_on_the_face_would_take_half_a_second_at_half_its_feed():
     assert 0.5 <= shortest < 0.6
 
 
-def test_a_move_is_parted_if_it_gains_a_twentieth_switching_included():
-    """Pieces go at 40 a second, on the face it is 50; a switch there and back takes a quarter."""
-    limits, found = LIMITS._replace(pieces_speed=40.0), set()
-    for length in np.arange(61.0, 200.0, 4.0):
-        move, near = away_from_the_pole(length)
-        gains = near / 40.0 + (length - near) / 50.0 + 0.25 <= 0.95 * length / 40.0
+@pytest.mark.parametrize("length", [70.0, 100.0])
+def test_a_move_is_parted_if_it_gains_a_twentieth_switching_included(length):
+    """On the face it goes at 50 a second; a switch there and back takes a quarter."""
+    (move, near), found = away_from_the_pole(length), set()
+    for speed in np.arange(30.05, 48.0, 0.1):
+        gains = near / speed + (length - near) / 50.0 + 0.25 <= 0.95 * length / speed
         found.add(bool(gains))
-        assert (len(parted([move], [True], limits)[0]) > 1) == gains
+        parts = parted([move], [True], LIMITS._replace(pieces_speed=speed))[0]
+        assert (len(parts) > 1) == gains
     assert found == {False, True}
 
 
