@@ -20,6 +20,8 @@ from g12.tools.verify.wanted_circle import HelixAsked, Wall
 FALLS = 1e-6
 SAME_RADIUS = 2e-3
 SAME_ANGLE = 0.01
+SAME_SLOPE = 1e-3
+LEAST_STEEP = 3  # half turns that fall alike, of which two may be left out
 
 
 class EntryMoves(NamedTuple):
@@ -30,12 +32,16 @@ class EntryMoves(NamedTuple):
 
 
 class HelixFacts(NamedTuple):
-    """The helices of a pocket: their number, least and greatest radius, greatest angle."""
+    """The helices of a pocket: their number, least and greatest radius, greatest angle.
+
+    ``shorter`` is the least angle that one of them would have with a turn less, None if none can.
+    """
 
     count: int
     least: float
     greatest: float
     steepest: float
+    shorter: float | None = None
 
 
 def helices_of(own: range, moves: Sequence[Move], wall: Wall) -> list[EntryMoves]:
@@ -76,8 +82,27 @@ def helix_facts(
         return None
     ends = [move.start[:3] for move in falling] + [move.end[:3] for move in falling]
     radii = np.hypot(*wall.local(np.array(ends))[:, :2].T)
-    steepest = max(math.asin(min(1.0, _fall(move, wall) / move.length)) for move in falling)
-    return HelixFacts(len(entries), float(radii.min()), float(radii.max()), math.degrees(steepest))
+    steepest = math.degrees(max(_angle(move, wall) for move in falling))
+    shorter = filter(None, (_with_a_turn_less(entry, moves, wall) for entry in entries))
+    least = min(shorter, default=None)
+    return HelixFacts(len(entries), float(radii.min()), float(radii.max()), steepest, least)
+
+
+def _angle(move: Move, wall: Wall) -> float:
+    """Return by which angle an arc falls, radians."""
+    return math.asin(min(1.0, _fall(move, wall) / move.length))
+
+
+def _with_a_turn_less(entry: EntryMoves, moves: Sequence[Move], wall: Wall) -> float | None:
+    """Return the angle of a helix with a turn less, None if hardly any of it is so steep."""
+    falling = [moves[index] for index in entry.falling]
+    angles = [_angle(move, wall) for move in falling]
+    as_steep = [angle > max(angles) * (1.0 - SAME_SLOPE) for angle in angles]
+    if sum(as_steep) < LEAST_STEEP:
+        return None
+    way = sum(_fall(move, wall) for move in falling) / math.tan(max(angles))
+    shortened = way - 2 * math.pi * falling[0].radius
+    return math.degrees(math.atan(math.tan(max(angles)) * way / shortened))
 
 
 def entry_findings(facts: HelixFacts | None, asked: HelixAsked | None, unit: Unit) -> Iterator[str]:
@@ -96,6 +121,11 @@ def entry_findings(facts: HelixFacts | None, asked: HelixAsked | None, unit: Uni
         yield f"its helix has the radius {found} {unit.name} (tool centre), not {radius}"
     if facts.steepest > asked.angle + SAME_ANGLE:
         yield f"its helix falls by {facts.steepest:.3g} degrees, not {asked.angle:.3g} at most"
+    elif facts.shorter and facts.shorter < asked.angle - SAME_ANGLE:
+        yield (
+            f"its helix falls by {facts.steepest:.3g} degrees: with a turn less it would be "
+            f"{facts.shorter:.3g}, {asked.angle:.3g} are allowed"
+        )
 
 
 def entry_text(facts: HelixFacts | None, unit: Unit) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.wanted_circle import Places, Target, Wall
+from g12.tools.verify.wanted_circle import AHEAD, OUTWARD, Places, Target, Wall
 
 SAME_STATE = 1e-5  # relative: values are told with nine decimals
 ACROSS = 1e-6  # mm
@@ -77,6 +77,7 @@ def misplaced(
         *of_plunges(places, moves, starts, ends),
         *of_depths(moves, starts, ends, () if target.schedule.helix else circles),
         *of_leads(places, starts, circles[:1] if target.schedule.helix else circles),
+        *of_links(target, moves, starts, ends, circles),
         *of_entry(places, moves, ends),
         (ENDS, ends[-1], np.array(places.end)),
     ]
@@ -197,10 +198,34 @@ def of_entry(places: Places, moves: Sequence[Move], ends: np.ndarray) -> Found:
 
 
 def of_leads(places: Places, starts: np.ndarray, circles: Sequence[int]) -> Found:
-    """Yield where the first circle of each level begins."""
+    """Yield where the first circle of each level begins, or each one if links lead outward."""
     depth = None
     for start in starts[list(circles)]:
-        if depth is None or abs(start[2] - depth) > ACROSS:
+        if depth is None or places.link == OUTWARD or abs(start[2] - depth) > ACROSS:
             around = np.hypot(*start[:2]) * np.array(places.lead)
             yield "a circle begins at", start, np.array([*around, start[2]])
         depth = start[2]
+
+
+def of_links(
+    target: Target,
+    moves: Sequence[Move],
+    starts: np.ndarray,
+    ends: np.ndarray,
+    circles: Sequence[int],
+) -> Found:
+    """Yield the links to larger rings: straight ahead by what they are larger, and a quarter turn.
+
+    It is no use to look at them where the circles are not those of the words.
+    """
+    if target.places.link != AHEAD or len(circles) != len(target.schedule.circles):
+        return
+    for ring, following in zip(circles, circles[1:]):
+        start, larger = starts[ring], np.hypot(*starts[following][:2])
+        radius = np.hypot(*start[:2])
+        if larger > radius + ACROSS and moves[ring + 1].kind == "feed":
+            turn = np.copysign(1.0, moves[ring].turns) / radius
+            ahead = turn * np.array([-start[1], start[0], 0.0])
+            yield "a link goes to", ends[ring + 1], start + (larger - radius) * ahead
+            there = [*(larger * ahead)[:2], starts[following][2]]
+            yield "a circle begins at", starts[following], np.array(there)

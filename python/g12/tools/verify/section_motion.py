@@ -5,8 +5,9 @@ LinuxCNC blends two moves by starting the second while the first slows down, eac
 acceleration a. Where the path turns by the angle d at the speed v, the tool passes the corner at
 sin(d / 2) v**2 / (2 a). With a C axis in motion, G64 P limits none of it: only an exact path or
 stop does. The speeds are those that F and the axes allow, of the accelerations the greatest counts:
-a corner that is told of is rounded by more. On the face of the kinematics G64 P holds. Chords make
-corners too: so it must be one of the words between two lines, or C that turns in place.
+a corner that is told of is rounded by more. On the face of the kinematics G64 P holds, if it is not
+0. Chords make corners too: so it must be one of the words between two lines, or C that turns in
+place.
 
 Lengths are millimetres along the part.
 """
@@ -15,6 +16,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import groupby, islice
@@ -22,13 +24,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.machine_ini import face_joints
+from g12.machine_ini import face_of
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
+from g12.tools.verify.face_follow import FollowLimits, follow_off
 from g12.tools.verify.wanted_contour import Element, SectionContour
 
+G64_P = re.compile(r"G64 P(\S+)")
 STILL = 1e-7  # mm: C turns in place
 SMOOTH = math.radians(1.0)
 CORNER = math.radians(15.0)  # chords of an arc make smaller ones
@@ -37,9 +41,10 @@ CORNER = math.radians(15.0)  # chords of an arc make smaller ones
 class SectionAxes(NamedTuple):
     """What a machine's axes can do: accelerations of X and Z in mm, of C in radians, per second².
 
-    ``c_speed`` is C's greatest speed, degrees/s; ``face`` tells of the kinematics of the face,
-    ``beside`` how far the tool stands from the X line, mm. ``surface`` is the radius
-    of the cylinder whose unrolled surface the part is, mm, 0 of its face.
+    ``c_speed`` is C's greatest speed, degrees/s; ``face`` tells of the kinematics of the face and
+    ``slide`` is the acceleration of the X slide there, ``beside`` how far the tool stands from the
+    X line, mm. ``surface`` is the radius of the cylinder whose unrolled surface the part is, mm, 0
+    of its face.
     """
 
     x: float
@@ -49,6 +54,7 @@ class SectionAxes(NamedTuple):
     face: bool = False
     beside: float = 0.0
     surface: float = 0.0
+    slide: float = 0.0
 
     def of(self, section: SectionContour) -> SectionAxes:
         """Return the same for a section: nothing but polar interpolation uses the kinematics."""
@@ -96,8 +102,10 @@ class OffMotion(NamedTuple):
 def axes_of_section(ini: Ini) -> SectionAxes:
     """Return what the axes of an INI can do."""
     x, z, c = (ini.axis_limits[letter].acceleration for letter in "XZC")
-    speed, face = ini.axis_limits["C"].velocity, bool(face_joints(ini.get))
-    return SectionAxes(x * ini.mm, z * ini.mm, math.radians(c), speed, face, ini.tool_beside)
+    speed, face = ini.axis_limits["C"].velocity, face_of(ini.get)
+    slide = face.slide.acceleration * ini.mm if face else 0.0
+    lengths = x * ini.mm, z * ini.mm, math.radians(c)
+    return SectionAxes(*lengths, speed, bool(face), ini.tool_beside, slide=slide)
 
 
 def motion_off(
@@ -114,9 +122,23 @@ def motion_off(
     if is_blended_into(section, moves):
         yield OffMotion(section.line, "begins while the move in front of it slows down")
     yield from islice(rounded(section, moves, path, axes, tolerance), 1)
-    if not axes.face:  # to go there and back the machine stands, also inside a line
+    if axes.face:
+        yield from islice(not_followed(section, moves, path, axes), 1)
+    else:  # to go there and back the machine stands, also inside a line
         yield from islice(stopped_inside(section, moves, path), 1)
     yield from islice(not_exact(section, moves), 1)
+
+
+def not_followed(
+    section: SectionContour, moves: Sequence[Move], path: Track, axes: SectionAxes
+) -> Iterator[OffMotion]:
+    """Yield the moves on the face that ask more of C or the slide than they can do."""
+    limits = FollowLimits(axes.x, axes.slide, axes.c)
+    for index in range(section.at, section.end):
+        speed, centre = path.part_feed(index) / 60.0, path.part.centre
+        what = follow_off(moves[index], speed, centre, axes.beside, limits)
+        if what:
+            yield OffMotion(moves[index].line, what)
 
 
 def is_blended_into(section: SectionContour, moves: Sequence[Move]) -> bool:
@@ -136,13 +158,16 @@ def rounded(
     On the kinematics' face, and where it is gone to or left, there is other motion than C's.
     """
     end = section.end - 1
-    if section.end < len(moves) and not (moves[end].exact or axes.face):
+    stands = axes.face and not turns(moves[end])
+    if section.end < len(moves) and not (moves[end].exact or stands):
         yield OffMotion(moves[end].line, "ends while the move behind the section begins")
     lengths = lengths_of_lines(section, moves, path)
     corners = corners_of(section)
     for index in sharp_joints(section, path):
         one, other = moves[index], moves[index + 1]
-        if one.exact or (axes.face and not (turns(one) and turns(other))):
+        if one.exact or (axes.face and is_switch(one, other)):
+            continue
+        if axes.face and not turns(one) and is_limited(section, index, tolerance):
             continue
         joint = joint_behind(index, path)
         if not (joint.into.any() and joint.out.any()):
@@ -151,6 +176,30 @@ def rounded(
             off = rounding(joint, index, path, axes, lengths)
             if off > tolerance:
                 yield OffMotion(one.line, "ends in a corner without an exact stop", off)
+
+
+def is_switch(one: Move, other: Move) -> bool:
+    """Tell whether the machine goes to the face or back between two moves, and so stands."""
+    return turns(one) != turns(other) or one.end != other.start
+
+
+def is_limited(section: SectionContour, index: int, tolerance: float) -> bool:
+    """Tell whether what is cut of the corner behind a move is limited, where C does not move.
+
+    What is in force at a move is told when the next one begins, perhaps.
+    """
+    told = [event for event in section.told if event.text.startswith("G6")]
+    before = [section.path, *(event.text for event in told if event.at <= index)]
+    paths = [before[-1], *(event.text for event in told if event.at == index + 1)]
+    return any(keeps_corners(path, section, tolerance) for path in paths)
+
+
+def keeps_corners(path: str, section: SectionContour, tolerance: float) -> bool:
+    """Tell whether a path control keeps to corners: its P is as asked for, or a tolerance."""
+    given = G64_P.match(path)
+    if not given or path in section.asked_paths:
+        return not given or float(given[1]) > 0.0
+    return 0.0 < float(given[1]) * section.unit <= tolerance
 
 
 def corners_of(section: SectionContour) -> dict[tuple[int, int], bool]:

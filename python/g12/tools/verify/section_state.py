@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from itertools import zip_longest
 from typing import NamedTuple
 
-from g12.lengths import MM_PER_INCH
 from g12.tools.preview.moves import Move
 from g12.tools.verify.pocket_order import SAME_STATE, LeftBehind
 from g12.tools.verify.wanted_contour import ACTS, Act, SectionContour
@@ -69,7 +68,7 @@ def different(told: Sequence[Done], asked: Sequence[Done], lines: Sequence[int])
 
 def left_by_section(section: SectionContour) -> tuple[LeftBehind, ...]:
     """Return which positions and modes a section leaves otherwise than its words ask."""
-    left, mm = section.left, 1.0 if section.leaves.get("_metric", True) else MM_PER_INCH
+    left, mm = section.left, section.unit
     allowed = {"_x": SAME_PLACE / mm, "_z": SAME_PLACE / mm, "_c": SAME_ANGLE}
     return tuple(
         LeftBehind(name, left[name], asked)

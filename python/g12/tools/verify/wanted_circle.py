@@ -32,6 +32,7 @@ TOUCHING = 0.01  # mm: so far over each other two rings leave nothing
 HELIX_SHARE = 0.9  # of the cutter's radius: as large is a helix at most
 NARROWER = 0.254  # mm: an event's roughing width is the cutter's diameter less this
 EVENT_RETRACT = 2.54  # mm
+AHEAD, OUTWARD = "ahead", "outward"  # ways from a ring to the next
 
 
 class CircleFeeds(NamedTuple):
@@ -157,7 +158,8 @@ class Places(NamedTuple):
     above ``first``) between levels, at ``last`` behind the last cut. ``end`` has three axes.
     ``fast`` are the fast moves in the plane, each from and to a place: rapids, or moves at
     ``straight`` feed; None where they are judged by those heights alone. ``entry`` is where the
-    first arc ends, None where a full circle begins there.
+    first arc ends, None where a full circle begins there. ``link`` is AHEAD or OUTWARD, the way
+    from a ring to the next, "" where the dialect's page does not tell.
     """
 
     plunge: tuple[float, float] = (0.0, 0.0)
@@ -169,6 +171,7 @@ class Places(NamedTuple):
     fast: tuple[tuple[tuple[float, float], tuple[float, float]], ...] | None = ()
     straight: str = "rapid"
     entry: tuple[float, float] | None = None
+    link: str = ""
 
 
 @dataclass(frozen=True)
@@ -257,7 +260,8 @@ class CircleReader:
         wall = replace(wall, origin=view.centre(), cleared=0.0 if "K" in words else core)
         begin = view.axes @ (view.start - wall.origin)
         there = (((begin[0], begin[1]), CENTRE),) if np.hypot(*begin[:2]) > ROUNDING else ()
-        return wall, cutter, schedule, Places(end=(0.0, 0.0, levels[-1]), fast=there)
+        link = "" if self.spiral else AHEAD
+        return wall, cutter, schedule, Places(end=(0.0, 0.0, levels[-1]), fast=there, link=link)
 
     def _helix(
         self, levels: Sequence[float], ring: float, offset: float, circles: list
@@ -342,7 +346,8 @@ class CircleReader:
         first, last = (height - view.present("z") for height in (plane, event.get("O", plane)))
         x, y, _ = view.axes @ (view.start - view.centre())
         plunge = (0.0, 0.0 if is_pocket else -rings[-1])
-        return Places(plunge, (0.0, -1.0), first, EVENT_RETRACT, last, (x, y, last), None)
+        end = (x, y, last)
+        return Places(plunge, (0.0, -1.0), first, EVENT_RETRACT, last, end, None, link=OUTWARD)
 
     def _event_schedule(
         self, view: BlockInMm, event: Mapping[str, float], radii: tuple[Sequence[float], float]

@@ -159,7 +159,8 @@ class SectionContour:
     ``acts`` are what it is to do besides moving, ``told`` what a trace tells of the section.
     ``leaves`` is the state behind it that the words ask for, as ``Block.left`` has it, and
     ``left`` the one that was found; ``paths`` are G61 or G64 as found and as asked, if known.
-    ``exact`` says that G61 or G61.1 is in force where it begins.
+    ``path`` is G61 or G64 as in force where it begins, "" if that is not known, and ``asked_paths``
+    are it and those that the words ask for on the way.
     """
 
     line: int
@@ -181,9 +182,20 @@ class SectionContour:
     leaves: Mapping[str, float] = field(default_factory=dict)
     left: Mapping[str, float] = field(default_factory=dict)
     paths: tuple[str, ...] = ()
-    exact: bool = False
+    path: str = ""
+    asked_paths: tuple[str, ...] = ()
     surface: float = 0.0
     file: str = ""
+
+    @property
+    def exact(self) -> bool:
+        """Tell whether G61 or G61.1 is in force where it begins."""
+        return self.path.startswith("G61")
+
+    @property
+    def unit(self) -> float:
+        """Return the program's unit in mm."""
+        return 1.0 if self.leaves.get("_metric", True) else MM_PER_INCH
 
     @property
     def third(self) -> int:
@@ -225,9 +237,10 @@ def sections(
         replace(
             section_of(own, group, codes, pens, doubts.get(place_of(own[0].text), "")),
             paths=() if restores(group) else path,
-            exact=exact,
+            path=begun,
+            asked_paths=(begun, *paths_told(group)),
         )
-        for own, group, path, exact in zip(found, groups, paths, exact_at_start(copied, codes))
+        for own, group, path, begun in zip(found, groups, paths, paths_at_start(copied, codes))
     ]
 
 
@@ -316,29 +329,32 @@ def place_of(text: Text) -> Place:
 
 def paths_behind(blocks: Sequence[Block], codes: Codes) -> list[str]:
     """Return G61 or G64 and its tolerances as in force behind each section."""
+    return paths_at(blocks, codes, "off")
+
+
+def paths_at_start(blocks: Sequence[Block], codes: Codes) -> list[str]:
+    """Return G61 or G64 and its tolerances as in force where each section begins.
+
+    ``blocks`` are those of the copy, where a section's events come behind its first block.
+    """
+    return paths_at(blocks, codes, "on")
+
+
+def paths_at(blocks: Sequence[Block], codes: Codes, wanted: str) -> list[str]:
+    """Return what is in force where each section is switched "on" or "off"."""
     path, inside, found = "", False, []
     for block in blocks:
-        path = next((e.text for e in block.events[::-1] if e.text.startswith("G6")), path)
+        path = next(iter(paths_told([block])[::-1]), path)
         switch = switched(block, codes, inside)
-        if switch == "off" and inside:
+        if switch == wanted and (inside or wanted == "on"):
             found.append(path)
         inside = switch == "on" if switch else inside
     return found
 
 
-def exact_at_start(blocks: Sequence[Block], codes: Codes) -> list[bool]:
-    """Tell of each section whether G61 or G61.1 is in force where it begins.
-
-    ``blocks`` are those of the copy, where a section's events come behind its first block.
-    """
-    path, inside, found = "", False, []
-    for block in blocks:
-        path = next((e.text for e in block.events[::-1] if e.text.startswith("G6")), path)
-        switch = switched(block, codes, inside)
-        if switch == "on":
-            found.append(path.startswith("G61"))
-        inside = switch == "on" if switch else inside
-    return found
+def paths_told(blocks: Sequence[Block]) -> list[str]:
+    """Return each G61 or G64 that a trace tells of in some blocks."""
+    return [event.text for block in blocks for event in block.events if event.text.startswith("G6")]
 
 
 def restores(group: Sequence[Block]) -> bool:

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Whether C and the slide can follow what LinuxCNC plans on the kinematics' face.
+
+LinuxCNC holds X and Y of the face to their limits, and asks nobody what the C axis has to do for
+it. For a tool at the complex place z, beside the X line by p, the slide stands at r with
+r**2 = |z|**2 - p**2 and C at the angle of z / (r + i p). At the speed v and the acceleration a on
+the way s, an axis at q(s) is accelerated by v**2 q'' + a q'. The operator may stop the feed
+anywhere: then a is at least what X or Y alone has, less what an arc needs towards its centre. On an
+arc LinuxCNC is no faster than X and Y let it be.
+
+Lengths are millimetres, angles radians, times seconds.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from g12.tools.path.part import C, X, Y
+from g12.tools.preview.moves import Move
+
+PLACES = 48  # on a move that are looked at, and those where a line's C is accelerated most
+STEP = 1e-3  # mm, of the derivatives
+ALLOWED = 1.1  # of a limit: the greatest value may lie between places that a planner looks at
+
+
+class FollowLimits(NamedTuple):
+    """Accelerations: of X or Y on the face, of the slide, of C."""
+
+    plane: float
+    slide: float
+    c: float
+
+
+def follow_off(move: Move, speed: float, centre: float, beside: float, limits: FollowLimits) -> str:
+    """Return what a move on the face at a speed asks of an axis that it has not, "" if nothing."""
+    if move.start[C] != move.end[C] or not crosses_face(move):
+        return ""
+    bent = 1.0 / move.radius if move.kind == "arc" else 0.0
+    square = min(speed * speed, limits.plane / bent) if bent else speed * speed
+    along = math.sqrt(max(0.0, limits.plane**2 - (square * bent) ** 2))
+    slide, c = (
+        np.nanmax(square * abs(second) + along * abs(first))
+        for first, second in derivatives(move, centre, beside)
+    )
+    for name, asked, limit in (("C", c, limits.c), ("the slide", slide, limits.slide)):
+        if asked > ALLOWED * limit:
+            return f"asks {name} for {asked / limit:.3g} times the acceleration that it has"
+    return ""
+
+
+def crosses_face(move: Move) -> bool:
+    """Tell whether a move goes across the face, and is long enough to be looked at."""
+    way = [move.end[axis] - move.start[axis] for axis in (X, Y)]
+    return move.kind == "arc" or (move.kind == "feed" and math.hypot(*way) > 4 * STEP)
+
+
+def derivatives(move: Move, centre: float, beside: float) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return first and second derivatives along a move, of the slide's place and of C's angle."""
+    step = STEP / move.length
+    at = np.clip(looked_at(move, centre), step, 1.0 - step)
+    seen = [places(move, at + change, centre) for change in (-step, 0.0, step)]
+    slides = [np.sqrt(np.maximum(abs(z) ** 2 - beside**2, 0.0)) for z in seen]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        turned = [z / (slide + 1j * beside) for z, slide in zip(seen, slides)]
+        angles = [np.angle(after / before) for before, after in zip(turned, turned[1:])]
+    moved = [after - before for before, after in zip(slides, slides[1:])]
+    return [
+        ((before + after) / (2 * STEP), (after - before) / STEP**2)
+        for before, after in (moved, angles)
+    ]
+
+
+def looked_at(move: Move, centre: float) -> np.ndarray:
+    """Return the parts of a move that are looked at."""
+    parts = np.linspace(0.0, 1.0, PLACES)
+    if move.kind == "arc":
+        return parts
+    start, end = places(move, np.array([0.0, 1.0]), centre)
+    way = end - start
+    foot = -start * np.conj(way) / abs(way) ** 2
+    most = abs(foot.imag) / math.sqrt(3.0)
+    return np.append(parts, foot.real + most * np.array([-1.0, 0.0, 1.0]))
+
+
+def places(move: Move, parts: np.ndarray, centre: float) -> np.ndarray:
+    """Return the places (complex) after parts of a move, seen from the spindle's centre."""
+    start, end = (complex(place[X] - centre, place[Y]) for place in (move.start, move.end))
+    if move.kind != "arc":
+        return start + (end - start) * parts
+    middle = complex(move.centre[X] - centre, move.centre[Y])
+    return middle + (start - middle) * np.exp(1j * move.sweep * parts)

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a move on the face asks of C and the slide, against what can be worked out by hand."""
+
+import math
+
+import pytest
+
+from g12.tools.verify.face_follow import FollowLimits, derivatives, follow_off
+from support.made_moves import Hand
+
+LIMITS = FollowLimits(plane=700.0, slide=1000.0, c=60.0)
+
+
+def line(distance, reach=50.0, centre=0.0):
+    """Return a line that passes the spindle at a distance."""
+    return Hand().rapid(x=centre - reach, y=distance).line(x=centre + reach).moves[-1]
+
+
+@pytest.mark.parametrize("centre", [0.0, 30.0])
+def test_a_line_turns_c_most_where_it_is_nearest_and_pushes_it_most_beside_that(centre):
+    slide, angle = derivatives(line(5.0, centre=centre), centre, 0.0)
+    assert max(abs(angle[0])) == pytest.approx(1 / 5.0, rel=1e-3)
+    assert max(abs(angle[1])) == pytest.approx(3 * math.sqrt(3) / 8 / 5.0**2, rel=1e-3)
+    assert max(abs(slide[1])) == pytest.approx(1 / 5.0, rel=1e-3)
+
+
+def test_a_circle_about_the_spindle_turns_c_evenly():
+    arc = Hand().rapid(x=20.0).arc(1, 0.0, 0.0).moves[-1]
+    slide, angle = derivatives(arc, 0.0, 0.0)
+    assert angle[0] == pytest.approx(1 / 20.0, rel=1e-6)
+    assert max(abs(slide[0])) < 1e-6
+
+
+def test_beside_the_x_line_the_slide_stands_nearer_than_the_tool():
+    slide, _ = derivatives(line(13.0), 0.0, 5.0)
+    assert max(abs(slide[1])) == pytest.approx(1 / 12.0, rel=1e-3)  # 13, 12, 5
+
+
+@pytest.mark.parametrize(
+    ("distance", "speed", "c", "told"),
+    [
+        (20.0, 20.0, 60.0, ""),
+        (5.0, 1.0, 60.0, "asks C for 2.33 times the acceleration that it has"),  # 700 / 5 / 60
+        (20.0, 200.0, 600.0, "asks the slide for 2"),  # 200**2 / 20 / 1000
+    ],
+)
+def test_what_c_and_the_slide_cannot_do_is_told(distance, speed, c, told):
+    found = follow_off(line(distance), speed, 0.0, 0.0, LIMITS._replace(c=c))
+    assert found.startswith(told) and bool(told) == bool(found)
