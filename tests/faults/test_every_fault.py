@@ -6,18 +6,13 @@ in which ``file`` which ``old`` text becomes the ``new`` one, and the sentence t
 """
 
 import shutil
-from pathlib import Path
 
 import pytest
-import tomllib
 
-from g12.tools.machine.ini import read_ini
 from g12.tools.verify.proof import prove
-from support.sim_machines import PROGRAMS, ROOT
+from support.fault_tables import TABLES, program_of
+from support.sim_machines import ROOT
 
-TABLES = {
-    path.stem: tomllib.loads(path.read_text()) for path in Path(__file__).parent.glob("*.toml")
-}
 USED = [(name, program) for name, table in TABLES.items() for program in table["programs"]]
 FAULTS = [
     pytest.param(name, fault, id=f"{name}-{fault['what']}")
@@ -36,14 +31,8 @@ def package(tmp_path_factory):
 
 def findings(package, name, program, folder):
     """Return what verify finds in a program of a table on its machine."""
-    table = TABLES[name]
-    asked = table["programs"][program]
-    path = PROGRAMS / asked["file"] if "file" in asked else folder / f"{program}.ngc"
-    if "text" in asked:
-        path.write_text(asked["text"])
-    ini = read_ini(package / "configs" / "sim" / f"{asked.get('ini', table['ini'])}_headless.ini")
-    tools = {int(tool): size for tool, size in asked["tools"].items()} if "tools" in asked else None
-    proof = prove(path, ini.replaced({"G12": asked.get("settings", {})}), tools=tools)
+    asked = program_of(name, program)
+    proof = prove(asked.written(folder), asked.ini(package), tools=asked.tools)
     return [text for _, text in proof.findings]
 
 

@@ -5,24 +5,12 @@ import pytest
 
 from g12.tools.machine.ini import read_ini
 from g12.tools.verify.proof import prove
+from support.fault_tables import BEFORE, FOLDERS, OTHERWISE, TOOLS
 from support.foreign_programs import BUILDERS_CODES
 from support.foreign_programs import MACHINES as CONTROLS
 from support.sim_machines import PROGRAMS, SIM
 
-FOLDERS = {
-    "circle_mill": "mill_mm",
-    "cylinder": "lathe_mm",
-    "dynapath": "mill_inch",
-    "haas": "mill_inch",
-    "haas_helix": "mill_helix_mm",
-    "mitsubishi": "mill_mitsubishi_mm",
-    "polar": "lathe_mm",
-    "yasnac": "mill_yasnac_mm",
-    **CONTROLS,
-}
-OTHERWISE = {"manual_a": "lathe_inch", "manual_b": "lathe_inch", "manual_sample": "lathe_inch"}
-TOOLS = {"manual_sample": {8: 0.0}, "O60131": {1: 0.5}, "O60121": {1: 0.25}}
-BEFORE = {"flange": "T2 M6\nG0 Z1\n"}
+MACHINES = {**FOLDERS, **CONTROLS}
 WRONG = {
     "haas/O60121": ["of material are left standing"] * 2,  # Q is wider than its cutter
     "fanuc-lathe/cylinder": ["the tool crosses the contour on its way in", "are gouged beyond"],
@@ -32,7 +20,7 @@ EVERY = [*sorted(PROGRAMS.rglob("*.ngc")), *sorted((SIM / "samples").glob("*.ngc
 
 def machine_of(program):
     """Return the machine that a program is for; lathes know the builders' codes."""
-    folder = FOLDERS.get(program.parent.name, program.stem.removesuffix("_cylinder"))
+    folder = MACHINES.get(program.parent.name, program.stem.removesuffix("_cylinder"))
     ini = read_ini(SIM / f"{OTHERWISE.get(program.stem, folder)}_headless.ini")
     if not folder.startswith("lathe"):
         return ini

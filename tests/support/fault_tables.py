@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The programs of tests/faults and of tests/programs, each with the machine that it is for."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import tomllib
+
+from g12.tools.machine.ini import read_ini
+from support.sim_machines import PROGRAMS, ROOT
+
+FAULTS = ROOT / "tests" / "faults"
+TABLES = {path.stem: tomllib.loads(path.read_text()) for path in sorted(FAULTS.glob("*.toml"))}
+FOLDERS = {
+    "circle_mill": "mill_mm",
+    "cylinder": "lathe_mm",
+    "dynapath": "mill_inch",
+    "haas": "mill_inch",
+    "haas_helix": "mill_helix_mm",
+    "mitsubishi": "mill_mitsubishi_mm",
+    "polar": "lathe_mm",
+    "yasnac": "mill_yasnac_mm",
+}
+OTHERWISE = {"manual_a": "lathe_inch", "manual_b": "lathe_inch", "manual_sample": "lathe_inch"}
+TOOLS = {"manual_sample": {8: 0.0}, "O60131": {1: 0.5}, "O60121": {1: 0.25}}
+BEFORE = {"flange": "T2 M6\nG0 Z1\n"}
+
+
+class MachinedProgram(NamedTuple):
+    """A program's text and its machine: the INI's name, its [G12] settings, other tools."""
+
+    name: str
+    text: str
+    machine: str
+    settings: dict[str, object]
+    tools: dict[int, float] | None
+
+    def written(self, folder: Path) -> Path:
+        """Write the program into a folder; return its path."""
+        path = folder / f"{Path(self.name).name}.ngc"
+        path.write_text(self.text, encoding="utf-8")
+        return path
+
+    def ini(self, package: Path):
+        """Return its machine in a copy of the package."""
+        ini = read_ini(package / "configs" / "sim" / f"{self.machine}_headless.ini")
+        return ini.replaced({"G12": self.settings})
+
+
+def program_of(table: str, name: str) -> MachinedProgram:
+    """Return a program of a table of faults."""
+    asked = TABLES[table]["programs"][name]
+    text = asked.get("text") or (PROGRAMS / asked["file"]).read_text(encoding="utf-8")
+    tools = {int(tool): size for tool, size in asked["tools"].items()} if "tools" in asked else None
+    machine = asked.get("ini", TABLES[table]["ini"])
+    return MachinedProgram(f"{table}/{name}", text, machine, asked.get("settings", {}), tools)
+
+
+def sample_of(path: Path) -> MachinedProgram:
+    """Return a program of a folder of tests/programs."""
+    name, folder = path.stem, path.parent.name
+    text = BEFORE.get(name, "") + path.read_text(encoding="utf-8")
+    machine = OTHERWISE.get(name, FOLDERS[folder])
+    return MachinedProgram(f"{folder}/{name}", text, machine, {}, TOOLS.get(name))
