@@ -306,6 +306,15 @@ def test_a_pass_may_not_go_to_both_sides_of_another(wave, radius, most, share, f
                 assert ("cuts into the other" in refusal(contour)) is found
 
 
+def test_a_pass_may_touch_the_tip_of_another():
+    """It comes from beyond one flank of a sharp corner, or of the other, and crosses neither."""
+    spike = lines((-20, 0), (-20, 8), (0, 8), (30, 0), (0, -8), (-20, -8), (-20, 0))
+    around = lines((-20, 0), (-20, 22), (42, 22), (18, -22), (-20, -22), (-20, 0))
+    upside_down = [Straight(s.end.conjugate(), s.start.conjugate()) for s in reversed(around)]
+    for outer in (around, upside_down):
+        assert refusal(stacked(3.0, (-1.0, spike), (-3.0, outer))) == ""
+
+
 def stacked(radius, *laps):
     """Return laps outside of a part in one contour, each with its Z and its shapes."""
     (_, (first, *_)), *_, (_, (*_, last)) = laps
@@ -720,6 +729,19 @@ def test_a_repeated_move_is_as_high_as_any_of_them():
     for again in (first._replace(z0=-1.0), first._replace(z1=-1.0)):
         assert greatest_heights([first, other, again]) == {0: -1.0, 1: -2.0}
         assert greatest_heights([again, other, first]) == {0: -1.0, 1: -2.0}
+
+
+def test_a_way_that_comes_down_or_goes_up_along_moves_is_not_through_the_air():
+    """It counts how high a level begins behind the one before, and how it ends."""
+    ends = [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0), (0.0, 5.0)]
+    for heights, material in (
+        ([(-1, -1), (5, 5), (5, 5), (-1, -1)], {0, 3}),
+        ([(-1, -1), (5, 5), (5, -3), (-1, -1)], {0, 1, 2, 3}),
+        ([(-1, -1), (-3, 5), (5, 5), (-1, -1)], {0, 1, 2, 3}),
+        ([(-1, -1), (5, -3), (-3, 5), (-1, -1)], {0, 3}),
+    ):
+        moves = [line(*one, *other, *z) for one, other, z in zip(ends, ends[1:], heights)]
+        assert set(greatest_heights(moves)) == material
 
 
 # How long it takes.

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString, Polygon
 
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.flat.contour import Contour
+from g12.flat.contour import Arc, Contour, is_move
 from g12.flat.offset import tool_path
 from g12.moves.steps import BlockMoves
 from g12.polar.plan import PolarSettings, plan
@@ -291,6 +291,34 @@ def test_blocks_without_motion_in_the_plane_are_looked_through():
 
 def test_an_inside_corner_is_the_crossing_of_the_parallels():
     assert joined(to(20, 5), to(20, 15))[2] == (18.0, 7.0)
+
+
+def test_a_line_that_its_inside_corners_use_up_is_no_way_at_all():
+    ends = joined(to(20, 5), to(20, 9), to(10, 9))
+    assert 3 not in ends
+    assert ends[2] == (18.0, 7.0)
+
+
+def centre_moves(shapes, side, radius):
+    """Return the tool centre's moves along shapes, ramps included."""
+    contour, _ = compensated(shapes, side, radius)
+    return [move for move in tool_path(contour, contour.elements, TOLERANCE) if is_move(move)]
+
+
+@pytest.mark.parametrize("side", [41, 42])
+@pytest.mark.parametrize("bend", [1.0, -1.0, 0.2, -0.2])
+def test_the_tool_centres_moves_join_and_its_arcs_are_arcs(side, bend):
+    """A square whose sides are arcs, cut off in its corners; or rounded there."""
+    for shapes in (pillow(20.0, bend), [shape.turned(1j) for shape in pillow(20.0, bend)]):
+        moves = centre_moves(shapes, side, 3.0)
+        for one, following in zip(moves, moves[1:]):
+            assert (one.x1, one.c1) == pytest.approx((following.x0, following.c0))
+        arcs = [move for move in moves if isinstance(move, Arc)]
+        assert len(arcs) >= 5
+        for move in arcs:
+            centre = complex(move.cx, move.cc)
+            arms = [complex(x, c) - centre for x, c in ((move.x0, move.c0), (move.x1, move.c1))]
+            assert arms[1] == pytest.approx(arms[0] * cmath.exp(1j * move.sweep))
 
 
 def test_an_outside_corner_is_rounded_in_the_next_block():

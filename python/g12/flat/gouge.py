@@ -280,9 +280,8 @@ class _Stretch:
         """Return whether the contour goes from one side of itself to the other, at a place."""
         here, there = (self._ends[k] + along_start(self._moves[k], place) for k in (index, by))
         deep = max(MEETING * self._tolerance, CROSSED * self._radius)
-        loop = abs(here - there)
         for share in BESIDE_CROSSING:
-            away = min(share * self._radius, 0.25 * loop)
+            away = share * self._radius
             about = self._about(here, 2.0 * away)
             before, after = (
                 self._side_of(about, self._point(there + step)) for step in (-away, away)
