@@ -313,6 +313,14 @@ def test_one_cut_may_be_meant_and_another_of_the_same_contour_told():
         assert found((begun_at(bar, k), -5.0), (slot_and_face, -5.0)) == ("", [note])
 
 
+def test_a_cut_that_goes_on_over_the_beginning_is_one():
+    """Beside the square's side down to where the other contour goes into it."""
+    for end in (-30 + 9j, 0 + 9j):
+        other = boss([Straight(14 - 20j, 14 + 9j), Straight(14 + 9j, end)], 3.0)
+        for k in range(8):
+            assert found((begun_at(FACED, k), -5.0), (other, -5.0)) == ("", []), k
+
+
 def test_a_ramp_that_cuts_another_contour_is_told():
     beside = boss([Round(20 + 0j, 25 + 0j, -2 * math.pi)], 3.0)
     assert found((FACED, -5.0), (beside, -5.0)) == ("", [])

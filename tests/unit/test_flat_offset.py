@@ -397,6 +397,17 @@ def test_parallels_are_joined_where_nobody_could_tell(bend, by, pieces):
     assert abs(abs(complex(made[0].x0, made[0].c0) - corner) - 2.0) <= 0.04 * TOLERANCE
 
 
+@pytest.mark.parametrize(("bend", "pieces"), [(0.0049, 1), (0.0051, 2)])
+@pytest.mark.parametrize("by", [1.0, -1.0])
+def test_an_arc_is_joined_to_a_line_as_a_line_to_an_arc(by, bend, pieces):
+    corner = 20 + 5j
+    centre = corner + 5j * by
+    start = centre + (corner - centre) * cmath.exp(-1j * by)
+    shapes = [Round(start, centre, by), Straight(corner, corner + 5 * cmath.exp(1j * bend))]
+    moves = centre_moves(shapes, 42, 2.0)
+    assert len([move for move in moves if move.line == 4]) == pieces
+
+
 def test_the_feed_is_that_of_the_tools_centre():
     contour, _ = compensated(pillow(15.0, 1), OUTSIDE, 6.0)
     for cut in cuts(contour, plan(contour, EXACT, c=0.0)):
