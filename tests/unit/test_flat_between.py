@@ -200,6 +200,17 @@ def test_a_deep_cut_into_another_contour_is_refused():
     )
 
 
+@pytest.mark.parametrize("at", [0j, 40 + 30j, -40 - 30j])
+@pytest.mark.parametrize("turn", [1, 1j, -1, -1j])
+def test_contours_may_lie_anywhere(at, turn):
+    one, other = (
+        boss([Straight(*(at + turn * end for end in shape)) for shape in shapes], 3.0)
+        for shapes in (FACED.shapes, ROUND)
+    )
+    for parts in ((one, other), (other, one)):
+        assert "cuts into the other" in found(*((part, -5.0) for part in parts))[0]
+
+
 @pytest.mark.parametrize("begins", range(9))
 def test_any_side_of_a_closed_contour_is_looked_at(begins):
     text, _ = found(*near(4.0, -5.0, begins=begins))

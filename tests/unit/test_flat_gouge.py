@@ -306,6 +306,18 @@ def test_a_pass_may_not_go_to_both_sides_of_another(wave, radius, most, share, f
                 assert ("cuts into the other" in refusal(contour)) is found
 
 
+@pytest.mark.parametrize(("degrees", "found"), [(24.0, False), (27.5, True)])
+def test_a_pass_behind_another_goes_the_same_way_within_26_degrees(degrees, found):
+    """The second lap goes 4 deeper into a side, at an angle, and comes out again."""
+    first, *others = closed([3 * corner for corner in SQUARE])
+    slant = 4j / math.tan(math.radians(degrees))
+    dip = [30 + 20j, 26 + 20j - slant, 26 - 20j + slant, 30 - 20j]
+    corners = [first.start, *dip, first.end]
+    deeper = [Straight(*pair) for pair in zip(corners, corners[1:])]
+    text = refusal(stacked(3.0, (-1.0, [first, *others]), (-1.0, [*deeper, *others])))
+    assert ("cuts into the other" in text) is found
+
+
 def test_a_pass_may_touch_the_tip_of_another():
     """It comes from beyond one flank of a sharp corner, or of the other, and crosses neither."""
     spike = lines((-20, 0), (-20, 8), (0, 8), (30, 0), (0, -8), (-20, -8), (-20, 0))

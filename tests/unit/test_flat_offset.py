@@ -526,11 +526,12 @@ def test_a_small_arc_inside_a_big_tool_is_not_joined_beside_its_end():
     assert abs(arc_shape.distance(points) - 50.0).max() <= TOLERANCE
 
 
-def test_a_ramp_alone_cannot_be_cut():
+@pytest.mark.parametrize("side", [41, 42])
+def test_a_ramp_alone_cannot_be_cut(side):
     contour = Contour(10.0, 0.0)
-    contour.compensation(41, 2.0, line=1)
+    contour.compensation(side, 2.0, line=1)
     contour.line(10.0, 5.0, line=1, feed=100.0)
-    with pytest.raises(Refusal, match=r"^G12\.1 line 1: G41 needs a block of the contour "):
+    with pytest.raises(Refusal, match=rf"^G12\.1 line 1: G{side} needs a block of the contour "):
         plan(contour, LATHE, c=0.0)
 
 
