@@ -476,11 +476,16 @@ def shapes_program(chance, unit, count):
             loaded = chance.choice(list(AXIAL[unit]))
             text.add(f"G0 X{_x(text, 60)} Z{text.n(9)}")
             text.add(f"T{loaded} M6")
+        if chance.random() < 0.15:
+            text.shift(("X", 0, 8), ("Z", -3, 3), ("C", 0, 1))
         text.add(f"G0 X{_x(text, 60)} Z{text.n(5)}")
+        first = len(text.lines)
         name, entries = chance.choice([_polygon_call, _slot_call, _pocket_call])(
             text, AXIAL[unit][loaded] / 2
         )
         text.add(f"o<{name}> call", *(f"[{entry}]" for entry in entries))
+        if chance.random() < 0.3:
+            text.wrapped(first, 100 + k)
     return text.end()
 
 

@@ -105,6 +105,16 @@ def test_blocks_are_put_together_from_messages():
     assert (block.left["_x"], block.left["_z"]) == (4, 6)
 
 
+def test_a_block_inside_a_call_leaves_the_call_its_own():
+    """As the section of a shape's sub, whose end comes before that of the call."""
+    state = "0 0 0 0 1 1 0"
+    texts = [read_line(1, "o<polar_slot> call [#1]"), read_line(2, "G12.1 X#2")]
+    lines = (f"begin 1 {state}", "value 0 8", f"begin 2 {state}", "value 1 5")
+    inner, call = told(texts, *lines, f"end 2 {state}", f"end 1 {state}")
+    assert (inner.words, inner.at, inner.end) == ({"X": 5.0}, 2, 4)
+    assert (call.arguments, call.at, call.end) == ((8.0,), 0, 5)
+
+
 def test_a_block_that_ends_the_program_has_all_moves_that_follow():
     (block,) = told([read_line(1, "G12 I1 M2")], "begin 1 0 0 0 0 1 1 0")
     assert (block.at, block.end) == (0, 0)  # there are no moves

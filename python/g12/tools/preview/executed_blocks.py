@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Callable, NamedTuple
 
@@ -226,52 +226,66 @@ def after(text: Text, skip: int = 0) -> Iterator[str]:
 
 
 def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
-    """Return the blocks that a trace tells of."""
+    """Return the blocks that a trace tells of, each behind those executed inside it."""
     found: list[Block] = []
-    values: dict[int, float] = {}
-    since: list[Event] = []
-    before = 0
-    opened: tuple | None = None
+    opened: list[_Opened] = []
+    told: list[Event] = []
+    done = 0  # how many events had come when the last block was
     for event in trace.events:
         if TAG not in event.text:
-            since.append(event)
+            told.append(event)
             continue
         kind, number, *rest = event.text.split(f"{TAG} ", 1)[1].split()
+        values = [float(value) for value in rest]
         if kind == "begin":
-            values, before = {}, len(since)
-            opened = event.at, texts[int(number) - 1], [float(v) for v in rest]
+            opened.append(_Opened(texts[int(number) - 1], event.at, values, len(told), {}))
         elif kind == "value":
-            values[int(number)] = float(rest[0])
-        elif opened:
-            left = [float(value) for value in rest]
-            block = _block(*opened, values, event.at, left, since)
-            found.append(replace(block, own_events=block.events[before:]))
-            opened, since = None, []
+            opened[-1].values[int(number)] = values[0]
+        else:
+            block = _taken(opened, texts[int(number) - 1])
+            if block:
+                found.append(_block(block, event.at, values, told, done))
+                done = len(told)
     if opened:  # the program ended in it, with M2
-        found.append(_block(*opened, values, len(trace.moves), [], since))
+        found.append(_block(opened[-1], len(trace.moves), [], told, done))
     return found
 
 
-def _block(
-    at: int,
-    text: Text,
-    state: list[float],
-    values: dict[int, float],
-    end: int,
-    left: list[float],
-    events: list[Event],
-) -> Block:
-    told = [
+class _Opened(NamedTuple):
+    """A block that has begun: where in the moves, with which state, behind how many events."""
+
+    text: Text
+    at: int
+    state: list[float]
+    told: int
+    values: dict[int, float]
+
+
+def _taken(opened: list[_Opened], text: Text) -> _Opened | None:
+    """Return the block of a text that began last, and forget it and what began inside it."""
+    for index in range(len(opened) - 1, -1, -1):
+        if opened[index].text is text:
+            block = opened[index]
+            del opened[index:]
+            return block
+    return None
+
+
+def _block(opened: _Opened, end: int, left: list[float], told: Sequence[Event], done: int) -> Block:
+    """Return a block that is done; the first ``done`` events came before the last block's end."""
+    text, values = opened.text, opened.values
+    words = [
         (letter, values.get(index, float(value) if is_number(value) else 0.0))
         for index, (letter, value) in enumerate(text.words)
     ]
     return Block(
         text,
-        {letter: value for letter, value in told if letter not in ("G", "M", "")},
-        *(tuple(value for letter, value in told if letter == wanted) for wanted in ("G", "M", "")),
-        dict(zip(STATE, state)),
-        at,
+        {letter: value for letter, value in words if letter not in ("G", "M", "")},
+        *(tuple(value for letter, value in words if letter == wanted) for wanted in ("G", "M", "")),
+        dict(zip(STATE, opened.state)),
+        opened.at,
         end,
         dict(zip(STATE, left)),
-        tuple(events),
+        tuple(told[min(done, opened.told) :]),
+        tuple(told[opened.told :]),
     )

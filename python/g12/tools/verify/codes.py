@@ -11,6 +11,8 @@ from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import Text, is_number
 
 CALL = "circle_mill"  # the event's sub, which programs may call
+SHAPES = ("polar_polygon", "polar_slot", "polar_pocket")  # subs that programs call
+SHAPE_HANDLER = "polar_shape"  # of the code that checks their entries
 EVENT, POLAR, CYLINDER = "circle-mill", "polar", "cylinder"
 SECTIONS = (POLAR, CYLINDER)
 COMPENSATION = (41.0, 42.0, 41.1, 42.1)
@@ -56,6 +58,7 @@ class Codes:
         ours = (cycle_of_line(line) or line.keywords.get("ngc") in SUBS for line in lines)
         self._ours = {line.number for line, its in zip(lines, ours) if its}
         self._remapped = {line.number for line in lines}
+        self._shapes = any(SHAPE_HANDLER in line.handlers for line in lines)
 
     def knows(self, code: str) -> bool:
         """Tell whether a remapped code, as ``Move.remap`` has it, is one of the package."""
@@ -71,6 +74,10 @@ class Codes:
             return Cycle(EVENT)
         known = (self._cycles.get(code) for code in codes)
         return next((cycle for cycle in known if cycle and cycle.dialect not in SECTIONS), None)
+
+    def shape_of(self, text: Text) -> str:
+        """Return the shape that a line calls, "" without one, or where the sub is another's."""
+        return text.call if self._shapes and text.call in SHAPES else ""
 
     def name_of(self, codes: Sequence[float]) -> str:
         """Return the code among a block's that is a cycle; a call has the name of its sub."""
@@ -101,7 +108,8 @@ class Codes:
     def wanted(self, text: Text) -> bool:
         """Tell whether a line's words matter for what is programmed, or may: G[12], G#1."""
         cycle = self.cycle_of(text.call, text.codes)
-        return bool(compensates(text.codes) or cycle or self.section(text) or text.hides_code)
+        asks = cycle or self.section(text) or self.shape_of(text)
+        return bool(compensates(text.codes) or asks or text.hides_code)
 
 
 def compensates(codes: Sequence[float]) -> bool:

@@ -43,11 +43,13 @@ from g12.tools.verify.rapids import Circles, Collision, collisions
 from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
 from g12.tools.verify.section_paths import x0_of
+from g12.tools.verify.shape_findings import ShapeFacts, measure_shape, shape_findings
 from g12.tools.verify.spindle import stands_still
 from g12.tools.verify.stock import read_stock
 from g12.tools.verify.surface_pen import SurfacePen
 from g12.tools.verify.wanted_circle import CircleReader, Target
 from g12.tools.verify.wanted_contour import Pen, SectionContour, WordReading, sections
+from g12.tools.verify.wanted_shape import ShapeAsked, ShapeReading, shapes_asked
 from g12.tools.verify.zero_line import with_zero_lines
 
 POCKET_TOLERANCE = 0.005  # mm
@@ -85,7 +87,14 @@ class Subject:
         own = None if self.samples else range(section.at, section.end)
         if section.surface:
             return self._laid_on(Surface(turning=True, radius=section.surface), own)
-        part, centre = self.path.part, x0_of(section, self.trace.moves[section.at])
+        return self._turned_about(x0_of(section, self.trace.moves[section.at]), own)
+
+    def of_shape(self, shape: ShapeAsked) -> Subject:
+        """Return the same as the part of a shape sees it; without a run its own moves alone."""
+        return self._turned_about(shape.zero[0], None if self.samples else shape.moves)
+
+    def _turned_about(self, centre: float, own: range | None) -> Subject:
+        part = self.path.part
         if abs(part.centre - centre) < SAME_X0:
             return self
         return self._laid_on(replace(part, centre=centre), own)
@@ -102,7 +111,7 @@ class StockText(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """What a program asks for: circles, each with the block that does, and sections.
+    """What a program asks for: circles and shapes, each with the block that does, and sections.
 
     ``still`` are the line and the code of each cycle that moves nothing, though it should.
     """
@@ -110,6 +119,7 @@ class Asked(NamedTuple):
     circles: list[tuple[Block, Target]]
     sections: list[SectionContour]
     still: list[tuple[int, str]]
+    shapes: Sequence[tuple[Block, ShapeAsked]] = ()
 
     @property
     def moves(self) -> list[range]:
@@ -143,6 +153,7 @@ class Proof:
     stock: StockFacts | None = None
     still: list[tuple[int, str]] = field(default_factory=list)
     circles: Circles = ()
+    shapes: Sequence[ShapeFacts] = ()
 
     @property
     def findings(self) -> list[tuple[int, str]]:
@@ -160,6 +171,11 @@ class Proof:
             (facts.section.line, text)
             for facts in self.sections
             for text in section_findings(facts, self.tolerances.polar, unit)
+        ]
+        found += [
+            (facts.asked.line, text)
+            for facts in self.shapes
+            for text in shape_findings(facts, unit)
         ]
         found += [(hit.line, collision_text(hit, unit)) for hit in self.collisions]
         found += stock_findings(self.stock, unit) if self.stock else ()
@@ -242,10 +258,18 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
         for block in blocks
         if block.at == block.end and codes.cycle_of(block.text.call, block.codes)
     ]
+    still += [
+        (block.text.number, block.text.call)
+        for block in blocks
+        if block.at == block.end and codes.shape_of(block.text)
+    ]
     still += [(each.line, each.code) for each in found if each.elements and each.at == each.end]
     found = [each for each in found if each.end > each.at]
     found = with_zero_lines(found, subject.trace.moves, program, codes, subject.ini)
-    return Asked(list(reader.targets(blocks)), found, still)
+    moves, diameters = subject.trace.moves, subject.trace.diameters
+    calls = ShapeReading(settings.polar_x, settings.plunge_feed / 100, settings.entry_angle)
+    shapes = list(shapes_asked(blocks, codes, moves, diameters, calls))
+    return Asked(list(reader.targets(blocks)), found, still, shapes)
 
 
 def moves_there(tracer: Tracer, subject: Subject, parameters: Parameters) -> Sequence[Move] | None:
@@ -284,10 +308,11 @@ def measured(
         told = {"left_behind": left, "acts": acts_in(block), "spindle_stands": still}
         pockets.append(replace(facts, overruns=overruns, **told))
     found = measured_sections(subject, asked.sections, tolerances.polar, tell)
+    shapes = measured_shapes(subject, asked, tolerances.polar, tell)
     tell("looking for rapids through material")
     hits = collisions(asked.circles, moves, path, subject.trace.diameters, real)
     unseen = unseen_in(moves, Codes(subject.ini), asked.moves)
-    told = {"still": asked.still, "circles": asked.circles}
+    told = {"still": asked.still, "circles": asked.circles, "shapes": shapes}
     return Proof(subject, pockets, found, hits, unseen, tolerances, **told)
 
 
@@ -304,6 +329,19 @@ def measured_sections(
             surfaces[each.surface] = view
         facts = measure_section(each, view.path, moves, diameters, axes, tolerance, view.real)
         found.append(facts)
+    return found
+
+
+def measured_shapes(
+    subject: Subject, asked: Asked, tolerance: float, tell: Tell
+) -> list[ShapeFacts]:
+    """Return what is measured of a program's shapes on a face."""
+    found = []
+    for block, shape in counted(asked.shapes, "measuring shape", tell):
+        own = [each for each in asked.sections if each.at in shape.moves]
+        view = subject.of_shape(shape)
+        moves = subject.trace.moves
+        found.append(measure_shape(block, shape, own, view.path, moves, tolerance, view.real))
     return found
 
 

@@ -29,6 +29,7 @@ from g12.tools.verify.pocket_entry import entry_json, entry_text
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.section import SectionFacts
+from g12.tools.verify.shape_findings import shape_findings, shape_json, shape_rows
 
 GAP = 14  # columns of a row's name
 TURNS = {-1: "clockwise", 1: "counterclockwise"}
@@ -40,6 +41,15 @@ def as_text(proof: Proof, unit: Unit) -> str:
     """Return the proof as text, one paragraph per pocket and section, and the verdict."""
     pockets = [pocket_text(facts, proof, unit) for facts in proof.pockets]
     sections = [section_text(facts, proof, unit) for facts in proof.sections]
+    shapes = [
+        paragraph(
+            f"{line_text(facts.asked.line, facts.asked.file)}: {facts.asked.name}",
+            shape_rows(facts, unit),
+            [],
+            list(shape_findings(facts, unit)),
+        )
+        for facts in proof.shapes
+    ]
     count = len(proof.findings)
     verdict = "verdict: good, everything is as programmed"
     if count:
@@ -54,7 +64,7 @@ def as_text(proof: Proof, unit: Unit) -> str:
     ]
     stock = [stock_text(proof.stock, unit)] if proof.stock else []
     messages = "\n".join(message_lines(proof.subject.trace.messages))
-    told = [*pockets, *sections, *rapids, *stock, *unseen]
+    told = [*pockets, *shapes, *sections, *rapids, *stock, *unseen]
     paragraphs = [zero_text(proof, unit), *told, messages, verdict]
     return "\n\n".join(filter(None, paragraphs))
 
@@ -91,9 +101,13 @@ def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
         ("time", time_text(facts.pace)),
     ]
     found = list(pocket_findings(facts, proof.tolerances.pocket, unit))
-    line = f"line {source.line}{f' of {source.file}' if source.file else ''}"
-    title = f"{line}: {source.code} ({source.dialect})"
+    title = f"{line_text(source.line, source.file)}: {source.code} ({source.dialect})"
     return paragraph(title, rows, list(pocket_notes(facts, unit)), found)
+
+
+def line_text(line: int, file: str) -> str:
+    """Return a line in words, with the file of the sub in which it is."""
+    return f"line {line}{f' of {file}' if file else ''}"
 
 
 def stock_text(facts: StockFacts, unit: Unit) -> str:
@@ -266,6 +280,7 @@ def as_json(proof: Proof) -> str:
             "real": proof.subject.real is not None,
             "pockets": [pocket_json(facts, proof) for facts in proof.pockets],
             "sections": [section_json(facts, proof) for facts in proof.sections],
+            "shapes": [shape_json(facts) for facts in proof.shapes],
             "rapids": [collision_json(hit) for hit in proof.collisions],
             "stock": proof.stock and stock_json(proof.stock),
             "unseen": [{"line": line, "code": code} for line, code in proof.unseen],

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""verify tells of the shapes that a program calls, also from the files of its forms."""
+
+import json
+
+import pytest
+
+from g12.tools.commands.main import main
+from g12.tools.machine.ini import read_ini
+from g12.tools.verify.proof import prove
+from support.sim_machines import PROGRAMS, SIM
+
+LATHES = {unit: SIM / f"lathe_{unit}_headless.ini" for unit in ("mm", "inch")}
+PROGRAM = str(PROGRAMS / "polar" / "shapes.ngc")
+FORMS = {  # the entries of a form behind its first six
+    "form_polygon_mm": [6, 20, 3, 26, 1, 2, 0.3, 600, 0, 15],
+    "form_slot_inch": [0.5, 1, 0.1, 0, 0.01, 20, 10, 30],
+    "form_face_pocket_mm": [8, 3, 12, 2, 0, 0, 600, 0],
+}
+
+
+def test_a_report_names_each_shape_and_its_sizes(capsys):
+    ini = str(LATHES["mm"])
+    assert main(["verify", PROGRAM, "--ini", ini]) == 0
+    text = capsys.readouterr().out
+    assert "line 9: polar_polygon\n  cutter          ⌀ 6\n" in text
+    assert "  programmed      flats 27, corners 15.279 mm\n  reached         flats 27" in text
+    assert main(["verify", PROGRAM, "--ini", ini, "--json"]) == 0
+    hexagon, slot, pocket = json.loads(capsys.readouterr().out)["shapes"]
+    assert [each["code"] for each in (slot, pocket)] == ["polar_slot", "polar_pocket"]
+    assert hexagon["sizes"]["flats"] == pytest.approx([27, 27], abs=0.011)
+    assert hexagon["levels"] == pytest.approx([-2, -4])
+    assert slot["left"] == 0 and not pocket["findings"]
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_shape_of_a_form_is_judged_in_the_form_s_file(form, tmp_path):
+    program, unit = tmp_path / "form.ngc", form.rpartition("_")[2]
+    values = [3, 3000, 33, 35, 9, 5 if unit == "mm" else 0.2, *FORMS[form]]
+    call = " ".join(f"[{value}]" for value in values)
+    program.write_text(
+        f"{'G21' if unit == 'mm' else 'G20'} G18 G8\nG0 X5 Z5\no<{form}> call {call}\nM2\n"
+    )
+    proof = prove(program, read_ini(LATHES[unit]))
+    assert proof.findings == []
+    assert [facts.asked.file for facts in proof.shapes] == [f"{form}.ngc"]
