@@ -62,6 +62,8 @@ def test_what_the_other_slide_would_move_too_little_goes_to_a_later_piece():
 
 def test_x_alone_may_move_as_little_as_it_likes():
     assert pieces((10.0002, 0.0, 0.0002)) == [(10.0002, 0.0, 0.0, pytest.approx(120.0))]
+    made = pieces((10.0003, 0.0, 0.0003), z1=-0.0004)
+    assert made == [(10.0003, 0.0, pytest.approx(-0.0004), pytest.approx(120.0))]
 
 
 def test_a_turn_by_rounding_is_none():
