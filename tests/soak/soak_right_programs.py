@@ -36,6 +36,7 @@ def test_programs_as_they_are_read(kind, tmp_path):
         seed = f"{SEED} {number}"
         proof = prove(written(tmp_path, kind, seed, PIECES), ini)
         assert len(proof.pockets) + len(proof.sections) >= PIECES, seed
+        assert len(proof.shapes) >= PIECES * kind.startswith("shapes"), seed
         assert proof.findings == [], seed
 
 

@@ -3,6 +3,7 @@
 
 import cmath
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from g12.tools.preview.executed_blocks import STATE, Block, read_line
 from g12.tools.preview.moves import Move
 from g12.tools.verify.codes import Codes
 from g12.tools.verify.shape_form import Shift, polygon_form, round_form, slot_form
+from g12.tools.verify.shape_way import ShapeWay
 from g12.tools.verify.wanted_shape import ShapeReading, shapes_asked
 from support.sim_machines import SIM
 
@@ -108,6 +110,13 @@ def test_a_form_stands_where_its_own_extremes_are(form):
         form.stands(np.array(corners)), abs=1e-3
     )
     assert max(map(abs, form.stands(np.array(moved)))) > 0.05
+
+
+def test_a_move_too_short_for_a_sample_of_a_run_is_as_emitted():
+    emitted = SimpleNamespace(points=np.array([[1.0, 2.0, 0.0]]), vertices=lambda _: slice(0, 1))
+    run = SimpleNamespace(points=np.array([[3.0, 4.0, 0.0]]), during=lambda index: slice(0, index))
+    way = ShapeWay(hexagon(), [], emitted, run)
+    assert (way.points(0), way.points(1)) == (1 + 2j, 3 + 4j)
 
 
 def test_corners_that_the_bar_cuts_off_are_none():

@@ -33,7 +33,7 @@ COMMANDS = {
     "plot": ("g12.tools.commands.plot", "draw a picture of what a program cuts"),
     "verify": (
         "g12.tools.commands.verify",
-        "prove that pockets and sections (polar, on a cylinder) come out as programmed",
+        "prove that pockets, shapes and sections (polar, on a cylinder) come out as programmed",
     ),
     "regress": ("g12.tools.commands.regress", "keep what programs do, and tell what changed"),
     "demo": ("g12.tools.commands.demo", "run, draw and measure the manuals' programs"),

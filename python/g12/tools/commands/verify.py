@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``g12 verify``: prove that a program's pockets and sections come out as programmed.
+"""``g12 verify``: prove that a program's pockets, shapes and sections come out as programmed.
 
 Sections are those of polar interpolation and those on a cylinder. What is asked for is read from
 the program's words, what is cut is measured from the motion that LinuxCNC makes of it, or with

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Whether pockets and sections come out as programmed, judged from the words alone."""
+"""Whether pockets, shapes and sections come out as programmed, judged from the words alone."""

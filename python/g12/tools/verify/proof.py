@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Everything a program's pockets and sections can be held to, in one value.
+"""Everything a program's pockets, shapes and sections can be held to, in one value.
 
 What is asked for is read from the program's words, what is cut is measured from the motion that
 LinuxCNC makes of it; the cycles' own planning has no part in it.

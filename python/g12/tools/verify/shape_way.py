@@ -31,10 +31,14 @@ class ShapeWay(NamedTuple):
     real: Followed | None
 
     def points(self, index: int) -> np.ndarray:
-        """Return the tool centre's points (complex) along a move, emitted or as it was."""
+        """Return the tool centre's points (complex) along a move, as it was, else as emitted.
+
+        A run has no sample of a very short one.
+        """
         found = self.path.points[self.path.vertices(index)]
         if self.real is not None:
-            found = self.real.points[self.real.during(index)]
+            sampled = self.real.points[self.real.during(index)]
+            found = sampled if len(sampled) else found
         return found[:, 0] + 1j * found[:, 1]
 
     def along(self, indices: Sequence[int]) -> list[np.ndarray]:
