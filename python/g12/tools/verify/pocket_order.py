@@ -78,6 +78,7 @@ def misplaced(
         *of_depths(moves, starts, ends, () if target.schedule.helix else circles),
         *of_leads(places, starts, circles[:1] if target.schedule.helix else circles),
         *of_links(target, moves, starts, ends, circles),
+        *of_finish(target, moves, starts, ends, circles),
         *of_entry(places, moves, ends),
         (ENDS, ends[-1], np.array(places.end)),
     ]
@@ -229,3 +230,17 @@ def of_links(
             yield "a link goes to", ends[ring + 1], start + (larger - radius) * ahead
             there = [*(larger * ahead)[:2], starts[following][2]]
             yield "a circle begins at", starts[following], np.array(there)
+
+
+def of_finish(
+    target: Target,
+    moves: Sequence[Move],
+    starts: np.ndarray,
+    ends: np.ndarray,
+    circles: Sequence[int],
+) -> Found:
+    """Yield where the arc behind a finish pass ends: where the rough circle before it began."""
+    as_asked = len(circles) == len(target.schedule.circles) > 1
+    if target.schedule.finish_turn and as_asked and circles[-1] + 1 < len(moves):
+        begun, behind = starts[circles[-2]], circles[-1] + 1
+        yield "its finish leads off to", ends[behind], np.array([*begun[:2], ends[behind][2]])
