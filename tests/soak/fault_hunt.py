@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Faults that nobody chose against verify: which of those that change the motion it does not find.
 
-    PYTHONPATH=tests /usr/bin/python3 -m soak.fault_hunt --count 200 --seed 1 2>misses
-    PYTHONPATH=tests /usr/bin/python3 -m soak.fault_hunt --again misses
+    PYTHONPATH=python:tests /usr/bin/python3 -m soak.fault_hunt --count 200 --seed 1 2>misses
+    PYTHONPATH=python:tests /usr/bin/python3 -m soak.fault_hunt --again misses
 
 Each mutant of the planners, handlers and subs is put alone into a copy of the package and tried
 with programs that run it. A trace that is about the same is no difference, nor is one that goes the
@@ -41,7 +41,8 @@ from g12.tools.units import name_of_unit
 from g12.tools.verify.proof import prove
 from soak import little_mutants, mutants, ngc_mutants
 from soak.mutants import Mutant
-from support.fault_tables import FOLDERS, TABLES, program_of, sample_of
+from support.fault_tables import FOLDERS, TABLES, MachinedProgram, program_of, sample_of
+from support.right_programs import MACHINES, SETTINGS, right_program
 from support.sim_machines import PROGRAMS, ROOT
 
 ROOMS = ("cycles", "polar", "moves", "flat", "section", "cylinder", "host", "ngc")
@@ -63,6 +64,7 @@ USED_BY = {  # by what stands in a module's name, the first that does; else by i
 }
 SAME = Tolerance(length=0.005, angle=0.01, feed=0.005)
 SECONDS = 60.0
+PIECES_IN_ONE = 4  # pockets or sections of a random program
 MEMORY = 4 << 30
 NOTES_LINES = """\
 import sys
@@ -147,12 +149,19 @@ def right():
     }
 
 
-def programs():
-    """Return the programs, and of each kind those that use it."""
+def programs(seed):
+    """Return the programs: those that are here, and random ones in which nothing is wrong."""
     every = [program_of(table, name) for table in TABLES for name in TABLES[table]["programs"]]
     for folder in FOLDERS:
         every += map(sample_of, sorted((PROGRAMS / folder).glob("*.ngc")))
+    every += [drawn(kind, seed) for kind in MACHINES]
     return [program for program in every if "o<polar_" not in program.text]
+
+
+def drawn(kind, seed):
+    """Return a random program of a kind."""
+    text = right_program(kind, random.Random(f"{seed} {kind}"), PIECES_IN_ONE)
+    return MachinedProgram(f"random/{kind}", text, MACHINES[kind], SETTINGS.get(kind, {}), None)
 
 
 def kinds_of(program):
@@ -169,14 +178,14 @@ def kinds_of(program):
 class Hunt:
     """A copy of the package in which one mutant after the other is tried."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, seed):
         self.folder = Path(folder)
         for part in ("configs", "ngc", "python"):
             shutil.copytree(ROOT / part, self.folder / part)
         self._of_kind = defaultdict(list)
         self._sound = {}
         self._run = {}
-        for program in programs():
+        for program in programs(seed):
             for kind in kinds_of(program):
                 self._of_kind[kind].append(program)
 
@@ -340,11 +349,11 @@ def at_most(seconds):
         signal.signal(signal.SIGALRM, before)
 
 
-def run(chosen, *, count=3, tell=print, log=None):
+def run(chosen, seed, *, count=3, tell=print, log=None):
     """Try faults with ``count`` programs each; return how many came to what, by room."""
     known, found = right(), defaultdict(Counter)
     with tempfile.TemporaryDirectory(prefix="g12-hunt-") as folder:
-        hunt = Hunt(folder)
+        hunt = Hunt(folder, seed)
         for fault in chosen:
             verdicts = set()
             for program, verdict, texts, told in hunt.tried(fault, count):
@@ -377,8 +386,9 @@ def main():
         text = options.again.read_text()
         chosen = [fault for fault in chosen if f": {fault.name}: " in text]
     tell = functools.partial(print, file=sys.stderr, flush=True)
-    chosen = chosen[: options.count]
-    print(json.dumps(run(chosen, count=options.programs, tell=tell, log=options.log)))
+    told = {"tell": tell, "log": options.log}
+    found = run(chosen[: options.count], options.seed, count=options.programs, **told)
+    print(json.dumps(found))
 
 
 if __name__ == "__main__":
