@@ -223,6 +223,9 @@ def test_of_a_short_move_its_z_is_kept():
     assert kept == [one, Plunge(2, 600.0, 0.0, -1.0), other._replace(x0=10.0, c0=5.0)]
 
 
-def test_points_there_and_back_are_no_line():
-    there, back = line_to(5, 0, (0, 0), 1), line_to(0, 0, (5, 0), 2)
-    assert simplify.with_points_left_out([there, back], 10.0) == ([there, back], 0.0)
+@pytest.mark.parametrize("end", [0, 9])
+def test_points_there_and_back_are_no_line(end):
+    """Behind the ramp one line would stand for both: none, or one that is only rounding."""
+    moves = [line_to(0, 0, (0, 9), 1), line_to(5, 0, (0, 0), 2), line_to(0, end, (5, 0), 3)]
+    assert simplify.with_points_left_out(moves, 10.0) == (moves, 0.0)
+    assert len(simplify.with_points_left_out(moves, 8.0)[0]) == (2 if end else 3)
