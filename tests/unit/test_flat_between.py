@@ -41,17 +41,22 @@ DEEPEST_TOLD = 0.5  # of the tool's radius
 
 
 def section(*parts, ramp=None):
-    """Return a section of contours, each what is drawn and its Z; ``ramp``: to it and from it."""
+    """Return a section of contours, each what is drawn and its Z; ``ramp``: to it and from it.
+
+    Z may be that of each shape.
+    """
     contour, line = Contour(90.0, UP), 1
     for drawn, height in parts:
+        heights = height if isinstance(height, list) else [height] * len(drawn.shapes)
         first, last = drawn.shapes[0], drawn.shapes[-1]
         start = first.start + (ramp or away(drawn)) * cmath.rect(1.0, first.headings()[0])
         end = last.end + (ramp or away(drawn)) * cmath.rect(1.0, last.headings()[1])
         contour.line(start.real, start.imag, line=line, feed=300.0)
-        contour.line(z=height, line=line, feed=300.0)
+        contour.line(z=heights[0], line=line, feed=300.0)
         contour.compensation(drawn.side, drawn.radius, line=line + 1)
         contour.line(first.start.real, first.start.imag, line=line + 1, feed=300.0)
-        for behind, shape in enumerate(drawn.shapes, line + 2):
+        for behind, (z, shape) in enumerate(zip(heights, drawn.shapes), line + 2):
+            contour.line(z=z, line=behind, feed=300.0)
             add(contour, shape, line=behind, feed=300.0)
         line += 2 + len(drawn.shapes)
         contour.compensation(40, 0.0, line=line)
@@ -258,6 +263,7 @@ ROUND = [FACE, BEHIND, Straight(40 + 20j, 40 - 20j), IN_FRONT]
         (ROUND[1:] + ROUND[:1], False),
         (ROUND[2:] + ROUND[:2], False),
         ([Straight(14 - 20j, 14 + 25j), Straight(14 + 25j, 14 + 30j), *BESIDE], True),
+        ([Straight(14 - 5j, 14 + 25j), Straight(14 + 25j, 14 + 30j), *BESIDE], True),
         ([BESIDE[0].between(-2.5, 1.0), *BESIDE[1:3], BESIDE[3].between(0.0, 1.4)], True),
         ([ROUND[3].between(-0.3, 1.0), *ROUND[:2], ROUND[2].between(0.0, 1.2)], False),
         ([ROUND[0].between(-0.3, 1.0), *ROUND[1:3], ROUND[3].between(0.0, 1.0)], False),
@@ -322,6 +328,39 @@ def test_one_cut_may_be_meant_and_another_of_the_same_contour_told():
         right = 3 + (-(k // 2) % 4 or k % 2 * 4)  # its line; of two halves the second one's
         note = f"G12.1 line {12 + k % 2}: the tool cuts 2 into the contour of line {right}"
         assert found((begun_at(bar, k), -5.0), (slot_and_face, -5.0)) == ("", [note])
+
+
+@pytest.mark.parametrize(
+    ("right", "heights", "depth_there"),
+    [(9.5, [-5.0, -6.0, -5.0, -5.0], -6.0), (10.5, -5.0, -5.0)],
+)
+def test_a_pass_over_the_same_wall_is_told_where_else_it_cuts(right, heights, depth_there):
+    """It comes past a bar's left side, too near, and goes round to its right side.
+
+    There it takes what the bar has left, below the bar's own pass, or leaves that something.
+    """
+    bar = boss(closed([10 + 30j, 10 - 30j, -10 - 30j, -10 + 30j]), 3.0)
+    corners = [-40 + 30j, -14 + 30j, -14 - 60j, 40 - 60j, 40 + 60j, right + 60j, right - 25j]
+    around = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
+    for parts in ([(bar, heights), (around, depth_there)], [(around, depth_there), (bar, heights)]):
+        text, notes = found(*parts)
+        assert not text and len(notes) == 1
+    short = boss(around.shapes[:4], 3.0)
+    assert "cuts into the other" in found((bar, heights), (short, depth_there))[0]
+
+
+def test_cuts_of_two_walls_with_air_between_them_are_two():
+    """Another contour goes into the end of the first one, and is too near to the second's start."""
+    corners = [30j, 0j, 100 + 30j, 100 + 0j]
+    walls = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
+    corners = [104 + 10j, 104 + 60j, 50 + 60j, 50 + 3j, -30 + 3j]
+    other = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
+    for parts in (
+        [(walls, [-5.0, UP, -5.0]), (other, -5.0)],
+        [(other, -5.0), (walls, [-5.0, UP, -5.0])],
+    ):
+        text, notes = found(*parts)
+        assert not text and len(notes) == 1
 
 
 def test_a_cut_that_goes_on_over_the_beginning_is_one():
