@@ -100,7 +100,7 @@ def order_off(section: SectionContour, moves: Sequence[Move], path: Track) -> Of
             return OffOrder(moves[own[0]].line, "is cut where the program has it not")
         if found is not None:
             missing, cut = not_cut(drawn[cut:found]), found + 1
-            off = missing or length_off(*drawn[found], length)
+            off = missing or length_off(*drawn[found], length, between_ends(own, path))
             if off:
                 return off
     return not_cut(drawn[cut:])
@@ -112,11 +112,24 @@ def not_cut(drawn: Sequence[tuple[list[Element], float]]) -> OffOrder | None:
     return next((OffOrder(elements[0].line, "is not cut") for elements in missing), None)
 
 
-def length_off(elements: Sequence[Element], above: float, length: float) -> OffOrder | None:
-    """Return what a block's length is if it is not the words'; not of a compensated one."""
+def between_ends(own: Sequence[int], path: Track) -> float:
+    """Return how far the ends of some moves are from each other on the part."""
+    ends = path.vertices(own[0]).start, path.vertices(own[-1]).stop - 1
+    return float(np.linalg.norm(path.points[ends[1]] - path.points[ends[0]]))
+
+
+def length_off(
+    elements: Sequence[Element], above: float, length: float, straight: float
+) -> OffOrder | None:
+    """Return what a block's length is if it is not the words'.
+
+    Of a compensated block the words do not tell it, but a ramp goes ``straight``.
+    """
     asked = length_wanted(elements, above)
     if any(element.side or element.ramp for element in elements):
-        return None
+        if not (len(elements) == 1 and elements[0].ramp):
+            return None
+        asked = straight
     if abs(length - asked) <= SHORT + SAME_FEED * asked:
         return None
     return OffOrder(elements[0].line, "its path is {}, not {}", (length, asked))
