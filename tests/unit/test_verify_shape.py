@@ -12,6 +12,7 @@ from g12.tools.machine.ini import read_ini
 from g12.tools.preview.executed_blocks import STATE, Block, read_line
 from g12.tools.preview.moves import Move
 from g12.tools.verify.codes import Codes
+from g12.tools.verify.shape_cut import area_swept
 from g12.tools.verify.shape_form import Shift, polygon_form, round_form, slot_form
 from g12.tools.verify.shape_way import ShapeWay
 from g12.tools.verify.wanted_shape import ShapeReading, shapes_asked
@@ -122,3 +123,10 @@ def test_a_move_too_short_for_a_sample_of_a_run_is_as_emitted():
 def test_corners_that_the_bar_cuts_off_are_none():
     names = [{each.name for each in polygon_form(4, 20, 0, bar, 0).extremes} for bar in (14, 15)]
     assert names == [{"flats"}, {"flats", "corners"}]
+
+
+@pytest.mark.parametrize("radius", [0.85, 0.69, 1.1, 2.0, 5.9])
+def test_a_ring_smaller_than_its_cutter_clears_the_middle(radius):
+    ring = 4j + radius * np.exp(2j * np.pi * np.arange(50) / 50)
+    area = area_swept([np.append(ring, ring[0])], 6.0).area
+    assert area == pytest.approx(np.pi * (6.0 + radius) ** 2, rel=0.01)

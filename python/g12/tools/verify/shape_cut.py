@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import takewhile
@@ -22,7 +22,7 @@ from shapely.geometry.polygon import orient
 from shapely.ops import unary_union
 from shapely.prepared import PreparedGeometry, prep
 
-from g12.tools.path.part import DISC_SEGMENTS, disc
+from g12.tools.path.part import disc, swept
 from g12.tools.verify.shape_form import ShapeForm, Shift
 from g12.tools.verify.shape_way import SAME_LEVEL, TINY, ShapeWay
 
@@ -202,15 +202,15 @@ def corners_round(area: Polygon) -> np.ndarray:
 
 def area_swept(lines: Sequence[np.ndarray], cutter: float) -> BaseGeometry:
     """Return the area that a cutter of a radius sweeps along polylines (complex)."""
-    return unary_union([part for line in lines for part in parts_swept(line, cutter)])
+    return swept((part for line in lines for part in parts_of(line)), cutter)
 
 
-def parts_swept(line: np.ndarray, cutter: float) -> list[BaseGeometry]:
-    """Return the areas swept along the parts of a polyline, of which a whole one takes long."""
+def parts_of(line: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield a polyline (complex) in parts (n, 2), for a whole one takes long to work out."""
+    corners = np.column_stack([line.real, line.imag])
     if np.abs(np.diff(line)).sum() < TINY:
-        return [Point(line[0].real, line[0].imag).buffer(cutter, DISC_SEGMENTS)]
-    corners = LineString(np.column_stack([line.real, line.imag])).simplify(CHORD).coords
-    return [
-        LineString(corners[first : first + CORNERS + 1]).buffer(cutter, DISC_SEGMENTS)
-        for first in range(0, len(corners) - 1, CORNERS)
-    ]
+        yield corners[:1]
+        return
+    corners = np.array(LineString(corners).simplify(CHORD).coords)
+    for first in range(0, len(corners) - 1, CORNERS):
+        yield corners[first : first + CORNERS + 1]
