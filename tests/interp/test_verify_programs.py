@@ -160,6 +160,14 @@ def test_expressions_loops_and_skipped_blocks(tmp_path):
     assert proof.findings == []
 
 
+def test_an_expression_may_come_to_next_to_nothing(tmp_path):
+    """LinuxCNC 2.9 tells that less than 0.0001 is 0."""
+    lines = ["G20 G18 G8 G40 G90 G94 F10", "T1 M6 S1000 M3", "G0 X2 Z.1 C0", "G12.1"]
+    lines += ["G1 Z[.5-.49991]", "X1", "Z-.1", "X2", "G13.1", "M2"]
+    proof = proof_of_text(tmp_path, lines, "lathe_inch")
+    assert proof.sections and proof.findings == []
+
+
 def test_a_pocket_in_a_subroutine_of_the_program(tmp_path):
     lines = [
         "o<hole> sub",

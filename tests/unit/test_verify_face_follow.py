@@ -47,3 +47,9 @@ def test_beside_the_x_line_the_slide_stands_nearer_than_the_tool():
 def test_what_c_and_the_slide_cannot_do_is_told(distance, speed, c, told):
     found = follow_off(line(distance), speed, 0.0, 0.0, LIMITS._replace(c=c))
     assert found.startswith(told) and bool(told) == bool(found)
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-15, -1.7e-15])
+def test_a_line_into_the_centre_turns_no_c(rounding):
+    move = Hand().rapid(x=7.0).line(x=rounding).moves[-1]
+    assert follow_off(move, 5.0, 0.0, 0.0, LIMITS) == ""

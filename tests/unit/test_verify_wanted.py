@@ -83,7 +83,9 @@ def test_only_expressions_are_asked_of_linuxcnc():
     lines = list(before(read_line(4, "G12 I.5 K[#1] Z-1 D#2")))
     assert [line for line in lines if "=" in line] == [
         "#<@>=[#1]",
+        "#<@>=[#<@>*1000000]",
         "#<@>=#2",
+        "#<@>=[#<@>*1000000]",
     ]
     assert all(line.startswith("/") for line in before(read_line(4, "/G12 I#1")))
 
@@ -98,7 +100,7 @@ def told(texts, *lines):
 def test_blocks_are_put_together_from_messages():
     state = "1 2 3 0 1 1 0"
     end = "end 1 4 5 6 0 1 1 0"
-    (block,) = told([read_line(1, "G12 I#1 Z-1")], f"begin 1 {state}", "value 1 0.75", end)
+    (block,) = told([read_line(1, "G12 I#1 Z-1")], f"begin 1 {state}", "value 1 750000", end)
     assert (block.words, block.codes) == ({"I": 0.75, "Z": -1.0}, (12.0,))
     assert (block.at, block.end) == (0, 2)
     assert block.state == dict(zip(STATE, map(float, state.split())))
@@ -109,7 +111,7 @@ def test_a_block_inside_a_call_leaves_the_call_its_own():
     """As the section of a shape's sub, whose end comes before that of the call."""
     state = "0 0 0 0 1 1 0"
     texts = [read_line(1, "o<polar_slot> call [#1]"), read_line(2, "G12.1 X#2")]
-    lines = (f"begin 1 {state}", "value 0 8", f"begin 2 {state}", "value 1 5")
+    lines = (f"begin 1 {state}", "value 0 8e6", f"begin 2 {state}", "value 1 5e6")
     inner, call = told(texts, *lines, f"end 2 {state}", f"end 1 {state}")
     assert (inner.words, inner.at, inner.end) == ({"X": 5.0}, 2, 4)
     assert (call.arguments, call.at, call.end) == ((8.0,), 0, 5)

@@ -23,6 +23,7 @@ from g12.tools.preview.tracer import Parameters, Tracer
 TAG = "g12-verify"
 VALUE = "#<@>"  # short: a line that LinuxCNC reads has 252 characters at most
 LONGEST_LINE = 252
+ENLARGED = 1_000_000  # times: of less than 0.0001 LinuxCNC 2.9 tells that it is 0
 STATE = (
     *("_x", "_y", "_z", "_c", "_metric", "_absolute", "_lathe_diameter_mode", "_feed"),
     *("_units_per_rev", "_rpm", "_motion_mode", "_plane", "_ijk_absolute_mode"),
@@ -212,6 +213,7 @@ def before(text: Text, skip: int = 0) -> Iterator[str]:
     for index, (_, value) in enumerate(text.words):
         if not is_number(value):
             yield assignment(text, value)
+            yield assignment(text, f"[{VALUE}*{ENLARGED}]")
             yield f"{slash}(DEBUG,{TAG} value {index} %.9f{VALUE})"
 
 
@@ -240,7 +242,7 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
         if kind == "begin":
             opened.append(_Opened(texts[int(number) - 1], event.at, values, len(told), {}))
         elif kind == "value":
-            opened[-1].values[int(number)] = values[0]
+            opened[-1].values[int(number)] = values[0] / ENLARGED
         else:
             block = _taken(opened, texts[int(number) - 1])
             if block:

@@ -23,6 +23,7 @@ from g12.tools.preview.moves import Move
 
 PLACES = 48  # on a move that are looked at, and those where a line's C is accelerated most
 STEP = 1e-3  # mm, of the derivatives
+AT_CENTRE = 1e-6  # mm: there C has no angle, and a line that ends there needs none
 ALLOWED = 1.1  # of a limit: the greatest value may lie between places that a planner looks at
 
 
@@ -87,6 +88,12 @@ def looked_at(move: Move, centre: float) -> np.ndarray:
 
 def places(move: Move, parts: np.ndarray, centre: float) -> np.ndarray:
     """Return the places (complex) after parts of a move, seen from the spindle's centre."""
+    found = way_of(move, parts, centre)
+    return np.where(abs(found) < AT_CENTRE, 0.0, found)
+
+
+def way_of(move: Move, parts: np.ndarray, centre: float) -> np.ndarray:
+    """Return the same, rounding and all."""
     start, end = (complex(place[X] - centre, place[Y]) for place in (move.start, move.end))
     if move.kind != "arc":
         return start + (end - start) * parts
