@@ -202,10 +202,10 @@ def corners_round(area: Polygon) -> np.ndarray:
 
 def area_swept(lines: Sequence[np.ndarray], cutter: float) -> BaseGeometry:
     """Return the area that a cutter of a radius sweeps along polylines (complex)."""
-    return swept((part for line in lines for part in parts_of(line)), cutter)
+    return swept((part for line in lines for part in polylines_of(line)), cutter)
 
 
-def parts_of(line: np.ndarray) -> Iterator[np.ndarray]:
+def polylines_of(line: np.ndarray) -> Iterator[np.ndarray]:
     """Yield a polyline (complex) in parts (n, 2), for a whole one takes long to work out."""
     corners = np.column_stack([line.real, line.imag])
     if np.abs(np.diff(line)).sum() < TINY:
