@@ -8,8 +8,8 @@ import numpy as np
 
 from support.contour_geometry import Straight
 
-NEAR = 1e-3  # of where the slide stands: steps in which a rate is measured
-APART = 0.005  # of the same: steps in which a curvature's change is measured
+NEAR = 3e-4  # of where the slide stands: steps in which a rate is measured
+APART = 0.001  # of the same: steps in which a curvature's change is measured
 
 
 def along(shape):
