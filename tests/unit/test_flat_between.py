@@ -540,3 +540,15 @@ def seconds(contour):
     start = time.process_time()
     tool_path(contour, contour.elements, TOLERANCE)
     return time.process_time() - start
+
+
+@pytest.mark.parametrize("offset", [4.0, -4.0])
+@pytest.mark.parametrize("place", [(10.0, 3.0), (12.0, -3.5), (11.0, 0.0)])
+def test_a_tool_touches_its_contour_where_it_begins_and_ends_to_cut_a_place(place, offset):
+    """Its centre is then nearly its radius from the place: a Pythagorean triangle."""
+    way = Line(1, 1.0, offset, 0.0, 0.0, 0.0, 30.0, 0.0, 0.0)
+    touches = list(between._touches(way, place, offset))
+    half = math.sqrt(offset**2 - place[1] ** 2)
+    along = [place[0] + share * between.COVERED * half for share in (0.0, -1.0, 1.0)]
+    assert touches == pytest.approx([(x, -offset) for x in along])
+    assert 0.9 < between.COVERED < 1.0

@@ -148,6 +148,13 @@ def test_of_two_crossings_the_one_nearest_to_the_corner():
     )
 
 
+def test_moves_that_meet_end_to_start_cross_there():
+    to = Line(1, 1.0, 0.0, 3.0, -2.0, 0.0, 5.0, 1.0, 0.0)
+    for end in ((9.0, 2.0), (5.0, -7.0), (3.0, 4.0)):
+        on = Line(2, 1.0, 0.0, 5.0, 1.0, 0.0, *end, 0.0)
+        assert crossing(to, on) == pytest.approx((5.0, 1.0))
+
+
 def test_moves_that_miss_each_other_have_no_crossing():
     line = Line(1, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0)
     beyond = Line(1, 1.0, 0.0, 1.1, 1.0, 0.0, 1.1, -1.0, 0.0)
