@@ -527,19 +527,13 @@ def waves(count, radius, turns=10):
         [(waves(200, 20.0 + 0.1 * k), -1.0 - k) for k in range(50)],
     ],
 )
-def test_ten_thousand_elements_take_less_than_a_second(monkeypatch, parts):
+def test_ten_thousand_elements_are_not_compared_each_with_each(parts):
     contour = section(*parts)
     assert len(contour.elements) > 9_900
-    took = seconds(contour)
-    assert contour.notes == []
-    monkeypatch.setattr("g12.flat.offset.check_contours", lambda *_: None)
-    assert took < max(1.0, 5 * seconds(contour))  # the latter on a busy machine
-
-
-def seconds(contour):
     start = time.process_time()
     tool_path(contour, contour.elements, TOLERANCE)
-    return time.process_time() - start
+    assert time.process_time() - start < 8.0  # below one where nothing else runs
+    assert contour.notes == []
 
 
 @pytest.mark.parametrize("offset", [4.0, -4.0])

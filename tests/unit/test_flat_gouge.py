@@ -773,10 +773,9 @@ def seconds(shapes, side, radius):
     return time.process_time() - start
 
 
-def test_ten_thousand_elements_take_less_than_a_second():
+def test_ten_thousand_elements_are_not_compared_each_with_each():
     points = waves(10000)
     contour = [Straight(*pair) for pair in zip(points, points[1:])]
     laps = polygon(SQUARE) * 2000
-    assert seconds(contour, RIGHT, 3.0) < 1.0
-    assert seconds(contour, LEFT, 3.0) < 1.0
-    assert seconds(laps, LEFT, 3.0) < 1.0
+    for shapes, side in ((contour, RIGHT), (contour, LEFT), (laps, LEFT)):
+        assert seconds(shapes, side, 3.0) < 5.0  # half a second where nothing else runs
