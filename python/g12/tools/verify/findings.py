@@ -16,7 +16,7 @@ from g12.tools.verify.codes import EVENT
 from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import SAME_LEVEL, PocketFacts
 from g12.tools.verify.pocket_entry import entry_findings
-from g12.tools.verify.pocket_order import DOWN_TO, ENDS, LeftBehind
+from g12.tools.verify.pocket_order import DOWN_TO, ENDS, UP_TO, LeftBehind
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.wanted_circle import Cutter, Target
@@ -55,7 +55,7 @@ def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> It
     yield from entry_findings(facts.helix, facts.target.schedule.helix, unit)
     if not wrong_depth:
         yield from order_findings(facts, tolerance, unit)
-    yield from place_findings(facts, (ENDS, DOWN_TO) if wrong_depth else (), unit)
+    yield from place_findings(facts, (ENDS, DOWN_TO, UP_TO) if wrong_depth else (), unit)
     yield from left_findings(facts)
     yield from (f"{text} comes in it, where the program has it not" for text in facts.acts)
     for overrun in facts.overruns or ():
@@ -158,11 +158,13 @@ def circle_text(circle: tuple[float, float] | None, facts: PocketFacts, unit: Un
 def place_findings(facts: PocketFacts, told: Sequence[str], unit: Unit) -> Iterator[str]:
     """Yield what is not where the words want it: the first of each kind but what is ``told``."""
     for what, found, asked in {place.what: place for place in facts.misplaced[::-1]}.values():
+        if what in told:
+            continue
         if found is None:
             yield f"{what} {place_text(asked, unit)}"
         elif asked is None:
             yield f"{what} {place_text(found, unit)}, where the cycle has it not"
-        elif what not in told:
+        else:
             yield f"{what} {place_text(found, unit)}, not {place_text(asked, unit)}"
 
 

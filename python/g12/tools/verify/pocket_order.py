@@ -20,7 +20,7 @@ SAME_STATE = 1e-5  # relative: values are told with nine decimals
 ACROSS = 1e-6  # mm
 SAME_FAST = 0.002  # mm
 KINDS = {"rapid": "rapid", "feed": "straight move", "probe": "probing move"}
-ENDS, DOWN_TO = "it ends at", "it goes down to"
+ENDS, DOWN_TO, UP_TO = "it ends at", "it goes down to", "it is fed up to"
 ACT = re.compile(r"(G|M\d|S|tool|dwell (?!0$))")  # of what a trace tells
 TOLD = {43.0, 43.1, 43.2, 49.0, *(54.0, 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59.3)}
 TOLD |= {61.0, 61.1, 64.0, 96.0, 97.0}  # codes of which a trace tells
@@ -82,7 +82,8 @@ def misplaced(
         *of_entry(places, moves, ends),
         (ENDS, ends[-1], np.array(places.end)),
     ]
-    strays = of_fast(places, moves, starts, ends) if places.fast is not None else ()
+    strays = [*of_climbs(moves, starts, ends)]
+    strays += of_fast(places, moves, starts, ends) if places.fast is not None else ()
     wrong = [place for place in found if np.abs(place[1] - place[2]).max() > tolerance]
     return tuple(
         Misplaced(what, in_machine(target.wall, was), in_machine(target.wall, to))
@@ -148,14 +149,31 @@ def of_fast(places: Places, moves: Sequence[Move], starts: np.ndarray, ends: np.
         if move.kind == "arc" or not across:
             continue
         next_one = next(iter(waiting), None)
-        if next_one and np.abs(np.array(next_one) - [start[:2], end[:2]]).max() <= SAME_FAST:
+        there = next_one and np.abs(end[:2] - next_one[1]).max() <= SAME_FAST
+        if there and np.abs(start[:2] - next_one[0]).max() <= SAME_FAST:
             waiting.pop(0)
             if move.kind != places.straight:
                 yield f"a {KINDS[places.straight]} goes as a {KINDS[move.kind]} to", end, None
+        elif there and move.kind == places.straight:
+            begin, _ = waiting.pop(0)
+            yield f"a {KINDS[move.kind]} comes from", start, np.array([*begin, start[2]])
         elif move.kind == "rapid" or places.straight == "feed":
             yield f"a {KINDS[move.kind]} goes to", end, None
     for _, place in waiting:
         yield f"a {KINDS[places.straight]} is missing to", None, np.array([*place, ends[-1][2]])
+
+
+def of_climbs(moves: Sequence[Move], starts: np.ndarray, ends: np.ndarray) -> Strays:
+    """Yield the feed moves straight up, which no cycle has."""
+    for move, start, end in zip(moves, starts, ends):
+        if is_upright(move, start, end) and end[2] > start[2]:
+            yield UP_TO, end, None
+
+
+def is_upright(move: Move, start: np.ndarray, end: np.ndarray) -> bool:
+    """Tell whether a feed move goes square to the plane."""
+    across, along = np.abs(end - start)[:2].max(), abs(end - start)[2]
+    return move.kind == "feed" and bool(across <= ACROSS < along)
 
 
 def height_across(places: Places, index: int, starts: np.ndarray, circles: Sequence[int]) -> float:
@@ -171,10 +189,10 @@ def height_across(places: Places, index: int, starts: np.ndarray, circles: Seque
 def of_plunges(
     places: Places, moves: Sequence[Move], starts: np.ndarray, ends: np.ndarray
 ) -> Found:
-    """Yield the feed moves square to the plane: their place, and the first one's beginning."""
+    """Yield the feed moves straight down: their place, and the first one's beginning."""
     height = places.first
     for move, start, end in zip(moves, starts, ends):
-        if move.kind == "feed" and np.abs(end - start)[:2].max() <= ACROSS < abs(end - start)[2]:
+        if is_upright(move, start, end) and end[2] < start[2]:
             height = start[2] if height is None else height
             yield "it goes down from", start, np.array([*places.plunge, height])
             height = None
