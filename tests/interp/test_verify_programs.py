@@ -168,6 +168,16 @@ def test_an_expression_may_come_to_next_to_nothing(tmp_path):
     assert proof.sections and proof.findings == []
 
 
+def test_a_section_may_begin_next_to_zero(tmp_path):
+    """LinuxCNC 2.9 tells that less than 0.0001 is 0."""
+    lines = ["G20 G18 G8 G40 G90 G94 F10", "T1 M6 S1000 M3", "G0 X2 Z.00009 C-.00009", "G12.1"]
+    lines += ["G1 Z-.1", "X1", "Z.00009", "X2 C-.00009", "G13.1", "M2"]
+    proof = proof_of_text(tmp_path, lines, "lathe_inch")
+    (facts,) = proof.sections
+    assert facts.section.height == pytest.approx(0.00009 * INCH, abs=1e-9)
+    assert proof.findings == []
+
+
 def test_a_pocket_in_a_subroutine_of_the_program(tmp_path):
     lines = [
         "o<hole> sub",

@@ -11,9 +11,9 @@ import pytest
 
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import (
+    LONGEST_LINE,
     STATE,
     TAG,
-    VALUE,
     Block,
     after,
     before,
@@ -22,7 +22,7 @@ from g12.tools.preview.executed_blocks import (
 )
 from g12.tools.preview.moves import Event
 from g12.tools.verify import wanted_circle, wanted_contour
-from g12.tools.verify.codes import Codes
+from g12.tools.verify.codes import SHAPES, Codes
 from g12.tools.verify.surface_pen import SurfacePen
 from g12.tools.verify.wanted_circle import CircleReader
 from g12.tools.verify.wanted_contour import Pen, WordReading
@@ -81,13 +81,21 @@ def test_a_call_has_its_arguments():
 
 def test_only_expressions_are_asked_of_linuxcnc():
     lines = list(before(read_line(4, "G12 I.5 K[#1] Z-1 D#2")))
-    assert [line for line in lines if "=" in line] == [
+    assert [line for line in lines if line.startswith("#<@>=")] == [
         "#<@>=[#1]",
         "#<@>=[#<@>*1000000]",
         "#<@>=#2",
         "#<@>=[#<@>*1000000]",
     ]
     assert all(line.startswith("/") for line in before(read_line(4, "/G12 I#1")))
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_no_call_of_a_shape_is_too_long_to_be_asked(shape):
+    call = f"o<{shape}>call["
+    line = f"{call}{'1' * (LONGEST_LINE - len(call) - 1)}]"
+    longest = read_line(1, line.replace("11", "+1"))
+    assert len(line) == LONGEST_LINE and longest.call == shape and not longest.too_long
 
 
 def told(texts, *lines):
@@ -98,12 +106,12 @@ def told(texts, *lines):
 
 
 def test_blocks_are_put_together_from_messages():
-    state = "1 2 3 0 1 1 0"
-    end = "end 1 4 5 6 0 1 1 0"
+    state = "1e6 2e6 3e6 .5 1 1 0"
+    end = "end 1 4e6 5e6 6e6 0 1 1 0"
     (block,) = told([read_line(1, "G12 I#1 Z-1")], f"begin 1 {state}", "value 1 750000", end)
     assert (block.words, block.codes) == ({"I": 0.75, "Z": -1.0}, (12.0,))
     assert (block.at, block.end) == (0, 2)
-    assert block.state == dict(zip(STATE, map(float, state.split())))
+    assert block.state == dict(zip(STATE, (1, 2, 3, 5e-7, 1, 1, 0)))
     assert (block.left["_x"], block.left["_z"]) == (4, 6)
 
 
@@ -123,7 +131,7 @@ def test_a_block_that_ends_the_program_has_all_moves_that_follow():
 
 
 def test_after_tells_the_same_number():
-    (line,) = after(read_line(12, "G12 I1"))
+    *_, line = after(read_line(12, "G12 I1"))
     assert line.startswith(f"(DEBUG,{TAG} end 12 ")
 
 
@@ -439,7 +447,7 @@ def test_motion_is_taken_out_of_the_copy_and_control_stays():
     ]
     texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
     flat = [line for some in wanted_contour.flattened(texts, CODES, lines) for line in some]
-    kept = [line for line in flat if "DEBUG" not in line and VALUE not in line]
+    kept = [line for line in flat if "DEBUG" not in line and "#<@" not in line]
     assert kept == ["G0 X5", "#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile", "G0 X9"]
 
 

@@ -24,12 +24,19 @@ TAG = "g12-verify"
 VALUE = "#<@>"  # short: a line that LinuxCNC reads has 252 characters at most
 LONGEST_LINE = 252
 ENLARGED = 1_000_000  # times: of less than 0.0001 LinuxCNC 2.9 tells that it is 0
+PLACES = ("_x", "_y", "_z", "_c")
 STATE = (
-    *("_x", "_y", "_z", "_c", "_metric", "_absolute", "_lathe_diameter_mode", "_feed"),
+    *(*PLACES, "_metric", "_absolute", "_lathe_diameter_mode", "_feed"),
     *("_units_per_rev", "_rpm", "_motion_mode", "_plane", "_ijk_absolute_mode"),
 )
 FORGOTTEN = 1.0  # F after the preview changed its units; see ``tracer``
-STATE_TEXT = "%.9f" + " ".join(f"#<{name}>" for name in STATE)
+PLACES_ENLARGED = " ".join(f"#<@{name}>=[#<{name}>*{ENLARGED}]" for name in PLACES)
+STATE_TEXT = " ".join(
+    (
+        "%.3f" + " ".join(f"#<@{name}>" for name in PLACES),
+        "%.9f" + " ".join(f"#<{name}>" for name in STATE[len(PLACES) :]),
+    )
+)
 NUMBER = re.compile(r"[0-9]*\.?[0-9]*")
 COMMENT = re.compile(r"\([^)]*\)|;.*")
 FUNCTION = re.compile(r"[a-z]+(?=\[)")
@@ -209,6 +216,7 @@ def before(text: Text, skip: int = 0) -> Iterator[str]:
     ``skip`` is how many lines of other files come first where texts are counted.
     """
     slash = "/" if text.deleted else ""
+    yield f"{slash}{PLACES_ENLARGED}"
     yield f"{slash}(DEBUG,{TAG} begin {skip + text.number} {STATE_TEXT})"
     for index, (_, value) in enumerate(text.words):
         if not is_number(value):
@@ -223,8 +231,10 @@ def assignment(text: Text, value: str) -> str:
 
 
 def after(text: Text, skip: int = 0) -> Iterator[str]:
-    """Return the line that tells that a block is done, and the state it leaves."""
-    yield f"{'/' if text.deleted else ''}(DEBUG,{TAG} end {skip + text.number} {STATE_TEXT})"
+    """Return the lines that tell that a block is done, and the state it leaves."""
+    slash = "/" if text.deleted else ""
+    yield f"{slash}{PLACES_ENLARGED}"
+    yield f"{slash}(DEBUG,{TAG} end {skip + text.number} {STATE_TEXT})"
 
 
 def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
@@ -240,17 +250,24 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
         kind, number, *rest = event.text.split(f"{TAG} ", 1)[1].split()
         values = [float(value) for value in rest]
         if kind == "begin":
-            opened.append(_Opened(texts[int(number) - 1], event.at, values, len(told), {}))
+            state = state_told(values)
+            opened.append(_Opened(texts[int(number) - 1], event.at, state, len(told), {}))
         elif kind == "value":
             opened[-1].values[int(number)] = values[0] / ENLARGED
         else:
             block = _taken(opened, texts[int(number) - 1])
             if block:
-                found.append(_block(block, event.at, values, told, done))
+                found.append(_block(block, event.at, state_told(values), told, done))
                 done = len(told)
     if opened:  # the program ended in it, with M2
-        found.append(_block(opened[-1], len(trace.moves), [], told, done))
+        found.append(_block(opened[-1], len(trace.moves), {}, told, done))
     return found
+
+
+def state_told(values: Sequence[float]) -> dict[str, float]:
+    """Return the state by name of the values that ``STATE_TEXT`` tells."""
+    places, others = values[: len(PLACES)], values[len(PLACES) :]
+    return dict(zip(STATE, (*(value / ENLARGED for value in places), *others)))
 
 
 class _Opened(NamedTuple):
@@ -258,7 +275,7 @@ class _Opened(NamedTuple):
 
     text: Text
     at: int
-    state: list[float]
+    state: dict[str, float]
     told: int
     values: dict[int, float]
 
@@ -273,7 +290,9 @@ def _taken(opened: list[_Opened], text: Text) -> _Opened | None:
     return None
 
 
-def _block(opened: _Opened, end: int, left: list[float], told: Sequence[Event], done: int) -> Block:
+def _block(
+    opened: _Opened, end: int, left: dict[str, float], told: Sequence[Event], done: int
+) -> Block:
     """Return a block that is done; the first ``done`` events came before the last block's end."""
     text, values = opened.text, opened.values
     words = [
@@ -284,10 +303,10 @@ def _block(opened: _Opened, end: int, left: list[float], told: Sequence[Event], 
         text,
         {letter: value for letter, value in words if letter not in ("G", "M", "")},
         *(tuple(value for letter, value in words if letter == wanted) for wanted in ("G", "M", "")),
-        dict(zip(STATE, opened.state)),
+        opened.state,
         opened.at,
         end,
-        dict(zip(STATE, left)),
+        left,
         tuple(told[min(done, opened.told) :]),
         tuple(told[opened.told :]),
     )

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from g12.lengths import MM_PER_INCH
 from g12.tools.path.part import C, X, Z
-from g12.tools.preview.executed_blocks import FORGOTTEN, STATE, Block
+from g12.tools.preview.executed_blocks import FORGOTTEN, PLACES, STATE, Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.codes import Codes
 from g12.tools.verify.shape_form import ShapeForm, polygon_form, round_form, slot_form
@@ -32,7 +32,6 @@ ENTRIES_OF = {
 }
 SAME_DEPTH = 1e-6  # mm: a rest as small is no pass of its own
 CLEARANCE = 1.0  # mm above the face, and beside the stock, where the tool comes down
-PLACES = ("_x", "_y", "_z", "_c")  # of the state: where it ends is judged by the motion
 
 
 class ShapeReading(NamedTuple):
@@ -178,6 +177,6 @@ class ShapeCall:
         return self._state["_rpm"] if self._state["_units_per_rev"] else 1.0
 
     def _leaves(self) -> dict[str, float]:
-        """Return the state behind the call: all that it found, but for X and C."""
+        """Return the state behind the call: all that it found, but for where the tool is."""
         lost = {"_feed"} if self._state["_feed"] == FORGOTTEN else set()
         return {n: self._state[n] for n in STATE if n not in lost.union(PLACES)}
