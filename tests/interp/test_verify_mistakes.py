@@ -247,6 +247,19 @@ def test_where_the_programs_zero_is_is_said(lines, first, proof_of):
     assert as_text(proof_of(*MILL, *lines), MM).splitlines()[0] == first
 
 
+@pytest.mark.parametrize(
+    ("lines", "first"),
+    [
+        (SLOT, "places are those of the machine: the program's zero is Z−90"),
+        (["G7.1 C20", "G1 Z-40 C60 F250", "G7.1 C0"], "lines 5 to 7: G7.1"),
+    ],
+)
+def test_where_the_zero_of_a_face_is_is_said(lines, first, proof_of):
+    moved = ["G10 L2 P1 X20 Z-90 C30", "G0 X18 Z2 C0"]
+    proof = proof_of(*LATHE, *moved, *lines, machine="lathe_mm")
+    assert as_text(proof, MM).splitlines()[0] == first
+
+
 # ---------------------------------------------------------------- in a picture
 
 
@@ -258,7 +271,9 @@ def test_the_picture_of_a_proof_shows_what_stands_and_another_cutter(proof_of):
 
 # ---------------------------------------------------------------- the spindle
 
-STANDS = "the spindle stands still: no M3 or M4 with an S comes before it"
+STANDS = (
+    "the spindle stands still: no M3 or M4 with an S comes before it, or M5 or M6 comes after them"
+)
 POCKET = "G13 I9 Z-2 D4 "
 
 
@@ -270,6 +285,7 @@ POCKET = "G13 I9 Z-2 D4 "
         (["S900 M4", POCKET], False),
         ([POCKET + "S900 M3"], False),
         (["S900 M3", "M5", POCKET], True),
+        (["S900 M3", "T4 M6", POCKET], True),
         (["S900 M3", POCKET, "M5"], False),
         (["M3", POCKET], True),
         (["S900 M3", "M5", "M3", "G0 X1", POCKET], False),

@@ -417,9 +417,16 @@ def test_another_tool_than_d_names_is_found(tmp_path):
     )
 
 
-def test_units_changed_in_the_pockets_own_block(tmp_path):
-    lines = [*MM, "G20 G0 X0 Y0 Z.1", "G21 G13 I8 K40 Q5 Z-12 D4 F500", "M2"]
-    assert proof_of_text(tmp_path, lines).findings == []
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["G20 G0 X0 Y0 Z.1", "G21 G13 I8 K40 Q5 Z-12 D4 F500"],
+        ["G64 P.02", "G0 X0 Y0 Z3", "G20 G13 I.3 K1. Q.3 Z-.5 D4 F20"],
+        ["G64 P.02", "G0 X0 Y0 Z3", "G20 G13.2 X0 Y0 Z-.2 I.1 R1. D1 H1 F20"],
+    ],
+)
+def test_units_changed_in_the_pockets_own_block(lines, tmp_path):
+    assert proof_of_text(tmp_path, [*MM, *lines, "M2"]).findings == []
 
 
 def test_a_program_that_moves_by_its_line_numbers_is_told_in_one_line(tmp_path):

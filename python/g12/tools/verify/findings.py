@@ -38,7 +38,9 @@ MODES = {
     "_ijk_absolute_mode": ("G91.1", "G90.1"),
 }
 LOST_MINUS = "lies above {}, where the tool comes from: it cuts air (a lost minus sign?)"
-SPINDLE_STANDS = "the spindle stands still: no M3 or M4 with an S comes before it"
+SPINDLE_STANDS = (
+    "the spindle stands still: no M3 or M4 with an S comes before it, or M5 or M6 comes after them"
+)
 NOT_CUT = "nothing is cut"
 UNMEASURED = "a cycle cuts here that could not be measured"
 

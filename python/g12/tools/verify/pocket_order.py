@@ -24,6 +24,7 @@ ENDS, DOWN_TO, UP_TO = "it ends at", "it goes down to", "it is fed up to"
 ACT = re.compile(r"(G|M\d|S|tool|dwell (?!0$))")  # of what a trace tells
 TOLD = {43.0, 43.1, 43.2, 49.0, *(54.0, 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59.3)}
 TOLD |= {61.0, 61.1, 64.0, 96.0, 97.0}  # codes of which a trace tells
+UNITS, FORGOTTEN = {20.0, 21.0}, "G64 P0.1 Q0.1"  # what a preview makes of G64 where units change
 
 
 class Misplaced(NamedTuple):
@@ -57,8 +58,9 @@ def left_otherwise(block: Block, leaves: Mapping[str, float]) -> tuple[LeftBehin
 def acts_in(block: Block) -> tuple[str, ...]:
     """Return what a block does besides moving, as a trace tells it, though it does not say so."""
     says_more = block.m_codes or block.words.keys() & {"S", "T"} or set(block.codes) & TOLD
-    told = [] if says_more else [event.text for event in block.own_events]
-    return tuple(dict.fromkeys(text for text in told if ACT.match(text)))
+    told = [] if says_more else [event.text for event in block.own_events if ACT.match(event.text)]
+    forgotten = FORGOTTEN if UNITS.intersection(block.codes) else None
+    return tuple(dict.fromkeys(text for text in told if text != forgotten))
 
 
 def misplaced(

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 
+from g12.tools.path.part import Z
 from g12.tools.path.slowest import Pace
 from g12.tools.preview.moves import message_lines
 from g12.tools.units import Unit, plain
@@ -70,12 +71,17 @@ def as_text(proof: Proof, unit: Unit) -> str:
 
 
 def zero_text(proof: Proof, unit: Unit) -> str:
-    """Return where the program's zero is where it first cuts, "" if places are the program's."""
-    contours = [facts.section for facts in proof.sections]
-    zero = zero_of(proof.circles, contours, proof.subject.trace.moves)
+    """Return where the program's zero is where it first cuts, "" if places are the program's.
+
+    Places of a section are as far from the spindle as the program's; those on a cylinder are the
+    program's.
+    """
+    faces = [facts.section for facts in proof.sections if not facts.section.surface]
+    zero = zero_of(proof.circles, faces, proof.subject.trace.moves)
     if max(abs(zero)) < SAME_ZERO:
         return ""
-    return f"places are those of the machine: the program's zero is {point_text(AXES, zero, unit)}"
+    place = point_text("Z", zero[Z:], unit) if faces else point_text(AXES, zero, unit)
+    return f"places are those of the machine: the program's zero is {place}"
 
 
 def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
