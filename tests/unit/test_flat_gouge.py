@@ -8,9 +8,11 @@ import cmath
 import math
 import random
 import time
+from itertools import accumulate
 
 import numpy as np
 import pytest
+from shapely.geometry import Polygon
 
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat.closing import closing_of
@@ -316,6 +318,78 @@ def test_a_pass_behind_another_goes_the_same_way_within_26_degrees(degrees, foun
     deeper = [Straight(*pair) for pair in zip(corners, corners[1:])]
     text = refusal(stacked(3.0, (-1.0, [first, *others]), (-1.0, [*deeper, *others])))
     assert ("cuts into the other" in text) is found
+
+
+@pytest.mark.parametrize(("count", "found"), [(18, True), (21, False)])
+def test_round_passes_may_not_go_to_both_sides_of_each_other(count, found):
+    """Round ends of sides of half a radius, one half a side on: an eighth from where they cross."""
+    radius, turn = 6.0, 2 * math.pi / count
+    size = 0.25 * radius / math.sin(0.5 * turn)
+    one, other = (
+        [cmath.rect(size, 0.5 * math.pi - k * turn) for k in np.arange(first, 0.5 * count, 1.0)]
+        for first in (0.0, 0.5)
+    )
+    assert (size * (1.0 - math.cos(0.5 * turn)) > 0.02 * radius) is found
+    far = [complex(-3 * radius, -size), complex(-3 * radius, size)]
+    laps = [closed([far[1], *round_end, far[0]]) for round_end in (one, other)]
+    for heights in ((-1.0, -1.0), (-1.0, -2.0), (-2.0, -1.0)):
+        text = refusal(stacked(radius, *zip(heights, laps)))
+        assert ("cuts into the other" in text) is found
+
+
+def peak_of(foot, flank, far, below, pieces):
+    """Return corners of a part with a peak on it, and of one that lies within it, clockwise.
+
+    In degrees: the peak's ``foot``, the ``flank`` up to its top, and its ``far`` side, behind
+    another flank as steep and made of ``pieces``. The parts touch at the origin, where foot and
+    flank meet; from there the inner one runs so far ``below`` the peak.
+    """
+    steep, mild = cmath.rect(1.0, math.radians(flank)), cmath.rect(4.0, -math.radians(far))
+    up, *down = pieces
+    peak = [0j, *accumulate([up * steep, *(piece * steep.conjugate() for piece in down)])]
+    before, behind = -cmath.rect(4.0, math.radians(foot)), peak[-1] + mild
+    low = min(before.imag, behind.imag) - 6
+    ends = [complex(behind.real + 4, low), complex(before.real - 4, low)]
+    outer = [before - 4, before, *peak, behind, behind + 4]
+    way = cmath.rect(1.0, math.radians(0.5 * (foot + flank)))  # the tool hardly cuts into either
+    inner = [before - 4, before - 2, before + 0.8 - 0.5j, -1.2 * way]
+    inner += [-0.001 * way, 0j, 0.001 * way]
+    inner += [cmath.rect(1.02, -math.radians(below)), behind - 0.6 - 0.6j, behind + 4 - 0.8j]
+    return [*outer, *ends], [*inner, *ends]
+
+
+def terraced(outer, inner):
+    """Return a step and a higher one within it, down at the origin, outside of both in one."""
+    way = [cmath.rect(2.0, cmath.phase(b - a)) for a, b in (outer[:2], (inner[-1], inner[0]))]
+    start, end = outer[0] + 1j * way[0], outer[0] + 1j * way[1]
+    contour = Contour(start.real, AIR)
+    contour.line(start.real, start.imag, line=1, feed=300.0)
+    contour.compensation(LEFT, 1.0, line=2)
+    contour.line(outer[0].real, outer[0].imag, line=2, feed=300.0)
+    contour.line(z=-2.0, line=2, feed=300.0)
+    for line, corner in enumerate([*outer[1:], outer[0]], 3):
+        contour.line(corner.real, corner.imag, line=line, feed=300.0)
+    contour.line(z=-1.0, line=30, feed=300.0)
+    for line, corner in enumerate([*inner[1:], inner[0]], 31):
+        contour.line(corner.real, corner.imag, -1.0 if corner else -2.0, line=line, feed=300.0)
+    contour.compensation(40, 0.0, line=60)
+    contour.line(end.real, end.imag, line=60, feed=300.0)
+    return contour
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize(
+    "peak",
+    [(50.0, 60.0, 40.0, 25.0, (0.55, 0.5)), (62.0, 73.0, 45.0, 12.5, (1.5, 0.6, 0.95))],
+)
+def test_passes_that_touch_do_not_cross_where_one_takes_a_longer_way(peak, mirrored):
+    """It goes over a peak, and comes back to where the other has come by the short way below."""
+    outer, inner = peak_of(*peak)
+    if mirrored:
+        outer, inner = ([-p.conjugate() for p in (c[0], *c[:0:-1])] for c in (outer, inner))
+    shapes = [Polygon([(p.real, p.imag) for p in corners]) for corners in (outer, inner)]
+    assert shapes[0].buffer(1e-9).covers(shapes[1])
+    assert refusal(terraced(outer, inner)) == ""
 
 
 def test_a_pass_may_touch_the_tip_of_another():
