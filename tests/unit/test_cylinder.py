@@ -163,6 +163,7 @@ def test_the_pieces_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, de
     middles = (places[1:] + places[:-1]) / 2
     off = np.concatenate([abs(places), abs(middles)]) - size
     assert abs(off).max() <= deviation * (1 + 1e-6) + 1e-9
+    assert abs(off[: len(places)]).max() <= size / 48 + 1e-9  # two thirds of the widest bulge
     assert split.lengths[-1] == pytest.approx(size * sweep)
     angles = np.unwrap(np.angle(places))
     assert (np.diff(angles) * turn > 0).all()
