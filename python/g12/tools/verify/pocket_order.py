@@ -84,7 +84,7 @@ def misplaced(
         *of_entry(places, moves, ends),
         (ENDS, ends[-1], np.array(places.end)),
     ]
-    strays = [*of_climbs(moves, starts, ends)]
+    strays = [*of_climbs(moves, starts, ends, tolerance)]
     strays += of_fast(places, moves, starts, ends) if places.fast is not None else ()
     wrong = [place for place in found if np.abs(place[1] - place[2]).max() > tolerance]
     return tuple(
@@ -165,10 +165,12 @@ def of_fast(places: Places, moves: Sequence[Move], starts: np.ndarray, ends: np.
         yield f"a {KINDS[places.straight]} is missing to", None, np.array([*place, ends[-1][2]])
 
 
-def of_climbs(moves: Sequence[Move], starts: np.ndarray, ends: np.ndarray) -> Strays:
+def of_climbs(
+    moves: Sequence[Move], starts: np.ndarray, ends: np.ndarray, tolerance: float
+) -> Strays:
     """Yield the feed moves straight up, which no cycle has."""
     for move, start, end in zip(moves, starts, ends):
-        if is_upright(move, start, end) and end[2] > start[2]:
+        if is_upright(move, start, end) and end[2] - start[2] > tolerance:
             yield UP_TO, end, None
 
 
