@@ -175,6 +175,14 @@ def test_feeds_are_those_asked_for(feeds, found):
     assert findings(measure(cut([10, 17]), target(cleared=14, feeds=feeds, smooth=False))) == found
 
 
+def test_a_ring_that_falls_a_little_is_no_way_down():
+    hand = cut([17])
+    ring = hand.moves[-2]
+    hand.moves[-2] = ring._replace(start=(*ring.start[:2], -0.996, *ring.start[3:]))
+    facts = measure(hand, target(cleared=14))
+    assert facts.helix is None and facts.left == 0
+
+
 def test_a_block_that_cuts_nothing_is_found():
     hand = Hand().rapid(x=50).rapid(z=-1).rapid(z=0)
     assert findings(measure(hand, target())) == "nothing is cut"

@@ -31,7 +31,13 @@ from g12.tools.verify.pocket_cover import (
     nearest_of,
     polar,
 )
-from g12.tools.verify.pocket_entry import HelixFacts, falls, helices_of, helix_facts
+from g12.tools.verify.pocket_entry import (
+    HelixFacts,
+    falls,
+    helices_of,
+    helix_facts,
+    is_full_circle,
+)
 from g12.tools.verify.pocket_order import LeftBehind, Misplaced, growth_of, misplaced
 from g12.tools.verify.wanted_circle import Target, Wall
 
@@ -254,11 +260,6 @@ def has_other_mode(move: Move, target: Target) -> bool:
         return False
     traverse = target.source.dialect == "yasnac" and move.kind == "feed"
     return (move.feed_mode == "G95") != (target.schedule.rev and not traverse)
-
-
-def is_full_circle(move: Move) -> bool:
-    """Tell whether a move is a full circle."""
-    return move.kind == "arc" and abs(move.sweep) > 2 * math.pi - 1e-9
 
 
 def is_cutting(move: Move, wall: Wall) -> bool:

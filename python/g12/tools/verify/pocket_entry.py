@@ -18,6 +18,7 @@ from g12.tools.units import Unit
 from g12.tools.verify.wanted_circle import HelixAsked, Wall
 
 FALLS = 1e-6
+RING_FALLS = 0.1
 SAME_RADIUS = 2e-3
 SAME_ANGLE = 0.01
 SAME_SLOPE = 1e-3
@@ -63,9 +64,15 @@ def _entry(falling: list[int], own: range, moves: Sequence[Move]) -> EntryMoves:
     return EntryMoves(before if on_arc else None, tuple(falling))
 
 
+def is_full_circle(move: Move) -> bool:
+    """Tell whether a move is a full circle."""
+    return move.kind == "arc" and abs(move.sweep) > 2 * math.pi - 1e-9
+
+
 def falls(move: Move, wall: Wall) -> bool:
-    """Tell whether a move is an arc that goes down."""
-    return move.kind == "arc" and _fall(move, wall) > FALLS
+    """Tell whether a move is an arc that goes down; a circle that does by little is a ring."""
+    least = RING_FALLS if is_full_circle(move) else FALLS
+    return move.kind == "arc" and _fall(move, wall) > least
 
 
 def _fall(move: Move, wall: Wall) -> float:

@@ -155,7 +155,7 @@ def of_fast(places: Places, moves: Sequence[Move], starts: np.ndarray, ends: np.
         if there and np.abs(start[:2] - next_one[0]).max() <= SAME_FAST:
             waiting.pop(0)
             if move.kind != places.straight:
-                yield f"a {KINDS[places.straight]} goes as a {KINDS[move.kind]} to", end, None
+                yield f"a {KINDS[places.straight]} goes as a {KINDS[move.kind]} to", None, end
         elif there and move.kind == places.straight:
             begin, _ = waiting.pop(0)
             yield f"a {KINDS[move.kind]} comes from", start, np.array([*begin, start[2]])
