@@ -226,6 +226,36 @@ def test_a_feed_move_in_front_of_the_section_does_not_cut_its_first_corner(lathe
     assert np.hypot(*(Cut(run).all_points - [14, 0]).T).min() < 1e-4
 
 
+def off_corner(lathe, tolerance, places):
+    """Return how far from the second of three places of X and C plain moves to them pass."""
+    start, *moves = (f"X{x} C{c}" for x, c in places)
+    feeds = [f"G1 {move} F3000" for move in moves]
+    run = lathe.run_text(["G21 G18 G90 G94", f"G64 P{tolerance}", f"G0 {start}", *feeds, "M2"])
+    assert run.error is None
+    x, c = places[1]
+    corner = x * np.array([math.cos(math.radians(c)), math.sin(math.radians(c))])
+    return np.hypot(*(Cut(run).points - corner).T).min()
+
+
+def test_g64_p_limits_a_corner_of_x_and_c_only_where_x_turns_back(lathe):
+    """Which is why a section stops at its corners: LinuxCNC takes the angle of X, Y and Z alone."""
+    back, on = [(14, 0), (20, 20), (14, 40)], [(20, 0), (16, 20), (12, 0)]
+    assert off_corner(lathe, 0.5, back) > 0.1
+    assert off_corner(lathe, 0.01, back) < 0.012
+    rounded = off_corner(lathe, 0.5, on)
+    assert rounded > 0.2
+    assert off_corner(lathe, 0.01, on) == pytest.approx(rounded, abs=0.002)
+
+
+@pytest.mark.parametrize("path", ["G64 P.5", "G64 P.01", "G61"])
+def test_the_programs_path_control_rounds_no_corner_of_a_section(lathe, path):
+    contour = "G1 C2", "X16 C6", "X8 C8", "X6 C4"
+    run = lathe.run_text(section(*contour, before=[path], feed="F3000"))
+    assert run.error is None
+    asked = lines((20, 0), (20, 2), (16, 6), (8, 8), (6, 4))
+    assert distance(Cut(run).points @ FROM_COLUMNS, asked).max() < 0.006
+
+
 @pytest.mark.parametrize("stop", ["(abort,enough)", "(py,raise ValueError)"])
 def test_a_comment_that_stops_the_program_leaves_the_programs_modes(stop):
     overrides = {"AXIS_C": {"WRAPPED_ROTARY": "1"}}

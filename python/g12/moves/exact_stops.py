@@ -5,7 +5,8 @@ LinuxCNC blends two straight moves by starting the second while the first slows 
 half the acceleration a. Where the path turns by the angle d at the speed v that takes t = 2 v / a,
 and the tool passes the corner at the distance |v2 - v1| t / 8 = sin(d / 2) v**2 / (2 a). The second
 move gathers speed as fast as its own axes can, so the distance is greater where these are quicker
-than those of the first, up to 2.2 times. With a C axis in motion the P of G64 limits none of it.
+than those of the first, up to 2.2 times. With a C axis in motion the P of G64 limits it only where
+X turns back or stands, as LinuxCNC takes the angle of X, Y and Z alone: so it is not relied on.
 
                * corner
            . ' | ' .            The velocity turns from v1 to v2 in the time t at the even rate

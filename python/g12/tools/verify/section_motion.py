@@ -3,11 +3,14 @@
 
 LinuxCNC blends two moves by starting the second while the first slows down, each with half the
 acceleration a. Where the path turns by the angle d at the speed v, the tool passes the corner at
-sin(d / 2) v**2 / (2 a). With a C axis in motion, G64 P limits none of it: only an exact path or
-stop does. The speeds are those that F and the axes allow, of the accelerations the greatest counts:
-a corner that is told of is rounded by more. On the face of the kinematics G64 P holds, if it is not
-0. Chords make corners too: so it must be one of the words between two lines, or C that turns in
-place.
+sin(d / 2) v**2 / (2 a). With a C axis in motion G64 P limits it only where X turns back or stands:
+LinuxCNC takes the angle of X, Y and Z alone. X20 C0, X16 C20, X12 C0 at F3000 misses its corner by
+1.41 mm on 2.9.0, by 0.31 on 2.10, with P0.5 as with P0.001; X14 C0, X20 C20, X14 C40 by 0.51 and
+0.12 mm with P0.5, and by about P or less below. So only an exact path or stop counts. The speeds
+are those that F and the axes allow, of the accelerations the greatest counts: a corner that is told
+of is rounded by more, but where 2.10 exceeds the accelerations (its issue 4539). On the face of the
+kinematics G64 P holds, if it is not 0. Chords make corners too: so it must be one of the words
+between two lines, or C that turns in place.
 
 Lengths are millimetres along the part.
 """
