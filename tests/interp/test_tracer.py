@@ -190,6 +190,14 @@ def test_block_is_the_line_of_the_program_however_deep(mill):
     assert [move.line for move in moves] == [1, 3, 4, 4, 0, 6, 2, 3, 4, 8]
 
 
+def test_the_repeats_of_m98_are_moves_of_its_line(mill):
+    """LinuxCNC counts a line less while more are to come."""
+    subs = "O100\nG91 G1 X1\nM99\nO200\nG91 G1 Y1\nM99\n"
+    calls = "M98 P100 L2 (M98)\nG0 X5\nm98 l3 p 200\nM98 P100\nM98 P200\nM98 P100 L2\nM2\n"
+    moves = mill.trace_text(f"F100\n{calls}{subs}").moves
+    assert [move.block for move in moves] == [2, 2, 3, 4, 4, 4, 5, 6, 7, 7]
+
+
 @pytest.mark.parametrize(
     ("block", "text"),
     [

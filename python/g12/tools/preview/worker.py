@@ -33,7 +33,9 @@ MEANINGS_CHANGED = "g12: the axes mean something else now"  # what `g12.host` sa
 PLANES = {1: 17, 2: 19, 3: 18}
 ARC_AXES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis
 PR_SET_PDEATHSIG = 1  # of Linux: the signal a process gets when its parent dies
-CALL_OF_REMAP = 4  # call_type of a remap's frame
+CALL_BY_M98, CALL_OF_REMAP = 2, 4  # call_type of a frame
+M98 = re.compile(rb"M98(?!\d)")
+COMMENT = re.compile(rb"\(.*?\)|;.*|\s")
 STATE = (
     "motion_mode", "plane", "length_units", "distance_mode", "ijk_distance_mode", "feed_mode",
     "feed_rate", "retract_mode", "cutter_comp_side", "cutter_comp_radius", "origin_index",
@@ -120,7 +122,9 @@ class Lines:
     def __init__(self, program: str) -> None:
         self._program = program
         with open(program, "rb") as file:
-            self._ends = [match.start() for match in re.finditer(b"\n", file.read())]
+            text = file.read()
+        self._ends = [match.start() for match in re.finditer(b"\n", text)]
+        self._lines = text.split(b"\n")
 
     def now(self) -> int:
         """Return the program's line during execution."""
@@ -130,7 +134,7 @@ class Lines:
         if this.sub_context[1].call_type == CALL_OF_REMAP:
             own = this.filename == self._program and this.sequence_number  # a remap may set it
             return own or self._of_remap(this)
-        return this.sub_context[0].sequence_number
+        return self._of_call(this)
 
     def of_error(self) -> int:
         """Return the program's line after the interpreter gave up and left all calls.
@@ -163,6 +167,19 @@ class Lines:
 
     def _of_remap(self, this) -> int:
         return bisect.bisect_left(self._ends, this.blocks[1].offset) + 1
+
+    def _of_call(self, this) -> int:
+        """Return the line of a call: LinuxCNC counts one less while M98 L is to be repeated."""
+        line, sub = this.sub_context[0].sequence_number, this.sub_context[1]
+        if sub.call_type != CALL_BY_M98 or self._calls(line, sub.subname):
+            return line
+        return line + 1
+
+    def _calls(self, line: int, sub: str) -> bool:
+        """Tell whether a line calls a numbered sub by M98, or may, with an expression."""
+        text = COMMENT.sub(b"", b"".join(self._lines[line - 1 : line])).upper()
+        number = re.search(rb"P(\d+)", text)
+        return bool(M98.search(text)) and (not number or int(number[1]) == int(sub))
 
 
 class Canon:
