@@ -99,6 +99,7 @@ def test_the_heading_is_the_first_comment_that_is_no_licence(tmp_path):
 
 def test_times_are_told_in_minutes():
     assert (clock(9.96), clock(125.4)) == ("10.0 s", "2 min 5 s")
+    assert (clock(59.94), clock(59.96), clock(299.7)) == ("59.9 s", "1 min 0 s", "5 min 0 s")
 
 
 # ---------------------------------------------------------------- what is shown
@@ -285,7 +286,9 @@ def both(hand, ini=MILL):
 
 
 def test_the_top_of_the_part_is_z0_if_the_tool_goes_through_it():
-    assert plan_view.top_of(scene(pocket())) == 0.0
+    shown = scene(pocket())
+    assert plan_view.top_of(shown) == 0.0
+    assert plan_view.top_of(replace(shown, seen=Seen(z0=-1.5))) == -1.5
     assert plan_view.top_of(scene(Hand().rapid(z=-1).line(z=-3).line(x=5))) == -1.0
 
 

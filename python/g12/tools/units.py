@@ -62,5 +62,7 @@ def plain(value: float, decimals: int) -> str:
 
 def clock(seconds: float) -> str:
     """Return a time in words."""
-    minutes, rest = divmod(seconds, 60)
-    return f"{int(minutes)} min {rest:.0f} s" if minutes else f"{rest:.1f} s"
+    if round(seconds, 1) < 60:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s"

@@ -148,11 +148,12 @@ def with_near_rapids(
 
 def top_of(scene: Scene) -> float:
     """Return the top of the part: Z0 if the tool goes down through it, else where it feeds from."""
+    z0 = scene.seen.z0
     cutting = [move for move in scene.moves if move.kind != "rapid"] or scene.moves
     lowest = min(min(move.start[2], move.end[2]) for move in cutting)
     highest = max(max(move.start[2], move.end[2]) for move in scene.moves)
-    if lowest < 0 < highest:
-        return 0.0
+    if lowest < z0 < highest:
+        return z0
     return max(max(move.start[2], move.end[2]) for move in cutting)
 
 

@@ -180,8 +180,11 @@ class InStock:
 def zero_of(
     circles: Circles, sections: Sequence[SectionContour], moves: Sequence[Move]
 ) -> np.ndarray:
-    """Return the program's zero where it first cuts; on a lathe X is that of the spindle."""
-    for section in sections:
+    """Return the program's zero where it first cuts; on a lathe X is that of the spindle.
+
+    A section on a cylinder tells nothing of it.
+    """
+    for section in (each for each in sections if not each.surface):
         return np.array([0.0, 0.0, moves[section.at].start[Z] - section.height])
     for block, _ in circles:
         return BlockInMm(block, moves[block.at]).zero()

@@ -76,11 +76,11 @@ def zero_text(proof: Proof, unit: Unit) -> str:
     Places of a section are as far from the spindle as the program's; those on a cylinder are the
     program's.
     """
-    faces = [facts.section for facts in proof.sections if not facts.section.surface]
-    zero = zero_of(proof.circles, faces, proof.subject.trace.moves)
+    contours = [facts.section for facts in proof.sections]
+    zero = zero_of(proof.circles, contours, proof.subject.trace.moves)
     if max(abs(zero)) < SAME_ZERO:
         return ""
-    place = point_text("Z", zero[Z:], unit) if faces else point_text(AXES, zero, unit)
+    place = point_text("Z", zero[Z:], unit) if contours else point_text(AXES, zero, unit)
     return f"places are those of the machine: the program's zero is {place}"
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from shapely.affinity import translate
 from shapely.geometry.base import BaseGeometry
 
+from g12.tools.path.part import Z
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
@@ -24,7 +25,7 @@ from g12.tools.verify.findings import (
     other_tool,
     stock_findings,
 )
-from g12.tools.verify.in_stock import StockFacts
+from g12.tools.verify.in_stock import StockFacts, zero_of
 from g12.tools.verify.pocket import left_of
 from g12.tools.verify.proof import (
     POCKET_TOLERANCE,
@@ -64,7 +65,8 @@ class WrongCutter(NamedTuple):
 class Seen(NamedTuple):
     """What there is to warn of, the stock, and lines of pockets whose spindle stands.
 
-    ``surface`` is the radius of the cylinder that the program cuts on, 0 without one.
+    ``surface`` is the radius of the cylinder that the program cuts on, 0 without one. ``z0`` is
+    how high the program's Z0 is where it first cuts, as far as that is known.
     """
 
     collisions: tuple[Collision, ...] = ()
@@ -73,6 +75,7 @@ class Seen(NamedTuple):
     stock: StockFacts | None = None
     still: tuple[int, ...] = ()
     surface: float = 0.0
+    z0: float = 0.0
 
     @property
     def rapids(self) -> tuple[Collision, ...]:
@@ -133,8 +136,8 @@ def seen_of(
         for block, target in circles
         if stands_still(trace.events, block.end, subject.ini)
     )
-    surface = surface_of(sections)
-    return Seen(tuple(hits), tuple(rings), tuple(cutters), stock, tuple(still), surface)
+    surface, z0 = surface_of(sections), float(zero_of(circles, sections, trace.moves)[Z])
+    return Seen(tuple(hits), tuple(rings), tuple(cutters), stock, tuple(still), surface, z0)
 
 
 def surface_of(sections: Sequence[SectionContour]) -> float:
