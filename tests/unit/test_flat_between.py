@@ -234,7 +234,9 @@ def test_what_another_depth_cuts_is_told():
 
 
 @pytest.mark.parametrize("depths", [(-3.0,), (-2.0, -4.0), (-4.0, -2.0), (-2.0, -3.0, -4.0)])
-@pytest.mark.parametrize("others", [(-3.0,), (-2.0,), (-1.0, -5.0), (-5.0, -4.0), (-4.0, -1.0)])
+@pytest.mark.parametrize(
+    "others", [(-3.0,), (-2.0,), (-1.0, -5.0), (-5.0, -4.0), (-4.0, -1.0), (-2.0, -5.0)]
+)
 def test_a_deep_cut_is_refused_where_both_are_cut_at_one_height(depths, others):
     (one, _), (other, _) = near(4.0, -5.0)
     cuts = [*((one, z) for z in depths), *((other, z) for z in others)]
@@ -262,6 +264,8 @@ ROUND = [FACE, BEHIND, Straight(40 + 20j, 40 - 20j), IN_FRONT]
         (ROUND, False),
         (ROUND[1:] + ROUND[:1], False),
         (ROUND[2:] + ROUND[:2], False),
+        ([Straight(14 - 20j, 14 + 30j), *BESIDE], True),
+        ([Straight(14 - 20j, 14 + 50j), *BESIDE[1:]], True),
         ([Straight(14 - 20j, 14 + 25j), Straight(14 + 25j, 14 + 30j), *BESIDE], True),
         ([Straight(14 - 5j, 14 + 25j), Straight(14 + 25j, 14 + 30j), *BESIDE], True),
         ([BESIDE[0].between(-2.5, 1.0), *BESIDE[1:3], BESIDE[3].between(0.0, 1.4)], True),
@@ -310,6 +314,31 @@ def test_a_wall_is_as_high_as_the_highest_of_its_levels(levels, height, told):
         assert not text and bool(notes) is told
 
 
+@pytest.mark.parametrize(
+    ("levels", "height", "told"),
+    [((-5.0,), -5.0, False), ((-5.0,), -3.0, True), ((-3.0, -5.0), -3.0, False)],
+)
+def test_a_pass_above_the_material_enters_nothing(levels, height, told):
+    """It comes across the square, at a height, and goes down and away along a face beside it."""
+    corners = [-40 + 0j, 14 + 0j, 14 + 40j, 40 + 40j]
+    across = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
+    walls, other = [(FACED, z) for z in levels], (across, [height, -5.0, -5.0])
+    for parts in ([*walls, other], [other, *walls]):
+        text, notes = found(*parts)
+        assert not text and bool(notes) is told  # the square's own pass cuts off the step's wall
+
+
+@pytest.mark.parametrize(("over", "refused"), [(UP, True), (-5.0, False)])
+def test_a_way_through_the_air_enters_nothing(over, refused):
+    """It goes along a face beside the square, then over the square or through it."""
+    corners = [40 - 40j, 14 - 40j, 14 + 0j, -40 + 0j, -40 - 40j]
+    way = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
+    other = way, [-5.0, -5.0, over, -5.0]
+    for parts in ([(FACED, -5.0), other], [other, (FACED, -5.0)]):
+        text, notes = found(*parts)
+        assert ("cuts into the other" in text) is refused and notes == []
+
+
 @pytest.mark.parametrize(("tolerances", "told"), [(0.9, False), (1.8, True), (2.2, False)])
 def test_what_enters_the_material_by_two_tolerances_is_meant(tolerances, told):
     x = 10.0 - tolerances * TOLERANCE
@@ -327,7 +356,8 @@ def test_one_cut_may_be_meant_and_another_of_the_same_contour_told():
     for k in range(8):
         right = 3 + (-(k // 2) % 4 or k % 2 * 4)  # its line; of two halves the second one's
         note = f"G12.1 line {12 + k % 2}: the tool cuts 2 into the contour of line {right}"
-        assert found((begun_at(bar, k), -5.0), (slot_and_face, -5.0)) == ("", [note])
+        text, notes = found((begun_at(bar, k), -5.0), (slot_and_face, -5.0))
+        assert (text, of_passes(notes, begun_at(bar, k), slot_and_face)) == ("", [note])
 
 
 @pytest.mark.parametrize(
@@ -360,7 +390,7 @@ def test_cuts_of_two_walls_with_air_between_them_are_two():
         [(other, -5.0), (walls, [-5.0, UP, -5.0])],
     ):
         text, notes = found(*parts)
-        assert not text and len(notes) == 1
+        assert not text and len(of_passes(notes, *(drawn for drawn, _ in parts))) == 1
 
 
 def test_a_cut_that_goes_on_over_the_beginning_is_one():
@@ -376,6 +406,59 @@ def test_a_ramp_that_cuts_another_contour_is_told():
     assert found((FACED, -5.0), (beside, -5.0)) == ("", [])
     text, notes = found((FACED, -5.0), (beside, -5.0), ramp=11j)
     assert not text and len(notes) == 1
+
+
+def tip(turn, angle, at, begins):
+    """Return a boss with one corner of so many degrees, at a place: it points to +x, turned.
+
+    ``begins``: 1 or 2; at the corner itself no arc would lead about it.
+    """
+    half = math.radians(angle / 2)
+    corners = [0j, *(-20 * cmath.exp(k * half * 1j) for k in (1, -1))]
+    shapes = closed([at + corner * cmath.rect(1.0, turn) for corner in corners])
+    return boss(shapes[begins:] + shapes[:begins], 3.0)
+
+
+def of_passes(notes, *drawn):
+    """Return notes without those that tell what a ramp cuts."""
+    ramps, line = set(), 1
+    for part in drawn:
+        ramps |= {line + 1, line + 2 + len(part.shapes)}
+        line += 4 + len(part.shapes)
+    return [note for note in notes if int(note.split()[2][:-1]) not in ramps]
+
+
+def told_depths(notes):
+    return [float(note.split(" cuts ")[1].split()[0]) for note in notes]
+
+
+@pytest.mark.parametrize("angle", [40, 70, 100])
+@pytest.mark.parametrize("gap", [3.6, 4.48, 4.52, 5.3])
+def test_the_deepest_pass_counts_at_every_place(angle, gap):
+    """Two corners that point to each other: beside the arcs about them all is shallower."""
+    for k in range(8):
+        one = tip(0.0, angle, 0j, 1 + k % 2)
+        other = tip(math.pi - 0.2 * k, angle, gap + 0j, 1 + k // 2 % 2)
+        deep = 6.0 - as_shapely(one.shapes).distance(as_shapely(other.shapes))
+        text, notes = found((one, -5.0), (other, -5.0))
+        assert bool(text) == (deep > 1.5), k
+        assert text or told_depths(notes) == [pytest.approx(deep, abs=TOLERANCE)]
+
+
+@pytest.mark.parametrize("depths", [(-5.0, -5.0), (-5.0, -6.0)])
+@pytest.mark.parametrize(("gap", "ramp"), [(4.4, 3.3), (4.4, 9.0), (5.3, 3.3), (5.3, 9.0)])
+def test_a_ramp_never_hides_a_pass(depths, gap, ramp):
+    """The second square begins where it is nearest to the first, its ramp comes from in there."""
+    at = 10 + gap
+    square = [at + 0j, at + 5j, at + 10 + 5j, at + 10 - 5j, at - 5j]
+    other = boss(closed(square), 3.0)
+    text, notes = found((FACED, depths[0]), (other, depths[1]), ramp=ramp * 1j)
+    assert bool(text) == (gap < 4.5 and depths[0] == depths[1])
+    across = min(ramp - gap, 0.0)  # from the first square's side to where the ramp begins
+    assert text or told_depths(notes) == [
+        pytest.approx(6.0 - gap, abs=TOLERANCE),
+        pytest.approx(3.0 + across, abs=TOLERANCE),
+    ]
 
 
 def test_a_tool_smaller_than_the_tolerance_cuts_into_nothing():
@@ -428,15 +511,20 @@ def two(draw):
     return [Drawn(made, side, radius, made) for made, side in zip(shapes, sides)]
 
 
-def cut_depth(monkeypatch, parts):
-    """Return how deep the tool of one of two parts cuts the other, None if one cannot be cut."""
+def cut_depths(monkeypatch, parts):
+    """Return how deep the tool of one of two parts cuts the other, and without its ramps.
+
+    Minus infinity for both if one cannot be cut.
+    """
     try:
         paths = [blind_path(monkeypatch, contour_of(part)) for part in parts]
     except Refusal:
-        return None
+        return -math.inf, -math.inf
     if any(refused(part) for part in parts):
-        return None
-    return max(depth(path, part) for path, part in zip(paths, parts[::-1]))
+        return -math.inf, -math.inf
+    deep = max(depth(path, part) for path, part in zip(paths, parts[::-1]))
+    passes = [[way for way in path if 2 < way.line < 9000] for path in paths]
+    return deep, max(depth(path, part) for path, part in zip(passes, parts[::-1]))
 
 
 def refused(part):
@@ -449,8 +537,10 @@ def test_what_cuts_into_another_is_found_and_nothing_else(monkeypatch):
     for seed in SEEDS:
         draw = random.Random(seed)
         parts = two(draw)
-        deep = cut_depth(monkeypatch, parts) if parts else None
-        if deep is None:
+        if not parts:
+            continue
+        deep, of_pass = cut_depths(monkeypatch, parts)
+        if deep == -math.inf:
             continue
         text, notes = found(*((part, -1.0) for part in parts))
         met = max(enters(*parts), enters(*parts[::-1]))
@@ -464,9 +554,11 @@ def test_what_cuts_into_another_is_found_and_nothing_else(monkeypatch):
             assert (text, notes) == ("", []), seed
         elif deep > 1.5 * TOLERANCE:
             count["wrong"] += 1
-            assert text or notes, seed
+            assert text or max(told_depths(notes)) == pytest.approx(deep, abs=TOLERANCE), seed
             count["refused"] += bool(text)
-            assert not text or deep > DEEPEST_TOLD * parts[0].radius, seed
+            limit = DEEPEST_TOLD * parts[0].radius
+            if abs(of_pass - limit) > TOLERANCE:
+                assert bool(text) == (of_pass > limit), seed
     assert min(count["right"], count["wrong"], count["met"], count["refused"]) >= len(SEEDS) / 50
 
 
@@ -514,35 +606,25 @@ def test_what_would_take_too_long_is_not_compared(monkeypatch, most, compared):
     assert bool(found(*((one, -5.0) for one in bosses))[0]) is compared
 
 
-def waves(count, radius, turns=10):
+def waves(count, radius, turns=10, made=boss):
     angles = [2 * math.pi * k / count for k in range(count + 1)]
     points = [cmath.rect(radius + 2.0 * math.sin(turns * a / 2), -a) for a in angles]
-    return boss([Straight(*pair) for pair in zip(points, points[1:])], 3.0)
+    return made([Straight(*pair) for pair in zip(points, points[1:])], 3.0)
 
 
 @pytest.mark.parametrize(
-    "parts",
+    ("parts", "told"),
     [
-        [(waves(5000, 20.5), -1.0), (waves(5000, 20.0), -1.0)],
-        [(waves(200, 20.0 + 0.1 * k), -1.0 - k) for k in range(50)],
+        ([(waves(5000, 20.5), -1.0), (waves(5000, 20.0), -1.0)], False),
+        ([(waves(200, 20.0 + 0.1 * k), -1.0 - k) for k in range(50)], False),
+        ([(waves(5000, 20.0), -1.0), (waves(5000, 25.0, made=pocket), -1.0)], True),
+        ([(waves(5000, 20.0), -1.0), (waves(5000, 19.992), -1.0)], True),
     ],
 )
-def test_ten_thousand_elements_are_not_compared_each_with_each(parts):
+def test_ten_thousand_elements_are_not_compared_each_with_each(parts, told):
     contour = section(*parts)
     assert len(contour.elements) > 9_900
     start = time.process_time()
     tool_path(contour, contour.elements, TOLERANCE)
-    assert time.process_time() - start < 8.0  # below one where nothing else runs
-    assert contour.notes == []
-
-
-@pytest.mark.parametrize("offset", [4.0, -4.0])
-@pytest.mark.parametrize("place", [(10.0, 3.0), (12.0, -3.5), (11.0, 0.0)])
-def test_a_tool_touches_its_contour_where_it_begins_and_ends_to_cut_a_place(place, offset):
-    """Its centre is then nearly its radius from the place: a Pythagorean triangle."""
-    way = Line(1, 1.0, offset, 0.0, 0.0, 0.0, 30.0, 0.0, 0.0)
-    touches = list(between._touches(way, place, offset))
-    half = math.sqrt(offset**2 - place[1] ** 2)
-    along = [place[0] + share * between.COVERED * half for share in (0.0, -1.0, 1.0)]
-    assert touches == pytest.approx([(x, -offset) for x in along])
-    assert 0.9 < between.COVERED < 1.0
+    assert time.process_time() - start < 8.0  # below one, told two, where nothing else runs
+    assert bool(contour.notes) is told

@@ -8,18 +8,20 @@ standing what the tool of one takes away. That is refused where
 
 - neither of them enters the other one's material anywhere;
 - the contour that is cut closes, and is not cut from end to end;
-- what cuts it is no lead, and at a height at which it is cut itself;
+- what cuts it is no lead and no ramp, and at a height at which it is cut itself;
 - the cut is deeper than an allowance for finishing can be: an offset that is too large on purpose
   makes a way between two contours narrower by twice the allowance.
 
-Otherwise it is only told, one line for each two contours. Program units.
+Otherwise it is only told with its greatest depth, one line for each two contours, and another one
+where a ramp cuts deeper. Program units.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from functools import cached_property
-from math import copysign, hypot, inf, sqrt
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cached_property, partial
+from math import copysign, hypot, inf
 from typing import NamedTuple
 
 from g12.errors import number
@@ -58,7 +60,7 @@ from g12.flat.nearby import Box, Boxes, near_passes
 ALLOWANCE = 0.5  # of the tool's radius: what is cut deeper is none that a finishing pass takes off
 ENTERED = 2.0  # tolerances: so deep is what enters the material
 BESIDE_LAST = 3  # passes: so many on either side of the one that cut the last place are tried first
-COVERED = 0.98  # of the way on which the tool covers a place
+FINEST = 8.0  # tolerances: in steps twice as long a contour is followed into the material
 MOST = 15_000  # pairs of a move and a pass; what would need more is not compared
 EACH = 10  # pairs: so long takes the look for them in two contours
 
@@ -76,11 +78,15 @@ class _Hit(NamedTuple):
 
 
 class _Verdict(NamedTuple):
-    """A run that is not meant: the lines of both moves, how deep, and whether it is refused."""
+    """A run that is not meant: the lines of both moves, how deep, and whether it is refused.
+
+    ``ramp``: the other move is one with G40, G41 or G42.
+    """
 
     line: int
     by: int
     deep: float
+    ramp: bool
     refused: bool
 
 
@@ -92,7 +98,7 @@ def check_contours(contour: Contour, cuts: Sequence[Cut], tolerance: float) -> N
     followed = [one for one in followed if one.heights and one.radius > tolerance]
     if len(followed) < 2:
         return
-    told: dict[tuple[int, int], _Verdict] = {}
+    told: dict[tuple[int, int, bool], _Verdict] = {}
     for one, other, verdict in _verdicts(followed):
         lines = sorted((verdict.line, verdict.by))
         if verdict.refused:
@@ -101,7 +107,7 @@ def check_contours(contour: Contour, cuts: Sequence[Cut], tolerance: float) -> N
                 f"the tool of radius {number(followed[one].radius)} cannot follow both lines "
                 f"{lines[0]} and {lines[1]}: beside one of them it cuts into the other",
             )
-        pair = min(one, other), max(one, other)
+        pair = min(one, other), max(one, other), verdict.ramp
         if pair not in told or told[pair].deep < verdict.deep:
             told[pair] = verdict
     for verdict in told.values():
@@ -139,7 +145,7 @@ def _verdicts(followed: list[_Followed]) -> Iterator[tuple[int, int, _Verdict]]:
         left = [hit for hit in run if hit.order not in gone]
         if left:
             apart = (one, other) not in meant and (other, one) not in meant
-            yield one, other, meeting.verdict(left, apart)
+            yield from ((one, other, verdict) for verdict in meeting.verdicts(left, apart))
 
 
 def _meetings(followed: list[_Followed]) -> Iterator[tuple[int, int, _Meeting]]:
@@ -192,6 +198,7 @@ class _Followed:
         self.levels = {_level(self.moves[index].z1) for index in self.parts}
         ways = [(k, way) for k, cut in enumerate(cuts) for way in cut.path if is_move(way)]
         ways += [(RAMP, way) for ramp in ramps for way in ramp.path if is_move(way)]
+        self._all_ways = ways
         self.ways = without_repeats(ways)
         self.signature = self.offset, tuple(dict.fromkeys(map(in_plane, self.moves)))
 
@@ -200,6 +207,7 @@ class _Followed:
         for index, height in other.heights.items():
             self.heights[index] = max(height, self.heights.get(index, height))
         self.levels |= other.levels
+        self._all_ways += other._all_ways
         self.ways = without_repeats([*self.ways, *other.ways])
 
     @cached_property
@@ -237,24 +245,31 @@ class _Followed:
         """A circle round each pass: centre and radius."""
         return [_ball(way) for _, way in self.ways]
 
-    def height_of(self, point: Point, reach: float) -> float:
+    @cached_property
+    def levels_of(self) -> dict[tuple, set[int]]:
+        """The heights of each pass, by its place in the plane."""
+        levels: dict[tuple, set[int]] = {}
+        for _, way in self._all_ways:
+            levels.setdefault(in_plane(way), set()).add(_level(way.z1))
+        return levels
+
+    def height_of(self, point: Point) -> tuple[float, bool]:
         """Return how far a point is from the contour, below zero in its material.
 
-        Beyond the ends of an open contour nobody knows: -inf.
+        And whether it is beyond an end of an open contour: nobody knows what is there.
         """
         x, c = point
-        nearest, height, at_end = inf, -inf, False
-        for _, move in self.walls.near((x, c, x, c), reach):
+        nearest, _ = self.walls.nearest(point, inf, lambda *_: True)
+        height, at_end = 0.0, False
+        for _, move in self.walls.near((x, c, x, c), nearest + SAME_PLACE):
             px, pc = nearest_place(move, point)
-            away = hypot(x - px, c - pc)
-            if away > nearest + SAME_PLACE:
+            if hypot(x - px, c - pc) > nearest + SAME_PLACE:
                 continue
             tx, tc = direction_at(move, (px, pc))
             across = copysign(1.0, self.offset) * (tx * (c - pc) - tc * (x - px))
-            if away < nearest - SAME_PLACE or abs(across) > abs(height):
+            if abs(across) >= abs(height):
                 height, at_end = across, self._is_end(px, pc)
-            nearest = min(nearest, away)
-        return -inf if at_end else copysign(nearest, height)
+        return copysign(nearest, height), at_end
 
     def _is_end(self, x: float, c: float) -> bool:
         """Return whether a place is an end of an open contour."""
@@ -264,12 +279,34 @@ class _Followed:
         ends = (first.x0, first.c0), (last.x1, last.c1)
         return any(hypot(x - ex, c - ec) <= SAME_PLACE for ex, ec in ends)
 
-    def leads(self, index: int) -> bool:
-        """Return whether a pass for a move may be one to lead in or out; RAMP's always is."""
+    @cached_property
+    def loose(self) -> list[Point]:
+        """The ends of what may be cut, where nothing else of it goes on."""
+        ends = [end for part in self.parts.values() for end in _ends(part)]
+        rounded = [tuple(round(value / SAME_PLACE) for value in end) for end in ends]
+        count = Counter(rounded)
+        return [end for end, place in zip(ends, rounded) if count[place] == 1]
+
+    def known(self, point: Point, height: float) -> Iterator[float]:
+        """Yield how far from a point one is not yet beyond each loose end."""
+        for x, c in self.loose:
+            yield 0.5 * (hypot(point[0] - x, point[1] - c) - abs(height))
+
+    def leads(self, index: int, centre: Point) -> bool:
+        """Return whether a pass for a move may be one to lead in or out, at a place of the tool."""
         closing = self.closing
-        if closing.closed and not closing.crossing:
-            return not closing.first <= index <= closing.last
-        return not closing.first < index < closing.last
+        if not closing.closed or closing.crossing:
+            return not closing.first < index < closing.last
+        if closing.first < index < closing.last:
+            return False
+        first, last = closing.part(index, self.moves[index])
+        at = self._share(index, centre)
+        return not first < last or 0.0 < first >= at or 1.0 > last <= at
+
+    def _share(self, index: int, centre: Point) -> float:
+        """Return at which part of a move the tool is, 0 to 1."""
+        move = self.moves[index]
+        return along_start(move, nearest_place(move, centre)) / path_length(move)
 
 
 class _Meeting:
@@ -281,6 +318,8 @@ class _Meeting:
         self.pairs = 0  # that were looked at
         self._hits: list[_Hit] = []
         self._last = 0  # pass that cut the last place
+        self._entered: dict[int, list[Line | Arc]] = {}  # parts of passes, by these
+        self._air = (0.0, 0.0), 0.0  # a place and how far round it nothing is in the material
 
     def runs(self) -> list[list[_Hit]]:
         """Return the runs of the contour's places that the other one's passes cut."""
@@ -301,35 +340,134 @@ class _Meeting:
 
     def is_meant(self, run: list[_Hit]) -> bool:
         """Return whether the other contour enters the material anywhere in a run."""
-        if any(self._enters(hit.place, hit.by) for hit in run):
+        other = self._other
+        if any(self._covers(part, hit) for hit in run for part in self._entering(hit.by)):
             return True
-        for hit in run:
-            x, c = hit.place
-            passes = self._other.passes.near((x, c, x, c), self._reach)
-            if any(self._enters(hit.place, -1 - number) for number, _ in passes):
-                return True
-        return False
+        if any(self._is_inside_beside(hit) for hit in run):
+            return True
+        box = _box_round(hit.place for hit in run)
+        near = sorted(-1 - number for number, _ in other.passes.near(box, self._reach))
+        parts = [(0, part) for by in near for part in self._entering(by)]
+        if not parts:
+            return False
+        tree = Boxes(parts)
+        return any(
+            self._covers(part, hit)
+            for hit in run
+            for _, part in tree.near((*hit.place, *hit.place), self._reach)
+        )
 
-    def verdict(self, run: list[_Hit], apart: bool) -> _Verdict:
-        """Return what to say of places that are not meant to be cut.
+    def _covers(self, part: Line | Arc, hit: _Hit) -> bool:
+        """Return whether the tool cuts a place on a part of a pass."""
+        low = _is_low(part, self._wall.heights[hit.index])
+        return low and distance_from(part, hit.place) < self._reach
+
+    def _entering(self, by: int) -> list[Line | Arc]:
+        """Return on which parts of a pass the other contour is in the material."""
+        if by not in self._entered:
+            index, way = self._other.ways[by]
+            self._entered[by] = [] if index == RAMP else list(self._parts_inside(way))
+        return self._entered[by]
+
+    def _parts_inside(self, way: Line | Arc) -> Iterator[Line | Arc]:
+        """Yield the parts of a pass on which the tool touches its contour in the material."""
+        waiting = [(0.0, 1.0)]
+        while waiting:
+            first, last = waiting.pop()
+            inside = self._is_inside(way, first, last)
+            if inside:
+                yield part_of_move(way, first, last)
+            elif inside is None:
+                middle = 0.5 * (first + last)
+                waiting += [(middle, last), (first, middle)]
+
+    def _is_inside(self, way: Line | Arc, first: float, last: float) -> bool | None:
+        """Return whether that is so on a part of a pass; None where it may change."""
+        centre = place_at(way, 0.5 * (first + last))
+        touch = _touch(way, centre, self._other.offset)
+        half = 0.5 * (last - first) * _touched_length(way, touch)
+        if self._is_clear(touch, half):
+            return False
+        height, inside = self._height(touch)
+        if abs(height) - half > 2.0 * self._other.radius:
+            return False  # from there the tool does not reach the contour
+        if half <= FINEST * self._wall.tolerance or self._is_clear(touch, half):
+            return inside
+        return True if height + half < -ENTERED * self._wall.tolerance else None
+
+    def _is_inside_beside(self, hit: _Hit) -> bool:
+        """Return whether the tool touches its contour in the material where a place is cut."""
+        index, way = self._other.ways[hit.by]
+        if index == RAMP:
+            return False
+        touch = _touch(way, nearest_place(way, hit.place), self._other.offset)
+        return not self._is_clear(touch, 0.0) and self._height(touch)[1]
+
+    def _height(self, touch: Point) -> tuple[float, bool]:
+        """Return how far from the contour a place is, and whether it is in the material.
+
+        Beyond the end of an open contour it may be.
+        """
+        wall = self._wall
+        self.pairs += 1
+        height, at_end = wall.height_of(touch)
+        deep = -ENTERED * wall.tolerance
+        if at_end:
+            return abs(height), True
+        if height >= deep:
+            self._air = touch, min([height - deep, *wall.known(touch, height)])
+        return height, height < deep
+
+    def _is_clear(self, touch: Point, half: float) -> bool:
+        """Return whether all within a distance of a place is in the air that was seen last."""
+        (x, c), radius = self._air
+        return hypot(touch[0] - x, touch[1] - c) + half < radius
+
+    def verdicts(self, run: list[_Hit], apart: bool) -> Iterator[_Verdict]:
+        """Yield what to say of places that are not meant to be cut, of passes and of ramps.
 
         ``apart``: neither contour enters the other one's material anywhere.
         """
-        wall, other = self._wall, self._other
-        deep, hit = max((self._depth(hit), hit) for hit in run)
-        index, way = other.ways[hit.by]
-        refused = (
-            apart
-            and wall.closing.closed
-            and len(run) < wall.count
-            and not other.leads(index)
-            and _level(way.z1) in wall.levels
-            and deep > ALLOWANCE * other.radius
-        )
-        return _Verdict(wall.moves[hit.index].line, way.line, deep, refused)
+        wall, least = self._wall, ALLOWANCE * self._other.radius
+        if apart and wall.closing.closed and len(run) < wall.count:
+            for refused in self._deepest(run, least, self._may_be_refused):
+                yield refused._replace(refused=True)
+        least = wall.tolerance
+        for counts in (self._is_pass, self._is_ramp):
+            for told in self._deepest(run, least, counts):
+                yield told
+                least = told.deep
 
-    def _depth(self, hit: _Hit) -> float:
-        return self._other.radius - distance_from(self._other.ways[hit.by][1], hit.place)
+    def _deepest(
+        self, run: list[_Hit], least: float, counts: Callable[[int, Point], bool]
+    ) -> Iterator[_Verdict]:
+        """Yield the deepest cut by a pass that counts, if it is deeper than ``least``."""
+        other, found = self._other, None
+        for hit in run:
+            cuts = partial(self._cuts, counts, hit)
+            away, number = other.passes.nearest(hit.place, other.radius - least, cuts)
+            if number is not None:
+                least, found = other.radius - away, hit._replace(by=-1 - number)
+        if found:
+            line = self._wall.moves[found.index].line
+            index, way = other.ways[found.by]
+            yield _Verdict(line, way.line, least, index == RAMP, False)
+
+    def _cuts(self, counts: Callable, hit: _Hit, number: int, way: Line | Arc) -> bool:
+        return _is_low(way, self._wall.heights[hit.index]) and counts(-1 - number, hit.place)
+
+    def _may_be_refused(self, by: int, place: Point) -> bool:
+        """Return whether a pass is no lead, at a height at which the contour is cut itself."""
+        index, way = self._other.ways[by]
+        if index == RAMP or self._other.leads(index, nearest_place(way, place)):
+            return False
+        return not self._wall.levels.isdisjoint(self._other.levels_of[in_plane(way)])
+
+    def _is_ramp(self, by: int, _: Point) -> bool:
+        return self._other.ways[by][0] == RAMP
+
+    def _is_pass(self, by: int, _: Point) -> bool:
+        return self._other.ways[by][0] != RAMP
 
     def _is_cut_on(self, index: int) -> bool:
         """Note the hits of a move if passes beside the one that cut last cut all of it."""
@@ -361,10 +499,10 @@ class _Meeting:
 
     def _low(self, index: int, passes: Iterable[int]) -> Iterator[tuple[int, Line | Arc]]:
         """Yield those of some passes that are not above a move."""
-        height = self._wall.heights[index] + SAME_PLACE
+        height = self._wall.heights[index]
         for by in passes:
             way = self._other.ways[by][1]
-            if way.z0 <= height or way.z1 <= height:
+            if _is_low(way, height):
                 yield by, way
 
     def _hits_in(self, index: int, passes: list) -> Iterator[_Hit | None]:
@@ -379,33 +517,37 @@ class _Meeting:
                     break
             yield found
 
-    def _enters(self, place: Point, by: int) -> bool:
-        """Return whether the other contour is in the material where a pass cuts a place."""
-        index, way = self._other.ways[by]
-        if index == RAMP:
-            return False
-        deep = -ENTERED * self._wall.tolerance
-        reach = 2.0 * (self._other.radius + self._wall.radius)
-        return any(
-            self._wall.height_of(touch, reach) < deep
-            for touch in _touches(way, place, self._other.offset)
-        )
+
+def _touch(way: Line | Arc, centre: Point, offset: float) -> Point:
+    """Return where the tool touches its contour, at a place of a pass."""
+    tx, tc = direction_at(way, centre)
+    return centre[0] + offset * tc, centre[1] - offset * tx
 
 
-def _touches(way: Line | Arc, place: Point, offset: float) -> Iterator[Point]:
-    """Yield where the tool touches its contour while it cuts a place: first, last and between."""
-    x, c = nearest_place(way, place)
-    half = sqrt(max(offset * offset - (place[0] - x) ** 2 - (place[1] - c) ** 2, 0.0))
-    at, length = along_start(way, (x, c)), path_length(way)
-    for along in (at, at - COVERED * half, at + COVERED * half):
-        centre = place_at(way, min(max(along / length, 0.0), 1.0))
-        tx, tc = direction_at(way, centre)
-        yield centre[0] + offset * tc, centre[1] - offset * tx
+def _touched_length(way: Line | Arc, touch: Point) -> float:
+    """Return how long the way is on which the tool touches its contour on a pass."""
+    if isinstance(way, Line):
+        return path_length(way)
+    return abs(way.sweep) * hypot(touch[0] - way.cx, touch[1] - way.cc)
+
+
+def _ends(move: Line | Arc) -> tuple[Point, Point]:
+    return (move.x0, move.c0), (move.x1, move.c1)
+
+
+def _box_round(places: Iterable[Point]) -> Box:
+    xs, cs = zip(*places)
+    return min(xs), min(cs), max(xs), max(cs)
 
 
 def _ball(move: Line | Arc) -> tuple[Point, float]:
     """Return a circle round a move: centre and radius."""
     return place_at(move, 0.5), 0.5 * path_length(move)
+
+
+def _is_low(way: Line | Arc, height: float) -> bool:
+    """Return whether a pass is not above what is so high."""
+    return min(way.z0, way.z1) <= height + SAME_PLACE
 
 
 def _level(z: float) -> int:

@@ -11,9 +11,11 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from math import atan2, cos, pi
+from math import atan2, cos, hypot, pi
+from operator import itemgetter
 
-from g12.flat.contour import Arc, Line, arc_radius, end_direction, start_direction
+from g12.flat.contour import Arc, Line, Point, arc_radius, end_direction, start_direction
+from g12.flat.intersect import distance_from
 
 LEAF = 4  # moves in a box that is not divided
 STRAIGHT = pi - 1e-3  # directions within that angle
@@ -64,6 +66,33 @@ class Boxes:
             if not apart(node.box, box, reach):
                 waiting.extend(node.halves)
                 yield from (item for item, way in node.items if not apart(way, box, reach))
+
+    def nearest(
+        self, point: Point, reach: float, counts: Callable[[int, Line | Arc], bool]
+    ) -> tuple[float, int | None]:
+        """Return how far the nearest move that counts is from a point, and its index.
+
+        The ``reach`` and None where none is nearer than that.
+        """
+        found, waiting = None, [(0.0, self)]
+        while waiting:
+            away, node = waiting.pop()
+            if away >= reach:
+                continue
+            halves = [(_away(point, half.box), half) for half in node.halves]
+            waiting.extend(sorted(halves, key=itemgetter(0), reverse=True))
+            for (index, move), box in node.items:
+                if _away(point, box) < reach:
+                    away = distance_from(move, point)
+                    if away < reach and counts(index, move):
+                        reach, found = away, index
+        return reach, found
+
+
+def _away(point: Point, box: Box) -> float:
+    """Return how far a point is from a box, 0 in it."""
+    (x, c), (low_x, low_c, high_x, high_c) = point, box
+    return hypot(max(low_x - x, x - high_x, 0.0), max(low_c - c, c - high_c, 0.0))
 
 
 def near_passes(
