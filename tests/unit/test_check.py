@@ -266,6 +266,27 @@ def test_lines_that_linuxcnc_does_not_read(found):
     assert kinds(found(GOOD + "[G12]\nCLEARING = rings\n[G12]\nPOLAR_Z = allow\n")) == ["not-read"]
 
 
+@pytest.mark.parametrize(
+    "header", ["[G12", " [G12", "[G12}", "[]", "[ G12]", "[G12 ]", "G12]", "[g12]"]
+)
+def test_a_header_that_begins_no_section(found, header):
+    (broken,) = found(GOOD + f"{header}\nCLEARING = spiral\n")
+    assert (broken.level, broken.kind) == (PROBLEM, "header")
+    assert broken.text.startswith(f"mill.ini:{GOOD.count(chr(10)) + 1}: {header.strip()}: ")
+
+
+@pytest.mark.parametrize(
+    "line", ["[G12] # ours", "  [HAL_2]", "[[odd]]", "# [G12", "A = [b", "B = c]"]
+)
+def test_lines_that_are_no_broken_headers(found, line):
+    assert found(GOOD + f"[HAL]\n{line}\n") == []
+
+
+def test_a_broken_header_of_an_included_file(found):
+    (broken,) = found(GOOD + "#INCLUDE more.inc\n", files={"more_inc": "\n[G12\n"})
+    assert broken.text.startswith("more.inc:2: [G12: ")
+
+
 def test_a_line_too_long_to_be_read(found):
     (long_line,) = found(GOOD.replace("= ngc\n", f"= ngc:{'x' * 250}\n"))
     assert long_line.kind == "long-line"

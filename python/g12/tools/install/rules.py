@@ -28,6 +28,9 @@ from g12.tools.translate.blocks.control import ControlError, read_control
 OLDEST = (2, 9)
 TRANSLATE = "translate"  # the command in a [FILTER] line
 LONGEST_LINE = 254  # LinuxCNC 2.9 reads no more of a line
+HEADER = re.compile(r"\[[^\s\]]+\]")
+MEANT_AS_HEADER = re.compile(r"\[|\w+\s*\]$")
+OWN_HEADER = f"[{SECTION}]"
 LINE_FOR_REMAP = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 MEND = "if it was there once, run install again: it mends the folder g12"
@@ -40,6 +43,7 @@ STOPPING = {  # kinds that keep LinuxCNC itself from loading the config
     "no-python",
     "python-fails",
     "no-linuxcnc",
+    "header",
 }
 
 
@@ -107,6 +111,20 @@ def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[Finding]:
             f"{header.place}: a second [{SECTION}], which LinuxCNC 2.9 does not read",
             f"move its lines into the first [{SECTION}]",
         )
+
+
+def broken_headers(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+    """Find a line that was meant to begin a section; LinuxCNC 2.9 says nothing of it."""
+    for line in config.text.lines():
+        text = line.text.strip()
+        other_case = text.upper().startswith(OWN_HEADER) and not text.startswith(OWN_HEADER)
+        if MEANT_AS_HEADER.match(text) and (other_case or not HEADER.match(text)):
+            yield problem(
+                "header",
+                f"{line.place}: {text:.40}: begins no section for LinuxCNC 2.9: "
+                "what is below it does not act",
+                f"write the section's name between brackets, without blanks: as {OWN_HEADER}",
+            )
 
 
 def long_lines(config: Config, _codes: list[Code]) -> Iterator[Finding]:
@@ -470,6 +488,7 @@ RULES: tuple[Rule, ...] = (
     unreadable_includes,
     nested_includes,
     lines_not_read,
+    broken_headers,
     long_lines,
     taken_codes,
     owned_codes,
