@@ -171,6 +171,17 @@ class Bench:
         return os.waitpid(child, 0)[1] == 0
 
 
+class Unreduced:
+    """A plugin of pytest: a failure is enough, hypothesis looks for no smaller one."""
+
+    def pytest_configure(self):
+        from hypothesis import Phase, settings
+
+        phases = [Phase.explicit, Phase.generate]
+        settings.register_profile("unreduced", settings.get_profile("g12"), phases=phases)
+        settings.load_profile("unreduced")
+
+
 def _run(folder, tests):
     """Run tests in this process, quietly and within bounds, and end it."""
     import pytest
@@ -185,7 +196,7 @@ def _run(folder, tests):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, 1)
         os.dup2(nowhere, 2)
-        code = pytest.main(["-x", "--rootdir", str(folder), *tests])
+        code = pytest.main(["-x", "--rootdir", str(folder), *tests], plugins=[Unreduced()])
     finally:
         os._exit(code)
 

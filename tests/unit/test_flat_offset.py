@@ -441,6 +441,21 @@ def test_a_ramp_square_to_the_contour_and_as_long_as_the_radius_is_no_way_at_all
     assert path(made).real == pytest.approx(12.0, abs=TOLERANCE)
 
 
+def test_a_ramp_hardly_longer_than_the_radius_and_hardly_square_to_the_contour_is_made():
+    beside = 0.001
+    contour = Contour(12.0, 0.0)
+    contour.line(c=5.0 + beside, line=1, feed=100.0)
+    contour.compensation(41, 2.0, line=2)
+    contour.line(10.0, 5.0, line=2, feed=100.0)
+    contour.line(c=-5.0, line=3, feed=100.0)
+    contour.compensation(40, 0.0, line=4)
+    contour.line(12.0, -5.0 - beside, line=4, feed=100.0)
+    moves = tool_path(contour, contour.elements, TOLERANCE)
+    assert [(move.line, round(move.x1, 9), round(move.c1, 9)) for move in moves] == [
+        (1, 12.0, 5.001), (2, 12.0, 5.0), (3, 12.0, -5.0), (4, 12.0, -5.001),
+    ]  # fmt: skip
+
+
 # What the tool cannot reach.
 
 
