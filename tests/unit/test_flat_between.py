@@ -445,6 +445,28 @@ def test_the_deepest_pass_counts_at_every_place(angle, gap):
         assert text or told_depths(notes) == [pytest.approx(deep, abs=TOLERANCE)]
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_of_several_cuts_of_two_contours_the_deepest_is_told(turned):
+    """It goes round the square, nearer to one side than to the other."""
+    corners = [60 - 40j, 15.1 - 40j, 15.1 + 40j, -15.3 + 40j, -15.3 - 40j, -60 - 40j]
+    drawn = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
+    drawn = way_back(drawn) if turned else drawn
+    square = begun_at(FACED, 7)  # with its ramps where nothing is near
+    for parts in ([square, drawn], [drawn, square]):
+        text, notes = found(*((part, -5.0) for part in parts))
+        assert not text and told_depths(notes) == [pytest.approx(0.9)]
+
+
+@pytest.mark.parametrize("k", range(8))
+def test_a_corner_cut_off_by_little_is_meant(k):
+    """The tip of a corner reaches 0.035 over a line."""
+    one = tip(0.0, 60, 0.035 + 0j, 1)
+    corners = [0.03j * k - 20j, 0.03j * k + 21j, 20 + 20j, 20 - 20j]
+    other = begun_at(pocket(closed(corners), 3.0), 3)
+    for parts in ([one, other], [other, one]):
+        assert found(*((part, -5.0) for part in parts)) == ("", [])
+
+
 @pytest.mark.parametrize("depths", [(-5.0, -5.0), (-5.0, -6.0)])
 @pytest.mark.parametrize(("gap", "ramp"), [(4.4, 3.3), (4.4, 9.0), (5.3, 3.3), (5.3, 9.0)])
 def test_a_ramp_never_hides_a_pass(depths, gap, ramp):

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.flat.contour import Arc, Line
-from g12.flat.nearby import apart, box_of, straight_runs
+from g12.flat.nearby import Boxes, apart, box_of, straight_runs
+from support.contour_geometry import Round, Straight
 
 BARE = (1, 100.0, 2.0)
 coordinate = st.floats(-30.0, 30.0)
@@ -21,6 +22,10 @@ def arc(centre, start, sweep):
     end = centre + (start - centre) * cmath.rect(1.0, sweep)
     ends = (start.real, start.imag, 0.0, end.real, end.imag, 0.0)
     return Arc(*BARE, *ends, centre.real, centre.imag, sweep)
+
+
+def line(start, end):
+    return Line(*BARE, start.real, start.imag, 0.0, end.real, end.imag, 0.0)
 
 
 @given(point, point, st.floats(-6.28, 6.28).filter(lambda sweep: abs(sweep) > 0.01))
@@ -50,6 +55,36 @@ def test_a_flat_arc_has_a_flat_box():
 def test_the_box_of_a_line_is_that_of_its_ends(ends):
     x0, c0, x1, c1 = ends
     assert box_of(Line(*BARE, x0, c0, 0.0, x1, c1, 0.0)) == (1.0, -3.0, 5.0, 2.0)
+
+
+@pytest.mark.parametrize("count", [1, 4, 5, 60])
+@pytest.mark.parametrize("reach", [math.inf, 12.0])
+def test_the_nearest_move_that_counts_is_found_among_many(count, reach):
+    rng = np.random.default_rng(count)
+    drawn = []
+    for k in range(count):
+        start, to = (complex(*rng.uniform(-20, 20, 2)) for _ in range(2))
+        drawn.append(Round(start, start + 0.2 * to, 2.0) if k % 3 else Straight(start, to))
+    moves = [
+        arc(one.centre, one.start, one.sweep) if isinstance(one, Round) else line(*one)
+        for one in drawn
+    ]
+    tree = Boxes([(-1 - k, move) for k, move in enumerate(moves)])
+    found = 0
+    for place in rng.uniform(-40, 40, (100, 2)):
+        away = [one.distance(np.array([complex(*place)]))[0] for one in drawn[::2]]
+        nearest = min(*away, reach)
+        far, index = tree.nearest(tuple(place), reach, lambda k, move: counts(k, move, moves))
+        assert far == pytest.approx(nearest)
+        assert index == (-1 - 2 * away.index(nearest) if nearest < reach else None)
+        found += index is not None
+    assert found > 10
+
+
+def counts(k, move, moves):
+    """Return whether a move is every other one of some; it comes with its own number."""
+    assert moves[-1 - k] is move
+    return k % 2
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,6 @@ where a ramp cuts deeper. Program units.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, partial
 from math import copysign, hypot, inf
@@ -253,6 +252,11 @@ class _Followed:
             levels.setdefault(in_plane(way), set()).add(_level(way.z1))
         return levels
 
+    @cached_property
+    def whole(self) -> bool:
+        """Whether what may be cut goes all round: between air and material it lies everywhere."""
+        return self.closing.closed and len(self.parts) == 1 + max(self.parts) - min(self.parts)
+
     def height_of(self, point: Point) -> tuple[float, bool]:
         """Return how far a point is from the contour, below zero in its material.
 
@@ -278,19 +282,6 @@ class _Followed:
         first, last = self.moves[0], self.moves[-1]
         ends = (first.x0, first.c0), (last.x1, last.c1)
         return any(hypot(x - ex, c - ec) <= SAME_PLACE for ex, ec in ends)
-
-    @cached_property
-    def loose(self) -> list[Point]:
-        """The ends of what may be cut, where nothing else of it goes on."""
-        ends = [end for part in self.parts.values() for end in _ends(part)]
-        rounded = [tuple(round(value / SAME_PLACE) for value in end) for end in ends]
-        count = Counter(rounded)
-        return [end for end, place in zip(ends, rounded) if count[place] == 1]
-
-    def known(self, point: Point, height: float) -> Iterator[float]:
-        """Yield how far from a point one is not yet beyond each loose end."""
-        for x, c in self.loose:
-            yield 0.5 * (hypot(point[0] - x, point[1] - c) - abs(height))
 
     def leads(self, index: int, centre: Point) -> bool:
         """Return whether a pass for a move may be one to lead in or out, at a place of the tool."""
@@ -340,22 +331,24 @@ class _Meeting:
 
     def is_meant(self, run: list[_Hit]) -> bool:
         """Return whether the other contour enters the material anywhere in a run."""
-        other = self._other
         if any(self._covers(part, hit) for hit in run for part in self._entering(hit.by)):
-            return True
+            return True  # without a look at all of the other contour
         if any(self._is_inside_beside(hit) for hit in run):
             return True
-        box = _box_round(hit.place for hit in run)
-        near = sorted(-1 - number for number, _ in other.passes.near(box, self._reach))
-        parts = [(0, part) for by in near for part in self._entering(by)]
-        if not parts:
-            return False
-        tree = Boxes(parts)
         return any(
             self._covers(part, hit)
+            for parts in self._inside
             for hit in run
-            for _, part in tree.near((*hit.place, *hit.place), self._reach)
+            for _, part in parts.near((*hit.place, *hit.place), self._reach)
         )
+
+    @cached_property
+    def _inside(self) -> list[Boxes]:
+        """All parts of passes near to the contour on which the other one is in the material."""
+        near = self._other.passes.near(self._wall.walls.box, self._reach)
+        order = sorted(-1 - number for number, _ in near)
+        parts = [(0, part) for by in order for part in self._entering(by)]
+        return [Boxes(parts)] if parts else []
 
     def _covers(self, part: Line | Arc, hit: _Hit) -> bool:
         """Return whether the tool cuts a place on a part of a pass."""
@@ -393,7 +386,8 @@ class _Meeting:
             return False  # from there the tool does not reach the contour
         if half <= FINEST * self._wall.tolerance or self._is_clear(touch, half):
             return inside
-        return True if height + half < -ENTERED * self._wall.tolerance else None
+        all_in = self._wall.whole and height + half < -ENTERED * self._wall.tolerance
+        return True if all_in else None
 
     def _is_inside_beside(self, hit: _Hit) -> bool:
         """Return whether the tool touches its contour in the material where a place is cut."""
@@ -414,8 +408,8 @@ class _Meeting:
         deep = -ENTERED * wall.tolerance
         if at_end:
             return abs(height), True
-        if height >= deep:
-            self._air = touch, min([height - deep, *wall.known(touch, height)])
+        if height >= deep and wall.whole:
+            self._air = touch, height - deep
         return height, height < deep
 
     def _is_clear(self, touch: Point, half: float) -> bool:
@@ -529,15 +523,6 @@ def _touched_length(way: Line | Arc, touch: Point) -> float:
     if isinstance(way, Line):
         return path_length(way)
     return abs(way.sweep) * hypot(touch[0] - way.cx, touch[1] - way.cc)
-
-
-def _ends(move: Line | Arc) -> tuple[Point, Point]:
-    return (move.x0, move.c0), (move.x1, move.c1)
-
-
-def _box_round(places: Iterable[Point]) -> Box:
-    xs, cs = zip(*places)
-    return min(xs), min(cs), max(xs), max(cs)
 
 
 def _ball(move: Line | Arc) -> tuple[Point, float]:
