@@ -10,6 +10,7 @@ import random
 import time
 from collections import Counter
 
+import numpy as np
 import pytest
 from shapely.geometry import JOIN_STYLE, Polygon
 from shapely.geometry.polygon import orient
@@ -29,6 +30,7 @@ from support.random_contours import (
     blind_path,
     contour_of,
     depth,
+    points_of,
     polygon,
     rounded,
     star,
@@ -608,6 +610,79 @@ def test_a_finishing_pass_may_cut_what_roughing_left(monkeypatch):
         count += 1
         assert found(*parts) == ("", []), seed
     assert count > len(SEEDS) / 4
+
+
+def passes_of(monkeypatch, drawn):
+    """Return places of the tool along an open polyline, and where it touches that; no ramps."""
+    places, touches = [], []
+    for way in blind_path(monkeypatch, contour_of(drawn)):
+        if not 2 < way.line < 9000:
+            continue
+        ends = points_of(way)
+        count = 2 + int(10 * np.sum(abs(np.diff(ends))))
+        at = np.interp(np.linspace(0, 1, count), np.linspace(0, 1, len(ends)), ends)
+        normal = 1j * (ends[-1] - ends[0]) / abs(ends[-1] - ends[0])
+        places.append(at)
+        corner = complex(way.cx, way.cc) if hasattr(way, "cx") else None
+        touches.append(at - way.offset * normal if corner is None else 0 * at + corner)
+    return np.concatenate(places), np.concatenate(touches)
+
+
+def air_under(drawn, points):
+    """Return how far points are from an open polyline on the tool's side, below 0 on the other.
+
+    It is -inf beyond its ends.
+    """
+    nearest, across, ends = np.full(len(points), np.inf), np.zeros(len(points)), drawn.shapes
+    for line in ends:
+        along = (points - line.start) * np.conj(line.end - line.start) / line.length
+        beyond = (line is ends[0]) & (along.real < 0) | (line is ends[-1]) & (
+            along.real > line.length
+        )
+        away, side = line.distance(points), along.imag * (1 if drawn.side == LEFT else -1)
+        closer = (away < nearest - 1e-9) | (away < nearest + 1e-9) & (abs(side) > abs(across))
+        across = np.where(closer, np.where(beyond, -np.inf, side), across)
+        nearest = np.minimum(away, nearest)
+    return np.where(np.isinf(across), across, np.copysign(nearest, across))
+
+
+def unmeant(monkeypatch, wall, other, margin):
+    """Return whether the tool cuts a run of places of a wall that its contour enters nowhere.
+
+    It has to enter and to reach by a margin more.
+    """
+    places, touches = passes_of(monkeypatch, other)
+    entering = places[air_under(wall, touches) < -2 * TOLERANCE - margin]
+    points = np.concatenate([line.points(2 + int(5 * line.length)) for line in wall.shapes])
+    deep = wall.radius - np.min(abs(points[:, None] - places), axis=1)
+    runs = np.split(np.arange(len(points)), np.flatnonzero(np.diff(deep > TOLERANCE)) + 1)
+    return any(
+        deep[run[0]] > TOLERANCE
+        and not np.any(abs(points[run][:, None] - entering) < wall.radius - TOLERANCE - margin)
+        for run in runs
+    )
+
+
+def test_of_open_contours_it_is_told_where_one_cuts_and_does_not_enter(monkeypatch):
+    count = Counter()
+    for seed in range(150):
+        draw = random.Random(seed)
+        parts = []
+        for corners in (5, 4):
+            z = [complex(draw.randint(-40, 40), draw.randint(-40, 40)) for _ in range(corners)]
+            lines = [Straight(*pair) for pair in zip(z, z[1:])]
+            parts.append(Drawn(lines, draw.choice([LEFT, RIGHT]), 3.0, lines))
+        if any(refused(part) for part in parts):
+            continue
+        told = {
+            any(unmeant(monkeypatch, *pair, margin) for pair in (parts, parts[::-1]))
+            for margin in (-0.008, 0.008, 0.1)
+        }
+        text, notes = found(*((part, -5.0) for part in parts))
+        if len(told) == 1:
+            assert not text and bool(of_passes(notes, *parts)) in told, seed
+            count[told.pop()] += 1
+    assert min(count[True], count[False]) >= 5
 
 
 def test_what_is_only_rounding_of_a_move_is_no_part_of_a_contour():
