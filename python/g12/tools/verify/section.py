@@ -152,7 +152,7 @@ def block_facts(
         "feed_off": feed_off(section, moves, path, tolerance, axes),
         "turn_speed": turn_speed(section, moves, path),
         "in_place": turned_in_place(section, moves, path),
-        "order_off": order_off(section, moves, path),
+        "order_off": order_off(section, moves, path, tolerance),
         "motion_off": tuple(motion_off(section, moves, path, axes, tolerance)),
         "act_off": act_off(section, moves),
         "left_behind": left_by_section(section),

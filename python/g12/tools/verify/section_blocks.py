@@ -91,7 +91,9 @@ def blocks_cut(section: SectionContour, moves: Sequence[Move]) -> Iterator[Block
             yield BlockOfSection(*drawn[found], own)
 
 
-def order_off(section: SectionContour, moves: Sequence[Move], path: Track) -> OffOrder | None:
+def order_off(
+    section: SectionContour, moves: Sequence[Move], path: Track, tolerance: float
+) -> OffOrder | None:
     """Return the first line that is not cut, or not where the words have it, or not as long."""
     drawn, cut = drawn_blocks(section), 0
     for own, found in blocks_moved(section, moves):
@@ -100,7 +102,8 @@ def order_off(section: SectionContour, moves: Sequence[Move], path: Track) -> Of
             return OffOrder(moves[own[0]].line, "is cut where the program has it not")
         if found is not None:
             missing, cut = not_cut(drawn[cut:found]), found + 1
-            off = missing or length_off(*drawn[found], length, between_ends(own, path))
+            lengths = length, between_ends(own, path)
+            off = missing or length_off(*drawn[found], *lengths, tolerance)
             if off:
                 return off
     return not_cut(drawn[cut:])
@@ -119,18 +122,20 @@ def between_ends(own: Sequence[int], path: Track) -> float:
 
 
 def length_off(
-    elements: Sequence[Element], above: float, length: float, straight: float
+    elements: Sequence[Element], above: float, length: float, straight: float, tolerance: float
 ) -> OffOrder | None:
     """Return what a block's length is if it is not the words'.
 
-    Of a compensated block the words do not tell it, but a ramp goes ``straight``.
+    Of a compensated block the words do not tell it, but a ramp goes ``straight``. Pieces of an arc
+    are longer than it where they go along outside of it, by no more than the ``tolerance``.
     """
     asked = length_wanted(elements, above)
     if any(element.side or element.ramp for element in elements):
         if not (len(elements) == 1 and elements[0].ramp):
             return None
         asked = straight
-    if abs(length - asked) <= SHORT + SAME_FEED * asked:
+    beside = tolerance * sum(abs(element.sweep) for element in elements)
+    if abs(length - asked) <= SHORT + SAME_FEED * asked + beside:
         return None
     return OffOrder(elements[0].line, "its path is {}, not {}", (length, asked))
 

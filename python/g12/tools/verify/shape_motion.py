@@ -25,7 +25,7 @@ BACKWARD = 0.25  # of a turn: less is the way from a ring to where the tool goes
 SAME_FEED = 1e-3
 STEEPER = 1.02  # times the steepest way down: rounding
 SAME_HEIGHT = 0.005
-SMALL = 0.1  # radius of a ring of which no direction is told
+SMALL = 0.1  # radius of a ring whose way does not tell its direction
 CLEAR_OF_WALL = 0.01
 
 
@@ -49,7 +49,7 @@ def motion_of_shape(
     yield from off_down(way, tolerance)
     yield from off_up(way)
     finish = [index for _, run in way.flat()[-1:] for index in run if index not in set(rough)]
-    yield from off_turns(way, rough, finish)
+    yield from off_turns(way, sections, finish)
     yield from off_takes(way, tolerance)
     times = way.times_along(finish, tolerance)
     if way.asked.allowance and times > 1:
@@ -120,8 +120,13 @@ def off_up(way: ShapeWay) -> Iterator[OffShape]:
             yield OffShape("the tool goes up along the wall")
 
 
-def off_turns(way: ShapeWay, rough: Sequence[int], finish: Sequence[int]) -> Iterator[OffShape]:
-    """Yield a level, or a finish round, that is cut the wrong way round."""
+def off_turns(
+    way: ShapeWay, sections: Sequence[SectionContour], finish: Sequence[int]
+) -> Iterator[OffShape]:
+    """Yield a level, or a finish round, that is cut the wrong way round.
+
+    Of small rings the arcs of the sub's blocks tell it, whose motion is judged as a section's.
+    """
     asked = way.asked
     last = set(finish)
     for height, run in way.flat():
@@ -129,15 +134,22 @@ def off_turns(way: ShapeWay, rough: Sequence[int], finish: Sequence[int]) -> Ite
             ([index for index in run if index not in last], asked.allowance),
             ([index for index in run if index in last], 0.0),
         ):
-            if ring_of(way, allowance) > SMALL and backward(way, indices) > BACKWARD:
+            small = ring_of(way, allowance) <= SMALL
+            turned = turned_by_words(sections, height) if small else way.turned(indices)
+            if backward(turned * asked.form.outward) > BACKWARD:
                 turn = "clockwise" if asked.form.inside else "counterclockwise"
                 yield OffShape(f"it goes round {turn} at Z{{}}: the wrong way", (height,))
                 return
 
 
-def backward(way: ShapeWay, indices: Sequence[int]) -> float:
-    """Return how many turns, where it cuts, the tool goes the wrong way round the centre."""
-    turned = way.turned(indices) * way.asked.form.outward
+def turned_by_words(sections: Sequence[SectionContour], height: float) -> np.ndarray:
+    """Return the angles, radians, of the arcs that the words have at a height or down to it."""
+    elements = (element for section in sections for element in section.elements)
+    return np.array([each.sweep for each in elements if abs(each.depth - height) < SAME_LEVEL])
+
+
+def backward(turned: np.ndarray) -> float:
+    """Return how many turns those angles are that go the wrong way, above 0."""
     return float(turned[turned > 0.0].sum() / (2 * math.pi))
 
 
