@@ -292,6 +292,19 @@ def test_an_open_contour_may_end_in_the_air_and_is_told():
     assert notes
 
 
+def test_beyond_the_ends_of_an_open_contour_nobody_knows(monkeypatch):
+    """In front of, behind and beside an angle, and on its own lines."""
+    seen = []
+    monkeypatch.setattr(between, "_verdicts", lambda contours: seen.extend(contours) or [])
+    angle = boss([Straight(10j, 0j), Straight(0j, 20 + 0j)], 3.0)
+    found((angle, -5.0), (boss(circle(5.0, at=90.0), 3.0), -5.0))
+    places = [11j, 3 + 11j, -3 + 11j, 21 + 0j, 21 + 3j, 21 - 3j]
+    assert [seen[0].height_of((z.real, z.imag))[1] for z in places] == [True] * 6
+    places = {3 + 9j: 3.0, -3 + 9j: -3.0, 3 + 2j: 2.0, -3 - 4j: -5.0, 19 + 1j: 1.0, 19 - 1j: -1.0}
+    for z, height in places.items():
+        assert seen[0].height_of((z.real, z.imag)) == (pytest.approx(height), False)
+
+
 @pytest.mark.parametrize(("end", "told"), [(20.0, False), (40.0, True)])
 def test_what_another_cuts_at_the_end_of_an_open_contour_may_be_air(end, told):
     """One comes up to a wall, beyond its end or not, with the tool on this side of it."""

@@ -262,18 +262,20 @@ class _Followed:
 
         And whether it is beyond an end of an open contour: nobody knows what is there.
         """
-        x, c = point
         nearest, _ = self.walls.nearest(point, inf, lambda *_: True)
-        height, at_end = 0.0, False
-        for _, move in self.walls.near((x, c, x, c), nearest + SAME_PLACE):
-            px, pc = nearest_place(move, point)
-            if hypot(x - px, c - pc) > nearest + SAME_PLACE:
-                continue
-            tx, tc = direction_at(move, (px, pc))
-            across = copysign(1.0, self.offset) * (tx * (c - pc) - tc * (x - px))
-            if abs(across) >= abs(height):
-                height, at_end = across, self._is_end(px, pc)
-        return copysign(nearest, height), at_end
+        reach = nearest + SAME_PLACE
+        sides = [self._side(move, point) for _, move in self.walls.near((*point, *point), reach)]
+        _, across, place = max(
+            (side for side in sides if side[0] <= reach), key=lambda side: abs(side[1])
+        )
+        return copysign(nearest, across), self._is_end(*place)
+
+    def _side(self, move: Line | Arc, point: Point) -> tuple[float, float, Point]:
+        """Return how far a point is from a move and to the tool's side of it, and where there."""
+        (x, c), (px, pc) = point, nearest_place(move, point)
+        tx, tc = direction_at(move, (px, pc))
+        across = copysign(1.0, self.offset) * (tx * (c - pc) - tc * (x - px))
+        return hypot(x - px, c - pc), across, (px, pc)
 
     def _is_end(self, x: float, c: float) -> bool:
         """Return whether a place is an end of an open contour."""
@@ -288,11 +290,9 @@ class _Followed:
         closing = self.closing
         if not closing.closed or closing.crossing:
             return not closing.first < index < closing.last
-        if closing.first < index < closing.last:
-            return False
         first, last = closing.part(index, self.moves[index])
         at = self._share(index, centre)
-        return not first < last or 0.0 < first >= at or 1.0 > last <= at
+        return first >= last or (first > 0.0 and at <= first) or (last < 1.0 and at >= last)
 
     def _share(self, index: int, centre: Point) -> float:
         """Return at which part of a move the tool is, 0 to 1."""
