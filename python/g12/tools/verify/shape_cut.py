@@ -31,6 +31,7 @@ CORNERS = 48  # of a path whose area is worked out at once
 EXPLAINS = 3.0  # times less off: so much better lies a shape where it is turned or away
 NO_SHIFT = Shift(0.0, 0j)
 LED = 0.6 * 2 * math.pi  # so far round does the way out to the finish round go at most
+TELLING = 4.0  # times the tolerance: how much a finish round takes that can be told
 NARROW = 0.0052  # a cutter that is as much narrower than a slot, on each side, goes along its line
 
 
@@ -72,7 +73,8 @@ def measure_areas(way: ShapeWay, tolerance: float) -> ShapeAreas:
     end = judge.facts(deepest, whole, 0.0) if whole else None
     rough = levels[deepest] = judge.rough(whole, end)
     finish = whole[len(rough) :]
-    if way.times_along(finish, tolerance) > 1:  # no telling what is rough
+    hidden = 0.0 < asked.allowance < TELLING * tolerance
+    if hidden or way.times_along(finish, tolerance) > 1:  # no telling what is rough
         levels[deepest] = []
     facts = [judge.facts(level, own, asked.allowance) for level, own in levels.items() if own]
     cut = tuple(height for height, _ in way.flat())
@@ -135,7 +137,7 @@ class LevelJudge:
         """
         allowance, outward = self._asked.allowance, self._form.outward
         last = min((more * outward for more in end.stands), default=0.0) if end else 0.0
-        if allowance - last < 4 * self._tolerance:
+        if allowance - last < TELLING * self._tolerance:
             return list(indices)
         finishing = self._beside(last + 2 * self._tolerance)
         whole = self._until(indices, finishing, True)
