@@ -119,3 +119,12 @@ def test_the_axes_of_each_plane_are_right_handed(plane, third):
     axes = part.plane_axes(move)
     assert np.allclose(axes[2], third)
     assert np.allclose(np.cross(axes[0], axes[1]), axes[2])
+
+
+def test_c_stands_where_the_face_is_left_beside_the_centre_for_it():
+    """From a point on the face to X0 of the slide: what C of the axes is there is no turn of it."""
+    c = np.array([0.0, 270.7, 270.7, 280.7])
+    angles = part.spindle_angles(np.array([0.002 - 0.173j, 0.0, 0.0, 0.0]), c)
+    assert np.allclose(np.diff(angles), [0.0, 0.0, 10.0])
+    angles = part.spindle_angles(np.array([3.0, 3.0j, -3.0, -4.0]), np.zeros(4))
+    assert np.allclose(np.diff(angles), [90.0, 90.0, 0.0])

@@ -138,15 +138,16 @@ def slide_places(points: np.ndarray, beside: float) -> np.ndarray:
 def spindle_angles(points: np.ndarray, c: np.ndarray, beside: float = 0.0) -> np.ndarray:
     """Return where the C axis stands, degrees, for points (complex) that the face turned by ``c``.
 
-    On the face C follows their angle. Where both change at once, the axes only take on another
-    meaning, and C stands. ``beside`` is how far the tool stands from the X line.
+    On the face C follows their angle. Where ``c`` changes between a point on the face and another,
+    the axes only take on another meaning, and C stands. ``beside`` is how far the tool stands from
+    the X line.
     """
     on_face = slide_places(points, beside)
     turned = np.degrees(np.angle(on_face[1:] * np.conj(on_face[:-1])))
-    turned[(on_face.imag[1:] == 0.0) & (on_face.imag[:-1] == 0.0)] = 0.0
+    off_line = (on_face.imag[1:] != 0.0) | (on_face.imag[:-1] != 0.0)
     changed = np.diff(c)
     changed = changed - 360.0 * np.round(changed / 360.0)  # whole turns: counted on the face
-    steps = np.where((np.abs(turned) > 1e-9) & (changed != 0.0), 0.0, turned + changed)
+    steps = np.where(off_line, np.where(changed != 0.0, 0.0, turned), changed)
     return c[0] + np.append(0.0, np.cumsum(steps))
 
 
