@@ -253,6 +253,14 @@ def test_exact_paths_and_stops_on_the_face(lathe, exact, sharp):
     assert off_the_corners(run.samples).max() <= 0.052  # G64 P0.05
 
 
+def test_the_tolerance_that_linuxcnc_starts_with_rounds_no_corner(lathe):
+    """LinuxCNC starts with 0.001 in; one without a G64 asks for no such corners."""
+    begun = [ROUGHLY[0].replace("P0.05 Q0", "P0.0254 Q0"), *ROUGHLY[1:]]
+    run = lathe.run_text([*begun, *SQUARE, "G13.1", "M2"])
+    assert run.error is None
+    assert off_the_corners(run.samples).max() < 0.005  # POLAR_TOLERANCE
+
+
 def test_blocks_that_wait_cut_a_section_in_two(lathe):
     waiting = [line for block in SQUARE for line in (block, "M66 P0 L0")]
     run = lathe.run_text([*ROUGHLY, *waiting, "G13.1", "M2"])

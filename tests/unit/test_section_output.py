@@ -4,7 +4,7 @@
 import pytest
 
 from g12.errors import Refusal
-from g12.host.section_output import BLOCK_END, STOP_HERE, Action, SectionOutput
+from g12.host.section_output import BLOCK_END, STOP_HERE, Action, PathControl, SectionOutput
 from g12.moves.steps import BlockMoves
 from g12.section.modes import SectionModes
 
@@ -89,6 +89,7 @@ def emission_of(interp, x_factor=1.0):
         "G12.1",
         x_factor=x_factor,
         blending=0.0025,
+        initial=0.0254,
         machine_unit=1.0,
         absolute="G90",
         canon=Canon(interp),
@@ -130,6 +131,20 @@ def test_the_second_part_of_a_section_begins_without_a_stop():
 def test_a_programmed_tolerance_is_kept():
     interp = Interpreter(tolerance=0.1, merging=0.2)
     assert handed_over([run()], interp).done == [FIRST, *NEXT, *RELEASED]
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "merging", "blended"),
+    [(0.0, 0.0, SMOOTH), (0.0254, 0.0, SMOOTH), (0.0254, 0.0254, None), (0.02, 0.0, None)],
+)
+def test_on_the_face_the_tolerance_that_linuxcnc_starts_with_is_none(tolerance, merging, blended):
+    """Between pieces of C it may stay: P does nothing there."""
+    interp = Interpreter(tolerance=tolerance, merging=merging)
+    path = PathControl(interp, SMOOTH, 0.0254)
+    path.on_face()
+    assert interp.done == ([blended] if blended else [])
+    path.give_back()
+    assert interp.active_settings[3:] == [tolerance, merging]
 
 
 def test_a_stop_ends_in_exact_path():

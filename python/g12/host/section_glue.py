@@ -34,6 +34,7 @@ REMAPS = {remap.code: remap for remap in remap_lines(INI.findall)}
 COORDINATES, AXES = set(coordinates_of(INI.find)), axes_of(INI.find, "XZC")
 FACE = face_of(INI.find)
 KINEMATICS = SETTINGS.polar_kinematics == "1"
+INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 TYPED = 1  # call level of a block that stands in no sub
 NOT_IN_MDI = "is not possible in MDI: it needs the lines behind it"
 
@@ -97,6 +98,7 @@ def _section(interp: object, kind: SectionKind, frame: CallFrame, program: Progr
         start.place.code,
         x_factor=2.0 if start.diameter else 1.0,
         blending=setup.tolerance / 2,
+        initial=INITIAL_TOLERANCE / glue.millimetres_per_unit(interp),
         machine_unit=start.machine_unit,
         absolute=MODE_ABSOLUTE,
         canon=emccanon,

@@ -44,6 +44,7 @@ TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
 SAME_PLACE = 1e-3  # program units or degrees
+SAME_TOLERANCE = 1e-9  # program units
 ELSEWHERE = (
     "the tool is not where the section begins: "
     "with kinematics, Run from line cannot pass over a section"
@@ -70,11 +71,12 @@ class PathControl:
     """G61, G61.1 or G64 as the program commanded it, and as the pieces of a section need it.
 
     Between the pieces of one block the path is blended, with ``smooth`` if the program gave no
-    tolerance; at the end of a block it is what the program commanded.
+    tolerance; at the end of a block it is what the program commanded. ``initial`` is the tolerance
+    that LinuxCNC starts with, program units: on the face it counts for none.
     """
 
-    def __init__(self, interp: object, smooth: str) -> None:
-        self.interp, self.smooth = interp, smooth
+    def __init__(self, interp: object, smooth: str, initial: float) -> None:
+        self.interp, self.smooth, self._initial = interp, smooth, initial
         self.find()
 
     def find(self) -> None:
@@ -84,6 +86,9 @@ class PathControl:
         self._commanded = self._tolerances if code == G64 else f"G{code / 10:g}"
         own_tolerance = code == G64 and settings[TOLERANCE] > 0
         self._within = self._commanded if own_tolerance else self.smooth
+        is_initial = abs(settings[TOLERANCE] - self._initial) < SAME_TOLERANCE
+        is_initial = is_initial and not settings[MERGING]
+        self._on_face = self.smooth if is_initial else self._within
         self._in_force, self._blending = self._commanded, self._tolerances
 
     def renew(self) -> None:
@@ -93,6 +98,10 @@ class PathControl:
     def inside(self) -> None:
         """Set what blends the pieces of one block."""
         self.set(self._within)
+
+    def on_face(self) -> None:
+        """Set what blends the blocks on the face: nothing else holds at their corners."""
+        self.set(self._on_face)
 
     @property
     def exact(self) -> bool:
@@ -129,8 +138,9 @@ class SectionOutput:
     """Hands steps to the interpreter.
 
     ``code`` names the section in refusals. ``x_factor`` turns a radius value into an X word (2
-    under G7); ``blending``, ``machine_unit`` and ``beside`` (of the tool from the X line) are in
-    program units. ``absolute`` is the interpreter's name of G90, ``canon`` its canonical functions.
+    under G7); ``blending``, ``initial`` (of G64 when LinuxCNC starts), ``machine_unit`` and
+    ``beside`` (of the tool from the X line) are in program units. ``absolute`` is the interpreter's
+    name of G90, ``canon`` its canonical functions.
     """
 
     def __init__(
@@ -140,6 +150,7 @@ class SectionOutput:
         *,
         x_factor: float,
         blending: float,
+        initial: float,
         machine_unit: float,
         absolute: object,
         canon: object,
@@ -148,7 +159,7 @@ class SectionOutput:
         self.interp, self.code = interp, code
         self.x_factor, self.absolute, self.canon = x_factor, absolute, canon
         self.machine_unit, self.beside = machine_unit, beside
-        self.path = PathControl(interp, f"G64P{decimal(blending)}Q0")
+        self.path = PathControl(interp, f"G64P{decimal(blending)}Q0", initial)
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
         self._begun = False
@@ -271,7 +282,7 @@ class SectionOutput:
         interp, move = self.interp, step.move
         block_ends = not isinstance(following, FaceMove) or following.line != step.line
         interp.sequence_number = step.line
-        self.path.inside()
+        self.path.on_face()
         if isinstance(following, FaceMove) and flows_into(move, following.move):
             self.path.set(EXACT_PATH)  # nothing to blend, and 2.10 slows an arc for what might be
         self.path.at_end(False, exact_stop, block_ends)
