@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How the moves of a section follow each other: no rapid, stops at corners and nowhere else.
 
-LinuxCNC blends two moves by starting the second while the first slows down, each with half the
-acceleration a. Where the path turns by the angle d at the speed v, the tool passes the corner at
-sin(d / 2) v**2 / (2 a). With a C axis in motion G64 P limits it only where X turns back or stands:
-LinuxCNC takes the angle of X, Y and Z alone. X20 C0, X16 C20, X12 C0 at F3000 misses its corner by
-1.41 mm on 2.9.0, by 0.31 on 2.10, with P0.5 as with P0.001; X14 C0, X20 C20, X14 C40 by 0.51 and
-0.12 mm with P0.5, and by about P or less below. So only an exact path or stop counts. The speeds
-are those that F and the axes allow, of the accelerations the greatest counts: a corner that is told
-of is rounded by more, but where 2.10 exceeds the accelerations (its issue 4539). On the face of the
-kinematics G64 P holds, if it is not 0. Chords make corners too: so it must be one of the words
-between two lines, or C that turns in place.
+LinuxCNC blends two moves by starting the second while the first slows down, each with half its
+acceleration, a and b. At the time s of the t = 2 v / a that the first takes from the speed v, it is
+a (t - s)**2 / 4 in front of the corner and the second b s**2 / 4 behind it. Where the path turns by
+the angle d, the tool is sin(d / 2) times the sum inside, or farther: v**2 b / (a (a + b)) at least.
+With a C axis in motion G64 P limits it only where X turns back or stands: LinuxCNC takes the angle
+of X, Y and Z alone. X20 C0, X16 C20, X12 C0 at F3000 misses its corner by 1.41 mm on 2.9.0, by 0.31
+on 2.10, with P0.5 as with P0.001; X14 C0, X20 C20, X14 C40 by 0.51 and 0.12 mm with P0.5, and by
+about P or less below. So only an exact path or stop counts. The speeds are those that F and the
+axes allow: a corner that is told of is rounded by more, but where 2.10 exceeds the accelerations
+(its issue 4539). On the face of the kinematics G64 P holds, if it is not 0. Chords make corners
+too: so it must be one of the words between two lines, or C that turns in place.
 
 Lengths are millimetres along the part.
 """
@@ -236,7 +237,7 @@ def rounding(
     into, out = (axes.along(direction, joint.place) for direction in (joint.into, joint.out))
     speed = min(path.part_feed(index), path.part_feed(index + 1)) / 60.0
     square = min(speed * speed, into * lengths[index], out * lengths[index + 1])
-    return joint.half_sine * square / (2.0 * max(into, out))
+    return joint.half_sine * square * out / (into * (into + out))
 
 
 def stopped_inside(
