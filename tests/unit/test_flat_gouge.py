@@ -158,6 +158,16 @@ def test_a_contour_closes_though_rounding_left_a_gap(front, behind):
     assert cut(extended(front, behind), RIGHT, 3.0)[0]
 
 
+@pytest.mark.parametrize(("gap", "told"), [(0.059, False), (0.061, True)])
+@pytest.mark.parametrize("at_start", [False, True])
+def test_a_contour_closes_over_twice_what_arcs_are_forgiven(gap, told, at_start):
+    ends = (-gap, 40.0) if at_start else (40.0, -gap)
+    contour = contour_of(Drawn(extended(*ends), LEFT, 3.0, []))
+    contour.closing = 0.03
+    assert refusal(contour) == ""
+    assert bool(contour.notes) is told
+
+
 def test_a_thin_fin_is_cut_all_round():
     fin = lines((-30, 0), (0, 0), (0, 20), (0.1, 20), (0.1, 0), (30, 0))
     assert cut(fin, LEFT, 3.0) == ("", [])
