@@ -183,6 +183,15 @@ def test_leads_that_cross_are_told(side):
     ]
 
 
+def test_what_a_loop_cuts_again_is_told_once():
+    drawn = Drawn(extended(5.0, 5.0), LEFT, 3.0, [])
+    contour, again = contour_of(drawn), contour_of(drawn)
+    contour.line(again.elements[0].x0, again.elements[0].c0, line=9001, feed=300.0)
+    contour.elements += again.elements
+    assert refusal(contour) == ""
+    assert len(contour.notes) == 1
+
+
 def backwards(shapes):
     """Return lines the other way round."""
     return [Straight(shape.end, shape.start) for shape in reversed(shapes)]
