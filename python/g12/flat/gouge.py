@@ -116,6 +116,7 @@ class _Stretch:
         self._closing = closing_of(self._moves, max(MEETING * tolerance, 2 * contour.closing))
         self._ends = [0.0, *accumulate(map(path_length, self._moves))]
         self._boxes = [box_of(move) for move in self._moves]
+        self._heights = greatest_heights(self._moves)
         self._behind = 0  # by so many moves another pass ran behind the last place, if one did
 
     def check(self, ramps: list[Cut]) -> None:
@@ -151,18 +152,17 @@ class _Stretch:
 
     def _candidates(self, ramps: list[Cut]) -> Iterator[tuple[int, list[tuple]]]:
         """Yield the moves that the tool may cut, by their index, and its passes near to each."""
-        heights = greatest_heights(self._moves)
-        moves = Boxes([(index, self._moves[index]) for index in sorted(heights)])
+        moves = Boxes([(index, self._moves[index]) for index in sorted(self._heights)])
         passes = [Boxes(ways) for ways in self._passes(ramps)]
         runs = straight_runs(self._moves)
         for index, near in near_passes(moves, passes, self._radius, runs, self._is_behind):
-            low = [
-                passed
-                for passed in near
-                if min(passed[1].z0, passed[1].z1) <= heights[index] + SAME_PLACE
-            ]
+            low = [passed for passed in near if self._is_low(passed[1], index)]
             about = index + self._behind
             yield index, sorted(low, key=lambda passed: abs(passed[0] - about))
+
+    def _is_low(self, way: Line | Arc, index: int) -> bool:
+        """Return whether a way of the tool is not above a move all along."""
+        return min(way.z0, way.z1) <= self._heights[index] + SAME_PLACE
 
     def _is_behind(self, index: int) -> bool:
         """Return whether those passes run behind a move that did so, relative to it, before."""
@@ -175,6 +175,7 @@ class _Stretch:
             (by, way)
             for by in sorted(near, key=lambda by: abs(by - about))
             for way in filter(is_move, self._cuts[by].path)
+            if self._is_low(way, index)
         ]
         return all(self._is_passed(place, passes) for place in places_along(move, self._tolerance))
 
