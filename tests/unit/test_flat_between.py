@@ -708,6 +708,23 @@ def test_it_is_told_where_one_contour_cuts_another_and_does_not_enter(monkeypatc
     assert len(count) == 8
 
 
+@pytest.mark.parametrize(
+    ("wall", "side", "heights", "other"),
+    [
+        ([13 + 13j, 10 + 33j, -2 - 26j, -22 - 36j, -30 - 24j], LEFT, -5.0,
+         [-1 - 30j, -26 + 14j, -13 + 38j, 10 + 12j]),
+        ([-7 + 8j, -12 + 8j, -15 + 15j, -14 + 24j, 9 + 21j, -1 + 8j, -7 + 8j], RIGHT,
+         [-5.0, -5.0, UP, -5.0, -5.0, -5.0], [-1 + 29j, -17 + 18j, -24 + 27j, 22 + 34j]),
+    ],
+)  # fmt: skip
+def test_where_a_wall_ends_air_and_material_change_without_it(wall, side, heights, other):
+    """The other contour enters behind the end of an open wall, or of one that is cut in parts."""
+    wall, other = ([Straight(*pair) for pair in zip(z, z[1:])] for z in (wall, other))
+    wall, other = Drawn(wall, side, 3.0, wall), boss(other, 3.0)
+    text, notes = found((wall, heights), (other, -5.0))
+    assert (text, of_passes(notes, wall, other)) == ("", [])
+
+
 def test_what_is_only_rounding_of_a_move_is_no_part_of_a_contour():
     move = Line(1, 300.0, 3.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0)
     assert Closing(0, 2.0 - 1e-12, 4, 1.0, True, False).part(0, move) == (0.0, 0.0)
