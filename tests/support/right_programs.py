@@ -499,7 +499,7 @@ def _passes(text, depth, allowance):
 def _polygon_call(text, cutter):
     across, sides, depth = text.between(12, 30), text.chance.randint(2, 9), text.between(1, 5)
     stock, rounding = across + text.between(1, 12), text.one_of(0, text.between(0.5, 3))
-    finish = text.one_of(OUT, text.n(0.3))
+    finish = text.one_of(OUT, text.n(0.3), text.n(0.012))
     entries = [sides, *map(text.n, (across, depth, stock, rounding * (sides > 2)))]
     angle = text.chance.choice([OUT, 0, 30, -77.5])
     return "polar_polygon", [*entries, *_passes(text, depth, finish), angle]
@@ -508,7 +508,7 @@ def _polygon_call(text, cutter):
 def _slot_call(text, cutter):
     width = 2 * cutter + text.one_of(0, text.between(0.5, 9))
     length, depth = width + text.between(2, 20), text.between(1, 5)
-    finish = text.n(0.15) if width > 2 * cutter + 0.4 and text.one_of(0, 1) else OUT
+    finish = text.one_of(OUT, text.n(0.15), text.n(0.012)) if width > 2 * cutter + 0.4 else OUT
     entries = [text.n(value) for value in (width, length, depth)]
     return "polar_slot", [*entries, *_passes(text, depth, finish), text.one_of(OUT, 0, 45, -120)]
 
@@ -516,7 +516,7 @@ def _slot_call(text, cutter):
 def _pocket_call(text, cutter):
     diameter, depth = 2 * cutter + text.between(1, 20), text.between(1, 5)
     x, c = text.one_of(0, text.between(-9, 9)), text.one_of(0, text.between(-9, 9))
-    finish = text.one_of(OUT, text.n(0.15))
+    finish = text.one_of(OUT, text.n(0.15), text.n(0.012))
     entries = [_x(text, x), *map(text.n, (c, diameter, depth))]
     return "polar_pocket", [*entries, *_passes(text, depth, finish)]
 
