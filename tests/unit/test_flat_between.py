@@ -18,7 +18,7 @@ from shapely.geometry.polygon import orient
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat import between
 from g12.flat.closing import Closing
-from g12.flat.contour import Contour, Line
+from g12.flat.contour import Arc, Contour, Line, is_move
 from g12.flat.offset import tool_path
 from support.contour_geometry import Round, Straight
 from support.planned_cuts import add
@@ -292,17 +292,46 @@ def test_an_open_contour_may_end_in_the_air_and_is_told():
     assert notes
 
 
+def followed(monkeypatch, drawn):
+    """Return a contour as it is compared with others."""
+    seen = []
+    with monkeypatch.context() as patch:
+        patch.setattr(between, "_verdicts", lambda contours: seen.extend(contours) or [])
+        found((drawn, -5.0), (boss(circle(5.0, at=90.0), 3.0), -5.0))
+    return seen[0]
+
+
+@pytest.mark.parametrize(
+    ("shapes", "leads", "others"),
+    [
+        (BESIDE, [], [(0, 11 + 30j), (3, 14 + 27j)]),  # begins and ends in a corner
+        ([Straight(14 - 20j, 14 + 30j), *BESIDE], [(0, 11 - 20j), (0, 11 + 30j)], [(1, 11 + 30j)]),
+        ([Straight(14 - 20j, 14 + 50j), *BESIDE[1:]], [(0, 11 - 20j), (0, 11 + 29j)],
+         [(0, 11 + 31j), (0, 11 + 50j), (3, 14 + 27j)]),
+        ([*BESIDE, Straight(14 + 30j, 0 + 30j)], [(4, 14 + 27j), (4, 0 + 27j)],
+         [(0, 11 + 30j), (3, 14 + 27j)]),
+        ([*BESIDE[:3], BESIDE[3].between(0.0, 2.0)], [(3, 13 + 27j), (3, -12 + 27j)],
+         [(3, 40 + 27j), (3, 15 + 27j)]),
+    ],
+)  # fmt: skip
+def test_what_is_in_front_of_a_closed_contour_or_behind_it_is_a_lead(
+    monkeypatch, shapes, leads, others
+):
+    contour = followed(monkeypatch, boss(shapes, 3.0))
+    for index, place in leads:
+        assert contour.leads(index, (place.real, place.imag))
+    for index, place in others:
+        assert not contour.leads(index, (place.real, place.imag))
+
+
 def test_beyond_the_ends_of_an_open_contour_nobody_knows(monkeypatch):
     """In front of, behind and beside an angle, and on its own lines."""
-    seen = []
-    monkeypatch.setattr(between, "_verdicts", lambda contours: seen.extend(contours) or [])
-    angle = boss([Straight(10j, 0j), Straight(0j, 20 + 0j)], 3.0)
-    found((angle, -5.0), (boss(circle(5.0, at=90.0), 3.0), -5.0))
+    angle = followed(monkeypatch, boss([Straight(10j, 0j), Straight(0j, 20 + 0j)], 3.0))
     places = [11j, 3 + 11j, -3 + 11j, 21 + 0j, 21 + 3j, 21 - 3j]
-    assert [seen[0].height_of((z.real, z.imag))[1] for z in places] == [True] * 6
+    assert [angle.height_of((z.real, z.imag))[1] for z in places] == [True] * 6
     places = {3 + 9j: 3.0, -3 + 9j: -3.0, 3 + 2j: 2.0, -3 - 4j: -5.0, 19 + 1j: 1.0, 19 - 1j: -1.0}
     for z, height in places.items():
-        assert seen[0].height_of((z.real, z.imag)) == (pytest.approx(height), False)
+        assert angle.height_of((z.real, z.imag)) == (pytest.approx(height), False)
 
 
 @pytest.mark.parametrize(("end", "told"), [(20.0, False), (40.0, True)])
@@ -341,6 +370,30 @@ def test_a_pass_above_the_material_enters_nothing(levels, height, told):
     for parts in ([*walls, other], [other, *walls]):
         text, notes = found(*parts)
         assert not text and bool(notes) is told  # the square's own pass cuts off the step's wall
+
+
+def test_what_passes_above_a_cut_is_not_told():
+    """Where it comes near to the square it is too high, then it goes down beside it, too near."""
+    corners = [40 - 40j, 14 - 40j, 14 - 5j, 15 + 0j, 15 + 40j]
+    shapes = [Straight(*pair) for pair in zip(corners, corners[1:])]
+    parts = [(begun_at(FACED, 5), -5.0), (boss(shapes, 3.0), [-5.0, UP, UP, -5.0])]
+    for order in (parts, parts[::-1]):
+        text, notes = found(*order)
+        assert not text and told_depths(notes) == [pytest.approx(1.0, abs=TOLERANCE)]
+
+
+@pytest.mark.parametrize(
+    ("depths", "told"), [((-3.0, -6.0), True), ((-6.0, -3.0), True), ((-3.0, -4.0), False)]
+)
+def test_a_pass_that_falls_or_rises_is_as_deep_as_its_deeper_end(depths, told):
+    """A line ends 2 in front of the square, which is cut at -5."""
+    contour = section(
+        (boss(FACED.shapes, 3.0), -5.0), (boss([Straight(60 + 0j, 12 + 0j)], 3.0), -3.0)
+    )
+    (k,) = (k for k, e in enumerate(contour.elements) if is_move(e) and (e.x0, e.x1) == (60, 12))
+    contour.elements[k] = contour.elements[k]._replace(z0=depths[0], z1=depths[1])
+    tool_path(contour, contour.elements, TOLERANCE)
+    assert bool(contour.notes) is told
 
 
 @pytest.mark.parametrize(("over", "refused"), [(UP, True), (-5.0, False)])
@@ -765,3 +818,20 @@ def test_ten_thousand_elements_are_not_compared_each_with_each(parts, told):
     tool_path(contour, contour.elements, TOLERANCE)
     assert time.process_time() - start < 8.0  # below one, told two, where nothing else runs
     assert bool(contour.notes) is told
+
+
+@pytest.mark.parametrize("offset", [4.0, -4.0])
+@pytest.mark.parametrize("sweep", [0.0, 1.0, -2.0])
+def test_so_long_is_the_way_of_the_place_where_a_tool_touches(offset, sweep):
+    """Along a line, and beside arcs on both sides."""
+    start, end, centre = 7 - 3j, 27 - 3j, -5 + 2j
+    way = Line(1, 1.0, offset, start.real, start.imag, 0.0, end.real, end.imag, 0.0)
+    if sweep:
+        end = centre + (start - centre) * cmath.rect(1.0, sweep)
+        ends = (start.real, start.imag, 0.0, end.real, end.imag, 0.0)
+        way = Arc(1, 1.0, offset, *ends, centre.real, centre.imag, sweep)
+    shape = Round(start, centre, sweep) if sweep else Straight(start, end)
+    touches = [between._touch(way, (z.real, z.imag), offset) for z in shape.points(2001)]
+    assert shape.distance(np.array([complex(*z) for z in touches])) == pytest.approx(4.0)
+    length = sum(map(math.dist, touches, touches[1:]))
+    assert between._touched_length(way, touches[7]) == pytest.approx(length, rel=1e-5)
