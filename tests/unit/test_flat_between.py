@@ -312,6 +312,8 @@ def followed(monkeypatch, drawn):
          [(0, 11 + 30j), (3, 14 + 27j)]),
         ([*BESIDE[:3], BESIDE[3].between(0.0, 2.0)], [(3, 13 + 27j), (3, -12 + 27j)],
          [(3, 40 + 27j), (3, 15 + 27j)]),
+        ([ROUND[0].between(-0.3, 1.0), *ROUND[1:3], ROUND[3].between(0.0, 1.2)],
+         [(0, 11 - 30j), (0, 11 + 0j), (3, 27 - 23j), (3, 9 - 23j)], [(1, 27 + 23j)]),  # it crosses
     ],
 )  # fmt: skip
 def test_what_is_in_front_of_a_closed_contour_or_behind_it_is_a_lead(
