@@ -292,12 +292,12 @@ def test_an_open_contour_may_end_in_the_air_and_is_told():
     assert notes
 
 
-def followed(monkeypatch, drawn):
+def followed(monkeypatch, drawn, heights=-5.0):
     """Return a contour as it is compared with others."""
     seen = []
     with monkeypatch.context() as patch:
         patch.setattr(between, "_verdicts", lambda contours: seen.extend(contours) or [])
-        found((drawn, -5.0), (boss(circle(5.0, at=90.0), 3.0), -5.0))
+        found((drawn, heights), (boss(circle(5.0, at=190.0), 3.0), -5.0))
     return seen[0]
 
 
@@ -324,6 +324,16 @@ def test_what_is_in_front_of_a_closed_contour_or_behind_it_is_a_lead(
         assert contour.leads(index, (place.real, place.imag))
     for index, place in others:
         assert not contour.leads(index, (place.real, place.imag))
+
+
+def test_places_are_numbered_on_where_parts_of_a_contour_join(monkeypatch):
+    corners = [30j, 0j, 40 + 30j, 40 + 0j, 80 + 0j]
+    walls = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
+    contour = followed(monkeypatch, walls, [-5.0, UP, -5.0, -5.0])
+    first, third, last = (between.place_count(contour.parts[k], TOLERANCE) for k in (0, 2, 3))
+    assert contour.first_places == {0: 0, 2: first + 1, 3: first + 1 + third}
+    assert contour.last_place == first + third + last
+    assert contour.count == first + third + last
 
 
 def test_beyond_the_ends_of_an_open_contour_nobody_knows(monkeypatch):
