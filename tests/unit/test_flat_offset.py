@@ -327,6 +327,12 @@ def test_an_outside_corner_is_rounded_in_the_next_block():
     assert ends[3] == (22.0, -15.0)
 
 
+def test_a_square_corner_is_rounded_however_small_the_tool_is():
+    moves = centre_moves(polygon(20 + 10j, 40 + 10j, 40 + 30j, 20 + 30j), OUTSIDE, 0.0005)
+    sweeps = [move.sweep for move in moves if isinstance(move, Arc)]
+    assert sweeps == pytest.approx([math.pi / 2] * 3)  # at the fourth the contour begins
+
+
 def test_a_turn_back_is_an_outside_corner():
     assert joined(to(20, 5), to(15, 5))[3] == (15.0, 3.0)
 
