@@ -19,6 +19,7 @@ from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.flat import between
 from g12.flat.closing import Closing
 from g12.flat.contour import Arc, Contour, Line, is_move
+from g12.flat.gouge import place_count
 from g12.flat.offset import tool_path
 from support.contour_geometry import Round, Straight
 from support.planned_cuts import add
@@ -330,7 +331,7 @@ def test_places_are_numbered_on_where_parts_of_a_contour_join(monkeypatch):
     corners = [30j, 0j, 40 + 30j, 40 + 0j, 80 + 0j]
     walls = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
     contour = followed(monkeypatch, walls, [-5.0, UP, -5.0, -5.0])
-    first, third, last = (between.place_count(contour.parts[k], TOLERANCE) for k in (0, 2, 3))
+    first, third, last = (place_count(contour.parts[k], TOLERANCE) for k in (0, 2, 3))
     assert contour.first_places == {0: 0, 2: first + 1, 3: first + 1 + third}
     assert contour.last_place == first + third + last
     assert contour.count == first + third + last

@@ -20,11 +20,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, partial
-from math import copysign, hypot, inf
+from math import hypot
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.flat.closing import closing_of
+from g12.flat.compared import ComparedContour, ball_round
 from g12.flat.contour import (
     SAME_PLACE,
     Arc,
@@ -32,22 +32,16 @@ from g12.flat.contour import (
     Line,
     Point,
     direction_at,
-    is_move,
     path_length,
 )
 from g12.flat.gouge import (
-    MEETING,
     RAMP,
     Cut,
-    greatest_heights,
     in_plane,
-    place_count,
     places_along,
     stretches,
-    without_repeats,
 )
 from g12.flat.intersect import (
-    along_start,
     distance_from,
     least_distance,
     nearest_place,
@@ -92,7 +86,7 @@ class _Verdict(NamedTuple):
 def check_contours(contour: Contour, cuts: Sequence[Cut], tolerance: float) -> None:
     """Refuse a contour on whose way the tool cuts into another one, or tell it in the ``notes``."""
     followed = _in_plane_once(
-        _Followed(contour, stretch, ramps, tolerance) for stretch, ramps in stretches(cuts)
+        ComparedContour(contour, stretch, ramps, tolerance) for stretch, ramps in stretches(cuts)
     )
     followed = [one for one in followed if one.heights and one.radius > tolerance]
     if len(followed) < 2:
@@ -119,9 +113,9 @@ def _note(contour: Contour, text: str) -> None:
         contour.notes.append(text)
 
 
-def _in_plane_once(followed: Iterator[_Followed]) -> list[_Followed]:
+def _in_plane_once(followed: Iterator[ComparedContour]) -> list[ComparedContour]:
     """Return contours without those that repeat another one at other heights."""
-    kept: dict[tuple, _Followed] = {}
+    kept: dict[tuple, ComparedContour] = {}
     for one in followed:
         if one.signature in kept:
             kept[one.signature].add_level(one)
@@ -130,7 +124,7 @@ def _in_plane_once(followed: Iterator[_Followed]) -> list[_Followed]:
     return list(kept.values())
 
 
-def _verdicts(followed: list[_Followed]) -> Iterator[tuple[int, int, _Verdict]]:
+def _verdicts(followed: list[ComparedContour]) -> Iterator[tuple[int, int, _Verdict]]:
     """Yield what is not meant, with the numbers of the contour that is cut and the other one."""
     meant, rest = {}, []  # runs, by the numbers of both contours
     for one, other, meeting in _meetings(followed):
@@ -147,7 +141,7 @@ def _verdicts(followed: list[_Followed]) -> Iterator[tuple[int, int, _Verdict]]:
             yield from ((one, other, verdict) for verdict in meeting.verdicts(left, apart))
 
 
-def _meetings(followed: list[_Followed]) -> Iterator[tuple[int, int, _Meeting]]:
+def _meetings(followed: list[ComparedContour]) -> Iterator[tuple[int, int, _Meeting]]:
     """Yield the contours that are near to each other, as long as it takes no long time."""
     rest = MOST
     for one, others in _near_contours(followed):
@@ -159,7 +153,7 @@ def _meetings(followed: list[_Followed]) -> Iterator[tuple[int, int, _Meeting]]:
                 return
 
 
-def _near_contours(followed: list[_Followed]) -> Iterator[tuple[int, list[int]]]:
+def _near_contours(followed: list[ComparedContour]) -> Iterator[tuple[int, list[int]]]:
     """Yield each contour's number with those of the others whose tool may come near to it."""
     walls = Boxes([(k, _diagonal(one.walls.box)) for k, one in enumerate(followed)])
     passes = Boxes([(-1 - k, _diagonal(one.passes.box)) for k, one in enumerate(followed)])
@@ -173,137 +167,10 @@ def _diagonal(box: Box) -> Line:
     return Line(0, 0.0, 0.0, low_x, low_c, 0.0, high_x, high_c, 0.0)
 
 
-class _Followed:
-    """A contour with the tool's passes along it.
-
-    ``parts``: what of its moves may be cut, by their index; ``heights``: the greatest Z of each.
-    ``levels``: the heights at which the contour is cut. ``ways``: the passes, with the index of
-    the move that each is for.
-    """
-
-    def __init__(
-        self, contour: Contour, cuts: list[Cut], ramps: list[Cut], tolerance: float
-    ) -> None:
-        self.moves = [cut.move for cut in cuts]
-        self.tolerance, self.offset = tolerance, self.moves[0].offset
-        self.radius = abs(self.offset)
-        self.closing = closing_of(self.moves, max(MEETING * tolerance, 2 * contour.closing))
-        self.parts, self.heights = {}, {}
-        for index, height in sorted(greatest_heights(self.moves).items()):
-            first, last = self.closing.part(index, self.moves[index])
-            if first < last:
-                self.parts[index] = part_of_move(self.moves[index], first, last)
-                self.heights[index] = height
-        self.levels = {_level(self.moves[index].z1) for index in self.parts}
-        ways = [(k, way) for k, cut in enumerate(cuts) for way in cut.path if is_move(way)]
-        ways += [(RAMP, way) for ramp in ramps for way in ramp.path if is_move(way)]
-        self._all_ways = ways
-        self.ways = without_repeats(ways)
-        self.signature = self.offset, tuple(dict.fromkeys(map(in_plane, self.moves)))
-
-    def add_level(self, other: _Followed) -> None:
-        """Take over the heights of a contour that is the same in the plane."""
-        for index, height in other.heights.items():
-            self.heights[index] = max(height, self.heights.get(index, height))
-        self.levels |= other.levels
-        self._all_ways += other._all_ways
-        self.ways = without_repeats([*self.ways, *other.ways])
-
-    @cached_property
-    def first_places(self) -> dict[int, int]:
-        """The number of each part's first place; a number is left out where parts do not join."""
-        first, following = {}, 0
-        for index, part in self.parts.items():
-            first[index] = following
-            following += place_count(part, self.tolerance) + (index + 1 not in self.parts)
-        return first
-
-    @property
-    def count(self) -> int:
-        """How many places there are."""
-        return sum(place_count(part, self.tolerance) for part in self.parts.values())
-
-    @property
-    def last_place(self) -> int:
-        """The number of the last place."""
-        index = max(self.parts)
-        return self.first_places[index] + place_count(self.parts[index], self.tolerance) - 1
-
-    @cached_property
-    def walls(self) -> Boxes:
-        """What may be cut, by its index."""
-        return Boxes(list(self.parts.items()))
-
-    @cached_property
-    def passes(self) -> Boxes:
-        """The passes, by minus their number from 1, which `near_passes` takes for no move's."""
-        return Boxes([(-1 - number, way) for number, (_, way) in enumerate(self.ways)])
-
-    @cached_property
-    def balls(self) -> list[tuple[Point, float]]:
-        """A circle round each pass: centre and radius."""
-        return [_ball(way) for _, way in self.ways]
-
-    @cached_property
-    def levels_of(self) -> dict[tuple, set[int]]:
-        """The heights of each pass, by its place in the plane."""
-        levels: dict[tuple, set[int]] = {}
-        for _, way in self._all_ways:
-            levels.setdefault(in_plane(way), set()).add(_level(way.z1))
-        return levels
-
-    @cached_property
-    def whole(self) -> bool:
-        """Whether what may be cut goes all round: between air and material it lies everywhere."""
-        return self.closing.closed and len(self.parts) == 1 + max(self.parts) - min(self.parts)
-
-    def height_of(self, point: Point) -> tuple[float, bool]:
-        """Return how far a point is from the contour, below zero in its material.
-
-        And whether it is beyond an end of an open contour: nobody knows what is there.
-        """
-        nearest, _ = self.walls.nearest(point, inf, lambda *_: True)
-        reach = nearest + SAME_PLACE
-        sides = [self._side(move, point) for _, move in self.walls.near((*point, *point), reach)]
-        _, across, place = max(
-            (side for side in sides if side[0] <= reach), key=lambda side: abs(side[1])
-        )
-        return copysign(nearest, across), self._is_end(*place)
-
-    def _side(self, move: Line | Arc, point: Point) -> tuple[float, float, Point]:
-        """Return how far a point is from a move and to the tool's side of it, and where there."""
-        (x, c), (px, pc) = point, nearest_place(move, point)
-        tx, tc = direction_at(move, (px, pc))
-        across = copysign(1.0, self.offset) * (tx * (c - pc) - tc * (x - px))
-        return hypot(x - px, c - pc), across, (px, pc)
-
-    def _is_end(self, x: float, c: float) -> bool:
-        """Return whether a place is an end of an open contour."""
-        if self.closing.closed:
-            return False
-        first, last = self.moves[0], self.moves[-1]
-        ends = (first.x0, first.c0), (last.x1, last.c1)
-        return any(hypot(x - ex, c - ec) <= SAME_PLACE for ex, ec in ends)
-
-    def leads(self, index: int, centre: Point) -> bool:
-        """Return whether a pass for a move may be one to lead in or out, at a place of the tool."""
-        closing = self.closing
-        if not closing.closed or closing.crossing:
-            return not closing.first < index < closing.last
-        first, last = closing.part(index, self.moves[index])
-        at = self._share(index, centre)
-        return first >= last or (first > 0.0 and at <= first) or (last < 1.0 and at >= last)
-
-    def _share(self, index: int, centre: Point) -> float:
-        """Return at which part of a move the tool is, 0 to 1."""
-        move = self.moves[index]
-        return along_start(move, nearest_place(move, centre)) / path_length(move)
-
-
 class _Meeting:
     """A contour, and the passes along another one that may cut it."""
 
-    def __init__(self, wall: _Followed, other: _Followed) -> None:
+    def __init__(self, wall: ComparedContour, other: ComparedContour) -> None:
         self._wall, self._other = wall, other
         self._reach = other.radius - wall.tolerance
         self.pairs = 0  # that were looked at
@@ -480,7 +347,7 @@ class _Meeting:
     def _cut(self, index: int, passes: list[int]) -> None:
         """Note which places of a move some passes cut."""
         move = self._wall.parts[index]
-        (x, c), ball = _ball(move)
+        (x, c), ball = ball_round(move)
         near = []
         for by, way in self._low(index, passes):
             (wx, wc), other = self._other.balls[by]
@@ -525,16 +392,6 @@ def _touched_length(way: Line | Arc, touch: Point) -> float:
     return abs(way.sweep) * hypot(touch[0] - way.cx, touch[1] - way.cc)
 
 
-def _ball(move: Line | Arc) -> tuple[Point, float]:
-    """Return a circle round a move: centre and radius."""
-    return place_at(move, 0.5), 0.5 * path_length(move)
-
-
 def _is_low(way: Line | Arc, height: float) -> bool:
     """Return whether a pass is not above what is so high."""
     return min(way.z0, way.z1) <= height + SAME_PLACE
-
-
-def _level(z: float) -> int:
-    """Return a height that is the same but for rounding."""
-    return round(z / SAME_PLACE)
