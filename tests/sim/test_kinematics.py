@@ -2,12 +2,14 @@
 """The face's kinematics in a headless LinuxCNC: real motion, and no way into the wrong world."""
 
 import cmath
+import json
 import random
 import time
 
 import numpy as np
 import pytest
 
+from g12.tools.commands.main import main
 from g12.tools.preview.tracer import Tracer
 from support.contour_geometry import (
     FROM_COLUMNS,
@@ -259,6 +261,20 @@ def test_the_tolerance_that_linuxcnc_starts_with_rounds_no_corner(lathe):
     run = lathe.run_text([*begun, *SQUARE, "G13.1", "M2"])
     assert run.error is None
     assert off_the_corners(run.samples).max() < 0.005  # POLAR_TOLERANCE
+
+
+def test_verify_finds_nothing_wrong_in_a_corner_with_a_lead(tmp_path, capsys):
+    program = tmp_path / "corners.ngc"
+    square = ["G1 Z-1 F3000", *SQUARE[:-1], "C30", "X45 C32", "Z2"]
+    blocks = ["G21 G18 G8 G90 G94", *ROUGHLY[1:], *square, "G13.1", "M2"]
+    program.write_text("\n".join(blocks) + "\n")
+    ini = str(SIM / "lathe_mm_kinematics_headless.ini")
+    code = main(["verify", str(program), "--ini", ini, "--run", "--json"])
+    said = capsys.readouterr()
+    assert code == 0, said
+    (facts,) = json.loads(said.out)["sections"]
+    assert facts["deviation"] < 0.005
+    assert facts["pieces"] < 10  # cut on the face
 
 
 def test_blocks_that_wait_cut_a_section_in_two(lathe):

@@ -260,7 +260,8 @@ def laid_along(
 
     Each block is compared with its own element and those before and after, as far as these are
     part of a closed contour: a later pass may cross the lead-in's extension. Where one line makes
-    both, in a loop, a point is held to what it is nearer to.
+    both, in a loop, a point is held to what it is nearer to. In a run a block's motion begins on
+    the one before, where the corner between them is blended, be that a lead.
     """
     closed = trimmed(stretch)
     columns = []
@@ -274,6 +275,8 @@ def laid_along(
         contours = [ContourDistances(elements)]
         if len(own) > 1:
             contours.append(ContourDistances([closed[index] for index in inside]))
+        if paths.measured:
+            contours.append(ContourDistances([stretch[index] for index in inside]))
         for tool_path in paths.of(line):
             nearest, sides = next_to(contours, tool_path, stretch[0].side, radius)
             parts = ([each[index] for index in inside] for each in (stretch, closed))

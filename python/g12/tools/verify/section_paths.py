@@ -129,7 +129,10 @@ def plane_of(section: SectionContour, first: Move) -> Plane:
 
 
 class ToolPaths:
-    """The tool centre's paths during a section, each with the line of its block, and plunges."""
+    """The tool centre's paths during a section, each with the line of its block, and plunges.
+
+    ``measured``: they are those of a run.
+    """
 
     def __init__(
         self,
@@ -137,11 +140,12 @@ class ToolPaths:
         plunges: ToolPath,
         face: float,
         sizes: Callable[[np.ndarray], np.ndarray] = np.abs,
+        measured: bool = False,
     ) -> None:
         self._tool_paths: dict[int, list[ToolPath]] = {}
         self._plunges = plunges
         self._face = face
-        self.sizes = sizes
+        self.sizes, self.measured = sizes, measured
         self._distances: dict[float, ContourDistances] = {}
         for line, tool_path in tool_paths:
             if len(tool_path.points) > 1:
@@ -194,7 +198,7 @@ def tool_paths_of(
     )
     downward = [plane.tool_path(index, path, real) for index in down]
     plunges = [ToolPath(tool_path.points[-1:], tool_path.heights[-1:]) for tool_path in downward]
-    return ToolPaths(tool_paths, connected(plunges), plane.face, plane.sizes)
+    return ToolPaths(tool_paths, connected(plunges), plane.face, plane.sizes, real is not None)
 
 
 def connected(tool_paths: Sequence[ToolPath]) -> ToolPath:
