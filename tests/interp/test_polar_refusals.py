@@ -359,6 +359,18 @@ def test_through_the_centre_where_that_is_refused():
     assert line == 6
 
 
+@pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
+def test_a_line_number_is_taken_for_no_code(machine):
+    """LinuxCNC tells G90.1 as 901, G96 as 960, M52 as 52, and in front of them a line's number."""
+    modes = "(DEBUG,#<_ijk_absolute_mode>)"
+    with Tracer(SIM / f"{machine}.ini") as lathe:
+        for code in (52, 901, 960):
+            for first in range(code - 6, code + 5):
+                blocks = section("G1 X20 C5", "X10")
+                trace = lathe.trace_text([*[""] * (first - 1), *blocks[:-1], modes, blocks[-1]])
+                assert texts(trace)[-1] == "0.000000", first
+
+
 # A square pocket, from its corner or from the middle of a side, with a tool of 12 mm diameter.
 POCKET = ["C-10", "X-10", "C10", "X10"]
 

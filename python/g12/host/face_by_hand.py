@@ -26,7 +26,7 @@ from g12.host.kinematics_switch import (
     to_face,
     y_offset,
 )
-from g12.host.program_lines import ProgramLines, read_source
+from g12.host.program_lines import ProgramLines, read_source, without_line
 from g12.section.start import SectionStart
 
 ADAPTIVE = 52  # active_m_codes
@@ -81,7 +81,7 @@ def give_back_modes(interp: object) -> None:
 
 def adaptive_feed(interp: object) -> str:
     """Return the block that gives back M52 as it is."""
-    return f"M52P{int(ADAPTIVE in interp.active_m_codes)}"
+    return f"M52P{int(ADAPTIVE in without_line(interp.active_m_codes))}"
 
 
 def _switch(

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 import linuxcnc
 
 from g12.errors import number
+from g12.host.program_lines import without_line
 from g12.section.modes import decimal
 
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
@@ -34,7 +35,8 @@ def face_in_force() -> bool:
 
 def modes_found(interp: object) -> str:
     """Return the block that gives back what `ON_THE_FACE` changes."""
-    centres = next(CENTRES[code] for code in interp.active_g_codes if code in CENTRES)
+    active = without_line(interp.active_g_codes)
+    centres = next(CENTRES[code] for code in active if code in CENTRES)
     return f"{PLANES[interp.plane]}{centres}"
 
 

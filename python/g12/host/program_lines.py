@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 from bisect import bisect_right
+from collections.abc import Iterable
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -206,3 +207,11 @@ class ProgramLines:
         interp.read("")
         self.line = bisect_right(self.source.starts, interp.blocks[0].offset - 1)
         self._in_file = interp.sequence_number = self.line
+
+
+def without_line(active: Iterable[int]) -> list[int]:
+    """Return active codes without what they begin with: a line's number, which may look like one.
+
+    G90.1 stands there as 901, and M52 as 52.
+    """
+    return list(active)[1:]

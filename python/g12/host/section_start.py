@@ -6,6 +6,7 @@ from __future__ import annotations
 from interpreter import MODE_INCREMENTAL
 
 from g12.host import glue
+from g12.host.program_lines import without_line
 from g12.host.section_output import PER_REVOLUTION
 from g12.host.section_reader import block_of
 from g12.section.block_rules import alone
@@ -46,7 +47,7 @@ def start_of_section(interp: object, line: int, words: str = "") -> SectionStart
         compensated=interp.cutter_comp_side != 0,
         offset_pending=bool(interp.arc_not_allowed),
         inverse_time=interp.feed_mode == INVERSE_TIME,
-        surface_speed=G96 in interp.active_g_codes,
+        surface_speed=G96 in without_line(interp.active_g_codes),
         rotated=interp.rotation_xy != 0,
     )
 
