@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from g12.flat.contour import Line
-from g12.moves.feed import Split, pieces_with_feed
+from g12.moves.feed import Split, keeps_slide, pieces_with_feed
 
 START = (10.0, 0.0, 0.0)
 LEAST = 0.001
@@ -111,3 +111,10 @@ def test_all_pieces_together_last_as_long_as_the_path(steps, rise, entry):
     if made:
         assert at[0] == pytest.approx(slides[-1], abs=LEAST)
         assert at[1] == pytest.approx(entry + turns[-1], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("angles", "keeps"), [([0.5, 0.5], False), ([0.1, -0.1], True), ([0.5, 0.6], True)]
+)
+def test_a_piece_keeps_its_slide_where_c_turns(angles, keeps):
+    assert keeps_slide(Split([10.0, 10.0 + 1e-7], angles, [0.0, 1.0]), 1e-6) is keeps
