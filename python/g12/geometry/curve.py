@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Lines and arcs of a plane, directed from start to end.
+
+A share of a curve is a fraction of its length: 0 at the start, 1 at the end.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+COINCIDENT = 1e-12  # a shorter line is a point: it has a length of 0 and no direction
+FULL_TURN = 2 * math.pi
+
+
+class Line(NamedTuple):
+    """A straight curve."""
+
+    start: complex
+    end: complex
+
+    @property
+    def length(self) -> float:
+        """Return the length."""
+        return abs(self.end - self.start)
+
+    def point(self, share: float) -> complex:
+        """Return the point at a share of the line."""
+        return self.start + share * (self.end - self.start)
+
+    def direction(self, share: float = 0.0) -> complex:
+        """Return the unit vector of the motion, 0 of a point."""
+        length = self.length
+        return (self.end - self.start) / length if length > COINCIDENT else 0j
+
+    def portion(self, first: float, last: float) -> Line:
+        """Return the line between two shares."""
+        return Line(self.point(first), self.point(last))
+
+    def reversed(self) -> Line:
+        """Return the line from its end to its start."""
+        return Line(self.end, self.start)
+
+    def offset(self, distance: float) -> Line:
+        """Return the parallel line, ``distance`` to the left of the motion."""
+        left = 1j * distance * self.direction()
+        return Line(self.start + left, self.end + left)
+
+    def share_of(self, point: complex) -> float:
+        """Return the share of the line's point nearest to a point."""
+        along = self.end - self.start
+        square = (along * along.conjugate()).real
+        if square <= COINCIDENT * COINCIDENT:
+            return 0.0
+        return min(1.0, max(0.0, ((point - self.start) * along.conjugate()).real / square))
+
+    def distance(self, point: complex) -> float:
+        """Return the distance of a point from the line."""
+        return abs(point - self.point(self.share_of(point)))
+
+
+class Arc(NamedTuple):
+    """A circular curve about ``centre`` by the signed angle ``sweep``; a full circle has 2 pi."""
+
+    start: complex
+    centre: complex
+    sweep: float
+
+    @property
+    def end(self) -> complex:
+        """Return the end point."""
+        return self.point(1.0)
+
+    @property
+    def radius(self) -> float:
+        """Return the radius."""
+        return abs(self.start - self.centre)
+
+    @property
+    def length(self) -> float:
+        """Return the length."""
+        return self.radius * abs(self.sweep)
+
+    def point(self, share: float) -> complex:
+        """Return the point at a share of the arc."""
+        return self.centre + (self.start - self.centre) * cmath.rect(1.0, share * self.sweep)
+
+    def direction(self, share: float = 0.0) -> complex:
+        """Return the unit vector of the motion at a share of the arc."""
+        outward = self.point(share) - self.centre
+        return math.copysign(1.0, self.sweep) * 1j * outward / (abs(outward) or 1.0)
+
+    def portion(self, first: float, last: float) -> Arc:
+        """Return the arc between two shares."""
+        return Arc(self.point(first), self.centre, (last - first) * self.sweep)
+
+    def reversed(self) -> Arc:
+        """Return the arc from its end to its start."""
+        return Arc(self.end, self.centre, -self.sweep)
+
+    def offset(self, distance: float) -> Arc:
+        """Return the parallel arc, ``distance`` to the left of the motion.
+
+        An arc that is offset beyond its own centre has the start on the other side of it.
+        """
+        outward = (self.start - self.centre) / (self.radius or 1.0)
+        return self._replace(start=self.start - math.copysign(1.0, self.sweep) * distance * outward)
+
+    def share_of(self, point: complex) -> float:
+        """Return the share of the arc's point nearest to a point."""
+        return self.share_between(point, 0.0, 1.0)
+
+    def share_between(self, point: complex, least: float, most: float) -> float:
+        """Return the share nearest to a point among those between two shares."""
+        start, there = self.start - self.centre, point - self.centre
+        if not self.sweep or abs(there) <= COINCIDENT or abs(start) <= COINCIDENT:
+            return least
+        turned = cmath.phase(there / start) * math.copysign(1.0, self.sweep) % FULL_TURN
+        shares = [(turned + turn) / abs(self.sweep) for turn in (-FULL_TURN, 0.0, FULL_TURN)]
+        within = [share for share in shares if least <= share <= most]
+        ends = min((least, most), key=lambda share: abs(self.point(share) - point))
+        return within[0] if within else ends
+
+    def distance(self, point: complex) -> float:
+        """Return the distance of a point from the arc."""
+        return abs(point - self.point(self.share_of(point)))
+
+
+Curve = Line | Arc
+
+
+def recentred(start: complex, end: complex, centre: complex) -> complex:
+    """Return the point nearest to ``centre`` that is equally far from ``start`` and ``end``."""
+    chord, middle = end - start, (start + end) / 2
+    along = ((centre - middle) * chord.conjugate()).real / abs(chord) ** 2
+    return centre - along * chord
+
+
+def sweep_between(start: complex, end: complex, centre: complex, turn: int) -> float:
+    """Return the signed angle from one point to another about a centre.
+
+    ``turn``: +1 counterclockwise, -1 clockwise. A full turn where the angle is none.
+    """
+    angle = (turn * cmath.phase((end - centre) / (start - centre))) % FULL_TURN
+    return turn * (angle or FULL_TURN)

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One expected move of the tool's centre, and how a list of them is written down.
+
+Lengths are mm. The plane is that of the cut: of a pocket, seen from its centre along the axes of
+its plane; of a polar section, the part's face; on a cylinder, its unrolled surface. The level is
+measured at right angles to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from g12.geometry.curve import Curve, Line
+
+
+class Expected(NamedTuple):
+    """One move: its curve in the plane, its levels at start and end, and how fast it goes.
+
+    ``name`` is what the move is for, as the page calls it: plunge, lead-in, ring, stepover.
+    ``feed`` is in mm per minute, or per revolution if ``per_rev``; None where the words do not say.
+    ``exact`` says that it ends in an exact stop, None where the words do not say. ``line`` is that
+    of its block.
+    """
+
+    name: str
+    curve: Curve
+    start_level: float
+    end_level: float
+    feed: float | None = None
+    rapid: bool = False
+    per_rev: bool = False
+    exact: bool | None = None
+    line: int = 0
+
+    @property
+    def length(self) -> float:
+        """Return the length in space."""
+        return abs(complex(self.curve.length, self.end_level - self.start_level))
+
+    def point(self, share: float) -> tuple[complex, float]:
+        """Return the point of the plane and the level at a share of the move."""
+        rise = share * (self.end_level - self.start_level)
+        return self.curve.point(share), self.start_level + rise
+
+    def share_of(self, point: complex, level: float) -> float:
+        """Return the share of the move's point nearest to a point."""
+        return self.nearest((point, level), 0.0, 1.0)
+
+    def nearest(self, point: tuple[complex, float], least: float, most: float) -> float:
+        """Return the share nearest to a point between two shares.
+
+        An arc that climbs is followed across the plane, a straight move in space.
+        """
+        if isinstance(self.curve, Line):
+            found = self._share_in_space(*point)
+        else:
+            found = self.curve.share_between(point[0], least, most)
+        return min(most, max(least, found))
+
+    def _share_in_space(self, point: complex, level: float) -> float:
+        along, rise = self.curve.end - self.curve.start, self.end_level - self.start_level
+        square = abs(along) ** 2 + rise * rise
+        across = ((point - self.curve.start) * along.conjugate()).real
+        return (across + (level - self.start_level) * rise) / square if square else 0.0
+
+    def distance(self, point: complex, level: float, share: float) -> float:
+        """Return the distance in space between a point and the move's point at a share."""
+        there, height = self.point(share)
+        return abs(complex(abs(point - there), level - height))
+
+
+def length_of(path: Sequence[Expected]) -> float:
+    """Return the length of a toolpath."""
+    return sum(move.length for move in path)
