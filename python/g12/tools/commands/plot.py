@@ -32,9 +32,9 @@ from g12.tools.preview.ended import traced
 from g12.tools.preview.moves import message_lines
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.progress import working
-from g12.tools.verify.findings import SPINDLE_STANDS
 from g12.tools.verify.proof import subject_of
 from g12.tools.verify.seen import seen_in
+from g12.tools.verify.sentences import NOTES
 
 EXAMPLES = """\
 examples:
@@ -80,7 +80,7 @@ def told_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
         for line, text in scene.seen.warnings(scene.unit)
     )
     notes = (
-        f"note, line {opened.source_line(line)}: {SPINDLE_STANDS}" for line in scene.seen.still[:1]
+        f"note, line {opened.source_line(line)}: {NOTES['spindle-stands']}" for line in scene.seen.still[:1]
     )
     trace = trace_in_source(scene.subject.trace, opened)
     return [*dict.fromkeys(warnings), *notes, *message_lines(trace.messages)]

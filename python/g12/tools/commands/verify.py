@@ -9,6 +9,7 @@ the program's words, what is cut is measured from the motion that LinuxCNC makes
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from g12.tools.commands.arguments import (
@@ -31,8 +32,8 @@ from g12.tools.preview.ended import traced
 from g12.tools.progress import working
 from g12.tools.units import unit_of
 from g12.tools.verify.proof import Proof, prove
-from g12.tools.verify.report import as_json, as_text
-from g12.tools.verify.source_lines import proof_in_source
+from g12.tools.verify.as_json import as_json
+from g12.tools.verify.report import as_text
 
 EXAMPLES = """\
 examples:
@@ -58,6 +59,8 @@ def command_parser() -> Parser:
     parser.add_argument(
         "--tolerance", type=number_above(0), metavar="MM", help="in place of the usual ones"
     )
+    parser.add_argument("--full", action="store_true", help="print every measure of every cut")
+    parser.add_argument("--strict", action="store_true", help="notes count as findings")
     parser.add_argument("--json", action="store_true", help="print values in mm for a program")
     return parser
 
@@ -69,13 +72,17 @@ def main(arguments: list[str]) -> int:
     check_run(options)
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
-        proof = proof_in_source(proof_of(opened.path, ini, options), opened)
+        proof = proof_of(opened.path, ini, options)
+        proof = replace(proof, opened=opened) if opened.is_filtered else proof
+        judged = proof.judged  # while the text that a filter wrote is there
     tell_whose_lines("verify", opened)
     if not (proof.pockets or proof.sections or proof.unseen or proof.still):
         raise UsageError(f"{options.program}: has no pocket and no polar section to verify")
     unit = unit_of(proof.subject.trace.modes.gcodes, options.units)
-    print(as_json(proof) if options.json else as_text(proof, unit))
-    return FINDING if proof.findings else GOOD
+    text = as_text(proof, unit, full=options.full, strict=options.strict)
+    print(as_json(proof) if options.json else text)
+    counts = (each.is_finding or (options.strict and each.is_note) for each in judged)
+    return FINDING if any(counts) else GOOD
 
 
 def proof_of(program: Path, ini: Ini, options: argparse.Namespace) -> Proof:

@@ -201,7 +201,7 @@ class Trace:
     ended, ``globals`` the global named parameters that the program left, ``numbered`` the
     parameters asked for, ``seconds`` the interpreter's time.  ``events`` holds the messages too.
     ``files`` are those of subs outside the program that execute a remapped code which moves,
-    ``diameters`` what LinuxCNC reads in the tool table: tool number to diameter in mm.
+    ``diameters`` and ``lengths`` (along Z) what LinuxCNC reads in the tool table: tool number to mm.
     """
 
     moves: list[Move]
@@ -217,6 +217,7 @@ class Trace:
     seconds: float
     files: tuple[str, ...] = ()
     diameters: Mapping[int, float] = field(default_factory=dict)
+    lengths: Mapping[int, float] = field(default_factory=dict)
 
 
 def modes(gcodes: Iterable[int], mcodes: Iterable[int], settings: Sequence[float]) -> Modes:

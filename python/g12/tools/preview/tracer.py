@@ -53,7 +53,7 @@ class Tracer:
     when LinuxCNC's Python modules load, so other overrides or tools need another Tracer.
     ``folder`` is its scratch directory.
     ``printed`` is what the interpreter and the machine's modules said while loading,
-    ``diameters`` what LinuxCNC reads in the tool table: tool number to diameter in mm.
+    ``diameters`` and ``lengths`` what LinuxCNC reads in the tool table: tool number to mm.
     """
 
     def __init__(
@@ -105,7 +105,9 @@ class Tracer:
             self._start()
         with contextlib.suppress(BrokenPipeError):  # it died: there will be no answer
             self._connection.send(request)
-        return _trace(self._answer(timeout), self.diameters)
+        return replace(
+            _trace(self._answer(timeout), self.diameters), lengths=self.lengths
+        )
 
     def trace_text(self, text: str | Iterable[str], **options) -> Trace:
         """Trace a program given as text or as lines; see ``trace``.
@@ -150,6 +152,7 @@ class Tracer:
         self.printed, self._no_end = answer["printed"], answer["no_end"]
         mm = self.ini.mm
         self.diameters = {tool: size * mm for tool, size in answer["diameters"].items()}
+        self.lengths = {tool: size * mm for tool, size in answer["lengths"].items()}
 
     def _stop(self) -> None:
         if self._process:

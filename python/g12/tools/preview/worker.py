@@ -50,6 +50,7 @@ BY_MACHINE = (280, 300, 530)
 FEED_MODES = ("G94", "G93", "G95")
 CONTINUOUS = 3  # CANON_CONTINUOUS: G64
 DIAMETER = 10  # place in what the preview asks for of a tool
+LENGTH = 3  # Z of its offset, likewise
 TOOL_FUNCTIONS = {  # with their types as C++ names them
     "tooldata_init": "b",
     "tool_mmap_creator": "PK13EMC_TOOL_STATi",
@@ -110,6 +111,10 @@ class Tools:
     def diameters(self) -> dict[int, float]:
         """Return tool number to diameter in machine units; the first entry of a tool counts."""
         return {entry[0]: entry[DIAMETER] for entry in reversed(self._entries) if entry[0] > 0}
+
+    def lengths(self) -> dict[int, float]:
+        """Return tool number to length along Z in machine units; the first entry counts."""
+        return {entry[0]: entry[LENGTH] for entry in reversed(self._entries) if entry[0] > 0}
 
     def at(self, index: int) -> tuple:
         """Return the record at an index of the table; index 0 is the spindle."""
@@ -564,7 +569,7 @@ def start(machine: dict, tools: Tools) -> dict:
     answer = answered(machine, tools, request)
     if answer.get("error") and answer["error"][0] == no_end:
         answer["error"] = None
-    return {**answer, "no_end": no_end, "diameters": tools.diameters()}
+    return {**answer, "no_end": no_end, "diameters": tools.diameters(), "lengths": tools.lengths()}
 
 
 def reply(connection: Connection, machine: dict, answer: dict) -> None:

@@ -4,21 +4,24 @@
 from __future__ import annotations
 
 import string
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from g12.tools.units import MM, Unit, plain
-from g12.tools.verify.sentences import FINDINGS, NOTES
+from g12.tools.verify.sentences import FINDINGS, NOT_JUDGED, NOTES
+
+SENTENCES = {**FINDINGS, **NOTES, **NOT_JUDGED}
 
 
 @dataclass(frozen=True)
 class Finding:
-    """Something that is not as expected, or that a user should know (a note).
+    """Something that is not as expected, that a user should know, or that was not judged.
 
     ``code`` names a sentence of ``sentences``, ``values`` are what stands in its braces: mm, mm²,
-    mm/min, degrees. ``line`` is the user's line, ``file`` the name of a sub's own file. ``place``
-    is where it is, as machine coordinates (X, Y, Z) in mm, for pictures and the report.
+    mm/min, degrees. ``line`` is that of the program as LinuxCNC reads it, ``file`` the name of a
+    sub's own file, "" in the program. ``place`` is where it is, as machine coordinates (X, Y, Z) in mm, for pictures
+    and the report.
     """
 
     code: str
@@ -28,38 +31,41 @@ class Finding:
     file: str = ""
 
     @property
+    def is_finding(self) -> bool:
+        """Tell whether it is a fault."""
+        return self.code in FINDINGS
+
+    @property
     def is_note(self) -> bool:
         """Tell whether it is a note."""
         return self.code in NOTES
 
     def text(self, unit: Unit = MM) -> str:
-        """Return the sentence, with sizes in a unit."""
-        sentence = NOTES[self.code] if self.is_note else FINDINGS[self.code]
-        return _InUnit(unit).vformat(sentence, (), self.values)
+        """Return the sentence with sizes in a unit."""
+        return _Writer(unit).vformat(SENTENCES[self.code], (), self.values)
 
 
-class _InUnit(string.Formatter):
+class _Writer(string.Formatter):
     """Formats the values of a sentence: what follows the colon says what a value is.
 
     ``mm`` a length, ``fine`` a small one, ``mm2`` an area, ``feed`` a feed, ``xyz`` a place,
-    ``list`` several lengths; each with its unit but ``mm`` and ``list``. A number stands for its
+    ``list`` several lengths; each with its unit but ``mm`` and ``list``. A number stands for
     decimals.
     """
 
     def __init__(self, unit: Unit) -> None:
-        self._unit = unit
-
-    def format_field(self, value: Any, spec: str) -> str:
-        """Return one value as text."""
-        unit = self._unit
-        forms = {
-            "mm": lambda: unit.text(value),
-            "fine": lambda: f"{unit.fine(value)} {unit.name}",
-            "mm2": lambda: unit.area(value),
-            "feed": lambda: f"{unit.text(value)} {unit.name}/min",
-            "xyz": lambda: " ".join(a + unit.text(at) for a, at in zip("XYZ", value)),
-            "list": lambda: ", ".join(map(unit.text, value)),
+        self._forms: dict[str, Callable[[Any], str]] = {
+            "mm": unit.text,
+            "fine": lambda value: f"{unit.fine(value)} {unit.name}",
+            "mm2": unit.area,
+            "feed": lambda value: f"{unit.text(value)} {unit.name}/min",
+            "xyz": lambda value: " ".join(a + unit.text(at) for a, at in zip("XYZ", value)),
+            "list": lambda value: ", ".join(map(unit.text, value)),
+            "said": lambda value: value(unit),
         }
-        if spec in forms:
-            return forms[spec]()
-        return plain(value, int(spec)) if spec.isdigit() else str(value)
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        """Return one value as text."""
+        if format_spec in self._forms:
+            return self._forms[format_spec](value)
+        return plain(value, int(format_spec)) if format_spec.isdigit() else str(value)

@@ -38,9 +38,6 @@ MODES = {
     "_ijk_absolute_mode": ("G91.1", "G90.1"),
 }
 LOST_MINUS = "lies above {}, where the tool comes from: it cuts air (a lost minus sign?)"
-SPINDLE_STANDS = (
-    "the spindle stands still: no M3 or M4 with an S comes before it, or M5 or M6 comes after them"
-)
 NOT_CUT = "nothing is cut"
 UNMEASURED = "a cycle cuts here that could not be measured"
 
@@ -229,8 +226,6 @@ def pocket_notes(facts: PocketFacts, unit: Unit = MM) -> Iterator[str]:
     cutter = facts.target.cutter
     if cutter.word:
         yield "the tool's centre goes round on the circle, the wall is a tool radius farther"
-    if facts.spindle_stands:
-        yield SPINDLE_STANDS
     if facts.overruns is None:
         yield "its travel is not known: with the machine's var file the program moves otherwise"
     for overrun in facts.overruns or ():
@@ -251,9 +246,8 @@ def section_notes(facts: SectionFacts) -> Iterator[str]:
     if not zero.commanded and not zero.line:
         angle = plain(facts.zero, 3)
         yield f"no C word comes before it: its zero line is where C stands, at {angle}°"
-    if facts.lowest >= facts.start_height - SAME_SIZE:
-        letter = "X" if facts.section.surface else "Z"
-        yield f"no move goes below the {letter} of {facts.section.code}"
+    if facts.section.surface and facts.lowest >= facts.start_height - SAME_SIZE:
+        yield f"no move goes below the X of {facts.section.code}"
     if facts.in_place.degrees > SAME_ANGLE:
         degrees, seconds = plain(facts.in_place.degrees, 1), plain(facts.in_place.seconds, 1)
         yield (

@@ -67,8 +67,7 @@ class PocketFacts:
     that a move has its feed per minute in place of per revolution, or the other way round;
     ``jump`` is the greatest change of direction, at the place ``jump_at`` on the machine,
     ``growth`` is that of a spiral in a turn, ``helix`` None where the tool goes straight down.
-    ``spindle_stands`` says that no spindle turns, as far as the program tells, ``acts`` are what
-    the cycle does besides moving.
+    ``acts`` are what the cycle does besides moving.
     """
 
     target: Target
@@ -97,7 +96,6 @@ class PocketFacts:
     overruns: tuple[Overrun, ...] | None = ()
     left_behind: tuple[LeftBehind, ...] = ()
     acts: tuple[str, ...] = ()
-    spindle_stands: bool = False
     jump_at: tuple[float, ...] | None = None
 
     @property

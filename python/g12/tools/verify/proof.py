@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import NamedTuple
 
+from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
 from g12.tools.path.part import Part, part_of, part_of_program
@@ -20,31 +21,24 @@ from g12.tools.path.samples import Samples
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.ended import ended, explained
-from g12.tools.preview.executed_blocks import Block
+from g12.tools.preview.executed_blocks import Block, read_lines
 from g12.tools.preview.moves import Move, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
-from g12.tools.units import MM, Unit, unit_of
+from g12.tools.units import Unit, unit_of
 from g12.tools.verify.axis_limits import has_one_zero, overruns_of, travel_of, widths_of
 from g12.tools.verify.codes import CYLINDER, POLAR, Codes
 from g12.tools.verify.executed_subs import executed_everywhere
-from g12.tools.verify.findings import (
-    NOT_CUT,
-    UNMEASURED,
-    collision_text,
-    pocket_findings,
-    section_findings,
-    stock_findings,
-)
+from g12.tools.verify.finding import Finding
 from g12.tools.verify.in_stock import InStock, StockFacts
+from g12.tools.verify.judgement import judged
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
 from g12.tools.verify.pocket_order import acts_in, left_otherwise
-from g12.tools.verify.rapids import Circles, Collision, collisions
+from g12.tools.verify.rapids import Collision, collisions
 from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
 from g12.tools.verify.section_paths import x0_of
-from g12.tools.verify.shape_findings import ShapeFacts, measure_shape, shape_findings
-from g12.tools.verify.spindle import stands_still
+from g12.tools.verify.shape_findings import ShapeFacts, measure_shape
 from g12.tools.verify.stock import read_stock
 from g12.tools.verify.surface_pen import SurfacePen
 from g12.tools.verify.wanted_circle import CircleReader, Target
@@ -128,6 +122,9 @@ class Asked(NamedTuple):
         return [range(each.at, each.end) for each in every]
 
 
+NOTHING = Asked([], [], [])
+
+
 class Tolerances(NamedTuple):
     """What a wall or a contour may be off, mm."""
 
@@ -141,7 +138,8 @@ class Proof:
 
     ``unseen`` are lines whose blocks make a cycle cut that belongs to no pocket and no section
     measured, and the cycle's code; ``still`` those of cycles that move nothing. ``stock`` is what
-    happens to the stock, None if it is not known. ``circles`` are the pockets that were asked for.
+    happens to the stock, None if it is not known. ``asked`` is what the words ask for.
+    ``opened`` is the user's file, None where that is what was read.
     """
 
     subject: Subject
@@ -152,35 +150,28 @@ class Proof:
     tolerances: Tolerances
     stock: StockFacts | None = None
     still: list[tuple[int, str]] = field(default_factory=list)
-    circles: Circles = ()
     shapes: Sequence[ShapeFacts] = ()
+    asked: Asked = NOTHING
+    opened: OpenedProgram | None = None
+
+    @cached_property
+    def judged(self) -> list[Finding]:
+        """Everything that is found, noted or not judged, in the order of lines."""
+        return judged(self, read_lines(self.subject.program))
+
+    def user_line(self, line: int, file: str = "") -> int:
+        """Return a line in the user's file; one in a sub's own ``file`` stays."""
+        return self.opened.source_line(line) if self.opened and not file else line
+
+    def text(self, finding: Finding, unit: Unit) -> str:
+        """Return the sentence of a finding with the user's lines."""
+        text = finding.text(unit)
+        return self.opened.in_source(text) if self.opened and not finding.file else text
 
     @property
     def findings(self) -> list[tuple[int, str]]:
         """Return everything that is not as programmed: the line, and what is wrong."""
-        return self.findings_in(MM)
-
-    def findings_in(self, unit: Unit) -> list[tuple[int, str]]:
-        """Return the findings with their sizes in another unit."""
-        found = [
-            (facts.target.source.line, text)
-            for facts in self.pockets
-            for text in pocket_findings(facts, self.tolerances.pocket, unit)
-        ]
-        found += [
-            (facts.section.line, text)
-            for facts in self.sections
-            for text in section_findings(facts, self.tolerances.polar, unit)
-        ]
-        found += [
-            (facts.asked.line, text)
-            for facts in self.shapes
-            for text in shape_findings(facts, unit)
-        ]
-        found += [(hit.line, collision_text(hit, unit)) for hit in self.collisions]
-        found += stock_findings(self.stock, unit) if self.stock else ()
-        found += [(line, UNMEASURED) for line, _ in self.unseen]
-        return found + [(line, NOT_CUT) for line, _ in self.still]
+        return [(each.line, each.text()) for each in self.judged if each.is_finding]
 
 
 def prove(
@@ -304,15 +295,14 @@ def measured(
         facts = measure_pocket(target, own, path, moves, tolerances.pocket, real, known)
         overruns = None if there is None else tuple(overruns_of(block, there, travel, widths))
         left = left_otherwise(block, target.leaves)
-        still = stands_still(subject.trace.events, block.end, subject.ini)
-        told = {"left_behind": left, "acts": acts_in(block), "spindle_stands": still}
+        told = {"left_behind": left, "acts": acts_in(block)}
         pockets.append(replace(facts, overruns=overruns, **told))
     found = measured_sections(subject, asked.sections, tolerances.polar, tell)
     shapes = measured_shapes(subject, asked, tolerances.polar, tell)
     tell("looking for rapids through material")
     hits = collisions(asked.circles, moves, path, subject.trace.diameters, real)
     unseen = unseen_in(moves, Codes(subject.ini), asked.moves)
-    told = {"still": asked.still, "circles": asked.circles, "shapes": shapes}
+    told = {"still": asked.still, "asked": asked, "shapes": shapes}
     return Proof(subject, pockets, found, hits, unseen, tolerances, **told)
 
 

@@ -26,6 +26,8 @@ from g12.tools.verify.findings import (
     stock_findings,
 )
 from g12.tools.verify.in_stock import StockFacts, zero_of
+from g12.tools.verify.judgement import cuts_of
+from g12.tools.verify.mistakes.spindle import judge_spindle
 from g12.tools.verify.pocket import left_of
 from g12.tools.verify.proof import (
     POCKET_TOLERANCE,
@@ -37,7 +39,6 @@ from g12.tools.verify.proof import (
     stock_facts,
 )
 from g12.tools.verify.rapids import Circles, Cleared, Collision, collisions, cutting, floors_of
-from g12.tools.verify.spindle import stands_still
 from g12.tools.verify.wanted_circle import Cutter
 from g12.tools.verify.wanted_contour import SectionContour
 
@@ -113,7 +114,7 @@ def seen_in(
 def seen_of_proof(proof: Proof) -> Seen:
     """Return what a picture of a program that was measured shows beside the cuts."""
     sections = [facts.section for facts in proof.sections]
-    return seen_of(proof.subject, proof.circles, sections, proof.collisions, proof.stock)
+    return seen_of(proof.subject, proof.asked.circles, sections, proof.collisions, proof.stock)
 
 
 def seen_of(
@@ -131,11 +132,8 @@ def seen_of(
         for _, target in circles
         if is_wrong_tool(target.cutter)
     )
-    still = (
-        target.source.line
-        for block, target in circles
-        if stands_still(trace.events, block.end, subject.ini)
-    )
+    cuts = list(cuts_of(Asked(list(circles), [], []), trace.moves))
+    still = (each.line for each in judge_spindle(cuts, trace.events, subject.ini))
     surface, z0 = surface_of(sections), float(zero_of(circles, sections, trace.moves)[Z])
     return Seen(tuple(hits), tuple(rings), tuple(cutters), stock, tuple(still), surface, z0)
 

@@ -5,6 +5,7 @@ Braces name a value of the finding; what follows the colon says how ``finding`` 
 """
 
 FINDINGS = {
+    # the toolpath, of every kind of cut
     "path-off": "the {what} is {size:fine} off the toolpath that the words ask for, at {at:xyz}",
     "path-missing": "the {what} is not cut: it should end at {at:xyz}",
     "path-extra": "a move to {at:xyz} that the words do not ask for",
@@ -13,5 +14,45 @@ FINDINGS = {
     "feed": "the {what} is cut at {made:feed}, not at {expected:feed}",
     "feed-mode": "the {what} has its feed {made}, not {expected}",
     "not-cut": "nothing is cut",
+    "not-measured": "a cycle cuts here that could not be measured",
+    # the tool
+    "length-deeper": (
+        "the tool length in force, {length:mm}, is not that of T{tool}: "
+        "it cuts {off:fine} deeper than its words say (G43 H{tool} after M6?)"
+    ),
+    "said": "{text:said}",
 }
-NOTES: dict[str, str] = {}
+NOTES = {
+    "length-higher": (
+        "the tool length in force, {length:mm}, is not that of T{tool}: "
+        "it cuts {off:fine} higher than its words say (G43 H{tool} after M6?)"
+    ),
+    "length-not-used": (
+        "no G43: the tool table's length of T{tool}, {off:fine}, is not used; "
+        "right only where Z was touched off with this tool"
+    ),
+    "feed-per-revolution": "F is {feed:mm} per revolution here (G95): was it meant per minute?",
+    "feed-per-minute": "F is {feed:feed} here (G94): was it meant per revolution?",
+    "feed-cut-down": "F asks for {feed:feed}, the machine's limits allow {most:feed}",
+    "native-c": (
+        "C turns together with X or Z outside of a section, where F counts for X and Z alone: "
+        "the part's edge sees {least:feed} to {most:feed}"
+    ),
+    "return-level": (
+        "{code} outside of a section is a return level of drilling cycles to LinuxCNC, "
+        "no feed mode: write {meant}"
+    ),
+    "spindle-stands": (
+        "the spindle stands still: no M3 or M4 with an S comes before it, "
+        "or M5 or M6 comes after them"
+    ),
+    "spindle-m4": "the spindle turns counterclockwise (M4): right-hand tools cut with M3",
+    "main-spindle-turns": "the main spindle turns at {code}: C cannot hold a part that turns",
+    "above-zero": "nothing of it goes below the program's Z0: its lowest Z is {level:mm} above",
+    "noted": "{text:said}",
+}
+NOT_JUDGED = {
+    "plain-moves": (
+        "feed moves outside of cycles and sections: {count} lines, the last of them line {last}"
+    ),
+}

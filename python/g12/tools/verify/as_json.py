@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A proof for programs to read: lengths in mm, areas in mm², feeds in mm/min."""
+
+from __future__ import annotations
+
+import json
+
+from g12.tools.path.slowest import Pace
+from g12.tools.units import MM
+from g12.tools.verify.finding import Finding
+from g12.tools.verify.in_stock import StockFacts
+from g12.tools.verify.paragraphs import AXES, pocket_slowest_line
+from g12.tools.verify.pocket import PocketFacts
+from g12.tools.verify.pocket_entry import entry_json
+from g12.tools.verify.proof import Proof
+from g12.tools.verify.rapids import Collision
+from g12.tools.verify.section import SectionFacts
+from g12.tools.verify.shape_findings import shape_json
+
+
+def as_json(proof: Proof) -> str:
+    """Return the proof for a program to read: lengths in mm, areas in mm², feeds in mm/min."""
+    return json.dumps(
+        {
+            "program": str(proof.opened.source if proof.opened else proof.subject.program),
+            "ini": str(proof.subject.ini.path),
+            "real": proof.subject.real is not None,
+            "pockets": [pocket_json(facts, proof) for facts in proof.pockets],
+            "sections": [section_json(facts, proof) for facts in proof.sections],
+            "shapes": [shape_json(facts) for facts in proof.shapes],
+            "rapids": [collision_json(hit, proof) for hit in proof.collisions],
+            "stock": proof.stock and stock_json(proof.stock, proof),
+            "unseen": [{"line": proof.user_line(line), "code": code} for line, code in proof.unseen],
+            "messages": [
+                {"line": proof.user_line(message.line), "text": message.text}
+                for message in proof.subject.trace.messages
+            ],
+            "still": [{"line": proof.user_line(line), "code": code} for line, code in proof.still],
+            "findings": [judged_json(each, proof) for each in proof.judged if each.is_finding],
+            "notes": [judged_json(each, proof) for each in proof.judged if each.is_note],
+            "not_judged": [
+                judged_json(each, proof)
+                for each in proof.judged
+                if not (each.is_finding or each.is_note)
+            ],
+            "good": not proof.findings,
+        },
+        indent=2,
+    )
+
+
+def judged_json(found: Finding, proof: Proof) -> dict:
+    """Return a finding or a note as plain values, its sentence in mm."""
+    return {
+        "code": found.code,
+        "line": proof.user_line(found.line, found.file),
+        "file": found.file or None,
+        "text": proof.text(found, MM),
+        "place": None if found.place is None else [float(value) for value in found.place],
+    }
+
+
+def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
+    """Return one pocket as plain values."""
+    source, wall = facts.target.source, facts.target.wall
+    return {
+        "line": proof.user_line(source.line, source.file),
+        "file": source.file or None,
+        "code": source.code,
+        "dialect": source.dialect,
+        "centre": [float(value) for value in wall.origin[:2]],
+        "cutter": 2 * facts.target.cutter.radius,
+        "radius": wall.radius,
+        "reached": facts.reached,
+        "deviation": finite(facts.deviation),
+        "left": facts.left,
+        "core": facts.target.wall.core,
+        "gouge": facts.gouge,
+        "rings": list(facts.rings),
+        "square_to": AXES[wall.plane],
+        "depths": [wall.height(depth) for depth in facts.depths],
+        "entry": entry_json(facts.helix),
+        "stepover": facts.stepover,
+        "direction_jump": facts.jump,
+        "shortest": facts.shortest,
+        "longest": facts.longest,
+        "off_circles": facts.off_rings,
+        "off_path": facts.off_path,
+        **pace_json(facts.pace, pocket_slowest_line(facts.pace, proof)),
+    }
+
+
+def section_json(facts: SectionFacts, proof: Proof) -> dict:
+    """Return one section as plain values."""
+    return {
+        "lines": [facts.section.line, facts.section.last],
+        "file": facts.section.file or None,
+        "code": facts.section.code,
+        "cutter": 2 * facts.tool,
+        "surface": facts.section.surface or None,
+        "zero_line": None if facts.section.surface else facts.zero,
+        "x_words": "diameters" if facts.section.diameters else "radii",
+        "lowest": facts.lowest,
+        "along_z" if facts.section.surface else "radii": list(facts.wanted),
+        "reached": list(facts.reached),
+        "across_flats": [list(flat) for flat in facts.flats],
+        "deviation": finite(facts.deviation),
+        "left": facts.left,
+        "gouge": facts.gouge,
+        "gouge_is_least": facts.through,
+        "direction_jump": facts.jump,
+        "pieces": facts.pieces,
+        "shortest": facts.shortest,
+        "longest": facts.longest,
+        "c_speed": facts.c_speed,
+        "c_limit": finite(facts.c_limit),
+        "turned_in_place": facts.in_place._asdict(),
+        **pace_json(facts.pace, facts.slowest_line),
+    }
+
+
+def collision_json(hit: Collision, proof: Proof) -> dict:
+    """Return a rapid through material as plain values."""
+    return {
+        "line": proof.user_line(hit.line),
+        "area": hit.area,
+        "from": hit.path[0].tolist(),
+        "to": hit.path[-1].tolist(),
+    }
+
+
+def stock_json(facts: StockFacts, proof: Proof) -> dict:
+    """Return what happens to the stock as plain values."""
+    return {
+        "text": facts.stock.text,
+        "bounds": list(facts.shape.bounds),
+        "top": facts.top,
+        "below": facts.below,
+        "plunges": [plunge._asdict() for plunge in facts.plunges],
+        "standing": [standing._asdict() for standing in facts.standing],
+        "rapids": [collision_json(hit, proof) for hit in facts.rapids],
+    }
+
+
+def pace_json(pace: Pace, line: int) -> dict:
+    """Return feed and time as plain values."""
+    return {
+        "lowest_feed": pace.lowest,
+        "lowest_feed_at": [float(value) for value in pace.point],
+        "lowest_feed_line": line,
+        "seconds": pace.seconds,
+        "seconds_programmed": pace.expected,
+    }
+
+
+def finite(value: float) -> float | None:
+    """Return a number that JSON has."""
+    return value if abs(value) < float("inf") else None

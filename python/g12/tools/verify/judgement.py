@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every finding and note of a program, from all comparisons and rules, in the order of lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from g12.tools.path.part import Z, part_of
+from g12.tools.path.track import limits_of
+from g12.tools.preview.executed_blocks import Text
+from g12.tools.preview.moves import Move
+from g12.tools.units import MM, Unit
+from g12.tools.verify.codes import Codes
+from g12.tools.verify.finding import Finding
+from g12.tools.verify.findings import (
+    collision_text,
+    pocket_findings,
+    pocket_notes,
+    section_findings,
+    section_notes,
+    stock_findings,
+    stock_notes,
+)
+from g12.tools.verify.in_stock import StockFacts
+from g12.tools.verify.mistakes.cut import Cut
+from g12.tools.verify.mistakes.feeds import judge_feeds, judge_native_c
+from g12.tools.verify.mistakes.levels import judge_levels
+from g12.tools.verify.mistakes.modes import judge_return_levels
+from g12.tools.verify.mistakes.spindle import judge_spindle
+from g12.tools.verify.mistakes.tool_length import judge_tool_length
+from g12.tools.verify.shape_findings import shape_findings
+
+if TYPE_CHECKING:
+    from g12.tools.verify.proof import Asked, Proof
+
+Judge = Callable[..., Iterator[str]]
+Texts = Callable[[Unit], list[str]]
+
+
+def judged(proof: Proof, texts: Sequence[Text]) -> list[Finding]:
+    """Return the findings and notes of a proof; ``texts`` are the program's lines."""
+    trace, ini, path = proof.subject.trace, proof.subject.ini, proof.subject.path
+    moves = trace.moves
+    cuts = list(cuts_of(proof.asked, moves))
+    known = {index for some in proof.asked.moves for index in some}
+    found = [
+        *said_of_cuts(proof),
+        *judge_tool_length(cuts, moves, trace.lengths),
+        *judge_feeds(cuts, moves, path, limits_of(ini)),
+        *judge_spindle(cuts, trace.events, ini),
+        *judge_levels(cuts, moves),
+        *not_judged(moves, known),
+    ]
+    if part_of(ini).turning:
+        found += [*judge_native_c(moves, known, path), *judge_return_levels(texts, Codes(ini))]
+    return sorted(found, key=lambda finding: finding.line)
+
+
+def cuts_of(asked: Asked, moves: Sequence[Move]) -> Iterator[Cut]:
+    """Yield the pockets and sections that a program asks for."""
+    for block, target in asked.circles:
+        source = target.source
+        at, end = block.at, block.end
+        yield Cut(source.line, source.file, source.code, at, end, target.wall.face, False)
+    for section in asked.sections:
+        face = moves[section.at].start[Z] - section.height
+        line, file, at, end = section.line, section.file, section.at, section.end
+        yield Cut(line, file, section.code, at, end, None if section.surface else face, True)
+
+
+def not_judged(moves: Sequence[Move], known: set[int]) -> Iterator[Finding]:
+    """Yield the lines of feed moves that belong to no cut."""
+    others = (move.block for i, move in enumerate(moves) if i not in known and move.kind != "rapid")
+    lines = list(dict.fromkeys(others))
+    if lines:
+        yield Finding("plain-moves", lines[0], {"count": len(lines), "last": lines[-1]})
+
+
+def said_of_cuts(proof: Proof) -> Iterator[Finding]:
+    """Yield what the judges of the kinds of cuts say."""
+    tolerances = proof.tolerances
+    for facts in proof.pockets:
+        source = facts.target.source
+        yield from said(source.line, source.file, pocket_findings, facts, tolerances.pocket)
+        yield from noted(source.line, source.file, pocket_notes, facts)
+    for facts in proof.sections:
+        section = facts.section
+        yield from said(section.line, section.file, section_findings, facts, tolerances.polar)
+        yield from noted(section.line, section.file, lambda some, _: section_notes(some), facts)
+    for facts in proof.shapes:
+        yield from said(facts.asked.line, facts.asked.file, shape_findings, facts)
+    for hit in proof.collisions:
+        yield from said(hit.line, "", lambda hit, unit: [collision_text(hit, unit)], hit)
+    for line, code in proof.unseen:
+        yield Finding("not-measured", line, {"code": code})
+    for line, code in proof.still:
+        yield Finding("not-cut", line, {"code": code})
+    if proof.stock:
+        yield from said_of_stock(proof.stock)
+
+
+def said_of_stock(stock: StockFacts) -> Iterator[Finding]:
+    """Yield what is said of the stock; each of its findings has a line of its own."""
+    for at, (line, _) in enumerate(stock_findings(stock)):
+        text = partial(nth, lambda unit: [said for _, said in stock_findings(stock, unit)], at)
+        yield Finding("said", line, {"text": text})
+    yield from noted(0, "", stock_notes, stock)
+
+
+def said(line: int, file: str, judge: Judge, facts: object, *more: object) -> Iterator[Finding]:
+    """Yield the findings of a judge that gives sentences."""
+    yield from in_words("said", line, file, lambda unit: list(judge(facts, *more, unit)))
+
+
+def noted(line: int, file: str, judge: Judge, facts: object) -> Iterator[Finding]:
+    """Yield the notes of a judge that gives sentences."""
+    yield from in_words("noted", line, file, lambda unit: list(judge(facts, unit)))
+
+
+def in_words(code: str, line: int, file: str, texts: Texts) -> Iterator[Finding]:
+    """Yield a finding for each sentence that a function of the unit returns."""
+    for at in range(len(texts(MM))):
+        yield Finding(code, line, {"text": partial(nth, texts, at)}, file=file)
+
+
+def nth(texts: Texts, at: int, unit: Unit) -> str:
+    """Return one of the sentences that a function of the unit returns."""
+    return texts(unit)[at]
