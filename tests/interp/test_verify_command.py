@@ -194,6 +194,18 @@ def test_plot_tells_what_it_draws_in_red(written, tmp_path, capsys):
         assert any(text.startswith(f"in red, line {line}: ") and says in text for text in red), says
 
 
+@pytest.mark.parametrize(
+    "cut", [["G12.1", "G1 X40 C3", "G13.1"], ["G7.1 C20", "G1 X30", "C90", "X50", "G7.1 C0"]]
+)
+def test_plot_shows_where_x0_lies(cut, written, tmp_path, capsys):
+    begin = ["G21 G18 G8 G94 F300", "G10 L2 P1 X12.5", "T1 M6 S500 M3", "G0 X50 Z2 C0"]
+    path, says = tmp_path / "x.svg", "X0, the spindle's axis, is at machine X12.5"
+    text = "\n".join([*begin, *cut, "M2", ""])
+    assert main(["plot", written(text), "--ini", LATHE, "-o", str(path)]) == 0
+    assert f"note: program {says}" in capsys.readouterr().out.splitlines()
+    assert says in path.read_text()
+
+
 @pytest.mark.parametrize("command", ["verify", "plot"])
 @pytest.mark.parametrize("missing", ["program", "ini", "tools"])
 def test_missing_files_are_named(command, missing, written, tmp_path, capsys):

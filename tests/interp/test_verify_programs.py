@@ -381,7 +381,7 @@ ROUND_A_FLAT += ("X-10", "C-10", "X14", "C0", "G40 X20 C-3", "Z2", "G13.1")
 
 @pytest.mark.parametrize("units", ["", "G20"])
 @pytest.mark.parametrize(
-    "offset", ["G10 L2 P1 X4 Z-3 C20", "G10 L2 P1 X-9", "G92 X35 Z4", "G55 G10 L2 P2 X70 C9"]
+    "offset", ["G10 L2 P1 X4 Z-3 C20", "G10 L2 P1 X-9", "G10 L20 P1 X35 Z4", "G55 G10 L2 P2 X70 C9"]
 )
 def test_the_spindle_is_where_x0_is(offset, units, tmp_path):
     last = [units and "G20", "M2"]  # X0 is told in the units of the end

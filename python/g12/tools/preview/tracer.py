@@ -5,7 +5,8 @@ LinuxCNC's own preview module interprets the program in a process of its own
 (``worker.py``), so nothing here needs a running LinuxCNC or a screen.
 
 The preview differs from a real machine in one thing that programs can see: when the units
-change, it forgets F and G64's tolerances (it takes 1 and 0.1) where the machine converts them.
+change, it forgets G64's tolerances (it takes 0.1) where the machine converts them. (It forgets F
+too; the worker restores F at the next line that asks the machine for anything.)
 """
 
 from __future__ import annotations
@@ -105,7 +106,8 @@ class Tracer:
             self._start()
         with contextlib.suppress(BrokenPipeError):  # it died: there will be no answer
             self._connection.send(request)
-        return _trace(self._answer(timeout), self.diameters)
+        answer = self._answer(timeout)
+        return _trace(answer, in_mm(answer["diameters"], self.ini))
 
     def trace_text(self, text: str | Iterable[str], **options) -> Trace:
         """Trace a program given as text or as lines; see ``trace``.
@@ -148,8 +150,7 @@ class Tracer:
             self.close()
             raise TraceFailure(f"{self.ini.path}: {answer['printed']}{answer['error'][0]}")
         self.printed, self._no_end = answer["printed"], answer["no_end"]
-        mm = self.ini.mm
-        self.diameters = {tool: size * mm for tool, size in answer["diameters"].items()}
+        self.diameters = in_mm(answer["diameters"], self.ini)
 
     def _stop(self) -> None:
         if self._process:
@@ -248,6 +249,11 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
         "axis_mask": sum(1 << AXES.index(letter) for letter in ini.axes),
         "setup": [start_block(unit), *([startup] if startup else [])],
     }
+
+
+def in_mm(diameters: Mapping[int, float], ini: Ini) -> dict[int, float]:
+    """Return diameters in mm that are in the machine's units."""
+    return {tool: size * ini.mm for tool, size in diameters.items()}
 
 
 def _trace(answer: dict, diameters: dict[int, float]) -> Trace:
