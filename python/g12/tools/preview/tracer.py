@@ -107,7 +107,7 @@ class Tracer:
         with contextlib.suppress(BrokenPipeError):  # it died: there will be no answer
             self._connection.send(request)
         answer = self._answer(timeout)
-        return _trace(answer, in_mm(answer["diameters"], self.ini))
+        return _trace(answer, diameters_in_mm(answer["diameters"], self.ini))
 
     def trace_text(self, text: str | Iterable[str], **options) -> Trace:
         """Trace a program given as text or as lines; see ``trace``.
@@ -150,7 +150,7 @@ class Tracer:
             self.close()
             raise TraceFailure(f"{self.ini.path}: {answer['printed']}{answer['error'][0]}")
         self.printed, self._no_end = answer["printed"], answer["no_end"]
-        self.diameters = in_mm(answer["diameters"], self.ini)
+        self.diameters = diameters_in_mm(answer["diameters"], self.ini)
 
     def _stop(self) -> None:
         if self._process:
@@ -251,7 +251,7 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
     }
 
 
-def in_mm(diameters: Mapping[int, float], ini: Ini) -> dict[int, float]:
+def diameters_in_mm(diameters: Mapping[int, float], ini: Ini) -> dict[int, float]:
     """Return diameters in mm that are in the machine's units."""
     return {tool: size * ini.mm for tool, size in diameters.items()}
 
