@@ -390,6 +390,11 @@ def test_what_the_tool_cannot_cut_is_refused(lathe, body, line, why):
             {"first": FIRST.replace("G97", "G96 S100 D500")},
             "needs G97: with G96 the speed would change with X",
         ),
+        (
+            {"first": "G52 X-1 " + FIRST},
+            "X0 must be the spindle's axis: G52 or G92 shifts X by -1;"
+            " cancel it with G92.1 (an X offset of G54 may stay)",
+        ),
     ],
 )  # fmt: skip
 def test_refused_to_begin(lathe, given, why):

@@ -194,14 +194,20 @@ def test_an_error_in_a_called_sub(lathe):
 # ---------------------------------------------------------------- entry
 
 
+SHIFTED = (
+    "X0 must be the spindle's axis: G52 or G92 shifts X by {};"
+    " cancel it with G92.1 (an X offset of G54 may stay)"
+)
 ENTRY = [
     ("G93", "G12.1", "needs G94 or G95, not G93"),
     ("G19", "G12.1", "needs G18 or G17, not G19"),
     ("G96 D500 S100 M3", "G12.1", "needs G97: with G96 the speed would change with X"),
     ("G42 D1", "G12.1", "needs G40: compensation is switched on inside"),
     ("G10 L2 P1 R5", "G12.1", "needs an unrotated work offset (G10 L2 R0)"),
-    ("G92 X0", "G12.1", "needs the tool at X above zero, not at 0 (radius)"),
-    ("G92 X-3", "G12.1", "needs the tool at X above zero, not at -3 (radius)"),
+    ("G10 L20 P1 X0", "G12.1", "needs the tool at X above zero, not at 0 (radius)"),
+    ("G10 L20 P1 X-3", "G12.1", "needs the tool at X above zero, not at -3 (radius)"),
+    ("G52 X1.5", "G12.1", SHIFTED.format(1.5)),
+    ("G92 X17", "G12.1", SHIFTED.format(3)),
     *[
         ("", f"G12.1 {word}", "stands alone in its block")
         for word in ("X5", "P3", "G90", "M8", "F50", "S100", "G4 P1", "T1", "G40", "C1 Z2")
@@ -216,6 +222,20 @@ def test_refused_entry(lathe, before, block, reason):
     assert traced.error.text == f"G12.1 line 6: {reason}"
     assert traced.error.line == 6
     assert not [move for move in traced.moves if move.line > 5]
+
+
+@pytest.mark.parametrize("gone", ["G92.1", "G92.2", "G52 X0", "G92 X20"])
+def test_a_shift_of_x_that_is_cancelled_and_those_of_other_axes_are_taken(lathe, gone):
+    before = ["G52 X1.5 Z2 C5", gone, "G0 X20"]
+    assert lathe.trace_text(section("G1 X12", before=before)).error is None
+
+
+def test_no_negative_diameter_is_compensated():
+    with Tracer(SIM / "lathe_mm.ini", tools={1: 6.0, 3: -6.0}) as lathe:
+        traced = lathe.trace_text(section("G1 X15", "G41 X10", "C3", before=["T3 M6"]))
+    why = "G41: the loaded tool has the negative diameter -6 in the tool table"
+    assert traced.error.text == f"G12.1 line 8: {why}"
+    assert not [move for move in traced.moves if move.line > 6]
 
 
 def test_the_tool_still_beside_the_contour_after_g40(lathe):

@@ -8,7 +8,7 @@ import pytest
 
 from g12.tools.preview.tracer import Tracer
 from support.polar_programs import FIRST, ends, feed_moves, in_plane, section, texts, tracer
-from support.sim_machines import SIM
+from support.sim_machines import ROOT, SIM
 
 INCH = 25.4
 
@@ -29,6 +29,12 @@ def inch_lathe():
 
 def cut(lathe, *body, **around):
     return lathe.trace_text(section(*body, **around))
+
+
+def test_the_manuals_sample_runs_with_the_machines_own_tools():
+    with Tracer(SIM / "lathe_inch.ini") as lathe:
+        traced = lathe.trace(ROOT / "tests/programs/polar/manual_sample.ngc")
+    assert traced.error is None and traced.diameters[8] == 0.0
 
 
 def part_speeds(traced):

@@ -93,6 +93,33 @@ def test_the_tool_table_is_linuxcncs_own_reading(ini, tmp_path):
         assert tracer.trace_text(["M2"]).diameters == tracer.diameters
 
 
+def test_a_diameter_that_the_program_sets_is_the_tools(mill):
+    """As on a machine: by G10 L1, of a tool that is loaded later or is in the spindle."""
+    for first, second in (("G10 L1 P1 R4", "T1 M6"), ("T1 M6", "G10 L1 P1 R4")):
+        program = [first, second, "(print,#5410)", "T2 M6", "T1 M6", "(print,#5410)", "M2"]
+        traced = mill.trace_text(program)
+        assert traced.printed.split() == ["8.000000", "8.000000"]
+        assert traced.diameters == {1: 8.0, 2: 8.0} and mill.diameters == {1: 6.0, 2: 8.0}
+    assert mill.trace_text(["T1 M6", "M2"]).diameters == mill.diameters
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [["G1 X1"], ["G21", "G1 X1"], ["G20", "G0 Y1", "G1 X1"], ["G20", "(x)", "G21", "(x)", "G1 X1"]],
+)
+def test_a_program_without_f_is_refused(mill, blocks):
+    traced = mill.trace_text([*blocks, "M2"])
+    assert traced.error == ("Cannot do g1 with zero feed rate", len(blocks))
+
+
+def test_f_is_converted_with_the_units(mill):
+    """As on a machine; the preview by itself goes on with F1."""
+    lines = ["G21 F254", "G20", "G0 X1", "(print,#<_feed>)", "G21", "G0 X1", "(print,#<_feed>)"]
+    assert mill.trace_text([*lines, "M2"]).printed.split() == ["10.000000", "254.000000"]
+    moves = mill.trace_text([*lines, "F1 G1 X2", "G20", "X3 F1"]).moves
+    assert [move.feed for move in moves[2:]] == near([1.0, 25.4])
+
+
 def near(values):
     return pytest.approx(values, abs=1e-9)
 

@@ -95,7 +95,17 @@ CONSTRUCTS = [
     ("fanuc-lathe", "G1 U-5. W-2.", "G1 X45 Z3"),
     ("fanuc-lathe", "G1 U-5.\nW-2.\nX40. W-1.\nU2. Z0", "G1 X45\nZ3\nX40 Z2\nX42 Z0"),
     ("fanuc-lathe", "G3 U10. W-5. R5.\nG1", "G3 X60 Z0 R5\nG1"),
-    ("fanuc-lathe", "G1 H10.\nH5. Z2.", "G1 C10\nC15 Z2"),
+    ("fanuc-lathe", "G1 H10.", "G1 C10"),
+    # a slide and C at a feed: the control's own time, feed and feed mode again behind it
+    ("fanuc-lathe", "G98 G1 F100.\nH3. Z1.", "G94 G1 F100\nG93 C3 Z1 F20\nG94 F100"),
+    ("fanuc-lathe", "G98 G1 F100.\nX56. Z9. H12.\nG0 C0\nG1 Z5.",
+     "G94 G1 F100\nG93 X56 Z9 C12 F[100/13]\nG94 F100 G0 C0\nG1 Z5"),
+    ("fanuc-lathe", "G98 G1 F100.\nX50.001 C60.\nX50.004 C90.\nX50.005 C120.\nW-1.",
+     "G94 G1 F100\nG93 C60 F[100/60]\nX50.004 C90 F[100/30]\nC120 F[100/30]\n"
+     "G94 F100 X50.005\nZ4"),
+    ("fanuc-lathe", "G98 G1 F100.\nX50.001 C60.\nG12.1\nX40. C2.\nG13.1\nG99 F.1",
+     "G94 G1 F100\nG93 C60 F[100/60]\nG94 F100 X50.001\nG12.1\nG1 X40 C2\nG13.1\nG95 F.1 G1"),
+    ("okuma-lathe", "G94 G0 C5.\nG1 F100. Z5. C20.", "G94 G0 C5\nG1 F100 C20"),
     ("fanuc-lathe", "G1 X45.\nG28 U0 W0", "G1 X45\nG53 G0 X0 Z0\nG1"),
     ("fanuc-lathe", "G0 C20.\nG28 H0", "G0 C20\nG53 C0"),
     ("fanuc-lathe", "G1 X45.\nG30 U2. W1.", "G1 X45\nG0 X47 Z6\nG53 X0 Z0\nG1"),

@@ -39,14 +39,19 @@ def verify(capsys, *arguments):
 def test_a_good_pocket_ends_with_0(written, capsys):
     code, out, err = verify(capsys, written(GOOD), "--ini", MILL)
     assert (code, err) == (0, "")
-    assert "programmed 20, reached 20 mm" in out
-    assert out.endswith("verdict: good, everything is as programmed\n")
+    assert out.startswith("line 5  G12 (haas)  ⌀ 40 to Z−3  0 mm off (0.005 allowed)  ")
+    assert out.endswith("verdict: good, 1 note\n")
 
 
 def test_a_finding_ends_with_1_and_is_told(written, capsys):
     code, out, _ = verify(capsys, written(WIDE), "--ini", MILL)
     assert code == 1
-    assert "FINDING" in out and "left standing" in out and out.endswith("verdict: 1 finding\n")
+    assert "findings\n  line 4: " in out and out.endswith("verdict: 1 finding, 1 note\n")
+
+
+def test_notes_are_findings_on_demand(written, capsys):
+    code, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--strict")
+    assert code == 1 and out.endswith("verdict: 1 finding\n")
 
 
 def test_a_cycle_out_of_sight_is_no_good(capsys, written, tmp_path):
@@ -57,7 +62,7 @@ def test_a_cycle_out_of_sight_is_no_good(capsys, written, tmp_path):
     lathe = str(machines / "lathe_mm_headless.ini")
     code, out, _ = verify(capsys, program, "--ini", lathe)
     told = json.loads(verify(capsys, program, "--ini", lathe, "--json")[1])
-    assert code == 1 and out.endswith("could not be measured\n\nverdict: 1 finding\n")
+    assert code == 1 and out.endswith("verdict: 1 finding\n")
     assert (told["good"], told["unseen"]) == (False, [{"line": 4, "code": "G12.1"}])
 
 
@@ -68,7 +73,7 @@ def test_json_has_the_same_in_millimetres(written, capsys):
     assert (code, told["good"], told["real"], told["sections"]) == (1, False, False, [])
     assert pocket["radius"] == pytest.approx(40) and pocket["reached"] == pytest.approx(40)
     assert pocket["stepover"] == pytest.approx(15, abs=0.01) and pocket["left"] > 100
-    assert pocket["findings"]
+    assert [found["line"] for found in told["findings"]] == [4]
 
 
 def test_json_tells_the_way_down(written, capsys):
@@ -98,7 +103,7 @@ def test_a_contour_that_is_not_cut_is_told(written, capsys, monkeypatch):
     monkeypatch.setattr("g12.tools.verify.section.tool_paths_of", lambda *_: nowhere)
     program = str(PROGRAMS / "polar" / "slot.ngc")
     code, out, _ = verify(capsys, program, "--ini", LATHE)
-    assert code == 1 and "FINDING         the contour is not cut" in out
+    assert code == 1 and "the contour is not cut" in out
     code, out, _ = verify(capsys, program, "--ini", LATHE, "--json")
     assert code == 1 and json.loads(out)["sections"][0]["deviation"] is None
 
@@ -106,7 +111,7 @@ def test_a_contour_that_is_not_cut_is_told(written, capsys, monkeypatch):
 def test_a_polar_section_is_told_as_it_is_programmed(written, capsys):
     lines = ["G21 G18 G7 G40 G90 G94", "T3 M6", "G0 X80 Z2 C90", "G12.1", "G1 Z-2 F500"]
     lines += ["G42 X40 C-16", "C10 F100", "G40 X80 F600", "G13.1", "M2", ""]
-    code, out, _ = verify(capsys, written("\n".join(lines)), "--ini", LATHE)
+    code, out, _ = verify(capsys, written("\n".join(lines)), "--ini", LATHE, "--full")
     assert code == 0
     rows = dict(line.strip().split("  ", 1) for line in out.splitlines() if "  " in line.strip())
     rows = {name: text.strip() for name, text in rows.items()}
@@ -119,7 +124,7 @@ def test_a_polar_section_is_told_as_it_is_programmed(written, capsys):
 def test_a_rapid_through_material_is_told_in_words_and_json(written, capsys):
     text = written(HEAD + "G12 I7 K20 Q6 Z-3 D4\nG0 X60\nM2\n")
     code, out, _ = verify(capsys, text, "--ini", MILL)
-    assert code == 1 and "line 5: rapid\n  FINDING" in out
+    assert code == 1 and "  line 5: a rapid goes through" in out
     code, out, _ = verify(capsys, text, "--ini", MILL, "--json")
     told = json.loads(out)
     (hit,) = told["rapids"]
@@ -131,7 +136,7 @@ def test_a_circle_of_the_tool_centre_and_one_on_its_side_are_told(written, capsy
     head = HEAD.replace("T4", "T10")
     text = head + "G12 I50 D0\nG18 G13 I50 D10\nM2\n"
     ini = str(SIM / "mill_mitsubishi_mm_headless.ini")
-    code, out, _ = verify(capsys, written(text), "--ini", ini)
+    code, out, _ = verify(capsys, written(text), "--ini", ini, "--full")
     assert code == 0
     assert "programmed I50 (tool centre), wall 60, reached 60 mm" in out
     assert "plane at Y0, Z from −39 to 41" in out
@@ -147,19 +152,19 @@ def test_limits_are_compared_with_the_offsets_of_the_var_file_given(written, tmp
     stored = tmp_path / "its.var"
     stored.write_text("5221\t490\n")
     code, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--var", str(stored))
-    assert code == 1 and "FINDING         the X axis would go to 505, its limit is 500 mm" in out
+    assert code == 1 and "line 5: the X axis would go to 505, its limit is 500 mm" in out
     assert verify(capsys, written(GOOD), "--ini", MILL)[0] == 0
 
 
 def test_lengths_are_shown_in_inches_on_demand(written, capsys):
-    _, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--units", "inch")
+    _, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--units", "inch", "--full")
     assert "programmed 0.7874, reached 0.7874 in" in out
 
 
 @pytest.mark.parametrize(
     ("text", "code", "said"),
     [
-        (WRONG, 1, "program.ngc:4: G12: I4 must be greater than the tool radius 5"),
+        (WRONG, 2, "program.ngc:4: G12: I4 must be greater than the tool radius 5"),
         (PLAIN, 2, "has no pocket and no polar section to verify"),
     ],
 )
@@ -192,6 +197,18 @@ def test_plot_tells_what_it_draws_in_red(written, tmp_path, capsys):
         (4, "the loaded tool T4 (⌀ 10) is not D5 (⌀ 12)"),
     ]:
         assert any(text.startswith(f"in red, line {line}: ") and says in text for text in red), says
+
+
+@pytest.mark.parametrize(
+    "cut", [["G12.1", "G1 X40 C3", "G13.1"], ["G7.1 C20", "G1 X30", "C90", "X50", "G7.1 C0"]]
+)
+def test_plot_shows_where_x0_lies(cut, written, tmp_path, capsys):
+    begin = ["G21 G18 G8 G94 F300", "G10 L2 P1 X12.5", "T1 M6 S500 M3", "G0 X50 Z2 C0"]
+    path, says = tmp_path / "x.svg", "X0, the spindle's axis, is at machine X12.5"
+    text = "\n".join([*begin, *cut, "M2", ""])
+    assert main(["plot", written(text), "--ini", LATHE, "-o", str(path)]) == 0
+    assert f"note: program {says}" in capsys.readouterr().out.splitlines()
+    assert says in path.read_text()
 
 
 @pytest.mark.parametrize("command", ["verify", "plot"])

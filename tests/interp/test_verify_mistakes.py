@@ -7,9 +7,9 @@ from g12.tools.commands.main import main
 from g12.tools.machine.ini import read_ini
 from g12.tools.plot.scene import scene_of_proof
 from g12.tools.units import MM
-from g12.tools.verify.findings import pocket_notes, section_notes
 from g12.tools.verify.proof import prove
-from g12.tools.verify.report import as_text, pocket_text, section_text
+from g12.tools.verify.paragraphs import pocket_text, section_text
+from g12.tools.verify.report import as_text
 from support.sim_machines import SIM
 
 MILL = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6", "G0 X0 Y0 Z1"]  # a 10 mm cutter
@@ -35,12 +35,15 @@ def proof_of(tmp_path):
     return proof
 
 
+OF_TOOLS = ("length-not-used",)  # of which most of these programs have one
+
+
 def told(proof):
     return [text for _, text in proof.findings]
 
 
 def notes(proof):
-    return [note for facts in proof.sections for note in section_notes(facts)]
+    return [each.text() for each in proof.judged if each.is_note and each.code not in OF_TOOLS]
 
 
 # ---------------------------------------------------------------- where C stands

@@ -12,7 +12,8 @@ from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
 from g12.tools.verify.findings import pocket_findings, pocket_notes, section_findings
 from g12.tools.verify.proof import prove
-from g12.tools.verify.report import as_json, as_text
+from g12.tools.verify.as_json import as_json
+from g12.tools.verify.report import as_text
 from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
 
 INCH = 25.4
@@ -381,7 +382,7 @@ ROUND_A_FLAT += ("X-10", "C-10", "X14", "C0", "G40 X20 C-3", "Z2", "G13.1")
 
 @pytest.mark.parametrize("units", ["", "G20"])
 @pytest.mark.parametrize(
-    "offset", ["G10 L2 P1 X4 Z-3 C20", "G10 L2 P1 X-9", "G92 X35 Z4", "G55 G10 L2 P2 X70 C9"]
+    "offset", ["G10 L2 P1 X4 Z-3 C20", "G10 L2 P1 X-9", "G10 L20 P1 X35 Z4", "G55 G10 L2 P2 X70 C9"]
 )
 def test_the_spindle_is_where_x0_is(offset, units, tmp_path):
     last = [units and "G20", "M2"]  # X0 is told in the units of the end

@@ -26,7 +26,7 @@ class Text:
     def __init__(self, chance, unit, *, polar=False):
         self.chance, self.scale = chance, 1.0 if unit == "mm" else INCH
         self.code = {"mm": "G21", "inch": "G20"}[unit]
-        modes = "G18" if polar else "G17"
+        modes, self.polar = "G18" if polar else "G17", polar
         self.plane = self.between(1, 3)  # of events, above the part
         self.lines = [f"{self.code} {modes} G40 G49 G54 G80 G90 G94 G91.1 G64 P{self.n(0.01)}"]
 
@@ -52,9 +52,9 @@ class Text:
         return " ".join([code, *words])
 
     def shift(self, *words):
-        """Move the program's zero: to another place by G10, or by G92 or G52 on top of that."""
+        """Move the program's zero: by G10, or by G52 on top of it, which a lathe's X does not."""
         at = " ".join(f"{letter}{self.n(self.between(*ends))}" for letter, *ends in words)
-        self.add(self.one_of("G10 L2 P1", "G10 L2 P1", "G52"), at)
+        self.add("G10 L2 P1" if self.polar else self.one_of("G10 L2 P1", "G10 L2 P1", "G52"), at)
 
     def wrapped(self, first, name):
         """Put the lines from ``first`` on into a sub, a condition or a loop, as often as not."""

@@ -16,6 +16,7 @@ START = SectionStart(
     machine_unit=1.0,
     millimetre=1.0,
     offsets={"X": 1.0, "Z": 2.0, "C": 90.0},
+    x_shift=0.0,
     modes=SectionModes(False, False, 100.0, 0.0, 10),
     spindle=0,
     speeds=(0.0,),

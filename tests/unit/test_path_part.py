@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from g12.tools.path import part
 from g12.tools.path.part import Part
+from g12.tools.units import UNITS
 from support.made_moves import Hand
 
 MILL, FACE = Part(turning=False), Part(turning=True)
@@ -17,6 +18,15 @@ MILL, FACE = Part(turning=False), Part(turning=True)
 
 def position(x=0.0, y=0.0, z=0.0, c=0.0):
     return np.array([[x, y, z, 0, 0, c, 0, 0, 0]], float)
+
+
+@pytest.mark.parametrize(
+    ("centre", "unit", "place"), [(12.7, UNITS["mm"], "X12.7"), (-12.7, UNITS["inch"], "X−0.5")]
+)
+def test_where_x0_lies(centre, unit, place):
+    shifted = Part(turning=True, centre=centre)
+    assert part.x0_text(shifted, unit) == f"X0, the spindle's axis, is at machine {place}"
+    assert part.x0_text(FACE, unit) == ""
 
 
 def test_a_mill_shows_machine_positions():

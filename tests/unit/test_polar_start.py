@@ -14,6 +14,10 @@ from g12.settings import Settings
 from support.section_starts import START
 
 INCH = 25.4
+SHIFTED = (
+    "X0 must be the spindle's axis: G52 or G92 shifts X by {};"
+    " cancel it with G92.1 (an X offset of G54 may stay)"
+)
 AXES = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
 
 
@@ -34,6 +38,8 @@ def setup_of(settings=Settings(), **found):  # noqa: B008 - it is frozen
             "needs a move after G40: the tool is still beside the programmed point",
         ),
         ({"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
+        ({"x_shift": -2.5}, SHIFTED.format(-2.5)),
+        ({"x_shift": -2.5, "diameter": True}, SHIFTED.format(-5)),
         ({"x": 0.0}, "needs the tool at X above zero, not at 0 (radius)"),
     ],
 )

@@ -612,3 +612,29 @@ def test_a_hundred_thousand_lines_take_not_the_square_of_their_number():
     translated = lines(HAAS, f"{MILL}{blocks}M30\n")
     assert len(translated) == 100_004
     assert time.process_time() - start < 40  # about four where nothing else runs
+
+
+# ---------------------------------------------------------------- C beside a slide
+
+
+@pytest.mark.parametrize(
+    ("control", "text", "line", "start"),
+    [
+        (LATHE, "G1 X40. C30. F100.\n", 3, "C beside a slide at a feed: its time hangs"),
+        (LATHE, "C0\nG1 X[#100] C30. F100.\n", 4, "C beside a slide at a feed: its time"),
+        (LATHE, "G99 C0\nG1 X40. C30. F.1\n", 4, "C beside a slide needs a feed per minute"),
+        (LATHE, "C0\nG1 X40. C30. F#100\n", 4, "C beside a slide at a feed: F must be a"),
+        (LATHE, "C0\nG2 X40. Z0 C30. R5. F9.\n", 4, "C beside an arc"),
+        (HAAS_LATHE, "C0\nG1 X40. C30. F100.\n", 4, "C beside a slide at a feed: say what"),
+    ],
+)
+def test_a_feed_of_c_that_cannot_be_known_is_refused(control, text, line, start):
+    refused = sentence(control, f"G21 G98\n{TURN[7:]}{text}M30\n")
+    assert refused.line == line
+    assert refused.sentence.startswith(start)
+
+
+def test_c_that_does_not_turn_or_slides_that_stand_need_no_other_feed():
+    text = "G1 X40. C0 F100.\nX40. C30.\nG0 X50. C40.\n"
+    head = "G21 G98\nG0 X50. Z5. C0\n"
+    assert behind(LATHE, f"{text}M30\n", head)[1:] == [*text.splitlines(), "M30"]

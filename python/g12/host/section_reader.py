@@ -357,6 +357,11 @@ class SectionReader:
             raise self.place.refuse(
                 f"G{side} needs a tool in the spindle: its radius is compensated"
             )
+        if radius < 0:
+            diameter = number(2 * radius)
+            raise self.place.refuse(
+                f"G{side}: the loaded tool has the negative diameter {diameter} in the tool table"
+            )
         self.contour.compensation(side, radius, line=self.program.place)
 
     def _state_code(self, code: int) -> None:

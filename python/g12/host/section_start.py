@@ -38,6 +38,7 @@ def start_of_section(interp: object, line: int, words: str = "") -> SectionStart
         machine_unit=machine_unit,
         millimetre=1 / glue.millimetres_per_unit(interp),
         offsets=_offsets(interp),
+        x_shift=interp.axis_offset_x,
         modes=_modes(interp),
         spindle=glue.feed_spindle(interp),
         speeds=tuple(interp.speed[number] for number in range(interp.num_spindles)),

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import NamedTuple
 
+from g12.errors import number
 from g12.lengths import is_inch
 from g12.machine_ini import Axis
 from g12.moves.soft_limits import AxisScale, SoftLimits
@@ -13,6 +14,7 @@ from g12.section.start import SectionStart, WordRules
 from g12.settings import Settings
 
 LEAST_MM = 0.001  # a smaller part of a slide makes LinuxCNC 2.9 get the feed of a piece wrong
+ROUNDING_MM = 1e-6  # of an offset that was given in another unit
 CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
 
 
@@ -36,6 +38,11 @@ def check_entry(
     ``axes`` are the letters of the machine's, ``needed`` those of the section.
     """
     beside = "needs a move after G40: the tool is still beside the programmed point"
+    shift = number(start.x_shift * (2 if start.diameter else 1))
+    shifted = (
+        f"X0 must be the spindle's axis: G52 or G92 shifts X by {shift};"
+        " cancel it with G92.1 (an X offset of G54 may stay)"
+    )
     *others, last = needed
     for holds, rule in (
         (
@@ -48,6 +55,7 @@ def check_entry(
         (not start.surface_speed, "needs G97: with G96 the speed would change with X"),
         (not start.offset_pending, beside),
         (not start.rotated, "needs an unrotated work offset (G10 L2 R0)"),
+        (abs(start.x_shift) <= ROUNDING_MM * start.millimetre, shifted),
         *rules,
     ):
         if not holds:

@@ -17,7 +17,8 @@ class SectionStart(NamedTuple):
     those of the section in it, ``alone`` tells whether it holds nothing else, ``level`` is its call
     level. X is a radius value; C, where the
     axis stands, is in degrees. ``machine_unit`` is the length of a machine unit, ``millimetre``
-    that of 1 mm; ``offsets`` lead from program to machine coordinates (X, Z, and C in degrees).
+    that of 1 mm; ``offsets`` lead from program to machine coordinates (X, Z, and C in degrees),
+    ``x_shift`` is what G52 or G92 adds to X, a radius value.
     ``speeds`` are the commanded ones of all spindles in rpm, ``spindle`` is the number of the one
     that feeds per revolution refer to. ``tool_radius`` is None if no tool is loaded.
     """
@@ -32,6 +33,7 @@ class SectionStart(NamedTuple):
     machine_unit: float
     millimetre: float
     offsets: dict[str, float]
+    x_shift: float
     modes: SectionModes
     spindle: int
     speeds: tuple[float, ...]

@@ -153,8 +153,11 @@ def run_text(program: Path, override: float, trace: Trace | None, ini: Ini) -> s
     return f"running {program.name} {pace}, {clock(seconds)} without acceleration"
 
 
-def one_line(name: str) -> Callable:
-    """Make a command's problems one line on standard error and an exit code."""
+def one_line(name: str, refused: int = FINDING) -> Callable:
+    """Make a command's problems one line on standard error and an exit code.
+
+    ``refused`` is that of a program that LinuxCNC refuses.
+    """
 
     def decorate(command: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
         @functools.wraps(command)
@@ -168,7 +171,7 @@ def one_line(name: str) -> Callable:
                 return USAGE
             except (ProgramError, TraceFailure, StartupError, MachineError) as problem:
                 print(f"g12 {name}: {_text(problem)}", file=sys.stderr)
-                return FINDING
+                return refused
 
         return guarded
 

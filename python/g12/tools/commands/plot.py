@@ -82,8 +82,9 @@ def told_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
     notes = (
         f"note, line {opened.source_line(line)}: {NOTES['spindle-stands']}" for line in scene.seen.still[:1]
     )
+    x0 = [f"note: program {scene.x0_text}"] if scene.x0_text else []
     trace = trace_in_source(scene.subject.trace, opened)
-    return [*dict.fromkeys(warnings), *notes, *message_lines(trace.messages)]
+    return [*dict.fromkeys(warnings), *x0, *notes, *message_lines(trace.messages)]
 
 
 def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Scene:

@@ -15,6 +15,7 @@ from pathlib import Path
 from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
+    USAGE,
     Parser,
     check_run,
     checked_ini,
@@ -49,7 +50,7 @@ findings, beside sizes, areas and directions that are not as programmed:
   with --stock: a rapid goes into it, something of the bar stands beyond a contour
   an axis leaves its travel, with the work offsets of --var or else of the machine's var file
 
-exit code: 0 everything is as programmed, 1 something is not, 2 wrong use
+exit code: 0 good, 1 findings (with --strict notes too), 2 refused by LinuxCNC or wrong use
 """
 
 
@@ -65,7 +66,7 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("verify")
+@one_line("verify", refused=USAGE)
 def main(arguments: list[str]) -> int:
     """Run the command."""
     options = command_parser().parse_args(arguments)

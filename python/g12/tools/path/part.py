@@ -25,6 +25,7 @@ from g12.lengths import MM_PER_INCH
 from g12.machine_ini import face_joints
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.moves import THIRD_AXIS, Move, Trace
+from g12.tools.units import Unit
 
 CHORD_ERROR = 2e-4  # of the polylines that stand for curves
 LONGEST_ARC_CHORD = math.radians(10)
@@ -112,6 +113,12 @@ def last_x0(trace: Trace) -> float:
     state = trace.state
     unit = MM_PER_INCH if state.get("length_units") == INCHES else 1.0
     return trace.position[X] - state["current_x"] * unit if "current_x" in state else 0.0
+
+
+def x0_text(part: Part, unit: Unit) -> str:
+    """Return where a turning part's X0, the spindle's axis, lies; "" where it is machine X0."""
+    place = unit.text(part.centre)
+    return f"X0, the spindle's axis, is at machine X{place}" if place != "0" else ""
 
 
 def _spiral_pieces(move: Move, chord_error: float) -> int:

@@ -89,7 +89,7 @@ def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
     axes.set_aspect("equal")
     axes.axhline(0, **style.CENTRE_LINE)
     axes.axvline(0, **style.CENTRE_LINE)
-    style.caption(axes, "The part's face")
+    style.caption(axes, "; ".join(filter(None, ["The part's face", scene.x0_text])))
 
 
 def draw_panels(figure: Figure, scene: Scene) -> None:

@@ -11,6 +11,7 @@ from itertools import takewhile
 from pathlib import Path
 
 from g12.tools.path.follow import Followed
+from g12.tools.path.part import x0_text
 from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import COMMENT
 from g12.tools.preview.moves import Move
@@ -55,6 +56,11 @@ class Scene:
     def real(self) -> Followed | None:
         """Return the real motion of the run, if there was one."""
         return self.subject.real
+
+    @property
+    def x0_text(self) -> str:
+        """Return where a lathe program's X0 lies, "" where it is the machine's."""
+        return x0_text(self.path.part, self.unit)
 
     @property
     def title(self) -> str:

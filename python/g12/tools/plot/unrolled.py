@@ -63,7 +63,7 @@ def draw_unrolled(scene: Scene) -> Figure:
     page = TOP + up + UNDER + ROWS * (PANEL + GAP) + BOTTOM + more
     figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
     axes = style.add_axes(figure, LEFT, page - TOP - up, across, up)
-    frame_surface(axes, flat, low, high)
+    frame_surface(axes, flat, low, high, scene.x0_text)
     draw_plan(axes, flat, levels)
     panels = panels_of(figure, page - TOP - up - UNDER)
     draw_history(panels, rolled, [], "surface")
@@ -98,15 +98,16 @@ def panels_of(figure: Figure, top: float) -> list[Axes]:
     ]
 
 
-def frame_surface(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray) -> None:
-    """Show a part of the surface, with C's angles above it."""
+def frame_surface(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray, x0: str) -> None:
+    """Show a part of the surface, with C's angles and ``x0``, the place of X0, above it."""
     radius = scene.seen.surface / scene.unit.mm
     style.frame(axes, low, high, scene.unit, ("along C", "Z"))
     axes.set_aspect("equal", adjustable="datalim")
     to_degrees = (lambda length: np.degrees(length / radius)), (lambda c: np.radians(c) * radius)
     above = axes.secondary_xaxis("top", functions=to_degrees)
     above.xaxis.set_major_locator(MaxNLocator(8, steps=NICE_ANGLES))
-    above.set_xlabel(f"C, degrees, on the radius {scene.unit.text(scene.seen.surface)}")
+    label = f"C, degrees, on the radius {scene.unit.text(scene.seen.surface)}"
+    above.set_xlabel("; ".join(filter(None, [label, x0])))
 
 
 def unrolled(scene: Scene) -> Scene:

@@ -5,7 +5,8 @@ LinuxCNC's own preview module interprets the program in a process of its own
 (``worker.py``), so nothing here needs a running LinuxCNC or a screen.
 
 The preview differs from a real machine in one thing that programs can see: when the units
-change, it forgets F and G64's tolerances (it takes 1 and 0.1) where the machine converts them.
+change, it forgets G64's tolerances (it takes 0.1) where the machine converts them. (It forgets F
+too; the worker restores F at the next line that asks the machine for anything.)
 """
 
 from __future__ import annotations
@@ -105,9 +106,8 @@ class Tracer:
             self._start()
         with contextlib.suppress(BrokenPipeError):  # it died: there will be no answer
             self._connection.send(request)
-        return replace(
-            _trace(self._answer(timeout), self.diameters), lengths=self.lengths
-        )
+        answer = self._answer(timeout)
+        return _trace(answer, self.ini.mm)
 
     def trace_text(self, text: str | Iterable[str], **options) -> Trace:
         """Trace a program given as text or as lines; see ``trace``.
@@ -150,9 +150,7 @@ class Tracer:
             self.close()
             raise TraceFailure(f"{self.ini.path}: {answer['printed']}{answer['error'][0]}")
         self.printed, self._no_end = answer["printed"], answer["no_end"]
-        mm = self.ini.mm
-        self.diameters = {tool: size * mm for tool, size in answer["diameters"].items()}
-        self.lengths = {tool: size * mm for tool, size in answer["lengths"].items()}
+        self.diameters, self.lengths = sizes_in_mm(answer["tool_sizes"], self.ini.mm)
 
     def _stop(self) -> None:
         if self._process:
@@ -253,7 +251,16 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
     }
 
 
-def _trace(answer: dict, diameters: dict[int, float]) -> Trace:
+def sizes_in_mm(
+    sizes: Mapping[int, Sequence[float]], mm: float
+) -> tuple[dict[int, float], dict[int, float]]:
+    """Return diameters and lengths in mm of sizes in the machine's units."""
+    diameters, lengths = ({tool: size[at] * mm for tool, size in sizes.items()} for at in (0, 1))
+    return diameters, lengths
+
+
+def _trace(answer: dict, mm: float) -> Trace:
+    diameters, lengths = sizes_in_mm(answer["tool_sizes"], mm)
     return Trace(
         moves=[Move._make(move) for move in answer["moves"]],
         messages=[Message._make(message) for message in answer["messages"]],
@@ -264,4 +271,5 @@ def _trace(answer: dict, diameters: dict[int, float]) -> Trace:
         **{key: answer[key] for key in ("globals", "numbered")},
         files=tuple(answer["files"]),
         diameters=diameters,
+        lengths=lengths,
     )

@@ -19,6 +19,7 @@ import shutil
 import signal
 import time
 import traceback
+from collections.abc import Iterator
 from multiprocessing.connection import Connection
 
 MM = 25.4  # the preview reports inches
@@ -28,7 +29,7 @@ UNLOADED = (0, *[0.0] * 12, 0)  # after T0 M6
 NO_OFFSET = (0.0,) * 9
 LINEAR = (0, 1, 2, 6, 7, 8)
 STILL = 1e-8  # mm: of less LinuxCNC makes nothing (CART_FUZZ)
-METRIC = 2
+INCHES, METRIC = 1, 2
 MEANINGS_CHANGED = "g12: the axes mean something else now"  # what `g12.host` says then
 PLANES = {1: 17, 2: 19, 3: 18}
 ARC_AXES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis
@@ -47,10 +48,9 @@ OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)} 
 OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number behind is always the same
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 BY_MACHINE = (280, 300, 530)
+INVERSE_TIME = 1  # place in FEED_MODES: each block has an F of its own
 FEED_MODES = ("G94", "G93", "G95")
 CONTINUOUS = 3  # CANON_CONTINUOUS: G64
-DIAMETER = 10  # place in what the preview asks for of a tool
-LENGTH = 3  # Z of its offset, likewise
 TOOL_FUNCTIONS = {  # with their types as C++ names them
     "tooldata_init": "b",
     "tool_mmap_creator": "PK13EMC_TOOL_STATi",
@@ -108,17 +108,11 @@ class Tools:
             library["tooldata_get"](ctypes.byref(entry), index)
         self._entries = [entry.for_canon() for entry in entries]
 
-    def diameters(self) -> dict[int, float]:
-        """Return tool number to diameter in machine units; the first entry of a tool counts."""
-        return {entry[0]: entry[DIAMETER] for entry in reversed(self._entries) if entry[0] > 0}
+    def __len__(self) -> int:
+        return len(self._entries)
 
-    def lengths(self) -> dict[int, float]:
-        """Return tool number to length along Z in machine units; the first entry counts."""
-        return {entry[0]: entry[LENGTH] for entry in reversed(self._entries) if entry[0] > 0}
-
-    def at(self, index: int) -> tuple:
-        """Return the record at an index of the table; index 0 is the spindle."""
-        return self._entries[index] if 0 <= index < len(self._entries) else EMPTY
+    def __iter__(self) -> Iterator[tuple]:
+        return iter(self._entries)
 
 
 class Lines:
@@ -191,7 +185,7 @@ class Canon:
     """Records what the interpreter asks the machine to do, in mm and machine coordinates."""
 
     def __init__(self, machine: dict, tools: Tools, request: dict) -> None:
-        self.machine, self.tools = machine, tools
+        self.machine, self.tools = machine, list(tools)
         self.parameter_file = request["parameter_file"]
         self.lines = Lines(request["program"])
         self.started = False
@@ -211,6 +205,7 @@ class Canon:
         self.rotation, self.cos, self.sin = 0.0, 1.0, 0.0
         self.plane = 17
         self.feed = self.program_feed = 0.0
+        self.modal_feed, self.units = 0.0, INCHES  # F, and the units that it is in
         self.spindle = EMPTY
 
     # Questions of the interpreter.
@@ -237,22 +232,27 @@ class Canon:
 
     def get_tool(self, index: int) -> tuple:
         """Return a record of the tool table; index 0 is the spindle."""
-        return self.tools.at(index) if index else self.spindle
+        if not index:
+            return self.spindle
+        return self.tools[index] if index < len(self.tools) else EMPTY
 
     # State it reports.
 
     def next_line(self, state) -> None:
         """Note the line that the following calls belong to."""
         self.line = state.sequence_number
+        self._convert_feed()
         if self.started:
             self._note_conditions(state)
 
     def comment(self, text: str) -> None:
         """Begin without a feed, and forget the set-up when the program itself starts."""
+        this = interpreter_object()
         if text == FRESH:
-            this = interpreter_object()
             this.feed_rate = 0.0  # not by F0: a machine may have remapped F
             this.active_spindle = 0  # LinuxCNC leaves it unset, and reads it in G33 without $
+            self.modal_feed, self.units = 0.0, this.length_units
+        self._convert_feed()
         if text == MEANINGS_CHANGED:
             self.on_face = not self.on_face
             self._stand_where_the_interpreter_does()
@@ -292,14 +292,22 @@ class Canon:
 
     def set_feed_rate(self, rate: float) -> None:
         """Note the feed, inches per minute or revolution if the program is metric."""
-        metric = interpreter_object().length_units == METRIC
+        this = interpreter_object()
+        self.units = this.length_units
         self.feed = rate * MM
-        self.program_feed = rate * MM if metric else rate
+        self.program_feed = rate * MM if self.units == METRIC else rate
+        self.modal_feed = self.program_feed
+        if self.program_feed:  # M2 reports 0, whatever F then is
+            this.feed_rate = self.program_feed
 
     def change_tool(self, _which: int) -> None:
-        """Note the tool in the spindle; LinuxCNC 2.9 hands over its index, 2.10 its number."""
-        index = interpreter_object().selected_pocket
-        self.spindle = self.tools.at(index) if index else UNLOADED
+        """Note the tool in the spindle; LinuxCNC 2.9 hands over its index, 2.10 its number.
+
+        LinuxCNC then reads the whole table again, in which a machine keeps what G10 L1 has set.
+        """
+        index, table = interpreter_object().selected_pocket, interpreter_object().tool_table
+        self.tools[1:] = [for_canon(table[place]) for place in range(1, len(self.tools))]
+        self.spindle = self.tools[index] if index else UNLOADED
         self._note(f"tool {self.spindle[0]}")
 
     def dwell(self, seconds: float) -> None:
@@ -312,6 +320,14 @@ class Canon:
 
     def set_traverse_rate(self, _rate: float) -> None:
         """Rapids have no feed."""
+
+    def _convert_feed(self) -> None:
+        """Convert F where the units have changed, as a machine does: the preview sets it to 1."""
+        this = interpreter_object()
+        if this.length_units != self.units and this.feed_mode != INVERSE_TIME:
+            self.units = this.length_units
+            this.feed_rate = self.modal_feed * (MM if self.units == METRIC else 1 / MM)
+        self.modal_feed = this.feed_rate
 
     def _note_pitch(self) -> None:
         """Keep the pitch of a thread, which is its feed in place of F."""
@@ -461,6 +477,24 @@ def in_mm(position) -> tuple:
     return (x * MM, y * MM, z * MM, a, b, c, u * MM, v * MM, w * MM)
 
 
+def for_canon(entry) -> tuple:
+    """Return a record of the interpreter's tool table as the preview asks for it."""
+    tip, offset = entry.offset.tran, entry.offset
+    axes = (tip.x, tip.y, tip.z, *(getattr(offset, letter) for letter in "abcuvw"))
+    angles = (entry.frontangle, entry.backangle, entry.orientation)
+    return (entry.toolno, *axes, entry.diameter, *angles)
+
+
+def tool_sizes(count: int) -> dict[int, tuple[float, float]]:
+    """Return tool number to diameter and length, machine units, of the first ``count`` entries.
+
+    The interpreter's table holds what G10 has set. The first entry of a tool counts.
+    """
+    table = interpreter_object().tool_table
+    entries = [table[index] for index in reversed(range(count))]
+    return {e.toolno: (e.diameter, e.offset.tran.z) for e in entries if e.toolno > 0}
+
+
 def interpreter_object():
     """Return the interpreter at work, as Python remaps see it."""
     import interpreter
@@ -489,6 +523,7 @@ def interpret(machine: dict, tools: Tools, request: dict) -> dict:
         error = (gcode.strerror(result), canon.lines.of_error() if canon.started else 0)
     answer = {"moves": canon.moves, "messages": canon.messages, "events": canon.events}
     answer["error"], answer["files"] = error, sorted(canon.files)
+    answer["tool_sizes"] = tool_sizes(len(tools))
     return {**answer, "position": canon.position, "seconds": seconds, **left_behind(request)}
 
 
@@ -569,7 +604,7 @@ def start(machine: dict, tools: Tools) -> dict:
     answer = answered(machine, tools, request)
     if answer.get("error") and answer["error"][0] == no_end:
         answer["error"] = None
-    return {**answer, "no_end": no_end, "diameters": tools.diameters(), "lengths": tools.lengths()}
+    return {**answer, "no_end": no_end}
 
 
 def reply(connection: Connection, machine: dict, answer: dict) -> None:

@@ -47,7 +47,7 @@ def judged(proof: Proof, texts: Sequence[Text]) -> list[Finding]:
     known = {index for some in proof.asked.moves for index in some}
     found = [
         *said_of_cuts(proof),
-        *judge_tool_length(cuts, moves, trace.lengths),
+        *judge_tool_length(cuts, moves, trace.lengths, trace.events),
         *judge_feeds(cuts, moves, path, limits_of(ini)),
         *judge_spindle(cuts, trace.events, ini),
         *judge_levels(cuts, moves),

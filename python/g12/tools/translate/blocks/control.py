@@ -44,7 +44,8 @@ CLASSES = (
 )
 TOP = {
     "title": str, "based_on": str, "machine": ("mill", "lathe"), "axes": str, "start": str,
-    "decimals": ("least", "whole"), "remarks": bool, "sources": list, "readings": list,
+    "decimals": ("least", "whole"), "feed_of_c": ("mm and degrees", "degrees", "mm", "say"),
+    "remarks": bool, "sources": list, "readings": list,
 }  # fmt: skip
 TABLES: dict[str, dict[str, object]] = {
     "increments": dict.fromkeys(CLASSES, float),
@@ -84,7 +85,8 @@ class Control:
 
     ``axes`` are the machine's axes, ``start`` the codes that hold when a program begins,
     ``decimals`` what a number without a point is (``least`` increments, ``whole`` units, ``""`` if
-    that is not known). ``meanings`` has the codes, ``tables`` the values of the file;
+    that is not known), ``feed_of_c`` what F is over where C and a slide move together (``say``: not
+    known). ``meanings`` has the codes, ``tables`` the values of the file;
     ``polar_codes`` are LinuxCNC's codes on the machine for polar mode on and off,
     ``cylinder_code`` is that for a cylinder, with what its C is (``radius`` or ``diameter``).
     """
@@ -95,6 +97,7 @@ class Control:
     axes: str
     start: tuple[str, ...]
     decimals: str
+    feed_of_c: str
     remarks: bool
     sources: tuple[str, ...]
     readings: tuple[str, ...]
@@ -132,6 +135,7 @@ def read_control(name: str) -> Control:
         axes=data["axes"],
         start=tuple(data.get("start", "").split()),
         decimals=data.get("decimals", ""),
+        feed_of_c=data.get("feed_of_c", "say"),
         remarks=data.get("remarks", False),
         sources=tuple(data.get("sources", ())),
         readings=tuple(data.get("readings", ())),

@@ -37,7 +37,9 @@ class Draft:
     calls, ``returns`` whether a subprogram ends here, by ``return_text``, and ``jumps`` whether
     another block than the next one follows; ``head`` begins a program;
     ``around`` are lines before and behind its own; ``is_settled`` means that the block is written
-    for the distance mode that LinuxCNC is in, ``has_motion`` that its motion code is written;
+    for the distance mode that LinuxCNC is in, ``has_motion`` that its motion code is written,
+    ``has_feed`` that its feed is;
+    ``start`` are the modes before the block, as it was read;
     ``programs`` are the numbers of the programs in the file, ``called_as`` that of the copy that a
     call is for, 0 if it is for none; ``asked`` has what each program compares with #0; ``index``
     tells the block from all others; ``lines`` are those that it becomes; ``refusal`` is why it is
@@ -70,7 +72,8 @@ class Draft:
         self.head = ""
         self.around: tuple[str, str] | None = None
         self.is_settled = False
-        self.has_motion = False
+        self.has_motion = self.has_feed = False
+        self.start = state
         self.programs = programs
         self.asked: Mapping[int, frozenset[int]] = {}
         self.lines: list[str] = []

@@ -24,6 +24,9 @@ GROUPS = {
     "spindle_mode": ("G96", "G97"),
     "path": ("G61", "G64"),
 }
+CONSUMERS = frozenset(
+    ("G10", "G28", "G30", "G52", "G92", "G12", "G13", "G12.2", "G13.2", "G7.1")
+)  # what takes the axis words of its block for itself
 GROUP_OF = {code: group for group, codes in GROUPS.items() for code in codes}
 
 
@@ -38,6 +41,8 @@ class ModalState(NamedTuple):
     the program.
     ``polar`` is ``on`` between polar on and off, ``cylinder`` on a cylinder; ``mapped`` is the
     radius of one whose angles are written as lengths.
+    ``at_x`` to ``at_c`` are the program's point, as far as it is known (`places`); ``held`` are
+    slides that LinuxCNC has not moved yet, each with where it stands.
     """
 
     motion: str = UNKNOWN
@@ -63,6 +68,13 @@ class ModalState(NamedTuple):
     own_motion: str = AS_PROGRAMMED
     own_distance: str = AS_PROGRAMMED
     own_feed: str = AS_PROGRAMMED
+    held: tuple = ()
+    at_x: float | str = UNKNOWN
+    at_y: float | str = UNKNOWN
+    at_z: float | str = UNKNOWN
+    at_a: float | str = UNKNOWN
+    at_b: float | str = UNKNOWN
+    at_c: float | str = UNKNOWN
 
 
 def merged(one: ModalState, other: ModalState) -> ModalState:

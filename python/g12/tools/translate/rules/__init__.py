@@ -6,6 +6,7 @@ A rule takes a `Draft`, rewrites its words or lines, carries its state on, or re
 
 from __future__ import annotations
 
+from g12.tools.translate.blocks import places
 from g12.tools.translate.rules import (
     codes,
     cycles,
@@ -22,6 +23,7 @@ from g12.tools.translate.rules import (
     subprograms,
     tools,
 )
+from g12.tools.translate.turning import feed_of_c
 
 WORD_RULES = (
     codes.keep_as_comments,
@@ -32,6 +34,7 @@ WORD_RULES = (
     subprograms.call_macro,
     dwell.dwell,
     decimals.whole_units,
+    places.follow_places,
     tools.tool_and_offsets,
     spindle.speed_limit,
     offsets.numbered_offset,
@@ -41,6 +44,7 @@ WORD_RULES = (
     cylinder.switch_cylinder,
     cylinder.on_the_surface,
     polar.inside_polar,
+    feed_of_c.feed_of_c,
     polar.feed_again,
     motion.exact_stop,
     increments.incremental_words,

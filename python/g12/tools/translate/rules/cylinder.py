@@ -13,7 +13,7 @@ from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
-from g12.tools.translate.rules.polar import is_zero, own_block
+from g12.tools.translate.rules.polar import is_zero, own_block, own_feed_ended
 
 ANGLES = {"Y": "C", "V": "H"}
 SIZES = {"R": 1, "Q": 2}  # radius and diameter
@@ -31,7 +31,8 @@ def switch_cylinder(draft: Draft) -> None:
         radius = named_radius(draft, code.code)
     name, word = draft.control.cylinder_code
     value = f"[2 * {radius}]" if radius and word == "diameter" else radius or "0"
-    own_block(draft, code.code, [f"{name} C{value}"])
+    feed = own_feed_ended(draft) if radius else []
+    own_block(draft, code.code, [*feed, f"{name} C{value}"])
     draft.change(polar="cylinder" if radius else "off", own_motion=UNSURE)
 
 

@@ -21,6 +21,8 @@ def whole_units(draft: Draft) -> None:
             kind = class_of(draft, word)
             if kind:
                 draft.words[at] = in_units(draft, word, kind)
+                if word.letter == "F":
+                    draft.change(feed=draft.words[at].value)
 
 
 def class_of(draft: Draft, word: ForeignWord) -> str:

@@ -5,12 +5,9 @@ from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUPS, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, GROUPS, UNKNOWN, UNSURE
 
 MOTIONS = frozenset((*GROUPS["motion"], "G33"))
-CONSUMERS = frozenset(
-    ("G10", "G28", "G30", "G52", "G92", "G12", "G13", "G12.2", "G13.2", "G7.1")
-)  # what takes the axis words of its block for itself
 INDIFFERENT = frozenset("NMSTFHD$")
 
 

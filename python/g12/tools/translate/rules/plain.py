@@ -5,14 +5,16 @@ from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUPS, UNKNOWN
+from g12.tools.translate.blocks.places import FIELDS, end_of_word
 
 MOTIONS = frozenset(GROUPS["motion"])
 LETTERS = frozenset("NXYZABCIJKRF")
 SETTLED = (UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
+TURNING = frozenset("ABC")  # beside a slide they can need another feed
 
 
 def is_plain(draft: Draft) -> bool:
-    """Tell whether no rule has anything to do; the block's motion and feed are then taken note of.
+    """Tell whether no rule has anything to do; the block's motion, feed and place are then noted.
 
     So it is for one motion code or none, numbers with points, and no mode that LinuxCNC lacks.
     """
@@ -20,7 +22,7 @@ def is_plain(draft: Draft) -> bool:
     at = (state.cycle, state.polar, state.own_motion, state.own_distance, state.own_feed)
     if at != SETTLED:
         return False
-    modes: dict[str, str] = {}
+    modes: dict[str, float | str] = {}
     seen = set()
     for letter, value, kind, _ in draft.words:
         if kind != "number" or letter in seen:
@@ -40,6 +42,11 @@ def is_plain(draft: Draft) -> bool:
     arc = motion in ("G2", "G3") or "R" not in seen
     if not arc or motion not in MOTIONS or control.meanings.get(motion) != "same":
         return False
+    if motion != "G0" and not TURNING.isdisjoint(seen):
+        return False
+    modes.update(
+        (FIELDS[w.letter], end_of_word(state, w)) for w in draft.words if w.letter in FIELDS
+    )
     if any(getattr(state, mode) != value for mode, value in modes.items()):
         draft.change(**modes)
     return True

@@ -11,6 +11,7 @@ from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.places import known_place, value_text
 
 MOVING = frozenset("XYZABCUVWHF")
 PLANES = frozenset(("G17", "G18", "G19"))
@@ -50,9 +51,9 @@ def turn_on(draft: Draft, code: str) -> None:
         )
     if draft.control.is_lathe and "C" in draft.letters() and is_zero(draft.words[-1]):
         draft.take("C")
-    lines = ["G8"] if x == "radius" else []
+    lines = [*own_feed_ended(draft), *(["G8"] if x == "radius" else [])]
     own_block(draft, code, [*lines, draft.control.polar_codes[0]])
-    draft.change(polar="on", own_motion=UNSURE)
+    draft.change(polar="on", own_motion=UNSURE, at_c=0.0)
 
 
 def turn_off(draft: Draft, code: str) -> None:
@@ -126,19 +127,47 @@ def rapid_at_feed(draft: Draft) -> None:
         draft.take_codes({"G0"})
         draft.take("F")
         draft.words += [word_of("G1"), word_of("G94"), word_of(f"F{feed:g}")]
-        draft.change(motion="G0", own_motion="G1", own_feed="rapid")
-        draft.has_motion = True
+        draft.change(motion="G0", own_motion="G1", own_feed="other")
+        draft.has_motion = draft.has_feed = True
 
 
 def feed_again(draft: Draft) -> None:
-    """Write the feed that holds on the control where LinuxCNC has that of a rapid in polar mode."""
-    state = draft.state
-    if draft.has_motion or state.own_feed == AS_PROGRAMMED or not draft.letters() & MOVING:
+    """Write the feed that holds on the control where LinuxCNC has another: G93, a polar rapid's."""
+    if draft.has_feed or draft.state.own_feed == AS_PROGRAMMED or not draft.letters() & MOVING:
         return
-    if "F" not in draft.letters():
-        if draft.sure("feed", "a rapid of polar mode is before this block") == UNKNOWN:
-            raise NotTranslated("a feed is wanted behind a rapid of polar mode: write F")
-        draft.words.append(word_of(f"F{state.feed}"))
-    if state.feed_mode not in draft.codes() and state.feed_mode != UNKNOWN:
-        draft.words.append(word_of(draft.sure("feed_mode", "a rapid of polar mode is before it")))
-    draft.change(own_feed=AS_PROGRAMMED)
+    if draft.state.held:
+        draft.before += own_feed_ended(draft)
+        draft.change(own_motion="G1")
+    else:
+        letters, codes = draft.letters(), draft.codes()
+        draft.words += [
+            word_of(text)
+            for text in programs_feed(draft)
+            if text not in codes and not (text[0] == "F" and "F" in letters)
+        ]
+    draft.change(own_feed=AS_PROGRAMMED, held=())
+
+
+def own_feed_ended(draft: Draft) -> list[str]:
+    """Return the line that gives LinuxCNC the control's feed, if it has another."""
+    if draft.state.own_feed == AS_PROGRAMMED:
+        return []
+    motion = ["G1"] if draft.state.held else []
+    line = " ".join([*motion, *slides_again(draft), *programs_feed(draft)])
+    draft.change(own_feed=AS_PROGRAMMED, held=())
+    return [line]
+
+
+def programs_feed(draft: Draft) -> list[str]:
+    """Return the words of the feed that holds on the control."""
+    why = "LinuxCNC has another feed before this block"
+    feed, mode = draft.sure("feed", why), draft.sure("feed_mode", why)
+    if feed == UNKNOWN:
+        raise NotTranslated(f"{why}: write F")
+    return [f"F{feed}", *([mode] if mode else [])]
+
+
+def slides_again(draft: Draft) -> list[str]:
+    """Return the words of slides that LinuxCNC has not moved yet (`turning/feed_of_c`)."""
+    held = draft.sure("held", "a slide of LinuxCNC's is behind the program's")
+    return [f"{axis}{value_text(known_place(draft.start, axis))}" for axis, _ in held]

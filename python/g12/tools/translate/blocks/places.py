@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where the program's point stands, in its own units (X of a lathe a diameter), if it is known.
+
+A place is a number, or a text: UNKNOWN, or UNSURE where the ways to a block differ. It is known
+from absolute numbers on; an expression, a reference point, a tool or another offset end that.
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.modal import UNKNOWN, ModalState
+
+FIELDS = {axis: f"at_{axis.lower()}" for axis in AXIS_NUMBERS}
+LOST = dict.fromkeys(FIELDS.values(), UNKNOWN)
+FOLLOWED = frozenset(  # a block of these codes alone ends at its words
+    f"G{n}" for n in (*range(5), 7, 8, *range(17, 22), 33, 40, 41, 42, 61, 64, 80, 90, 91)
+) | frozenset(f"G{n}" for n in range(93, 100))
+SHIFTING = frozenset(["G43", "G49", "G54", "G55", "G56", "G57", "G58", "G59"])
+STAYING = frozenset(("speed limit or origin", "exact stop", "cancel cycle"))
+
+
+def known_place(state: ModalState, axis: str) -> float | None:
+    """Return where an axis stands, None if that is not known."""
+    at = getattr(state, FIELDS[axis])
+    return at if isinstance(at, float) else None
+
+
+def value_text(value: float) -> str:
+    """Return a number of the program's as LinuxCNC reads it, with eight decimals."""
+    text = f"{value:.8f}".rstrip("0")
+    return "0." if text == "-0." else text
+
+
+def axis_of(letter: str) -> str:
+    """Return the axis of a word: that of U is X."""
+    return PARTNERS.get(letter, letter)
+
+
+def end_of_word(state: ModalState, word: ForeignWord) -> float | str:
+    """Return where a word's axis goes, UNKNOWN if that is not known."""
+    if word.kind != "number":
+        return UNKNOWN
+    if word.letter in AXIS_NUMBERS and state.distance == "G90":
+        return word.number
+    start = known_place(state, axis_of(word.letter))
+    return UNKNOWN if start is None or state.distance not in ("G90", "G91") else start + word.number
+
+
+def follow_places(draft: Draft) -> None:
+    """Carry the places on to the end of a block; ``start`` has those at its start."""
+    codes = set(draft.codes())
+    shifted = codes & SHIFTING or draft.start.units != draft.state.units
+    turret = draft.control.is_lathe and "T" in draft.letters()
+    changes = any(w.letter == "M" and w.kind == "number" and w.code == "M6" for w in draft.words)
+    other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or draft.state.cycle
+    if other or turret or changes or shifted:
+        draft.change(**LOST)
+    if other:
+        return
+    words = [*draft.axis_words(), *(draft.increments() if draft.control.is_lathe else ())]
+    if words:
+        draft.change(**{FIELDS[axis_of(w.letter)]: end_of_word(draft.state, w) for w in words})

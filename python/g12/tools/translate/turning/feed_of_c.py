@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A slide and C in one feed block outside a section: G93 with the time that the control takes.
+
+On a Fanuc F is along the path of millimetres (X as a radius) and degrees together; LinuxCNC takes
+it along X, Y and Z alone. The control's ``feed_of_c`` is ``mm and degrees``, ``degrees`` (F is C's)
+or ``mm`` (as LinuxCNC). A slide that moves next to nothing is held back for a later block: LinuxCNC
+2.9.0~pre1 runs too fast then.
+"""
+
+from __future__ import annotations
+
+from math import hypot
+
+from g12.tools.translate.blocks.draft import Draft, word_of
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import CONSUMERS, UNSURE
+from g12.tools.translate.blocks.places import axis_of, known_place, value_text
+
+LEAST_MM = 0.001  # a slide moves by that or not at all
+SLIDES = "XYZ"
+INSTEAD = "write G0 with X, Z and C as numbers in a block before it"
+
+
+def feed_of_c(draft: Draft) -> None:
+    """Write a block in which C turns beside a slide."""
+    rule, state = draft.control.feed_of_c, draft.state
+    axes = {axis_of(word.letter) for word in (*draft.axis_words(), *draft.increments())}
+    if "C" not in axes or not axes & set(SLIDES) or not is_feed(draft) or rule == "mm":
+        return
+    moved = distances(draft, axes)
+    turned, along = abs(moved["C"]), hypot(*(moved.get(axis, 0.0) for axis in SLIDES))
+    if (turned and along and state.feed_mode != "G93") or state.held:
+        check_rule(draft, rule)
+        path = turned if rule == "degrees" else hypot(turned, along)
+        write_inverse_time(draft, axes, path / number_of_feed(draft))
+
+
+def is_feed(draft: Draft) -> bool:
+    """Tell whether the block moves at a feed, outside a section."""
+    codes = set(draft.codes())
+    motion = next((code for code in codes if code in ("G0", "G1", "G2", "G3")), draft.state.motion)
+    other = draft.state.polar != "off" or draft.meanings or draft.state.cycle
+    return motion != "G0" and not other and not codes & {*CONSUMERS, "G53", "G33"}
+
+
+def distances(draft: Draft, axes: set[str]) -> dict[str, float]:
+    """Return how far each axis goes, in mm, inches or degrees; X as a radius."""
+    moved = {}
+    for axis in axes:
+        start, end = known_place(draft.start, axis), known_place(draft.state, axis)
+        if start is None or end is None:
+            raise NotTranslated(
+                f"C beside a slide at a feed: its time hangs on where {axis} stands, which is not "
+                f"known here: {INSTEAD}"
+            )
+        moved[axis] = (end - start) * scale_of(draft, axis)
+    return moved
+
+
+def scale_of(draft: Draft, axis: str) -> float:
+    """Return the length that 1 of a word's number is."""
+    return 0.5 if axis == "X" and "G7" in draft.control.start else 1.0
+
+
+def check_rule(draft: Draft, rule: str) -> None:
+    """Refuse a block whose time is not known."""
+    if rule == "say":
+        raise NotTranslated(
+            'C beside a slide at a feed: say what F is then, feed_of_c = "mm and degrees", '
+            '"degrees" or "mm" in a control of your own'
+        )
+    if draft.sure("feed_mode", "C beside a slide at a feed") != "G94":
+        raise NotTranslated(
+            "C beside a slide needs a feed per minute: on a lathe of system A write G98 and F"
+        )
+    if {"G2", "G3"} & {*draft.codes(), draft.state.motion if not draft.codes() else ""}:
+        raise NotTranslated("C beside an arc: write the arc as lines, or in polar mode")
+
+
+def number_of_feed(draft: Draft) -> float:
+    """Return F, which must be a number above 0."""
+    try:
+        feed = float(draft.sure("feed", "C beside a slide"))
+    except ValueError:
+        feed = 0.0
+    if feed <= 0:
+        raise NotTranslated("C beside a slide at a feed: F must be a number here: write it")
+    return feed
+
+
+def write_inverse_time(draft: Draft, axes: set[str], minutes: float) -> None:
+    """Write the block with G93 and the number of such moves in a minute."""
+    state = draft.state
+    if state.distance != "G90" and not state.held:
+        keep_words(draft, axes)
+    else:
+        absolute_words(draft, axes)
+    draft.take_codes({"G94"})
+    draft.take("F")
+    if state.own_feed != "G93":
+        draft.words.append(word_of("G93"))
+    draft.words.append(word_of(f"F{1 / minutes:.10g}"))
+    draft.has_feed = True
+    draft.change(own_feed="G93")
+
+
+def keep_words(draft: Draft, axes: set[str]) -> None:
+    """Leave increments as they are; they cannot be held back."""
+    moved = distances(draft, axes & set(SLIDES))
+    if 0 < hypot(*moved.values()) < least_of(draft):
+        raise NotTranslated("a slide goes less than 0.001 mm beside C: write the block under G90")
+
+
+def absolute_words(draft: Draft, axes: set[str]) -> None:
+    """Write absolute words, or hold the slides back if they go next to nothing."""
+    state = draft.state
+    if state.held == UNSURE or state.distance != "G90":
+        raise NotTranslated(f"C beside a slide, and a slide is held back here: {INSTEAD}")
+    held = dict(state.held)
+    stands = {
+        axis: held.get(axis, known_place(draft.start, axis)) for axis in {*axes, *held} - {"C"}
+    }
+    ends = {axis: known_place(state, axis) for axis in stands}
+    goes = hypot(*((ends[a] - stands[a]) * scale_of(draft, a) for a in stands))
+    holds = 0 < goes < least_of(draft)
+    draft.words = [w for w in draft.words if axis_of(w.letter) not in {*stands, "C"}]
+    written = "C" if holds else [*sorted(stands), "C"]
+    draft.words += [word_of(f"{a}{value_text(known_place(state, a))}") for a in written]
+    draft.change(held=tuple(sorted(stands.items())) if holds else ())
+
+
+def least_of(draft: Draft) -> float:
+    """Return how far slides must go, in the program's units."""
+    inches = draft.sure("units", "C beside a slide") == "G20"
+    return LEAST_MM / 25.4 if inches else LEAST_MM
