@@ -46,7 +46,7 @@ def test_a_good_pocket_ends_with_0(written, capsys):
 def test_a_finding_ends_with_1_and_is_told(written, capsys):
     code, out, _ = verify(capsys, written(WIDE), "--ini", MILL)
     assert code == 1
-    assert "findings\n  line 4: " in out and out.endswith("verdict: 1 finding, 1 note\n")
+    assert "findings\n  line 4: " in out and out.endswith("verdict: 1 finding, 2 notes\n")
 
 
 def test_notes_are_findings_on_demand(written, capsys):

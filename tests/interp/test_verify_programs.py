@@ -10,9 +10,9 @@ import pytest
 from g12.tools import units
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
+from g12.tools.verify.as_json import as_json
 from g12.tools.verify.findings import pocket_findings, pocket_notes, section_findings
 from g12.tools.verify.proof import prove
-from g12.tools.verify.as_json import as_json
 from g12.tools.verify.report import as_text
 from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
 
@@ -312,7 +312,8 @@ def test_a_section_in_a_sub_of_another_file_is_measured(with_sub):
     assert [facts.section.elements[0].end for facts in proof.sections] == [20, 15]
     assert [(facts.section.line, facts.section.last) for facts in proof.sections] == [(2, 5)] * 2
     assert proof.findings == []
-    titles = [line for line in as_text(proof, units.MM).splitlines() if line.startswith("lines ")]
+    report = as_text(proof, units.MM, full=True).splitlines()
+    titles = [line for line in report if line.startswith("lines ")]
     assert titles == [f"lines 2 to 5 of flat.ngc, called in line {line}: G12.1" for line in (4, 6)]
     assert json.loads(as_json(proof))["sections"][0]["file"] == "flat.ngc"
 

@@ -26,6 +26,7 @@ FORBIDDEN = {  # room: what none of its files imports
     "g12.host": ("g12.tools", "g12.remap"),
     "g12.tools": ("g12.host", "g12.remap"),
     "g12.tools.verify": PLANNERS,
+    "g12.geometry": (*WINGS, *LINUXCNC, *PLANNERS, "numpy"),
 }
 ROLES = {
     "main",
@@ -33,7 +34,9 @@ ROLES = {
     "plan",
     "plan_circle",
     "left_material",
+    "Finding",
 }  # one meaning, many files
+ROLES |= {"Line", "Arc", "recentred", "sweep_between"}  # the planners' move to g12.geometry
 SHARED = [path.stem for path in PACKAGE.glob("*.py") if path.stem[:2] != "__"]
 
 

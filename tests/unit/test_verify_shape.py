@@ -11,7 +11,7 @@ import pytest
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.executed_blocks import STATE, Block, read_line
 from g12.tools.preview.moves import Move
-from g12.tools.verify.codes import Codes
+from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.shape_cut import area_swept
 from g12.tools.verify.shape_form import Shift, polygon_form, round_form, slot_form
 from g12.tools.verify.shape_way import ShapeWay

@@ -22,7 +22,7 @@ from g12.tools.preview.executed_blocks import (
 )
 from g12.tools.preview.moves import Event
 from g12.tools.verify import wanted_circle, wanted_contour
-from g12.tools.verify.codes import SHAPES, Codes
+from g12.tools.verify.reading.codes import SHAPES, Codes
 from g12.tools.verify.surface_pen import SurfacePen
 from g12.tools.verify.wanted_circle import CircleReader
 from g12.tools.verify.wanted_contour import Pen, WordReading

@@ -33,8 +33,8 @@ from g12.tools.preview.moves import message_lines
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.progress import working
 from g12.tools.verify.proof import subject_of
+from g12.tools.verify.result.sentences import NOTES
 from g12.tools.verify.seen import seen_in
-from g12.tools.verify.sentences import NOTES
 
 EXAMPLES = """\
 examples:
@@ -80,7 +80,8 @@ def told_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
         for line, text in scene.seen.warnings(scene.unit)
     )
     notes = (
-        f"note, line {opened.source_line(line)}: {NOTES['spindle-stands']}" for line in scene.seen.still[:1]
+        f"note, line {opened.source_line(line)}: {NOTES['spindle-stands']}"
+        for line in scene.seen.still[:1]
     )
     x0 = [f"note: program {scene.x0_text}"] if scene.x0_text else []
     trace = trace_in_source(scene.subject.trace, opened)

@@ -7,13 +7,13 @@ import json
 
 from g12.tools.path.slowest import Pace
 from g12.tools.units import MM
-from g12.tools.verify.finding import Finding
 from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.paragraphs import AXES, pocket_slowest_line
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.pocket_entry import entry_json
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.rapids import Collision
+from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.shape_findings import shape_json
 
@@ -30,7 +30,9 @@ def as_json(proof: Proof) -> str:
             "shapes": [shape_json(facts) for facts in proof.shapes],
             "rapids": [collision_json(hit, proof) for hit in proof.collisions],
             "stock": proof.stock and stock_json(proof.stock, proof),
-            "unseen": [{"line": proof.user_line(line), "code": code} for line, code in proof.unseen],
+            "unseen": [
+                {"line": proof.user_line(line), "code": code} for line, code in proof.unseen
+            ],
             "messages": [
                 {"line": proof.user_line(message.line), "text": message.text}
                 for message in proof.subject.trace.messages

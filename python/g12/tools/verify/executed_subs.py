@@ -25,7 +25,7 @@ from g12.tools.preview.executed_blocks import (
 )
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer, write_program
-from g12.tools.verify.codes import CALL, Codes
+from g12.tools.verify.reading.codes import CALL, Codes
 
 
 def executed_everywhere(

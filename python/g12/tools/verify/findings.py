@@ -12,12 +12,12 @@ from itertools import zip_longest
 
 from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.axis_limits import Overrun
-from g12.tools.verify.codes import EVENT
 from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import SAME_LEVEL, PocketFacts
 from g12.tools.verify.pocket_entry import entry_findings
 from g12.tools.verify.pocket_order import DOWN_TO, ENDS, UP_TO, LeftBehind
 from g12.tools.verify.rapids import Collision
+from g12.tools.verify.reading.codes import EVENT
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.wanted_circle import Cutter, Target
 from g12.tools.verify.wanted_contour import SectionContour

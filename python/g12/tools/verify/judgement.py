@@ -12,8 +12,6 @@ from g12.tools.path.track import limits_of
 from g12.tools.preview.executed_blocks import Text
 from g12.tools.preview.moves import Move
 from g12.tools.units import MM, Unit
-from g12.tools.verify.codes import Codes
-from g12.tools.verify.finding import Finding
 from g12.tools.verify.findings import (
     collision_text,
     pocket_findings,
@@ -24,12 +22,14 @@ from g12.tools.verify.findings import (
     stock_notes,
 )
 from g12.tools.verify.in_stock import StockFacts
-from g12.tools.verify.mistakes.cut import Cut
+from g12.tools.verify.mistakes.cut import ProgramCut
 from g12.tools.verify.mistakes.feeds import judge_feeds, judge_native_c
 from g12.tools.verify.mistakes.levels import judge_levels
 from g12.tools.verify.mistakes.modes import judge_return_levels
 from g12.tools.verify.mistakes.spindle import judge_spindle
 from g12.tools.verify.mistakes.tool_length import judge_tool_length
+from g12.tools.verify.reading.codes import Codes
+from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.shape_findings import shape_findings
 
 if TYPE_CHECKING:
@@ -58,16 +58,16 @@ def judged(proof: Proof, texts: Sequence[Text]) -> list[Finding]:
     return sorted(found, key=lambda finding: finding.line)
 
 
-def cuts_of(asked: Asked, moves: Sequence[Move]) -> Iterator[Cut]:
+def cuts_of(asked: Asked, moves: Sequence[Move]) -> Iterator[ProgramCut]:
     """Yield the pockets and sections that a program asks for."""
     for block, target in asked.circles:
         source = target.source
         at, end = block.at, block.end
-        yield Cut(source.line, source.file, source.code, at, end, target.wall.face, False)
+        yield ProgramCut(source.line, source.file, source.code, at, end, target.wall.face, False)
     for section in asked.sections:
         face = moves[section.at].start[Z] - section.height
         line, file, at, end = section.line, section.file, section.at, section.end
-        yield Cut(line, file, section.code, at, end, None if section.surface else face, True)
+        yield ProgramCut(line, file, section.code, at, end, None if section.surface else face, True)
 
 
 def not_judged(moves: Sequence[Move], known: set[int]) -> Iterator[Finding]:

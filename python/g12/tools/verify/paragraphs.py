@@ -34,7 +34,12 @@ def paragraphs_of(proof: Proof, unit: Unit) -> list[str]:
     ]
     stock = [stock_text(proof.stock, unit)] if proof.stock else []
     pockets = [pocket_text(facts, proof, unit) for facts in proof.pockets]
-    return [*pockets, *shapes, *(section_text(facts, proof, unit) for facts in proof.sections), *stock]
+    return [
+        *pockets,
+        *shapes,
+        *(section_text(facts, proof, unit) for facts in proof.sections),
+        *stock,
+    ]
 
 
 def zero_text(proof: Proof, unit: Unit) -> str:
@@ -113,13 +118,18 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
         ("gouged", gouged(facts, unit)),
         ("pieces", f"{facts.pieces}, {spread(facts.shortest, facts.longest, unit)}"),
         ("direction jump", f"{plain(facts.jump, 2)}° from piece to piece"),
-        ("lowest feed", slowest(facts.pace, slow, proof.user_line(facts.slowest_line, section.file), unit)),
+        (
+            "lowest feed",
+            slowest(facts.pace, slow, proof.user_line(facts.slowest_line, section.file), unit),
+        ),
         ("speed of C", f"{plain(facts.c_speed, 1)} degrees/s at most, {limit}"),
         ("time", time_text(facts.pace)),
     ]
     call = proof.subject.trace.moves[section.at].block
     own = not section.file and section.line <= call <= section.last
-    called = f"{f' of {section.file}' if section.file else ''}, called in line {proof.user_line(call)}"
+    called = (
+        f"{f' of {section.file}' if section.file else ''}, called in line {proof.user_line(call)}"
+    )
     first, last = (proof.user_line(each, section.file) for each in (section.line, section.last))
     title = f"lines {first} to {last}{'' if own else called}: {section.code}"
     return paragraph(title, rows)

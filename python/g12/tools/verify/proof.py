@@ -27,14 +27,14 @@ from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import Unit, unit_of
 from g12.tools.verify.axis_limits import has_one_zero, overruns_of, travel_of, widths_of
-from g12.tools.verify.codes import CYLINDER, POLAR, Codes
 from g12.tools.verify.executed_subs import executed_everywhere
-from g12.tools.verify.finding import Finding
 from g12.tools.verify.in_stock import InStock, StockFacts
 from g12.tools.verify.judgement import judged
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
 from g12.tools.verify.pocket_order import acts_in, left_otherwise
 from g12.tools.verify.rapids import Collision, collisions
+from g12.tools.verify.reading.codes import CYLINDER, POLAR, Codes
+from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
 from g12.tools.verify.section_paths import x0_of

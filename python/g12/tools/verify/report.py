@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 from g12.tools.preview.moves import message_lines
 from g12.tools.units import Unit, counted_as, plain
-from g12.tools.verify.finding import Finding
 from g12.tools.verify.paragraphs import AXES, line_text, paragraphs_of, zero_text
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
+from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.shape_findings import ShapeFacts
 
@@ -35,13 +35,13 @@ def as_text(proof: Proof, unit: Unit, *, full: bool = False, strict: bool = Fals
     findings = [each for each in judged if each.is_finding or (strict and each.is_note)]
     notes = [each for each in judged if each.is_note and not strict]
     others = [each for each in judged if not (each.is_finding or each.is_note)]
-    cuts = paragraphs_of(proof, unit) if full else ["\n".join(table(cut_lines(proof, unit)))]
+    cuts = paragraphs_of(proof, unit) if full else ["\n".join(_in_columns(cut_lines(proof, unit)))]
     parts = [
         zero_text(proof, unit),
         *cuts,
-        listed("findings", findings, proof, unit),
-        listed("notes", notes, proof, unit),
-        listed("not judged", others, proof, unit),
+        _listed("findings", findings, proof, unit),
+        _listed("notes", notes, proof, unit),
+        _listed("not judged", others, proof, unit),
         "\n".join(message_lines(messages_of(proof))),
         verdict(len(findings), len(notes)),
     ]
@@ -54,7 +54,7 @@ def messages_of(proof: Proof) -> Iterator:
         yield message._replace(line=proof.user_line(message.line))
 
 
-def listed(title: str, found: Sequence[Finding], proof: Proof, unit: Unit) -> str:
+def _listed(title: str, found: Sequence[Finding], proof: Proof, unit: Unit) -> str:
     """Return findings under a title, "" without any; what is the same of several lines once."""
     lines: dict[str, list[str]] = {}
     for each in found:
@@ -77,7 +77,7 @@ def verdict(findings: int, notes: int) -> str:
     return f"verdict: {', '.join([first, *([counted_as(notes, 'note')] if notes else [])])}"
 
 
-def table(rows: Iterable[CutLine]) -> Iterator[str]:
+def _in_columns(rows: Iterable[CutLine]) -> Iterator[str]:
     """Yield rows with their columns below each other."""
     rows = list(rows)
     widths = [max(map(len, column)) for column in zip(*rows)]

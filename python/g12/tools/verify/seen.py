@@ -17,7 +17,6 @@ from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.units import MM, Unit
-from g12.tools.verify.codes import Codes
 from g12.tools.verify.findings import (
     SAME_AREA,
     collision_text,
@@ -39,6 +38,7 @@ from g12.tools.verify.proof import (
     stock_facts,
 )
 from g12.tools.verify.rapids import Circles, Cleared, Collision, collisions, cutting, floors_of
+from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.wanted_circle import Cutter
 from g12.tools.verify.wanted_contour import SectionContour
 

@@ -18,7 +18,7 @@ from g12.lengths import MM_PER_INCH
 from g12.tools.path.part import plane_axes
 from g12.tools.preview.executed_blocks import FORGOTTEN, Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.codes import EVENT, Codes, Cycle, compensates, kept_state
+from g12.tools.verify.reading.codes import EVENT, Codes, Cycle, compensates, kept_state
 
 ENTRIES = "GXYZWORDCKJLPFV"
 LEFT_OUT = -9999.0

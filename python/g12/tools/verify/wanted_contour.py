@@ -35,8 +35,8 @@ from g12.tools.preview.executed_blocks import (
 )
 from g12.tools.preview.moves import Event
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
-from g12.tools.verify.codes import Codes, kept_state
 from g12.tools.verify.executed_subs import Copies, called_files, files_with
+from g12.tools.verify.reading.codes import Codes, kept_state
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
 CONTOUR = "XYCUHIJRZWK"

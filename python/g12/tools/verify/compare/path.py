@@ -51,7 +51,7 @@ class Made(NamedTuple):
         return abs(complex(curve.distance(point[0]), point[1] - level))
 
 
-class Difference(NamedTuple):
+class PathDifference(NamedTuple):
     """The first thing that is not as expected.
 
     ``kind`` is OFF, MISSING, EXTRA, RAPID, FEED or FEED_MODE; ``size`` is the distance of OFF in
@@ -76,7 +76,7 @@ class Laid:
 
     moves: list[list[int]]
     deviation: float = 0.0
-    difference: Difference | None = None
+    difference: PathDifference | None = None
 
 
 def lay(
@@ -91,11 +91,11 @@ def lay(
             return laid
     missing = next(cursor.missing(tolerance), None)
     if missing:
-        laid.difference = Difference(MISSING, missing, missing.point(1.0))
+        laid.difference = PathDifference(MISSING, missing, missing.point(1.0))
     return laid
 
 
-def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> Difference | None:
+def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> PathDifference | None:
     """Take the cursor along a move; return how the move differs."""
     if not cursor.path or not any(cursor.missing(tolerance)):
         return _beyond_the_end(cursor, move, tolerance)
@@ -106,30 +106,32 @@ def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> Diff
             farthest, where = off, at
     expected = cursor.path[cursor.index]
     if farthest > tolerance:
-        return Difference(OFF, expected, where, farthest, move.index)
+        return PathDifference(OFF, expected, where, farthest, move.index)
     laid.moves[cursor.index].append(move.index)
     laid.deviation = max(laid.deviation, farthest)
     return _otherwise(expected, move)
 
 
-def _beyond_the_end(cursor: _Cursor, move: Made, tolerance: float) -> Difference | None:
+def _beyond_the_end(cursor: _Cursor, move: Made, tolerance: float) -> PathDifference | None:
     """Return what a move does after the whole toolpath is made: nothing, if it stays there."""
     end = cursor.path[-1].point(1.0) if cursor.path else move.points[0]
     at = max(move.points, key=lambda point: _apart(point, end))
-    return Difference(EXTRA, None, at, index=move.index) if _apart(at, end) > tolerance else None
+    return (
+        PathDifference(EXTRA, None, at, index=move.index) if _apart(at, end) > tolerance else None
+    )
 
 
-def _otherwise(expected: Expected, move: Made) -> Difference | None:
+def _otherwise(expected: Expected, move: Made) -> PathDifference | None:
     """Return how a move differs in rapid or feed from the expected one that it is made along."""
     at, index = move.points[-1], move.index
     if expected.rapid != move.rapid:
-        return Difference(RAPID, expected, at, index=index)
+        return PathDifference(RAPID, expected, at, index=index)
     if expected.rapid or None in (expected.feed, move.feed):
         return None
     if expected.per_rev != move.per_rev:
-        return Difference(FEED_MODE, expected, at, index=index)
+        return PathDifference(FEED_MODE, expected, at, index=index)
     if abs(move.feed - expected.feed) > SAME_FEED * expected.feed:
-        return Difference(FEED, expected, at, move.feed, index)
+        return PathDifference(FEED, expected, at, move.feed, index)
     return None
 
 

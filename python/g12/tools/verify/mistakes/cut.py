@@ -10,7 +10,7 @@ from g12.tools.path.part import Z
 from g12.tools.preview.moves import Move
 
 
-class Cut(NamedTuple):
+class ProgramCut(NamedTuple):
     """A cut by its line, its code, and its moves from ``at`` to before ``end``.
 
     ``file`` is the name of a sub's own file. ``face`` is the machine Z of the program's Z0, None

@@ -9,8 +9,8 @@ from itertools import groupby
 from g12.tools.path.part import C, X, Z
 from g12.tools.path.track import Limits, Track
 from g12.tools.preview.moves import Move
-from g12.tools.verify.finding import Finding
-from g12.tools.verify.mistakes.cut import Cut
+from g12.tools.verify.mistakes.cut import ProgramCut
+from g12.tools.verify.result.finding import Finding
 
 MOST_PER_TURN = 3.0  # mm per revolution: above it the number was meant per minute
 LEAST_PER_MINUTE = 1.0  # mm/min: below it the number was meant per revolution
@@ -19,7 +19,7 @@ TURNS = 1e-6  # degrees or mm
 
 
 def judge_feeds(
-    cuts: Sequence[Cut], moves: Sequence[Move], path: Track, limits: Limits
+    cuts: Sequence[ProgramCut], moves: Sequence[Move], path: Track, limits: Limits
 ) -> Iterator[Finding]:
     """Yield what to know of the feeds of cuts."""
     for cut in cuts:
@@ -29,7 +29,7 @@ def judge_feeds(
             yield from cut_down(cut, [moves[index] for index in fed], limits)
 
 
-def unlikely(cut: Cut, fed: Sequence[Move]) -> Iterator[Finding]:
+def unlikely(cut: ProgramCut, fed: Sequence[Move]) -> Iterator[Finding]:
     """Yield a feed whose number belongs to the other feed mode."""
     for move in fed:
         per_turn = move.feed_mode == "G95"
@@ -41,7 +41,7 @@ def unlikely(cut: Cut, fed: Sequence[Move]) -> Iterator[Finding]:
             return
 
 
-def cut_down(cut: Cut, fed: Sequence[Move], limits: Limits) -> Iterator[Finding]:
+def cut_down(cut: ProgramCut, fed: Sequence[Move], limits: Limits) -> Iterator[Finding]:
     """Yield that the machine's speeds do not allow a feed per minute."""
     asked = max((move.feed for move in fed if move.feed_mode == "G94"), default=0.0)
     most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])

@@ -6,12 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from g12.tools.preview.moves import Move
-from g12.tools.verify.finding import Finding
-from g12.tools.verify.mistakes.cut import Cut
-from g12.tools.verify.tolerances import LEVEL
+from g12.tools.verify.mistakes.cut import ProgramCut
+from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.tolerances import LEVEL
 
 
-def judge_levels(cuts: Sequence[Cut], moves: Sequence[Move]) -> Iterator[Finding]:
+def judge_levels(cuts: Sequence[ProgramCut], moves: Sequence[Move]) -> Iterator[Finding]:
     """Yield the cuts of which nothing goes below Z0."""
     for cut in cuts:
         lowest = cut.lowest(moves)

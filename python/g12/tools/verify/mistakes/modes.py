@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from g12.tools.preview.executed_blocks import Text
-from g12.tools.verify.codes import Codes
-from g12.tools.verify.finding import Finding
+from g12.tools.verify.reading.codes import Codes
+from g12.tools.verify.result.finding import Finding
 
 RETURN_LEVELS = {98.0: "G94", 99.0: "G95"}  # what a lathe of the Fanuc kind means by them
 DRILLING = (73.0, 74.0, *map(float, range(81, 90)))  # cycles that have return levels

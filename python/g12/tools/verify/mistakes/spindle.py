@@ -8,25 +8,27 @@ from collections.abc import Iterator, Sequence
 
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.moves import Event
-from g12.tools.verify.finding import Finding
-from g12.tools.verify.mistakes.cut import Cut
+from g12.tools.verify.mistakes.cut import ProgramCut
+from g12.tools.verify.result.finding import Finding
 
 USER_CODE = re.compile(r"M1\d\d P.*")  # may turn a spindle of its own
 SPEED = re.compile(r"S[\d.]+")
 
 
-def judge_spindle(cuts: Sequence[Cut], events: Sequence[Event], ini: Ini) -> Iterator[Finding]:
+def judge_spindle(
+    cuts: Sequence[ProgramCut], events: Sequence[Event], ini: Ini
+) -> Iterator[Finding]:
     """Yield the first cut of each kind with a spindle that stands, or turns as it should not."""
     reported: set[str] = set()
     several = ini.number("TRAJ", "SPINDLES", 1) > 1
     for cut in cuts:
-        code = code_of(cut, [event.text for event in events if event.at < cut.end], several)
+        code = _code_of(cut, [event.text for event in events if event.at < cut.end], several)
         if code and code not in reported:
             reported.add(code)
             yield Finding(code, cut.line, {"code": cut.code}, file=cut.file)
 
 
-def code_of(cut: Cut, said: Sequence[str], several: bool) -> str:
+def _code_of(cut: ProgramCut, said: Sequence[str], several: bool) -> str:
     """Return the code of what is unusual about the spindle in front of a cut, "" if nothing.
 
     ``said`` are the events before it. A trace tells of the first spindle alone: of a machine with

@@ -12,13 +12,13 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from g12.tools.path.part import Z
 from g12.tools.preview.moves import Event, Move
-from g12.tools.verify.finding import Finding
-from g12.tools.verify.mistakes.cut import Cut
-from g12.tools.verify.tolerances import SIZE
+from g12.tools.verify.mistakes.cut import ProgramCut
+from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.tolerances import SIZE
 
 
 def judge_tool_length(
-    cuts: Sequence[Cut],
+    cuts: Sequence[ProgramCut],
     moves: Sequence[Move],
     lengths: Mapping[int, float],
     events: Sequence[Event],
@@ -34,7 +34,7 @@ def judge_tool_length(
             continue
         reported.add((first.tool, deeper))
         values = {"tool": first.tool, "length": first.tool_offset[Z], "off": abs(deeper)}
-        yield Finding(code_of(deeper, expected), cut.line, values, first.end[:3], cut.file)
+        yield Finding(_code_of(deeper, expected), cut.line, values, first.end[:3], cut.file)
 
 
 def last_of(events: Sequence[Event], before: int) -> str:
@@ -43,7 +43,7 @@ def last_of(events: Sequence[Event], before: int) -> str:
     return next((text for text in texts if text.startswith(("tool ", "G43", "G49"))), "")
 
 
-def code_of(deeper: float, expected: bool) -> str:
+def _code_of(deeper: float, expected: bool) -> str:
     """Return the code of a length that is off; ``expected``: the words ask for the table's."""
     if not expected:
         return "length-not-used"

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from g12.tools.units import MM, Unit, plain
-from g12.tools.verify.sentences import FINDINGS, NOT_JUDGED, NOTES
+from g12.tools.verify.result.sentences import FINDINGS, NOT_JUDGED, NOTES
 
 SENTENCES = {**FINDINGS, **NOTES, **NOT_JUDGED}
 
