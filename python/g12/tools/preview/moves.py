@@ -201,7 +201,7 @@ class Trace:
     ended, ``globals`` the global named parameters that the program left, ``numbered`` the
     parameters asked for, ``seconds`` the interpreter's time.  ``events`` holds the messages too.
     ``files`` are those of subs outside the program that execute a remapped code which moves,
-    ``diameters`` and ``lengths`` (along Z) what LinuxCNC reads in the tool table: tool number to mm.
+    ``diameters`` and ``lengths`` (along Z) what the tool table holds: tool number to mm.
     """
 
     moves: list[Move]

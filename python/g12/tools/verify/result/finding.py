@@ -20,8 +20,8 @@ class Finding:
 
     ``code`` names a sentence of ``sentences``, ``values`` are what stands in its braces: mm, mm²,
     mm/min, degrees. ``line`` is that of the program as LinuxCNC reads it, ``file`` the name of a
-    sub's own file, "" in the program. ``place`` is where it is, as machine coordinates (X, Y, Z) in mm, for pictures
-    and the report.
+    sub's own file, "" in the program. ``place`` is where it is, as machine coordinates (X, Y, Z)
+    in mm, for pictures and the report.
     """
 
     code: str
