@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Programs of machinists: those that break a tool are found, valid ones are good.
+
+Each is a whole program on a simulated machine with its stock, and the codes that ``verify`` must
+report, among others (``found``), or that it must not have any finding (``found`` empty).
+"""
+
+import pytest
+
+from g12.tools.machine.ini import read_ini
+from g12.tools.verify.proof import StockText, prove
+from support.sim_machines import SIM
+
+INCH = "G20 G17 G40 G49 G54 G80 G90 G94 G64 P.001\nT1 M6 G43\nS3000 M3\n"
+METRIC = "G21 G17 G40 G49 G54 G80 G90 G94 G64 P.01\nT10 M6 G43\nS3000 M3\n"  # 20 mm
+FACE = "G21 G18 G7 G40 G90 G94 G64 P.01\nT1 M6\n"  # 12 mm, X is a diameter
+POCKET = "G13 I.2 K.45 Q.2 Z-.3 D1 F20\n"
+HEXAGON = """G0 X70 Z2 C0
+G12.1
+G1 G41 X27 F1000
+Z-5 F300
+C-7.7942 F1000
+X0 C-15.5885
+X-27 C-7.7942
+C7.7942
+X0 C15.5885
+X27 C7.7942
+C0
+G40 X70
+Z2
+G13.1
+"""
+GROOVE = "G0 X60 Z-20 C0\nG7.1 C25\nG1 X48 F200\nG1 Z-40 C60 F250\n"
+
+
+@pytest.fixture
+def codes(tmp_path):
+    """Return a function: the codes of the findings and notes of a program."""
+
+    def judged(text, machine, stock=None):
+        program = tmp_path / "program.ngc"
+        program.write_text(text + "M2\n")
+        ini = read_ini(SIM / f"{machine}_headless.ini")
+        proof = prove(program, ini, stock=StockText(stock) if stock else None)
+        return [(each.code, each.is_finding) for each in proof.judged]
+
+    return judged
+
+
+def findings(judged):
+    return [code for code, is_finding in judged if is_finding]
+
+
+# ---------------------------------------------------------------- rapids through material
+
+
+@pytest.mark.parametrize("level", ["-.01", "-.05", "-.1", "-.2", "-.29", "-.3"])
+@pytest.mark.parametrize("before", [0, 1])
+def test_a_lost_minus_sign_between_two_pockets(level, before, codes):
+    good = "".join(f"G0 X{-2 - 2 * k} Z.1\n{POCKET}G0 Z.1\n" for k in range(before))
+    text = INCH + "G0 X0 Y0 Z.1\n" + good + f"G0 X0\n{POCKET}G0 Z{level}\nX2\n{POCKET}G0 Z.1\n"
+    assert findings(codes(text, "mill_inch"))
+    right = text.replace(f"G0 Z{level}\nX2", "G0 Z.1\nX2")
+    assert findings(codes(right, "mill_inch")) == []
+
+
+@pytest.mark.parametrize("stock", ["200x200x20", "200x200x20 bore 30"])
+def test_a_traverse_into_solid_stock(stock, codes):
+    text = METRIC + "G0 X0 Y0 Z2\nG1 Z-5 F100\nG12 I40 R38 D10 F300\nG0 Z2\n"
+    assert findings(codes(text, "mill_yasnac_mm", stock))
+    assert findings(codes(text, "mill_yasnac_mm", "200x200x20 bore 80")) == []
+
+
+def test_a_plunge_by_rapid_is_an_assumption_or_a_finding(codes):
+    text = INCH + "G0 X0 Y0 Z.1\nG0 Z-.3\nG13 I.2 K.45 Q.2 D1 F20\nG0 Z.1\n"
+    judged = codes(text, "mill_inch")
+    assert findings(judged) == [] and any("bored" in code for code, _ in judged)
+    assert findings(codes(text, "mill_inch", "4x4x1"))
+    assert findings(codes(text, "mill_inch", "4x4x1 bore .7")) == []
+
+
+def test_a_rapid_through_a_finished_hexagon(codes):
+    assert findings(codes(FACE + HEXAGON + "G0 X70 Z5 C0\n", "lathe_mm")) == []
+    assert findings(codes(FACE + HEXAGON + "G0 X70 Z-3\nX0\nZ5\n", "lathe_mm"))
+
+
+def test_c_turned_by_rapid_at_depth(codes):
+    slot = "G0 X40 Z2 C0\nG12.1\nG1 Z-2 F200\nX20 F600\nG13.1\n"
+    assert findings(codes(FACE + slot + "G0 C180\nZ2\n", "lathe_mm"))
+    assert findings(codes(FACE + slot + "G0 Z2\nC180\n", "lathe_mm")) == []
+
+
+@pytest.mark.parametrize("end", ["G0 Z5\n", "G0 C0\n", "G0 C420\n"])
+def test_a_cylinder_without_a_retract(end, codes):
+    assert findings(codes(FACE + GROOVE + "G7.1 C0\n" + end, "lathe_mm"))
+    right = FACE + GROOVE + "G0 X60\n".replace("G0", "G1") + "G7.1 C0\n" + end
+    assert findings(codes(right, "lathe_mm")) == []
+
+
+def test_the_first_move_into_the_bar(codes):
+    text = FACE + "G0 X10 Z-3 C0\nG12.1\nG1 X20 F600\nZ2\nG13.1\n"
+    assert findings(codes(text, "lathe_mm", "30"))
+
+
+# ---------------------------------------------------------------- valid programs
+
+
+def test_an_arc_whose_end_is_rounded_and_a_corner(codes):
+    text = (
+        FACE
+        + """G8
+G0 X40 Z2 C0
+G12.1
+G1 G42 X20 C0 F600
+Z-1 F200
+G3 X14.142 C14.143 I-20 J0 F600
+G1 X-10
+C-20
+G40 X-40
+Z2
+G13.1
+"""
+    )
+    assert findings(codes(text, "lathe_mm")) == []
+
+
+def test_a_finishing_pass_after_a_helix(codes):
+    text = (
+        METRIC.replace("T10", "T4")
+        + "G0 X0 Y0 Z1\nG13 I9 K18 Q4 Z-3 D4 F500\nG13 I18 F300\nG0 Z5\n"
+    )
+    assert findings(codes(text, "mill_helix_mm")) == []
+
+
+def test_lines_as_short_as_cam_writes_them(codes):
+    import cmath
+    import math
+
+    points = [cmath.rect(15.0, -math.radians(0.1 * k)) for k in range(900)]
+    lines = [f"X{2 * p.real:.4f} C{p.imag:.4f}\n" for p in points]
+    text = FACE + "G0 X70 Z2 C0\nG12.1\nG1 G41 X30 C0 F1000\nZ-2 F300\nF1000\n" + "".join(lines)
+    assert findings(codes(text + "G40 C-40\nZ2\nG13.1\nG0 Z5\n", "lathe_mm")) == []
+
+
+ROUGH = "G1 G41 X28 F1000\nZ-5 F300\nF1000\n{}G40 X70\nZ2\n"
+SIDES = "C-{a}\nX0 C-{b}\nX-{x} C-{a}\nC{a}\nX0 C{b}\nX{x} C{a}\nC0\n"
+
+
+def sides(across):
+    half = across / 2 / 3**0.5
+    return SIDES.format(a=f"{half:.4f}", b=f"{2 * half:.4f}", x=across)
+
+
+def pass_of(across):
+    return ROUGH.replace("X28", f"X{across}").format(sides(across))
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        pass_of(28) + pass_of(27),
+        "#1=28\no1 while [#1 GE 27]\n"
+        + ROUGH.replace("X28", "X#1").format(
+            SIDES.replace("{a}", "[#1/3.4641016]")
+            .replace("{b}", "[#1/1.7320508]")
+            .replace("{x}", "#1")
+            .replace("X-#1", "X[-#1]")
+            .replace("C-[#1/", "C[-#1/")
+        )
+        + "#1=[#1-1]\no1 endwhile\n",
+    ],
+)
+def test_rough_with_an_allowance_and_finish_in_one_section(body, codes):
+    text = FACE + "G0 X70 Z2 C0\nG12.1\n" + body + "G13.1\nG0 Z5\n"
+    assert findings(codes(text, "lathe_mm")) == []
+
+
+def test_two_flats_in_one_section_round_the_outside_of_the_bar(codes):
+    flat = "G1 G41 X{x} C25 F1000\nZ-5 F300\nC-25 F1000\nG40 X{o}\nZ2\n"
+    text = FACE + "G0 X80 Z2 C0\nG12.1\nG1 C25 F2000\n" + flat.format(x=27, o=80)
+    text += (
+        "C-45\nX-80\nC-25\n"
+        + "G1 G41 X-27 F1000\nZ-5 F300\nC25 F1000\nG40 X-80\nZ2\nG13.1\nG0 Z5\n"
+    )
+    assert findings(codes(text, "lathe_mm", "40")) == []
+
+
+@pytest.mark.parametrize("machine", ["mill_inch", "lathe_mm"])
+def test_home_at_the_end_with_a_stock(machine, codes):
+    if machine == "mill_inch":
+        text, stock = INCH + "G0 X0 Y0 Z.1\n" + POCKET + "G0 Z.1\nG53 G0 Z0\n", "4x4x1"
+    else:
+        text, stock = FACE + HEXAGON + "G53 G0 X200\nG53 G0 Z0\n", "40"
+    assert findings(codes(text, machine, stock)) == []
