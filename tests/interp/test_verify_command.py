@@ -83,8 +83,8 @@ def test_json_tells_the_way_down(written, capsys):
     code, out, _ = verify(capsys, program, "--ini", str(SIM / "mill_helix_mm.ini"), "--json")
     one, two = (pocket["entry"] for pocket in json.loads(out)["pockets"])
     assert code == 0
-    assert (one["way"], one["helices"], two["helices"]) == ("helix", 1, 2)
-    assert one["radius"] == pytest.approx(3) and two["least_radius"] == pytest.approx(4.5)
+    assert (one["way"], one["count"], two["count"]) == ("helix", 1, 2)
+    assert one["radius"] == pytest.approx(3) and two["radius"] == pytest.approx(4.5)
     assert 1 < one["angle"] <= 3 and 1 < two["angle"] <= 3
 
 
@@ -193,7 +193,7 @@ def test_plot_tells_what_it_draws_in_red(written, tmp_path, capsys):
     red = [line for line in capsys.readouterr().out.splitlines() if line.startswith("in red, line")]
     for line, says in [
         (5, "a rapid goes through"),
-        (4, "of material are left standing"),
+        (4, "of material remain uncut"),
         (4, "the loaded tool T4 (⌀ 10) is not D5 (⌀ 12)"),
     ]:
         assert any(text.startswith(f"in red, line {line}: ") and says in text for text in red), says

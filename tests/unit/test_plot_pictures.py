@@ -24,8 +24,8 @@ from g12.tools.plot.unrolled import unrolled
 from g12.tools.units import MM, UNITS, clock, plain
 from g12.tools.verify.proof import subject_of
 from g12.tools.verify.rapids import Collision
+from g12.tools.verify.reading.circles import Cutter
 from g12.tools.verify.seen import Seen, StandingRings, WrongCutter
-from g12.tools.verify.wanted_circle import Cutter
 from support.made_moves import Hand, samples_of
 
 FAST = [line for axis in "XYZ" for line in (f"[AXIS_{axis}]", "MAX_VELOCITY = 1e12")]
@@ -239,7 +239,7 @@ def test_what_stands_and_another_cutter_than_d_are_in_the_legend_and_the_view():
     shown = replace(scene(pocket()), seen=Seen((), (ring,), (wrong,)))
     told = [entry.get_label() for entry in plan_view.warning_entries(shown)]
     assert told == ["material left standing", "T4 is not D6 (⌀ 20)"]
-    assert "are left standing" in next(text for _, text in shown.seen.warnings())
+    assert "remain uncut" in next(text for _, text in shown.seen.warnings())
     low, high = plan_view.bounds_of(shown, [])
     assert low[0] < 20 and high[0] > 80 and low[1] < -30
 

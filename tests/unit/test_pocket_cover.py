@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from g12.tools.path.part import disc, swept
-from g12.tools.verify.pocket import gaps_between, stepover_of
-from g12.tools.verify.pocket_cover import SECTORS, Segments, clears, farthest_of, nearest_of
+from g12.tools.verify.pocket_cover import clears
 
 CUTTER = 3.0
 
@@ -62,29 +61,3 @@ def test_what_is_surely_cleared_leaves_nothing(circles, spiral, wanted):
 )
 def test_it_is_sure_of_rings_and_spirals(lines, wanted, surely):
     assert clears(lines, CUTTER, wanted) is surely
-
-
-@settings(max_examples=25, deadline=None)
-@given(place=st.tuples(st.floats(-20, 20), st.floats(-20, 20)), radius=RADII)
-def test_the_distance_to_a_path(place, radius):
-    line = around(radius, radius)
-    straight = np.array([[-40.0, 30, 0], [40, 30, 0]])
-    wanted = min(abs(math.hypot(*place) - radius), 30 - place[1])
-    found = Segments([line, straight]).distance(place)
-    assert found == pytest.approx(wanted, abs=1e-3)
-    assert nearest_of([line]) == pytest.approx(radius, abs=1e-3)
-    assert farthest_of([line, straight]) == pytest.approx(50)
-
-
-def test_a_path_of_one_place_and_none():
-    assert Segments([np.array([[3.0, 4, 0]])]).distance((0, 0)) == 5
-    assert nearest_of([]) == math.inf and farthest_of([]) == 0
-
-
-def test_the_widest_gap_between_passes():
-    lines = [around(5, 5), around(9, 9), around(15, 15)]
-    widths, middles = gaps_between(np.concatenate(lines))
-    assert len(widths) == SECTORS and widths == pytest.approx(6)
-    assert np.hypot(*middles.T) == pytest.approx(12)
-    assert stepover_of(lines) == pytest.approx(6, abs=1e-4)
-    assert stepover_of(lines[:1]) is None

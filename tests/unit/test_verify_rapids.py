@@ -10,8 +10,9 @@ from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
+from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.rapids import Cleared, collisions
-from g12.tools.verify.wanted_circle import CircleFeeds, Cutter, Schedule, Source, Target, Wall
+from g12.tools.verify.reading.circles import Cutter, Source, Target, Wall
 from support.made_moves import LIMITS, Hand, samples_of
 
 MILL = Part(turning=False)
@@ -33,8 +34,8 @@ class Program(Hand):
             self.rapid(z=down)
         self.pocket(rings, depth)
         wall = Wall(place, np.eye(3), rings[-1] + 3.0, **wanted)
-        schedule = Schedule((depth,), 1, CircleFeeds(None, None, None, None))
-        target = Target(Source(self.block, "", "G12", "haas"), wall, Cutter(cutter), schedule)
+        words = HaasWords(0j, rings, [depth - place[2]], -1, None, None)
+        target = Target(Source(self.block, "", "G12", "haas"), wall, Cutter(cutter), words)
         self.asked.append((Block(None, {}, (), (), (), {}, first, len(self.moves)), target))
         return self.next_block()
 

@@ -21,10 +21,10 @@ from g12.tools.preview.executed_blocks import (
     read_line,
 )
 from g12.tools.preview.moves import Event
-from g12.tools.verify import wanted_circle, wanted_contour
+from g12.tools.verify import wanted_contour
+from g12.tools.verify.reading.circles import CircleReader
 from g12.tools.verify.reading.codes import SHAPES, Codes
 from g12.tools.verify.surface_pen import SurfacePen
-from g12.tools.verify.wanted_circle import CircleReader
 from g12.tools.verify.wanted_contour import Pen, WordReading
 from support.made_moves import Hand
 
@@ -168,8 +168,8 @@ def test_haas_words_tell_wall_core_and_depth():
     found = target("G12 I4 K20 Q3 Z-2 D2", **HERE)
     assert (found.wall.radius, found.cutter.radius, found.wall.cleared) == (20, 5, 0)
     assert np.allclose(found.wall.origin, [3, 4, 5])
-    assert found.schedule.deepest == pytest.approx(-7)
-    assert (found.schedule.turn, found.wall.inside, found.schedule.smooth) == (-1, True, True)
+    assert found.deepest == pytest.approx(-7)
+    assert (found.asked.turn, found.wall.inside) == (-1, True)
     assert (found.cutter.tool, found.cutter.loaded, found.cutter.named) == (1, 3, 2)
 
 
@@ -210,17 +210,17 @@ def test_yasnac_leaves_the_middle_by_design(words, core, bore):
 def test_incremental_words_count_from_the_tool():
     found = target("G13 G91 I4 Z-.5 L4 X1 Y-2 D1", **HERE)
     assert np.allclose(found.wall.origin, [4, 2, 5])
-    assert found.schedule.deepest == pytest.approx(-2)
+    assert found.deepest == pytest.approx(-2)
 
 
 def test_inch_words_become_millimetres():
     found = target("G20 G12 I1 Z-1 D1", **HERE)
-    assert (found.wall.radius, found.schedule.deepest) == (
+    assert (found.wall.radius, found.deepest) == (
         pytest.approx(25.4),
         pytest.approx(-30.4),
     )
     found = target("G21 G12 I8 Z-2 D1", **{**HERE, "_metric": 0})
-    assert (found.wall.radius, found.schedule.deepest) == (8, pytest.approx(-2 - 5 * 25.4))
+    assert (found.wall.radius, found.deepest) == (8, pytest.approx(-2 - 5 * 25.4))
 
 
 def test_the_last_d_is_remembered():
@@ -282,7 +282,7 @@ def test_the_turn_is_that_of_the_handler_whatever_the_code(handler, turn):
     moves = Hand().rapid(z=5).line(z=4).moves
     reader = CircleReader(codes, moves, {1: 6.0})
     ((_, found),) = reader.targets([block("G22 I9 Z-1")])
-    assert (found.schedule.turn, found.source.code) == (turn, "G22")
+    assert (found.asked.turn, found.source.code) == (turn, "G22")
 
 
 def test_a_cycle_with_a_prolog_of_the_machines_own_is_known_by_its_sub():
@@ -295,10 +295,20 @@ def test_a_cycle_with_a_prolog_of_the_machines_own_is_known_by_its_sub():
 
 
 def test_loops_are_spring_passes_or_further_levels():
-    again = target("G12 I4 Z-2 L3 D1", **HERE).schedule
-    deeper = target("G12 G91 I4 Z-2 L3 D1", **HERE).schedule
-    assert (again.levels, again.passes) == ((-7,), 3)
-    assert (deeper.levels, deeper.passes) == ((-2, -4, -6), 3)
+    assert target("G12 I4 Z-2 L3 D1", **HERE).asked.depths == pytest.approx([-7, -7, -7])
+    assert target("G12 G91 I4 Z-2 L3 D1", **HERE).asked.depths == pytest.approx([-2, -4, -6])
+    assert target("G12 G91 I4 L2 D1", **HERE).asked.depths == [0, 0]
+
+
+@pytest.mark.parametrize(
+    ("line", "core"),
+    [("G13 I18 Z-2 D2", 0), ("G13 I18 D2", 8), ("G13 I20 Z-2 D2", 10), ("G13 I18 K30 Q4 D2", 0)],
+)
+def test_only_a_helix_that_goes_down_clears_the_core_of_one_ring(line, core):
+    moves = Hand().rapid(x=3, y=4, z=5).line(z=4).moves
+    reader = CircleReader(CODES, moves, {1: 6.0, 2: 10.0}, helix_angle=3.0)
+    ((_, found),) = reader.targets([block(line, **HERE)])
+    assert found.wall.cleared == pytest.approx(core)
 
 
 @pytest.mark.parametrize(
@@ -312,38 +322,8 @@ def test_loops_are_spring_passes_or_further_levels():
     ],
 )
 def test_the_feed_is_the_blocks_or_the_one_in_force(line, state, feed):
-    assert target(line, **state).schedule.feeds == (feed, feed, feed, None)
-
-
-@pytest.mark.parametrize(
-    ("event", "levels"),
-    [
-        ({"Z": -1.0}, [-1]),
-        ({"Z": -1.0, "K": 0.3, "L": 0.02}, [-0.2, -0.5, -0.8, -0.98, -1]),
-        ({"Z": -1.0, "K": 0.3, "L": -0.02}, [-0.2, -0.5, -0.8, -1]),
-        ({"Z": -0.5, "K": 0.3}, [-0.2, -0.5]),
-        ({"Z": -1.0, "K": 9.0}, [-1]),
-    ],
-)
-def test_the_event_pecks_from_its_first_plane(event, levels):
-    assert wanted_circle.event_levels(event, 0.1, True) == pytest.approx(levels)
-    event["Z"] -= 0.1
-    assert wanted_circle.event_levels(event, 0.1, False) == pytest.approx(levels)
-
-
-def test_the_event_has_feeds_of_its_own():
-    every = wanted_circle.event_feeds({"F": 8.0, "P": 1.0, "V": 4.0, "L": 0.3}, 6.0)
-    assert every == (1, 8, 8, 4)
-    assert wanted_circle.event_feeds({"L": -0.3}, 6.0) == (6, 6, 6, 6)
-    assert wanted_circle.event_feeds({"V": 4.0}, 6.0) == (6, 6, 6, None)
-
-
-@pytest.mark.parametrize(
-    ("direction", "compensation", "side"),
-    [(0, 0, 0), (0, 1, 1), (0, 2, -1), (1, 1, -1), (1, 2, 1), (2, 2, -1), (3, 1, -1)],
-)
-def test_the_event_puts_the_cutter_where_the_manual_says(direction, compensation, side):
-    assert wanted_circle.side_of(direction, compensation) == side
+    asked = target(line, **state).asked
+    assert (asked.feed, asked.plunge_feed) == (feed, feed)
 
 
 # ---------------------------------------------------------------- contours

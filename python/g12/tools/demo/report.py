@@ -49,11 +49,9 @@ def is_sound(proof: Proof) -> bool:
 
     The manuals leave material in some and have rapids through what was left: that is told.
     """
-    off = [facts.deviation > proof.tolerances.pocket for facts in proof.pockets]
+    off = [facts.laid.difference is not None for facts in proof.pockets]
     off += [facts.deviation > proof.tolerances.polar for facts in proof.sections]
-    return not any(off) and not any(
-        facts.gouge > SAME_AREA for facts in (*proof.pockets, *proof.sections)
-    )
+    return not any(off) and not any(facts.gouge > SAME_AREA for facts in proof.sections)
 
 
 def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
@@ -82,7 +80,7 @@ def pocket_row(facts: PocketFacts, unit: Unit) -> tuple[str, ...]:
         f"X{unit.text(x)} Y{unit.text(y)}",
         unit.text(facts.target.wall.radius),
         " ".join(unit.text(ring) for ring in facts.rings),
-        unit.text(facts.target.wall.height(facts.depths[-1])),
+        unit.text(facts.target.wall.height(facts.target.deepest)),
         f"{unit.fine(facts.off_rings)} {unit.name}",
         f"{plain(facts.pace.expected, 1)} s",
     )

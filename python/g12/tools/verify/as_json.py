@@ -10,7 +10,6 @@ from g12.tools.units import MM
 from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.paragraphs import AXES, pocket_slowest_line
 from g12.tools.verify.pocket import PocketFacts
-from g12.tools.verify.pocket_entry import entry_json
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.rapids import Collision
 from g12.tools.verify.result.finding import Finding
@@ -77,15 +76,13 @@ def pocket_json(facts: PocketFacts, proof: Proof) -> dict:
         "deviation": finite(facts.deviation),
         "left": facts.left,
         "core": facts.target.wall.core,
-        "gouge": facts.gouge,
         "rings": list(facts.rings),
         "square_to": AXES[wall.plane],
-        "depths": [wall.height(depth) for depth in facts.depths],
-        "entry": entry_json(facts.helix),
-        "stepover": facts.stepover,
-        "direction_jump": facts.jump,
-        "shortest": facts.shortest,
-        "longest": facts.longest,
+        "depths": [wall.height(depth) for depth in facts.target.depths],
+        "entry": {"way": "helix", **facts.helix._asdict()} if facts.helix else {"way": "straight"},
+        "stepover": facts.target.asked.stepover,
+        "shortest": facts.lengths[0],
+        "longest": facts.lengths[1],
         "off_circles": facts.off_rings,
         "off_path": facts.off_path,
         **pace_json(facts.pace, pocket_slowest_line(facts.pace, proof)),

@@ -18,7 +18,7 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.part import arc_points
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Event, Move
-from g12.tools.verify.wanted_circle import BlockInMm
+from g12.tools.verify.reading.block_words import BlockInMm
 
 LETTERS = "XYZ"
 SHARES = np.linspace(0.0, 1.0, 181)  # of an arc that are looked at

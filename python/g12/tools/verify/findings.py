@@ -8,188 +8,33 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import zip_longest
 
 from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.axis_limits import Overrun
+from g12.tools.verify.compare.state import StateDifference
 from g12.tools.verify.in_stock import StockFacts
-from g12.tools.verify.pocket import SAME_LEVEL, PocketFacts
-from g12.tools.verify.pocket_entry import entry_findings
-from g12.tools.verify.pocket_order import DOWN_TO, ENDS, UP_TO, LeftBehind
+from g12.tools.verify.pocket import PocketFacts
+from g12.tools.verify.pocket_area import is_wrong_tool
 from g12.tools.verify.rapids import Collision
-from g12.tools.verify.reading.codes import EVENT
+from g12.tools.verify.reading.circles import Cutter
+from g12.tools.verify.result.tolerances import LEVEL
 from g12.tools.verify.section import SectionFacts
-from g12.tools.verify.wanted_circle import Cutter, Target
 from g12.tools.verify.wanted_contour import SectionContour
 
 LAST_DECIMAL = 0.0005  # mm: arcs whose words are rounded do not close any better
 SAME_AREA = 0.01  # mm², less is rounding
-MOST_JUMP = 1.0  # degree
 SAME_SPEED = 1.001
-WEAR = 0.05  # of its diameter: D differs from the loaded tool by more than an allowance for wear
 SAME_SIZE = 1e-4  # mm
 SAME_ANGLE = 1e-3  # degree
-SAME = 2e-3  # mm: circles of the same depth and radius
-MODES = {
-    "_metric": ("G20", "G21"),
-    "_absolute": ("G91", "G90"),
-    "_units_per_rev": ("G94", "G95"),
-    "_lathe_diameter_mode": ("G8", "G7"),
-    "_ijk_absolute_mode": ("G91.1", "G90.1"),
-}
 LOST_MINUS = "lies above {}, where the tool comes from: it cuts air (a lost minus sign?)"
 NOT_CUT = "nothing is cut"
 UNMEASURED = "a cycle cuts here that could not be measured"
 
 
-def pocket_findings(facts: PocketFacts, tolerance: float, unit: Unit = MM) -> Iterator[str]:
-    """Yield what is wrong with a pocket."""
-    if not facts.depths:
-        yield NOT_CUT
-        return
-    yield from wall_findings(facts, tolerance, unit)
-    wrong_depth = list(depth_findings(facts, tolerance, unit))
-    yield from wrong_depth
-    yield from schedule_findings(facts, unit)
-    yield from entry_findings(facts.helix, facts.target.schedule.helix, unit)
-    if not wrong_depth:
-        yield from order_findings(facts, tolerance, unit)
-    yield from place_findings(facts, (ENDS, DOWN_TO, UP_TO) if wrong_depth else (), unit)
-    yield from left_findings(facts)
-    yield from (f"{text} comes in it, where the program has it not" for text in facts.acts)
-    for overrun in facts.overruns or ():
-        if overrun.certain:
-            yield overrun_text(overrun, unit)
-
-
-def wall_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
-    """Yield what is wrong with the wall of a pocket and what lies inside it."""
-    target = facts.target
-    if is_wrong_tool(target.cutter):
-        wall, cut = (unit.text(size) for size in (target.wall.radius, wall_of_loaded(target)))
-        yield f"{other_tool(target.cutter, unit)}: the wall comes out at radius {cut}, not {wall}"
-    if facts.deviation > tolerance:
-        yield f"the wall is {unit.fine(facts.deviation)} {unit.name} off the programmed circle"
-    if facts.gouge > SAME_AREA:
-        yield f"{unit.area(facts.gouge)} are gouged beyond the wall"
-    if facts.left > SAME_AREA:
-        yield f"{unit.area(facts.left)} of material are left standing"
-    if target.schedule.smooth and facts.jump > MOST_JUMP:
-        place = place_text(facts.jump_at, unit)
-        yield f"the direction jumps by {facts.jump:.3g} degrees at {place}"
-
-
-def depth_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
-    """Yield what is wrong with the depths that a pocket is cut at."""
-    deepest = facts.target.schedule.deepest
-    if cuts_air(facts.target, tolerance):
-        at, start = (unit.text(facts.target.wall.height(depth)) for depth in (deepest, 0.0))
-        yield f"its depth Z{at} {LOST_MINUS.format(f'Z{start}')}"
-        return
-    too_high = facts.depths[-1] - deepest
-    if abs(too_high) > tolerance:
-        yield f"the depth is off by {unit.fine(too_high)} {unit.name}"
-    elif min(deepest, 0.0) - facts.lowest > tolerance:
-        yield f"it goes {unit.fine(deepest - facts.lowest)} {unit.name} below its depth"
-    else:
-        yield from level_findings(facts, max(tolerance, SAME_LEVEL), unit)
-
-
-def cuts_air(target: Target, tolerance: float) -> bool:
-    """Tell whether a pocket lies above where the tool comes from; an event begins at its W."""
-    return target.source.dialect != EVENT and target.schedule.deepest > tolerance
-
-
-def level_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
-    """Yield what is wrong with the levels of a pocket whose last one is right."""
-    wanted, cut = sorted(facts.target.schedule.levels, reverse=True), facts.depths
-    equal = len(wanted) == len(cut)
-    if not equal or max(map(abs, map(float.__sub__, wanted, cut))) > tolerance:
-        heights = (map(facts.target.wall.height, depths) for depths in (cut, wanted))
-        was, asked = (", ".join(map(unit.text, some)) for some in heights)
-        yield f"it is cut at {was}, not at {asked} {unit.name}"
-
-
-def schedule_findings(facts: PocketFacts, unit: Unit) -> Iterator[str]:
-    """Yield what is wrong with how a pocket is cut: turns, passes and feeds."""
-    asked = facts.target.schedule
-    if facts.feed:
-        yield "a move has the feed {}, not {}".format(*map(unit.text, facts.feed))
-    if facts.other_mode:
-        minute, turn = "per minute", "per revolution"
-        yield "a move has its feed {}, not {}".format(
-            *(minute, turn) if asked.rev else (turn, minute)
-        )
-    if facts.passes != asked.passes:
-        yield f"full circles along the wall: {facts.passes}, not {asked.passes}"
-        return
-    rough = facts.circles[:-1] if asked.finish_turn else facts.circles
-    wrong = [cut for cut, turn in zip(facts.cut, rough) if asked.turn not in (0, turn)]
-    if wrong:
-        yield f"it turns the wrong way: {circle_text(wrong[0], facts, unit)}"
-    if asked.finish_turn and asked.finish_turn not in facts.circles[-1:]:
-        yield "its finish pass turns the wrong way"
-
-
-def order_findings(facts: PocketFacts, tolerance: float, unit: Unit) -> Iterator[str]:
-    """Yield which circles are not those of the words, if their number along the wall is right."""
-    asked = facts.target.schedule
-    if asked.pitch and facts.growth > asked.pitch + SAME:
-        apart, pitch = unit.text(facts.growth), unit.text(asked.pitch)
-        yield f"its turns are {apart} apart, not {pitch} {unit.name}"
-    if not asked.circles or facts.passes != asked.passes or facts.deviation > tolerance:
-        return
-    for cut, wanted in zip_longest(facts.cut, asked.circles):
-        if cut is None or wanted is None or max(map(abs, map(float.__sub__, cut, wanted))) > SAME:
-            was, instead = (circle_text(circle, facts, unit) for circle in (cut, wanted))
-            yield f"{was} is cut in place of {instead}"
-            return
-
-
-def circle_text(circle: tuple[float, float] | None, facts: PocketFacts, unit: Unit) -> str:
-    """Return a circle of the tool's centre in words."""
-    if circle is None:
-        return "nothing"
-    depth = unit.text(facts.target.wall.height(circle[0]))
-    return f"a circle of {unit.text(circle[1])} {unit.name} (tool centre) at {depth}"
-
-
-def place_findings(facts: PocketFacts, told: Sequence[str], unit: Unit) -> Iterator[str]:
-    """Yield what is not where the words want it: the first of each kind but what is ``told``."""
-    for what, found, asked in {place.what: place for place in facts.misplaced[::-1]}.values():
-        if what in told:
-            continue
-        if found is None:
-            yield f"{what} {place_text(asked, unit)}"
-        elif asked is None:
-            yield f"{what} {place_text(found, unit)}, where the cycle has it not"
-        else:
-            yield f"{what} {place_text(found, unit)}, not {place_text(asked, unit)}"
-
-
-def place_text(point: Sequence[float], unit: Unit) -> str:
-    """Return a place on the machine in words."""
-    return " ".join(f"{letter}{unit.text(at)}" for letter, at in zip("XYZ", point))
-
-
-def left_findings(facts: PocketFacts) -> Iterator[str]:
-    """Yield what is left behind otherwise than the words ask; a feed only if all moves had it."""
-    for left in facts.left_behind:
-        if left.name != "_feed" or not facts.feed:
-            yield leaving_text(left)
-
-
-def leaving_text(left: LeftBehind) -> str:
-    """Return in words what is left behind otherwise than the words ask, in program units."""
-    name, found, asked = left
-    if name in MODES:
-        was, instead = (MODES[name][int(on)] for on in (found, asked))
-    elif name in ("_motion_mode", "_plane"):
-        was, instead = (f"G{mode / 10:g}" for mode in (found, asked))
-    else:
-        letter = name.removeprefix("_")[0].upper()
-        was, instead = (f"{letter}{plain(value, 4)}" for value in (found, asked))
-    return f"it leaves {was}, not {instead}"
+def leaving_text(left: StateDifference) -> str:
+    """Return in words what is left behind otherwise than the words ask."""
+    found, expected = left.texts()
+    return f"it leaves {found}, not {expected}"
 
 
 def overrun_text(overrun: Overrun, unit: Unit) -> str:
@@ -202,17 +47,6 @@ def gouged(facts: SectionFacts, unit: Unit) -> str:
     """Return the gouged area of a section in words: of a deep one only a part is measured."""
     least = facts.through and facts.gouge > SAME_AREA
     return f"{'at least ' if least else ''}{unit.area(facts.gouge)}"
-
-
-def is_wrong_tool(cutter: Cutter) -> bool:
-    """Tell whether D names another cutter than the loaded one, by more than wear."""
-    known = cutter.named is not None and cutter.loaded > 0.0
-    return known and abs(cutter.radius - cutter.loaded) > WEAR * cutter.loaded
-
-
-def wall_of_loaded(target: Target) -> float:
-    """Return the radius of the wall that the loaded tool cuts."""
-    return target.wall.radius - target.cutter.radius + target.cutter.loaded
 
 
 def other_tool(cutter: Cutter, unit: Unit) -> str:
@@ -275,7 +109,7 @@ def section_findings(facts: SectionFacts, tolerance: float, unit: Unit = MM) -> 
 def air_findings(section: SectionContour, unit: Unit) -> Iterator[str]:
     """Yield that a compensated contour lies as a whole above where the tool comes from."""
     depths = [each.depth for each in section.elements if each.side and not each.ramp]
-    if depths and min(depths) > section.height + SAME_LEVEL:
+    if depths and min(depths) > section.height + LEVEL:
         letter, at, start = heights_text(section, (min(depths), section.height), unit)
         yield f"its contour at {letter}{at} {LOST_MINUS.format(letter + start)}"
 

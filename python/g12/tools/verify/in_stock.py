@@ -24,10 +24,10 @@ from g12.tools.verify.closed_contour import as_points, is_closed, trimmed
 from g12.tools.verify.contour_distance import SAME
 from g12.tools.verify.contour_side import area_within
 from g12.tools.verify.rapids import LEAST_AREA, SAME_HEIGHT, Circles, Cleared, Collision, dense
+from g12.tools.verify.reading.block_words import BlockInMm
 from g12.tools.verify.section import stretches_of
 from g12.tools.verify.section_paths import Plane
 from g12.tools.verify.stock import Stock
-from g12.tools.verify.wanted_circle import BlockInMm
 from g12.tools.verify.wanted_contour import Element, SectionContour
 
 LEAST_SHARE = 0.01  # of a cutter that plunges into the stock

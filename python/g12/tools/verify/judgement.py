@@ -14,7 +14,6 @@ from g12.tools.preview.moves import Move
 from g12.tools.units import MM, Unit
 from g12.tools.verify.findings import (
     collision_text,
-    pocket_findings,
     pocket_notes,
     section_findings,
     section_notes,
@@ -28,6 +27,7 @@ from g12.tools.verify.mistakes.levels import judge_levels
 from g12.tools.verify.mistakes.modes import judge_return_levels
 from g12.tools.verify.mistakes.spindle import judge_spindle
 from g12.tools.verify.mistakes.tool_length import judge_tool_length
+from g12.tools.verify.pocket import judge_pocket
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.shape_findings import shape_findings
@@ -83,7 +83,7 @@ def said_of_cuts(proof: Proof) -> Iterator[Finding]:
     tolerances = proof.tolerances
     for facts in proof.pockets:
         source = facts.target.source
-        yield from said(source.line, source.file, pocket_findings, facts, tolerances.pocket)
+        yield from judge_pocket(facts, tolerances.pocket)
         yield from noted(source.line, source.file, pocket_notes, facts)
     for facts in proof.sections:
         section = facts.section

@@ -11,8 +11,7 @@ from g12.tools.units import Unit, plain
 from g12.tools.verify.axis_limits import SAME_ZERO
 from g12.tools.verify.findings import SAME_AREA, gouged
 from g12.tools.verify.in_stock import StockFacts, zero_of
-from g12.tools.verify.pocket import PocketFacts
-from g12.tools.verify.pocket_entry import entry_text
+from g12.tools.verify.pocket import HelixFacts, PocketFacts
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.shape_findings import shape_rows
@@ -58,28 +57,32 @@ def zero_text(proof: Proof, unit: Unit) -> str:
 
 def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
     """Return the paragraph of one pocket."""
-    source, cutter = facts.target.source, facts.target.cutter
+    source, cutter, asked = facts.target.source, facts.target.cutter, facts.target.asked
     turns = " and ".join(TURNS[turn] for turn in facts.turns) or "no full circle"
     x, y, _ = facts.target.wall.origin
     slow = point_text("XYZ", facts.pace.point, unit)
-    stepover = unit.text(facts.stepover) if facts.stepover else "one ring"
+    stepover = unit.text(asked.stepover) if asked.stepover else "one ring"
     rows = [
         ("centre", f"X{unit.text(x)} Y{unit.text(y)}, cutter ⌀ {unit.text(2 * cutter.radius)}"),
         ("radius", radius(facts, unit)),
         ("deviation", deviation(facts.deviation, proof.tolerances.pocket, unit)),
         ("left inside", left_text(facts, unit)),
-        ("gouged outside", unit.area(facts.gouge)),
         ("rings", f"{', '.join(unit.text(ring) for ring in facts.rings)} (tool centre), {turns}"),
-        ("stepover", f"{stepover}, direction jump {plain(facts.jump, 2)}°"),
+        ("stepover", stepover),
         ("depth", depth(facts, unit)),
         *([("entry", entry_text(facts.helix, unit))] if facts.helix else []),
-        ("moves", spread(facts.shortest, facts.longest, unit)),
+        ("moves", spread(*facts.lengths, unit)),
         ("lowest feed", slowest(facts.pace, slow, pocket_slowest_line(facts.pace, proof), unit)),
         *real_rows(facts, unit),
         ("time", time_text(facts.pace)),
     ]
     title = f"{line_text(proof, source.line, source.file)}: {source.code} ({source.dialect})"
     return paragraph(title, rows)
+
+
+def entry_text(helix: HelixFacts, unit: Unit) -> str:
+    """Return how the tool comes down along a helix in words."""
+    return f"helix of radius {unit.text(helix.radius)} (tool centre), {helix.angle:.3g}°"
 
 
 def line_text(proof: Proof, line: int, file: str) -> str:
@@ -204,7 +207,7 @@ def radius(facts: PocketFacts, unit: Unit) -> str:
 def depth(facts: PocketFacts, unit: Unit) -> str:
     """Return the depths in words: of a circle in another plane than XY where it stands."""
     wall = facts.target.wall
-    heights = [unit.text(wall.height(depth)) for depth in facts.depths]
+    heights = [unit.text(wall.height(depth)) for depth in facts.target.depths]
     if AXES[wall.plane] == "Z":
         return ", ".join(heights)
     reach = max(facts.rings, default=0.0)

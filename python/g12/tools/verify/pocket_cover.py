@@ -11,8 +11,6 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from g12.tools.path.nearest import on_segments
-
 SECTORS = 720  # directions in which a pocket is looked at
 FINE = 1e-5  # chord error of the polylines that stand for arcs
 SAME_RADIUS = 1e-6
@@ -25,35 +23,6 @@ def polar(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     turn = np.arctan2(points[:, 1], points[:, 0]) / (2 * np.pi) % 1.0
     sector = np.minimum((turn * SECTORS).astype(int), SECTORS - 1)
     return sector, np.hypot(points[:, 0], points[:, 1])
-
-
-class Segments:
-    """The straight parts of paths, to measure distances to them in the plane."""
-
-    def __init__(self, lines: Sequence[np.ndarray]) -> None:
-        self._starts = np.concatenate([line[:, :2] for line in lines])
-        self._along = np.concatenate(
-            [np.diff(line[:, :2], axis=0, append=line[-1:, :2]) for line in lines]
-        )
-        self._lengths = np.hypot(*self._along.T)
-
-    def distance(self, place: Sequence[float]) -> float:
-        """Return how near the paths come to a place."""
-        place = np.asarray(place)
-        away = np.hypot(*(self._starts - place).T)
-        near = np.flatnonzero(away - self._lengths <= away.min())
-        to = on_segments(place, self._starts[near], self._along[near]) - place
-        return float(np.hypot(*to.T).min())
-
-
-def nearest_of(lines: Sequence[np.ndarray]) -> float:
-    """Return how near to the centre paths come, infinite without any."""
-    return Segments(lines).distance((0.0, 0.0)) if lines else np.inf
-
-
-def farthest_of(lines: Iterable[np.ndarray]) -> float:
-    """Return how far from the centre paths come."""
-    return max((float(np.hypot(*line[:, :2].T).max()) for line in lines), default=0.0)
 
 
 def clears(lines: Sequence[np.ndarray], cutter: float, wanted: Span) -> bool:

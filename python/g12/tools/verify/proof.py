@@ -31,8 +31,8 @@ from g12.tools.verify.executed_subs import executed_everywhere
 from g12.tools.verify.in_stock import InStock, StockFacts
 from g12.tools.verify.judgement import judged
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
-from g12.tools.verify.pocket_order import acts_in, left_otherwise
 from g12.tools.verify.rapids import Collision, collisions
+from g12.tools.verify.reading.circles import CircleReader, Target
 from g12.tools.verify.reading.codes import CYLINDER, POLAR, Codes
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.section import SectionFacts, measure_section
@@ -41,7 +41,6 @@ from g12.tools.verify.section_paths import x0_of
 from g12.tools.verify.shape_findings import ShapeFacts, measure_shape
 from g12.tools.verify.stock import read_stock
 from g12.tools.verify.surface_pen import SurfacePen
-from g12.tools.verify.wanted_circle import CircleReader, Target
 from g12.tools.verify.wanted_contour import Pen, SectionContour, WordReading, sections
 from g12.tools.verify.wanted_shape import ShapeAsked, ShapeReading, shapes_asked
 from g12.tools.verify.zero_line import with_zero_lines
@@ -291,12 +290,9 @@ def measured(
     widths = widths_of((block for block, _ in asked.circles), there) if together else {}
     pockets = []
     for block, target in counted(asked.circles, "measuring pocket", tell):
-        own = range(block.at, block.end)
-        facts = measure_pocket(target, own, path, moves, tolerances.pocket, real, known)
+        facts = measure_pocket(block, target, path, moves, tolerances.pocket, real, known)
         overruns = None if there is None else tuple(overruns_of(block, there, travel, widths))
-        left = left_otherwise(block, target.leaves)
-        told = {"left_behind": left, "acts": acts_in(block)}
-        pockets.append(replace(facts, overruns=overruns, **told))
+        pockets.append(replace(facts, overruns=overruns))
     found = measured_sections(subject, asked.sections, tolerances.polar, tell)
     shapes = measured_shapes(subject, asked, tolerances.polar, tell)
     tell("looking for rapids through material")

@@ -34,8 +34,7 @@ from g12.tools.path.part import disc, is_sideways, swept
 from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.pocket_entry import helices_of
-from g12.tools.verify.wanted_circle import Target, Wall
+from g12.tools.verify.reading.circles import Target
 
 SAME_HEIGHT = 1e-3
 CHORD = 5e-3
@@ -200,12 +199,11 @@ def openings_of(
     asked: Circles, moves: Sequence[Move], cleared: Cleared, path: Track
 ) -> Iterator[Opening]:
     """Yield the pockets that rapids can leave through a wall; one that is fed up to cuts air."""
-    found = ((block, target.wall) for block, target in asked)
-    walled = [(block, wall) for block, wall in found if wall.inside and wall.plane == 2]
-    came = np.array([height_before(block, moves, wall) for block, wall in walled])
+    walled = [each for each in asked if each[1].wall.inside and each[1].wall.plane == 2]
+    came = np.array([height_before(block, moves, target) for block, target in walled])
     fed = np.array([height_of_feed(block, moves) for block, _ in walled])
-    for (block, wall), begun in zip(walled, fed):
-        highest, lowest = floors_of(block, moves, wall)
+    for (block, target), begun in zip(walled, fed):
+        wall, (highest, lowest) = target.wall, floors_of(target)
         least = highest + SAME_HEIGHT
         if np.any(came > least) and begun > highest - SAME_HEIGHT:
             top = min(came[came > least])
@@ -236,18 +234,14 @@ def cutting(block: Block, moves: Sequence[Move]) -> list[int]:
     return [i for i in own if moves[i].kind != "rapid" and is_sideways(moves[i])]
 
 
-def floors_of(block: Block, moves: Sequence[Move], wall: Wall) -> tuple[float, float]:
-    """Return the highest and the lowest floor that a block cuts; the way down is no floor."""
-    entries = helices_of(range(block.at, block.end), moves, wall)
-    down = {index for entry in entries for index in (entry.lead, *entry.falling)}
-    ends = [moves[index].end[2] for index in cutting(block, moves) if index not in down]
-    ends = ends or [np.inf]
-    return max(ends), min(ends)
+def floors_of(target: Target) -> tuple[float, float]:
+    """Return the highest and the lowest floor of a pocket."""
+    return target.wall.height(target.depths[0]), target.wall.height(target.depths[-1])
 
 
-def height_before(block: Block, moves: Sequence[Move], wall: Wall) -> float:
+def height_before(block: Block, moves: Sequence[Move], target: Target) -> float:
     """Return the height from which the tool came down to a pocket, its own plunge included."""
-    highest, _ = floors_of(block, moves, wall)
+    highest, _ = floors_of(target)
     index = block.at
     if moves[index].start[2] <= highest + SAME_HEIGHT:
         while index and not is_sideways(moves[index - 1]):

@@ -96,7 +96,7 @@ def cut_lines(proof: Proof, unit: Unit) -> list[CutLine]:
 def pocket_line(facts: PocketFacts, proof: Proof, unit: Unit) -> CutLine:
     """Return the line of a pocket."""
     source, wall = facts.target.source, facts.target.wall
-    depth = unit.text(wall.height(facts.depths[-1])) if facts.depths else "?"
+    depth = unit.text(wall.height(facts.target.deepest))
     what = f"⌀ {unit.text(2 * wall.radius)} to {AXES[wall.plane]}{depth}"
     off = off_text(facts.deviation, proof.tolerances.pocket, unit)
     where = line_text(proof, source.line, source.file)

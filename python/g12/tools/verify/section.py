@@ -24,10 +24,10 @@ from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.verify.closed_contour import MEETS, trimmed
+from g12.tools.verify.compare.state import StateDifference
 from g12.tools.verify.contour_distance import SAME, STEP, ContourDistances
 from g12.tools.verify.contour_side import OtherSide, other_side
 from g12.tools.verify.contour_width import across_flats
-from g12.tools.verify.pocket_order import LeftBehind
 from g12.tools.verify.section_blocks import (
     InPlace,
     OffOrder,
@@ -98,7 +98,7 @@ class SectionFacts:
     order_off: OffOrder | None = None
     motion_off: tuple[OffMotion, ...] = ()
     act_off: OffAct | None = None
-    left_behind: tuple[LeftBehind, ...] = ()
+    left_behind: tuple[StateDifference, ...] = ()
 
 
 def measure_section(

@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from itertools import zip_longest
 from typing import NamedTuple
 
 from g12.tools.preview.moves import Move
-from g12.tools.verify.pocket_order import SAME_STATE, LeftBehind
+from g12.tools.verify.compare.state import StateDifference, state_differences
 from g12.tools.verify.wanted_contour import ACTS, Act, SectionContour
 
 SAME_PLACE = 0.005  # mm
@@ -66,17 +65,8 @@ def different(told: Sequence[Done], asked: Sequence[Done], lines: Sequence[int])
     return OffAct(lines[0], asked[0].text, same[0].behind if same else None, asked[0].behind)
 
 
-def left_by_section(section: SectionContour) -> tuple[LeftBehind, ...]:
+def left_by_section(section: SectionContour) -> tuple[StateDifference, ...]:
     """Return which positions and modes a section leaves otherwise than its words ask."""
-    left, mm = section.left, section.unit
-    allowed = {"_x": SAME_PLACE / mm, "_z": SAME_PLACE / mm, "_c": SAME_ANGLE}
-    return tuple(
-        LeftBehind(name, left[name], asked)
-        for name, asked in section.leaves.items()
-        if left and value_off(name, left[name], asked) > allowed.get(name, SAME_STATE * abs(asked))
-    )
-
-
-def value_off(name: str, found: float, asked: float) -> float:
-    """Return how far two values are from each other, angles in whatever turn they are."""
-    return abs(math.remainder(found - asked, 360.0) if name == "_c" else found - asked)
+    place = SAME_PLACE / section.unit
+    allowed = {"_x": place, "_z": place, "_c": SAME_ANGLE}
+    return state_differences(section.left, section.leaves, allowed)

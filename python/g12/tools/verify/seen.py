@@ -20,14 +20,13 @@ from g12.tools.units import MM, Unit
 from g12.tools.verify.findings import (
     SAME_AREA,
     collision_text,
-    is_wrong_tool,
     other_tool,
     stock_findings,
 )
 from g12.tools.verify.in_stock import StockFacts, zero_of
 from g12.tools.verify.judgement import cuts_of
 from g12.tools.verify.mistakes.spindle import judge_spindle
-from g12.tools.verify.pocket import left_of
+from g12.tools.verify.pocket_area import is_wrong_tool, left_of
 from g12.tools.verify.proof import (
     POCKET_TOLERANCE,
     Asked,
@@ -38,8 +37,8 @@ from g12.tools.verify.proof import (
     stock_facts,
 )
 from g12.tools.verify.rapids import Circles, Cleared, Collision, collisions, cutting, floors_of
+from g12.tools.verify.reading.circles import Cutter
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.wanted_circle import Cutter
 from g12.tools.verify.wanted_contour import SectionContour
 
 
@@ -88,7 +87,7 @@ class Seen(NamedTuple):
         for hit in self.collisions:
             yield hit.line, collision_text(hit, unit)
         for line, shape, *_ in self.rings:
-            yield line, f"{unit.area(shape.area)} of material are left standing"
+            yield line, f"{unit.area(shape.area)} of material remain uncut"
         for line, _, cutter in self.cutters:
             yield line, other_tool(cutter, unit)
         yield from stock_findings(self.stock, unit) if self.stock else ()
@@ -157,5 +156,5 @@ def standing_rings(
             left = left_of(wall, cutter, here, POCKET_TOLERANCE)
             if left.area > SAME_AREA:
                 centre = tuple(map(float, wall.origin[:2]))
-                shape, floor = translate(left, *centre), floors_of(block, moves, wall)[1]
+                shape, floor = translate(left, *centre), floors_of(target)[1]
                 yield StandingRings(target.source.line, shape, centre, floor)

@@ -14,8 +14,8 @@ from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.units import MM, Unit, plain
+from g12.tools.verify.compare.state import StateDifference, state_differences
 from g12.tools.verify.findings import LAST_DECIMAL, NOT_CUT, SAME_AREA, leaving_text
-from g12.tools.verify.pocket_order import LeftBehind, left_otherwise
 from g12.tools.verify.shape_cut import LevelFacts, ShapeAreas, measure_areas, shift_of
 from g12.tools.verify.shape_form import CORNERS, DIAMETER, FLATS, LENGTH, WIDTH, Shift
 from g12.tools.verify.shape_motion import OffShape, motion_of_shape
@@ -54,7 +54,7 @@ class ShapeFacts:
     shift: Shift
     areas: ShapeAreas
     motion: tuple[OffShape, ...]
-    left_behind: tuple[LeftBehind, ...]
+    left_behind: tuple[StateDifference, ...]
     acts: tuple[str, ...]
     tolerance: float
 
@@ -93,7 +93,7 @@ def measure_shape(
         shift,
         areas,
         tuple(motion_of_shape(way, sections, areas.rough, allowed)),
-        left_otherwise(block, asked.leaves),
+        state_differences(block.left, asked.leaves),
         tuple(dict.fromkeys(each.text for each in block.own_events if ACTS.match(each.text))),
         allowed,
     )

@@ -20,7 +20,7 @@ from shapely.ops import unary_union
 from g12.tools.errors import UsageError
 from g12.tools.path.part import disc
 from g12.tools.units import UNITS, Unit
-from g12.tools.verify.wanted_circle import Wall
+from g12.tools.verify.reading.circles import Wall
 
 NUMBER, SIGNED, UNIT_NAME = r"(\d+\.?\d*|\.\d+)", r"([-+]?(?:\d+\.?\d*|\.\d+))", r"\s*(mm|in)?"
 BAR = re.compile(rf"(?:bar\s*)?{NUMBER}{UNIT_NAME}")

@@ -1,29 +1,33 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Lay what was made along the expected toolpath, in order, and name the first difference.
 
-A cursor goes along the expected moves and never back. Each point that was made takes it to the
-nearest point within reach: as far as the tool can have come since the point before. What the cursor
-passes on the way is compared with what was made between the two points. So a path that crosses,
-repeats or retraces itself is followed, a move that is left out is a difference, and into how many
-segments a move was split does not matter. Emitted moves and the samples of a run are laid alike.
-After the first difference nothing more is known of the rest.
+A cursor goes along the expected moves and never back. Each point that was made takes it to a point
+within reach, which is as far as the tool can have come since the point before: to the one where
+neither that point nor what the cursor passes on the way is farther from what was made than need be.
+So a path that crosses, repeats or retraces itself is followed, a move that is left out is a
+difference, and into how many segments a move was split does not matter. Emitted moves and the
+samples of a run are laid alike. Where the path is left, nothing more is known of the rest.
 
 Lengths are mm, in the frame of the expected moves.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import accumulate
 from typing import NamedTuple
 
-from g12.geometry.curve import Curve, Line
+from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.verify.expected.toolpath import Expected
 
 Point = tuple[complex, float]  # in the plane, and the level
 SLACK = 0.25  # mm that a point may be ahead: at a corner that is blended
 TIE = 1e-7  # mm: of two points as near as that the earlier one counts
 ON_ARC = (0.25, 0.5, 0.75)  # shares of an arc that are compared
+ARC_STEP = math.radians(30)  # an arc that was made is followed in steps of this
+COINCIDENT = 1e-4  # mm: a move that is no farther off as a whole is the expected one
 SAME_FEED = 1e-5  # relative; a trace tells feeds with nine decimals
 OFF, MISSING, EXTRA, RAPID, FEED, FEED_MODE = "off", "missing", "extra", "rapid", "feed", "mode"
 
@@ -31,9 +35,9 @@ OFF, MISSING, EXTRA, RAPID, FEED, FEED_MODE = "off", "missing", "extra", "rapid"
 class Made(NamedTuple):
     """A move that was made: its points, the first of them its start, and how it was commanded.
 
-    Between its points it follows ``curve``, straight lines without one. ``index`` is that of the
-    move in the trace. ``feed`` is in mm per minute, or per revolution if ``per_rev``; None where it
-    is not to be compared.
+    Between its points it follows ``curve``, straight lines without one; of a curve the start and
+    the end suffice. ``index`` is that of the move in the trace. ``feed`` is in mm per minute, or
+    per revolution if ``per_rev``; None where it is not to be compared.
     """
 
     index: int
@@ -42,6 +46,36 @@ class Made(NamedTuple):
     feed: float | None = None
     rapid: bool = False
     per_rev: bool = False
+
+    def steps(self) -> Iterator[tuple[Point, Point]]:
+        """Yield the stretches of the move, those of an arc short enough to be followed."""
+        points = self.points
+        if isinstance(self.curve, Arc) and len(points) == 2:
+            points = self._along_the_arc(*points)
+        return zip(points, points[1:])
+
+    def _along_the_arc(self, start: Point, end: Point) -> list[Point]:
+        count = math.ceil(abs(self.curve.sweep) / ARC_STEP) + 1
+        shares = [step / count for step in range(1, count)]
+        rise = end[1] - start[1]
+        between = [(self.curve.point(share), start[1] + share * rise) for share in shares]
+        return [start, *between, end]
+
+    def off_as_a_whole(self, expected: Expected) -> float:
+        """Return how far the move is at most off an expected one, from its start to its end.
+
+        Infinite where the two are not of one kind.
+        """
+        curve, other = self.curve, expected.curve
+        if type(curve) is not type(other):
+            return math.inf
+        (start, start_level), (end, end_level) = self.points[0], self.points[-1]
+        off = max(abs(start_level - expected.start_level), abs(end_level - expected.end_level))
+        if isinstance(other, Arc):
+            turned = abs(curve.sweep - other.sweep) * other.radius
+            moved = 2 * abs(curve.centre - other.centre) + abs(curve.start - other.start)
+            return off + turned + moved + abs(end - curve.end)
+        return off + max(abs(start - other.start), abs(end - other.end))
 
     def distance(self, point: Point, first: Point, last: Point) -> float:
         """Return how far a point is from what was made between two of the points."""
@@ -66,17 +100,38 @@ class PathDifference(NamedTuple):
     index: int | None = None
 
 
+class Span(NamedTuple):
+    """The part of a toolpath that a move was made along: from a share of one move to another's."""
+
+    index: int
+    share: float
+    last: int
+    last_share: float
+
+
 @dataclass
 class Laid:
     """What was made along an expected toolpath.
 
-    ``deviation`` is the greatest distance (mm) in front of the first ``difference``, ``moves`` are
-    the indices of the moves made along each expected one.
+    ``deviation`` is the greatest distance (mm) as far as the path was followed, ``moves`` are the
+    indices of the moves made along each expected one, ``spans`` what each move made, by index.
+    ``differences`` are the first of those of each kind; OFF, MISSING and EXTRA are the last.
     """
 
     moves: list[list[int]]
     deviation: float = 0.0
-    difference: PathDifference | None = None
+    spans: dict[int, Span] = field(default_factory=dict)
+    differences: list[PathDifference] = field(default_factory=list)
+
+    @property
+    def difference(self) -> PathDifference | None:
+        """The first difference."""
+        return self.differences[0] if self.differences else None
+
+    def add(self, difference: PathDifference | None) -> None:
+        """Add a difference if it is the first of its kind."""
+        if difference and all(known.kind != difference.kind for known in self.differences):
+            self.differences.append(difference)
 
 
 def lay(
@@ -86,30 +141,29 @@ def lay(
     laid = Laid([[] for _ in path])
     cursor = _Cursor(path, slack)
     for move in made:
-        laid.difference = _lay_move(cursor, move, tolerance, laid)
-        if laid.difference:
+        left = _lay_move(cursor, move, tolerance, laid)
+        if left:
+            laid.add(left)
             return laid
-    missing = next(cursor.missing(tolerance), None)
-    if missing:
-        laid.difference = PathDifference(MISSING, missing, missing.point(1.0))
+    if cursor.remaining > tolerance:
+        missing = cursor.next_move()
+        laid.add(PathDifference(MISSING, missing, missing.point(1.0)))
     return laid
 
 
 def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> PathDifference | None:
-    """Take the cursor along a move; return how the move differs."""
-    if not cursor.path or not any(cursor.missing(tolerance)):
+    """Take the cursor along a move; return how the move leaves the toolpath."""
+    if not cursor.path or cursor.remaining <= tolerance:
         return _beyond_the_end(cursor, move, tolerance)
-    farthest, where = 0.0, move.points[-1]
-    for first, last in zip(move.points, move.points[1:]):
-        off, at = cursor.advance(move, first, last)
-        if off > farthest:
-            farthest, where = off, at
-    expected = cursor.path[cursor.index]
+    before, due = (cursor.index, cursor.share), cursor.next_move()
+    farthest, where = cursor.follow(move)
     if farthest > tolerance:
-        return PathDifference(OFF, expected, where, farthest, move.index)
+        return PathDifference(OFF, due, where, farthest, move.index)
     laid.moves[cursor.index].append(move.index)
+    laid.spans[move.index] = Span(*before, cursor.index, cursor.share)
     laid.deviation = max(laid.deviation, farthest)
-    return _otherwise(expected, move)
+    laid.add(_otherwise(cursor.path[cursor.index], move))
+    return None
 
 
 def _beyond_the_end(cursor: _Cursor, move: Made, tolerance: float) -> PathDifference | None:
@@ -148,49 +202,97 @@ class _Cursor:
     index: int = 0
     share: float = 0.0
     _lengths: list[float] = field(default_factory=list)
+    _ends: list[float] = field(default_factory=list)  # lengths of the path up to each move's end
 
     def __post_init__(self) -> None:
         self._lengths = [move.length for move in self.path]
+        self._ends = list(accumulate(self._lengths))
+
+    @property
+    def remaining(self) -> float:
+        """The length of the toolpath that is not made yet."""
+        return self._ends[-1] - self._ends[self.index] + self._rest() if self.path else 0.0
+
+    def next_move(self) -> Expected:
+        """Return the first move of which more is left than rounding, the last one without any."""
+        at = self.index if self._rest() > TIE else self.index + 1
+        return self.path[min(at, len(self.path) - 1)]
+
+    def follow(self, move: Made) -> tuple[float, Point]:
+        """Go along a move; return how far it is off at most, and where."""
+        off = self._take_whole(move)
+        if off is not None:
+            return off, move.points[-1]
+        steps = (self.advance(move, *step) for step in move.steps())
+        return max(steps, key=_size, default=(0.0, move.points[-1]))
+
+    def _take_whole(self, move: Made) -> float | None:
+        """Go to the end of the next expected move if this is it; return how far it is off."""
+        length = self._lengths[self.index]
+        index = self.index + (self._rest() <= COINCIDENT)
+        if index == len(self.path) or (index == self.index and self.share * length > COINCIDENT):
+            return None
+        off = move.off_as_a_whole(self.path[index])
+        if off > COINCIDENT:
+            return None
+        self.index, self.share = index, 1.0
+        return off
 
     def advance(self, move: Made, first: Point, last: Point) -> tuple[float, Point]:
-        """Go to the point nearest to ``last``; return the greatest distance, and where it is."""
-        found = list(self._candidates(last, _apart(first, last)))
-        nearest = min(off for off, _, _ in found)
-        off, index, share = next(each for each in found if each[0] <= nearest + TIE)
-        passed = [(move.distance(at, first, last), at) for at in self._passed(index, share)]
-        self.index, self.share = index, share
-        return max([(off, last), *passed], key=lambda each: each[0])
+        """Go where ``last`` is, with what is passed on the way, nearest to what was made.
 
-    def _candidates(self, point: Point, step: float) -> Iterator[tuple[float, int, float]]:
-        """Yield the nearest point of each move within reach: its distance, move and share."""
-        reach, share = 2 * step + self.slack, self.share
+        Return the greatest distance, and where it is.
+        """
+        best = (math.inf, last), self.index, self.share
+        for worst, index, share in self._candidates(move, first, last):
+            if worst[0] < best[0][0] - TIE:
+                best = worst, index, share
+        worst, self.index, self.share = best
+        return worst
+
+    def _candidates(
+        self, move: Made, first: Point, last: Point
+    ) -> Iterator[tuple[tuple[float, Point], int, float]]:
+        """Yield the nearest point to ``last`` of each move within reach: how far off, move, share.
+
+        How far off is the greatest distance of it and of what is passed before it; the search ends
+        where that alone is greater than for a move before.
+        """
+        reach, share = 2 * _apart(first, last) + self.slack, self.share
+        passed, least = (0.0, last), math.inf
         for index in range(self.index, len(self.path)):
             expected, length = self.path[index], self._lengths[index]
             most = min(1.0, share + reach / length) if length else 1.0
-            nearest = expected.nearest(point, share, most)
-            yield expected.distance(*point, nearest), index, nearest
-            reach, share = reach - (1.0 - share) * length, 0.0
+            nearest = expected.nearest(last, share, most)
+            off = expected.distance(*last, nearest)
+            if off < least:
+                within = self._within(move, (first, last), index, share, nearest)
+                worst = max(passed, (off, last), within, key=_size)
+                least = min(least, worst[0])
+                yield worst, index, nearest
+            reach -= (1.0 - share) * length
             if reach <= 0.0:
                 return
-
-    def _passed(self, index: int, share: float) -> Iterator[Point]:
-        """Yield points of the toolpath between the cursor and a place ahead.
-
-        They are the ends of moves and some points of arcs: of what is straight the ends suffice.
-        """
-        begin = self.share
-        for at in range(self.index, index + 1):
-            expected, end = self.path[at], share if at == index else 1.0
-            if not isinstance(expected.curve, Line):
-                yield from (expected.point(begin + part * (end - begin)) for part in ON_ARC)
-            if at < index:
-                yield expected.point(end)
-            begin = 0.0
-
-    def missing(self, tolerance: float) -> Iterator[Expected]:
-        """Yield the expected moves of which more than the tolerance is not made yet."""
-        share = self.share
-        for index in range(self.index, len(self.path)):
-            if (1.0 - share) * self._lengths[index] > tolerance:
-                yield self.path[index]
+            within = self._within(move, (first, last), index, share, 1.0)
+            end = expected.point(1.0)
+            passed = max(passed, within, (move.distance(end, first, last), end), key=_size)
+            if passed[0] > least:
+                return
             share = 0.0
+
+    def _within(
+        self, move: Made, ends: tuple[Point, Point], index: int, begin: float, end: float
+    ) -> tuple[float, Point]:
+        """Return the farthest point of an arc between two shares: of a line its ends suffice."""
+        expected = self.path[index]
+        if isinstance(expected.curve, Line) or begin == end:
+            return 0.0, ends[1]
+        points = (expected.point(begin + part * (end - begin)) for part in ON_ARC)
+        return max(((move.distance(at, *ends), at) for at in points), key=_size)
+
+    def _rest(self) -> float:
+        return (1.0 - self.share) * self._lengths[self.index]
+
+
+def _size(found: tuple[float, Point]) -> float:
+    return found[0]

@@ -11,7 +11,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from g12.geometry.curve import Curve, Line
+from g12.geometry.curve import Arc, Curve, Line
+
+NO_LENGTH = 1e-6  # mm
 
 
 class Expected(NamedTuple):
@@ -73,3 +75,44 @@ class Expected(NamedTuple):
 def length_of(path: Sequence[Expected]) -> float:
     """Return the length of a toolpath."""
     return sum(move.length for move in path)
+
+
+class Writer:
+    """Writes down a toolpath from where the tool stands; what has no length is left out.
+
+    ``line`` is that of the block, ``per_rev`` says that its feeds are per revolution.
+    """
+
+    def __init__(self, at: complex, level: float, line: int = 0, per_rev: bool = False) -> None:
+        self.at, self.level = at, level
+        self.path: list[Expected] = []
+        self._line, self._per_rev = line, per_rev
+
+    def straight(self, name: str, end: complex, feed: float | None = None, **how: bool) -> None:
+        """Add a line across the plane; ``how`` is ``rapid`` or ``per_rev``."""
+        self._add(name, Line(self.at, end), self.level, feed, **how)
+
+    def vertical(self, name: str, level: float, feed: float | None = None, **how: bool) -> None:
+        """Add a move to another level."""
+        self._add(name, Line(self.at, self.at), level, feed, **how)
+
+    def arc(
+        self, name: str, centre: complex, sweep: float, feed: float | None, fall: float = 0.0
+    ) -> None:
+        """Add an arc about a centre that falls by some height."""
+        self._add(name, Arc(self.at, centre, sweep), self.level - fall, feed)
+
+    def _add(
+        self,
+        name: str,
+        curve: Curve,
+        level: float,
+        feed: float | None,
+        rapid: bool = False,
+        per_rev: bool | None = None,
+    ) -> None:
+        per_rev = self._per_rev if per_rev is None else per_rev
+        move = Expected(name, curve, self.level, level, feed, rapid, per_rev, line=self._line)
+        if move.length > NO_LENGTH:
+            self.path.append(move)
+            self.at, self.level = curve.end, level

@@ -48,14 +48,15 @@ class Finding:
 class _Writer(string.Formatter):
     """Formats the values of a sentence: what follows the colon says what a value is.
 
-    ``mm`` a length, ``fine`` a small one, ``mm2`` an area, ``feed`` a feed, ``xyz`` a place,
-    ``list`` several lengths; each with its unit but ``mm`` and ``list``. A number stands for
-    decimals.
+    ``mm`` and ``length`` a length, ``fine`` a small one, ``mm2`` an area, ``feed`` a feed, ``xyz``
+    a place, ``list`` several lengths; each with its unit but ``mm`` and ``list``. A number stands
+    for decimals.
     """
 
     def __init__(self, unit: Unit) -> None:
         self._forms: dict[str, Callable[[Any], str]] = {
             "mm": unit.text,
+            "length": lambda value: f"{unit.text(value)} {unit.name}",
             "fine": lambda value: f"{unit.fine(value)} {unit.name}",
             "mm2": unit.area,
             "feed": lambda value: f"{unit.text(value)} {unit.name}/min",

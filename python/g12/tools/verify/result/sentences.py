@@ -12,9 +12,24 @@ FINDINGS = {
     "rapid": "the {what} goes by rapid, not at a feed, to {at:xyz}",
     "not-rapid": "the {what} goes at a feed, not by rapid, to {at:xyz}",
     "feed": "the {what} is cut at {made:feed}, not at {expected:feed}",
+    "feed-rev": "the {what} is cut at {made:fine} per revolution, not at {expected:fine}",
     "feed-mode": "the {what} has its feed {made}, not {expected}",
     "not-cut": "nothing is cut",
     "not-measured": "a cycle cuts here that could not be measured",
+    "state": "it leaves {found}, not {expected}",
+    "extra-event": "{event} comes in it, where the words do not have it",
+    # pockets
+    "uncut": "{area:mm2} of material remain uncut",
+    "wall-run": "the wall was cut {size:fine} too far, at {at:xyz}",
+    "wrong-cutter": (
+        "the loaded tool T{tool} (⌀ {loaded:mm}) is not D{named} (⌀ {diameter:mm}): "
+        "the wall comes out at radius {cut:mm}, not {wall:mm}"
+    ),
+    "cuts-air": (
+        "its depth Z{depth:mm} lies above Z{start:mm}, where the tool comes from: "
+        "it cuts air (a lost minus sign?)"
+    ),
+    "travel": "the {axis} axis would go to {position:mm}, its limit is {limit:length}",
     # the tool
     "length-deeper": (
         "the tool length in force, {length:mm}, is not that of T{tool}: "

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A block's words in millimetres, and the modes, the position and the tool that it finds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from g12.lengths import MM_PER_INCH
+from g12.tools.path.part import plane_axes
+from g12.tools.preview.executed_blocks import FORGOTTEN, Block
+from g12.tools.preview.moves import Move
+from g12.tools.verify.reading.codes import kept_state
+
+
+class BlockInMm:
+    """A block's words in mm, and where the tool is when it begins."""
+
+    def __init__(self, block: Block, first: Move) -> None:
+        self.line = block.text.number
+        self.words = block.words
+        self.arguments = block.arguments
+        self.tool = first.tool
+        self.start = np.array(first.start[:3])
+        self.axes = plane_axes(first)
+        self._state = block.state
+        self._unit_before = 1.0 if block.state["_metric"] else MM_PER_INCH
+        commanded = {20.0: MM_PER_INCH, 21.0: 1.0}
+        changes = (commanded[code] for code in block.codes if code in commanded)
+        self.unit = next(changes, self._unit_before)
+        absolute = bool(block.state["_absolute"])
+        self.absolute = (absolute or 90.0 in block.codes) and 91.0 not in block.codes
+        self._first, self._codes = first, block.codes
+        self.rev = self._per_revolution(block.codes)
+
+    def _per_revolution(self, codes: Sequence[float]) -> bool:
+        commanded = [code for code in codes if code in (93.0, 94.0, 95.0)]
+        return 95.0 in commanded if commanded else bool(self._state["_units_per_rev"])
+
+    def leaves(self, feed: float | None, last: Move) -> dict[str, float]:
+        """Return the state that the block should leave behind its last move.
+
+        ``feed`` in mm, None if it is not known. The tool may end elsewhere, which is told by
+        itself: there the program's coordinates are those of its zero.
+        """
+        left = {
+            "_metric": float(self.unit == 1.0),
+            "_absolute": float(self.absolute),
+            "_units_per_rev": float(self.rev),
+            "_motion_mode": self._state["_motion_mode"],
+        }
+        left |= kept_state(self._state, self._codes)
+        if not self._state["_lathe_diameter_mode"]:
+            place = self._turned_back(np.array(last.end[:3]) - self.zero()) / self.unit
+            left |= dict(zip(("_x", "_y", "_z"), map(float, place)))
+        return left if feed is None else {**left, "_feed": feed / self.unit}
+
+    def length(self, letter: str) -> float:
+        """Return a length word in mm, 0 without it."""
+        return self.words.get(letter, 0.0) * self.unit
+
+    def feed(self) -> float | None:
+        """Return the feed in mm per minute or revolution: the F word, else what is in force.
+
+        None if the preview does not know: the block changes the units, or one before it did.
+        """
+        if self.unit != self._unit_before:
+            return None
+        if "F" not in self.words and self._state["_feed"] == FORGOTTEN:
+            return None
+        return self.words.get("F", self._state["_feed"]) * self.unit
+
+    def present(self, axis: str) -> float:
+        """Return where the tool stands in program coordinates, mm."""
+        return self._state[f"_{axis}"] * self._unit_before
+
+    def centre(self) -> np.ndarray:
+        """Return the centre in machine coordinates: X and Y words, else where the tool stands."""
+        return self.start + self._turned(self._step("x"), self._step("y"), 0.0)
+
+    def zero(self) -> np.ndarray:
+        """Return the program's zero in machine coordinates."""
+        return self.start - self._turned(*map(self.present, "xyz"))
+
+    def seen_from(self, centre: np.ndarray) -> complex:
+        """Return where the tool stands, along the plane's axes from a centre."""
+        first, second, _ = self.axes @ (self.start - centre)
+        return complex(first, second)
+
+    def height(self, letter: str, times: int) -> float:
+        """Return the height in machine coordinates that a Z word leads to, ``times`` over.
+
+        Without the word it is where the tool stands.
+        """
+        if self.absolute and letter in self.words:
+            return self.start[2] + self.length(letter) - self.present("z")
+        return self.start[2] + times * self.length(letter)
+
+    def _step(self, axis: str) -> float:
+        if axis.upper() not in self.words:
+            return 0.0
+        word = self.length(axis.upper())
+        return word - self.present(axis) if self.absolute else word
+
+    def _turned(self, x: float, y: float, z: float) -> np.ndarray:
+        """Return a direction of the program in machine coordinates."""
+        return turned(np.array([x, y, z]), self._first.rotation)
+
+    def _turned_back(self, way: np.ndarray) -> np.ndarray:
+        """Return a direction of the machine in program coordinates."""
+        return turned(way, -self._first.rotation)
+
+
+def turned(way: np.ndarray, degrees: float) -> np.ndarray:
+    """Return a direction turned about Z."""
+    cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return np.array([way[0] * cos - way[1] * sin, way[0] * sin + way[1] * cos, way[2]])
