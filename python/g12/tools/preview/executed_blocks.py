@@ -27,7 +27,7 @@ ENLARGED = 1_000_000  # times: of less than 0.0001 LinuxCNC 2.9 tells that it is
 PLACES = ("_x", "_y", "_z", "_c")
 STATE = (
     *(*PLACES, "_metric", "_absolute", "_lathe_diameter_mode", "_feed"),
-    *("_units_per_rev", "_rpm", "_motion_mode", "_plane", "_ijk_absolute_mode"),
+    *("_units_per_rev", "_rpm", "_motion_mode", "_plane", "_ijk_absolute_mode", "_selected_tool"),
 )
 FORGOTTEN = 1.0  # F after the preview changed its units; see ``tracer``
 PLACES_ENLARGED = " ".join(f"#<@{name}>=[#<{name}>*{ENLARGED}]" for name in PLACES)

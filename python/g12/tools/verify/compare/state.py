@@ -18,8 +18,6 @@ from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import STATE
 
 ACT = re.compile(r"(G|M\d|S|tool|dwell (?!0$))")  # of what a trace reports
-REPORTED = {43.0, 43.1, 43.2, 49.0, *(54.0, 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59.3)}
-REPORTED |= {61.0, 61.1, 64.0, 96.0, 97.0}  # codes of which a trace reports
 UNITS, FORGOTTEN = {20.0, 21.0}, "G64 P0.1 Q0.1"  # what a preview makes of G64 where units change
 MODES = {
     "_metric": ("G20", "G21"),
@@ -29,6 +27,7 @@ MODES = {
     "_ijk_absolute_mode": ("G91.1", "G90.1"),
 }
 CODES = ("_motion_mode", "_plane")
+LETTERS = {"_selected_tool": "T", "_rpm": "S"}
 
 
 class StateDifference(NamedTuple):
@@ -67,10 +66,19 @@ def _apart(name: str, one: float, other: float) -> float:
 
 def extra_events(block: Block) -> tuple[str, ...]:
     """Return what a block does besides moving, though its words do not say so."""
-    says_more = block.m_codes or block.words.keys() & {"S", "T"} or set(block.codes) & REPORTED
-    found = [] if says_more else [event.text for event in block.own_events if ACT.match(event.text)]
-    forgotten = FORGOTTEN if UNITS.intersection(block.codes) else None
-    return tuple(dict.fromkeys(text for text in found if text != forgotten))
+    found = [event.text for event in block.own_events if ACT.match(event.text)]
+    return tuple(dict.fromkeys(text for text in found if not _is_said(text, block)))
+
+
+def _is_said(event: str, block: Block) -> bool:
+    """Tell whether a block's words say what an event reports.
+
+    Where the units change, a preview makes another G64 of the one in force.
+    """
+    if event == FORGOTTEN and UNITS.intersection(block.codes):
+        return True
+    said = [f"M{code:g}" for code in block.m_codes] + [f"G{code:g}" for code in block.codes]
+    return event.split()[0] in said or (event[0] == "S" and "S" in block.words)
 
 
 def judge_state(
@@ -89,4 +97,5 @@ def _text(name: str, value: float) -> str:
         return MODES[name][int(value)]
     if name in CODES:
         return f"G{value / 10:g}"
-    return f"{name.removeprefix('_')[0].upper()}{plain(value, 4)}"
+    letter = LETTERS.get(name) or name.removeprefix("_")[0].upper()
+    return f"{letter}{plain(value, 4)}"

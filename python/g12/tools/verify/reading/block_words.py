@@ -49,6 +49,7 @@ class BlockInMm:
             "_absolute": float(self.absolute),
             "_units_per_rev": float(self.rev),
             "_motion_mode": self._state["_motion_mode"],
+            "_selected_tool": self.words.get("T", self._state["_selected_tool"]),
         }
         left |= kept_state(self._state, self._codes)
         if not self._state["_lathe_diameter_mode"]:
