@@ -8,8 +8,8 @@ import pytest
 
 from g12.tools.commands.main import main
 from g12.tools.errors import UsageError
+from g12.tools.material.stock import read_stock
 from g12.tools.units import MM, UNITS
-from g12.tools.verify.stock import read_stock
 from support.sim_machines import PROGRAMS, SIM
 
 MILL, LATHE = (str(SIM / f"{name}_headless.ini") for name in ("mill_mm", "lathe_mm"))
@@ -17,6 +17,9 @@ HEAD = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6"]  # a 10 mm cutter
 FACE = ["G21 G18 G7 G40 G90 G94", "T1 M6", "G0 X60 Z2 C0"]  # a 12 mm cutter
 FLAT = ["G12.1", "G1 C25 F2000", "G41 X27 F1000", "Z-5", "C-25", "G40 X60 F2000", "G13.1", "G0 Z2"]
 INCH = 25.4
+KINDS = "notes", "findings"
+CODES = ("plunge-into-stock", "no-stock-met", "cylinder-aside", "below-block", "rapid-through",
+         "rapid-into", "bar-remains")  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -57,8 +60,9 @@ def told(tmp_path, capsys):
         program = tmp_path / "program.ngc"
         program.write_text("\n".join([*lines, "M2", ""]))
         code = main(["verify", str(program), "--ini", ini, "--stock", stock, "--json"])
-        found = json.loads(capsys.readouterr().out)["stock"]
-        return code, found["notes"], found["findings"]
+        proof = json.loads(capsys.readouterr().out)
+        said = ([each for each in proof[kind] if each["code"] in CODES] for kind in KINDS)
+        return code, *([f"line {each['line']}: {each['text']}" for each in some] for some in said)
 
     return tell
 
@@ -71,7 +75,7 @@ def told(tmp_path, capsys):
         ("100x80x20 bore 12", []),
         ("bore 12", []),
         ("bore 8", ["line 4: it plunges with 36 % of the cutter into the stock, at X0 Y0"]),
-        ("100x80x2 bore 12", ["the lowest cut is 1 mm below the block"]),
+        ("100x80x2 bore 12", ["line 4: the lowest cut is 1 mm below the block"]),
     ],
 )
 def test_a_plunge_into_the_block_is_told(stock, found, told):
@@ -81,7 +85,7 @@ def test_a_plunge_into_the_block_is_told(stock, found, told):
 def test_a_rapid_into_the_block_is_found(told):
     lines = ["G0 X80 Y0 Z1", "Z-3", "X30", "G0 Z1", "X0", "G13 I7 K20 Q6 Z-3 D4", "G0 Z1"]
     code, _, (text,) = told("100x80x20", *HEAD, *lines)
-    assert code == 1 and text.startswith("line 5: a rapid goes into the stock (")
+    assert code == 1 and text.startswith("line 5: a rapid goes through material, from X54.752 Y0 ")
     assert told("60x80x20@-30,-40 bore 12", *HEAD, "G0 X36", *lines[:2], *lines[3:])[0] == 0
 
 
@@ -89,7 +93,7 @@ def test_a_rapid_into_a_hole_that_is_bored_is_good(told):
     lines = ["G0 X0 Y0 Z1", "Z-3", "G13 I7 K20 Q6 Z-3 D4", "G0 Z1"]
     assert told("100x80x20 bore 12", *HEAD, *lines) == (0, [], [])
     code, _, found = told("100x80x20", *HEAD, *lines)
-    assert code == 1 and "line 4: a rapid goes into the stock" in found[0]
+    assert code == 1 and "line 4: a rapid goes down into 76.969 mm² of material" in found[0]
 
 
 # ---------------------------------------------------------------- the bar
@@ -123,12 +127,12 @@ def test_a_section_above_the_bar_leaves_all_of_it(told):
 def test_a_rapid_into_the_bar_is_found(told):
     lines = [*FLAT, "G0 C180", "G12.1", "G1 C25 F2000", "G13.1", "G0 Z-3", "X20", "Z2"]
     code, _, found = told("40", *FACE, *lines, ini=LATHE)
-    assert code == 1 and "line 17: a rapid goes into the stock" in found[0]
+    assert code == 1 and "line 17: a rapid goes through material" in found[0]
 
 
 def test_the_hexagon_begins_beside_its_bar(capsys):
     program = str(PROGRAMS / "polar" / "hexagon.ngc")
-    assert main(["verify", program, "--ini", LATHE, "--stock", "40"]) == 0
+    assert main(["verify", program, "--ini", LATHE, "--stock", "40", "--full"]) == 0
     out = capsys.readouterr().out
     assert "stock: 40" in out and "plunges" not in out
 

@@ -129,7 +129,7 @@ def test_a_rapid_through_material_is_told_in_words_and_json(written, capsys):
     told = json.loads(out)
     (hit,) = told["rapids"]
     assert (code, told["good"], hit["line"]) == (1, False, 5)
-    assert hit["area"] > 350 and hit["to"][0] == pytest.approx(60)
+    assert hit["place"] == pytest.approx([15.372, 0, -3], abs=0.1)
 
 
 def test_a_circle_of_the_tool_centre_and_one_on_its_side_are_told(written, capsys):

@@ -569,7 +569,7 @@ def test_a_forgotten_retract_between_pockets_is_found(tmp_path):
     lines = [*MM, "G0 X0 Y0 Z2", "G13 I7 K20 Q6 Z-3 D4", "G13 X60 I7 K20 Q6 Z-3", "G0 Z2", "M2"]
     ((line, text),) = proof_of_text(tmp_path, lines).findings
     assert line == 5
-    assert text.startswith("a rapid goes through ") and "not cleared before, from X15" in text
+    assert text.startswith("a rapid goes through material, from X15.372 Y0 Z−3 to ")
     lines[4] = "G0 Z2\n" + lines[4]
     assert proof_of_text(tmp_path, lines).findings == []
 

@@ -21,7 +21,7 @@ FORMS = {  # the entries of a form behind its first six
 
 def test_a_report_names_each_shape_and_its_sizes(capsys):
     ini = str(LATHES["mm"])
-    assert main(["verify", PROGRAM, "--ini", ini]) == 0
+    assert main(["verify", PROGRAM, "--ini", ini, "--full"]) == 0
     text = capsys.readouterr().out
     assert "line 9: polar_polygon\n  cutter          ⌀ 6\n" in text
     assert "  programmed      flats 27, corners 15.279 mm\n  reached         flats 27" in text

@@ -22,9 +22,10 @@ from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import heading, scene_of
 from g12.tools.plot.unrolled import unrolled
 from g12.tools.units import MM, UNITS, clock, plain
+from g12.tools.verify.in_material import MaterialFacts
 from g12.tools.verify.proof import subject_of
-from g12.tools.verify.rapids import Collision
 from g12.tools.verify.reading.circles import Cutter
+from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.seen import Seen, StandingRings, WrongCutter
 from support.made_moves import Hand, samples_of
 
@@ -226,9 +227,10 @@ def test_there_and_back_again_is_drawn_once():
 
 def test_a_rapid_through_material_is_in_the_legend():
     shown = scene(pocket().rapid(x=90))
-    hit = Collision(1, 1, 5.0, np.array([[60.0, 0, -4], [90, 0, -4]]))
+    path = np.array([[60.0, 0, -4], [90, 0, -4]])
+    hit = Finding("rapid-through", 1, {"path": path, "at": path[0], "to": path[1]}, path[0])
     assert not any("material" in e.get_label() for e in plan_view.motion_entries(shown))
-    shown = replace(shown, seen=Seen((hit,)))
+    shown = replace(shown, seen=Seen(MaterialFacts((hit,))))
     assert any("through material" in e.get_label() for e in plan_view.motion_entries(shown))
 
 
@@ -236,7 +238,7 @@ def test_what_stands_and_another_cutter_than_d_are_in_the_legend_and_the_view():
     area = Point(50, 0).buffer(30).difference(Point(50, 0).buffer(20))
     ring = StandingRings(1, area, (50.0, 0.0), -4.0)
     wrong = WrongCutter(1, (50.0, 0.0), Cutter(10.0, 4, 5.0, 6))
-    shown = replace(scene(pocket()), seen=Seen((), (ring,), (wrong,)))
+    shown = replace(scene(pocket()), seen=Seen(MaterialFacts(), (ring,), (wrong,)))
     told = [entry.get_label() for entry in plan_view.warning_entries(shown)]
     assert told == ["material left standing", "T4 is not D6 (⌀ 20)"]
     assert "remain uncut" in next(text for _, text in shown.seen.warnings())

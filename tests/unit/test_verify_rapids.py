@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from g12.tools.path.follow import follow
-from g12.tools.path.part import Part
+from g12.tools.path.part import Part, disc
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.verify.expected.haas import HaasWords
-from g12.tools.verify.rapids import Cleared, collisions
+from g12.tools.verify.in_material import Program, assumptions, judged_moves, rapids_through
 from g12.tools.verify.reading.circles import Cutter, Source, Target, Wall
+from g12.tools.verify.workpiece import assumed_workpiece
 from support.made_moves import LIMITS, Hand, samples_of
 
 MILL = Part(turning=False)
@@ -20,7 +21,7 @@ DIAMETERS = {1: 6.0}
 RINGS = [5, 9, 13, 17]  # of the tool's centre: the wall is at 20
 
 
-class Program(Hand):
+class Pockets(Hand):
     """A hand that remembers which of its moves are pockets."""
 
     def __init__(self):
@@ -39,14 +40,22 @@ class Program(Hand):
         self.asked.append((Block(None, {}, (), (), (), {}, first, len(self.moves)), target))
         return self.next_block()
 
-    def found(self, real=None):
+    def in_material(self, real=None):
         path = track(MILL, self.moves, LIMITS)
         run = follow(path, self.moves, real(path), 1.0) if real else None
-        return collisions(self.asked, self.moves, path, DIAMETERS, run)
+        program = Program(self.moves, MILL, self.asked, [], run)
+        return program, assumed_workpiece(self.asked, self.moves, MILL, DIAMETERS)
+
+    def found(self, real=None):
+        program, piece = self.in_material(real)
+        return list(rapids_through(program, piece, judged_moves(program, piece)))
+
+    def assumed(self):
+        return [note.text() for note in assumptions(self.in_material()[1])]
 
 
 def start(z=2.0):
-    return Program().rapid(x=50, z=z)
+    return Pockets().rapid(x=50, z=z)
 
 
 def test_a_retract_before_the_next_pocket_is_good():
@@ -57,8 +66,8 @@ def test_a_forgotten_retract_goes_through_the_wall():
     program = start().mill().rapid(x=150).mill().rapid(z=2)
     (hit,) = program.found()
     assert hit.line == 3
-    assert hit.area == pytest.approx(6 * 80, rel=0.05)  # from one wall to beyond the other
-    assert hit.path[0] == pytest.approx((67.3, 0, -3), abs=0.6)
+    assert hit.values["area"] == pytest.approx(6 * (2 + 22), rel=0.1)  # a wall, the next pocket
+    assert hit.place == pytest.approx((67.3, 0, -3), abs=0.6)
 
 
 def test_a_slanting_retract_through_the_wall_is_found():
@@ -72,7 +81,7 @@ def test_a_rapid_inside_the_pocket_is_good():
 def test_a_rapid_through_the_core_is_found():
     program = start().mill([17]).rapid(x=33).rapid(z=2)
     (hit,) = program.found()
-    assert 6 * 8 < hit.area < 6 * 14.5  # the leads have cut some of the core
+    assert 6 * 8 < hit.values["area"] < 6 * 14.5  # the leads have cut some of the core
 
 
 def test_between_the_pockets_top_and_z0_there_is_air():
@@ -109,7 +118,7 @@ def test_a_channel_that_was_cut_before_lets_a_rapid_through():
 
 @pytest.mark.parametrize(("bore", "count"), [(16.0, 0), (0.0, 1)])
 def test_a_bored_hole_is_no_material(bore, count):
-    program = Program().rapid(x=50, z=2).rapid(z=-3).mill([17], bore=bore)
+    program = Pockets().rapid(x=50, z=2).rapid(z=-3).mill([17], bore=bore)
     assert len(program.rapid(x=60, y=2).found()) == count
 
 
@@ -141,41 +150,51 @@ def test_a_run_that_rounds_the_corner_of_a_retract_is_found_if_it_cuts(rings, cu
 
 
 def test_a_bore_counts_down_to_where_it_was_looked_at_and_no_deeper():
-    program = Program().rapid(x=50, z=2).rapid(z=-3).mill([17], depth=-3.0, bore=16.0)
-    path = track(MILL, program.moves, LIMITS)
-    cleared = Cleared(program.asked, program.moves, path, DIAMETERS)
-    low, high = (cleared.before(len(program.moves), height).area for height in (-5.0, -1.0))
-    assert low == 0 and high > np.pi * 16**2
-
-
-def test_a_height_is_looked_up_without_looking_at_every_move(monkeypatch):
-    program = start(z=10)
-    for _ in range(50):
-        program.mill([5]).rapid(z=10)
-    path = track(MILL, program.moves, LIMITS)
-    cleared = Cleared(program.asked, program.moves, path, DIAMETERS)
-    last = len(program.moves)
-    cleared.before(last, -1.0)
-    monkeypatch.setattr(cleared, "_floors_before", None)
-    monkeypatch.setattr(cleared, "_area", None)
-    areas = {cleared.before(last, height).area for height in np.linspace(-2.9, 9.0, 300)}
-    assert len(areas) == 1
+    program = Pockets().rapid(x=50, z=2).rapid(z=-3).mill([17], depth=-3.0, bore=16.0)
+    material = program.in_material()[1].material
+    hole = disc((50, 0), 15)
+    low, high = (material.standing(hole, level).area for level in (-5.0, -1.0))
+    assert low == pytest.approx(hole.area - np.pi * 9, rel=1e-2) and high == 0
 
 
 def test_a_rapid_down_into_the_floor_is_found():
     program = start().mill(depth=-2.0).rapid(z=2).rapid(z=-4.0).mill(depth=-1.0)
     (hit,) = program.found()
-    assert hit.area == pytest.approx(np.pi * 9, rel=0.02) and hit.path[0][2] == -4
+    assert hit.values["area"] == pytest.approx(np.pi * 9, rel=0.05) and hit.place[2] == -4
 
 
 def test_a_rapid_down_to_the_floor_is_good():
     assert start().mill(depth=-2.0).rapid(z=2).rapid(z=-2).mill(depth=-2.0).found() == []
 
 
-def test_a_rapid_down_is_good_where_the_first_cycle_began_with_one():
-    program = Program().rapid(x=50, z=10).mill(depth=-0.5).rapid(z=10)
-    program.rapid(x=150, z=10).rapid(z=-3).mill([17], depth=0.0)
-    assert program.rapid(z=2).rapid(z=-6).mill([17], depth=0.0).rapid(z=10).found() == []
+def bored(first):
+    program = Pockets().rapid(x=150, z=10).rapid(z=first).mill([17], depth=-3.0).rapid(z=10)
+    program.rapid(x=50).rapid(z=-3).mill([17], depth=-3.0)
+    return program.rapid(z=2).rapid(z=-6).mill([17], depth=-6.0).rapid(z=10)
+
+
+def test_holes_are_assumed_where_the_program_comes_down_to_its_first_cycle_by_rapid():
+    program = bored(first=-3.0)
+    (note,) = program.assumed()
+    assert program.found() == [] and "(also in line 3)" in note
+    assert note.startswith("a bored hole is assumed down to X150 Y0 Z−3, for a rapid")
+
+
+def test_no_hole_is_assumed_where_the_first_cycle_is_fed_down_to():
+    program = bored(first=1.0)
+    assert [hit.line for hit in program.found()] == [3, 5] and program.assumed() == []
+
+
+@pytest.mark.parametrize("height", [-0.01, -0.1, -0.3, -2.9])
+def test_a_retract_that_lost_its_sign_is_found_at_any_height(height):
+    program = start().mill().rapid(z=2).rapid(x=110).mill().rapid(z=height)
+    program.rapid(x=200).mill().rapid(z=2)
+    assert 5 in [hit.line for hit in program.found()]
+
+
+def test_below_z0_it_is_open_where_the_first_rapid_comes_down():
+    program = start().rapid(z=-2).mill(depth=-4).rapid(z=-2).rapid(x=150).mill(depth=-4)
+    assert program.found() == [] and len(program.assumed()) == 1
 
 
 @pytest.mark.parametrize(("face", "count"), [(0.0, 0), (0.5, 2)])

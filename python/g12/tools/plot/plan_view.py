@@ -220,7 +220,7 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
         style.draw(axes, lines, shade, 2.6 if wide else width_for(scene))
     if scene.real is not None:
         draw_real(axes, scene, pair)
-    hit = [collision.path[:, pair] / unit for collision in scene.seen.rapids]
+    hit = [found.values["path"][:, pair] / unit for found in scene.seen.material.rapids]
     style.draw(axes, hit, style.CRASH, 3.0, 3.8)
 
 
@@ -357,7 +357,7 @@ def motion_entries(scene: Scene) -> list:
 def warning_entries(scene: Scene) -> list:
     """Return the legend's entries of what there is to warn of."""
     listed = []
-    if scene.seen.rapids:
+    if scene.seen.material.rapids:
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
     if scene.seen.rings:
         listed.append(style.standing("material left standing"))

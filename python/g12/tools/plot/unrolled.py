@@ -29,6 +29,7 @@ from g12.tools.plot.plan_view import (
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.preview.moves import Move
+from g12.tools.verify.in_material import MaterialFacts
 
 WIDTH, MOST, LEAST = 11.9, 4.6, 0.9  # of the page; the surface's height
 LEFT, RIGHT, TOP = style.MARGIN, 0.35, 1.3
@@ -117,7 +118,7 @@ def unrolled(scene: Scene) -> Scene:
     positions = as_positions(path.points)
     flat = Track(Flat(turning=False), positions, np.zeros_like(positions), path.move, path.time)
     trace = replace(subject.trace, moves=moves)
-    shown = scene.seen._replace(stock=None)
+    shown = scene.seen._replace(material=MaterialFacts())
     return replace(scene, subject=replace(subject, trace=trace, path=flat), seen=shown)
 
 

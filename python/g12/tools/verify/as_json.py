@@ -7,14 +7,13 @@ import json
 
 from g12.tools.path.slowest import Pace
 from g12.tools.units import MM
-from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.paragraphs import AXES, pocket_slowest_line
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
-from g12.tools.verify.rapids import Collision
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.shape_findings import shape_json
+from g12.tools.verify.workpiece import Workpiece
 
 
 def as_json(proof: Proof) -> str:
@@ -27,8 +26,8 @@ def as_json(proof: Proof) -> str:
             "pockets": [pocket_json(facts, proof) for facts in proof.pockets],
             "sections": [section_json(facts, proof) for facts in proof.sections],
             "shapes": [shape_json(facts) for facts in proof.shapes],
-            "rapids": [collision_json(hit, proof) for hit in proof.collisions],
-            "stock": proof.stock and stock_json(proof.stock, proof),
+            "rapids": [judged_json(each, proof) for each in proof.material.rapids],
+            "stock": proof.material.given and stock_json(proof.material.given),
             "unseen": [
                 {"line": proof.user_line(line), "code": code} for line, code in proof.unseen
             ],
@@ -118,27 +117,9 @@ def section_json(facts: SectionFacts, proof: Proof) -> dict:
     }
 
 
-def collision_json(hit: Collision, proof: Proof) -> dict:
-    """Return a rapid through material as plain values."""
-    return {
-        "line": proof.user_line(hit.line),
-        "area": hit.area,
-        "from": hit.path[0].tolist(),
-        "to": hit.path[-1].tolist(),
-    }
-
-
-def stock_json(facts: StockFacts, proof: Proof) -> dict:
-    """Return what happens to the stock as plain values."""
-    return {
-        "text": facts.stock.text,
-        "bounds": list(facts.shape.bounds),
-        "top": facts.top,
-        "below": facts.below,
-        "plunges": [plunge._asdict() for plunge in facts.plunges],
-        "standing": [standing._asdict() for standing in facts.standing],
-        "rapids": [collision_json(hit, proof) for hit in facts.rapids],
-    }
+def stock_json(piece: Workpiece) -> dict:
+    """Return the stock as plain values."""
+    return {"text": piece.stock.text, "bounds": list(piece.shape.bounds), "top": piece.top}
 
 
 def pace_json(pace: Pace, line: int) -> dict:

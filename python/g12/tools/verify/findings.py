@@ -12,10 +12,8 @@ from collections.abc import Iterator, Sequence
 from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.axis_limits import Overrun
 from g12.tools.verify.compare.state import StateDifference
-from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.pocket_area import is_wrong_tool
-from g12.tools.verify.rapids import Collision
 from g12.tools.verify.reading.circles import Cutter
 from g12.tools.verify.result.tolerances import LEVEL
 from g12.tools.verify.section import SectionFacts
@@ -170,32 +168,6 @@ def turn_findings(facts: SectionFacts) -> Iterator[str]:
         yield f"C turns at {speed:.4g} degrees/s, its limit is {facts.c_limit:.4g}"
 
 
-def stock_findings(facts: StockFacts, unit: Unit = MM) -> Iterator[tuple[int, str]]:
-    """Yield what is wrong with what a program does to its stock, each with its line."""
-    for hit in facts.rapids:
-        x, y, z = (unit.text(value) for value in hit.path[0])
-        yield hit.line, f"a rapid goes into the stock ({unit.area(hit.area)}) at X{x} Y{y} Z{z}"
-    for line, area, height in facts.standing:
-        at = unit.text(height - facts.top)
-        yield line, f"{unit.area(area)} of the bar stand beyond the contour at Z{at}"
-
-
-def stock_notes(facts: StockFacts, unit: Unit = MM) -> Iterator[str]:
-    """Yield what a user should know of a program in its stock."""
-    for line, place, share in facts.plunges:
-        x, y, _ = (unit.text(value) for value in place)
-        yield (
-            f"line {line}: it plunges with {plain(100 * share, 0)} % of the cutter into the stock, "
-            f"at X{x} Y{y}{' of the face' if facts.stock.diameter else ''}"
-        )
-    for line in facts.missed:
-        yield f"line {line}: it meets nothing of the stock"
-    for line in facts.aside:
-        yield f"line {line}: a section on a cylinder is not compared with the stock"
-    if facts.below:
-        yield f"the lowest cut is {unit.text(facts.below)} {unit.name} below the block"
-
-
 def motion_findings(facts: SectionFacts, unit: Unit) -> Iterator[str]:
     """Yield how a section's lines follow each other otherwise than they should."""
     if facts.order_off:
@@ -226,9 +198,3 @@ def state_findings(facts: SectionFacts) -> Iterator[str]:
 def place_of_act(line: int) -> str:
     """Return in words where something happens: behind a line that is cut."""
     return f"behind line {line}" if line else "at the start"
-
-
-def collision_text(hit: Collision, unit: Unit = MM) -> str:
-    """Return in words what a rapid goes through."""
-    x, y, z = (unit.text(value) for value in hit.path[0])
-    return f"a rapid goes through {unit.area(hit.area)} not cleared before, from X{x} Y{y} Z{z} on"

@@ -13,14 +13,10 @@ from g12.tools.preview.executed_blocks import Text
 from g12.tools.preview.moves import Move
 from g12.tools.units import MM, Unit
 from g12.tools.verify.findings import (
-    collision_text,
     pocket_notes,
     section_findings,
     section_notes,
-    stock_findings,
-    stock_notes,
 )
-from g12.tools.verify.in_stock import StockFacts
 from g12.tools.verify.mistakes.cut import ProgramCut
 from g12.tools.verify.mistakes.feeds import judge_feeds, judge_native_c
 from g12.tools.verify.mistakes.levels import judge_levels
@@ -47,6 +43,7 @@ def judged(proof: Proof, texts: Sequence[Text]) -> list[Finding]:
     known = {index for some in proof.asked.moves for index in some}
     found = [
         *said_of_cuts(proof),
+        *proof.material.judged,
         *judge_tool_length(cuts, moves, trace.lengths, trace.events),
         *judge_feeds(cuts, moves, path, limits_of(ini)),
         *judge_spindle(cuts, trace.events, ini),
@@ -91,22 +88,10 @@ def said_of_cuts(proof: Proof) -> Iterator[Finding]:
         yield from noted(section.line, section.file, lambda some, _: section_notes(some), facts)
     for facts in proof.shapes:
         yield from said(facts.asked.line, facts.asked.file, shape_findings, facts)
-    for hit in proof.collisions:
-        yield from said(hit.line, "", lambda hit, unit: [collision_text(hit, unit)], hit)
     for line, code in proof.unseen:
         yield Finding("not-measured", line, {"code": code})
     for line, code in proof.still:
         yield Finding("not-cut", line, {"code": code})
-    if proof.stock:
-        yield from said_of_stock(proof.stock)
-
-
-def said_of_stock(stock: StockFacts) -> Iterator[Finding]:
-    """Yield what is said of the stock; each of its findings has a line of its own."""
-    for at, (line, _) in enumerate(stock_findings(stock)):
-        text = partial(nth, lambda unit: [said for _, said in stock_findings(stock, unit)], at)
-        yield Finding("said", line, {"text": text})
-    yield from noted(0, "", stock_notes, stock)
 
 
 def said(line: int, file: str, judge: Judge, facts: object, *more: object) -> Iterator[Finding]:

@@ -10,11 +10,12 @@ from g12.tools.path.slowest import Pace
 from g12.tools.units import Unit, plain
 from g12.tools.verify.axis_limits import SAME_ZERO
 from g12.tools.verify.findings import SAME_AREA, gouged
-from g12.tools.verify.in_stock import StockFacts, zero_of
+from g12.tools.verify.in_material import zero_of
 from g12.tools.verify.pocket import HelixFacts, PocketFacts
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.section import SectionFacts
 from g12.tools.verify.shape_findings import shape_rows
+from g12.tools.verify.workpiece import Workpiece
 
 GAP = 14  # columns of a row's name
 TURNS = {-1: "clockwise", 1: "counterclockwise"}
@@ -31,7 +32,8 @@ def paragraphs_of(proof: Proof, unit: Unit) -> list[str]:
         )
         for facts in proof.shapes
     ]
-    stock = [stock_text(proof.stock, unit)] if proof.stock else []
+    given = proof.material.given
+    stock = [stock_text(given, unit)] if given else []
     pockets = [pocket_text(facts, proof, unit) for facts in proof.pockets]
     return [
         *pockets,
@@ -90,7 +92,7 @@ def line_text(proof: Proof, line: int, file: str) -> str:
     return f"line {proof.user_line(line, file)}{f' of {file}' if file else ''}"
 
 
-def stock_text(facts: StockFacts, unit: Unit) -> str:
+def stock_text(facts: Workpiece, unit: Unit) -> str:
     """Return the paragraph of the stock."""
     low_x, low_y, high_x, high_y = (unit.text(value) for value in facts.shape.bounds)
     rows = [("where", f"X{low_x} to X{high_x}, Y{low_y} to Y{high_y}, top Z{unit.text(facts.top)}")]

@@ -32,7 +32,7 @@ def is_wrong_tool(cutter: Cutter) -> bool:
     return known and abs(cutter.radius - cutter.loaded) > WEAR * cutter.loaded
 
 
-def floor_of(path: Sequence[Expected]) -> list[Expected]:
+def _moves_on_floor(path: Sequence[Expected]) -> list[Expected]:
     """Return the moves at feed at the deepest level."""
     deepest = min(move.end_level for move in path)
     flat = (move for move in path if move.start_level == move.end_level and not move.rapid)
@@ -41,7 +41,7 @@ def floor_of(path: Sequence[Expected]) -> list[Expected]:
 
 def uncut_area(target: Target, tolerance: float, known: Known) -> float:
     """Return what the expected toolpath leaves; ``known`` are pockets like it, by their paths."""
-    floor, cutter = floor_of(target.path), cutting_radius(target.cutter)
+    floor, cutter = _moves_on_floor(target.path), cutting_radius(target.cutter)
     wall = target.wall
     key = (wall.radius, wall.cleared, cutter, *map(_key, floor))
     if key not in known:
@@ -84,10 +84,13 @@ def wanted_of(wall: Wall, cutter: float, tolerance: float) -> Span:
 
 def left_of(wall: Wall, cutter: float, floor: BaseGeometry, tolerance: float) -> BaseGeometry:
     """Return what is left standing at the deepest level, beyond the tolerance."""
-    inner, outer = wanted_of(wall, cutter, tolerance)
+    return ring(*wanted_of(wall, cutter, tolerance)).difference(floor)
+
+
+def ring(inner: float, outer: float) -> BaseGeometry:
+    """Return the area between two circles about the centre."""
     area = disc((0, 0), outer, FINE)
-    ring = area.difference(disc((0, 0), inner, FINE)) if inner > 0.01 else area
-    return ring.difference(floor)
+    return area.difference(disc((0, 0), inner, FINE)) if inner > 0.01 else area
 
 
 def uncut_in_run(target: Target, lines: Sequence[np.ndarray], tolerance: float) -> float:

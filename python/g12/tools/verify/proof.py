@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini
+from g12.tools.material.stock import read_stock
 from g12.tools.path.follow import Followed, follow
 from g12.tools.path.part import Part, part_of, part_of_program
 from g12.tools.path.samples import Samples
@@ -28,10 +29,9 @@ from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import Unit, unit_of
 from g12.tools.verify.axis_limits import has_one_zero, overruns_of, travel_of, widths_of
 from g12.tools.verify.executed_subs import executed_everywhere
-from g12.tools.verify.in_stock import InStock, StockFacts
+from g12.tools.verify.in_material import MaterialFacts, Program, material_facts, zero_of
 from g12.tools.verify.judgement import judged
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
-from g12.tools.verify.rapids import Collision, collisions
 from g12.tools.verify.reading.circles import CircleReader, Target
 from g12.tools.verify.reading.codes import CYLINDER, POLAR, Codes
 from g12.tools.verify.result.finding import Finding
@@ -39,10 +39,10 @@ from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
 from g12.tools.verify.section_paths import x0_of
 from g12.tools.verify.shape_findings import ShapeFacts, measure_shape
-from g12.tools.verify.stock import read_stock
 from g12.tools.verify.surface_pen import SurfacePen
 from g12.tools.verify.wanted_contour import Pen, SectionContour, WordReading, sections
 from g12.tools.verify.wanted_shape import ShapeAsked, ShapeReading, shapes_asked
+from g12.tools.verify.workpiece import Workpiece, assumed_workpiece, given_workpiece
 from g12.tools.verify.zero_line import with_zero_lines
 
 POCKET_TOLERANCE = 0.005  # mm
@@ -136,18 +136,17 @@ class Proof:
     """What was measured.
 
     ``unseen`` are lines whose blocks make a cycle cut that belongs to no pocket and no section
-    measured, and the cycle's code; ``still`` those of cycles that move nothing. ``stock`` is what
-    happens to the stock, None if it is not known. ``asked`` is what the words ask for.
+    measured, and the cycle's code; ``still`` those of cycles that move nothing. ``asked`` is
+    what the words ask for.
     ``opened`` is the user's file, None where that is what was read.
     """
 
     subject: Subject
     pockets: list[PocketFacts]
     sections: list[SectionFacts]
-    collisions: list[Collision]
     unseen: list[tuple[int, str]]
     tolerances: Tolerances
-    stock: StockFacts | None = None
+    material: MaterialFacts
     still: list[tuple[int, str]] = field(default_factory=list)
     shapes: Sequence[ShapeFacts] = ()
     asked: Asked = NOTHING
@@ -200,8 +199,7 @@ def prove(
         there = moves_there(tracer, subject, parameters)
     for first in [each for each in asked.sections if not each.surface][:1]:
         subject = subject.about(x0_of(first, trace.moves[first.at]))
-    proof = measured(subject, asked, there, tolerances, tell)
-    return replace(proof, stock=stock_facts(subject, asked, stock, proof.collisions))
+    return measured(subject, asked, there, tolerances, stock, tell)
 
 
 def subject_of(program: Path, ini: Ini, trace: Trace, samples: Samples | None = None) -> Subject:
@@ -281,6 +279,7 @@ def measured(
     asked: Asked,
     there: Sequence[Move] | None,
     tolerances: Tolerances,
+    stock: StockText | None,
     tell: Tell,
 ) -> Proof:
     """Return what is measured of a program; ``there`` are its moves on the machine, if known."""
@@ -288,7 +287,7 @@ def measured(
     travel, known = travel_of(subject.ini), {}
     together = there is not None and has_one_zero(subject.trace.events)
     widths = widths_of((block for block, _ in asked.circles), there) if together else {}
-    pockets = []
+    pockets, piece = [], workpiece_of(subject, asked, stock)
     for block, target in counted(asked.circles, "measuring pocket", tell):
         facts = measure_pocket(block, target, path, moves, tolerances.pocket, real, known)
         overruns = None if there is None else tuple(overruns_of(block, there, travel, widths))
@@ -296,10 +295,10 @@ def measured(
     found = measured_sections(subject, asked.sections, tolerances.polar, tell)
     shapes = measured_shapes(subject, asked, tolerances.polar, tell)
     tell("looking for rapids through material")
-    hits = collisions(asked.circles, moves, path, subject.trace.diameters, real)
+    material = material_facts(program_of(subject, asked), piece)
     unseen = unseen_in(moves, Codes(subject.ini), asked.moves)
     told = {"still": asked.still, "asked": asked, "shapes": shapes}
-    return Proof(subject, pockets, found, hits, unseen, tolerances, **told)
+    return Proof(subject, pockets, found, unseen, tolerances, material, **told)
 
 
 def measured_sections(
@@ -331,21 +330,24 @@ def measured_shapes(
     return found
 
 
-def stock_facts(
-    subject: Subject, asked: Asked, stock: StockText | None, known: Sequence[Collision]
-) -> StockFacts | None:
-    """Return what a program does to its stock, None if none is said; ``known`` are told already.
+def program_of(subject: Subject, asked: Asked) -> Program:
+    """Return what is judged in the material."""
+    moves, part = subject.trace.moves, subject.path.part
+    return Program(moves, part, asked.circles, asked.sections, subject.real)
+
+
+def workpiece_of(subject: Subject, asked: Asked, stock: StockText | None) -> Workpiece:
+    """Return what a program is cut from, assumed where no stock is given.
 
     Raises UsageError for a text that is no stock of the machine's.
     """
+    trace, part = subject.trace, subject.path.part
     if stock is None:
-        return None
-    unit = unit_of(subject.trace.modes.gcodes, stock.units)
+        return assumed_workpiece(asked.circles, trace.moves, part, trace.diameters)
+    unit = unit_of(trace.modes.gcodes, stock.units)
     said = read_stock(stock.text, part_of(subject.ini).turning, unit)
-    trace = subject.trace
-    return InStock(
-        said, asked.circles, asked.sections, trace.moves, subject.path, trace.diameters
-    ).facts(known)
+    zero = zero_of(asked.circles, asked.sections, trace.moves)
+    return given_workpiece(said, zero, asked.circles, trace.moves, part, trace.diameters)
 
 
 def unseen_in(moves: Sequence[Move], codes: Codes, seen: Iterable[range]) -> list[tuple[int, str]]:

@@ -13,20 +13,14 @@ from shapely.affinity import translate
 from shapely.geometry.base import BaseGeometry
 
 from g12.tools.path.part import Z
-from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.units import MM, Unit
-from g12.tools.verify.findings import (
-    SAME_AREA,
-    collision_text,
-    other_tool,
-    stock_findings,
-)
-from g12.tools.verify.in_stock import StockFacts, zero_of
+from g12.tools.verify.findings import SAME_AREA, other_tool
+from g12.tools.verify.in_material import MaterialFacts, material_facts, zero_of
 from g12.tools.verify.judgement import cuts_of
 from g12.tools.verify.mistakes.spindle import judge_spindle
-from g12.tools.verify.pocket_area import is_wrong_tool, left_of
+from g12.tools.verify.pocket_area import is_wrong_tool, ring, wanted_of
 from g12.tools.verify.proof import (
     POCKET_TOLERANCE,
     Asked,
@@ -34,12 +28,13 @@ from g12.tools.verify.proof import (
     StockText,
     Subject,
     asked_of,
-    stock_facts,
+    program_of,
+    workpiece_of,
 )
-from g12.tools.verify.rapids import Circles, Cleared, Collision, collisions, cutting, floors_of
 from g12.tools.verify.reading.circles import Cutter
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.wanted_contour import SectionContour
+from g12.tools.verify.workpiece import Circles, Workpiece, cutting, floor_of
 
 
 class StandingRings(NamedTuple):
@@ -69,28 +64,27 @@ class Seen(NamedTuple):
     how high the program's Z0 is where it first cuts, as far as that is known.
     """
 
-    collisions: tuple[Collision, ...] = ()
+    material: MaterialFacts = MaterialFacts()
     rings: tuple[StandingRings, ...] = ()
     cutters: tuple[WrongCutter, ...] = ()
-    stock: StockFacts | None = None
     still: tuple[int, ...] = ()
     surface: float = 0.0
     z0: float = 0.0
 
     @property
-    def rapids(self) -> tuple[Collision, ...]:
-        """Return the rapids that go through material or into the stock."""
-        return (*self.collisions, *(self.stock.rapids if self.stock else ()))
+    def stock(self) -> Workpiece | None:
+        """The stock, None if none is given."""
+        return self.material.given
 
     def warnings(self, unit: Unit = MM) -> Iterator[tuple[int, str]]:
         """Yield what there is to warn of: the line, and a sentence."""
-        for hit in self.collisions:
-            yield hit.line, collision_text(hit, unit)
+        for each in self.material.judged:
+            if each.is_finding:
+                yield each.line, each.text(unit)
         for line, shape, *_ in self.rings:
             yield line, f"{unit.area(shape.area)} of material remain uncut"
         for line, _, cutter in self.cutters:
             yield line, other_tool(cutter, unit)
-        yield from stock_findings(self.stock, unit) if self.stock else ()
 
 
 def seen_in(
@@ -105,27 +99,26 @@ def seen_in(
     if any(codes.knows(move.remap) for move in trace.moves):
         with Tracer(subject.ini, tools=tools) as tracer:
             asked = asked_of(tracer, subject, tools, parameters)
-    hits = collisions(asked.circles, trace.moves, subject.path, trace.diameters, subject.real)
-    facts = stock_facts(subject, asked, stock, hits)
-    return seen_of(subject, asked.circles, asked.sections, hits, facts)
+    piece = workpiece_of(subject, asked, stock)
+    facts = material_facts(program_of(subject, asked), piece)
+    return seen_of(subject, asked.circles, asked.sections, facts)
 
 
 def seen_of_proof(proof: Proof) -> Seen:
     """Return what a picture of a program that was measured shows beside the cuts."""
     sections = [facts.section for facts in proof.sections]
-    return seen_of(proof.subject, proof.asked.circles, sections, proof.collisions, proof.stock)
+    return seen_of(proof.subject, proof.asked.circles, sections, proof.material)
 
 
 def seen_of(
     subject: Subject,
     circles: Circles,
     sections: Sequence[SectionContour],
-    hits: Sequence[Collision],
-    stock: StockFacts | None,
+    material: MaterialFacts,
 ) -> Seen:
-    """Return what is seen of circles and sections, with what is known of rapids and the stock."""
+    """Return what is seen of circles and sections, with what is known of the material."""
     trace = subject.trace
-    rings = standing_rings(circles, trace.moves, subject.path, trace.diameters)
+    rings = standing_rings(circles, trace.moves, material)
     cutters = (
         WrongCutter(target.source.line, tuple(map(float, target.wall.origin[:2])), target.cutter)
         for _, target in circles
@@ -134,7 +127,7 @@ def seen_of(
     cuts = list(cuts_of(Asked(list(circles), [], []), trace.moves))
     still = (each.line for each in judge_spindle(cuts, trace.events, subject.ini))
     surface, z0 = surface_of(sections), float(zero_of(circles, sections, trace.moves)[Z])
-    return Seen(tuple(hits), tuple(rings), tuple(cutters), stock, tuple(still), surface, z0)
+    return Seen(material, tuple(rings), tuple(cutters), tuple(still), surface, z0)
 
 
 def surface_of(sections: Sequence[SectionContour]) -> float:
@@ -144,17 +137,15 @@ def surface_of(sections: Sequence[SectionContour]) -> float:
 
 
 def standing_rings(
-    circles: Circles, moves: Sequence[Move], path: Track, diameters: dict[int, float]
+    circles: Circles, moves: Sequence[Move], material: MaterialFacts
 ) -> Iterator[StandingRings]:
     """Yield what stands in pockets in the plane XY."""
-    cleared = Cleared(circles, moves, path, diameters)
     for block, target in circles:
         wall, cutter = target.wall, target.cutter.radius
-        own = cutting(block, moves)
-        if wall.inside and wall.plane == 2 and own:
-            here = translate(cleared.of(own), *(-wall.origin[:2]))
-            left = left_of(wall, cutter, here, POCKET_TOLERANCE)
+        if wall.inside and wall.plane == Z and cutting(block, moves):
+            floor = floor_of(block, moves)
+            wanted = translate(ring(*wanted_of(wall, cutter, POCKET_TOLERANCE)), *wall.origin[:2])
+            left = material.piece.material.standing(wanted, floor, block.end)
             if left.area > SAME_AREA:
                 centre = tuple(map(float, wall.origin[:2]))
-                shape, floor = translate(left, *centre), floors_of(target)[1]
-                yield StandingRings(target.source.line, shape, centre, floor)
+                yield StandingRings(target.source.line, left, centre, floor)

@@ -35,9 +35,23 @@ FINDINGS = {
         "the tool length in force, {length:mm}, is not that of T{tool}: "
         "it cuts {off:fine} deeper than its words say (G43 H{tool} after M6?)"
     ),
+    # the material
+    "rapid-through": "a rapid goes through material, from {at:xyz} to {to:xyz}",
+    "rapid-into": "a rapid goes down into {area:mm2} of material, at {at:xyz}",
+    "bar-remains": "{area:mm2} of the bar remain beyond the contour at Z{level:mm}",
     "said": "{text:said}",
 }
 NOTES = {
+    "bored-assumed": (
+        "a bored hole is assumed down to {at:xyz}, for a rapid or R goes there{more}: "
+        "--stock gives what there is"
+    ),
+    "plunge-into-stock": (
+        "it plunges with {share:0} % of the cutter into the stock, at {at:xyz}{of}"
+    ),
+    "no-stock-met": "it meets nothing of the stock",
+    "cylinder-aside": "a section on a cylinder is not compared with the stock",
+    "below-block": "the lowest cut is {size:fine} below the block",
     "length-higher": (
         "the tool length in force, {length:mm}, is not that of T{tool}: "
         "it cuts {off:fine} higher than its words say (G43 H{tool} after M6?)"
@@ -67,6 +81,10 @@ NOTES = {
     "noted": "{text:said}",
 }
 NOT_JUDGED = {
+    "first-rapid": (
+        "what the first rapid goes through on its way to {at:xyz}: "
+        "where the tool comes from is not known"
+    ),
     "plain-moves": (
         "feed moves outside of cycles and sections: {count} lines, the last of them line {last}"
     ),

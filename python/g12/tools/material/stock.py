@@ -9,7 +9,7 @@ middle of every pocket. Lengths are millimetres in machine coordinates but where
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +20,6 @@ from shapely.ops import unary_union
 from g12.tools.errors import UsageError
 from g12.tools.path.part import disc
 from g12.tools.units import UNITS, Unit
-from g12.tools.verify.reading.circles import Wall
 
 NUMBER, SIGNED, UNIT_NAME = r"(\d+\.?\d*|\.\d+)", r"([-+]?(?:\d+\.?\d*|\.\d+))", r"\s*(mm|in)?"
 BAR = re.compile(rf"(?:bar\s*)?{NUMBER}{UNIT_NAME}")
@@ -28,6 +27,7 @@ SIZES = rf"(?:block\s*)?{NUMBER}x{NUMBER}x{NUMBER}(?:@{SIGNED},{SIGNED})?"
 BLOCK = re.compile(rf"(?:{SIZES})?\s*(?:bore\s*{NUMBER})?{UNIT_NAME}")
 BAR_FORMS = "a bar's diameter: 40, 40mm, 1.5in"
 BLOCK_FORMS = "100x80x20 (X, Y, Z), 100x80x20@-10,-10 (with its corner), bore 30, or both"
+Circle = tuple[Sequence[float], float]  # its centre, its radius
 UNITS_MM = {unit.name: unit.mm for unit in UNITS.values()}
 
 
@@ -44,20 +44,19 @@ class Stock(NamedTuple):
     corner: tuple[float, ...] | None = None
     bore: float = 0.0
 
-    def shape(self, zero: np.ndarray, walls: Iterable[Wall]) -> BaseGeometry:
-        """Return its area as seen along Z; ``zero`` is the program's, ``walls`` of its pockets.
+    def shape(self, zero: np.ndarray, pockets: Sequence[Circle]) -> BaseGeometry:
+        """Return its area as seen along Z; ``zero`` is the program's.
 
         Without a block only the pockets are known to be in something.
         """
         if self.diameter:
             return disc((0.0, 0.0), self.diameter / 2)
-        flat = [wall for wall in walls if wall.inside and wall.plane == 2]
         if self.size:
             low = zero[:2] + np.array(self.corner or np.array(self.size[:2]) / -2)
             whole = box(*low, *(low + np.array(self.size[:2])))
         else:
-            whole = unary_union([Polygon(), *(disc(wall.origin, wall.radius) for wall in flat)])
-        bores = [disc(wall.origin, self.bore / 2) for wall in flat] if self.bore else []
+            whole = unary_union([Polygon(), *(disc(*pocket) for pocket in pockets)])
+        bores = [disc(centre, self.bore / 2) for centre, _ in pockets] if self.bore else []
         return whole.difference(unary_union([Polygon(), *bores]))
 
 

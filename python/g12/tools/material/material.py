@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The material of a part: solid below a top, less what was cut to a level or below it.
+
+A part is made of solids, each an area of the plane and the top below which it is material. Cuts
+take away: each an area, the level down to which it is free, and the move that makes it. So what
+stands is known at every move of a program, and the order of questions does not matter. The plane
+and the levels are those of the points that come in: X, Y and Z of a mill, the face of a lathe, or
+the unrolled surface of a cylinder, whose level is the radius; that has a ``period``.
+
+Areas are worked out where somebody asks for them, once for equal toolpaths. Lengths are mm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cached_property, partial
+from typing import NamedTuple
+
+import numpy as np
+from shapely.affinity import translate
+from shapely.geometry import Point, Polygon
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
+
+from g12.tools.path.part import swept
+
+SAME_LEVEL = 1e-3
+ALLOWED = 0.05  # that a rapid may go into material: the rounding of a run's corners
+LEAST_AREA = 0.05  # mm² that a rapid meets
+STEP = 0.5  # between the points of a rapid that are looked at
+BAND, MOST_BANDS = 0.25, 40  # levels into which a move that falls is divided
+NOTHING = Polygon()
+ALWAYS = -1  # the move that cuts what was open before the program began
+
+Bounds = Sequence[float]  # least and greatest of both coordinates of the plane
+Drawn = Callable[[], np.ndarray]  # points (n, 2) along a path
+
+
+class Portion(NamedTuple):
+    """A portion of a toolpath in the plane (n, 2), and between which levels it lies."""
+
+    line: np.ndarray
+    low: float
+    high: float
+
+
+class Touch(NamedTuple):
+    """Material that a move goes through: its area, and the tool's points (n, 3) where it does."""
+
+    area: float
+    points: np.ndarray
+
+
+class _Cuts:
+    """Areas with their levels and moves, found by their bounds."""
+
+    def __init__(self) -> None:
+        self.areas: list[_Area] = []
+        self._rows: list[tuple[float, ...]] = []
+
+    def add(self, area: _Area, level: float, move: int) -> None:
+        self.areas.append(area)
+        self._rows.append((*area.bounds, level, move))
+        self.__dict__.pop("_table", None)
+
+    @cached_property
+    def _table(self) -> np.ndarray:
+        return np.array(self._rows).reshape(-1, 6).T
+
+    def within(self, bounds: Bounds, level: float, before: float) -> np.ndarray:
+        """Return the indices of what may lie within bounds, down to a level, before a move."""
+        x0, y0, x1, y1, levels, moves = self._table
+        found = (x0 <= bounds[2]) & (x1 >= bounds[0]) & (y0 <= bounds[3]) & (y1 >= bounds[1])
+        return np.flatnonzero(found & (levels <= level + SAME_LEVEL) & (moves < before))
+
+
+class _Area:
+    """An area, worked out when it is asked for: swept by a cutter, or as it is."""
+
+    def __init__(self, bounds: Bounds, draw: Drawn, radius: float, known: dict) -> None:
+        self.bounds, self._draw, self._radius, self._known = bounds, draw, radius, known
+
+    @cached_property
+    def shape(self) -> BaseGeometry:
+        """The area; that of an equal path elsewhere is moved here."""
+        line = self._draw()
+        start = line[0]
+        shifted = line - start
+        key = (round(self._radius, 6), np.round(shifted, 6).tobytes())
+        if key not in self._known:
+            self._known[key] = swept([shifted], self._radius)
+        return translate(self._known[key], *start)
+
+
+class _Given(NamedTuple):
+    """An area that is known as it is."""
+
+    shape: BaseGeometry
+
+    @property
+    def bounds(self) -> Bounds:
+        return self.shape.bounds
+
+
+class Material:
+    """What of a part stands; see the head of this file."""
+
+    def __init__(self, period: float = 0.0) -> None:
+        self._solids, self._cuts = _Cuts(), _Cuts()
+        self._period = period
+        self._known: dict = {}
+        self.top = -math.inf
+
+    def add(self, area: BaseGeometry, top: float) -> None:
+        """Make an area solid below a top."""
+        if not area.is_empty:
+            self._solids.add(_Given(area), -top, ALWAYS)
+            self.top = max(self.top, top)
+
+    def open(self, area: BaseGeometry, level: float = -math.inf) -> None:
+        """Take away what was never there: a hole, down to a level."""
+        if not area.is_empty:
+            self._cuts.add(_Given(area), level, ALWAYS)
+
+    def cut(self, move: int, points: np.ndarray, radius: float) -> None:
+        """Take away what a cutter of a radius sweeps along points (n, 3)."""
+        if points[:, 2].min() >= self.top:
+            return
+        if goes_along_z(points):
+            points = points[points[:, 2].argmin()][None]
+        for portion in portions(points):
+            bounds = (*portion.line.min(axis=0), *portion.line.max(axis=0))
+            self.cut_level(move, bounds, portion.low, partial(np.asarray, portion.line), radius)
+
+    def cut_level(
+        self, move: int, bounds: Bounds, level: float, draw: Drawn, radius: float
+    ) -> None:
+        """Take away what a cutter sweeps at a level along a path within bounds, drawn if needed."""
+        if level < self.top:
+            x0, y0, x1, y1 = bounds
+            within = (x0 - radius, y0 - radius, x1 + radius, y1 + radius)
+            self._cuts.add(_Area(within, draw, radius, self._known), level, move)
+
+    def standing(
+        self, region: BaseGeometry, level: float, before: float = math.inf
+    ) -> BaseGeometry:
+        """Return what of a region is material just below a level, before a move."""
+        found = [self._standing(part, level, before) for part in self._turned(region)]
+        return unary_union(found) if len(found) > 1 else found[0]
+
+    def _standing(self, region: BaseGeometry, level: float, before: float) -> BaseGeometry:
+        bounds = region.bounds
+        if not bounds:
+            return NOTHING
+        solid = self._solids.within(bounds, -level - 2 * SAME_LEVEL, math.inf)
+        if not len(solid):
+            return NOTHING
+        region = region.intersection(self._shapes(self._solids, solid))
+        away = self._cuts.within(bounds, level, before)
+        return region.difference(self._shapes(self._cuts, away)) if len(away) else region
+
+    def _turned(self, region: BaseGeometry) -> list[BaseGeometry]:
+        """Return a region once for each turn of a surface that it lies on, moved to the first."""
+        if not self._period or region.is_empty:
+            return [region]
+        first, last = (math.floor(region.bounds[side] / self._period) for side in (0, 2))
+        return [translate(region, -turn * self._period) for turn in range(first, last + 1)]
+
+    def _shapes(self, cuts: _Cuts, indices: Iterable[int]) -> BaseGeometry:
+        return unary_union([cuts.areas[index].shape for index in indices])
+
+    def touched(self, points: np.ndarray, radius: float, before: float) -> Touch | None:
+        """Return the material that a cutter goes through along points (n, 3), None if none."""
+        if radius <= ALLOWED or points[:, 2].min() > self.top - SAME_LEVEL:
+            return None
+        found, where = [], []
+        for portion in portions(going(points)):
+            area = self._under(portion, radius - ALLOWED, before)
+            if area.area > LEAST_AREA:
+                found.append(area)
+                where += points_in(area, portion, radius)
+        return Touch(unary_union(found).area, np.array(where)) if where else None
+
+    def _under(self, portion: Portion, radius: float, before: float) -> BaseGeometry:
+        if portion.high > self.top - SAME_LEVEL:
+            return NOTHING
+        return self.standing(swept([portion.line], radius), portion.high, before)
+
+
+def goes_along_z(points: np.ndarray) -> bool:
+    """Tell whether a path (n, 3) goes along the tool's axis."""
+    return bool(np.ptp(points[:, :2], axis=0).max() < ALLOWED)
+
+
+def going(points: np.ndarray) -> np.ndarray:
+    """Return points (n, 3) without what meets nothing new: a path straight up, all of one down."""
+    if not goes_along_z(points):
+        return points
+    lowest = int(points[:, 2].argmin())
+    return points[lowest : lowest + 1] if lowest or len(points) == 1 else points[:0]
+
+
+def portions(points: np.ndarray) -> Iterator[Portion]:
+    """Yield a toolpath (n, 3) in portions that each lie in a narrow band of levels."""
+    if len(points) < 2 or np.ptp(points[:, 2]) < SAME_LEVEL:
+        if len(points):
+            yield Portion(points[:, :2], points[:, 2].min(), points[:, 2].max())
+        return
+    band = max(BAND, np.ptp(points[:, 2]) / MOST_BANDS)
+    points = with_levels(points, band)
+    low = np.minimum(points[:-1, 2], points[1:, 2])
+    ends = 1 + np.flatnonzero(np.diff(np.floor(low / band + 1e-6)))
+    for first, last in zip([0, *ends], [*ends, len(points) - 1]):
+        own = points[first : last + 1]
+        yield Portion(own[:, :2], own[:, 2].min(), own[:, 2].max())
+
+
+def with_levels(points: np.ndarray, band: float) -> np.ndarray:
+    """Return a toolpath (n, 3) with so many points that none is farther below the one before."""
+    counts = np.maximum(1, np.ceil(np.abs(np.diff(points[:, 2])) / band - 1e-9)).astype(int)
+    places = np.repeat(np.arange(len(counts)), counts)
+    share = np.concatenate([np.arange(count) / count for count in counts])
+    places = np.append(places + share, len(counts))
+    return np.stack([np.interp(places, np.arange(len(points)), axis) for axis in points.T], axis=1)
+
+
+def points_in(area: BaseGeometry, portion: Portion, radius: float) -> list[np.ndarray]:
+    """Return the tool's points (3,) along a portion at which it meets an area."""
+    steps = np.append(0.0, np.cumsum(np.hypot(*np.diff(portion.line, axis=0).T)))
+    places = np.linspace(0.0, steps[-1], 2 + int(steps[-1] / STEP))
+    line = np.stack([np.interp(places, steps, axis) for axis in portion.line.T], axis=1)
+    return [
+        np.array([*point, portion.high])
+        for point in line
+        if area.distance(Point(point)) < radius - ALLOWED
+    ]
