@@ -288,15 +288,6 @@ def test_the_speed_of_c_is_told_with_its_limit():
     assert facts.c_speed == pytest.approx(360) and facts.c_limit == 360
 
 
-def test_a_section_that_never_goes_down_is_noted():
-    up, down = (
-        measure(cut(around(TOOL)), square(-1)),
-        measure(diving(around(TOOL), air=2.0, depth=-3.0), square(-1), z=2.0),
-    )
-    assert list(section_notes(up)) == ["no move goes below the Z of G12.1"]
-    assert list(section_notes(down)) == [] and down.lowest == -3.0
-
-
 def test_the_lowest_feed_is_placed_in_the_sections_own_plane():
     hand = Hand().rapid(x=40.0, c=90.0).next_block().line(c=120.0)
     facts = measure(hand, [line(2, 40 + 0j, 40 * np.exp(1j * math.radians(30)))])
