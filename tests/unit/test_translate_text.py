@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
+from g12.tools.commands.translate import refusal_sentence
 from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.blocks.lexer import program_text
 from g12.tools.translate.program import translate_program
@@ -48,7 +49,10 @@ def sentence(control, text, **options):
 def test_a_line_stays_a_line_and_further_ones_say_theirs():
     translated = behind(HAAS, "G154 P2 G0 X1.\n\n(PLAIN)\nG0 X2. M98 P5\nM30\nO5\nM99\n")
     assert translated == [
-        "G10 L2 P9 R0 G59.3 #5381=#4011 #5382=#4012 #5383=#4013",
+        "o<unset_2> if [[#4011 EQ 0] AND [#4012 EQ 0] AND [#4013 EQ 0]] (G154 P2 overwrites G59.3)",
+        "(line 3) (MSG, G154 P2 was never set, it counts as 0: X is #4011)",
+        "o<unset_2> endif (line 3)",
+        "G10 L2 P9 R0 G59.3 #5381=#4011 #5382=#4012 #5383=#4013 (line 3)",
         "G0 X1. (line 3)",
         "",
         "(PLAIN)",
@@ -247,9 +251,9 @@ def test_an_m_code_that_the_machine_knows_stays():
         (LATHE, "G50", "G50 needs S, a speed limit, or X and Z"),
         (LATHE, "G12.1 X5.", "G12.1 moves nothing"),
         (LATHE, "G107", "G107 needs C"),
-        (LATHE, "G12.1\nG1 X10. W-1.", "W-1. beside other axes in polar mode"),
+        (LATHE, "G12.1\nG1 X10. W-1.", "W-1. beside other axes in a section"),
         (LATHE, "G12.1\nG41 G1 X10. D5", "D5 in polar mode"),
-        (HAAS_LATHE, "G112\nG0 X1.", "G0 in polar mode needs G20 or G21"),
+        (HAAS_LATHE, "G112\nG0 X1.", "G0 in polar mode: its speed needs the units"),
     ],
 )  # fmt: skip
 def test_what_is_refused_is_told(control, block, start):
@@ -638,3 +642,32 @@ def test_c_that_does_not_turn_or_slides_that_stand_need_no_other_feed():
     text = "G1 X40. C0 F100.\nX40. C30.\nG0 X50. C40.\n"
     head = "G21 G98\nG0 X50. Z5. C0\n"
     assert behind(LATHE, f"{text}M30\n", head)[1:] == [*text.splitlines(), "M30"]
+
+
+# ---------------------------------------------------------------- all that is missing, at once
+
+
+def test_all_that_a_control_lacks_is_named_at_once(tmp_path):
+    text = "G21\nM51\nG5.3 Y3.\nM52 M14\nG0 X1\nM30\n"
+    control = read_control("okuma-lathe")
+    missing = translate_program(text, control, frozenset(("M14",))).missing
+    assert [line for line in missing if line[0] != "["] == [
+        'axes = "XZCY"',
+        'decimals = "least" # or "whole"',
+        '"G5.3" = "…" # "comment", "machine", "same" or codes of LinuxCNC',
+        'M51 = "…" # "comment", "machine", "same" or codes of LinuxCNC',
+        'M52 = "…" # "comment", "machine", "same" or codes of LinuxCNC',
+    ]
+    own = tmp_path / "own.toml"
+    own.write_text('based_on = "okuma-lathe"\n' + "\n".join(missing).replace("…", "comment"))
+    assert translate_program(text.replace("X1", "X1."), read_control(str(own))).missing == []
+
+
+def test_every_refused_block_is_named_with_its_reason():
+    refused = translate_program("G31\nG66\nG31\nG4\nM30\n", LATHE).refused
+    sentence = refusal_sentence(refused)
+    assert sentence.startswith("1: G31: a skip function: LinuxCNC probes with G38.2; line 3 too; ")
+    assert sentence.endswith(
+        "; line 2: G66: a modal macro: write G65 in each block; line 4: G4 "
+        "needs its time as X or U or P, once"
+    )

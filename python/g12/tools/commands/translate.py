@@ -17,7 +17,7 @@ import os
 import re
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,7 +47,7 @@ UNITS = {"inch": "G20", "mm": "G21"}
 POLAR_HANDLERS = ("polar_on", "polar_off")
 CYLINDER_HANDLER = "cylinder_mode"
 PROGRESS_EVERY = 0.2  # s
-OTHERS_NAMED = 5
+OTHERS_NAMED = 4
 
 
 @one_line("translate")
@@ -111,8 +111,16 @@ def translated(asked: argparse.Namespace, control: Control) -> str:
         control = replace(control, start=(*control.start, units_code(ini)))
     result = translate_program(text, control, codes, progress())
     if result.refused:
+        if result.missing:
+            print(paste_text(result.missing, asked.control), file=sys.stderr)
         raise ProgramError(f"{asked.program}:{refusal_sentence(result.refused)}")
     return result.text
+
+
+def paste_text(lines: Sequence[str], control: str) -> str:
+    """Return what a control of one's own needs for a program, as it is shown."""
+    head = "what the control's file lacks for this program; a control of your own says it:"
+    return "\n    ".join([head, f'based_on = "{control}"', *lines])
 
 
 def with_codes_of(control: Control, ini: Ini) -> Control:
@@ -132,11 +140,23 @@ def units_code(ini: Ini) -> str:
 
 
 def refusal_sentence(refused: list[RefusedBlock]) -> str:
-    """Return the first refusal, and the lines of some others."""
+    """Return the first refusal, and the others with their reasons, as far as there is room."""
     first, *others = refused
-    lines = list(dict.fromkeys(block.line for block in others if block.line != first.line))
-    more = ", ".join(map(str, lines[:OTHERS_NAMED])) + (" …" if lines[OTHERS_NAMED:] else "")
-    return f"{first.line}: {first.sentence}" + (f" (refused as well: line {more})" if more else "")
+    reasons: dict[str, list[str]] = {}
+    for block in others:
+        if block.line != first.line or block.sentence != first.sentence:
+            reasons.setdefault(block.sentence, []).append(str(block.line))
+    same = reasons.pop(first.sentence, [])
+    too = f"; {lines_text(same)} too" if same else ""
+    more = [f"; {lines_text(lines)}: {text}" for text, lines in reasons.items()]
+    rest = f"; {len(more) - OTHERS_NAMED} further reasons" if len(more) > OTHERS_NAMED else ""
+    return f"{first.line}: {first.sentence}{too}{''.join(more[:OTHERS_NAMED])}{rest}"
+
+
+def lines_text(lines: list[str]) -> str:
+    """Return lines' numbers as a sentence names them."""
+    named = ", ".join(lines[:OTHERS_NAMED]) + (" …" if lines[OTHERS_NAMED:] else "")
+    return f"line{'s' if len(lines) > 1 else ''} {named}"
 
 
 def machine_codes(ini: Ini) -> frozenset[str]:

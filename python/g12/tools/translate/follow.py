@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Iterator
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall
-from g12.tools.translate.blocks.errors import NotSure, NotTranslated
+from g12.tools.translate.blocks.errors import NotSaid, NotSure, NotTranslated
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
 from g12.tools.translate.rules import WORD_RULES
 from g12.tools.translate.rules.plain import is_plain
@@ -121,6 +121,7 @@ class FollowedProgram:
         except NotTranslated as refusal:
             draft.refusal = str(refusal)
             draft.unsure = refusal.modes if isinstance(refusal, NotSure) else ()
+            draft.setting = refusal.setting if isinstance(refusal, NotSaid) else None
         return draft
 
     def _head(self, draft: Draft, index: int) -> None:

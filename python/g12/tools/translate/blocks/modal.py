@@ -42,7 +42,8 @@ class ModalState(NamedTuple):
     ``polar`` is ``on`` between polar on and off, ``cylinder`` on a cylinder; ``mapped`` is the
     radius of one whose angles are written as lengths.
     ``at_x`` to ``at_c`` are the program's point, as far as it is known (`places`); ``held`` are
-    slides that LinuxCNC has not moved yet, each with where it stands.
+    slides that LinuxCNC has not moved yet, each with where it stands. ``known_offsets`` are the
+    numbered work offsets that are known to be set, or asked about.
     """
 
     motion: str = UNKNOWN
@@ -69,6 +70,7 @@ class ModalState(NamedTuple):
     own_distance: str = AS_PROGRAMMED
     own_feed: str = AS_PROGRAMMED
     held: tuple = ()
+    known_offsets: tuple = ()
     at_x: float | str = UNKNOWN
     at_y: float | str = UNKNOWN
     at_z: float | str = UNKNOWN

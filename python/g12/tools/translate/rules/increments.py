@@ -22,7 +22,7 @@ def incremental_words(draft: Draft) -> None:
         own = "UH" if draft.state.polar == "on" else "UWH"
         found = [word for word in found if word.letter not in own]
         if found and len(draft.axis_words()) + len(draft.increments()) > len(found):
-            raise NotTranslated(f"{found[0].text} beside other axes in polar mode")
+            raise NotTranslated(f"{found[0].text} beside other axes in a section")
     if not found:
         return
     for word in found:

@@ -8,13 +8,14 @@ it a radius here. Y is C and V is H. A rapid in polar mode is what the control's
 from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
-from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.places import known_place, value_text
 
 MOVING = frozenset("XYZABCUVWHF")
 PLANES = frozenset(("G17", "G18", "G19"))
+SECTIONS = {"on": "in polar mode", "cylinder": "on a cylinder", UNSURE: "in polar mode"}
 RENAMED = {"Y": "C", "V": "H"}
 
 
@@ -45,9 +46,11 @@ def turn_on(draft: Draft, code: str) -> None:
     """Write G12.1; X a radius if it is one on the control."""
     x = draft.control.value("polar", "x", "")
     if x in ("", "say"):
-        raise NotTranslated(
+        raise NotSaid(
             f'{code}: is X a diameter or a radius in it? say x = "diameter" or "radius" under '
-            "[polar] of your control (--polar-x)"
+            "[polar] of your control (--polar-x)",
+            "polar",
+            'x = "diameter" # or "radius"',
         )
     if draft.control.is_lathe and "C" in draft.letters() and is_zero(draft.words[-1]):
         draft.take("C")
@@ -78,7 +81,7 @@ def own_block(draft: Draft, code: str, lines: list[str]) -> None:
 def inside_polar(draft: Draft) -> None:
     """Rewrite the words between polar (or cylinder) on and off."""
     if draft.letters() & set("XYCUVH"):
-        draft.sure("polar", "polar mode is on")
+        draft.sure("polar", "polar mode or a cylinder is on")
     if draft.state.polar == "off":
         return
     if draft.state.polar == "on":
@@ -96,7 +99,9 @@ def offset_number(draft: Draft) -> None:
     """Drop a D that names the loaded tool: its radius is what G41 and G42 take."""
     word = draft.take("D")
     if word and word.value.lstrip("0") not in (draft.state.length, draft.state.tool):
-        raise NotTranslated(f"{word.text} in polar mode: G41 and G42 take the loaded tool's radius")
+        raise NotTranslated(
+            f"{word.text} {SECTIONS[draft.state.polar]}: G41 and G42 take the loaded tool's radius"
+        )
 
 
 def rapid(draft: Draft) -> None:
@@ -105,7 +110,12 @@ def rapid(draft: Draft) -> None:
     if rule == "feed":
         rapid_at_feed(draft)
     elif rule == "refuse" and is_rapid(draft):
-        raise NotTranslated('G0 in polar mode: G1 with a high feed, or rapid = "feed" in [polar]')
+        where = SECTIONS[draft.state.polar]
+        raise NotSaid(
+            f'G0 {where}: G1 with a high feed, or rapid = "feed" in [polar]',
+            "polar",
+            'rapid = "feed"',
+        )
 
 
 def is_rapid(draft: Draft) -> bool:
@@ -118,17 +128,25 @@ def is_rapid(draft: Draft) -> bool:
 def rapid_at_feed(draft: Draft) -> None:
     """Write a rapid as G1 at the control's speed; an F beside it is for the blocks behind."""
     if is_rapid(draft):
-        unit = {"G20": "inch", "G21": "mm"}.get(draft.state.units, "")
-        feed = draft.control.value("polar", f"rapid_feed_{unit}", 0)
-        if not feed:
-            raise NotTranslated(
-                "G0 in polar mode needs G20 or G21 before it, and its speed in [polar]"
-            )
+        feed = feed_of_rapids(draft)
         draft.take_codes({"G0"})
         draft.take("F")
         draft.words += [word_of("G1"), word_of("G94"), word_of(f"F{feed:g}")]
         draft.change(motion="G0", own_motion="G1", own_feed="other")
         draft.has_motion = draft.has_feed = True
+
+
+def feed_of_rapids(draft: Draft) -> float:
+    """Return the speed that the control's file gives to rapids in a section."""
+    where = SECTIONS[draft.state.polar]
+    unit = {"G20": "inch", "G21": "mm"}.get(draft.state.units)
+    if not unit:
+        raise NotTranslated(f"G0 {where}: its speed needs the units: say G20 or G21 (--units)")
+    key = f"rapid_feed_{unit}"
+    feed = draft.control.value("polar", key, 0)
+    if not feed:
+        raise NotSaid(f"G0 {where} needs its speed: say {key} under [polar]", "polar", f"{key} = …")
+    return feed
 
 
 def feed_again(draft: Draft) -> None:
