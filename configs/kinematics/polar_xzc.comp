@@ -72,8 +72,10 @@ P1 their speed is kept such that C can follow, the slower the nearer to the cent
 program's line is held.
 
 .B What is refused.
-A move that means nothing in the type in force fails: one to a Y other than 0 in type 0, and one
-of C in type 1. The face is not switched on with the tool beyond the centre.
+A move that means nothing in the type in force fails, in words: one to a Y other than 0 in type 0,
+and one of C in type 1. So does any move while the type in force is another than the one that is
+asked for: M68 E3 Q3 asks for neither, so nothing moves by program or MDI until the next request. The
+face is not switched on with the tool beyond the centre.
 
 .B The centre.
 In the centre the angle of C is free. It stays what it was when the tool came, so a path that leaves the
@@ -88,7 +90,7 @@ module tells them that type 0 is X, Z and C.
 
 modparam dummy coordinates=XZC "letter of each joint";
 
-pin in float request "1 asks for the face, 2 for the face by hand, everything else for X, Z and C";
+pin in float request "1 asks for the face, 2 for the face by hand, 3 for no move, everything else for X, Z and C";
 pin in float centre "position of the X joint with the tool on the spindle's axis";
 pin in float tool_offset "of the tool from the X line: [G12]POLAR_TOOL_OFFSET";
 pin in bit enabled "the machine is on: motion.motion-enabled";
@@ -129,7 +131,7 @@ author "the g12 package";
 #define SETTLED 10 /* cycles of standing: LinuxCNC smooths the joints' way over the last few */
 #define ASIDE 0.4  /* of the acceleration: the rest is for what the slide has to do beside it */
 
-enum { XZC, FACE, BY_HAND };
+enum { XZC, FACE, BY_HAND, NO_MOVES };
 static const char letters[] = "XYZABCUVW";
 
 static char *coordinates = "XZC";
@@ -138,6 +140,8 @@ RTAPI_MP_STRING(coordinates, "letter of each joint");
 static struct {
     int kind;       /* XZC or FACE */
     int begins;     /* the face was switched on, and forward has not seen it yet */
+    int given;      /* motion takes commands now: a cycle begins so, forward comes first behind it */
+    int spent;      /* the request ended by itself, and was not taken back since */
     double origin;  /* of the face: position of the X joint */
     double zero;    /* of the face: C in degrees on its X axis */
     double beside;  /* the X line stands the tool */
@@ -189,6 +193,7 @@ int kinematicsForward(const double *joint, EmcPose *pose,
 
     (void)fflags;
     (void)iflags;
+    state.given = 0;
     if (state.begins) begin_face(joint);
     memset(pose, 0, sizeof(*pose));
     for (k = 0; k < state.joints; k++) *axis_of(pose, state.axis[k]) = joint[k];
@@ -202,6 +207,33 @@ int kinematicsForward(const double *joint, EmcPose *pose,
     return 0;
 }
 
+/* Tell whether the face is asked for, by a request that did not end by itself. */
+static int wanted(const struct __comp_state *__comp_inst)
+{
+    return (request == FACE || request == BY_HAND) && !state.spent;
+}
+
+/* Tell the operator why there are no joints: LinuxCNC shows a module's errors as its own. */
+static int refuse(const char *reason)
+{
+    rtapi_print_msg(RTAPI_MSG_ERR, "polar mode: %s\n", reason);
+    return -1;
+}
+
+/* Refuse a line that is given where the type in force is another than the one asked for. What is
+   under way then is made to its end. */
+static int refused(void)
+{
+    const struct __comp_state *__comp_inst = component;
+
+    if (!state.given || !program) return 0;
+    if (request == NO_MOVES || (request == BY_HAND && state.spent))
+        return refuse("an abort or an error ended it, nothing moves until G13.1 or G12.1");
+    if (wanted(__comp_inst) != (state.kind == FACE))
+        return refuse("the machine is about to change its kinematics, nothing moves until then");
+    return 0;
+}
+
 /* joint holds where the joints are: C goes on from there over the full turns. */
 int kinematicsInverse(const EmcPose *pose, double *joint,
                       const KINEMATICS_INVERSE_FLAGS *iflags, KINEMATICS_FORWARD_FLAGS *fflags)
@@ -212,14 +244,18 @@ int kinematicsInverse(const EmcPose *pose, double *joint,
 
     (void)iflags;
     (void)fflags;
-    if (state.kind == XZC && fabs(world.tran.y) > NO_MOVE) return -1;
-    if (state.kind == FACE && fabs(world.c - state.zero) > NO_MOVE) return -1;
+    if (refused()) return -1;
+    if (state.kind == XZC && fabs(world.tran.y) > NO_MOVE)
+        return refuse("Y moves only on the face, from G12.1 to G13.1");
+    if (state.kind == FACE && fabs(world.c - state.zero) > NO_MOVE)
+        return refuse("C does not move by itself on the face: write X and Y, or G13.1 first");
     for (k = 0; k < state.joints; k++) joint[k] = *axis_of(&world, state.axis[k]);
     if (state.kind == FACE) {
         x = world.tran.x - state.origin;
         y = world.tran.y;
         reach = x * x + y * y - state.beside * state.beside; /* the slide's, squared */
-        if (reach < -AT_CENTRE * fabs(state.beside)) return -1;
+        if (reach < -AT_CENTRE * fabs(state.beside))
+            return refuse("the tool stands beside X's line and comes no nearer to the centre");
         slide = sqrt(fmax(reach, 0.0));
         joint[state.x] = state.origin + slide;
         joint[state.c] = present;
@@ -286,19 +322,19 @@ static double followed(const struct __comp_state *__comp_inst, double r)
 /* A switch while a jog is under way would make the axes jump to where the jog stood before it. */
 FUNCTION(guard)
 {
-    static int spent; /* the request ended by itself, and was not taken back since */
     static int standing;
     int asked = request == FACE || request == BY_HAND, by_hand;
     double most = c_acceleration > 0.0 ? followed(__comp_inst, state.slide) : 0.0;
 
-    spent = asked && (spent || !enabled || !program);
+    state.spent = asked && (state.spent || !enabled || !program);
     standing = stands ? standing + (standing < SETTLED) : 0;
-    if (!enabled || (program && standing == SETTLED)) type = asked && !spent ? FACE : XZC;
+    if (!enabled || (program && standing == SETTLED)) type = wanted(__comp_inst) ? FACE : XZC;
     face = state.kind == FACE && !state.begins;
     by_hand = face && request == BY_HAND;
     jog_inhibit = face && !program;
     hold = by_hand && program_line > 0;
     feed = by_hand && speed > most ? most / speed : 1.0;
+    state.given = 1;
 }
 
 EXTRA_SETUP()

@@ -5,6 +5,8 @@ import pytest
 
 from g12.tools.errors import ProgramError
 from g12.tools.preview.tracer import Tracer
+from g12.tools.translate.blocks.control import read_control
+from g12.tools.translate.program import translate_program
 from support.foreign_programs import (
     FOREIGN,
     MACHINES,
@@ -140,3 +142,13 @@ def test_offsets_by_number_do_not_depend_on_units(unit, code, scale, tmp_path):
     with Tracer(SIM / f"{unit}.ini") as tracer:
         traced = tracer.trace_text(translation(path, "haas-mill"))
     assert traced.moves[-1].end[:2] == near((3 * scale, scale))
+
+
+@pytest.mark.parametrize(("value", "said"), [(0.0, ["G154 P2 was never set"]), (5.0, [])])
+def test_an_offset_that_was_never_set_is_reported_once(value, said):
+    text = translate_program(
+        "G20 G0 X0\nG154 P2\nX1.\nG54\nG154 P2\nX2.\nM30\n", read_control("haas-mill")
+    ).text
+    with Tracer(SIM / "mill_inch.ini") as tracer:
+        messages = tracer.trace_text(text, parameters={4012: value}).messages
+    assert [m.text.strip()[:21] for m in messages] == said

@@ -1,19 +1,29 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G12.1 in MDI with kinematics: X and Y move on the face, and nothing else does."""
 
+import random
 import time
 
 import numpy as np
 import pytest
 
-from support.kinematics import needs_kinematics, on_the_face, place
+from support.kinematics import (
+    ENDED,
+    interrupted_by_hand,
+    joints_of,
+    needs_kinematics,
+    on_the_face,
+    place,
+    refused_for,
+)
+from support.kinematics import type_each as typed
 from support.operated_machine import kept_machine
 
 pytestmark = needs_kinematics
 
 X = 0
 C_SPEED, C_ACCELERATION, SLIDE = 360, 3600, 1000
-STANDING = "G21 G18 G8 G90 G94 G40 G64 P0.01 M52 P0"
+STANDING = ("G13.1", "G40", "M52 P0", "G21 G18 G8 G90 G94 G64 P0.01", "G10 L2 P1 X0 Y0 C0")
 PROGRAM = ["G18 G90 G94", "G1 X30 Z1 F1000", "G1 X20", "M2"]
 
 
@@ -23,7 +33,7 @@ running = kept_machine("lathe_mm_kinematics")
 @pytest.fixture
 def lathe(running):
     running.abort()
-    for block in (STANDING, "G10 L2 P1 X0 Y0 C0", "G0 Z5", "G0 X40 C30"):
+    for block in (*STANDING, "G0 Z5", "G0 X40 C30"):
         running.mdi(block)
     running.errors(), running.messages()
     return running
@@ -31,12 +41,6 @@ def lathe(running):
 
 def slide_and_spindle(machine):
     return pytest.approx([machine.get(f"joint.{joint}.pos-cmd") for joint in (0, 2)], abs=1e-6)
-
-
-def typed(machine, *blocks):
-    for block in blocks:
-        machine.mdi(block)
-        assert machine.errors() == [], block
 
 
 def test_lines_move_on_the_face_until_g13_1(lathe):
@@ -98,7 +102,7 @@ def test_a_jog_is_refused(lathe):
     lathe.jog(X, 0)
     assert "jog-inhibit" in lathe.errors()[0].text
     assert [lathe.get(f"joint.{joint}.pos-cmd") for joint in (0, 2)] == stood
-    typed(lathe, "G0 Z4")
+    goes_on_only_behind_g13_1(lathe)
     assert slide_and_spindle(lathe) == [800**0.5, 75]
 
 
@@ -112,7 +116,8 @@ def test_a_program_does_not_move_there(lathe):
     assert np.ptp(lathe.samples().axes["X"]) <= 0.005
     lathe.wait_for(lambda _: not on_the_face(lathe))
     lathe.errors()
-    run = lathe.run_text(["G1 Z4 F1000", *PROGRAM])
+    assert ENDED in lathe.run_text(["G1 Z4 F1000", *PROGRAM]).error.text
+    run = lathe.run_text(["G13.1", "G1 Z4 F1000", *PROGRAM])
     assert run.error is None
     assert np.ptp(run.samples.axes["C"]) == 0
 
@@ -149,6 +154,23 @@ def test_refused(lathe, blocks, refusal):
     assert lathe.errors()[0].text == refusal
 
 
+ON_THE_LATHE = ["G1 X20 C10", "C5", "G41.1 D4", "G42 D1", "G18", "M52 P0", "G92 X5", "G55", "G28"]
+
+
+@pytest.mark.parametrize("line", ON_THE_LATHE)
+def test_what_is_not_for_the_face_is_refused(lathe, line):
+    typed(lathe, "G12.1", "G1 X20 Y20 F3000")
+    lathe.mdi(line)
+    lathe.wait_for(lambda _: not on_the_face(lathe))
+    refused_for(lathe, ["C does not move by itself on the face", "cutter radius comp"])
+    off = "G12.1 is off: nothing moves by program or MDI until G13.1 or G12.1 is typed"
+    lathe.wait_for(lambda _: off in [message.text for message in lathe.messages()], timeout=5)
+    assert slide_and_spindle(lathe) == [800**0.5, 75]
+    goes_on_only_behind_g13_1(lathe)
+    assert slide_and_spindle(lathe) == [800**0.5, 75]
+    assert "G18" in lathe.stat().modes.gcodes
+
+
 @pytest.mark.parametrize("interrupt", ["abort", "estop", "M2"])
 def test_interrupted(lathe, interrupt):
     typed(lathe, "G12.1")
@@ -158,7 +180,32 @@ def test_interrupted(lathe, interrupt):
     if interrupt == "estop":
         lathe.enable()
     lathe.wait_for(lambda now: not on_the_face(lathe) and "G18" in now.modes.gcodes)
-    lathe.errors()
     stood = [lathe.get(f"joint.{joint}.pos-cmd") for joint in (0, 2)]
-    typed(lathe, "G0 Z4")
+    if interrupt == "M2":
+        typed(lathe, "G0 Z4")
+    else:
+        lathe.errors()
+        goes_on_only_behind_g13_1(lathe)
     assert slide_and_spindle(lathe) == stood
+
+
+def goes_on_only_behind_g13_1(lathe):
+    stood = joints_of(lathe)
+    lathe.mdi("G0 X30 Z4")
+    refused_for(lathe, [ENDED])
+    assert joints_of(lathe) == stood
+    typed(lathe, "G13.1", "G0 Z4")
+
+
+def test_random_interrupts(lathe):
+    for number in range(12):
+        interrupted_by_hand(lathe, random.Random(number))
+
+
+def test_an_abort_with_compensation_on(lathe):
+    typed(lathe, "T1 M6", "G41.1 D4 L3", "G1 X50 Z3 F300")
+    lathe.mdi("G1 X90", wait=False)
+    time.sleep(0.2)
+    lathe.abort()
+    assert lathe.errors() == []
+    typed(lathe, "G40", "G0 X40")

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The sample configs that LinuxCNC ships: installed, run headless, and again what they were."""
 
-import os
 import shutil
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,14 +13,9 @@ from g12.tools.install.findings import PROBLEM
 from g12.tools.install.ini_edit import IniText
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
+from support.sample_configs import SAMPLES, copy_samples, tree
 from support.small_configs import with_lines
 
-IN_PLACE = os.environ.get("EMC2_HOME")  # the folder of a LinuxCNC that runs in place
-if IN_PLACE:
-    SAMPLES, NC_FILES = Path(IN_PLACE, "configs"), Path(IN_PLACE, "nc_files")
-else:
-    SAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs")
-    NC_FILES = Path("/usr/share/linuxcnc/ncfiles")
 MILLS = [
     "axis/axis.ini",
     "gmoccapy/gmoccapy.ini",
@@ -44,21 +37,7 @@ pytestmark = pytest.mark.skipif(not SAMPLES.is_dir(), reason="no sample configs 
 
 @pytest.fixture(scope="module")
 def sim(tmp_path_factory):
-    """Return a copy of the samples, with their ways to the NGC files."""
-    base = tmp_path_factory.mktemp("samples")
-    shutil.copytree(SAMPLES / "sim", base / "sample-configs" / "sim", symlinks=True)
-    for folder in (base, base / "sample-configs"):
-        (folder / "nc_files").symlink_to(NC_FILES)
-    return base / "sample-configs" / "sim"
-
-
-def tree(folder):
-    """Return every file and link below a folder, with content, target and mode."""
-    paths = [path for path in sorted(folder.rglob("*")) if path.is_symlink() or path.is_file()]
-    return {
-        path: (os.readlink(path) if path.is_symlink() else path.read_bytes(), path.lstat().st_mode)
-        for path in paths
-    }
+    return copy_samples(tmp_path_factory.mktemp("samples"), "sim")
 
 
 def run_installed(ini, feature, program):

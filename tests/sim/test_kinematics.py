@@ -93,12 +93,12 @@ def test_x_and_y_move_the_slide_and_c(lathe):
 def test_c_off_the_zero_line_is_refused_on_the_face(lathe):
     switch_on(lathe)
     lathe.mdi("G0 C0")
-    assert "kinematicsInverse" in lathe.errors()[0].text
+    assert "C does not move by itself on the face" in lathe.errors()[0].text
 
 
 def test_y_is_refused_off_the_face(lathe):
     lathe.mdi("G0 Y1")
-    assert "kinematicsInverse" in lathe.errors()[0].text
+    assert "Y moves only on the face" in lathe.errors()[0].text
     assert place(lathe) == (20, 0, 30)
 
 

@@ -12,7 +12,11 @@ from support.small_configs import HAAS, MILL, config_of, with_lines, write_confi
 
 AXIS = f"[DISPLAY]\nDISPLAY = axis\nCYCLE_TIME = 0.1\n\n{MILL}"
 GMOCCAPY = AXIS.replace("axis", "gmoccapy")
+TOUCHY, TK = AXIS.replace("axis", "touchy"), AXIS.replace("axis", "tklinuxcnc")
+QTAXIS = AXIS.replace("axis", "qtvcp -d qtaxis")
 QTVCP = AXIS.replace("axis", "qtvcp qtdragon")
+OWN_PATH = "NGCGUI_SUBFILE_PATH = ../nc_files\n"
+WINDOW = "HALCMD = loadusr gladevcp -c forms g12/configs/include/forms.ui\n"
 PAGES = "NGCGUI_SUBFILE = form_haas_mm.ngc\nNGCGUI_SUBFILE = form_circle_mill_mm.ngc\n"
 SUBS = {
     f"g12/ngc/{name}.ngc": b"(a sub)\n"
@@ -49,6 +53,22 @@ def told(ini):
             "EMBED_TAB_NAME = Forms\nEMBED_TAB_LOCATION = ntb_user_tabs\n"
             f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} g12/configs/include/forms.ui\n{PAGES}",
         ),
+        (
+            with_lines(GMOCCAPY, "DISPLAY", "EMBED_TAB_NAME = Mine\nEMBED_TAB_COMMAND = mine\n"),
+            "EMBED_TAB_NAME = Forms\n"
+            f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} g12/configs/include/forms.ui\n{PAGES}",
+        ),
+        (
+            TOUCHY,
+            "EMBED_TAB_NAME = Forms\n"
+            f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} g12/configs/include/forms.ui\n{PAGES}",
+        ),
+        (TK, PAGES),
+        (QTAXIS, PAGES),
+        (
+            with_lines(QTVCP, "DISPLAY", OWN_PATH),
+            PAGES.replace("form_", "/proc/self/cwd/g12/ngc/form_"),
+        ),
     ],
 )
 def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, lines):
@@ -58,6 +78,7 @@ def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, lines
     display = ini.read_text().partition("[RS274NGC]")[0]
     assert lines in display
     assert display.count("[DISPLAY]") == 1
+    assert (WINDOW in ini.read_text()) == (screen in (TK, QTAXIS))
     assert told(ini) == []
     put_in(ini, "forms")
     assert ini.read_text().count("NGCGUI_SUBFILE =") == 2
@@ -92,8 +113,7 @@ def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
 @pytest.mark.parametrize(
     ("text", "wanted", "why"),
     [
-        (MILL, ["haas"], "DISPLAY = nothing"),
-        (AXIS.replace("axis", "tklinuxcnc"), ["haas"], "DISPLAY = tklinuxcnc"),
+        (MILL, ["haas"], "[DISPLAY] DISPLAY is missing"),
         (AXIS, [], "no code here has a form"),
     ],
 )
@@ -114,7 +134,7 @@ def shown_in(tmp_path, screen, lines, remaps=HAAS):
 
 
 HAAS_PAGE = "NGCGUI_SUBFILE = form_haas_mm.ngc\n"
-TK = "TKPKG = Ngcgui 1.0\n"
+TKPKG = "TKPKG = Ngcgui 1.0\n"
 
 
 @pytest.mark.parametrize(
@@ -122,8 +142,13 @@ TK = "TKPKG = Ngcgui 1.0\n"
     [
         (AXIS, HAAS_PAGE, HAAS, "TKPKG = nothing: AXIS shows no forms"),
         (AXIS, f"TKPKG = ngcgui 1.0\n{HAAS_PAGE}", HAAS, "TKPKG = ngcgui: AXIS shows no"),
-        (AXIS, f"{TK}NGCGUI_SUBFILE = form_hass_mm.ngc\n", HAAS, "form_hass_mm.ngc is in none of"),
-        (AXIS, f"{TK}{HAAS_PAGE}", "", "form_haas_mm.ngc: the codes of haas are not set up"),
+        (
+            AXIS,
+            f"{TKPKG}NGCGUI_SUBFILE = form_hass_mm.ngc\n",
+            HAAS,
+            "form_hass_mm.ngc is in none of",
+        ),
+        (AXIS, f"{TKPKG}{HAAS_PAGE}", "", "form_haas_mm.ngc: the codes of haas are not set up"),
         (GMOCCAPY, HAAS_PAGE, HAAS, "gmoccapy shows no forms"),
         (
             GMOCCAPY,
@@ -131,17 +156,37 @@ TK = "TKPKG = Ngcgui 1.0\n"
             HAAS,
             "gmoccapy shows no forms",
         ),
-        (QTVCP, HAAS_PAGE, HAAS, "NGCGUI_SUBFILE_PATH = nothing: form_haas_mm.ngc is not there"),
-        (QTVCP, f"NGCGUI_SUBFILE_PATH = .\n{HAAS_PAGE}", HAAS, "= .: form_haas_mm.ngc is not"),
+        (TK, HAAS_PAGE, HAAS, "tklinuxcnc shows no forms"),
+        (
+            QTVCP,
+            HAAS_PAGE,
+            HAAS,
+            "NGCGUI_SUBFILE_PATH = nothing, NGCGUI_SUBFILE = form_haas_mm.ngc",
+        ),
+        (
+            QTVCP,
+            f"NGCGUI_SUBFILE_PATH = .\n{HAAS_PAGE}",
+            HAAS,
+            "_PATH = ., NGCGUI_SUBFILE = form_h",
+        ),
+        (
+            TK,
+            f"PROGRAM_PREFIX = nowhere\n{HAAS_PAGE}",
+            HAAS,
+            "PROGRAM_PREFIX = nowhere: there is no",
+        ),
     ],
 )
 def test_what_keeps_forms_from_being_shown_is_found(tmp_path, screen, lines, remaps, finding):
+    if "PROGRAM_PREFIX" in lines:
+        screen = with_lines(f"[HAL]\n\n{screen}", "HAL", f"HALCMD = {forms.WINDOW}forms.ui\n")
+        (tmp_path / "forms.ui").write_text("PyNgcGui")
     found = shown_in(tmp_path, screen, lines, remaps)
     assert len(found) == 1
     assert finding in found[0]
 
 
 def test_a_form_in_order_is_told_and_no_finding(tmp_path):
-    assert shown_in(tmp_path, AXIS, f"{TK}{HAAS_PAGE}NGCGUI_SUBFILE = simp.ngc\n") == []
+    assert shown_in(tmp_path, AXIS, f"{TKPKG}{HAAS_PAGE}NGCGUI_SUBFILE = simp.ngc\n") == []
     config = config_of(tmp_path / "mill.ini")
     assert "         form         form_haas_mm" in lines_of_check(check_report(config, []))

@@ -367,3 +367,29 @@ def xy(pose):
 
 def test_speed_by_hand_far_out_is_that_of_the_program(kinematics):
     assert by_hand(kinematics, 200, speed=150) == 150
+
+
+@pytest.mark.parametrize(
+    ("pins", "refused"),
+    [
+        ({"request": 0}, False),
+        ({"request": 1}, False),
+        ({"request": 3}, True),
+        ({"request": 3, "program": 0}, False),  # a jog
+        ({"request": 2, "enabled": 0}, True),  # the request ended by itself
+    ],
+)
+def test_a_line_is_refused_where_another_world_is_asked_for(kinematics, pins, refused):
+    kinematics.guard(**pins)
+    there = kinematics.forward(20, 0, 0)
+    there.x += 1
+    assert kinematics.inverse(there, 20, 0, 0) is not None  # of a cycle, not of a line
+    kinematics.library.run_guard()
+    assert (kinematics.inverse(there, 20, 0, 0) is None) is refused
+
+
+def test_a_line_is_refused_until_the_machine_has_switched(kinematics):
+    kinematics.forward(20, 0, 0)
+    kinematics.pins.request = 1
+    kinematics.library.run_guard()
+    assert kinematics.inverse(Pose(x=21), 20, 0, 0) is None

@@ -2,12 +2,17 @@
 """G12.1 typed in MDI, with kinematics: X and Y move on the face until G13.1.
 
 Nothing is planned ahead here. The lines in between are LinuxCNC's own; `polar_xzc` slows them
-where C could not follow (M52 P1), and lets no program move.
+where C could not follow (M52 P1), and lets no program move. When the face ends in another way than
+by G13.1, it lets nothing move until G13.1 or the next G12.1: the lines that an operator types then
+were meant for the face.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
+
+import emccanon
 
 from g12.errors import BlockRefusal
 from g12.host import glue
@@ -15,6 +20,7 @@ from g12.host.call_frame import CallFrame
 from g12.host.kinematics_switch import (
     BY_HAND,
     FACE_OUTPUT,
+    NO_MOVES,
     NOT_SWITCHED,
     OFF,
     ON_THE_FACE,
@@ -33,11 +39,24 @@ ADAPTIVE = 52  # active_m_codes
 MDI_LINE = 0  # of the moves that follow, by which polar_xzc knows them
 
 
+ONLY_MOVES = 3  # cutter_comp_side, neither left nor right: see `_lock`
+COMPENSATION_OFF, COMPENSATED = 0, (1, 2)  # cutter_comp_side
+
+
+class ByHand(NamedTuple):
+    """What G12.1 in MDI leaves on the interpreter (``g12_by_hand``) until G13.1.
+
+    ``code`` is G12.1 as it was typed, ``radius`` the compensation's that was commanded last.
+    """
+
+    code: str
+    radius: float
+    ended: bool = False  # by an abort or an error
+
+
 def switch_on(interp: object, start: SectionStart, beside: float) -> Iterator[int]:
     """Go to the face where a section could begin, with the tool ``beside`` the X line."""
     code = start.place.code
-    if face_in_force():
-        raise BlockRefusal(code, "is already on")
     if y_offset(interp):
         raise BlockRefusal(code, "needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis")
     interp.g12_found = modes_found(interp) + adaptive_feed(interp)
@@ -48,28 +67,60 @@ def switch_on(interp: object, start: SectionStart, beside: float) -> Iterator[in
         yield from switch_off(interp)
         raise BlockRefusal(code, wrong)
     interp.execute(f"{ON_THE_FACE}M52P1")
+    interp.g12_by_hand = ByHand(code, interp.cutter_comp_radius)
+    _lock(interp)
 
 
 def switch_off(interp: object) -> Iterator[int]:
     """Come back from the face, if that is where the machine is, to the modes that were found."""
+    code = glue.code_of_block(interp)
+    if getattr(interp, "g12_by_hand", None) and interp.cutter_comp_side in COMPENSATED:
+        raise BlockRefusal(code, "needs G40 before it")
+    by_hand = _unlock(interp)
     give_back_modes(interp)
-    if face_in_force():
+    if by_hand or face_in_force():
         mdi = glue.in_mdi(interp)
         home = read_source(interp.filename) if not mdi else None
         frame = CallFrame(interp, home.filename if home else glue.NO_FILE)
         line = ProgramLines(interp, home).line if home else MDI_LINE
-        yield from _switch(interp, glue.code_of_block(interp), frame, line, to_axes(interp))
+        yield from _switch(interp, code, frame, line, to_axes(interp))
 
 
 def abort(interp: object) -> None:
     """Come back behind an abort: nothing can be waited for, so ask and go on.
 
     `Interp::read_inputs` (rs274ngc_pre.cc) takes the position that the machine has then when it
-    reads the next line, as behind a tool change: the one that LinuxCNC took is the face's.
+    reads the next line, as behind a tool change: the one that LinuxCNC took is the face's. The
+    canonical function asks where M68 could not, with compensation on.
     """
-    interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")
+    by_hand = _unlock(interp)
+    emccanon.SET_AUX_OUTPUT_VALUE(FACE_OUTPUT, float(NO_MOVES if by_hand else OFF))
+    if by_hand:
+        interp.g12_by_hand = by_hand._replace(ended=True)
+    if by_hand and not by_hand.ended:
+        on, off = by_hand.code, glue.code_of_block(interp)
+        glue.message(f"{on} is off: nothing moves by program or MDI until {off} or {on} is typed")
     give_back_modes(interp)
     interp.toolchange_flag = True
+
+
+def _lock(interp: object) -> None:
+    """Have LinuxCNC refuse on the face what it refuses where compensation is on.
+
+    G41 and G42 are among it, and planes, offsets, tools and M52. With a radius of 0, and no move
+    made with it, everything else is as without (`Interp::find_ends`, `Interp::convert_straight`).
+    """
+    interp.cutter_comp_side, interp.cutter_comp_radius = ONLY_MOVES, 0.0
+    interp.cutter_comp_firstmove = True
+
+
+def _unlock(interp: object) -> ByHand | None:
+    """Undo `_lock`, and a compensation that began behind a G40; return what was locked."""
+    by_hand, interp.g12_by_hand = getattr(interp, "g12_by_hand", None), None
+    if by_hand and not by_hand.ended:
+        interp.cutter_comp_side, interp.cutter_comp_radius = COMPENSATION_OFF, by_hand.radius
+        interp.cutter_comp_firstmove = True
+    return by_hand
 
 
 def give_back_modes(interp: object) -> None:

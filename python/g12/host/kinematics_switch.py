@@ -16,7 +16,7 @@ from g12.host.program_lines import without_line
 from g12.section.modes import decimal
 
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
-OFF, BY_PROGRAM, BY_HAND = 0, 1, 2  # what is asked for
+OFF, BY_PROGRAM, BY_HAND, NO_MOVES = 0, 1, 2, 3  # what is asked for
 SWITCHING = 10  # seconds that it may take at most, on a busy machine
 INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
 SAME_OFFSET = 1e-4  # program units

@@ -10,6 +10,7 @@ from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal, Refusal
 from g12.host import face_by_hand, glue
+from g12.host.kinematics_switch import face_in_force
 from g12.host.section_glue import (
     AXES,
     COORDINATES,
@@ -85,6 +86,8 @@ def run_by_hand(interp: object) -> Iterator[int]:
     start = start_of_section(interp, 0)
     if not KINEMATICS:
         raise BlockRefusal(start.place.code, NOT_IN_MDI)
+    if face_in_force():
+        raise BlockRefusal(start.place.code, "is already on")
     check_section_start(start, COORDINATES)
     setup = _setup(start)  # refuses what the machine cannot
     yield from face_by_hand.switch_on(interp, start, setup.words.beside)

@@ -89,9 +89,9 @@ def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
 def _section(interp: object, kind: SectionKind, frame: CallFrame, program: ProgramLines) -> Section:
     """Return the section; refuse to begin it where it cannot."""
     start = start_of_section(interp, program.place, kind.letters)
-    kind.check(start)
     if KINEMATICS and interp.task and face_in_force():
         raise start.place.refuse("the face is on already, by hand: G13.1 first")
+    kind.check(start)
     setup = kind.setup(start)
     output = SectionOutput(
         interp,

@@ -17,7 +17,7 @@ import os
 import re
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -44,10 +44,12 @@ exit code: 0 the program is printed, 1 a block is refused, 2 wrong use
 USER_CODE = re.compile(r"M(1[0-9]{2})")
 SAYS_UNITS = re.compile(r"G\s*0*(2[01])(?![0-9.])", re.IGNORECASE)
 UNITS = {"inch": "G20", "mm": "G21"}
+PARAMETER = re.compile(r"^\s*([0-9]+)\s+(-?[0-9]+(?:\.[0-9]+)?)", re.MULTILINE)
+PLACES = {"G28": 5161, "G30": 5181}  # the first parameter of each
 POLAR_HANDLERS = ("polar_on", "polar_off")
 CYLINDER_HANDLER = "cylinder_mode"
 PROGRESS_EVERY = 0.2  # s
-OTHERS_NAMED = 5
+OTHERS_NAMED = 4
 
 
 @one_line("translate")
@@ -61,7 +63,8 @@ def main(arguments: list[str]) -> int:
         control = changed(read_control(asked.control), asked)
     except ControlError as problem:
         raise UsageError(str(problem)) from None
-    print(translated(asked, control), end="")
+    sys.stdout.flush()
+    sys.stdout.buffer.write(translated(asked, control).encode())  # whatever the locale
     return GOOD
 
 
@@ -106,23 +109,47 @@ def translated(asked: argparse.Namespace, control: Control) -> str:
     path = asked.ini or os.environ.get("INI_FILE_NAME")
     ini = read_ini(path) if path else None
     codes = machine_codes(ini) if ini else None
-    control = with_codes_of(control, ini) if ini else control
+    control = with_facts_of(control, ini) if ini else control
     if ini and not asked.units and not SAYS_UNITS.search(text):
         control = replace(control, start=(*control.start, units_code(ini)))
     result = translate_program(text, control, codes, progress())
     if result.refused:
+        if result.missing:
+            print(paste_text(result.missing, asked.control), file=sys.stderr)
         raise ProgramError(f"{asked.program}:{refusal_sentence(result.refused)}")
     return result.text
 
 
-def with_codes_of(control: Control, ini: Ini) -> Control:
-    """Return a control with the machine's own codes for polar mode and cylinders."""
+def paste_text(lines: Sequence[str], control: str) -> str:
+    """Return what a control of one's own needs for a program, as it is shown."""
+    head = "what the control's file lacks for this program; a control of your own says it:"
+    return "\n    ".join([head, f'based_on = "{control}"', *lines])
+
+
+def with_facts_of(control: Control, ini: Ini) -> Control:
+    """Return a control with the machine's own codes for sections, and the places it lacks."""
+    unset = {"unset": unset_places(ini)}
+    reference = {**control.tables.get("reference", {}), **unset}
+    control = replace(control, tables={**control.tables, "reference": reference})
     remaps = remap_lines(ini.all)
     pair = polar_pair(remaps)
     control = replace(control, polar_codes=pair) if pair else control
     codes = [r.code for r in remaps if CYLINDER_HANDLER in r.handlers and r.code[0] == "G"]
     word = ini.settings.cylinder_word
     return replace(control, cylinder_code=(codes[0], word)) if codes else control
+
+
+def unset_places(ini: Ini) -> tuple[str, ...]:
+    """Return which of G28 and G30 lead to machine zero: G28.1 or G30.1 was never used."""
+    name = ini.get("RS274NGC", "PARAMETER_FILE")
+    path = ini.directory / os.path.expanduser(name) if name else None
+    text = path.read_text(errors="replace") if path and path.is_file() else ""
+    values = dict(PARAMETER.findall(text))
+    return tuple(
+        code
+        for code, first in PLACES.items()
+        if not any(float(values.get(str(n), 0)) for n in range(first, first + 9))
+    )
 
 
 def units_code(ini: Ini) -> str:
@@ -132,11 +159,23 @@ def units_code(ini: Ini) -> str:
 
 
 def refusal_sentence(refused: list[RefusedBlock]) -> str:
-    """Return the first refusal, and the lines of some others."""
+    """Return the first refusal, and the others with their reasons, as far as there is room."""
     first, *others = refused
-    lines = list(dict.fromkeys(block.line for block in others if block.line != first.line))
-    more = ", ".join(map(str, lines[:OTHERS_NAMED])) + (" …" if lines[OTHERS_NAMED:] else "")
-    return f"{first.line}: {first.sentence}" + (f" (refused as well: line {more})" if more else "")
+    reasons: dict[str, list[str]] = {}
+    for block in others:
+        if block.line != first.line or block.sentence != first.sentence:
+            reasons.setdefault(block.sentence, []).append(str(block.line))
+    same = reasons.pop(first.sentence, [])
+    too = f"; {lines_text(same)} too" if same else ""
+    more = [f"; {lines_text(lines)}: {text}" for text, lines in reasons.items()]
+    rest = f"; {len(more) - OTHERS_NAMED} further reasons" if len(more) > OTHERS_NAMED else ""
+    return f"{first.line}: {first.sentence}{too}{''.join(more[:OTHERS_NAMED])}{rest}"
+
+
+def lines_text(lines: list[str]) -> str:
+    """Return lines' numbers as a sentence names them."""
+    named = ", ".join(lines[:OTHERS_NAMED]) + (" …" if lines[OTHERS_NAMED:] else "")
+    return f"line{'s' if len(lines) > 1 else ''} {named}"
 
 
 def machine_codes(ini: Ini) -> frozenset[str]:

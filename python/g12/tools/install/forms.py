@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The forms in a machine config: the lines of [DISPLAY] that show them, and what can be wrong.
+"""The forms in a machine config: the lines that show them on its screen, and what can be wrong.
 
-A form is a sub in `ngc` that LinuxCNC's ngcgui makes a page of. AXIS has ngcgui of its own, QtVCP's
-screens too; gmoccapy shows it in a tab that GladeVCP makes.
+A form is a sub in `ngc` that LinuxCNC's ngcgui makes a page of. There are three ngcgui: AXIS loads
+one as a Tcl package, some screens of QtVCP hold one, and GladeVCP makes one of `forms.ui`, in a tab
+of gmoccapy or Touchy or, with any other screen, in a window of its own.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from pathlib import Path
 
 from g12.lengths import is_inch
 from g12.tools.install.config import Config, folder_from_ini, subs_named
-from g12.tools.install.findings import Finding, problem
+from g12.tools.install.findings import Finding, problem, warning
 
 OF = {  # the forms of a feature
     "haas": ("form_haas",),
@@ -26,14 +27,19 @@ UNITS = ("inch", "mm")
 PARTS = ("form_start", "form_end")  # subs that forms call
 FACE_PARTS = ("form_face_start", "form_face_end")  # and those of a lathe's face
 NGCGUI = "Ngcgui"  # the Tcl package that AXIS loads
-TAB = "gladevcp -x {XID} "
 PAGE = "configs/include/forms.ui"
+TAB = "gladevcp -x {XID} "
+WINDOW = "loadusr gladevcp -c forms "  # HAL ends it with LinuxCNC
+TABS = {"gmoccapy": "ntb_user_tabs", "touchy": ""}  # screens with tabs, and where in them
+QTVCP_WITH_NGCGUI = ("qtdragon", "woodpecker")  # how the names of these screens begin
+HERE = "/proc/self/cwd"  # LinuxCNC and its screen work in the INI's folder
 OWN_LINE = re.compile(
-    r"TKPKG = Ngcgui 1\.0|NGCGUI_SUBFILE = form_\w+\.ngc|NGCGUI_SUBFILE_PATH = \S+/ngc"
+    r"TKPKG = Ngcgui 1\.0|NGCGUI_SUBFILE = (\S+/ngc/)?form_\w+\.ngc|NGCGUI_SUBFILE_PATH = \S+/ngc"
     r"|EMBED_TAB_NAME = Forms|EMBED_TAB_LOCATION = ntb_user_tabs"
     r"|EMBED_TAB_COMMAND = gladevcp -x \{XID\} \S+/forms\.ui"
+    r"|HALCMD = loadusr gladevcp -c forms \S+/forms\.ui"
 )
-SCREENS = ("axis", "gmoccapy", "qtvcp")
+AXIS, QTVCP, GLADEVCP = "axis", "qtvcp", "gladevcp"  # whose ngcgui shows the forms
 
 
 def screen_of(config: Config) -> str:
@@ -42,38 +48,64 @@ def screen_of(config: Config) -> str:
     return Path(words[0]).name if words else ""
 
 
+def ngcgui_of(config: Config) -> str:
+    """Return whose ngcgui shows the forms on a config's screen."""
+    screen, *options = (config.ini.get("DISPLAY", "DISPLAY") or "").split() or [""]
+    if Path(screen).name == "axis":
+        return AXIS
+    own_page = any(word.startswith(QTVCP_WITH_NGCGUI) for word in options)
+    return QTVCP if Path(screen).name == "qtvcp" and own_page else GLADEVCP
+
+
 def files_of(config: Config, features: Iterable[str]) -> list[str]:
     """Return the files of the features' forms, in the machine's unit."""
     unit = UNITS[0] if is_inch(config.ini.mm) else UNITS[1]
     return [f"{form}_{unit}.ngc" for feature in features for form in OF.get(feature, ())]
 
 
-def lines_for(config: Config, features: Sequence[str], prefix: str) -> list[str]:
-    """Return the lines of [DISPLAY] that show the features' forms, without those that are there.
+def lines_for(config: Config, features: Sequence[str], prefix: str) -> dict[str, list[str]]:
+    """Return the lines that show the features' forms, by section, without those that are there.
 
     ``prefix`` is the package's folder as the INI names it.
     """
-    there = config.ini.all("DISPLAY", "NGCGUI_SUBFILE")
+    there = {Path(name).name for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE")}
     pages = [name for name in files_of(config, features) if name not in there]
-    return [
-        *screen_lines(config, screen_of(config), prefix),
-        *(f"NGCGUI_SUBFILE = {page}" for page in pages),
-    ]
+    lines = screen_lines(config, prefix)
+    folder = folder_of_pages(config, prefix)
+    shown_pages = [f"NGCGUI_SUBFILE = {folder}{page}" for page in pages]
+    return {**lines, "DISPLAY": [*lines.get("DISPLAY", []), *shown_pages]}
 
 
-def screen_lines(config: Config, screen: str, prefix: str) -> list[str]:
-    """Return the lines that make a screen show ngcgui, none if it does."""
-    if screen == "axis" and NGCGUI not in packages(config):
-        return [f"TKPKG = {NGCGUI} 1.0"]
-    if screen == "qtvcp" and not config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH"):
-        return [f"NGCGUI_SUBFILE_PATH = {prefix}/ngc"]
-    if screen == "gmoccapy" and not pages_in_tabs(config):
-        return [
-            "EMBED_TAB_NAME = Forms",
-            "EMBED_TAB_LOCATION = ntb_user_tabs",
-            f"EMBED_TAB_COMMAND = {TAB}{prefix}/{PAGE}",
-        ]
-    return []
+def folder_of_pages(config: Config, prefix: str) -> str:
+    """Return what stands in front of a form's name: QtVCP looks in one folder for plain names."""
+    if ngcgui_of(config) != QTVCP or not own_page_folder(config, prefix):
+        return ""
+    return f"{prefix if Path(prefix).is_absolute() else f'{HERE}/{prefix}'}/ngc/"
+
+
+def own_page_folder(config: Config, prefix: str) -> str:
+    """Return the folder of the user's own ngcgui pages for QtVCP, "" if the INI names none."""
+    folder = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH") or ""
+    return "" if folder == f"{prefix}/ngc" else folder
+
+
+def screen_lines(config: Config, prefix: str) -> dict[str, list[str]]:
+    """Return the lines, by section, that make a screen show ngcgui, none if it does."""
+    kind, screen = ngcgui_of(config), screen_of(config)
+    if kind == AXIS:
+        return {} if NGCGUI in packages(config) else {"DISPLAY": [f"TKPKG = {NGCGUI} 1.0"]}
+    if kind == QTVCP:
+        there = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
+        return {} if there else {"DISPLAY": [f"NGCGUI_SUBFILE_PATH = {prefix}/ngc"]}
+    if pages_of_gladevcp(config):
+        return {}
+    if screen not in TABS:
+        return {"HAL": [f"HALCMD = {WINDOW}{prefix}/{PAGE}"]}
+    places, tabs = (config.ini.all("DISPLAY", f"EMBED_TAB_{key}") for key in ("LOCATION", "NAME"))
+    # Screens count names and locations: where a tab of the user's has none, ours has none either.
+    place = [f"EMBED_TAB_LOCATION = {TABS[screen]}"] if len(places) == len(tabs) else []
+    command = f"EMBED_TAB_COMMAND = {TAB}{prefix}/{PAGE}"
+    return {"DISPLAY": ["EMBED_TAB_NAME = Forms", *(place if TABS[screen] else []), command]}
 
 
 def packages(config: Config) -> list[str]:
@@ -82,9 +114,9 @@ def packages(config: Config) -> list[str]:
     return [word for value in values for word in value.split()[:1]]
 
 
-def pages_in_tabs(config: Config) -> list[Path]:
-    """Return the GladeVCP files of a config's tabs that hold ngcgui, or that are not there."""
-    commands = config.ini.all("DISPLAY", "EMBED_TAB_COMMAND")
+def pages_of_gladevcp(config: Config) -> list[Path]:
+    """Return the GladeVCP files that a config shows, of those with ngcgui or not there."""
+    commands = [*config.ini.all("DISPLAY", "EMBED_TAB_COMMAND"), *config.ini.all("HAL", "HALCMD")]
     names = (word for command in commands for word in command.split() if word.endswith(".ui"))
     files = [folder_from_ini(config.ini, name) for name in names]
     return [file for file in files if not file.is_file() or b"PyNgcGui" in file.read_bytes()]
@@ -102,7 +134,7 @@ def form_findings(config: Config, features: set[str]) -> Iterator[Finding]:
     for form in forms:
         yield from form_finding(config, form, features)
     if forms:
-        yield from screen_findings(config, screen_of(config))
+        yield from SCREEN_RULES[ngcgui_of(config)](config)
 
 
 def form_finding(config: Config, form: str, features: set[str]) -> Iterator[Finding]:
@@ -128,29 +160,53 @@ def form_finding(config: Config, form: str, features: set[str]) -> Iterator[Find
         )
 
 
-def screen_findings(config: Config, screen: str) -> Iterator[Finding]:
-    """Find a screen that does not show the forms its INI names."""
-    if screen == "axis" and NGCGUI not in packages(config):
+def axis_findings(config: Config) -> Iterator[Finding]:
+    """Find an AXIS that loads no ngcgui."""
+    if NGCGUI not in packages(config):
         said = f"[DISPLAY] TKPKG = {' and '.join(packages(config)) or 'nothing'}"
         yield problem("form", f"{said}: AXIS shows no forms", f"have: TKPKG = {NGCGUI} 1.0")
-    if screen == "gmoccapy" and not any(file.is_file() for file in pages_in_tabs(config)):
+
+
+def gladevcp_findings(config: Config) -> Iterator[Finding]:
+    """Find a screen without GladeVCP's ngcgui, or one that has no folder for its programs."""
+    screen = screen_of(config)
+    if not any(file.is_file() for file in pages_of_gladevcp(config)):
+        tab = f"[DISPLAY] EMBED_TAB_NAME = Forms, EMBED_TAB_COMMAND = {TAB}g12/{PAGE}"
         yield problem(
             "form",
-            "no [DISPLAY] EMBED_TAB_COMMAND names a file with ngcgui: gmoccapy shows no forms",
-            f"have: EMBED_TAB_COMMAND = {TAB}g12/{PAGE}, EMBED_TAB_NAME and EMBED_TAB_LOCATION",
+            "no EMBED_TAB_COMMAND of [DISPLAY] and no HALCMD of [HAL] names a file with ngcgui: "
+            f"{screen} shows no forms",
+            f"have: {tab if screen in TABS else f'[HAL] HALCMD = {WINDOW}g12/{PAGE}'}",
         )
-    if screen == "qtvcp":
-        yield from qtvcp_findings(config)
+    prefix = config.ini.get("DISPLAY", "PROGRAM_PREFIX")
+    if prefix and not folder_from_ini(config.ini, prefix).is_dir():
+        yield warning(
+            "form",
+            f"[DISPLAY] PROGRAM_PREFIX = {prefix}: there is no such folder, and Finalize writes "
+            "the forms' program nowhere else",
+            "make that folder, or name one that is there",
+        )
 
 
 def qtvcp_findings(config: Config) -> Iterator[Finding]:
-    """Find forms that are not in the one folder where a QtVCP screen looks."""
-    name = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
-    folder = folder_from_ini(config.ini, name) if name else None
-    for form in shown(config):
-        if not folder or not (folder / f"{form}.ngc").is_file():
+    """Find forms that are not where a QtVCP screen looks: below one folder, or by a full name."""
+    folder = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
+    for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE"):
+        own = Path(name).name.startswith("form_")
+        if own and not (folder and qtvcp_file(config, folder, name).is_file()):
             yield problem(
                 "form",
-                f"[DISPLAY] NGCGUI_SUBFILE_PATH = {name or 'nothing'}: {form}.ngc is not there",
-                "have: NGCGUI_SUBFILE_PATH = g12/ngc (QtVCP's screens look nowhere else)",
+                f"[DISPLAY] NGCGUI_SUBFILE_PATH = {folder or 'nothing'}, NGCGUI_SUBFILE = {name}: "
+                "that file is not there",
+                "have NGCGUI_SUBFILE_PATH = g12/ngc; if your own pages need that line, "
+                f"NGCGUI_SUBFILE = {HERE}/g12/ngc/{Path(name).name}",
             )
+
+
+def qtvcp_file(config: Config, folder: str, name: str) -> Path:
+    """Return the file that a QtVCP screen makes a page of."""
+    name = name.replace(HERE, str(config.folder), 1)
+    return folder_from_ini(config.ini, folder) / name
+
+
+SCREEN_RULES = {AXIS: axis_findings, QTVCP: qtvcp_findings, GLADEVCP: gladevcp_findings}

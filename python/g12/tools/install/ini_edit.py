@@ -114,17 +114,19 @@ class IniText:
 
     def lines(self) -> Iterator[IniLine]:
         """Yield every line as LinuxCNC sees it, an #INCLUDE line in front of what it includes."""
+        folder = self.path.parent
         for line in self._own_lines():
             yield line
-            included = included_file(line.text, self.path.parent)
+            included = included_file(line.text, folder)
             for index, text in enumerate(self.files.get(included, ())):
                 yield IniLine(included, index, text.rstrip("\r\n"), line.index)
 
     def ini(self) -> Ini:
         """Return the expanded INI, edits included, for looking values up."""
-        included = (included_file(line.text, self.path.parent) for line in self.lines())
-        pairs = zip(self.lines(), included)
-        return Ini(self.path, tuple(line.text for line, file in pairs if file not in self.files))
+        folder, texts = self.path.parent, [line.text for line in self.lines()]
+        included = (included_file(text, folder) for text in texts)
+        pairs = zip(texts, included)
+        return Ini(self.path, tuple(text for text, file in pairs if file not in self.files))
 
     def headers(self, section: str) -> list[IniLine]:
         """Return every header of that section; LinuxCNC 2.9 reads the first one's lines only."""

@@ -35,7 +35,7 @@ PATH_NOTE = " at the end of SUBROUTINE_PATH"
 MODULE_NOTE = "a line in "
 MARK = "  # by g12 install"
 NAMES_COPY = re.compile(
-    rf"\s*(#INCLUDE\s+|[^\s#;].*[=:]\s*)(python3\s+)?(\./)?{package_copy.NAME}/"
+    rf"\s*(#INCLUDE\s+|[^\s#;].*[=:\s])(\./|{forms.HERE}/)?{package_copy.NAME}/"
 )
 IMPORT_HANDLERS = "from g12.remap import *"
 IMPORT_REMAP = "import remap"
@@ -96,8 +96,7 @@ def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
     subs = subroutine_lines(plan, config, codes)
     remaps = [f"REMAP = {remap.text}" for remap in new_remaps(config, codes)]
     filters = filter_lines(plan, config, wanted)
-    pages = form_lines(plan, config, wanted)
-    face = face_lines(plan, config, wanted)
+    added = face_lines(plan, config, wanted)
     place = plan.text.end_of_section("RS274NGC")
     noted = {line.text for block in plan.text.blocks() for line in block}
     put_block(
@@ -107,14 +106,14 @@ def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
             *(note for note in plan.notes if note not in noted),
             *subs,
             *remaps,
-            *face.pop("RS274NGC", []),
+            *added.pop("RS274NGC", []),
         ],
     )
     put_section(plan.text, "PYTHON", place, python)
     put_section(plan.text, "FILTER", place, filters)
-    put_section(plan.text, "DISPLAY", place, pages)
-    for section, lines in face.items():
-        put_section(plan.text, section, place, lines)
+    for lines_of in (form_lines(plan, config, wanted), added):
+        for section, lines in lines_of.items():
+            put_section(plan.text, section, place, lines)
     for path in plan.changes():
         require_inside(config, path)
     return plan
@@ -247,16 +246,13 @@ def filter_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> li
     ]
 
 
-def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
-    """Return the lines for [DISPLAY] that show the forms of the codes there and wanted."""
+def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict[str, list[str]]:
+    """Return the lines, by section, that show the forms of the codes there and wanted."""
     if features.FORMS not in wanted:
-        return []
-    screen = forms.screen_of(config)
-    if screen not in forms.SCREENS:
+        return {}
+    if not forms.screen_of(config):
         raise refuse(
-            "forms",
-            f"[DISPLAY] DISPLAY = {screen or 'nothing'}: install knows no forms for this screen",
-            f"with {', '.join(forms.SCREENS)} as the screen it does (configs/README.md)",
+            "forms", "[DISPLAY] DISPLAY is missing: no screen could show a form", "name the screen"
         )
     codes = dict.fromkeys([*(code.feature for code in codes_of(config.remaps)), *wanted])
     if not forms.files_of(config, codes):

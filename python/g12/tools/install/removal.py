@@ -36,7 +36,7 @@ OWN_ENDS = {
     "PATH_PREPEND": "/python",
     "PATH_APPEND": "/python",
 }
-HEADERS = {f"[{section}]": section for section in ("PYTHON", "FILTER", "G12", "AXIS_Y")}
+HEADERS = {f"[{section}]": section for section in ("PYTHON", "FILTER", "HAL", "G12", "AXIS_Y")}
 EDITED = "# before uninstall: "
 OWN_FILTER = re.compile(
     r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S+"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -11,18 +12,38 @@ from pathlib import Path
 from g12.ini_sections import entries_of
 from g12.tools.install import features
 from g12.tools.install.checking import check_config
-from g12.tools.install.findings import PROBLEM, Finding
+from g12.tools.install.findings import PROBLEM, Finding, warning
+from g12.tools.install.forms import HERE
 from g12.tools.install.ini_edit import IniText, other_inis
 from g12.tools.install.plan import InstallPlan, Refused
 from g12.tools.machine.ini import Ini, Overrides
 
+HEADER = re.compile(r"\s*\[([^\s\]]+)\]")
+SHOWN_ONLY = {"form", "no-codes"}  # kinds that leave a machine as it is
+
+
+def sections_of(lines: Sequence[str]) -> dict[str, None]:
+    """Return the names of an INI's sections, each once."""
+    return dict.fromkeys(header[1] for header in map(HEADER.match, lines) if header)
+
 
 def try_out(plan: InstallPlan) -> list[Finding]:
-    """Return the warnings of `check` for the plan; refuse if it finds a problem."""
+    """Return the warnings of `check` for the plan; refuse if it finds a problem.
+
+    Another INI of the folder that includes a changed file has to load; that it shows forms of
+    codes which it has not is a warning.
+    """
     warnings = refuse_problems(trial(plan, plan.text))
     included = [path for path in plan.changes() if path in plan.text.files]
     for other in others_including(plan.text, included):
-        refuse_problems(trial(plan, other))
+        found = trial(plan, other)
+        refuse_problems([finding for finding in found if finding.kind not in SHOWN_ONLY])
+        name = other.path.name
+        warnings += [
+            warning("form", f"{name} shares these lines; {finding.text}", f"install it in {name}")
+            for finding in found
+            if finding.kind == "form"
+        ]
     return warnings
 
 
@@ -47,7 +68,7 @@ def trial(plan: InstallPlan, text: IniText) -> list[Finding]:
     """Return what `check` finds in an INI with the plan carried out, before it is."""
     with tempfile.TemporaryDirectory(prefix="g", dir="/tmp") as scratch:
         if plan.copied:
-            copy_package(Path(scratch))
+            link_package(Path(scratch))
         _, found = check_config(text, trial_values(plan, text.ini(), Path(scratch)))
         return found
 
@@ -57,40 +78,35 @@ def trial_values(plan: InstallPlan, ini: Ini, scratch: Path) -> Overrides:
 
     What is not written yet, or not up to date, stands in the folder ``scratch``.
     """
-    toplevel, subs = ini.get("PYTHON", "TOPLEVEL"), ini.get("RS274NGC", "SUBROUTINE_PATH", "")
-    toplevel = relocated(plan, toplevel, scratch) if toplevel else None
-    prepended = [relocated(plan, name, scratch) for name in ini.all("PYTHON", "PATH_PREPEND")]
-    appended = [relocated(plan, name, scratch) for name in ini.all("PYTHON", "PATH_APPEND")]
+    values = relocated_values(plan, ini, scratch)
+    python = values.setdefault("PYTHON", {})
+    prepended = python.setdefault("PATH_PREPEND", ini.all("PYTHON", "PATH_PREPEND"))
     prepended += [str(scratch / "package")] if plan.copied else []
     for path, content in trial_modules(plan, scratch):
         module = put_module(path, content, scratch / "own")
-        toplevel = str(module) if path == ini.file("PYTHON", "TOPLEVEL") else toplevel
+        if path == ini.file("PYTHON", "TOPLEVEL"):
+            python["TOPLEVEL"] = [str(module)]
         prepended.append(str(scratch / "own"))
-    folders = ":".join(relocated(plan, name, scratch) for name in subs.split(":"))
-    files = [relocated(plan, name, scratch) for name in ini.all("HAL", "HALFILE")]
-    paths = {"PATH_PREPEND": prepended, "PATH_APPEND": appended}
-    return {
-        "RS274NGC": {"SUBROUTINE_PATH": folders or None},
-        "PYTHON": {"TOPLEVEL": toplevel, **paths},
-        "HAL": {"HALFILE": files} if files else {},
-        "FILTER": trial_filters(plan, ini, scratch),
-    }
+    return values
 
 
-def trial_filters(plan: InstallPlan, ini: Ini, scratch: Path) -> dict[str, str]:
-    """Return the lines of [FILTER] that name the copy, as they are for the trial."""
-    found = {}
-    for _, key, value in entries_of(ini.lines, "FILTER"):
-        words = [relocated(plan, word, scratch) for word in value.split()]
-        if words != value.split():
-            found[key] = " ".join(words)
+def relocated_values(plan: InstallPlan, ini: Ini, scratch: Path) -> dict[str, dict[str, list[str]]]:
+    """Return the INI's values that name the copy, with its place for the trial, by section."""
+    found: dict[str, dict[str, list[str]]] = {}
+    for section in sections_of(ini.lines) if plan.copied else ():
+        entries = list(entries_of(ini.lines, section))
+        values = [relocated(value, plan.prefix, scratch) for _, _, value in entries]
+        moved = {entry.key for entry, value in zip(entries, values) if value != entry.value}
+        for key in moved:
+            there = [value for entry, value in zip(entries, values) if entry.key == key]
+            found.setdefault(section, {})[key] = there
     return found
 
 
-def relocated(plan: InstallPlan, name: str, scratch: Path) -> str:
-    """Return where a file or folder that the INI names stands for the trial."""
-    inside = plan.copied and f"{name}/".startswith(f"{plan.prefix}/")
-    return str(scratch / name[len(plan.prefix) + 1 :]) if inside else name
+def relocated(value: str, prefix: str, scratch: Path) -> str:
+    """Return an INI's value with another folder in place of the copy's."""
+    copy = rf"(?<![^\s:=])(\./|{HERE}/)?{re.escape(prefix)}(?=[/\s:]|$)"
+    return re.sub(copy, str(scratch), value)
 
 
 def trial_modules(plan: InstallPlan, scratch: Path) -> Iterator[tuple[Path, bytes]]:
@@ -103,12 +119,12 @@ def trial_modules(plan: InstallPlan, scratch: Path) -> Iterator[tuple[Path, byte
         yield path, content
 
 
-def copy_package(scratch: Path) -> None:
+def link_package(scratch: Path) -> None:
     """Put the package into a folder; in ``package`` there it stands without other modules."""
-    for part in ("ngc", "python", "configs/kinematics"):
-        shutil.copytree(features.ROOT / part, scratch / part)
+    for part in ("ngc", "python", "configs"):
+        (scratch / part).symlink_to(features.ROOT / part)
     (scratch / "package").mkdir()
-    (scratch / "package" / "g12").symlink_to(scratch / "python" / "g12")
+    (scratch / "package" / "g12").symlink_to(features.ROOT / "python" / "g12")
 
 
 def put_module(path: Path, content: bytes, folder: Path) -> Path:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Iterator
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall
-from g12.tools.translate.blocks.errors import NotSure, NotTranslated
+from g12.tools.translate.blocks.errors import NotSaid, NotSure, NotTranslated
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
 from g12.tools.translate.rules import WORD_RULES
 from g12.tools.translate.rules.plain import is_plain
@@ -121,6 +121,7 @@ class FollowedProgram:
         except NotTranslated as refusal:
             draft.refusal = str(refusal)
             draft.unsure = refusal.modes if isinstance(refusal, NotSure) else ()
+            draft.setting = refusal.setting if isinstance(refusal, NotSaid) else None
         return draft
 
     def _head(self, draft: Draft, index: int) -> None:
@@ -198,6 +199,8 @@ class FollowedProgram:
         name = self.structure.name_of(call.number)
         if entry is None and call.number in self.structure.behind_tape:
             return f"{name} stands behind the % that ends the program: take that % out"
+        if entry is None and self._has_block(call.number):
+            return f"{name} is not in this file, but N{call.number} is: M97 P calls a block"
         if entry is None and name.startswith("N"):
             return f"{name} is not in this program: M97 calls a block of it"
         if entry is None:
@@ -207,6 +210,11 @@ class FollowedProgram:
         if self.kinds.get(call.number, call.kind) != call.kind:
             return f"{name} is called by G65 and by M98: LinuxCNC wants a copy of it for each"
         return None
+
+    def _has_block(self, number: int) -> bool:
+        """Tell whether a block has a number."""
+        firsts = (block.words[0] for block in self.structure.blocks if block.words)
+        return any(w.letter == "N" and w.value == str(number) for w in firsts)
 
     def _return(self, number: int, state: ModalState) -> None:
         if number == MAIN:

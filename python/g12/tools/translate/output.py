@@ -28,8 +28,8 @@ def lines_of(draft: Draft) -> list[str]:
     if draft.around:
         lines = [draft.around[0], *lines, draft.around[1]]
     for text in lines:
-        if len(text) > LONGEST_LINE - LONGEST_MARK:
-            raise NotTranslated(f"the block has {len(text)} characters on LinuxCNC, at most 254")
+        if size(text) > LONGEST_LINE - LONGEST_MARK:
+            raise NotTranslated(f"the block has {size(text)} characters on LinuxCNC, at most 254")
     slash = "/ " if draft.block.skipped else ""
     return with_comments([f"{slash}{line}" for line in lines], draft.comments)
 
@@ -38,14 +38,20 @@ def with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
     """Return lines with comments behind the first; what has no room there has lines of its own."""
     whole = "".join(f"({comment})" for comment in comments)
     first = f"{lines[0]} {whole}".rstrip() if lines else whole
-    if len(first) <= LONGEST_LINE - LONGEST_MARK:
+    if size(first) <= LONGEST_LINE - LONGEST_MARK:
         return [first, *lines[1:]]
     pieces = [
-        f"({comment[at : at + LONGEST_COMMENT]})"
+        f"({comment[at : at + length]})"
         for comment in comments
-        for at in range(0, len(comment), LONGEST_COMMENT)
+        for length in (LONGEST_COMMENT if comment.isascii() else LONGEST_COMMENT // 4,)
+        for at in range(0, len(comment), length)
     ]
     return [*lines, *pieces]
+
+
+def size(text: str) -> int:
+    """Return the length of a line as LinuxCNC has it, in bytes."""
+    return len(text.encode())
 
 
 def with_mark(text: str, line: int) -> str:
@@ -58,7 +64,9 @@ def with_mark(text: str, line: int) -> str:
 
 def as_comment(text: str) -> str:
     """Return a line that is never executed."""
-    return f"(not reached: {printable(text.strip())[:LONGEST_COMMENT]})" if text.strip() else ""
+    return (
+        f"(not reached: {printable(text.strip())[: LONGEST_COMMENT // 2]})" if text.strip() else ""
+    )
 
 
 def output_lines(

@@ -18,6 +18,7 @@ from g12.tools.translate.blocks.lexer import (
 from g12.tools.translate.copies import followed_program
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.locals import unset_locals
+from g12.tools.translate.missing import missing_lines
 from g12.tools.translate.order import written_order
 from g12.tools.translate.output import lines_of, output_lines
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
@@ -34,10 +35,14 @@ class RefusedBlock(NamedTuple):
 
 
 class Translation(NamedTuple):
-    """A LinuxCNC program, or the blocks for which there is none."""
+    """A LinuxCNC program, or the blocks for which there is none.
+
+    ``missing`` are the lines of TOML that the control's file lacks for the program.
+    """
 
     text: str
     refused: list[RefusedBlock]
+    missing: Sequence[str] = ()
 
 
 def translate_program(
@@ -62,7 +67,8 @@ def translate_program(
     )
     refused = sorted(set(refusals(followed)))
     if refused:
-        return Translation("", refused)
+        settings = [draft.setting for draft in followed.drafts if draft and draft.setting]
+        return Translation("", refused, missing_lines(blocks, control, machine_codes, settings))
     order = written_order(followed, len(rows))
     if order.circular:
         return Translation("", sorted(circular_calls(followed, order.circular)))

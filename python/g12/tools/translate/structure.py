@@ -95,6 +95,7 @@ class Structure:
 
 def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
     """Return the structure of a file's blocks."""
+    blocks = without_leader(blocks)
     end = end_of_tape(blocks)
     structure = Structure(blocks[:end], blocks[end:])
     heads = program_heads(structure.blocks)
@@ -280,12 +281,32 @@ def add_local_programs(structure: Structure, heads: dict[int, int], control: Con
 
 def end_of_tape(blocks: Sequence[ForeignBlock]) -> int:
     """Return the index behind the ``%`` that ends the program."""
-    started = False
-    for index, block in enumerate(blocks):
+    start = opening_of_tape(blocks)
+    started = start > 0
+    for index, block in enumerate(blocks[start:], start):
         if block.kind == "tape" and started:
             return index + 1
         started = started or bool(block.words) or block.kind not in ("words", "tape")
     return len(blocks)
+
+
+def opening_of_tape(blocks: Sequence[ForeignBlock]) -> int:
+    """Return the index behind the first ``%``, 0 where more than a program's name is before it."""
+    tapes = [index for index, block in enumerate(blocks) if block.kind == "tape"]
+    first = tapes[0] if tapes else -1
+    plain = all(b.kind == "words" and not b.problem for b in blocks[:first])
+    words = [word for block in blocks[:first] for word in block.words]
+    return first + 1 if plain and all(word.letter == "O" for word in words) else 0
+
+
+def without_leader(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
+    """Return the blocks; a program's name before the first ``%`` is a comment there."""
+    start = opening_of_tape(blocks)
+    named = [
+        b._replace(words=(), comments=(*(w.text for w in b.words), *b.comments))
+        for b in blocks[:start]
+    ]
+    return [*named, *blocks[start:]]
 
 
 def find_returns(structure: Structure, codes: frozenset[str]) -> None:

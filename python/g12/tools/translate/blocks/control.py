@@ -9,7 +9,7 @@ refused with its line. What a code does is one of
 - ``machine``: the builder's; the machine itself must know it (a REMAP line, an M1xx file)
 - ``refuse: sentence``: refused, the sentence says what to do instead
 - a name of MEANINGS: a rule of the translation
-- codes of LinuxCNC, ``M7`` or ``M3 $1``: written in its place
+- codes of LinuxCNC, ``M7`` or ``M3 $1``: written in its place; in ``M3 $1 S=P`` S is its P word
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ MEANINGS = {
     ),
     "M": ("subprogram", "local subprogram", "return", "orientation"),
 }  # fmt: skip
-OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$[0-9]+))*")
+OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$[0-9]+|S=P))*")
 CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")
 RANGE = re.compile(r"([GM])([0-9]{1,3})-([GM])([0-9]{1,3})")
 CLASSES = (
@@ -58,7 +58,8 @@ TABLES: dict[str, dict[str, object]] = {
     },
     "reference": {"G28": ("stored",), "G30": ("stored",), "cancels_length": bool},
     "polar": {
-        "x": ("diameter", "radius", "inherit", "say"), "rapid": ("refuse", "keep", "feed"),
+        "x": ("diameter", "radius", "inherit", "say"), "c": ("radius", "diameter"),
+        "rapid": ("refuse", "keep", "feed"),
         "rapid_feed_mm": float, "rapid_feed_inch": float,
     },
     "cylinder": {"word": ("radius", "diameter", "mapped")},

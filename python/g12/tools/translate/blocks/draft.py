@@ -43,8 +43,8 @@ class Draft:
     ``programs`` are the numbers of the programs in the file, ``called_as`` that of the copy that a
     call is for, 0 if it is for none; ``asked`` has what each program compares with #0; ``index``
     tells the block from all others; ``lines`` are those that it becomes; ``refusal`` is why it is
-    not translated, None if it is, and ``unsure`` the modes that are not the same on every way, if
-    that is why.
+    not translated, None if it is; if that is why, ``unsure`` are the modes that are not the same on
+    every way, ``setting`` the table and the line that the control's file lacks.
     """
 
     def __init__(
@@ -79,6 +79,7 @@ class Draft:
         self.lines: list[str] = []
         self.refusal: str | None = None
         self.unsure: tuple[str, ...] = ()
+        self.setting: tuple[str, str] | None = None
 
     def change(self, **modes: object) -> None:
         """Carry the state on."""

@@ -18,6 +18,14 @@ class NotSure(NotTranslated):
         self.modes = modes
 
 
+class NotSaid(NotTranslated):
+    """A setting that the control's file lacks: its ``table`` ("" for the top) and its line."""
+
+    def __init__(self, sentence: str, table: str, line: str) -> None:
+        super().__init__(sentence)
+        self.setting = (table, line)
+
+
 def excerpt(text: str) -> str:
     """Return text of a program short enough for a message."""
     return text if len(text) <= LONGEST_EXCERPT else f"{text[: LONGEST_EXCERPT - 1]}…"

@@ -25,6 +25,10 @@ from g12.tools.translate.blocks.expressions import (
 
 PLAIN_WORDS = re.compile(r"(?:[A-Z][-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))*")
 PLAIN_WORD = re.compile(r"([A-Z])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
+MAYBE_WORDS = re.compile(
+    r"\s*[/#%:]|\s*(?:[A-Z]\s*[-+.0-9#[=]|IF|WHILE|GOTO|DO|END|RTS|CALL)", re.I
+)
+LABEL = re.compile(r"([A-Z_][A-Z0-9_]*):")
 CODE_NUMBER = re.compile(r"([0-9]+)\.?([0-9]*)")
 NAMED_WORD = re.compile(r"([A-Z]{2})=")
 SKIP = re.compile(r"/([0-9]?)")
@@ -40,6 +44,9 @@ EMPTY_CHARACTERS = "\ufeff\u200b\0"
 LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 MOST_DIGITS = 24
 PLANE_CODES = frozenset(("G17", "G18", "G19"))
+
+
+REMARKS = "if what stands behind ; is a remark there, say remarks = true in a control of your own"
 
 
 @lru_cache(maxsize=1024)
@@ -128,7 +135,10 @@ def blocks_of(line: int, text: str, remarks: bool = False) -> Iterator[ForeignBl
         yield ForeignBlock(line, problem=str(problem))
         return
     for number, part in enumerate(parts):
-        yield _block(line, part, comments if number == 0 else ())
+        block = _block(line, part, comments if number == 0 else ())
+        if number and block.problem:
+            block = block._replace(problem=f"{block.problem}; {REMARKS}")
+        yield block
 
 
 def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, ...]]:
@@ -138,8 +148,10 @@ def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, .
         code, comments = _split_comments(text)
     else:
         code, comments = text, []
-    code, *behind = code.split(";") if remarks else (code,)
-    comments += [part.strip() for part in behind if part.strip()]
+    code, *behind = code.split(";")
+    blocks = [] if remarks else [part for part in behind if MAYBE_WORDS.match(part)]
+    comments += [part.strip() for part in behind if part.strip() and part not in blocks]
+    code = ";".join([code, *blocks])
     code = (
         "".join(code.upper().split())
         .replace(MINUS, "-")
@@ -170,10 +182,8 @@ def _split_comments(text: str) -> tuple[str, list[str]]:
 
 
 def printable(comment: str) -> str:
-    """Return a comment that LinuxCNC only keeps: plain characters, no brackets, no command."""
-    if not comment.isascii():
-        comment = unicodedata.normalize("NFKD", comment).encode("ascii", "replace").decode()
-        comment = comment.replace("?", " ") if not comment.strip("? ") else comment
+    """Return a comment that LinuxCNC only keeps: accents too, no brackets, no command."""
+    comment = unicodedata.normalize("NFC", comment).encode("utf-8", "replace").decode("utf-8")
     comment = comment.replace("(", "[").replace(")", "]").replace(";", ",")
     comment = "".join(c if c.isprintable() else " " for c in comment)
     return f"- {comment.strip()}" if OBEYED.match(comment) else comment
@@ -192,6 +202,7 @@ def _parsed(line: int, text: str) -> ForeignBlock:
         return ForeignBlock(line, "tape", label=printable(text[1:]))
     if text.startswith(":"):
         text = f"O{text[1:]}"
+    refuse_other_texts(text)
     skip = SKIP.match(text)
     if skip:
         if skip[1] not in ("", "1"):
@@ -201,6 +212,20 @@ def _parsed(line: int, text: str) -> ForeignBlock:
         words = tuple(map(_plain_word, PLAIN_WORD.findall(text)))
         return ForeignBlock(line, words=words)
     return _statement(line, text)
+
+
+def refuse_other_texts(text: str) -> None:
+    """Refuse what is no block of these controls, by its name."""
+    if text.startswith("$"):
+        raise NotTranslated(
+            f"{excerpt(text)} begins the program of one of two channels: translate one channel's "
+            "blocks, in a file of its own"
+        )
+    label = LABEL.match(text)
+    if label:
+        raise NotTranslated(
+            f"{excerpt(label[0])} is a label, which these controls do not have: take out the colon"
+        )
 
 
 def _statement(line: int, text: str) -> ForeignBlock:

@@ -40,9 +40,11 @@ class ModalState(NamedTuple):
     ``own_motion``, ``own_distance`` and ``own_feed`` tell where LinuxCNC is in another mode than
     the program.
     ``polar`` is ``on`` between polar on and off, ``cylinder`` on a cylinder; ``mapped`` is the
-    radius of one whose angles are written as lengths.
+    radius of one whose angles are written as lengths, ``delayed`` a code of compensation that is
+    written with the section's next move.
     ``at_x`` to ``at_c`` are the program's point, as far as it is known (`places`); ``held`` are
-    slides that LinuxCNC has not moved yet, each with where it stands.
+    slides that LinuxCNC has not moved yet, each with where it stands. ``known_offsets`` are the
+    numbered work offsets that are known to be set, or asked about.
     """
 
     motion: str = UNKNOWN
@@ -65,10 +67,12 @@ class ModalState(NamedTuple):
     feed: str = UNKNOWN
     polar: str = "off"
     mapped: str = UNKNOWN
+    delayed: str = UNKNOWN
     own_motion: str = AS_PROGRAMMED
     own_distance: str = AS_PROGRAMMED
     own_feed: str = AS_PROGRAMMED
     held: tuple = ()
+    known_offsets: tuple = ()
     at_x: float | str = UNKNOWN
     at_y: float | str = UNKNOWN
     at_z: float | str = UNKNOWN

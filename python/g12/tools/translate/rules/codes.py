@@ -26,13 +26,26 @@ def map_codes(draft: Draft) -> None:
     """Replace every code, keep it, hand it to its rule, or refuse it."""
     part_builders_codes(draft)
     named = draft.control.tables.get("words", {})
+    live = speed_by_p(draft)
     words: list[ForeignWord] = []
     for word in draft.words:
         if word.letter in "GM":
             words += mapped(draft, word)
         else:
             words.append(word._replace(letter=named.get(word.letter, word.letter)))
-    draft.words = words
+    draft.words = [*words, *live]
+
+
+def speed_by_p(draft: Draft) -> list[ForeignWord]:
+    """Take a code whose P is a speed out, ``M133 P1500``; return LinuxCNC's words for it."""
+    meanings = draft.control.meanings
+    word = next((w for w in draft.words if "S=P" in meanings.get(w.text, "")), None)
+    if not word or word.text in (draft.machine_codes or ()):
+        return []
+    draft.words = [other for other in draft.words if other is not word]
+    speed = draft.take("P")
+    texts = meanings[word.text].replace("S=P", f"S{speed.value}" if speed else "").split()
+    return [ForeignWord(text[0], text[1:]) for text in texts]
 
 
 def part_builders_codes(draft: Draft) -> None:

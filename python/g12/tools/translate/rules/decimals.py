@@ -6,7 +6,7 @@ from __future__ import annotations
 from decimal import Decimal
 
 from g12.tools.translate.blocks.draft import Draft
-from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 
 LENGTHS = frozenset("XYZUVWIJKRQE")
@@ -62,9 +62,11 @@ def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
             "is said before (--units)"
         )
     if rule == "":
-        raise NotTranslated(
+        raise NotSaid(
             f"{word.text} has no decimal point, and the control does not say what it is then: "
-            'set decimals = "least" or "whole" (--decimals)'
+            'set decimals = "least" or "whole" (--decimals)',
+            "",
+            'decimals = "least" # or "whole"',
         )
     if not least:
         raise NotTranslated(f"{word.text} has no decimal point, and no increment is set for it")

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import PARTNERS, Draft
 from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.places import known_place, value_text
 from g12.tools.translate.rules.reference import place_of_increment
 
 
@@ -22,7 +24,8 @@ def incremental_words(draft: Draft) -> None:
         own = "UH" if draft.state.polar == "on" else "UWH"
         found = [word for word in found if word.letter not in own]
         if found and len(draft.axis_words()) + len(draft.increments()) > len(found):
-            raise NotTranslated(f"{found[0].text} beside other axes in polar mode")
+            depth_beside(draft, found[0])
+            return
     if not found:
         return
     for word in found:
@@ -38,6 +41,20 @@ def incremental_words(draft: Draft) -> None:
     else:
         for word in found:
             draft.replace(word, place_of_increment(draft, word))
+
+
+def depth_beside(draft: Draft, word: ForeignWord) -> None:
+    """Write W beside X and C of a section as Z: in the plane it is neither X nor C."""
+    if word.letter != "W" or {"Z"} & draft.letters():
+        raise NotTranslated(f"{word.text} beside other axes in a section")
+    depth = known_place(draft.state, "Z")
+    if draft.sure("distance", f"{word.text} is an increment") == "G91":
+        draft.replace(word, word._replace(letter="Z"))
+    elif depth is None:
+        value = f"[#5422 + [{word.value}]]"
+        draft.replace(word, ForeignWord("Z", value, "expression"))
+    else:
+        draft.replace(word, ForeignWord("Z", value_text(depth)))
 
 
 def rename(draft: Draft) -> None:

@@ -15,7 +15,7 @@ from __future__ import annotations
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import UNKNOWN
+from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
 
 SLOT, SLOT_PARAMETER = "G59.3", 5381  # LinuxCNC's ninth system
 SYSTEMS = 99
@@ -40,12 +40,25 @@ def numbered_offset(draft: Draft) -> None:
     if not code:
         return
     number = system_number(draft, code)
-    load = load_system(draft, number)
-    if draft.alone():
-        draft.words += [line_as_word(load)]
-    else:
-        draft.before.append(load)
+    draft.comments.insert(0, f"G154 P{number} overwrites {SLOT}")
+    draft.before += [*unset_lines(draft, number), load_system(draft, number)]
     draft.change(offset=f"P{number}")
+
+
+def unset_lines(draft: Draft, number: int) -> list[str]:
+    """Return the blocks that say it where a system was never set; LinuxCNC reads 0 then."""
+    known = draft.state.known_offsets
+    known = () if known == UNSURE else known
+    if number in known:
+        return []
+    draft.change(known_offsets=(*known, number))
+    parameters = [f"#{parameter_of(draft, number, axis)}" for axis in draft.control.axes]
+    label = f"o<unset_{draft.index}>"
+    return [
+        f"{label} if [{' AND '.join(f'[{name} EQ 0]' for name in parameters)}]",
+        f"(MSG, G154 P{number} was never set, it counts as 0: X is {parameters[0]})",
+        f"{label} endif",
+    ]
 
 
 def system_number(draft: Draft, code: ForeignWord) -> int:

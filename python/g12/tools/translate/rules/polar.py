@@ -8,13 +8,15 @@ it a radius here. Y is C and V is H. A rapid in polar mode is what the control's
 from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
-from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
-from g12.tools.translate.blocks.places import known_place, value_text
+from g12.tools.translate.blocks.places import axis_of, known_place, value_text
 
+IN_PLANE = frozenset("XCUH")
 MOVING = frozenset("XYZABCUVWHF")
 PLANES = frozenset(("G17", "G18", "G19"))
+SECTIONS = {"on": "in polar mode", "cylinder": "on a cylinder", UNSURE: "in polar mode"}
 RENAMED = {"Y": "C", "V": "H"}
 
 
@@ -45,15 +47,18 @@ def turn_on(draft: Draft, code: str) -> None:
     """Write G12.1; X a radius if it is one on the control."""
     x = draft.control.value("polar", "x", "")
     if x in ("", "say"):
-        raise NotTranslated(
+        raise NotSaid(
             f'{code}: is X a diameter or a radius in it? say x = "diameter" or "radius" under '
-            "[polar] of your control (--polar-x)"
+            "[polar] of your control (--polar-x)",
+            "polar",
+            'x = "diameter" # or "radius"',
         )
     if draft.control.is_lathe and "C" in draft.letters() and is_zero(draft.words[-1]):
         draft.take("C")
+    scale = 0.5 if x == "radius" else 1.0
     lines = [*own_feed_ended(draft), *(["G8"] if x == "radius" else [])]
     own_block(draft, code, [*lines, draft.control.polar_codes[0]])
-    draft.change(polar="on", own_motion=UNSURE, at_c=0.0)
+    draft.change(polar="on", own_motion=UNSURE, at_c=0.0, **slides_kept(draft, scale))
 
 
 def turn_off(draft: Draft, code: str) -> None:
@@ -61,7 +66,20 @@ def turn_off(draft: Draft, code: str) -> None:
     back = draft.state.polar != "off" and draft.control.value("polar", "x") == "radius"
     own_block(draft, code, [draft.control.polar_codes[1], *(["G7"] if back else [])])
     if draft.state.polar != "off":
-        draft.change(polar="off", own_motion=UNSURE)
+        if draft.state.delayed:
+            raise NotTranslated(
+                f"G40 stands behind the last move of the section: write a move in X or C with it "
+                f"before {code}"
+            )
+        kept = slides_kept(draft, 2.0 if back else 1.0)
+        draft.change(polar="off", own_motion=UNSURE, **kept)
+
+
+def slides_kept(draft: Draft, scale: float) -> dict[str, float]:
+    """Return where X and Z stand behind a switch; ``scale`` is what X is multiplied by."""
+    x, z = known_place(draft.start, "X"), known_place(draft.start, "Z")
+    found = {"at_x": None if x is None else x * scale, "at_z": z}
+    return {name: value for name, value in found.items() if value is not None}
 
 
 def own_block(draft: Draft, code: str, lines: list[str]) -> None:
@@ -78,7 +96,7 @@ def own_block(draft: Draft, code: str, lines: list[str]) -> None:
 def inside_polar(draft: Draft) -> None:
     """Rewrite the words between polar (or cylinder) on and off."""
     if draft.letters() & set("XYCUVH"):
-        draft.sure("polar", "polar mode is on")
+        draft.sure("polar", "polar mode or a cylinder is on")
     if draft.state.polar == "off":
         return
     if draft.state.polar == "on":
@@ -89,14 +107,65 @@ def inside_polar(draft: Draft) -> None:
         if sum(word.letter == letter for word in draft.words) > 1:
             raise NotTranslated(f"{letter} and its other name in one block")
     offset_number(draft)
+    if draft.state.polar == "on":
+        lengths_of_c(draft)
+        standing_depth(draft)
+        delay_compensation(draft)
     rapid(draft)
+
+
+def lengths_of_c(draft: Draft) -> None:
+    """Write C and H as lengths from the axis where the control has them as diameters."""
+    if draft.control.value("polar", "c") == "diameter":
+        draft.words = [
+            ForeignWord(w.letter, f"[{w.value} / 2]", "expression") if w.letter in "CH" else w
+            for w in draft.words
+        ]
+
+
+def standing_depth(draft: Draft) -> None:
+    """Drop a Z beside X or C that goes nowhere."""
+    start = known_place(draft.start, "Z")
+    if start is not None and draft.letters() & IN_PLANE and start == known_place(draft.state, "Z"):
+        draft.comments += [word.text for word in (draft.take("Z"),) if word]
+
+
+def delay_compensation(draft: Draft) -> None:
+    """Write G40, G41 and G42 with a move in the plane: that of their block, or the next one."""
+    own = [code for code in draft.codes() if code in ("G40", "G41", "G42")]
+    code = own[0] if own else draft.state.delayed
+    if not code:
+        return
+    if code == UNSURE:
+        draft.sure("delayed", "G40 or G41 stands in front of it")
+    if draft.letters() & IN_PLANE and not stands_in_plane(draft):
+        if code not in own:
+            draft.put_first(code)
+        draft.change(delayed=UNKNOWN)
+        return
+    needless = code == "G40" == draft.start.compensation and not draft.state.delayed
+    draft.take_codes({code})
+    draft.words = [word for word in draft.words if word.letter not in IN_PLANE]
+    draft.comments += [f"{code}{'' if needless else ' with the next move'}"] if own else []
+    draft.change(delayed=UNKNOWN if needless else code)
+
+
+def stands_in_plane(draft: Draft) -> bool:
+    """Tell whether X and C of a straight block go nowhere."""
+    if draft.letters() & set("IJKR"):
+        return False
+    axes = {axis_of(word.letter) for word in draft.words if word.letter in IN_PLANE}
+    starts = [(known_place(draft.start, axis), known_place(draft.state, axis)) for axis in axes]
+    return all(start is not None and start == end for start, end in starts)
 
 
 def offset_number(draft: Draft) -> None:
     """Drop a D that names the loaded tool: its radius is what G41 and G42 take."""
     word = draft.take("D")
     if word and word.value.lstrip("0") not in (draft.state.length, draft.state.tool):
-        raise NotTranslated(f"{word.text} in polar mode: G41 and G42 take the loaded tool's radius")
+        raise NotTranslated(
+            f"{word.text} {SECTIONS[draft.state.polar]}: G41 and G42 take the loaded tool's radius"
+        )
 
 
 def rapid(draft: Draft) -> None:
@@ -105,7 +174,12 @@ def rapid(draft: Draft) -> None:
     if rule == "feed":
         rapid_at_feed(draft)
     elif rule == "refuse" and is_rapid(draft):
-        raise NotTranslated('G0 in polar mode: G1 with a high feed, or rapid = "feed" in [polar]')
+        where = SECTIONS[draft.state.polar]
+        raise NotSaid(
+            f'G0 {where}: G1 with a high feed, or rapid = "feed" in [polar]',
+            "polar",
+            'rapid = "feed"',
+        )
 
 
 def is_rapid(draft: Draft) -> bool:
@@ -118,17 +192,25 @@ def is_rapid(draft: Draft) -> bool:
 def rapid_at_feed(draft: Draft) -> None:
     """Write a rapid as G1 at the control's speed; an F beside it is for the blocks behind."""
     if is_rapid(draft):
-        unit = {"G20": "inch", "G21": "mm"}.get(draft.state.units, "")
-        feed = draft.control.value("polar", f"rapid_feed_{unit}", 0)
-        if not feed:
-            raise NotTranslated(
-                "G0 in polar mode needs G20 or G21 before it, and its speed in [polar]"
-            )
+        feed = feed_of_rapids(draft)
         draft.take_codes({"G0"})
         draft.take("F")
         draft.words += [word_of("G1"), word_of("G94"), word_of(f"F{feed:g}")]
         draft.change(motion="G0", own_motion="G1", own_feed="other")
         draft.has_motion = draft.has_feed = True
+
+
+def feed_of_rapids(draft: Draft) -> float:
+    """Return the speed that the control's file gives to rapids in a section."""
+    where = SECTIONS[draft.state.polar]
+    unit = {"G20": "inch", "G21": "mm"}.get(draft.state.units)
+    if not unit:
+        raise NotTranslated(f"G0 {where}: its speed needs the units: say G20 or G21 (--units)")
+    key = f"rapid_feed_{unit}"
+    feed = draft.control.value("polar", key, 0)
+    if not feed:
+        raise NotSaid(f"G0 {where} needs its speed: say {key} under [polar]", "polar", f"{key} = …")
+    return feed
 
 
 def feed_again(draft: Draft) -> None:

@@ -24,6 +24,8 @@ def reference_point(draft: Draft) -> None:
     second = draft.take("P") if code == "G30" else None
     if second and second.value.lstrip("0") != "2":
         raise NotTranslated(f"G30 {second.text}: LinuxCNC has two reference points, G28 and G30")
+    if code in draft.control.value("reference", "unset", ()):
+        draft.comments.append(f"{code}.1 was never set on this machine: machine zero")
     if draft.control.is_lathe:
         from_here(draft, code)
     if draft.control.value("reference", "cancels_length", False):

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 
 from g12.tools.translate.blocks.draft import Draft, word_of
-from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN
 
@@ -58,8 +58,11 @@ def parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
     pattern = next((p for p in patterns if len(p) >= len(word.value)), None)
     least = len(patterns[0]) - 1
     if not pattern or len(word.value) < least:
-        raise NotTranslated(
-            f"{word.text} has {len(word.value)} digits: tool and offset are {' or '.join(patterns)}"
+        raise NotSaid(
+            f"{word.text} has {len(word.value)} digits: tool and offset are "
+            f"{' or '.join(patterns)}; another pattern is said under [tools]",
+            "tools",
+            'patterns = ["TTOO", "TTTOOO"] # T tool, O offset, R what LinuxCNC does not need',
         )
     digits = word.value.zfill(len(pattern))
     tool, offset = (

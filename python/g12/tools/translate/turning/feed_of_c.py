@@ -12,7 +12,7 @@ from __future__ import annotations
 from math import hypot
 
 from g12.tools.translate.blocks.draft import Draft, word_of
-from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.modal import CONSUMERS, UNSURE
 from g12.tools.translate.blocks.places import axis_of, known_place, value_text
 
@@ -65,9 +65,11 @@ def scale_of(draft: Draft, axis: str) -> float:
 def check_rule(draft: Draft, rule: str) -> None:
     """Refuse a block whose time is not known."""
     if rule == "say":
-        raise NotTranslated(
+        raise NotSaid(
             'C beside a slide at a feed: say what F is then, feed_of_c = "mm and degrees", '
-            '"degrees" or "mm" in a control of your own'
+            '"degrees" or "mm" in a control of your own',
+            "",
+            'feed_of_c = "mm and degrees" # or "degrees", "mm"',
         )
     if draft.sure("feed_mode", "C beside a slide at a feed") != "G94":
         raise NotTranslated(

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every sample config of LinuxCNC's screens: each name of ``--with`` in, checked, and out again.
+
+The stock interpreter is asked once for each kind of screen and machine; the others are installed
+with the answer that it gives a config whose modules all load.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from g12.tools.install import checking, features, forms, installation, package_copy, removal
+from g12.tools.install.checking import check_config
+from g12.tools.install.config import Config, Python, load_config, remaps_in
+from g12.tools.install.findings import PROBLEM
+from g12.tools.install.ini_edit import IniText
+from g12.tools.install.plan import Refused, make_plan
+from g12.tools.install.rules import codes_of, findings_of, installed_programs
+from g12.tools.install.trial import refuse_problems
+from g12.tools.machine import files
+from g12.tools.machine.ini import read_ini
+from support.sample_configs import SAMPLES, copy_samples, tree
+
+SCREENS = ("axis", "gmoccapy", "qtvcp", "touchy", "tklinuxcnc")
+MILL = ["haas", "circle-mill"]
+LATHE = ["polar", "polar-shapes", "cylinder"]
+HANDLERS = {name: "g12.remap" for feature in features.FILES
+            for name in features.functions_of(feature)}  # fmt: skip
+SUBS = {
+    *(name for feature in features.FILES for name in features.names_of(feature)),
+    *(f"{form}_{unit}" for names in forms.OF.values() for form in names for unit in forms.UNITS),
+    *(*forms.PARTS, *forms.FACE_PARTS),
+}
+PACKAGE = {
+    **{name: (features.ROOT / name).read_bytes() for name in
+       ("python/toplevel.py", "python/remap.py", "python/g12/__init__.py", forms.PAGE)},
+    **dict.fromkeys(("python/g12/__main__.py", *(f"ngc/{sub}.ngc" for sub in SUBS)), b""),
+}  # fmt: skip
+NO_MACHINE = {"interpreter", "does-not-load", "no-sub"}  # of samples that are none by themselves
+
+
+def screen_of(path):
+    words = (read_ini(path).get("DISPLAY", "DISPLAY") or "").split()
+    return Path(words[0]).name if words else ""
+
+
+INIS = sorted(path.relative_to(SAMPLES) for path in SAMPLES.rglob("*.ini")
+              if screen_of(path) in SCREENS)  # fmt: skip
+pytestmark = pytest.mark.skipif(not INIS, reason="no sample configs here")
+
+
+@pytest.fixture(scope="module")
+def samples(tmp_path_factory):
+    return copy_samples(tmp_path_factory.mktemp("samples"))
+
+
+def full_set(ini):
+    """Return the features of a machine that go together."""
+    lathe = "Y" not in ini.axes
+    control = "programs-fanuc-lathe" if lathe else "programs-haas-mill"
+    codes = [name for name in (LATHE if lathe else MILL) if not why_not(ini, name)]
+    wanted = [*codes, "forms"] if any(name in forms.OF for name in codes) else codes
+    return wanted if ini.get("FILTER", "nc") else [*wanted, control]
+
+
+def why_not(ini, name):
+    """Return the kind of finding by which a machine must refuse a single feature, None if none."""
+    if name in features.FILES and not set(features.AXES.get(name, "XYZ")) <= set(ini.axes):
+        return "no-axis"
+    if name in features.PROGRAMS and ini.get("FILTER", "nc"):
+        return "filter"
+    return {"polar-shapes": "no-polar", "forms": "forms", features.KINEMATICS: "kinematics"}.get(
+        name
+    )
+
+
+def refusal(path, names, dry_run=False):
+    """Install features; return the kinds of the findings they are refused for."""
+    try:
+        list(installation.install(IniText(path), names, dry_run))
+    except Refused as refused:
+        return {finding.kind for finding in refused.args}
+    return set()
+
+
+def in_and_out(path, names):
+    """Install features in a config that takes them, check, uninstall; all is as it was."""
+    assert refusal(path, names) == set()
+    config, found = check_config(IniText(path))
+    assert [finding for finding in found if finding.level == PROBLEM] == []
+    there = {*(code.feature for code in codes_of(config.remaps))}
+    there |= {f"programs-{control}" for control in installed_programs(config)}
+    assert there == {*names} - {"forms"}
+    of_codes = forms.files_of(config, names) if "forms" in names else []
+    assert {f"{form}.ngc" for form in forms.shown(config)} == set(of_codes)
+    list(removal.uninstall(IniText(path), dry_run=False))
+
+
+@pytest.fixture
+def no_interpreter(monkeypatch):
+    """Install a small package, and take the modules of each config for loaded."""
+    monkeypatch.setattr(files.os, "fsync", lambda _: None)
+    monkeypatch.setattr(package_copy, "package_files", lambda: PACKAGE)
+    asked = {}
+
+    def own_python(text):
+        """Return what the stock interpreter says of a config with Python of its own, asked once."""
+        if not text.ini().get("PYTHON", "TOPLEVEL"):
+            return Python(), None
+        if text.path not in asked:
+            config = load_config(text, set())
+            asked[text.path] = config.python or Python(), config.failure
+        return asked[text.path]
+
+    def loaded(text, codes, overlay=None):
+        remaps = remaps_in(text)
+        installed = bool(codes_of(remaps))
+        python, failure = (
+            (Python(), None) if installed and text.path not in asked else own_python(text)
+        )
+        if installed:
+            python = replace(python, remap={**python.remap, **HANDLERS})
+        ini = text.ini().replaced(overlay or {})
+        return Config(text, ini, remaps, "2.9.0", python, frozenset(), failure, {1: 6.0})
+
+    monkeypatch.setattr(checking, "load_config", loaded)
+    monkeypatch.setattr(installation, "load_config", loaded)
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """Return a small copy of the package, as `install` makes it."""
+    folder = tmp_path_factory.mktemp("package") / "g12"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(package_copy, "package_files", lambda: PACKAGE)
+        package_copy.write_copy(folder)
+    return folder
+
+
+def in_and_out_in_memory(path, name):
+    """Put one feature into a config, check it and take it out again, without writing anything."""
+    plan = make_plan(checking.load_config(IniText(path), set()), [name])
+    assert plan.changes()
+    refuse_problems(findings_of(checking.load_config(plan.text, set())))
+    blocks = plan.text.blocks()
+    removal.take_out_blocks(plan.text, blocks)
+    removal.take_out_elsewhere(plan.text, removal.notes_in(blocks), False)
+    assert plan.text.files == IniText(path).files
+
+
+@pytest.mark.usefixtures("no_interpreter")
+@pytest.mark.parametrize("name", INIS, ids=str)
+def test_every_feature_goes_in_and_out(samples, package, name):
+    path = samples / name
+    ini, before = read_ini(path), tree(path.parent)
+    unfit = refusal(path, ["circle-mill" if "Y" in ini.axes else "polar"], True) & NO_MACHINE
+    wanted = full_set(ini)
+    if wanted and not unfit:
+        in_and_out(path, wanted)
+    (path.parent / "g12").symlink_to(package)
+    try:
+        for feature in features.NAMES:
+            why = why_not(ini, feature)
+            if unfit or why:
+                assert unfit or why in refusal(path, [feature], True)
+            else:
+                in_and_out_in_memory(path, feature)
+    finally:
+        (path.parent / "g12").unlink()
+    assert tree(path.parent) == before
+
+
+# One of each: screen, kind of machine, Python of its own, pages of its own, [DISPLAY] elsewhere.
+KINDS = [
+    "sim/axis/axis_mm.ini",
+    "sim/axis/db_demo/db_ran.ini",
+    "sim/axis/ngcgui/ngcgui.ini",
+    "sim/gmoccapy/gmoccapy.ini",
+    "sim/gmoccapy/lathe_configs/lathe_C.ini",
+    "sim/qtdragon/qtdragon_xyz/qtdragon_metric.ini",
+    "sim/tklinuxcnc/tklinuxcnc.ini",
+    "sim/touchy/touchy.ini",
+]
+
+
+@pytest.mark.parametrize(
+    "name", [*KINDS, *(name for name in map(str, INIS) if "qtaxis.ini" in name)]
+)
+def test_the_full_set_loads_in_the_stock_interpreter(samples, name, capsys):
+    path = samples / name
+    before = tree(path.parent)
+    in_and_out(path, full_set(read_ini(path)))
+    assert tree(path.parent) == before
