@@ -37,7 +37,7 @@ FACE = face_of(INI.find)
 KINEMATICS = SETTINGS.polar_kinematics == "1"
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 TYPED = 1  # call level of a block that stands in no sub
-TURN, MORE_THAN_A_TURN = 360.0, 361.0
+TURN, REPORTED_TURN = 360.0, 540.0  # a contour that closes and its leads take more than one
 NOT_IN_MDI = "is not possible in MDI: it needs the lines behind it"
 
 
@@ -93,7 +93,7 @@ def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
 def report_turns(interp: object, turned: float) -> None:
     """Show the operator, once a program, that C has to unwind more than a turn (degrees)."""
     unwound, program = state_of(interp).unwinding_reported, main_program(interp)
-    if abs(turned) > MORE_THAN_A_TURN and not interp.c_axis_wrapped and program not in unwound:
+    if abs(turned) > REPORTED_TURN and not interp.c_axis_wrapped and program not in unwound:
         unwound.add(program)
         glue.message(
             f"{glue.code_of_block(interp)}: C has turned {abs(turned) / TURN:.1f} times, and G0 C0"
