@@ -9,7 +9,6 @@ from __future__ import annotations
 import functools
 import itertools
 import os
-from pathlib import Path
 
 import linuxcnc
 
@@ -22,7 +21,8 @@ from g12.host.glue import (
     code_of_block,
     diameter_mode,
     ini_file,
-    message,
+    main_program,
+    message_once,
     millimetres_per_machine_unit,
     millimetres_per_unit,
     program_units_per_machine_unit,
@@ -71,8 +71,6 @@ class CycleState:
     ``modes`` are those a cycle found and has to put back, ``feed`` the F that a shape found;
     ``radius_commanded`` tells a D of radius 0 from no D at all, which the interpreter's own last
     compensation radius cannot.
-    ``cutters_reported`` are the programs and loaded tools for which another D was reported.
-    ``unwinding_reported`` are the programs for which turns of C were.
     ``first_plane`` is the circle mill's modal reference plane in mm and the program that
     commanded it, as it was then.
     """
@@ -81,8 +79,6 @@ class CycleState:
         self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
         self.feed = 0.0
         self.radius_commanded = False
-        self.cutters_reported: set[tuple] = set()
-        self.unwinding_reported: set[tuple] = set()
         self.first_plane: tuple[float, tuple[str, int] | None] | None = None
 
 
@@ -186,23 +182,8 @@ def remember_radius(interp: object, radius: float) -> None:
 
 def report_other_cutter(interp: object, context: Context, text: str | None) -> None:
     """Show the operator that D is not the loaded tool: once for each program and tool."""
-    reported = state_of(interp).cutters_reported
-    key = text and (main_program(interp), context.spindle_tool.number)
-    if text and key not in reported:
-        reported.add(key)
-        message(text)
-
-
-def main_program(interp: object) -> tuple[str, int] | None:
-    """Return the file at the bottom of the call stack and when it was last written.
-
-    In MDI it is the one that is open, if any.
-    """
-    name = interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
-    try:
-        return name, Path(name).stat().st_mtime_ns
-    except (OSError, TypeError):
-        return None
+    if text:
+        message_once(interp, context.spindle_tool.number, text)
 
 
 def first_plane(interp: object) -> float | None:

@@ -15,7 +15,6 @@ from g12.errors import BlockRefusal, Refusal
 from g12.flat.contour import Contour
 from g12.host import glue
 from g12.host.call_frame import CallFrame
-from g12.host.cycle_glue import main_program, state_of
 from g12.host.kinematics_switch import face_in_force
 from g12.host.program_lines import LineOfFile, ProgramLines, running_file
 from g12.host.section_output import SectionOutput
@@ -92,13 +91,12 @@ def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
 
 def report_turns(interp: object, turned: float) -> None:
     """Show the operator, once a program, that C has to unwind more than a turn (degrees)."""
-    unwound, program = state_of(interp).unwinding_reported, main_program(interp)
-    if abs(turned) > REPORTED_TURN and not interp.c_axis_wrapped and program not in unwound:
-        unwound.add(program)
-        glue.message(
+    if abs(turned) > REPORTED_TURN and not interp.c_axis_wrapped:
+        text = (
             f"{glue.code_of_block(interp)}: C has turned {abs(turned) / TURN:.1f} times, and G0 C0"
             " unwinds all of it. With [AXIS_C] WRAPPED_ROTARY = 1 it takes the short way"
         )
+        glue.message_once(interp, "turns", text)
 
 
 def _section(interp: object, kind: SectionKind, frame: CallFrame, program: ProgramLines) -> Section:
