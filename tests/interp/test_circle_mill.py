@@ -596,7 +596,11 @@ REFUSED = [
     (f"G12.2 {PLACE} H1 J.2", "G12.2: J0.2 is the roughing width of a pocket"),
     (f"G13.2 {PLACE} H2 L1", "G13.2: L needs Q as well: the finish dimension"),
     (f"G13.2 {PLACE} H2 Q.02 L2", "G13.2: L2 must be at most 1"),
-    (f"G13.2 {PLACE} H2 D4", "G13.2: D4 must be at most 3"),
+    (
+        f"G13.2 {PLACE} H2 D4",
+        "G13.2: D4 must be at most 3: D is the direction of the cut,"
+        " the cutter is the tool in the spindle",
+    ),
     (
         f"G13.2 {PLACE} H2 E0",
         "G13.2: E0 must not be below the first reference plane I0.1",

@@ -89,7 +89,7 @@ INSIDE = [
     ("M6", f"M6 is refused: {TOOL}"),
     ("M61 Q1", f"M61 is refused: {TOOL}"),
     ("G1 G41 X5 D1", "D is refused: the radius is that of the loaded tool"),
-    ("G12.1", "the section is already on"),
+    ("G12.1", "the section is already on: G13.1 ends it"),
     ("M2", "G13.1 is missing: M2 comes before it"),
     ("M30", "G13.1 is missing: M30 comes before it"),
     ("G1 A5", f"A is refused: {AXES}"),

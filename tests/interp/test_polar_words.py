@@ -380,7 +380,9 @@ def test_both_pairs_of_codes_on_one_machine():
             refused = with_codes(on, "M9", "G1 X12")
             assert refused.error.text.startswith(f"{on} line 8: G13{on[3:]} is missing")
             refused = with_codes(on, "G13.1", "G12.3")
-            assert refused.error.text == f"{on} line 6: the section is already on"
+            assert (
+                refused.error.text == f"{on} line 6: the section is already on: G13{on[3:]} ends it"
+            )
 
 
 # ---------------------------------------------------------------- the machine's INI
@@ -427,3 +429,16 @@ def test_keywords_of_remap_lines_may_be_shortened(tmp_path):
         codes = {"G12.1": "G12.4", "G13.1": "G13.5"}
         program = [codes.get(line, line) for line in section("G1 X12", "M33", "U-2")]
         assert ends(lathe.trace_text(program)) == [(12, 0), (9, 0), (7, 0)]
+
+
+@pytest.mark.parametrize(("turns", "wrapped", "told"), [(1, 0, []), (2, 0, ["2.0"]), (2, 1, [])])
+def test_turns_that_c_has_to_unwind_are_reported_once(turns, wrapped, told):
+    circle = ["G0 X20 C0", "G12.1", *["G2 I-20"] * turns, "G13.1"]
+    overrides = {"AXIS_C": {"WRAPPED_ROTARY": wrapped}}
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
+        traced = lathe.trace_text([FIRST, "F300", *circle, *circle, "M2"])
+    assert traced.error is None
+    says = "G12.1: C has turned {} times, and G0 C0 unwinds all of it. With [AXIS_C] {} it takes"
+    assert [message.text for message in traced.messages] == [
+        says.format(times, "WRAPPED_ROTARY = 1") + " the short way" for times in told
+    ]

@@ -279,7 +279,11 @@ KNOWN = "X Y Z I E R D H K J Q L P F"
         (NEEDED, "H is missing: 0 tool centre on the circle, 1 left, 2 right of it"),
         (dict(NEEDED, H=3), "H3 must be at most 2"),
         (dict(NEEDED, H=-1), "H-1 must be at least 0"),
-        (dict(NEEDED, H=2, D=4), "D4 must be at most 3"),
+        (
+            dict(NEEDED, H=2, D=4),
+            "D4 must be at most 3: D is the direction of the cut,"
+            " the cutter is the tool in the spindle",
+        ),
         (dict(NEEDED, H=2, D=-1), "D-1 must be at least 0"),
         (dict(NEEDED, H=2, D=0.5), "D0.5 must be a whole number"),
         (dict(NEEDED, H=2, R=-1.5), "R-1.5 must be greater than 0"),

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.cycles import circle_mill, haas, mitsubishi, yasnac
-from g12.cycles.common import COUNTLESS, steps_between
+from g12.cycles.common import COUNTLESS, other_cutter, steps_between
 from g12.cycles.context import Tool
 from g12.cycles.words import Words
 from g12.errors import Refusal
@@ -84,3 +84,27 @@ def test_a_tools_size_has_its_unit_where_the_machines_is_another(planner, words,
     assert told.format(" mm") in planned(planner, OTHER_UNITS, words, *more)
     same = OTHER_UNITS._replace(unit="")
     assert told.format("") in planned(planner, same, words, *more)
+
+
+LOADED = MM._replace(spindle_tool=Tool(1, 6.0))
+
+
+@pytest.mark.parametrize(
+    ("found", "d_word", "last", "told"),
+    [
+        (LOADED, 2.0, None, "D2, diameter 20; the loaded tool T1 has 12"),
+        (LOADED, None, 6.4, "the D last commanded, diameter 12.8; the loaded tool T1 has 12"),
+        (LOADED._replace(unit="in"), 2.0, 6.0, "D2, diameter 20 in; the loaded tool T1 has 12 in"),
+        (LOADED, 1.0, 9.0, None),  # D counts
+        (LOADED, None, 5.8, None),  # wear
+        (LOADED, None, None, None),
+        (LOADED, 0.0, 9.0, None),
+        (LOADED, 4.0, 9.0, None),  # no diameter, as D0
+        (LOADED, 77.0, 9.0, None),  # refused elsewhere
+        (MM, 2.0, None, None),  # nothing is loaded
+        (MM._replace(spindle_tool=Tool(4, 0.0)), 2.0, None, None),
+    ],
+)
+def test_another_cutter_than_the_loaded_one_is_reported(found, d_word, last, told):
+    text = other_cutter("G12", d_word, found, last)
+    assert text == (told and f"G12: the cycle uses {told}")

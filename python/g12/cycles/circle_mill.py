@@ -292,7 +292,12 @@ def circle_of(entries: EventEntries) -> EventCircle:
     x = words.require("X", "the circle's centre")
     y = words.require("Y", "the circle's centre")
     radius = words.require_positive("R", "the circle's radius")
-    direction = words.take_whole("D", least=0, most=3, default=0)
+    direction = words.take_whole("D", least=0, default=0)
+    if direction >= len(ROUGH_FINISH):
+        raise words.refuse(
+            f"D{direction} must be at most {len(ROUGH_FINISH) - 1}: D is the direction of the cut,"
+            " the cutter is the tool in the spindle"
+        )
     if letter not in words:
         words.require(letter, "0 tool centre on the circle, 1 left, 2 right of it")
     compensation = words.take_whole(letter, least=0, most=2)

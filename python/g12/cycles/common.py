@@ -17,6 +17,7 @@ from g12.errors import number
 
 SMALLEST_RING_MM = 0.00508  # 0.0002 in: its half circles are twice what LinuxCNC needs
 ROUNDING_MM = 1e-6  # lengths closer than this are equal
+WEAR = 0.05  # of a tool's radius: D may differ by that from the loaded tool
 COUNTLESS = 1e9  # steps; a quotient beyond it could not even be rounded
 MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
 
@@ -86,6 +87,27 @@ def loaded_tool(words: Words, context: Context) -> Tool:
             f" not {number(2 * tool.radius)}"
         )
     return tool
+
+
+def other_cutter(
+    code: str, d_word: float | None, context: Context, last_radius: float | None = None
+) -> str | None:
+    """Return the operator message where D is not the loaded tool by more than wear, or None.
+
+    D is believed: the loaded tool may be what is wrong. Without D ``last_radius`` counts. A tool
+    without a diameter, or none, is compared with nothing.
+    """
+    named = context.tool_in_table(round(d_word)) if d_word else None
+    radius = named.radius if named else last_radius if d_word is None else None
+    loaded = context.spindle_tool
+    if not radius or loaded is None or loaded.radius <= 0:
+        return None
+    if abs(radius - loaded.radius) <= WEAR * loaded.radius:
+        return None
+    source = f"D{named.number}" if named else "the D last commanded"
+    size, loaded_size = (context.tool_size(2 * size) for size in (radius, loaded.radius))
+    used = f"the cycle uses {source}, diameter {size}"
+    return f"{code}: {used}; the loaded tool T{loaded.number} has {loaded_size}"
 
 
 def check_count(words: Words, circles: int, cause: str) -> None:

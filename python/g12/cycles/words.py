@@ -41,6 +41,10 @@ class Words:
         """Return a word as a program has it: ``I0.125``."""
         return f"{letter}{number(value)}"
 
+    def value(self, letter: str) -> float | None:
+        """Return the word's value and leave it to be taken, None if it is not there."""
+        return self._left.get(letter)
+
     def take(self, letter: str) -> float | None:
         """Return the word's value, or None if the block does not have it."""
         return self._left.pop(letter, None)

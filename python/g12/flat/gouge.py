@@ -19,9 +19,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import reduce
 from itertools import accumulate, groupby
 from math import ceil, copysign, hypot, inf, sqrt
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
-from g12.errors import number
+from g12.errors import Refusal, number
 from g12.flat.closing import closing_of
 from g12.flat.contour import (
     SAME_PLACE,
@@ -53,6 +53,10 @@ RAMP = -1  # in place of an index
 # there and goes the same way.
 NOT, FACING, BEHIND, PASSED = "", "facing", "behind", "passed"
 TURN_ON = 3  # moves: so many on either side of that which ran behind the last place are tried
+
+
+class LeadRefusal(Refusal):
+    """The tool cuts into a closed contour where it leads to or from it."""
 
 
 class Cut(NamedTuple):
@@ -132,13 +136,18 @@ class _Stretch:
             if hit:
                 one, other = self._lines(index, hit.line)
                 if not hit.lead:
-                    self._contour.refuse(
-                        other,
-                        f"the tool of radius {number(self._radius)} cannot follow both lines {one} "
-                        f"and {other}: beside one of them it cuts into the other",
-                    )
+                    self._refuse(one, other)
                 if not closing.crossing:
                     self._note(one, other, "cut into each other: one is taken for a lead")
+
+    def _refuse(self, one: int, other: int) -> NoReturn:
+        """Refuse two lines; where one leads to or from a closed contour the side may be wrong."""
+        ends = {self._moves[0].line, self._moves[-1].line}
+        kind = LeadRefusal if self._closing.closed and ends & {one, other} else Refusal
+        raise kind(
+            f"{self._contour.code} line {other}: the tool of radius {number(self._radius)} cannot"
+            f" follow both lines {one} and {other}: beside one of them it cuts into the other"
+        )
 
     def _lines(self, index: int, line: int) -> tuple[int, int]:
         """Return two lines in their order, that of a move by its index."""

@@ -15,10 +15,11 @@ another one (`between`).
 
 from __future__ import annotations
 
+from copy import copy
 from math import copysign, hypot
 from typing import NamedTuple, NoReturn
 
-from g12.errors import number
+from g12.errors import Refusal, number
 from g12.flat.between import check_contours
 from g12.flat.contour import (
     SAME_PLACE,
@@ -33,7 +34,7 @@ from g12.flat.contour import (
     start_direction,
     sweep_between,
 )
-from g12.flat.gouge import Cut, check_gouges
+from g12.flat.gouge import Cut, LeadRefusal, check_gouges
 from g12.flat.intersect import PARALLEL, along_end, along_start, crossing
 
 JOINED = 0.04  # tolerances: moved by no more, parallels are joined without an arc
@@ -65,11 +66,27 @@ def tool_path(contour: Contour, elements: list, tolerance: float) -> list:
     moves = [e for e in elements if is_move(e)]
     if not any(e.offset for e in moves):
         return elements
-    centred = iter(_centred(contour, moves, tolerance))
+    try:
+        centred = iter(_centred(contour, moves, tolerance))
+    except LeadRefusal as refusal:
+        raise _with_other_side(refusal, contour, moves, tolerance) from None
     path = []
     for element in elements:
         path.extend(next(centred) if is_move(element) else (element,))
     return path
+
+
+def _with_other_side(refusal: Refusal, contour: Contour, moves: list, tolerance: float) -> Refusal:
+    """Return a refusal that asks whether the other of G41 and G42 is meant, where that is cut."""
+    others = [move._replace(offset=-move.offset) for move in moves]
+    trial = copy(contour)
+    trial.elements, trial.notes = others, []
+    try:
+        _centred(trial, others, tolerance)
+    except Refusal:
+        return refusal
+    codes = sorted({_code(move) for move in others if move.offset})
+    return Refusal(f"{refusal.message}. {' and '.join(codes)}?")
 
 
 def _centred(contour: Contour, moves: list, tolerance: float) -> list[tuple]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import functools
 import itertools
 import os
-from pathlib import Path
 
 import linuxcnc
 
@@ -22,6 +21,8 @@ from g12.host.glue import (
     code_of_block,
     diameter_mode,
     ini_file,
+    main_program,
+    message_once,
     millimetres_per_machine_unit,
     millimetres_per_unit,
     program_units_per_machine_unit,
@@ -179,16 +180,10 @@ def remember_radius(interp: object, radius: float) -> None:
     state_of(interp).radius_commanded = True
 
 
-def main_program(interp: object) -> tuple[str, int] | None:
-    """Return the file at the bottom of the call stack and when it was last written.
-
-    In MDI it is the one that is open, if any.
-    """
-    name = interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
-    try:
-        return name, Path(name).stat().st_mtime_ns
-    except (OSError, TypeError):
-        return None
+def report_other_cutter(interp: object, context: Context, text: str | None) -> None:
+    """Show the operator that D is not the loaded tool: once for each program and tool."""
+    if text:
+        message_once(interp, context.spindle_tool.number, text)
 
 
 def first_plane(interp: object) -> float | None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from interpreter import INTERP_OK
 
 from g12.cycles import circle_mill, mitsubishi, yasnac
+from g12.cycles.common import other_cutter
 from g12.cycles.haas import plan_pocket
 from g12.cycles.words import Words
 from g12.host import cycle_glue, glue
@@ -16,10 +17,12 @@ CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
 def prepare_haas(interp: object, arc: int) -> int:
     """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
     words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
+    other = other_cutter(words.code, words.value("D"), context, context.last_radius)
     pocket = plan_pocket(words, context, cycle_glue.SETTINGS.clearing, cycle_glue.ENTRY)
     cycle_glue.stay_within_limits(interp, words, pocket.extent())
     hand = 1 if arc == COUNTERCLOCKWISE else -1
     cycle_glue.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
+    cycle_glue.report_other_cutter(interp, context, other)
     if pocket.commanded_radius is not None:
         cycle_glue.remember_radius(interp, pocket.commanded_radius)
     if pocket.message:
@@ -42,8 +45,10 @@ def g13_haas(self, **words):
 def prepare_yasnac(interp: object, arc: int) -> int:
     """Check a Yasnac G12/G13 block and hand its circle to `ngc/g12_yasnac.ngc`."""
     words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
+    other = other_cutter(words.code, words.value("D"), context)
     circle = yasnac.plan_circle(words, context)
     cycle_glue.stay_within_limits(interp, words, circle.extent(context.z))
+    cycle_glue.report_other_cutter(interp, context, other)
     cycle_glue.hand_over(
         interp,
         **circle._asdict(),
@@ -70,8 +75,10 @@ def g13_yasnac(self, **words):
 def prepare_mitsubishi(interp: object, arc: int) -> int:
     """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_mitsubishi.ngc`."""
     words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
+    other = other_cutter(words.code, words.value("D"), context)
     circle = mitsubishi.plan_circle(words, context)
     cycle_glue.stay_within_limits(interp, words, circle.extent(context))
+    cycle_glue.report_other_cutter(interp, context, other)
     cycle_glue.hand_over(interp, **circle._asdict(), arc=arc)
     return INTERP_OK
 

@@ -10,6 +10,7 @@ import ctypes
 import functools
 import os
 import sys
+from pathlib import Path
 
 import emccanon
 import linuxcnc
@@ -160,3 +161,23 @@ def diameter_mode(interp: object) -> bool:
 def message(text: str) -> None:
     """Show the operator a message that is no error."""
     emccanon.MESSAGE(text)
+
+
+def message_once(interp: object, key: object, text: str) -> None:
+    """Show a message once for each program and ``key``, as long as LinuxCNC runs."""
+    shown = getattr(interp, "g12_shown", None) or set()
+    interp.g12_shown = shown | {(main_program(interp), key)}
+    if interp.g12_shown != shown:
+        message(text)
+
+
+def main_program(interp: object) -> tuple[str, int] | None:
+    """Return the file at the bottom of the call stack and when it was last written.
+
+    In MDI it is the one that is open, if any.
+    """
+    name = interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
+    try:
+        return name, Path(name).stat().st_mtime_ns
+    except (OSError, TypeError):
+        return None

@@ -36,6 +36,7 @@ FACE = face_of(INI.find)
 KINEMATICS = SETTINGS.polar_kinematics == "1"
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 TYPED = 1  # call level of a block that stands in no sub
+TURN, REPORTED_TURN = 360.0, 540.0  # a contour that closes and its leads take more than one
 NOT_IN_MDI = "is not possible in MDI: it needs the lines behind it"
 
 
@@ -73,9 +74,11 @@ def program_behind(interp: object) -> ProgramLines:
 def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
     """Run the section that begins with the block being remapped."""
     program, running = program_behind(interp), running_file(interp)
-    frame = CallFrame(interp, program.home.filename)
+    frame, c = CallFrame(interp, program.home.filename), interp.CC_current
     try:
         yield from _section(interp, kind, frame, program).run()
+        if not kind.letters:  # on a cylinder the turns are the program's words
+            report_turns(interp, interp.CC_current - c)
     except Exception as error:
         line = line_named(error)
         called = program.source is not program.home and not line
@@ -84,6 +87,16 @@ def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
             file = os.path.basename(program.home.filename)
             raise with_line(error, LineOfFile(line, file)) from None
         raise
+
+
+def report_turns(interp: object, turned: float) -> None:
+    """Show the operator, once a program, that C has to unwind more than a turn (degrees)."""
+    if abs(turned) > REPORTED_TURN and not interp.c_axis_wrapped:
+        text = (
+            f"{glue.code_of_block(interp)}: C has turned {abs(turned) / TURN:.1f} times, and G0 C0"
+            " unwinds all of it. With [AXIS_C] WRAPPED_ROTARY = 1 it takes the short way"
+        )
+        glue.message_once(interp, "turns", text)
 
 
 def _section(interp: object, kind: SectionKind, frame: CallFrame, program: ProgramLines) -> Section:

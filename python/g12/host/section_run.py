@@ -163,7 +163,7 @@ class Section:
     def _check(self, block: SectionBlock) -> None:
         codes, place = self.codes, self.reader.place
         if codes.begins(block):
-            raise place.refuse("the section is already on")
+            raise place.refuse(f"the section is already on: {codes.off_code} ends it")
         if block.m[M_STOP] in (M2, M30):
             raise self._missing_off(f"M{block.m[M_STOP]} comes before it")
         check_block(block, self.setup.words.words, self._rapid_allowed, place)

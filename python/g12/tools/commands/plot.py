@@ -3,16 +3,19 @@
 
 A mill program is shown from above and from the side, with the area its cutters sweep; a program
 that turns C on the face of the part, one whose sections are all on a cylinder on its unrolled
-surface, both over time too; a turning program in Z and X.
+surface, both over time too; a turning program in Z and X. A refused program is drawn up to the
+refused line; of a section that line's contour is shown without compensation.
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 from g12.tools.commands.arguments import (
+    FINDING,
     GOOD,
     Parser,
     check_run,
@@ -21,16 +24,19 @@ from g12.tools.commands.arguments import (
     one_line,
     samples_of_run,
     stock_of,
+    tell_whose_lines,
 )
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import OpenedProgram, opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
+from g12.tools.plot.refused import with_refused_contour
 from g12.tools.plot.scene import Scene, scene_of
-from g12.tools.preview.ended import traced
+from g12.tools.preview.ended import ended, ended_text, explained
 from g12.tools.preview.moves import message_lines
 from g12.tools.preview.source_lines import trace_in_source
+from g12.tools.preview.tracer import trace
 from g12.tools.progress import working
 from g12.tools.verify.proof import subject_of
 from g12.tools.verify.result.sentences import NOTES
@@ -70,7 +76,11 @@ def main(arguments: list[str]) -> int:
     print(f"{options.output} written")
     for line in told_beside(scene, opened):
         print(line)
-    return GOOD
+    if scene.refusal:
+        text = ended_text(options.program, trace_in_source(scene.subject.trace, opened).error)
+        print(f"g12 plot: {text}", file=sys.stderr)
+        tell_whose_lines("plot", opened)
+    return FINDING if scene.refusal else GOOD
 
 
 def told_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
@@ -91,14 +101,21 @@ def told_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
 def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Scene:
     """Draw a program as LinuxCNC reads it; return what is drawn."""
     with working(f"interpreting {program.name}"):
-        trace = traced(program, options.ini, options.tools, options.var)
-        if not trace.moves:
+        found = explained(
+            trace(program, options.ini, tools=options.tools, parameters=options.var), options.ini
+        )
+        if found.error and not options.run:
+            found = with_refused_contour(program, ini, found, options.var)
+        if options.run or not found.moves:
+            ended(program, found)
+        if not found.moves:
             raise UsageError(f"{options.program}: moves nothing, so there is nothing to draw")
-    samples = samples_of_run(program, options, trace, ini)
+    samples = samples_of_run(program, options, found, ini)
     with working(f"drawing {options.output.name}"):
-        subject = subject_of(program, ini, trace, samples)
-        seen = seen_in(subject, options.tools, options.var, stock_of(options))
+        subject = subject_of(program, ini, found, samples)
         scene = scene_of(subject, options.units, options.feeds)
-        scene = replace(scene, override=options.override, seen=seen)
+        if not found.error:
+            seen = seen_in(subject, options.tools, options.var, stock_of(options))
+            scene = replace(scene, override=options.override, seen=seen)
         style.save(picture_of(scene), options.output)
     return scene

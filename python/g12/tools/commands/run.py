@@ -51,14 +51,17 @@ USUAL_TIMEOUT = 600.0  # s
 
 
 def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
-    """Yield what the run said and where the machine stands at its end."""
+    """Yield what the run said, and where the machine stands at its end if anything has moved."""
     for message in result.messages:
         yield f"message: {message.text}"
+    if result.error and not result.seconds:
+        return
     axes = [(axis, AXES.index(axis)) for axis in result.samples.axes]
     ends = (f"{axis}{number_text(round(result.position[at], DECIMALS))}" for axis, at in axes)
     unit = UNITS[name_of_unit(ini.mm)].name
     units = unit if all(LINEAR[at] for _, at in axes) else f"{unit} and degrees"
-    yield f"ends at {' '.join(ends)} (machine position, {units})"
+    what = "stopped at" if result.error else "ends at"
+    yield f"{what} {' '.join(ends)} (machine position, {units})"
     yield f"{result.seconds:.3f} s in motion"
 
 

@@ -63,6 +63,12 @@ class Scene:
         return x0_text(self.path.part, self.unit)
 
     @property
+    def refusal(self) -> str:
+        """Return what LinuxCNC says of a program that it refuses, "" of any other."""
+        error = self.subject.trace.error
+        return f"refused in line {error.line}: {error.rule}" if error else ""
+
+    @property
     def title(self) -> str:
         """Return the picture's heading."""
         return self.subject.program.stem
@@ -73,6 +79,7 @@ class Scene:
         cutting = (i for i, move in enumerate(self.moves) if move.kind != "rapid")
         length = sum(self.path.part_length(index) for index in cutting)
         facts = [
+            self.refusal,
             heading(self.subject.program),
             self.subject.ini.path.name,
             f"cutting path {plain(length / self.unit.mm, 1)} {self.unit.name}",

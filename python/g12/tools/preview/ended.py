@@ -10,7 +10,7 @@ from pathlib import Path
 from g12.machine_ini import remap_lines
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
-from g12.tools.preview.moves import Trace
+from g12.tools.preview.moves import Error, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer, trace
 from g12.tools.system import CALL
 
@@ -30,8 +30,13 @@ def traced(program: Path, ini: Path, tools: Tools = None, parameters: Parameters
 def ended(program: Path | str, result: Trace) -> Trace:
     """Return a trace that came to its end, or raise ProgramError."""
     if result.error:
-        raise ProgramError(f"{program}:{result.error.line}: {result.error.rule}")
+        raise ProgramError(ended_text(program, result.error))
     return result
+
+
+def ended_text(program: Path | str, error: Error) -> str:
+    """Return the text of an error with the program and the line in front."""
+    return f"{program}:{error.line}: {error.rule}"
 
 
 def explained(result: Trace, ini: Path) -> Trace:

@@ -45,7 +45,7 @@ DWELL, EXACT_HERE = 4.0, 9.0
 PATHS = {61.0: True, 61.1: True, 64.0: False}  # code: exact
 SPINDLE = re.compile(r"\$\s*(#?-?[\d.]+|#<[^>]*>)")
 ACTS = re.compile(
-    r"(M\d|S|G10|G4[39]|G5\d|G92|dwell (?!0$)|message )"
+    r"(M\d|S|G10|G4[39]|G5\d|G92|dwell (?!0$)|message (?!G[0-9.]+: ))"
 )  # of what a trace tells: what a section does
 FEED_MODES = {94.0: False, 98.0: False, 95.0: True, 99.0: True}  # code: per revolution
 SAVE, RESTORE, SAVE_FOR_SUB = 70.0, 72.0, 73.0

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What there is to draw of a program that is refused: its moves, and the refused contour."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import takewhile
+from pathlib import Path
+
+from g12.tools.machine.ini import Ini
+from g12.tools.preview.moves import Move, Trace
+from g12.tools.preview.tracer import Parameters, trace
+
+
+def with_refused_contour(program: Path, ini: Ini, refused: Trace, parameters: Parameters) -> Trace:
+    """Return a refused program's trace with the contour of its section, up to the refused line.
+
+    With a cutter of diameter 0 the path is the programmed contour, and its corners fit.
+    """
+    tools = dict.fromkeys(refused.diameters, 0.0)
+    contour = trace(program, ini.path, tools=tools, parameters=parameters).moves
+    section = section_up_to(refused.error.line, contour)
+    lines = [move._replace(tool=0) for move in section]  # they sweep nothing
+    return replace(refused, moves=[*refused.moves, *lines])
+
+
+def section_up_to(line: int, moves: list[Move]) -> list[Move]:
+    """Return the moves of the section that a line is in, up to that line, the first time."""
+    at = next((k for k, move in enumerate(moves) if move.remap and move.block == line), None)
+    if at is None:
+        return []
+    before = list(takewhile(lambda move: move.remap == moves[at].remap, moves[at::-1]))
+    behind = list(takewhile(lambda move: move.block == line, moves[at + 1 :]))
+    return [*before[::-1], *behind]
