@@ -78,6 +78,8 @@ def _is_said(event: str, block: Block) -> bool:
     if event == FORGOTTEN and UNITS.intersection(block.codes):
         return True
     said = [f"M{code:g}" for code in block.m_codes] + [f"G{code:g}" for code in block.codes]
+    if 9.0 in block.m_codes and event.endswith(" off"):
+        return True
     return event.split()[0] in said or (event[0] == "S" and "S" in block.words)
 
 
