@@ -136,6 +136,24 @@ def test_a_pocket_without_z_is_measured_where_the_tool_stands(distance, repeats,
     assert depths == pytest.approx([-3, -3])
 
 
+@pytest.mark.parametrize("entry", ["plunge", "helix"])
+@pytest.mark.parametrize(
+    ("pockets", "left"),
+    [
+        (["G13 I9 K18 Q4 Z-3 D4", "G13 I18"], 0),
+        (["G13 I9 K15 Q4 Z-3 D4", "G13 I20 K24 Q4"], 0),
+        (["G13 I20 K24 Q4 Z-3 D4"], 1),
+        (["G13 I9 K15 Q4 Z-1 D4", "G13 I20 K24 Q4 Z-3"], 1),
+    ],
+)
+def test_what_a_pass_before_has_cleared_is_not_uncut(pockets, left, entry, tmp_path):
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*MM, "G0 X0 Y0 Z1", *pockets, "G0 Z5", "M2", ""]))
+    machine = ini("mill_mm").replaced({"G12": {"ENTRY": entry}})
+    found = [each.code for each in prove(program, machine).judged if each.is_finding]
+    assert found == ["uncut"] * left
+
+
 # ---------------------------------------------------------------- words and modes
 
 

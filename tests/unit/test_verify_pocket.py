@@ -19,6 +19,7 @@ from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.findings import pocket_notes
 from g12.tools.verify.pocket import judge_pocket, measure_pocket
 from g12.tools.verify.reading.circles import Cutter, Source, Target, Wall
+from g12.tools.verify.workpiece import assumed_workpiece
 from support.made_moves import LIMITS, Hand, samples_of
 
 TOLERANCE = 0.005
@@ -51,13 +52,14 @@ def made(wanted, plane=17):
     return hand.moves
 
 
-def measure(moves, wanted, real_shift=None, known=None):
+def measure(moves, wanted, real_shift=None):
     path = track(MILL, moves, LIMITS)
     real = None
     if real_shift is not None:
         real = follow(path, moves, samples_of(path, 8000, shift=real_shift), 1.0)
     block = Block(None, {}, (), (), (), {}, 1, len(moves))
-    return measure_pocket(block, wanted, path, moves, TOLERANCE, real, known)
+    piece = assumed_workpiece([(block, wanted)], moves, MILL, {1: 2 * wanted.cutter.loaded})
+    return measure_pocket(block, wanted, path, moves, piece.material, TOLERANCE, real)
 
 
 def codes(moves, wanted, **options):
@@ -164,14 +166,6 @@ def test_too_wide_a_stepover_leaves_the_area_between_the_rings(step):
     between = math.pi * ((outer - 3 - 2 * TOLERANCE) ** 2 - (inner + 3) ** 2)
     assert 0.6 * between < facts.left < between  # links and leads cut some of it
     assert [found.code for found in judge_pocket(facts, TOLERANCE)] == ["uncut"]
-
-
-def test_areas_of_pockets_of_one_shape_are_measured_once():
-    known = {}
-    for x, y, z in ((50, 0, 0), (90.3, 7.1, 2.2)):
-        wanted = target(origin=np.array([x, y, z], float))
-        assert codes(made(wanted), wanted, known=known) == []
-    assert len(known) == 1
 
 
 def test_real_motion_beside_the_path_is_found():

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.geometry.curve import Arc, Curve, Line
+from g12.tools.material.material import Material
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import arc_points, plane_axes
 from g12.tools.path.slowest import Pace, pace_of
@@ -21,7 +22,7 @@ from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.axis_limits import Overrun
-from g12.tools.verify.compare.path import FEED, Laid, Made, lay
+from g12.tools.verify.compare.path import FEED, OFF, Laid, Made, lay
 from g12.tools.verify.compare.path_judge import judge_path
 from g12.tools.verify.compare.state import (
     StateDifference,
@@ -29,7 +30,7 @@ from g12.tools.verify.compare.state import (
     judge_state,
     state_differences,
 )
-from g12.tools.verify.pocket_area import Known, is_wrong_tool, uncut_area, uncut_in_run
+from g12.tools.verify.pocket_area import is_wrong_tool, uncut, uncut_in_run
 from g12.tools.verify.reading.circles import Target, Wall
 from g12.tools.verify.reading.codes import EVENT
 from g12.tools.verify.result.finding import Finding
@@ -75,7 +76,8 @@ class PocketFacts:
     @property
     def deviation(self) -> float:
         """Return the greatest distance from the expected toolpath."""
-        return max([self.laid.deviation, *(each.size for each in self.laid.differences)])
+        sizes = (each.size for each in self.laid.differences if each.kind == OFF)
+        return max([self.laid.deviation, self.too_far or 0.0, *sizes])
 
     @property
     def rings(self) -> tuple[float, ...]:
@@ -104,23 +106,24 @@ def measure_pocket(
     target: Target,
     path: Track,
     moves: Sequence[Move],
+    material: Material,
     tolerance: float,
     real: Followed | None = None,
-    known: Known | None = None,
 ) -> PocketFacts:
-    """Return the facts of the pocket of a block; ``known`` are areas of pockets measured before."""
+    """Return the facts of the pocket of a block, in its ``material``."""
     own = range(block.at, block.end)
     laid = lay(target.path, made_in(target.wall, moves, own), tolerance)
     cutting = [i for i in own if is_cutting(moves[i], target.wall)]
     lengths = [moves[index].length for index in cutting] or [0.0]
-    known = {} if known is None else known
-    of_run = facts_of_run(target, laid, cutting, real, tolerance) if real else {}
+    if real:
+        of_run = facts_of_run(block, target, laid, cutting, real, material, tolerance)
+    else:
+        of_run = {"left": uncut(block, target, material, tolerance).area}
     return PocketFacts(
         target,
         laid,
         **{
             "reached": reached(target, laid, moves),
-            "left": 0.0 if real else uncut_area(target, tolerance, known),
             "pace": pace_of(own, cutting, path, real),
             "lengths": (min(lengths), max(lengths)),
             "state": state_differences(block.left, target.leaves),
@@ -184,7 +187,13 @@ def reached(target: Target, laid: Laid, moves: Sequence[Move]) -> float:
 
 
 def facts_of_run(
-    target: Target, laid: Laid, cutting: Sequence[int], real: Followed, tolerance: float
+    block: Block,
+    target: Target,
+    laid: Laid,
+    cutting: Sequence[int],
+    real: Followed,
+    material: Material,
+    tolerance: float,
 ) -> dict[str, float]:
     """Return those members of ``PocketFacts`` that only a run has."""
     wall, cutter = target.wall, target.cutter.radius
@@ -201,7 +210,8 @@ def facts_of_run(
     far = radii.max(initial=0.0) + cutter - wall.radius
     if not wall.inside:
         far = wall.radius - (radii.min(initial=math.inf) - cutter)
-    left = uncut_in_run(target, [line for i, line in zip(cutting, lines) if i in floor], tolerance)
+    own = [line for index, line in zip(cutting, lines) if index in floor]
+    left = uncut_in_run(block, target, material, own, tolerance)
     return {
         "off_path": real.largest(cutting),
         "off_rings": real.largest(circles),

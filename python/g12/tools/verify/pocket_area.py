@@ -1,29 +1,27 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a pocket's toolpath leaves uncut at its deepest level. Lengths mm, areas mm²."""
+"""What of a pocket's material remains uncut at its deepest level. Lengths mm, areas mm²."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
+from shapely.affinity import translate
+from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
 
-from g12.geometry.curve import Line
-from g12.tools.path.part import disc, swept
-from g12.tools.verify.expected.toolpath import Expected
-from g12.tools.verify.pocket_cover import FINE, SECTORS, Span, clears
-from g12.tools.verify.reading.circles import Cutter, Target, Wall
-from g12.tools.verify.result.tolerances import LEVEL, WEAR
+from g12.tools.material.material import Material
+from g12.tools.path.part import Z, disc
+from g12.tools.preview.executed_blocks import Block
+from g12.tools.verify.reading.circles import Cutter, Target
+from g12.tools.verify.result.tolerances import WEAR
 
-ROUND = 4e-6  # chord error of an arc with radius 1, so that every sector gets a point
-DECIMALS = 6
-
-Known = dict[tuple, float]
-
-
-def cutting_radius(cutter: Cutter) -> float:
-    """Return the radius of the cutter that cuts: the loaded one, if it is surely not that of D."""
-    return cutter.loaded if is_wrong_tool(cutter) else cutter.radius
+FINE = 1e-5  # chord error of the circles about a pocket's centre
+LEAST_CORE = 0.01  # a smaller circle about the centre is none
+SAMPLED = 1e-4  # how far a run's motion may be off, drawn with fewer points
+QUARTER = 64  # sides of a quarter of the cutter
+NOTHING = Polygon()
 
 
 def is_wrong_tool(cutter: Cutter) -> bool:
@@ -32,76 +30,78 @@ def is_wrong_tool(cutter: Cutter) -> bool:
     return known and abs(cutter.radius - cutter.loaded) > WEAR * cutter.loaded
 
 
-def _moves_on_floor(path: Sequence[Expected]) -> list[Expected]:
-    """Return the moves at feed at the deepest level."""
-    deepest = min(move.end_level for move in path)
-    flat = (move for move in path if move.start_level == move.end_level and not move.rapid)
-    return [move for move in flat if move.end_level - deepest < FINE]
+def cutting_radius(cutter: Cutter) -> float:
+    """Return the radius of the cutter that cuts: the loaded one, if it is surely not that of D."""
+    return cutter.loaded if is_wrong_tool(cutter) else cutter.radius
 
 
-def uncut_area(target: Target, tolerance: float, known: Known) -> float:
-    """Return what the expected toolpath leaves; ``known`` are pockets like it, by their paths."""
-    floor, cutter = _moves_on_floor(target.path), cutting_radius(target.cutter)
+def uncut(block: Block, target: Target, material: Material, tolerance: float) -> BaseGeometry:
+    """Return what remains of a pocket after its block, in machine coordinates of the plane XY."""
     wall = target.wall
-    key = (wall.radius, wall.cleared, cutter, *map(_key, floor))
-    if key not in known:
-        known[key] = area_left(wall, cutter, [polyline(move) for move in floor], tolerance)
-    return known[key]
+    if not target.cutter.radius or clears(target, tolerance) or wall.plane != Z:
+        return NOTHING
+    wanted = translate(region(target, tolerance), *wall.origin[:2])
+    return material.standing(wanted, wall.height(target.deepest), block.end)
 
 
-def _key(move: Expected) -> tuple:
-    curve = move.curve
-    points = [curve.start, *((curve.end,) if isinstance(curve, Line) else (curve.centre,))]
-    sizes = [getattr(curve, "sweep", 0.0), *(part for p in points for part in (p.real, p.imag))]
-    return tuple(round(size, DECIMALS) + 0.0 for size in sizes)
+def uncut_in_run(
+    block: Block,
+    target: Target,
+    material: Material,
+    lines: Sequence[np.ndarray],
+    tolerance: float,
+) -> float:
+    """Return the area that a run leaves; ``lines`` (n, 3) are its motion at the deepest level.
 
-
-def polyline(move: Expected) -> np.ndarray:
-    """Return points (n, 2) along an expected move."""
-    curve = move.curve
-    if isinstance(curve, Line):
-        return np.array([[p.real, p.imag] for p in (curve.start, curve.end)])
-    error = min(FINE, ROUND * curve.radius) / curve.radius
-    count = int(np.ceil(abs(curve.sweep) / np.sqrt(8 * error))) + 1
-    turned = np.exp(1j * np.linspace(0.0, curve.sweep, count + 1))
-    points = curve.centre + (curve.start - curve.centre) * turned
-    return np.stack([points.real, points.imag], axis=1)
-
-
-def area_left(wall: Wall, cutter: float, lines: Sequence[np.ndarray], tolerance: float) -> float:
-    """Return the area of what paths leave standing; see ``left_of``."""
-    if not cutter or clears(lines, cutter, wanted_of(wall, cutter, tolerance)):
+    They are seen from the wall's centre.
+    """
+    wall, wanted = target.wall, region(target, tolerance)
+    if not target.cutter.radius:
         return 0.0
-    return left_of(wall, cutter, swept(lines, cutter), tolerance).area
+    if wall.plane == Z:
+        there = translate(wanted, *wall.origin[:2])
+        there = material.standing(there, wall.height(target.deepest), block.at)
+        wanted = translate(there, *-wall.origin[:2])
+    paths = [LineString(line[:, :2]).simplify(SAMPLED) for line in lines if len(line) > 1]
+    swept = unary_union([path.buffer(cutting_radius(target.cutter), QUARTER) for path in paths])
+    return wanted.difference(swept).area
 
 
-def wanted_of(wall: Wall, cutter: float, tolerance: float) -> Span:
-    """Return between which distances from the centre nothing may be left."""
-    if wall.inside:
-        return wall.cleared + tolerance, wall.radius - tolerance
-    return wall.radius + tolerance, wall.radius + 2 * cutter - tolerance
-
-
-def left_of(wall: Wall, cutter: float, floor: BaseGeometry, tolerance: float) -> BaseGeometry:
-    """Return what is left standing at the deepest level, beyond the tolerance."""
-    return ring(*wanted_of(wall, cutter, tolerance)).difference(floor)
-
-
-def ring(inner: float, outer: float) -> BaseGeometry:
-    """Return the area between two circles about the centre."""
+def region(target: Target, tolerance: float) -> BaseGeometry:
+    """Return the area about the centre in which nothing may remain."""
+    inner, outer = reach(target, tolerance)
     area = disc((0, 0), outer, FINE)
-    return area.difference(disc((0, 0), inner, FINE)) if inner > 0.01 else area
+    return area.difference(disc((0, 0), inner, FINE)) if inner > LEAST_CORE else area
 
 
-def uncut_in_run(target: Target, lines: Sequence[np.ndarray], tolerance: float) -> float:
-    """Return what a run leaves; ``lines`` (n, 3) are its motion at the deepest level."""
-    lines = [densified(line) for line in lines if len(line)]
-    return area_left(target.wall, cutting_radius(target.cutter), lines, tolerance)
+def reach(target: Target, tolerance: float) -> tuple[float, float]:
+    """Return between which distances from the centre nothing may remain.
+
+    D may be larger than the cutter by an allowance for wear.
+    """
+    wall, cutter = target.wall, target.cutter
+    if not wall.inside:
+        return wall.radius + tolerance, wall.radius + 2 * cutter.radius - tolerance
+    worn = 0.0 if is_wrong_tool(cutter) else max(0.0, cutter.radius - cutter.loaded)
+    return wall.cleared + tolerance, wall.radius - tolerance - worn * bool(cutter.loaded)
 
 
-def densified(line: np.ndarray) -> np.ndarray:
-    """Return a polyline with points so close together that every sector gets one."""
-    most = np.pi / SECTORS * max(np.hypot(*line[:, :2].T).max(), LEVEL)
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    places = np.union1d(along, np.linspace(0.0, along[-1], int(along[-1] / most) + 2))
-    return np.stack([np.interp(places, along, axis) for axis in line.T], axis=1)
+def clears(target: Target, tolerance: float) -> bool:
+    """Tell whether the circles of the deepest level surely leave nothing, by distances alone."""
+    at, end = reach(target, tolerance)
+    for first, last in sorted(_cleared(target)):
+        at = max(at, last) if first <= at else at
+    return at >= end
+
+
+def _cleared(target: Target) -> Iterator[tuple[float, float]]:
+    """Yield between which distances from the centre everything is cut at the deepest level."""
+    cutter = cutting_radius(target.cutter)
+    flat = [move for move in target.path if move.start_level == move.end_level]
+    floor = [move for move in flat if not move.rapid and move.end_level == target.deepest]
+    if any(abs(move.curve.start) < FINE for move in floor):
+        yield 0.0, cutter
+    for move in target.circles:
+        if move.end_level == target.deepest:
+            radius = move.curve.radius
+            yield (radius - cutter if radius > cutter else 0.0), radius + cutter

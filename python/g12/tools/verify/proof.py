@@ -284,12 +284,13 @@ def measured(
 ) -> Proof:
     """Return what is measured of a program; ``there`` are its moves on the machine, if known."""
     moves, path, real = subject.trace.moves, subject.path, subject.real
-    travel, known = travel_of(subject.ini), {}
+    travel = travel_of(subject.ini)
     together = there is not None and has_one_zero(subject.trace.events)
     widths = widths_of((block for block, _ in asked.circles), there) if together else {}
     pockets, piece = [], workpiece_of(subject, asked, stock)
     for block, target in counted(asked.circles, "measuring pocket", tell):
-        facts = measure_pocket(block, target, path, moves, tolerances.pocket, real, known)
+        stands = piece.material
+        facts = measure_pocket(block, target, path, moves, stands, tolerances.pocket, real)
         overruns = None if there is None else tuple(overruns_of(block, there, travel, widths))
         pockets.append(replace(facts, overruns=overruns))
     found = measured_sections(subject, asked.sections, tolerances.polar, tell)

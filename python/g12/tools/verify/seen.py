@@ -9,18 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from shapely.affinity import translate
 from shapely.geometry.base import BaseGeometry
 
 from g12.tools.path.part import Z
-from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.units import MM, Unit
 from g12.tools.verify.findings import SAME_AREA, other_tool
 from g12.tools.verify.in_material import MaterialFacts, material_facts, zero_of
 from g12.tools.verify.judgement import cuts_of
 from g12.tools.verify.mistakes.spindle import judge_spindle
-from g12.tools.verify.pocket_area import is_wrong_tool, ring, wanted_of
+from g12.tools.verify.pocket_area import is_wrong_tool, uncut
 from g12.tools.verify.proof import (
     POCKET_TOLERANCE,
     Asked,
@@ -34,7 +32,7 @@ from g12.tools.verify.proof import (
 from g12.tools.verify.reading.circles import Cutter
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.wanted_contour import SectionContour
-from g12.tools.verify.workpiece import Circles, Workpiece, cutting, floor_of
+from g12.tools.verify.workpiece import Circles, Workpiece
 
 
 class StandingRings(NamedTuple):
@@ -118,7 +116,7 @@ def seen_of(
 ) -> Seen:
     """Return what is seen of circles and sections, with what is known of the material."""
     trace = subject.trace
-    rings = standing_rings(circles, trace.moves, material)
+    rings = standing_rings(circles, material)
     cutters = (
         WrongCutter(target.source.line, tuple(map(float, target.wall.origin[:2])), target.cutter)
         for _, target in circles
@@ -136,16 +134,11 @@ def surface_of(sections: Sequence[SectionContour]) -> float:
     return radii[0] if radii and all(radii) else 0.0
 
 
-def standing_rings(
-    circles: Circles, moves: Sequence[Move], material: MaterialFacts
-) -> Iterator[StandingRings]:
+def standing_rings(circles: Circles, material: MaterialFacts) -> Iterator[StandingRings]:
     """Yield what stands in pockets in the plane XY."""
     for block, target in circles:
-        wall, cutter = target.wall, target.cutter.radius
-        if wall.inside and wall.plane == Z and cutting(block, moves):
-            floor = floor_of(block, moves)
-            wanted = translate(ring(*wanted_of(wall, cutter, POCKET_TOLERANCE)), *wall.origin[:2])
-            left = material.piece.material.standing(wanted, floor, block.end)
-            if left.area > SAME_AREA:
-                centre = tuple(map(float, wall.origin[:2]))
-                yield StandingRings(target.source.line, left, centre, floor)
+        left = uncut(block, target, material.piece.material, POCKET_TOLERANCE)
+        if target.wall.inside and left.area > SAME_AREA:
+            centre = tuple(map(float, target.wall.origin[:2]))
+            floor = target.wall.height(target.deepest)
+            yield StandingRings(target.source.line, left, centre, floor)
