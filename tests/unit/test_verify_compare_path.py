@@ -58,12 +58,19 @@ def test_a_second_pass_that_is_left_out_is_missing():
     assert laid.difference.kind == MISSING
 
 
-def test_a_small_circle_that_is_skipped_is_off():
+def test_a_small_circle_that_is_skipped_is_missing():
     small = Arc(10 + 0j, 10.02 + 0j, 2 * math.pi)
     way = [Line(0j, 10 + 0j), Line(10 + 0j, 20 + 0j)]
     laid = lay(expected(way[0], small, way[1]), made(way), TOLERANCE)
-    assert laid.difference.kind == OFF
-    assert laid.difference.size == pytest.approx(0.02, abs=1e-3)
+    assert laid.difference.kind == MISSING
+    assert laid.difference.expected.curve == small
+
+
+def test_of_a_dip_the_deepest_point_is_told():
+    dip = [0j, 4 + 0.01j, 5 + 0.3j, 6 + 0.1j, 10 + 0j]
+    laid = lay(expected(Line(0j, 10 + 0j)), made(lines(dip)), TOLERANCE)
+    assert laid.difference.size == pytest.approx(0.3)
+    assert laid.difference.at[0] == pytest.approx(5 + 0.3j)
 
 
 def test_the_other_way_round_is_off():
