@@ -147,7 +147,7 @@ def lay(
     for move in moves:
         left = _lay_move(cursor, move, tolerance, laid)
         if left:
-            is_segment = left.kind == OFF and not isinstance(move.curve, Arc)
+            is_segment = left.kind == OFF and move.curve is None
             rest = chain([move], moves)
             laid.add(_at_its_worst(path, left, rest, tolerance) if is_segment else left)
             return laid
