@@ -3,7 +3,7 @@
 
 A table names its machine, its programs (a file of tests/programs, or their text) and the faults:
 in which ``file`` which ``old`` text becomes the ``new`` one, and the finding's code that ``finds``
-it, or what its sentence has.
+it, or what its sentence has, and perhaps its ``line``.
 """
 
 import shutil
@@ -31,10 +31,10 @@ def package(tmp_path_factory):
 
 
 def findings(package, name, program, folder):
-    """Return what verify finds in a program of a table on its machine: codes and sentences."""
+    """Return what verify finds in a program of a table on its machine: codes, lines, sentences."""
     asked = program_of(name, program)
     proof = prove(asked.written(folder), asked.ini(package), tools=asked.tools)
-    return [(each.code, each.text()) for each in proof.judged if each.is_finding]
+    return [(each.code, each.line, each.text()) for each in proof.judged if each.is_finding]
 
 
 @pytest.mark.parametrize(("name", "program"), USED)
@@ -53,4 +53,5 @@ def test_a_fault_is_found(package, name, fault, tmp_path):
     finally:
         shutil.copy2(ROOT / fault["file"], broken)
     finds = fault["finds"]
-    assert any(code == finds or finds in text for code, text in found), found
+    lines = [line for code, line, text in found if code == finds or finds in text]
+    assert fault.get("line") in lines if "line" in fault else lines, found

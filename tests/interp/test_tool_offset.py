@@ -9,7 +9,6 @@ import pytest
 from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.plot.face import programmed_history
 from g12.tools.plot.scene import scene_of_proof
-from g12.tools.verify.findings import section_findings
 from g12.tools.verify.proof import prove
 from support.polar_programs import lines, section, tracer
 from support.sim_machines import PROGRAMS, SIM
@@ -25,16 +24,16 @@ def ini_of(name, offset=8.0):
 @pytest.mark.parametrize("name", WAYS)
 @pytest.mark.parametrize("offset", [8.0, -0.02])
 def test_verify_finds_the_part_good(name, offset):
-    (facts,) = prove(HEXAGON, ini_of(name, offset)).sections
-    assert list(section_findings(facts, 0.005)) == []
+    proof = prove(HEXAGON, ini_of(name, offset))
+    (facts,) = proof.sections
+    assert proof.findings == []
     assert facts.deviation <= 0.005
 
 
 @pytest.mark.parametrize("name", WAYS)
 def test_verify_finds_a_tool_that_is_elsewhere(monkeypatch, name):
     monkeypatch.setattr(Ini, "tool_beside", 7.9)
-    (facts,) = prove(HEXAGON, ini_of(name)).sections
-    assert list(section_findings(facts, 0.005))
+    assert prove(HEXAGON, ini_of(name)).findings
 
 
 @pytest.mark.parametrize("name", WAYS)

@@ -3,11 +3,10 @@
 
 import json
 
-import numpy as np
 import pytest
 
 from g12.tools.commands.main import main
-from g12.tools.verify.section_paths import ToolPath, ToolPaths
+from g12.tools.verify import section
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
 
 MILL = str(SIM / "mill_mm_headless.ini")
@@ -99,11 +98,13 @@ def test_json_of_a_polar_section(capsys):
 
 
 def test_a_contour_that_is_not_cut_is_told(written, capsys, monkeypatch):
-    nowhere = ToolPaths((), ToolPath(np.zeros(0, complex), np.zeros(0)), 0.0)
-    monkeypatch.setattr("g12.tools.verify.section.tool_paths_of", lambda *_: nowhere)
+    lay = section.lay_section
+    monkeypatch.setattr(
+        section, "lay_section", lambda one, path, *more: lay(one, [*path, *path], *more)
+    )
     program = str(PROGRAMS / "polar" / "slot.ngc")
     code, out, _ = verify(capsys, program, "--ini", LATHE)
-    assert code == 1 and "the contour is not cut" in out
+    assert code == 1 and "is not cut" in out
     code, out, _ = verify(capsys, program, "--ini", LATHE, "--json")
     assert code == 1 and json.loads(out)["sections"][0]["deviation"] is None
 
@@ -145,7 +146,7 @@ def test_a_circle_of_the_tool_centre_and_one_on_its_side_are_told(written, capsy
 def test_a_tolerance_of_ones_own(written, capsys):
     program = str(PROGRAMS / "polar" / "hexagon.ngc")
     code, out, _ = verify(capsys, program, "--ini", LATHE, "--tolerance", "0.001")
-    assert code == 1 and "off the contour" in out
+    assert code == 1 and "off the toolpath" in out
 
 
 def test_limits_are_compared_with_the_offsets_of_the_var_file_given(written, tmp_path, capsys):

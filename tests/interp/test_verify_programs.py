@@ -10,7 +10,7 @@ from g12.tools import units
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
 from g12.tools.verify.as_json import as_json
-from g12.tools.verify.findings import pocket_notes, section_findings
+from g12.tools.verify.findings import pocket_notes
 from g12.tools.verify.pocket import judge_pocket
 from g12.tools.verify.proof import prove
 from g12.tools.verify.report import as_text
@@ -479,13 +479,13 @@ def test_polar_programs_follow_their_contours(program, machine, tools, count):
     proof = proof_of(f"polar/{program}.ngc", machine, tools=tools)
     assert len(proof.sections) == count and proof.findings == []
     assert all(0 < facts.deviation < proof.tolerances.polar for facts in proof.sections)
-    assert all(0 < facts.c_speed <= facts.c_limit * 1.001 for facts in proof.sections)
+    assert all(0 < facts.turns.speed <= facts.c_limit * 1.001 for facts in proof.sections)
 
 
 def test_the_size_of_the_hexagon():
     (facts,) = proof_of("polar/hexagon.ngc", "lathe_mm").sections
-    assert facts.wanted[0] == pytest.approx(13.5) and facts.tool == 6
-    assert facts.reached[0] == pytest.approx(13.5, abs=0.005)
+    assert facts.size.wanted[0] == pytest.approx(13.5) and facts.tool == 6
+    assert facts.size.reached[0] == pytest.approx(13.5, abs=0.005)
 
 
 @pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
@@ -513,7 +513,7 @@ def test_a_section_with_expressions_and_a_loop(tmp_path):
     proof = proof_of_text(tmp_path, lines, "lathe_mm")
     (facts,) = proof.sections
     assert len(facts.section.elements) == 5 and proof.findings == []
-    assert facts.wanted[0] == pytest.approx(20 / math.sqrt(2), abs=1e-3)
+    assert facts.size.wanted[0] == pytest.approx(20 / math.sqrt(2), abs=1e-3)
 
 
 FLATS = [
@@ -541,7 +541,7 @@ def test_a_section_in_a_sub_is_measured_at_every_call(tmp_path):
     proof = proof_of_text(tmp_path, FLATS, "lathe_mm")
     assert [facts.section.line for facts in proof.sections] == [3, 3]
     assert proof.findings == [] and proof.unseen == []
-    assert [facts.wanted[0] for facts in proof.sections] == pytest.approx([13.5, 15])
+    assert [facts.size.wanted[0] for facts in proof.sections] == pytest.approx([13.5, 15])
     assert all(0 < facts.deviation < proof.tolerances.polar for facts in proof.sections)
     assert {facts.slowest_line for facts in proof.sections} <= {4, 5, 7, 8}
 
@@ -708,14 +708,13 @@ def test_a_part_on_the_face_may_be_slower_where_c_could_not_follow_it(tmp_path):
     proof = prove(program, read_ini(SIM / "lathe_mm_kinematics.ini"))
     own = [move for move in proof.subject.trace.moves if move.line == 5]
     assert min(move.feed for move in own if move.start[5] == move.end[5]) < 2999
-    (facts,) = proof.sections
-    assert list(section_findings(facts, 0.005)) == []
+    assert proof.findings == []
 
 
 def test_a_whole_line_on_the_face_may_be_slower_where_c_could_not_follow_it(tmp_path):
     lines = ["G21 G18 G8 G90 G94 G64 P0.01", "T1 M6", "G0 X60 Z5 C-45", "G12.1", "F6637.24"]
     lines += ["G1 X-15.50263 C-22.13613", "X-8 C-12", "X-20 F200", "G13.1", "M2"]
     proof = proof_of_text(tmp_path, lines, "lathe_mm_kinematics")
-    (first, *_), turned = proof.sections, [m for m in proof.subject.trace.moves if m.line == 6]
+    turned = [move for move in proof.subject.trace.moves if move.line == 6]
     assert max(move.feed for move in turned) < 6600 and len(turned) < 10
-    assert list(section_findings(first, 0.005)) == []
+    assert proof.findings == []

@@ -3,6 +3,7 @@
 
 import cmath
 import math
+from itertools import pairwise
 
 import pytest
 
@@ -64,6 +65,27 @@ def test_a_small_circle_that_is_skipped_is_off():
     laid = lay(expected(way[0], small, way[1]), made(way), TOLERANCE)
     assert laid.difference.kind == OFF
     assert laid.difference.size == pytest.approx(0.02, abs=1e-3)
+
+
+def segments(points, level=-1.0):
+    """Return straight moves of which only the points are known."""
+    return [
+        Made(i, [(a, level), (b, level)], feed=100.0) for i, (a, b) in enumerate(pairwise(points))
+    ]
+
+
+def test_segments_that_pass_a_move_by_leave_it_out():
+    small = Arc(10 + 0j, 10.02 + 0j, 2 * math.pi)
+    path = expected(Line(0j, 10 + 0j), small, Line(10 + 0j, 20 + 0j))
+    laid = lay(path, segments([0j, 10 + 0j, 20 + 0j]), TOLERANCE)
+    assert (laid.difference.kind, laid.difference.expected) == (MISSING, path[1])
+
+
+def test_of_a_dip_in_segments_the_deepest_point_is_told():
+    dip = [0j, 4 + 0.01j, 5 + 0.3j, 6 + 0.1j, 10 + 0j]
+    laid = lay(expected(Line(0j, 10 + 0j)), segments(dip), TOLERANCE)
+    assert laid.difference.size == pytest.approx(0.3)
+    assert laid.difference.at[0] == pytest.approx(5 + 0.3j)
 
 
 def test_the_other_way_round_is_off():

@@ -15,10 +15,10 @@ import pytest
 from g12.tools.path.follow import follow
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import Limits, track
-from g12.tools.verify.findings import section_findings, section_notes
+from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.section import measure_section
+from g12.tools.verify.section_findings import judge_section
 from g12.tools.verify.section_motion import SectionAxes
-from g12.tools.verify.wanted_contour import Element, SectionContour
 from support.made_moves import LIMITS, Hand, samples_of
 
 RADIUS, DEPTH, AIR, TOOL = 20.0, 18.0, 24.0, 3.0
@@ -76,7 +76,12 @@ def facts_of(hand, elements, real=None):
 def findings(hand, elements):
     for index, move in enumerate(hand.moves):
         hand.moves[index] = move._replace(exact=True)
-    return " | ".join(section_findings(facts_of(hand, elements), TOLERANCE))
+    return texts(facts_of(hand, elements))
+
+
+def texts(facts):
+    """Return what is found and noted: codes, lines and sentences."""
+    return " | ".join(f"{each.code} {each.line}: {each.text()}" for each in judge_section(facts))
 
 
 def groove(feed=600.0, c=0.0, z=0.0):
@@ -92,20 +97,20 @@ def test_a_groove_of_lines_is_exact():
     facts = facts_of(groove(), ASKED)
     assert findings(groove(), ASKED) == ""
     assert facts.deviation < 1e-9 and facts.pieces == 2
-    assert facts.wanted == facts.reached == pytest.approx((0, 12))
+    assert facts.size.wanted == pytest.approx((0, 12))
+    assert facts.size.reached == pytest.approx((0, 12))
     assert (facts.lowest, facts.start_height) == (DEPTH, AIR)
-    assert list(section_notes(facts)) == []
 
 
 @pytest.mark.parametrize(
     ("hand", "found"),
     [
-        (groove(z=0.05), "0.05 mm off the contour"),
-        (groove(c=0.05), "0.05 mm off the contour"),
-        (groove(feed=620.0), "line 3: the feed is 620, not 600 mm/min"),
-        (Unrolled().down(17.9).cut(30 + 0j).cut(RISE).up(), "line 2: X is 17.9, not 18 mm"),
-        (Unrolled().down().cut(RISE, number=4).up(), "line 3: is not cut"),
-        (Unrolled().down().cut(RISE, number=4).cut(30 + 0j, number=3).up(), "line 3"),
+        (groove(z=0.05), "path-off 3: the contour is 0.05 mm off"),
+        (groove(c=0.05), "path-off 3: the contour is 0.05 mm off"),
+        (groove(feed=620.0), "feed 3: the contour is cut at 620 mm/min, not at 600 mm/min"),
+        (Unrolled().down(17.9).cut(30 + 0j).cut(RISE).up(), "path-off 2: the plunge is 0.1 mm off"),
+        (Unrolled().down().cut(RISE, number=4).up(), "path-off 3"),
+        (Unrolled().down().cut(RISE, number=4).cut(30 + 0j, number=3).up(), "path-off 3"),
     ],
 )
 def test_a_wrong_groove_is_found(hand, found):
@@ -120,14 +125,13 @@ def test_c_too_fast_for_its_limit_is_found():
     path = track(Surface(turning=True, radius=RADIUS), hand.moves, limits)
     contour = SectionContour(1, 9, 1, len(hand.moves), "G7.1", 0j, tuple(fast), surface=RADIUS)
     facts = measure_section(contour, path, hand.moves, {}, AXES, TOLERANCE)
-    assert facts.c_speed == pytest.approx(366)
-    assert "C turns at 366 degrees/s, its limit is 360" in section_findings(facts, TOLERANCE)
+    assert facts.turns.speed == pytest.approx(366)
+    assert "C turns at 366 degrees/s, its limit is 360" in texts(facts)
 
 
 def test_a_corner_that_is_blended_is_found():
     facts = facts_of(groove(), ASKED)
-    whats = [off.what for off in facts.motion_off]
-    assert "ends in a corner without an exact stop" in whats
+    assert "blended-corner" in [off.code for off in facts.motion_off]
 
 
 def arc(count, radius=10.0):
@@ -140,7 +144,8 @@ def arc(count, radius=10.0):
 def test_the_pieces_of_an_arc(count, off):
     hand = Unrolled().down().cut(30 + 0j).cut(*arc(count)).up()
     line = drawn(30 + 0j)
-    facts = facts_of(hand, [*line[:2], QUARTER, line[2]])
+    up = replace(line[2], start=QUARTER.end, end=QUARTER.end)
+    facts = facts_of(hand, [*line[:2], QUARTER, up])
     assert facts.deviation == pytest.approx(10 * (1 - math.cos(math.pi / 4 / count)), rel=0.05)
     assert (facts.deviation > TOLERANCE) == (off > TOLERANCE)
     assert facts.jump == pytest.approx(90 / count)
@@ -163,9 +168,9 @@ def beside(away):
     ("side", "away", "found"),
     [
         (1, TOOL, ""),
-        (1, TOOL - 0.1, "gouged beyond the contour"),
-        (1, TOOL + 0.1, "left standing"),
-        (-1, TOOL, "off the contour"),
+        (1, TOOL - 0.1, "path-off 2: the ramp is 0.1 mm off"),
+        (1, TOOL + 0.1, "path-off 2: the ramp is 0.1 mm off"),
+        (-1, TOOL, "path-off 2"),
     ],
 )
 def test_compensation_keeps_the_cutter_on_its_side(side, away, found):
@@ -175,7 +180,7 @@ def test_compensation_keeps_the_cutter_on_its_side(side, away, found):
     )
     path = track(Surface(turning=True, radius=RADIUS), hand.moves, LIMITS)
     facts = measure_section(contour, path, hand.moves, {1: 2 * TOOL}, AXES, TOLERANCE)
-    assert found in " | ".join(section_findings(facts, TOLERANCE))
+    assert found in texts(facts)
     assert bool(found) == (facts.deviation > TOLERANCE)
 
 

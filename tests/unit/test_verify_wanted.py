@@ -21,11 +21,13 @@ from g12.tools.preview.executed_blocks import (
     read_line,
 )
 from g12.tools.preview.moves import Event
-from g12.tools.verify import wanted_contour
+from g12.tools.verify.expected.contour import WordReading
+from g12.tools.verify.expected.cylinder import SurfacePen
+from g12.tools.verify.expected.polar import Pen
+from g12.tools.verify.reading import sections as section_reading
 from g12.tools.verify.reading.circles import CircleReader
 from g12.tools.verify.reading.codes import SHAPES, Codes
-from g12.tools.verify.surface_pen import SurfacePen
-from g12.tools.verify.wanted_contour import Pen, WordReading
+from g12.tools.verify.reading.inside import followed_subs, section_lines
 from support.made_moves import Hand
 
 REMAPS = (
@@ -271,8 +273,8 @@ def test_a_radius_that_is_found_to_be_0_begins_no_section():
     text = read_line(1, "G7.1 C#1")
     empty, full = (replace(block(f"G7.1 C{radius}"), text=text) for radius in (0, 20))
     run = [empty, block("G1 Z-5"), block("G7.1 C0"), full, block("G7.1 C0")]
-    assert [group[0] for group in wanted_contour.grouped(run, CODES)] == [full]
-    assert len(wanted_contour.paths_behind(run, CODES)) == 1
+    assert [group[0] for group in section_reading.grouped(run, CODES)] == [full]
+    assert len(section_reading.paths_behind(run, CODES)) == 1
 
 
 @pytest.mark.parametrize(("handler", "turn"), [("g12", -1), ("g13", 1)])
@@ -411,7 +413,18 @@ def test_left_is_left():
 def test_what_cannot_be_followed_is_a_doubt(line, why):
     lines = ["G12.1", "G1 C5", line, "G13.1"]
     texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
-    assert why in wanted_contour.doubts_of(texts, CODES, lines)["", 1]
+    assert why in section_reading.doubts_of(section_lines(texts, lines), CODES, set())["", 1]
+
+
+@pytest.mark.parametrize(
+    ("after", "followed"),
+    [("G0 X9", {"flat", "77"}), ("o77 call", {"flat"}), ("o<flat> call", set())],
+)
+def test_a_sub_that_sections_alone_call_is_followed(after, followed):
+    lines = ["o77 sub", "G1 X5", "o77 endsub", "o<flat> sub", "o77 call", "o<flat> endsub"]
+    lines += ["G12.1", "o<flat> call [1]", "G13.1", after]
+    texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
+    assert followed_subs([section_lines(texts, lines)], CODES) == followed
 
 
 def test_motion_is_taken_out_of_the_copy_and_control_stays():
@@ -426,7 +439,8 @@ def test_motion_is_taken_out_of_the_copy_and_control_stays():
         "G0 X9",
     ]
     texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
-    flat = [line for some in wanted_contour.flattened(texts, CODES, lines) for line in some]
+    groups = section_reading.flattened(section_lines(texts, lines), CODES, set())
+    flat = [line for some in groups for line in some]
     kept = [line for line in flat if "DEBUG" not in line and "#<@" not in line]
     assert kept == ["G0 X5", "#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile", "G0 X9"]
 

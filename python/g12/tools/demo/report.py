@@ -16,7 +16,6 @@ from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import Scene, scene_of_proof
 from g12.tools.preview.tracer import TraceFailure
 from g12.tools.units import Unit, clock, plain
-from g12.tools.verify.findings import SAME_AREA
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof, prove
 from g12.tools.verify.section import SectionFacts
@@ -51,7 +50,7 @@ def is_sound(proof: Proof) -> bool:
     """
     off = [facts.laid.difference is not None for facts in proof.pockets]
     off += [facts.deviation > proof.tolerances.polar for facts in proof.sections]
-    return not any(off) and not any(facts.gouge > SAME_AREA for facts in proof.sections)
+    return not any(off)
 
 
 def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
@@ -94,7 +93,7 @@ def section_row(facts: SectionFacts, allowed: float, unit: Unit) -> tuple[str, .
         f"{unit.fine(facts.deviation)} {unit.name}",
         f"{unit.fine(allowed)} {unit.name}",
         f"{plain(facts.pace.lowest / unit.mm, 1)} {unit.name}/min",
-        f"{plain(facts.c_speed, 1)} of {plain(facts.c_limit, 1)} °/s",
+        f"{plain(facts.turns.speed, 1)} of {plain(facts.c_limit, 1)} °/s",
         f"{plain(facts.pace.expected, 1)} s",
     )
 

@@ -13,9 +13,9 @@ import numpy as np
 from shapely.geometry import LineString
 from shapely.ops import nearest_points
 
-from g12.tools.verify.contour_distance import STEP
-from g12.tools.verify.wanted_contour import Element
+from g12.tools.verify.expected.contour import Element
 
+STEP = 0.05  # mm between points of an arc
 LEADS = 3  # elements at either end of a contour that may be there to lead in or out
 MEETS = 1e-3
 

@@ -35,10 +35,19 @@ class FollowLimits(NamedTuple):
     c: float
 
 
-def follow_off(move: Move, speed: float, centre: float, beside: float, limits: FollowLimits) -> str:
-    """Return what a move on the face at a speed asks of an axis that it has not, "" if nothing."""
+class Exceeded(NamedTuple):
+    """An axis, and how many times its acceleration a move asks of it."""
+
+    axis: str
+    times: float
+
+
+def follow_off(
+    move: Move, speed: float, centre: float, beside: float, limits: FollowLimits
+) -> Exceeded | None:
+    """Return what a move on the face at a speed asks of an axis that it has not, if anything."""
     if move.start[C] != move.end[C] or not crosses_face(move):
-        return ""
+        return None
     bent = 1.0 / move.radius if move.kind == "arc" else 0.0
     square = min(speed * speed, limits.plane / bent) if bent else speed * speed
     along = math.sqrt(max(0.0, limits.plane**2 - (square * bent) ** 2))
@@ -48,8 +57,8 @@ def follow_off(move: Move, speed: float, centre: float, beside: float, limits: F
     )
     for name, asked, limit in (("C", c, limits.c), ("the slide", slide, limits.slide)):
         if asked > ALLOWED * limit:
-            return f"asks {name} for {asked / limit:.3g} times the acceleration that it has"
-    return ""
+            return Exceeded(name, asked / limit)
+    return None
 
 
 def crosses_face(move: Move) -> bool:

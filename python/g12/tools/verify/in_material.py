@@ -21,13 +21,12 @@ from g12.tools.path.follow import Followed
 from g12.tools.path.part import Part, Z, is_sideways
 from g12.tools.preview.moves import Move
 from g12.tools.verify.closed_contour import as_points, is_closed, trimmed
-from g12.tools.verify.contour_distance import SAME
-from g12.tools.verify.contour_side import area_within
+from g12.tools.verify.compare.section_plane import Plane
+from g12.tools.verify.contour_side import SAME, area_within
+from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.reading.block_words import BlockInMm
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.section import stretches_of
-from g12.tools.verify.section_paths import Plane
-from g12.tools.verify.wanted_contour import Element, SectionContour
+from g12.tools.verify.section_size import stretches_of
 from g12.tools.verify.workpiece import Circles, Workpiece
 
 LEAST_SHARE = 0.01  # of a cutter that plunges into the stock

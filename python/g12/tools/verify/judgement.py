@@ -14,8 +14,6 @@ from g12.tools.preview.moves import Move
 from g12.tools.units import MM, Unit
 from g12.tools.verify.findings import (
     pocket_notes,
-    section_findings,
-    section_notes,
 )
 from g12.tools.verify.mistakes.cut import ProgramCut
 from g12.tools.verify.mistakes.feeds import judge_feeds, judge_native_c
@@ -26,6 +24,7 @@ from g12.tools.verify.mistakes.tool_length import judge_tool_length
 from g12.tools.verify.pocket import judge_pocket
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.section_findings import judge_section
 from g12.tools.verify.shape_findings import shape_findings
 
 if TYPE_CHECKING:
@@ -83,9 +82,7 @@ def said_of_cuts(proof: Proof) -> Iterator[Finding]:
         yield from judge_pocket(facts, tolerances.pocket)
         yield from noted(source.line, source.file, pocket_notes, facts)
     for facts in proof.sections:
-        section = facts.section
-        yield from said(section.line, section.file, section_findings, facts, tolerances.polar)
-        yield from noted(section.line, section.file, lambda some, _: section_notes(some), facts)
+        yield from judge_section(facts)
     for facts in proof.shapes:
         yield from said(facts.asked.line, facts.asked.file, shape_findings, facts)
     for line, code in proof.unseen:

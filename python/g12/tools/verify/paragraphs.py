@@ -9,7 +9,7 @@ from g12.tools.path.part import Z
 from g12.tools.path.slowest import Pace
 from g12.tools.units import Unit, plain
 from g12.tools.verify.axis_limits import SAME_ZERO
-from g12.tools.verify.findings import SAME_AREA, gouged
+from g12.tools.verify.findings import SAME_AREA
 from g12.tools.verify.in_material import zero_of
 from g12.tools.verify.pocket import HelixFacts, PocketFacts
 from g12.tools.verify.proof import Proof
@@ -119,15 +119,13 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
         *plane_rows(facts, proof, unit),
         *width_rows(facts, unit),
         ("deviation", deviation(facts.deviation, proof.tolerances.polar, unit)),
-        ("left", unit.area(facts.left)),
-        ("gouged", gouged(facts, unit)),
         ("pieces", f"{facts.pieces}, {spread(facts.shortest, facts.longest, unit)}"),
         ("direction jump", f"{plain(facts.jump, 2)}° from piece to piece"),
         (
             "lowest feed",
             slowest(facts.pace, slow, proof.user_line(facts.slowest_line, section.file), unit),
         ),
-        ("speed of C", f"{plain(facts.c_speed, 1)} degrees/s at most, {limit}"),
+        ("speed of C", f"{plain(facts.turns.speed, 1)} degrees/s at most, {limit}"),
         ("time", time_text(facts.pace)),
     ]
     call = proof.subject.trace.moves[section.at].block
@@ -142,7 +140,7 @@ def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
 
 def plane_rows(facts: SectionFacts, proof: Proof, unit: Unit) -> list[tuple[str, str]]:
     """Return the rows that tell of a section's plane: where it lies, how deep and far it is cut."""
-    section, reached = facts.section, sizes(facts.wanted, facts.reached, unit)
+    section, reached = facts.section, sizes(facts.size.wanted, facts.size.reached, unit)
     if section.surface:
         on = f"radius {unit.text(section.surface)}, starts at C{plain(section.c, 3)}"
         modal = "diameters (G7)" if section.diameters else "radii (G8)"
@@ -168,7 +166,7 @@ def place_on_section(facts: SectionFacts, unit: Unit) -> str:
 
 def width_rows(facts: SectionFacts, unit: Unit) -> list[tuple[str, str]]:
     """Return the row that only a contour with parallel sides has: widths, the greatest first."""
-    texts = dict.fromkeys(tuple(map(unit.text, flat)) for flat in facts.flats)
+    texts = dict.fromkeys(tuple(map(unit.text, flat)) for flat in facts.size.flats)
     asked, got = (", ".join(column) for column in zip(*texts)) if texts else ("", "")
     text = f"programmed {asked}, reached {got} {unit.name}"
     return [("across flats", text)] if texts else []

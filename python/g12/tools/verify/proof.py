@@ -28,22 +28,24 @@ from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import Unit, unit_of
 from g12.tools.verify.axis_limits import has_one_zero, overruns_of, travel_of, widths_of
-from g12.tools.verify.executed_subs import executed_everywhere
+from g12.tools.verify.compare.section_plane import x0_of
+from g12.tools.verify.expected.contour import SectionContour, WordReading
+from g12.tools.verify.expected.cylinder import SurfacePen
+from g12.tools.verify.expected.polar import Pen
 from g12.tools.verify.in_material import MaterialFacts, Program, material_facts, zero_of
 from g12.tools.verify.judgement import judged
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
 from g12.tools.verify.reading.circles import CircleReader, Target
 from g12.tools.verify.reading.codes import CYLINDER, POLAR, Codes
+from g12.tools.verify.reading.executed_subs import executed_everywhere
+from g12.tools.verify.reading.sections import sections
+from g12.tools.verify.reading.zero_line import with_zero_lines
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
-from g12.tools.verify.section_paths import x0_of
 from g12.tools.verify.shape_findings import ShapeFacts, measure_shape
-from g12.tools.verify.surface_pen import SurfacePen
-from g12.tools.verify.wanted_contour import Pen, SectionContour, WordReading, sections
 from g12.tools.verify.wanted_shape import ShapeAsked, ShapeReading, shapes_asked
 from g12.tools.verify.workpiece import Workpiece, assumed_workpiece, given_workpiece
-from g12.tools.verify.zero_line import with_zero_lines
 
 POCKET_TOLERANCE = 0.005  # mm
 SAME_X0 = 1e-6  # mm

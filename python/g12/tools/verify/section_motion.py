@@ -22,8 +22,9 @@ import cmath
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby, islice
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -33,13 +34,17 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
+from g12.tools.verify.compare.section import SectionPath
+from g12.tools.verify.expected.contour import Element, SectionContour
+from g12.tools.verify.expected.toolpath import Expected
 from g12.tools.verify.face_follow import FollowLimits, follow_off
-from g12.tools.verify.wanted_contour import Element, SectionContour
 
 G64_P = re.compile(r"G64 P(\S+)")
 STILL = 1e-7  # mm: C turns in place
 SMOOTH = math.radians(1.0)
 CORNER = math.radians(15.0)  # chords of an arc make smaller ones
+LEAST_ON_FACE = 0.5  # of the feed: so slow may a part of a line be on the face of the kinematics
+BEND = 3.0 * math.sqrt(3.0) / 8.0
 
 
 class SectionAxes(NamedTuple):
@@ -96,11 +101,11 @@ class Joint(NamedTuple):
 
 
 class OffMotion(NamedTuple):
-    """A line whose motion is not as it should be: ``what`` in words, with ``off`` in mm or None."""
+    """A line whose motion is not as it should be: the code of its sentence, and its values."""
 
     line: int
-    what: str
-    off: float | None = None
+    code: str
+    values: Mapping[str, object] = MappingProxyType({})
 
 
 def axes_of_section(ini: Ini) -> SectionAxes:
@@ -120,17 +125,43 @@ def motion_off(
     tolerance: float,
 ) -> Iterator[OffMotion]:
     """Yield the first of each kind of motion that is not as it should be."""
-    own = range(section.at, section.end)
-    rapids = (index for index in own if moves[index].kind == "rapid")
-    yield from islice((OffMotion(moves[index].line, "is a rapid") for index in rapids), 1)
     if is_blended_into(section, moves):
-        yield OffMotion(section.line, "begins while the move in front of it slows down")
+        yield OffMotion(section.line, "blended-in")
     yield from islice(rounded(section, moves, path, axes, tolerance), 1)
     if axes.face:
         yield from islice(not_followed(section, moves, path, axes), 1)
     else:  # to go there and back the machine stands, also inside a line
         yield from islice(stopped_inside(section, moves, path), 1)
     yield from islice(not_exact(section, moves), 1)
+
+
+def slower_on_face(
+    found: SectionPath, moves: Sequence[Move], axes: SectionAxes
+) -> dict[int, float]:
+    """Return the moves (indices) on the face that may be slower, down to which share of the feed.
+
+    Where a line goes there in part only, C cannot follow all of it: that part may be slower.
+    """
+    if not axes.face:
+        return {}
+    spans = found.emitted.spans.items()
+    fed = {index: found.expected[span.last] for index, span in spans}
+    turned = {move.line for index, move in fed.items() if turns(moves[index])}
+    return {
+        index: LEAST_ON_FACE
+        for index, move in fed.items()
+        if not turns(moves[index]) and (move.line in turned or outruns_c(move, axes))
+    }
+
+
+def outruns_c(move: Expected, axes: SectionAxes) -> bool:
+    """Tell whether a move passes the spindle so near that C cannot follow it at its feed.
+
+    At the distance d and the speed v C turns by v / d, on a straight line with (v / d)**2 times
+    3 sqrt(3) / 8 at the most.
+    """
+    turning = (move.feed or 0.0) / 60.0 / max(move.curve.distance(0j), STILL)
+    return turning > math.radians(axes.c_speed) or turning**2 * BEND > axes.c
 
 
 def not_followed(
@@ -140,9 +171,9 @@ def not_followed(
     limits = FollowLimits(axes.x, axes.slide, axes.c)
     for index in range(section.at, section.end):
         speed, centre = path.part_feed(index) / 60.0, path.part.centre
-        what = follow_off(moves[index], speed, centre, axes.beside, limits)
-        if what:
-            yield OffMotion(moves[index].line, what)
+        off = follow_off(moves[index], speed, centre, axes.beside, limits)
+        if off:
+            yield OffMotion(moves[index].line, "face-acceleration", off._asdict())
 
 
 def is_blended_into(section: SectionContour, moves: Sequence[Move]) -> bool:
@@ -164,7 +195,7 @@ def rounded(
     end = section.end - 1
     stands = axes.face and not turns(moves[end])
     if section.end < len(moves) and not (moves[end].exact or stands):
-        yield OffMotion(moves[end].line, "ends while the move behind the section begins")
+        yield OffMotion(moves[end].line, "blended-out")
     lengths = lengths_of_lines(section, moves, path)
     corners = corners_of(section)
     for index in sharp_joints(section, path):
@@ -175,11 +206,11 @@ def rounded(
             continue
         joint = joint_behind(index, path)
         if not (joint.into.any() and joint.out.any()):
-            yield OffMotion(one.line, "goes on while C turns in place")
+            yield OffMotion(one.line, "blended-turn")
         elif corners.get((one.line, other.line)) and joint.half_sine > math.sin(CORNER / 2):
             off = rounding(joint, index, path, axes, lengths)
             if off > tolerance:
-                yield OffMotion(one.line, "ends in a corner without an exact stop", off)
+                yield OffMotion(one.line, "blended-corner", {"off": off})
 
 
 def is_switch(one: Move, other: Move) -> bool:
@@ -250,7 +281,7 @@ def stopped_inside(
         if moves[index].exact and moves[index + 1].line == line and line not in often:
             joint = joint_behind(index, path)
             if joint.into.any() and joint.out.any() and joint.half_sine < SMOOTH:
-                yield OffMotion(line, "stops inside")
+                yield OffMotion(line, "stops-inside")
 
 
 def not_exact(section: SectionContour, moves: Sequence[Move]) -> Iterator[OffMotion]:
@@ -261,7 +292,7 @@ def not_exact(section: SectionContour, moves: Sequence[Move]) -> Iterator[OffMot
     }
     for line, run in groupby(range(section.at, section.end), lambda index: moves[index].line):
         if exact.get(line) and not moves[list(run)[-1]].exact:
-            yield OffMotion(line, "does not end in the exact stop that the words ask for")
+            yield OffMotion(line, "not-exact")
 
 
 def lines_drawn(section: SectionContour) -> list[int]:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.state import StateDifference, state_differences
-from g12.tools.verify.wanted_contour import ACTS, Act, SectionContour
+from g12.tools.verify.expected.contour import ACTS, Act, SectionContour
 
 SAME_PLACE = 0.005  # mm
 SAME_ANGLE = 0.01  # degrees

@@ -14,6 +14,7 @@ from shapely.geometry.base import BaseGeometry
 from g12.tools.path.part import Z
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.units import MM, Unit
+from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.findings import SAME_AREA, other_tool
 from g12.tools.verify.in_material import MaterialFacts, material_facts, zero_of
 from g12.tools.verify.judgement import cuts_of
@@ -31,7 +32,6 @@ from g12.tools.verify.proof import (
 )
 from g12.tools.verify.reading.circles import Cutter
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.wanted_contour import SectionContour
 from g12.tools.verify.workpiece import Circles, Workpiece
 
 

@@ -15,12 +15,12 @@ from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.compare.state import StateDifference, state_differences
+from g12.tools.verify.expected.contour import ACTS, SectionContour
 from g12.tools.verify.findings import LAST_DECIMAL, NOT_CUT, SAME_AREA, leaving_text
 from g12.tools.verify.shape_cut import LevelFacts, ShapeAreas, measure_areas, shift_of
 from g12.tools.verify.shape_form import CORNERS, DIAMETER, FLATS, LENGTH, WIDTH, Shift
 from g12.tools.verify.shape_motion import OffShape, motion_of_shape
 from g12.tools.verify.shape_way import SAME_LEVEL, ShapeWay
-from g12.tools.verify.wanted_contour import ACTS, SectionContour
 from g12.tools.verify.wanted_shape import ShapeAsked
 
 ROUNDING = 0.001  # mm, of the polygons that stand for areas

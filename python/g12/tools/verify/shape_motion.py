@@ -15,8 +15,8 @@ import numpy as np
 from shapely.geometry import Point
 
 from g12.tools.path.part import is_sideways
+from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.shape_way import SAME_LEVEL, TINY, ShapeWay
-from g12.tools.verify.wanted_contour import SectionContour
 from g12.tools.verify.wanted_shape import CLEARANCE
 
 WIDEST = 0.75  # of the cutter's diameter: how much a round takes at most

@@ -16,13 +16,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import accumulate
+from itertools import accumulate, chain
 from typing import NamedTuple
 
 from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.verify.expected.toolpath import Expected
 
 Point = tuple[complex, float]  # in the plane, and the level
+AHEAD = 100  # moves after a difference that are looked at to tell its size
 SLACK = 0.25  # mm that a point may be ahead: at a corner that is blended
 TIE = 1e-7  # mm: of two points as near as that the earlier one counts
 ON_ARC = (0.25, 0.5, 0.75)  # shares of an arc that are compared
@@ -37,7 +38,8 @@ class Made(NamedTuple):
 
     Between its points it follows ``curve``, straight lines without one; of a curve the start and
     the end suffice. ``index`` is that of the move in the trace. ``feed`` is in mm per minute, or
-    per revolution if ``per_rev``; None where it is not to be compared.
+    per revolution if ``per_rev``; None where it is not to be compared. ``sampled``: between the
+    points of a run it may have been beside its chord, by half of that at most.
     """
 
     index: int
@@ -46,6 +48,7 @@ class Made(NamedTuple):
     feed: float | None = None
     rapid: bool = False
     per_rev: bool = False
+    sampled: bool = False
 
     def steps(self) -> Iterator[tuple[Point, Point]]:
         """Yield the stretches of the move, those of an arc short enough to be followed."""
@@ -82,7 +85,8 @@ class Made(NamedTuple):
         curve = self.curve or Line(first[0], last[0])
         chord = Expected("", Line(first[0], last[0]), first[1], last[1])
         _, level = chord.point(chord.share_of(*point))
-        return abs(complex(curve.distance(point[0]), point[1] - level))
+        away = abs(complex(curve.distance(point[0]), point[1] - level))
+        return max(0.0, away - _apart(first, last) / 2) if self.sampled else away
 
 
 class PathDifference(NamedTuple):
@@ -139,11 +143,13 @@ def lay(
 ) -> Laid:
     """Lay what was made along a toolpath; farther off than ``tolerance`` (mm) is a difference."""
     laid = Laid([[] for _ in path])
-    cursor = _Cursor(path, slack)
-    for move in made:
+    cursor, moves = _Cursor(path, slack), iter(made)
+    for move in moves:
         left = _lay_move(cursor, move, tolerance, laid)
         if left:
-            laid.add(left)
+            is_segment = left.kind == OFF and move.curve is None
+            rest = chain([move], moves)
+            laid.add(_at_its_worst(path, left, rest, tolerance) if is_segment else left)
             return laid
     if cursor.remaining > tolerance:
         missing = cursor.next_move()
@@ -164,6 +170,37 @@ def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> Path
     laid.deviation = max(laid.deviation, farthest)
     laid.add(_otherwise(cursor.path[cursor.index], move))
     return None
+
+
+def _at_its_worst(
+    path: Sequence[Expected], off: PathDifference, moves: Iterable[Made], tolerance: float
+) -> PathDifference:
+    """Return how far what was made comes off the toolpath before it comes back.
+
+    ``moves`` are the one that is off and those after it. Where that one lies on the toolpath
+    farther ahead, what is between is missing.
+    """
+    at = next(index for index, move in enumerate(path) if move is off.expected)
+    ahead, found = path[at : at + AHEAD], off._replace(size=0.0)
+    for move in moves:
+        if move.index == off.index and _farthest(move, ahead[1:])[0] <= tolerance:
+            return PathDifference(MISSING, off.expected, off.expected.point(1.0), index=off.index)
+        size, where = _farthest(move, ahead)
+        if size <= found.size + TIE:
+            break
+        found = off._replace(size=size, at=where, index=move.index)
+    return found if found.size > tolerance else off
+
+
+def _farthest(move: Made, path: Sequence[Expected]) -> tuple[float, Point]:
+    """Return the greatest distance of a move from the nearest of some others, and where it is."""
+    return max(((_least(point, path), point) for point in move.points), key=_size)
+
+
+def _least(point: Point, path: Sequence[Expected]) -> float:
+    """Return the distance of a point from the nearest of some moves."""
+    away = (move.distance(*point, move.share_of(*point)) for move in path)
+    return min(away, default=math.inf)
 
 
 def _beyond_the_end(cursor: _Cursor, move: Made, tolerance: float) -> PathDifference | None:

@@ -49,8 +49,8 @@ class _Writer(string.Formatter):
     """Formats the values of a sentence: what follows the colon says what a value is.
 
     ``mm`` and ``length`` a length, ``fine`` a small one, ``mm2`` an area, ``feed`` a feed, ``xyz``
-    a place, ``list`` several lengths; each with its unit but ``mm`` and ``list``. A number stands
-    for decimals.
+    a place (of X, Y and Z, or of other letters, each with its length or with a text), ``list``
+    several lengths; each with its unit but ``mm`` and ``list``. A number stands for decimals.
     """
 
     def __init__(self, unit: Unit) -> None:
@@ -60,7 +60,7 @@ class _Writer(string.Formatter):
             "fine": lambda value: f"{unit.fine(value)} {unit.name}",
             "mm2": unit.area,
             "feed": lambda value: f"{unit.text(value)} {unit.name}/min",
-            "xyz": lambda value: " ".join(a + unit.text(at) for a, at in zip("XYZ", value)),
+            "xyz": lambda value: words_of_place(value, unit),
             "list": lambda value: ", ".join(map(unit.text, value)),
             "said": lambda value: value(unit),
         }
@@ -70,3 +70,9 @@ class _Writer(string.Formatter):
         if format_spec in self._forms:
             return self._forms[format_spec](value)
         return plain(value, int(format_spec)) if format_spec.isdigit() else str(value)
+
+
+def words_of_place(place: Sequence[Any], unit: Unit) -> str:
+    """Return a place in words: its letters and values."""
+    words = place if isinstance(place[0], tuple) else zip("XYZ", place)
+    return " ".join(a + (at if isinstance(at, str) else unit.text(at)) for a, at in words)

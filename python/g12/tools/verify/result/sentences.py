@@ -40,6 +40,35 @@ FINDINGS = {
     "rapid-into": "a rapid goes down into {area:mm2} of material, at {at:xyz}",
     "bar-remains": "{area:mm2} of the bar remain beyond the contour at Z{level:mm}",
     "said": "{text:said}",
+    # sections
+    "contour-unread": "the contour cannot be read from the words: {why}",
+    "side-crossed": "the tool crosses the contour on its way in: {instead}?",
+    "side-other": (
+        "the tool is {here} the closed contour, it comes from {there}: {instead}? "
+        "(else go {here} before the line with {code})"
+    ),
+    "zero-line-turned": (
+        "C stands where line {line} left it, turned by {turned:1}° against that section: "
+        "G0 C0 missing?"
+    ),
+    "above-start": (
+        "its contour at {letter}{level:mm} lies above {letter}{start:mm}, where the tool comes "
+        "from: it cuts air (a lost minus sign?)"
+    ),
+    "c-speed": "C turns at {made:2} degrees/s, its limit is {limit:2}",
+    "c-turned-too-far": (
+        "C turns by {turned:1}° in place at the centre: half a turn is the most it needs"
+    ),
+    "blended-in": "the section begins while the move before it slows down",
+    "blended-out": "the section ends while the move after it begins",
+    "blended-turn": "the tool goes on while C turns in place",
+    "blended-corner": "a corner without an exact stop is rounded by {off:fine} or more",
+    "stops-inside": "the tool stops inside a line or an arc",
+    "not-exact": "the block does not end in the exact stop that its words ask for",
+    "face-acceleration": "{axis} would need {times:2} times its acceleration here",
+    "act-missing": "{act} does not come",
+    "act-extra": "{act} comes {found}, where the program does not have it",
+    "act-elsewhere": "{act} comes {found}, not {asked}",
 }
 NOTES = {
     "bored-assumed": (
@@ -52,6 +81,15 @@ NOTES = {
     "no-stock-met": "it meets nothing of the stock",
     "cylinder-aside": "a section on a cylinder is not compared with the stock",
     "below-block": "the lowest cut is {size:fine} below the block",
+    "zero-line-unknown": (
+        "no C word comes before the section: its zero line is where C stands, at {angle:3}°"
+    ),
+    "not-below-start": "no move goes below the {letter} of {code}",
+    "rubs": (
+        "C turns in place at the centre, by {degrees:1}° in all: there the tool rubs for "
+        "{seconds:1} s"
+    ),
+    "no-diameter": "the tool has no diameter: only the toolpath of its centre is measured",
     "length-higher": (
         "the tool length in force, {length:mm}, is not that of T{tool}: "
         "it cuts {off:fine} higher than its words say (G43 H{tool} after M6?)"

@@ -12,7 +12,8 @@ from __future__ import annotations
 import math
 
 from g12.tools.preview.executed_blocks import Block
-from g12.tools.verify.wanted_contour import Pen, WordReading
+from g12.tools.verify.expected.contour import WordReading
+from g12.tools.verify.expected.polar import Pen
 
 
 class SurfacePen(Pen):

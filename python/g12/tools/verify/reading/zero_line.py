@@ -16,9 +16,9 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
 from g12.tools.preview.executed_blocks import Text, read_lines
 from g12.tools.preview.moves import Move
-from g12.tools.verify.executed_subs import called_files
+from g12.tools.verify.expected.contour import BEGUN, SectionContour, ZeroLine
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.wanted_contour import BEGUN, SectionContour, ZeroLine
+from g12.tools.verify.reading.executed_subs import called_files
 
 SAME_ANGLE = 1e-3  # degree
 

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A section's contour as its words draw it: lines and arcs, and what comes between them.
+
+Lengths are millimetres, X a radius value. A polar contour's plane turns with the part, its first
+axis is X where the section begins; on a cylinder it is the unrolled surface.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+from g12.geometry.curve import Arc, Curve, Line
+from g12.lengths import MM_PER_INCH
+from g12.tools.path.part import X, Z
+from g12.tools.preview.moves import Event
+
+ACTS = re.compile(
+    r"(M\d|S|G10|G4[39]|G5\d|G92|dwell (?!0$)|message (?!G[0-9.]+: ))"
+)  # of what a trace tells: what a section does
+
+
+@dataclass(frozen=True)
+class Element:
+    """A line or an arc of the contour; an arc has a ``centre`` and a signed ``sweep``.
+
+    ``side`` is +1 with the tool on the left (G41), -1 on the right, 0 without compensation;
+    ``ramp`` says that compensation is switched on or off along it. ``depth`` is Z at its end,
+    ``feed`` along it in mm/min, None where the words do not say. A move of Z alone has no length.
+    ``exact`` says whether it ends in an exact path or stop, None as it was before the section.
+    """
+
+    line: int
+    start: complex
+    end: complex
+    side: int
+    ramp: bool
+    depth: float
+    centre: complex | None = None
+    sweep: float = 0.0
+    feed: float | None = None
+    exact: bool | None = None
+
+    @property
+    def curve(self) -> Curve:
+        """Return its curve."""
+        if self.centre is None:
+            return Line(self.start, self.end)
+        return Arc(self.start, self.centre, self.sweep)
+
+    @property
+    def length(self) -> float:
+        """Return its length."""
+        if self.centre is None:
+            return abs(self.end - self.start)
+        return abs(self.start - self.centre) * abs(self.sweep)
+
+    def point(self, fraction: float) -> complex:
+        """Return the point after a fraction of it."""
+        if self.centre is None:
+            return self.start + (self.end - self.start) * fraction
+        turn = complex(math.cos(self.sweep * fraction), math.sin(self.sweep * fraction))
+        return self.centre + (self.start - self.centre) * turn
+
+    def part(self, first: float, last: float) -> Element:
+        """Return the stretch between two fractions of it."""
+        start, end = self.point(first), self.point(last)
+        return replace(self, start=start, end=end, sweep=self.sweep * (last - first))
+
+    def normal(self, fraction: float) -> complex:
+        """Return the direction to the left of its path at a fraction."""
+        if self.centre is None:
+            along = self.end - self.start
+        else:
+            along = (self.point(fraction) - self.centre) * math.copysign(1, self.sweep) * 1j
+        return 1j * along / (abs(along) or 1.0)
+
+
+class ZeroLine(NamedTuple):
+    """What has become of C since the section before, or since the program began.
+
+    ``commanded`` says that the program has put it where it stands. ``turned`` is by how many
+    degrees the zero line is turned against that of the section before, which ended in line
+    ``line``; 0 and 0 for the first.
+    """
+
+    commanded: bool
+    turned: float = 0.0
+    line: int = 0
+
+
+BEGUN = ZeroLine(True)
+
+
+class WordReading(NamedTuple):
+    """How a machine reads a section's words: by its [G12] settings.
+
+    ``x`` is POLAR_X, ``rapid_feed`` POLAR_G0_FEED in mm/min, ``beside`` POLAR_TOOL_OFFSET in mm:
+    there the tool is where a polar section begins. ``surface`` is CYLINDER_WORD.
+    """
+
+    x: str
+    rapid_feed: float | None = None
+    beside: float = 0.0
+    surface: str = "radius"
+
+
+class Act(NamedTuple):
+    """Something that a section does besides moving, as a trace tells it, and its block's line.
+
+    ``drawn`` is how many elements of the contour come before it.
+    """
+
+    line: int
+    text: str
+    drawn: int
+
+
+@dataclass(frozen=True)
+class SectionContour:
+    """One run through a section: first and last line, first move and the one after it, contour.
+
+    ``file`` is the name of a sub's own, "" for the program.
+
+    ``start`` in the contour's plane, ``height`` above it and ``c`` (degrees) are where it begins,
+    ``left_c`` is where C stands behind it, in program coordinates; ``zero_line`` tells how C came
+    there. ``doubt`` tells why the contour could not be read from the words, if it could not.
+    ``diameters`` says that X words are. ``surface`` is the radius of the cylinder whose unrolled
+    surface the plane is, 0 of a polar section.
+
+    ``stopped`` says that a dwell comes between it and the move in front of it.
+    ``acts`` are what it is to do besides moving, ``told`` what a trace tells of the section.
+    ``leaves`` is the state behind it that the words ask for, as ``Block.left`` has it, and
+    ``left`` the one that was found; ``paths`` are G61 or G64 as found and as asked, if known.
+    ``path`` is G61 or G64 as in force where it begins, "" if that is not known, and ``asked_paths``
+    are it and those that the words ask for on the way.
+    """
+
+    line: int
+    last: int
+    at: int
+    end: int
+    code: str
+    start: complex
+    elements: tuple[Element, ...]
+    doubt: str = ""
+    height: float = 0.0
+    diameters: bool = False
+    c: float = 0.0
+    left_c: float = 0.0
+    zero_line: ZeroLine = BEGUN
+    stopped: bool = True
+    acts: tuple[Act, ...] = ()
+    told: tuple[Event, ...] = ()
+    leaves: Mapping[str, float] = field(default_factory=dict)
+    left: Mapping[str, float] = field(default_factory=dict)
+    paths: tuple[str, ...] = ()
+    path: str = ""
+    asked_paths: tuple[str, ...] = ()
+    surface: float = 0.0
+    file: str = ""
+
+    @property
+    def exact(self) -> bool:
+        """Tell whether G61 or G61.1 is in force where it begins."""
+        return self.path.startswith("G61")
+
+    @property
+    def unit(self) -> float:
+        """Return the program's unit in mm."""
+        return 1.0 if self.leaves.get("_metric", True) else MM_PER_INCH
+
+    @property
+    def third(self) -> int:
+        """Return the axis at right angles to the contour's plane: X of a cylinder, else Z."""
+        return X if self.surface else Z
