@@ -17,7 +17,6 @@ from g12.tools.verify.contour_distance import ContourDistances
 from g12.tools.verify.findings import (
     contour_findings,
     section_findings,
-    section_notes,
     turn_findings,
 )
 from g12.tools.verify.section import measure_section

@@ -29,7 +29,7 @@ from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import Unit, unit_of
 from g12.tools.verify.axis_limits import has_one_zero, overruns_of, travel_of, widths_of
 from g12.tools.verify.executed_subs import executed_everywhere
-from g12.tools.verify.in_material import MaterialFacts, Program, material_facts, zero_of
+from g12.tools.verify.in_material import MaterialFacts, material_facts, zero_of
 from g12.tools.verify.judgement import judged
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
 from g12.tools.verify.reading.circles import CircleReader, Target
@@ -42,7 +42,7 @@ from g12.tools.verify.shape_findings import ShapeFacts, measure_shape
 from g12.tools.verify.surface_pen import SurfacePen
 from g12.tools.verify.wanted_contour import Pen, SectionContour, WordReading, sections
 from g12.tools.verify.wanted_shape import ShapeAsked, ShapeReading, shapes_asked
-from g12.tools.verify.workpiece import Workpiece, assumed_workpiece, given_workpiece
+from g12.tools.verify.workpiece import Program, Workpiece, assumed_workpiece, given_workpiece
 from g12.tools.verify.zero_line import with_zero_lines
 
 POCKET_TOLERANCE = 0.005  # mm
@@ -332,8 +332,8 @@ def measured_shapes(
 
 def program_of(subject: Subject, asked: Asked) -> Program:
     """Return what is judged in the material."""
-    moves, part = subject.trace.moves, subject.path.part
-    return Program(moves, part, asked.circles, asked.sections, subject.real)
+    trace, part = subject.trace, subject.path.part
+    return Program(trace.moves, part, asked.circles, asked.sections, trace.diameters, subject.real)
 
 
 def workpiece_of(subject: Subject, asked: Asked, stock: StockText | None) -> Workpiece:
@@ -341,13 +341,12 @@ def workpiece_of(subject: Subject, asked: Asked, stock: StockText | None) -> Wor
 
     Raises UsageError for a text that is no stock of the machine's.
     """
-    trace, part = subject.trace, subject.path.part
+    program = program_of(subject, asked)
     if stock is None:
-        return assumed_workpiece(asked.circles, trace.moves, part, trace.diameters)
-    unit = unit_of(trace.modes.gcodes, stock.units)
+        return assumed_workpiece(program)
+    unit = unit_of(subject.trace.modes.gcodes, stock.units)
     said = read_stock(stock.text, part_of(subject.ini).turning, unit)
-    zero = zero_of(asked.circles, asked.sections, trace.moves)
-    return given_workpiece(said, zero, asked.circles, trace.moves, part, trace.diameters)
+    return given_workpiece(program, said, zero_of(asked.circles, asked.sections, program.moves))
 
 
 def unseen_in(moves: Sequence[Move], codes: Codes, seen: Iterable[range]) -> list[tuple[int, str]]:

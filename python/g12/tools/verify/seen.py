@@ -21,6 +21,7 @@ from g12.tools.verify.in_material import MaterialFacts, material_facts, zero_of
 from g12.tools.verify.judgement import cuts_of
 from g12.tools.verify.mistakes.spindle import judge_spindle
 from g12.tools.verify.pocket_area import is_wrong_tool, ring, wanted_of
+from g12.tools.verify.pocket_walls import Circles, cutting, floor_of
 from g12.tools.verify.proof import (
     POCKET_TOLERANCE,
     Asked,
@@ -34,7 +35,7 @@ from g12.tools.verify.proof import (
 from g12.tools.verify.reading.circles import Cutter
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.wanted_contour import SectionContour
-from g12.tools.verify.workpiece import Circles, Workpiece, cutting, floor_of
+from g12.tools.verify.workpiece import Workpiece
 
 
 class StandingRings(NamedTuple):
