@@ -183,8 +183,10 @@ def test_a_lathe_program_that_turns_nothing_has_a_bar_too(told):
     assert (code, notes) == (0, [MISSED])
 
 
-def test_a_section_on_a_cylinder_is_left_aside(told):
-    groove = ["G7.1 C20", "G1 X36 F500", "C90", "X60", "G7.1 C0"]
-    code, notes, findings = told("40", *FACE, *groove, ini=LATHE)
-    assert (code, findings) == (0, [])
-    assert notes == ["line 4: a section on a cylinder is not compared with the stock"]
+GROOVE = ["G0 X44 Z-20", "G7.1 C20", "G1 X36 F500", "C90"]
+
+
+@pytest.mark.parametrize(("end", "found"), [("G1 X44", []), ("G1 Z-19", ["line 10"])])
+def test_a_section_on_a_cylinder_is_cut_into_it(end, found, told):
+    _, notes, findings = told("40", *FACE, *GROOVE, end, "G7.1 C0", "G0 C0", ini=LATHE)
+    assert notes == [] and [text.split(":")[0] for text in findings] == found

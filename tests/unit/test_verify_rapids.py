@@ -11,9 +11,9 @@ from g12.tools.path.part import Part, disc
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.verify.expected.haas import HaasWords
-from g12.tools.verify.in_material import Program, assumptions, judged_moves, rapids_through
+from g12.tools.verify.in_material import assumptions, rapids_through
 from g12.tools.verify.reading.circles import Cutter, Source, Target, Wall
-from g12.tools.verify.workpiece import assumed_workpiece
+from g12.tools.verify.workpiece import Program, assumed_workpiece
 from support.made_moves import LIMITS, Hand, samples_of
 
 MILL = Part(turning=False)
@@ -43,12 +43,11 @@ class Pockets(Hand):
     def in_material(self, real=None):
         path = track(MILL, self.moves, LIMITS)
         run = follow(path, self.moves, real(path), 1.0) if real else None
-        program = Program(self.moves, MILL, self.asked, [], run)
-        return program, assumed_workpiece(self.asked, self.moves, MILL, DIAMETERS)
+        program = Program(self.moves, MILL, self.asked, [], DIAMETERS, run)
+        return program, assumed_workpiece(program)
 
     def found(self, real=None):
-        program, piece = self.in_material(real)
-        return list(rapids_through(program, piece, judged_moves(program, piece)))
+        return list(rapids_through(*self.in_material(real)))
 
     def assumed(self):
         return [note.text() for note in assumptions(self.in_material()[1])]

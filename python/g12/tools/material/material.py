@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 from shapely.affinity import translate
-from shapely.geometry import Point, Polygon
+from shapely.geometry import Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
@@ -94,9 +94,10 @@ class _Area:
 
 
 class _Given(NamedTuple):
-    """An area that is known as it is."""
+    """An area that is known as it is, up to a move."""
 
     shape: BaseGeometry
+    until: float = math.inf
 
     @property
     def bounds(self) -> Bounds:
@@ -112,10 +113,12 @@ class Material:
         self._known: dict = {}
         self.top = -math.inf
 
-    def add(self, area: BaseGeometry, top: float) -> None:
-        """Make an area solid below a top."""
+    def add(
+        self, area: BaseGeometry, top: float, since: int = ALWAYS, until: float = math.inf
+    ) -> None:
+        """Make an area solid below a top, for the moves after one and up to another."""
         if not area.is_empty:
-            self._solids.add(_Given(area), -top, ALWAYS)
+            self._solids.add(_Given(area, until), -top, since)
             self.top = max(self.top, top)
 
     def open(self, area: BaseGeometry, level: float = -math.inf) -> None:
@@ -130,8 +133,9 @@ class Material:
         if goes_along_z(points):
             points = points[points[:, 2].argmin()][None]
         for portion in portions(points):
-            bounds = (*portion.line.min(axis=0), *portion.line.max(axis=0))
-            self.cut_level(move, bounds, portion.low, partial(np.asarray, portion.line), radius)
+            for line in self._unrolled(portion.line, radius):
+                bounds = (*line.min(axis=0), *line.max(axis=0))
+                self.cut_level(move, bounds, portion.low, partial(np.asarray, line), radius)
 
     def cut_level(
         self, move: int, bounds: Bounds, level: float, draw: Drawn, radius: float
@@ -153,22 +157,50 @@ class Material:
         bounds = region.bounds
         if not bounds:
             return NOTHING
-        solid = self._solids.within(bounds, -level - 2 * SAME_LEVEL, math.inf)
-        if not len(solid):
+        solid = [
+            index
+            for index in self._solids.within(bounds, -level - 2 * SAME_LEVEL, before)
+            if before <= self._solids.areas[index].until
+        ]
+        if not solid:
             return NOTHING
         region = region.intersection(self._shapes(self._solids, solid))
         away = self._cuts.within(bounds, level, before)
         return region.difference(self._shapes(self._cuts, away)) if len(away) else region
 
+    def _unrolled(self, line: np.ndarray, radius: float) -> list[np.ndarray]:
+        """Return a path (n, 2) once for each turn of a surface that it cuts, on the first turn."""
+        if not self._period:
+            return [line]
+        turns = self._turns(line[:, 0].min() - radius, line[:, 0].max() + radius)
+        return [line - (turn * self._period, 0.0) for turn in turns]
+
     def _turned(self, region: BaseGeometry) -> list[BaseGeometry]:
-        """Return a region once for each turn of a surface that it lies on, moved to the first."""
+        """Return a region of each turn of a surface on which it lies, moved to the first turn."""
         if not self._period or region.is_empty:
             return [region]
-        first, last = (math.floor(region.bounds[side] / self._period) for side in (0, 2))
-        return [translate(region, -turn * self._period) for turn in range(first, last + 1)]
+        low, high = region.bounds[1] - 1.0, region.bounds[3] + 1.0
+        first_turn = box(0.0, low, self._period, high)
+        moved = (
+            translate(region, -turn * self._period)
+            for turn in self._turns(region.bounds[0], region.bounds[2])
+        )
+        return [each.intersection(first_turn) for each in moved]
+
+    def _turns(self, least: float, most: float) -> range:
+        """Return the turns of a surface between two places round it."""
+        return range(math.floor(least / self._period), math.floor(most / self._period) + 1)
 
     def _shapes(self, cuts: _Cuts, indices: Iterable[int]) -> BaseGeometry:
         return unary_union([cuts.areas[index].shape for index in indices])
+
+    def is_cut(self, region: BaseGeometry, level: float, before: float) -> bool:
+        """Tell whether something of a region was cut down to a level before a move."""
+        return any(
+            len(self._cuts.within(part.bounds, level, before))
+            for part in self._turned(region)
+            if not part.is_empty
+        )
 
     def touched(self, points: np.ndarray, radius: float, before: float) -> Touch | None:
         """Return the material that a cutter goes through along points (n, 3), None if none."""

@@ -44,8 +44,7 @@ def programmed_pace(every: Sequence[int], cutting: Sequence[int], path: Track) -
     seconds = sum(path.seconds(index) for index in every)
     feeds = [(path.part_feed(i), i) for i in cutting if path.part_length(i) > LEAST_LENGTH]
     lowest, index = min(feeds, default=(0.0, every[0]))
-    point = path.points[np.searchsorted(path.move, index + 1) - 1]
-    return Pace(lowest, tuple(point), index, seconds, seconds)
+    return Pace(lowest, path.end(index), index, seconds, seconds)
 
 
 def real_pace(

@@ -7,9 +7,10 @@ Lengths are millimetres, angles of rotary axes degrees, times seconds.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,20 +32,55 @@ class Limits:
     path: float
 
 
-@dataclass(frozen=True)
-class Track:
-    """Moves as one polyline: per vertex the machine position, part point, move and time.
+class Vertices(NamedTuple):
+    """A polyline: per vertex the machine position, the tool length offset, the move, the time.
 
     ``positions`` (n, 9) are those of the controlled point, ``offsets`` (n, 9) the tool length
     offset in force, ``move`` (n,) the index of the move that ends at or passes the vertex.
-    ``time`` supposes that every move runs at its feed, as far as the axes' speeds allow.
     """
 
-    part: Part
     positions: np.ndarray
     offsets: np.ndarray
     move: np.ndarray
     time: np.ndarray
+
+
+@dataclass(frozen=True)
+class Track:
+    """Moves as one polyline in time, drawn where somebody asks for its vertices; see ``track``.
+
+    ``seconds`` gives the time of a move by its index. It supposes that every move runs at its feed,
+    as far as the axes' speeds allow.
+    """
+
+    part: Part
+    moves: Sequence[Move]
+    draw: Callable[[], Vertices]
+    seconds: Callable[[int], float]
+
+    @cached_property
+    def _vertices(self) -> Vertices:
+        return self.draw()
+
+    @property
+    def positions(self) -> np.ndarray:
+        """Machine positions (n, 9) of the controlled point."""
+        return self._vertices.positions
+
+    @property
+    def offsets(self) -> np.ndarray:
+        """Tool length offsets (n, 9) in force."""
+        return self._vertices.offsets
+
+    @property
+    def move(self) -> np.ndarray:
+        """The index (n,) of the move that ends at or passes each vertex."""
+        return self._vertices.move
+
+    @property
+    def time(self) -> np.ndarray:
+        """Seconds (n,) since the start."""
+        return self._vertices.time
 
     @cached_property
     def points(self) -> np.ndarray:
@@ -61,19 +97,20 @@ class Track:
         first, last = np.searchsorted(self.move, (index, index + 1))
         return slice(max(0, first - (1 if index else 0)), last)
 
+    def end(self, index: int) -> tuple[float, ...]:
+        """Return where a move ends on the part."""
+        return tuple(self.part.points(np.array(self.moves[index].end))[0])
+
     def part_length(self, index: int) -> float:
         """Return the length along the part of a move, mm."""
+        if not self.part.turning:
+            return self.moves[index].length
         return float(self._part_lengths[index]) if index < len(self._part_lengths) else 0.0
 
     @cached_property
     def _part_lengths(self) -> np.ndarray:
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         return np.bincount(self.move[1:], weights=steps)
-
-    def seconds(self, index: int) -> float:
-        """Return the time of a move."""
-        time = self.time[self.vertices(index)]
-        return float(time[-1] - time[0])
 
     def part_feed(self, index: int) -> float:
         """Return the speed along the part of a move, mm/min."""
@@ -136,6 +173,22 @@ def track(
 ) -> Track:
     """Return the polyline of moves; of those ``own`` alone it says nothing of the others."""
     own = range(len(moves)) if own is None else own
+
+    def seconds(index: int) -> float:
+        return duration(moves[index], limits, spindle_speed)
+
+    drawn = partial(vertices_of, part, moves, own, seconds, chord_error)
+    return Track(part, moves, drawn, seconds)
+
+
+def vertices_of(
+    part: Part,
+    moves: Sequence[Move],
+    own: range,
+    seconds: Callable[[int], float],
+    chord_error: float,
+) -> Vertices:
+    """Return the vertices of moves, by their indices."""
     positions, offsets, owner, times = [], [], [], [np.zeros(1)]
     before = moves[own.start - 1].tool_offset if own.start else (0.0,) * 9
     for index in own:
@@ -146,10 +199,9 @@ def track(
         positions.append(points[skip:])
         offsets.append(offsets_between(before, move.tool_offset, share)[skip:])
         owner.append(len(points) - skip)
-        times.append(times[-1][-1] + duration(move, limits, spindle_speed) * share[1:])
+        times.append(times[-1][-1] + seconds(index) * share[1:])
         before = move.tool_offset
-    return Track(
-        part,
+    return Vertices(
         np.concatenate(positions or [np.zeros((1, 9))]),
         np.concatenate(offsets or [np.zeros((1, 9))]),
         np.repeat(own, owner) if owner else np.zeros(1, int),

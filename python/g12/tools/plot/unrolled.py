@@ -16,7 +16,7 @@ from matplotlib.ticker import MaxNLocator
 
 from g12.tools.path.part import Part
 from g12.tools.path.surface import Surface
-from g12.tools.path.track import Track
+from g12.tools.path.track import Track, Vertices
 from g12.tools.plot import style
 from g12.tools.plot.deviation import SIZE, draw_window
 from g12.tools.plot.face import draw_history
@@ -116,7 +116,8 @@ def unrolled(scene: Scene) -> Scene:
     subject, path = scene.subject, scene.path
     moves = [unrolled_move(move, path.part) for move in scene.moves]
     positions = as_positions(path.points)
-    flat = Track(Flat(turning=False), positions, np.zeros_like(positions), path.move, path.time)
+    vertices = Vertices(positions, np.zeros_like(positions), path.move, path.time)
+    flat = Track(Flat(turning=False), moves, lambda: vertices, path.seconds)
     trace = replace(subject.trace, moves=moves)
     shown = scene.seen._replace(material=MaterialFacts())
     return replace(scene, subject=replace(subject, trace=trace, path=flat), seen=shown)

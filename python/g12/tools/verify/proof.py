@@ -32,7 +32,7 @@ from g12.tools.verify.compare.section_plane import x0_of
 from g12.tools.verify.expected.contour import SectionContour, WordReading
 from g12.tools.verify.expected.cylinder import SurfacePen
 from g12.tools.verify.expected.polar import Pen
-from g12.tools.verify.in_material import MaterialFacts, Program, material_facts, zero_of
+from g12.tools.verify.in_material import MaterialFacts, material_facts, zero_of
 from g12.tools.verify.judgement import judged
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
 from g12.tools.verify.reading.circles import CircleReader, Target
@@ -45,7 +45,7 @@ from g12.tools.verify.section import SectionFacts, measure_section
 from g12.tools.verify.section_motion import axes_of_section
 from g12.tools.verify.shape_findings import ShapeFacts, measure_shape
 from g12.tools.verify.wanted_shape import ShapeAsked, ShapeReading, shapes_asked
-from g12.tools.verify.workpiece import Workpiece, assumed_workpiece, given_workpiece
+from g12.tools.verify.workpiece import Program, Workpiece, assumed_workpiece, given_workpiece
 
 POCKET_TOLERANCE = 0.005  # mm
 SAME_X0 = 1e-6  # mm
@@ -335,8 +335,8 @@ def measured_shapes(
 
 def program_of(subject: Subject, asked: Asked) -> Program:
     """Return what is judged in the material."""
-    moves, part = subject.trace.moves, subject.path.part
-    return Program(moves, part, asked.circles, asked.sections, subject.real)
+    trace, part = subject.trace, subject.path.part
+    return Program(trace.moves, part, asked.circles, asked.sections, trace.diameters, subject.real)
 
 
 def workpiece_of(subject: Subject, asked: Asked, stock: StockText | None) -> Workpiece:
@@ -344,13 +344,12 @@ def workpiece_of(subject: Subject, asked: Asked, stock: StockText | None) -> Wor
 
     Raises UsageError for a text that is no stock of the machine's.
     """
-    trace, part = subject.trace, subject.path.part
+    program = program_of(subject, asked)
     if stock is None:
-        return assumed_workpiece(asked.circles, trace.moves, part, trace.diameters)
-    unit = unit_of(trace.modes.gcodes, stock.units)
+        return assumed_workpiece(program)
+    unit = unit_of(subject.trace.modes.gcodes, stock.units)
     said = read_stock(stock.text, part_of(subject.ini).turning, unit)
-    zero = zero_of(asked.circles, asked.sections, trace.moves)
-    return given_workpiece(said, zero, asked.circles, trace.moves, part, trace.diameters)
+    return given_workpiece(program, said, zero_of(asked.circles, asked.sections, program.moves))
 
 
 def unseen_in(moves: Sequence[Move], codes: Codes, seen: Iterable[range]) -> list[tuple[int, str]]:

@@ -20,6 +20,7 @@ from g12.tools.verify.in_material import MaterialFacts, material_facts, zero_of
 from g12.tools.verify.judgement import cuts_of
 from g12.tools.verify.mistakes.spindle import judge_spindle
 from g12.tools.verify.pocket_area import is_wrong_tool, uncut
+from g12.tools.verify.pocket_walls import Circles
 from g12.tools.verify.proof import (
     POCKET_TOLERANCE,
     Asked,
@@ -32,7 +33,7 @@ from g12.tools.verify.proof import (
 )
 from g12.tools.verify.reading.circles import Cutter
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.workpiece import Circles, Workpiece
+from g12.tools.verify.workpiece import Workpiece
 
 
 class StandingRings(NamedTuple):

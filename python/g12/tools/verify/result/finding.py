@@ -49,8 +49,9 @@ class _Writer(string.Formatter):
     """Formats the values of a sentence: what follows the colon says what a value is.
 
     ``mm`` and ``length`` a length, ``fine`` a small one, ``mm2`` an area, ``feed`` a feed, ``xyz``
-    a place (of X, Y and Z, or of other letters, each with its length or with a text), ``list``
-    several lengths; each with its unit but ``mm`` and ``list``. A number stands for decimals.
+    a place (of X, Y and Z, or of other letters, each with its length or with a text), ``place``
+    one with its letters, ``list`` several lengths; each with its unit but ``mm`` and ``list``. A
+    number stands for decimals.
     """
 
     def __init__(self, unit: Unit) -> None:
@@ -59,6 +60,9 @@ class _Writer(string.Formatter):
             "length": lambda value: f"{unit.text(value)} {unit.name}",
             "fine": lambda value: f"{unit.fine(value)} {unit.name}",
             "mm2": unit.area,
+            "place": lambda words: " ".join(
+                letter + (plain(at, 3) if letter == "C" else unit.text(at)) for letter, at in words
+            ),
             "feed": lambda value: f"{unit.text(value)} {unit.name}/min",
             "xyz": lambda value: words_of_place(value, unit),
             "list": lambda value: ", ".join(map(unit.text, value)),

@@ -36,8 +36,8 @@ FINDINGS = {
         "it cuts {off:fine} deeper than its words say (G43 H{tool} after M6?)"
     ),
     # the material
-    "rapid-through": "a rapid goes through material, from {at:xyz} to {to:xyz}",
-    "rapid-into": "a rapid goes down into {area:mm2} of material, at {at:xyz}",
+    "rapid-through": "a rapid goes through material, from {at:place} to {to:place}",
+    "rapid-into": "a rapid goes down into {area:mm2} of material, at {at:place}",
     "bar-remains": "{area:mm2} of the bar remain beyond the contour at Z{level:mm}",
     "said": "{text:said}",
     # sections
@@ -72,14 +72,17 @@ FINDINGS = {
 }
 NOTES = {
     "bored-assumed": (
-        "a bored hole is assumed down to {at:xyz}, for a rapid or R goes there{more}: "
+        "a bored hole is assumed down to {at:place}, for a rapid or R goes there{more}: "
         "--stock gives what there is"
     ),
     "plunge-into-stock": (
-        "it plunges with {share:0} % of the cutter into the stock, at {at:xyz}{of}"
+        "it plunges with {share:0} % of the cutter into the stock, at {at:place}{of}"
     ),
     "no-stock-met": "it meets nothing of the stock",
-    "cylinder-aside": "a section on a cylinder is not compared with the stock",
+    "inside-surface": (
+        "{code} begins {inside:fine} inside of its surface of radius {radius:mm}: "
+        "is its C a diameter? ([G12] CYLINDER_WORD)"
+    ),
     "below-block": "the lowest cut is {size:fine} below the block",
     "zero-line-unknown": (
         "no C word comes before the section: its zero line is where C stands, at {angle:3}°"
@@ -120,7 +123,7 @@ NOTES = {
 }
 NOT_JUDGED = {
     "first-rapid": (
-        "what the first rapid goes through on its way to {at:xyz}: "
+        "what the first rapid goes through on its way to {at:place}: "
         "where the tool comes from is not known"
     ),
     "plain-moves": (

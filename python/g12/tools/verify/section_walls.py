@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The material that a program's sections assume, on a lathe's face and on a cylinder.
+
+On the face a compensated contour has its part on the side away from the tool: all within a closed
+contour that is cut from outside, else a wall beside it. A section without compensation is cut into
+a face as large as its toolpath, the cutter's own width aside. A cylinder is solid where grooves are
+cut, and a wall farther along Z, but not in front of the program's Z0 where they run out there. All
+of it is solid below the program's Z0 (the surface), or below the level from which a section is fed
+down to where that is lower.
+
+Lengths are mm, places those of the part's face or of the unrolled surface.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from shapely.geometry import LineString, Point, Polygon, box
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import split, unary_union
+
+from g12.tools.material.material import SAME_LEVEL, Material
+from g12.tools.path.part import X, Z, disc
+from g12.tools.preview.moves import Move
+from g12.tools.verify.closed_contour import as_points, is_closed, trimmed
+from g12.tools.verify.compare.section_plane import Plane, plane_of
+from g12.tools.verify.contour_side import SAME, area_within
+from g12.tools.verify.expected.contour import Element, SectionContour
+from g12.tools.verify.pocket_walls import WALL
+from g12.tools.verify.section_size import stretches_of
+
+BEYOND = 10.0  # bars: how far an open contour's ends are drawn on
+PROBE = 1e-3  # mm beside a contour
+FAR = 1e6  # round a cylinder
+
+Radius = Callable[[int], float]  # of the cutter of a move
+Solids = Iterator[tuple[BaseGeometry, float]]
+
+
+class SurfaceKey(NamedTuple):
+    """A cylinder's surface: its radius, and where it is along X."""
+
+    radius: float
+    face: float
+
+
+def add_face(
+    material: Material, sections: Sequence[SectionContour], moves: Sequence[Move], radius: Radius
+) -> None:
+    """Make solid what sections on a face are cut in."""
+    faces = [round(Plane(section, moves[section.at]).face, 6) for section in sections]
+    for section, span in zip(sections, spans(sections, faces, faces, moves, Z)):
+        for area, top in face_solids(section, moves, radius(section.at)):
+            material.add(area, top, *span)
+
+
+def add_cylinder(
+    material: Material,
+    sections: Sequence[SectionContour],
+    surface: SurfaceKey,
+    moves: Sequence[Move],
+    radius: Radius,
+) -> None:
+    """Make solid what those of the sections on cylinders are cut in that are on one surface."""
+    keys = [surface_key(section, moves) for section in sections]
+    tops = [key.face for key in keys]
+    for section, key, span in zip(sections, keys, spans(sections, keys, tops, moves, X)):
+        if key == surface:
+            for area, top in cylinder_solids(section, moves, radius(section.at)):
+                material.add(area, top, *span)
+
+
+def surface_key(section: SectionContour, moves: Sequence[Move]) -> SurfaceKey:
+    """Return the surface of a section on a cylinder: its radius, and where it is along X."""
+    face = plane_of(section, moves[section.at]).face
+    return SurfaceKey(round(section.surface, 6), round(face, 6))
+
+
+def spans(
+    sections: Sequence[SectionContour],
+    keys: Sequence,
+    tops: Sequence[float],
+    moves: Sequence[Move],
+    axis: int,
+) -> Iterator[tuple[int, float]]:
+    """Yield the moves for which the material of each section counts: from it on.
+
+    It is another part, or another end of it, where a section has another key: up to the retract
+    before that.
+    """
+    for at, (section, key, top) in enumerate(zip(sections, keys, tops)):
+        others = (i for i in range(at + 1, len(sections)) if keys[i] != key)
+        other = next(others, None)
+        if other is None:
+            yield section.at, math.inf
+            continue
+        last, begin = sections[other - 1].end, sections[other].at
+        up = (i for i in range(last - 1, begin) if moves[i].end[axis] > top - SAME_LEVEL)
+        yield section.at, next(up, begin)
+
+
+def face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
+    """Yield what a section on a face is cut in, each area with its top."""
+    plane = Plane(section, moves[section.at])
+    cut = [moves[i] for i in range(section.at, section.end) if moves[i].kind != "rapid"]
+    lowest = min((move.end[Z] for move in cut), default=math.inf)
+    falls = (move.start[Z] for move in cut if move.end[Z] < move.start[Z] - SAME_LEVEL)
+    top = min(plane.face, next(falls, plane.face))
+    if lowest > top - SAME_LEVEL:
+        return
+    for stretch in stretches_of(section):
+        if min(element.depth for element in stretch) < -SAME_LEVEL:
+            yield material_side(stretch, plane), top
+    if not any(element.side for element in section.elements):
+        deep = [element for element in section.elements if element.depth < -SAME_LEVEL]
+        ends = [abs(place) for element in deep for place in (element.start, element.end)]
+        reach = max(ends, default=0.0) - cutter
+        yield disc((0.0, 0.0), reach) if reach > 0.0 else Polygon(), top
+
+
+def cylinder_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
+    """Yield what a section on a cylinder is cut in, with its top."""
+    first = moves[section.at]
+    top = min(plane_of(section, first).face, first.start[X])
+    cut = [moves[i] for i in range(section.at, section.end) if moves[i].kind != "rapid"]
+    levels = [move.end[Z] for move in cut if move.end[X] < top - SAME_LEVEL]
+    if levels:
+        zero = first.start[Z] - section.start.imag
+        low, high = min(levels) - cutter - WALL, max(levels) + cutter + WALL
+        high = min(high, zero) if min(levels) < zero else high
+        yield box(-FAR, low, FAR, high), top
+
+
+def material_side(stretch: Sequence[Element], plane: Plane) -> BaseGeometry:
+    """Return what a compensated contour leaves of the part beside it, nothing without a side."""
+    side, contour = stretch[0].side, [each for each in trimmed(stretch) if each.length > SAME]
+    if not side or not contour:
+        return Polygon()
+    points = plane.on_part(np.concatenate([as_points(element) for element in contour]))
+    if not is_closed(contour):
+        line = LineString(vectors(points))
+        return line.buffer(-side * WALL, single_sided=True, join_style=2)
+    shape = Polygon(vectors(points)).buffer(0)
+    if (area_within(points) > 0.0) == (side > 0):
+        return shape.buffer(WALL).difference(shape)
+    return shape
+
+
+def beyond(stretch: Sequence[Element], plane: Plane, bar: BaseGeometry) -> BaseGeometry | None:
+    """Return what of a bar lies on the tool's side of a contour that it is to be cut away to.
+
+    None where the tool works inside of a closed contour, or without compensation.
+    """
+    contour = [element for element in trimmed(stretch) if element.length > SAME]
+    side = stretch[0].side
+    if not side or not contour:
+        return None
+    points = plane.on_part(np.concatenate([as_points(element) for element in contour]))
+    if is_closed(contour):
+        inside = (area_within(points) > 0.0) == (side > 0)
+        return None if inside else bar.difference(Polygon(vectors(points)).buffer(0))
+    points = points[np.append(True, np.abs(np.diff(points)) > SAME)]
+    along = np.diff(points) / np.abs(np.diff(points))
+    middles = (points[:-1] + points[1:]) / 2 + 1j * side * along * PROBE
+    probe = middles[np.abs(middles).argmin()]
+    reach = BEYOND * float(np.abs(np.array(bar.bounds)).max())
+    ends = points[0] - along[0] * reach, points[-1] + along[-1] * reach
+    edge = vectors(np.array([ends[0], *points, ends[1]]))
+    pieces = split(bar, LineString(edge)).geoms
+    near = [piece for piece in pieces if piece.contains(Point(probe.real, probe.imag))]
+    return unary_union(near) if len(pieces) > 1 else None
+
+
+def vectors(points: np.ndarray) -> list[tuple[float, float]]:
+    """Return complex points as pairs."""
+    return [(point.real, point.imag) for point in points]
