@@ -37,7 +37,12 @@ PACKAGE = {
        ("python/toplevel.py", "python/remap.py", "python/g12/__init__.py", forms.PAGE)},
     **dict.fromkeys(("python/g12/__main__.py", *(f"ngc/{sub}.ngc" for sub in SUBS)), b""),
 }  # fmt: skip
-NO_MACHINE = {"interpreter", "does-not-load", "no-sub"}  # of samples that are none by themselves
+NO_MACHINE = {
+    "interpreter",
+    "does-not-load",
+    "no-sub",
+    "python-fails",
+}  # of samples that are none by themselves
 
 
 def screen_of(path):
@@ -64,8 +69,16 @@ def full_set(ini):
     return wanted if ini.get("FILTER", "nc") else [*wanted, control]
 
 
+def is_outside(ini):
+    """Tell whether a machine's Python, which codes have to be added to, is not in its folder."""
+    toplevel = ini.file("PYTHON", "TOPLEVEL")
+    return bool(toplevel) and not toplevel.resolve().is_relative_to(ini.directory.resolve())
+
+
 def why_not(ini, name):
     """Return the kind of finding by which a machine must refuse a single feature, None if none."""
+    if name in features.FILES and is_outside(ini):
+        return "outside"
     if name in features.FILES and not set(features.AXES.get(name, "XYZ")) <= set(ini.axes):
         return "no-axis"
     if name in features.PROGRAMS and ini.get("FILTER", "nc"):

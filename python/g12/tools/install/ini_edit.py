@@ -231,10 +231,16 @@ class IniText:
                 blocks[-1].append(line)
             if line.text.startswith(END):
                 if not open_:
-                    raise IniError(f'{line.place}: the line "{BEGIN}" that begins this is missing')
+                    raise IniError(
+                        f'{line.place}: the line "{BEGIN}" that begins this is missing: put it in '
+                        "front of the first line that install wrote"
+                    )
                 open_ = False
         if open_:
-            raise IniError(f'{blocks[-1][0].place}: the line "{END}" that ends this is missing')
+            raise IniError(
+                f'{blocks[-1][0].place}: the line "{END}" that ends this is missing: put it after '
+                "the last line that install wrote there"
+            )
         return blocks
 
     def remove(self, doomed: Sequence[IniLine]) -> None:

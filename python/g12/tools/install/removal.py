@@ -26,6 +26,7 @@ from g12.tools.install.ini_edit import (
     to_bytes,
     without,
 )
+from g12.tools.install.lathe_rules import GEOMETRY_LINE
 from g12.tools.install.plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE, names_copy
 from g12.tools.install.rules import codes_of
 from g12.tools.machine.files import difference, drop_backup, require_writable, write_all
@@ -136,7 +137,7 @@ def is_by_install(line: IniLine) -> bool:
     key, value = key_and_value(line.text)
     if OWN_FILTER.fullmatch(line.text) or forms.OWN_LINE.fullmatch(line.text):
         return True
-    if kinematics_lines.OWN_LINE.fullmatch(line.text):
+    if any(rule.fullmatch(line.text) for rule in (kinematics_lines.OWN_LINE, GEOMETRY_LINE)):
         return True
     if key == "REMAP":
         return model_of(remap_from_value(value)) is not None
