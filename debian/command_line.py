@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The words of all commands as one parser, which the manual page and the completions come from."""
 
-from __future__ import annotations
-
 import argparse
 from importlib import import_module
 

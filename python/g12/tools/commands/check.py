@@ -4,8 +4,6 @@
 The config is read the way LinuxCNC reads it and loaded in the stock interpreter.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -5,8 +5,6 @@ What several INIs of a folder share (the copy of the package, lines in the user'
 in included files) stays until the last of them is done.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from g12.tools.commands.arguments import GOOD, Parser, one_line

@@ -5,8 +5,6 @@ Bytes that are no UTF-8, line ends and a missing last line end survive. What is 
 between two marker comments, by which it is found and taken out again.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What surprises on a lathe whose spindle is C: the picture on the screen, the turns of C, G28."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The package's own copy inside a machine config: folder ``g12`` with a list of its files."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 import shutil

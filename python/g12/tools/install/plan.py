@@ -6,8 +6,6 @@ there, so that `uninstall` finds it: an entry of SUBROUTINE_PATH (LinuxCNC 2.9 r
 only) and import lines in the user's own modules.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -5,8 +5,6 @@ Each rule is a function that yields what it finds.  A problem keeps a code from 
 warning says what will surprise.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

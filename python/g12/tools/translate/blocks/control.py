@@ -15,11 +15,10 @@ refused with its line. What a code does is one of
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-
-import tomllib
 
 CONTROLS = Path(__file__).parents[1] / "controls"
 MEANINGS = {
