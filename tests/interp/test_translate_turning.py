@@ -53,6 +53,7 @@ class Part:
 
     def __init__(self, tracer, contour, allowance, along_x, outside):
         drawn = traced_moves(tracer, f"G7 G18 G21 G90 G94 F99\n{contour}\nM2\n")[2:]
+        drawn = drawn[: -1 if drawn[-1].kind == "rapid" else None]  # the way back is no contour
         points = np.concatenate([points_of(move) for move in drawn]) + allowance
         self.along_x, self.outside = along_x, outside
         seen = self.seen(points)
@@ -126,6 +127,12 @@ CONTOURS = [  # control's blocks P to Q, the same as LinuxCNC's, start, cycle, d
         "G0 X40 Z2\nG1 Z-6\nG3 X36 Z-8 R2\nG1 X32\nX30 Z-9\nZ-20\nX18",
         "G0 X18. Z2.", "G71 U1. R.5\nG71 P10 Q20 U-.4 W.1 F.3", 1.0, 0.1 - 0.2j, False, False,
         id="bore",
+    ),
+    pytest.param(  # as Haas programs have it: the last block is the way back
+        "N10 G0 G42 X-1. Z2.\nG1 Z0.\nX28.\nX30. Z-1.\nZ-20.\nX50.\nN20 G0 G40 Z2.",
+        "G0 X-1 Z2\nG1 Z0\nX28\nX30 Z-1\nZ-20\nX50\nG0 Z2",
+        "G0 X50. Z2.", "G71 U2. R.5\nG71 P10 Q20 U.4 W.1 F.3", 2.0, 0.1 + 0.2j, False, True,
+        id="haas",
     ),
     pytest.param(
         "N10 G0 X40. Z1.\nG1 Z-5.\nX30. Z-10.\nZ-14.\nG2 X40. Z-19. R5.\nG1 X44. Z-20.\n"
@@ -235,6 +242,12 @@ def test_a_cycle_is_these_moves(tracer, control, foreign, own):
     assert_same_part(
         tracer.trace_text(result.text, alone=True), tracer.trace_text(wanted, alone=True)
     )
+
+
+def test_m24_takes_the_chamfers_of_threads_away(tracer):
+    text = f"{HEAD['haas-lathe']}G0 X1.4 Z.2\nM24\nG92 X1.2 Z-1. F.1\nM23\nG92 X1.1 Z-1. F.1"
+    ends = [m.end[2] / 25.4 for m in moves_of(tracer, text, "haas-lathe") if m.kind == "feed"]
+    assert ends == near((-1.0, -0.9, -1.0))
 
 
 THREADS = [  # control, blocks, depths of the passes, shift of Z, lead

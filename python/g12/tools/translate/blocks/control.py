@@ -30,7 +30,9 @@ MEANINGS = {
         "pecking along Z", "pecking along X", "turning pass", "facing pass", "thread pass",
         "threading", "thread",
     ),
-    "M": ("subprogram", "local subprogram", "return", "orientation"),
+    "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
+        "no thread chamfer",
+    ),
 }  # fmt: skip
 OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$[0-9]+|S=P))*")
 CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")

@@ -45,7 +45,8 @@ class ModalState(NamedTuple):
     ``at_x`` to ``at_c`` are the program's point, as far as it is known (`places`); ``held`` are
     slides that LinuxCNC has not moved yet, each with where it stands. ``known_offsets`` are the
     numbered work offsets that are known to be set, or asked about. ``turn`` is the turning cycle
-    that X and Z repeat, ``pass_words`` what it was given, ``kept`` what first blocks of cycles say.
+    that X and Z repeat, ``pass_words`` what it was given, ``kept`` what first blocks of cycles say;
+    ``chamfers`` tells whether threads end with one.
     """
 
     motion: str = UNKNOWN
@@ -77,6 +78,7 @@ class ModalState(NamedTuple):
     turn: str = UNKNOWN
     kept: tuple = ()
     pass_words: tuple = ()
+    chamfers: bool | str = True
     at_x: float | str = UNKNOWN
     at_y: float | str = UNKNOWN
     at_z: float | str = UNKNOWN

@@ -48,6 +48,7 @@ METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True
 
 def turning_cycle(draft: Draft) -> None:
     """Write the moves of a turning cycle."""
+    follow_chamfers(draft)
     meaning = next((name for name in draft.meanings if name in CYCLES), "")
     modal = draft.state.turn
     if not meaning and modal:
@@ -63,6 +64,15 @@ def turning_cycle(draft: Draft) -> None:
         draft.change(turn=UNKNOWN)
     CYCLES[meaning](draft)
     draft.meanings.pop(meaning, None)
+
+
+def follow_chamfers(draft: Draft) -> None:
+    """Note whether threads are to end with a chamfer: M23 and M24 of a Haas."""
+    for name, value in (("thread chamfer", True), ("no thread chamfer", False)):
+        code = draft.meanings.pop(name, None)
+        if code:
+            draft.comments.append(code.code)
+            draft.change(chamfers=value)
 
 
 def check_turning_modes(draft: Draft) -> None:
@@ -179,6 +189,8 @@ def pattern_repeating(draft: Draft) -> None:
 def finishing(draft: Draft) -> None:
     """G70: the contour with its own feeds, speeds and compensation."""
     start, (indices, follows) = start_point(draft), contour_named(draft)
+    needless = [word.text for letter in "UWD" if (word := draft.take(letter))]
+    draft.comments += [f"{' '.join(needless)}: nothing for a finishing cut"] if needless else []
     before = draft.sure("compensation", "finishing takes over")
     segments, state = read_contour(draft, indices, start)
     moves = finishing_cut(start, segments)
@@ -242,7 +254,7 @@ def refuse_other_meanings(draft: Draft, meaning: str) -> None:
     if code and (set(draft.codes()) & MOTIONS or not draft.letters() & set("XZUW")):
         raise NotTranslated(
             f"{code.code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it "
-            "is a mode, the control is fanuc-lathe-b or fanuc-lathe-c"
+            "is a mode, the control is fanuc-lathe-b or fanuc-lathe-c; else take it out"
         )
 
 
@@ -267,6 +279,8 @@ def lead_of(draft: Draft) -> float:
 
 def chamfer_of(draft: Draft) -> float:
     """Return over which length the control leaves a thread."""
+    if not draft.sure("chamfers", "a thread may end with a chamfer"):
+        return 0.0
     return float(draft.control.value("turning", "thread_chamfer", 0.0)) * lead_of(draft)
 
 

@@ -57,6 +57,7 @@ class CutView(NamedTuple):
 
 def rough(start: complex, contour: Sequence[Segment], given: RoughCuts) -> list[CycleMove]:
     """Return the moves of a roughing cycle; the first segment leads from the start to the part."""
+    contour = without_retreat(contour)
     view = view_of(start, contour, given)
     allowed = offset_by(contour, given.allowance)
     allowed[0] = allowed[0]._replace(start=start)
@@ -75,6 +76,12 @@ def rough(start: complex, contour: Sequence[Segment], given: RoughCuts) -> list[
     end = view.seen(allowed[-1].end)
     back = [view.real(end.real, top), view.real(at.real, top), start]
     return [*moves, rapid_to(start), *moves_along(allowed), *map(rapid_to, back)]
+
+
+def without_retreat(contour: Sequence[Segment]) -> Sequence[Segment]:
+    """Return a contour without the rapids behind its last cut."""
+    cuts = [number for number, segment in enumerate(contour) if segment.motion != "G0"]
+    return contour[: cuts[-1] + 1] if cuts else contour
 
 
 def view_of(start: complex, contour: Sequence[Segment], given: RoughCuts) -> CutView:
