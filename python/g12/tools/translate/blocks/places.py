@@ -17,7 +17,9 @@ FOLLOWED = frozenset(  # a block of these codes alone ends at its words
     f"G{n}" for n in (*range(5), 7, 8, *range(17, 22), 33, 40, 41, 42, 61, 64, 80, 90, 91)
 ) | frozenset(f"G{n}" for n in range(93, 100))
 SHIFTING = frozenset(["G43", "G49", "G54", "G55", "G56", "G57", "G58", "G59"])
-STAYING = frozenset(("speed limit or origin", "exact stop", "cancel cycle"))
+STAYING = frozenset(  # codes that move nothing and leave the origin, or set it to their words
+    ("speed limit or origin", "exact stop", "cancel cycle", "orientation", "thread chamfer")
+) | {"no thread chamfer"}
 
 
 def known_place(state: ModalState, axis: str) -> float | None:
