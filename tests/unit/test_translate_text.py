@@ -181,7 +181,7 @@ def test_an_m_code_that_the_machine_knows_stays():
 @pytest.mark.parametrize(
     ("control", "block", "start"),
     [
-        (HAAS, "G68 X0", "G68: rotation: set it with"),
+        (HAAS, "G68 X0", "G68 needs R, the angle"),
         (HAAS, "G76 X1. Z-1.", "G76: fine boring"),
         (HAAS, "G200 X1.", "G200 is not known of haas-mill"),
         (HAAS, "G-1 X1.", "G-1 is not known of haas-mill"),

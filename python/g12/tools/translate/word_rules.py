@@ -7,6 +7,7 @@ A rule takes a `Draft`, rewrites its words or lines, carries its state on, or re
 from __future__ import annotations
 
 from g12.tools.translate.blocks import places
+from g12.tools.translate.milling import hole_patterns, rotation
 from g12.tools.translate.rules import (
     codes,
     cycles,
@@ -37,6 +38,7 @@ WORD_RULES = (
     places.follow_places,
     tools.tool_and_offsets,
     spindle.speed_limit,
+    rotation.rotation,
     offsets.numbered_offset,
     offsets.offset_by_program,
     reference.reference_point,
@@ -50,6 +52,7 @@ WORD_RULES = (
     cycles_of_turning.turning_cycle,
     corners.direct_drawing,
     increments.incremental_words,
+    hole_patterns.hole_pattern,
     cycles.drilling_cycle,
     reference.machine_position,
     motion.motion_mode,

@@ -28,6 +28,7 @@ MEANINGS = {
         "drilling cycle", "roughing along Z", "roughing along X", "pattern repeating", "finishing",
         "pecking along Z", "pecking along X", "turning pass", "facing pass", "thread pass",
         "threading", "thread",
+        "circle of holes", "arc of holes", "row of holes", "turned", "turned back",
     ),
     "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
         "no thread chamfer",
