@@ -1,33 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The words of all commands as one parser, which the manual page and the completions come from."""
 
-from __future__ import annotations
-
 import argparse
 from importlib import import_module
-from unittest import mock
 
-from g12.tools.commands import arguments
 from g12.tools.commands.main import COMMANDS
-
-
-class Found(BaseException):
-    """Carries a command's parser out of it."""
-
-
-def parser_of(module: str) -> argparse.ArgumentParser:
-    """Return the parser that a command makes of itself when it is called."""
-
-    def found(parser: argparse.ArgumentParser, *_arguments: object) -> None:
-        raise Found(parser)
-
-    typed = mock.patch.object(arguments, "CALL", "g12")
-    with typed, mock.patch.object(argparse.ArgumentParser, "parse_args", found):
-        try:
-            import_module(module).main([])
-        except Found as carried:
-            return carried.args[0]
-    raise LookupError(f"{module} reads no words")
+from g12.tools.system import CALL
 
 
 def parser() -> argparse.ArgumentParser:
@@ -37,7 +15,7 @@ def parser() -> argparse.ArgumentParser:
     )
     commands = whole.add_subparsers(dest="command", metavar="COMMAND")
     for name, (module, summary) in COMMANDS.items():
-        own = parser_of(module)
+        own = named_as_installed(import_module(module).command_parser())
         commands.add_parser(
             name,
             help=summary,
@@ -48,3 +26,14 @@ def parser() -> argparse.ArgumentParser:
             add_help=False,
         )
     return whole
+
+
+def named_as_installed(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
+    """Return a command's parser, and those below it, with ``g12`` for what is typed here."""
+    parser.prog = parser.prog.replace(CALL, "g12")
+    parser.epilog = (parser.epilog or "").replace(CALL, "g12")
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for below in action.choices.values():
+                named_as_installed(below)
+    return parser

@@ -5,8 +5,6 @@ LinuxCNC's configuration selector copies the folder of the machine that is picke
 folder is whole: it has its own copy of the package, which stays when the Debian package goes.
 """
 
-from __future__ import annotations
-
 import re
 import shutil
 import sys

@@ -12,13 +12,13 @@ import re
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 from g12.errors import Refusal, number
 from g12.ini_sections import leading_number
 from g12.lengths import MM_PER_INCH
 
-Find = Callable[[str, str], Optional[str]]
+Find = Callable[[str, str], str | None]
 FindAll = Callable[[str, str], Sequence[str]]
 
 AXES = "XYZABCUVW"

@@ -259,5 +259,5 @@ def test_the_defaults_are_right_for_the_machines_that_show_a_form(ini, tmp_path)
             program = filled_in(form, tmp_path / "auto.ngc")
             found = running.trace_text(program.read_text().splitlines())
             assert found.error is None, (form, found.error)
-            assert not found.messages
+            assert all("C has turned" in message.text for message in found.messages)
             assert cut_geometry.cutting(found.moves)

@@ -6,10 +6,12 @@ with the answer that it gives a config whose modules all load.
 """
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
 
+from g12.machine_ini import remap_from_value
 from g12.tools.install import checking, features, forms, installation, package_copy, removal
 from g12.tools.install.checking import check_config
 from g12.tools.install.config import Config, Python, load_config, remaps_in
@@ -37,7 +39,12 @@ PACKAGE = {
        ("python/toplevel.py", "python/remap.py", "python/g12/__init__.py", forms.PAGE)},
     **dict.fromkeys(("python/g12/__main__.py", *(f"ngc/{sub}.ngc" for sub in SUBS)), b""),
 }  # fmt: skip
-NO_MACHINE = {"interpreter", "does-not-load", "no-sub"}  # of samples that are none by themselves
+NO_MACHINE = {
+    "interpreter",
+    "does-not-load",
+    "no-sub",
+    "python-fails",
+}  # of samples that are none by themselves
 
 
 def screen_of(path):
@@ -55,6 +62,12 @@ def samples(tmp_path_factory):
     return copy_samples(tmp_path_factory.mktemp("samples"))
 
 
+@pytest.fixture(scope="module")
+def content():
+    """Return a function: what stood in a folder at first, read once."""
+    return cache(tree)
+
+
 def full_set(ini):
     """Return the features of a machine that go together."""
     lathe = "Y" not in ini.axes
@@ -64,8 +77,19 @@ def full_set(ini):
     return wanted if ini.get("FILTER", "nc") else [*wanted, control]
 
 
+def is_outside(ini):
+    """Tell whether a machine's Python, which codes have to be added to, is not in its folder."""
+    toplevel = ini.file("PYTHON", "TOPLEVEL")
+    return bool(toplevel) and not toplevel.resolve().is_relative_to(ini.directory.resolve())
+
+
 def why_not(ini, name):
     """Return the kind of finding by which a machine must refuse a single feature, None if none."""
+    if name in features.FILES and is_outside(ini):
+        return "outside"
+    own = {remap_from_value(value).number for value in ini.all("RS274NGC", "REMAP")}
+    if name in features.FILES and own & {remap.number for remap in features.remaps_of(name)}:
+        return "taken"
     if name in features.FILES and not set(features.AXES.get(name, "XYZ")) <= set(ini.axes):
         return "no-axis"
     if name in features.PROGRAMS and ini.get("FILTER", "nc"):
@@ -151,9 +175,9 @@ def in_and_out_in_memory(path, name):
 
 @pytest.mark.usefixtures("no_interpreter")
 @pytest.mark.parametrize("name", INIS, ids=str)
-def test_every_feature_goes_in_and_out(samples, package, name):
+def test_every_feature_goes_in_and_out(samples, content, package, name):
     path = samples / name
-    ini, before = read_ini(path), tree(path.parent)
+    ini, before = read_ini(path), content(path.parent)
     unfit = refusal(path, ["circle-mill" if "Y" in ini.axes else "polar"], True) & NO_MACHINE
     wanted = full_set(ini)
     if wanted and not unfit:

@@ -21,13 +21,12 @@ import shutil
 import signal
 import sys
 import tempfile
+import tomllib
 import traceback
 from collections import Counter, defaultdict
 from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
-
-import tomllib
 
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.path.farthest_apart import gap_between

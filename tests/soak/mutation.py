@@ -22,10 +22,9 @@ import signal
 import sys
 import tempfile
 import time
+import tomllib
 from pathlib import Path
 from typing import NamedTuple
-
-import tomllib
 
 from soak.mutants import Mutant, mutants_of, mutated
 

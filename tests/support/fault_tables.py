@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The programs of tests/faults and of tests/programs, each with the machine that it is for."""
 
+import tomllib
 from pathlib import Path
 from typing import NamedTuple
-
-import tomllib
 
 from g12.tools.machine.ini import read_ini
 from support.sim_machines import PROGRAMS, ROOT

@@ -6,7 +6,8 @@ A ``Case`` writes its block for a scale (25.4 for a program in mm) and for G90 o
 
 import itertools
 import re
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import pytest

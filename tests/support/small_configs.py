@@ -22,7 +22,7 @@ LINEAR_UNITS = mm
 [EMCIO]
 TOOL_TABLE = mill.tbl
 """
-LATHE = MILL.replace("X Y Z", "X Z C")
+LATHE = MILL.replace("X Y Z", "X Z C") + "\n[AXIS_C]\nWRAPPED_ROTARY = 1\n"
 HAAS = """\
 REMAP = G12 modalgroup=1 prolog=g12_haas ngc=g12_haas epilog=cycle_done
 REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done

@@ -7,7 +7,7 @@ import pytest
 
 from g12.machine_ini import remap_from_value
 from g12.tools.commands import check
-from g12.tools.install import features
+from g12.tools.install import features, package_copy
 from g12.tools.install.checking import check_report, lines_of_check
 from g12.tools.install.findings import NOTE, PROBLEM, WARNING, Finding
 from g12.tools.install.rules import findings_of, last_words
@@ -27,7 +27,8 @@ def found(tmp_path):
     def find(text, remap=HANDLERS, remap_file="remap.py", files=(), **facts):
         names = {name for feature in features.FILES for name in features.names_of(feature)}
         subs = {f"ngc__{name}_ngc": "" for name in names}
-        ini = write_config(tmp_path, text, toplevel_py="", **subs, **dict(files))
+        in_order = {"toplevel_py": "", "mill_var": "5161\t50.0\n", **dict(files)}
+        ini = write_config(tmp_path, text, **in_order, **subs)
         package = tmp_path / "python" / "g12"
         config = config_of(ini, remap=remap, remap_file=remap_file, package=package, **facts)
         return findings_of(config)
@@ -52,6 +53,37 @@ def test_every_finding_has_a_cure_and_a_level(found):
     findings = found(text, remap={}, remap_file=None)
     assert len(findings) == 3
     assert all(finding.cure and finding.level in (PROBLEM, WARNING) for finding in findings)
+
+
+def test_what_was_changed_in_the_copy_is_named(found, tmp_path):
+    assert found(GOOD) == []
+    copy = tmp_path / "g12"
+    listed = {f"ngc/{name}.ngc": b"one\ntwo\n" for name in ("g12_haas", "form_slot_mm", "lost")}
+    package_copy.write_files(copy, listed)
+    lines = [f"{package_copy.digest(text)}  {name}\n" for name, text in listed.items()]
+    (copy / package_copy.MANIFEST).write_text("".join(lines))
+    assert found(GOOD) == []
+    for name in ("g12_haas", "form_slot_mm"):
+        (copy / "ngc" / f"{name}.ngc").write_text("one\n")
+    (copy / "ngc" / "lost.ngc").unlink()
+    changed = "was changed after it was installed"
+    assert {(finding.level, finding.text) for finding in found(GOOD)} == {
+        (PROBLEM, f"{copy}: missing: ngc/lost.ngc"),
+        (WARNING, f"{copy}/ngc/g12_haas.ngc: {changed}"),
+        (NOTE, f"{copy}/ngc/form_slot_mm.ngc: {changed}"),  # its M codes are the owner's to write
+    }
+    (copy / package_copy.MANIFEST).write_text("no list\n")
+    (damaged,) = found(GOOD)
+    assert "MANIFEST:1: not a line that install wrote" in damaged.text
+
+
+@pytest.mark.parametrize("header", ["[RS274NGC", "RS274NGC]", "[rs274ngc]"])
+def test_a_broken_header_of_the_interpreters_section_is_named(tmp_path, capsys, header):
+    ini = write_config(tmp_path, GOOD.replace("[RS274NGC]", header))
+    assert check.main([str(ini)]) == 2
+    assert f"mill.ini:4: {header}: begins no section; write it as [RS274NGC]" in (
+        capsys.readouterr().err
+    )
 
 
 def test_a_config_without_the_package(found):

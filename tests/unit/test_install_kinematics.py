@@ -123,6 +123,19 @@ def test_check_finds_nothing_and_uninstall_gives_every_byte_back(
     assert content_of(tmp_path) == before
 
 
+def test_the_picture_on_the_screen_gets_the_faces_axes_and_every_byte_comes_back(tmp_path):
+    ini = config_in(tmp_path, f"[DISPLAY]\nDISPLAY = axis\n\n{LATHE}")
+    before = content_of(tmp_path)
+    put_in(ini, "polar")
+    assert config_of(ini).ini.get("DISPLAY", "GEOMETRY") == "CXZ!"
+    own = {"package": tmp_path / "g12" / "python" / "g12", "remap_file": "remap.py"}
+    config = config_of(ini, remap={"polar_on": "g12.host"}, **own)
+    installation.write_changes(make_plan(config, [features.KINEMATICS]), tmp_path)
+    assert config_of(ini).ini.get("DISPLAY", "GEOMETRY") == "CXYZ!"
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert content_of(tmp_path) == before
+
+
 def test_what_is_written(tmp_path):
     ini = config_in(tmp_path)
     put_in(ini, "polar", features.KINEMATICS)

@@ -7,8 +7,8 @@ from g12.tools.translate.blocks.control import ControlError, read_control, shipp
 from g12.tools.translate.listing import listing_of
 
 NAMES = [
-    "fanuc-lathe", "fanuc-mill", "haas-lathe", "haas-mill", "mazak-lathe", "mitsubishi-mill",
-    "okuma-lathe", "yasnac-mill",
+    "fanuc-lathe", "fanuc-lathe-b", "fanuc-lathe-c", "fanuc-mill", "haas-lathe", "haas-mill",
+    "mazak-lathe", "mitsubishi-mill", "okuma-lathe", "yasnac-mill",
 ]  # fmt: skip
 
 

@@ -181,7 +181,7 @@ def test_an_m_code_that_the_machine_knows_stays():
 @pytest.mark.parametrize(
     ("control", "block", "start"),
     [
-        (HAAS, "G68 X0", "G68: rotation: set it with"),
+        (HAAS, "G68 X0", "G68 needs R, the angle"),
         (HAAS, "G76 X1. Z-1.", "G76: fine boring"),
         (HAAS, "G200 X1.", "G200 is not known of haas-mill"),
         (HAAS, "G-1 X1.", "G-1 is not known of haas-mill"),
@@ -193,7 +193,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G0 U1.", "U1. is not understood in this block"),
         (HAAS, "G0 X", "X has no value"),
         (HAAS, "G1 X1. R.1 F5.", "R beside G1: write the arc of the corner"),
-        (HAAS, "G1 X1. ,C.1 F5.", ",C.1F5.: a corner that is broken or rounded by a word"),
+        (HAAS, "G1 X1. ,C.1 F5.", ",C.1: a corner that is broken or rounded by a word"),
         (HAAS, "G84 Z-1. R.1 J2 F5.", "G84 with J is not translated"),
         (LATHE, "G10.9 X1.", "G10.9: X as diameter or radius"),
         (HAAS, "G0 X1. ?", "? does not start with a word"),

@@ -7,8 +7,8 @@ import contextlib
 import sys
 import threading
 import time
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Callable, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TypeVar
 
 TICK = 1.0  # s, on a terminal
 LINE_TICK = 5.0  # s, elsewhere: every line stays

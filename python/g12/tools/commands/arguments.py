@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the commands share: words of the command line, and errors told in one line."""
 
-from __future__ import annotations
-
 import argparse
 import functools
 import math
 import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Callable
 
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.headless.machine import MachineError, StartupError

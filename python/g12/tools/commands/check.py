@@ -4,8 +4,6 @@
 The config is read the way LinuxCNC reads it and loaded in the stock interpreter.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -26,9 +24,8 @@ examples:
 exit code: 0 good, 1 something found, 2 wrong use"""
 
 
-@one_line("check")
-def main(arguments: list[str]) -> int:
-    """Run the command."""
+def command_parser() -> Parser:
+    """Return what reads the command line."""
     parser = Parser(
         prog="g12 check",
         description="Check whether and how the package is set up in a machine config.",
@@ -36,7 +33,13 @@ def main(arguments: list[str]) -> int:
     )
     parser.add_argument("ini", type=Path, help="INI file of the machine")
     parser.add_argument("--json", action="store_true", help="the report as JSON")
-    options = parser.parse_args(arguments)
+    return parser
+
+
+@one_line("check")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    options = command_parser().parse_args(arguments)
     config, found = check_config(read_config_text(options.ini))
     report = check_report(config, found)
     print(json.dumps(report, indent=2) if options.json else "\n".join(lines_of_check(report)))

@@ -27,13 +27,18 @@ exit code: 0 the program is printed, 1 a line is wrong, 2 wrong use
 """
 
 
-@one_line("dynapath")
-def main(arguments: list[str]) -> int:
-    """Run the command."""
+def command_parser() -> Parser:
+    """Return what reads the command line."""
     parser = Parser(prog="g12 dynapath", description=__doc__, epilog=EXAMPLES)
     parser.add_argument("file", type=Path, help="event text")
     parser.add_argument("--units", choices=("inch", "mm"), help="of the events: adds G20 or G21")
-    options = parser.parse_args(arguments)
+    return parser
+
+
+@one_line("dynapath")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    options = command_parser().parse_args(arguments)
     text = existing(options.file).read_text(encoding="latin-1")
     try:
         program = program_from_events(text, options.units)

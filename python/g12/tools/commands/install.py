@@ -6,8 +6,6 @@ new config is loaded in the stock interpreter before anything of the user's is c
 `check` calls a problem is refused.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from pathlib import Path

@@ -4,8 +4,6 @@
 A command is a module with ``main(arguments) -> exit code``.
 """
 
-from __future__ import annotations
-
 import os
 import select
 import sys

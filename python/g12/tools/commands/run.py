@@ -16,6 +16,7 @@ from g12.machine_ini import AXES
 from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
+    Parser,
     add_override,
     checked_ini,
     number_above,
@@ -89,15 +90,20 @@ def line_of_preview(error: Error, preview: Trace | None) -> int:
     return met.line if met and met.text == error.text and not NAMED.search(met.text) else 0
 
 
-@one_line("run")
-def main(arguments: list[str]) -> int:
-    """Run the command."""
+def command_parser() -> Parser:
+    """Return what reads the command line."""
     parser = program_parser("run", __doc__, EXAMPLES)
     add_override(parser, "of the run")
     usual = f"{USUAL_TIMEOUT:g}, or twice what the program needs"
     timeout = {"type": number_above(0), "metavar": "SECONDS"}
     parser.add_argument("--timeout", **timeout, help=f"give up after this (default {usual})")
-    options = parser.parse_args(arguments)
+    return parser
+
+
+@one_line("run")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    options = command_parser().parse_args(arguments)
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
         files = (options.ini, options.tools, options.var)

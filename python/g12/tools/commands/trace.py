@@ -11,6 +11,7 @@ from __future__ import annotations
 from g12.machine_ini import AXES
 from g12.tools.commands.arguments import (
     GOOD,
+    Parser,
     checked_ini,
     count_from,
     one_line,
@@ -48,13 +49,18 @@ def _moves(move: Move, axis: str) -> bool:
     return move.start[index] != move.end[index]
 
 
-@one_line("trace")
-def main(arguments: list[str]) -> int:
-    """Run the command."""
+def command_parser() -> Parser:
+    """Return what reads the command line."""
     parser = program_parser("trace", __doc__, EXAMPLES)
     digits = {"type": count_from(0), "default": 6, "metavar": "N"}
     parser.add_argument("--digits", **digits, help="decimals (default 6)")
-    options = parser.parse_args(arguments)
+    return parser
+
+
+@one_line("trace")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    options = command_parser().parse_args(arguments)
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
         found = trace(opened.path, options.ini, tools=options.tools, parameters=options.var)

@@ -68,8 +68,8 @@ def main(arguments: list[str]) -> int:
     return GOOD
 
 
-def parsed(arguments: list[str]) -> argparse.Namespace:
-    """Return the words of the command."""
+def command_parser() -> Parser:
+    """Return what reads the command line."""
     parser = Parser(prog="g12 translate", description=__doc__, epilog=EXAMPLES)
     parser.add_argument("program", type=Path, nargs="?", help="program of the other control")
     parser.add_argument("--control", help="name, or a .toml file of your own")
@@ -80,6 +80,12 @@ def parsed(arguments: list[str]) -> argparse.Namespace:
         "--decimals", choices=("least", "whole"), help="what numbers without a decimal point are"
     )
     parser.add_argument("--polar-x", choices=("diameter", "radius"), help="X in polar mode")
+    return parser
+
+
+def parsed(arguments: list[str]) -> argparse.Namespace:
+    """Return the words of the command."""
+    parser = command_parser()
     asked = parser.parse_args(arguments)
     if not asked.list and not (asked.control and asked.program):
         parser.error("--control and a program are needed, or --list")

@@ -5,8 +5,6 @@ What several INIs of a folder share (the copy of the package, lines in the user'
 in included files) stays until the last of them is done.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from g12.tools.commands.arguments import GOOD, Parser, one_line
@@ -21,9 +19,8 @@ example:
 exit code: 0 done or nothing to do, 2 wrong use"""
 
 
-@one_line("uninstall")
-def main(arguments: list[str]) -> int:
-    """Run the command."""
+def command_parser() -> Parser:
+    """Return what reads the command line."""
     parser = Parser(
         prog="g12 uninstall",
         description="Take out of a machine config what install put in, and nothing else.",
@@ -31,6 +28,12 @@ def main(arguments: list[str]) -> int:
     )
     parser.add_argument("ini", type=Path, help="INI file of the machine")
     parser.add_argument("--dry-run", action="store_true", help="show the changes only")
-    options = parser.parse_args(arguments)
+    return parser
+
+
+@one_line("uninstall")
+def main(arguments: list[str]) -> int:
+    """Run the command."""
+    options = command_parser().parse_args(arguments)
     print_all(uninstall(read_config_text(options.ini), options.dry_run))
     return GOOD

@@ -7,7 +7,7 @@ Used inside a LinuxCNC session, by the headless screen and by the recording scre
 from __future__ import annotations
 
 import time
-from typing import Callable
+from collections.abc import Callable
 
 import linuxcnc
 

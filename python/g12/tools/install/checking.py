@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A machine config looked at: loaded as LinuxCNC does, what was found, and the report of it."""
 
-from __future__ import annotations
-
+import re
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
@@ -19,6 +18,8 @@ from g12.tools.install.rules import codes_of, findings_of, translating_filters
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Overrides
 
+MEANT_AS_INTERPRETER = re.compile(r"\s*\[?\s*RS274NGC\s*\]?\s*$", re.IGNORECASE)
+
 
 def read_config_text(ini: Path) -> IniText:
     """Return the INI, or refuse what is no INI file."""
@@ -27,6 +28,10 @@ def read_config_text(ini: Path) -> IniText:
         raise UsageError(f"{ini}: LinuxCNC makes this file anew at every start; name {ini.stem}")
     text = IniText(ini)
     if not text.section("RS274NGC"):
+        for line in text.lines():
+            if MEANT_AS_INTERPRETER.match(line.text):
+                wrong = f"{line.place}: {line.text.strip()}: begins no section"
+                raise UsageError(f"{wrong}; write it as [RS274NGC]")
         raise UsageError(f"{ini}: no [RS274NGC] section: this is no machine's INI file")
     return text
 

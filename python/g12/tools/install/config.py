@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A machine config as LinuxCNC finds it: read, then loaded in the stock interpreter."""
 
-from __future__ import annotations
-
 import json
 import os
 import tempfile

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What of the package a machine can have, and the REMAP lines that make it."""
 
-from __future__ import annotations
-
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path

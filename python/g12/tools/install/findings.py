@@ -4,8 +4,6 @@
 A problem keeps a code from working, a warning says what will surprise, a note is as it may be.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 PROBLEM, WARNING, NOTE = "problem", "warning", "note"

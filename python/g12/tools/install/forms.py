@@ -6,8 +6,6 @@ one as a Tcl package, some screens of QtVCP hold one, and GladeVCP makes one of 
 of gmoccapy or Touchy or, with any other screen, in a window of its own.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path

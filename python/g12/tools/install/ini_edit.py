@@ -5,8 +5,6 @@ Bytes that are no UTF-8, line ends and a missing last line end survive. What is 
 between two marker comments, by which it is found and taken out again.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -231,10 +229,16 @@ class IniText:
                 blocks[-1].append(line)
             if line.text.startswith(END):
                 if not open_:
-                    raise IniError(f'{line.place}: the line "{BEGIN}" that begins this is missing')
+                    raise IniError(
+                        f'{line.place}: the line "{BEGIN}" that begins this is missing: put it in '
+                        "front of the first line that install wrote"
+                    )
                 open_ = False
         if open_:
-            raise IniError(f'{blocks[-1][0].place}: the line "{END}" that ends this is missing')
+            raise IniError(
+                f'{blocks[-1][0].place}: the line "{END}" that ends this is missing: put it after '
+                "the last line that install wrote there"
+            )
         return blocks
 
     def remove(self, doomed: Sequence[IniLine]) -> None:

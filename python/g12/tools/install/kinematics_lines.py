@@ -5,8 +5,6 @@ That is a lathe on trivkins whose HAL files load `[KINS]KINEMATICS` and whose X,
 of their own. Anything else keeps its files: `configs/kinematics/README.md` has the steps.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from math import isclose

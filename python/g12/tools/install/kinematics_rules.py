@@ -5,8 +5,6 @@ The rules look where `[G12] POLAR_KINEMATICS = 1` or `[KINS] KINEMATICS` asks fo
 the page says has to be done is a rule here.
 """
 
-from __future__ import annotations
-
 import re
 import shutil
 from collections.abc import Iterator

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The package's own copy inside a machine config: folder ``g12`` with a list of its files."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 import shutil
@@ -75,26 +73,28 @@ def listed(folder: Path) -> dict[str, str]:
     content = manifest.read_bytes() if manifest.is_file() else b""
     lines = content.decode("utf-8", "replace").splitlines()
     entries = [ENTRY.fullmatch(line) for line in lines]
+    inside = folders_inside(folder, {Path(entry[2]).parent for entry in entries if entry})
     for number, (line, entry) in enumerate(zip(lines, entries), start=1):
-        if not entry or not is_inside(folder, entry[2]):
+        if not entry or Path(entry[2]).parent not in inside:
             raise UsageError(f"{manifest}:{number}: not a line that install wrote: {line[:80]!r}; "
                              "take that line out")  # fmt: skip
     return {entry[2]: entry[1] for entry in entries}
 
 
-def is_inside(folder: Path, name: str) -> bool:
-    """Tell whether a name is that of a file below a folder, links followed."""
-    place = (folder / name).parent.resolve()
-    return ".." not in Path(name).parts and place.is_relative_to(folder.resolve())
+def folders_inside(folder: Path, names: Iterable[Path]) -> set[Path]:
+    """Return those names of folders that are below a folder, links followed."""
+    here = folder.resolve()
+    return {
+        name
+        for name in names
+        if ".." not in name.parts and (folder / name).resolve().is_relative_to(here)
+    }
 
 
 def edited(folder: Path) -> list[str]:
     """Return the files of a copy that somebody changed since they were installed."""
-    return [
-        name
-        for name, value in listed(folder).items()
-        if digest_of(folder / name) not in ("", value)
-    ]
+    found = ((name, value, digest_of(folder / name)) for name, value in listed(folder).items())
+    return [name for name, value, there in found if there not in ("", value)]
 
 
 def missing(folder: Path) -> list[str]:

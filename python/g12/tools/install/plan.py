@@ -6,8 +6,6 @@ there, so that `uninstall` finds it: an entry of SUBROUTINE_PATH (LinuxCNC 2.9 r
 only) and import lines in the user's own modules.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -27,6 +25,7 @@ from g12.tools.install.ini_edit import (
     to_bytes,
 )
 from g12.tools.install.kinematics_rules import uses_them
+from g12.tools.install.lathe_rules import ON_A_LATHE, geometry_for
 from g12.tools.install.rules import codes_of, installed_programs, odd_folder
 
 BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"
@@ -111,7 +110,8 @@ def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
     )
     put_section(plan.text, "PYTHON", place, python)
     put_section(plan.text, "FILTER", place, filters)
-    for lines_of in (form_lines(plan, config, wanted), added):
+    geometry = {"DISPLAY": geometry_lines(plan, config, wanted)}
+    for lines_of in (form_lines(plan, config, wanted), geometry, added):
         for section, lines in lines_of.items():
             put_section(plan.text, section, place, lines)
     for path in plan.changes():
@@ -260,6 +260,21 @@ def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict
             "forms", "no code here has a form", "install a code with them: --with haas forms"
         )
     return forms.lines_for(config, list(codes), plan.prefix)
+
+
+def geometry_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
+    """Return the GEOMETRY by which a lathe's screen turns the part; one of the user's stays."""
+    on_face = features.KINEMATICS in wanted or uses_them(config)
+    lathe = set(ON_A_LATHE).intersection(wanted) or on_face
+    axes = config.ini.axes
+    if not lathe or "C" not in axes or ("Y" in axes and not on_face):
+        return []
+    line_text = f"GEOMETRY = {geometry_for('XYZ' if on_face else axes)}"
+    for line, _ in plan.text.entries("DISPLAY", "GEOMETRY")[:1]:
+        if any(line in block for block in plan.text.blocks()):
+            plan.text.replace(line, line_text)
+        return []
+    return [line_text] if config.ini.get("DISPLAY", "DISPLAY") else []
 
 
 def face_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict[str, list[str]]:

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The package taken out of a machine config: what `install` put in, and nothing else."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -26,6 +24,7 @@ from g12.tools.install.ini_edit import (
     to_bytes,
     without,
 )
+from g12.tools.install.lathe_rules import GEOMETRY_LINE
 from g12.tools.install.plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE, names_copy
 from g12.tools.install.rules import codes_of
 from g12.tools.machine.files import difference, drop_backup, require_writable, write_all
@@ -136,7 +135,7 @@ def is_by_install(line: IniLine) -> bool:
     key, value = key_and_value(line.text)
     if OWN_FILTER.fullmatch(line.text) or forms.OWN_LINE.fullmatch(line.text):
         return True
-    if kinematics_lines.OWN_LINE.fullmatch(line.text):
+    if any(rule.fullmatch(line.text) for rule in (kinematics_lines.OWN_LINE, GEOMETRY_LINE)):
         return True
     if key == "REMAP":
         return model_of(remap_from_value(value)) is not None

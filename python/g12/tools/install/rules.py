@@ -5,8 +5,6 @@ Each rule is a function that yields what it finds.  A problem keeps a code from 
 warning says what will surprise.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -16,12 +14,14 @@ from g12.errors import Refusal
 from g12.ini_sections import INCLUDE, entries_of, key_and_value
 from g12.machine_ini import Remap, remap_from_value
 from g12.settings import SECTION, settings_from_lines
-from g12.tools.install import features
+from g12.tools.errors import UsageError
+from g12.tools.install import features, package_copy
 from g12.tools.install.config import MOST_FOLDERS, Config, folder_from_ini, subs_named
 from g12.tools.install.findings import Finding, note, problem, warning
 from g12.tools.install.forms import form_findings
 from g12.tools.install.ini_edit import IniLine
 from g12.tools.install.kinematics_rules import kinematics_findings
+from g12.tools.install.lathe_rules import lathe_findings
 from g12.tools.system import CALL
 from g12.tools.translate.blocks.control import ControlError, read_control
 
@@ -34,6 +34,8 @@ OWN_HEADER = f"[{SECTION}]"
 LINE_FOR_REMAP = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 MEND = "if it was there once, run install again: it mends the folder g12"
+FORM = re.compile(r"ngc/form_\w+\.ngc")  # whose M codes a lathe's owner writes into it
+SOME = 8  # files are named in a line
 AFTERMATH = "Bad character 'g'"  # begins what is said of an interpreter that never came up
 STOPPING = {  # kinds that keep LinuxCNC itself from loading the config
     "taken",
@@ -481,6 +483,38 @@ def wrong_filters(config: Config, _codes: list[Code]) -> Iterator[Finding]:
             yield problem("filter", f"[FILTER] {suffix}: {wrong}", "correct the control's file")
 
 
+# The copy.
+
+
+def changed_copy(config: Config, codes: list[Code]) -> Iterator[Finding]:
+    """Find files of the package's copy that are not as they were installed."""
+    copy = config.folder / package_copy.NAME
+    if not (codes or installed_programs(config)) or not package_copy.is_copy(copy):
+        return
+    try:
+        missing, edited = package_copy.missing(copy), package_copy.edited(copy)
+    except UsageError as damaged:
+        yield problem("copy", str(damaged), "or take the folder away and run install again")
+        return
+    if missing:
+        yield problem("copy", f"{copy}: missing: {shortened(missing)}", MEND)
+    changed = [name for name in edited if name not in missing]
+    for name in changed:
+        report = note if FORM.fullmatch(name) else warning
+        yield report(
+            "copy",
+            f"{copy / name}: was changed after it was installed",
+            "leave it, if you changed it on purpose: install keeps it; if not, delete this file "
+            "and run install again",
+        )
+
+
+def shortened(names: list[str]) -> str:
+    """Return some names in one line, and how many more there are."""
+    more = f" and {len(names) - SOME} more" if len(names) > SOME else ""
+    return ", ".join(names[:SOME]) + more
+
+
 RULES: tuple[Rule, ...] = (
     wrong_version,
     other_interpreter,
@@ -508,6 +542,7 @@ RULES: tuple[Rule, ...] = (
     no_tool_table,
     tools_without_diameter,
     wrong_filters,
+    changed_copy,
 )
 
 
@@ -517,6 +552,7 @@ def findings_of(config: Config) -> list[Finding]:
     found = [finding for rule in RULES for finding in rule(config, codes)]
     found += form_findings(config, {code.feature for code in codes})
     found += kinematics_findings(config)
+    found += lathe_findings(config, {code.feature for code in codes})
     failure = config.failure or function_missing(config)
     if failure and not any(finding.kind in STOPPING for finding in found):
         found.append(

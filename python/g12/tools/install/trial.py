@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """An installation tried out: the config as it would be, loaded from a scratch folder."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import tempfile

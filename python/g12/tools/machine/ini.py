@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, TypeVar, Union
+from typing import TypeVar
 
 from g12.errors import Refusal
 from g12.ini_sections import (
@@ -33,7 +33,7 @@ SECTIONS = re.compile(r"\s*\[(EMC|KINS|RS274NGC|TRAJ)\]", re.MULTILINE)  # of a 
 LONGEST_PART = 250
 ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
 
-Value = Union[str, int, float, None, Sequence]
+Value = str | int | float | None | Sequence
 Overrides = Mapping[str, Mapping[str, Value]]
 T = TypeVar("T")
 

@@ -11,10 +11,10 @@ Nothing is shared with the planners: this is how ``verify`` knows what was progr
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Callable, NamedTuple
+from typing import NamedTuple
 
 from g12.tools.errors import ProgramError
 from g12.tools.preview.moves import Event, Trace

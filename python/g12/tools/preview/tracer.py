@@ -21,7 +21,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Union
 
 from g12.lengths import is_inch
 from g12.machine_ini import AXES
@@ -36,9 +35,9 @@ LAUNCH = (
 )
 LEAVE_NO_TRACE = {"PYTHONDONTWRITEBYTECODE": "1"}  # nothing is written beside the INI
 
-Program = Union[str, os.PathLike]
-Tools = Union[str, os.PathLike, Mapping[int, float], None]
-Parameters = Union[str, os.PathLike, Mapping[int, float], None]
+Program = str | os.PathLike
+Tools = str | os.PathLike | Mapping[int, float] | None
+Parameters = str | os.PathLike | Mapping[int, float] | None
 
 
 class TraceFailure(RuntimeError):

@@ -31,7 +31,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import NamedTuple, Union
+from typing import NamedTuple
 
 from g12.machine_ini import AXES
 from g12.tools.preview.moves import LINEAR, Error, Modes, Move, Position, Trace
@@ -63,7 +63,7 @@ class Note(NamedTuple):
     text: str
 
 
-Step = Union[Move, Note]
+Step = Move | Note
 
 
 @dataclass(frozen=True)

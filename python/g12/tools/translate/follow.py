@@ -12,11 +12,12 @@ from collections.abc import Callable, Collection, Iterator
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall
 from g12.tools.translate.blocks.errors import NotSaid, NotSure, NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
-from g12.tools.translate.rules import WORD_RULES
 from g12.tools.translate.rules.plain import is_plain
 from g12.tools.translate.statements import STATEMENTS
 from g12.tools.translate.structure import MAIN, Structure, programs_of_blocks, ways_from
+from g12.tools.translate.word_rules import WORD_RULES
 
 Progress = Callable[[int], None]
 
@@ -45,6 +46,9 @@ class FollowedProgram:
         self.calls: dict[int, list[Draft]] = {}
         self._states: list[ModalState | None] = [None] * count
         self._inside = programs_of_blocks(structure)
+        self._blocks_of: dict[int, list[tuple[int, ForeignBlock]]] = {}
+        for at, number in enumerate(self._inside):
+            self._blocks_of.setdefault(number, []).append((at, structure.blocks[at]))
         self._behind: dict[int, set[int]] = {}
         self._exits: dict[int, ModalState] = {}
         self._pending: list[tuple[int, ModalState]] = []
@@ -104,6 +108,7 @@ class FollowedProgram:
         )
         draft.jumps = index in self.structure.jumps.targets
         draft.asked = self.structure.asked
+        draft.program = self._blocks_of[self._inside[index]]
         try:
             problem = block.problem or self.structure.problems.get(index)
             if problem:
@@ -167,6 +172,8 @@ class FollowedProgram:
             self._return(self._inside[index], draft.state)
         elif draft.ends:
             self.has_end = True
+        elif draft.follows is not None:
+            self._arrive(draft.follows - 1, draft.follows, draft.state)
         else:
             self._go_on(index, draft.state)
 

@@ -15,20 +15,24 @@ refused with its line. What a code does is one of
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-
-import tomllib
 
 CONTROLS = Path(__file__).parents[1] / "controls"
 MEANINGS = {
     "G": (
         "dwell", "polar on", "polar off", "cylinder", "speed limit or origin", "local offset",
         "numbered offset", "offset by program", "exact stop", "macro call", "cancel cycle",
-        "drilling cycle",
+        "drilling cycle", "roughing along Z", "roughing along X", "pattern repeating", "finishing",
+        "pecking along Z", "pecking along X", "turning pass", "facing pass", "thread pass",
+        "threading", "thread",
+        "circle of holes", "arc of holes", "row of holes", "turned", "turned back",
     ),
-    "M": ("subprogram", "local subprogram", "return", "orientation"),
+    "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
+        "no thread chamfer",
+    ),
 }  # fmt: skip
 OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$[0-9]+|S=P))*")
 CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")
@@ -65,6 +69,11 @@ TABLES: dict[str, dict[str, object]] = {
     "cylinder": {"word": ("radius", "diameter", "mapped")},
     "subprograms": {"repeat_digits": bool, "cycle_repeat": str},
     "offsets": {"first_parameter": int},
+    "turning": {
+        "thread_chamfer": float,
+        **{f"{name}_{unit}": float for unit in ("mm", "inch")
+           for name in ("depth", "retract", "thread_least", "thread_allowance")},
+    },
     "words": None,
     "g_codes": None,
     "m_codes": None,

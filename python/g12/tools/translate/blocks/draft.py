@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Sequence
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.control import Control
@@ -42,9 +42,11 @@ class Draft:
     ``start`` are the modes before the block, as it was read;
     ``programs`` are the numbers of the programs in the file, ``called_as`` that of the copy that a
     call is for, 0 if it is for none; ``asked`` has what each program compares with #0; ``index``
-    tells the block from all others; ``lines`` are those that it becomes; ``refusal`` is why it is
-    not translated, None if it is; if that is why, ``unsure`` are the modes that are not the same on
-    every way, ``setting`` the table and the line that the control's file lacks.
+    tells the block from all others; ``program`` are the blocks of its program with their indices,
+    ``follows`` is the index of the next one where a cycle has others go by; ``lines`` are those
+    that it becomes; ``refusal`` is why it is not translated, None if it is; if that is why,
+    ``unsure`` are the modes that are not the same on every way, ``setting`` the table and the line
+    that the control's file lacks.
     """
 
     def __init__(
@@ -77,6 +79,8 @@ class Draft:
         self.programs = programs
         self.asked: Mapping[int, frozenset[int]] = {}
         self.lines: list[str] = []
+        self.program: Sequence[tuple[int, ForeignBlock]] = ()
+        self.follows: int | None = None
         self.refusal: str | None = None
         self.unsure: tuple[str, ...] = ()
         self.setting: tuple[str, str] | None = None

@@ -28,6 +28,7 @@ PLAIN_WORD = re.compile(r"([A-Z])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
 MAYBE_WORDS = re.compile(
     r"\s*[/#%:]|\s*(?:[A-Z]\s*[-+.0-9#[=]|IF|WHILE|GOTO|DO|END|RTS|CALL)", re.I
 )
+CORNERS = (",A", ",C", ",R")  # words of direct drawing
 LABEL = re.compile(r"([A-Z_][A-Z0-9_]*):")
 CODE_NUMBER = re.compile(r"([0-9]+)\.?([0-9]*)")
 NAMED_WORD = re.compile(r"([A-Z]{2})=")
@@ -353,12 +354,9 @@ def _word(text: str, at: int) -> tuple[ForeignWord, int]:
         return _plain_word(plain.groups()), plain.end()
     named = NAMED_WORD.match(text, at)
     letter, start = (named[1], named.end()) if named else (text[at], at + 1)
-    if letter == ",":
-        raise NotTranslated(
-            f"{excerpt(text[at:])}: a corner that is broken or rounded by a word: write its line "
-            "or arc as a block"
-        )
-    if not ("A" <= letter[0] <= "Z"):
+    if text[at : at + 2] in CORNERS:
+        letter, start = text[at : at + 2], at + 2
+    elif not ("A" <= letter[0] <= "Z"):
         raise NotTranslated(f"{excerpt(text[at:])} does not start with a word")
     if start >= len(text) or "A" <= text[start] <= "Z":
         return ForeignWord(letter, "", "bare"), start

@@ -44,7 +44,10 @@ class ModalState(NamedTuple):
     written with the section's next move.
     ``at_x`` to ``at_c`` are the program's point, as far as it is known (`places`); ``held`` are
     slides that LinuxCNC has not moved yet, each with where it stands. ``known_offsets`` are the
-    numbered work offsets that are known to be set, or asked about.
+    numbered work offsets that are known to be set, or asked about. ``turn`` is the turning cycle
+    that X and Z repeat, ``pass_words`` what it was given, ``kept`` what first blocks of cycles say;
+    ``chamfers`` tells whether threads end with one. ``turned`` is the work offset that G68 has
+    turned, ``sizes`` are the diameters that G10 L12 has set, by tool.
     """
 
     motion: str = UNKNOWN
@@ -73,6 +76,12 @@ class ModalState(NamedTuple):
     own_feed: str = AS_PROGRAMMED
     held: tuple = ()
     known_offsets: tuple = ()
+    turn: str = UNKNOWN
+    kept: tuple = ()
+    pass_words: tuple = ()
+    chamfers: bool | str = True
+    turned: str = UNKNOWN
+    sizes: tuple = ()
     at_x: float | str = UNKNOWN
     at_y: float | str = UNKNOWN
     at_z: float | str = UNKNOWN

@@ -17,7 +17,11 @@ FOLLOWED = frozenset(  # a block of these codes alone ends at its words
     f"G{n}" for n in (*range(5), 7, 8, *range(17, 22), 33, 40, 41, 42, 61, 64, 80, 90, 91)
 ) | frozenset(f"G{n}" for n in range(93, 100))
 SHIFTING = frozenset(["G43", "G49", "G54", "G55", "G56", "G57", "G58", "G59"])
-STAYING = frozenset(("speed limit or origin", "exact stop", "cancel cycle"))
+PATTERNS = frozenset(("circle of holes", "arc of holes", "row of holes"))
+DRILLING = PATTERNS | {"drilling cycle"}
+STAYING = frozenset(  # codes that move nothing and leave the origin, or set it to their words
+    ("speed limit or origin", "exact stop", "cancel cycle", "orientation", "thread chamfer")
+) | {"no thread chamfer"}
 
 
 def known_place(state: ModalState, axis: str) -> float | None:
@@ -47,6 +51,18 @@ def end_of_word(state: ModalState, word: ForeignWord) -> float | str:
     return UNKNOWN if start is None or state.distance not in ("G90", "G91") else start + word.number
 
 
+def follow_drilling(draft: Draft) -> bool:
+    """Carry X and Y on to the hole of a block that drills; tell whether it does."""
+    if not (draft.state.cycle or set(draft.meanings) & DRILLING) or draft.control.is_lathe:
+        return False
+    again = draft.control.value("subprograms", "cycle_repeat", "L") in draft.letters()
+    words = [w for w in draft.axis_words() if w.letter in "XY"]
+    moved = {FIELDS[w.letter]: end_of_word(draft.state, w) for w in words}
+    lost = draft.state.distance == "G91" and again and not set(draft.meanings) & PATTERNS
+    draft.change(at_z=UNKNOWN, **(dict.fromkeys(moved, UNKNOWN) if lost else moved))
+    return True
+
+
 def follow_places(draft: Draft) -> None:
     """Carry the places on to the end of a block; ``start`` has those at its start."""
     codes = set(draft.codes())
@@ -54,6 +70,9 @@ def follow_places(draft: Draft) -> None:
     turret = draft.control.is_lathe and "T" in draft.letters()
     changes = any(w.letter == "M" and w.kind == "number" and w.code == "M6" for w in draft.words)
     other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or draft.state.cycle
+    drills = follow_drilling(draft) if not codes - FOLLOWED else False
+    if drills:
+        return
     if other or turret or changes or shifted:
         draft.change(**LOST)
     if other:

@@ -9,8 +9,14 @@ from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 
-LENGTHS = frozenset("XYZUVWIJKRQE")
-ANGLES = frozenset("ABC")
+LENGTHS = frozenset((*"XYZUVWIJKRQE", ",C", ",R"))
+ANGLES = frozenset((*"ABC", ",A"))
+COUNTING = {  # words of turning cycles that count or name, or are read with their cycle
+    "pattern repeating": "PQR",
+    "threading": "PQA",
+    **dict.fromkeys(("finishing", "pecking along Z", "pecking along X", "thread pass"), "PQ"),
+    **dict.fromkeys(("roughing along Z", "roughing along X", "thread"), "PQ"),
+}
 UNIT = {"G20": "inch", "G21": "mm"}
 
 
@@ -28,6 +34,10 @@ def whole_units(draft: Draft) -> None:
 def class_of(draft: Draft, word: ForeignWord) -> str:
     """Return what a word's number measures, "" if it counts or names something."""
     letter = word.letter
+    if any(letter in COUNTING.get(name, "") for name in draft.meanings):
+        return ""
+    if letter == "R" and "P" in draft.letters() and "roughing along" in " ".join(draft.meanings):
+        return ""  # the type of a Haas's contour
     if letter == "F":
         return "feed_rev" if draft.state.feed_mode == "G95" else "feed"
     if letter in "IJK" and is_cycle(draft) and not is_arc(draft):

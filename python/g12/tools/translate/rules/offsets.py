@@ -208,12 +208,22 @@ def set_length(
 
 def set_size(draft: Draft, tool: int, added: str, kept: str, wear: bool, incremental: bool) -> None:
     """Set a tool's diameter; LinuxCNC tells the present one of the loaded tool only."""
-    if (wear or incremental) and draft.state.tool != str(tool):
+    known = dict(() if draft.state.sizes == UNSURE else draft.state.sizes)
+    loaded = draft.state.tool == str(tool)
+    if (wear or incremental) and not loaded and tool not in known:
         raise NotTranslated(
             f"G10 for the diameter of T{tool}: its present one is known only while it is in the "
             f"spindle (T{tool} M6 before it)"
         )
     half = draft.control.value("tools", "size", "diameter") == "diameter"
     now = f"#5410 / {SCALE}" if half else f"#5410 / {SCALE} / 2"
+    if tool in known and not loaded:
+        now = f"[{known[tool]} + {kept} / {SCALE}]"
+    known.pop(tool, None)
+    if not wear and not incremental and "#" not in added:
+        known[tool] = added
+    elif wear and not loaded and not incremental:
+        known[tool] = dict(draft.state.sizes)[tool]
+    draft.change(sizes=tuple(sorted(known.items())))
     value = new_value(now, added, kept, wear, incremental)
     draft.after.append(f"G10 L1 P{tool} R[[{value}]{' / 2' if half else ''}]")

@@ -19,6 +19,8 @@ def is_plain(draft: Draft) -> bool:
     So it is for one motion code or none, numbers with points, and no mode that LinuxCNC lacks.
     """
     state, control = draft.state, draft.control
+    if state.turn:
+        return False
     at = (state.cycle, state.polar, state.own_motion, state.own_distance, state.own_feed)
     if at != SETTLED:
         return False
@@ -39,7 +41,7 @@ def is_plain(draft: Draft) -> bool:
         elif letter == "F":
             modes["feed"] = value
     motion = modes.get("motion", state.motion)
-    arc = motion in ("G2", "G3") or "R" not in seen
+    arc = motion in ("G2", "G3") or seen.isdisjoint("IKR" if control.is_lathe else "R")
     if not arc or motion not in MOTIONS or control.meanings.get(motion) != "same":
         return False
     if motion != "G0" and not TURNING.isdisjoint(seen):

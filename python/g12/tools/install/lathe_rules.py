@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What surprises on a lathe whose spindle is C: the picture on the screen, the turns of C, G28."""
+
+import re
+from collections.abc import Iterable, Iterator
+
+from g12.tools.install import features
+from g12.tools.install.config import Config
+from g12.tools.install.findings import Finding, note, warning
+from g12.tools.install.forms import screen_of
+from g12.tools.install.kinematics_rules import uses_them
+
+WITH_PREVIEW = ("axis", "gmoccapy", "gscreen", "qtvcp", "touchy")
+GEOMETRY_LINE = re.compile(r"GEOMETRY = CXY?Z!")
+HOME_POSITIONS = range(5161, 5170)  # parameters that G28.1 sets, an axis each
+TURN = 360.0
+ON_A_LATHE = tuple(features.AXES)
+
+
+def geometry_for(axes: str) -> str:
+    """Return the GEOMETRY of a lathe's axes: C turns the part, what moves on it comes after."""
+    return f"C{''.join(axis for axis in 'XYZ' if axis in axes)}!"
+
+
+def turns_with_c(geometry: str) -> bool:
+    """Tell whether a GEOMETRY turns the picture by C before it moves along X."""
+    letters = geometry.upper().replace("-", "")
+    return "C" in letters and letters.find("C") < letters.find("X")
+
+
+def without_geometry(config: Config) -> Iterator[Finding]:
+    """Find a screen that draws sections as if C did not turn the part."""
+    found = config.ini.get("DISPLAY", "GEOMETRY") or ""
+    if screen_of(config) not in WITH_PREVIEW or turns_with_c(found):
+        return
+    yield warning(
+        "geometry",
+        f"[DISPLAY] GEOMETRY {f'= {found}' if found else 'is missing'}: the screen draws a section "
+        "as a line to and fro along X",
+        f"have: GEOMETRY = {geometry_for(config.ini.axes)}",
+    )
+
+
+def unwinding_c(config: Config) -> Iterator[Finding]:
+    """Find a C axis that goes back every turn that it has made."""
+    low, high = (config.ini.number("AXIS_C", key, default)
+                 for key, default in (("MIN_LIMIT", -1e99), ("MAX_LIMIT", 1e99)))  # fmt: skip
+    wrapped = config.ini.number("AXIS_C", "WRAPPED_ROTARY", 0.0)
+    if not wrapped and high - low > TURN and not uses_them(config):
+        yield note(
+            "unwinding",
+            "[AXIS_C] WRAPPED_ROTARY is not set: G0 C0 after a section unwinds every turn that C "
+            "has made",
+            "have WRAPPED_ROTARY = 1, if no program names a C above 360 (configs/README.md)",
+        )
+
+
+def never_set_g28(config: Config) -> Iterator[Finding]:
+    """Find a position of G28 that was never set: it is machine zero."""
+    path = config.ini.file("RS274NGC", "PARAMETER_FILE")
+    lines = path.read_text(errors="replace").splitlines() if path and path.is_file() else []
+    words = [line.split() for line in lines]
+    values = {pair[0]: pair[1] for pair in words if len(pair) == 2}
+    if not any(is_set(values.get(str(number), "0")) for number in HOME_POSITIONS):
+        yield note(
+            "g28",
+            f"G28.1 was never set ({path.name if path else 'no var file'}: #5161 to #5169 are 0): "
+            "G28 U0 W0 is one rapid, X and Z together, to machine zero",
+            "jog where tools are changed and run G28.1 in MDI once",
+        )
+
+
+def is_set(value: str) -> bool:
+    """Tell whether a parameter's value in the var file is a position other than 0."""
+    try:
+        return float(value) != 0.0
+    except ValueError:
+        return True
+
+
+def lathe_findings(config: Config, there: Iterable[str]) -> Iterator[Finding]:
+    """Yield what surprises on a lathe with C that has some features."""
+    if "C" in config.ini.axes and not set(ON_A_LATHE).isdisjoint(there):
+        yield from without_geometry(config)
+        yield from unwinding_c(config)
+        yield from never_set_g28(config)

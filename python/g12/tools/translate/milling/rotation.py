@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G68 X Y R: the program turned about a point, until G69.
+
+LinuxCNC turns a work offset about its origin. G59.3 becomes a copy of the offset in force, with the
+origin where the turn takes it: the offset itself is not touched, and G69 selects it again.
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import UNKNOWN
+from g12.tools.translate.blocks.places import LOST
+from g12.tools.translate.rules.offsets import (
+    G54_PARAMETER,
+    OWN_SYSTEMS,
+    SCALE,
+    SET_SCALE,
+    SLOT,
+    SLOT_PARAMETER,
+    settle,
+)
+
+HERE = {"X": "#5420", "Y": "#5421"}
+
+
+def rotation(draft: Draft) -> None:
+    """Turn the program, or turn it back."""
+    turned = draft.state.turned
+    if turned and (OWN_SYSTEMS.intersection(draft.codes()) or "numbered offset" in draft.meanings):
+        raise NotTranslated("another work offset within G68: write G69 before it")
+    if "turned back" in draft.meanings:
+        draft.comments.append(draft.meanings.pop("turned back").code)
+        if turned:
+            draft.after.insert(0, draft.sure("turned", "G69 selects the work offset again"))
+            draft.change(turned=UNKNOWN, **LOST)
+    if "turned" in draft.meanings:
+        turn(draft, draft.meanings.pop("turned").code)
+    if draft.after and draft.alone():
+        settle(draft)
+
+
+def turn(draft: Draft, code: str) -> None:
+    """Write the turned copy of the work offset."""
+    system = draft.sure("offset", f"{code} turns the work offset")
+    if draft.state.turned or system not in OWN_SYSTEMS or draft.state.distance != "G90":
+        raise NotTranslated(f"{code} needs G54 to G59 by name before it, G90, and no {code} before")
+    if draft.state.plane not in ("G17", UNKNOWN):
+        raise NotTranslated(f"{code} is translated in G17 only")
+    words = {letter: draft.take(letter) for letter in "XYR"}
+    if not words["R"]:
+        raise NotTranslated(f"{code} needs R, the angle")
+    x, y = (words[a].value if words[a] else HERE[a] for a in "XY")
+    angle = f"[{words['R'].value}]"
+    first = G54_PARAMETER + 20 * (int(system[1:]) - 54)
+    shift = {
+        "X": f"[[{x}] * [1 - COS{angle}] + [{y}] * SIN{angle}]",
+        "Y": f"[[{y}] * [1 - COS{angle}] - [{x}] * SIN{angle}]",
+    }
+    values = [
+        f"#{SLOT_PARAMETER + n - 1}=[#{first + n - 1}"
+        + (f" + {shift[axis]} * {SCALE}]" if axis in shift else "]")
+        for axis, n in AXIS_NUMBERS.items()
+        if axis in draft.control.axes
+    ]
+    draft.comments.append(f"{code} overwrites {SLOT}")
+    draft.after += [SET_SCALE, *values, f"G10 L2 P9 R{angle}", SLOT]
+    draft.change(turned=system, **LOST)

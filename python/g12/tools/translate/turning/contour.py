@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A turned contour: lines and arcs from a program's blocks, with corners and angles worked out.
+
+A point is a complex number in the program's unit: Z is its real part, X as a radius its imaginary
+one. Counter-clockwise is G3, as LinuxCNC has it in G18.
+"""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from collections.abc import Mapping, Sequence
+from math import pi, radians, sqrt, tan
+from typing import NamedTuple
+
+from g12.tools.translate.blocks.errors import NotTranslated
+
+SAME = 1e-7  # points and lengths that are nearer are the same
+ROUNDED = 0.01  # what R may be too short by, or two radii of I and K may differ
+
+
+class ContourBlock(NamedTuple):
+    """A block of a contour: its motion code, the numbers of its words, what is beside them.
+
+    ``relative`` says that X and Z are increments; ``others`` are codes and words that are written
+    with its move, ``line`` is that of the file.
+    """
+
+    motion: str
+    values: Mapping[str, float]
+    line: int
+    relative: bool = False
+    others: tuple[str, ...] = ()
+
+
+class Segment(NamedTuple):
+    """A line, or an arc about ``centre``, counter-clockwise if ``sense`` is 1, else -1."""
+
+    start: complex
+    end: complex
+    block: ContourBlock
+    centre: complex | None = None
+    sense: int = 0
+
+    @property
+    def motion(self) -> str:
+        """The code that makes it."""
+        return self.block.motion if self.centre is None else ("G3" if self.sense > 0 else "G2")
+
+
+def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[Segment]:
+    """Return the segments of a contour's blocks from where the tool stands."""
+    at, sides = start, []
+    for block, end in zip(blocks, ends_of(blocks, start)):
+        if end != at or is_circle(block):
+            sides.append(_segment(block, at, end))
+        at = end
+    segments: list[Segment] = []
+    for number, side in enumerate(sides):
+        behind = sides[number + 1] if number + 1 < len(sides) else None
+        begin = segments[-1].end if segments else side.start
+        segments += _with_corner(side._replace(start=begin), behind)
+    return segments
+
+
+def is_circle(block: ContourBlock) -> bool:
+    """Tell whether a block without an end is a full circle."""
+    return block.motion in ("G2", "G3") and bool({"I", "K"} & block.values.keys())
+
+
+def ends_of(blocks: Sequence[ContourBlock], start: complex) -> list[complex]:
+    """Return where each block ends, corners being sharp."""
+    ends = [start]
+    for number, block in enumerate(blocks):
+        behind = blocks[number + 1] if number + 1 < len(blocks) else None
+        ends.append(_end_of(block, behind, ends[-1]))
+    return ends[1:]
+
+
+def _end_of(block: ContourBlock, behind: ContourBlock | None, at: complex) -> complex:
+    """Return where a block ends: its words, or its angle from the Z axis."""
+    values = block.values
+    z = _coordinate(block, at.real, "Z", "W", 1.0)
+    x = _coordinate(block, at.imag, "X", "U", 0.5)
+    angle = values.get(",A", values.get("A"))
+    if angle is None or (x is not None and z is not None):
+        return complex(at.real if z is None else z, at.imag if x is None else x)
+    if x is None and z is None:
+        return _meeting(block, behind, at, radians(angle))
+    slope = tan(radians(angle))
+    if z is None:
+        if abs(slope) < SAME:
+            raise NotTranslated(f"line {block.line}: A{angle:g} never reaches that X")
+        return complex(at.real + (x - at.imag) / slope, x)
+    return complex(z, at.imag + (z - at.real) * slope)
+
+
+def _coordinate(
+    block: ContourBlock, at: float, absolute: str, increment: str, scale: float
+) -> float | None:
+    """Return one coordinate of a block's end, None if it has no word for it."""
+    if increment in block.values:
+        return at + block.values[increment] * scale
+    if absolute not in block.values:
+        return None
+    return block.values[absolute] * scale + (at if block.relative else 0.0)
+
+
+def _meeting(
+    block: ContourBlock, behind: ContourBlock | None, at: complex, angle: float
+) -> complex:
+    """Return where a line of an angle meets the next one, which has its own and its end."""
+    values = behind.values if behind else {}
+    other = values.get(",A", values.get("A"))
+    if other is None or not {"X", "Z"} <= values.keys() or behind.relative:
+        raise NotTranslated(
+            f"line {block.line}: an angle alone needs X, Z and an angle in the next block"
+        )
+    end = complex(values["Z"], values["X"] / 2)
+    one, two = rect(1, angle), rect(1, radians(other))
+    cross = (one.conjugate() * two).imag
+    if abs(cross) < SAME:
+        raise NotTranslated(f"line {block.line}: the two lines are parallel and never meet")
+    return at + one * ((end - at).conjugate() * two).imag / cross
+
+
+def _segment(block: ContourBlock, start: complex, end: complex) -> Segment:
+    if block.motion not in ("G2", "G3"):
+        return Segment(start, end, block)
+    sense = 1 if block.motion == "G3" else -1
+    values = block.values
+    if "R" in values:
+        centre = centre_by_radius(start, end, values["R"] * sense, block.line)
+    else:
+        centre = start + complex(values.get("K", 0.0), values.get("I", 0.0))
+        if abs(abs(start - centre) - abs(end - centre)) > ROUNDED or centre == start:
+            raise NotTranslated(f"line {block.line}: I and K are no centre of the arc to its end")
+    return Segment(start, end, block, centre, sense)
+
+
+def centre_by_radius(start: complex, end: complex, radius: float, line: int) -> complex:
+    """Return the centre of an arc; ``radius`` is below 0 for G2, or for more than half a turn."""
+    chord = end - start
+    if abs(chord) < SAME or abs(chord) / 2 > abs(radius) + ROUNDED:
+        raise NotTranslated(f"line {line}: R{abs(radius):g} is too small for the arc to its end")
+    height = sqrt(max(0.0, radius**2 - abs(chord) ** 2 / 4))
+    return (start + end) / 2 + 1j * chord / abs(chord) * (height if radius > 0 else -height)
+
+
+def _with_corner(side: Segment, behind: Segment | None) -> list[Segment]:
+    """Return a side and the chamfer or the rounding behind it."""
+    size, rounded = corner_of(side)
+    if not size:
+        return [side]
+    line = side.block.line
+    if behind is None or behind.centre is not None or behind.block.motion == "G0":
+        raise NotTranslated(f"line {line}: a corner is broken between two lines of G1 only")
+    one, two = behind.start - side.start, behind.end - behind.start
+    turn = phase(two / one)
+    cut = size * tan(abs(turn) / 2) if rounded else size
+    if abs(turn) < SAME or abs(abs(turn) - pi) < SAME or cut > min(abs(one), abs(two)) + SAME:
+        raise NotTranslated(f"line {line}: a corner of {size:g} has no room between its lines")
+    first, last = behind.start - cut * one / abs(one), behind.start + cut * two / abs(two)
+    corner = Segment(first, last, side.block)
+    if rounded:
+        sense = 1 if turn > 0 else -1
+        centre = first + 1j * sense * size * one / abs(one)
+        corner = corner._replace(centre=centre, sense=sense)
+    return [side._replace(end=first), corner]
+
+
+def corner_of(side: Segment) -> tuple[float, bool]:
+    """Return the size of the corner behind a line, 0 if it is sharp, and whether it is rounded."""
+    values = side.block.values
+    if side.centre is None and side.block.motion == "G1":
+        for letter in (",R", "R", ",C", "C", "I", "K"):
+            if values.get(letter):
+                return abs(values[letter]), letter in (",R", "R")
+    elif values.get(",R") or values.get(",C"):
+        raise NotTranslated(f"line {side.block.line}: a corner is broken behind a line of G1 only")
+    return 0.0, False
+
+
+def offset_by(segments: Sequence[Segment], by: complex) -> list[Segment]:
+    """Return segments in another place."""
+    return [
+        s._replace(
+            start=s.start + by,
+            end=s.end + by,
+            centre=None if s.centre is None else s.centre + by,
+        )
+        for s in segments
+    ]

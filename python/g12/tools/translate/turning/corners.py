@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Direct drawing on a lathe outside of cycles: angles, corners that a word breaks or rounds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from g12.tools.translate.blocks.draft import Draft, line_as_word
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED
+from g12.tools.translate.turning.contour import contour_of, ends_of
+from g12.tools.translate.turning.given_words import contour_blocks, start_point
+from g12.tools.translate.turning.moves import lines_of_moves, moves_along
+
+DRAWN = frozenset((",A", ",C", ",R", "A", "I", "K", "R"))
+REPLACED = frozenset("XZUW") | DRAWN
+
+
+def direct_drawing(draft: Draft) -> None:
+    """Write a line with a corner or an angle as the moves that it is."""
+    if not is_drawn(draft):
+        return
+    if not draft.control.is_lathe or draft.state.polar != "off":
+        word = next(w for w in draft.words if w.letter in DRAWN)
+        raise NotTranslated(
+            f"{word.text}: a corner that is broken or rounded by a word: write its line or arc as "
+            "a block"
+        )
+    start = start_point(draft)
+    blocks, _ = contour_blocks(draft, chain_of(draft))
+    own = [s for s in contour_of(blocks, start) if s.block is blocks[0]]
+    first, *others = lines_of_moves(moves_along(own), start)
+    code, _, words = first.partition(" ")
+    draft.words = [w for w in draft.words if w.letter not in REPLACED]
+    draft.words.append(line_as_word(words if code in draft.codes() else first))
+    draft.after += others
+    last = next((line[:2] for line in reversed(others) if line[0] == "G"), "G1")
+    corner = ends_of(blocks, start)[0]
+    draft.has_motion = True
+    own_motion = AS_PROGRAMMED if last == "G1" else last
+    draft.change(motion="G1", own_motion=own_motion, at_x=2 * corner.imag, at_z=corner.real)
+
+
+def is_drawn(draft: Draft) -> bool:
+    """Tell whether a block is a line with a corner or an angle."""
+    letters, codes = draft.letters(), set(draft.codes())
+    if any(letter[0] == "," for letter in letters):
+        return True
+    motion = next((c for c in codes if c in ("G0", "G1", "G2", "G3", "G33")), draft.state.motion)
+    free = not draft.meanings and not draft.state.turn and draft.state.polar == "off"
+    plain = draft.control.is_lathe and free and motion == "G1" and not codes - {"G1", "G94", "G95"}
+    return plain and bool(letters & DRAWN) and bool(letters & set("XZUW"))
+
+
+def chain_of(draft: Draft) -> Iterator[int]:
+    """Yield the block, and those behind it as long as a corner or an angle needs the next one."""
+    for index, block in draft.program:
+        letters = {word.letter for word in block.words}
+        if index < draft.index or not letters - {"N"}:
+            continue
+        yield index
+        if not letters & DRAWN:
+            return

@@ -1,0 +1,370 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Turning cycles written out as moves: exact on every LinuxCNC, which has none or other ones.
+
+Two-block forms keep what their first block says; a one-block form has it all. Single passes are
+modal: blocks of X, Z, U and W alone repeat them from the same start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from g12.tools.translate.blocks.draft import Draft, word_of
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import (
+    AS_PROGRAMMED,
+    CONSUMERS,
+    UNKNOWN,
+    UNSURE,
+)
+from g12.tools.translate.blocks.places import FIELDS
+from g12.tools.translate.rules.polar import own_feed_ended
+from g12.tools.translate.turning.given_words import (
+    named_blocks,
+    read_contour,
+    start_point,
+    stored_setting,
+    take_end,
+    take_increments,
+    take_number,
+    take_turn,
+    take_whole,
+)
+from g12.tools.translate.turning.moves import CycleMove, lines_of_moves
+from g12.tools.translate.turning.repeats import (
+    Pecking,
+    facing_pass,
+    finishing_cut,
+    pecks,
+    repeated_cuts,
+    turning_pass,
+)
+from g12.tools.translate.turning.roughing import RoughCuts, rough
+from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, thread_pass
+
+MOTIONS = frozenset(("G0", "G1", "G2", "G3", "G33"))
+METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True)}  # Haas's P
+
+
+def turning_cycle(draft: Draft) -> None:
+    """Write the moves of a turning cycle."""
+    follow_chamfers(draft)
+    meaning = next((name for name in draft.meanings if name in CYCLES), "")
+    modal = draft.state.turn
+    if not meaning and modal:
+        codes = set(draft.codes())
+        if codes & MOTIONS or draft.meanings:
+            draft.change(turn=UNKNOWN)
+        elif draft.letters() & set("XZUW") and not codes & {*CONSUMERS, "G53"}:
+            meaning = draft.sure("turn", "X and Z may repeat a turning cycle")
+    if not meaning:
+        return
+    check_turning_modes(draft)
+    if meaning != modal:
+        draft.change(turn=UNKNOWN)
+    CYCLES[meaning](draft)
+    draft.meanings.pop(meaning, None)
+
+
+def follow_chamfers(draft: Draft) -> None:
+    """Note whether threads are to end with a chamfer: M23 and M24 of a Haas."""
+    for name, value in (("thread chamfer", True), ("no thread chamfer", False)):
+        code = draft.meanings.pop(name, None)
+        if code:
+            draft.comments.append(code.code)
+            draft.change(chamfers=value)
+
+
+def check_turning_modes(draft: Draft) -> None:
+    """Refuse a cycle where another mode is in its way."""
+    if draft.state.polar != "off":
+        raise NotTranslated("a turning cycle in a section: end the section before it")
+    if draft.state.plane not in ("G18", UNKNOWN):
+        raise NotTranslated("a turning cycle needs the plane of X and Z: write G18 before it")
+
+
+def write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **modes: object) -> None:
+    """Write moves behind the block's other words; they end where the tool stood."""
+    state = draft.state
+    draft.before += own_feed_ended(draft)
+    lines = list(lines_of_moves(moves, start))
+    if "G91" in (state.distance, state.own_distance):
+        lines.insert(0, "G90")
+        draft.change(own_distance=AS_PROGRAMMED if state.distance == "G90" else "G90")
+    draft.after += lines
+    draft.comments += [word.text for word in draft.meanings.values()]
+    own = AS_PROGRAMMED if state.motion == "G0" else "G0"
+    places = {"at_x": 2 * start.imag, "at_z": start.real}
+    draft.change(**{"own_motion": own, **places, **modes})
+
+
+def keep(draft: Draft, meaning: str, **values: float | None) -> None:
+    """Keep what the first block of a cycle says for its second."""
+    code = draft.meanings[meaning].code
+    if draft.letters() - set("NGMST"):
+        raise NotTranslated(
+            f"{draft.words[-1].text} is not understood in the first block of {code}"
+        )
+    kept = dict(draft.state.kept)
+    said = {name: value for name, value in values.items() if value is not None}
+    kept.update({f"{meaning} {name}": value for name, value in said.items()})
+    places = {name: getattr(draft.start, name) for name in FIELDS.values()}
+    draft.change(kept=tuple(sorted(kept.items())), **places)
+    draft.comments.append(", ".join([code, *(f"{n} {v:g}" for n, v in said.items())]))
+
+
+def kept_value(draft: Draft, meaning: str, name: str) -> float:
+    """Return what a first block said, or the control's setting."""
+    kept = draft.sure("kept", "this takes what an earlier block said")
+    return dict(kept).get(f"{meaning} {name}", stored_setting(draft, name))
+
+
+def is_first(draft: Draft, letters: str) -> bool:
+    """Tell whether a block is the first of a cycle's two: none of some words is in it."""
+    return not draft.letters() & set(letters)
+
+
+# ---------------------------------------------------------------- along a contour
+
+
+def roughing(draft: Draft, meaning: str, along_x: bool) -> None:
+    """G71 and G72."""
+    depth_word = "W" if along_x else "U"
+    if is_first(draft, "PQ"):
+        keep(draft, meaning, depth=take_number(draft, depth_word), retract=take_number(draft, "R"))
+        return
+    start, (indices, follows) = start_point(draft), contour_named(draft)
+    depth = take_increments(draft, "D") or kept_value(draft, meaning, "depth")
+    take_whole(draft, "R")  # Haas: 1 for type II, which is told by the contour
+    given = RoughCuts(depth, kept_value(draft, meaning, "retract"), take_allowance(draft), along_x)
+    if given.depth <= 0:
+        code = draft.meanings[meaning].code
+        raise NotTranslated(f"{code} has no depth of cut: {depth_word} in its first block, or D")
+    segments, _ = read_contour(draft, indices, start)
+    given = given._replace(approach=segments[0].motion)
+    moves = rough(start, segments, given)
+    write_uncompensated(draft, moves, start)
+    draft.follows = follows
+
+
+def contour_named(draft: Draft) -> tuple[range, int]:
+    """Take P and Q out; return the blocks of the contour, and that which follows the cycle."""
+    first, last = take_whole(draft, "P"), take_whole(draft, "Q")
+    if first is None or last is None:
+        raise NotTranslated("the cycle needs P and Q, the first and the last block of its contour")
+    return named_blocks(draft, first, last)
+
+
+def take_allowance(draft: Draft) -> complex:
+    """Take U and W out, what finishing is to cut: U a diameter."""
+    return complex(take_number(draft, "W") or 0.0, (take_number(draft, "U") or 0.0) / 2)
+
+
+def write_uncompensated(draft: Draft, moves: Sequence[CycleMove], start: complex) -> None:
+    """Write moves without nose compensation, which is on again behind them."""
+    on = draft.sure("compensation", "roughing is not compensated")
+    write_moves(draft, moves, start, motion=UNSURE, own_motion=UNSURE)
+    if on in ("G41", "G42"):
+        draft.after = ["G40", *draft.after, on]
+
+
+def pattern_repeating(draft: Draft) -> None:
+    """G73: two blocks, or one with I, K and D."""
+    if is_first(draft, "PQ"):
+        relief = {"x": take_number(draft, "U"), "z": take_number(draft, "W")}
+        keep(draft, "pattern repeating", **relief, passes=take_whole(draft, "R"))
+        return
+    start, (indices, follows) = start_point(draft), contour_named(draft)
+    own = (take_number(draft, "I"), take_number(draft, "K"), take_whole(draft, "D"))
+    x, z, passes = (
+        kept_value(draft, "pattern repeating", name) if value is None else value
+        for name, value in zip(("x", "z", "passes"), own)
+    )
+    segments, _ = read_contour(draft, indices, start)
+    moves = repeated_cuts(start, segments, complex(z, x), take_allowance(draft), int(passes))
+    write_uncompensated(draft, moves, start)
+    draft.follows = follows
+
+
+def finishing(draft: Draft) -> None:
+    """G70: the contour with its own feeds, speeds and compensation."""
+    start, (indices, follows) = start_point(draft), contour_named(draft)
+    needless = [word.text for letter in "UWD" if (word := draft.take(letter))]
+    draft.comments += [f"{' '.join(needless)}: nothing for a finishing cut"] if needless else []
+    before = draft.sure("compensation", "finishing takes over")
+    segments, state = read_contour(draft, indices, start)
+    moves = finishing_cut(start, segments)
+    if state.compensation != before and state.compensation != "G40":
+        back = len(segments)  # the first move behind the contour
+        moves[back:] = [
+            *(m._replace(others=("G40",)) for m in moves[back:][:1]),
+            *moves[back + 1 :],
+        ]
+        state = state._replace(compensation="G40")
+    kept = {n: getattr(state, n) for n in ("feed", "feed_mode", "compensation", "spindle_mode")}
+    write_moves(draft, moves, start, **kept, motion=UNSURE, own_motion=UNSURE)
+    draft.follows = follows
+
+
+# ---------------------------------------------------------------- pecks, passes, threads
+
+
+def pecking(draft: Draft, meaning: str, along_x: bool) -> None:
+    """G74 and G75: two blocks, or Haas's one with I and K."""
+    if is_first(draft, "XZUW"):
+        keep(draft, meaning, retract=take_number(draft, "R"))
+        return
+    start = start_point(draft)
+    end = take_end(draft, start)
+    x_step = take_number(draft, "I") or take_increments(draft, "P") or 0.0
+    z_step = take_number(draft, "K") or take_increments(draft, "Q") or 0.0
+    shift = take_number(draft, "R") or take_increments(draft, "D") or 0.0
+    peck, step = (x_step, z_step) if along_x else (z_step, x_step)
+    there = complex(end.get("Z", start.real), end.get("X", start.imag))
+    given = Pecking(
+        there, abs(peck), abs(step), kept_value(draft, meaning, "retract"), shift, along_x
+    )
+    write_moves(draft, pecks(start, given), start)
+
+
+def single_pass(draft: Draft, meaning: str, moves_of_pass: Callable) -> None:
+    """G90 and G94 of system A."""
+    start, end, taper = pass_words(draft, meaning)
+    write_moves(draft, moves_of_pass(start, end, taper), start, turn=meaning)
+
+
+def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
+    """Return start, end and taper of a modal cycle; what a block leaves out was said before."""
+    refuse_other_meanings(draft, meaning)
+    start = start_point(draft)
+    again = draft.start.turn == meaning and meaning not in draft.meanings
+    own = take_end(draft, start)
+    taper = take_number(draft, "R")
+    words = {**(dict(draft.state.pass_words) if again else {}), **own}
+    words.update({} if taper is None else {"R": taper})
+    if not {"X", "Z"} <= words.keys():
+        raise NotTranslated("the cycle needs X and Z, where its cut ends")
+    draft.change(pass_words=tuple(sorted(words.items())))
+    return start, complex(words["Z"], words["X"]), words.get("R", 0.0)
+
+
+def refuse_other_meanings(draft: Draft, meaning: str) -> None:
+    """Refuse the code of a single pass that means a mode: that of another G code system."""
+    code = draft.meanings.get(meaning)
+    if code and (set(draft.codes()) & MOTIONS or not draft.letters() & set("XZUW")):
+        raise NotTranslated(
+            f"{code.code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it "
+            "is a mode, the control is fanuc-lathe-b or fanuc-lathe-c; else take it out"
+        )
+
+
+def one_thread_pass(draft: Draft) -> None:
+    """G92 of system A."""
+    turn = take_turn(draft)
+    start, end, taper = pass_words(draft, "thread pass")
+    thread = Thread(end, lead_of(draft), taper, chamfer_of(draft), turn)
+    write_moves(draft, thread_pass(start, thread), start, turn="thread pass")
+
+
+def lead_of(draft: Draft) -> float:
+    """Return the lead of a thread, which is the F word."""
+    try:
+        lead = float(draft.sure("feed", "a thread takes F as its lead"))
+    except ValueError:
+        lead = 0.0
+    if lead <= 0:
+        raise NotTranslated("a thread needs F, its lead, as a number")
+    return lead
+
+
+def chamfer_of(draft: Draft) -> float:
+    """Return over which length the control leaves a thread."""
+    if not draft.sure("chamfers", "a thread may end with a chamfer"):
+        return 0.0
+    return float(draft.control.value("turning", "thread_chamfer", 0.0)) * lead_of(draft)
+
+
+def threading(draft: Draft) -> None:
+    """G76: Fanuc's two blocks, or Haas's one with K and D."""
+    if is_first(draft, "XZUW"):
+        keep_thread(draft)
+        return
+    start = start_point(draft)
+    end = take_end(draft, start)
+    if not {"X", "Z"} <= end.keys():
+        raise NotTranslated("G76 needs X and Z, where the thread ends")
+    haas = "K" in draft.letters()
+    infeed, chamfer, turn = haas_infeed(draft) if haas else fanuc_infeed(draft)
+    taper = take_number(draft, "I" if haas else "R") or 0.0
+    thread = Thread(complex(end["Z"], end["X"]), lead_of(draft), taper, chamfer, turn)
+    write_moves(draft, all_passes(start, thread, infeed), start)
+
+
+def keep_thread(draft: Draft) -> None:
+    """Keep what the first block of Fanuc's G76 says: P has three numbers of two digits."""
+    packed = take_whole(draft, "P")
+    values = {"least": take_increments(draft, "Q"), "allowance": take_number(draft, "R")}
+    if packed is not None:
+        values["finishing"] = float(packed // 10000)
+        values["chamfer"] = packed // 100 % 100 / 10
+        values["angle"] = float(packed % 100)
+    keep(draft, "threading", **values)
+
+
+def fanuc_infeed(draft: Draft) -> tuple[Infeed, float, float]:
+    """Return how the passes go in, the chamfer, and the angle of the start."""
+    value = lambda name: kept_value(draft, "threading", name)  # noqa: E731
+    height, first = take_increments(draft, "P") or 0.0, take_increments(draft, "Q") or 0.0
+    finishing_passes = int(value("finishing")) or 1
+    infeed = Infeed(height, first, value("least"), value("allowance"), finishing_passes)
+    return infeed._replace(angle=value("angle")), value("chamfer") * lead_of(draft), 0.0
+
+
+def haas_infeed(draft: Draft) -> tuple[Infeed, float, float]:
+    """Return the same of Haas's one block: K, D, A, P the method, Q the start's angle."""
+    height, first = take_number(draft, "K") or 0.0, take_increments(draft, "D") or 0.0
+    angle, method = take_number(draft, "A") or 0.0, take_whole(draft, "P") or 1
+    if method not in METHODS:
+        raise NotTranslated(f"G76 P{method}: the methods of cutting are P1 to P4")
+    turn = take_turn(draft)
+    least, allowance = (stored_setting(draft, f"thread_{n}") for n in ("least", "allowance"))
+    infeed = Infeed(height, first, least, allowance, 1, angle, *METHODS[method])
+    return infeed, chamfer_of(draft), turn
+
+
+def thread_move(draft: Draft) -> None:
+    """G32: G33 with the lead as the way along its path."""
+    start = start_point(draft)
+    end = take_end(draft, start)
+    there = complex(end.get("Z", start.real), end.get("X", start.imag))
+    pitch = pitch_of(draft, there - start)
+    feed = draft.take("F")
+    draft.before += [feed.text] if feed else []  # LinuxCNC has no F beside G33
+    (line,) = lines_of_moves([CycleMove("G33", there, None, pitch)], start)
+    draft.words += [word_of(text) for text in line.split()]
+    draft.has_motion = True
+    draft.change(
+        turn="thread", motion="G33", own_motion=AS_PROGRAMMED, at_x=2 * there.imag, at_z=there.real
+    )
+
+
+def pitch_of(draft: Draft, way: complex) -> float:
+    """Return the way along the path for each revolution; the lead is that of the longer axis."""
+    if not way:
+        raise NotTranslated("the thread has no length")
+    return lead_of(draft) * abs(way) / max(abs(way.real), abs(way.imag))
+
+
+CYCLES: dict[str, Callable[[Draft], None]] = {
+    "roughing along Z": lambda draft: roughing(draft, "roughing along Z", False),
+    "roughing along X": lambda draft: roughing(draft, "roughing along X", True),
+    "pattern repeating": pattern_repeating,
+    "finishing": finishing,
+    "pecking along Z": lambda draft: pecking(draft, "pecking along Z", False),
+    "pecking along X": lambda draft: pecking(draft, "pecking along X", True),
+    "turning pass": lambda draft: single_pass(draft, "turning pass", turning_pass),
+    "facing pass": lambda draft: single_pass(draft, "facing pass", facing_pass),
+    "thread pass": one_thread_pass,
+    "threading": threading,
+    "thread": thread_move,
+}

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The words of a turning cycle's block as numbers, and the blocks of the contour that it names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
+from g12.tools.translate.blocks.modal import ModalState
+from g12.tools.translate.blocks.places import known_place
+from g12.tools.translate.rules import codes, decimals, modes
+from g12.tools.translate.turning.contour import ContourBlock, Segment, contour_of
+
+SHAPING = frozenset(("X", "Z", "U", "W", "I", "K", "R", "A", "C", ",A", ",C", ",R"))
+BESIDE = frozenset("FSM")  # what a finishing cut does with its moves
+MOTIONS = ("G0", "G1", "G2", "G3")
+READERS = (codes.keep_as_comments, codes.map_codes, modes.follow_modes, decimals.whole_units)
+
+
+def take_number(draft: Draft, letter: str) -> float | None:
+    """Take a word out and return its number, None if there is no such word."""
+    word = draft.take(letter)
+    if word and word.kind != "number":
+        raise NotTranslated(f"{word.text}: a turning cycle is translated from numbers only")
+    return word.number if word else None
+
+
+def take_increments(draft: Draft, letter: str) -> float | None:
+    """Take a length out that is in least increments where it has no decimal point."""
+    word = next((w for w in draft.words if w.letter == letter), None)
+    number = take_number(draft, letter)
+    if not number or "." in word.value:
+        return number
+    least = decimals.least_increment(draft, "length")
+    if not least:
+        raise NotTranslated(f"{word.text} has no decimal point, and no increment is set for it")
+    return number * least
+
+
+def take_turn(draft: Draft) -> float:
+    """Take Q out, the angle at which a thread starts: thousandths of a degree without a point."""
+    word = next((w for w in draft.words if w.letter == "Q"), None)
+    turn = take_number(draft, "Q") or 0.0
+    return turn if word and "." in word.value else turn / 1000
+
+
+def take_whole(draft: Draft, letter: str) -> int | None:
+    """Take a whole number out: how often, or the number of a block."""
+    number = take_number(draft, letter)
+    if number is not None and (number != int(number) or number < 0):
+        raise NotTranslated(f"{letter}{number:g} must be a whole number")
+    return None if number is None else int(number)
+
+
+def stored_setting(draft: Draft, name: str) -> float:
+    """Return a setting of the control for its turning cycles in the program's units, 0 if none."""
+    unit = {"G20": "inch", "G21": "mm"}.get(draft.state.units, "")
+    return float(draft.control.value("turning", f"{name}_{unit}", 0.0))
+
+
+def start_point(draft: Draft) -> complex:
+    """Return where the tool stands when the cycle begins."""
+    x, z = known_place(draft.start, "X"), known_place(draft.start, "Z")
+    if x is None or z is None:
+        raise NotTranslated(
+            "this begins where the tool stands, which is not known here: write G0 with X and Z as "
+            "numbers in a block before it"
+        )
+    return complex(z, x / 2)
+
+
+def take_end(draft: Draft, start: complex) -> dict[str, float]:
+    """Take X, Z, U and W out; return the coordinates that they say, ``X`` as a radius."""
+    found = {}
+    for absolute, increment, scale, at in (("X", "U", 2, start.imag), ("Z", "W", 1, start.real)):
+        own, step = take_number(draft, absolute), take_number(draft, increment)
+        if own is not None and step is not None:
+            raise NotTranslated(f"{absolute} and {increment} in one block")
+        if own is not None:
+            relative = draft.state.distance == "G91"
+            found[absolute] = own / scale + (at if relative else 0.0)
+        elif step is not None:
+            found[absolute] = at + step / scale
+    return found
+
+
+def named_blocks(draft: Draft, first: int, last: int) -> tuple[range, int]:
+    """Return the blocks from P to Q, and that which follows the cycle.
+
+    A contour that stands behind the cycle is not executed again; one before it is read back.
+    """
+    numbered = [
+        (index, int(block.words[0].value))
+        for index, block in draft.program
+        if block.words and block.words[0].letter == "N" and block.words[0].value.isdigit()
+    ]
+    behind = [index for index, number in numbered if number == first and index > draft.index]
+    before = [index for index, number in numbered if number == first and index < draft.index]
+    recalled = "finishing" in draft.meanings and before
+    begin = before[-1] if recalled else next(iter(behind), None)
+    end = next((i for i, number in numbered if number == last and i >= (begin or 0)), None)
+    if begin is None or end is None:
+        number = first if begin is None else last
+        raise NotTranslated(f"N{number} is not in this program behind the cycle")
+    return range(begin, end + 1), draft.index + 1 if recalled else end + 1
+
+
+def read_contour(draft: Draft, indices: range, start: complex) -> tuple[list[Segment], ModalState]:
+    """Return the contour of some blocks, and the modes behind it."""
+    found, state = contour_blocks(draft, indices)
+    segments = contour_of(found, start)
+    if not segments:
+        raise NotTranslated("the contour of the cycle has no moves")
+    return segments, state
+
+
+def contour_blocks(draft: Draft, indices: Iterable[int]) -> tuple[list[ContourBlock], ModalState]:
+    """Return some blocks as those of a contour, and the modes behind them."""
+    blocks = dict(draft.program)
+    motion, state, found = draft.state.motion, draft.state, []
+    for index in indices:
+        block = blocks[index]
+        if block.problem or block.kind != "words":
+            raise NotTranslated(f"line {block.line}: a contour has moves only, as numbers")
+        own, state, motion = _contour_block(draft, block, state, motion)
+        found.append(own)
+    return found, state
+
+
+def _contour_block(
+    draft: Draft, block: ForeignBlock, state: ModalState, motion: str
+) -> tuple[ContourBlock, ModalState, str]:
+    reader = Draft(block, state, draft.control, draft.machine_codes)
+    try:
+        for rule in READERS:
+            rule(reader)
+        reader.meanings.pop("exact stop", None)
+        return contour_block(reader, motion), reader.state, _motion_of(reader, motion)
+    except NotTranslated as refusal:
+        raise NotTranslated(f"line {block.line} in the contour: {refusal}") from None
+
+
+def contour_block(reader: Draft, motion: str) -> ContourBlock:
+    """Return the block of a contour from its words, which rules have read."""
+    if reader.meanings:
+        code = next(iter(reader.meanings.values())).code
+        raise NotTranslated(f"{code} cannot stand in a contour")
+    values, others = {}, []
+    for word in reader.words:
+        if word.letter in SHAPING:
+            if word.kind != "number" or word.letter in values:
+                raise NotTranslated(f"{word.text}: a contour is translated from numbers, each once")
+            values[word.letter] = word.number
+        elif word.letter in BESIDE or is_mode(word):
+            others.append(word.text)
+        elif word.letter not in "NG" or (word.letter == "G" and word.code not in MOTIONS):
+            raise NotTranslated(f"{word.text} cannot stand in a contour")
+    own = _motion_of(reader, motion)
+    if own not in MOTIONS:
+        raise NotTranslated("G0 or G1 is missing")
+    relative = reader.state.distance == "G91"
+    return ContourBlock(own, values, reader.block.line, relative, tuple(others))
+
+
+def is_mode(word: ForeignWord) -> bool:
+    """Tell whether a word is a mode that a finishing cut takes over."""
+    modes_kept = ("G40", "G41", "G42", "G94", "G95", "G96", "G97")
+    return word.letter == "G" and word.code in modes_kept
+
+
+def _motion_of(reader: Draft, motion: str) -> str:
+    return next((code for code in reader.codes() if code in MOTIONS), motion)

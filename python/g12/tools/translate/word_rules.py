@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The rules in the order in which a block goes through them.
+
+A rule takes a `Draft`, rewrites its words or lines, carries its state on, or refuses.
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.blocks import places
+from g12.tools.translate.milling import hole_patterns, rotation
+from g12.tools.translate.rules import (
+    codes,
+    cycles,
+    cylinder,
+    decimals,
+    dwell,
+    increments,
+    modes,
+    motion,
+    offsets,
+    polar,
+    reference,
+    spindle,
+    subprograms,
+    tools,
+)
+from g12.tools.translate.turning import corners, cycles_of_turning, feed_of_c
+
+WORD_RULES = (
+    codes.keep_as_comments,
+    codes.map_codes,
+    spindle.orientation,
+    modes.follow_modes,
+    polar.plane_letters,
+    subprograms.call_macro,
+    dwell.dwell,
+    decimals.whole_units,
+    places.follow_places,
+    tools.tool_and_offsets,
+    spindle.speed_limit,
+    rotation.rotation,
+    offsets.numbered_offset,
+    offsets.offset_by_program,
+    reference.reference_point,
+    polar.switch_polar,
+    cylinder.switch_cylinder,
+    cylinder.on_the_surface,
+    polar.inside_polar,
+    feed_of_c.feed_of_c,
+    polar.feed_again,
+    motion.exact_stop,
+    cycles_of_turning.turning_cycle,
+    corners.direct_drawing,
+    increments.incremental_words,
+    hole_patterns.hole_pattern,
+    cycles.drilling_cycle,
+    reference.machine_position,
+    motion.motion_mode,
+    motion.distance_mode,
+    spindle.stop_behind_a_cut,
+    modes.refuse_leftovers,
+    subprograms.finish_call,
+)

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What `check` says of a lathe with C: its screen, its turns, G28; and what `install` sets."""
+
+import pytest
+
+from g12.tools.install import features, package_copy, removal
+from g12.tools.install.findings import NOTE, WARNING
+from g12.tools.install.ini_edit import IniText
+from g12.tools.install.installation import write_changes
+from g12.tools.install.lathe_rules import lathe_findings
+from g12.tools.install.plan import make_plan
+from support.small_configs import LATHE, MILL, config_of, with_lines, write_config
+
+SCREEN = f"[DISPLAY]\nDISPLAY = axis\n\n{LATHE}"
+
+
+@pytest.fixture(autouse=True)
+def small_package(monkeypatch):
+    files = {"python/g12/__init__.py": b"", "ngc/g12_skipped_over.ngc": b"(a sub)\n"}
+    own = ("python/toplevel.py", "python/remap.py")
+    files |= {name: (features.ROOT / name).read_bytes() for name in own}
+    monkeypatch.setattr(package_copy, "package_files", lambda: files)
+
+
+def found(folder, text, features=("polar",), var="5161 50.0\n"):
+    """Return kind and level of what `check` finds on a lathe."""
+    config = config_of(write_config(folder, text, **({"mill_var": var} if var else {})))
+    return {finding.kind: finding.level for finding in lathe_findings(config, features)}
+
+
+@pytest.mark.parametrize(
+    ("lines", "expected"),
+    [
+        ("", {"geometry": WARNING}),
+        ("GEOMETRY = XYZ\n", {"geometry": WARNING}),
+        ("GEOMETRY = XZC\n", {"geometry": WARNING}),  # moved first, then turned
+        ("GEOMETRY = CXZ!\n", {}),
+        ("GEOMETRY = -CXZ\n", {}),
+    ],
+)
+def test_a_screen_that_does_not_turn_the_part(tmp_path, lines, expected):
+    assert found(tmp_path, with_lines(SCREEN, "DISPLAY", lines)) == expected
+
+
+def test_only_a_lathe_with_c_and_sections_is_looked_at(tmp_path):
+    assert found(tmp_path, SCREEN, ["haas"]) == {}
+    assert found(tmp_path, f"[DISPLAY]\nDISPLAY = axis\n{MILL}") == {}
+    assert found(tmp_path, LATHE) == {}  # no screen
+
+
+def test_c_that_unwinds(tmp_path):
+    text = LATHE.replace("WRAPPED_ROTARY = 1", "MIN_LIMIT = -9999\nMAX_LIMIT = 9999")
+    assert found(tmp_path, text) == {"unwinding": NOTE}
+    assert found(tmp_path, text.replace("9999", "180")) == {}
+
+
+@pytest.mark.parametrize(
+    ("var", "never_set"),
+    [("", True), ("5161\t0.000000\n5163\t0.0\n5221\t7.0\n", True), ("5163\t-12.5\n", False)],
+)
+def test_a_g28_that_was_never_set(tmp_path, var, never_set):
+    assert found(tmp_path, LATHE, var=var) == ({"g28": NOTE} if never_set else {})
+
+
+@pytest.mark.parametrize(
+    ("text", "geometry"),
+    [
+        (SCREEN, "GEOMETRY = CXZ!"),
+        (SCREEN.replace("X Z C", "X Y Z C"), None),  # a mill
+        (with_lines(SCREEN, "DISPLAY", "GEOMETRY = XZ\n"), None),  # stays, and check reports it
+        (LATHE, None),
+    ],
+)
+def test_install_sets_the_geometry_and_uninstall_takes_it_out(tmp_path, text, geometry):
+    ini = write_config(tmp_path, text)
+    before = ini.read_bytes()
+    config = config_of(ini)
+    plan = make_plan(config, ["polar"])
+    write_changes(plan, config.folder)
+    added = set(ini.read_text().splitlines()) - set(before.decode().splitlines())
+    assert [line for line in added if "GEOMETRY" in line] == ([geometry] if geometry else [])
+    own = {"remap": {"polar_on": "g12.host"}, "remap_file": "g12/python/remap.py"}
+    assert make_plan(config_of(ini, **own), ["polar"]).changes() == {}
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert ini.read_bytes() == before
