@@ -19,7 +19,7 @@ from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.findings import pocket_notes
 from g12.tools.verify.pocket import judge_pocket, measure_pocket
 from g12.tools.verify.reading.circles import Cutter, Source, Target, Wall
-from g12.tools.verify.workpiece import assumed_workpiece
+from g12.tools.verify.workpiece import Program, assumed_workpiece
 from support.made_moves import LIMITS, Hand, samples_of
 
 TOLERANCE = 0.005
@@ -58,7 +58,9 @@ def measure(moves, wanted, real_shift=None):
     if real_shift is not None:
         real = follow(path, moves, samples_of(path, 8000, shift=real_shift), 1.0)
     block = Block(None, {}, (), (), (), {}, 1, len(moves))
-    piece = assumed_workpiece([(block, wanted)], moves, MILL, {1: 2 * wanted.cutter.loaded})
+    piece = assumed_workpiece(
+        Program(moves, MILL, [(block, wanted)], [], {1: 2 * wanted.cutter.loaded})
+    )
     return measure_pocket(block, wanted, path, moves, piece.material, TOLERANCE, real)
 
 

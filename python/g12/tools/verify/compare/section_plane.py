@@ -31,6 +31,11 @@ class Plane:
         self._angle = first.start[C]
         self.base = first.start[Z] - section.height
 
+    @property
+    def face(self) -> float:
+        """The level of the part's face, or of a cylinder's surface, in machine coordinates."""
+        return self.base
+
     def points(self, positions: np.ndarray) -> np.ndarray:
         """Return the points (complex) of machine positions (n, 9)."""
         angle = np.radians(positions[:, C] - self._angle)
@@ -84,6 +89,11 @@ class SurfacePlane(Plane):
         self._part = Surface(turning=True, radius=section.surface)
         self._shift = complex(*self._part.points(first.start)[0, :2]) - section.start
         self.base = first.start[X] - section.height
+
+    @property
+    def face(self) -> float:
+        """The level of the surface in machine coordinates."""
+        return self.base + self._part.radius
 
     def points(self, positions: np.ndarray) -> np.ndarray:
         """Return the points (complex) of machine positions (n, 9)."""

@@ -208,16 +208,16 @@ def trimmed_by(before: Curve, after: Curve, place: complex) -> float:
 def first_share(curve: Curve, place: complex) -> float:
     """Return the share of a curve at which it is met, near its start; of a circle both are."""
     share = curve.share_of(place)
-    return share if share < 0.5 or not is_circle(curve) else 0.0
+    return share if share < 0.5 or not _is_full_circle(curve) else 0.0
 
 
 def last_share(curve: Curve, place: complex) -> float:
     """Return the share of a curve at which it is left, near its end."""
     share = curve.share_of(place)
-    return share if share > 0.5 or not is_circle(curve) else 1.0
+    return share if share > 0.5 or not _is_full_circle(curve) else 1.0
 
 
-def is_circle(curve: Curve) -> bool:
+def _is_full_circle(curve: Curve) -> bool:
     """Tell whether a curve is a full circle, but for rounding."""
     return isinstance(curve, Arc) and abs(curve.sweep) > FULL_TURN - 1e-6
 
