@@ -119,7 +119,7 @@ def unrolled(scene: Scene) -> Scene:
     flat = Track(Flat(turning=False), positions, np.zeros_like(positions), path.move, path.time)
     trace = replace(subject.trace, moves=moves)
     shown = scene.seen._replace(material=MaterialFacts())
-    return replace(scene, subject=replace(subject, trace=trace, path=flat), seen=shown)
+    return replace(scene, subject=replace(subject, trace=trace, drawn=flat), seen=shown)
 
 
 def unrolled_move(move: Move, part: Surface) -> Move:
