@@ -113,7 +113,8 @@ def off_c(facts: SectionFacts) -> Iterator[Finding]:
     if speed > facts.c_limit * TURNING:
         yield Finding("c-speed", section.line, {"made": speed, "limit": facts.c_limit})
     if turns.too_far is not None:
-        yield Finding("c-turned-too-far", section.line, {"turned": turns.too_far})
+        line, degrees = turns.too_far
+        yield Finding("c-turned-too-far", line, {"turned": degrees})
 
 
 def off_motion(facts: SectionFacts) -> Iterator[Finding]:

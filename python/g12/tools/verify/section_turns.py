@@ -35,13 +35,13 @@ class InPlace(NamedTuple):
 class Turns(NamedTuple):
     """The highest speed of C, that asked of it where it turns in place, and how far it does.
 
-    ``too_far`` is the first move that turns it in place by more than half a turn.
+    ``too_far`` is the first that is more than half a turn: its line and its degrees.
     """
 
     speed: float
     asked: float
     in_place: InPlace
-    too_far: int | None
+    too_far: tuple[int, float] | None
 
 
 def turns_of(
@@ -56,7 +56,8 @@ def turns_of(
     still = [index for index in own if turns_in_place(moves[index], path.part_length(index))]
     speed = run_speed(own, real) if real else emitted_speed(own, path, plane)
     asked = max((rate(moves[index], 0.0) for index in still), default=0.0)
-    far = (index for index in still if abs(turned_by(moves[index])) > HALF_TURN)
+    turned = ((moves[index].line, abs(turned_by(moves[index]))) for index in still)
+    far = (each for each in turned if each[1] > HALF_TURN)
     return Turns(speed, asked, below_face(section, still, moves, path), next(far, None))
 
 

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Valid sections that are hard to compare with their words, and broken ones beside them."""
+
+import math
+
+import pytest
+
+from g12.tools.machine.ini import read_ini
+from g12.tools.verify.proof import prove
+from support.sim_machines import SIM
+
+HEAD = ["G21 G18 G8 G40 G90 G94 G64", "T3 M6", "S1000 M3", "G0 X40 Z2 C0", "G12.1"]
+FLATS = ["Z-3", "C-12", "X[-20-#1]", "C12", "X[20+#1]", "C11", "G40 X40", "G1 C12"]
+OUT = ["Z2", "G13.1", "M2", ""]
+
+
+@pytest.fixture
+def found(tmp_path):
+    """Return a function: the codes and lines that verify finds in a program's lines."""
+
+    def codes(*lines):
+        program = tmp_path / "program.ngc"
+        program.write_text("\n".join(lines))
+        proof = prove(program, read_ini(SIM / "lathe_mm_headless.ini"))
+        assert proof.sections
+        return [(each.code, each.line) for each in proof.judged if each.is_finding]
+
+    return codes
+
+
+@pytest.mark.parametrize("short", [0.0, 0.00002, 0.0002, 0.002])
+def test_an_inside_arc_that_closes_as_well_as_its_decimals(short, found):
+    """Its end is nearer to the centre; an outside corner of 90 degrees follows."""
+    start, centre = complex(20, math.sqrt(48)), 24 + 0j
+    end = centre + (start.conjugate() - centre) * (1 - short / 8)
+    arc = f"G3 X{end.real:.6f} C{end.imag:.6f} I{4:.6f} J{-start.imag:.6f}"
+    lead = ["G1 X40 C20 F1000", "G41 X20 C15", "Z-3", f"C{start.imag:.6f}"]
+    beyond = [f"G1 X0 C{end.imag - 3:.6f}", "C-30", "G40 X-10 C-40"]
+    assert found(*HEAD, *lead, arc, *beyond, *OUT) == []
+
+
+@pytest.mark.parametrize("step", [0.03, 0.01])
+def test_compensated_lines_that_are_as_short_as_their_decimals(step, found):
+    count = int(2 * math.pi * 5 / step)
+    angles = (-2 * math.pi * k / count for k in range(1, count + 1))
+    lines = [f"X{5 * math.cos(a):.4f} C{3.7 * math.sin(a):.4f}" for a in angles]
+    lead = ["G1 X30 C10 F1000", "Z-2", "G41 X5 C0 F800"]
+    assert found(*HEAD, *lead, *lines, "G40 X30", *OUT) == []
+
+
+def rough_and_finish(form):
+    """Return two flats cut with an allowance and without, in one section."""
+    lead = ["G1 X40 C12 F1000"]
+    if form == "loop":
+        loop = ["#1=0.3", "o1 while [#1 GE -0.1]", "G41 X[20+#1] C12", *FLATS]
+        return [*HEAD, *lead, *loop, "#1=[#1-0.3]", "o1 endwhile", *OUT]
+    if form == "sub":
+        sub = ["o100 sub", "G41 X[20+#1] C12", *FLATS, "o100 endsub"]
+        return [*sub, *HEAD, *lead, "o100 call [0.3]", "o100 call [0]", *OUT]
+    passes = [f"#1={allowance}\nG41 X[20+#1] C12" for allowance in (0.3, 0)]
+    return [*HEAD, *lead, passes[0], *FLATS, passes[1], *FLATS, *OUT]
+
+
+@pytest.mark.parametrize("form", ["lines", "loop", "sub"])
+def test_rough_with_an_allowance_and_finish_in_one_section(form, found):
+    assert found(*rough_and_finish(form)) == []
+
+
+def test_a_sub_that_is_called_outside_too_is_no_proof(found):
+    lines = ["o100 sub", "F900", "o100 endsub", *HEAD, "G1 X30 F800", "o100 call", "X20", *OUT[:2]]
+    assert found(*lines, "o100 call", "M2", "") == [("contour-unread", 8)]
