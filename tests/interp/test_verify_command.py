@@ -246,12 +246,18 @@ def test_plot_draws_any_program_and_a_lathe_with_c(written, tmp_path):
         assert path.exists()
 
 
+def test_plot_draws_a_refused_program_up_to_there(written, tmp_path, capsys):
+    path = tmp_path / "x.png"
+    assert main(["plot", written(WRONG), "--ini", MILL, "-o", str(path)]) == 1
+    assert path.exists()
+    assert "program.ngc:4: G12: I4 must be greater" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("text", "name", "code", "said"),
     [
         (GOOD, "x.bmp", 2, "x.bmp: the suffix must be one of .png, .svg, .pdf"),
         (GOOD, "nowhere/x.png", 2, "nowhere: no such directory"),
-        (WRONG, "x.png", 1, "program.ngc:4: G12: I4 must be greater"),
         (STILL, "x.png", 2, "moves nothing, so there is nothing to draw"),
     ],
 )
