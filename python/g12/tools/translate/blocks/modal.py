@@ -94,4 +94,10 @@ def merged(one: ModalState, other: ModalState) -> ModalState:
     """Return what is sure when a line is reached in either of two states."""
     if one == other:
         return one
-    return ModalState(*(a if a == b else UNSURE for a, b in zip(one, other)))
+    state = ModalState(*(a if a == b else UNSURE for a, b in zip(one, other)))
+    kept, others = dict(one.kept), dict(other.kept)
+    same = {
+        key: kept.get(key) if kept.get(key) == others.get(key) else UNSURE
+        for key in kept.keys() | others.keys()
+    }
+    return state._replace(kept=tuple(sorted(same.items())))
