@@ -129,7 +129,7 @@ def test_the_clamp_is_closed_in_holes_and_open_while_c_turns(lathe):
 
 def test_aborts_in_every_phase_leave_the_clamp_open(lathe):
     chance = random.Random(28)
-    for k in range(12):
+    for k in range(8):
         lathe.reset()
         depth = chance.uniform(-4, 8)
         lathe.open_text([*START, FACE if k % 2 else SIDE, "M2"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G12.4 and G13.4, the first and the last block of the shapes' subs.
+"""G12.4 and G13.4, the first and the last block of the subs of shapes and holes.
 
 G12.4 takes the entries of the call from the sub's named locals, checks the shape as a whole, and
 gives the sub the numbers of its motion; G13.4 puts back the modes that G12.4 found.
@@ -128,7 +128,7 @@ def shape_at_work(interp: object) -> str:
     name, code = interp.sub_context[interp.call_level - 1].subname, glue.code_of_block(interp)
     if name not in SHAPES and name not in HOLES:
         *names, last = *SHAPES, *HOLES
-        where = f"belongs into the subs {', '.join(names)} and {last}: call one of them"
+        where = f"belongs in the subs {', '.join(names)} and {last}: call one of them"
         raise BlockRefusal(code, where)
     if not stands_alone(interp.blocks[interp.remap_level]):
         raise BlockRefusal(code, "stands alone in its block")
