@@ -60,7 +60,7 @@ def drilled(traced):
 def check_turning(traced, axis, height):
     """C turns in rapids alone, at the retract height or above."""
     turns = [move for move in traced.moves if move.start[C] != move.end[C]][1:]
-    assert all(move.kind == "rapid" for move in turns)
+    assert all(move.kind == "rapid" and move.exact for move in turns)
     assert [move.start[axis] for move in turns] == pytest.approx([move.end[axis] for move in turns])
     assert all(move.start[axis] > height - 1e-6 for move in turns) and turns
 
@@ -96,6 +96,27 @@ def test_modes_and_f_are_afterwards_as_before(lathe, modes):
     assert ends[0].printed == ends[1].printed
     path = [set(end.modes.gcodes) for end in ends]
     assert path[0] == path[1] and ends[0].modes.blending == ends[1].modes.blending
+
+
+def test_on_a_wrapped_axis_too_c_turns_the_shorter_way():
+    overrides = {"AXIS_C": {"WRAPPED_ROTARY": 1}}
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides, tools={1: 6.0}) as lathe:
+        traced = lathe.trace_text(program(call("face_holes", first_angle=-30, step_angle=-100)))
+    assert [c % 360 for _, _, c in drilled(traced)] == pytest.approx([330, 230, 130])
+    turns = [move.end[C] - move.start[C] for move in traced.moves[1:]]
+    assert [turn for turn in turns if abs(turn) > 1e-9] == pytest.approx([-130, -100, -100])
+
+
+def test_a_tool_beside_the_x_line_drills_where_it_should():
+    overrides = {"G12": {"POLAR_TOOL_OFFSET": 9}}
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides, tools={1: 6.0}) as lathe:
+        traced = lathe.trace_text(program(call("face_holes")))
+        refused = lathe.trace_text(program(call("side_holes")))
+    ends = [move.end for move in traced.moves if move.kind == "feed"]
+    points = [complex(end[X], end[1]) * np.exp(1j * np.radians(end[C])) for end in ends]
+    drawn = [15 * np.exp(1j * np.radians(c)) for c in (20, 140, 260)]
+    assert np.allclose(points, drawn, atol=1e-6)
+    assert "needs a tool on the X line" in refused.error.text
 
 
 def z_of(traced):
