@@ -168,6 +168,13 @@ def test_the_clamp_is_closed_for_every_hole_and_open_between(tmp_path):
     assert sum(turned for _, _, turned in seen) == 4  # the start's, and one to each hole
 
 
+def test_a_clamp_whose_codes_are_unknown_is_refused():
+    with Tracer(SIM / "lathe_mm.ini", overrides={"G12": {"C_CLAMP": "M110 M11"}}) as lathe:
+        traced = lathe.trace_text(program(call("face_holes")))
+    why = "[G12] C_CLAMP: M11 is no code of this machine: a REMAP line?"
+    assert traced.error.text == f"face_holes line 6: {why}" and len(traced.moves) == 1
+
+
 def test_300_random_bad_calls_move_nothing(lathe):
     chance = random.Random(28)
     bad = {

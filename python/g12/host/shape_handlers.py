@@ -85,6 +85,7 @@ def prepare_holes(
     Rapids that LinuxCNC blends would let C turn before the tool is out of its hole.
     """
     entries = ShapeEntries(name, HOLES[name].entries, locals_at(interp, level))
+    check_clamp(entries)
     machine = hole_machine(interp, start, setup)
     plan = HOLES[name].plan(entries, cycle_glue.snapshot(interp), machine)
     stay_in_travel(entries, plan.extent(), setup)
@@ -97,6 +98,15 @@ def prepare_holes(
     cycle_glue.state_of(interp).path = path_control(interp)
     interp.execute("G61")
     return INTERP_OK
+
+
+def check_clamp(entries: ShapeEntries) -> None:
+    """Refuse M codes of C's clamp that this LinuxCNC cannot know."""
+    for code in SETTINGS.c_clamp:
+        if f"M{code}" not in REMAPS and code not in OWN_CODES and code not in USER_CODES:
+            raise entries.refuse(
+                f"[G12] C_CLAMP: M{code} is no code of this machine: a REMAP line?"
+            )
 
 
 def hole_machine(interp: object, start: SectionStart, setup: SectionSetup) -> HoleMachine:
@@ -120,6 +130,7 @@ def polar_shape_done(self, **words):
     return INTERP_OK
 
 
+OWN_CODES, USER_CODES = range(3, 10), range(100, 200)  # M codes without a REMAP line
 SPINDLE = 2  # index into active_m_codes: 3, 4 or 5
 
 
