@@ -43,7 +43,7 @@ MEANING = {
     "cylinder": "G7.1 (G07.1) cylindrical interpolation on and off",
     KINEMATICS: "G12.1 in LinuxCNC's planner, on a lathe of the usual form (make kinematics)",
     FORMS: "pages to fill in, with pictures, for the codes that the machine has",
-    SHAPES: "o<polar_polygon>, o<polar_slot> and o<polar_pocket> call, by G12.4/G13.4",
+    SHAPES: "o<polar_polygon> and other shapes, o<face_holes> and other holes, by G12.4/G13.4",
     **{
         name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()
     },
@@ -53,7 +53,15 @@ SUBS = {  # what a program, or a handler, calls besides the codes
     "haas": ("g12_helix",),
     "circle-mill": ("circle_mill",),
     **dict.fromkeys(AXES, ("g12_skipped_over",)),
-    SHAPES: ("polar_polygon", "polar_slot", "polar_pocket"),
+    SHAPES: (
+        "polar_polygon",
+        "polar_slot",
+        "polar_pocket",
+        "face_holes",
+        "side_holes",
+        "face_hole_at",
+        "g12_holes",
+    ),
 }
 
 CLOSE = 0.8  # share of letters in common that makes a name a misspelt one
