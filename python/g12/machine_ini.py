@@ -169,6 +169,11 @@ def remap_lines(find_all: FindAll) -> list[Remap]:
     return [remap_from_value(value) for value in find_all("RS274NGC", "REMAP")]
 
 
+def code_of_prolog(remaps: Iterable[Remap], prolog: str) -> str:
+    """Return the code that is remapped with a prolog, "" if none is."""
+    return next((remap.code for remap in remaps if remap.keywords.get("prolog") == prolog), "")
+
+
 def remap_from_value(value: str) -> Remap:
     """Return the REMAP line of an INI value; keywords may be shortened as LinuxCNC allows."""
     code, *options = value.split("#")[0].split() or [""]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,7 @@ from g12.ini_sections import entries_of, with_included
 from g12.lengths import is_inch
 
 SECTION = "G12"
+M_CODE = re.compile(r"M\d{1,3}")
 TOLERANCE_MM, TOLERANCE_INCH = 0.005, 0.0002
 
 
@@ -68,7 +70,22 @@ class Number:
         return above if math.isinf(self.most) else f"{above}, {number(self.most)} at most"
 
 
-TABLE: dict[str, Choice | Number] = {
+@dataclass(frozen=True)
+class TwoCodes:
+    """A setting of two M codes; none by default."""
+
+    default: tuple[int, ...] = ()
+    legal = "two M codes such as M10 M11"
+
+    def read(self, text: str) -> tuple[int, ...]:
+        """Return the numbers of the codes, or raise ValueError."""
+        words = text.upper().split()
+        if len(words) != 2 or not all(M_CODE.fullmatch(word) for word in words):
+            raise ValueError(text)
+        return tuple(int(word[1:]) for word in words)
+
+
+TABLE: dict[str, Choice | Number | TwoCodes] = {
     "CLEARING": Choice("rings", ("rings", "spiral")),
     "ENTRY": Choice("plunge", ("plunge", "helix")),
     "ENTRY_ANGLE": Number(3.0, most=45.0),
@@ -84,6 +101,7 @@ TABLE: dict[str, Choice | Number] = {
     "POLAR_TOOL_OFFSET": Number(0.0, least=-math.inf),
     "CYLINDER_WORD": Choice("radius", ("radius", "diameter")),
     "CYLINDER_X": Choice("refuse", ("refuse", "allow")),
+    "C_CLAMP": TwoCodes(),
 }
 
 
@@ -111,6 +129,7 @@ class Settings:
     polar_tool_offset: float = TABLE["POLAR_TOOL_OFFSET"].default
     cylinder_word: str = TABLE["CYLINDER_WORD"].default
     cylinder_x: str = TABLE["CYLINDER_X"].default
+    c_clamp: tuple[int, ...] = TABLE["C_CLAMP"].default
 
     def tolerance(self, millimetres: float) -> float:
         """Return POLAR_TOLERANCE in machine units, which are ``millimetres`` long."""

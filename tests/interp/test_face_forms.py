@@ -14,7 +14,7 @@ NOTHING = 0.002  # mm² of what rounding leaves of areas
 CUTTER = 6.0
 UNITS = {"mm": 1.0, "inch": INCH}
 BOTH = pytest.mark.parametrize("unit", UNITS)
-COUNTS = ("tool", "speed", "sides", "angle", "on", "off")
+COUNTS = ("tool", "speed", "sides", "angle", "on", "off", "count", "first_angle", "step")
 
 
 @pytest.fixture(scope="module")
@@ -66,6 +66,18 @@ def test_a_pocket_comes_out_as_filled_in(cut, unit):
     way = path(cut("face_pocket", unit, x=12, c=4, diameter=15, depth=3))
     assert area_off(way.area(-3, CUTTER / 2), disc(6, 4, 15), TOLERANCE) < NOTHING
     assert way.z.min() == pytest.approx(-3, abs=1e-9)
+
+
+@BOTH
+def test_holes_come_out_as_filled_in(cut, unit):
+    face = cut("face_holes", unit, circle_diameter=30, first_angle=20, depth=8, height=2, count=3)
+    side = cut("side_holes", unit, z=-10, first_angle=30, surface_diameter=40, depth=8, height=2,
+               count=2, step=90, clear=60)  # fmt: skip
+    assert face.error is None and side.error is None, (face.error, side.error)
+    for found, bottom in ((face, (15, -8)), (side, (12, -10))):
+        drilled = [move.end for move in found.moves if move.kind == "feed"]
+        assert [(end[0], end[2]) for end in drilled] == [pytest.approx(bottom)] * len(drilled)
+    assert [move.end[5] for move in side.moves if move.kind == "feed"] == pytest.approx([30, 120])
 
 
 @BOTH

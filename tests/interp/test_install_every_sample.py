@@ -87,6 +87,8 @@ def why_not(ini, name):
     """Return the kind of finding by which a machine must refuse a single feature, None if none."""
     if name in features.FILES and is_outside(ini):
         return "outside"
+    if name == features.SPINDLE_C:
+        return "pins"
     own = {remap_from_value(value).number for value in ini.all("RS274NGC", "REMAP")}
     if name in features.FILES and own & {remap.number for remap in features.remaps_of(name)}:
         return "taken"

@@ -438,7 +438,8 @@ def test_a_cutter_of_the_table_has_its_unit_where_the_programs_is_another(entrie
 @pytest.mark.parametrize("code", ["G12.4", "G13.4"])
 def test_the_codes_stand_in_the_subs_alone(lathe, code):
     assert refused(lathe, program(code)) == (
-        f"{code} line 5: belongs into the subs polar_polygon, polar_slot and polar_pocket: "
+        f"{code} line 5: belongs in the subs polar_polygon, polar_slot, polar_pocket,"
+        " face_holes, side_holes and face_hole_at: "
         "call one of them"
     )
 

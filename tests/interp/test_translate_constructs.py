@@ -57,6 +57,12 @@ CONSTRUCTS = [
      "G0 X[1+SQRT[.5]] Y[1-SQRT[.5]]\nG1 X[1+3*SQRT[.5]] Y[1+SQRT[.5]]"),
     ("haas-mill", "G10 L12 P1 R.5\nG10 L13 P1 R.02\nT1 M6\nG41 D1 G1 X2.\nY3.\nG40 X4.",
      "G10 L1 P1 R.26\nT1 M6\nG41 D1 G1 X2\nY3\nG40 X4"),
+    # rigid tapping: G33.1, which follows the spindle
+    ("haas-mill", "M29 S200\nG84 X2. Z.5 R.9 F10.\nX3.\nG80",
+     "S200 (M29)\nM3 S200\nF10\nG0 X2\nZ.9\nG33.1 Z.5 K.05\nG0 Z1\nX3\nZ.9\n"
+     "G33.1 Z.5 K.05\nG0 Z1\nG80\nG0"),
+    ("fanuc-mill", "M29 S200\nG99 G74 Z.5 R.9 F10.\nX3.\nG80\nG0 Z2.",
+     "S200 (M29)\nM4 S200\nG99 F10\nG0 Z.9\nG33.1 Z.5 K.05\nG0 X3\nG33.1 Z.5 K.05\nG80\nG0 Z2"),
     # what needs nothing done, with the words that are its own
     ("haas-mill", "G187 P1 E.01\nG103 P1\nX2.\nG103", "X2"),
     ("fanuc-mill", "G5.1 Q1\nG8 P1\nG1 X2.\nG5.1 Q0", "G1 X2"),

@@ -10,7 +10,7 @@ from support.foreign_programs import BUILDERS_CODES
 from support.foreign_programs import MACHINES as CONTROLS
 from support.sim_machines import PROGRAMS, SIM
 
-MACHINES = {**FOLDERS, **CONTROLS}
+MACHINES = {**FOLDERS, **CONTROLS, "holes": "lathe_mm"}
 WRONG = {
     "haas/O60121": ["of material remain uncut"] * 2,  # Q is wider than its cutter
     "fanuc-lathe/cylinder": ["the tool crosses the contour on its way in"],

@@ -257,6 +257,68 @@ def face_pocket() -> Figure:
     return figure
 
 
+def face_holes() -> Figure:
+    """Return the picture of the form of holes on a face."""
+    figure, plan, side = face()
+    circle(plan, 0.95, fill=STOCK)
+    circle(plan, 0.62, line=FAINT, dashed=True)
+    for angle in range(20, 380, 60):
+        circle(plan, 0.13, centre=at(0.62, angle), fill=CUT, width=1.2)
+    plan.plot((0, 0.8), (0, 0), color=WORD, lw=0.5)
+    plan.plot(*zip((0, 0), at(0.8, 20)), color=WORD, lw=0.5)
+    plan.plot(*zip((0, 0), at(0.8, 80)), color=WORD, lw=0.5)
+    turn(plan, 0.36, 20, 80)
+    plan.text(*at(0.36, 50), "step", bbox=PLATE, zorder=5, **WORDS)
+    plan.text(0.72, 0.1, "first", bbox=PLATE, **WORDS)
+    measure(plan, at(0.62, 140), at(0.62, 320), "circle diameter", 0.5)
+    plan.text(0.05, 1.1, "first: C of the first hole", **NOTE)
+    bar_with_hole(side)
+    return figure
+
+
+def bar_with_hole(side: Axes) -> None:
+    """Draw a bar with a hole from its end, and the drill at its retract height."""
+    side.add_patch(Rectangle((-0.6, -0.45), 0.65, 0.9, facecolor=STOCK, edgecolor=INK, lw=0.8))
+    side.add_patch(Rectangle((-0.25, 0.06), 0.3, 0.16, facecolor=CUT, edgecolor=INK, lw=0.7))
+    side.add_patch(Rectangle((0.3, 0.06), 0.5, 0.16, facecolor=TOOL, edgecolor=INK, lw=0.7))
+    side.text(0.57, 0.14, "T", **WORDS)
+    measure(side, (-0.25, -0.62), (0.05, -0.62), "")
+    side.text(-0.1, -0.78, "depth", bbox=PLATE, **WORDS)
+    measure(side, (0.05, 0.62), (0.3, 0.62), "")
+    side.text(0.25, 0.78, "height", bbox=PLATE, **WORDS)
+    side.plot((0.05, 0.05), (-0.95, 1.0), color=WORD, lw=0.5, ls=(0, (2, 2)))
+    side.text(0.05, -1.08, "Z0", **WORDS)
+
+
+def side_holes() -> Figure:
+    """Return the picture of the form of holes round a bar."""
+    figure, plan, side = face()
+    circle(plan, 0.7, fill=STOCK, width=1.2)
+    for angle in (30, 120, 210, 300):
+        for across in (-0.1, 0.1):
+            cosine, sine = at(1.0, angle)
+            ends = [(r * cosine - across * sine, r * sine + across * cosine) for r in (0.35, 0.69)]
+            plan.plot(*zip(*ends), color=INK, lw=0.9)
+    plan.plot((0, 0.9), (0, 0), color=WORD, lw=0.5)
+    plan.plot(*zip((0, 0), at(0.95, 30)), color=WORD, lw=0.5)
+    plan.plot(*zip((0, 0), at(0.95, 120)), color=WORD, lw=0.5)
+    turn(plan, 0.9, 30, 120)
+    plan.text(*at(0.9, 75), "step", bbox=PLATE, zorder=5, **WORDS)
+    plan.text(*at(0.84, 14), "first", bbox=PLATE, **WORDS)
+    measure(plan, (-0.7, -0.95), (0.7, -0.95), "surface diameter")
+    plan.text(0.05, 1.1, "first: C of the first hole", **NOTE)
+    side.add_patch(Rectangle((-0.6, -0.6), 1.1, 0.9, facecolor=STOCK, edgecolor=INK, lw=0.8))
+    side.add_patch(Rectangle((-0.13, 0.0), 0.16, 0.3, facecolor=CUT, edgecolor=INK, lw=0.7))
+    side.add_patch(Rectangle((-0.13, 0.5), 0.16, 0.45, facecolor=TOOL, edgecolor=INK, lw=0.7))
+    side.text(-0.05, 0.75, "T", **WORDS)
+    measure(side, (-0.3, 0.0), (-0.3, 0.3), "depth")
+    measure(side, (0.2, 0.3), (0.2, 0.5), "height")
+    measure(side, (-0.05, -0.8), (0.5, -0.8), "z")
+    side.plot((0.5, 0.5), (-0.95, 0.3), color=WORD, lw=0.5, ls=(0, (2, 2)))
+    side.text(0.5, -1.08, "Z0", **WORDS)
+    return figure
+
+
 PICTURES = {
     "form_haas": haas,
     "form_yasnac": yasnac,
@@ -265,6 +327,8 @@ PICTURES = {
     "form_polygon": polygon,
     "form_slot": slot,
     "form_face_pocket": face_pocket,
+    "form_face_holes": face_holes,
+    "form_side_holes": side_holes,
 }
 
 

@@ -97,7 +97,7 @@ def test_forms_of_codes_that_are_there_and_in_the_machines_unit(tmp_path):
 def test_a_lathe_gets_the_forms_of_the_shapes(tmp_path):
     ini = write_config(tmp_path, AXIS.replace("X Y Z", "X Z C"))
     put_in(ini, "polar", "polar-shapes", "forms")
-    shown = ("form_polygon_mm", "form_slot_mm", "form_face_pocket_mm")
+    shown = ("form_polygon_mm", "form_slot_mm", "form_face_pocket_mm", "form_face_holes_mm")
     assert "".join(f"NGCGUI_SUBFILE = {form}.ngc\n" for form in shown) in ini.read_text()
 
 

@@ -574,6 +574,7 @@ def test_the_pages_own_control_is_one(tmp_path):
 PARTS = """
 G0 G1 G2 G28 G53 G91 G90 G81 G80 G10 L2 L10 G154 G65 M98 M97 M99 M30 P1 P100 O1 O100 N100
 X1. Y-1 Z.5 U1. W-2. H0 T0101 G12.1 G13.1 G112 G50 S100 G96 #1=2 #100=[1+2] WHILE[#1LT2]DO1
+G70 G71 G73 G76 G90 G92 G94 G32 P1 Q2 N1 N2 D.5 M24 G68 G69 G72 I1. J0. L3 ,C1. ,R2. ,A30. X0 M99
 END1 IF[#1EQ1]THEN#2=3 GOTO5 K0 L0 R Q.1 D1 G41 G40 ( ) [ ] % ; / # = é
 """
 WORDS = st.sampled_from([*PARTS.split(), *"\n\n\n\n\0\t "])
@@ -768,3 +769,19 @@ def test_a_place_of_g28_that_was_never_set_is_said(tmp_path, value, said):
     control = translate.with_facts_of(HAAS, read_ini(tmp_path / "m.ini"))
     text = translate_program("G20 G0 X1.\nG91 G28 Z0\nM30\n", control).text
     assert ("(G28.1 was never set on this machine: machine zero)" in text) == said
+
+
+@pytest.mark.parametrize(
+    "block", [",C1.", "N1 X10. ,A90. ,R1.", "G71 U1.\nG71 P1 Q2\nN1 X1.\nN2 ,C1."]
+)
+def test_drawing_that_goes_nowhere_is_refused(block):
+    assert sentence(LATHE, f"G21 G98 G1 F9.\nX10. Z5.\n{block}\nM30\n")
+
+
+def test_a_program_that_begins_again_may_rough(tmp_path):
+    text = (
+        "G21 G99 S9\nG0 X50. Z2.\nG71 U2. R1.\nG71 P1 Q2 U1.\nN1 G0 X20.\nG1 Z-5.\nN2 X50.\nM99\n"
+    )
+    assert lines(LATHE, text)[-1] == "M99"
+    refused = sentence(LATHE, text.replace("G71 U2. R1.", "G71 U2.").replace("M99", "G71 R3.\nM99"))
+    assert "retract here is not the same on every way" in refused.sentence

@@ -158,6 +158,20 @@ def diameter_mode(interp: object) -> bool:
     return (interp.active_g_codes[DIAMETER] if commanded == -1 else commanded) == G7
 
 
+def run_code(interp: object, block: str) -> None:
+    """Execute a block whose code may be remapped to a sub, with the sub's lines.
+
+    `Interp::_execute` (rs274ngc_pre.cc) does so itself for a block typed in MDI, but then goes on
+    until all calls have returned, the handler's own too.
+    """
+    level = interp.call_level
+    interp.read(block)
+    interp.execute(None)
+    while interp.call_level > level:
+        interp.read(None)
+        interp.execute(None)
+
+
 def message(text: str) -> None:
     """Show the operator a message that is no error."""
     emccanon.MESSAGE(text)

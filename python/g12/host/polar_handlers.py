@@ -70,15 +70,26 @@ def polar_off(self, **words) -> Iterator[int]:
         glue.forget_return(self)
         block = self.blocks[self.remap_level]
         others = any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS)
-        if others or (block.p_flag and not FACE):
+        if others or (block.p_flag and not (FACE or SETTINGS.c_clamp)):
             raise BlockRefusal(glue.code_of_block(self), "stands alone in its block")
         if block.p_flag:
-            face_by_hand.abort(self)
+            after_abort(self)
         elif KINEMATICS and self.task:
             yield from face_by_hand.switch_off(self)
     except Exception as error:
         yield glue.refuse_block(self, error)
     yield INTERP_OK
+
+
+def after_abort(interp: object) -> None:
+    """Open the clamp of C, and come back from the face, after an abort.
+
+    In this order: coming back ends with what acts on the next line that is read.
+    """
+    if SETTINGS.c_clamp:
+        glue.run_code(interp, f"M{SETTINGS.c_clamp[1]}")
+    if FACE:
+        face_by_hand.abort(interp)
 
 
 def run_by_hand(interp: object) -> Iterator[int]:

@@ -67,6 +67,17 @@ class Action(NamedTuple):
     level: int | None = None
 
 
+def tolerances(settings: Sequence[float]) -> str:
+    """Return the block that commands G64 with the tolerances of the active settings."""
+    return f"G64P{decimal(settings[TOLERANCE])}Q{decimal(settings[MERGING])}"
+
+
+def path_control(interp: object) -> str:
+    """Return the block that commands the path control in force."""
+    code = interp.active_g_codes[PATH_ACTIVE]
+    return tolerances(interp.active_settings) if code == G64 else f"G{code / 10:g}"
+
+
 class PathControl:
     """G61, G61.1 or G64 as the program commanded it, and as the pieces of a section need it.
 
@@ -82,8 +93,7 @@ class PathControl:
     def find(self) -> None:
         """Take what is in force for what the program commanded."""
         settings, code = self.interp.active_settings, self.interp.active_g_codes[PATH_ACTIVE]
-        self._tolerances = f"G64P{decimal(settings[TOLERANCE])}Q{decimal(settings[MERGING])}"
-        self._commanded = self._tolerances if code == G64 else f"G{code / 10:g}"
+        self._tolerances, self._commanded = tolerances(settings), path_control(self.interp)
         own_tolerance = code == G64 and settings[TOLERANCE] > 0
         self._within = self._commanded if own_tolerance else self.smooth
         is_initial = abs(settings[TOLERANCE] - self._initial) < SAME_TOLERANCE

@@ -9,6 +9,7 @@ from g12.host import glue
 from g12.host.program_lines import without_line
 from g12.host.section_output import PER_REVOLUTION
 from g12.host.section_reader import block_of
+from g12.host.spindle_c import missing_code
 from g12.section.block_rules import alone
 from g12.section.line import SectionPlace
 from g12.section.modes import SectionModes
@@ -50,6 +51,7 @@ def start_of_section(interp: object, line: int, words: str = "") -> SectionStart
         inverse_time=interp.feed_mode == INVERSE_TIME,
         surface_speed=G96 in without_line(interp.active_g_codes),
         rotated=interp.rotation_xy != 0,
+        missing_code=missing_code(interp),
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G12.4 and G13.4, the first and the last block of the shapes' subs.
+"""G12.4 and G13.4, the first and the last block of the subs of shapes and holes.
 
 G12.4 takes the entries of the call from the sub's named locals, checks the shape as a whole, and
 gives the sub the numbers of its motion; G13.4 puts back the modes that G12.4 found.
@@ -18,6 +18,7 @@ from g12.host import cycle_glue, glue
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.kinematics_switch import face_in_force
 from g12.host.section_glue import AXES, COORDINATES, FACE, KINEMATICS, REMAPS, SETTINGS
+from g12.host.section_output import path_control
 from g12.host.section_start import stands_alone, start_of_section
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
@@ -27,8 +28,9 @@ from g12.section.codes import code_of_handler
 from g12.section.line import SectionPlace
 from g12.section.modes import decimal
 from g12.section.start import SectionStart
-from g12.shapes import polygon, round_pocket, slot
+from g12.shapes import holes, polygon, round_pocket, slot
 from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, check_nearest
+from g12.shapes.holes import HoleMachine
 
 
 class Shape(NamedTuple):
@@ -43,6 +45,11 @@ SHAPES = {
     "polar_slot": Shape(slot.ENTRIES, slot.plan_slot),
     "polar_pocket": Shape(round_pocket.ENTRIES, round_pocket.plan_round_pocket),
 }
+HOLES = {
+    "face_holes": Shape(holes.FACE_HOLES, holes.plan_face_holes),
+    "side_holes": Shape(holes.SIDE_HOLES, holes.plan_side_holes),
+    "face_hole_at": Shape(holes.FACE_HOLE_AT, holes.plan_face_hole_at),
+}
 
 
 @glue.handler
@@ -54,6 +61,8 @@ def polar_shape(self, **words):
         raise BlockRefusal(name, "G12.1 is on, by hand: G13.1 first")
     start = start_of_shape(self, name)
     setup = polar_setup(start, SETTINGS, AXES, FACE)
+    if name in HOLES:
+        return prepare_holes(self, level, name, start, setup)
     entries = ShapeEntries(name, SHAPES[name].entries, locals_at(self, level))
     machine = shape_machine(setup)
     plan = SHAPES[name].plan(entries, cycle_glue.snapshot(self), machine)
@@ -68,21 +77,69 @@ def polar_shape(self, **words):
     return INTERP_OK
 
 
+def prepare_holes(
+    interp: object, level: int, name: str, start: SectionStart, setup: SectionSetup
+) -> int:
+    """Check holes and set the locals of their motion, which is made in G61 as drilling cycles are.
+
+    Rapids that LinuxCNC blends would let C turn before the tool is out of its hole.
+    """
+    entries = ShapeEntries(name, HOLES[name].entries, locals_at(interp, level))
+    check_clamp(entries)
+    machine = hole_machine(interp, start, setup)
+    plan = HOLES[name].plan(entries, cycle_glue.snapshot(interp), machine)
+    stay_in_travel(entries, plan.extent(), setup)
+    numbers = plan.locals()
+    for x_word in ("at_x", "at_x_axis"):
+        numbers[x_word] *= 1 + start.diameter
+    close, opens = SETTINGS.c_clamp or (0, 0)
+    set_locals_at(interp, level, {**numbers, "clamp": close, "unclamp": opens})
+    cycle_glue.note_modes(interp)
+    cycle_glue.state_of(interp).path = path_control(interp)
+    interp.execute("G61")
+    return INTERP_OK
+
+
+def check_clamp(entries: ShapeEntries) -> None:
+    """Refuse M codes of C's clamp that this LinuxCNC cannot know."""
+    for code in SETTINGS.c_clamp:
+        if f"M{code}" not in REMAPS and code not in OWN_CODES and code not in USER_CODES:
+            raise entries.refuse(
+                f"[G12] C_CLAMP: M{code} is no code of this machine: a REMAP line?"
+            )
+
+
+def hole_machine(interp: object, start: SectionStart, setup: SectionSetup) -> HoleMachine:
+    """Return what holes have to know of the machine."""
+    return HoleMachine(
+        c=start.c,
+        spindle_code=interp.active_m_codes[SPINDLE],
+        beside=setup.words.beside,
+        diameters=setup.words.diameter,
+    )
+
+
 @glue.handler
 def polar_shape_done(self, **words):
     """Put back the modes that the shape found, F among them: G13.4."""
     shape_at_work(self)
     cycle_glue.restore_modes(self)
-    self.execute(f"F{decimal(cycle_glue.state_of(self).feed)}")
+    state = cycle_glue.state_of(self)
+    path, state.path = state.path, ""
+    self.execute(f"{path}F{decimal(state.feed)}")
     return INTERP_OK
+
+
+OWN_CODES, USER_CODES = range(3, 10), range(100, 200)  # M codes without a REMAP line
+SPINDLE = 2  # index into active_m_codes: 3, 4 or 5
 
 
 def shape_at_work(interp: object) -> str:
     """Return the name of the shape in whose sub the code stands; refuse it anywhere else."""
     name, code = interp.sub_context[interp.call_level - 1].subname, glue.code_of_block(interp)
-    if name not in SHAPES:
-        *names, last = SHAPES
-        where = f"belongs into the subs {', '.join(names)} and {last}: call one of them"
+    if name not in SHAPES and name not in HOLES:
+        *names, last = *SHAPES, *HOLES
+        where = f"belongs in the subs {', '.join(names)} and {last}: call one of them"
         raise BlockRefusal(code, where)
     if not stands_alone(interp.blocks[interp.remap_level]):
         raise BlockRefusal(code, "stands alone in its block")

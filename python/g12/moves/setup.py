@@ -50,6 +50,7 @@ def check_entry(
             f"needs a machine with an {', '.join(others)} and a {last} axis",
         ),
         (start.alone, "stands alone in its block"),
+        (not start.missing_code, f"needs the spindle as C: {start.missing_code} first"),
         (not start.compensated, "needs G40: compensation is switched on inside"),
         (not start.inverse_time, "needs G94 or G95, not G93"),
         (not start.surface_speed, "needs G97: with G96 the speed would change with X"),

@@ -45,6 +45,7 @@ class SectionStart(NamedTuple):
     inverse_time: bool  # G93
     surface_speed: bool  # G96
     rotated: bool  # the work offset, by G10 L2 R
+    missing_code: str = ""  # makes the spindle C, where it is not
 
 
 class WordRules(NamedTuple):

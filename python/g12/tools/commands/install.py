@@ -16,6 +16,7 @@ from g12.tools.install import features
 from g12.tools.install.checking import read_config_text
 from g12.tools.install.installation import excluding, install
 from g12.tools.install.plan import Refused
+from g12.tools.install.spindle_c import read_pins
 from g12.tools.progress import print_all
 
 EXAMPLES = """\
@@ -42,6 +43,7 @@ def command_parser() -> Parser:
     parser.add_argument("ini", nargs="?", type=Path, help="INI file of the machine")
     wanted = {"dest": "wanted", "nargs": "+", "default": [], "metavar": "FEATURE"}
     parser.add_argument("--with", **wanted, help="what to install (see below)")
+    parser.add_argument("--pins", type=Path, metavar="TOML", help="inputs of the drive: spindle-c")
     parser.add_argument("--dry-run", action="store_true", help="show the changes only")
     return parser
 
@@ -74,8 +76,9 @@ def main(arguments: list[str]) -> int:
         parser.error(wrong)
     for pair in excluding(wanted):
         raise UsageError(f"{pair} exclude each other: choose one")
+    pins = read_pins(options.pins) if options.pins else None
     try:
-        print_all(install(read_config_text(ini), wanted, options.dry_run))
+        print_all(install(read_config_text(ini), wanted, options.dry_run, pins))
     except Refused as refused:
         for finding in refused.args:
             text = f"[{finding.kind}] {finding.text}; cure: {finding.cure}"

@@ -33,6 +33,7 @@ from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.refused import with_refused_contour
 from g12.tools.plot.scene import Scene, scene_of
+from g12.tools.plot.side_holes import drilled_surface
 from g12.tools.preview.ended import ended, ended_text, explained
 from g12.tools.preview.moves import message_lines
 from g12.tools.preview.source_lines import trace_in_source
@@ -116,6 +117,8 @@ def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Scene
         scene = scene_of(subject, options.units, options.feeds)
         if not found.error:
             seen = seen_in(subject, options.tools, options.var, stock_of(options))
+            surface = seen.surface or drilled_surface(subject, options.tools, options.var)
+            seen = seen._replace(surface=surface)
             scene = replace(scene, override=options.override, seen=seen)
         style.save(picture_of(scene), options.output)
     return scene

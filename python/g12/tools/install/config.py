@@ -30,7 +30,8 @@ def g12_config():
     }})
 print(g12_config(), flush=True)
 """
-UNUSED = "G99.8"  # no LinuxCNC has a meaning for it
+UNUSED = ("G99.8", "M20", "M999")  # no LinuxCNC has a meaning for them
+HIGH_M = 200  # from here on its text about an unknown M code is another
 NO_REMAPS: Overrides = {"RS274NGC": {"REMAP": None, "RS274NGC_STARTUP_CODE": None}}
 MOST_FOLDERS = 10  # of SUBROUTINE_PATH; LinuxCNC ignores the rest
 
@@ -103,9 +104,14 @@ def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None
 
 
 def is_owned(tracer: Tracer, code: str) -> bool:
-    """Tell whether LinuxCNC itself has a meaning for a code; REMAP lines must be out of the way."""
-    error, unknown = (tracer.trace_text([text]).error for text in (code, UNUSED))
-    return error is None or error.text != unknown.text
+    """Tell whether LinuxCNC itself has a meaning for a code; REMAP lines must be out of the way.
+
+    Its text about an unknown M code, unlike that about a G code, ends with the code.
+    """
+    letter, number = code[:1].upper(), float(code[1:])
+    unused = UNUSED[0] if letter == "G" else UNUSED[1 + (number >= HIGH_M)]
+    error, unknown = (tracer.trace_text([text]).error for text in (code, unused))
+    return error is None or error.text.replace(code.upper(), unused) != unknown.text
 
 
 def ask_python(tracer: Tracer) -> Python:

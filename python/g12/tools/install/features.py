@@ -13,6 +13,7 @@ ROOT = Path(__file__).resolve().parents[4]  # the folder that holds ngc, python 
 INCLUDES = ROOT / "configs" / "include"
 
 SHAPES = "polar-shapes"  # they need polar or polar-g12.3
+SPINDLE_C = "spindle-c"
 FILES = {
     "haas": "g12_haas.inc",
     "yasnac": "g12_yasnac.inc",
@@ -22,6 +23,7 @@ FILES = {
     "polar-g12.3": "polar_g12_3.inc",
     "cylinder": "cylinder.inc",
     SHAPES: "polar_shapes.inc",
+    SPINDLE_C: "spindle_c.inc",
 }
 PROGRAMS = {f"programs-{control}": control for control in shipped_controls()}
 FORMS = "forms"
@@ -32,6 +34,7 @@ POLAR = ("polar", "polar-g12.3")
 AXES = {  # of the machine; a mill's are XYZ
     **dict.fromkeys((*POLAR, SHAPES), "XC"),
     "cylinder": "XZC",
+    SPINDLE_C: "C",
 }
 MEANING = {
     "haas": "G12/G13 circular pocket, Haas words",
@@ -43,7 +46,8 @@ MEANING = {
     "cylinder": "G7.1 (G07.1) cylindrical interpolation on and off",
     KINEMATICS: "G12.1 in LinuxCNC's planner, on a lathe of the usual form (make kinematics)",
     FORMS: "pages to fill in, with pictures, for the codes that the machine has",
-    SHAPES: "o<polar_polygon>, o<polar_slot> and o<polar_pocket> call, by G12.4/G13.4",
+    SPINDLE_C: "M254/M255 the spindle becomes C, and the spindle again (--pins)",
+    SHAPES: "o<polar_polygon> and other shapes, o<face_holes> and other holes, by G12.4/G13.4",
     **{
         name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()
     },
@@ -53,7 +57,16 @@ SUBS = {  # what a program, or a handler, calls besides the codes
     "haas": ("g12_helix",),
     "circle-mill": ("circle_mill",),
     **dict.fromkeys(AXES, ("g12_skipped_over",)),
-    SHAPES: ("polar_polygon", "polar_slot", "polar_pocket"),
+    SHAPES: (
+        "polar_polygon",
+        "polar_slot",
+        "polar_pocket",
+        "face_holes",
+        "side_holes",
+        "face_hole_at",
+        "g12_holes",
+    ),
+    SPINDLE_C: (),
 }
 
 CLOSE = 0.8  # share of letters in common that makes a name a misspelt one

@@ -19,7 +19,13 @@ OF = {  # the forms of a feature
     "yasnac": ("form_yasnac",),
     "mitsubishi": ("form_mitsubishi",),
     "circle-mill": ("form_circle_mill",),
-    "polar-shapes": ("form_polygon", "form_slot", "form_face_pocket"),
+    "polar-shapes": (
+        "form_polygon",
+        "form_slot",
+        "form_face_pocket",
+        "form_face_holes",
+        "form_side_holes",
+    ),
 }
 UNITS = ("inch", "mm")
 PARTS = ("form_start", "form_end")  # subs that forms call

@@ -11,6 +11,7 @@ from g12.tools.install.config import Config, load_config
 from g12.tools.install.ini_edit import IniText
 from g12.tools.install.plan import FILTERED, InstallPlan, make_plan, names_copy, refuse
 from g12.tools.install.rules import codes_of, findings_of, installed_programs
+from g12.tools.install.spindle_c import Pins
 from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.system import CALL
@@ -19,7 +20,9 @@ SOME = 3  # missing files are named
 BEFORE = {"no-linuxcnc", "python-fails", "does-not-load"}  # what keeps a config from being read
 
 
-def install(text: IniText, wanted: Sequence[str], dry_run: bool) -> Iterator[str]:
+def install(
+    text: IniText, wanted: Sequence[str], dry_run: bool, pins: Pins | None = None
+) -> Iterator[str]:
     """Install features in a machine config; yield what is shown."""
     lost = lost_files(text)
     if lost:
@@ -35,7 +38,7 @@ def install(text: IniText, wanted: Sequence[str], dry_run: bool) -> Iterator[str
     there += [f"programs-{control}" for control in installed_programs(config)]
     for pair in excluding([*there, *wanted]):
         raise refuse("dialects", f"{pair} exclude each other", "uninstall first")
-    plan = make_plan(config, wanted)
+    plan = make_plan(config, wanted, pins)
     changes = plan.changes()
     old_copy = plan.copied and out_of_date(config.folder / package_copy.NAME)
     if not changes and not old_copy:
@@ -70,6 +73,8 @@ def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
             yield f"  {block:6} does nothing, and is no error"
         elif feature == features.SHAPES:
             yield "  o<polar_polygon> call is answered with what it needs; nothing moves"
+        elif feature == features.SPINDLE_C:
+            yield "  home, M254: the spindle turns to its index and to C; M255 gives it back"
         elif feature in features.FILES:
             code = features.remaps_of(feature)[0].code
             yield f"  {code:6} is answered with what it needs; nothing moves"

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from g12.tools.install import features, forms, kinematics_lines, package_copy
+from g12.tools.install import features, forms, kinematics_lines, package_copy, spindle_c
 from g12.tools.install.config import Config, folder_from_ini
 from g12.tools.install.findings import problem
 from g12.tools.install.ini_edit import (
@@ -85,7 +85,9 @@ def marked(path: Path, statement: str) -> bool:
     return any(line.rstrip().endswith(statement + MARK) for line in lines_with_ends(path))
 
 
-def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
+def make_plan(
+    config: Config, wanted: Sequence[str], pins: spindle_c.Pins | None = None
+) -> InstallPlan:
     """Return the plan that gives a config the features wanted."""
     prefix, copied = package_folder(config)
     plan = InstallPlan(IniText(config.text.path), prefix, copied)
@@ -96,6 +98,7 @@ def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
     remaps = [f"REMAP = {remap.text}" for remap in new_remaps(config, codes)]
     filters = filter_lines(plan, config, wanted)
     added = face_lines(plan, config, wanted)
+    spindle = spindle_lines(plan, config, wanted, pins)
     place = plan.text.end_of_section("RS274NGC")
     noted = {line.text for block in plan.text.blocks() for line in block}
     put_block(
@@ -111,7 +114,7 @@ def make_plan(config: Config, wanted: Sequence[str]) -> InstallPlan:
     put_section(plan.text, "PYTHON", place, python)
     put_section(plan.text, "FILTER", place, filters)
     geometry = {"DISPLAY": geometry_lines(plan, config, wanted)}
-    for lines_of in (form_lines(plan, config, wanted), geometry, added):
+    for lines_of in (form_lines(plan, config, wanted), geometry, added, spindle):
         for section, lines in lines_of.items():
             put_section(plan.text, section, place, lines)
     for path in plan.changes():
@@ -288,6 +291,18 @@ def face_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict
         line, _ = plan.text.entries(section, key)[0]
         plan.text.put_in_place(line, f"{key} = {value}", BEGIN_LINE)
     return kinematics_lines.added(config, wanted, plan.prefix)
+
+
+def spindle_lines(
+    plan: InstallPlan, config: Config, wanted: Sequence[str], pins: spindle_c.Pins | None
+) -> dict[str, list[str]]:
+    """Return the lines of each section that let the spindle become C."""
+    if features.SPINDLE_C not in wanted or config.ini.get("SPINDLE_C", "JOINT"):
+        return {}
+    reasons = list(spindle_c.spindle_obstacles(config, pins))
+    if reasons:
+        raise Refused(*reasons)
+    return spindle_c.spindle_sections(config, pins, plan.prefix)
 
 
 def python_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:

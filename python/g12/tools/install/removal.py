@@ -7,7 +7,7 @@ from pathlib import Path
 
 from g12.ini_sections import key_and_value
 from g12.machine_ini import remap_from_value
-from g12.tools.install import forms, kinematics_lines, package_copy
+from g12.tools.install import forms, kinematics_lines, package_copy, spindle_c
 from g12.tools.install.config import remaps_in
 from g12.tools.install.features import model_of
 from g12.tools.install.ini_edit import (
@@ -135,7 +135,8 @@ def is_by_install(line: IniLine) -> bool:
     key, value = key_and_value(line.text)
     if OWN_FILTER.fullmatch(line.text) or forms.OWN_LINE.fullmatch(line.text):
         return True
-    if any(rule.fullmatch(line.text) for rule in (kinematics_lines.OWN_LINE, GEOMETRY_LINE)):
+    own = (kinematics_lines.OWN_LINE, GEOMETRY_LINE, spindle_c.OWN_LINE)
+    if any(rule.fullmatch(line.text) for rule in own):
         return True
     if key == "REMAP":
         return model_of(remap_from_value(value)) is not None

@@ -22,6 +22,7 @@ from g12.tools.install.forms import form_findings
 from g12.tools.install.ini_edit import IniLine
 from g12.tools.install.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe_rules import lathe_findings
+from g12.tools.install.spindle_c import spindle_c_findings
 from g12.tools.system import CALL
 from g12.tools.translate.blocks.control import ControlError, read_control
 
@@ -553,6 +554,7 @@ def findings_of(config: Config) -> list[Finding]:
     found += form_findings(config, {code.feature for code in codes})
     found += kinematics_findings(config)
     found += lathe_findings(config, {code.feature for code in codes})
+    found += spindle_c_findings(config)
     failure = config.failure or function_missing(config)
     if failure and not any(finding.kind in STOPPING for finding in found):
         found.append(

@@ -376,7 +376,7 @@ class Canon:
         """Record the way down and back up."""
         self._note_pitch()
         back = self.tip
-        self._move("feed", (*in_mm((x, y, z)), *back[3:]), self.feed)
+        self._move("feed", (*in_mm((x, y, z))[:3], *back[3:]), self.feed)
         self._move("feed", back, self.feed)
 
     def arc_feed(self, first: float, second: float, first_centre: float, second_centre: float,

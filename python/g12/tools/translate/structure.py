@@ -230,7 +230,8 @@ def start_of_main(structure: Structure, heads: dict[int, int], control: Control)
         return first
     found = [index for index in free if index in ended] or free
     if len(found) > 1 or first in free:
-        names = " and ".join(f"O{heads[index]}" for index in dict.fromkeys((*free[:1], *found)))
+        numbers = [heads[index] for index in dict.fromkeys((*free[:1], *found))]
+        names = " and ".join("what has no number" if n == MAIN else f"O{n}" for n in numbers)
         structure.problems[first] = (
             f"which program is to run, {names}? nobody calls them: put that one first"
         )

@@ -7,7 +7,7 @@ A rule takes a `Draft`, rewrites its words or lines, carries its state on, or re
 from __future__ import annotations
 
 from g12.tools.translate.blocks import places
-from g12.tools.translate.milling import hole_patterns, rotation
+from g12.tools.translate.milling import hole_patterns, rigid_tapping, rotation
 from g12.tools.translate.rules import (
     codes,
     cycles,
@@ -53,6 +53,7 @@ WORD_RULES = (
     corners.direct_drawing,
     increments.incremental_words,
     hole_patterns.hole_pattern,
+    rigid_tapping.rigid_tap,
     cycles.drilling_cycle,
     reference.machine_position,
     motion.motion_mode,

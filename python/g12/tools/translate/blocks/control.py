@@ -31,7 +31,7 @@ MEANINGS = {
         "circle of holes", "arc of holes", "row of holes", "turned", "turned back",
     ),
     "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
-        "no thread chamfer",
+        "no thread chamfer", "rigid tapping",
     ),
 }  # fmt: skip
 OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$[0-9]+|S=P))*")

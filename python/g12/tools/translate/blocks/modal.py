@@ -23,6 +23,7 @@ GROUPS = {
     "compensation": ("G40", "G41", "G42"),
     "spindle_mode": ("G96", "G97"),
     "path": ("G61", "G64"),
+    "retract": ("G98", "G99"),
 }
 CONSUMERS = frozenset(
     ("G10", "G28", "G30", "G52", "G92", "G12", "G13", "G12.2", "G13.2", "G7.1")
@@ -47,7 +48,8 @@ class ModalState(NamedTuple):
     numbered work offsets that are known to be set, or asked about. ``turn`` is the turning cycle
     that X and Z repeat, ``pass_words`` what it was given, ``kept`` what first blocks of cycles say;
     ``chamfers`` tells whether threads end with one. ``turned`` is the work offset that G68 has
-    turned, ``sizes`` are the diameters that G10 L12 has set, by tool.
+    turned, ``rigid`` the speed of a rigid tap and ``tap_top`` the height that it goes back to,
+    ``sizes`` are the diameters that G10 L12 has set, by tool.
     """
 
     motion: str = UNKNOWN
@@ -81,6 +83,9 @@ class ModalState(NamedTuple):
     pass_words: tuple = ()
     chamfers: bool | str = True
     turned: str = UNKNOWN
+    retract: str = UNKNOWN
+    rigid: str = UNKNOWN
+    tap_top: float | str = UNKNOWN
     sizes: tuple = ()
     at_x: float | str = UNKNOWN
     at_y: float | str = UNKNOWN
@@ -94,4 +99,10 @@ def merged(one: ModalState, other: ModalState) -> ModalState:
     """Return what is sure when a line is reached in either of two states."""
     if one == other:
         return one
-    return ModalState(*(a if a == b else UNSURE for a, b in zip(one, other)))
+    state = ModalState(*(a if a == b else UNSURE for a, b in zip(one, other)))
+    kept, others = dict(one.kept), dict(other.kept)
+    same = {
+        key: kept.get(key) if kept.get(key) == others.get(key) else UNSURE
+        for key in kept.keys() | others.keys()
+    }
+    return state._replace(kept=tuple(sorted(same.items())))

@@ -20,8 +20,16 @@ SHIFTING = frozenset(["G43", "G49", "G54", "G55", "G56", "G57", "G58", "G59"])
 PATTERNS = frozenset(("circle of holes", "arc of holes", "row of holes"))
 DRILLING = PATTERNS | {"drilling cycle"}
 STAYING = frozenset(  # codes that move nothing and leave the origin, or set it to their words
-    ("speed limit or origin", "exact stop", "cancel cycle", "orientation", "thread chamfer")
-) | {"no thread chamfer"}
+    (
+        "speed limit or origin",
+        "exact stop",
+        "cancel cycle",
+        "orientation",
+        "thread chamfer",
+        "no thread chamfer",
+        "rigid tapping",
+    )
+)
 
 
 def known_place(state: ModalState, axis: str) -> float | None:

@@ -29,7 +29,10 @@ def direct_drawing(draft: Draft) -> None:
     start = start_point(draft)
     blocks, _ = contour_blocks(draft, chain_of(draft))
     own = [s for s in contour_of(blocks, start) if s.block is blocks[0]]
-    first, *others = lines_of_moves(moves_along(own), start)
+    lines = list(lines_of_moves(moves_along(own), start))
+    if not lines:
+        raise NotTranslated("a corner or an angle needs a move of G1 in its block")
+    first, *others = lines
     code, _, words = first.partition(" ")
     draft.words = [w for w in draft.words if w.letter not in REPLACED]
     draft.words.append(line_as_word(words if code in draft.codes() else first))

@@ -43,6 +43,7 @@ from g12.tools.translate.turning.roughing import RoughCuts, rough
 from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, thread_pass
 
 MOTIONS = frozenset(("G0", "G1", "G2", "G3", "G33"))
+SHORTEST = 1e-5  # of a thread
 METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True)}  # Haas's P
 
 
@@ -115,8 +116,10 @@ def keep(draft: Draft, meaning: str, **values: float | None) -> None:
 
 def kept_value(draft: Draft, meaning: str, name: str) -> float:
     """Return what a first block said, or the control's setting."""
-    kept = draft.sure("kept", "this takes what an earlier block said")
-    return dict(kept).get(f"{meaning} {name}", stored_setting(draft, name))
+    kept = dict(draft.state.kept).get(f"{meaning} {name}")
+    if kept == UNSURE:
+        raise NotTranslated(f"the {name} here is not the same on every way: say it in this cycle")
+    return stored_setting(draft, name) if kept is None else kept
 
 
 def is_first(draft: Draft, letters: str) -> bool:
@@ -240,7 +243,8 @@ def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     again = draft.start.turn == meaning and meaning not in draft.meanings
     own = take_end(draft, start)
     taper = take_number(draft, "R")
-    words = {**(dict(draft.state.pass_words) if again else {}), **own}
+    said = draft.sure("pass_words", "the cycle takes what was said before") if again else ()
+    words = {**dict(said), **own}
     words.update({} if taper is None else {"R": taper})
     if not {"X", "Z"} <= words.keys():
         raise NotTranslated("the cycle needs X and Z, where its cut ends")
@@ -350,7 +354,7 @@ def thread_move(draft: Draft) -> None:
 
 def pitch_of(draft: Draft, way: complex) -> float:
     """Return the way along the path for each revolution; the lead is that of the longer axis."""
-    if not way:
+    if abs(way) < SHORTEST:
         raise NotTranslated("the thread has no length")
     return lead_of(draft) * abs(way) / max(abs(way.real), abs(way.imag))
 

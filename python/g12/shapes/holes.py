@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The rules and numbers of ``o<face_holes>``, ``o<side_holes>`` and ``o<face_hole_at> call``.
+
+Holes on a lathe's face lie along Z, those on its side along X. C turns from hole to hole, the
+shorter way, while the tool stands at the retract height or above. The motion is
+`ngc/g12_holes.ngc`. LinuxCNC's own drilling cycles take no C; in G7 and G19 2.9.0 does not halve
+their R (its issue 2948), so they are not used.
+
+Rules, in the order of the checks: a tool in the spindle; where the holes are; depth and retract
+above 0; kind 0 to 3; feed above 0; no peck but in drilling; dwell from 0; a tap's spindle on, the
+right way; the tool above the face, or outside the surface; not too many moves.
+
+Lengths are in program units, X is a radius, angles are in degrees. A height is that above the face
+or the surface.
+"""
+
+from __future__ import annotations
+
+from math import atan2, ceil, degrees, hypot, sqrt
+from typing import NamedTuple
+
+from g12.cycles.common import ROUNDING_MM
+from g12.cycles.context import Context
+from g12.errors import number
+from g12.shapes.entries import (
+    Extent,
+    ShapeEntries,
+    check_moves,
+)
+
+HOLE = ("depth", "retract", "feed", "peck", "dwell", "kind")
+FACE_HOLES = ("count", "circle_diameter", "first_angle", "step_angle", *HOLE)
+SIDE_HOLES = ("count", "z", "first_angle", "step_angle", "surface_diameter", *HOLE)
+FACE_HOLE_AT = ("x", "c", *HOLE)
+MOST_HOLES = 360
+DRILL, TAP_RIGHT, TAP_LEFT, BORE = range(4)  # kind
+SPINDLE_CODES = {TAP_RIGHT: 3, TAP_LEFT: 4}  # M codes
+TURN = 360.0
+CHIP_MM = 0.254  # how far a drill goes back to break a chip, or stays off when it comes again
+
+
+class HoleMachine(NamedTuple):
+    """What holes have to know of the machine and its state.
+
+    ``c`` is where C stands, ``spindle_code`` the M code of the spindle in use: 3, 4 or 5. The tool
+    stands ``beside`` the X line, towards C+. ``diameters``: an X entry is a diameter.
+    """
+
+    c: float
+    spindle_code: int
+    beside: float
+    diameters: bool
+
+
+class HolePlace(NamedTuple):
+    """The first hole: its X and Z at the face or surface, C there, and the tool's axis.
+
+    ``x_axis`` and ``z_axis`` are by how much X and Z grow with the height: 0 or 1. ``stands`` is
+    the height at which the tool stands.
+    """
+
+    x: float
+    z: float
+    angle: float
+    x_axis: int
+    z_axis: int
+    stands: float
+
+
+class Hole(NamedTuple):
+    """One hole, as the sub makes it.
+
+    ``pecks`` passes, each by ``step`` deeper; ``full`` 1: out to the retract height after each,
+    else by ``clear``. ``feed`` is a tap's pitch.
+    """
+
+    depth: float
+    retract: float
+    feed: float
+    pecks: int
+    step: float
+    full: int
+    clear: float
+    dwell: float
+    kind: int
+
+
+class HolesPlan(NamedTuple):
+    """Holes that are fit to make: ``count`` of them, C turning by ``turn`` from one to the next.
+
+    ``first_turn`` is how far C turns to the first one, from ``c``; ``travel`` the height at which
+    the tool goes there.
+    """
+
+    count: int
+    c: float
+    first_turn: float
+    turn: float
+    travel: float
+    place: HolePlace
+    hole: Hole
+
+    def locals(self) -> dict[str, float]:
+        """Return the named locals of the subs beside their entries; X is a radius."""
+        own = {name: getattr(self, name) for name in ("count", "first_turn", "turn", "travel")}
+        place = {f"at_{name}": value for name, value in self.place._asdict().items()}
+        return {**own, **place, **self.hole._asdict()}
+
+    def extent(self) -> Extent:
+        """Return how far the axes go, from where the tool travels."""
+        place, heights = self.place, (-self.hole.depth, self.travel)
+        first = self.c + self.first_turn
+        angles = (self.c, first, first + self.turn * (self.count - 1))
+        ends = [
+            (place.x + place.x_axis * height, place.z + place.z_axis * height) for height in heights
+        ]
+        x, z = zip(*ends)
+        return Extent((min(x), max(x)), (min(z), max(z)), (min(angles), max(angles)))
+
+
+def plan_face_holes(entries: ShapeEntries, context: Context, machine: HoleMachine) -> HolesPlan:
+    """Return the holes of ``o<face_holes> call``, or raise `Refusal`."""
+    check_tool(entries, context)
+    count = count_of(entries)
+    radius = entries.require_positive("circle_diameter", "of the circle of holes") / 2
+    angle, turn = entries.angle("first_angle"), hole_turn(entries, count)
+    return plan_holes(entries, context, machine, on_face(entries, context, machine, radius, angle),
+                      count, turn)  # fmt: skip
+
+
+def plan_face_hole_at(entries: ShapeEntries, context: Context, machine: HoleMachine) -> HolesPlan:
+    """Return the hole of ``o<face_hole_at> call``, or raise `Refusal`."""
+    check_tool(entries, context)
+    x = (entries.take("x") or 0.0) / (2 if machine.diameters else 1)
+    c = entries.take("c") or 0.0
+    place = on_face(entries, context, machine, hypot(x, c), degrees(atan2(c, x)))
+    return plan_holes(entries, context, machine, place, 1, 0.0)
+
+
+def plan_side_holes(entries: ShapeEntries, context: Context, machine: HoleMachine) -> HolesPlan:
+    """Return the holes of ``o<side_holes> call``, or raise `Refusal`."""
+    check_tool(entries, context)
+    count = count_of(entries)
+    z = entries.require("z", "where the holes are along the part")
+    angle, turn = entries.angle("first_angle"), hole_turn(entries, count)
+    radius = entries.require_positive("surface_diameter", "of the turned surface") / 2
+    if machine.beside:
+        raise entries.refuse("needs a tool on the X line, not [G12] POLAR_TOOL_OFFSET beside it")
+    if context.x <= radius:
+        raise entries.refuse(
+            f"X{number(context.x)} (radius): the tool must stand outside the surface, beyond"
+            f" {number(radius)}"
+        )
+    place = HolePlace(radius, z, angle, 1, 0, context.x - radius)
+    return plan_holes(entries, context, machine, place, count, turn)
+
+
+def plan_holes(
+    entries: ShapeEntries,
+    context: Context,
+    machine: HoleMachine,
+    place: HolePlace,
+    count: int,
+    turn: float,
+) -> HolesPlan:
+    """Return the holes that begin at a place."""
+    hole = hole_of(entries, context, machine)
+    check_moves(entries, count * (3 * hole.pecks + 3), "count and peck make")
+    return HolesPlan(
+        count=count,
+        c=machine.c,
+        first_turn=shorter_way(place.angle - machine.c),
+        turn=shorter_way(turn),
+        travel=max(place.stands, hole.retract),
+        place=place,
+        hole=hole,
+    )
+
+
+def check_tool(entries: ShapeEntries, context: Context) -> None:
+    """Refuse to drill without a tool."""
+    if context.spindle_tool is None:
+        raise entries.refuse("no tool is loaded")
+
+
+def count_of(entries: ShapeEntries) -> int:
+    """Return how many holes there are."""
+    count = entries.take_whole("count", least=1, most=MOST_HOLES)
+    if count is None:
+        raise entries.refuse("count is missing: how many holes")
+    return count
+
+
+def hole_turn(entries: ShapeEntries, count: int) -> float:
+    """Return the angle from hole to hole: step_angle, or a full circle of holes."""
+    if "step_angle" not in entries:
+        return TURN / count
+    return entries.angle("step_angle")
+
+
+def shorter_way(angle: float) -> float:
+    """Return an angle as the shorter way to turn, from -180 to 180; 180 keeps its sign."""
+    short = angle - TURN * ceil((angle - TURN / 2) / TURN)
+    return -short if short == TURN / 2 and angle < 0 else short
+
+
+def on_face(
+    entries: ShapeEntries, context: Context, machine: HoleMachine, radius: float, angle: float
+) -> HolePlace:
+    """Return the place of a hole on the face; a tool beside the X line stands nearer in X."""
+    if not context.z > 0:
+        raise entries.refuse(f"Z{number(context.z)}: the tool must stand above the face at Z0")
+    beside = machine.beside
+    if abs(beside) > radius:
+        raise entries.refuse(
+            f"the hole is {number(radius)} from the spindle's axis, where [G12] POLAR_TOOL_OFFSET"
+            f" lets the tool no nearer than {number(abs(beside))}"
+        )
+    x = sqrt(radius**2 - beside**2)
+    return HolePlace(x, 0.0, angle - degrees(atan2(beside, x)), 0, 1, context.z)
+
+
+def hole_of(entries: ShapeEntries, context: Context, machine: HoleMachine) -> Hole:
+    """Return what each hole is."""
+    depth = entries.require_positive("depth", "how deep, from the face or surface")
+    retract = entries.require_positive("retract", "the height at which the tool is clear")
+    kind = entries.take_whole("kind", least=DRILL, most=BORE, default=DRILL)
+    tap = kind in SPINDLE_CODES
+    feed = hole_feed(entries, context, tap)
+    peck = entries.take("peck") or 0.0
+    if peck and kind != DRILL:
+        rule = f"is for drilling (kind {DRILL}), not for kind {kind}"
+        raise entries.refuse(f"{entries.written('peck', peck)} {rule}")
+    dwell = entries.from_zero("dwell")
+    if tap:
+        check_tapping(entries, context, machine, kind)
+    rounding = context.length(ROUNDING_MM)
+    pecks = ceil(min((depth - rounding) / abs(peck), 1e9)) if peck else 1
+    clear = min(context.length(CHIP_MM), abs(peck) / 2) if peck else 0.0
+    return Hole(
+        depth, retract, feed, max(1, pecks), abs(peck) or depth, int(peck > 0), clear, dwell, kind
+    )
+
+
+def hole_feed(entries: ShapeEntries, context: Context, tap: bool) -> float:
+    """Return the feed, the active F if it is left out; of a tap its pitch, which is no F."""
+    if tap:
+        return entries.require_positive("feed", "a tap's pitch")
+    feed = entries.positive("feed", context.feed)
+    if not feed > 0:
+        raise entries.refuse("feed is missing, and no F is active")
+    if context.per_revolution and not context.speed:
+        raise entries.refuse("feed per revolution (G95) needs the spindle speed S")
+    return feed
+
+
+def check_tapping(entries: ShapeEntries, context: Context, machine: HoleMachine, kind: int) -> None:
+    """Refuse a tap whose spindle stands, or turns the other way: it would wait, or break."""
+    code = SPINDLE_CODES[kind]
+    if machine.spindle_code != code or not context.speed:
+        hand = "right" if kind == TAP_RIGHT else "left"
+        raise entries.refuse(
+            f"kind {kind} taps a {hand}-hand thread: the tool's spindle must turn, by M{code} and S"
+        )

@@ -1,0 +1,340 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A spindle that becomes C in a lathe's INI: what `install` writes, what `check` finds.
+
+`configs/include/spindle_c.hal` joins the signals of the spindle's encoder, which the machine's HAL
+files have already, with the inputs of its drive, which only the owner knows: a TOML file of pins.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from g12.tools.errors import UsageError
+from g12.tools.install.config import Config
+from g12.tools.install.findings import Finding, problem
+from g12.tools.install.kinematics_lines import every_hal_line, joints
+from g12.tools.install.kinematics_rules import HalLine, hal_files, names
+
+PAGE = "configs/spindle_c.md"
+OWN_HAL = "configs/include/spindle_c.hal"
+LIMITS = "configs/include/spindle_c_limits.sh"
+CONNECTS = "sc-orient.enable"  # a pin that only a HAL file with these lines names
+PROLOG = "spindle_c_on"
+SIGNALS = {  # by the key of [SPINDLE_C] that names each: its pin, and a name where it has none
+    "TURNS": ("spindle.0.revs", ""),
+    "RPS": ("spindle.0.speed-in", ""),
+    "INDEX": ("spindle.0.index-enable", ""),
+    "REACHED": ("spindle.0.at-speed", "spindle-c-always"),
+    "ENABLED": ("motion.motion-enabled", "sc-enabled"),
+    "HOMED": ("joint.{joint}.homed", "sc-homed"),
+    "HOMING": ("joint.{joint}.homing", "sc-homing"),
+    "ORIENT": ("spindle.0.orient", "sc-orienting"),
+    "ANGLE": ("joint.{joint}.pos-cmd", "sc-c-angle"),
+    "COMMAND": ("joint.{joint}.motor-pos-cmd", "sc-c-command"),
+    "PLACE": ("axis.c.pos-cmd", "sc-c-stands"),
+    "SPEED": ("spindle.0.speed-out-rps", "sc-speed-out"),
+    "ON": ("spindle.0.on", "sc-started"),
+    "BRAKE": ("spindle.0.brake", "sc-brake-asked"),
+}
+ENCODER = ("TURNS", "RPS", "INDEX")
+TAKEN = (
+    "motion.digital-out-02",
+    "motion.digital-in-02",
+    "spindle.0.is-oriented",
+    "ini.c.min_limit",
+    "ini.c.max_limit",
+)
+NUMBERS = {  # keys of [SPINDLE_C], each in the pins' file in lower case
+    "TOLERANCE": 0.02,
+    "ORIENT_SPEED": 0.5,
+    "ORIENT_ACCELERATION": 1.0,
+    "INDEX_SPEED": 0.25,
+    "TIMEOUT": 30.0,
+    "VELOCITY_SCALE": 1.0,
+    "POSITION_SCALE": 1.0,
+}
+DRIVE = {  # names in the pins' file, and the signals that their pins get
+    "velocity": "spindle-c-velocity",
+    "position": "spindle-c-position",
+    "holds": "spindle-c-holds",
+    "clamp_open": "spindle-c-on",
+    "brake": "spindle-c-brake",
+}
+NEEDED = ("velocity", "position", "holds")
+MODULES = re.compile(r"loadrt\s+(\S+)")
+OWN_MODULES = (
+    *("lut5", "edge", "flipflop", "tristate_bit", "wcomp", "timedelay"),
+    *("orient", "sum2", "mux4", "limit3", "message"),
+)
+OWN_LINE = re.compile(
+    rf"HALFILE = \S+/{re.escape(OWN_HAL)}"
+    rf"|HALCMD = (unlinkp \S+|net spindle-c-\S+ => \S+|loadusr sh \S+/{re.escape(LIMITS)})"
+    rf"|({'|'.join(('JOINT', *SIGNALS, *NUMBERS))}) = \S+|\[SPINDLE_C\]"
+)
+ASKED = """\
+velocity = "…"     input of the drive for M3 and M4, revolutions per second times velocity_scale
+position = "…"     input of the drive for C, revolutions times position_scale (360: degrees)
+holds = "…"        input of the drive that makes it obey its position
+clamp_open, brake  outputs, if there are any"""
+
+
+class Pins(NamedTuple):
+    """What the owner says of the drive: pins by their names in `DRIVE`, numbers by their key."""
+
+    drive: dict[str, str]
+    numbers: dict[str, float]
+
+
+def read_pins(path: Path) -> Pins:
+    """Return what a file of pins says; refuse what it does not know, and what it lacks."""
+    try:
+        entries = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path}: {error}") from None
+    known = {**dict.fromkeys(DRIVE, str), **{key.lower(): (int, float) for key in NUMBERS}}
+    for key, value in entries.items():
+        if key not in known:
+            raise UsageError(f"{path}: {key} is none of {', '.join(known)}")
+        if not isinstance(value, known[key]) or isinstance(value, bool):
+            kind = "the name of a pin" if key in DRIVE else "a number"
+            raise UsageError(f"{path}: {key} is {kind}, not {value!r}")
+    missing = [key for key in NEEDED if key not in entries]
+    if missing:
+        raise UsageError(f"{path}: {', '.join(missing)}: missing")
+    numbers = {key: entries.get(key.lower(), default) for key, default in NUMBERS.items()}
+    return Pins({key: entries[key] for key in DRIVE if key in entries}, numbers)
+
+
+def signals(lines: Iterable[HalLine]) -> dict[str, str]:
+    """Return the signal of each pin that HAL lines connect."""
+    found = {}
+    for text, _ in lines:
+        command, *words = text.split() or [""]
+        if command == "net" and words:
+            found.update(dict.fromkeys(words[1:], words[0]))
+        elif command == "linkps" and len(words) > 1:
+            found[words[0]] = words[-1]
+        elif command == "linksp" and len(words) > 1:
+            found[words[-1]] = words[0]
+    return found
+
+
+def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[Finding]:
+    """Yield what keeps `install` from putting it in."""
+    if pins is None:
+        yield problem(
+            "pins",
+            "install cannot know the inputs of your spindle's drive",
+            f"write them into a file and name it, --pins spindle.toml ({PAGE}):\n{ASKED}",
+        )
+    if joints(config).count("C") != 1:
+        yield problem("spindle-c", "no joint is C alone", "[KINS] KINEMATICS = trivkins "
+                      f"coordinates=XZC, or by hand: {PAGE}")  # fmt: skip
+    if config.ini.get("SPINDLE_C", "JOINT"):
+        return
+    lines = every_hal_line(config)
+    found = signals(lines)
+    for pin, _ in (SIGNALS[key] for key in ENCODER):
+        if pin not in found:
+            yield problem(
+                "spindle-c",
+                f"no HAL file connects {pin}",
+                f"connect the spindle's encoder first: G33 has to work ({PAGE})",
+            )
+    yield from modules_twice(lines)
+    yield from pins_taken(lines)
+    yield from travel_missing(config)
+    yield from homing_moves(config)
+
+
+def spindle_sections(config: Config, pins: Pins, prefix: str) -> dict[str, list[str]]:
+    """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
+    joint, found = joints(config).index("C"), signals(every_hal_line(config))
+    named = {key: found.get(pin.format(joint=joint), own) for key, (pin, own) in SIGNALS.items()}
+    drive = [
+        line
+        for name, pin in pins.drive.items()
+        for line in (f"HALCMD = unlinkp {pin}", f"HALCMD = net {DRIVE[name]} => {pin}")
+    ]
+    return {
+        "HAL": [
+            f"HALFILE = {prefix}/{OWN_HAL}",
+            *drive,
+            f"HALCMD = loadusr sh {prefix}/{LIMITS}",
+        ],
+        "SPINDLE_C": [
+            f"JOINT = {joint}",
+            *(f"{key} = {signal}" for key, signal in named.items()),
+            *(f"{key} = {value:g}" for key, value in pins.numbers.items()),
+        ],
+    }
+
+
+# What check finds.
+
+
+def spindle_c_findings(config: Config) -> Iterator[Finding]:
+    """Yield what is wrong with a spindle that becomes C, where a REMAP line asks for it."""
+    if any(PROLOG in remap.handlers for _, remap in config.remaps):
+        for rule in RULES:
+            yield from rule(config)
+
+
+def keys_missing(config: Config) -> Iterator[Finding]:
+    """Find keys of [SPINDLE_C] that the HAL file reads, and signals that are not the spindle's."""
+    needed = ("JOINT", *SIGNALS, *(key for key in NUMBERS if key != "TIMEOUT"))
+    missing = [key for key in needed if not config.ini.get("SPINDLE_C", key)]
+    if missing:
+        yield problem("spindle-c", f"[SPINDLE_C] lacks {', '.join(missing)}: LinuxCNC does not "
+                      "start", f"each key is in {PAGE}")  # fmt: skip
+        return
+    joint, found = config.ini.get("SPINDLE_C", "JOINT"), signals(other_lines(config))
+    for key, (pin, _) in SIGNALS.items():
+        pin, signal = pin.format(joint=joint), config.ini.get("SPINDLE_C", key)
+        if found.get(pin, "" if key in ENCODER else signal) != signal:
+            yield problem(
+                "spindle-c-signal",
+                f"[SPINDLE_C] {key} = {signal}, but {pin} is on {found.get(pin, 'no signal')}",
+                f"{key} = {found[pin]}" if pin in found else f"net {signal} … => {pin}",
+            )
+
+
+def not_connected(config: Config) -> Iterator[Finding]:
+    """Find HAL files and signals of the drive that are not connected."""
+    if not any(names(lines, CONNECTS) for lines in hal_files(config)):
+        yield problem(
+            "spindle-c-hal",
+            "no HALFILE of [HAL] lets the spindle become C: its code would wait in vain",
+            f"add HALFILE = …/{OWN_HAL} behind the files that wire the spindle",
+        )
+    lines = every_hal_line(config)
+    text = "\n".join(line.text for line in other_lines(config))
+    for signal in (DRIVE[name] for name in NEEDED):
+        if signal not in text:
+            yield problem("spindle-c-drive", f"nothing reads {signal}", f"net {signal} => the "
+                          f"drive's input ({PAGE})")  # fmt: skip
+    if not any(Path(LIMITS).name in line.text for line in lines):
+        yield problem(
+            "spindle-c-limits",
+            "C's travel is not connected: a C word while the spindle is no C would move nothing",
+            f"add HALCMD = loadusr sh …/{LIMITS} to [HAL]",
+        )
+
+
+def feedback_wrong(config: Config) -> Iterator[Finding]:
+    """Find a joint C whose feedback is not the one that follows while the spindle turns."""
+    joint = config.ini.get("SPINDLE_C", "JOINT")
+    pin = f"joint.{joint}.motor-pos-fb"
+    for text, place in after_own(config):
+        if pin in text.split() and not text.startswith("unlinkp"):
+            yield problem(
+                "spindle-c-feedback",
+                f"{place}: {text}: joint {joint} would not follow while the spindle turns",
+                f"take the line out: {OWN_HAL} has joint C's feedback",
+            )
+
+
+def index_shared(config: Config) -> Iterator[Finding]:
+    """Find a joint on the spindle's index."""
+    found = signals(every_hal_line(config))
+    index = found.get(SIGNALS["INDEX"][0])
+    for pin, signal in found.items():
+        if index and signal == index and re.fullmatch(r"joint\.\d+\.index-enable", pin):
+            yield problem(
+                "spindle-c-index",
+                f"{pin} and spindle.0.index-enable are both on {signal}: before LinuxCNC 2.10 G33 "
+                "and G76 then move at once, without waiting for the index (LinuxCNC issue 3556)",
+                f"take {pin} off {signal}: C needs no homing to the index",
+            )
+
+
+def travel_missing(config: Config) -> Iterator[Finding]:
+    """Find an axis C without the limits that its travel goes back to."""
+    missing = [key for key in ("MIN_LIMIT", "MAX_LIMIT") if not config.ini.get("AXIS_C", key)]
+    if missing:
+        yield problem(
+            "spindle-c-travel",
+            f"[AXIS_C] lacks {' and '.join(missing)}, which spindle_c.hal reads",
+            "MIN_LIMIT = -99999 and MAX_LIMIT = 99999 for a C that turns without an end",
+        )
+
+
+def homing_moves(config: Config) -> Iterator[Finding]:
+    """Find a joint C that homes by moving: there it is no C yet."""
+    joint = f"JOINT_{joints(config).find('C')}"
+    for key in ("HOME_SEARCH_VEL", "HOME_LATCH_VEL"):
+        value = config.ini.get(joint, key)
+        if value and value.strip("0.- "):
+            yield problem(
+                "spindle-c-homing",
+                f"[{joint}] {key} = {value}: while it is homed the spindle is no C, nothing turns",
+                f"{key} = 0: C is homed where it stands, and C0 is the index by itself",
+            )
+
+
+def modules_twice(lines: Iterable[HalLine]) -> Iterator[Finding]:
+    """Find modules that other HAL files load too."""
+    for text, place in lines:
+        module = MODULES.match(text)
+        if module and module[1] in OWN_MODULES:
+            yield problem(
+                "spindle-c-module",
+                f"{place}: {text}: LinuxCNC loads a module once, and spindle_c.hal loads "
+                f"{module[1]} too",
+                f"name its components here as well, names=…,{components_of(module[1])}, and take "
+                "the line out of a copy of spindle_c.hal",
+            )
+
+
+def components_of(module: str) -> str:
+    """Return what spindle_c.hal calls its components of a module."""
+    text = (Path(__file__).resolve().parents[4] / OWN_HAL).read_text(encoding="utf-8")
+    return re.search(rf"^loadrt {module} names=(\S+)", text, re.MULTILINE)[1]
+
+
+def pins_taken(lines: Iterable[HalLine]) -> Iterator[Finding]:
+    """Find pins that are used otherwise."""
+    for text, place in lines:
+        for pin in TAKEN:
+            if pin in text.split():
+                yield problem(
+                    "pin-taken",
+                    f"{place}: {text}: {pin} is what the spindle becomes C by",
+                    "use another pin here",
+                )
+
+
+def others_in_the_way(config: Config) -> Iterator[Finding]:
+    """Find modules and pins of other HAL files that spindle_c.hal needs for itself."""
+    lines = other_lines(config)
+    yield from modules_twice(lines)
+    yield from pins_taken(lines)
+
+
+def other_lines(config: Config) -> list[HalLine]:
+    """Return the lines of the HAL files other than spindle_c.hal, and those of HALCMD."""
+    return [line for line in every_hal_line(config) if not line.place.startswith("spindle_c.hal:")]
+
+
+def after_own(config: Config) -> list[HalLine]:
+    """Return the lines behind those of spindle_c.hal."""
+    lines = every_hal_line(config)
+    own = [number for number, line in enumerate(lines) if CONNECTS in line.text]
+    last = max((n for n, line in enumerate(lines) if line.place.startswith("spindle_c.hal:")),
+               default=own[-1] if own else len(lines))  # fmt: skip
+    return lines[last + 1 :]
+
+
+RULES = (
+    keys_missing,
+    not_connected,
+    feedback_wrong,
+    index_shared,
+    travel_missing,
+    homing_moves,
+    others_in_the_way,
+)

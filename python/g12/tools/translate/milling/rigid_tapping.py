@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""M29 and G84 or G74 behind it: rigid tapping as G33.1, which follows the spindle.
+
+LinuxCNC's own G84 is for a floating holder: it does not. For each hole:
+
+1. rapid to X and Y, rapid to R
+2. G33.1 to Z and back to R, K the pitch: F over S, or F itself per revolution
+3. under G98 rapid to where Z stood when the cycle began
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.blocks.draft import Draft, line_as_word
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.blocks.places import value_text
+
+MOTIONS = frozenset(("G0", "G1", "G2", "G3"))
+SPINDLE = {"G84": "M3", "G74": "M4"}
+
+
+def rigid_tap(draft: Draft) -> None:
+    """Note M29 and its speed, and write the blocks that tap; G80 and other motion end it."""
+    code = draft.meanings.pop("rigid tapping", None)
+    if code:
+        speed = next((word.value for word in draft.words if word.letter == "S"), "")
+        if not speed:
+            raise NotTranslated(f"{code.code} needs S, the speed of the tap")
+        draft.comments.append(code.code)
+        draft.change(rigid=speed)
+    elif "cancel cycle" in draft.meanings or (draft.state.cycle and MOTIONS & set(draft.codes())):
+        draft.change(rigid=UNKNOWN, tap_top=UNKNOWN)
+    if draft.state.rigid:
+        tap(draft)
+
+
+def tap(draft: Draft) -> None:
+    """Write a block of G84 or G74, or one that repeats it."""
+    code = draft.meanings.get("drilling cycle")
+    name = code.code if code else draft.state.cycle
+    if name not in SPINDLE:
+        return
+    speed = draft.sure("rigid", f"{name} may be rigid")
+    if draft.state.distance != "G90" or draft.letters() & {"L", "K"}:
+        raise NotTranslated(f"rigid tapping by {name} is translated under G90, hole by hole")
+    values = {**dict(draft.state.cycle_words or ()), **{w.letter: w.value for w in draft.words}}
+    if not {"Z", "R"} <= values.keys():
+        raise NotTranslated(f"rigid tapping by {name} needs Z and R")
+    if code:
+        draft.meanings.pop("drilling cycle")
+        draft.before.append(f"{SPINDLE[name]} S{speed}")
+        draft.change(tap_top=draft.start.at_z, cycle=name)
+    if code or draft.letters() & set("XYZR"):
+        write_hole(draft, values, pitch_by_speed(draft, speed))
+    draft.change(cycle_words=(("R", values["R"]), ("Z", values["Z"])))
+
+
+def pitch_by_speed(draft: Draft, speed: str) -> str:
+    """Return the pitch of a tap."""
+    feed = draft.sure("feed", "the pitch of a tap hangs on F")
+    if feed == UNKNOWN:
+        raise NotTranslated("a tap needs F")
+    return feed if draft.state.feed_mode == "G95" else f"[{feed} / {speed}]"
+
+
+def write_hole(draft: Draft, values: dict[str, str], pitch: str) -> None:
+    """Write the moves of one hole."""
+    place = [word.text for word in draft.words if word.letter in "XY"]
+    dwell = draft.take("P")
+    draft.comments += [f"{dwell.text}: no dwell in a rigid tap"] if dwell else []
+    draft.take_codes(MOTIONS)
+    draft.words = [word for word in draft.words if word.letter not in "XYZR"]
+    lines = [" ".join(["G0", *place])] if place else []
+    lines += [f"G0 Z{values['R']}", f"G33.1 Z{values['Z']} K{pitch}"]
+    if draft.state.retract != "G99":
+        top = draft.state.tap_top
+        if not isinstance(top, float):
+            raise NotTranslated("a tap under G98 needs Z as a number before its cycle: G0 Z…")
+        lines.append(f"G0 Z{value_text(top)}")
+    if draft.alone() and not draft.before:
+        draft.words.append(line_as_word(lines.pop(0)))
+    draft.after += lines
+    draft.change(own_motion=UNSURE, at_z=UNKNOWN)

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Holes with C on the stock interpreter: their moves, modes, clamp, and 300 random bad calls."""
+
+import random
+
+import numpy as np
+import pytest
+
+from g12.tools.commands.main import main
+from g12.tools.machine.ini import read_ini
+from g12.tools.preview.tracer import Tracer
+from support.sim_machines import SIM
+
+INCH = 25.4
+X, Z, C = 0, 2, 5
+LEFT = -9999
+START = ["{units} G18 {mode} G90 G94 G64 P{p}", "T1 M6", "S500 M3", "G0 X{x} Z{z} C100", "F{f}"]
+FACE = dict(count=3, circle_diameter=30, first_angle=20, step_angle=LEFT, depth=8, retract=2,
+            feed=120, peck=0, dwell=0, kind=0)  # fmt: skip
+SIDE = dict(count=2, z=-10, first_angle=30, step_angle=270, surface_diameter=40, depth=8,
+            retract=2, feed=120, peck=0, dwell=0, kind=0)  # fmt: skip
+AT = dict(x=20, c=5, depth=8, retract=2, feed=120, peck=0, dwell=0, kind=0)
+CALLS = {"face_holes": FACE, "side_holes": SIDE, "face_hole_at": AT}
+LENGTHS = ("circle_diameter", "depth", "retract", "feed", "peck", "z", "surface_diameter", "x", "c")
+
+
+@pytest.fixture(scope="module")
+def lathe():
+    with Tracer(SIM / "lathe_mm.ini", tools={1: 6.0}) as opened:
+        yield opened
+
+
+def call(name, scale=1.0, **changed):
+    values = {**CALLS[name], **changed}
+    entries = (
+        value / scale if key in LENGTHS and value != LEFT else value
+        for key, value in values.items()
+    )
+    return f"o<{name}> call " + " ".join(f"[{entry:.9f}]" for entry in entries)
+
+
+def program(*blocks, units="G21", mode="G7"):
+    scale = INCH if units == "G20" else 1.0
+    x = 60 / scale / (1 if mode == "G7" else 2)
+    words = dict(units=units, mode=mode, p=0.02 / scale, x=x, z=10 / scale, f=77 / scale)
+    return [*(line.format(**words) for line in START), *blocks, "M2"]
+
+
+def drilled(traced):
+    """Return X (radius), Z, C of the deepest end of every run of feed moves at one place."""
+    assert traced.error is None, traced.error
+    ends = {}
+    for move in traced.moves:
+        if move.kind == "feed":
+            place = round(move.end[C], 6)
+            ends.setdefault(place, []).append((move.end[X], move.end[Z], place))
+    return [min(points) for points in ends.values()]
+
+
+def check_turning(traced, axis, height):
+    """C turns in rapids alone, at the retract height or above."""
+    turns = [move for move in traced.moves if move.start[C] != move.end[C]][1:]
+    assert all(move.kind == "rapid" and move.exact for move in turns)
+    assert [move.start[axis] for move in turns] == pytest.approx([move.end[axis] for move in turns])
+    assert all(move.start[axis] > height - 1e-6 for move in turns) and turns
+
+
+@pytest.mark.parametrize("mode", ["G7", "G8"])
+@pytest.mark.parametrize("units", ["G20", "G21"])
+def test_the_same_holes_in_any_units_and_modes(lathe, units, mode):
+    scale = INCH if units == "G20" else 1.0
+    face = lathe.trace_text(program(call("face_holes", scale), units=units, mode=mode))
+    assert drilled(face) == [pytest.approx((15, -8, c)) for c in (20, 140, 260)]
+    check_turning(face, Z, 2)
+    side = lathe.trace_text(program(call("side_holes", scale), units=units, mode=mode))
+    assert drilled(side) == [pytest.approx((12, -10, c)) for c in (30, -60)]
+    check_turning(side, X, 22)
+    x = AT["x"] if mode == "G7" else AT["x"] / 2
+    one = lathe.trace_text(program(call("face_hole_at", scale, x=x), units=units, mode=mode))
+    ((radius, depth, c),) = drilled(one)
+    point = radius * np.exp(1j * np.radians(c))
+    assert (point.real, point.imag, depth) == pytest.approx((10, 5, -8))
+    assert [move.feed for move in face.moves if move.kind == "feed"] == pytest.approx([120] * 3)
+
+
+@pytest.mark.parametrize(
+    "modes", ["G91 G95 F0.3 G61 G1", "G90 G94 G64 P0.02 G0", "G8 G91.1 G2 X25 Z5 R9"]
+)
+def test_modes_and_f_are_afterwards_as_before(lathe, modes):
+    before = program(modes)
+    ends = [
+        lathe.trace_text([*lines[:-1], "(print,#<_feed>)"])
+        for lines in (before, [*before[:-1], call("face_holes"), "M2"])
+    ]
+    assert ends[1].error is None
+    assert ends[0].printed == ends[1].printed
+    path = [set(end.modes.gcodes) for end in ends]
+    assert path[0] == path[1] and ends[0].modes.blending == ends[1].modes.blending
+
+
+def test_on_a_wrapped_axis_too_c_turns_the_shorter_way():
+    overrides = {"AXIS_C": {"WRAPPED_ROTARY": 1}}
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides, tools={1: 6.0}) as lathe:
+        traced = lathe.trace_text(program(call("face_holes", first_angle=-30, step_angle=-100)))
+    assert [c % 360 for _, _, c in drilled(traced)] == pytest.approx([330, 230, 130])
+    turns = [move.end[C] - move.start[C] for move in traced.moves[1:]]
+    assert [turn for turn in turns if abs(turn) > 1e-9] == pytest.approx([-130, -100, -100])
+
+
+def test_a_tool_beside_the_x_line_drills_where_it_should():
+    overrides = {"G12": {"POLAR_TOOL_OFFSET": 9}}
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides, tools={1: 6.0}) as lathe:
+        traced = lathe.trace_text(program(call("face_holes")))
+        refused = lathe.trace_text(program(call("side_holes")))
+    ends = [move.end for move in traced.moves if move.kind == "feed"]
+    points = [complex(end[X], end[1]) * np.exp(1j * np.radians(end[C])) for end in ends]
+    drawn = [15 * np.exp(1j * np.radians(c)) for c in (20, 140, 260)]
+    assert np.allclose(points, drawn, atol=1e-6)
+    assert "needs a tool on the X line" in refused.error.text
+
+
+def z_of(traced):
+    return [(move.kind, round(move.end[Z], 6)) for move in traced.moves[5:-1]]
+
+
+def test_pecks_by_full_retract_and_by_chip_breaking(lathe):
+    full = lathe.trace_text(program(call("face_hole_at", peck=3, dwell=0.5)))
+    out = [("rapid", 2), ("rapid", -2.746)]
+    deeper = [("rapid", 2), ("rapid", -5.746), ("feed", -8), ("rapid", 2)]
+    assert z_of(full) == [("feed", -3), *out, ("feed", -6), *deeper]
+    assert [event.text for event in full.events if "dwell" in event.text] == ["dwell 0.5"]
+    chips = lathe.trace_text(program(call("face_hole_at", peck=-4)))
+    assert z_of(chips) == [("feed", -4), ("rapid", -3.746), ("feed", -8), ("rapid", 2)]
+
+
+def test_a_bore_is_fed_out_and_a_tap_has_its_pitch(lathe):
+    bore = lathe.trace_text(program(call("face_hole_at", kind=3)))
+    assert z_of(bore)[:2] == [("feed", -8), ("feed", 2)]
+    tap = lathe.trace_text(program(call("face_hole_at", kind=1, feed=1.25)))
+    assert z_of(tap) == [("feed", -8), ("feed", 2)]
+    assert "pitch 1.25 mm" in [event.text for event in tap.events]
+    (c,) = {round(move.end[C], 6) for move in tap.moves if move.kind == "feed"}
+    assert c == pytest.approx(26.565051)
+
+
+def test_the_clamp_is_closed_for_every_hole_and_open_between(tmp_path):
+    for code in ("m10", "m11"):
+        text = f"o<{code}> sub\n(MSG,{code})\no<{code}> endsub\n"
+        (tmp_path / f"{code}.ngc").write_text(text)
+    ini = read_ini(SIM / "lathe_mm.ini")
+    own = [f"M{n} modalgroup=10 ngc=m{n}" for n in (10, 11)]
+    lines = {
+        "REMAP": [*ini.all("RS274NGC", "REMAP"), *own],
+        "SUBROUTINE_PATH": f"{ini.get('RS274NGC', 'SUBROUTINE_PATH')}:{tmp_path}",
+    }
+    overrides = {"RS274NGC": lines, "G12": {"C_CLAMP": "M10 m11"}}
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides, tools={1: 6.0}) as lathe:
+        traced = lathe.trace_text(program(call("face_holes")))
+    assert traced.error is None
+    closed, at, seen = False, 0, []
+    for event in traced.events:
+        if event.text in ("message m10", "message m11"):
+            for move in traced.moves[at : event.at]:
+                seen.append((closed, move.kind == "feed", move.start[C] != move.end[C]))
+            closed, at = event.text == "message m10", event.at
+    assert {state for state in seen if state[0]} == {(True, True, False), (True, False, False)}
+    assert not any(cut for shut, cut, _ in seen if not shut) and not closed
+    assert sum(turned for _, _, turned in seen) == 4  # the start's, and one to each hole
+
+
+def test_a_clamp_whose_codes_are_unknown_is_refused():
+    with Tracer(SIM / "lathe_mm.ini", overrides={"G12": {"C_CLAMP": "M110 M11"}}) as lathe:
+        traced = lathe.trace_text(program(call("face_holes")))
+    why = "[G12] C_CLAMP: M11 is no code of this machine: a REMAP line?"
+    assert traced.error.text == f"face_holes line 6: {why}" and len(traced.moves) == 1
+
+
+def test_300_random_bad_calls_move_nothing(lathe):
+    chance = random.Random(28)
+    bad = {
+        "count": [0, -1, 361, 2.5, LEFT], "circle_diameter": [0, -5, 9000, LEFT],
+        "first_angle": [361, -400], "step_angle": [400, -361], "depth": [0, -1, LEFT, 2000],
+        "retract": [0, -2, LEFT], "feed": [-1], "peck": [1e-5, -1e-5], "dwell": [-0.1],
+        "kind": [-1, 4, 0.5, 2], "z": [LEFT, -600, 900], "surface_diameter": [0, -4, 60, LEFT],
+        "x": [900, 2e6], "c": [-500, 1e9],
+    }  # fmt: skip
+    for _ in range(300):
+        name = chance.choice(list(CALLS))
+        wrong = chance.choice(list(CALLS[name]))
+        text = call(name, **{wrong: chance.choice(bad[wrong])})
+        traced = lathe.trace_text(program(text))
+        assert traced.error and traced.error.line == 6, text
+        assert traced.error.text.startswith(f"{name} line 6: ") and len(traced.error.text) <= 255
+        assert len(traced.moves) == 1, text
+
+
+@pytest.mark.parametrize(
+    ("blocks", "rule"),
+    [
+        (["G93"], "needs G94 or G95, not G93"),
+        (["G92 X61"], "X0 must be the spindle's axis"),
+        (["G19"], "needs G18 or G17, not G19"),
+        (["G0 Z-1"], "Z-1: the tool must stand above the face at Z0"),
+        (["T0 M6"], "no tool is loaded"),
+    ],
+)
+def test_where_no_hole_can_be_made(lathe, blocks, rule):
+    traced = lathe.trace_text(program(*blocks, call("face_holes")))
+    assert traced.error.text.startswith(f"face_holes line 7: {rule}")
+
+
+def test_the_side_is_drawn_unrolled(tmp_path):
+    text, picture = tmp_path / "side.ngc", tmp_path / "side.svg"
+    text.write_text("\n".join(program(call("side_holes"))))
+    ini = str(SIM / "lathe_mm_headless.ini")
+    assert main(["plot", str(text), "--ini", ini, "-o", str(picture)]) == 0
+    assert "C, degrees, on the radius 20" in picture.read_text()
+    text.write_text("\n".join(program(call("face_holes"))))
+    assert main(["plot", str(text), "--ini", ini, "-o", str(picture)]) == 0
+    assert "The part's face" in picture.read_text()

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Holes with C: what the real axes do, the clamp, taps, aborts in every phase."""
+
+import random
+import time
+
+import numpy as np
+import pytest
+
+from g12.tools.machine.ini import read_ini
+from support.kinematics import needs_kinematics
+from support.operated_machine import Machine
+from support.polar_programs import FIRST
+from support.sim_machines import SIM, machine_scope
+
+RAPID = 1  # kind of a sampled move
+X, Z, C = 0, 2, 5
+START = [FIRST, "T3 M6", "G0 X40 Z8 C100", "F900"]
+CLOSED = "motion.digital-out-00"
+FACE = "o<face_holes> call [3] [30] [20] [-9999] [4] [2] [1200] [1.5] [0.1] [0]"
+SIDE = "o<side_holes> call [2] [-10] [30] [270] [40] [5] [3] [1200] [-2] [0] [0]"
+SAME = 0.002  # mm, degrees: within the servo's sampling
+
+
+def with_clamp(name, folder):
+    """Return a machine whose M10 closes the clamp of C, a digital output, and M11 opens it."""
+    for code, block in (("m10", "M64 P0"), ("m11", "M65 P0")):
+        (folder / f"{code}.ngc").write_text(f"o<{code}> sub\n{block}\no<{code}> endsub\n")
+    ini = read_ini(SIM / f"{name}.ini")
+    own = [f"M{n} modalgroup=10 ngc=m{n}" for n in (10, 11)]
+    path = ini.get("RS274NGC", "SUBROUTINE_PATH")
+    return {
+        "G12": {"C_CLAMP": "M10 M11"},
+        "RS274NGC": {
+            "REMAP": [*ini.all("RS274NGC", "REMAP"), *own],
+            "SUBROUTINE_PATH": f"{path}:{folder}",
+            "ON_ABORT_COMMAND": "G13.1 P",
+        },
+    }
+
+
+@pytest.fixture(
+    scope=machine_scope,
+    params=["lathe_mm", pytest.param("lathe_mm_kinematics", marks=needs_kinematics)],
+)
+def lathe(request, tmp_path_factory):
+    overrides = with_clamp(request.param, tmp_path_factory.mktemp("clamp"))
+    with Machine(SIM / f"{request.param}.ini", overrides=overrides) as running:
+        yield running
+
+
+def opened(lathe):
+    """Tell whether the clamp is open, at the latest in a second."""
+    until = time.monotonic() + 1
+    while lathe.get(CLOSED) and time.monotonic() < until:
+        time.sleep(0.01)
+    return not lathe.get(CLOSED)
+
+
+def beyond_the_start(samples):
+    """Return where the samples have come to X40, from where the calls begin."""
+    return int(np.argmax(samples.axes["X"] > 40 - SAME))
+
+
+def bottoms(samples, axis, least):
+    """Return X, Z and C of each hole's deepest point, along an axis of the machine."""
+    skip = beyond_the_start(samples)
+    values = samples.axes[axis][skip:]
+    deep = values < least + SAME
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], deep.astype(int), [0]])))
+    places = [(first + last) // 2 for first, last in zip(edges[::2], edges[1::2])]
+    return [tuple(samples.axes[letter][skip + at] for letter in "XZC") for at in places]
+
+
+def turned_low(samples, axis, height):
+    """Return how far C has turned while the tool was below a height, degrees."""
+    skip = beyond_the_start(samples)
+    low = samples.axes[axis][skip + 1 :] < height - SAME
+    return float(np.abs(np.diff(samples.axes["C"][skip:])[low]).sum())
+
+
+def test_holes_on_the_face(lathe):
+    lathe.reset()
+    run = lathe.run_text([*START, FACE, "M2"])
+    assert run.error is None
+    found = bottoms(run.samples, "Z", -4)
+    assert found == [pytest.approx((15, -4, c), abs=SAME) for c in (20, 140, 260)]
+    assert turned_low(run.samples, "Z", 2) == 0
+    assert run.position[Z] == pytest.approx(8) and not lathe.get(CLOSED)
+
+
+def test_holes_in_the_side(lathe):
+    lathe.reset()
+    run = lathe.run_text([*START, SIDE, "M2"])
+    assert run.error is None
+    found = bottoms(run.samples, "X", 15)
+    assert found == [pytest.approx((15, -10, c), abs=SAME) for c in (30, -60)]
+    assert turned_low(run.samples, "X", 23) == 0
+
+
+@pytest.mark.parametrize(("kind", "code"), [(1, 3), (2, 4)])
+def test_a_tap_follows_the_spindle(lathe, kind, code):
+    lathe.reset()
+    call = f"o<face_hole_at> call [10] [0] [3] [2] [1] [0] [0] [{kind}]"
+    run = lathe.run_text([*START, f"S300 M{code}", call, "M5", "M2"])
+    assert run.error is None
+    z = run.samples.axes["Z"]
+    assert z.min() == pytest.approx(-3, abs=0.2)
+    down = np.flatnonzero(np.diff(z) < 0)[-1000:-200]
+    speed = -np.diff(z)[down].mean() * 1000
+    assert speed == pytest.approx(300 / 60, rel=0.02)
+
+
+def test_the_clamp_is_closed_in_holes_and_open_while_c_turns(lathe):
+    lathe.reset()
+    lathe.open_text([*START, FACE, "M2"])
+    lathe.start()
+    lathe.wait_for(lambda status: status.actual[X] > 40 - SAME)
+    seen = set()
+    while not (status := lathe.stat()).idle or not seen:
+        closed = bool(lathe.get(CLOSED))
+        if status.actual[Z] < 1.9:
+            seen.add(("low", closed))
+        elif abs(status.actual[C] - round((status.actual[C] - 20) / 120) * 120 - 20) > 1:
+            seen.add(("turning", closed))
+    assert seen == {("low", True), ("turning", False)}
+    assert not lathe.get(CLOSED)
+
+
+def test_aborts_in_every_phase_leave_the_clamp_open(lathe):
+    chance = random.Random(28)
+    for k in range(8):
+        lathe.reset()
+        depth = chance.uniform(-4, 8)
+        lathe.open_text([*START, FACE if k % 2 else SIDE, "M2"])
+        lathe.start()
+        axis, least = (Z, depth) if k % 2 else (X, 18.5 + depth)
+        lathe.wait_for(lambda status: status.actual[axis] < least or status.idle)  # noqa: B023
+        lathe.abort()
+        lathe.errors()
+        assert opened(lathe)
+        lathe.mdi("G90 G0 X50 Z20")
+        assert lathe.stat().position[X] == pytest.approx(50) and not lathe.errors()
+    run = lathe.run_text([*START, FACE, "M2"])
+    assert run.error is None and len(bottoms(run.samples, "Z", -4)) == 3
+
+
+def test_in_mdi(lathe):
+    lathe.reset()
+    for block in START:
+        lathe.mdi(block)
+    before = lathe.stat().modes
+    lathe.mdi(FACE)
+    assert not lathe.errors() and lathe.stat().modes == before
+    lathe.mdi("o<face_holes> call [3] [30] [20] [-9999] [4] [2] [1200] [0] [0] [7]")
+    assert [error.text for error in lathe.errors()] == ["face_holes: kind 7 must be at most 3"]

@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One motor as spindle and as C: changes without a jump, threads as before, interlocks."""
+
+import random
+import time
+
+import numpy as np
+import pytest
+
+from g12.tools.commands import check, install, uninstall
+from support.operated_machine import Machine
+from support.sim_machines import PROGRAMS, copy_of_machines
+from support.spindle_lathe import (
+    FIRST,
+    FLATS,
+    TEN_CHANGES,
+    SpindleLathe,
+    angle_of_flat,
+    changes_of,
+    jumps,
+    kept_lathe,
+    motor_jumps,
+    pitch_and_start,
+    random_changes,
+)
+
+PITCH = 1.5
+MOST = 0.05  # degrees
+
+
+running = kept_lathe("lathe_spindle_c_mm")
+
+
+@pytest.fixture
+def lathe(running):
+    running.abort()
+    running.enable()
+    for block in ("M255", "G10 L2 P1 X0 Z0 C0", *FIRST):
+        running.mdi(block)
+    running.errors(), running.messages()
+    return running
+
+
+def as_c(machine):
+    machine.mdi("M254")
+    assert machine.errors() == []
+    assert machine.is_c()
+
+
+def test_nothing_jumps_at_a_change(lathe):
+    run = lathe.run_text([*FIRST, *random_changes(seed=3, count=6)])
+    assert run.error is None
+    on, off = changes_of(run.samples)
+    assert len(on) == len(off) == 6
+    changes = [*on, *off]
+    assert (jumps(run.samples, changes) <= [0.0, MOST, MOST]).all()
+    assert motor_jumps(run.samples, changes) <= 0.5
+    ahead = np.diff(run.samples.axes["P"] - run.samples.axes["T"]) * 360
+    slow = np.abs(np.diff(run.samples.axes["T"])) < 2e-3
+    assert np.abs(ahead[slow]).max() <= 1  # the ramp begins where the spindle stands
+    assert all(turn_to_c(run.samples, at) <= 0.55 for at in on)
+    standing = np.concatenate([on + 50, off - 1])  # C0 is the index, whatever has happened since
+    beside = (run.samples.axes["T"] - run.samples.axes["C"] / 360)[standing]
+    assert np.abs(beside - np.round(beside)).max() * 360 <= MOST
+
+
+def turn_to_c(samples, change):
+    """Return how many turns the drive's position went before a change, since the spindle stood."""
+    turns = samples.axes["T"][:change]
+    moving = np.abs(np.diff(turns)) > 1e-6
+    stood = np.flatnonzero(~moving[:-1] & moving[1:])[-1]
+    return np.ptp(turns[stood:])
+
+
+def test_c_follows_its_command(lathe):
+    run = lathe.run_text([*FIRST, "M254", "G0 C90", "G1 C0 F3000", "M255", "M2"])
+    assert run.error is None
+    error = np.abs(run.samples.axes["E"])
+    assert 0.01 < error.max() < 0.5
+    assert error[-1] == 0
+
+
+def test_threads_are_the_same_after_ten_changes(lathe):
+    thread = ["S400 M3", "G0 X20 Z5", f"G33 Z-8 K{PITCH}", "G0 X25", "M5"]
+    program = [*FIRST, *TEN_CHANGES[:3], *thread, *TEN_CHANGES, *thread, "M2"]
+    run = lathe.run_text(program, timeout=120)
+    assert run.error is None
+    lines = [number for number, block in enumerate(program, 1) if "G33" in block]
+    (before, start), (after, start_after) = (pitch_and_start(run.samples, at) for at in lines)
+    assert before == pytest.approx(PITCH, rel=0.005)
+    assert after == pytest.approx(before, rel=0.005)
+    assert (start_after - start + 0.5) % 1 - 0.5 == pytest.approx(0, abs=0.01)
+
+
+def test_everything_in_one_program(lathe):
+    faced = ["S900 M3", "G0 X24 Z2", "G96 D1500 S60", "G95 F0.5", "G1 Z0", "X4", "G97 S300"]
+    thread = ["G0 X22 Z4", "G76 P1.5 Z-8 I-1 J0.4 R1.5 K0.92 Q29.5 H0", "M5", "G94"]
+    tap = ["G0 X0 Z5", "S200 M3", "G33.1 Z-1 K1", "M5"]
+    program = [*FIRST, *faced, *thread, *FLATS, *tap, *FLATS, "M2"]
+    run = lathe.run_text(program, timeout=120)
+    assert run.error is None
+    tapped = run.samples.line == program.index("G33.1 Z-1 K1") + 1
+    turns, z = run.samples.axes["T"][tapped], run.samples.axes["Z"][tapped]
+    down = np.arange(len(z)) < z.argmin()
+    synchronous = down & (z < 3) & (z > 0)
+    assert np.ptp(turns[synchronous]) == pytest.approx(3, abs=0.05)
+
+
+def test_flats_lie_where_they_lay_before_ten_changes(lathe):
+    turned = ["S500 M4", "G4 P0.5", "M5"]
+    program = [*FIRST, *FLATS, *turned, *TEN_CHANGES, *turned, *FLATS, "M2"]
+    run = lathe.run_text(program, timeout=120)
+    assert run.error is None
+    lines = [number for number, block in enumerate(program, 1) if block == "X20 C-20"]
+    before, after = (angle_of_flat(run.samples, line) for line in lines)
+    assert before == pytest.approx(0, abs=0.2)
+    assert after == pytest.approx(before, abs=MOST)
+
+
+@pytest.mark.parametrize(
+    ("program", "refusal"),
+    [
+        (["G12.1", "G1 X30 F100", "G13.1"], "G12.1 line 3: needs the spindle as C: M254 first"),
+        (["G7.1 C20", "G1 Z1 F100", "G7.1 C0"], "G7.1 line 3: needs the spindle as C: M254 first"),
+        (
+            ["o<polar_slot> call [8] [20] [1]"],
+            "polar_slot line 3: needs the spindle as C: M254 first",
+        ),
+        (
+            ["M254", "G12.1", "G1 X30 F100", "M255", "G13.1"],
+            "G12.1 line 6: M255 line 7: the section needs C to its end",
+        ),
+        (["M255", "G0 C30"], "Linear move on line 4 would exceed C's positive limit"),
+        (["G1 X30 C-30 F100"], "Linear move on line 3 would exceed C's negative limit"),
+    ],
+)
+def test_refused_while_it_is_the_spindle(lathe, program, refusal):
+    run = lathe.run_text([*FIRST, *program, "M2"])
+    assert run.error.text == refusal
+    assert np.ptp(run.samples.axes["C"]) == 0
+    assert run.samples.axes["X"][-1] == pytest.approx(40)
+
+
+def test_a_c_word_where_c_stands_is_none(lathe):
+    run = lathe.run_text([*FIRST, "M254", "G0 C123.456", "M255", "G0 X30 C123.456", "M2"])
+    assert run.error is None
+
+
+def test_a_jog_of_c_does_not_move_the_spindle(lathe):
+    lathe.manual()
+    lathe.wait_for(lambda status: status.task_mode == "manual")
+    stood = lathe.get("axis.c.pos-cmd")
+    lathe.jog(5, 20)
+    time.sleep(0.3)
+    lathe.jog(5, 0)
+    assert lathe.get("axis.c.pos-cmd") == pytest.approx(stood, abs=MOST)
+
+
+@pytest.mark.parametrize("word", ["M3", "M4"])
+def test_m3_turns_nothing_while_it_is_c(lathe, word):
+    as_c(lathe)
+    lathe.open_text([*FIRST, f"S300 {word}", "G1 X30 F3000", "M2"])
+    lathe.start()
+    time.sleep(1.5)
+    refusal = "M3 or M4 while the spindle is C: it does not turn. M5 and C off first"
+    assert [error.text for error in lathe.errors()] == [refusal]
+    assert abs(lathe.get("spindle-rps")) < 0.001
+    assert lathe.get("axis.x.pos-cmd") == pytest.approx(40)
+    lathe.abort()
+    lathe.mdi("G1 X30 F3000")
+    assert lathe.get("axis.x.pos-cmd") == pytest.approx(30)
+
+
+def test_m3_on_the_screen_while_it_is_c_turns_nothing_afterwards(lathe):
+    as_c(lathe)
+    lathe.mdi("M3 S300")
+    lathe.mdi("M65 P2")
+    lathe.wait_for(lambda _: not lathe.is_c())
+    time.sleep(0.5)
+    assert abs(lathe.get("spindle-rps")) < 0.001
+
+
+def test_a_spindle_that_cannot_become_c():
+    with SpindleLathe(overrides={"SPINDLE_C": {"INDEX_SPEED": 0, "TIMEOUT": 1}}) as machine:
+        machine.mdi("M254")
+        assert machine.errors()[0].text == (
+            "M254: the spindle did not become C within 1 s: it has to stand, to find its index and "
+            "to reach the angle of C (spindle_c.md)"
+        )
+        assert not machine.get("spindle-c-holds")
+        assert not machine.get("spindle.0.orient")
+
+
+PROGRAM = [
+    *FIRST,
+    "S600 M3",
+    "G4 P0.3",
+    "M254",
+    *FLATS[1:-1],
+    "G0 C50",
+    "M255",
+    "S500 M4",
+    "G4 P0.3",
+]
+
+
+@pytest.mark.parametrize("interrupt", ["abort", "estop"])
+def test_interrupted_at_any_time(lathe, interrupt):
+    chance = random.Random(interrupt)
+    for _ in range(5):
+        interrupted(lathe, interrupt, chance.uniform(0.1, 7))
+
+
+def interrupted(lathe, interrupt, moment):
+    """Interrupt the program, look at what is left, and let the next one run."""
+    lathe.open_text([*PROGRAM, "M5", "M2"])
+    lathe.start()
+    time.sleep(moment)
+    was_c = lathe.is_c()
+    getattr(lathe, interrupt)()
+    lathe.wait_for(lambda _: abs(lathe.get("spindle-rps")) < 0.01, timeout=10)
+    stood = lathe.get("spindle-turns")
+    time.sleep(0.3)
+    assert lathe.get("spindle-turns") == pytest.approx(stood, abs=1e-3)
+    assert lathe.is_c() == (was_c and interrupt == "abort")
+    assert lathe.get("spindle-c-holds") == lathe.is_c()
+    told = "The spindle is no longer C: the machine was off. C on again before C moves"
+    assert (told in [error.text for error in lathe.errors()]) == (was_c and interrupt == "estop")
+    lathe.enable()
+    time.sleep(0.2)
+    assert lathe.get("spindle-turns") == pytest.approx(stood, abs=1e-3)
+    run = lathe.run_text([*FIRST, "M254", "G0 C10", "M255", "M2"])
+    assert run.error is None
+
+
+def test_feed_per_revolution_of_the_live_tool(lathe):
+    section = ["G12.1", "G1 C10 F0.1", "X30", "G13.1"]
+    start = ["M254", "G0 X40 C0", "S2000 M33", "S2000 G95 $1"]
+    run = lathe.run_text([*FIRST, *start, *section, "G94", "M5 $1", "M255", "M2"])
+    assert run.error is None
+    line = len(FIRST) + len(start) + 3
+    cut = run.samples.line == line
+    assert np.median(run.samples.requested[cut]) * 60 == pytest.approx(200, rel=0.2)
+
+
+def test_the_manuals_program_switches_c_on_by_m35():
+    with SpindleLathe("lathe_spindle_c_inch") as machine:
+        run = machine.run(PROGRAMS / "polar" / "manual_a.ngc")
+        assert run.error is None
+        assert np.abs(run.samples.axes["E"]).max() < 1
+        assert machine.is_c()
+
+
+PINS = """\
+velocity = "drive-input.in0"
+position = "drive-pid.command"
+holds = "drive-input.sel"
+orient_speed = 1
+orient_acceleration = 4
+index_speed = 0.5
+"""
+PLAIN = """\
+net spindle-cmd spindle.0.speed-out-rps => drive-input.in0
+net spindle-at-speed drive-reached.out => spindle.0.at-speed
+net c-follows joint.2.motor-pos-cmd => joint.2.motor-pos-fb
+setp drive-pid.enable true
+"""
+
+
+def plain_lathe(folder):
+    """Return the INI of a lathe with a spindle, a C axis that moves nothing, and no package."""
+    sim = copy_of_machines(folder)
+    drive = (sim / "parts" / "spindle_drive.hal").read_text().splitlines()
+    ours = ("spindle-c-", "sc-", "drive-reached.out", "drive-holds")
+    kept = [line for line in drive if not (line.startswith("net") and any(o in line for o in ours))]
+    joints = (sim / "parts" / "spindle_joints.hal").read_text()
+    commanded = "net spindle-cmd => drive-reached.in1\n"
+    (sim / "plain.hal").write_text("\n".join([joints, *kept, PLAIN, commanded]))
+    parts = "lathe_spindle_c", "lathe_spindle_c_mm", "lathe_mm"
+    text = "".join((sim / "parts" / f"{part}.inc").read_text() for part in parts)
+    cut = text[: text.index("[SPINDLE_C]")] + text[text.index("[KINS]") :]
+    lines = [
+        line for line in cut.splitlines() if not line.startswith(("HALFILE", "HALCMD", "nc ="))
+    ]
+    hal = "\n".join(lines).replace("[HAL]", "[HAL]\nHALFILE = plain.hal")
+    python = hal[hal.index("[PYTHON]") : hal.index("[TASK]")]
+    ini = sim / "plain.ini"
+    screen = "[EMC]\nVERSION = 1.1\n[DISPLAY]\nDISPLAY = axis\nGEOMETRY = CXZ!\n"
+    interpreter = "[RS274NGC]\nPARAMETER_FILE = plain.var\n"
+    ini.write_text(screen + interpreter + hal.replace(python, "") + "\n")
+    return ini
+
+
+def test_installed_on_a_plain_lathe(tmp_path):
+    ini, pins = plain_lathe(tmp_path), tmp_path / "spindle.toml"
+    before = ini.read_bytes()
+    pins.write_text(PINS)
+    wanted = ["--with", "polar", "spindle-c", "--pins", str(pins)]
+    assert install.main([str(ini), *wanted]) == 0
+    assert check.main([str(ini)]) == 0
+    with Machine(ini) as machine:
+        run = machine.run_text([*FIRST, "S300 M3", "G4 P1", *FLATS, "S300 M3", "G33 Z-5 K1", "M2"])
+        assert run.error is None
+        machine.mdi("M254")
+        assert machine.get("spindle-c-on")
+        machine.mdi("G0 C90")
+        assert machine.get("encoder-turns.out") % 1 == pytest.approx(0.25, abs=1e-3)
+    assert install.main([str(ini), *wanted]) == 0  # again: nothing
+    assert uninstall.main([str(ini)]) == 0
+    assert ini.read_bytes() == before

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The lathe whose spindle becomes C, with its spindle and its drive recorded beside the axes."""
+
+import random
+
+import numpy as np
+import pytest
+
+from support.operated_machine import Machine
+from support.sim_machines import SIM, machine_scope
+
+PINS = {
+    "F": "joint.2.pos-fb",
+    "E": "joint.2.f-error",
+    "T": "encoder-turns.out",
+    "P": "sc-to-position.out",
+    "L": "sc-least.out",
+}
+FIRST = ["G21 G18 G8 G40 G90 G94 G97 G64 P0.01", "G0 X40 Z5"]
+TEN_CHANGES = [block for turn in range(10) for block in ("M254", f"G0 C{37 * turn % 100}", "M255")]
+FLATS = ["M254", "G0 X40 Z2 C0", "G12.1", "G1 X20 C20 F3000", "X20 C-20", "X40", "G13.1", "M255"]
+UNLOCKED = -1000.0  # least C, below it while the spindle is C
+
+
+class SpindleLathe(Machine):
+    """`lathe_spindle_c_mm`; samples have these axes too, degrees and turns.
+
+    F and E are C's feedback and following error, T the encoder, P the drive's position input, L the
+    least that C may command.
+    """
+
+    def __init__(self, name="lathe_spindle_c_mm", **options):
+        super().__init__(SIM / f"{name}.ini", **options)
+
+    def _start(self, timeout):
+        self._pins = {**self._pins, **PINS}
+        self.axes = "".join(self._pins)
+        super()._start(timeout)
+
+    def is_c(self):
+        """Tell whether the spindle is C."""
+        return self.get("spindle-c-on")
+
+
+def kept_lathe(name):
+    """Return a fixture: such a lathe, for as long as `machine_scope` says."""
+
+    @pytest.fixture(scope=machine_scope)
+    def running():
+        with SpindleLathe(name) as machine:
+            yield machine
+
+    return running
+
+
+def random_changes(seed, count):
+    """Return blocks with that many changes each way, from any angle and speed."""
+    chance = random.Random(seed)
+    blocks = []
+    for _ in range(count):
+        way, speed = chance.choice(("M3", "M4")), chance.uniform(50, 900)
+        blocks += [f"S{speed:.1f} {way}", f"G4 P{chance.uniform(0.1, 1):.3f}"]
+        blocks += ["M254", "G4 P0.1", f"G0 C{chance.uniform(-200, 200):.3f}"]
+        blocks += ["G4 P0.2", "M255", "G4 P0.1"]
+    return [*blocks, "M5", "M2"]
+
+
+def changes_of(samples):
+    """Return the samples at which the spindle becomes C, and at which it becomes the spindle."""
+    is_c = samples.axes["L"] < UNLOCKED
+    steps = np.diff(is_c.astype(int))
+    return np.flatnonzero(steps > 0) + 1, np.flatnonzero(steps < 0) + 1
+
+
+def jumps(samples, changes, around=50):
+    """Return the greatest steps of C's command, feedback (degrees a sample) and error (degrees).
+
+    They are those within ``around`` samples of the changes.
+    """
+    worst = np.zeros(3)
+    for at in changes:
+        near = slice(max(at - around, 0), at + around)
+        command, feedback, error = (samples.axes[name][near] for name in "CFE")
+        here = [
+            np.abs(np.diff(command)).max(),
+            np.abs(np.diff(feedback)).max(),
+            np.abs(error).max(),
+        ]
+        worst = np.maximum(worst, here)
+    return worst
+
+
+def motor_jumps(samples, changes, around=50):
+    """Return the greatest change of the motor's speed from sample to sample, degrees/s."""
+    turns = samples.axes["T"]
+    return max(
+        np.abs(np.diff(turns[max(at - around, 0) : at + around], 2)).max() * 360e3 for at in changes
+    )
+
+
+def pitch_and_start(samples, line):
+    """Return the pitch of a thread, and the angle in turns at which it would be at Z0."""
+    cut = samples.line == line
+    turns, z = samples.axes["T"][cut], samples.axes["Z"][cut]
+    inside = (z < 0) & (z > -7)
+    slope, at_zero = np.polyfit(z[inside], turns[inside], 1)
+    return abs(1 / slope), at_zero
+
+
+def angle_of_flat(samples, line):
+    """Return the direction of a line on the face, in degrees, by the spindle's own encoder."""
+    cut = samples.line == line
+    angle = 2 * np.pi * samples.axes["T"][cut]
+    points = samples.axes["X"][cut] * np.exp(1j * angle)
+    middle = np.abs(points.imag) < 15
+    slope, _ = np.polyfit(points.imag[middle], points.real[middle], 1)
+    return np.degrees(np.arctan(slope))

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""install --with spindle-c, and what check finds of it; no LinuxCNC is asked."""
+
+import pytest
+
+from g12.tools.errors import UsageError
+from g12.tools.install import features, installation, package_copy, removal
+from g12.tools.install.ini_edit import IniText
+from g12.tools.install.plan import Refused, make_plan
+from g12.tools.install.spindle_c import read_pins, spindle_c_findings
+from support.small_configs import config_of, content_of, write_config
+
+HAL = """\
+loadrt [KINS]KINEMATICS
+loadrt [EMCMOT]EMCMOT num_joints=3
+net turns encoder.position => spindle.0.revs
+net rps encoder.velocity => spindle.0.speed-in
+net index encoder.index-enable <=> spindle.0.index-enable
+net c joint.2.motor-pos-cmd => joint.2.motor-pos-fb
+"""
+LATHE = """\
+[RS274NGC]
+PARAMETER_FILE = lathe.var
+
+[DISPLAY]
+GEOMETRY = CXZ!
+
+[TRAJ]
+COORDINATES = X Z C
+LINEAR_UNITS = mm
+
+[KINS]
+KINEMATICS = trivkins coordinates=XZC
+JOINTS = 3
+
+[HAL]
+HALFILE = motion.hal
+
+[AXIS_C]
+MIN_LIMIT = -99999
+MAX_LIMIT = 99999
+
+[JOINT_2]
+HOME_SEARCH_VEL = 0.0
+"""
+PINS = """\
+velocity = "drive.velocity"
+velocity_scale = 60
+position = "drive.position"
+holds = "drive.mode"
+brake = "drive.brake"
+"""
+REFUSED = [
+    ("encoder.position => spindle.0.revs", "a => b", "no HAL file connects spindle.0.revs"),
+    ("loadrt [KINS]", "loadrt lut5 count=1\nloadrt [KINS]", "loads lut5 too"),
+    ("net c joint", "net d => motion.digital-out-02\nnet c joint", "motion.digital-out-02 is what"),
+]
+INI_REFUSED = [
+    ("coordinates=XZC", "coordinates=XZA", "no joint is C alone"),
+    ("MIN_LIMIT = -99999\n", "", "[AXIS_C] lacks MIN_LIMIT"),
+    ("HOME_SEARCH_VEL = 0.0", "HOME_SEARCH_VEL = -5", "[JOINT_2] HOME_SEARCH_VEL = -5"),
+]
+MISTAKES = [  # what is changed of an installed machine's INI, what is found
+    ("JOINT = 2\n", "", "spindle-c"),
+    ("TURNS = turns", "TURNS = other", "spindle-c-signal"),
+    ("HALFILE = g12/configs/include/spindle_c.hal", "", "spindle-c-hal"),
+    ("HALCMD = net spindle-c-holds => drive.mode\n", "", "spindle-c-drive"),
+    ("HALCMD = loadusr sh g12/configs/include/spindle_c_limits.sh\n", "", "spindle-c-limits"),
+    ("HALCMD = unlinkp drive.mode", "HALCMD = net d => joint.2.motor-pos-fb", "spindle-c-feedback"),
+    ("HALCMD = unlinkp drive.mode", "HALCMD = net index => joint.2.index-enable",
+     "spindle-c-index"),
+    ("MAX_LIMIT = 99999\n", "", "spindle-c-travel"),
+    ("HOME_SEARCH_VEL = 0.0", "HOME_LATCH_VEL = 1", "spindle-c-homing"),
+    ("HALCMD = unlinkp drive.mode", "HALCMD = loadrt sum2", "spindle-c-module"),
+    ("HALCMD = unlinkp drive.mode", "HALCMD = net x => spindle.0.is-oriented", "pin-taken"),
+]  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def small_package(monkeypatch):
+    files = [f"configs/include/spindle_c{end}" for end in (".hal", "_limits.sh", ".inc")]
+    package = {name: (features.ROOT / name).read_bytes() for name in files}
+    monkeypatch.setattr(package_copy, "package_files", lambda: dict(package))
+
+
+def pins_of(folder, text=PINS):
+    path = folder.parent / f"{folder.name}.toml"
+    path.write_text(text)
+    return read_pins(path)
+
+
+def put_in(folder, text=LATHE, hal=HAL):
+    ini = write_config(folder, text, "lathe.ini", motion_hal=hal)
+    before = content_of(folder)
+    plan = make_plan(config_of(ini), [features.SPINDLE_C], pins_of(folder))
+    installation.write_changes(plan, folder)
+    return ini, before
+
+
+@pytest.mark.parametrize(
+    "text", [LATHE, LATHE.rstrip(), LATHE.replace("\n", "\r\n")], ids=["plain", "no end", "CRLF"]
+)
+def test_check_finds_nothing_and_uninstall_gives_every_byte_back(tmp_path, text):
+    ini, before = put_in(tmp_path, text)
+    assert list(spindle_c_findings(config_of(ini))) == []
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert content_of(tmp_path) == before
+
+
+def test_what_is_written(tmp_path):
+    text = put_in(tmp_path)[0].read_text()
+    for lines in (
+        "HALFILE = g12/configs/include/spindle_c.hal\n"
+        "HALCMD = unlinkp drive.velocity\nHALCMD = net spindle-c-velocity => drive.velocity\n",
+        "HALCMD = net spindle-c-brake => drive.brake\n"
+        "HALCMD = loadusr sh g12/configs/include/spindle_c_limits.sh\n",
+        "[SPINDLE_C]\nJOINT = 2\nTURNS = turns\nRPS = rps\nINDEX = index\n"
+        "REACHED = spindle-c-always\nENABLED = sc-enabled\n",
+        "COMMAND = c\n",
+        "VELOCITY_SCALE = 60\nPOSITION_SCALE = 1\n",
+    ):
+        assert lines in text
+
+
+def test_install_asks_for_the_pins(tmp_path):
+    ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=HAL)
+    with pytest.raises(Refused) as refused:
+        make_plan(config_of(ini), [features.SPINDLE_C])
+    assert [finding.kind for finding in refused.value.args] == ["pins"]
+    assert "--pins spindle.toml" in refused.value.args[0].cure
+
+
+@pytest.mark.parametrize(("old", "new", "said"), REFUSED)
+def test_refused_for_what_hal_files_do(tmp_path, old, new, said):
+    with pytest.raises(Refused) as refused:
+        put_in(tmp_path, hal=HAL.replace(old, new))
+    assert said in "".join(finding.text for finding in refused.value.args)
+
+
+@pytest.mark.parametrize(("old", "new", "said"), INI_REFUSED)
+def test_refused_for_what_the_ini_says(tmp_path, old, new, said):
+    with pytest.raises(Refused) as refused:
+        put_in(tmp_path, LATHE.replace(old, new))
+    assert said in "".join(finding.text for finding in refused.value.args)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("velocity = 'a'", "position, holds: missing"),
+        (f"{PINS}\nspeed = 'a'", "speed is none of velocity, position"),
+        (PINS.replace("60", "'fast'"), "velocity_scale is a number, not 'fast'"),
+        (PINS.replace('"drive.mode"', "3"), "holds is the name of a pin, not 3"),
+        ("velocity", "Expected .=. after a key"),
+    ],
+)
+def test_a_file_of_pins_that_says_something_else(tmp_path, text, said):
+    with pytest.raises(UsageError, match=said):
+        pins_of(tmp_path, text)
+
+
+@pytest.mark.parametrize(("old", "new", "kind"), MISTAKES)
+def test_check_finds(tmp_path, old, new, kind):
+    ini, _ = put_in(tmp_path)
+    text = ini.read_text()
+    assert old in text
+    ini.write_text(text.replace(old, new))
+    found = list(spindle_c_findings(config_of(ini)))
+    assert kind in [finding.kind for finding in found]
+
+
+def test_check_finds_nothing_on_other_machines(tmp_path):
+    ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=HAL)
+    assert list(spindle_c_findings(config_of(ini))) == []
