@@ -417,7 +417,7 @@ def test_the_spindle_is_where_x0_is(offset, units, tmp_path):
     (facts,), moves = proof.sections, proof.subject.trace.moves
     assert facts.pace.lowest == pytest.approx(600, rel=0.01)
     x0 = moves[facts.section.at].start[0] - facts.section.start.real
-    assert proof.subject.path.part.centre == pytest.approx(x0)
+    assert proof.subject.part.centre == pytest.approx(x0)
 
 
 def test_each_section_is_seen_about_its_own_x0(tmp_path):

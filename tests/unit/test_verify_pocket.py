@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 
 from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
+from g12.tools.path.slowest import programmed_pace
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.units import UNITS
@@ -53,15 +55,15 @@ def made(wanted, plane=17):
 
 
 def measure(moves, wanted, real_shift=None):
-    path = track(MILL, moves, LIMITS)
-    real = None
+    real, pace = None, partial(programmed_pace, moves, LIMITS, 0.0)
     if real_shift is not None:
+        path = track(MILL, moves, LIMITS)
         real = follow(path, moves, samples_of(path, 8000, shift=real_shift), 1.0)
     block = Block(None, {}, (), (), (), {}, 1, len(moves))
     piece = assumed_workpiece(
         Program(moves, MILL, [(block, wanted)], [], {1: 2 * wanted.cutter.loaded})
     )
-    return measure_pocket(block, wanted, path, moves, piece.material, TOLERANCE, real)
+    return measure_pocket(block, wanted, moves, piece.material, TOLERANCE, pace, real)
 
 
 def codes(moves, wanted, **options):

@@ -227,11 +227,12 @@ def is_sideways(move: Move) -> bool:
 
 def plane_axes(move: Move) -> np.ndarray:
     """Return the directions of a move's plane: first, second and third axis, as rows."""
-    return _axes_of_plane(move.plane, move.rotation)
+    return axes_of_plane(move.plane, move.rotation)
 
 
 @lru_cache(maxsize=64)
-def _axes_of_plane(plane: int, rotation: float) -> np.ndarray:
+def axes_of_plane(plane: int, rotation: float) -> np.ndarray:
+    """Return the same of a plane by its number in a system turned by degrees."""
     cos, sin = np.cos(np.radians(rotation)), np.sin(np.radians(rotation))
     turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
     axes = np.roll(turned, 2 - THIRD_AXIS[plane], axis=0)

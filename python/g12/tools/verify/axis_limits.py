@@ -9,19 +9,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from g12.machine_ini import axes_of
 from g12.tools.machine.ini import Ini
-from g12.tools.path.part import arc_points
+from g12.tools.path.part import axes_of_plane
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.reading.block_words import BlockInMm
 
 LETTERS = "XYZ"
-SHARES = np.linspace(0.0, 1.0, 181)  # of an arc that are looked at
 BEYOND = 1e-3  # mm
 SAME_ZERO = 1e-6  # mm
 DECIMALS = 4  # of a program's zero
@@ -48,22 +48,24 @@ def travel_of(ini: Ini) -> dict[str, tuple[float, float]]:
     return {letter: (axis.low * ini.mm, axis.high * ini.mm) for letter, axis in limits.items()}
 
 
+class Reach(NamedTuple):
+    """How far a block reaches: its zero, and the least and greatest positions (3,) of the axes."""
+
+    zero: Zero
+    low: np.ndarray
+    high: np.ndarray
+
+
 def overruns_of(
-    block: Block,
-    moves: Sequence[Move],
-    travel: Mapping[str, tuple[float, float]],
-    widths: Mapping[Zero, np.ndarray],
+    reach: Reach, travel: Mapping[str, tuple[float, float]], widths: Mapping[Zero, np.ndarray]
 ) -> Iterator[Overrun]:
-    """Yield where a block leaves the travel, of moves with the machine's work offsets.
+    """Yield where a block leaves the travel.
 
     ``widths`` is how far apart blocks of the same zero are: see ``widths_of``.
     """
-    zero = zero_of_block(block, moves)
-    known = np.abs(zero).max() > SAME_ZERO
-    points = points_of_block(block, moves)
-    own = np.ptp(points[:, :3], axis=0)
-    for letter, values, width in zip(LETTERS, points.T, widths.get(zero, own)):
-        low, high = float(values.min()), float(values.max())
+    known = max(map(abs, reach.zero)) > SAME_ZERO
+    ends = zip(LETTERS, reach.low.tolist(), reach.high.tolist())
+    for (letter, low, high), width in zip(ends, widths.get(reach.zero, reach.high - reach.low)):
         least, most = travel[letter]
         certain = bool(known or width > most - least)
         if not certain and letter == "Z":  # hardly ever true, with any tool length
@@ -79,27 +81,34 @@ def has_one_zero(events: Iterable[Event]) -> bool:
     return len({event.text for event in events if WORK_OFFSET.fullmatch(event.text)}) < 2
 
 
-def widths_of(blocks: Iterable[Block], moves: Sequence[Move]) -> dict[Zero, np.ndarray]:
+def widths_of(reaches: Iterable[Reach]) -> dict[Zero, np.ndarray]:
     """Return, by the program's zero, how far blocks reach in X, Y and Z all together."""
     found: dict[Zero, list[np.ndarray]] = {}
-    for block in blocks:
-        points = points_of_block(block, moves)[:, :3]
-        ends = [points.min(axis=0), points.max(axis=0)]
-        found.setdefault(zero_of_block(block, moves), []).extend(ends)
+    for reach in reaches:
+        found.setdefault(reach.zero, []).extend((reach.low, reach.high))
     return {zero: np.ptp(ends, axis=0) for zero, ends in found.items()}
 
 
-def zero_of_block(block: Block, moves: Sequence[Move]) -> Zero:
-    """Return the program's zero in machine coordinates."""
-    return tuple(map(float, np.round(BlockInMm(block, moves[block.at]).zero(), DECIMALS) + 0.0))
+def reach_of(block: Block, moves: Sequence[Move]) -> Reach:
+    """Return how far a block reaches, of moves with the machine's work offsets.
+
+    An arc counts as its circle, which no cycle leaves by its full circles.
+    """
+    own = moves[block.at : block.end]
+    ends = np.array([place[:3] for move in own for place in (move.start, move.end)])
+    offsets = np.array([move.tool_offset[:3] for move in own])
+    points = [ends + np.repeat(offsets, 2, axis=0)]
+    arcs = [(move, offset) for move, offset in zip(own, offsets) if move.kind == "arc"]
+    if arcs:
+        centres = np.array([move.centre for move, _ in arcs]) + [offset for _, offset in arcs]
+        spread = np.array([move.radius * _spread(move.plane, move.rotation) for move, _ in arcs])
+        points += [centres - spread, centres + spread]
+    every = np.concatenate(points)
+    zero = tuple(map(float, np.round(BlockInMm(block, moves[block.at]).zero(), DECIMALS) + 0.0))
+    return Reach(zero, every.min(axis=0), every.max(axis=0))
 
 
-def points_of_block(block: Block, moves: Sequence[Move]) -> np.ndarray:
-    """Return positions (n, 9) of the axes along a block's moves."""
-    return np.concatenate([axes_along(move) for move in moves[block.at : block.end]])
-
-
-def axes_along(move: Move) -> np.ndarray:
-    """Return positions (n, 9) of the axes along a move, tool length offset included."""
-    points = arc_points(move, SHARES) if move.kind == "arc" else np.array([move.start, move.end])
-    return points + np.array(move.tool_offset)
+@lru_cache(maxsize=64)
+def _spread(plane: int, rotation: float) -> np.ndarray:
+    """Return how far a circle of radius 1 reaches along X, Y and Z."""
+    return np.hypot(*axes_of_plane(plane, rotation)[:2])

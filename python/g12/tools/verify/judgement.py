@@ -36,7 +36,8 @@ Texts = Callable[[Unit], list[str]]
 
 def judged(proof: Proof, texts: Sequence[Text]) -> list[Finding]:
     """Return the findings and notes of a proof; ``texts`` are the program's lines."""
-    trace, ini, path = proof.subject.trace, proof.subject.ini, proof.subject.path
+    subject = proof.subject
+    trace, ini = subject.trace, subject.ini
     moves = trace.moves
     cuts = list(cuts_of(proof.asked, moves))
     known = {index for some in proof.asked.moves for index in some}
@@ -44,13 +45,16 @@ def judged(proof: Proof, texts: Sequence[Text]) -> list[Finding]:
         *said_of_cuts(proof),
         *proof.material.judged,
         *judge_tool_length(cuts, moves, trace.lengths, trace.events),
-        *judge_feeds(cuts, moves, path, limits_of(ini)),
+        *judge_feeds(cuts, moves, limits_of(ini)),
         *judge_spindle(cuts, trace.events, ini),
         *judge_levels(cuts, moves),
         *not_judged(moves, known),
     ]
     if part_of(ini).turning:
-        found += [*judge_native_c(moves, known, path), *judge_return_levels(texts, Codes(ini))]
+        found += [
+            *judge_native_c(moves, known, subject.path),
+            *judge_return_levels(texts, Codes(ini)),
+        ]
     return sorted(found, key=lambda finding: finding.line)
 
 

@@ -7,7 +7,7 @@ Lengths are millimetres, areas square millimetres, angles degrees, feeds mm/min,
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -17,8 +17,7 @@ from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.material.material import Material
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import arc_points, plane_axes
-from g12.tools.path.slowest import Pace, pace_of
-from g12.tools.path.track import Track
+from g12.tools.path.slowest import Pace
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.axis_limits import Overrun
@@ -104,13 +103,16 @@ class PocketFacts:
 def measure_pocket(
     block: Block,
     target: Target,
-    path: Track,
     moves: Sequence[Move],
     material: Material,
     tolerance: float,
+    pace: Callable[[Sequence[int], Sequence[int]], Pace],
     real: Followed | None = None,
 ) -> PocketFacts:
-    """Return the facts of the pocket of a block, in its ``material``."""
+    """Return the facts of the pocket of a block, in its ``material``.
+
+    ``pace`` is a function of all its moves and of those that cut.
+    """
     own = range(block.at, block.end)
     laid = lay(target.path, made_in(target.wall, moves, own), tolerance)
     cutting = [i for i in own if is_cutting(moves[i], target.wall)]
@@ -124,7 +126,7 @@ def measure_pocket(
         laid,
         **{
             "reached": reached(target, laid, moves),
-            "pace": pace_of(own, cutting, path, real),
+            "pace": pace(own, cutting),
             "lengths": (min(lengths), max(lengths)),
             "state": state_differences(block.left, target.leaves),
             "events": extra_events(block),

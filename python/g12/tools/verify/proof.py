@@ -15,10 +15,12 @@ from typing import NamedTuple
 
 from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini
+from g12.tools.material.material import Material
 from g12.tools.material.stock import read_stock
 from g12.tools.path.follow import Followed, follow
 from g12.tools.path.part import Part, part_of, part_of_program
 from g12.tools.path.samples import Samples
+from g12.tools.path.slowest import pace_of, programmed_pace
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.ended import ended, explained
@@ -27,7 +29,7 @@ from g12.tools.preview.moves import Move, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import Unit, unit_of
-from g12.tools.verify.axis_limits import has_one_zero, overruns_of, travel_of, widths_of
+from g12.tools.verify.axis_limits import has_one_zero, overruns_of, reach_of, travel_of, widths_of
 from g12.tools.verify.compare.section_plane import x0_of
 from g12.tools.verify.expected.contour import SectionContour, WordReading
 from g12.tools.verify.expected.cylinder import SurfacePen
@@ -55,23 +57,35 @@ RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE, which is that of e
 
 @dataclass(frozen=True)
 class Subject:
-    """A program on a machine, as traced: ``path`` is its track, ``real`` the motion of a run.
+    """A program on a machine, as traced, and as a part sees it; ``samples`` are those of a run.
 
-    ``samples`` are those of the run.
+    Of its ``own`` moves alone it is, if those are given.
     """
 
     program: Path
     ini: Ini
     trace: Trace
-    path: Track
-    real: Followed | None = None
+    part: Part
     samples: Samples | None = None
+    own: range | None = None
+
+    @cached_property
+    def path(self) -> Track:
+        """The moves as one polyline in time."""
+        limits, speed = limits_of(self.ini), self.trace.modes.speed
+        return track(self.part, self.trace.moves, limits, speed, own=self.own)
+
+    @cached_property
+    def real(self) -> Followed | None:
+        """The motion of the run, laid on the path."""
+        if not self.samples:
+            return None
+        return follow(self.path, self.trace.moves, self.samples, self.ini.mm)
 
     def about(self, centre: float) -> Subject:
         """Return the same with the spindle's axis at another machine X."""
-        part = self.path.part
-        same = abs(part.centre - centre) < SAME_X0
-        return self if same else self._laid_on(replace(part, centre=centre))
+        same = abs(self.part.centre - centre) < SAME_X0
+        return self if same else self._laid_on(replace(self.part, centre=centre))
 
     def on_surface(self, radius: float) -> Subject:
         """Return the same on a cylinder's unrolled surface."""
@@ -89,13 +103,12 @@ class Subject:
         return self._turned_about(shape.zero[0], None if self.samples else shape.moves)
 
     def _turned_about(self, centre: float, own: range | None) -> Subject:
-        part = self.path.part
-        if abs(part.centre - centre) < SAME_X0:
+        if abs(self.part.centre - centre) < SAME_X0:
             return self
-        return self._laid_on(replace(part, centre=centre), own)
+        return self._laid_on(replace(self.part, centre=centre), own)
 
     def _laid_on(self, part: Part, own: range | None = None) -> Subject:
-        return laid_on(part, self.program, self.ini, self.trace, self.samples, own)
+        return replace(self, part=part, own=own)
 
 
 class StockText(NamedTuple):
@@ -205,22 +218,8 @@ def prove(
 
 
 def subject_of(program: Path, ini: Ini, trace: Trace, samples: Samples | None = None) -> Subject:
-    """Return a traced program with its path, and the samples of a run laid on that."""
-    return laid_on(part_of_program(ini, trace), program, ini, trace, samples)
-
-
-def laid_on(
-    part: Part,
-    program: Path,
-    ini: Ini,
-    trace: Trace,
-    samples: Samples | None = None,
-    own: range | None = None,
-) -> Subject:
-    """Return a traced program as a part sees it, or its ``own`` moves alone."""
-    path = track(part, trace.moves, limits_of(ini), trace.modes.speed, own=own)
-    real = follow(path, trace.moves, samples, ini.mm) if samples else None
-    return Subject(program, ini, trace, path, real, samples)
+    """Return a traced program as its part sees it, and a run of it."""
+    return Subject(program, ini, trace, part_of_program(ini, trace), samples)
 
 
 def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Parameters) -> Asked:
@@ -285,16 +284,8 @@ def measured(
     tell: Tell,
 ) -> Proof:
     """Return what is measured of a program; ``there`` are its moves on the machine, if known."""
-    moves, path, real = subject.trace.moves, subject.path, subject.real
-    travel = travel_of(subject.ini)
-    together = there is not None and has_one_zero(subject.trace.events)
-    widths = widths_of((block for block, _ in asked.circles), there) if together else {}
-    pockets, piece = [], workpiece_of(subject, asked, stock)
-    for block, target in counted(asked.circles, "measuring pocket", tell):
-        stands = piece.material
-        facts = measure_pocket(block, target, path, moves, stands, tolerances.pocket, real)
-        overruns = None if there is None else tuple(overruns_of(block, there, travel, widths))
-        pockets.append(replace(facts, overruns=overruns))
+    moves, piece = subject.trace.moves, workpiece_of(subject, asked, stock)
+    pockets = measured_pockets(subject, asked, there, piece.material, tolerances.pocket, tell)
     found = measured_sections(subject, asked.sections, tolerances.polar, tell)
     shapes = measured_shapes(subject, asked, tolerances.polar, tell)
     tell("looking for rapids through material")
@@ -302,6 +293,30 @@ def measured(
     unseen = unseen_in(moves, Codes(subject.ini), asked.moves)
     told = {"still": asked.still, "asked": asked, "shapes": shapes}
     return Proof(subject, pockets, found, unseen, tolerances, material, **told)
+
+
+def measured_pockets(
+    subject: Subject,
+    asked: Asked,
+    there: Sequence[Move] | None,
+    material: Material,
+    tolerance: float,
+    tell: Tell,
+) -> list[PocketFacts]:
+    """Return what is measured of a program's pockets, with the travel that they need."""
+    trace, real, travel = subject.trace, subject.real, travel_of(subject.ini)
+    pace = partial(programmed_pace, trace.moves, limits_of(subject.ini), trace.modes.speed)
+    if real:
+        pace = partial(pace_of, path=subject.path, real=real)
+    reaches = [reach_of(block, there) if there else None for block, _ in asked.circles]
+    widths = widths_of(reaches) if there and has_one_zero(trace.events) else {}
+    found = []
+    pairs = list(zip(asked.circles, reaches))
+    for (block, target), reach in counted(pairs, "measuring pocket", tell):
+        facts = measure_pocket(block, target, trace.moves, material, tolerance, pace, real)
+        overruns = None if reach is None else tuple(overruns_of(reach, travel, widths))
+        found.append(replace(facts, overruns=overruns))
+    return found
 
 
 def measured_sections(
@@ -335,7 +350,7 @@ def measured_shapes(
 
 def program_of(subject: Subject, asked: Asked) -> Program:
     """Return what is judged in the material."""
-    trace, part = subject.trace, subject.path.part
+    trace, part = subject.trace, subject.part
     return Program(trace.moves, part, asked.circles, asked.sections, trace.diameters, subject.real)
 
 

@@ -19,7 +19,7 @@ TURNS = 1e-6  # degrees or mm
 
 
 def judge_feeds(
-    cuts: Sequence[ProgramCut], moves: Sequence[Move], path: Track, limits: Limits
+    cuts: Sequence[ProgramCut], moves: Sequence[Move], limits: Limits
 ) -> Iterator[Finding]:
     """Yield what to know of the feeds of cuts."""
     for cut in cuts:
