@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from shapely.geometry import Point
 
 from g12.tools.machine.ini import Ini
-from g12.tools.path.follow import follow, worst_of
+from g12.tools.path.follow import worst_of
 from g12.tools.plot import plan_view, style
 from g12.tools.plot.deviation import most_telling, window_lines
 from g12.tools.plot.face import programmed_history
@@ -395,8 +395,7 @@ def with_real_motion(hand, ini, aside):
     middle = slice(1900, 2100)
     for letter, value in aside.items():
         samples.axes[letter][middle] += value
-    real = follow(shown.path, shown.moves, samples, 1.0)
-    return replace(shown, subject=replace(shown.subject, real=real, samples=samples))
+    return replace(shown, subject=replace(shown.subject, samples=samples))
 
 
 @pytest.mark.parametrize(

@@ -120,7 +120,7 @@ def unrolled(scene: Scene) -> Scene:
     flat = Track(Flat(turning=False), moves, lambda: vertices, path.seconds)
     trace = replace(subject.trace, moves=moves)
     shown = scene.seen._replace(material=MaterialFacts())
-    return replace(scene, subject=replace(subject, trace=trace, path=flat), seen=shown)
+    return replace(scene, subject=replace(subject, trace=trace, drawn=flat), seen=shown)
 
 
 def unrolled_move(move: Move, part: Surface) -> Move:

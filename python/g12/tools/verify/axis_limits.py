@@ -48,7 +48,7 @@ def travel_of(ini: Ini) -> dict[str, tuple[float, float]]:
     return {letter: (axis.low * ini.mm, axis.high * ini.mm) for letter, axis in limits.items()}
 
 
-class Reach(NamedTuple):
+class BlockExtent(NamedTuple):
     """How far a block reaches: its zero, and the least and greatest positions (3,) of the axes."""
 
     zero: Zero
@@ -57,15 +57,17 @@ class Reach(NamedTuple):
 
 
 def overruns_of(
-    reach: Reach, travel: Mapping[str, tuple[float, float]], widths: Mapping[Zero, np.ndarray]
+    extent: BlockExtent,
+    travel: Mapping[str, tuple[float, float]],
+    widths: Mapping[Zero, np.ndarray],
 ) -> Iterator[Overrun]:
     """Yield where a block leaves the travel.
 
     ``widths`` is how far apart blocks of the same zero are: see ``widths_of``.
     """
-    known = max(map(abs, reach.zero)) > SAME_ZERO
-    ends = zip(LETTERS, reach.low.tolist(), reach.high.tolist())
-    for (letter, low, high), width in zip(ends, widths.get(reach.zero, reach.high - reach.low)):
+    known = max(map(abs, extent.zero)) > SAME_ZERO
+    ends = zip(LETTERS, extent.low.tolist(), extent.high.tolist())
+    for (letter, low, high), width in zip(ends, widths.get(extent.zero, extent.high - extent.low)):
         least, most = travel[letter]
         certain = bool(known or width > most - least)
         if not certain and letter == "Z":  # hardly ever true, with any tool length
@@ -81,15 +83,15 @@ def has_one_zero(events: Iterable[Event]) -> bool:
     return len({event.text for event in events if WORK_OFFSET.fullmatch(event.text)}) < 2
 
 
-def widths_of(reaches: Iterable[Reach]) -> dict[Zero, np.ndarray]:
+def widths_of(extents: Iterable[BlockExtent]) -> dict[Zero, np.ndarray]:
     """Return, by the program's zero, how far blocks reach in X, Y and Z all together."""
     found: dict[Zero, list[np.ndarray]] = {}
-    for reach in reaches:
-        found.setdefault(reach.zero, []).extend((reach.low, reach.high))
+    for extent in extents:
+        found.setdefault(extent.zero, []).extend((extent.low, extent.high))
     return {zero: np.ptp(ends, axis=0) for zero, ends in found.items()}
 
 
-def reach_of(block: Block, moves: Sequence[Move]) -> Reach:
+def extent_of_block(block: Block, moves: Sequence[Move]) -> BlockExtent:
     """Return how far a block reaches, of moves with the machine's work offsets.
 
     An arc counts as its circle, which no cycle leaves by its full circles.
@@ -105,7 +107,7 @@ def reach_of(block: Block, moves: Sequence[Move]) -> Reach:
         points += [centres - spread, centres + spread]
     every = np.concatenate(points)
     zero = tuple(map(float, np.round(BlockInMm(block, moves[block.at]).zero(), DECIMALS) + 0.0))
-    return Reach(zero, every.min(axis=0), every.max(axis=0))
+    return BlockExtent(zero, every.min(axis=0), every.max(axis=0))
 
 
 @lru_cache(maxsize=64)

@@ -29,7 +29,13 @@ from g12.tools.preview.moves import Move, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import Unit, unit_of
-from g12.tools.verify.axis_limits import has_one_zero, overruns_of, reach_of, travel_of, widths_of
+from g12.tools.verify.axis_limits import (
+    extent_of_block,
+    has_one_zero,
+    overruns_of,
+    travel_of,
+    widths_of,
+)
 from g12.tools.verify.compare.section_plane import x0_of
 from g12.tools.verify.expected.contour import SectionContour, WordReading
 from g12.tools.verify.expected.cylinder import SurfacePen
@@ -59,7 +65,7 @@ RUN_ALLOWANCE = 0.001  # mm, of a run beyond POLAR_TOLERANCE, which is that of e
 class Subject:
     """A program on a machine, as traced, and as a part sees it; ``samples`` are those of a run.
 
-    Of its ``own`` moves alone it is, if those are given.
+    Of its ``own`` moves alone it is, if those are given; ``drawn`` is their path, if it is known.
     """
 
     program: Path
@@ -68,12 +74,13 @@ class Subject:
     part: Part
     samples: Samples | None = None
     own: range | None = None
+    drawn: Track | None = None
 
     @cached_property
     def path(self) -> Track:
         """The moves as one polyline in time."""
         limits, speed = limits_of(self.ini), self.trace.modes.speed
-        return track(self.part, self.trace.moves, limits, speed, own=self.own)
+        return self.drawn or track(self.part, self.trace.moves, limits, speed, own=self.own)
 
     @cached_property
     def real(self) -> Followed | None:
@@ -308,13 +315,13 @@ def measured_pockets(
     pace = partial(programmed_pace, trace.moves, limits_of(subject.ini), trace.modes.speed)
     if real:
         pace = partial(pace_of, path=subject.path, real=real)
-    reaches = [reach_of(block, there) if there else None for block, _ in asked.circles]
-    widths = widths_of(reaches) if there and has_one_zero(trace.events) else {}
+    extents = [extent_of_block(block, there) if there else None for block, _ in asked.circles]
+    widths = widths_of(extents) if there and has_one_zero(trace.events) else {}
     found = []
-    pairs = list(zip(asked.circles, reaches))
-    for (block, target), reach in counted(pairs, "measuring pocket", tell):
+    pairs = list(zip(asked.circles, extents))
+    for (block, target), extent in counted(pairs, "measuring pocket", tell):
         facts = measure_pocket(block, target, trace.moves, material, tolerance, pace, real)
-        overruns = None if reach is None else tuple(overruns_of(reach, travel, widths))
+        overruns = None if extent is None else tuple(overruns_of(extent, travel, widths))
         found.append(replace(facts, overruns=overruns))
     return found
 
