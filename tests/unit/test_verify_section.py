@@ -194,7 +194,7 @@ def test_the_speed_of_c_is_told_with_its_limit():
 def test_c_turns_in_place_by_half_a_turn_at_the_most(turn, far):
     hand = Hand().rapid(x=40.0).next_block().line(x=0.0).line(c=turn).next_block().line(x=9.0)
     elements = [line(2, 40 + 0j, 0j), line(3, 0j, 9 * np.exp(1j * math.radians(turn)))]
-    assert (("c-turned-too-far", 1) in codes(measure(hand, elements))) is far
+    assert (("c-turned-too-far", 2) in codes(measure(hand, elements))) is far
 
 
 def test_a_place_is_told_as_the_program_writes_it():
