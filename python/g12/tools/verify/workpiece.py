@@ -133,7 +133,7 @@ def assumed_workpiece(program: Program) -> Workpiece:
     walls = [(block, target) for block, target in program.circles if target.wall.plane == Z]
     approaches = [approach_to(block, program.moves) for block, _ in walls]
     add_circles(view.material, walls, approaches)
-    add_face(view.material, on_face(program), program.moves, cutters.radius)
+    add_face(view.material, sections_on_face(program), program.moves, cutters.radius)
     bores = list(holes_of_words(walls))
     entered = holes_entered(walls, approaches, program.moves, view.material, cutters.radius)
     for hole in bores:
@@ -165,7 +165,7 @@ def given_workpiece(program: Program, stock: Stock, zero: np.ndarray) -> Workpie
     return Workpiece(views, cutters, (), stock, shape, float(zero[Z]))
 
 
-def on_face(program: Program) -> list[SectionContour]:
+def sections_on_face(program: Program) -> list[SectionContour]:
     """Return the sections on the face."""
     return [section for section in program.sections if not section.surface]
 
@@ -174,7 +174,7 @@ def face_tools(program: Program) -> frozenset[int] | None:
     """Return the tools that cut sections on a face, None for all of a mill's."""
     if not program.sections and not program.part.turning:
         return None
-    return frozenset(program.moves[section.at].tool for section in on_face(program))
+    return frozenset(program.moves[section.at].tool for section in sections_on_face(program))
 
 
 def cylinders(program: Program, cutters: Cutters) -> Iterator[PartView]:
