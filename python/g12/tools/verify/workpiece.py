@@ -25,8 +25,8 @@ from g12.tools.path.surface import Surface
 from g12.tools.preview.moves import Move
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.pocket_walls import (
+    BoredHole,
     Circles,
-    Hole,
     add_circles,
     approach_to,
     holes_entered,
@@ -111,7 +111,7 @@ class Workpiece:
 
     views: Sequence[PartView]
     cutters: Cutters
-    holes: Sequence[Hole] = ()
+    holes: Sequence[BoredHole] = ()
     stock: Stock | None = None
     shape: BaseGeometry | None = None
     top: float = 0.0
