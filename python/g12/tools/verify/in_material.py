@@ -164,7 +164,9 @@ def inside_surfaces(program: Program, piece: Workpiece) -> Iterator[Finding]:
     """Yield the sections on a cylinder that begin inside of its surface, where nothing is cut."""
     for section in program.sections:
         first = program.moves[section.at]
-        inside = section.surface and plane_of(section, first).face - first.start[X]
+        inside = (
+            section.surface and plane_of(section, first).base + section.surface - first.start[X]
+        )
         if inside > SAME_LEVEL and not is_cut_before(section, program, piece):
             values = {"code": section.code, "radius": section.surface, "inside": inside}
             yield Finding("inside-surface", section.line, values, first.start[:3])
