@@ -241,9 +241,15 @@ def test_what_stands_and_another_cutter_than_d_are_in_the_legend_and_the_view():
     shown = replace(scene(pocket()), seen=Seen(MaterialFacts(), (ring,), (wrong,)))
     told = [entry.get_label() for entry in plan_view.warning_entries(shown)]
     assert told == ["material left standing", "T4 is not D6 (⌀ 20)"]
-    assert "remain uncut" in next(text for _, text in shown.seen.warnings())
     low, high = plan_view.bounds_of(shown, [])
     assert low[0] < 20 and high[0] > 80 and low[1] < -30
+
+
+def test_a_finding_with_a_place_has_a_sign():
+    found = Finding("wall-run", 3, {"size": 0.1, "at": (60.0, 0, -4)}, (60.0, 0.0, -4.0))
+    shown = replace(scene(pocket()), seen=Seen(findings=(found,)))
+    assert [e.get_label() for e in plan_view.warning_entries(shown)] == ["finding in line 3"]
+    assert [text for _, text in shown.seen.warnings()] == [found.text()]
 
 
 def test_what_stands_is_cut_through_the_pockets_middle_in_the_side_view():

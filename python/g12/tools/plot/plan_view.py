@@ -171,12 +171,14 @@ def draw_plan(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
 
 
 def draw_warnings(axes: Axes, scene: Scene) -> None:
-    """Hatch what stands in pockets, and put a sign where the cutter is not D's."""
+    """Hatch what stands in pockets, put signs at findings and where the cutter is not D's."""
     unit = scene.unit.mm
     for ring in scene.seen.rings:
         style.hatch(axes, scaled(ring.shape, 1 / unit, 1 / unit, origin=(0, 0)))
     for wrong in scene.seen.cutters:
         style.draw_sign(axes, np.array(wrong.centre) / unit)
+    for finding in scene.seen.signs:
+        style.draw_sign(axes, np.array(finding.place[:2]) / unit)
 
 
 def draw_stock(axes: Axes, scene: Scene, shape: BaseGeometry | None) -> None:
@@ -364,6 +366,9 @@ def warning_entries(scene: Scene) -> list:
     for cutter in dict.fromkeys(wrong.cutter for wrong in scene.seen.cutters):
         size = scene.unit.text(2 * cutter.radius)
         listed.append(style.sign(f"T{cutter.tool} is not D{cutter.named} (⌀ {size})"))
+    lines = dict.fromkeys(finding.line for finding in scene.seen.signs)
+    if lines:
+        listed.append(style.sign(f"finding in line {', '.join(map(str, lines))}"))
     return listed
 
 

@@ -27,7 +27,7 @@ from g12.tools.verify.reading.block_words import BlockInMm
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.section_size import stretches_of
 from g12.tools.verify.section_walls import beyond
-from g12.tools.verify.workpiece import PartView, Program, Workpiece, sections_on_face
+from g12.tools.verify.workpiece import PartView, Program, Workpiece, face_sections
 
 LEAST_SHARE = 0.01  # of a cutter that plunges into the stock
 
@@ -164,7 +164,9 @@ def inside_surfaces(program: Program, piece: Workpiece) -> Iterator[Finding]:
     """Yield the sections on a cylinder that begin inside of its surface, where nothing is cut."""
     for section in program.sections:
         first = program.moves[section.at]
-        inside = section.surface and plane_of(section, first).face - first.start[X]
+        inside = (
+            section.surface and plane_of(section, first).base + section.surface - first.start[X]
+        )
         if inside > SAME_LEVEL and not is_cut_before(section, program, piece):
             values = {"code": section.code, "radius": section.surface, "inside": inside}
             yield Finding("inside-surface", section.line, values, first.start[:3])
@@ -221,7 +223,7 @@ class InStock:
 
     def _missing(self) -> Iterator[Finding]:
         """Yield the cycles and sections that meet nothing of the stock."""
-        cuts = [(each.line, each) for each in sections_on_face(self._program)]
+        cuts = [(each.line, each) for each in face_sections(self._program)]
         cuts += [(target.source.line, block) for block, target in self._program.circles]
         for line, each in cuts:
             if not any(map(self._meets, range(each.at, each.end))):
@@ -249,7 +251,7 @@ class InStock:
     def _remaining(self) -> Iterator[Finding]:
         """Yield what remains of a bar beyond a contour that it is to be cut away to."""
         top, moves = self._piece.top, self._program.moves
-        for section in sections_on_face(self._program):
+        for section in face_sections(self._program):
             level = min(moves[index].end[Z] for index in range(section.at, section.end))
             plane = Plane(section, moves[section.at])
             wanted = (beyond(each, plane, self._piece.shape) for each in stretches_of(section))

@@ -29,7 +29,7 @@ SAME_PLACE = 0.05
 Circles = Sequence[tuple[Block, Target]]
 
 
-class BoredHole(NamedTuple):
+class AssumedHole(NamedTuple):
     """A hole that is assumed: the line that does, where it is entered to, its radius."""
 
     line: int
@@ -103,12 +103,12 @@ def floor_of(block: Block, moves: Sequence[Move]) -> float:
     return floor if floor < moves[block.at].start[Z] + SAME_LEVEL else math.inf
 
 
-def holes_of_words(circles: Circles) -> Iterator[BoredHole]:
+def holes_of_words(circles: Circles) -> Iterator[AssumedHole]:
     """Yield the holes that words say there are: R of Yasnac."""
     for _, target in circles:
         if target.wall.bore:
             place = tuple(map(float, target.wall.origin))
-            yield BoredHole(target.source.line, place, target.wall.bore)
+            yield AssumedHole(target.source.line, place, target.wall.bore)
 
 
 def holes_entered(
@@ -117,12 +117,12 @@ def holes_entered(
     moves: Sequence[Move],
     material: Material,
     radius: Callable[[int], float],
-) -> list[BoredHole]:
+) -> list[AssumedHole]:
     """Return the holes that a program comes down into by rapid, if it does so at its first circle.
 
     ``radius`` gives that of a move's cutter.
     """
-    found: list[BoredHole] = []
+    found: list[AssumedHole] = []
     seen: list[complex] = []
     for (_, target), approach in zip(circles, approaches):
         place, index = complex(*target.wall.origin[:2]), approach.move
@@ -133,7 +133,7 @@ def holes_entered(
             end = np.array([moves[index].end[:3]])
             below = not found and end[0, Z] < min(target.wall.face, approach.came) - SAME_LEVEL
             if below or material.touched(end, radius(index), 0):
-                hole = BoredHole(moves[index].block, tuple(map(float, end[0])), radius(index))
+                hole = AssumedHole(moves[index].block, tuple(map(float, end[0])), radius(index))
                 found.append(hole)
         if not found:
             break

@@ -211,16 +211,29 @@ def prove(
     replaces both that of pockets and that of sections, ``stock`` is what is cut. ``tell`` is
     told what is being done.
     """
-    polar = ini.settings.tolerance(ini.mm) * ini.mm + (RUN_ALLOWANCE if samples else 0.0)
-    usual = Tolerances(POCKET_TOLERANCE, polar)
-    tolerances = usual if tolerance is None else Tolerances(tolerance, tolerance)
     with Tracer(ini, tools=tools) as tracer:
         trace = ended(program, explained(tracer.trace(program, parameters=parameters), ini.path))
         subject = subject_of(program, ini, trace, samples)
-        asked = asked_of(tracer, subject, tools, parameters)
-        there = moves_there(tracer, subject, parameters)
+        return prove_traced(tracer, subject, tools, parameters, tolerance, stock, tell)
+
+
+def prove_traced(
+    tracer: Tracer,
+    subject: Subject,
+    tools: Tools = None,
+    parameters: Parameters = None,
+    tolerance: float | None = None,
+    stock: StockText | None = None,
+    tell: Tell = silent,
+) -> Proof:
+    """Return the proof of a program that has been traced; see ``prove``."""
+    asked = asked_of(tracer, subject, tools, parameters)
+    there = moves_there(tracer, subject, parameters)
     for first in [each for each in asked.sections if not each.surface][:1]:
-        subject = subject.about(x0_of(first, trace.moves[first.at]))
+        subject = subject.about(x0_of(first, subject.trace.moves[first.at]))
+    ini, run = subject.ini, RUN_ALLOWANCE if subject.samples else 0.0
+    usual = Tolerances(POCKET_TOLERANCE, ini.settings.tolerance(ini.mm) * ini.mm + run)
+    tolerances = usual if tolerance is None else Tolerances(tolerance, tolerance)
     return measured(subject, asked, there, tolerances, stock, tell)
 
 

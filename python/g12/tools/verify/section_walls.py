@@ -51,7 +51,7 @@ def add_face(
     material: Material, sections: Sequence[SectionContour], moves: Sequence[Move], radius: Radius
 ) -> None:
     """Make solid what sections on a face are cut in."""
-    faces = [round(Plane(section, moves[section.at]).face, 6) for section in sections]
+    faces = [round(Plane(section, moves[section.at]).base, 6) for section in sections]
     for section, span in zip(sections, spans(sections, faces, faces, moves, Z)):
         for area, top in face_solids(section, moves, radius(section.at)):
             material.add(area, top, *span)
@@ -75,7 +75,7 @@ def add_cylinder(
 
 def surface_key(section: SectionContour, moves: Sequence[Move]) -> SurfaceKey:
     """Return the surface of a section on a cylinder: its radius, and where it is along X."""
-    face = plane_of(section, moves[section.at]).face
+    face = plane_of(section, moves[section.at]).base + section.surface
     return SurfaceKey(round(section.surface, 6), round(face, 6))
 
 
@@ -108,7 +108,7 @@ def face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -
     cut = [moves[i] for i in range(section.at, section.end) if moves[i].kind != "rapid"]
     lowest = min((move.end[Z] for move in cut), default=math.inf)
     falls = (move.start[Z] for move in cut if move.end[Z] < move.start[Z] - SAME_LEVEL)
-    top = min(plane.face, next(falls, plane.face))
+    top = min(plane.base, next(falls, plane.base))
     if lowest > top - SAME_LEVEL:
         return
     for stretch in stretches_of(section):
@@ -124,7 +124,7 @@ def face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -
 def cylinder_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
     """Yield what a section on a cylinder is cut in, with its top."""
     first = moves[section.at]
-    top = min(plane_of(section, first).face, first.start[X])
+    top = min(surface_key(section, moves).face, first.start[X])
     cut = [moves[i] for i in range(section.at, section.end) if moves[i].kind != "rapid"]
     levels = [move.end[Z] for move in cut if move.end[X] < top - SAME_LEVEL]
     if levels:

@@ -15,24 +15,19 @@ from g12.tools.path.part import Z
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.units import MM, Unit
 from g12.tools.verify.expected.contour import SectionContour
-from g12.tools.verify.findings import SAME_AREA, other_tool
-from g12.tools.verify.in_material import MaterialFacts, material_facts, zero_of
-from g12.tools.verify.judgement import cuts_of
-from g12.tools.verify.mistakes.spindle import judge_spindle
+from g12.tools.verify.findings import SAME_AREA
+from g12.tools.verify.in_material import MaterialFacts, zero_of
 from g12.tools.verify.pocket_area import is_wrong_tool, uncut
 from g12.tools.verify.pocket_walls import Circles
 from g12.tools.verify.proof import (
     POCKET_TOLERANCE,
-    Asked,
     Proof,
     StockText,
     Subject,
-    asked_of,
-    program_of,
-    workpiece_of,
+    prove_traced,
 )
 from g12.tools.verify.reading.circles import Cutter
-from g12.tools.verify.reading.codes import Codes
+from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.workpiece import Workpiece
 
 
@@ -69,21 +64,24 @@ class Seen(NamedTuple):
     still: tuple[int, ...] = ()
     surface: float = 0.0
     z0: float = 0.0
+    findings: tuple[Finding, ...] = ()
 
     @property
     def stock(self) -> Workpiece | None:
         """The stock, None if none is given."""
         return self.material.given
 
+    @property
+    def signs(self) -> list[Finding]:
+        """The findings with a place that are not drawn as a path or an area."""
+        drawn = ("path" in each.values or each.code == "uncut" for each in self.findings)
+        placed = (each for each, known in zip(self.findings, drawn) if not known)
+        return [each for each in placed if each.place is not None]
+
     def warnings(self, unit: Unit = MM) -> Iterator[tuple[int, str]]:
         """Yield what there is to warn of: the line, and a sentence."""
-        for each in self.material.judged:
-            if each.is_finding:
-                yield each.line, each.text(unit)
-        for line, shape, *_ in self.rings:
-            yield line, f"{unit.area(shape.area)} of material remain uncut"
-        for line, _, cutter in self.cutters:
-            yield line, other_tool(cutter, unit)
+        for each in self.findings:
+            yield each.line, each.text(unit)
 
 
 def seen_in(
@@ -93,40 +91,28 @@ def seen_in(
     stock: StockText | None = None,
 ) -> Seen:
     """Return what a picture of a traced program shows beside the cuts."""
-    codes, trace = Codes(subject.ini), subject.trace
-    asked = Asked([], [], [])
-    if any(codes.knows(move.remap) for move in trace.moves):
-        with Tracer(subject.ini, tools=tools) as tracer:
-            asked = asked_of(tracer, subject, tools, parameters)
-    piece = workpiece_of(subject, asked, stock)
-    facts = material_facts(program_of(subject, asked), piece)
-    return seen_of(subject, asked.circles, asked.sections, facts)
+    with Tracer(subject.ini, tools=tools) as tracer:
+        return seen_of_proof(prove_traced(tracer, subject, tools, parameters, stock=stock))
 
 
 def seen_of_proof(proof: Proof) -> Seen:
     """Return what a picture of a program that was measured shows beside the cuts."""
+    circles, moves = proof.asked.circles, proof.subject.trace.moves
     sections = [facts.section for facts in proof.sections]
-    return seen_of(proof.subject, proof.asked.circles, sections, proof.material)
-
-
-def seen_of(
-    subject: Subject,
-    circles: Circles,
-    sections: Sequence[SectionContour],
-    material: MaterialFacts,
-) -> Seen:
-    """Return what is seen of circles and sections, with what is known of the material."""
-    trace = subject.trace
-    rings = standing_rings(circles, material)
     cutters = (
         WrongCutter(target.source.line, tuple(map(float, target.wall.origin[:2])), target.cutter)
         for _, target in circles
         if is_wrong_tool(target.cutter)
     )
-    cuts = list(cuts_of(Asked(list(circles), [], []), trace.moves))
-    still = (each.line for each in judge_spindle(cuts, trace.events, subject.ini))
-    surface, z0 = surface_of(sections), float(zero_of(circles, sections, trace.moves)[Z])
-    return Seen(material, tuple(rings), tuple(cutters), tuple(still), surface, z0)
+    return Seen(
+        proof.material,
+        tuple(standing_rings(circles, proof.material)),
+        tuple(cutters),
+        tuple(each.line for each in proof.judged if each.code == "spindle-stands"),
+        surface_of(sections),
+        float(zero_of(circles, sections, moves)[Z]),
+        tuple(each for each in proof.judged if each.is_finding),
+    )
 
 
 def surface_of(sections: Sequence[SectionContour]) -> float:

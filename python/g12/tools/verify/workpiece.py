@@ -25,7 +25,7 @@ from g12.tools.path.surface import Surface
 from g12.tools.preview.moves import Move
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.pocket_walls import (
-    BoredHole,
+    AssumedHole,
     Circles,
     add_circles,
     approach_to,
@@ -111,7 +111,7 @@ class Workpiece:
 
     views: Sequence[PartView]
     cutters: Cutters
-    holes: Sequence[BoredHole] = ()
+    holes: Sequence[AssumedHole] = ()
     stock: Stock | None = None
     shape: BaseGeometry | None = None
     top: float = 0.0
@@ -133,7 +133,7 @@ def assumed_workpiece(program: Program) -> Workpiece:
     walls = [(block, target) for block, target in program.circles if target.wall.plane == Z]
     approaches = [approach_to(block, program.moves) for block, _ in walls]
     add_circles(view.material, walls, approaches)
-    add_face(view.material, sections_on_face(program), program.moves, cutters.radius)
+    add_face(view.material, face_sections(program), program.moves, cutters.radius)
     bores = list(holes_of_words(walls))
     entered = holes_entered(walls, approaches, program.moves, view.material, cutters.radius)
     for hole in bores:
@@ -165,7 +165,7 @@ def given_workpiece(program: Program, stock: Stock, zero: np.ndarray) -> Workpie
     return Workpiece(views, cutters, (), stock, shape, float(zero[Z]))
 
 
-def sections_on_face(program: Program) -> list[SectionContour]:
+def face_sections(program: Program) -> list[SectionContour]:
     """Return the sections on the face."""
     return [section for section in program.sections if not section.surface]
 
@@ -174,7 +174,7 @@ def face_tools(program: Program) -> frozenset[int] | None:
     """Return the tools that cut sections on a face, None for all of a mill's."""
     if not program.sections and not program.part.turning:
         return None
-    return frozenset(program.moves[section.at].tool for section in sections_on_face(program))
+    return frozenset(program.moves[section.at].tool for section in face_sections(program))
 
 
 def cylinders(program: Program, cutters: Cutters) -> Iterator[PartView]:
