@@ -237,6 +237,7 @@ def test_no_rapid_goes_through_a_pocket_that_cuts_air(proof_of):
 
 # ---------------------------------------------------------------- work offsets
 
+X0 = "X0, the spindle's axis, is at machine X10\n"
 MOVED = "places are those of the machine: the program's zero is X2 Y0 Z−30"
 
 
@@ -255,8 +256,8 @@ def test_where_the_programs_zero_is_is_said(lines, first, proof_of):
 @pytest.mark.parametrize(
     ("lines", "first"),
     [
-        (SLOT, "places are those of the machine: the program's zero is Z−90"),
-        (["G7.1 C20", "G1 Z-40 C60 F250", "G7.1 C0"], "lines 5 to 7  G7.1"),
+        (SLOT, f"places are those of the machine: the program's zero is Z−90; {X0}"),
+        (["G7.1 C20", "G1 Z-40 C60 F250", "G7.1 C0"], X0),
     ],
 )
 def test_where_the_zero_of_a_face_is_is_said(lines, first, proof_of):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from g12.tools.path.part import Z
+from g12.tools.path.part import Z, x0_text
 from g12.tools.path.slowest import Pace
 from g12.tools.units import Unit, plain
 from g12.tools.verify.axis_limits import SAME_ZERO
@@ -44,17 +44,17 @@ def paragraphs_of(proof: Proof, unit: Unit) -> list[str]:
 
 
 def zero_text(proof: Proof, unit: Unit) -> str:
-    """Return where the program's zero is where it first cuts, "" if places are the program's.
+    """Return where the program's zero is on the machine, "" where they are the same.
 
     Places of a section are as far from the spindle as the program's; those on a cylinder are the
-    program's.
+    program's. Where X0 lies must be the spindle's axis.
     """
     contours = [facts.section for facts in proof.sections]
     zero = zero_of(proof.asked.circles, contours, proof.subject.trace.moves)
-    if max(abs(zero)) < SAME_ZERO:
-        return ""
     place = point_text("Z", zero[Z:], unit) if contours else point_text(AXES, zero, unit)
-    return f"places are those of the machine: the program's zero is {place}"
+    moved = f"places are those of the machine: the program's zero is {place}"
+    x0 = x0_text(proof.subject.part, unit) if contours else ""
+    return "; ".join(filter(None, [moved if max(abs(zero)) >= SAME_ZERO else "", x0]))
 
 
 def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
