@@ -14,9 +14,9 @@ from g12.tools.verify.compare.section import feed_off, lay_section
 from g12.tools.verify.compare.section_plane import plane_of
 from g12.tools.verify.expected.compensated import contour_path
 from g12.tools.verify.expected.contour import Element, SectionContour
-from g12.tools.verify.section import measure_section
-from g12.tools.verify.section_findings import judge_section
-from g12.tools.verify.section_motion import SectionAxes
+from g12.tools.verify.sections.section import measure_section
+from g12.tools.verify.sections.section_findings import judge_section
+from g12.tools.verify.sections.section_motion import SectionAxes
 from support.made_moves import LIMITS, Hand, samples_of
 
 FACE = Part(turning=True)

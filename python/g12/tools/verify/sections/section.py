@@ -23,14 +23,19 @@ from g12.tools.verify.compare.path import OFF
 from g12.tools.verify.compare.section import OffFeed, SectionPath, feed_off, lay_section
 from g12.tools.verify.compare.section_plane import Plane, plane_of
 from g12.tools.verify.compare.state import StateDifference
-from g12.tools.verify.contour_side import OtherSide, other_side
 from g12.tools.verify.expected.compensated import contour_path
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.result.tolerances import LAST_DECIMAL
-from g12.tools.verify.section_motion import OffMotion, SectionAxes, motion_off, slower_on_face
-from g12.tools.verify.section_size import SectionSize, contour_size, stretches_of
-from g12.tools.verify.section_state import OffAct, act_off, left_by_section
-from g12.tools.verify.section_turns import InPlace, Turns, turns_of
+from g12.tools.verify.sections.contour_side import OtherSide, other_side
+from g12.tools.verify.sections.section_motion import (
+    OffMotion,
+    SectionAxes,
+    motion_off,
+    slower_on_face,
+)
+from g12.tools.verify.sections.section_size import SectionSize, contour_size, stretches_of
+from g12.tools.verify.sections.section_state import OffAct, act_off, left_by_section
+from g12.tools.verify.sections.section_turns import InPlace, Turns, turns_of
 
 TINY_PIECE = 1e-6
 
