@@ -265,7 +265,7 @@ def test_a_spiral_beside_the_centre_lasts_as_long_as_the_line_that_it_is_for(x, 
     made = section([line(2, start, end)], end=2, x=2.0)
     expected = contour_path([replace(made.elements[0], feed=600.0)], 0.0, 0.0, TOLERANCE)
     plane, path = plane_of(made, hand.moves[1]), track(FACE, hand.moves, LIMITS)
-    found = lay_section(made, expected, plane, hand.moves, path, 1.0)
+    found = lay_section(made, expected, plane, hand.moves, path, (1.0, 1.0))
     assert (feed_off(found, hand.moves) is not None) is off
 
 

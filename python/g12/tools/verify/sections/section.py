@@ -109,7 +109,9 @@ def measure_section(
     across = [index for index in cutting if plane.goes_across(moves[index])]
     tool = diameters.get(moves[section.at].tool, 0.0) / 2
     steps = contour_path(section.elements, section.height, tool, tolerance)
-    found = lay_section(section, steps, plane, moves, path, tolerance + LAST_DECIMAL, real)
+    allowed = tolerance + LAST_DECIMAL
+    blended = max(allowed, blending_asked(section)) if axes.face else allowed
+    found = lay_section(section, steps, plane, moves, path, (allowed, blended), real)
     points = points_of(plane, across, path, real)
     lengths = [path.part_length(index) for index in across] or [0.0]
     pace = pace_of(own, across, path, real)
@@ -138,6 +140,12 @@ def measure_section(
         act_off=act_off(section, moves),
         left_behind=left_by_section(section),
     )
+
+
+def blending_asked(section: SectionContour) -> float:
+    """Return the greatest P of G64 that the words ask for, mm: on the face it holds at corners."""
+    given = (G64_P.match(path) for path in section.asked_paths)
+    return max((float(each[1]) * section.unit for each in given if each), default=0.0)
 
 
 def points_of(
