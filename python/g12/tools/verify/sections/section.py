@@ -28,6 +28,7 @@ from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.result.tolerances import LAST_DECIMAL
 from g12.tools.verify.sections.contour_side import OtherSide, other_side
 from g12.tools.verify.sections.section_motion import (
+    G64_P,
     OffMotion,
     SectionAxes,
     motion_off,
