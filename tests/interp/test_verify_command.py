@@ -6,7 +6,7 @@ import json
 import pytest
 
 from g12.tools.commands.main import main
-from g12.tools.verify import section
+from g12.tools.verify.sections import section
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
 
 MILL = str(SIM / "mill_mm_headless.ini")

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from g12.tools.verify.face_follow import FollowLimits, derivatives, follow_off
+from g12.tools.verify.sections.face_follow import FollowLimits, derivatives, follow_off
 from support.made_moves import Hand
 
 LIMITS = FollowLimits(plane=700.0, slide=1000.0, c=60.0)

@@ -14,9 +14,9 @@ from g12.tools.verify.compare.section import feed_off, lay_section
 from g12.tools.verify.compare.section_plane import plane_of
 from g12.tools.verify.expected.compensated import contour_path
 from g12.tools.verify.expected.contour import Element, SectionContour
-from g12.tools.verify.section import measure_section
-from g12.tools.verify.section_findings import judge_section
-from g12.tools.verify.section_motion import SectionAxes
+from g12.tools.verify.sections.section import measure_section
+from g12.tools.verify.sections.section_findings import judge_section
+from g12.tools.verify.sections.section_motion import SectionAxes
 from support.made_moves import LIMITS, Hand, samples_of
 
 FACE = Part(turning=True)
@@ -265,7 +265,7 @@ def test_a_spiral_beside_the_centre_lasts_as_long_as_the_line_that_it_is_for(x, 
     made = section([line(2, start, end)], end=2, x=2.0)
     expected = contour_path([replace(made.elements[0], feed=600.0)], 0.0, 0.0, TOLERANCE)
     plane, path = plane_of(made, hand.moves[1]), track(FACE, hand.moves, LIMITS)
-    found = lay_section(made, expected, plane, hand.moves, path, 1.0)
+    found = lay_section(made, expected, plane, hand.moves, path, (1.0, 1.0))
     assert (feed_off(found, hand.moves) is not None) is off
 
 

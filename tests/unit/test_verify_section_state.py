@@ -7,7 +7,7 @@ import pytest
 
 from g12.tools.preview.moves import Event
 from g12.tools.verify.expected.contour import Act, Element, SectionContour
-from g12.tools.verify.section_state import OffAct, act_off, left_by_section
+from g12.tools.verify.sections.section_state import OffAct, act_off, left_by_section
 
 ELEMENTS = tuple(Element(line, 0j, 1 + 0j, 0, False, 0.0) for line in (7, 9))
 MOVES = [SimpleNamespace(line=line) for line in (4, 7, 7, 9)]

@@ -12,10 +12,10 @@ from g12.tools.machine.ini import read_ini
 from g12.tools.preview.executed_blocks import STATE, Block, read_line
 from g12.tools.preview.moves import Move
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.shape_cut import area_swept
-from g12.tools.verify.shape_form import Shift, polygon_form, round_form, slot_form
-from g12.tools.verify.shape_way import ShapeWay
-from g12.tools.verify.wanted_shape import ShapeReading, shapes_asked
+from g12.tools.verify.shapes.shape_cut import area_swept
+from g12.tools.verify.shapes.shape_form import Shift, polygon_form, round_form, slot_form
+from g12.tools.verify.shapes.shape_way import ShapeWay
+from g12.tools.verify.shapes.wanted_shape import ShapeReading, shapes_asked
 from support.sim_machines import SIM
 
 LATHE, MILL = (read_ini(SIM / f"{name}_mm_headless.ini") for name in ("lathe", "mill"))

@@ -16,9 +16,9 @@ from g12.tools.path.follow import follow
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import Limits, track
 from g12.tools.verify.expected.contour import Element, SectionContour
-from g12.tools.verify.section import measure_section
-from g12.tools.verify.section_findings import judge_section
-from g12.tools.verify.section_motion import SectionAxes
+from g12.tools.verify.sections.section import measure_section
+from g12.tools.verify.sections.section_findings import judge_section
+from g12.tools.verify.sections.section_motion import SectionAxes
 from support.made_moves import LIMITS, Hand, samples_of
 
 RADIUS, DEPTH, AIR, TOOL = 20.0, 18.0, 24.0, 3.0

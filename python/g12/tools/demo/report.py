@@ -18,7 +18,7 @@ from g12.tools.preview.tracer import TraceFailure
 from g12.tools.units import Unit, clock, plain
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof, prove
-from g12.tools.verify.section import SectionFacts
+from g12.tools.verify.sections.section import SectionFacts
 
 FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
 POCKET_HEADS = ("line", "code", "centre", "radius", "tool-centre rings", "Z", "off circles", "time")

@@ -11,8 +11,8 @@ from g12.tools.verify.paragraphs import AXES, pocket_slowest_line
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.section import SectionFacts
-from g12.tools.verify.shape_findings import shape_json
+from g12.tools.verify.sections.section import SectionFacts
+from g12.tools.verify.shapes.shape_findings import shape_json
 from g12.tools.verify.workpiece import Workpiece
 
 

@@ -10,25 +10,12 @@ from collections.abc import Iterator
 
 from g12.tools.units import MM, Unit
 from g12.tools.verify.axis_limits import Overrun
-from g12.tools.verify.compare.state import StateDifference
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.pocket_area import is_wrong_tool
 from g12.tools.verify.reading.circles import Cutter
 
-LAST_DECIMAL = 0.0005  # mm: arcs whose words are rounded do not close any better
 SAME_AREA = 0.01  # mm², less is rounding
-SAME_SPEED = 1.001
 SAME_SIZE = 1e-4  # mm
-SAME_ANGLE = 1e-3  # degree
-LOST_MINUS = "lies above {}, where the tool comes from: it cuts air (a lost minus sign?)"
-NOT_CUT = "nothing is cut"
-UNMEASURED = "a cycle cuts here that could not be measured"
-
-
-def leaving_text(left: StateDifference) -> str:
-    """Return in words what is left behind otherwise than the words ask."""
-    found, expected = left.texts()
-    return f"it leaves {found}, not {expected}"
 
 
 def overrun_text(overrun: Overrun, unit: Unit) -> str:

@@ -25,8 +25,8 @@ from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.pocket_walls import Circles
 from g12.tools.verify.reading.block_words import BlockInMm
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.section_size import stretches_of
 from g12.tools.verify.section_walls import beyond
+from g12.tools.verify.sections.section_size import stretches_of
 from g12.tools.verify.workpiece import PartView, Program, Workpiece, face_sections
 
 LEAST_SHARE = 0.01  # of a cutter that plunges into the stock

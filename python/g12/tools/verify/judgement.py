@@ -24,8 +24,8 @@ from g12.tools.verify.mistakes.tool_length import judge_tool_length
 from g12.tools.verify.pocket import judge_pocket
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.section_findings import judge_section
-from g12.tools.verify.shape_findings import shape_findings
+from g12.tools.verify.sections.section_findings import judge_section
+from g12.tools.verify.shapes.shape_findings import shape_findings
 
 if TYPE_CHECKING:
     from g12.tools.verify.proof import Asked, Proof

@@ -13,8 +13,8 @@ from g12.tools.verify.findings import SAME_AREA
 from g12.tools.verify.in_material import zero_of
 from g12.tools.verify.pocket import HelixFacts, PocketFacts
 from g12.tools.verify.proof import Proof
-from g12.tools.verify.section import SectionFacts
-from g12.tools.verify.shape_findings import shape_rows
+from g12.tools.verify.sections.section import SectionFacts
+from g12.tools.verify.shapes.shape_findings import shape_rows
 from g12.tools.verify.workpiece import Workpiece
 
 GAP = 14  # columns of a row's name

@@ -49,10 +49,10 @@ from g12.tools.verify.reading.executed_subs import executed_everywhere
 from g12.tools.verify.reading.sections import sections
 from g12.tools.verify.reading.zero_line import with_zero_lines
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.section import SectionFacts, measure_section
-from g12.tools.verify.section_motion import axes_of_section
-from g12.tools.verify.shape_findings import ShapeFacts, measure_shape
-from g12.tools.verify.wanted_shape import ShapeAsked, ShapeReading, shapes_asked
+from g12.tools.verify.sections.section import SectionFacts, measure_section
+from g12.tools.verify.sections.section_motion import axes_of_section
+from g12.tools.verify.shapes.shape_findings import ShapeFacts, measure_shape
+from g12.tools.verify.shapes.wanted_shape import ShapeAsked, ShapeReading, shapes_asked
 from g12.tools.verify.workpiece import Program, Workpiece, assumed_workpiece, given_workpiece
 
 POCKET_TOLERANCE = 0.005  # mm

@@ -12,8 +12,8 @@ from g12.tools.verify.paragraphs import AXES, line_text, paragraphs_of, zero_tex
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.section import SectionFacts
-from g12.tools.verify.shape_findings import ShapeFacts
+from g12.tools.verify.sections.section import SectionFacts
+from g12.tools.verify.shapes.shape_findings import ShapeFacts
 
 GAP = "  "
 SIDES = {1: "left of", -1: "right of", 0: "on"}

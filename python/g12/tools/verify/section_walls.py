@@ -25,12 +25,12 @@ from shapely.ops import split, unary_union
 from g12.tools.material.material import SAME_LEVEL, Material
 from g12.tools.path.part import X, Z, disc
 from g12.tools.preview.moves import Move
-from g12.tools.verify.closed_contour import as_points, is_closed, trimmed
 from g12.tools.verify.compare.section_plane import Plane, plane_of
-from g12.tools.verify.contour_side import SAME, area_within
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.pocket_walls import WALL
-from g12.tools.verify.section_size import stretches_of
+from g12.tools.verify.sections.closed_contour import as_points, is_closed, trimmed
+from g12.tools.verify.sections.contour_side import SAME, area_within
+from g12.tools.verify.sections.section_size import stretches_of
 
 BEYOND = 10.0  # bars: how far an open contour's ends are drawn on
 PROBE = 1e-3  # mm beside a contour

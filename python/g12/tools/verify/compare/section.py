@@ -58,20 +58,23 @@ def lay_section(
     plane: Plane,
     moves: Sequence[Move],
     path: Track,
-    tolerance: float,
+    allowed: tuple[float, float],
     real: Followed | None = None,
 ) -> SectionPath:
-    """Lay a section's moves, and a run's motion, along its expected toolpath."""
+    """Lay a section's moves, and a run's motion, along its expected toolpath.
+
+    ``allowed`` is how far off the moves may be, and the motion, which rounds corners.
+    """
     expected, elements = [step.move for step in steps], [step.element for step in steps]
     own = range(section.at, section.end)
     pieces = ((index, path.positions[path.vertices(index)]) for index in own)
-    emitted = lay(expected, made_of(pieces, moves, plane), tolerance)
+    emitted = lay(expected, made_of(pieces, moves, plane), allowed[0])
     if real is None or emitted.difference:
         return SectionPath(expected, elements, emitted)
     sampled = ((index, real.positions[real.during(index)]) for index in own)
     seen = [(index, positions) for index, positions in sampled if len(positions)]
     run = (made._replace(sampled=True) for made in made_of(seen, moves, plane))
-    return SectionPath(expected, elements, emitted, lay(expected, run, tolerance))
+    return SectionPath(expected, elements, emitted, lay(expected, run, allowed[1]))
 
 
 def made_of(

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from shapely.geometry import LineString
 
-from g12.tools.verify.closed_contour import as_points, is_closed, trimmed
 from g12.tools.verify.expected.contour import Element, SectionContour
+from g12.tools.verify.sections.closed_contour import as_points, is_closed, trimmed
 
 SAME = 1e-7  # mm
 NEAR = 1e-2  # mm: a contour's end is met, not passed

@@ -12,8 +12,8 @@ from g12.tools.verify.compare.path import EXTRA, MISSING, OFF, RAPID, Point
 from g12.tools.verify.compare.state import judge_state
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import LEVEL, SIZE, TURNING
-from g12.tools.verify.section import SectionFacts
-from g12.tools.verify.section_state import OffAct
+from g12.tools.verify.sections.section import SectionFacts
+from g12.tools.verify.sections.section_state import OffAct
 
 SAME_ANGLE = 1e-3  # degree
 CODES = {OFF: "path-off", MISSING: "path-missing", EXTRA: "path-extra", RAPID: "rapid"}

@@ -16,8 +16,8 @@ from shapely.geometry import Point
 
 from g12.tools.path.part import is_sideways
 from g12.tools.verify.expected.contour import SectionContour
-from g12.tools.verify.shape_way import SAME_LEVEL, TINY, ShapeWay
-from g12.tools.verify.wanted_shape import CLEARANCE
+from g12.tools.verify.shapes.shape_way import SAME_LEVEL, TINY, ShapeWay
+from g12.tools.verify.shapes.wanted_shape import CLEARANCE
 
 WIDEST = 0.75  # of the cutter's diameter: how much a round takes at most
 FIRST = 0.9  # of the cutter's radius: so large is a hole's first ring at most

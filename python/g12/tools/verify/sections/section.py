@@ -23,14 +23,20 @@ from g12.tools.verify.compare.path import OFF
 from g12.tools.verify.compare.section import OffFeed, SectionPath, feed_off, lay_section
 from g12.tools.verify.compare.section_plane import Plane, plane_of
 from g12.tools.verify.compare.state import StateDifference
-from g12.tools.verify.contour_side import OtherSide, other_side
 from g12.tools.verify.expected.compensated import contour_path
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.result.tolerances import LAST_DECIMAL
-from g12.tools.verify.section_motion import OffMotion, SectionAxes, motion_off, slower_on_face
-from g12.tools.verify.section_size import SectionSize, contour_size, stretches_of
-from g12.tools.verify.section_state import OffAct, act_off, left_by_section
-from g12.tools.verify.section_turns import InPlace, Turns, turns_of
+from g12.tools.verify.sections.contour_side import OtherSide, other_side
+from g12.tools.verify.sections.section_motion import (
+    G64_P,
+    OffMotion,
+    SectionAxes,
+    motion_off,
+    slower_on_face,
+)
+from g12.tools.verify.sections.section_size import SectionSize, contour_size, stretches_of
+from g12.tools.verify.sections.section_state import OffAct, act_off, left_by_section
+from g12.tools.verify.sections.section_turns import InPlace, Turns, turns_of
 
 TINY_PIECE = 1e-6
 
@@ -104,7 +110,9 @@ def measure_section(
     across = [index for index in cutting if plane.goes_across(moves[index])]
     tool = diameters.get(moves[section.at].tool, 0.0) / 2
     steps = contour_path(section.elements, section.height, tool, tolerance)
-    found = lay_section(section, steps, plane, moves, path, tolerance + LAST_DECIMAL, real)
+    allowed = tolerance + LAST_DECIMAL
+    blended = max(allowed, blending_asked(section)) if axes.face else allowed
+    found = lay_section(section, steps, plane, moves, path, (allowed, blended), real)
     points = points_of(plane, across, path, real)
     lengths = [path.part_length(index) for index in across] or [0.0]
     pace = pace_of(own, across, path, real)
@@ -133,6 +141,12 @@ def measure_section(
         act_off=act_off(section, moves),
         left_behind=left_by_section(section),
     )
+
+
+def blending_asked(section: SectionContour) -> float:
+    """Return the greatest P of G64 that the words ask for, mm: on the face it holds at corners."""
+    given = (G64_P.match(path) for path in section.asked_paths)
+    return max((float(each[1]) * section.unit for each in given if each), default=0.0)
 
 
 def points_of(

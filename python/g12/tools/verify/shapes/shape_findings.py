@@ -16,12 +16,12 @@ from g12.tools.preview.moves import Move
 from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.compare.state import StateDifference, state_differences
 from g12.tools.verify.expected.contour import ACTS, SectionContour
-from g12.tools.verify.findings import LAST_DECIMAL, NOT_CUT, SAME_AREA, leaving_text
-from g12.tools.verify.shape_cut import LevelFacts, ShapeAreas, measure_areas, shift_of
-from g12.tools.verify.shape_form import CORNERS, DIAMETER, FLATS, LENGTH, WIDTH, Shift
-from g12.tools.verify.shape_motion import OffShape, motion_of_shape
-from g12.tools.verify.shape_way import SAME_LEVEL, ShapeWay
-from g12.tools.verify.wanted_shape import ShapeAsked
+from g12.tools.verify.result.tolerances import AREA, LAST_DECIMAL
+from g12.tools.verify.shapes.shape_cut import LevelFacts, ShapeAreas, measure_areas, shift_of
+from g12.tools.verify.shapes.shape_form import CORNERS, DIAMETER, FLATS, LENGTH, WIDTH, Shift
+from g12.tools.verify.shapes.shape_motion import OffShape, motion_of_shape
+from g12.tools.verify.shapes.shape_way import SAME_LEVEL, ShapeWay
+from g12.tools.verify.shapes.wanted_shape import ShapeAsked
 
 ROUNDING = 0.001  # mm, of the polygons that stand for areas
 SIZES = {
@@ -102,7 +102,7 @@ def measure_shape(
 def shape_findings(facts: ShapeFacts, unit: Unit = MM) -> Iterator[str]:
     """Yield what is wrong with a shape."""
     if not facts.areas.cut:
-        yield NOT_CUT
+        yield "nothing is cut"
         return
     sizes = list(size_findings(facts, unit))
     yield from sizes
@@ -112,6 +112,12 @@ def shape_findings(facts: ShapeFacts, unit: Unit = MM) -> Iterator[str]:
     yield from (shape_text(off, unit) for off in facts.motion)
     yield from (f"{text} comes in it, which the call has not" for text in facts.acts)
     yield from map(leaving_text, facts.left_behind)
+
+
+def leaving_text(left: StateDifference) -> str:
+    """Return in words what is left behind otherwise than the words ask."""
+    found, expected = left.texts()
+    return f"it leaves {found}, not {expected}"
 
 
 def shape_text(off: OffShape, unit: Unit) -> str:
@@ -210,8 +216,8 @@ def area_findings(facts: ShapeFacts, unit: Unit) -> Iterator[str]:
     """Yield what is left and gouged, at the first level where it is and at the end."""
     end = facts.areas.end
     for what in ("left", "gouge"):
-        rough = [level for level in facts.areas.levels if getattr(level, what) > SAME_AREA]
-        done = [end] if end and getattr(end, what) > SAME_AREA else []
+        rough = [level for level in facts.areas.levels if getattr(level, what) > AREA]
+        done = [end] if end and getattr(end, what) > AREA else []
         for level in [*rough, *done][:1]:
             yield area_text(what, level, level is end, facts, unit)
 

@@ -23,8 +23,8 @@ from shapely.ops import unary_union
 from shapely.prepared import PreparedGeometry, prep
 
 from g12.tools.path.part import disc, swept
-from g12.tools.verify.shape_form import ShapeForm, Shift
-from g12.tools.verify.shape_way import SAME_LEVEL, TINY, ShapeWay
+from g12.tools.verify.shapes.shape_form import ShapeForm, Shift
+from g12.tools.verify.shapes.shape_way import SAME_LEVEL, TINY, ShapeWay
 
 CHORD = 2e-4  # of the polylines that stand for the tool's path
 CORNERS = 48  # of a path whose area is worked out at once

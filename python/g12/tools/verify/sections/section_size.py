@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.geometry.curve import Curve, Line
-from g12.tools.verify.closed_contour import MEETS, trimmed
 from g12.tools.verify.compare.section import SectionPath
-from g12.tools.verify.contour_width import across_flats
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.expected.toolpath import Expected
+from g12.tools.verify.sections.closed_contour import MEETS, trimmed
+from g12.tools.verify.sections.contour_width import across_flats
 
 LENGTHLESS = 1e-6
 

@@ -37,7 +37,7 @@ from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.section import SectionPath
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.expected.toolpath import Expected
-from g12.tools.verify.face_follow import FollowLimits, follow_off
+from g12.tools.verify.sections.face_follow import FollowLimits, follow_off
 
 G64_P = re.compile(r"G64 P(\S+)")
 STILL = 1e-7  # mm: C turns in place

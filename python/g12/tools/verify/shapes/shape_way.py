@@ -16,7 +16,7 @@ from g12.tools.path.follow import Followed
 from g12.tools.path.part import Z
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
-from g12.tools.verify.wanted_shape import ShapeAsked
+from g12.tools.verify.shapes.wanted_shape import ShapeAsked
 
 SAME_LEVEL = 1e-3
 TINY = 1e-6

@@ -19,7 +19,7 @@ from g12.tools.preview.executed_blocks import FORGOTTEN, PLACES, STATE, Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.reading.circles import LEFT_OUT
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.shape_form import ShapeForm, polygon_form, round_form, slot_form
+from g12.tools.verify.shapes.shape_form import ShapeForm, polygon_form, round_form, slot_form
 
 CUT = ("depth", "depth_per_pass", "allowance", "feed", "plunge_feed")
 ENTRIES_OF = {
