@@ -66,7 +66,8 @@ def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path
         allowed = proof.tolerances.polar
         rows = [section_row(facts, allowed, unit) for facts in proof.sections]
         lines += table(SECTION_HEADS, rows)
-    lines += [f"  line {line}: {text}" for line, text in proof.findings_in(unit)]
+    found = (each for each in proof.judged if each.is_finding)
+    lines += [f"  line {each.line}: {proof.text(each, unit)}" for each in found]
     return "\n".join(lines)
 
 
