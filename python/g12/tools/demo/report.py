@@ -48,8 +48,8 @@ def is_sound(proof: Proof) -> bool:
 
     The manuals leave material in some and have rapids through what was left: that is told.
     """
-    off = [facts.laid.difference is not None for facts in proof.pockets]
-    off += [facts.deviation > proof.tolerances.polar for facts in proof.sections]
+    off = [facts.laid.difference for facts in proof.pockets]
+    off += [facts.path.difference for facts in proof.sections]
     return not any(off)
 
 
