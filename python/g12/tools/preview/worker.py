@@ -48,6 +48,7 @@ OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)} 
 OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number behind is always the same
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 BY_MACHINE = (280, 300, 530)
+FEED_DECIMALS = 12
 INVERSE_TIME = 1  # place in FEED_MODES: each block has an F of its own
 FEED_MODES = ("G94", "G93", "G95")
 CONTINUOUS = 3  # CANON_CONTINUOUS: G64
@@ -295,7 +296,8 @@ class Canon:
         this = interpreter_object()
         self.units = this.length_units
         self.feed = rate * MM
-        self.program_feed = rate * MM if self.units == METRIC else rate
+        feed = rate * MM if self.units == METRIC else rate
+        self.program_feed = round(feed, FEED_DECIMALS)  # through inches F loses its last bit
         self.modal_feed = self.program_feed
         if self.program_feed:  # M2 reports 0, whatever F then is
             this.feed_rate = self.program_feed

@@ -7,6 +7,7 @@ file. Where there are none, a pocket is not known to be where it is traced, but 
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
@@ -14,7 +15,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.machine_ini import axes_of
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import axes_of_plane
 from g12.tools.preview.executed_blocks import Block
@@ -43,9 +43,13 @@ class Overrun(NamedTuple):
 
 
 def travel_of(ini: Ini) -> dict[str, tuple[float, float]]:
-    """Return the ends of travel of a machine's axes X, Y and Z, mm."""
-    limits = axes_of(ini.get, LETTERS)
-    return {letter: (axis.low * ini.mm, axis.high * ini.mm) for letter, axis in limits.items()}
+    """Return the ends of travel of those axes X, Y and Z that a machine has, mm."""
+    limits = ini.axis_limits
+    return {
+        letter: (limits[letter].low * ini.mm, limits[letter].high * ini.mm)
+        for letter in LETTERS
+        if letter in limits
+    }
 
 
 class BlockExtent(NamedTuple):
@@ -68,7 +72,7 @@ def overruns_of(
     known = max(map(abs, extent.zero)) > SAME_ZERO
     ends = zip(LETTERS, extent.low.tolist(), extent.high.tolist())
     for (letter, low, high), width in zip(ends, widths.get(extent.zero, extent.high - extent.low)):
-        least, most = travel[letter]
+        least, most = travel.get(letter, (-math.inf, math.inf))
         certain = bool(known or width > most - least)
         if not certain and letter == "Z":  # hardly ever true, with any tool length
             continue
