@@ -123,6 +123,7 @@ class Tracer:
         process = self._process
         if process:
             process.kill()
+            process.wait()  # on a busy machine it may answer once more
 
     def close(self) -> None:
         """End the interpreter."""
