@@ -324,6 +324,12 @@ def python_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> li
 def own_modules(config: Config, wanted: Sequence[str]) -> list[tuple[Path, str, bool]]:
     """Return the user's TOPLEVEL and module remap, the import each needs, and if it lacks it."""
     python, toplevel = config.python, config.ini.file("PYTHON", "TOPLEVEL")
+    if not toplevel.is_file():
+        raise refuse(
+            "no-toplevel",
+            f"[PYTHON] TOPLEVEL = {toplevel}: there is no such file",
+            "name the machine's own toplevel.py, or take the line out",
+        )
     if python.remap and not python.remap_file:
         raise refuse(
             "remap-module",
