@@ -65,7 +65,8 @@ def test_a_var_file_gives_the_work_offsets_to_start_with(told, tmp_path):
 @pytest.mark.parametrize(
     ("name", "words"), [("trace", []), ("verify", []), ("plot", ["-o", "no.png"])]
 )
-def test_a_program_with_an_error_is_named(told, name, words, text, error):
+def test_a_program_with_an_error_is_named(told, name, words, text, error, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # a refused program is drawn up to there
     code, _, errors = told(name, text, *words)
     assert code == (2 if name == "verify" else 1)
     assert errors.startswith(f"g12 {name}: {error}")
