@@ -8,7 +8,6 @@ measured at right angles to it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from g12.geometry.curve import Arc, Curve, Line
@@ -70,11 +69,6 @@ class Expected(NamedTuple):
         """Return the distance in space between a point and the move's point at a share."""
         there, height = self.point(share)
         return abs(complex(abs(point - there), level - height))
-
-
-def length_of(path: Sequence[Expected]) -> float:
-    """Return the length of a toolpath."""
-    return sum(move.length for move in path)
 
 
 class Writer:
