@@ -8,7 +8,7 @@ SEED := $(shell date +%s)
 SOAKED := tests/soak/soak_*.py tests/interp/test_haas.py tests/interp/test_yasnac.py \
 	tests/interp/test_mitsubishi.py tests/interp/test_circle_mill.py tests/interp/test_cylinder.py \
 	tests/unit/test_cylinder.py tests/unit/test_polar_plan.py \
-	tests/unit/test_flat_offset.py tests/unit/test_flat_simplify.py -k "any or keeps or soak_ or short_moves"
+	tests/unit/test_compensation_offset.py tests/unit/test_compensation_simplify.py -k "any or keeps or soak_ or short_moves"
 JOBS := $(shell nproc)
 WORKERS := $(shell expr $$(nproc) + 1) # the tests of real motion wait more than they reckon
 

@@ -8,10 +8,11 @@ Data flow of one block, one way only::
 
 and of one section, whose lines the host reads on itself::
 
-    start -> setup -> lines -> contour -> path of the tool -> moves of X and C
-    (host)   (polar)  (section) (flat)    (flat)              (polar; handed over by host)
+    start -> setup -> lines ->  contour ->    path of the tool -> moves of X and C
+    (host)   (polar)  (section) (compensation) (compensation)     (polar; handed over by host)
 
-The planners (`cycles`, `section`, `flat`, `polar`) are pure: numbers in, values out, no LinuxCNC.
+The planners (`cycles`, `section`, `compensation`, `polar`) are pure: numbers in, values out, no
+LinuxCNC.
 README.md beside this file has the rooms, and the walk of a block and of a section.
 Lengths are in program units unless a docstring says otherwise, angles in radians.
 """

@@ -21,8 +21,8 @@ TRIED = {  # by file
     "test_circle_mill": "circle mill events and calls",
     "test_cylinder": "sections on a cylinder",
     "test_polar_plan": "polar contours",
-    "test_flat_offset": "polar contours with compensation",
-    "test_flat_simplify": "contours with short moves",
+    "test_compensation_offset": "polar contours with compensation",
+    "test_compensation_simplify": "contours with short moves",
     "soak_text": "hostile files",
 }
 COUNTED = "soak: "  # begins the name of a report's property

@@ -30,7 +30,7 @@ from soak.mutants import Mutant, mutants_of, mutated
 
 ROOT = Path(__file__).resolve().parents[2]
 SEED = 12
-ROOMS = ("cycles", "shapes", "section", "flat", "moves", "polar", "cylinder")
+ROOMS = ("cycles", "shapes", "section", "compensation", "moves", "polar", "cylinder")
 PARTS = ("python", "tests", "ngc", "configs", "pyproject.toml")
 CYCLES = (
     *("words", "cycles_common", "cycles_travel", "entry"),
@@ -40,16 +40,16 @@ SECTION = (
     *("section_block_rules", "section_codes", "section_line", "section_output"),
     *("polar_start", "cylinder"),
 )
-FLAT = (
+COMPENSATION = (
     *(
-        "flat_contour",
-        "flat_intersect",
-        "flat_nearby",
-        "flat_gouge",
-        "flat_between",
-        "flat_simplify",
+        "compensation_contour",
+        "compensation_intersect",
+        "compensation_nearby",
+        "compensation_gouge",
+        "compensation_between",
+        "compensation_simplify",
     ),
-    "flat_offset",
+    "compensation_offset",
 )
 MOVES = ("moves_exact_stops", "moves_feed", "moves_soft_limits", "moves_spacing")
 POLAR = ("polar_start", "polar_pole", "polar_pieces", "polar_beside", "polar_face", "polar_plan")
@@ -57,7 +57,7 @@ UNIT = {
     "cycles": CYCLES,
     "shapes": ("shapes",),
     "section": SECTION,
-    "flat": (*FLAT, "polar_plan"),
+    "compensation": (*COMPENSATION, "polar_plan"),
     "moves": (*MOVES, *POLAR, "cylinder"),
     "polar": (*MOVES, *POLAR, "section_line", "section_block_rules"),
     "cylinder": ("cylinder", *MOVES),
@@ -67,7 +67,7 @@ INTERP = {
     "cycles": ("haas", "haas_entry", "yasnac", "mitsubishi", "circle_mill"),
     "shapes": ("shapes",),
     "section": SECTIONS,
-    "flat": (*SECTIONS, "verify_programs"),
+    "compensation": (*SECTIONS, "verify_programs"),
     "moves": (*SECTIONS, "cylinder"),
     "polar": (*SECTIONS, "tool_offset", "verify_programs"),
     "cylinder": ("cylinder",),

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.flat.contour import Contour
+from g12.compensation.contour import Contour
 from g12.moves.steps import BlockMoves
 from support.contour_geometry import Straight
 

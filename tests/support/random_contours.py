@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from shapely.geometry import LineString
 
-from g12.flat import offset
-from g12.flat.contour import Contour, Line, is_move
+from g12.compensation import offset
+from g12.compensation.contour import Contour, Line, is_move
 from support.contour_geometry import Round, Straight
 from support.planned_cuts import add
 

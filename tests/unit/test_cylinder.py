@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from g12.compensation.contour import Arc, Contour, Line, PlaneNames, Start
 from g12.cylinder.plan import CylinderSettings, plan, split_on_cylinder
 from g12.cylinder.start import check_cylinder_start, cylinder_setup
 from g12.cylinder.words import CYLINDER_WORDS
 from g12.errors import Refusal
-from g12.flat.contour import Arc, Contour, Line, PlaneNames, Start
 from g12.machine_ini import Axis
 from g12.moves.steps import BlockMoves
 from g12.section.block_rules import SectionBlock, check_codes, check_letters

@@ -11,18 +11,19 @@ from support.sim_machines import ROOT
 PACKAGE = ROOT / "python" / "g12"
 LINUXCNC = ("interpreter", "emccanon", "linuxcnc", "hal", "gcode")
 PLANNERS = (
-    "g12.cycles", "g12.shapes", "g12.section", "g12.flat", "g12.moves", "g12.polar", "g12.cylinder",
+    "g12.cycles", "g12.shapes", "g12.section", "g12.compensation", "g12.moves", "g12.polar",
+    "g12.cylinder",
 )  # fmt: skip
 KINDS = ("g12.polar", "g12.cylinder")  # of sections
 WINGS = ("g12.host", "g12.tools", "g12.remap")
 FORBIDDEN = {  # room: what none of its files imports
     **dict.fromkeys(PLANNERS, (*WINGS, *LINUXCNC)),
-    "g12.flat": (*WINGS, *LINUXCNC, *KINDS, "g12.moves", "g12.section", "g12.cycles"),
-    "g12.section": (*WINGS, *LINUXCNC, *KINDS, "g12.moves", "g12.flat", "g12.cycles"),
+    "g12.compensation": (*WINGS, *LINUXCNC, *KINDS, "g12.moves", "g12.section", "g12.cycles"),
+    "g12.section": (*WINGS, *LINUXCNC, *KINDS, "g12.moves", "g12.compensation", "g12.cycles"),
     "g12.moves": (*WINGS, *LINUXCNC, *KINDS, "g12.cycles"),
     "g12.polar": (*WINGS, *LINUXCNC, "g12.cylinder", "g12.cycles"),
     "g12.cylinder": (*WINGS, *LINUXCNC, "g12.polar", "g12.cycles"),
-    "g12.cycles": (*WINGS, *LINUXCNC, *KINDS, "g12.moves", "g12.section", "g12.flat"),
+    "g12.cycles": (*WINGS, *LINUXCNC, *KINDS, "g12.moves", "g12.section", "g12.compensation"),
     "g12.host": ("g12.tools", "g12.remap"),
     "g12.tools": ("g12.host", "g12.remap"),
     "g12.tools.verify": PLANNERS,

@@ -10,7 +10,7 @@ from functools import partial
 
 import pytest
 
-from g12.flat.contour import Line, Mark, Plunge
+from g12.compensation.contour import Line, Mark, Plunge
 from g12.moves import exact_stops
 from g12.polar.plan import quickness
 

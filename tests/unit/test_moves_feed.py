@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.flat.contour import Line
+from g12.compensation.contour import Line
 from g12.moves.feed import Split, keeps_slide, pieces_with_feed
 
 START = (10.0, 0.0, 0.0)

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from g12.compensation.contour import Contour, Line
 from g12.errors import Refusal
-from g12.flat.contour import Contour, Line
 from g12.moves.steps import BlockMoves
 from g12.polar.face import FaceLimits, is_able, passed
 from g12.polar.plan import PolarSettings, plan

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, path_length
+from g12.compensation.contour import Arc, Contour, Line, Mark, Plunge, path_length
 from g12.moves.steps import BlockMoves
 from g12.polar.face import (
     FaceLimits,

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from g12.flat.contour import Arc, Line
+from g12.compensation.contour import Arc, Line
 from g12.polar.beside import _curvature, _density, split_beside
 from g12.polar.pieces import Law, _arc_density, _line_density, split_move
 from support.axes_of_places import along, axes_of, bend, change_of_bend, places_of, rates

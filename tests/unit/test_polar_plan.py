@@ -9,8 +9,8 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.flat.contour import Contour
 from g12.moves.steps import BlockMoves, chord_deviation
 from g12.polar.plan import PolarSettings, _SlideAndSpindle, plan, quickness
 from support.axes_of_places import rates

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from g12.flat.contour import Arc, Contour, Line, Mark, Plunge
+from g12.compensation.contour import Arc, Contour, Line, Mark, Plunge
 from g12.polar.pole import through_pole
 
 REACH = 0.0025

@@ -12,8 +12,8 @@ from functools import partial
 from math import copysign, cos, degrees, hypot, radians, sin, sqrt
 from typing import NamedTuple
 
-from g12.flat.centre_path import centre_path
-from g12.flat.contour import Arc, Contour, Line, Mark, Plunge, Point, arc_radius, is_move
+from g12.compensation.centre_path import centre_path
+from g12.compensation.contour import Arc, Contour, Line, Mark, Plunge, Point, arc_radius, is_move
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, pieces_with_feed
 from g12.moves.spacing import BULGE, Stretch, spaced

@@ -11,8 +11,8 @@ import emccanon
 import linuxcnc
 from interpreter import MODE_ABSOLUTE
 
+from g12.compensation.contour import Contour
 from g12.errors import BlockRefusal, Refusal
-from g12.flat.contour import Contour
 from g12.host import glue
 from g12.host.call_frame import CallFrame
 from g12.host.kinematics_switch import face_in_force

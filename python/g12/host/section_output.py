@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterator, Sequence
 from typing import NamedTuple
 
-from g12.flat.contour import Arc, Plunge
+from g12.compensation.contour import Arc, Plunge
 from g12.host.kinematics_switch import (
     BY_PROGRAM,
     INPUT_FOUND,

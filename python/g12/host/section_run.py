@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterator
 from enum import Enum
 
+from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.flat.contour import Contour
 from g12.host import glue
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import MOVING, ProgramLines

@@ -22,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import hypot, inf, sqrt
 
-from g12.flat.contour import (
+from g12.compensation.contour import (
     Arc,
     Line,
     Mark,

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from g12.flat.contour import Arc, Contour, Line, Mark, Start
+from g12.compensation.contour import Arc, Contour, Line, Mark, Start
 from g12.moves.feed import Split, keeps_slide
 from g12.moves.spacing import MOST_PIECES, TooManyPieces
 

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Polar coordinate interpolation: a flat X-C contour becomes moves of an X slide and a C axis.
 
-A section is collected in a :class:`~g12.flat.contour.Contour`, then planned as a whole by
+A section is collected in a :class:`~g12.compensation.contour.Contour`, then planned as a whole by
 :func:`~g12.polar.plan.plan`; what cannot be cut is refused there, before anything moves. Lengths
 are in program units throughout.
 
-1. `g12.flat`: blocks become lines and arcs in the flat plane, then the path of the tool's centre.
+1. `g12.compensation`: blocks become lines and arcs in the flat plane, then the path of the tool's
+   centre.
 2. ``pole``: moves that touch the spindle's centre end there. ``beside``: a tool that does not pass
    the centre stays clear of it.
 3. `g12.moves.exact_stops`: where the tool must stop.

@@ -26,8 +26,7 @@ from __future__ import annotations
 
 from math import atan2, copysign, hypot, pi, sqrt
 
-from g12.errors import number
-from g12.flat.contour import (
+from g12.compensation.contour import (
     Arc,
     Contour,
     Line,
@@ -37,7 +36,8 @@ from g12.flat.contour import (
     is_move,
     path_length,
 )
-from g12.flat.intersect import distance_from, place_at
+from g12.compensation.intersect import distance_from, place_at
+from g12.errors import number
 from g12.moves.feed import Split
 from g12.moves.spacing import BULGE, Density, Stretch, spaced
 from g12.polar.pieces import Law

@@ -24,7 +24,7 @@ from itertools import groupby
 from math import atan2, ceil, cos, hypot, inf, pi, sin, sqrt
 from typing import NamedTuple
 
-from g12.flat.contour import (
+from g12.compensation.contour import (
     SAME_PLACE,
     Arc,
     Line,
@@ -38,7 +38,7 @@ from g12.flat.contour import (
     start_direction,
     sweep_between,
 )
-from g12.flat.intersect import height_at, part_of_move, place_at
+from g12.compensation.intersect import height_at, part_of_move, place_at
 from g12.polar.beside import along_and_around, stand
 from g12.polar.pole import POLE
 

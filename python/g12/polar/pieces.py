@@ -31,7 +31,7 @@ from __future__ import annotations
 from math import atan, atan2, copysign, cos, hypot, pi, sin, sqrt
 from typing import NamedTuple
 
-from g12.flat.contour import Arc, Line, arc_radius
+from g12.compensation.contour import Arc, Line, arc_radius
 from g12.moves.feed import Split
 from g12.moves.spacing import BULGE, WHOLE_BULGE, Density, Stretch, spaced
 

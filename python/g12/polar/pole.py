@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from math import asin, hypot, sqrt
 
-from g12.flat.contour import (
+from g12.compensation.contour import (
     Arc,
     Contour,
     Line,
@@ -19,7 +19,7 @@ from g12.flat.contour import (
     is_move,
     sweep_between,
 )
-from g12.flat.intersect import height_at, part_of_move, place_at
+from g12.compensation.intersect import height_at, part_of_move, place_at
 
 POLE = (0.0, 0.0)
 FLAT_SHARE = 0.2  # of the reach: how far the radii that replace an arc may be from it

@@ -23,9 +23,8 @@ from functools import cached_property, partial
 from math import hypot
 from typing import NamedTuple
 
-from g12.errors import number
-from g12.flat.compared import ComparedContour, ball_round
-from g12.flat.contour import (
+from g12.compensation.compared import ComparedContour, ball_round
+from g12.compensation.contour import (
     SAME_PLACE,
     Arc,
     Contour,
@@ -34,21 +33,22 @@ from g12.flat.contour import (
     direction_at,
     path_length,
 )
-from g12.flat.gouge import (
+from g12.compensation.gouge import (
     RAMP,
     Cut,
     in_plane,
     places_along,
     stretches,
 )
-from g12.flat.intersect import (
+from g12.compensation.intersect import (
     distance_from,
     least_distance,
     nearest_place,
     part_of_move,
     place_at,
 )
-from g12.flat.nearby import Box, Boxes, near_passes
+from g12.compensation.nearby import Box, Boxes, near_passes
+from g12.errors import number
 
 ALLOWANCE = 0.5  # of the tool's radius: what is cut deeper is none that a finishing pass takes off
 ENTERED = 2.0  # tolerances: so deep is what enters the material

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
+from g12.compensation.contour import Contour
+from g12.compensation.offset import tool_path
+from g12.compensation.simplify import with_points_left_out, without_short_moves
 from g12.errors import Refusal
-from g12.flat.contour import Contour
-from g12.flat.offset import tool_path
-from g12.flat.simplify import with_points_left_out, without_short_moves
 
 SHORT_SHARE = 0.3  # of the tolerance: a shorter move under compensation is rounding
 

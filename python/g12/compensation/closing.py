@@ -12,7 +12,7 @@ from itertools import accumulate, product
 from math import hypot
 from typing import NamedTuple
 
-from g12.flat.contour import (
+from g12.compensation.contour import (
     SAME_PLACE,
     Arc,
     Line,
@@ -22,7 +22,13 @@ from g12.flat.contour import (
     path_length,
     start_direction,
 )
-from g12.flat.intersect import along_end, along_start, common_places, nearest_place, part_of_move
+from g12.compensation.intersect import (
+    along_end,
+    along_start,
+    common_places,
+    nearest_place,
+    part_of_move,
+)
 
 LEADS = 3  # moves at either end of a contour among which it may close
 CROSSING = 2  # of these: so far from the end may be the moves that cross

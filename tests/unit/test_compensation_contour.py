@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from g12.compensation.contour import Arc, Contour, Line, Mark, Plunge
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.flat.contour import Arc, Contour, Line, Mark, Plunge
 
 
 def started(**options):

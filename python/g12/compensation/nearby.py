@@ -14,8 +14,8 @@ from collections.abc import Callable, Iterator, Sequence
 from math import atan2, cos, hypot, pi
 from operator import itemgetter
 
-from g12.flat.contour import Arc, Line, Point, arc_radius, end_direction, start_direction
-from g12.flat.intersect import distance_from
+from g12.compensation.contour import Arc, Line, Point, arc_radius, end_direction, start_direction
+from g12.compensation.intersect import distance_from
 
 LEAF = 4  # moves in a box that is not divided
 STRAIGHT = pi - 1e-3  # directions within that angle

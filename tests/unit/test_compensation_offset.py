@@ -13,9 +13,9 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Polygon
 
+from g12.compensation.contour import Arc, Contour, is_move
+from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.flat.contour import Arc, Contour, is_move
-from g12.flat.offset import tool_path
 from g12.moves.steps import BlockMoves
 from g12.polar.plan import PolarSettings, plan
 from support.contour_geometry import Round, Straight, distance_from_path, phase, spaced

@@ -21,9 +21,8 @@ from itertools import accumulate, groupby
 from math import ceil, copysign, hypot, inf, sqrt
 from typing import NamedTuple, NoReturn
 
-from g12.errors import Refusal, number
-from g12.flat.closing import closing_of
-from g12.flat.contour import (
+from g12.compensation.closing import closing_of
+from g12.compensation.contour import (
     SAME_PLACE,
     Arc,
     Contour,
@@ -34,7 +33,7 @@ from g12.flat.contour import (
     is_move,
     path_length,
 )
-from g12.flat.intersect import (
+from g12.compensation.intersect import (
     along_start,
     common_places,
     least_distance,
@@ -42,7 +41,8 @@ from g12.flat.intersect import (
     part_of_move,
     place_at,
 )
-from g12.flat.nearby import Boxes, apart, box_of, near_passes, straight_runs
+from g12.compensation.nearby import Boxes, apart, box_of, near_passes, straight_runs
+from g12.errors import Refusal, number
 
 MEETING = 4.0  # tolerances: places so near to each other close a contour
 SAME_WAY = 0.9  # cosine of the angle between passes behind each other, at least

@@ -15,12 +15,12 @@ import pytest
 from shapely.geometry import JOIN_STYLE, Polygon
 from shapely.geometry.polygon import orient
 
+from g12.compensation import between
+from g12.compensation.closing import Closing
+from g12.compensation.contour import Arc, Contour, Line, is_move
+from g12.compensation.gouge import place_count
+from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.flat import between
-from g12.flat.closing import Closing
-from g12.flat.contour import Arc, Contour, Line, is_move
-from g12.flat.gouge import place_count
-from g12.flat.offset import tool_path
 from support.contour_geometry import Round, Straight
 from support.planned_cuts import add
 from support.random_contours import (

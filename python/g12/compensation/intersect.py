@@ -5,7 +5,15 @@ from __future__ import annotations
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 
-from g12.flat.contour import SAME_PLACE, Arc, Line, Point, arc_radius, path_length, start_direction
+from g12.compensation.contour import (
+    SAME_PLACE,
+    Arc,
+    Line,
+    Point,
+    arc_radius,
+    path_length,
+    start_direction,
+)
 
 PARALLEL = 1e-9  # sine of an angle that is none
 

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString
 
+from g12.compensation import simplify
+from g12.compensation.centre_path import centre_path
+from g12.compensation.contour import Arc, Contour, Line, Plunge, is_move
 from g12.errors import Refusal
-from g12.flat import simplify
-from g12.flat.centre_path import centre_path
-from g12.flat.contour import Arc, Contour, Line, Plunge, is_move
 from g12.polar.plan import PolarSettings, plan
 from support.planned_cuts import cuts, path
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 from functools import cached_property
 from math import copysign, hypot, inf
 
-from g12.flat.closing import closing_of
-from g12.flat.contour import (
+from g12.compensation.closing import closing_of
+from g12.compensation.contour import (
     SAME_PLACE,
     Arc,
     Contour,
@@ -17,7 +17,7 @@ from g12.flat.contour import (
     is_move,
     path_length,
 )
-from g12.flat.gouge import (
+from g12.compensation.gouge import (
     MEETING,
     RAMP,
     Cut,
@@ -26,8 +26,8 @@ from g12.flat.gouge import (
     place_count,
     without_repeats,
 )
-from g12.flat.intersect import along_start, nearest_place, part_of_move, place_at
-from g12.flat.nearby import Boxes
+from g12.compensation.intersect import along_start, nearest_place, part_of_move, place_at
+from g12.compensation.nearby import Boxes
 
 
 class ComparedContour:

@@ -14,10 +14,9 @@ import numpy as np
 import pytest
 from shapely.geometry import Polygon
 
-from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.flat.closing import closing_of
-from g12.flat.contour import Arc, Contour, Line, direction_at, is_move, path_length
-from g12.flat.gouge import (
+from g12.compensation.closing import closing_of
+from g12.compensation.contour import Arc, Contour, Line, direction_at, is_move, path_length
+from g12.compensation.gouge import (
     Cut,
     greatest_heights,
     in_plane,
@@ -26,8 +25,9 @@ from g12.flat.gouge import (
     stretches,
     without_repeats,
 )
-from g12.flat.intersect import along_start, nearest_place, place_at
-from g12.flat.offset import tool_path
+from g12.compensation.intersect import along_start, nearest_place, place_at
+from g12.compensation.offset import tool_path
+from g12.errors import LONGEST_MESSAGE, Refusal
 from support.contour_geometry import Round, Straight, arc, lines
 from support.planned_cuts import add
 from support.random_contours import (

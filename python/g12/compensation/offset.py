@@ -19,9 +19,8 @@ from copy import copy
 from math import copysign, hypot
 from typing import NamedTuple, NoReturn
 
-from g12.errors import Refusal, number
-from g12.flat.between import check_contours
-from g12.flat.contour import (
+from g12.compensation.between import check_contours
+from g12.compensation.contour import (
     SAME_PLACE,
     Arc,
     Contour,
@@ -34,8 +33,9 @@ from g12.flat.contour import (
     start_direction,
     sweep_between,
 )
-from g12.flat.gouge import Cut, LeadRefusal, check_gouges
-from g12.flat.intersect import PARALLEL, along_end, along_start, crossing
+from g12.compensation.gouge import Cut, LeadRefusal, check_gouges
+from g12.compensation.intersect import PARALLEL, along_end, along_start, crossing
+from g12.errors import Refusal, number
 
 JOINED = 0.04  # tolerances: moved by no more, parallels are joined without an arc
 BESIDE = 2.0  # tolerances: places so near to each other are one corner

@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import hypot
 
-from g12.flat.contour import Arc, Line, Plunge, is_move, path_length
-from g12.flat.intersect import distance_from
+from g12.compensation.contour import Arc, Line, Plunge, is_move, path_length
+from g12.compensation.intersect import distance_from
 
 MOST_POINTS = 100  # that one line stands for: all of them are looked at for each one more
 

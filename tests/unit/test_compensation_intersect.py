@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
-from g12.flat.contour import Arc, Line
-from g12.flat.intersect import (
+from g12.compensation.contour import Arc, Line
+from g12.compensation.intersect import (
     along_end,
     along_start,
     common_places,

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.flat.contour import Arc, Line
-from g12.flat.nearby import Boxes, apart, box_of, straight_runs
+from g12.compensation.contour import Arc, Line
+from g12.compensation.nearby import Boxes, apart, box_of, straight_runs
 from support.contour_geometry import Round, Straight
 
 BARE = (1, 100.0, 2.0)
