@@ -169,6 +169,14 @@ def test_least_increments_follow_the_units(tmp_path, code, x):
 # ---------------------------------------------------------------- codes
 
 
+def test_zeros_of_an_axis_that_the_machine_lacks_are_dropped():
+    written = behind(HAAS, "G0 X1. A0. B0\nA0.\nG1 Y1. A0 F5.\nM30\n")
+    assert written[0] == "G0 X1. (A0.: no A here)(B0: no B here)"
+    assert written[1:3] == ["(A0.: no A here)", "G1 Y1. F5. (A0: no A here)"]
+    for block in ("G28 A0.", "G53 A0.", "G91 G28 A0", "G92 A0.", "G0 A#1", "G81 X0 Z-1. R.1\nA0."):
+        assert "the axes XYZ" in sentence(HAAS, f"{MILL}G0 F5.\n{block}\nM30\n").sentence, block
+
+
 def test_an_m_code_that_the_machine_knows_stays():
     known = frozenset(["M31", "M88", "M137"])
     text = f"{MILL}M31\nM88\nM137\nM30\n"

@@ -33,6 +33,7 @@ WORD_RULES = (
     modes.follow_modes,
     polar.plane_letters,
     subprograms.call_macro,
+    modes.zero_of_missing_axis,
     dwell.dwell,
     decimals.whole_units,
     places.follow_places,

@@ -5,10 +5,38 @@ from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
 from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUP_OF
 
 INSIDE = {"on": "UH", "cylinder": "UWH"}  # what polar mode and a cylinder have besides
 LETTERS = frozenset("NGMFSTDHIJKLPQR$")
+
+
+def zero_of_missing_axis(draft: Draft) -> None:
+    """Drop ``A0`` on a machine without A: CAM writes it for a fourth axis that is not used.
+
+    A lathe's A and C beside X or Z are an angle and a chamfer, so only a machine with Y is meant.
+    A block keeps the word where it would mean another thing without it, as G28 does.
+    """
+    axes = draft.control.axes
+    words = [w for w in draft.axis_words() if w.letter not in axes and w.letter in "ABC"]
+    zeros = [word for word in words if _is_zero(word)]
+    if "Y" not in axes or not zeros or draft.meanings:
+        return
+    if zeros == draft.axis_words() and not _only_positions(draft):
+        return
+    draft.words = [word for word in draft.words if word not in zeros]
+    draft.comments += [f"{word.text}: no {word.letter} here" for word in zeros]
+
+
+def _is_zero(word: ForeignWord) -> bool:
+    return word.kind == "number" and float(word.value) == 0
+
+
+def _only_positions(draft: Draft) -> bool:
+    codes = draft.codes()
+    motion = next((code for code in codes if GROUP_OF.get(code) == "motion"), draft.state.motion)
+    return motion in ("G0", "G1") and all(code in GROUP_OF for code in codes)
 
 
 def follow_modes(draft: Draft) -> None:
