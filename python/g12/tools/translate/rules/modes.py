@@ -34,9 +34,10 @@ def _is_zero(word: ForeignWord) -> bool:
 
 
 def _only_positions(draft: Draft) -> bool:
-    codes = draft.codes()
-    motion = next((code for code in codes if GROUP_OF.get(code) == "motion"), draft.state.motion)
-    return motion in ("G0", "G1") and all(code in GROUP_OF for code in codes)
+    codes, state = draft.codes(), draft.state
+    motion = next((code for code in codes if GROUP_OF.get(code) == "motion"), state.motion)
+    goes = motion in ("G0", "G1") and not state.cycle
+    return goes and all(code in GROUP_OF for code in codes)
 
 
 def follow_modes(draft: Draft) -> None:
