@@ -23,8 +23,8 @@ SPINDLE_C = ("spindle_c_is_on", "spindle_c_off", "spindle_c_on")
 # what `from g12.remap import *` brings into a user's own remap
 __all__ = [*CYCLES, *POLAR, *CYLINDER, *SHAPES, *SPINDLE_C]
 
-globals().update(loaded_handlers("g12.host.cycle_prologs", CYCLES))
-globals().update(loaded_handlers("g12.host.polar_handlers", POLAR))
-globals().update(loaded_handlers("g12.host.cylinder_handlers", CYLINDER))
-globals().update(loaded_handlers("g12.host.shape_handlers", SHAPES))
+globals().update(loaded_handlers("g12.host.handlers.cycles", CYCLES))
+globals().update(loaded_handlers("g12.host.handlers.polar", POLAR))
+globals().update(loaded_handlers("g12.host.handlers.cylinder", CYLINDER))
+globals().update(loaded_handlers("g12.host.handlers.shapes", SHAPES))
 globals().update(loaded_handlers("g12.host.spindle_c", SPINDLE_C))

@@ -11,8 +11,8 @@ import sys
 import pytest
 
 from g12.tools.commands import check, install, uninstall
-from g12.tools.install import features
-from g12.tools.install.findings import NOTE
+from g12.tools.install.config import features
+from g12.tools.install.config.findings import NOTE
 from g12.tools.preview.tracer import Tracer, trace_text
 from g12.tools.system import CALL
 from support.kinematics import marked

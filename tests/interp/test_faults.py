@@ -10,11 +10,11 @@ TOPLEVEL = """\
 import sys
 sys.path.insert(0, "{python}")
 import remap
-from g12.host import cycle_prologs
+from g12.host.handlers import cycles
 from g12.polar import plan
 def broken(*_, **__):
     raise KeyError("wire")
-cycle_prologs.plan_pocket = plan.plan = broken
+cycles.plan_pocket = plan.plan = broken
 """
 BROKEN = """\
 import sys
@@ -22,15 +22,15 @@ sys.path.insert(0, "{python}")
 sys.modules["{module}"] = None
 import remap
 """
-HALVES = ["g12.cycles.words", "g12.polar.pieces"]
+HALVES = ["g12.request.words", "g12.polar.pieces"]
 PROGRAMS = {  # of the half whose codes they use
-    "g12.cycles.words": ("mill_mm", ["F600", "G0 X0 Y0", "G12 I20 D1 Z-1", "M2"]),
+    "g12.request.words": ("mill_mm", ["F600", "G0 X0 Y0", "G12 I20 D1 Z-1", "M2"]),
     "g12.polar.pieces": (
         "lathe_mm",
         ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "G1 X15", "G13.1", "M2"],
     ),
 }
-SHORT = "from g12.host import section_run\nsection_run.MOST_LINES = 99\n"
+SHORT = "from g12.host.section import run\nrun.MOST_LINES = 99\n"
 
 
 def test_an_endless_loop_ends(tmp_path):
@@ -84,7 +84,7 @@ def test_a_half_that_does_not_load_leaves_the_other(tmp_path, broken, used):
 
 
 def test_an_axis_that_cannot_be_leaves_the_cycles():
-    machine, program = PROGRAMS["g12.cycles.words"]
+    machine, program = PROGRAMS["g12.request.words"]
     overrides = {"AXIS_X": {"MAX_ACCELERATION": "0"}}
     with Tracer(SIM / f"{machine}.ini", overrides=overrides, tools={1: 6.0}) as tracer:
         assert "g12: [AXIS_X] MAX_ACCELERATION = 0: must be above 0" in tracer.printed

@@ -12,11 +12,12 @@ from pathlib import Path
 import pytest
 
 from g12.machine_ini import remap_from_value
-from g12.tools.install import checking, features, forms, installation, package_copy, removal
+from g12.tools.install import checking, installation, package_copy, removal
 from g12.tools.install.checking import check_config
-from g12.tools.install.config import Config, Python, load_config, remaps_in
-from g12.tools.install.findings import PROBLEM
-from g12.tools.install.ini_edit import IniText
+from g12.tools.install.config import features, forms
+from g12.tools.install.config.findings import PROBLEM
+from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.config.loaded import Config, Python, load_config, remaps_in
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.install.rules import codes_of, findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems

@@ -279,7 +279,7 @@ SPY = """\
 import sys
 sys.path.insert(0, "{python}")
 import remap
-from g12.host.section_output import PathControl
+from g12.host.section.output import PathControl
 within = PathControl.within = getattr(PathControl, "within", PathControl.inside)  # loaded twice
 def spied(self):
     within(self)

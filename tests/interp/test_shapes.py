@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from shapely.geometry import box
 
-from g12.cycles.context import Tool
+from g12.request.context import Tool
 from g12.shapes import polygon as planned_polygon
 from g12.shapes import round_pocket
 from g12.shapes import slot as planned_slot

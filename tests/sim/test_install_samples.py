@@ -9,8 +9,8 @@ from shapely.geometry import LineString, Point
 
 from g12.tools.commands import install, uninstall
 from g12.tools.install.checking import check_config
-from g12.tools.install.findings import PROBLEM
-from g12.tools.install.ini_edit import IniText
+from g12.tools.install.config.findings import PROBLEM
+from g12.tools.install.config.ini_edit import IniText
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
 from support.sample_configs import SAMPLES, copy_samples, tree

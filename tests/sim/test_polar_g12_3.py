@@ -3,7 +3,7 @@
 
 import pytest
 
-from g12.tools.install.features import INCLUDES
+from g12.tools.install.config.features import INCLUDES
 from support.contour_geometry import deviation
 from support.kinematics import marked
 from support.operated_machine import Machine

@@ -44,8 +44,9 @@ from support.fault_tables import FOLDERS, TABLES, MachinedProgram, program_of, s
 from support.right_programs import MACHINES, SETTINGS, right_program
 from support.sim_machines import PROGRAMS, ROOT
 
-ROOMS = ("cycles", "polar", "moves", "flat", "section", "cylinder", "host", "ngc")
-LEFT_OUT = ("glue", "loading", "face_by_hand", "shape_handlers")  # of host
+ROOMS = ("request", "cycles", "polar", "moves", "flat", "section", "cylinder")
+ROOMS += ("host", "host/handlers", "host/section", "ngc")
+LEFT_OUT = ("glue", "loading", "face_by_hand", "shapes")  # of host
 POCKETS, SECTIONS = ("haas", "yasnac", "mitsubishi", "mill"), ("G12.1", "G7.1")
 USED_BY = {  # by what stands in a module's name, the first that does; else by its room
     "haas": ("haas",),
@@ -60,6 +61,7 @@ USED_BY = {  # by what stands in a module's name, the first that does; else by i
     "kinematics": ("G12.1",),
     "cylinder": ("G7.1",),
     "cycles/": POCKETS,
+    "request/": POCKETS,
 }
 SAME = Tolerance(length=0.005, angle=0.01, feed=0.005)
 SECONDS = 60.0

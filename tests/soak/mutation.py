@@ -30,7 +30,8 @@ from soak.mutants import Mutant, mutants_of, mutated
 
 ROOT = Path(__file__).resolve().parents[2]
 SEED = 12
-ROOMS = ("cycles", "shapes", "section", "compensation", "moves", "polar", "cylinder")
+ROOMS = ("request", "cycles", "shapes", "section", "compensation", "moves")
+ROOMS += ("polar", "cylinder")
 PARTS = ("python", "tests", "ngc", "configs", "pyproject.toml")
 CYCLES = (
     *("words", "cycles_common", "cycles_travel", "entry"),
@@ -54,6 +55,7 @@ COMPENSATION = (
 MOVES = ("moves_exact_stops", "moves_feed", "moves_soft_limits", "moves_spacing")
 POLAR = ("polar_start", "polar_pole", "polar_pieces", "polar_beside", "polar_face", "polar_plan")
 UNIT = {
+    "request": CYCLES,
     "cycles": CYCLES,
     "shapes": ("shapes",),
     "section": SECTION,
@@ -64,6 +66,7 @@ UNIT = {
 }
 SECTIONS = ("polar_words", "polar_refusals", "polar_reading")
 INTERP = {
+    "request": ("haas", "yasnac", "mitsubishi", "circle_mill"),
     "cycles": ("haas", "haas_entry", "yasnac", "mitsubishi", "circle_mill"),
     "shapes": ("shapes",),
     "section": SECTIONS,

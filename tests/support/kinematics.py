@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from g12.tools.install.kinematics_rules import module_has, module_installed
+from g12.tools.install.lathe.kinematics_rules import module_has, module_installed
 
 needs_kinematics = pytest.mark.skipif(
     not (module_installed("polar_xzc") and module_has(".tool-offset")),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a block finds in the planners' own tests: modes, position, tools, without LinuxCNC."""
 
-from g12.cycles.context import Context, Tool
+from g12.request.context import Context, Tool
 
 MM = Context(
     inch=False,

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from g12.tools.install.config import Config, Python, remaps_in
-from g12.tools.install.ini_edit import IniText
+from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.config.loaded import Config, Python, remaps_in
 
 MILL = """\
 [EMC]

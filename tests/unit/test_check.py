@@ -7,9 +7,10 @@ import pytest
 
 from g12.machine_ini import remap_from_value
 from g12.tools.commands import check
-from g12.tools.install import features, package_copy
+from g12.tools.install import package_copy
 from g12.tools.install.checking import check_report, lines_of_check
-from g12.tools.install.findings import NOTE, PROBLEM, WARNING, Finding
+from g12.tools.install.config import features
+from g12.tools.install.config.findings import NOTE, PROBLEM, WARNING, Finding
 from g12.tools.install.rules import findings_of, last_words
 from g12.tools.preview.loading import python_error
 from support.small_configs import HAAS, LATHE, MILL, config_of, with_lines, write_config

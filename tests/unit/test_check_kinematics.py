@@ -3,9 +3,9 @@
 
 import pytest
 
-from g12.tools.install import kinematics_rules
-from g12.tools.install.findings import PROBLEM
-from g12.tools.install.kinematics_rules import kinematics_findings
+from g12.tools.install.config.findings import PROBLEM
+from g12.tools.install.lathe import kinematics_rules
+from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from support.sim_machines import ROOT
 from support.small_configs import config_of, write_config
 

@@ -3,11 +3,12 @@
 
 import pytest
 
-from g12.tools.install import features, package_copy, removal
-from g12.tools.install.findings import NOTE, WARNING
-from g12.tools.install.ini_edit import IniText
+from g12.tools.install import package_copy, removal
+from g12.tools.install.config import features
+from g12.tools.install.config.findings import NOTE, WARNING
+from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.installation import write_changes
-from g12.tools.install.lathe_rules import lathe_findings
+from g12.tools.install.lathe.rules import lathe_findings
 from g12.tools.install.plan import make_plan
 from support.small_configs import LATHE, MILL, config_of, with_lines, write_config
 

@@ -17,9 +17,9 @@ from g12.cycles.circle_mill import (
     plan_call,
     plan_code,
 )
-from g12.cycles.context import Tool
-from g12.cycles.words import Words
 from g12.errors import Refusal
+from g12.request.context import Tool
+from g12.request.words import Words
 from support.planner_context import BAD_MODES, INCH, MM
 
 PLACE = dict(X=1.0, Y=2.0)

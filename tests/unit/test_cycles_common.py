@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.cycles import circle_mill, haas, mitsubishi, yasnac
-from g12.cycles.common import COUNTLESS, other_cutter, steps_between
-from g12.cycles.context import Tool
-from g12.cycles.words import Words
 from g12.errors import Refusal
+from g12.request.common import COUNTLESS, other_cutter, steps_between
+from g12.request.context import Tool
+from g12.request.words import Words
 from support.planner_context import MM
 
 TOLERANCE = 1e-6

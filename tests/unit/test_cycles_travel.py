@@ -6,10 +6,10 @@ import math
 import pytest
 
 from g12.cycles import circle_mill, haas, mitsubishi, yasnac
-from g12.cycles.travel import CycleExtent, MachineFrame, check_travel
-from g12.cycles.words import Words
 from g12.errors import Refusal
 from g12.lengths import MM_PER_INCH
+from g12.request.travel import CycleExtent, MachineFrame, check_travel
+from g12.request.words import Words
 from support.planner_context import MM
 
 AXES = {

@@ -16,8 +16,8 @@ from g12.cycles.entry import (
     helix_of,
     way_down,
 )
-from g12.cycles.words import Words
 from g12.errors import Refusal
+from g12.request.words import Words
 from support.planner_context import MM
 
 HELIX = PocketEntry(helix=True, angle=3.0)

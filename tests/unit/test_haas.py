@@ -5,11 +5,11 @@ import math
 
 import pytest
 
-from g12.cycles.context import Tool
 from g12.cycles.entry import PocketEntry
 from g12.cycles.haas import plan_pocket
-from g12.cycles.words import Words
 from g12.errors import Refusal
+from g12.request.context import Tool
+from g12.request.words import Words
 from support.planner_context import INCH
 
 TABLE = {1: Tool(1, 0.125), 2: Tool(2, 0.25), 3: Tool(3, -0.125), 4: Tool(4, 0.0)}

@@ -15,8 +15,16 @@ from hypothesis import strategies as st
 from g12.tools import progress
 from g12.tools.commands import install, uninstall
 from g12.tools.errors import UsageError
-from g12.tools.install import features, installation, package_copy, removal, trial
-from g12.tools.install.ini_edit import BEGIN, END, IniError, IniText, lines_with_ends, to_bytes
+from g12.tools.install import installation, package_copy, removal, trial
+from g12.tools.install.config import features
+from g12.tools.install.config.ini_edit import (
+    BEGIN,
+    END,
+    IniError,
+    IniText,
+    lines_with_ends,
+    to_bytes,
+)
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.machine import files
 from support.small_configs import MILL, config_of, content_of, with_lines, write_config

@@ -3,9 +3,10 @@
 
 import pytest
 
-from g12.tools.install import features, forms, installation, package_copy, removal
+from g12.tools.install import installation, package_copy, removal
 from g12.tools.install.checking import check_report, lines_of_check
-from g12.tools.install.ini_edit import IniText
+from g12.tools.install.config import features, forms
+from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.install.rules import findings_of
 from support.small_configs import HAAS, MILL, config_of, with_lines, write_config

@@ -3,9 +3,10 @@
 
 import pytest
 
-from g12.tools.install import features, installation, package_copy, removal, trial
-from g12.tools.install.ini_edit import IniText
-from g12.tools.install.kinematics_rules import kinematics_findings
+from g12.tools.install import installation, package_copy, removal, trial
+from g12.tools.install.config import features
+from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.plan import Refused, make_plan
 from support.small_configs import config_of, content_of, write_config
 
@@ -111,8 +112,8 @@ def put_in(ini, *wanted):
 def test_check_finds_nothing_and_uninstall_gives_every_byte_back(
     tmp_path, monkeypatch, text, polar
 ):
-    monkeypatch.setattr("g12.tools.install.kinematics_rules.module_file", lambda _: tmp_path)
-    monkeypatch.setattr("g12.tools.install.kinematics_rules.module_has", lambda _: True)
+    monkeypatch.setattr("g12.tools.install.lathe.kinematics_rules.module_file", lambda _: tmp_path)
+    monkeypatch.setattr("g12.tools.install.lathe.kinematics_rules.module_has", lambda _: True)
     ini = config_in(tmp_path, text)
     before = content_of(tmp_path)
     put_in(ini, polar, features.KINEMATICS)

@@ -4,7 +4,7 @@
 import pytest
 
 from g12.tools.install import installation, package_copy, removal
-from g12.tools.install.ini_edit import IniText
+from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.install.rules import installed_programs, wrong_filters
 from support.small_configs import config_of, write_config

@@ -4,10 +4,11 @@
 import pytest
 
 from g12.tools.errors import UsageError
-from g12.tools.install import features, installation, package_copy, removal
-from g12.tools.install.ini_edit import IniText
+from g12.tools.install import installation, package_copy, removal
+from g12.tools.install.config import features
+from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.lathe.spindle_c import read_pins, spindle_c_findings
 from g12.tools.install.plan import Refused, make_plan
-from g12.tools.install.spindle_c import read_pins, spindle_c_findings
 from support.small_configs import config_of, content_of, write_config
 
 HAL = """\

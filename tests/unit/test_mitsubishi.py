@@ -4,8 +4,8 @@
 import pytest
 
 from g12.cycles.mitsubishi import MitsubishiCircle, plan_circle
-from g12.cycles.words import Words
 from g12.errors import Refusal
+from g12.request.words import Words
 from support.planner_context import BAD_MODES, MM
 
 STANDING = MM._replace(x=1.0, y=2.0, z=3.0)

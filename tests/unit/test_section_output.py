@@ -4,7 +4,7 @@
 import pytest
 
 from g12.errors import Refusal
-from g12.host.section_output import BLOCK_END, STOP_HERE, Action, PathControl, SectionOutput
+from g12.host.section.output import BLOCK_END, STOP_HERE, Action, PathControl, SectionOutput
 from g12.moves.steps import BlockMoves
 from g12.section.modes import SectionModes
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.cycles.context import Tool
 from g12.errors import Refusal, number
+from g12.request.context import Tool
 from g12.shapes import polygon, round_pocket, slot
 from g12.shapes.entries import LEFT_OUT, ShapeEntries, ShapeMachine, check_nearest
 from g12.shapes.rings import half_turns_in_all

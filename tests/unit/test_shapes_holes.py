@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.cycles.context import Tool
 from g12.errors import Refusal
+from g12.request.context import Tool
 from g12.shapes import holes
 from g12.shapes.entries import LEFT_OUT, ShapeEntries
 from g12.shapes.holes import HoleMachine, shorter_way

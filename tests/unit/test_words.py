@@ -5,9 +5,9 @@ import math
 
 import pytest
 
-from g12.cycles.words import Words
 from g12.errors import Refusal
 from g12.lengths import LARGEST
+from g12.request.words import Words
 
 
 def words(**values):

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.cycles.common import SMALLEST_RING_MM
-from g12.cycles.context import Tool
-from g12.cycles.words import Words
 from g12.cycles.yasnac import plan_circle
 from g12.errors import Refusal
+from g12.request.common import SMALLEST_RING_MM
+from g12.request.context import Tool
+from g12.request.words import Words
 from support.planner_context import BAD_MODES, MM
 
 

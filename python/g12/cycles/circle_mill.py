@@ -34,7 +34,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from g12.cycles.common import (
+from g12.errors import number
+from g12.request.common import (
     ROUNDING_MM,
     SMALLEST_RING_MM,
     check_count,
@@ -43,10 +44,9 @@ from g12.cycles.common import (
     loaded_tool,
     steps_between,
 )
-from g12.cycles.context import XY, Context, Tool
-from g12.cycles.travel import CycleExtent
-from g12.cycles.words import Words
-from g12.errors import number
+from g12.request.context import XY, Context, Tool
+from g12.request.travel import CycleExtent
+from g12.request.words import Words
 
 ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order
 LEFT_OUT = -9999.0

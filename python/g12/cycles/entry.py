@@ -11,9 +11,9 @@ from __future__ import annotations
 from math import atan, ceil, pi, radians, tan
 from typing import NamedTuple
 
-from g12.cycles.context import Context
-from g12.cycles.words import Words
 from g12.errors import number
+from g12.request.context import Context
+from g12.request.words import Words
 
 CLEARED = 0.9  # of the cutter's radius: a helix as large leaves no core
 LEAST_CORNER = radians(0.99)  # between half turns

@@ -26,7 +26,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from g12.cycles.common import (
+from g12.cycles.entry import CLEARED, STRAIGHT_DOWN, PocketEntry, WayDown, way_down
+from g12.errors import number
+from g12.request.common import (
     ROUNDING_MM,
     SMALLEST_RING_MM,
     check_count,
@@ -37,11 +39,9 @@ from g12.cycles.common import (
     sound_tool,
     steps_between,
 )
-from g12.cycles.context import XY, Context, Tool
-from g12.cycles.entry import CLEARED, STRAIGHT_DOWN, PocketEntry, WayDown, way_down
-from g12.cycles.travel import CycleExtent
-from g12.cycles.words import Words
-from g12.errors import number
+from g12.request.context import XY, Context, Tool
+from g12.request.travel import CycleExtent
+from g12.request.words import Words
 
 KNOWN_WORDS = "X Y Z I K Q L D F"
 

@@ -17,17 +17,17 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from g12.cycles.common import (
+from g12.errors import number
+from g12.request.common import (
     ROUNDING_MM,
     SMALLEST_RING_MM,
     check_modes,
     check_start,
     commanded_tool,
 )
-from g12.cycles.context import XY, XZ, YZ, Context, Tool
-from g12.cycles.travel import CycleExtent
-from g12.cycles.words import Words
-from g12.errors import number
+from g12.request.context import XY, XZ, YZ, Context, Tool
+from g12.request.travel import CycleExtent
+from g12.request.words import Words
 
 KNOWN_WORDS = "I D F"
 FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}

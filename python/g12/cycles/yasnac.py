@@ -28,7 +28,8 @@ from __future__ import annotations
 from math import copysign
 from typing import NamedTuple
 
-from g12.cycles.common import (
+from g12.errors import BlockRefusal, number
+from g12.request.common import (
     ROUNDING_MM,
     SMALLEST_RING_MM,
     check_count,
@@ -38,10 +39,9 @@ from g12.cycles.common import (
     sound_tool,
     steps_between,
 )
-from g12.cycles.context import XY, Context, Tool
-from g12.cycles.travel import CycleExtent
-from g12.cycles.words import Words
-from g12.errors import BlockRefusal, number
+from g12.request.context import XY, Context, Tool
+from g12.request.travel import CycleExtent
+from g12.request.words import Words
 
 KNOWN_WORDS = "I R (or J) K Q L D F"
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from g12.cycles.common import ROUNDING_MM, steps_between
-from g12.cycles.context import Context
-from g12.cycles.words import Words
 from g12.errors import number
+from g12.request.common import ROUNDING_MM, steps_between
+from g12.request.context import Context
+from g12.request.words import Words
 
 LEFT_OUT = -9999.0
 CLEAR_MM = 1.0  # between the tool and the face, or the stock, where it comes down

@@ -19,9 +19,9 @@ from __future__ import annotations
 from math import atan2, ceil, degrees, hypot, sqrt
 from typing import NamedTuple
 
-from g12.cycles.common import ROUNDING_MM
-from g12.cycles.context import Context
 from g12.errors import number
+from g12.request.common import ROUNDING_MM
+from g12.request.context import Context
 from g12.shapes.entries import (
     Extent,
     ShapeEntries,

@@ -25,9 +25,9 @@ from __future__ import annotations
 from math import acos, degrees, fmod, hypot, radians, sqrt, tan
 from typing import NamedTuple
 
-from g12.cycles.common import ROUNDING_MM, loaded_tool
-from g12.cycles.context import Context
 from g12.errors import number
+from g12.request.common import ROUNDING_MM, loaded_tool
+from g12.request.context import Context
 from g12.shapes.entries import (
     CLEAR_MM,
     Extent,

@@ -14,9 +14,9 @@ from __future__ import annotations
 from math import ceil, inf, pi, radians, tan
 from typing import NamedTuple
 
-from g12.cycles.common import ROUNDING_MM, SMALLEST_RING_MM
-from g12.cycles.context import Context
 from g12.errors import number
+from g12.request.common import ROUNDING_MM, SMALLEST_RING_MM
+from g12.request.context import Context
 from g12.shapes.entries import (
     Heights,
     Levels,

@@ -15,9 +15,9 @@ from __future__ import annotations
 from math import atan2, degrees, hypot
 from typing import NamedTuple
 
-from g12.cycles.common import SMALLEST_RING_MM, loaded_tool
-from g12.cycles.context import Context
 from g12.errors import number
+from g12.request.common import SMALLEST_RING_MM, loaded_tool
+from g12.request.context import Context
 from g12.shapes.entries import (
     Extent,
     Feeds,

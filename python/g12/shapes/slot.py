@@ -15,9 +15,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from g12.cycles.common import loaded_tool
-from g12.cycles.context import Context
 from g12.errors import number
+from g12.request.common import loaded_tool
+from g12.request.context import Context
 from g12.shapes.entries import (
     Extent,
     Feeds,

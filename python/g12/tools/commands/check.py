@@ -14,7 +14,7 @@ from g12.tools.install.checking import (
     lines_of_check,
     read_config_text,
 )
-from g12.tools.install.findings import NOTE
+from g12.tools.install.config.findings import NOTE
 
 EXAMPLES = """\
 examples:

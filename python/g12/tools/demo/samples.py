@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from g12.tools.headless.run import run_program
-from g12.tools.install.features import ROOT
+from g12.tools.install.config.features import ROOT
 
 PROGRAMS = ROOT / "tests" / "programs"
 MACHINES = ROOT / "configs" / "sim"

@@ -9,11 +9,11 @@ from pathlib import Path
 from g12.ini_sections import entries_of
 from g12.settings import SECTION, TABLE
 from g12.tools.errors import UsageError
-from g12.tools.install import features
-from g12.tools.install.config import Config, load_config, remaps_in
-from g12.tools.install.findings import Finding
-from g12.tools.install.forms import shown
-from g12.tools.install.ini_edit import IniText
+from g12.tools.install.config import features
+from g12.tools.install.config.findings import Finding
+from g12.tools.install.config.forms import shown
+from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.config.loaded import Config, load_config, remaps_in
 from g12.tools.install.rules import codes_of, findings_of, translating_filters
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Overrides

@@ -6,12 +6,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from g12.tools.errors import UsageError
-from g12.tools.install import features, package_copy
-from g12.tools.install.config import Config, load_config
-from g12.tools.install.ini_edit import IniText
+from g12.tools.install import package_copy
+from g12.tools.install.config import features
+from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.config.loaded import Config, load_config
+from g12.tools.install.lathe.spindle_c import Pins
 from g12.tools.install.plan import FILTERED, InstallPlan, make_plan, names_copy, refuse
 from g12.tools.install.rules import codes_of, findings_of, installed_programs
-from g12.tools.install.spindle_c import Pins
 from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.system import CALL

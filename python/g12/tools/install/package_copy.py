@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from g12.tools.errors import UsageError
-from g12.tools.install.features import ROOT
+from g12.tools.install.config.features import ROOT
 from g12.tools.machine.files import take_owner, write
 
 NAME = "g12"  # of the folder in the config's folder

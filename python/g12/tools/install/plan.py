@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from g12.tools.install import features, forms, kinematics_lines, package_copy, spindle_c
-from g12.tools.install.config import Config, folder_from_ini
-from g12.tools.install.findings import problem
-from g12.tools.install.ini_edit import (
+from g12.tools.install import package_copy
+from g12.tools.install.config import features, forms
+from g12.tools.install.config.findings import problem
+from g12.tools.install.config.ini_edit import (
     BEGIN,
     END,
     IniLine,
@@ -24,8 +24,10 @@ from g12.tools.install.ini_edit import (
     lines_with_ends,
     to_bytes,
 )
-from g12.tools.install.kinematics_rules import uses_them
-from g12.tools.install.lathe_rules import ON_A_LATHE, geometry_for
+from g12.tools.install.config.loaded import Config, folder_from_ini
+from g12.tools.install.lathe import kinematics_lines, spindle_c
+from g12.tools.install.lathe.kinematics_rules import uses_them
+from g12.tools.install.lathe.rules import ON_A_LATHE, geometry_for
 from g12.tools.install.rules import codes_of, installed_programs, odd_folder
 
 BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"

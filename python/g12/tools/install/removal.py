@@ -7,10 +7,10 @@ from pathlib import Path
 
 from g12.ini_sections import key_and_value
 from g12.machine_ini import remap_from_value
-from g12.tools.install import forms, kinematics_lines, package_copy, spindle_c
-from g12.tools.install.config import remaps_in
-from g12.tools.install.features import model_of
-from g12.tools.install.ini_edit import (
+from g12.tools.install import package_copy
+from g12.tools.install.config import forms
+from g12.tools.install.config.features import model_of
+from g12.tools.install.config.ini_edit import (
     BEGIN,
     END,
     NEXT,
@@ -24,7 +24,9 @@ from g12.tools.install.ini_edit import (
     to_bytes,
     without,
 )
-from g12.tools.install.lathe_rules import GEOMETRY_LINE
+from g12.tools.install.config.loaded import remaps_in
+from g12.tools.install.lathe import kinematics_lines, spindle_c
+from g12.tools.install.lathe.rules import GEOMETRY_LINE
 from g12.tools.install.plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE, names_copy
 from g12.tools.install.rules import codes_of
 from g12.tools.machine.files import difference, drop_backup, require_writable, write_all

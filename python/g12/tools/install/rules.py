@@ -15,14 +15,15 @@ from g12.ini_sections import INCLUDE, entries_of, key_and_value
 from g12.machine_ini import Remap, remap_from_value
 from g12.settings import SECTION, settings_from_lines
 from g12.tools.errors import UsageError
-from g12.tools.install import features, package_copy
-from g12.tools.install.config import MOST_FOLDERS, Config, folder_from_ini, subs_named
-from g12.tools.install.findings import Finding, note, problem, warning
-from g12.tools.install.forms import form_findings
-from g12.tools.install.ini_edit import IniLine
-from g12.tools.install.kinematics_rules import kinematics_findings
-from g12.tools.install.lathe_rules import lathe_findings
-from g12.tools.install.spindle_c import spindle_c_findings
+from g12.tools.install import package_copy
+from g12.tools.install.config import features
+from g12.tools.install.config.findings import Finding, note, problem, warning
+from g12.tools.install.config.forms import form_findings
+from g12.tools.install.config.ini_edit import IniLine
+from g12.tools.install.config.loaded import MOST_FOLDERS, Config, folder_from_ini, subs_named
+from g12.tools.install.lathe.kinematics_rules import kinematics_findings
+from g12.tools.install.lathe.rules import lathe_findings
+from g12.tools.install.lathe.spindle_c import spindle_c_findings
 from g12.tools.system import CALL
 from g12.tools.translate.blocks.control import ControlError, read_control
 

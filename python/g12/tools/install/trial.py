@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from g12.ini_sections import entries_of
-from g12.tools.install import features
 from g12.tools.install.checking import check_config
-from g12.tools.install.findings import PROBLEM, Finding, warning
-from g12.tools.install.forms import HERE
-from g12.tools.install.ini_edit import IniText, other_inis
+from g12.tools.install.config import features
+from g12.tools.install.config.findings import PROBLEM, Finding, warning
+from g12.tools.install.config.forms import HERE
+from g12.tools.install.config.ini_edit import IniText, other_inis
 from g12.tools.install.plan import InstallPlan, Refused
 from g12.tools.machine.ini import Ini, Overrides
 

@@ -13,11 +13,11 @@ from g12.errors import Refusal
 from g12.ini_sections import leading_number
 from g12.machine_ini import FACE_KINEMATICS, coordinates_of
 from g12.settings import settings_from_lines
-from g12.tools.install import features
-from g12.tools.install.config import Config, folder_from_ini
-from g12.tools.install.findings import Finding, problem
-from g12.tools.install.ini_edit import CONTINUED, NEXT, NOW, IniText
-from g12.tools.install.kinematics_rules import (
+from g12.tools.install.config import features
+from g12.tools.install.config.findings import Finding, problem
+from g12.tools.install.config.ini_edit import CONTINUED, NEXT, NOW, IniText
+from g12.tools.install.config.loaded import Config, folder_from_ini
+from g12.tools.install.lathe.kinematics_rules import (
     OFFSET_HAL,
     OWN_HAL,
     PAGE,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from g12.machine_ini import Remap, remap_from_value
-from g12.tools.install.ini_edit import IniLine, IniText
+from g12.tools.install.config.ini_edit import IniLine, IniText
 from g12.tools.machine.ini import Ini, Overrides
 from g12.tools.preview.loading import linuxcnc_version, load_failure, python_error
 from g12.tools.preview.tracer import TraceFailure, Tracer

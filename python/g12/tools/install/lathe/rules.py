@@ -4,11 +4,11 @@
 import re
 from collections.abc import Iterable, Iterator
 
-from g12.tools.install import features
-from g12.tools.install.config import Config
-from g12.tools.install.findings import Finding, note, warning
-from g12.tools.install.forms import screen_of
-from g12.tools.install.kinematics_rules import uses_them
+from g12.tools.install.config import features
+from g12.tools.install.config.findings import Finding, note, warning
+from g12.tools.install.config.forms import screen_of
+from g12.tools.install.config.loaded import Config
+from g12.tools.install.lathe.kinematics_rules import uses_them
 
 WITH_PREVIEW = ("axis", "gmoccapy", "gscreen", "qtvcp", "touchy")
 GEOMETRY_LINE = re.compile(r"GEOMETRY = CXY?Z!")

@@ -6,25 +6,26 @@ from __future__ import annotations
 from interpreter import INTERP_OK
 
 from g12.cycles import circle_mill, mitsubishi, yasnac
-from g12.cycles.common import other_cutter
 from g12.cycles.haas import plan_pocket
-from g12.cycles.words import Words
-from g12.host import cycle_glue, glue
+from g12.host import glue
+from g12.host.handlers import cycle_state
+from g12.request.common import other_cutter
+from g12.request.words import Words
 
 CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
 
 
 def prepare_haas(interp: object, arc: int) -> int:
     """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
-    words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
+    words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     other = other_cutter(words.code, words.value("D"), context, context.last_radius)
-    pocket = plan_pocket(words, context, cycle_glue.SETTINGS.clearing, cycle_glue.ENTRY)
-    cycle_glue.stay_within_limits(interp, words, pocket.extent())
+    pocket = plan_pocket(words, context, cycle_state.SETTINGS.clearing, cycle_state.ENTRY)
+    cycle_state.stay_within_limits(interp, words, pocket.extent())
     hand = 1 if arc == COUNTERCLOCKWISE else -1
-    cycle_glue.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
-    cycle_glue.report_other_cutter(interp, context, other)
+    cycle_state.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
+    cycle_state.report_other_cutter(interp, context, other)
     if pocket.commanded_radius is not None:
-        cycle_glue.remember_radius(interp, pocket.commanded_radius)
+        cycle_state.remember_radius(interp, pocket.commanded_radius)
     if pocket.message:
         glue.message(pocket.message)
     return INTERP_OK
@@ -44,18 +45,18 @@ def g13_haas(self, **words):
 
 def prepare_yasnac(interp: object, arc: int) -> int:
     """Check a Yasnac G12/G13 block and hand its circle to `ngc/g12_yasnac.ngc`."""
-    words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
+    words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     other = other_cutter(words.code, words.value("D"), context)
     circle = yasnac.plan_circle(words, context)
-    cycle_glue.stay_within_limits(interp, words, circle.extent(context.z))
-    cycle_glue.report_other_cutter(interp, context, other)
-    cycle_glue.hand_over(
+    cycle_state.stay_within_limits(interp, words, circle.extent(context.z))
+    cycle_state.report_other_cutter(interp, context, other)
+    cycle_state.hand_over(
         interp,
         **circle._asdict(),
         arc=arc,
-        traverse=cycle_glue.traverse_feed(interp),
+        traverse=cycle_state.traverse_feed(interp),
         feed=interp.feed_rate,
-        per_revolution=cycle_glue.per_revolution(interp),
+        per_revolution=cycle_state.per_revolution(interp),
     )
     return INTERP_OK
 
@@ -74,12 +75,12 @@ def g13_yasnac(self, **words):
 
 def prepare_mitsubishi(interp: object, arc: int) -> int:
     """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_mitsubishi.ngc`."""
-    words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
+    words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     other = other_cutter(words.code, words.value("D"), context)
     circle = mitsubishi.plan_circle(words, context)
-    cycle_glue.stay_within_limits(interp, words, circle.extent(context))
-    cycle_glue.report_other_cutter(interp, context, other)
-    cycle_glue.hand_over(interp, **circle._asdict(), arc=arc)
+    cycle_state.stay_within_limits(interp, words, circle.extent(context))
+    cycle_state.report_other_cutter(interp, context, other)
+    cycle_state.hand_over(interp, **circle._asdict(), arc=arc)
     return INTERP_OK
 
 
@@ -97,24 +98,24 @@ def g13_mitsubishi(self, **words):
 
 def planned_event(interp: object, pocket: bool) -> circle_mill.MillEvent:
     """Return the event of a code block, or of the call if the code stands in o<circle_mill>."""
-    words, context = cycle_glue.words_of_block(interp), cycle_glue.snapshot(interp)
-    plane = cycle_glue.first_plane(interp)
-    entries = cycle_glue.entries_of_sub(interp, "circle_mill", len(circle_mill.ENTRIES))
+    words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
+    plane = cycle_state.first_plane(interp)
+    entries = cycle_state.entries_of_sub(interp, "circle_mill", len(circle_mill.ENTRIES))
     if entries is None:
         event = circle_mill.plan_code(words, context, plane, pocket)
     else:
         words.check_known("no words inside o<circle_mill>")
         words = Words("circle_mill", circle_mill.entries_by_letter(entries))
         event = circle_mill.plan_call(words, context, plane)
-    cycle_glue.stay_within_limits(interp, words, event.extent())
+    cycle_state.stay_within_limits(interp, words, event.extent())
     return event
 
 
 def prepare_circle_mill(interp: object, pocket: bool) -> int:
     """Check a circle mill event and hand it to `ngc/g12_circle_mill.ngc`."""
     event = planned_event(interp, pocket)
-    cycle_glue.hand_over(interp, **event.locals())
-    cycle_glue.remember_first_plane(interp, event.place.first_plane)
+    cycle_state.hand_over(interp, **event.locals())
+    cycle_state.remember_first_plane(interp, event.place.first_plane)
     if event.message:
         glue.message(event.message)
     return INTERP_OK
@@ -135,5 +136,5 @@ def circle_mill_pocket(self, **words):
 @glue.handler
 def cycle_done(self, **words):
     """Epilog of every cycle: the modes are again what the block found."""
-    cycle_glue.restore_modes(self)
+    cycle_state.restore_modes(self)
     return INTERP_OK

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from g12.lengths import is_inch
-from g12.tools.install.config import Config, folder_from_ini, subs_named
-from g12.tools.install.findings import Finding, problem, warning
+from g12.tools.install.config.findings import Finding, problem, warning
+from g12.tools.install.config.loaded import Config, folder_from_ini, subs_named
 
 OF = {  # the forms of a feature
     "haas": ("form_haas",),

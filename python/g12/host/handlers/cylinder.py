@@ -11,7 +11,7 @@ from g12.cylinder.plan import plan
 from g12.cylinder.start import RADIUS, check_cylinder_start, cylinder_setup
 from g12.errors import BlockRefusal
 from g12.host import glue
-from g12.host.section_glue import (
+from g12.host.section.kind import (
     AXES,
     COORDINATES,
     NOT_IN_MDI,

@@ -16,8 +16,8 @@ from g12.errors import Refusal
 from g12.ini_sections import leading_number
 from g12.machine_ini import FACE_KINEMATICS, face_joints, face_of
 from g12.settings import settings_from_lines
-from g12.tools.install.config import Config, folder_from_ini
-from g12.tools.install.findings import Finding, problem, warning
+from g12.tools.install.config.findings import Finding, problem, warning
+from g12.tools.install.config.loaded import Config, folder_from_ini
 
 PAGE = "configs/kinematics/README.md"
 OWN_HAL = Path("configs/kinematics/polar_kinematics.hal")

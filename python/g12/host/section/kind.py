@@ -17,10 +17,10 @@ from g12.host import glue
 from g12.host.call_frame import CallFrame
 from g12.host.kinematics_switch import face_in_force
 from g12.host.program_lines import LineOfFile, ProgramLines, running_file
-from g12.host.section_output import SectionOutput
-from g12.host.section_reader import SectionReader
-from g12.host.section_run import Section
-from g12.host.section_start import start_of_section
+from g12.host.section.output import SectionOutput
+from g12.host.section.reader import SectionReader
+from g12.host.section.run import Section
+from g12.host.section.start import start_of_section
 from g12.machine_ini import axes_of, coordinates_of, face_of, remap_lines
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import SectionPlan

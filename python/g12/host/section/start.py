@@ -7,8 +7,8 @@ from interpreter import MODE_INCREMENTAL
 
 from g12.host import glue
 from g12.host.program_lines import without_line
-from g12.host.section_output import PER_REVOLUTION
-from g12.host.section_reader import block_of
+from g12.host.section.output import PER_REVOLUTION
+from g12.host.section.reader import block_of
 from g12.host.spindle_c import missing_code
 from g12.section.block_rules import alone
 from g12.section.line import SectionPlace

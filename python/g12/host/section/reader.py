@@ -17,7 +17,7 @@ from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
 from g12.compensation.contour import Contour, PlaneNames, Start
 from g12.errors import number
 from g12.host.program_lines import ProgramLines, error_text
-from g12.host.section_output import BLOCK_END, PER_MINUTE, PER_REVOLUTION, Action
+from g12.host.section.output import BLOCK_END, PER_MINUTE, PER_REVOLUTION, Action
 from g12.section.block_rules import (
     COMPENSATION,
     FEED,

@@ -12,10 +12,7 @@ import os
 
 import linuxcnc
 
-from g12.cycles.context import XY, XZ, YZ, Context, Tool
 from g12.cycles.entry import PocketEntry
-from g12.cycles.travel import CycleExtent, MachineFrame, check_travel
-from g12.cycles.words import Words
 from g12.host.glue import (
     INCH,
     code_of_block,
@@ -31,6 +28,9 @@ from g12.host.glue import (
 )
 from g12.lengths import converts
 from g12.machine_ini import ranges_of
+from g12.request.context import XY, XZ, YZ, Context, Tool
+from g12.request.travel import CycleExtent, MachineFrame, check_travel
+from g12.request.words import Words
 
 SETTINGS = settings_of_machine()
 ENTRY = PocketEntry(SETTINGS.entry == "helix", SETTINGS.entry_angle, SETTINGS.plunge_feed)

@@ -11,9 +11,9 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 
-from g12.cycles.context import XY, Context, Tool
-from g12.cycles.words import Words
 from g12.errors import number
+from g12.request.context import XY, Context, Tool
+from g12.request.words import Words
 
 SMALLEST_RING_MM = 0.00508  # 0.0002 in: its half circles are twice what LinuxCNC needs
 ROUNDING_MM = 1e-6  # lengths closer than this are equal

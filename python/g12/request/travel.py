@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from math import cos, hypot, radians, sin
 from typing import NamedTuple
 
-from g12.cycles.common import ROUNDING_MM
-from g12.cycles.context import XY, XZ, YZ
-from g12.cycles.words import Words
 from g12.errors import number
 from g12.lengths import converts, is_inch
+from g12.request.common import ROUNDING_MM
+from g12.request.context import XY, XZ, YZ
+from g12.request.words import Words
 
 Point = tuple[float, float, float]  # X, Y, Z
 LETTERS = "XYZ"

@@ -9,7 +9,7 @@ from g12.ini_sections import entries_of
 from g12.machine_ini import HANDLERS, Remap, remap_from_value
 from g12.tools.translate.blocks.control import shipped_controls
 
-ROOT = Path(__file__).resolve().parents[4]  # the folder that holds ngc, python and configs
+ROOT = Path(__file__).resolve().parents[5]  # the folder that holds ngc, python and configs
 INCLUDES = ROOT / "configs" / "include"
 
 SHAPES = "polar-shapes"  # they need polar or polar-g12.3

@@ -12,18 +12,19 @@ from typing import NamedTuple
 
 from interpreter import INTERP_OK
 
-from g12.cycles.context import Context
 from g12.errors import BlockRefusal
-from g12.host import cycle_glue, glue
+from g12.host import glue
 from g12.host.call_frame import locals_at, set_locals_at
+from g12.host.handlers import cycle_state
 from g12.host.kinematics_switch import face_in_force
-from g12.host.section_glue import AXES, COORDINATES, FACE, KINEMATICS, REMAPS, SETTINGS
-from g12.host.section_output import path_control
-from g12.host.section_start import stands_alone, start_of_section
+from g12.host.section.kind import AXES, COORDINATES, FACE, KINEMATICS, REMAPS, SETTINGS
+from g12.host.section.output import path_control
+from g12.host.section.start import stands_alone, start_of_section
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
 from g12.polar.plan import POLE_SHARE
 from g12.polar.start import check_section_start, polar_setup
+from g12.request.context import Context
 from g12.section.codes import code_of_handler
 from g12.section.line import SectionPlace
 from g12.section.modes import decimal
@@ -65,7 +66,7 @@ def polar_shape(self, **words):
         return prepare_holes(self, level, name, start, setup)
     entries = ShapeEntries(name, SHAPES[name].entries, locals_at(self, level))
     machine = shape_machine(setup)
-    plan = SHAPES[name].plan(entries, cycle_glue.snapshot(self), machine)
+    plan = SHAPES[name].plan(entries, cycle_state.snapshot(self), machine)
     check_nearest(entries, plan.extent(), machine)
     stay_in_travel(entries, plan.extent(), setup)
     numbers = plan.locals()
@@ -73,7 +74,7 @@ def polar_shape(self, **words):
         numbers["start_angle"] = numbers["start_angle"] % 360.0 % 360.0  # of -1e-20 it is 360
     x_words = {"x_word": 1 + setup.words.diameter, "x_rapid": 1 + start.diameter}
     set_locals_at(self, level, {**numbers, **x_words, **section_codes(entries)})
-    cycle_glue.note_modes(self)
+    cycle_state.note_modes(self)
     return INTERP_OK
 
 
@@ -87,15 +88,15 @@ def prepare_holes(
     entries = ShapeEntries(name, HOLES[name].entries, locals_at(interp, level))
     check_clamp(entries)
     machine = hole_machine(interp, start, setup)
-    plan = HOLES[name].plan(entries, cycle_glue.snapshot(interp), machine)
+    plan = HOLES[name].plan(entries, cycle_state.snapshot(interp), machine)
     stay_in_travel(entries, plan.extent(), setup)
     numbers = plan.locals()
     for x_word in ("at_x", "at_x_axis"):
         numbers[x_word] *= 1 + start.diameter
     close, opens = SETTINGS.c_clamp or (0, 0)
     set_locals_at(interp, level, {**numbers, "clamp": close, "unclamp": opens})
-    cycle_glue.note_modes(interp)
-    cycle_glue.state_of(interp).path = path_control(interp)
+    cycle_state.note_modes(interp)
+    cycle_state.state_of(interp).path = path_control(interp)
     interp.execute("G61")
     return INTERP_OK
 
@@ -123,8 +124,8 @@ def hole_machine(interp: object, start: SectionStart, setup: SectionSetup) -> Ho
 def polar_shape_done(self, **words):
     """Put back the modes that the shape found, F among them: G13.4."""
     shape_at_work(self)
-    cycle_glue.restore_modes(self)
-    state = cycle_glue.state_of(self)
+    cycle_state.restore_modes(self)
+    state = cycle_state.state_of(self)
     path, state.path = state.path, ""
     self.execute(f"{path}F{decimal(state.feed)}")
     return INTERP_OK

@@ -9,9 +9,10 @@ from pathlib import Path
 from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal, Refusal
-from g12.host import face_by_hand, glue
+from g12.host import glue
+from g12.host.handlers import face_by_hand
 from g12.host.kinematics_switch import face_in_force
-from g12.host.section_glue import (
+from g12.host.section.kind import (
     AXES,
     COORDINATES,
     FACE,
@@ -23,7 +24,7 @@ from g12.host.section_glue import (
     is_typed,
     run_section,
 )
-from g12.host.section_start import start_of_section
+from g12.host.section.start import start_of_section
 from g12.machine_ini import owns_g12_1, refuse_owned_codes
 from g12.moves.setup import SectionSetup
 from g12.polar import plan as polar

@@ -17,8 +17,8 @@ from g12.errors import Refusal
 from g12.host import glue
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import MOVING, ProgramLines
-from g12.host.section_output import SectionOutput
-from g12.host.section_reader import SectionReader, block_of
+from g12.host.section.output import SectionOutput
+from g12.host.section.reader import SectionReader, block_of
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import SectionPlan
 from g12.section.block_rules import (

@@ -14,10 +14,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from g12.tools.errors import UsageError
-from g12.tools.install.config import Config
-from g12.tools.install.findings import Finding, problem
-from g12.tools.install.kinematics_lines import every_hal_line, joints
-from g12.tools.install.kinematics_rules import HalLine, hal_files, names
+from g12.tools.install.config.features import ROOT
+from g12.tools.install.config.findings import Finding, problem
+from g12.tools.install.config.loaded import Config
+from g12.tools.install.lathe.kinematics_lines import every_hal_line, joints
+from g12.tools.install.lathe.kinematics_rules import HalLine, hal_files, names
 
 PAGE = "configs/spindle_c.md"
 OWN_HAL = "configs/include/spindle_c.hal"
@@ -292,7 +293,7 @@ def modules_twice(lines: Iterable[HalLine]) -> Iterator[Finding]:
 
 def components_of(module: str) -> str:
     """Return what spindle_c.hal calls its components of a module."""
-    text = (Path(__file__).resolve().parents[4] / OWN_HAL).read_text(encoding="utf-8")
+    text = (ROOT / OWN_HAL).read_text(encoding="utf-8")
     return re.search(rf"^loadrt {module} names=(\S+)", text, re.MULTILINE)[1]
 
 
