@@ -19,18 +19,18 @@ FORMS = {  # the entries of a form behind its first six
 }
 
 
-def test_a_report_names_each_shape_and_its_sizes(capsys):
+def test_a_report_has_each_shape_and_how_far_off_its_toolpath_is(capsys):
     ini = str(LATHES["mm"])
+    assert main(["verify", PROGRAM, "--ini", ini]) == 0
+    assert "  polar_polygon  cutter ⌀ 6, to Z−4  " in capsys.readouterr().out
     assert main(["verify", PROGRAM, "--ini", ini, "--full"]) == 0
     text = capsys.readouterr().out
-    assert "line 9: polar_polygon\n  cutter          ⌀ 6\n" in text
-    assert "  programmed      flats 27, corners 15.279 mm\n  reached         flats 27" in text
+    assert "line 9: polar_polygon\n  cutter          ⌀ 6\n  entries         sides 6, across" in text
     assert main(["verify", PROGRAM, "--ini", ini, "--json"]) == 0
     hexagon, slot, pocket = json.loads(capsys.readouterr().out)["shapes"]
     assert [each["code"] for each in (slot, pocket)] == ["polar_slot", "polar_pocket"]
-    assert hexagon["sizes"]["flats"] == pytest.approx([27, 27], abs=0.011)
-    assert hexagon["levels"] == pytest.approx([-2, -4])
-    assert slot["left"] == 0 and not pocket["findings"]
+    assert (hexagon["entries"]["across_flats"], hexagon["lowest"]) == (27, -4)
+    assert max(each["deviation"] for each in (hexagon, slot, pocket)) < 0.01
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -43,4 +43,4 @@ def test_a_shape_of_a_form_is_judged_in_the_form_s_file(form, tmp_path):
     )
     proof = prove(program, read_ini(LATHES[unit]))
     assert proof.findings == []
-    assert [facts.asked.file for facts in proof.shapes] == [f"{form}.ngc"]
+    assert [facts.call.file for facts in proof.shapes] == [f"{form}.ngc"]

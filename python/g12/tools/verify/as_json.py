@@ -12,7 +12,7 @@ from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.sections.section import SectionFacts
-from g12.tools.verify.shapes.shape_findings import shape_json
+from g12.tools.verify.shape import ShapeFacts
 from g12.tools.verify.workpiece import Workpiece
 
 
@@ -111,6 +111,19 @@ def section_json(facts: SectionFacts, proof: Proof) -> dict:
         "c_limit": finite(facts.c_limit),
         "turned_in_place": facts.in_place._asdict(),
         **pace_json(facts.pace, facts.slowest_line),
+    }
+
+
+def shape_json(facts: ShapeFacts) -> dict:
+    """Return one shape as plain values; its entries are in program units."""
+    return {
+        "line": facts.call.line,
+        "file": facts.call.file or None,
+        "code": facts.call.name,
+        "cutter": 2 * facts.call.cutter,
+        "entries": facts.call.given,
+        "lowest": facts.lowest,
+        "deviation": finite(facts.deviation),
     }
 
 

@@ -25,7 +25,7 @@ from g12.tools.verify.pocket import judge_pocket
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.sections.section_findings import judge_section
-from g12.tools.verify.shapes.shape_findings import shape_findings
+from g12.tools.verify.shape import judge_shape
 
 if TYPE_CHECKING:
     from g12.tools.verify.proof import Asked, Proof
@@ -88,16 +88,11 @@ def said_of_cuts(proof: Proof) -> Iterator[Finding]:
     for facts in proof.sections:
         yield from judge_section(facts)
     for facts in proof.shapes:
-        yield from said(facts.asked.line, facts.asked.file, shape_findings, facts)
+        yield from judge_shape(facts)
     for line, code in proof.unseen:
         yield Finding("not-measured", line, {"code": code})
     for line, code in proof.still:
         yield Finding("not-cut", line, {"code": code})
-
-
-def said(line: int, file: str, judge: Judge, facts: object, *more: object) -> Iterator[Finding]:
-    """Yield the findings of a judge that gives sentences."""
-    yield from in_words("said", line, file, lambda unit: list(judge(facts, *more, unit)))
 
 
 def noted(line: int, file: str, judge: Judge, facts: object) -> Iterator[Finding]:

@@ -14,7 +14,7 @@ from g12.tools.verify.in_material import zero_of
 from g12.tools.verify.pocket import HelixFacts, PocketFacts
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.sections.section import SectionFacts
-from g12.tools.verify.shapes.shape_findings import shape_rows
+from g12.tools.verify.shape import ShapeFacts
 from g12.tools.verify.workpiece import Workpiece
 
 GAP = 14  # columns of a row's name
@@ -25,19 +25,12 @@ AXES = "XYZ"
 
 def paragraphs_of(proof: Proof, unit: Unit) -> list[str]:
     """Return one paragraph for each pocket, shape and section, and for the stock."""
-    shapes = [
-        paragraph(
-            f"{line_text(proof, facts.asked.line, facts.asked.file)}: {facts.asked.name}",
-            shape_rows(facts, unit),
-        )
-        for facts in proof.shapes
-    ]
     given = proof.material.given
     stock = [stock_text(given, unit)] if given else []
     pockets = [pocket_text(facts, proof, unit) for facts in proof.pockets]
     return [
         *pockets,
-        *shapes,
+        *(shape_text(facts, proof, unit) for facts in proof.shapes),
         *(section_text(facts, proof, unit) for facts in proof.sections),
         *stock,
     ]
@@ -80,6 +73,19 @@ def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
     ]
     title = f"{line_text(proof, source.line, source.file)}: {source.code} ({source.dialect})"
     return paragraph(title, rows)
+
+
+def shape_text(facts: ShapeFacts, proof: Proof, unit: Unit) -> str:
+    """Return the paragraph of one shape; its entries are as the call gives them."""
+    call = facts.call
+    entries = (f"{name} {plain(value, 4)}" for name, value in call.given.items())
+    rows = [
+        ("cutter", f"⌀ {unit.text(2 * call.cutter)}"),
+        ("entries", ", ".join(entries)),
+        ("deviation", deviation(facts.deviation, proof.tolerances.polar, unit)),
+        ("depth", unit.text(facts.lowest)),
+    ]
+    return paragraph(f"{line_text(proof, call.line, call.file)}: {call.name}", rows)
 
 
 def entry_text(helix: HelixFacts, unit: Unit) -> str:

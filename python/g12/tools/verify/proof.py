@@ -37,6 +37,7 @@ from g12.tools.verify.axis_limits import (
     widths_of,
 )
 from g12.tools.verify.compare.section_plane import x0_of
+from g12.tools.verify.expected.calls import CallReading, SubCall
 from g12.tools.verify.expected.contour import SectionContour, WordReading
 from g12.tools.verify.expected.cylinder import SurfacePen
 from g12.tools.verify.expected.polar import Pen
@@ -51,8 +52,7 @@ from g12.tools.verify.reading.zero_line import with_zero_lines
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.sections.section import SectionFacts, measure_section
 from g12.tools.verify.sections.section_motion import axes_of_section
-from g12.tools.verify.shapes.shape_findings import ShapeFacts, measure_shape
-from g12.tools.verify.shapes.wanted_shape import ShapeAsked, ShapeReading, shapes_asked
+from g12.tools.verify.shape import CalledShape, ShapeFacts, called_shapes, measure_shape
 from g12.tools.verify.workpiece import Program, Workpiece, assumed_workpiece, given_workpiece
 
 POCKET_TOLERANCE = 0.005  # mm
@@ -105,9 +105,9 @@ class Subject:
             return self._laid_on(Surface(turning=True, radius=section.surface), own)
         return self._turned_about(x0_of(section, self.trace.moves[section.at]), own)
 
-    def of_shape(self, shape: ShapeAsked) -> Subject:
+    def of_shape(self, call: SubCall) -> Subject:
         """Return the same as the part of a shape sees it; without a run its own moves alone."""
-        return self._turned_about(shape.zero[0], None if self.samples else shape.moves)
+        return self._turned_about(call.zero[0], None if self.samples else call.moves)
 
     def _turned_about(self, centre: float, own: range | None) -> Subject:
         if abs(self.part.centre - centre) < SAME_X0:
@@ -126,7 +126,7 @@ class StockText(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """What a program asks for: circles and shapes, each with the block that does, and sections.
+    """What a program asks for: circles, each with the block that does, sections, calls of shapes.
 
     ``still`` are the line and the code of each cycle that moves nothing, though it should.
     """
@@ -134,7 +134,7 @@ class Asked(NamedTuple):
     circles: list[tuple[Block, Target]]
     sections: list[SectionContour]
     still: list[tuple[int, str]]
-    shapes: Sequence[tuple[Block, ShapeAsked]] = ()
+    shapes: Sequence[CalledShape] = ()
 
     @property
     def moves(self) -> list[range]:
@@ -276,8 +276,8 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
     found = [each for each in found if each.end > each.at]
     found = with_zero_lines(found, subject.trace.moves, program, codes, subject.ini)
     moves, diameters = subject.trace.moves, subject.trace.diameters
-    calls = ShapeReading(settings.polar_x, settings.plunge_feed / 100, settings.entry_angle)
-    shapes = list(shapes_asked(blocks, codes, moves, diameters, calls))
+    calls = CallReading(settings.polar_x, settings.plunge_feed / 100, settings.entry_angle)
+    shapes = list(called_shapes(blocks, codes, moves, diameters, calls))
     return Asked(list(reader.targets(blocks)), found, still, shapes)
 
 
@@ -307,7 +307,7 @@ def measured(
     moves, piece = subject.trace.moves, workpiece_of(subject, asked, stock)
     pockets = measured_pockets(subject, asked, there, piece.material, tolerances.pocket, tell)
     found = measured_sections(subject, asked.sections, tolerances.polar, tell)
-    shapes = measured_shapes(subject, asked, tolerances.polar, tell)
+    shapes = measured_shapes(subject, asked.shapes, tolerances.polar, tell)
     tell("looking for rapids through material")
     material = material_facts(program_of(subject, asked), piece)
     unseen = unseen_in(moves, Codes(subject.ini), asked.moves)
@@ -356,16 +356,14 @@ def measured_sections(
 
 
 def measured_shapes(
-    subject: Subject, asked: Asked, tolerance: float, tell: Tell
+    subject: Subject, asked: Sequence[CalledShape], tolerance: float, tell: Tell
 ) -> list[ShapeFacts]:
     """Return what is measured of a program's shapes on a face."""
-    found = []
-    for block, shape in counted(asked.shapes, "measuring shape", tell):
-        own = [each for each in asked.sections if each.at in shape.moves]
-        view = subject.of_shape(shape)
-        moves = subject.trace.moves
-        found.append(measure_shape(block, shape, own, view.path, moves, tolerance, view.real))
-    return found
+    axes, moves = axes_of_section(subject.ini) if asked else None, subject.trace.moves
+    return [
+        measure_shape(each, subject.of_shape(each[1]).path, moves, axes, tolerance)
+        for each in counted(asked, "measuring shape", tell)
+    ]
 
 
 def program_of(subject: Subject, asked: Asked) -> Program:

@@ -13,7 +13,7 @@ from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.sections.section import SectionFacts
-from g12.tools.verify.shapes.shape_findings import ShapeFacts
+from g12.tools.verify.shape import ShapeFacts
 
 GAP = "  "
 SIDES = {1: "left of", -1: "right of", 0: "on"}
@@ -89,7 +89,7 @@ def _in_columns(rows: Iterable[CutLine]) -> Iterator[str]:
 def cut_lines(proof: Proof, unit: Unit) -> list[CutLine]:
     """Return a line for each cut."""
     pockets = [pocket_line(facts, proof, unit) for facts in proof.pockets]
-    shapes = [shape_line(facts, proof) for facts in proof.shapes]
+    shapes = [shape_line(facts, proof, unit) for facts in proof.shapes]
     return [*pockets, *shapes, *(section_line(facts, proof, unit) for facts in proof.sections)]
 
 
@@ -115,9 +115,12 @@ def section_line(facts: SectionFacts, proof: Proof, unit: Unit) -> CutLine:
     return CutLine(where, section.code, what, off, time_of(facts.pace))
 
 
-def shape_line(facts: ShapeFacts, proof: Proof) -> CutLine:
-    """Return the line of a shape, whose sections have lines of their own."""
-    return CutLine(line_text(proof, facts.asked.line, facts.asked.file), facts.asked.name, "shape")
+def shape_line(facts: ShapeFacts, proof: Proof, unit: Unit) -> CutLine:
+    """Return the line of a shape; its section, which has the time, has a line of its own."""
+    call = facts.call
+    what = f"cutter ⌀ {unit.text(2 * call.cutter)}, to Z{unit.text(facts.lowest)}"
+    off = off_text(facts.deviation, proof.tolerances.polar, unit)
+    return CutLine(line_text(proof, call.line, call.file), call.name, what, off)
 
 
 def off_text(size: float, tolerance: float, unit: Unit) -> str:

@@ -19,16 +19,24 @@ from g12.tools.verify.compare.path import (
 from g12.tools.verify.result.finding import Finding
 
 ToMachine = Callable[[Point], Sequence[float]]
+InWords = Callable[[Point], Sequence[tuple[str, Any]]]
 PER = {False: "per minute", True: "per revolution"}
 
 
-def judge_path(laid: Laid, line: int, file: str, to_machine: ToMachine) -> Iterator[Finding]:
-    """Yield the differences of a toolpath; ``to_machine`` makes machine coordinates of a point."""
+def judge_path(
+    laid: Laid, line: int, file: str, to_machine: ToMachine, words: InWords | None = None
+) -> Iterator[Finding]:
+    """Yield the differences of a toolpath.
+
+    ``to_machine`` makes machine coordinates of a point, ``words`` the letters and values by which
+    a sentence names it, if those are others.
+    """
     for difference in laid.differences:
         at = tuple(to_machine(difference.at))
         expected = difference.expected
         own = expected.line if expected and expected.line else line
-        yield Finding(_code(difference), own, {"at": at, **_values(difference)}, at, file)
+        values = {"at": words(difference.at) if words else at, **_values(difference)}
+        yield Finding(_code(difference), own, values, at, file)
 
 
 def _code(difference: PathDifference) -> str:

@@ -77,6 +77,13 @@ class Plane:
         return move.kind == "arc" or any(move.start[axis] != move.end[axis] for axis in self.axes)
 
 
+class FacePlane(Plane):
+    """Turns machine positions into points of a program's own plane: X0, Z0 and C0 are its zero."""
+
+    def __init__(self, x: float, z: float, c: float) -> None:
+        self._centre, self.base, self._angle = x, z, c
+
+
 class SurfacePlane(Plane):
     """Turns machine positions into points of a cylinder's unrolled surface.
 

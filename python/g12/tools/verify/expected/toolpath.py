@@ -82,19 +82,32 @@ class Writer:
         self.path: list[Expected] = []
         self._line, self._per_rev = line, per_rev
 
-    def straight(self, name: str, end: complex, feed: float | None = None, **how: bool) -> None:
-        """Add a line across the plane; ``how`` is ``rapid`` or ``per_rev``."""
-        self._add(name, Line(self.at, end), self.level, feed, **how)
+    def straight(
+        self,
+        name: str,
+        end: complex,
+        feed: float | None = None,
+        fall: float = 0.0,
+        **how: bool,
+    ) -> None:
+        """Add a line across the plane that falls by some height; ``how`` is ``rapid`` or so."""
+        self._add(name, Line(self.at, end), self.level - fall, feed, **how)
 
     def vertical(self, name: str, level: float, feed: float | None = None, **how: bool) -> None:
         """Add a move to another level."""
         self._add(name, Line(self.at, self.at), level, feed, **how)
 
     def arc(
-        self, name: str, centre: complex, sweep: float, feed: float | None, fall: float = 0.0
+        self,
+        name: str,
+        centre: complex,
+        sweep: float,
+        feed: float | None = None,
+        fall: float = 0.0,
+        **how: bool,
     ) -> None:
         """Add an arc about a centre that falls by some height."""
-        self._add(name, Arc(self.at, centre, sweep), self.level - fall, feed)
+        self._add(name, Arc(self.at, centre, sweep), self.level - fall, feed, **how)
 
     def _add(
         self,

@@ -17,6 +17,7 @@ import numpy as np
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.expected import circle_mill, haas
+from g12.tools.verify.expected.calls import LEFT_OUT
 from g12.tools.verify.expected.circle_mill import EventPlace, EventWords
 from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.expected.mitsubishi import MitsubishiWords
@@ -26,7 +27,6 @@ from g12.tools.verify.reading.block_words import BlockInMm
 from g12.tools.verify.reading.codes import EVENT, Codes, Cycle, compensates
 
 ENTRIES = "GXYZWORDCKJLPFV"
-LEFT_OUT = -9999.0
 POCKET_HANDLER = "circle_mill_pocket"
 DYNAMIC = (41.1, 42.1)  # compensation whose D is a diameter
 TOUCHING = 0.01  # mm: so far over each other two rings leave nothing

@@ -39,7 +39,6 @@ FINDINGS = {
     "rapid-through": "a rapid goes through material, from {at:place} to {to:place}",
     "rapid-into": "a rapid goes down into {area:mm2} of material, at {at:place}",
     "bar-remains": "{area:mm2} of the bar remain beyond the contour at Z{level:mm}",
-    "said": "{text:said}",
     # sections
     "contour-unread": "the contour cannot be read from the words: {why}",
     "side-crossed": "the tool crosses the contour on its way in: {instead}?",
