@@ -365,6 +365,20 @@ def test_what_no_cut_means_is_noted(lines, found, proof_of):
     assert codes(proof_of(*AT_ONE, *WITH_LENGTH, *lines)) == found
 
 
+def test_g43_in_a_block_of_its_own_is_no_rapid_into_the_part(proof_of):
+    begin = [*AT_ONE, "T4 M6", "S900 M3", "G43", "G0 X0 Y0", "Z1"]
+    change = ["G53 G0 Z0", "T3 M6", "G43", "S900 M3", "G0 X60", "Z1"]
+    assert codes(proof_of(*begin, POCKET, *change, POCKET.replace("D4", "D3"))) == []
+
+
+@pytest.mark.parametrize(
+    ("feed", "found"), [("G95 F9", ["feed-cut-down"]), ("F.9", ["feed-per-minute"])]
+)
+def test_feeds_of_a_section_that_no_cut_means_are_noted(feed, found, proof_of):
+    section = ["G0 X60 Z2 C0", "G12.1", "G1 X27", "Z-5", "C-25", "X60", "G13.1"]
+    assert codes(proof_of(*LATHE, "S2000 M3", feed, *section, machine="lathe_mm")) == found
+
+
 def test_return_levels_and_c_beside_x_are_noted_on_a_lathe(proof_of):
     lines = ["G99 F.3", "G0 X60 Z2 C0", "G1 X50 C90 F500", *FLAT]
     proof = proof_of(*LATHE, *lines, machine="lathe_mm")

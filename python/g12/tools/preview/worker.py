@@ -203,6 +203,7 @@ class Canon:
         self.tip = NO_OFFSET  # in program coordinates
         self.position = self._beside_x(NO_OFFSET)  # in machine coordinates
         self.work = self.g92 = self.length = NO_OFFSET
+        self.shift = NO_OFFSET  # of the tip since the last move, by G43 and G49
         self.rotation, self.cos, self.sin = 0.0, 1.0, 0.0
         self.plane = 17
         self.feed = self.program_feed = 0.0
@@ -280,7 +281,8 @@ class Canon:
 
     def tool_offset(self, *offset: float) -> None:
         """Note the tool length offset, inches."""
-        self.length = in_mm(offset)
+        before, self.length = self.length, in_mm(offset)
+        self.shift = tuple(a + b - c for a, b, c in zip(self.shift, before, self.length))
 
     def set_xy_rotation(self, degrees: float) -> None:
         """Note the rotation of the work coordinate system."""
@@ -399,7 +401,7 @@ class Canon:
         return self.program_feed if still else self.feed
 
     def _move(self, kind: str, tip: tuple, feed: float, centre=None, turns=0) -> None:
-        start, self.tip, self.position = self.position, tip, self._resolved(tip)
+        start, self.tip, self.position = self._start(tip), tip, self._resolved(tip)
         mode = FEED_MODES[interpreter_object().feed_mode] if feed else ""
         state = (self.plane, self.spindle[0], self.length)
         place = (kind, self.line, self.lines.now(), start, self.position)
@@ -408,6 +410,18 @@ class Canon:
         self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation, remap, *how))
         if remap:
             self.files |= self.lines.files()
+
+    def _start(self, tip: tuple) -> tuple:
+        """Return where a move to ``tip`` starts: G43 in front of it moves the tip, not the axes.
+
+        An axis that the move leaves alone starts where it ends. Any other starts where the last
+        move ended, as do all after M6 and G43 in one block, which the preview takes for none.
+        """
+        shift, self.shift = self.shift, NO_OFFSET
+        places = zip(self.position, shift, self._resolved(tip))
+        return tuple(
+            end if by and abs(before + by - end) < STILL else before for before, by, end in places
+        )
 
     def _stand_where_the_interpreter_does(self) -> None:
         """Go on from there: the axes mean something else, the tool stands where it stood."""
