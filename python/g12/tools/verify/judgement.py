@@ -66,8 +66,9 @@ def cuts_of(asked: Asked, moves: Sequence[Move]) -> Iterator[ProgramCut]:
         yield ProgramCut(source.line, source.file, source.code, at, end, target.wall.face, False)
     for section in asked.sections:
         face = moves[section.at].start[Z] - section.height
-        line, file, at, end = section.line, section.file, section.at, section.end
-        yield ProgramCut(line, file, section.code, at, end, None if section.surface else face, True)
+        source = (section.line, section.file, section.code, section.at, section.end)
+        feeds = tuple(element.feed for element in section.elements if element.feed)
+        yield ProgramCut(*source, None if section.surface else face, True, feeds)
 
 
 def not_judged(moves: Sequence[Move], known: set[int]) -> Iterator[Finding]:

@@ -14,7 +14,8 @@ class ProgramCut(NamedTuple):
     """A cut by its line, its code, and its moves from ``at`` to before ``end``.
 
     ``file`` is the name of a sub's own file. ``face`` is the machine Z of the program's Z0, None
-    on a cylinder, where Z goes along the surface. ``turning`` says that C turns the part.
+    on a cylinder, where Z goes along the surface. ``turning`` says that C turns the part: its words
+    then ask for the ``feeds`` along the part, mm/min, which its moves do not show.
     """
 
     line: int
@@ -24,6 +25,7 @@ class ProgramCut(NamedTuple):
     end: int
     face: float | None
     turning: bool
+    feeds: tuple[float, ...] = ()
 
     def fed(self, moves: Sequence[Move]) -> list[int]:
         """Return the indices of its moves at a feed."""

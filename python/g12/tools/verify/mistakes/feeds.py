@@ -23,30 +23,18 @@ def judge_feeds(
 ) -> Iterator[Finding]:
     """Yield what to know of the feeds of cuts."""
     for cut in cuts:
-        fed = [index for index in cut.fed(moves) if moves[index].feed]
-        yield from unlikely(cut, [moves[index] for index in fed])
-        if not cut.turning:
-            yield from cut_down(cut, [moves[index] for index in fed], limits)
-
-
-def unlikely(cut: ProgramCut, fed: Sequence[Move]) -> Iterator[Finding]:
-    """Yield a feed whose number belongs to the other feed mode."""
-    for move in fed:
-        per_turn = move.feed_mode == "G95"
-        if per_turn and move.feed > MOST_PER_TURN:
-            yield Finding("feed-per-revolution", cut.line, {"feed": move.feed}, file=cut.file)
-            return
-        if not per_turn and not cut.turning and move.feed < LEAST_PER_MINUTE:
-            yield Finding("feed-per-minute", cut.line, {"feed": move.feed}, file=cut.file)
-            return
-
-
-def cut_down(cut: ProgramCut, fed: Sequence[Move], limits: Limits) -> Iterator[Finding]:
-    """Yield that the machine's speeds do not allow a feed per minute."""
-    asked = max((move.feed for move in fed if move.feed_mode == "G94"), default=0.0)
-    most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])
-    if most < CUT_DOWN * asked:
-        yield Finding("feed-cut-down", cut.line, {"feed": asked, "most": most}, file=cut.file)
+        fed = [moves[index] for index in cut.fed(moves) if moves[index].feed]
+        per_turn = [] if cut.turning else [m.feed for m in fed if m.feed_mode == "G95"]
+        asked = cut.feeds if cut.turning else [m.feed for m in fed if m.feed_mode != "G95"]
+        most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])
+        if max(per_turn, default=0.0) > MOST_PER_TURN:
+            values = {"feed": max(per_turn)}
+            yield Finding("feed-per-revolution", cut.line, values, file=cut.file)
+        if min(asked, default=LEAST_PER_MINUTE) < LEAST_PER_MINUTE:
+            yield Finding("feed-per-minute", cut.line, {"feed": min(asked)}, file=cut.file)
+        if most < CUT_DOWN * max(asked, default=0.0):
+            values = {"feed": max(asked), "most": most}
+            yield Finding("feed-cut-down", cut.line, values, file=cut.file)
 
 
 def judge_native_c(moves: Sequence[Move], known: set[int], path: Track) -> Iterator[Finding]:
