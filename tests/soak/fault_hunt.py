@@ -46,7 +46,7 @@ from support.sim_machines import PROGRAMS, ROOT
 
 ROOMS = ("request", "cycles", "polar", "moves", "flat", "section", "cylinder")
 ROOMS += ("host", "host/handlers", "host/section", "ngc")
-LEFT_OUT = ("glue", "loading", "face_by_hand", "shapes")  # of host
+LEFT_OUT = ("messages", "machine", "modes", "loading", "face_by_hand", "shapes")  # of host
 POCKETS, SECTIONS = ("haas", "yasnac", "mitsubishi", "mill"), ("G12.1", "G7.1")
 USED_BY = {  # by what stands in a module's name, the first that does; else by its room
     "haas": ("haas",),

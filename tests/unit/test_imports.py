@@ -33,6 +33,7 @@ FORBIDDEN = {  # room: what none of its files imports
 ROLES = {
     "main",
     "command_parser",
+    "check_at_start",
     "plan",
     "plan_circle",
     "left_material",

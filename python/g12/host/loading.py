@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Iterable
 
 from g12.errors import Refusal
-from g12.host import glue
+from g12.host import messages
 
 
 def loaded_handlers(module: str, names: Iterable[str]) -> dict[str, Callable]:
@@ -19,18 +19,23 @@ def loaded_handlers(module: str, names: Iterable[str]) -> dict[str, Callable]:
     """
     try:
         loaded = importlib.import_module(module)
+        getattr(loaded, "check_at_start", nothing_to_check)()
         return {name: getattr(loaded, name) for name in names}
     except Exception as error:
         text = _why(error)
-        glue.say_at_start(text.removeprefix("g12: "))
+        messages.say_at_start(text.removeprefix("g12: "))
         return {name: _refusing(name, text) for name in names}
+
+
+def nothing_to_check() -> None:
+    """Take the place of a module's ``check_at_start`` where it has none."""
 
 
 def _why(error: Exception) -> str:
     if isinstance(error, Refusal):
         return error.message
     sys.excepthook(type(error), error, error.__traceback__)
-    return glue.fault_text(error)
+    return messages.fault_text(error)
 
 
 def _refusing(name: str, text: str) -> Callable:
@@ -38,4 +43,4 @@ def _refusing(name: str, text: str) -> Callable:
         raise Refusal(text)
 
     refuse.__name__ = name
-    return glue.handler(refuse)
+    return messages.handler(refuse)

@@ -7,47 +7,42 @@ interpreter is never ahead of it, as both changes end with a wait.
 
 from __future__ import annotations
 
-import os
-
 import linuxcnc
 from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal, number
-from g12.host import glue
-from g12.ini_sections import leading_number
-from g12.machine_ini import code_of_prolog, remap_lines
+from g12.host import messages
+from g12.host.machine import MACHINE
 
 INPUT = 2  # of motion, as in spindle_c.hal and spindle_c_on.ngc
-INI = linuxcnc.ini(glue.ini_file() or os.devnull)
 SECTIONS = ("polar_on", "cylinder_mode")  # handlers
-CODE_ON = code_of_prolog(remap_lines(INI.findall), "spindle_c_on")
-TIMEOUT = leading_number(INI.find("SPINDLE_C", "TIMEOUT") or "") or 30.0  # s
 
 
-@glue.handler
+@messages.handler
 def spindle_c_on(self, **words):
     """Let `ngc/spindle_c_on.ngc` run: prolog of M254."""
-    self.params["timeout"] = TIMEOUT
+    self.params["timeout"] = MACHINE.spindle_c_timeout
     return INTERP_OK
 
 
-@glue.handler
+@messages.handler
 def spindle_c_is_on(self, **words):
     """Refuse to go on with a spindle that did not become C: epilog of M254."""
     if self.task and not is_c():
+        seconds = number(MACHINE.spindle_c_timeout)
         rule = (
-            f"the spindle did not become C within {number(TIMEOUT)} s: it has to stand, to find "
+            f"the spindle did not become C within {seconds} s: it has to stand, to find "
             "its index and to reach the angle of C (spindle_c.md)"
         )
-        raise BlockRefusal(glue.code_of_block(self), rule)
+        raise BlockRefusal(messages.code_of_block(self), rule)
     return INTERP_OK
 
 
-@glue.handler
+@messages.handler
 def spindle_c_off(self, **words):
     """Refuse to take C from a section that is being read: prolog of M255."""
     if in_section(self):
-        raise BlockRefusal(glue.code_of_block(self), "the section needs C to its end")
+        raise BlockRefusal(messages.code_of_block(self), "the section needs C to its end")
     return INTERP_OK
 
 
@@ -66,4 +61,5 @@ def is_c() -> bool:
 
 def missing_code(interp: object) -> str:
     """Return the code that has to make the spindle C first, "" where nothing has to."""
-    return CODE_ON if CODE_ON and interp.task and not is_c() else ""
+    code = MACHINE.spindle_c_code
+    return code if code and interp.task and not is_c() else ""

@@ -8,32 +8,22 @@ from __future__ import annotations
 
 import functools
 import itertools
-import os
-
-import linuxcnc
 
 from g12.cycles.entry import PocketEntry
-from g12.host.glue import (
+from g12.host.machine import MACHINE
+from g12.host.messages import code_of_block, main_program, message_once
+from g12.host.modes import (
     INCH,
-    code_of_block,
     diameter_mode,
-    ini_file,
-    main_program,
-    message_once,
     millimetres_per_machine_unit,
     millimetres_per_unit,
     program_units_per_machine_unit,
-    settings_of_machine,
     spindle_speed,
 )
 from g12.lengths import converts
-from g12.machine_ini import ranges_of
 from g12.request.context import XY, XZ, YZ, Context, Tool
 from g12.request.travel import CycleExtent, MachineFrame, check_travel
 from g12.request.words import Words
-
-SETTINGS = settings_of_machine()
-ENTRY = PocketEntry(SETTINGS.entry == "helix", SETTINGS.entry_angle, SETTINGS.plunge_feed)
 
 # indices into a block's g_modes
 MODAL_0, TOOL_LENGTH, PATH_CONTROL, SPINDLE = 0, 8, 13, 14
@@ -62,7 +52,6 @@ WORD_FIELDS = [
     for letter in LETTERS
 ]
 NO_L = -1  # a block's l_number without an L word
-LIMITS = ranges_of(linuxcnc.ini(ini_file() or os.devnull).find, "XYZ")
 
 
 class CycleState:
@@ -240,7 +229,7 @@ def stay_within_limits(interp: object, words: Words, extent: CycleExtent) -> Non
     Not in a preview: it shows a program also before the work offset is set.
     """
     if interp.task:
-        check_travel(words, extent, machine_frame(interp), LIMITS)
+        check_travel(words, extent, machine_frame(interp), MACHINE.travel)
 
 
 def machine_frame(interp: object) -> MachineFrame:
@@ -264,9 +253,15 @@ def per_revolution(interp: object) -> bool:
     return interp.feed_mode == PER_REVOLUTION
 
 
+def pocket_entry() -> PocketEntry:
+    """Return how a Haas pocket's tool goes down, by [G12]."""
+    settings = MACHINE.settings
+    return PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
+
+
 def traverse_feed(interp: object) -> float:
     """Return the feed per minute of Yasnac's fast moves in program units, 0 for rapids."""
-    return SETTINGS.yasnac_traverse * program_units_per_machine_unit(interp)
+    return MACHINE.settings.yasnac_traverse * program_units_per_machine_unit(interp)
 
 
 def hand_over(interp: object, **locals_: float) -> None:

@@ -7,19 +7,26 @@ from interpreter import INTERP_OK
 
 from g12.cycles import circle_mill, mitsubishi, yasnac
 from g12.cycles.haas import plan_pocket
-from g12.host import glue
+from g12.host import messages
 from g12.host.handlers import cycle_state
+from g12.host.machine import MACHINE
 from g12.request.common import other_cutter
 from g12.request.words import Words
 
 CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
 
 
+def check_at_start() -> None:
+    """Read what the cycles need of the INI; a Refusal tells why it cannot be used."""
+    MACHINE.read("settings", "travel")
+
+
 def prepare_haas(interp: object, arc: int) -> int:
     """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     other = other_cutter(words.code, words.value("D"), context, context.last_radius)
-    pocket = plan_pocket(words, context, cycle_state.SETTINGS.clearing, cycle_state.ENTRY)
+    clearing, entry = MACHINE.settings.clearing, cycle_state.pocket_entry()
+    pocket = plan_pocket(words, context, clearing, entry)
     cycle_state.stay_within_limits(interp, words, pocket.extent())
     hand = 1 if arc == COUNTERCLOCKWISE else -1
     cycle_state.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
@@ -27,17 +34,17 @@ def prepare_haas(interp: object, arc: int) -> int:
     if pocket.commanded_radius is not None:
         cycle_state.remember_radius(interp, pocket.commanded_radius)
     if pocket.message:
-        glue.message(pocket.message)
+        messages.message(pocket.message)
     return INTERP_OK
 
 
-@glue.handler
+@messages.handler
 def g12_haas(self, **words):
     """Prolog of G12, clockwise circular pocket."""
     return prepare_haas(self, CLOCKWISE)
 
 
-@glue.handler
+@messages.handler
 def g13_haas(self, **words):
     """Prolog of G13, counterclockwise circular pocket."""
     return prepare_haas(self, COUNTERCLOCKWISE)
@@ -61,13 +68,13 @@ def prepare_yasnac(interp: object, arc: int) -> int:
     return INTERP_OK
 
 
-@glue.handler
+@messages.handler
 def g12_yasnac(self, **words):
     """Prolog of G12, clockwise circle cutting."""
     return prepare_yasnac(self, CLOCKWISE)
 
 
-@glue.handler
+@messages.handler
 def g13_yasnac(self, **words):
     """Prolog of G13, counterclockwise circle cutting."""
     return prepare_yasnac(self, COUNTERCLOCKWISE)
@@ -84,13 +91,13 @@ def prepare_mitsubishi(interp: object, arc: int) -> int:
     return INTERP_OK
 
 
-@glue.handler
+@messages.handler
 def g12_mitsubishi(self, **words):
     """Prolog of G12, clockwise circular cutting."""
     return prepare_mitsubishi(self, CLOCKWISE)
 
 
-@glue.handler
+@messages.handler
 def g13_mitsubishi(self, **words):
     """Prolog of G13, counterclockwise circular cutting."""
     return prepare_mitsubishi(self, COUNTERCLOCKWISE)
@@ -117,23 +124,23 @@ def prepare_circle_mill(interp: object, pocket: bool) -> int:
     cycle_state.hand_over(interp, **event.locals())
     cycle_state.remember_first_plane(interp, event.place.first_plane)
     if event.message:
-        glue.message(event.message)
+        messages.message(event.message)
     return INTERP_OK
 
 
-@glue.handler
+@messages.handler
 def circle_mill_perimeter(self, **words):
     """Prolog of G12.2, and of the event's subroutine form."""
     return prepare_circle_mill(self, pocket=False)
 
 
-@glue.handler
+@messages.handler
 def circle_mill_pocket(self, **words):
     """Prolog of G13.2."""
     return prepare_circle_mill(self, pocket=True)
 
 
-@glue.handler
+@messages.handler
 def cycle_done(self, **words):
     """Epilog of every cycle: the modes are again what the block found."""
     cycle_state.restore_modes(self)

@@ -10,14 +10,12 @@ from interpreter import INTERP_OK
 from g12.cylinder.plan import plan
 from g12.cylinder.start import RADIUS, check_cylinder_start, cylinder_setup
 from g12.errors import BlockRefusal
-from g12.host import glue
+from g12.host import messages
+from g12.host.machine import MACHINE
 from g12.host.section.kind import (
-    AXES,
-    COORDINATES,
     NOT_IN_MDI,
-    REMAPS,
-    SETTINGS,
     SectionKind,
+    check_ini,
     is_typed,
     run_section,
 )
@@ -26,31 +24,38 @@ from g12.section.codes import SectionCodes, codes_with_word
 DROPPED_WORDS = "abdhijkruvwxyz"  # nothing else in a block with G7.1 could read them
 
 
+def check_at_start() -> None:
+    """Read what sections need of the INI; a Refusal tells why it cannot be used."""
+    check_ini()
+
+
 def cylinder_mode(self, **words) -> Iterator[int]:
     """Read, plan and move a section; outside one C0 is a safety line and does nothing."""
     try:
-        glue.forget_return(self)
+        messages.forget_return(self)
         block = self.blocks[self.remap_level]
         if block.c_flag and block.c_number == 0.0:
             if any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS):
-                raise BlockRefusal(glue.code_of_block(self), f"{RADIUS}0 stands alone in its block")
+                raise BlockRefusal(
+                    messages.code_of_block(self), f"{RADIUS}0 stands alone in its block"
+                )
         else:
             if is_typed(self):
-                raise BlockRefusal(glue.code_of_block(self), NOT_IN_MDI)
+                raise BlockRefusal(messages.code_of_block(self), NOT_IN_MDI)
             yield from run_section(self, CYLINDER)
     except Exception as error:
-        yield glue.refuse_block(self, error)
+        yield messages.refuse_block(self, error)
     yield INTERP_OK
 
 
 def _codes(code: str) -> SectionCodes:
-    return codes_with_word(code, REMAPS.values(), cylinder_mode.__name__, RADIUS)
+    return codes_with_word(code, MACHINE.remaps.values(), cylinder_mode.__name__, RADIUS)
 
 
 CYLINDER = SectionKind(
     letters=RADIUS,
-    check=lambda start: check_cylinder_start(start, COORDINATES),
-    setup=lambda start: cylinder_setup(start, SETTINGS, AXES),
+    check=lambda start: check_cylinder_start(start, MACHINE.coordinates),
+    setup=lambda start: cylinder_setup(start, MACHINE.settings, MACHINE.axes),
     codes=_codes,
     plan=lambda contour, setup, start: plan(contour, setup.plan),
 )

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import emccanon
 
 from g12.errors import BlockRefusal
-from g12.host import glue
+from g12.host import messages
 from g12.host.call_frame import CallFrame
 from g12.host.kinematics_switch import (
     BY_HAND,
@@ -61,7 +61,7 @@ def switch_on(interp: object, start: SectionStart, beside: float) -> Iterator[in
         raise BlockRefusal(code, "needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis")
     interp.g12_found = modes_found(interp) + adaptive_feed(interp)
     asked = to_face(interp, start.machine_unit, BY_HAND)
-    yield from _switch(interp, code, CallFrame(interp, glue.NO_FILE), MDI_LINE, asked)
+    yield from _switch(interp, code, CallFrame(interp, messages.NO_FILE), MDI_LINE, asked)
     wrong = other_offset(interp, beside)
     if wrong:
         yield from switch_off(interp)
@@ -73,15 +73,15 @@ def switch_on(interp: object, start: SectionStart, beside: float) -> Iterator[in
 
 def switch_off(interp: object) -> Iterator[int]:
     """Come back from the face, if that is where the machine is, to the modes that were found."""
-    code = glue.code_of_block(interp)
+    code = messages.code_of_block(interp)
     if getattr(interp, "g12_by_hand", None) and interp.cutter_comp_side in COMPENSATED:
         raise BlockRefusal(code, "needs G40 before it")
     by_hand = _unlock(interp)
     give_back_modes(interp)
     if by_hand or face_in_force():
-        mdi = glue.in_mdi(interp)
+        mdi = messages.in_mdi(interp)
         home = read_source(interp.filename) if not mdi else None
-        frame = CallFrame(interp, home.filename if home else glue.NO_FILE)
+        frame = CallFrame(interp, home.filename if home else messages.NO_FILE)
         line = ProgramLines(interp, home).line if home else MDI_LINE
         yield from _switch(interp, code, frame, line, to_axes(interp))
 
@@ -98,8 +98,10 @@ def abort(interp: object) -> None:
     if by_hand:
         interp.g12_by_hand = by_hand._replace(ended=True)
     if by_hand and not by_hand.ended:
-        on, off = by_hand.code, glue.code_of_block(interp)
-        glue.message(f"{on} is off: nothing moves by program or MDI until {off} or {on} is typed")
+        on, off = by_hand.code, messages.code_of_block(interp)
+        messages.message(
+            f"{on} is off: nothing moves by program or MDI until {off} or {on} is typed"
+        )
     give_back_modes(interp)
     interp.toolchange_flag = True
 

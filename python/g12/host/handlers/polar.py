@@ -9,18 +9,14 @@ from pathlib import Path
 from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal, Refusal
-from g12.host import glue
+from g12.host import messages, modes
 from g12.host.handlers import face_by_hand
 from g12.host.kinematics_switch import face_in_force
+from g12.host.machine import MACHINE
 from g12.host.section.kind import (
-    AXES,
-    COORDINATES,
-    FACE,
-    KINEMATICS,
     NOT_IN_MDI,
-    REMAPS,
-    SETTINGS,
     SectionKind,
+    check_ini,
     is_typed,
     run_section,
 )
@@ -37,27 +33,25 @@ DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could re
 
 
 def check_at_start() -> None:
-    """Say so, when LinuxCNC comes up, if it takes G12.1 for itself."""
+    """Read what sections need of the INI; say so if LinuxCNC takes G12.1 for itself."""
+    check_ini()
     try:
-        refuse_owned_codes(REMAPS, owns_g12_1(Path("/proc/self/maps").read_text()))
+        refuse_owned_codes(MACHINE.remaps, owns_g12_1(Path("/proc/self/maps").read_text()))
     except Refusal as refusal:
-        glue.say_at_start(refusal.message)
-
-
-check_at_start()
+        messages.say_at_start(refusal.message)
 
 
 def polar_on(self, **words) -> Iterator[int]:
     """Read, plan and move a section: the handler of G12.1, which may have to wait."""
     try:
-        glue.forget_return(self)
+        messages.forget_return(self)
         if is_typed(self):
             yield from run_by_hand(self)
         else:
             in_shape = self.sub_context[self.call_level - 1].subname in SUBS
             yield from run_section(self, POLAR_IN_SHAPE if in_shape else POLAR)
     except Exception as error:
-        yield glue.refuse_block(self, error)
+        yield messages.refuse_block(self, error)
     yield INTERP_OK
 
 
@@ -68,17 +62,17 @@ def polar_off(self, **words) -> Iterator[int]:
     ON_ABORT_COMMAND, which gets the reason behind it.
     """
     try:
-        glue.forget_return(self)
+        messages.forget_return(self)
         block = self.blocks[self.remap_level]
         others = any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS)
-        if others or (block.p_flag and not (FACE or SETTINGS.c_clamp)):
-            raise BlockRefusal(glue.code_of_block(self), "stands alone in its block")
+        if others or (block.p_flag and not (MACHINE.face or MACHINE.settings.c_clamp)):
+            raise BlockRefusal(messages.code_of_block(self), "stands alone in its block")
         if block.p_flag:
             after_abort(self)
-        elif KINEMATICS and self.task:
+        elif MACHINE.switches_kinematics and self.task:
             yield from face_by_hand.switch_off(self)
     except Exception as error:
-        yield glue.refuse_block(self, error)
+        yield messages.refuse_block(self, error)
     yield INTERP_OK
 
 
@@ -87,35 +81,35 @@ def after_abort(interp: object) -> None:
 
     In this order: coming back ends with what acts on the next line that is read.
     """
-    if SETTINGS.c_clamp:
-        glue.run_code(interp, f"M{SETTINGS.c_clamp[1]}")
-    if FACE:
+    if MACHINE.settings.c_clamp:
+        modes.run_code(interp, f"M{MACHINE.settings.c_clamp[1]}")
+    if MACHINE.face:
         face_by_hand.abort(interp)
 
 
 def run_by_hand(interp: object) -> Iterator[int]:
     """Switch on in MDI, where nothing behind can be read: it could be an old program's."""
     start = start_of_section(interp, 0)
-    if not KINEMATICS:
+    if not MACHINE.switches_kinematics:
         raise BlockRefusal(start.place.code, NOT_IN_MDI)
     if face_in_force():
         raise BlockRefusal(start.place.code, "is already on")
-    check_section_start(start, COORDINATES)
+    check_section_start(start, MACHINE.coordinates)
     setup = _setup(start)  # refuses what the machine cannot
     yield from face_by_hand.switch_on(interp, start, setup.words.beside)
 
 
 def _setup(start: SectionStart) -> SectionSetup:
-    return polar_setup(start, SETTINGS, AXES, FACE)
+    return polar_setup(start, MACHINE.settings, MACHINE.axes, MACHINE.face)
 
 
 def _codes(code: str) -> SectionCodes:
-    return codes_of_section(code, REMAPS.values(), polar_on.__name__, polar_off.__name__)
+    return codes_of_section(code, MACHINE.remaps.values(), polar_on.__name__, polar_off.__name__)
 
 
 POLAR = SectionKind(
     letters="",
-    check=lambda start: check_section_start(start, COORDINATES),
+    check=lambda start: check_section_start(start, MACHINE.coordinates),
     setup=_setup,
     codes=_codes,
     plan=lambda contour, setup, start: polar.plan(contour, setup.plan, c=start.c),

@@ -13,11 +13,12 @@ from typing import NamedTuple
 from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal
-from g12.host import glue
+from g12.host import messages
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
 from g12.host.kinematics_switch import face_in_force
-from g12.host.section.kind import AXES, COORDINATES, FACE, KINEMATICS, REMAPS, SETTINGS
+from g12.host.machine import MACHINE
+from g12.host.section.kind import check_ini
 from g12.host.section.output import path_control
 from g12.host.section.start import stands_alone, start_of_section
 from g12.moves.setup import SectionSetup
@@ -53,15 +54,20 @@ HOLES = {
 }
 
 
-@glue.handler
+def check_at_start() -> None:
+    """Read what sections need of the INI; a Refusal tells why it cannot be used."""
+    check_ini()
+
+
+@messages.handler
 def polar_shape(self, **words):
     """Check the shape in whose sub it stands, and set the locals of its motion: G12.4."""
     level = self.call_level - 1  # the sub's
     name = shape_at_work(self)
-    if KINEMATICS and self.task and face_in_force():
+    if MACHINE.switches_kinematics and self.task and face_in_force():
         raise BlockRefusal(name, "G12.1 is on, by hand: G13.1 first")
     start = start_of_shape(self, name)
-    setup = polar_setup(start, SETTINGS, AXES, FACE)
+    setup = polar_setup(start, MACHINE.settings, MACHINE.axes, MACHINE.face)
     if name in HOLES:
         return prepare_holes(self, level, name, start, setup)
     entries = ShapeEntries(name, SHAPES[name].entries, locals_at(self, level))
@@ -93,7 +99,7 @@ def prepare_holes(
     numbers = plan.locals()
     for x_word in ("at_x", "at_x_axis"):
         numbers[x_word] *= 1 + start.diameter
-    close, opens = SETTINGS.c_clamp or (0, 0)
+    close, opens = MACHINE.settings.c_clamp or (0, 0)
     set_locals_at(interp, level, {**numbers, "clamp": close, "unclamp": opens})
     cycle_state.note_modes(interp)
     cycle_state.state_of(interp).path = path_control(interp)
@@ -103,8 +109,8 @@ def prepare_holes(
 
 def check_clamp(entries: ShapeEntries) -> None:
     """Refuse M codes of C's clamp that this LinuxCNC cannot know."""
-    for code in SETTINGS.c_clamp:
-        if f"M{code}" not in REMAPS and code not in OWN_CODES and code not in USER_CODES:
+    for code in MACHINE.settings.c_clamp:
+        if f"M{code}" not in MACHINE.remaps and code not in OWN_CODES and code not in USER_CODES:
             raise entries.refuse(
                 f"[G12] C_CLAMP: M{code} is no code of this machine: a REMAP line?"
             )
@@ -120,7 +126,7 @@ def hole_machine(interp: object, start: SectionStart, setup: SectionSetup) -> Ho
     )
 
 
-@glue.handler
+@messages.handler
 def polar_shape_done(self, **words):
     """Put back the modes that the shape found, F among them: G13.4."""
     shape_at_work(self)
@@ -137,7 +143,7 @@ SPINDLE = 2  # index into active_m_codes: 3, 4 or 5
 
 def shape_at_work(interp: object) -> str:
     """Return the name of the shape in whose sub the code stands; refuse it anywhere else."""
-    name, code = interp.sub_context[interp.call_level - 1].subname, glue.code_of_block(interp)
+    name, code = interp.sub_context[interp.call_level - 1].subname, messages.code_of_block(interp)
     if name not in SHAPES and name not in HOLES:
         *names, last = *SHAPES, *HOLES
         where = f"belongs in the subs {', '.join(names)} and {last}: call one of them"
@@ -150,9 +156,9 @@ def shape_at_work(interp: object) -> str:
 def start_of_shape(interp: object, name: str) -> SectionStart:
     """Return what the shape finds; refuse modes in which no section can begin."""
     start = start_of_section(interp, 0)
-    line = glue.line_of_refusal(interp, BlockRefusal(name, ""))
+    line = messages.line_of_refusal(interp, BlockRefusal(name, ""))
     start = start._replace(place=SectionPlace(name, line or 0), x=1.0)  # it goes there by itself
-    check_section_start(start, COORDINATES)
+    check_section_start(start, MACHINE.coordinates)
     return start
 
 
@@ -161,8 +167,8 @@ def shape_machine(setup: SectionSetup) -> ShapeMachine:
     beside = setup.words.beside
     return ShapeMachine(
         diameters=setup.words.diameter,
-        entry_angle=SETTINGS.entry_angle,
-        plunge_share=SETTINGS.plunge_feed / 100,
+        entry_angle=MACHINE.settings.entry_angle,
+        plunge_share=MACHINE.settings.plunge_feed / 100,
         pole=POLE_SHARE * setup.tolerance,
         pole_refused=setup.plan.pole_refused,
         nearest=abs(beside) + setup.tolerance if beside else 0.0,
@@ -171,7 +177,8 @@ def shape_machine(setup: SectionSetup) -> ShapeMachine:
 
 def section_codes(entries: ShapeEntries) -> dict[str, float]:
     """Return the locals by which the sub begins and ends its section: the G codes."""
-    numbers = {name: code_of_handler(REMAPS.values(), name) for name in ("polar_on", "polar_off")}
+    remaps = MACHINE.remaps.values()
+    numbers = {name: code_of_handler(remaps, name) for name in ("polar_on", "polar_off")}
     for name, found in numbers.items():
         if found is None:
             raise entries.refuse(f"needs a REMAP line with python={name}")

@@ -8,32 +8,25 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import emccanon
-import linuxcnc
 from interpreter import MODE_ABSOLUTE
 
 from g12.compensation.contour import Contour
 from g12.errors import BlockRefusal, Refusal
-from g12.host import glue
+from g12.host import messages, modes
 from g12.host.call_frame import CallFrame
 from g12.host.kinematics_switch import face_in_force
+from g12.host.machine import MACHINE
 from g12.host.program_lines import LineOfFile, ProgramLines, running_file
 from g12.host.section.output import SectionOutput
 from g12.host.section.reader import SectionReader
 from g12.host.section.run import Section
 from g12.host.section.start import start_of_section
-from g12.machine_ini import axes_of, coordinates_of, face_of, remap_lines
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import SectionPlan
 from g12.section.codes import SectionCodes
 from g12.section.line import line_named, with_line
 from g12.section.start import SectionStart
 
-SETTINGS = glue.settings_of_machine()
-INI = linuxcnc.ini(glue.ini_file() or os.devnull)
-REMAPS = {remap.code: remap for remap in remap_lines(INI.findall)}
-COORDINATES, AXES = set(coordinates_of(INI.find)), axes_of(INI.find, "XZC")
-FACE = face_of(INI.find)
-KINEMATICS = SETTINGS.polar_kinematics == "1"
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 TYPED = 1  # call level of a block that stands in no sub
 TURN, REPORTED_TURN = 360.0, 540.0  # a contour that closes and its leads take more than one
@@ -55,9 +48,14 @@ class SectionKind(NamedTuple):
     plan: Callable[[Contour, SectionSetup, SectionStart], SectionPlan]
 
 
+def check_ini() -> None:
+    """Read what sections need of the INI; a Refusal tells why it cannot be used."""
+    MACHINE.read("settings", "remaps", "coordinates", "axes", "face")
+
+
 def is_typed(interp: object) -> bool:
     """Tell whether the block being remapped was typed in MDI; a sub that MDI calls was not."""
-    return glue.in_mdi(interp) and interp.call_level == TYPED
+    return messages.in_mdi(interp) and interp.call_level == TYPED
 
 
 def program_behind(interp: object) -> ProgramLines:
@@ -66,7 +64,7 @@ def program_behind(interp: object) -> ProgramLines:
         program = ProgramLines(interp, getattr(interp, "g12_source", None))
     except OSError as problem:
         rule = f"the program's file cannot be read while it runs: {problem.strerror}"
-        raise BlockRefusal(glue.code_of_block(interp), rule) from None
+        raise BlockRefusal(messages.code_of_block(interp), rule) from None
     interp.g12_source = program.home
     return program
 
@@ -92,17 +90,18 @@ def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
 def report_turns(interp: object, turned: float) -> None:
     """Show the operator, once a program, that C has to unwind more than a turn (degrees)."""
     if abs(turned) > REPORTED_TURN and not interp.c_axis_wrapped:
+        code, turns = messages.code_of_block(interp), abs(turned) / TURN
         text = (
-            f"{glue.code_of_block(interp)}: C has turned {abs(turned) / TURN:.1f} times, and G0 C0"
+            f"{code}: C has turned {turns:.1f} times, and G0 C0"
             " unwinds all of it. With [AXIS_C] WRAPPED_ROTARY = 1 it takes the short way"
         )
-        glue.message_once(interp, "turns", text)
+        messages.message_once(interp, "turns", text)
 
 
 def _section(interp: object, kind: SectionKind, frame: CallFrame, program: ProgramLines) -> Section:
     """Return the section; refuse to begin it where it cannot."""
     start = start_of_section(interp, program.place, kind.letters)
-    if KINEMATICS and interp.task and face_in_force():
+    if MACHINE.switches_kinematics and interp.task and face_in_force():
         raise start.place.refuse("the face is on already, by hand: G13.1 first")
     kind.check(start)
     setup = kind.setup(start)
@@ -111,7 +110,7 @@ def _section(interp: object, kind: SectionKind, frame: CallFrame, program: Progr
         start.place.code,
         x_factor=2.0 if start.diameter else 1.0,
         blending=setup.tolerance / 2,
-        initial=INITIAL_TOLERANCE / glue.millimetres_per_unit(interp),
+        initial=INITIAL_TOLERANCE / modes.millimetres_per_unit(interp),
         machine_unit=start.machine_unit,
         absolute=MODE_ABSOLUTE,
         canon=emccanon,

@@ -14,7 +14,7 @@ from enum import Enum
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.host import glue
+from g12.host import messages
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import MOVING, ProgramLines
 from g12.host.section.output import SectionOutput
@@ -252,7 +252,7 @@ class Section:
         plan = self.plan(reader.contour)
         self._check_limits(plan)
         for note in plan.notes:
-            glue.message(note)
+            messages.message(note)
         reader.show_machine()
         self._phase = Phase.MOVING
         for waiting in self.output.run(plan.steps, reader.modes, reader.exact_lines):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from interpreter import MODE_INCREMENTAL
 
-from g12.host import glue
+from g12.host import messages, modes
 from g12.host.program_lines import without_line
 from g12.host.section.output import PER_REVOLUTION
 from g12.host.section.reader import block_of
@@ -27,9 +27,9 @@ def start_of_section(interp: object, line: int, words: str = "") -> SectionStart
     ``words`` are the letters that the block may have.
     """
     block = interp.blocks[interp.remap_level]
-    machine_unit = glue.program_units_per_machine_unit(interp)
+    machine_unit = modes.program_units_per_machine_unit(interp)
     return SectionStart(
-        place=SectionPlace(glue.code_of_block(interp), line),
+        place=SectionPlace(messages.code_of_block(interp), line),
         words=block_of(block).words,
         alone=stands_alone(block, words),
         level=interp.call_level,
@@ -37,14 +37,14 @@ def start_of_section(interp: object, line: int, words: str = "") -> SectionStart
         c=interp.CC_current,
         z=interp.current_z,
         machine_unit=machine_unit,
-        millimetre=1 / glue.millimetres_per_unit(interp),
+        millimetre=1 / modes.millimetres_per_unit(interp),
         offsets=_offsets(interp),
         x_shift=interp.axis_offset_x,
         modes=_modes(interp),
-        spindle=glue.feed_spindle(interp),
+        spindle=modes.feed_spindle(interp),
         speeds=tuple(interp.speed[number] for number in range(interp.num_spindles)),
         tool_radius=_tool_radius(interp, machine_unit),
-        diameter=glue.diameter_mode(interp),
+        diameter=modes.diameter_mode(interp),
         yz_plane=interp.plane == YZ_PLANE,
         compensated=interp.cutter_comp_side != 0,
         offset_pending=bool(interp.arc_not_allowed),
@@ -66,7 +66,7 @@ def _modes(interp: object) -> SectionModes:
         incremental=interp.distance_mode == MODE_INCREMENTAL,
         per_revolution=interp.feed_mode == PER_REVOLUTION,
         feed=interp.feed_rate,
-        speed=glue.spindle_speed(interp),
+        speed=modes.spindle_speed(interp),
         motion=interp.motion_mode,
     )
 

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What every handler shares: refusals, start-up errors, units, spindle.
+"""What the operator reads: refusals of a block, faults, messages, what is wrong at the start.
 
 Facts about the interpreter that the code relies on stand beside the line that does.
 """
 
 from __future__ import annotations
 
-import ctypes
 import functools
-import os
 import sys
 from pathlib import Path
 
@@ -18,24 +16,8 @@ from interpreter import INTERP_ERROR
 
 from g12.errors import LONGEST_MESSAGE, BlockRefusal, Refusal
 from g12.host.program_lines import line_of_block, line_of_call
-from g12.lengths import MM_PER_INCH
-from g12.settings import Settings, settings_from_ini
 
-
-def settings_of_machine() -> Settings:
-    """Return section [G12]; a Refusal tells why it cannot be used."""
-    return settings_from_ini(ini_file())
-
-
-def ini_file() -> str | None:
-    """Return the name of the INI file as LinuxCNC tells it in ``INI_FILE_NAME``.
-
-    `rs274 -i` does so behind Python's start, which is when `os.environ` is made.
-    """
-    getenv = ctypes.CDLL(None).getenv
-    getenv.restype = ctypes.c_char_p
-    name = getenv(b"INI_FILE_NAME")
-    return os.fsdecode(name) if name else None
+NO_FILE = ""  # the interpreter keeps no copy of it: a constant lives as long as the module
 
 
 @functools.cache  # both halves may have the same to say
@@ -43,12 +25,6 @@ def say_at_start(text: str) -> None:
     """Tell the operator, when LinuxCNC comes up, what cannot work."""
     print(f"g12: {text}", file=sys.stderr)
     emccanon.CANON_ERROR(f"g12: {text}")
-
-
-NO_FILE = ""  # the interpreter keeps no copy of it: a constant lives as long as the module
-DIAMETER = 15  # index into a block's g_modes, and into active_g_codes
-G7 = 70
-INCH = 1  # length_units
 
 
 def refuse_block(interp: object, error: Exception) -> int:
@@ -121,55 +97,6 @@ def forget_return(interp: object) -> None:
 def code_of_block(interp: object) -> str:
     """Return the remapped code as the operator wrote it: ``G12``, ``G12.2``."""
     return interp.blocks[interp.remap_level].executing_remap.name.upper()
-
-
-def program_units_per_machine_unit(interp: object) -> float:
-    """Return the factor from INI file and tool table lengths to the program's."""
-    return millimetres_per_machine_unit() / millimetres_per_unit(interp)
-
-
-def millimetres_per_machine_unit() -> float:
-    """Return the machine's unit in mm."""
-    return 1 / emccanon.GET_EXTERNAL_LENGTH_UNITS()
-
-
-def millimetres_per_unit(interp: object) -> float:
-    """Return the program's unit in mm."""
-    return MM_PER_INCH if interp.length_units == INCH else 1.0
-
-
-def spindle_speed(interp: object) -> float:
-    """Return the commanded speed of the spindle in use."""
-    return interp.speed[feed_spindle(interp)]
-
-
-def feed_spindle(interp: object) -> int:
-    """Return the number of the spindle in use, to which feeds per revolution refer.
-
-    LinuxCNC leaves it unset until a block names one with $.
-    """
-    spindle = interp.active_spindle
-    return spindle if 0 <= spindle < interp.num_spindles else 0
-
-
-def diameter_mode(interp: object) -> bool:
-    """Tell whether G7 is active (the active codes are those before this block)."""
-    commanded = interp.blocks[interp.remap_level].g_modes[DIAMETER]
-    return (interp.active_g_codes[DIAMETER] if commanded == -1 else commanded) == G7
-
-
-def run_code(interp: object, block: str) -> None:
-    """Execute a block whose code may be remapped to a sub, with the sub's lines.
-
-    `Interp::_execute` (rs274ngc_pre.cc) does so itself for a block typed in MDI, but then goes on
-    until all calls have returned, the handler's own too.
-    """
-    level = interp.call_level
-    interp.read(block)
-    interp.execute(None)
-    while interp.call_level > level:
-        interp.read(None)
-        interp.execute(None)
 
 
 def message(text: str) -> None:

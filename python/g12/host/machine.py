@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the INI says of the machine, each part read when it is first used."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import os
+
+import linuxcnc
+
+from g12.ini_sections import leading_number
+from g12.machine_ini import (
+    Axis,
+    FaceAxes,
+    Remap,
+    axes_of,
+    code_of_prolog,
+    coordinates_of,
+    face_of,
+    ranges_of,
+    remap_lines,
+)
+from g12.settings import Settings, settings_from_ini
+
+
+def ini_file() -> str | None:
+    """Return the name of the INI file as LinuxCNC tells it in ``INI_FILE_NAME``.
+
+    `rs274 -i` does so behind Python's start, which is when `os.environ` is made.
+    """
+    getenv = ctypes.CDLL(None).getenv
+    getenv.restype = ctypes.c_char_p
+    name = getenv(b"INI_FILE_NAME")
+    return os.fsdecode(name) if name else None
+
+
+class RunningMachine:
+    """The machine of the INI file that LinuxCNC runs."""
+
+    def read(self, *parts: str) -> None:
+        """Read parts of the INI now: what cannot be used raises its Refusal here."""
+        for part in parts:
+            getattr(self, part)
+
+    @functools.cached_property
+    def settings(self) -> Settings:
+        """Section [G12]; a Refusal tells why it cannot be used."""
+        return settings_from_ini(ini_file())
+
+    @property
+    def switches_kinematics(self) -> bool:
+        """Whether sections on the face run by the machine's kinematics."""
+        return self.settings.polar_kinematics == "1"
+
+    @functools.cached_property
+    def _ini(self) -> linuxcnc.ini:
+        return linuxcnc.ini(ini_file() or os.devnull)
+
+    @functools.cached_property
+    def remaps(self) -> dict[str, Remap]:
+        """The REMAP lines by their code."""
+        return {remap.code: remap for remap in remap_lines(self._ini.findall)}
+
+    @functools.cached_property
+    def coordinates(self) -> set[str]:
+        """The letters of the machine's axes."""
+        return set(coordinates_of(self._ini.find))
+
+    @functools.cached_property
+    def axes(self) -> dict[str, Axis]:
+        """The limits of X, Z and C; a Refusal names a value that no axis can have."""
+        return axes_of(self._ini.find, "XZC")
+
+    @functools.cached_property
+    def face(self) -> FaceAxes | None:
+        """The axes of the part's face, None without the kinematics of the face."""
+        return face_of(self._ini.find)
+
+    @functools.cached_property
+    def travel(self) -> dict[str, tuple[float, float]]:
+        """The lowest and highest position of X, Y and Z in machine units."""
+        return ranges_of(self._ini.find, "XYZ")
+
+    @functools.cached_property
+    def spindle_c_code(self) -> str:
+        """The code that makes the spindle C, "" where none does."""
+        return code_of_prolog(remap_lines(self._ini.findall), "spindle_c_on")
+
+    @functools.cached_property
+    def spindle_c_timeout(self) -> float:
+        """How long the spindle may take to become C, in seconds."""
+        return leading_number(self._ini.find("SPINDLE_C", "TIMEOUT") or "") or 30.0
+
+
+MACHINE = RunningMachine()

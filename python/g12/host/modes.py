@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Units, spindle and diameter mode as the interpreter has them; a code run to its end."""
+
+from __future__ import annotations
+
+import emccanon
+
+from g12.lengths import MM_PER_INCH
+
+DIAMETER = 15  # index into a block's g_modes, and into active_g_codes
+G7 = 70
+INCH = 1  # length_units
+
+
+def program_units_per_machine_unit(interp: object) -> float:
+    """Return the factor from INI file and tool table lengths to the program's."""
+    return millimetres_per_machine_unit() / millimetres_per_unit(interp)
+
+
+def millimetres_per_machine_unit() -> float:
+    """Return the machine's unit in mm."""
+    return 1 / emccanon.GET_EXTERNAL_LENGTH_UNITS()
+
+
+def millimetres_per_unit(interp: object) -> float:
+    """Return the program's unit in mm."""
+    return MM_PER_INCH if interp.length_units == INCH else 1.0
+
+
+def spindle_speed(interp: object) -> float:
+    """Return the commanded speed of the spindle in use."""
+    return interp.speed[feed_spindle(interp)]
+
+
+def feed_spindle(interp: object) -> int:
+    """Return the number of the spindle in use, to which feeds per revolution refer.
+
+    LinuxCNC leaves it unset until a block names one with $.
+    """
+    spindle = interp.active_spindle
+    return spindle if 0 <= spindle < interp.num_spindles else 0
+
+
+def diameter_mode(interp: object) -> bool:
+    """Tell whether G7 is active (the active codes are those before this block)."""
+    commanded = interp.blocks[interp.remap_level].g_modes[DIAMETER]
+    return (interp.active_g_codes[DIAMETER] if commanded == -1 else commanded) == G7
+
+
+def run_code(interp: object, block: str) -> None:
+    """Execute a block whose code may be remapped to a sub, with the sub's lines.
+
+    `Interp::_execute` (rs274ngc_pre.cc) does so itself for a block typed in MDI, but then goes on
+    until all calls have returned, the handler's own too.
+    """
+    level = interp.call_level
+    interp.read(block)
+    interp.execute(None)
+    while interp.call_level > level:
+        interp.read(None)
+        interp.execute(None)
