@@ -10,7 +10,7 @@ from g12.tools.commands import check
 from g12.tools.install import package_copy
 from g12.tools.install.checking import check_report, lines_of_check
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import NOTE, PROBLEM, WARNING, Finding
+from g12.tools.install.config.findings import NOTE, PROBLEM, WARNING, ConfigFinding
 from g12.tools.install.rules import findings_of, last_words
 from g12.tools.preview.loading import python_error
 from support.small_configs import HAAS, LATHE, MILL, config_of, with_lines, write_config
@@ -416,7 +416,7 @@ def test_a_note_is_no_reason_to_fail_and_every_finding_shows_its_name(
     ini = write_config(tmp_path, GOOD)
     said = {}
     for level, code in ((NOTE, 0), (WARNING, 1), (PROBLEM, 1)):
-        finding = Finding(level, "some-name", "something", "a cure")
+        finding = ConfigFinding(level, "some-name", "something", "a cure")
         monkeypatch.setattr(check, "check_config", lambda text, f=finding: (config_of(ini), [f]))
         assert check.main([str(ini)]) == code
         said[level] = capsys.readouterr().out

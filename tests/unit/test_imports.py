@@ -37,7 +37,6 @@ ROLES = {
     "plan",
     "plan_circle",
     "left_material",
-    "Finding",
 }  # one meaning, many files
 ROLES |= {"Line", "Arc", "recentred", "sweep_between"}  # the planners' move to g12.geometry
 MOST_FILES = 16  # of a room, its __init__ among them

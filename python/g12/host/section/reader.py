@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from math import radians
 from operator import attrgetter, itemgetter
+from typing import NamedTuple
 
 import emccanon
 from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
@@ -56,6 +57,22 @@ WORDS = [
 plain_words = attrgetter(
     "f_flag", "f_number", "motion_to_be", *(name for word in WORDS[:6] for name in word[1:])
 )
+
+
+class MoveWords(NamedTuple):
+    """The numbers of a move's words as the program has them, None where there is none.
+
+    ``relative`` are the axes whose number is an increment whatever the mode: of U, W, H.
+    """
+
+    x: float | None
+    c: float | None
+    z: float | None
+    i: float | None
+    j: float | None
+    r: float | None
+    k: float | None = None
+    relative: str = ""
 
 
 def block_of(parsed: object) -> SectionBlock:
@@ -170,16 +187,15 @@ class SectionReader:
             self.set_modes(modes._replace(feed=f if has_f else modes.feed, motion=motion))
         if has_x or has_c or has_z or has_i or has_j or has_r:
             self._keep_apart()
-            self._move(
-                motion,
+            words = MoveWords(
                 x if has_x else None,
                 c if has_c else None,
                 z if has_z else None,
                 i if has_i else None,
                 j if has_j else None,
                 r if has_r else None,
-                None,
             )
+            self._move(motion, words)
 
     def with_spindle(self, line: TextLine) -> TextLine:
         """Return a line with its $ word as a number: of the parsed block it cannot be asked."""
@@ -238,8 +254,8 @@ class SectionReader:
         if block.g[COMPENSATION] != NO_CODE:
             self._compensate(block.g[COMPENSATION] // 10)
         if block.moves:
-            words = [block.words.get(letter) for letter in "XCZIJRK"]
-            self._move(block.motion, *words, line.relative)
+            words = MoveWords(*map(block.words.get, "XCZIJRK"), relative=line.relative)
+            self._move(block.motion, words)
         self._mark(stop_text(block))
 
     def comment(self, line: TextLine) -> None:
@@ -278,20 +294,10 @@ class SectionReader:
         except RuntimeError:
             return None
 
-    def _move(
-        self,
-        motion: int,
-        x: float | None,
-        c: float | None,
-        z: float | None,
-        i: float | None,
-        j: float | None,
-        r: float | None,
-        k: float | None,
-        relative: str = "",
-    ) -> None:
-        """Add a move; the words are the program's, None where there is none."""
+    def _move(self, motion: int, words: MoveWords) -> None:
+        """Add a move."""
         contour, modes = self.contour, self.modes
+        x, c, z, i, j, r, k, relative = words
         if motion not in MOTIONS:
             code = f"G{motion / 10:g}"
             raise self.place.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")

@@ -10,7 +10,7 @@ from g12.ini_sections import entries_of
 from g12.settings import SECTION, TABLE
 from g12.tools.errors import UsageError
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import Finding
+from g12.tools.install.config.findings import ConfigFinding
 from g12.tools.install.config.forms import shown
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import Config, load_config, remaps_in
@@ -36,7 +36,9 @@ def read_config_text(ini: Path) -> IniText:
     return text
 
 
-def check_config(text: IniText, overlay: Overrides | None = None) -> tuple[Config, list[Finding]]:
+def check_config(
+    text: IniText, overlay: Overrides | None = None
+) -> tuple[Config, list[ConfigFinding]]:
     """Return the config of an INI and what there is to say about it.
 
     ``overlay`` replaces values for the interpreter, as in `Ini.replaced`.
@@ -52,7 +54,7 @@ def settings_of(config: Config) -> dict[str, str]:
     return {key: value for _, key, value in entries if key in TABLE}
 
 
-def check_report(config: Config, found: list[Finding]) -> dict:
+def check_report(config: Config, found: list[ConfigFinding]) -> dict:
     """Return everything `check` says, for a program to read."""
     codes = codes_of(config.remaps)
     mine = {code.line for code in codes}

@@ -17,7 +17,7 @@ from g12.settings import SECTION, settings_from_lines
 from g12.tools.errors import UsageError
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import Finding, note, problem, warning
+from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.forms import form_findings
 from g12.tools.install.config.ini_edit import IniLine
 from g12.tools.install.config.loaded import MOST_FOLDERS, Config, folder_from_ini, subs_named
@@ -61,7 +61,7 @@ class Code:
     model: Remap
 
 
-Rule = Callable[[Config, "list[Code]"], Iterator[Finding]]
+Rule = Callable[[Config, "list[Code]"], Iterator[ConfigFinding]]
 
 
 def codes_of(remaps: list[tuple[IniLine, Remap]]) -> list[Code]:
@@ -73,7 +73,7 @@ def codes_of(remaps: list[tuple[IniLine, Remap]]) -> list[Code]:
 # The INI's lines.
 
 
-def unreadable_includes(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+def unreadable_includes(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find an #INCLUDE of a file that is not there."""
     for line in config.text.unreadable:
         yield warning(
@@ -84,7 +84,7 @@ def unreadable_includes(config: Config, _codes: list[Code]) -> Iterator[Finding]
         )
 
 
-def nested_includes(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+def nested_includes(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find an #INCLUDE inside an included file, which LinuxCNC 2.9 takes for a comment."""
     for line in config.text.lines():
         if line.file != config.text.path and INCLUDE.match(line.text):
@@ -96,7 +96,7 @@ def nested_includes(config: Config, _codes: list[Code]) -> Iterator[Finding]:
             )
 
 
-def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find REMAP lines of the package, or settings, where LinuxCNC does not look."""
     read = {line for line, _ in config.remaps}
     for line in config.text.lines():
@@ -117,7 +117,7 @@ def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[Finding]:
         )
 
 
-def broken_headers(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+def broken_headers(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a line that was meant to begin a section; LinuxCNC 2.9 says nothing of it."""
     for line in config.text.lines():
         text = line.text.strip()
@@ -131,7 +131,7 @@ def broken_headers(config: Config, _codes: list[Code]) -> Iterator[Finding]:
             )
 
 
-def long_lines(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+def long_lines(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find lines LinuxCNC would cut."""
     for section in ("RS274NGC", "PYTHON", SECTION):
         for line in config.text.section(section):
@@ -146,7 +146,7 @@ def long_lines(config: Config, _codes: list[Code]) -> Iterator[Finding]:
 # LinuxCNC itself.
 
 
-def wrong_version(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+def wrong_version(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find no LinuxCNC, or one before the first that works."""
     numbers = tuple(map(int, re.findall(r"\d+", config.version)[:2]))
     if not numbers:
@@ -163,7 +163,7 @@ def wrong_version(config: Config, _codes: list[Code]) -> Iterator[Finding]:
         )
 
 
-def other_interpreter(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+def other_interpreter(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a machine that does not read G-code with LinuxCNC's interpreter."""
     name = config.ini.get("TASK", "INTERPRETER")
     if name:
@@ -177,7 +177,7 @@ def other_interpreter(config: Config, _codes: list[Code]) -> Iterator[Finding]:
 # The codes.
 
 
-def codes_missing(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def codes_missing(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a config without the package."""
     if not codes and not installed_programs(config):
         yield problem(
@@ -187,7 +187,7 @@ def codes_missing(config: Config, codes: list[Code]) -> Iterator[Finding]:
         )
 
 
-def taken_codes(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def taken_codes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a code with two REMAP lines: LinuxCNC does not start."""
     mine = [code.line for code in codes]
     for code in codes:
@@ -203,7 +203,7 @@ def taken_codes(config: Config, codes: list[Code]) -> Iterator[Finding]:
             )
 
 
-def owned_codes(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def owned_codes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a code that LinuxCNC keeps for itself: it accepts the REMAP line and ignores it."""
     for code in codes:
         if code.remap.code not in config.owned:
@@ -218,7 +218,7 @@ def owned_codes(config: Config, codes: list[Code]) -> Iterator[Finding]:
         )
 
 
-def wrong_lines(_config: Config, codes: list[Code]) -> Iterator[Finding]:
+def wrong_lines(_config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find REMAP lines that are nearly the package's."""
     for code in codes:
         wanted, found = code.model.keywords, code.remap.keywords
@@ -232,7 +232,7 @@ def wrong_lines(_config: Config, codes: list[Code]) -> Iterator[Finding]:
             )
 
 
-def halves(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def halves(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find one code of a pair without the other."""
     others = {remap.number: remap for _, remap in config.remaps}
     for feature in dict.fromkeys(code.feature for code in codes):
@@ -247,7 +247,7 @@ def halves(config: Config, codes: list[Code]) -> Iterator[Finding]:
             )
 
 
-def missing_subs(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def missing_subs(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find NGC subs that LinuxCNC does not find: it does not start."""
     missing = [f"{name}.ngc" for name in needed_subs(codes) if not subs_named(config.ini, name)]
     if missing:
@@ -260,7 +260,7 @@ def missing_subs(config: Config, codes: list[Code]) -> Iterator[Finding]:
         )
 
 
-def blanks_in_path(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def blanks_in_path(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a folder name that a shell would split: LinuxCNC finds no subs there."""
     first = [subs_named(config.ini, name)[:1] for name in needed_subs(codes)]
     for folder in sorted({file.parent for files in first for file in files}):
@@ -268,7 +268,7 @@ def blanks_in_path(config: Config, codes: list[Code]) -> Iterator[Finding]:
             yield from odd_folder(folder)
 
 
-def odd_folder(folder: Path) -> Iterator[Finding]:
+def odd_folder(folder: Path) -> Iterator[ConfigFinding]:
     """Find a character in a folder's path at which LinuxCNC, like a shell, gives up."""
     odd = SHELL_CHARACTERS.search(str(folder))
     if odd:
@@ -279,7 +279,7 @@ def odd_folder(folder: Path) -> Iterator[Finding]:
         )
 
 
-def shadowed_subs(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def shadowed_subs(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find another file of a sub's name in a folder LinuxCNC looks in first."""
     for name in needed_subs(codes):
         first, *others = subs_named(config.ini, name) or [None]
@@ -293,7 +293,7 @@ def shadowed_subs(config: Config, codes: list[Code]) -> Iterator[Finding]:
             )
 
 
-def shadowing_functions(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def shadowing_functions(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a Python O-word of the name of a sub that programs call; REMAP lines go past it."""
     called = {name for code in codes for name in features.SUBS.get(code.feature, ())}
     for name in sorted(called & set(config.python.oword if config.python else ())):
@@ -320,7 +320,7 @@ def package_sub(config: Config, name: str) -> Path | None:
 # Python.
 
 
-def no_toplevel(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def no_toplevel(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a config whose Python LinuxCNC never loads."""
     name = config.ini.get("PYTHON", "TOPLEVEL")
     if not codes:
@@ -340,7 +340,7 @@ def no_toplevel(config: Config, codes: list[Code]) -> Iterator[Finding]:
         )
 
 
-def python_fails(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+def python_fails(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find Python modules that stop with an error: LinuxCNC does not start."""
     error = config.python.error if config.python else None
     if error and not any(no_toplevel(config, codes_of(config.remaps))):
@@ -350,7 +350,7 @@ def python_fails(config: Config, _codes: list[Code]) -> Iterator[Finding]:
         yield problem("python-fails", f"[PYTHON] does not load: {error}", cure)
 
 
-def handlers_missing(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def handlers_missing(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find handlers that are missing: LinuxCNC starts, and the code fails when it is used."""
     python = config.python
     if not codes or not python or python.error or any(no_toplevel(config, codes)):
@@ -372,7 +372,7 @@ def handlers_missing(config: Config, codes: list[Code]) -> Iterator[Finding]:
         )
 
 
-def handlers_hidden(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def handlers_hidden(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find functions of the user's own under a handler's name."""
     functions = config.python.remap if config.python else {}
     for name in sorted({name for code in codes for name in code.model.handlers}):
@@ -388,7 +388,7 @@ def handlers_hidden(config: Config, codes: list[Code]) -> Iterator[Finding]:
 # The machine.
 
 
-def bad_settings(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+def bad_settings(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a [G12] section that is a start-up error."""
     try:
         settings_from_lines(config.ini.lines)
@@ -396,7 +396,7 @@ def bad_settings(config: Config, _codes: list[Code]) -> Iterator[Finding]:
         yield problem("setting", refusal.message, f"correct the line in [{SECTION}]")
 
 
-def missing_axes(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def missing_axes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find axes that a code needs."""
     axes = config.ini.axes
     for feature in dict.fromkeys(code.feature for code in codes):
@@ -411,7 +411,7 @@ def missing_axes(config: Config, codes: list[Code]) -> Iterator[Finding]:
             )
 
 
-def shapes_without_polar(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def shapes_without_polar(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find the shapes on a machine without the polar interpolation that they are made of."""
     known = {code.feature for code in codes}
     if features.SHAPES in known and known.isdisjoint(features.POLAR):
@@ -422,7 +422,7 @@ def shapes_without_polar(config: Config, codes: list[Code]) -> Iterator[Finding]
         )
 
 
-def no_tool_table(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def no_tool_table(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a machine without a tool table: it starts, and has no tool."""
     name, database = (config.ini.get("EMCIO", key) for key in ("TOOL_TABLE", "DB_PROGRAM"))
     path = config.ini.file("EMCIO", "TOOL_TABLE")
@@ -444,7 +444,7 @@ def no_tool_table(config: Config, codes: list[Code]) -> Iterator[Finding]:
     )
 
 
-def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a tool table that cannot tell any cutter's radius."""
     mill = any(code.feature not in features.AXES for code in codes)
     unknown = config.diameters is None or any(no_tool_table(config, codes))
@@ -472,7 +472,7 @@ def installed_programs(config: Config) -> list[str]:
     return [control for _, control, _ in translating_filters(config)]
 
 
-def wrong_filters(config: Config, _codes: list[Code]) -> Iterator[Finding]:
+def wrong_filters(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find a filter whose control cannot be read, or whose package is not there."""
     for suffix, control, words in translating_filters(config):
         command = folder_from_ini(config.ini, words[words.index(TRANSLATE) - 1])
@@ -488,7 +488,7 @@ def wrong_filters(config: Config, _codes: list[Code]) -> Iterator[Finding]:
 # The copy.
 
 
-def changed_copy(config: Config, codes: list[Code]) -> Iterator[Finding]:
+def changed_copy(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     """Find files of the package's copy that are not as they were installed."""
     copy = config.folder / package_copy.NAME
     if not (codes or installed_programs(config)) or not package_copy.is_copy(copy):
@@ -548,7 +548,7 @@ RULES: tuple[Rule, ...] = (
 )
 
 
-def findings_of(config: Config) -> list[Finding]:
+def findings_of(config: Config) -> list[ConfigFinding]:
     """Return everything found; what nothing explains is LinuxCNC's own word."""
     codes = codes_of(config.remaps)
     found = [finding for rule in RULES for finding in rule(config, codes)]

@@ -10,7 +10,7 @@ from pathlib import Path
 from g12.ini_sections import entries_of
 from g12.tools.install.checking import check_config
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import PROBLEM, Finding, warning
+from g12.tools.install.config.findings import PROBLEM, ConfigFinding, warning
 from g12.tools.install.config.forms import HERE
 from g12.tools.install.config.ini_edit import IniText, other_inis
 from g12.tools.install.plan import InstallPlan, Refused
@@ -25,7 +25,7 @@ def sections_of(lines: Sequence[str]) -> dict[str, None]:
     return dict.fromkeys(header[1] for header in map(HEADER.match, lines) if header)
 
 
-def try_out(plan: InstallPlan) -> list[Finding]:
+def try_out(plan: InstallPlan) -> list[ConfigFinding]:
     """Return the warnings of `check` for the plan; refuse if it finds a problem.
 
     Another INI of the folder that includes a changed file has to load; that it shows forms of
@@ -54,7 +54,7 @@ def others_including(text: IniText, changed: Sequence[Path]) -> Iterator[IniText
             yield other
 
 
-def refuse_problems(findings: Sequence[Finding]) -> list[Finding]:
+def refuse_problems(findings: Sequence[ConfigFinding]) -> list[ConfigFinding]:
     """Return the warnings among the findings; refuse if there are problems."""
     problems = [finding for finding in findings if finding.level == PROBLEM]
     if problems:
@@ -62,7 +62,7 @@ def refuse_problems(findings: Sequence[Finding]) -> list[Finding]:
     return list(findings)
 
 
-def trial(plan: InstallPlan, text: IniText) -> list[Finding]:
+def trial(plan: InstallPlan, text: IniText) -> list[ConfigFinding]:
     """Return what `check` finds in an INI with the plan carried out, before it is."""
     with tempfile.TemporaryDirectory(prefix="g", dir="/tmp") as scratch:
         if plan.copied:

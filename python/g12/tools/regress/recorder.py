@@ -249,9 +249,16 @@ def _finding(difference: Difference, was: Recording, now: Recording) -> RegressF
     lines = program_lines(now, difference.now) or [difference.line] * bool(difference.line)
     recorded = program_lines(was, difference.was)
     block = now.blocks.get(lines[0], "") if lines else was.blocks.get((recorded or [0])[0], "")
-    shared = ("kind", "text", "moves", "axis", "by")
-    values = {name: getattr(difference, name) for name in shared}
-    return RegressFinding(lines=lines, recorded_lines=recorded, block=block, **values)
+    return RegressFinding(
+        difference.kind,
+        difference.text,
+        lines,
+        recorded,
+        difference.moves,
+        difference.axis,
+        difference.by,
+        block,
+    )
 
 
 def _summary(recording: Recording) -> str:

@@ -10,7 +10,7 @@ PROBLEM, WARNING, NOTE = "problem", "warning", "note"
 
 
 @dataclass(frozen=True)
-class Finding:
+class ConfigFinding:
     """Something the owner should know: ``kind`` is a short name that stays the same."""
 
     level: str
@@ -19,16 +19,16 @@ class Finding:
     cure: str
 
 
-def problem(kind: str, text: str, cure: str) -> Finding:
+def problem(kind: str, text: str, cure: str) -> ConfigFinding:
     """Return a finding that keeps a code from working."""
-    return Finding(PROBLEM, kind, text, cure)
+    return ConfigFinding(PROBLEM, kind, text, cure)
 
 
-def warning(kind: str, text: str, cure: str) -> Finding:
+def warning(kind: str, text: str, cure: str) -> ConfigFinding:
     """Return a finding that will surprise."""
-    return Finding(WARNING, kind, text, cure)
+    return ConfigFinding(WARNING, kind, text, cure)
 
 
-def note(kind: str, text: str, cure: str) -> Finding:
+def note(kind: str, text: str, cure: str) -> ConfigFinding:
     """Return a finding that is as it may be, but that the owner should know of."""
-    return Finding(NOTE, kind, text, cure)
+    return ConfigFinding(NOTE, kind, text, cure)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from g12.lengths import is_inch
-from g12.tools.install.config.findings import Finding, problem, warning
+from g12.tools.install.config.findings import ConfigFinding, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini, subs_named
 
 OF = {  # the forms of a feature
@@ -132,7 +132,7 @@ def shown(config: Config) -> list[str]:
     return [name.removesuffix(".ngc") for name in names if name.startswith("form_")]
 
 
-def form_findings(config: Config, features: set[str]) -> Iterator[Finding]:
+def form_findings(config: Config, features: set[str]) -> Iterator[ConfigFinding]:
     """Find what keeps forms from being shown or from working; ``features`` are those there."""
     forms = shown(config)
     for form in forms:
@@ -141,7 +141,7 @@ def form_findings(config: Config, features: set[str]) -> Iterator[Finding]:
         yield from SCREEN_RULES[ngcgui_of(config)](config)
 
 
-def form_finding(config: Config, form: str, features: set[str]) -> Iterator[Finding]:
+def form_finding(config: Config, form: str, features: set[str]) -> Iterator[ConfigFinding]:
     """Find what is wrong with one form."""
     own = {feature: names for feature, names in OF.items() if form.rpartition("_")[0] in names}
     parts = FACE_PARTS if "polar-shapes" in own else PARTS
@@ -164,14 +164,14 @@ def form_finding(config: Config, form: str, features: set[str]) -> Iterator[Find
         )
 
 
-def axis_findings(config: Config) -> Iterator[Finding]:
+def axis_findings(config: Config) -> Iterator[ConfigFinding]:
     """Find an AXIS that loads no ngcgui."""
     if NGCGUI not in packages(config):
         said = f"[DISPLAY] TKPKG = {' and '.join(packages(config)) or 'nothing'}"
         yield problem("form", f"{said}: AXIS shows no forms", f"have: TKPKG = {NGCGUI} 1.0")
 
 
-def gladevcp_findings(config: Config) -> Iterator[Finding]:
+def gladevcp_findings(config: Config) -> Iterator[ConfigFinding]:
     """Find a screen without GladeVCP's ngcgui, or one that has no folder for its programs."""
     screen = screen_of(config)
     if not any(file.is_file() for file in pages_of_gladevcp(config)):
@@ -192,7 +192,7 @@ def gladevcp_findings(config: Config) -> Iterator[Finding]:
         )
 
 
-def qtvcp_findings(config: Config) -> Iterator[Finding]:
+def qtvcp_findings(config: Config) -> Iterator[ConfigFinding]:
     """Find forms that are not where a QtVCP screen looks: below one folder, or by a full name."""
     folder = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
     for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE"):

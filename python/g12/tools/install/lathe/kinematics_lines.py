@@ -14,7 +14,7 @@ from g12.ini_sections import leading_number
 from g12.machine_ini import FACE_KINEMATICS, coordinates_of
 from g12.settings import settings_from_lines
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import Finding, problem
+from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.ini_edit import CONTINUED, NEXT, NOW, IniText
 from g12.tools.install.config.loaded import Config, folder_from_ini
 from g12.tools.install.lathe.kinematics_rules import (
@@ -45,14 +45,14 @@ OWN_LINE = re.compile(
 CURE = f"by hand: the steps in {PAGE}, and check tells what is missing or wrong"
 
 
-def left_alone(text: str) -> Finding:
+def left_alone(text: str) -> ConfigFinding:
     """Return why `install` leaves a machine's kinematics alone."""
     return problem(
         "kinematics", f"{text}: install leaves the kinematics of this machine alone", CURE
     )
 
 
-def obstacles(config: Config, text: IniText, wanted: Sequence[str]) -> Iterator[Finding]:
+def obstacles(config: Config, text: IniText, wanted: Sequence[str]) -> Iterator[ConfigFinding]:
     """Yield what keeps `install` from putting the kinematics in."""
     if not code_off(config, wanted):
         yield problem(

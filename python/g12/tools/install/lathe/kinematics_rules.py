@@ -7,7 +7,7 @@ the page says has to be done is a rule here.
 
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import hypot
 from pathlib import Path
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from g12.errors import Refusal
 from g12.ini_sections import leading_number
 from g12.machine_ini import FACE_KINEMATICS, face_joints, face_of
 from g12.settings import settings_from_lines
-from g12.tools.install.config.findings import Finding, problem, warning
+from g12.tools.install.config.findings import ConfigFinding, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini
 
 PAGE = "configs/kinematics/README.md"
@@ -79,7 +79,7 @@ def uses_them(config: Config) -> bool:
         return False
 
 
-def not_used(config: Config) -> Iterator[Finding]:
+def not_used(config: Config) -> Iterator[ConfigFinding]:
     """Find a machine that has them for nothing."""
     if not uses_them(config):
         yield warning(
@@ -89,7 +89,7 @@ def not_used(config: Config) -> Iterator[Finding]:
         )
 
 
-def module_missing(config: Config) -> Iterator[Finding]:
+def module_missing(config: Config) -> Iterator[ConfigFinding]:
     """Find a LinuxCNC without the module: the machine does not start."""
     if not module_installed(FACE_KINEMATICS):
         yield problem(
@@ -99,7 +99,7 @@ def module_missing(config: Config) -> Iterator[Finding]:
         )
 
 
-def joints_wrong(config: Config) -> Iterator[Finding]:
+def joints_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find a [KINS] that is not the module's."""
     letters, asked = face_joints(config.ini.get), config.ini.get("KINS", "KINEMATICS")
     if not letters:
@@ -126,7 +126,7 @@ def joints_wrong(config: Config) -> Iterator[Finding]:
         )
 
 
-def axes_wrong(config: Config) -> Iterator[Finding]:
+def axes_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find axes that are not those of the face."""
     letters = face_joints(config.ini.get)
     if not letters:
@@ -149,7 +149,7 @@ def axes_wrong(config: Config) -> Iterator[Finding]:
             )
 
 
-def limits_wrong(config: Config) -> Iterator[Finding]:
+def limits_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find limits on the face that are not the slide's."""
     if "X" not in face_joints(config.ini.get) or any(axes_wrong(config)):
         return
@@ -184,7 +184,7 @@ def limits_wrong(config: Config) -> Iterator[Finding]:
         )
 
 
-def hal_wrong(config: Config) -> Iterator[Finding]:
+def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find the guard's HAL file missing, too early or in another's way."""
     files = hal_files(config)
     guards = [number for number, lines in enumerate(files) if names(lines, REQUEST)]
@@ -206,16 +206,24 @@ def hal_wrong(config: Config) -> Iterator[Finding]:
     yield from hal_in_the_way(others)
 
 
-def hal_in_the_way(lines: list[HalLine]) -> Iterator[Finding]:
+def pins_taken(
+    line: HalLine, pins: Iterable[str], owner: str, cure: str
+) -> Iterator[ConfigFinding]:
+    """Find pins in a line that ``owner`` says whose they are."""
+    for pin in pins:
+        if pin in line.text.split():
+            yield problem("pin-taken", f"{line.place}: {line.text}: {pin} {owner}", cure)
+
+
+def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
     """Find what other HAL files do that the guard's cannot live with."""
     for text, place in lines:
-        for pin in PINS:
-            if pin in text.split():
-                yield problem(
-                    "pin-taken",
-                    f"{place}: {text}: {pin} is the kinematics'",
-                    "use another pin here, or change it in a copy of polar_kinematics.hal",
-                )
+        yield from pins_taken(
+            HalLine(text, place),
+            PINS,
+            "is the kinematics'",
+            "use another pin here, or change it in a copy of polar_kinematics.hal",
+        )
         module = LOADS_KINEMATICS.match(text)
         if module and module[1] != FACE_KINEMATICS:
             yield problem(
@@ -254,7 +262,7 @@ def names(lines: list[HalLine], *words: str) -> bool:
     return any(word in line.text for line in lines for word in words)
 
 
-def offset_wrong(config: Config) -> Iterator[Finding]:
+def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find kinematics that have the tool elsewhere beside the X line than G12.1 has it."""
     try:
         wanted_offset = settings_from_lines(config.ini.lines).polar_tool_offset
@@ -293,7 +301,7 @@ def all_hal(config: Config) -> list[HalLine]:
     return [*lines, *(HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD"))]
 
 
-def abort_wrong(config: Config) -> Iterator[Finding]:
+def abort_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find a machine that an abort leaves on the face."""
     off = [remap.code for _, remap in config.remaps if "polar_off" in remap.handlers]
     found = config.ini.get("RS274NGC", "ON_ABORT_COMMAND")
@@ -318,7 +326,7 @@ RULES = (
 )
 
 
-def kinematics_findings(config: Config) -> Iterator[Finding]:
+def kinematics_findings(config: Config) -> Iterator[ConfigFinding]:
     """Yield what is wrong with the face's kinematics, where a config asks for them."""
     for rule in RULES if wanted(config) else ():
         yield from rule(config)

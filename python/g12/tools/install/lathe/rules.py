@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import Finding, note, warning
+from g12.tools.install.config.findings import ConfigFinding, note, warning
 from g12.tools.install.config.forms import screen_of
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.kinematics_rules import uses_them
@@ -28,7 +28,7 @@ def turns_with_c(geometry: str) -> bool:
     return "C" in letters and letters.find("C") < letters.find("X")
 
 
-def without_geometry(config: Config) -> Iterator[Finding]:
+def without_geometry(config: Config) -> Iterator[ConfigFinding]:
     """Find a screen that draws sections as if C did not turn the part."""
     found = config.ini.get("DISPLAY", "GEOMETRY") or ""
     if screen_of(config) not in WITH_PREVIEW or turns_with_c(found):
@@ -41,7 +41,7 @@ def without_geometry(config: Config) -> Iterator[Finding]:
     )
 
 
-def unwinding_c(config: Config) -> Iterator[Finding]:
+def unwinding_c(config: Config) -> Iterator[ConfigFinding]:
     """Find a C axis that goes back every turn that it has made."""
     low, high = (config.ini.number("AXIS_C", key, default)
                  for key, default in (("MIN_LIMIT", -1e99), ("MAX_LIMIT", 1e99)))  # fmt: skip
@@ -55,7 +55,7 @@ def unwinding_c(config: Config) -> Iterator[Finding]:
         )
 
 
-def never_set_g28(config: Config) -> Iterator[Finding]:
+def never_set_g28(config: Config) -> Iterator[ConfigFinding]:
     """Find a position of G28 that was never set: it is machine zero."""
     path = config.ini.file("RS274NGC", "PARAMETER_FILE")
     lines = path.read_text(errors="replace").splitlines() if path and path.is_file() else []
@@ -78,7 +78,7 @@ def is_set(value: str) -> bool:
         return True
 
 
-def lathe_findings(config: Config, there: Iterable[str]) -> Iterator[Finding]:
+def lathe_findings(config: Config, there: Iterable[str]) -> Iterator[ConfigFinding]:
     """Yield what surprises on a lathe with C that has some features."""
     if "C" in config.ini.axes and not set(ON_A_LATHE).isdisjoint(there):
         yield from without_geometry(config)

@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 from g12.tools.errors import UsageError
 from g12.tools.install.config.features import ROOT
-from g12.tools.install.config.findings import Finding, problem
+from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.kinematics_lines import every_hal_line, joints
-from g12.tools.install.lathe.kinematics_rules import HalLine, hal_files, names
+from g12.tools.install.lathe.kinematics_rules import HalLine, hal_files, names, pins_taken
 
 PAGE = "configs/spindle_c.md"
 OWN_HAL = "configs/include/spindle_c.hal"
@@ -124,7 +124,7 @@ def signals(lines: Iterable[HalLine]) -> dict[str, str]:
     return found
 
 
-def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[Finding]:
+def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFinding]:
     """Yield what keeps `install` from putting it in."""
     if pins is None:
         yield problem(
@@ -147,7 +147,10 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[Finding]:
                 f"connect the spindle's encoder first: G33 has to work ({PAGE})",
             )
     yield from modules_twice(lines)
-    yield from pins_taken(lines)
+    for line in lines:
+        yield from pins_taken(
+            line, TAKEN, "is what the spindle becomes C by", "use another pin here"
+        )
     yield from travel_missing(config)
     yield from homing_moves(config)
 
@@ -178,14 +181,14 @@ def spindle_sections(config: Config, pins: Pins, prefix: str) -> dict[str, list[
 # What check finds.
 
 
-def spindle_c_findings(config: Config) -> Iterator[Finding]:
+def spindle_c_findings(config: Config) -> Iterator[ConfigFinding]:
     """Yield what is wrong with a spindle that becomes C, where a REMAP line asks for it."""
     if any(PROLOG in remap.handlers for _, remap in config.remaps):
         for rule in RULES:
             yield from rule(config)
 
 
-def keys_missing(config: Config) -> Iterator[Finding]:
+def keys_missing(config: Config) -> Iterator[ConfigFinding]:
     """Find keys of [SPINDLE_C] that the HAL file reads, and signals that are not the spindle's."""
     needed = ("JOINT", *SIGNALS, *(key for key in NUMBERS if key != "TIMEOUT"))
     missing = [key for key in needed if not config.ini.get("SPINDLE_C", key)]
@@ -204,7 +207,7 @@ def keys_missing(config: Config) -> Iterator[Finding]:
             )
 
 
-def not_connected(config: Config) -> Iterator[Finding]:
+def not_connected(config: Config) -> Iterator[ConfigFinding]:
     """Find HAL files and signals of the drive that are not connected."""
     if not any(names(lines, CONNECTS) for lines in hal_files(config)):
         yield problem(
@@ -226,7 +229,7 @@ def not_connected(config: Config) -> Iterator[Finding]:
         )
 
 
-def feedback_wrong(config: Config) -> Iterator[Finding]:
+def feedback_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find a joint C whose feedback is not the one that follows while the spindle turns."""
     joint = config.ini.get("SPINDLE_C", "JOINT")
     pin = f"joint.{joint}.motor-pos-fb"
@@ -239,7 +242,7 @@ def feedback_wrong(config: Config) -> Iterator[Finding]:
             )
 
 
-def index_shared(config: Config) -> Iterator[Finding]:
+def index_shared(config: Config) -> Iterator[ConfigFinding]:
     """Find a joint on the spindle's index."""
     found = signals(every_hal_line(config))
     index = found.get(SIGNALS["INDEX"][0])
@@ -253,7 +256,7 @@ def index_shared(config: Config) -> Iterator[Finding]:
             )
 
 
-def travel_missing(config: Config) -> Iterator[Finding]:
+def travel_missing(config: Config) -> Iterator[ConfigFinding]:
     """Find an axis C without the limits that its travel goes back to."""
     missing = [key for key in ("MIN_LIMIT", "MAX_LIMIT") if not config.ini.get("AXIS_C", key)]
     if missing:
@@ -264,7 +267,7 @@ def travel_missing(config: Config) -> Iterator[Finding]:
         )
 
 
-def homing_moves(config: Config) -> Iterator[Finding]:
+def homing_moves(config: Config) -> Iterator[ConfigFinding]:
     """Find a joint C that homes by moving: there it is no C yet."""
     joint = f"JOINT_{joints(config).find('C')}"
     for key in ("HOME_SEARCH_VEL", "HOME_LATCH_VEL"):
@@ -277,7 +280,7 @@ def homing_moves(config: Config) -> Iterator[Finding]:
             )
 
 
-def modules_twice(lines: Iterable[HalLine]) -> Iterator[Finding]:
+def modules_twice(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
     """Find modules that other HAL files load too."""
     for text, place in lines:
         module = MODULES.match(text)
@@ -297,23 +300,14 @@ def components_of(module: str) -> str:
     return re.search(rf"^loadrt {module} names=(\S+)", text, re.MULTILINE)[1]
 
 
-def pins_taken(lines: Iterable[HalLine]) -> Iterator[Finding]:
-    """Find pins that are used otherwise."""
-    for text, place in lines:
-        for pin in TAKEN:
-            if pin in text.split():
-                yield problem(
-                    "pin-taken",
-                    f"{place}: {text}: {pin} is what the spindle becomes C by",
-                    "use another pin here",
-                )
-
-
-def others_in_the_way(config: Config) -> Iterator[Finding]:
+def others_in_the_way(config: Config) -> Iterator[ConfigFinding]:
     """Find modules and pins of other HAL files that spindle_c.hal needs for itself."""
     lines = other_lines(config)
     yield from modules_twice(lines)
-    yield from pins_taken(lines)
+    for line in lines:
+        yield from pins_taken(
+            line, TAKEN, "is what the spindle becomes C by", "use another pin here"
+        )
 
 
 def other_lines(config: Config) -> list[HalLine]:

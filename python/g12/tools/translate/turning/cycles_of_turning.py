@@ -19,6 +19,7 @@ from g12.tools.translate.blocks.modal import (
 )
 from g12.tools.translate.blocks.places import FIELDS
 from g12.tools.translate.rules.polar import own_feed_ended
+from g12.tools.translate.turning.feed_of_c import number_of_feed
 from g12.tools.translate.turning.given_words import (
     named_blocks,
     read_contour,
@@ -272,13 +273,8 @@ def one_thread_pass(draft: Draft) -> None:
 
 def lead_of(draft: Draft) -> float:
     """Return the lead of a thread, which is the F word."""
-    try:
-        lead = float(draft.sure("feed", "a thread takes F as its lead"))
-    except ValueError:
-        lead = 0.0
-    if lead <= 0:
-        raise NotTranslated("a thread needs F, its lead, as a number")
-    return lead
+    missing = "a thread needs F, its lead, as a number"
+    return number_of_feed(draft, "a thread takes F as its lead", missing)
 
 
 def chamfer_of(draft: Draft) -> float:

@@ -32,7 +32,9 @@ def feed_of_c(draft: Draft) -> None:
     if (turned and along and state.feed_mode != "G93") or state.held:
         check_rule(draft, rule)
         path = turned if rule == "degrees" else hypot(turned, along)
-        write_inverse_time(draft, axes, path / number_of_feed(draft))
+        missing = "C beside a slide at a feed: F must be a number here: write it"
+        feed = number_of_feed(draft, "C beside a slide", missing)
+        write_inverse_time(draft, axes, path / feed)
 
 
 def is_feed(draft: Draft) -> bool:
@@ -79,14 +81,14 @@ def check_rule(draft: Draft, rule: str) -> None:
         raise NotTranslated("C beside an arc: write the arc as lines, or in polar mode")
 
 
-def number_of_feed(draft: Draft) -> float:
-    """Return F, which must be a number above 0."""
+def number_of_feed(draft: Draft, user: str, missing: str) -> float:
+    """Return F, which ``user`` needs as a number above 0; refuse another as ``missing``."""
     try:
-        feed = float(draft.sure("feed", "C beside a slide"))
+        feed = float(draft.sure("feed", user))
     except ValueError:
         feed = 0.0
     if feed <= 0:
-        raise NotTranslated("C beside a slide at a feed: F must be a number here: write it")
+        raise NotTranslated(missing)
     return feed
 
 
