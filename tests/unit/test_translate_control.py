@@ -8,7 +8,7 @@ from g12.tools.translate.listing import listing_of
 
 NAMES = [
     "fanuc-lathe", "fanuc-lathe-b", "fanuc-lathe-c", "fanuc-mill", "haas-lathe", "haas-mill",
-    "mazak-lathe", "mitsubishi-mill", "okuma-lathe", "yasnac-mill",
+    "mazak-lathe", "mitsubishi-lathe", "mitsubishi-mill", "okuma-lathe", "yasnac-mill",
 ]  # fmt: skip
 
 

@@ -256,7 +256,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (LATHE, "T3", "T3 has 1 digits"),
         (LATHE, "T30303", "T30303 has 5 digits"),
         (LATHE, "G0 X1. U1.", "U1. and X in one block"),
-        (LATHE, "G81 X1. Z-1.", "G81: a drilling cycle of a lathe"),
+        (LATHE, "G81 X1. Z-1.", "G81: not a drilling cycle of this control"),
         (LATHE, "G50", "G50 needs S, a speed limit, or X and Z"),
         (LATHE, "G12.1 X5.", "G12.1 moves nothing"),
         (LATHE, "G107", "G107 needs C"),

@@ -24,7 +24,7 @@ from g12.tools.translate.rules import (
     subprograms,
     tools,
 )
-from g12.tools.translate.turning import corners, cycles_of_turning, feed_of_c
+from g12.tools.translate.turning import corners, cycles_of_turning, drilling, feed_of_c
 
 WORD_RULES = (
     codes.keep_as_comments,
@@ -50,6 +50,7 @@ WORD_RULES = (
     feed_of_c.feed_of_c,
     polar.feed_again,
     motion.exact_stop,
+    drilling.drilling_of_lathe,
     cycles_of_turning.turning_cycle,
     corners.direct_drawing,
     increments.incremental_words,

@@ -21,6 +21,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 CONTROLS = Path(__file__).parents[1] / "controls"
+HOLES = (  # cycles of a lathe
+    "hole", "bore", "face tap right", "face tap left",
+    *(f"{where} {what}" for where in ("face", "side")
+      for what in ("hole", "bore", "tap", "live tap right", "live tap left")),
+)  # fmt: skip
 MEANINGS = {
     "G": (
         "dwell", "polar on", "polar off", "cylinder", "speed limit or origin", "local offset",
@@ -29,6 +34,7 @@ MEANINGS = {
         "pecking along Z", "pecking along X", "turning pass", "facing pass", "thread pass",
         "threading", "thread",
         "circle of holes", "arc of holes", "row of holes", "turned", "turned back",
+        *HOLES,
     ),
     "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
         "no thread chamfer", "rigid tapping",
@@ -74,6 +80,11 @@ TABLES: dict[str, dict[str, object]] = {
         **{f"{name}_{unit}": float for unit in ("mm", "inch")
            for name in ("depth", "retract", "thread_least", "thread_allowance")},
     },
+    "holes": {
+        "r": ("from start", "level", "none"), "q": ("increments", "lengths"),
+        "peck_word": ("Q", "D"), "out": ("full", "chip"), "clamp": str, "spindle": int,
+    },
+    "c_axis": {"on": str, "off": str},
     "words": None,
     "g_codes": None,
     "m_codes": None,

@@ -77,7 +77,8 @@ def follow_places(draft: Draft) -> None:
     shifted = codes & SHIFTING or draft.start.units != draft.state.units
     turret = draft.control.is_lathe and "T" in draft.letters()
     changes = any(w.letter == "M" and w.kind == "number" and w.code == "M6" for w in draft.words)
-    other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or draft.state.cycle
+    drilling = draft.state.cycle and not draft.control.is_lathe
+    other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or drilling
     drills = follow_drilling(draft) if not codes - FOLLOWED else False
     if drills:
         return

@@ -22,7 +22,9 @@ NEEDS = {"G73": "Q", "G83": "Q", "G82": "P", "G86": "P", "G89": "P"}
 
 
 def drilling_cycle(draft: Draft) -> None:
-    """Complete the words of a cycle, or end it."""
+    """Complete the words of a cycle, or end it; those of a lathe are moves (`turning/drilling`)."""
+    if draft.control.is_lathe:
+        return
     cancelled = draft.meanings.pop("cancel cycle", None)
     code = draft.meanings.pop("drilling cycle", None)
     if cancelled:
@@ -52,8 +54,6 @@ def cancel(draft: Draft) -> None:
 
 def begin(draft: Draft, code: str) -> None:
     """Begin a cycle with what the block says and what an earlier one was given."""
-    if draft.control.is_lathe:
-        raise NotTranslated(f"{code} of a lathe is not translated: write the drilling as G1 and G0")
     motions = draft.take_codes(MOTIONS)
     if motions:
         draft.change(motion=motions[0])

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from decimal import Decimal
 
+from g12.tools.translate.blocks.control import HOLES
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
@@ -16,6 +17,7 @@ COUNTING = {  # words of turning cycles that count or name, or are read with the
     "threading": "PQA",
     **dict.fromkeys(("finishing", "pecking along Z", "pecking along X", "thread pass"), "PQ"),
     **dict.fromkeys(("roughing along Z", "roughing along X", "thread"), "PQ"),
+    **dict.fromkeys(HOLES, "QD"),
 }
 UNIT = {"G20": "inch", "G21": "mm"}
 
@@ -34,7 +36,7 @@ def whole_units(draft: Draft) -> None:
 def class_of(draft: Draft, word: ForeignWord) -> str:
     """Return what a word's number measures, "" if it counts or names something."""
     letter = word.letter
-    if any(letter in COUNTING.get(name, "") for name in draft.meanings):
+    if any(letter in COUNTING.get(name, "") for name in (*draft.meanings, draft.state.cycle)):
         return ""
     if letter == "R" and "P" in draft.letters() and "roughing along" in " ".join(draft.meanings):
         return ""  # the type of a Haas's contour
@@ -56,7 +58,7 @@ def is_arc(draft: Draft) -> bool:
 
 def is_cycle(draft: Draft) -> bool:
     """Tell whether the block drills."""
-    return "drilling cycle" in draft.meanings or bool(draft.state.cycle)
+    return bool({"drilling cycle", *HOLES} & set(draft.meanings)) or bool(draft.state.cycle)
 
 
 def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:

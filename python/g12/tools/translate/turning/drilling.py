@@ -1,0 +1,347 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Drilling cycles of a lathe, in the face and in the side, with C: written out as moves.
+
+LinuxCNC's own cycles take no C. Each block of a cycle becomes
+
+1. a stop; rapids to X (in the side: Z) and C at the level where the cycle began; a stop
+2. C's clamp closed, if the block has its M code
+3. by rapid to R; at F to the end, in pecks; dwell; back to R by rapid, at F or as a tap
+4. C's clamp open; by rapid to the level of the beginning, under G99 of systems B and C not
+
+G4 stops the tool where it must be before another axis moves, and at the end of a hole: LinuxCNC
+would blend the moves. Where a control's R is not understood as a level nearer to the part, F begins
+where the tool stands: that is right for every reading. A level is a word's number: of X a diameter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil
+from typing import NamedTuple
+
+from g12.tools.translate.blocks.control import HOLES
+from g12.tools.translate.blocks.draft import PARTNERS, Draft, line_as_word
+from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.places import FIELDS, known_place, value_text
+from g12.tools.translate.rules.codes import is_own, mapped
+from g12.tools.translate.rules.cycles import repeats_of, seconds_of_dwell
+from g12.tools.translate.rules.decimals import in_units
+from g12.tools.translate.rules.motion import MOTIONS
+from g12.tools.translate.turning.given_words import (
+    start_point,
+    stored_setting,
+    take_increments,
+    take_number,
+)
+
+DRILL, BORE, TAP = "drill", "bore", "tap"
+POSITION = frozenset("XZCUWHR")
+STEPS = {axis: letter for letter, axis in PARTNERS.items()}
+OWN_M_CODES = frozenset(f"M{number}" for number in range(10))  # LinuxCNC's, beside a cycle
+MOST_PECKS, MOST_REPEATS = 1000, 360
+STOP = "G4 P0"
+LEAST = 1e-6  # of a peck that is no rounding
+
+
+class LatheCycle(NamedTuple):
+    """What a code drills: along X (``side``; None: the words I and K tell), how it comes out.
+
+    ``start`` is the M code by which the control itself starts the tap's spindle; ``live``: which
+    must be the live tool's.
+    """
+
+    side: bool | None
+    way: str
+    start: str = ""
+    live: bool = False
+
+
+def lathe_cycle(meaning: str) -> LatheCycle:
+    """Return what a meaning of the control's file, as ``face live tap left``, drills."""
+    words = meaning.split()
+    way = next((way for way in (BORE, TAP) if way in words), DRILL)
+    start = {"right": "M3", "left": "M4"}.get(words[-1], "")
+    return LatheCycle({"side": True, "face": False}.get(words[0]), way, start, "live" in words)
+
+
+class HoleLevels(NamedTuple):
+    """Where a hole begins and ends along its axis: the tool's level between holes, R, the end."""
+
+    axis: str
+    top: float
+    r: float
+    end: float
+
+    @property
+    def toward(self) -> int:
+        """1 where the tool goes into the part in the axis's direction, else -1."""
+        return 1 if self.end > self.top else -1
+
+    def pecked(self, depth: float, clear: float, full: bool) -> Iterator[str]:
+        """Yield the moves down to the end, each ``depth`` deeper (0: at once)."""
+        scale = self.toward * (2 if self.axis == "X" else 1)
+        way = abs(self.end - self.r) / abs(scale)
+        count = ceil((way - LEAST) / depth) if depth else 1
+        if count > MOST_PECKS:
+            raise NotTranslated(f"pecks of {depth:g} are {count} in one hole: at most {MOST_PECKS}")
+        for peck in range(1, count):
+            there = self.r + peck * depth * scale
+            yield f"G1 {self.word(there)}"
+            yield from [f"G0 {self.word(self.r)}"] * full
+            yield f"G0 {self.word(there - min(clear, depth / 2) * scale)}"
+        yield f"G1 {self.word(self.end)}"
+
+    def word(self, level: float) -> str:
+        """Return the word that goes to a level."""
+        return f"{self.axis}{value_text(level)}"
+
+
+def drilling_of_lathe(draft: Draft) -> None:
+    """Write the holes of a lathe's cycle, begin and end it."""
+    if not draft.control.is_lathe:
+        return
+    cancelled = draft.meanings.pop("cancel cycle", None)
+    if cancelled:
+        draft.comments.append(cancelled.code)
+        draft.change(cycle=UNKNOWN, cycle_words=())
+    meaning = next((name for name in draft.meanings if name in HOLES), "")
+    if not meaning and draft.state.cycle:
+        meaning = repeated_cycle(draft)
+    if meaning:
+        check_drilling_modes(draft)
+        drill_hole(draft, meaning)
+
+
+def repeated_cycle(draft: Draft) -> str:
+    """Return the cycle that a block without its code repeats, "" if it drills nothing."""
+    codes = set(draft.codes())
+    if codes & MOTIONS or draft.meanings:
+        draft.change(cycle=UNKNOWN, cycle_words=())
+    elif codes & CONSUMERS:
+        draft.change(cycle=UNSURE, cycle_words=UNSURE)
+    elif draft.letters() & POSITION:
+        return draft.sure("cycle", "a drilling cycle may be on: write G80 or its code")
+    return ""
+
+
+def check_drilling_modes(draft: Draft) -> None:
+    """Refuse to drill in a mode that is in the way."""
+    if draft.state.polar != "off":
+        raise NotTranslated("a drilling cycle in a section: end the section before it")
+    if draft.sure("distance", "a drilling cycle") != "G90":
+        raise NotTranslated("a drilling cycle of a lathe is translated under G90, with U W H")
+
+
+def drill_hole(draft: Draft, meaning: str) -> None:
+    """Write the holes of one block."""
+    begins = meaning in draft.meanings
+    code = draft.meanings.pop(meaning, None)
+    kept = {}
+    if draft.state.cycle == meaning:
+        kept = dict(draft.sure("cycle_words", "a drilling cycle takes what was said before"))
+    cycle = lathe_cycle(meaning)
+    side = shift_word(draft, kept) if cycle.side is None else cycle.side
+    times = holes_in_block(draft)
+    clamp, first = clamp_of(draft), [*spindle_on(draft, cycle), STOP] if begins else []
+    seconds_of_dwell(draft)
+    dwell = draft.take("P")
+    depth = peck_of(draft)
+    kept["dwell"] = dwell.value if dwell else kept.get("dwell", "")
+    kept["peck"] = kept.get("peck", 0.0) if depth is None else depth
+    levels = hole_levels(draft, "X" if side else "Z", kept)
+    bottom = down_and_out(draft, levels, cycle, kept)
+    other, places = "Z" if side else "X", places_of(draft, times)
+    there, on = ways_to_holes(draft, other)
+    check_nothing_else(draft, code)
+    stays = draft.sure("retract", "a cycle returns by G98 or G99") == "G99"
+    top = levels.r if stays else levels.top
+    hole = [STOP, *clamp[:1], *[f"G0 {levels.word(levels.r)}"] * (levels.r != levels.top), *bottom]
+    hole += [*clamp[1:], *[f"G0 {levels.word(top)}"] * (top != levels.r), STOP]
+    if not times and (there or on):
+        raise NotTranslated("K0 or L0 only stores the cycle: go to X and C in another block")
+    lines = [*first, *there, *on, *hole, *[*on, *hole] * (times - 1)] if times else first
+    put_lines(draft, lines)
+    kept |= {"top": levels.top, "r": levels.r, "end": levels.end, "side": side}
+    places[FIELDS[levels.axis]] = top if times else getattr(draft.start, FIELDS[levels.axis])
+    draft.change(
+        cycle=meaning, cycle_words=tuple(sorted(kept.items())), own_motion=UNSURE, **places
+    )
+
+
+def put_lines(draft: Draft, lines: list[str]) -> None:
+    """Write lines behind the block's other words."""
+    if draft.state.own_distance == "G91":
+        lines = ["G90", *lines]
+        draft.change(own_distance=AS_PROGRAMMED)
+    if draft.alone() and lines and not draft.before:
+        draft.words.append(line_as_word(lines[0]))
+        lines = lines[1:]
+    draft.after += lines
+
+
+def shift_word(draft: Draft, kept: dict) -> bool:
+    """Tell whether a hole lies in the side, by I and K: how far the tool goes by rapid first."""
+    shifts = [word for letter in "IK" if (word := draft.take(letter))]
+    if len(shifts) > 1 or not (shifts or "side" in kept):
+        raise NotTranslated(
+            "a drilling cycle needs I (a hole in the side) or K (in the face), and one of them"
+        )
+    draft.comments += [f"{word.text}: F begins where the tool stands" for word in shifts]
+    return shifts[0].letter == "I" if shifts else kept["side"]
+
+
+def holes_in_block(draft: Draft) -> int:
+    """Return how many holes a block drills."""
+    times = int(repeats_of(draft) or 1)
+    if times > MOST_REPEATS:
+        raise NotTranslated(f"{times} holes in one block: at most {MOST_REPEATS}")
+    return times
+
+
+def clamp_of(draft: Draft) -> list[str]:
+    """Take the code of C's clamp out; return the lines that close and open it."""
+    codes = str(draft.control.value("holes", "clamp")).split()
+    for word in [w for w in draft.words if w.letter == "M" and w.kind == "number"]:
+        if word.code in codes[:1]:
+            draft.words = [other for other in draft.words if other is not word]
+            pair = (mapped(draft, ForeignWord("M", code[1:])) for code in codes)
+            return [" ".join(one.text for one in words) for words in pair]
+        if word.code not in OWN_M_CODES and is_own(draft, word):
+            raise NotSaid(
+                f"{word.code} in the block of a drilling cycle: if it clamps C, say so and by which"
+                " code C is free again; if not, write it in a block of its own",
+                "holes",
+                f'clamp = "{word.code} M…"',
+            )
+    return []
+
+
+def spindle_on(draft: Draft, cycle: LatheCycle) -> list[str]:
+    """Return the line that starts a tap's spindle, where the control does that by itself."""
+    if not cycle.start:
+        return []
+    speed = draft.take("S")
+    return [" ".join([*([speed.text] if speed else []), cycle.start, *tap_spindle(draft, cycle)])]
+
+
+def tap_spindle(draft: Draft, cycle: LatheCycle) -> list[str]:
+    """Return the word that names LinuxCNC's spindle of a tap, if it is not the main spindle."""
+    number = draft.control.value("holes", "spindle", 0)
+    if cycle.live and not number:
+        raise NotSaid(
+            "a live tap: which spindle of LinuxCNC's drives it? say spindle = 1 under [holes]",
+            "holes",
+            "spindle = 1 # of LinuxCNC's, the live tool",
+        )
+    return [f"${number}"] if number and (cycle.live or not cycle.start) else []
+
+
+def peck_of(draft: Draft) -> float | None:
+    """Take the depth of a peck out, None if the block has none."""
+    letter = str(draft.control.value("holes", "peck_word", "Q"))
+    word = next((w for w in draft.words if w.letter == letter), None)
+    if word is None:
+        return None
+    lengths = draft.control.value("holes", "q") != "increments"
+    if lengths and word.kind == "number" and "." not in word.value:
+        draft.replace(word, in_units(draft, word, "length"))
+    return abs((take_number if lengths else take_increments)(draft, letter))
+
+
+def hole_levels(draft: Draft, axis: str, kept: dict) -> HoleLevels:
+    """Take the words of the hole's axis and R out; return its levels."""
+    if "top" not in kept or kept.get("side", axis == "X") != (axis == "X"):
+        start = start_point(draft)
+        kept["top"] = 2 * start.imag if axis == "X" else start.real
+    top, r = kept["top"], take_number(draft, "R")
+    own, step = take_number(draft, axis), take_number(draft, STEPS[axis])
+    kind = draft.control.value("holes", "r", "none")
+    if step is not None and (axis == "X" or kind != "from start"):
+        raise NotTranslated(f"{STEPS[axis]} as the end of a hole: write {axis}, where it ends")
+    end = own if own is not None else kept.get("end")
+    if step is not None:
+        end = top + step  # only its direction counts for R
+    if end is None or end == top:
+        raise NotTranslated(f"a drilling cycle needs {axis}, where the hole ends, not at {top:g}")
+    levels = HoleLevels(axis, top, kept.get("r", top), end)
+    if r is not None:
+        levels = with_r(draft, levels, r, kind)
+    if step is not None:
+        levels = levels._replace(end=levels.r + step)
+    if (levels.end - levels.r) * levels.toward <= 0:
+        raise NotTranslated(f"R lies beyond {levels.word(levels.end)}, where the hole ends")
+    return levels
+
+
+def with_r(draft: Draft, levels: HoleLevels, r: float, kind: str) -> HoleLevels:
+    """Return levels with what R says: a level, or the way from where the tool stands."""
+    if kind == "level":
+        outer = levels.top if (r - levels.top) * levels.toward > 0 else r
+        return levels._replace(top=outer, r=r)
+    if kind == "none":
+        raise NotTranslated(f"R{r:g} of a drilling cycle: write {levels.axis}, where the hole ends")
+    if r * levels.toward < 0:
+        draft.comments.append(f"R{r:g}: F begins where the tool stands")
+        return levels._replace(r=levels.top)
+    return levels._replace(r=levels.top + r * (2 if levels.axis == "X" else 1))
+
+
+def down_and_out(draft: Draft, levels: HoleLevels, cycle: LatheCycle, kept: dict) -> list[str]:
+    """Return the moves from R to the end and back to R."""
+    if cycle.way == TAP:
+        pitch = f"K{value_text(tap_pitch(draft))}"
+        return [" ".join(["G33.1", levels.word(levels.end), pitch, *tap_spindle(draft, cycle)])]
+    full = draft.control.value("holes", "out", "full") == "full"
+    clear = stored_setting(draft, "retract") or kept["peck"] / 2
+    lines = list(levels.pecked(kept["peck"] if cycle.way == DRILL else 0.0, clear, full))
+    out = f"{'G1' if cycle.way == BORE else 'G0'} {levels.word(levels.r)}"
+    return [*lines, f"G4 P{kept['dwell'] or 0}", out]
+
+
+def tap_pitch(draft: Draft) -> float:
+    """Return the pitch of a tap: F per revolution, or F over the S of its block."""
+    speed = next((w.value for w in draft.words if w.letter == "S"), "")
+    per_turn = draft.sure("feed_mode", "the pitch of a tap hangs on F") == "G95"
+    try:
+        pitch = float(draft.sure("feed", "the pitch of a tap hangs on F"))
+        return pitch if per_turn else pitch / float(speed)
+    except (ValueError, ZeroDivisionError):
+        raise NotTranslated(
+            "a tap needs its pitch as a number: F per revolution (G99), or F and S in its block"
+        ) from None
+
+
+def ways_to_holes(draft: Draft, other: str) -> tuple[list[str], list[str]]:
+    """Take the words of the place out; return the lines to the first hole, and those of a step."""
+    own = (other, "C")
+    there = [word.text for axis in own if (word := draft.take(axis))]
+    steps = [word._replace(letter=a).text for a in own if (word := draft.take(STEPS[a]))]
+    if {word[0] for word in there} & {word[0] for word in steps}:
+        raise NotTranslated("a word of an axis and its increment in one block")
+    step_lines = [" ".join(["G91", "G0", *steps]), "G90"] if steps else []
+    return [" ".join(["G0", *there])] if there else [], step_lines
+
+
+def places_of(draft: Draft, times: int) -> dict[str, float | str]:
+    """Return where X, Z and C are after a block, by the names of their modes."""
+    found = {field: getattr(draft.start, field) for field in FIELDS.values()}
+    for word in draft.words:
+        if word.letter in ("X", "Z", "C"):
+            found[FIELDS[word.letter]] = word.number if word.kind == "number" else UNKNOWN
+        elif word.letter in PARTNERS:
+            axis = PARTNERS[word.letter]
+            at, is_number = known_place(draft.start, axis), word.kind == "number"
+            found[FIELDS[axis]] = at + times * word.number if at is not None and is_number else ""
+    return found
+
+
+def check_nothing_else(draft: Draft, code: ForeignWord | None) -> None:
+    """Refuse words that a drilling cycle of a lathe is not known to have."""
+    odd = sorted(draft.letters() - set("NGMSTF"))
+    if odd:
+        name = code.code if code else "a drilling cycle"
+        raise NotTranslated(
+            f"{odd[0]} in {name} is not translated: write the hole as G0 and G1, or take it out"
+        )

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Drilling cycles of lathes with C: the holes that their moves drill, and what is refused."""
+
+import json
+
+import numpy as np
+import pytest
+
+from g12.tools.commands import translate
+from g12.tools.translate.blocks.control import read_control
+from g12.tools.translate.program import translate_program
+from support.foreign_programs import near, tracer_of
+from support.sim_machines import SIM
+
+X, Z, C = 0, 2, 5
+HEADS = {
+    "fanuc-lathe": "G21 G98 G97 S500 M3\nG0 X60. Z10. C0\n",
+    "fanuc-lathe-b": "G21 G94 G97 S500 M3\nG0 X60. Z10. C0\n",
+    "haas-lathe": "G21 G98 G97 S500 M3\nG0 X60. Z10. C0\n",
+    "okuma-lathe": "G21 G94 G97 S500 M3\nG0 X60. Z10. C0\n",
+}
+
+
+@pytest.fixture(scope="module", params=["fanuc-lathe"])
+def tracer(request):
+    with tracer_of(request.param) as opened:
+        yield opened
+
+
+def control_of(folder, name, **tables):
+    """Return a control of one's own over a shipped one, with some tables."""
+    lines = [f'based_on = "{name}"']
+    for table, keys in tables.items():
+        lines += [f"[{table}]", *(f"{key} = {json.dumps(value)}" for key, value in keys.items())]
+    (folder / "own.toml").write_text("\n".join(lines))
+    return read_control(str(folder / "own.toml"))
+
+
+def translated(text, control):
+    name = control.name if control.name in HEADS else "fanuc-lathe"
+    return translate_program(f"%\n{HEADS[name]}{text}\nM30\n", control)
+
+
+def traced(tracer, text, control):
+    result = translated(text, control)
+    assert result.refused == []
+    found = tracer.trace_text(result.text, alone=True)
+    assert found.error is None, found.error
+    return found
+
+
+def holes(found, axis=Z):
+    """Return for each hole: X (a radius), Z and C of its end, and the level where F begins.
+
+    Neither C nor the other slide moves but in rapids, above all of F.
+    """
+    ends = []
+    other = X if axis == Z else Z
+    low = max(m.start[axis] for m in found.moves if m.kind == "feed")
+    start = next(n for n, m in enumerate(found.moves) if m.start[X] == near(30))
+    for move in found.moves[start:]:
+        across = (move.start[other], move.start[C]) != (move.end[other], move.end[C])
+        if across:
+            assert move.kind == "rapid" and min(move.start[axis], move.end[axis]) >= low - 1e-9
+        if move.kind == "feed" and move.end[axis] < move.start[axis]:
+            place = (round(move.end[other], 6), round(move.end[C], 6))
+            if not ends or ends[-1][0] != place:
+                ends.append((place, move.start[axis], []))
+            ends[-1][2].append(move.end[axis])
+    return [
+        (*((place[0], min(deep)) if axis == Z else (min(deep), place[0])), place[1], top)
+        for place, top, deep in ends
+    ]
+
+
+def test_the_face_in_pecks_with_modal_blocks(tracer):
+    text = "G83 X40. C0. Z-12. R-5. Q3000 F120.\nC90.\nH30. K5\nG80\nX50."
+    found = traced(tracer, text, read_control("fanuc-lathe"))
+    angles = (0, 90, *range(120, 241, 30))
+    assert holes(found) == [near((20, -12, c, 5)) for c in angles]
+    one = [m.end[Z] for m in found.moves if m.kind == "feed" and not m.end[C]]
+    assert one == near((2, -1, -4, -7, -10, -12))
+    assert [m.feed for m in found.moves if m.kind == "feed"] == near([120] * 42)
+    assert found.moves[-1].kind == "rapid" and found.moves[-1].end[X] == near(25)
+    stops = sum(event.text.startswith("dwell") for event in found.events)
+    assert stops == 1 + 3 * 7  # before, above each hole, in it, and behind it
+
+
+def test_chips_are_broken_where_the_control_says_so(tracer, tmp_path):
+    control = control_of(tmp_path, "fanuc-lathe", holes={"out": "chip"})
+    found = traced(tracer, "G83 X40. C0. Z-6. R-5. Q4000 P500 F120.\nG80", control)
+    assert [(m.kind, m.end[Z]) for m in found.moves[2:-1]] == [
+        (kind, near(z)) for kind, z in
+        [("rapid", 5), ("feed", 1), ("rapid", 2), ("feed", -3), ("rapid", -2), ("feed", -6),
+         ("rapid", 5)]
+    ]  # fmt: skip
+    assert "dwell 0.5" in [event.text for event in found.events]
+
+
+def test_the_side_and_its_clamp(tracer, tmp_path):
+    control = control_of(tmp_path, "fanuc-lathe", holes={"clamp": "M10 M11"})
+    text = "G87 Z-10. C45. X30. R-5. F120. M10\nH90. K2 M10\nW-5.\nG80"
+    result = translated(text, control)
+    lines = [line.split(" (")[0] for line in result.text.splitlines()]
+    cut = lines[lines.index("M10") - 2 : lines.index("M11") + 3]
+    assert cut == ["G0 Z-10. C45.", "G4 P0", "M10", "G0 X50.", "G1 X30.", "G4 P0", "G0 X50.",
+                   "M11", "G0 X60.", "G4 P0"]  # fmt: skip
+    assert lines.count("M10") == lines.count("M11") == 3
+    found = traced(tracer, text.replace(" M10", ""), control)
+    ends = [(15, -10, 45), (15, -10, 135), (15, -10, 225), (15, -15, 225)]
+    assert holes(found, X) == [near((*end, 25)) for end in ends]
+
+
+@pytest.mark.parametrize(
+    ("control", "text", "wanted"),
+    [
+        # R away from the part: whatever it means there, F from where the tool stands is right
+        ("fanuc-lathe", "G83 X40. C0. Z-12. R5. F120.\nC90.\nG80",
+         [(20, -12, c, 10) for c in (0, 90)]),
+        ("fanuc-lathe", "G83 X40. Z-12. F120.\nW-2. C9.\nG80", [(20, -12, 0, 10), (20, 8, 9, 10)]),
+        ("fanuc-lathe", "G85 X40. Z-2. R-8. F50.\nG0 X70. C9.", [(20, -2, 0, 2)]),
+        ("fanuc-lathe-b", "G99 G83 X40. Z-5. R-7. F50.\nC9.\nG98 C8.\nG80",
+         [(20, -5, c, 3) for c in (0, 9, 8)]),
+        ("haas-lathe", "G81 X40. C3. Z-5. R2. F50.\nC9. L1\nG80",
+         [(20, -5, c, 2) for c in (3, 9)]),
+        ("haas-lathe", "G83 Z-5. R2. Q4. F50.\nX30. R12.\nG80", [(30, -5, 0, 2), (15, -5, 0, 10)]),
+        ("okuma-lathe", "G183 X40. C3. Z-5. K7. D4. F50.\nC9.\nG180",
+         [(20, -5, c, 10) for c in (3, 9)]),
+    ],
+)  # fmt: skip
+def test_holes_in_the_face(tracer, control, text, wanted):
+    assert holes(traced(tracer, text, read_control(control))) == [near(each) for each in wanted]
+
+
+@pytest.mark.parametrize(
+    ("control", "text"),
+    [
+        ("haas-lathe", "G241 C35. X30. R52. Z-4. F50.\nC125.\nG80"),
+        ("okuma-lathe", "G181 C35. X30. I4. Z-4. F50.\nC125.\nG180"),
+        ("fanuc-lathe", "G87 C35. X30. R-4. Z-4. F50.\nC125.\nG80"),
+    ],
+)
+def test_holes_in_the_side(tracer, control, text):
+    top = 30 if control == "okuma-lathe" else 26
+    ends = holes(traced(tracer, text, read_control(control)), X)
+    assert ends == [near((15, -4, c, top)) for c in (35, 125)]
+
+
+def test_taps_follow_a_spindle(tracer, tmp_path):
+    fanuc = traced(tracer, "G99 G84 X0 Z-8. R-5. F1.25\nG80", read_control("fanuc-lathe"))
+    assert "pitch 1.25 mm" in [event.text for event in fanuc.events]
+    per_minute = traced(tracer, "G84 X0 Z-8. R-5. F625. S500\nG80", read_control("fanuc-lathe"))
+    assert "pitch 1.25 mm" in [event.text for event in per_minute.events]
+    control = control_of(tmp_path, "haas-lathe", holes={"spindle": 1})
+    lines = translated("G99 G186 C9. Z-8. R2. F1.25 S900\nG80", control).text.splitlines()
+    assert [line.split(" (")[0] for line in lines[4:10]] == [
+        "S900 M4 $1", "G4 P0", "G0 C9.", "G4 P0", "G0 Z2.", "G33.1 Z-8. K1.25 $1",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("control", "text", "start"),
+    [
+        ("fanuc-lathe", "G83 X40. R-5. F50.", "a drilling cycle needs Z, where the hole ends"),
+        ("fanuc-lathe", "G83 X40. Z2. R-9. F50.", "R lies beyond Z2., where the hole ends"),
+        ("fanuc-lathe", "G83 X40. Z2. B3.", "B"),
+        ("fanuc-lathe", "G83 X40. Z2. Y3.", "Y"),
+        ("fanuc-lathe", "G83 X40. Z-5. I1.", "I in G83 is not translated"),
+        ("fanuc-lathe", "G83 X40. C5. H5. Z-5.", "a word of an axis and its increment"),
+        ("fanuc-lathe", "G83 X40. Z-5. Q1", "pecks of 0.001 are 15000 in one hole"),
+        ("fanuc-lathe", "G83 X40. Z-5. K400", "400 holes in one block"),
+        ("fanuc-lathe", "G83 X40. Z-5. K0", "K0 or L0 only stores the cycle"),
+        ("fanuc-lathe", "G84 X40. Z-5. F500.", "a tap needs its pitch as a number"),
+        ("fanuc-lathe", "G87 Z-4. U-9. F500.", "U as the end of a hole: write X"),
+        ("fanuc-lathe", "G83 X40. Z-5. M31", "M31 in the block of a drilling cycle"),
+        ("fanuc-lathe", "T0101\nG83 X40. Z-5.", "this begins where the tool stands"),
+        ("fanuc-lathe", "G12.1\nG1 X39. F9.\nG83 X40. Z-5.", "a drilling cycle in a section"),
+        ("fanuc-lathe", "G83 Z-5. F9.\nG28 H0\nC9.", "a drilling cycle may be on"),
+        ("fanuc-lathe", "G81 X4. Z-5.", "G81: not a drilling cycle of this control: G83 is"),
+        ("fanuc-lathe-b", "G91 G83 X4. Z-5.", "a drilling cycle of a lathe is translated under"),
+        ("haas-lathe", "G95 Z-5. R2. F1.", "a live tap: which spindle of LinuxCNC's drives"),
+        ("haas-lathe", "G83 W-5. R2. F1.", "W as the end of a hole: write Z"),
+        ("haas-lathe", "G83 Z-5. R2. I1. J.5 K.1", "I in G83 is not translated"),
+        ("okuma-lathe", "G181 Z-5. F9.", "a drilling cycle needs I (a hole in the side) or K"),
+        ("okuma-lathe", "G183 Z-5. K1. L5. F9.", "L in G183 is not translated"),
+        ("okuma-lathe", "G181 Z-5. K1. E5. F9.", "E in G181 is not translated"),
+        ("okuma-lathe", "G83 Z-5. K1. F9.", "G83: a contour cycle of OSP"),
+    ],
+)
+def test_what_is_not_sure_is_refused(control, text, start):
+    refused = translated(text, read_control(control)).refused
+    assert refused and refused[0].sentence.startswith(start), refused
+    assert refused[0].line == 4 + text.count("\n")
+
+
+def test_the_spindle_becomes_c_by_the_machines_codes():
+    path = SIM / "lathe_spindle_c_inch.ini"
+    text = "%\nG20 M154\nG0 X2. Z1.\nM155\nM30\n"
+    for ini, codes in ((path, ("M254", "M255")), (SIM / "lathe_inch.ini", ("M154", "M155"))):
+        control = translate.with_facts_of(read_control("haas-lathe"), translate.read_ini(ini))
+        lines = translate_program(text, control).text.splitlines()
+        assert (lines[1].split()[-1], lines[3]) == codes
+
+
+def test_random_programs_drill_what_they_say(tracer):
+    chance = np.random.default_rng(28)
+    for _ in range(40):
+        x, z, c = chance.uniform(5, 50), chance.uniform(-30, -1), chance.uniform(-90, 90)
+        r, q, step = chance.uniform(-9, -0.1), chance.integers(1, 9000), chance.uniform(-99, 99)
+        count = chance.integers(1, 6)
+        text = f"G83 X{x:.3f} C{c:.3f} Z{z:.3f} R{r:.3f} Q{max(q, 100)} F200."
+        text += f"\nH{step:.3f} K{count}\nG80"
+        found = holes(traced(tracer, text, read_control("fanuc-lathe")))
+        angles = [round(c, 3) + round(step, 3) * n for n in range(count + 1)]
+        assert found == [
+            pytest.approx((round(x, 3) / 2, round(z, 3), at, 10 + round(r, 3)), abs=1e-5)
+            for at in angles
+        ]
