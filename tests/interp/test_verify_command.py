@@ -166,7 +166,7 @@ def test_lengths_are_shown_in_inches_on_demand(written, capsys):
     ("text", "code", "said"),
     [
         (WRONG, 2, "program.ngc:4: G12: I4 must be greater than the tool radius 5"),
-        (PLAIN, 2, "has no pocket and no polar section to verify"),
+        (PLAIN, 2, "has no pocket, no section and no holes to verify"),
     ],
 )
 def test_verify_says_in_one_line_why_it_cannot(text, code, said, written, capsys):

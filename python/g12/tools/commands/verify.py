@@ -77,8 +77,8 @@ def main(arguments: list[str]) -> int:
         proof = replace(proof, opened=opened) if opened.is_filtered else proof
         judged = proof.judged  # while the text that a filter wrote is there
     tell_whose_lines("verify", opened)
-    if not (proof.pockets or proof.sections or proof.unseen or proof.still):
-        raise UsageError(f"{options.program}: has no pocket and no polar section to verify")
+    if not (proof.pockets or proof.sections or proof.holes or proof.unseen or proof.still):
+        raise UsageError(f"{options.program}: has no pocket, no section and no holes to verify")
     unit = unit_of(proof.subject.trace.modes.gcodes, options.units)
     text = as_text(proof, unit, full=options.full, strict=options.strict)
     print(as_json(proof) if options.json else text)

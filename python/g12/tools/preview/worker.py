@@ -377,7 +377,8 @@ class Canon:
         self._move("probe", in_mm(target), self._rate(target))
 
     def rigid_tap(self, x: float, y: float, z: float) -> None:
-        """Record the way down and back up."""
+        """Record the way down and back up, and its pitch: no other event tells it from a cut."""
+        self.pitch = ""
         self._note_pitch()
         back = self.tip
         self._move("feed", (*in_mm((x, y, z))[:3], *back[3:]), self.feed)

@@ -7,6 +7,7 @@ import json
 
 from g12.tools.path.slowest import Pace
 from g12.tools.units import MM
+from g12.tools.verify.compare.drilled import HolesFacts
 from g12.tools.verify.paragraphs import AXES, pocket_slowest_line
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
@@ -25,6 +26,7 @@ def as_json(proof: Proof) -> str:
             "real": proof.subject.real is not None,
             "pockets": [pocket_json(facts, proof) for facts in proof.pockets],
             "sections": [section_json(facts, proof) for facts in proof.sections],
+            "holes": [holes_json(facts) for facts in proof.holes],
             "shapes": [shape_json(facts) for facts in proof.shapes],
             "rapids": [judged_json(each, proof) for each in proof.material.rapids],
             "stock": proof.material.given and stock_json(proof.material.given),
@@ -123,6 +125,21 @@ def shape_json(facts: ShapeFacts) -> dict:
         "cutter": 2 * facts.call.cutter,
         "entries": facts.call.given,
         "lowest": facts.lowest,
+        "deviation": finite(facts.deviation),
+    }
+
+
+def holes_json(facts: HolesFacts) -> dict:
+    """Return a call of holes as plain values."""
+    holes, call = facts.holes, facts.holes.call
+    return {
+        "line": call.line,
+        "file": call.file or None,
+        "code": call.name,
+        "circle": 2 * holes.circle,
+        "angles": holes.angles,
+        "along_z": holes.z if holes.side else None,
+        "depth": holes.depth,
         "deviation": finite(facts.deviation),
     }
 

@@ -21,6 +21,7 @@ from g12.tools.material.material import ALLOWED, LEAST_AREA, SAME_LEVEL
 from g12.tools.path.part import Part, X, Z, is_sideways
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.section_plane import Plane, plane_of
+from g12.tools.verify.expected.calls import SubCall
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.pocket_walls import Circles
 from g12.tools.verify.reading.block_words import BlockInMm
@@ -206,7 +207,17 @@ class InStock:
         """Return plunges, what meets no stock, cuts below a block, and what remains of a bar."""
         plunges = filter(None, (self._plunge(index) for index in self._own))
         remaining = self._remaining() if self._piece.stock.diameter else ()
-        return [*once_a_line(plunges), *self._missing(), *self._below(), *remaining]
+        found = [*once_a_line(plunges), *self._missing(), *self._below(), *remaining]
+        return [*found, *self._in_the_bar()]
+
+    def _in_the_bar(self) -> Iterator[Finding]:
+        """Yield the holes in the side whose tool goes by rapid to where the bar is."""
+        bar = self._piece.stock.diameter or 0.0
+        for call in (each for each in self._program.holes if each.is_side):
+            level = call.length("surface_diameter") + 2 * call.length("retract")
+            if level < bar - SAME_LEVEL:
+                values = {"level": level, "bar": bar}
+                yield Finding("in-the-bar", call.line, values, file=call.file)
 
     def _plunge(self, index: int) -> Finding | None:
         move = self._program.moves[index]
@@ -270,7 +281,10 @@ def without_slivers(area: BaseGeometry) -> BaseGeometry:
 
 
 def zero_of(
-    circles: Circles, sections: Sequence[SectionContour], moves: Sequence[Move]
+    circles: Circles,
+    sections: Sequence[SectionContour],
+    moves: Sequence[Move],
+    holes: Sequence[SubCall] = (),
 ) -> np.ndarray:
     """Return the program's zero where it first cuts; on a lathe X is that of the spindle.
 
@@ -280,4 +294,6 @@ def zero_of(
         return np.array([0.0, 0.0, moves[section.at].start[Z] - section.height])
     for block, _ in circles:
         return BlockInMm(block, moves[block.at]).zero()
+    for call in holes:
+        return np.array([0.0, 0.0, call.zero[1]])
     return np.zeros(3)

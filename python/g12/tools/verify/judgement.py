@@ -12,6 +12,7 @@ from g12.tools.path.track import limits_of
 from g12.tools.preview.executed_blocks import Text
 from g12.tools.preview.moves import Move
 from g12.tools.units import MM, Unit
+from g12.tools.verify.compare.drilled import judge_holes
 from g12.tools.verify.findings import (
     pocket_notes,
 )
@@ -59,7 +60,7 @@ def judged(proof: Proof, texts: Sequence[Text]) -> list[Finding]:
 
 
 def cuts_of(asked: Asked, moves: Sequence[Move]) -> Iterator[ProgramCut]:
-    """Yield the pockets and sections that a program asks for."""
+    """Yield the pockets, sections and holes that a program asks for."""
     for block, target in asked.circles:
         source = target.source
         at, end = block.at, block.end
@@ -69,6 +70,9 @@ def cuts_of(asked: Asked, moves: Sequence[Move]) -> Iterator[ProgramCut]:
         source = (section.line, section.file, section.code, section.at, section.end)
         feeds = tuple(element.feed for element in section.elements if element.feed)
         yield ProgramCut(*source, None if section.surface else face, True, feeds)
+    for block, call in asked.holes:
+        level = None if call.is_side else call.zero[1]
+        yield ProgramCut(call.line, call.file, call.name, block.at, block.end, level, True)
 
 
 def not_judged(moves: Sequence[Move], known: set[int]) -> Iterator[Finding]:
@@ -90,6 +94,8 @@ def said_of_cuts(proof: Proof) -> Iterator[Finding]:
         yield from judge_section(facts)
     for facts in proof.shapes:
         yield from judge_shape(facts)
+    for facts in proof.holes:
+        yield from judge_holes(facts)
     for line, code in proof.unseen:
         yield Finding("not-measured", line, {"code": code})
     for line, code in proof.still:

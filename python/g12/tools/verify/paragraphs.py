@@ -9,6 +9,7 @@ from g12.tools.path.part import Z, x0_text
 from g12.tools.path.slowest import Pace
 from g12.tools.units import Unit, plain
 from g12.tools.verify.axis_limits import SAME_ZERO
+from g12.tools.verify.compare.drilled import HolesFacts
 from g12.tools.verify.findings import SAME_AREA
 from g12.tools.verify.in_material import zero_of
 from g12.tools.verify.pocket import HelixFacts, PocketFacts
@@ -31,6 +32,7 @@ def paragraphs_of(proof: Proof, unit: Unit) -> list[str]:
     return [
         *pockets,
         *(shape_text(facts, proof, unit) for facts in proof.shapes),
+        *(holes_text(facts, proof, unit) for facts in proof.holes),
         *(section_text(facts, proof, unit) for facts in proof.sections),
         *stock,
     ]
@@ -84,6 +86,20 @@ def shape_text(facts: ShapeFacts, proof: Proof, unit: Unit) -> str:
         ("entries", ", ".join(entries)),
         ("deviation", deviation(facts.deviation, proof.tolerances.polar, unit)),
         ("depth", unit.text(facts.lowest)),
+    ]
+    return paragraph(f"{line_text(proof, call.line, call.file)}: {call.name}", rows)
+
+
+def holes_text(facts: HolesFacts, proof: Proof, unit: Unit) -> str:
+    """Return the paragraph of a call of holes."""
+    holes, call = facts.holes, facts.holes.call
+    angles = ", ".join(plain(angle, 3) for angle in holes.angles)
+    entries = (f"{name} {plain(value, 4)}" for name, value in call.given.items())
+    rows = [
+        ("entries", ", ".join(entries)),
+        ("holes", f"{holes.count} on ⌀ {unit.text(2 * holes.circle)}, C {angles}"),
+        ("deviation", deviation(facts.deviation, proof.tolerances.polar, unit)),
+        ("depth", unit.text(holes.depth)),
     ]
     return paragraph(f"{line_text(proof, call.line, call.file)}: {call.name}", rows)
 

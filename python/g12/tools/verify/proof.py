@@ -36,6 +36,7 @@ from g12.tools.verify.axis_limits import (
     travel_of,
     widths_of,
 )
+from g12.tools.verify.compare.drilled import HolesFacts, measure_holes
 from g12.tools.verify.compare.section_plane import x0_of
 from g12.tools.verify.expected.calls import CallReading, SubCall
 from g12.tools.verify.expected.contour import SectionContour, WordReading
@@ -52,7 +53,7 @@ from g12.tools.verify.reading.zero_line import with_zero_lines
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.sections.section import SectionFacts, measure_section
 from g12.tools.verify.sections.section_motion import axes_of_section
-from g12.tools.verify.shape import CalledShape, ShapeFacts, called_shapes, measure_shape
+from g12.tools.verify.shape import CalledShape, ShapeFacts, called_subs, measure_shape
 from g12.tools.verify.workpiece import Program, Workpiece, assumed_workpiece, given_workpiece
 
 POCKET_TOLERANCE = 0.005  # mm
@@ -126,7 +127,7 @@ class StockText(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """What a program asks for: circles, each with the block that does, sections, calls of shapes.
+    """What a program asks for: circles, each with the block that does, sections, shapes, holes.
 
     ``still`` are the line and the code of each cycle that moves nothing, though it should.
     """
@@ -135,11 +136,13 @@ class Asked(NamedTuple):
     sections: list[SectionContour]
     still: list[tuple[int, str]]
     shapes: Sequence[CalledShape] = ()
+    holes: Sequence[CalledShape] = ()
 
     @property
     def moves(self) -> list[range]:
         """The moves that they are cut by, by their indices."""
-        every = [*(block for block, _ in self.circles), *self.sections]
+        drilled = (block for block, _ in self.holes)
+        every = [*(block for block, _ in self.circles), *self.sections, *drilled]
         return [range(each.at, each.end) for each in every]
 
 
@@ -171,6 +174,7 @@ class Proof:
     material: MaterialFacts
     still: list[tuple[int, str]] = field(default_factory=list)
     shapes: Sequence[ShapeFacts] = ()
+    holes: Sequence[HolesFacts] = ()
     asked: Asked = NOTHING
     opened: OpenedProgram | None = None
 
@@ -270,15 +274,16 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
     still += [
         (block.text.number, block.text.call)
         for block in blocks
-        if block.at == block.end and codes.shape_of(block.text)
+        if block.at == block.end and (codes.shape_of(block.text) or codes.holes_of(block.text))
     ]
     still += [(each.line, each.code) for each in found if each.elements and each.at == each.end]
     found = [each for each in found if each.end > each.at]
     found = with_zero_lines(found, subject.trace.moves, program, codes, subject.ini)
     moves, diameters = subject.trace.moves, subject.trace.diameters
     calls = CallReading(settings.polar_x, settings.plunge_feed / 100, settings.entry_angle)
-    shapes = list(called_shapes(blocks, codes, moves, diameters, calls))
-    return Asked(list(reader.targets(blocks)), found, still, shapes)
+    subs = (codes.shape_of, codes.holes_of)
+    shapes, holes = (list(called_subs(blocks, moves, diameters, calls, sub)) for sub in subs)
+    return Asked(list(reader.targets(blocks)), found, still, shapes, holes)
 
 
 def moves_there(tracer: Tracer, subject: Subject, parameters: Parameters) -> Sequence[Move] | None:
@@ -312,6 +317,7 @@ def measured(
     material = material_facts(program_of(subject, asked), piece)
     unseen = unseen_in(moves, Codes(subject.ini), asked.moves)
     told = {"still": asked.still, "asked": asked, "shapes": shapes}
+    told["holes"] = measured_holes(subject, asked.holes, tolerances.polar)
     return Proof(subject, pockets, found, unseen, tolerances, material, **told)
 
 
@@ -366,10 +372,21 @@ def measured_shapes(
     ]
 
 
+def measured_holes(
+    subject: Subject, asked: Sequence[CalledShape], tolerance: float
+) -> list[HolesFacts]:
+    """Return what is measured of a program's holes with C."""
+    moves, clamps = subject.trace.moves, bool(subject.ini.settings.c_clamp)
+    return [measure_holes(each, moves, tolerance, clamps, subject.real) for each in asked]
+
+
 def program_of(subject: Subject, asked: Asked) -> Program:
     """Return what is judged in the material."""
     trace, part = subject.trace, subject.part
-    return Program(trace.moves, part, asked.circles, asked.sections, trace.diameters, subject.real)
+    holes = [call for _, call in asked.holes]
+    return Program(
+        trace.moves, part, asked.circles, asked.sections, trace.diameters, subject.real, holes
+    )
 
 
 def workpiece_of(subject: Subject, asked: Asked, stock: StockText | None) -> Workpiece:
@@ -382,7 +399,8 @@ def workpiece_of(subject: Subject, asked: Asked, stock: StockText | None) -> Wor
         return assumed_workpiece(program)
     unit = unit_of(subject.trace.modes.gcodes, stock.units)
     said = read_stock(stock.text, part_of(subject.ini).turning, unit)
-    return given_workpiece(program, said, zero_of(asked.circles, asked.sections, program.moves))
+    zero = zero_of(asked.circles, asked.sections, program.moves, program.holes)
+    return given_workpiece(program, said, zero)
 
 
 def unseen_in(moves: Sequence[Move], codes: Codes, seen: Iterable[range]) -> list[tuple[int, str]]:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from g12.tools.preview.moves import message_lines
 from g12.tools.units import Unit, counted_as, plain
+from g12.tools.verify.compare.drilled import HolesFacts
 from g12.tools.verify.paragraphs import AXES, line_text, paragraphs_of, zero_text
 from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
@@ -90,6 +91,7 @@ def cut_lines(proof: Proof, unit: Unit) -> list[CutLine]:
     """Return a line for each cut."""
     pockets = [pocket_line(facts, proof, unit) for facts in proof.pockets]
     shapes = [shape_line(facts, proof, unit) for facts in proof.shapes]
+    shapes += [holes_line(facts, proof, unit) for facts in proof.holes]
     return [*pockets, *shapes, *(section_line(facts, proof, unit) for facts in proof.sections)]
 
 
@@ -119,6 +121,18 @@ def shape_line(facts: ShapeFacts, proof: Proof, unit: Unit) -> CutLine:
     """Return the line of a shape; its section, which has the time, has a line of its own."""
     call = facts.call
     what = f"cutter ⌀ {unit.text(2 * call.cutter)}, to Z{unit.text(facts.lowest)}"
+    off = off_text(facts.deviation, proof.tolerances.polar, unit)
+    return CutLine(line_text(proof, call.line, call.file), call.name, what, off)
+
+
+def holes_line(facts: HolesFacts, proof: Proof, unit: Unit) -> CutLine:
+    """Return the line of a call of holes."""
+    holes, call = facts.holes, facts.holes.call
+    where = "round" if holes.side else "on"
+    what = (
+        f"{counted_as(holes.count, 'hole')} {unit.text(holes.depth)} deep, {where}"
+        f" ⌀ {unit.text(2 * holes.circle)}"
+    )
     off = off_text(facts.deviation, proof.tolerances.polar, unit)
     return CutLine(line_text(proof, call.line, call.file), call.name, what, off)
 

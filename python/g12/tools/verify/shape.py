@@ -7,11 +7,11 @@ What a run makes of them is judged with the section in the shape's sub. Lengths 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from g12.tools.path.track import Track
-from g12.tools.preview.executed_blocks import Block
+from g12.tools.preview.executed_blocks import Block, Text
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.path import OFF, Point, lay
 from g12.tools.verify.compare.path_judge import judge_path
@@ -21,7 +21,6 @@ from g12.tools.verify.compare.state import StateDifference, judge_state, state_d
 from g12.tools.verify.expected.calls import CallReading, SubCall
 from g12.tools.verify.expected.contour import ACTS
 from g12.tools.verify.expected.shapes import shape_path
-from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import LAST_DECIMAL
 from g12.tools.verify.sections.section_motion import SectionAxes, slower_on_face
@@ -62,16 +61,16 @@ class ShapeFacts:
         return min(move.end_level for move in self.path.expected)
 
 
-def called_shapes(
+def called_subs(
     blocks: Sequence[Block],
-    codes: Codes,
     moves: Sequence[Move],
     diameters: Mapping[int, float],
     reading: CallReading,
+    named: Callable[[Text], str],
 ) -> Iterator[CalledShape]:
-    """Yield each call that cuts a shape."""
+    """Yield each call of the subs that are ``named`` which moves anything."""
     for block in blocks:
-        if codes.shape_of(block.text) and block.end > block.at:
+        if named(block.text) and block.end > block.at:
             first = moves[block.at]
             yield block, SubCall(block, first, diameters.get(first.tool, 0.0) / 2, reading)
 

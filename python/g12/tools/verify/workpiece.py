@@ -23,6 +23,7 @@ from g12.tools.path.follow import Followed
 from g12.tools.path.part import Part, Z, disc, is_sideways
 from g12.tools.path.surface import Surface
 from g12.tools.preview.moves import Move
+from g12.tools.verify.expected.calls import SubCall
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.pocket_walls import (
     AssumedHole,
@@ -39,7 +40,7 @@ CHUNK = 32  # moves of a lathe whose area is worked out at once
 
 
 class Program(NamedTuple):
-    """What is judged: a program's moves on its part, its circles, sections and cutters.
+    """What is judged: a program's moves on its part, its circles, sections, cutters and holes.
 
     ``real`` is its motion if it ran.
     """
@@ -50,6 +51,7 @@ class Program(NamedTuple):
     sections: Sequence[SectionContour]
     diameters: Mapping[int, float]
     real: Followed | None = None
+    holes: Sequence[SubCall] = ()
 
     def points(self, index: int, part: Part) -> np.ndarray:
         """Return the tool's points (n, 3) along a move, as programmed or as they were."""
@@ -171,10 +173,18 @@ def face_sections(program: Program) -> list[SectionContour]:
 
 
 def face_tools(program: Program) -> frozenset[int] | None:
-    """Return the tools that cut sections on a face, None for all of a mill's."""
+    """Return the tools that cut sections and holes on a face, None for all of a mill's.
+
+    One that drills the side points at the axis.
+    """
     if not program.sections and not program.part.turning:
         return None
-    return frozenset(program.moves[section.at].tool for section in face_sections(program))
+    drilled = [(call.moves.start, call.is_side) for call in program.holes]
+    cuts = [(section.at, False) for section in face_sections(program)] + drilled
+    face, side = (
+        {program.moves[at].tool for at, its in cuts if its is way} for way in (False, True)
+    )
+    return frozenset(face - side)
 
 
 def cylinders(program: Program, cutters: Cutters) -> Iterator[PartView]:

@@ -16,6 +16,7 @@ from g12.tools.preview.moves import Move
 
 LEFT_OUT = -9999.0
 CUT = ("depth", "depth_per_pass", "allowance", "feed", "plunge_feed")
+HOLE = ("depth", "retract", "feed", "peck", "dwell", "kind")
 ENTRIES = {
     "polar_polygon": (
         *("sides", "across_flats", "depth", "stock_diameter", "corner_radius"),
@@ -23,6 +24,9 @@ ENTRIES = {
     ),
     "polar_slot": ("width", "length", *CUT, "angle"),
     "polar_pocket": ("x", "c", "diameter", *CUT),
+    "face_holes": ("count", "circle_diameter", "first_angle", "step_angle", *HOLE),
+    "side_holes": ("count", "z", "first_angle", "step_angle", "surface_diameter", *HOLE),
+    "face_hole_at": ("x", "c", *HOLE),
 }
 
 
@@ -66,6 +70,11 @@ class SubCall:
         x, z, c = (self._start[axis] - at for axis, at in zip((X, Z, C), self.at))
         return x, z, c
 
+    @property
+    def is_side(self) -> bool:
+        """Whether the tool points at the axis."""
+        return self.name == "side_holes"
+
     def length(self, name: str, default: float = 0.0) -> float:
         """Return a length, or its default in mm."""
         return self.given[name] * self.unit if name in self.given else default
@@ -79,6 +88,12 @@ class SubCall:
         known = self._state["_feed"] if self._state["_feed"] != FORGOTTEN else None
         feed = self.given.get("feed", known)
         return None if feed is None else feed * self._per_minute
+
+    def feed_as_given(self) -> tuple[float | None, bool]:
+        """Return the feed in mm per minute or revolution, and whether it is per revolution."""
+        known = self._state["_feed"] if self._state["_feed"] != FORGOTTEN else None
+        feed = self.given.get("feed", known)
+        return feed and feed * self.unit, bool(self._state["_units_per_rev"])
 
     def plunge_feed(self) -> float | None:
         """Return the feed down per minute, None if the F in force is not known."""

@@ -12,6 +12,7 @@ from g12.tools.preview.executed_blocks import Text, is_number
 
 CALL = "circle_mill"  # the event's sub, which programs may call
 SHAPES = ("polar_polygon", "polar_slot", "polar_pocket")  # subs that programs call
+HOLES = ("face_holes", "side_holes", "face_hole_at")  # likewise
 SHAPE_HANDLER = "polar_shape"  # of the code that checks their entries
 EVENT, POLAR, CYLINDER = "circle-mill", "polar", "cylinder"
 SECTIONS = (POLAR, CYLINDER)
@@ -79,6 +80,10 @@ class Codes:
         """Return the shape that a line calls, "" without one, or where the sub is another's."""
         return text.call if self._shapes and text.call in SHAPES else ""
 
+    def holes_of(self, text: Text) -> str:
+        """Return the sub of holes that a line calls, "" without one."""
+        return text.call if self._shapes and text.call in HOLES else ""
+
     def name_of(self, codes: Sequence[float]) -> str:
         """Return the code among a block's that is a cycle; a call has the name of its sub."""
         return next((f"G{code:g}" for code in codes if code in self._cycles), CALL)
@@ -108,7 +113,7 @@ class Codes:
     def wanted(self, text: Text) -> bool:
         """Tell whether a line's words matter for what is programmed, or may: G[12], G#1."""
         cycle = self.cycle_of(text.call, text.codes)
-        asks = cycle or self.section(text) or self.shape_of(text)
+        asks = cycle or self.section(text) or self.shape_of(text) or self.holes_of(text)
         return bool(compensates(text.codes) or asks or text.hides_code)
 
 

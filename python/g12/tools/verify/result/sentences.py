@@ -35,6 +35,11 @@ FINDINGS = {
         "the tool length in force, {length:mm}, is not that of T{tool}: "
         "it cuts {off:fine} deeper than its words say (G43 H{tool} after M6?)"
     ),
+    # holes
+    "act-off-bottom": "{act} does not come at the bottom of the hole",
+    "blended-hole": (
+        "it is not in exact path mode (G61): C would turn before the tool is out of the hole"
+    ),
     # the material
     "rapid-through": "a rapid goes through material, from {at:place} to {to:place}",
     "rapid-into": "a rapid goes down into {area:mm2} of material, at {at:place}",
@@ -81,6 +86,10 @@ NOTES = {
     "inside-surface": (
         "{code} begins {inside:fine} inside of its surface of radius {radius:mm}: "
         "is its C a diameter? ([G12] CYLINDER_WORD)"
+    ),
+    "in-the-bar": (
+        "it goes by rapid to ⌀ {level:mm}, where the bar of ⌀ {bar:mm} is, unless that is turned "
+        "off before"
     ),
     "below-block": "the lowest cut is {size:fine} below the block",
     "zero-line-unknown": (

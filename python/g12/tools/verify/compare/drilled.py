@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How well a call of holes with C was drilled: its moves, laid along the expected toolpath."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from g12.geometry.curve import Line
+from g12.tools.path.follow import Followed
+from g12.tools.path.part import C
+from g12.tools.path.track import STILL
+from g12.tools.preview.executed_blocks import Block
+from g12.tools.preview.moves import Event, Move
+from g12.tools.verify.compare.path import OFF, Laid, Made, lay
+from g12.tools.verify.compare.path_judge import judge_path
+from g12.tools.verify.compare.state import StateDifference, judge_state, state_differences
+from g12.tools.verify.expected.calls import SubCall
+from g12.tools.verify.expected.contour import ACTS
+from g12.tools.verify.expected.holes import Holes, HolesPath, holes_of
+from g12.tools.verify.expected.toolpath import Expected
+from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.tolerances import LEVEL
+
+
+@dataclass(frozen=True)
+class HolesFacts:
+    """What was measured of the holes of one call.
+
+    ``laid`` are its moves along the ``expected`` ones, ``run`` is the motion of a run likewise.
+    ``blended`` says that a move is not in exact path mode, ``acts`` are findings of its dwells and
+    pitches.
+    """
+
+    holes: Holes
+    expected: Sequence[Expected]
+    laid: Laid
+    run: Laid | None
+    state: tuple[StateDifference, ...]
+    events: tuple[str, ...]
+    acts: tuple[Finding, ...]
+    blended: bool
+
+    @property
+    def deviation(self) -> float:
+        """The greatest distance from the toolpath, inf if part of it is missing; mm."""
+        laid = next((each for each in (self.laid, self.run) if each and each.difference), None)
+        if laid:
+            return laid.difference.size if laid.difference.kind == OFF else math.inf
+        return max(each.deviation for each in (self.laid, self.run) if each)
+
+
+def measure_holes(
+    called: tuple[Block, SubCall],
+    moves: Sequence[Move],
+    tolerance: float,
+    clamps: bool,
+    real: Followed | None = None,
+) -> HolesFacts:
+    """Return the facts of a call; with ``clamps`` M codes of C's clamp come in it."""
+    block, call = called
+    holes, own = holes_of(call), range(block.at, block.end)
+    turns = (moves[i].end[C] - moves[i].start[C] for i in own)
+    expected = HolesPath(holes, next((turn for turn in turns if abs(turn) > STILL), 0.0)).toolpath()
+    laid, run = lay(expected, made_of_holes(holes, moves, own), tolerance), None
+    if real and not laid.difference:
+        sampled = ((i, real.positions[real.during(i)]) for i in own)
+        made = (
+            Made(i, list(map(holes.point, at)), rapid=moves[i].kind == "rapid", sampled=True)
+            for i, at in sampled
+            if len(at)
+        )
+        run = lay(expected, made, tolerance)
+    events = [each for each in block.own_events if ACTS.match(each.text) and not clamps]
+    return HolesFacts(
+        holes,
+        expected,
+        laid,
+        run,
+        state_differences(block.left, call.leaves()),
+        tuple(dict.fromkeys(e.text for e in events if not e.text.startswith("dwell"))),
+        tuple(judge_acts(holes, block.own_events, moves)),
+        any(moves[i].kind == "rapid" and not moves[i].exact for i in own),
+    )
+
+
+def made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[Made]:
+    """Yield the moves of a call that go anywhere."""
+    for index in own:
+        move = moves[index]
+        ends = [holes.point(move.start), holes.point(move.end)]
+        if max(abs(ends[0][0] - ends[1][0]), abs(ends[0][1] - ends[1][1])) > STILL:
+            rapid = move.kind == "rapid"
+            feed = None if rapid else move.feed
+            curve = Line(ends[0][0], ends[1][0])
+            yield Made(index, ends, curve, feed, rapid, move.feed_mode == "G95")
+
+
+def judge_acts(holes: Holes, events: Sequence[Event], moves: Sequence[Move]) -> Iterator[Finding]:
+    """Yield what is wrong with the dwells at the bottoms, and with the pitches of taps."""
+    call = holes.call
+    asked = f"dwell {holes.dwell:g}" if holes.dwell else f"pitch {holes.pitch:.10g} mm"
+    found = [e for e in events if e.text.startswith(("dwell", "pitch")) and e.text != "dwell 0"]
+    others = dict.fromkeys(each.text for each in found if each.text != asked)
+    for text in others:
+        yield Finding("extra-event", call.line, {"event": text}, file=call.file)
+    same = [each for each in found if each.text == asked]
+    if len(same) < holes.count and (holes.dwell or holes.pitch):
+        yield Finding("act-missing", call.line, {"act": asked}, file=call.file)
+    bottom = -holes.depth if holes.dwell else call.length("retract")
+    levels = [holes.point(moves[each.at].start)[1] for each in same]
+    if any(abs(level - bottom) > LEVEL for level in levels):
+        yield Finding("act-off-bottom", call.line, {"act": asked}, file=call.file)
+
+
+def passed_over(facts: HolesFacts) -> Iterator[Finding]:
+    """Yield the first move that is not made: a way back and again lies on the way down."""
+    missing = (move for move, made in zip(facts.expected, facts.laid.moves) if not made)
+    for move in list(missing)[:1]:
+        at, holes = move.point(1.0), facts.holes
+        values = {"what": move.name, "at": holes.words(at)}
+        yield Finding("path-missing", move.line, values, holes.place(at), holes.call.file)
+
+
+def judge_holes(facts: HolesFacts) -> Iterator[Finding]:
+    """Yield what is wrong with the holes of a call."""
+    holes, call = facts.holes, facts.holes.call
+    for laid in filter(None, (facts.laid, facts.run)):
+        yield from judge_path(laid, call.line, call.file, holes.place, holes.words)
+    if not facts.laid.difference:
+        yield from passed_over(facts)
+    if facts.blended:
+        yield Finding("blended-hole", call.line, file=call.file)
+    yield from facts.acts
+    yield from judge_state(facts.state, facts.events, call.line, call.file)

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The toolpath of a call of holes with C, by ngc/holes.md.
+
+The plane is that of the tool's approach: across is the slide that stands still in a hole (X of the
+face, Z of the side), upwards C as millimetres round the circle of holes. The level is the height
+above the face or the surface. Lengths are mm, angles degrees unless a name says otherwise.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from g12.tools.path.part import C, X, Z
+from g12.tools.units import plain
+from g12.tools.verify.expected.calls import SubCall
+from g12.tools.verify.expected.toolpath import Expected, Writer
+
+CHIP = 0.254  # back to break a chip, and short of where the drill was, but half a peck at most
+ROUNDING = 1e-6  # so small a rest is no peck of its own
+HALF_TURN, SAME_TURN = 180.0, 1e-6
+LEAST_RADIUS = 1.0  # of a hole in the centre, where C counts too
+DRILL, TAP_RIGHT, TAP_LEFT, BORE = range(4)
+
+
+@dataclass(frozen=True)
+class Holes:
+    """What a call asks for: its holes' places, and how each is drilled.
+
+    ``x`` and ``angle`` are those of the first one (in the side ``x`` is that of the surface),
+    ``z`` is 0 on the face. ``turn`` leads from one hole to the next. ``pitch`` is a tap's, else 0.
+    """
+
+    call: SubCall
+    side: bool
+    count: int
+    x: float
+    z: float
+    angle: float
+    turn: float
+    kind: int
+
+    @property
+    def depth(self) -> float:
+        """The depth below the face or surface."""
+        return self.call.length("depth")
+
+    @property
+    def dwell(self) -> float:
+        """The seconds at the bottom; a tap has none."""
+        return 0.0 if self.pitch else self.call.given.get("dwell", 0.0)
+
+    @property
+    def pitch(self) -> float:
+        """The pitch of a tap, 0 of any other hole."""
+        return self.call.length("feed") if self.kind in (TAP_RIGHT, TAP_LEFT) else 0.0
+
+    @property
+    def circle(self) -> float:
+        """The radius of the circle on which the holes lie: on the face or the surface."""
+        return self.x if self.side else math.hypot(self.x, self.call.beside)
+
+    @property
+    def round_scale(self) -> float:
+        """The mm that C counts for a degree."""
+        return math.radians(max(LEAST_RADIUS, self.circle))
+
+    @property
+    def angles(self) -> list[float]:
+        """The angle of each hole on the part, from 0 to 360."""
+        beside = math.degrees(math.atan2(self.call.beside, self.x)) if not self.side else 0.0
+        return [(self.angle + beside + self.turn * n) % 360.0 for n in range(self.count)]
+
+    def point(self, position: Sequence[float]) -> tuple[complex, float]:
+        """Return a machine position as a point and a level."""
+        x, z, c = (position[a] - zero for a, zero in zip((X, Z, C), self.call.zero))
+        across, level = (z, x - self.x) if self.side else (x, z)
+        return complex(across, c * self.round_scale), level
+
+    def words(self, at: tuple[complex, float]) -> tuple[tuple[str, float | str], ...]:
+        """Return a point and its level as a program writes it."""
+        x, z = (at[1] + self.x, at[0].real) if self.side else (at[0].real, at[1])
+        factor = 2 if self.call.diameters else 1
+        return ("X", factor * x), ("C", plain(at[0].imag / self.round_scale, 3)), ("Z", z)
+
+    def place(self, at: tuple[complex, float]) -> tuple[float, float, float]:
+        """Return a point and its level as a point of the part."""
+        (x, z), turn = (
+            ((at[1] + self.x, at[0].real) if self.side else (at[0].real, at[1])),
+            math.radians(at[0].imag / self.round_scale + self.call.zero[2]),
+        )
+        there = cmath.rect(x, turn)
+        return there.real, there.imag, z + self.call.zero[1]
+
+
+def shorter(angle: float, made: float) -> float:
+    """Return a turn as the shorter way; a half turn goes as it is ``made``."""
+    short = math.remainder(angle, 360.0)
+    if abs(abs(short) - HALF_TURN) < SAME_TURN:
+        return math.copysign(HALF_TURN, made)
+    return short
+
+
+def holes_of(call: SubCall) -> Holes:
+    """Return what a call asks for."""
+    given, side = call.given, call.is_side
+    count, kind = round(given.get("count", 1)), round(given.get("kind", DRILL))
+    step = given.get("step_angle", 360.0 / count)
+    turn = shorter(step, step) if count > 1 else 0.0
+    if side:
+        x, z = call.length("surface_diameter") / 2, call.length("z")
+        return Holes(call, side, count, x, z, given.get("first_angle", 0.0), turn, kind)
+    if call.name == "face_holes":
+        radius, angle = call.length("circle_diameter") / 2, given.get("first_angle", 0.0)
+    else:
+        centre = complex(call.x(), call.length("c"))
+        radius, angle = abs(centre), math.degrees(cmath.phase(centre)) if centre else 0.0
+    x = math.sqrt(max(0.0, radius**2 - call.beside**2))
+    angle -= math.degrees(math.atan2(call.beside, x))
+    return Holes(call, side, count, x, 0.0, angle, turn, kind)
+
+
+class HolesPath:
+    """Writes the moves of one call; ``turned`` is by how much C really goes to the first hole."""
+
+    def __init__(self, holes: Holes, turned: float) -> None:
+        self._holes, call = holes, holes.call
+        x, z, c = call.at
+        across, level = (z, x - holes.x) if holes.side else (x, z)
+        there = complex(across, c * holes.round_scale)
+        self._feed, per_rev = call.feed_as_given()
+        self._writer = Writer(there, level, call.line, per_rev)
+        self._retract = call.length("retract")
+        self._top = max(level, self._retract)
+        self._turns = [shorter(holes.angle - c, turned), *[holes.turn] * (holes.count - 1)]
+
+    def toolpath(self) -> list[Expected]:
+        """Return the expected moves."""
+        writer = self._writer
+        writer.vertical("rapid out", self._top, rapid=True)
+        for number, turn in enumerate(self._turns):
+            self._turn(turn)
+            if not number:
+                across = self._holes.z if self._holes.side else self._holes.x
+                writer.straight("rapid over the hole", complex(across, writer.at.imag), rapid=True)
+            writer.vertical("rapid down", self._retract, rapid=True)
+            self._hole()
+        writer.vertical("rapid up", self._top, rapid=True)
+        return writer.path
+
+    def _turn(self, degrees: float) -> None:
+        end = self._writer.at + 1j * degrees * self._holes.round_scale
+        self._writer.straight("turn of C", end, rapid=True)
+
+    def _hole(self) -> None:
+        """Write the way from the retract height down and back."""
+        writer, depth = self._writer, self._holes.depth
+        if self._holes.pitch:
+            writer.vertical("tap", -depth)
+            writer.vertical("tap back", self._retract)
+            return
+        self._pecks()
+        writer.vertical("hole", -depth, self._feed)
+        if self._holes.kind == BORE:
+            writer.vertical("bore back", self._retract, self._feed)
+        writer.vertical("rapid back", self._retract, rapid=True)
+
+    def _pecks(self) -> None:
+        """Write all pecks but the last."""
+        writer, peck = self._writer, self._holes.call.length("peck")
+        count = math.ceil((self._holes.depth - ROUNDING) / abs(peck)) if peck else 1
+        for number in range(1, count):
+            writer.vertical("peck", -number * abs(peck), self._feed)
+            if peck > 0:
+                writer.vertical("rapid back", self._retract, rapid=True)
+            clear = min(CHIP, abs(peck) / 2)
+            writer.vertical("rapid again", clear - number * abs(peck), rapid=True)

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Holes with C as verify judges them: valid calls, and faults of the sub and of what it is told."""
+
+import random
+import re
+
+import pytest
+
+from g12.tools.machine.ini import read_ini
+from g12.tools.preview.tracer import Tracer
+from g12.tools.verify.proof import StockText, prove
+from support.sim_machines import ROOT, SIM
+
+HEAD = ["{units} G18 {mode} G40 G90 G94 G64 P0.02", "T1 M6", "S500 M3", "G0 X{x} Z{z} C100", "F{f}"]
+SUB = ROOT / "ngc" / "g12_holes.ngc"
+FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
+SIDE = "o<side_holes> call [3] [-10] [20] [-9999] [40] [8] [2] [120] [-3] [0] [0]"
+TAP = "o<face_hole_at> call [20] [5] [8] [2] [1.25] [0] [0] [1]"
+BORE = "o<face_hole_at> call [20] [5] [8] [2] [120] [0] [.5] [3]"
+
+
+def written(folder, *calls, units="G21", mode="G7", f=77):
+    scale = 25.4 if units == "G20" else 1.0
+    x = 60 / scale / (1 if mode == "G7" else 2)
+    head = [line.format(units=units, mode=mode, x=x, z=10 / scale, f=f) for line in HEAD]
+    path = folder / "holes.ngc"
+    path.write_text("\n".join([*head, *calls, "M2", ""]))
+    return path
+
+
+def findings(path, ini, **options):
+    proof = prove(path, ini, tools={1: 6.0}, **options)
+    return [(each.code, each.line) for each in proof.judged if not each.code.startswith("not-")]
+
+
+def a_call(chance, scale):
+    """Return a valid call of any kind, with its lengths in some unit."""
+    length = lambda low, high: f"[{round(chance.uniform(low, high) / scale, 4)}]"  # noqa: E731
+    angle = lambda: f"[{round(chance.uniform(-360, 360), 3)}]"  # noqa: E731
+    kind = chance.choice([0, 0, 0, 1, 3])
+    peck = chance.choice(["[0]", length(1, 5), length(-5, -1)]) if not kind else "[0]"
+    feed = length(0.5, 2) if kind == 1 else chance.choice([length(50, 900), "[-9999]"])
+    hole = [length(1, 15), length(0.5, 9), feed, peck, f"[{chance.choice([0, 0.5])}]", f"[{kind}]"]
+    turns = [angle(), chance.choice([angle(), "[-9999]"])]
+    count = f"[{chance.randint(1, 6)}]"
+    name, place = chance.choice(
+        [
+            ("face_holes", [count, length(1, 50), *turns]),
+            ("side_holes", [count, length(-50, -1), *turns, length(10, 50)]),
+            ("face_hole_at", [length(-30, 30), length(-20, 20)]),
+        ]
+    )
+    return f"o<{name}> call {' '.join([*place, *hole])}"
+
+
+@pytest.mark.parametrize(("units", "mode"), [("G21", "G7"), ("G20", "G8"), ("G21", "G8")])
+def test_random_valid_calls_have_no_finding(tmp_path, units, mode):
+    chance = random.Random(f"{units}{mode}")
+    calls = []
+    for _ in range(60):
+        calls += [a_call(chance, 25.4 if units == "G20" else 1.0)]
+        calls += ["G0 X{} Z{}".format(*(60, 10) if units == "G21" and mode == "G7" else (2, 1))]
+        calls[-1] = (
+            "G0 X60 Z10" if mode == "G7" else "G0 X30 Z10" if units == "G21" else "G0 X1.5 Z1"
+        )
+        calls += [
+            chance.choice(
+                ["G91\nG90", f"C{round(chance.uniform(-400, 400), 3)}", "G95 F.2\nG94 F90"]
+            )
+        ]
+    path = written(tmp_path, *calls, units=units, mode=mode)
+    assert findings(path, read_ini(SIM / "lathe_mm_headless.ini")) == []
+
+
+@pytest.fixture(scope="module")
+def broken(tmp_path_factory):
+    """Return the INI of a lathe whose g12_holes.ngc is changed by a function."""
+    ini = read_ini(SIM / "lathe_mm_headless.ini")
+    path = ini.get("RS274NGC", "SUBROUTINE_PATH")
+
+    def changed(old, new):
+        folder = tmp_path_factory.mktemp("ngc")
+        text = SUB.read_text()
+        assert old in text
+        (folder / SUB.name).write_text(text.replace(old, new, 1))
+        return ini.replaced({"RS274NGC": {"SUBROUTINE_PATH": f"{folder}:{path}"}})
+
+    return changed
+
+
+@pytest.mark.parametrize(
+    ("call", "old", "new", "code"),
+    [
+        (FACE, "repeat [#<count>]", "repeat [#<count> - 1]", "path-off"),
+        (FACE, "repeat [#<count>]", "repeat [#<count> + 1]", "path-off"),
+        (SIDE, "G91 G0 C#<turn>", "G91 G0 C[0 - #<turn>]", "path-off"),
+        (FACE, "G91 G0 C#<first_turn>", "G91 G0 C[#<first_turn> + .1]", "path-off"),
+        (FACE, "G1 X[#<x> - #<x_axis> * #<depth>] Z[#<z> - #<z_axis> * #<depth>]",
+         "G1 X[#<x> - #<x_axis> * #<depth>] Z[#<z> - #<z_axis> * #<depth> + .1]", "path-off"),
+        (SIDE, "repeat [#<pecks> - 1]", "repeat [#<pecks> - 2]", "path-missing"),
+        (FACE, "o<out> if [#<full>]", "o<out> if [0]", "path-off"),
+        (FACE, "    F#<feed>", "    F[#<feed> * 1.01]", "feed"),
+        (FACE, "G1 X[#<x> - #<x_axis> * #<to>]", "G0 X[#<x> - #<x_axis> * #<to>]", "rapid"),
+        (FACE, "G4 P#<dwell>", "G4 P[#<dwell> / 2]", "act-missing"),
+        (FACE, "o<dwell> if [#<dwell>]", "o<dwell> if [0]", "act-missing"),
+        (BORE, "o<feed_out> if [#<kind> EQ 3]", "o<feed_out> if [0]", "rapid"),
+        (TAP, "K#<feed>", "K[#<feed> * 1.1]", "act-missing"),
+        (TAP, "o<kind> if [#<kind> EQ 1", "o<kind> if [0 EQ 1", "act-missing"),
+        # C turns while the tool is still down
+        (FACE, "#<z_axis> * #<retract>]\n    o<kind> endif",
+         "#<z_axis> * #<retract> - 3]\n    o<kind> endif", "path-off"),
+        (FACE, "  #<hole> = 0", "  #<hole> = 0 G64", "blended-hole"),
+        (FACE, "  #<hole> = 0", "  #<hole> = 0 M8", "extra-event"),
+    ],
+)  # fmt: skip
+def test_a_fault_of_the_sub_is_found(broken, tmp_path, call, old, new, code):
+    found = findings(written(tmp_path, call), broken(old, new))
+    assert (code, 6) in found, found
+
+
+def test_modes_that_are_not_restored_are_found(tmp_path):
+    ini = read_ini(SIM / "lathe_mm_headless.ini")
+    folder = tmp_path / "ngc"
+    folder.mkdir()
+    text = (ROOT / "ngc" / "face_holes.ngc").read_text()
+    (folder / "face_holes.ngc").write_text(re.sub("G13.4", "G91", text))
+    path = f"{folder}:{ini.get('RS274NGC', 'SUBROUTINE_PATH')}"
+    found = findings(written(tmp_path, FACE), ini.replaced({"RS274NGC": {"SUBROUTINE_PATH": path}}))
+    assert ("state", 6) in found
+
+
+def test_a_bar_that_is_in_the_way(tmp_path):
+    ini = read_ini(SIM / "lathe_mm_headless.ini")
+    path = written(tmp_path, SIDE, "G0 Z10", FACE)
+    found = findings(path, ini, stock=StockText("50mm"))
+    assert found == [("in-the-bar", 6)]
+    assert findings(path, ini, stock=StockText("40mm")) == []
+
+
+def test_each_tap_has_its_pitch_in_a_trace():
+    with Tracer(SIM / "lathe_mm.ini", tools={1: 6.0}) as lathe:
+        traced = lathe.trace_text(["G21 G8", "T1 M6", "S5 M3", "G0 X9 Z5", TAP, TAP, "M2"])
+    assert [e.text for e in traced.events if "pitch" in e.text] == ["pitch 1.25 mm"] * 2
