@@ -30,6 +30,10 @@ CIRCLE = [  # r 10, 20 off the axis
     Round(20 + 10 * cmath.rect(1, turn), 20, THIRD) for turn in (0, THIRD, 2 * THIRD)
 ]
 SLIDE, SPINDLE = (150.0, 1000.0), (math.radians(360), math.radians(3600))  # speed, acceleration
+SLOW_SLIDE, SLOW_SPINDLE = (150.0, 1500.0), (math.radians(90), math.radians(1200))
+OF_LEAST = {1000: 1.05, 2000: 1.12, 3000: 1.21}  # the circle's time on the face
+OF_LEAST_SLOW = {500: 1.05, 1000: 1.30, 2000: 1.80}  # with an override of 1.5 in reserve
+HEXAGON_SLOW = {500: 1.05, 2000: 1.40}
 SLOT_BLOCK, SLOT_LENGTH = (7,), 36.0  # of slot.ngc: through the pole
 
 
@@ -44,6 +48,8 @@ def figures():
         yield deviation_on_face(face)
         for name in ("slot", "circles"):
             yield from spindle_limits(face, name)
+    with Machine(SIM / "lathe_slow_c_mm_kinematics.ini") as slow:
+        yield from slow_spindle(slow)
     with (
         Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as pieces,
         Machine(SIM / "lathe_inch_kinematics.ini", tools=MANUAL_TOOLS) as face,
@@ -72,19 +78,42 @@ def hexagon(face, pieces, feed, most):
 
 def circle(face, pieces, feed):
     """Compare the times of a circle beside the axis."""
-    program = ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", f"G3 I-10 F{feed}", "G13.1", "M2"]
-    return beside(
-        f"circle r 10, 20 off the axis, F{feed}",
-        [seconds_in(lathe.run_text(program), (4,)) for lathe in (face, pieces)],
-        ideal := sum(piece.length for piece in CIRCLE) / feed * 60,
-        f"the axes could do {least(CIRCLE, feed) / ideal:.3f}, {posted(pieces, CIRCLE, feed)}",
+    ours, others = (seconds_in(lathe.run_text(circle_at(feed)), (4,)) for lathe in (face, pieces))
+    shortest = least(CIRCLE, feed)
+    return Figure(
+        f"polar with kinematics: circle r 10, 20 off the axis, F{feed}, against least time",
+        ours / shortest,
+        OF_LEAST[feed],
+        "",
+        f"with pieces {others / shortest:.3f}, {posted(pieces, CIRCLE, feed)}",
     )
 
 
-def least(pieces, feed):
+def circle_at(feed):
+    """Return the program of the circle."""
+    return ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", f"G3 I-10 F{feed}", "G13.1", "M2"]
+
+
+def least(pieces, feed, slide=SLIDE, spindle=SPINDLE):
     """Return the least time that the slide's and C's own limits allow, whoever plans it."""
     points = np.concatenate([piece.points(1000)[:-1] for piece in pieces])
-    return least_seconds(points, feed / 60, SLIDE, SPINDLE)
+    return least_seconds(points, feed / 60, slide, spindle)
+
+
+def slow_spindle(lathe):
+    """Yield the rows of a lathe whose C is slow, against what its axes can do."""
+    axes = SLOW_SLIDE, SLOW_SPINDLE
+    title = "polar with kinematics, C 90 degrees/s:"
+    for feed, most in OF_LEAST_SLOW.items():
+        ours = seconds_in(lathe.run_text(circle_at(feed)), (4,))
+        ratio = ours / least(CIRCLE, feed, *axes)
+        yield Figure(f"{title} circle r 10, 20 off the axis, F{feed}", ratio, most, "", "")
+    around = [piece for group in outward(HEXAGON, 6) for piece in group]
+    for feed, most in HEXAGON_SLOW.items():
+        program = at_feed((SAMPLES / "hexagon.ngc").read_text(), f"F{feed}", HEXAGON_BLOCKS)
+        ours = seconds_in(lathe.run_text(program), HEXAGON_BLOCKS)
+        shortest = sum(least([piece], feed, *axes) for piece in around)
+        yield Figure(f"{title} hexagon, F{feed}", ours / shortest, most, "", "side by side")
 
 
 def slot(face, pieces, feed):

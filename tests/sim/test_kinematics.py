@@ -20,7 +20,7 @@ from support.contour_geometry import (
     outward,
 )
 from support.kinematics import needs_kinematics, on_the_face, place
-from support.operated_machine import kept_machine
+from support.operated_machine import Machine, kept_machine
 from support.polar_drawings import HEXAGON, MILLIMETRES
 from support.polar_programs import (
     C_ACCELERATION,
@@ -412,3 +412,51 @@ def keeps_its_limits(samples):
     """Check that no joint ever went faster than it can: no jump between the worlds."""
     assert np.abs(np.diff(samples.axes["X"])).max() * 1000 <= 150 * 1.001
     assert np.abs(np.diff(samples.axes["C"])).max() * 1000 <= 360 * 1.001
+
+
+CIRCLE_NEAR = ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", "G3 I-10 F3000", "G13.1", "M2"]
+
+
+def face_accelerations(machine):
+    return [machine.get(f"ini.{axis}.max_acceleration") for axis in "xy"]
+
+
+def test_a_section_has_its_own_acceleration(lathe):
+    lathe.open_text(CIRCLE_NEAR)
+    lathe.start()
+    lathe.wait_for(lambda _: on_the_face(lathe))
+    there = face_accelerations(lathe)
+    assert there[0] == there[1] < 707
+    lathe.wait_idle()
+    assert face_accelerations(lathe) == [707, 707]
+
+
+@pytest.mark.parametrize("interrupt", [abort, emergency_stop, jog_mode])
+def test_an_interrupted_section_leaves_the_acceleration_of_the_ini(lathe, interrupt):
+    lathe.open_text(CIRCLE_NEAR)
+    lathe.start()
+    lathe.wait_for(lambda _: on_the_face(lathe) and not lathe.get("motion.in-position"))
+    assert face_accelerations(lathe) != [707, 707]
+    interrupt(lathe)
+    lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707], timeout=SOON)
+    lathe.errors()
+
+
+def test_c_and_the_slide_keep_their_limits_at_any_override():
+    """Where C is slow, the operator turns the feed up and down while it is cut."""
+    chance = random.Random(3)
+    with Machine(SIM / "lathe_slow_c_mm_kinematics.ini") as machine:
+        for feed in (2000, 3000):
+            machine.open_text([block.replace("F3000", f"F{feed}") for block in CIRCLE_NEAR])
+            machine.start()
+            machine.wait_for(lambda _: on_the_face(machine))
+            machine.sample()
+            while on_the_face(machine):
+                machine.feed_override(chance.choice([0.5, 1.0, 1.5]))
+                time.sleep(0.1)
+            c, x = (machine.samples().axes[axis] for axis in "CX")
+            machine.wait_idle()
+            assert np.abs(np.diff(c)).max() * 1e3 <= 90 * 1.001
+            if not exceeds_limits_itself(machine):
+                assert np.abs(np.diff(c, 2)).max() * 1e6 <= 1200 * 1.001
+                assert np.abs(np.diff(x, 2)).max() * 1e6 <= 1500 * 1.001

@@ -53,7 +53,10 @@ COMPENSATION = (
     "compensation_offset",
 )
 MOVES = ("moves_exact_stops", "moves_feed", "moves_soft_limits", "moves_spacing")
-POLAR = ("polar_start", "polar_pole", "polar_pieces", "polar_beside", "polar_face", "polar_plan")
+POLAR = (
+    *("polar_start", "polar_pole", "polar_pieces", "polar_beside", "polar_face", "polar_follow"),
+    *("polar_quickest", "polar_plan"),
+)
 UNIT = {
     "request": CYCLES,
     "cycles": CYCLES,

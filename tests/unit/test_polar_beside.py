@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from g12.compensation.contour import Contour, Line
 from g12.errors import Refusal
 from g12.moves.steps import BlockMoves
-from g12.polar.face import FaceLimits, is_able, passed
+from g12.polar.face import passed
+from g12.polar.follow import FaceLimits, is_able
 from g12.polar.plan import PolarSettings, plan
 from support.contour_geometry import Round, Straight, distance, distance_from_path
 from support.planned_cuts import add, programmed

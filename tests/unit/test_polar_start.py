@@ -8,7 +8,7 @@ import pytest
 from g12.errors import Refusal
 from g12.machine_ini import Axis, FaceAxes
 from g12.moves.steps import BlockMoves
-from g12.polar.face import FaceLimits
+from g12.polar.follow import FaceLimits
 from g12.polar.start import check_section_start, polar_setup
 from g12.settings import Settings
 from support.section_starts import START

@@ -5,7 +5,12 @@ import math
 
 import pytest
 
-from g12.tools.verify.sections.face_follow import FollowLimits, derivatives, follow_off
+from g12.tools.verify.sections.face_follow import (
+    FollowLimits,
+    derivatives,
+    follow_off,
+    is_slow_enough,
+)
 from support.made_moves import Hand
 
 LIMITS = FollowLimits(plane=700.0, slide=1000.0, c=60.0)
@@ -54,3 +59,12 @@ def test_what_c_and_the_slide_cannot_do_is_told(distance, speed, c, told):
 def test_a_line_into_the_centre_turns_no_c(rounding):
     move = Hand().rapid(x=7.0).line(x=rounding).moves[-1]
     assert follow_off(move, 5.0, 0.0, 0.0, LIMITS) is None
+
+
+@pytest.mark.parametrize(
+    ("share", "enough"), [(0.5, False), (0.75, False), (0.83, True), (0.97, True)]
+)
+def test_a_move_slower_than_c_can_follow_is_told(share, enough):
+    """At 10 mm from the spindle C is at its speed with 20 mm/s."""
+    limits = LIMITS._replace(plane=1e-3, c_speed=2.0, slide=1e9, c=1e9)
+    assert is_slow_enough(line(10.0), share * 20.0, 0.0, 0.0, limits) is enough

@@ -3,18 +3,24 @@
 
 The machine has to stand for it, and the interpreter to wait. What it is asked by, and what it
 answers with, is wired in polar_kinematics.hal.
+
+The acceleration of X and Y on the face is that of the section. LinuxCNC takes it from HAL pins each
+time before it goes on with the interpreter (`check_ini_hal_items` in emctaskmain.cc), and canon
+asks for it at each move.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+import hal
 import linuxcnc
 
 from g12.errors import number
 from g12.host.program_lines import without_line
 from g12.section.modes import decimal
 
+ACCELERATIONS = ("ini.x.max_acceleration", "ini.y.max_acceleration")  # HAL pins
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
 OFF, BY_PROGRAM, BY_HAND, NO_MOVES = 0, 1, 2, 3  # what is asked for
 SWITCHING = 10  # seconds that it may take at most, on a busy machine
@@ -40,11 +46,23 @@ def modes_found(interp: object) -> str:
     return f"{PLANES[interp.plane]}{centres}"
 
 
-def to_face(interp: object, machine_unit: float, asked: int) -> Iterator[str]:
+def accelerate(interp: object, share: float) -> None:
+    """Have X and Y accelerate with a share of what the INI says, from the next wait on."""
+    if not interp.task:
+        return
+    of_ini = getattr(interp, "g12_accelerations", None)
+    if not of_ini:
+        of_ini = interp.g12_accelerations = [hal.get_value(pin) for pin in ACCELERATIONS]
+    for pin, acceleration in zip(ACCELERATIONS, of_ini):
+        hal.set_p(pin, repr(share * acceleration))
+
+
+def to_face(interp: object, machine_unit: float, asked: int, share: float = 1.0) -> Iterator[str]:
     """Go to the face; yield the block to wait for.
 
-    ``machine_unit`` is one in program units.
+    ``machine_unit`` is one in program units, ``share`` is of the INI's accelerations.
     """
+    accelerate(interp, share)
     centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
     interp.execute(f"M68E{CENTRE_OUTPUT}Q{decimal(centre / machine_unit)}")
     interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")  # the last request may have ended by itself
@@ -56,6 +74,7 @@ def to_axes(interp: object) -> Iterator[str]:
     """Go back to X, Z and C; yield the block to wait for."""
     interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")
     yield f"M66P{FACE_INPUT}L4Q{SWITCHING}"
+    accelerate(interp, 1.0)  # not before the machine has been there: LinuxCNC reads ahead
 
 
 def has_switched(interp: object) -> bool:

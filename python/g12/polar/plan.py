@@ -18,9 +18,11 @@ from g12.moves.steps import (
     StepMaker,
 )
 from g12.polar.beside import along_and_around, check_reach, split_beside, stand
-from g12.polar.face import FaceLimits, FaceMove, FaceSwitch, chosen, in_face, parted, passed
+from g12.polar.face import FaceMove, FaceSwitch, in_face, passed
+from g12.polar.follow import FaceLimits
 from g12.polar.pieces import Law, split_move
 from g12.polar.pole import POLE, through_pole
+from g12.polar.quickest import quickest
 
 POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
 SAME_ANGLE = 1e-9  # radians
@@ -61,11 +63,10 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
     )
     stopping = stops(path, ROUNDING_SHARE * tolerance, quick)
     machine = _SlideAndSpindle(contour, settings, c)
-    faced = [False] * len(path)
+    shares = [0.0] * len(path)
     if settings.face:
-        path, stopping = parted(path, stopping, settings.face)
-        faced = chosen(path, settings.face)
-    for element, stop, face in zip(path, stopping, faced):
+        path, stopping, shares = quickest(path, stopping, settings.face)
+    for element, stop, face in zip(path, stopping, shares):
         machine.switch(element.line, face)
         if isinstance(element, Mark):
             machine.steps.append(element.action)
@@ -129,11 +130,11 @@ class _SlideAndSpindle(StepMaker):
         law, beside = self._law(move.feed, deviation), self._settings.beside
         return split_beside(move, law, beside) if beside else split_move(move, law)
 
-    def switch(self, line: int, face: bool) -> None:
-        """Go to the face or back from it, if it is another way than before."""
-        if face is not (self._face is not None):
-            self._face = self.angle if face else None
-            self.steps.append(FaceSwitch(line, face, self.place))
+    def switch(self, line: int, share: float) -> None:
+        """Go to the face, with a share of its acceleration, or back (0.0), if not there yet."""
+        if bool(share) is not (self._face is not None):
+            self._face = self.angle if share else None
+            self.steps.append(FaceSwitch(line, bool(share), self.place, share or 1.0))
 
     def cut_on_face(self, move: Line | Arc | Plunge) -> None:
         """Add a move on the face as it is."""
@@ -152,7 +153,7 @@ class _SlideAndSpindle(StepMaker):
 
     def finish(self, path: list) -> None:
         """Come back from the face; add what the last pieces left over of X and Z."""
-        self.switch(path[-1].line if path else 0, face=False)
+        self.switch(path[-1].line if path else 0, 0.0)
         slide, z = self.place.x, self.place.z
         for element in path:
             z = z if isinstance(element, Mark) else element.z1

@@ -17,7 +17,7 @@ from g12.moves.setup import (
     tolerance_of,
     travel,
 )
-from g12.polar.face import FaceLimits
+from g12.polar.follow import FaceLimits
 from g12.polar.plan import PolarSettings
 from g12.polar.words import POLAR_WORDS
 from g12.section.start import SectionStart, WordRules

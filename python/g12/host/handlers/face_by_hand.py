@@ -24,6 +24,7 @@ from g12.host.kinematics_switch import (
     NOT_SWITCHED,
     OFF,
     ON_THE_FACE,
+    accelerate,
     face_in_force,
     has_switched,
     modes_found,
@@ -94,6 +95,7 @@ def abort(interp: object) -> None:
     canonical function asks where M68 could not, with compensation on.
     """
     by_hand = _unlock(interp)
+    accelerate(interp, 1.0)
     emccanon.SET_AUX_OUTPUT_VALUE(FACE_OUTPUT, float(NO_MOVES if by_hand else OFF))
     if by_hand:
         interp.g12_by_hand = by_hand._replace(ended=True)

@@ -49,7 +49,7 @@ ELSEWHERE = (
     "the tool is not where the section begins: "
     "with kinematics, Run from line cannot pass over a section"
 )
-MEANINGS_CHANGED = "g12: the axes mean something else now"  # for `g12.tools.preview.worker`
+MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # for preview/worker
 BLOCK_END = ""
 
 
@@ -260,7 +260,7 @@ class SectionOutput:
         found = interp.params[INPUT_FOUND]
         if step.on:
             interp.g12_found = modes_found(interp)
-            yield from to_face(interp, self.machine_unit, BY_PROGRAM)
+            yield from to_face(interp, self.machine_unit, BY_PROGRAM, step.share)
             interp.execute(ON_THE_FACE)
             self.path.renew()
         else:
@@ -277,7 +277,7 @@ class SectionOutput:
         interp.current_x, interp.CC_current, interp.current_z = step.place
         interp.current_y = step.on * self.beside - y_offset(interp)
         if not interp.task:
-            self.canon.COMMENT(MEANINGS_CHANGED)
+            self.canon.COMMENT(f"{MEANINGS_CHANGED}{step.share}")
 
     def _wrong_place(self, place: tuple[float, float, float]) -> str:
         """Return why the machine, which the interpreter has just asked, is not where it was meant.
@@ -293,8 +293,9 @@ class SectionOutput:
         block_ends = not isinstance(following, FaceMove) or following.line != step.line
         interp.sequence_number = step.line
         self.path.on_face()
-        if isinstance(following, FaceMove) and flows_into(move, following.move):
-            self.path.set(EXACT_PATH)  # nothing to blend, and 2.10 slows an arc for what might be
+        ends = isinstance(following, FaceSwitch)
+        if ends or (isinstance(following, FaceMove) and flows_into(move, following.move)):
+            self.path.set(EXACT_PATH)  # nothing to blend: LinuxCNC halves its acceleration for it
         self.path.at_end(False, exact_stop, block_ends)
         words = "G1" if not isinstance(move, Arc) else "G3" if move.sweep > 0.0 else "G2"
         values = {"F": move.feed}

@@ -100,6 +100,7 @@ class Move(NamedTuple):
     ``remap`` is the remapped code that makes the move, ``G12``, "" without one. ``exact`` says that
     it ends in an exact path or stop (G61, G61.1), not blended into the next. ``by_machine`` says
     that its block names a place of the machine (G53, G28, G30), which no work offset moves.
+    ``acceleration`` is a share of the INI's for X and Y, with which the face's kinematics make it.
     """
 
     kind: str
@@ -118,6 +119,7 @@ class Move(NamedTuple):
     remap: str = ""
     exact: bool = False
     by_machine: bool = False
+    acceleration: float = 1.0
 
     @property
     def radius(self) -> float:

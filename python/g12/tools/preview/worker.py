@@ -30,7 +30,7 @@ NO_OFFSET = (0.0,) * 9
 LINEAR = (0, 1, 2, 6, 7, 8)
 STILL = 1e-8  # mm: of less LinuxCNC makes nothing (CART_FUZZ)
 INCHES, METRIC = 1, 2
-MEANINGS_CHANGED = "g12: the axes mean something else now"  # what `g12.host` says then
+MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
 PLANES = {1: 17, 2: 19, 3: 18}
 ARC_AXES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis
 PR_SET_PDEATHSIG = 1  # of Linux: the signal a process gets when its parent dies
@@ -200,6 +200,7 @@ class Canon:
         self.pitch = ""
         self.line = 0
         self.on_face = False  # of the kinematics, where Y tells where the tool is
+        self.share = 1.0  # of the INI's accelerations of X and Y there
         self.tip = NO_OFFSET  # in program coordinates
         self.position = self._beside_x(NO_OFFSET)  # in machine coordinates
         self.work = self.g92 = self.length = NO_OFFSET
@@ -255,8 +256,10 @@ class Canon:
             this.active_spindle = 0  # LinuxCNC leaves it unset, and reads it in G33 without $
             self.modal_feed, self.units = 0.0, this.length_units
         self._convert_feed()
-        if text == MEANINGS_CHANGED:
+        meant, changed, share = text.partition(MEANINGS_CHANGED)
+        if changed and not meant:
             self.on_face = not self.on_face
+            self.share = float(share)
             self._stand_where_the_interpreter_does()
         if text == START:
             self.started = True
@@ -407,7 +410,7 @@ class Canon:
         state = (self.plane, self.spindle[0], self.length)
         place = (kind, self.line, self.lines.now(), start, self.position)
         remap = self.lines.remap()
-        how = (is_exact(), goes_by_machine())
+        how = (is_exact(), goes_by_machine(), self.share)
         self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation, remap, *how))
         if remap:
             self.files |= self.lines.files()

@@ -25,14 +25,17 @@ PLACES = 48  # on a move that are looked at, and those where a line's C is accel
 STEP = 1e-3  # mm, of the derivatives
 AT_CENTRE = 1e-6  # mm: there C has no angle, and a line that ends there needs none
 ALLOWED = 1.1  # of a limit: the greatest value may lie between places that a planner looks at
+FEED_STEP = 0.8  # of a feed: a part of a move may be made at so much less than can be followed
+NEARLY = 0.95  # of a limit
 
 
 class FollowLimits(NamedTuple):
-    """Accelerations: of X or Y on the face, of the slide, of C."""
+    """Accelerations: of X or Y on the face, of the slide, of C; and C's speed."""
 
     plane: float
     slide: float
     c: float
+    c_speed: float = math.inf
 
 
 class Exceeded(NamedTuple):
@@ -48,17 +51,40 @@ def follow_off(
     """Return what a move on the face at a speed asks of an axis that it has not, if anything."""
     if move.start[C] != move.end[C] or not crosses_face(move):
         return None
+    slide, c, _ = asked(move, speed, centre, beside, limits)
+    for name, times in (("C", c), ("the slide", slide)):
+        if times > ALLOWED:
+            return Exceeded(name, times)
+    return None
+
+
+def is_slow_enough(
+    move: Move, speed: float, centre: float, beside: float, limits: FollowLimits
+) -> bool:
+    """Tell whether a move on the face that is slower than asked for need not be faster.
+
+    X and Y together have more acceleration than each along a line.
+    """
+    if move.kind != "arc":
+        limits = limits._replace(plane=math.hypot(limits.plane, limits.plane))
+    return not crosses_face(move) or any(
+        times > NEARLY for times in asked(move, speed / FEED_STEP, centre, beside, limits)
+    )
+
+
+def asked(
+    move: Move, speed: float, centre: float, beside: float, limits: FollowLimits
+) -> tuple[float, float, float]:
+    """Return how many times the slide's and C's accelerations, and C's speed, a move asks for."""
     bent = 1.0 / move.radius if move.kind == "arc" else 0.0
     square = min(speed * speed, limits.plane / bent) if bent else speed * speed
     along = math.sqrt(max(0.0, limits.plane**2 - (square * bent) ** 2))
+    slide, c = derivatives(move, centre, beside)
+    turning = math.sqrt(square) * np.nanmax(abs(c[0])) / limits.c_speed
     slide, c = (
-        np.nanmax(square * abs(second) + along * abs(first))
-        for first, second in derivatives(move, centre, beside)
+        np.nanmax(square * abs(second) + along * abs(first)) for first, second in (slide, c)
     )
-    for name, asked, limit in (("C", c, limits.c), ("the slide", slide, limits.slide)):
-        if asked > ALLOWED * limit:
-            return Exceeded(name, asked / limit)
-    return None
+    return slide / limits.slide, c / limits.c, turning
 
 
 def crosses_face(move: Move) -> bool:

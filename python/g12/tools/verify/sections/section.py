@@ -122,7 +122,7 @@ def measure_section(
         tool,
         tuple(sorted({stretch[0].side for stretch in stretches_of(section)})),
         found,
-        feed_off(found, moves, slower_on_face(found, moves, axes)),
+        feed_off(found, moves, slower_on_face(found, moves, path, axes)),
         contour_size(section, found, points, tool, plane.sizes),
         other_side(section, tool),
         jump=jump_between(across, moves, points_of(plane, across, path)),

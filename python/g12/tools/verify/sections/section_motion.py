@@ -36,24 +36,22 @@ from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.section import SectionPath
 from g12.tools.verify.expected.contour import Element, SectionContour
-from g12.tools.verify.expected.toolpath import Expected
-from g12.tools.verify.sections.face_follow import FollowLimits, follow_off
+from g12.tools.verify.sections.face_follow import FollowLimits, follow_off, is_slow_enough
 
 G64_P = re.compile(r"G64 P(\S+)")
 STILL = 1e-7  # mm: C turns in place
 SMOOTH = math.radians(1.0)
 CORNER = math.radians(15.0)  # chords of an arc make smaller ones
-LEAST_ON_FACE = 0.5  # of the feed: so slow may a part of a line be on the face of the kinematics
-BEND = 3.0 * math.sqrt(3.0) / 8.0
+LESS_ON_FACE, LEAST_ON_FACE = 0.86, 0.05  # of the feed: what C cannot follow is made at between
 
 
 class SectionAxes(NamedTuple):
     """What a machine's axes can do: accelerations of X and Z in mm, of C in radians, per second².
 
-    ``c_speed`` is C's greatest speed, degrees/s; ``face`` tells of the kinematics of the face and
-    ``slide`` is the acceleration of the X slide there, ``beside`` how far the tool stands from the
-    X line, mm. ``surface`` is the radius of the cylinder whose unrolled surface the part is, mm, 0
-    of its face.
+    ``c_speed`` is C's greatest speed, degrees/s; ``face`` tells of the kinematics of the face,
+    ``slide`` is the acceleration of the X slide there and ``override`` what the feed may be turned
+    up to, ``beside`` how far the tool stands from the X line, mm. ``surface`` is the radius of the
+    cylinder whose unrolled surface the part is, mm, 0 of its face.
     """
 
     x: float
@@ -64,6 +62,7 @@ class SectionAxes(NamedTuple):
     beside: float = 0.0
     surface: float = 0.0
     slide: float = 0.0
+    override: float = 1.0
 
     def of(self, section: SectionContour) -> SectionAxes:
         """Return the same for a section: nothing but polar interpolation uses the kinematics."""
@@ -112,9 +111,11 @@ def axes_of_section(ini: Ini) -> SectionAxes:
     """Return what the axes of an INI can do."""
     x, z, c = (ini.axis_limits[letter].acceleration for letter in "XZC")
     speed, face = ini.axis_limits["C"].velocity, face_of(ini.get)
-    slide = face.slide.acceleration * ini.mm if face else 0.0
-    lengths = x * ini.mm, z * ini.mm, math.radians(c)
-    return SectionAxes(*lengths, speed, bool(face), ini.tool_beside, slide=slide)
+    lengths, beside = (x * ini.mm, z * ini.mm, math.radians(c)), ini.tool_beside
+    if not face:
+        return SectionAxes(*lengths, speed, beside=beside)
+    slide, override = face.slide.acceleration * ini.mm, max(1.0, face.override)
+    return SectionAxes(*lengths, speed, True, beside, slide=slide, override=override)
 
 
 def motion_off(
@@ -136,42 +137,41 @@ def motion_off(
 
 
 def slower_on_face(
-    found: SectionPath, moves: Sequence[Move], axes: SectionAxes
+    found: SectionPath, moves: Sequence[Move], path: Track, axes: SectionAxes
 ) -> dict[int, float]:
     """Return the moves (indices) on the face that may be slower, down to which share of the feed.
 
-    Where a line goes there in part only, C cannot follow all of it: that part may be slower.
+    Those are as fast as C and the slide can follow with the acceleration in force.
     """
     if not axes.face:
         return {}
-    spans = found.emitted.spans.items()
-    fed = {index: found.expected[span.last] for index, span in spans}
-    turned = {move.line for index, move in fed.items() if turns(moves[index])}
-    return {
-        index: LEAST_ON_FACE
-        for index, move in fed.items()
-        if not turns(moves[index]) and (move.line in turned or outruns_c(move, axes))
-    }
+    slower = {}
+    for index, span in found.emitted.spans.items():
+        move, feed = moves[index], path.part_feed(index)
+        asked = (found.expected[span.last].feed or 0.0) * LESS_ON_FACE
+        place = path.part.centre, axes.beside, follow_limits(move, axes)
+        if (
+            not turns(move)
+            and feed <= asked
+            and is_slow_enough(move, axes.override * feed / 60.0, *place)
+        ):
+            slower[index] = LEAST_ON_FACE
+    return slower
 
 
-def outruns_c(move: Expected, axes: SectionAxes) -> bool:
-    """Tell whether a move passes the spindle so near that C cannot follow it at its feed.
-
-    At the distance d and the speed v C turns by v / d, on a straight line with (v / d)**2 times
-    3 sqrt(3) / 8 at the most.
-    """
-    turning = (move.feed or 0.0) / 60.0 / max(move.curve.distance(0j), STILL)
-    return turning > math.radians(axes.c_speed) or turning**2 * BEND > axes.c
+def follow_limits(move: Move, axes: SectionAxes) -> FollowLimits:
+    """Return what X, Y, the slide and C can do while a move is made on the face."""
+    plane, speed = move.acceleration * axes.x, math.radians(axes.c_speed)
+    return FollowLimits(plane, axes.slide, axes.c, speed)
 
 
 def not_followed(
     section: SectionContour, moves: Sequence[Move], path: Track, axes: SectionAxes
 ) -> Iterator[OffMotion]:
     """Yield the moves on the face that ask more of C or the slide than they can do."""
-    limits = FollowLimits(axes.x, axes.slide, axes.c)
     for index in range(section.at, section.end):
-        speed, centre = path.part_feed(index) / 60.0, path.part.centre
-        off = follow_off(moves[index], speed, centre, axes.beside, limits)
+        move, speed = moves[index], path.part_feed(index) / 60.0
+        off = follow_off(move, speed, path.part.centre, axes.beside, follow_limits(move, axes))
         if off:
             yield OffMotion(moves[index].line, "face-acceleration", off._asdict())
 

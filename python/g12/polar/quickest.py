@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What of a section is made on the face, with which acceleration and feeds: as it is soonest made.
+
+The planner brakes anywhere with all of the face's acceleration, so C and the slide have to be able
+to follow that anywhere. The less it is, the nearer to the pole the face is good for; the more, the
+sooner the tool is at its feed. The best is a matter of the section: it is chosen here, and set
+where the machine stands to go to the face. Where C cannot follow F, the feed is what it can follow,
+or pieces are made of the part, whichever is quicker.
+
+The time of a way is that of a trapezoid of speed from stop to stop, with less than the
+acceleration, as LinuxCNC halves it where moves may be blended.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from math import ceil, hypot, log, radians, sqrt
+from operator import itemgetter
+from typing import NamedTuple
+
+from g12.compensation.contour import (
+    Arc,
+    Line,
+    end_direction,
+    is_move,
+    path_length,
+    start_direction,
+)
+from g12.compensation.intersect import part_of_move
+from g12.polar.follow import Demand, FaceLimits, are_able, demands_of, followed, is_able
+
+SHARES = (*(0.96**k for k in range(14)), 0.5, 0.4, 0.28, 0.18, 0.1, 0.05)  # of the INI's
+PLANNED = 0.7  # of the acceleration is what the planner uses along the path
+STEP, LEAST_FEED = 0.85, 0.08  # the feeds are powers of it, of the programmed one, no less
+CAREFUL = 0.98  # of the limits, where only some places are looked at
+GAIN = 0.02  # seconds: less is not worth a softer machine
+LEAST_GAIN = 0.9  # of the time: less is not worth the stops where pieces begin and end
+SWITCHING = 0.05  # seconds of standing, there and back
+WORTH_IT = 0.1  # seconds: two switches cost about as much
+STRAIGHT_ON = radians(5.0)  # a corner of more is taken for a stop
+
+
+class OnFace(NamedTuple):
+    """A path with the share of the INI's acceleration each element is made with, 0.0 in pieces."""
+
+    path: list
+    stopping: list[bool]
+    shares: list[float]
+
+
+class _Element(NamedTuple):
+    """An element of the path, and what is looked at; without places it is no move in the plane.
+
+    ``corner`` tells whether one follows, ``in_pieces`` about how long pieces take, in seconds.
+    """
+
+    move: object
+    stop: bool
+    length: float = 0.0
+    places: Sequence[Demand] = ()
+    corner: bool = False
+    in_pieces: float = 0.0
+
+
+class _Span(NamedTuple):
+    """A part of an element, with the feed that it has on the face, 0.0 in pieces."""
+
+    element: _Element
+    first: float
+    last: float
+    feed: float
+
+    @property
+    def length(self) -> float:
+        return (self.last - self.first) * self.element.length
+
+
+def quickest(path: list, stopping: list[bool], limits: FaceLimits) -> OnFace:
+    """Return a path, its moves parted, as it is soonest made.
+
+    ``stopping`` tells of each element whether it ends in a stop; so does what is returned.
+    """
+    elements = [_seen(*each, limits) for each in zip(path, stopping, [*path[1:], None])]
+    best, least, chosen = [], 0.0, 0.0
+    for share in SHARES:
+        spans = _worth_it([span for one in elements for span in _spans(one, limits, share)])
+        seconds = _seconds(spans, share * limits.round_acceleration)
+        if not best or seconds < least - GAIN:
+            best, least, chosen = spans, seconds, share
+        if len(spans) == len(path) and all(span.feed for span in spans):
+            break  # all of it as programmed: softer is slower
+    stops = [span.element.stop and span.last == 1.0 for span in best]
+    return OnFace([_made(span) for span in best], stops, _raised(best, limits, chosen))
+
+
+def _seen(move: object, stop: bool, following: object, limits: FaceLimits) -> _Element:
+    if not is_move(move):
+        return _Element(move, stop)
+    places, length = demands_of(move, limits), path_length(move)
+    corner = not is_move(following) or not _goes_straight_on(move, following)
+    return _Element(move, stop, length, places, corner, length * _slowness(places))
+
+
+def _goes_straight_on(move: Line | Arc, following: Line | Arc) -> bool:
+    (x0, c0), (x1, c1) = end_direction(move), start_direction(following)
+    return hypot(x1 - x0, c1 - c0) < STRAIGHT_ON
+
+
+def _slowness(places: Sequence[Demand]) -> float:
+    """Return about how long pieces take from the first to the last, for a unit of the length."""
+    return sum(
+        0.5 * (one.slowness + other.slowness) * (other.part - one.part)
+        for one, other in zip(places, places[1:])
+    )
+
+
+def _spans(element: _Element, limits: FaceLimits, share: float) -> list[_Span]:
+    """Return an element in spans, each at a feed that is followed all along it, if at any."""
+    move, places = element.move, element.places
+    if not places or are_able(move, places, limits, share):
+        return [_Span(element, 0.0, 1.0, move.feed if places else 1.0)]
+    levels = [
+        _level(CAREFUL * followed(move, place, limits, share / CAREFUL) / move.feed)
+        for place in places
+    ]
+    feeds = [
+        _worth(move.feed * min(levels[k : k + 2]), places[k : k + 2])
+        for k in range(len(places) - 1)
+    ]
+    spans = []
+    for feed, run in groupby(zip(feeds, places, places[1:]), itemgetter(0)):
+        steps = list(run)
+        spans.append(_Span(element, steps[0][1].part, steps[-1][2].part, feed))
+    return spans
+
+
+def _level(share: float) -> float:
+    """Return the greatest share of the feed that is tried and not above one, 0.0 for too little."""
+    if share >= 1.0:
+        return 1.0
+    return STEP ** ceil(log(share) / log(STEP)) if share > LEAST_FEED else 0.0
+
+
+def _worth(feed: float, ends: Sequence[Demand]) -> float:
+    """Return a feed between two places, 0.0 if pieces are quicker."""
+    in_pieces = 0.5 * (ends[0].slowness + ends[1].slowness)
+    return feed if feed * in_pieces > LEAST_GAIN * 60.0 else 0.0
+
+
+def _worth_it(spans: list[_Span]) -> list[_Span]:
+    """Return spans of which those on the face last long enough to go there.
+
+    Elements that are no moves in the plane go with the one in front of them.
+    """
+    worth: list[_Span] = []
+    for on_face, run in _stretches(spans):
+        if not on_face or sum(60.0 * span.length / span.feed for span in run) < WORTH_IT:
+            run = [span._replace(feed=0.0) for span in run]
+        worth += run
+    return [_joined(list(run)) for _, run in groupby(worth, lambda span: (id(span[0]), span[3]))]
+
+
+def _stretches(spans: list[_Span]) -> Iterator[tuple[bool, list[_Span]]]:
+    """Yield the spans from one switch to the next, and whether they are on the face."""
+    on_face, led = False, []
+    for span in spans:
+        on_face = bool(span.feed) if span.element.places else on_face
+        led.append((on_face, span))
+    for there, run in groupby(led, itemgetter(0)):
+        yield there, [span for _, span in run]
+
+
+def _joined(run: list[_Span]) -> _Span:
+    return run[0]._replace(last=run[-1].last)
+
+
+def _made(span: _Span) -> object:
+    """Return the element, or the part of it, that a span is."""
+    move = span.element.move
+    if (span.first, span.last) != (0.0, 1.0):
+        move = part_of_move(move, span.first, span.last)
+    return move._replace(feed=span.feed) if span.feed and span.element.places else move
+
+
+def _raised(spans: list[_Span], limits: FaceLimits, share: float) -> list[float]:
+    """Return the shares, of each stretch between two switches the most that is followed."""
+    shares = []
+    for on_face, run in _stretches(spans):
+        moves = [_made(span) for span in run if span.element.places]
+        more = (one for one in SHARES if one > share)
+        able = (one for one in more if all(is_able(move, limits, one) for move in moves))
+        shares += [next(able, share) if on_face else 0.0] * len(run)
+    return shares
+
+
+def _seconds(spans: list[_Span], acceleration: float) -> float:
+    """Return about how long spans take, those on the face with an acceleration."""
+    total = 0.0
+    for on_face, run in _stretches(spans):
+        moves = [span for span in run if span.length]
+        if not on_face:
+            total += sum(map(_in_pieces, moves))
+        elif moves:
+            smooth = (_trapezoid(each, PLANNED * acceleration) for each in _smooth(moves))
+            total += SWITCHING + sum(smooth)
+    return total
+
+
+def _in_pieces(span: _Span) -> float:
+    element = span.element
+    if (span.first, span.last) == (0.0, 1.0):
+        return element.in_pieces
+    there = [place for place in element.places if span.first <= place.part <= span.last]
+    return element.length * _slowness(there)
+
+
+def _smooth(spans: list[_Span]) -> Iterator[list[_Span]]:
+    """Yield spans without a corner between them."""
+    stretch: list[_Span] = []
+    for span in spans:
+        stretch.append(span)
+        if span.element.corner and span.last == 1.0:
+            yield stretch
+            stretch = []
+    if stretch:
+        yield stretch
+
+
+def _trapezoid(spans: list[_Span], acceleration: float) -> float:
+    """Return the seconds of moves without a stop between them, from standing to standing.
+
+    Each at the most speed that can be reached at its end and still be braked down from.
+    """
+    lengths, speeds = [span.length for span in spans], [span.feed / 60.0 for span in spans]
+    ends = [0.0, *(min(pair) for pair in zip(speeds, speeds[1:])), 0.0]
+    for k, length in enumerate(lengths):
+        ends[k + 1] = min(ends[k + 1], sqrt(ends[k] ** 2 + 2.0 * acceleration * length))
+    for k in reversed(range(len(lengths))):
+        ends[k] = min(ends[k], sqrt(ends[k + 1] ** 2 + 2.0 * acceleration * lengths[k]))
+    return sum(
+        _ramps(length, speed, acceleration, *between)
+        for length, speed, between in zip(lengths, speeds, zip(ends, ends[1:]))
+    )
+
+
+def _ramps(length: float, speed: float, acceleration: float, begin: float, end: float) -> float:
+    """Return the seconds of one move that begins and ends with given speeds."""
+    most = min(speed, sqrt((begin * begin + end * end) / 2.0 + acceleration * length))
+    up, down = most * most - begin * begin, most * most - end * end
+    even = length - (up + down) / (2.0 * acceleration)
+    return (2.0 * most - begin - end) / acceleration + max(0.0, even) / most

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How fast C and the slide can follow moves on the face."""
+
+from math import hypot, inf, pi
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from g12.compensation.contour import Arc
+from g12.polar.follow import FaceLimits, is_able
+from support.face_moves import LIMITS, arc, arcs, line, lines, motion
+
+
+def test_far_from_the_pole_a_move_is_able():
+    assert is_able(line((40, -20), (40, 20)), LIMITS)
+
+
+@pytest.mark.parametrize(
+    "move",
+    [
+        line((10, -20), (10, 20)),  # a stop of the feed would ask too much of C
+        line((30, 0), (0, 0)),
+        line((0, 0), (30, 0)),
+        arc((20, 0), 15, 0, 2 * pi),
+    ],
+)
+def test_near_the_pole_it_is_not(move):
+    assert not is_able(move, LIMITS)
+
+
+def test_along_a_radius_it_is_however_near_it_comes():
+    assert is_able(line((30, 0), (1, 0)), LIMITS)
+
+
+@pytest.mark.parametrize(("slide_speed", "able"), [(50.0, True), (49.99, False)])
+def test_along_a_radius_the_slide_goes_as_fast_as_it_can(slide_speed, able):
+    limits = LIMITS._replace(slide_speed=slide_speed)
+    assert is_able(line((30, 0), (10, 0), feed=3000.0), limits) is able
+    assert is_able(line((-3, 4), (-6, 8), feed=3000.0), limits) is able
+
+
+def test_a_higher_feed_needs_more_room():
+    slow, fast = (line((17, -20), (17, 20), feed=feed) for feed in (500.0, 6000.0))
+    assert is_able(slow, LIMITS)
+    assert not is_able(fast, LIMITS)
+
+
+def test_the_override_counts():
+    move = line((18.5, -20), (18.5, 20), feed=3000.0)
+    assert is_able(move, LIMITS)
+    assert not is_able(move, LIMITS._replace(override=3.0))
+
+
+def test_no_limits_no_pieces():
+    free = LIMITS._replace(c_acceleration=inf, c_speed=inf, slide_acceleration=inf)
+    assert is_able(line((0.001, -20), (0.001, 20)), free)
+
+
+@pytest.mark.parametrize("sweep", [0.9, -0.9, 2 * pi, -2 * pi])
+@pytest.mark.parametrize("part", [2.5 / 16, 7.5 / 16, 13.5 / 16])
+@pytest.mark.parametrize(("share", "able"), [(0.9999, False), (1.0001, True)])
+def test_an_arc_is_looked_at_where_it_is_nearest_to_the_pole(sweep, part, share, able):
+    """A circle of radius 10 about X20 passes the pole at 10, wherever it begins."""
+    free = FaceLimits(1e9, 1e9, inf, inf, share * (1000.0 / 60.0) / 10.0, 1.0, 0.0)
+    assert is_able(arc((20, 0), 10, pi - part * sweep, sweep), free) is able
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.one_of(lines, arcs))
+def test_an_able_move_at_its_feed_keeps_c_and_the_slide_within_their_limits(move):
+    if not is_able(move, LIMITS):
+        return
+    points, speed = motion(move)
+    radius, angle = abs(points), np.unwrap(np.angle(points))
+    step = abs(np.diff(points)).mean() / speed
+    turning = np.abs(np.diff(angle)) / step
+    assert turning.max() <= LIMITS.c_speed * 1.02
+    assert np.abs(np.diff(angle, 2)).max() / step**2 <= LIMITS.c_acceleration * 1.02
+    assert np.abs(np.diff(radius, 2)).max() / step**2 <= LIMITS.slide_acceleration * 1.02
+
+
+def share_of_limits(move, limits):
+    """Return how much of the limits a move takes, in numbers, wherever it goes on, stops or starts.
+
+    C and the slide are where they have to be for 2,000 places; how they change from one to the next
+    tells their speeds and accelerations, those along the path included.
+    """
+    points, speed = motion(move, limits)
+    slide = np.sqrt(abs(points) ** 2 - limits.beside**2)
+    angle = np.unwrap(np.angle(points) - np.arctan2(limits.beside, slide))
+    most, curving = limits.acceleration, 0.0
+    if isinstance(move, Arc):
+        most = limits.round_acceleration
+        curving = speed**2 / hypot(move.x0 - move.cx, move.c0 - move.cc)
+    step, slower = abs(points[1] - points[0]), np.linspace(0.0, 1.0, 20)[:, None] ** 0.5
+    left = np.sqrt(np.maximum(0.0, most**2 - (slower**2 * curving) ** 2))
+    shares = []
+    for axis, fastest, quickest in (
+        (angle, limits.c_speed, limits.c_acceleration),
+        (slide, limits.slide_speed, limits.slide_acceleration),
+    ):
+        rate, bend = abs(np.gradient(axis, step)), abs(np.gradient(np.gradient(axis, step), step))
+        inner = slice(2, -2)
+        shares += [speed * rate.max() / fastest, most * rate.max() / quickest]
+        used = (slower * speed) ** 2 * bend + left * rate
+        shares.append(used[:, inner].max() / quickest)
+    return max(shares)
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    st.one_of(lines, arcs),
+    st.sampled_from([0.0, 0.0, 3.0, -10.0]),
+    st.sampled_from([inf, 60.0]),
+    st.floats(0.2, 5.0),
+)
+def test_a_move_is_able_if_its_place_that_asks_the_most_is(move, beside, slide_speed, quick):
+    limits = LIMITS._replace(
+        beside=beside, slide_speed=slide_speed, c_acceleration=quick * LIMITS.c_acceleration
+    )
+    assume(abs(motion(move)[0]).min() > abs(beside) + 0.5)
+    share = share_of_limits(move, limits)
+    assert is_able(move, limits) == (share < 1.0) or 0.97 < share < 1.1
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.one_of(lines, arcs), st.sampled_from([0.0, 3.0]), st.floats(0.05, 1.0))
+def test_what_is_able_does_not_depend_on_the_unit(move, beside, quick):
+    """In units of ten metres nothing is greater than 1."""
+    limits = LIMITS._replace(
+        beside=beside, slide_speed=60.0, c_acceleration=quick * LIMITS.c_acceleration
+    )
+    small = {name: 1e-4 * getattr(limits, name) for name in LENGTHS}
+    ends = {name: 1e-4 * getattr(move, name) for name in move._fields if name[:1] in "xc"}
+    scaled = move._replace(feed=1e-4 * move.feed, **ends)
+    assert is_able(scaled, limits._replace(**small)) == is_able(move, limits)
+
+
+LENGTHS = ("acceleration", "round_acceleration", "slide_acceleration", "slide_speed", "beside")

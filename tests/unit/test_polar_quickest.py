@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What of a section is made on the face, with which acceleration: as it is made soonest."""
+
+import time
+from itertools import groupby
+from math import cos, hypot, inf, pi, radians, sin
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from g12.compensation.contour import Arc, Line, Mark, Plunge, path_length
+from g12.polar.follow import FaceLimits, is_able
+from g12.polar.quickest import SHARES, quickest
+
+QUICK = FaceLimits(1000.0, 707.0, 1000.0, radians(3600.0), radians(360.0), 1.0, 20.0)
+SLOW = FaceLimits(1500.0, 1060.0, 1500.0, radians(1200.0), radians(90.0), 1.5, 35.0)
+
+
+def line(*ends, feed):
+    (x0, c0), (x1, c1) = ends
+    return Line(1, feed, 0.0, x0, c0, 0.0, x1, c1, 0.0)
+
+
+def circle(radius, off, feed, sweep=2 * pi):
+    there = off + radius * cos(sweep), radius * sin(sweep)
+    return Arc(1, feed, 0.0, off + radius, 0.0, 0.0, *there, 0.0, off, 0.0, sweep)
+
+
+def made_of(path, limits):
+    return quickest(path, [False] * len(path), limits)
+
+
+def test_far_from_the_pole_nothing_is_softened():
+    path = [line((60, -20), (60, 20), feed=3000.0), Mark(2, "M8")]
+    assert quickest(path, [True, False], QUICK) == (path, [True, False], [1.0, 1.0])
+
+
+@pytest.mark.parametrize("feed", [1000.0, 2000.0])
+def test_a_circle_nearer_to_the_pole_is_whole_on_a_softer_face(feed):
+    whole = circle(10, 20, feed)
+    made = made_of([whole], QUICK)
+    assert made.path == [whole]
+    (share,) = made.shares
+    assert is_able(whole, QUICK, share)
+    assert not any(is_able(whole, QUICK, one) for one in SHARES if one > share)
+
+
+def test_where_c_is_too_slow_the_feed_is_what_it_can_follow():
+    made = made_of([circle(10, 20, 2000.0)], SLOW)
+    feeds = [part.feed for part, share in zip(made.path, made.shares) if share]
+    assert 2000.0 == max(feeds) > min(feeds)
+    assert hypot(made.path[-1].x1, made.path[-1].c1) == pytest.approx(30.0)
+
+
+def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
+    made = quickest([line((-90, 0.5), (90, 0.5), feed=3000.0)], [True], QUICK)
+    there, *beside, back = made.shares
+    assert there == back > 0.0 in beside
+    assert made.stopping == [*[False] * (len(made.path) - 1), True]
+    in_pieces = [part for part, share in zip(made.path, made.shares) if not share]
+    assert [part.feed for part in in_pieces] == [3000.0]
+    assert path_length(in_pieces[0]) < 40
+    for before, after in zip(made.path, made.path[1:]):
+        assert (before.x1, before.c1) == pytest.approx((after.x0, after.c0))
+
+
+def test_the_quicker_pieces_are_the_more_is_made_of_them():
+    def on_face(speed):
+        made = made_of([line((-90, 2), (90, 2), feed=3000.0)], QUICK._replace(pieces_speed=speed))
+        return sum(path_length(part) for part, share in zip(made.path, made.shares) if share)
+
+    assert on_face(1.0) > on_face(20.0) > on_face(80.0)
+
+
+FAR, NEAR = line((40, -20), (40, 20), feed=1000.0), line((1e-4, -20), (1e-4, 20), feed=1000.0)
+MARK, PLUNGE = Mark(2, "M8"), Plunge(3, 500.0, 0.0, -1.0)
+
+
+def test_marks_and_plunges_go_with_what_is_in_front():
+    path = [MARK, FAR, MARK, PLUNGE, NEAR._replace(c0=-1, c1=1), PLUNGE, FAR, MARK]
+    on = [bool(share) for share in made_of(path, QUICK).shares]
+    assert on == [False, True, True, True, False, False, True, True]
+
+
+@pytest.mark.parametrize(("seconds", "worth"), [(0.0995, False), (0.1005, True)])
+def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
+    far = line((40, 0), (40, 10 * seconds), feed=600.0)
+    near = NEAR._replace(c0=-1, c1=1)
+    assert [*map(bool, made_of([near, far, MARK, near], QUICK).shares)] == [False, worth, worth, 0]
+
+
+def test_a_stretch_between_two_switches_has_its_own_acceleration():
+    near = NEAR._replace(c0=-1, c1=1)
+    shares = made_of([circle(10, 20, 2000.0), near, FAR], QUICK).shares
+    assert 0.0 < shares[0] < shares[-1] == 1.0
+
+
+def test_a_machine_that_follows_all_of_it_is_asked_for_nothing():
+    free = QUICK._replace(c_acceleration=inf, c_speed=inf, slide_acceleration=inf)
+    assert made_of([line((0.01, -20), (0.01, 20), feed=9000.0)], free).shares == [1.0]
+
+
+def test_a_long_section_near_the_pole_is_planned_soon():
+    """2,000 lines: 0.3 s on a quiet machine."""
+    places = [((8 + k / 250) * cos(k / 20), (8 + k / 250) * sin(k / 20)) for k in range(2001)]
+    path = [line(*ends, feed=2000.0) for ends in zip(places, places[1:])]
+    begun = time.process_time()
+    made_of(path, SLOW)
+    assert time.process_time() - begun < 1.5
+
+
+ways = st.lists(
+    st.tuples(st.floats(-60, 60), st.floats(-60, 60), st.floats(300, 6000)), min_size=2, max_size=4
+).map(
+    lambda corners: [
+        line(a[:2], b[:2], feed=b[2])
+        for a, b in zip(corners, corners[1:])
+        if hypot(a[0] - b[0], a[1] - b[1]) > 0.5 and abs(a[0] * b[1] - a[1] * b[0]) > 1.0
+    ]
+)
+circles = st.builds(
+    circle, st.floats(1, 30), st.floats(3, 60), st.floats(300, 6000), st.sampled_from((2 * pi, -3))
+).map(lambda move: [move])
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.one_of(ways, circles), st.sampled_from([QUICK, SLOW]))
+def test_all_of_the_path_is_made_and_followed(path, limits):
+    made = made_of(path, limits)
+    assert len(made.path) == len(made.stopping) == len(made.shares)
+    assert sum(map(path_length, made.path)) == pytest.approx(sum(map(path_length, path)))
+    for share, run in groupby(zip(made.path, made.shares), lambda one: one[1]):
+        for move, _ in run:
+            assert not share or is_able(move, limits, share)
+            assert share or move.feed in [one.feed for one in path]
