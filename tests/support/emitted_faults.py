@@ -7,7 +7,7 @@ several), those ``where`` an expression holds, and of these in each line the ``m
 
 - ``drop``: they are missing; ``again``: they come once more, all together
 - ``before``, ``after``: moves beside each, straight ones at its feed unless their fields say more
-- fields: ``x y z a c`` and ``cx cy`` of the end and the centre (machine coordinates, mm), ``p`` of
+- fields: ``x y z a c`` and ``cx cy cz`` of the end and the centre (machine coordinates, mm), ``p`` of
   both as x + iy, ``w`` of the end on a lathe's face, as X and C turned by C's angle, ``feed``,
   ``feed_mode``, ``kind``, ``turns``, ``exact``
 - ``event``: what happens in front of each
@@ -78,7 +78,7 @@ def with_fields(move: Move, fields: Change, names: Mapping[str, object]) -> Move
         end[AXES["c"]] += math.degrees(cmath.phase(turn))
     for name, axis in AXES.items():
         end[axis] = values.get(name, end[axis])
-    for axis, name in enumerate(("cx", "cy")):
+    for axis, name in enumerate(("cx", "cy", "cz")):
         if name in values:
             centre[axis : axis + 1] = [values[name]]
     own = {name: values[name] for name in values if name in Move._fields}
