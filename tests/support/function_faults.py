@@ -85,6 +85,6 @@ def faulty(original, fault):
 
 
 def executed(args, code):
-    """Let the interpreter, a handler's first argument, execute a block."""
+    """Let the interpreter, the first argument or what that holds, execute a block."""
     if code:
-        args[0].execute(code)
+        getattr(args[0], "interp", args[0]).execute(code)
