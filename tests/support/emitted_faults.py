@@ -7,8 +7,8 @@ several), those ``where`` an expression holds, and of these in each line the ``m
 
 - ``drop``: they are missing; ``again``: they come once more, all together
 - ``before``, ``after``: moves beside each, straight ones at its feed unless their fields say more
-- fields: ``x y z a c`` and ``cx cy cz`` of the end and the centre (machine coordinates, mm), ``p`` of
-  both as x + iy, ``w`` of the end on a lathe's face, as X and C turned by C's angle, ``feed``,
+- fields: ``x y z a c`` of the end and ``cx cy cz`` of the centre (machine coordinates, mm), ``p``
+  of both as x + iy, ``w`` of the end on a lathe's face, as X and C turned by C's angle, ``feed``,
   ``feed_mode``, ``kind``, ``turns``, ``exact``
 - ``event``: what happens in front of each
 

@@ -1,29 +1,38 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Faults of functions of the package, inside the interpreter that runs them.
+"""Machines whose package has a fault, inside the interpreter.
 
 A table names a ``function`` and what it ``does``: the body of a Python function, in which ``a`` has
 the arguments by name and ``original()`` calls the sound one with them, or the G-code that the
-interpreter executes ``before`` or ``after`` it.
+interpreter executes ``before`` or ``after`` it. Or it names a ``sub`` and a ``word`` in the place
+of which another ``becomes`` part of each of its blocks.
 """
 
 import importlib
 import inspect
+import re
 import sys
 from pathlib import Path
 from types import SimpleNamespace
 
 TESTS = Path(__file__).parents[1]
+SUBS = TESTS.parent / "ngc"
 TOPLEVEL = """\
 import sys
 sys.path.append({tests!r})
 import remap
-from support.function_faults import put_in
+from support.faulty_machines import put_in
 put_in({fault!r})
 """
 
 
 def with_fault(ini, fault, folder):
-    """Return a machine whose interpreter has a fault, by a TOPLEVEL in a folder."""
+    """Return a machine with a fault, by a TOPLEVEL or a sub in a folder."""
+    if "sub" in fault:
+        text = (SUBS / f"{fault['sub']}.ngc").read_text()
+        text = re.sub(rf"\b{fault['word']}\b", fault["becomes"], text)
+        (folder / f"{fault['sub']}.ngc").write_text(text)
+        path = ini.get("RS274NGC", "SUBROUTINE_PATH")
+        return ini.replaced({"RS274NGC": {"SUBROUTINE_PATH": f"{folder}:{path}"}})
     toplevel = folder / "toplevel.py"
     toplevel.write_text(TOPLEVEL.format(tests=str(TESTS), fault=dict(fault)))
     return ini.replaced({"PYTHON": {"TOPLEVEL": str(toplevel)}})
@@ -32,12 +41,13 @@ def with_fault(ini, fault, folder):
 def put_in(fault):
     """Replace a function wherever a module holds it; LinuxCNC runs a TOPLEVEL more than once."""
     holder, name = found(fault["function"])
-    original = getattr(holder, name)
-    if hasattr(original, "sound"):
+    original = vars(holder)[name]
+    own = getattr(original, "fget", original)
+    if hasattr(own, "sound"):
         return
-    broken = faulty(original, fault)
-    broken.sound = original
-    setattr(holder, name, broken)
+    broken = faulty(own, fault)
+    broken.sound = own
+    setattr(holder, name, property(broken) if own is not original else broken)
     for module in list(sys.modules.values()):
         if vars(module).get(name) is original:
             setattr(module, name, broken)
