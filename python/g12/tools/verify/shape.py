@@ -88,7 +88,7 @@ def measure_shape(
         call,
         plane,
         found,
-        feed_off(found, moves, slower_on_face(found, moves, axes)),
+        feed_off(found, moves, slower_on_face(found, moves, path, axes)),
         state_differences(block.left, call.leaves()),
         tuple(dict.fromkeys(each.text for each in block.own_events if ACTS.match(each.text))),
     )
