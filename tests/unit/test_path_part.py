@@ -138,3 +138,6 @@ def test_c_stands_where_the_face_is_left_beside_the_centre_for_it():
     assert np.allclose(np.diff(angles), [0.0, 0.0, 10.0])
     angles = part.spindle_angles(np.array([3.0, 3.0j, -3.0, -4.0]), np.zeros(4))
     assert np.allclose(np.diff(angles), [90.0, 90.0, 0.0])
+    points, c = np.array([1.0, 1.0j, -1.0, 1.0, 1.0]), np.array([0, 0, 0, 900, 905])
+    beyond = part.spindle_angles(points, c)
+    assert np.allclose(np.diff(beyond), [90.0, 90.0, 0.0, 5.0])
