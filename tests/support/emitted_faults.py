@@ -95,13 +95,15 @@ def of_kind(move: Move) -> Move:
 
 def picked(change: Change, moves: Sequence[Move]) -> dict[int, dict[str, object]]:
     """Return the moves that a change picks: their indices, and what expressions may use."""
-    lines, count, found = change.get("line"), defaultdict(int), defaultdict(dict)
+    lines, found = change.get("line"), defaultdict(dict)
     lines = [lines] if isinstance(lines, int) else lines
+    where = compile(change.get("where", "1"), "where", "eval")
     for index, move in enumerate(moves):
-        names = fields_of(move, count[move.block] + 1)
-        if (lines is None or move.block in lines) and eval(change.get("where", "1"), names):
-            count[move.block] += 1
-            found[move.block][index] = {**names, "n": count[move.block]}
+        own = found[move.block]
+        if lines is None or move.block in lines:
+            names = fields_of(move, len(own) + 1)
+            if eval(where, names):
+                own[index] = names
     return {
         index: own[index]
         for own in found.values()

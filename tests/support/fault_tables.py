@@ -41,7 +41,7 @@ class MachinedProgram(NamedTuple):
         return path
 
     def ini(self, package: Path):
-        """Return its machine in a copy of the package."""
+        """Return its machine, of the package in a folder."""
         ini = read_ini(package / "configs" / "sim" / f"{self.machine}_headless.ini")
         return ini.replaced({"G12": self.settings})
 
@@ -53,11 +53,3 @@ def program_of(table: str, name: str) -> MachinedProgram:
     tools = {int(tool): size for tool, size in asked["tools"].items()} if "tools" in asked else None
     machine = asked.get("ini", TABLES[table]["ini"])
     return MachinedProgram(f"{table}/{name}", text, machine, asked.get("settings", {}), tools)
-
-
-def sample_of(path: Path) -> MachinedProgram:
-    """Return a program of a folder of tests/programs."""
-    name, folder = path.stem, path.parent.name
-    text = BEFORE.get(name, "") + path.read_text(encoding="utf-8")
-    machine = OTHERWISE.get(name, FOLDERS[folder])
-    return MachinedProgram(f"{folder}/{name}", text, machine, {}, TOOLS.get(name))
