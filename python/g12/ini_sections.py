@@ -21,9 +21,9 @@ NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf)", re.IGNORE
 
 
 class Entry(NamedTuple):
-    """What one line says: ``index`` counts lines from 0, of a continued one it is the first's."""
+    """What one line says: ``row`` counts lines from 0, of a continued one it is the first's."""
 
-    index: int
+    row: int
     key: str
     value: str
 

@@ -13,6 +13,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from g12.errors import Refusal, number
 from g12.ini_sections import entries_of, with_included
@@ -27,7 +28,6 @@ TOLERANCE_MM, TOLERANCE_INCH = 0.005, 0.0002
 class Choice:
     """A setting that is one of a few words."""
 
-    default: str
     words: tuple[str, ...]
 
     def read(self, text: str) -> str:
@@ -49,7 +49,6 @@ class Number:
     ``most`` is the greatest that is legal, if there is one.
     """
 
-    default: float | None
     least: float | None = None
     most: float = math.inf
 
@@ -72,9 +71,8 @@ class Number:
 
 @dataclass(frozen=True)
 class TwoCodes:
-    """A setting of two M codes; none by default."""
+    """A setting of two M codes."""
 
-    default: tuple[int, ...] = ()
     legal = "two M codes such as M10 M11"
 
     def read(self, text: str) -> tuple[int, ...]:
@@ -86,21 +84,21 @@ class TwoCodes:
 
 
 TABLE: dict[str, Choice | Number | TwoCodes] = {
-    "CLEARING": Choice("rings", ("rings", "spiral")),
-    "ENTRY": Choice("plunge", ("plunge", "helix")),
-    "ENTRY_ANGLE": Number(3.0, most=45.0),
-    "PLUNGE_FEED": Number(100.0, most=100.0),
-    "YASNAC_TRAVERSE": Number(0.0, least=0.0),
-    "POLAR_X": Choice("inherit", ("inherit", "diameter", "radius")),
-    "POLAR_Z": Choice("refuse", ("refuse", "allow")),
-    "POLAR_G0": Choice("refuse", ("refuse", "feed")),
-    "POLAR_G0_FEED": Number(None),
-    "POLAR_TOLERANCE": Number(None, least=0.00001),  # less than any machine's step
-    "POLAR_POLE": Choice("rotate", ("rotate", "refuse")),
-    "POLAR_KINEMATICS": Choice("0", ("0", "1")),
-    "POLAR_TOOL_OFFSET": Number(0.0, least=-math.inf),
-    "CYLINDER_WORD": Choice("radius", ("radius", "diameter")),
-    "CYLINDER_X": Choice("refuse", ("refuse", "allow")),
+    "CLEARING": Choice(("rings", "spiral")),
+    "ENTRY": Choice(("plunge", "helix")),
+    "ENTRY_ANGLE": Number(most=45.0),
+    "PLUNGE_FEED": Number(most=100.0),
+    "YASNAC_TRAVERSE": Number(least=0.0),
+    "POLAR_X": Choice(("inherit", "diameter", "radius")),
+    "POLAR_Z": Choice(("refuse", "allow")),
+    "POLAR_G0": Choice(("refuse", "feed")),
+    "POLAR_G0_FEED": Number(),
+    "POLAR_TOLERANCE": Number(least=0.00001),  # less than any machine's step
+    "POLAR_POLE": Choice(("rotate", "refuse")),
+    "POLAR_KINEMATICS": Choice(("0", "1")),
+    "POLAR_TOOL_OFFSET": Number(least=-math.inf),
+    "CYLINDER_WORD": Choice(("radius", "diameter")),
+    "CYLINDER_X": Choice(("refuse", "allow")),
     "C_CLAMP": TwoCodes(),
 }
 
@@ -114,22 +112,22 @@ class Settings:
     depends on the machine: a tolerance of 0.005 mm or 0.0002 in.
     """
 
-    clearing: str = TABLE["CLEARING"].default
-    entry: str = TABLE["ENTRY"].default
-    entry_angle: float = TABLE["ENTRY_ANGLE"].default
-    plunge_feed: float = TABLE["PLUNGE_FEED"].default
-    yasnac_traverse: float = TABLE["YASNAC_TRAVERSE"].default
-    polar_x: str = TABLE["POLAR_X"].default
-    polar_z: str = TABLE["POLAR_Z"].default
-    polar_g0: str = TABLE["POLAR_G0"].default
-    polar_g0_feed: float | None = TABLE["POLAR_G0_FEED"].default
-    polar_tolerance: float | None = TABLE["POLAR_TOLERANCE"].default
-    polar_pole: str = TABLE["POLAR_POLE"].default
-    polar_kinematics: str = TABLE["POLAR_KINEMATICS"].default
-    polar_tool_offset: float = TABLE["POLAR_TOOL_OFFSET"].default
-    cylinder_word: str = TABLE["CYLINDER_WORD"].default
-    cylinder_x: str = TABLE["CYLINDER_X"].default
-    c_clamp: tuple[int, ...] = TABLE["C_CLAMP"].default
+    clearing: str = "rings"
+    entry: str = "plunge"
+    entry_angle: float = 3.0
+    plunge_feed: float = 100.0
+    yasnac_traverse: float = 0.0
+    polar_x: str = "inherit"
+    polar_z: str = "refuse"
+    polar_g0: str = "refuse"
+    polar_g0_feed: float | None = None
+    polar_tolerance: float | None = None
+    polar_pole: str = "rotate"
+    polar_kinematics: str = "0"
+    polar_tool_offset: float = 0.0
+    cylinder_word: str = "radius"
+    cylinder_x: str = "refuse"
+    c_clamp: tuple[int, ...] = ()
 
     def tolerance(self, millimetres: float) -> float:
         """Return POLAR_TOLERANCE in machine units, which are ``millimetres`` long."""
@@ -139,7 +137,7 @@ class Settings:
 
 def settings_from_lines(lines: Sequence[str]) -> Settings:
     """Return the settings of an INI file's lines; raise `Refusal` on a bad key or value."""
-    values = {}
+    values: dict[str, Any] = {}
     for _, key, text in entries_of(lines, SECTION):
         if key not in TABLE:
             raise Refusal(f"[{SECTION}] {key:.40} is not a setting. Known: {', '.join(TABLE)}")

@@ -56,7 +56,7 @@ def test_c_turns_the_shorter_way(angle):
 def test_first_and_further_turns(c, first, step, first_turn, turn):
     found = plan("face_holes", machine=MACHINE._replace(c=c), first_angle=first, step_angle=step)
     assert (found.first_turn, found.turn) == pytest.approx((first_turn, turn))
-    assert found.count == 6 and found.place.x == 15
+    assert found.holes == 6 and found.place.x == 15
 
 
 def test_a_hole_by_x_and_c():

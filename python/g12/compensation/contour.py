@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from copy import copy
 from math import atan2, copysign, hypot, pi, sqrt
-from typing import NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn, TypeGuard
 
 from g12.errors import Refusal, number
 from g12.lengths import LARGEST
 
-Point = tuple  # (x, c)
+Point = tuple[float, float]  # x, c
 SAME_PLACE = 1e-6  # program units: closer points are one point, a shorter move is rounding
 CLOSING_RATIO = 0.001  # of the radius: the mismatch LinuxCNC allows any arc
 
@@ -96,7 +96,11 @@ class Start(NamedTuple):
     z: float
 
 
-def is_move(element: Line | Arc | Plunge | Mark) -> bool:
+Move = Line | Arc | Plunge
+Element = Move | Mark  # of a contour, or of the tool centre's path
+
+
+def is_move(element: Element) -> TypeGuard[Line | Arc]:
     """Return whether an element moves in the plane."""
     return isinstance(element, (Line, Arc))
 

@@ -34,7 +34,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from g12.errors import number
+from g12.errors import BlockRefusal, number
 from g12.request.common import (
     ROUNDING_MM,
     SMALLEST_RING_MM,
@@ -97,7 +97,7 @@ class EventEntries(NamedTuple):
     bottom: bool
     finish_feed: float
 
-    def refuse(self, rule: str):
+    def refuse(self, rule: str) -> BlockRefusal:
         """Return the refusal of this event for breaking ``rule`` (the caller raises it)."""
         return self.words.refuse(rule)
 
@@ -298,9 +298,8 @@ def circle_of(entries: EventEntries) -> EventCircle:
             f"D{direction} must be at most {len(ROUGH_FINISH) - 1}: D is the direction of the cut,"
             " the cutter is the tool in the spindle"
         )
-    if letter not in words:
-        words.require(letter, "0 tool centre on the circle, 1 left, 2 right of it")
-    compensation = words.take_whole(letter, least=0, most=2)
+    meaning = "0 tool centre on the circle, 1 left, 2 right of it"
+    compensation = words.require_whole(letter, meaning, least=0, most=2)
     rough_arc, finish_arc = ROUGH_FINISH[direction]
     side = SIDES[rough_arc][compensation]
     if entries.pocket and side != INSIDE:

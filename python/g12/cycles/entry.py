@@ -98,7 +98,12 @@ def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
 
 
 def way_down(
-    words: Words, context: Context, entry: PocketEntry, first: float, cutter: float, heights: tuple
+    words: Words,
+    context: Context,
+    entry: PocketEntry,
+    first: float,
+    cutter: float,
+    heights: tuple[float, float],
 ) -> WayDown:
     """Return the way down in a pocket, or refuse a helix that hardly comes down.
 
@@ -107,8 +112,8 @@ def way_down(
     """
     helix = helix_of(entry, first, cutter)
     check_helix(words, helix, heights[0], cutter)
-    descents = (helix.descent(height) for height in heights)
-    return WayDown(helix, *descents, context.feed, context.feed * (entry.feed / 100.0))
+    to_first, further = map(helix.descent, heights)
+    return WayDown(helix, to_first, further, context.feed, context.feed * (entry.feed / 100.0))
 
 
 def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> None:

@@ -203,7 +203,7 @@ def upward(words: Words, depth: float | None, context: Context) -> str | None:
     A lost minus sign looks like this; the control would go up and cut there, too.
     """
     first = coordinate(depth, context.z, context)
-    if first <= context.z + context.length(ROUNDING_MM):
+    if depth is None or first <= context.z + context.length(ROUNDING_MM):
         return None
     return (
         f"{words.code}: Z{number(depth)} is up from the tool at Z{number(context.z)}:"

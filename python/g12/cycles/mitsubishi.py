@@ -56,9 +56,9 @@ def plan_circle(words: Words, context: Context) -> MitsubishiCircle:
     words.check_known(KNOWN_WORDS)
     check_start(words, context)
     wanted = words.require("I", "the radius of the circle")
-    if "D" not in words:
-        raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")
     tool = commanded_tool(words, context)
+    if tool is None:
+        raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")
     check_radius(words, context, wanted, tool)
     return MitsubishiCircle(
         plane=int(context.plane[1:]),

@@ -128,14 +128,15 @@ def take_traverse(words: Words) -> tuple[str, float] | None:
     if "R" in words and "J" in words:
         raise words.refuse("R and J are the same word: give one of them")
     letter = "R" if "R" in words else "J"
-    return (letter, words.take(letter)) if letter in words else None
+    value = words.take(letter)
+    return None if value is None else (letter, value)
 
 
 def take_spiral(words: Words) -> tuple[float, float] | None:
     """Return K, signed, and Q, above zero."""
-    if not words.has_pair("K", "Q"):
-        return None
-    return words.take("K"), words.take_positive("Q")
+    words.has_pair("K", "Q")
+    first, pitch = words.take("K"), words.take_positive("Q")
+    return None if first is None or pitch is None else (first, pitch)
 
 
 def reach_of(words: Words, context: Context, finished: float, tool: Tool) -> Reach:

@@ -8,12 +8,23 @@ bulge alike everywhere; spacing shares the deviation between them.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from math import copysign, cos, degrees, hypot, radians, sin, sqrt
 from typing import NamedTuple
 
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Arc, Contour, Line, Mark, Plunge, Point, arc_radius, is_move
+from g12.compensation.contour import (
+    Arc,
+    Contour,
+    Element,
+    Line,
+    Mark,
+    Plunge,
+    Point,
+    arc_radius,
+    is_move,
+)
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, pieces_with_feed
 from g12.moves.spacing import BULGE, Stretch, spaced
@@ -89,7 +100,7 @@ class _Surface(StepMaker):
         """Add a move of X alone."""
         self._run(move.line, "X", [(move.z1, *self.place[1:], move.feed)], stop)
 
-    def finish(self, path: list) -> None:
+    def finish(self, path: Sequence[Element]) -> None:
         """Add what the last pieces left over of Z and X."""
         x, z = self.place.x, self.place.z
         for element in path:

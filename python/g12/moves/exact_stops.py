@@ -19,13 +19,15 @@ A stop costs v / a in time, about as much as the blending.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import hypot, inf, sqrt
 
 from g12.compensation.contour import (
     Arc,
+    Element,
     Line,
     Mark,
+    Move,
     Plunge,
     Point,
     end_direction,
@@ -33,13 +35,13 @@ from g12.compensation.contour import (
     start_direction,
 )
 
-Direction = tuple  # unit vector: along x and c of the plane, and z
+Direction = tuple[float, float, float]  # unit vector: along x and c of the plane, and z
 TANGENT = 1e-4  # half the angle between two directions that are one
 MOST_UNEQUAL = 2.2  # rounding where the second move is much quicker, relative to equal ones
 
 
 def stops(
-    path: list, rounding: float, acceleration: Callable[[Direction, Point], float]
+    path: Sequence[Element], rounding: float, acceleration: Callable[[Direction, Point], float]
 ) -> list[bool]:
     """Return for each element of the tool centre's path whether the tool must stop at its end.
 
@@ -48,7 +50,8 @@ def stops(
     are, in program units per second squared; where that is 0 they have to stop.
     """
     marked = [False] * len(path)
-    following, stopping = None, True
+    following: Move | None = None
+    stopping = True
     for k in range(len(path) - 1, -1, -1):
         element = path[k]
         if isinstance(element, Mark):
@@ -61,7 +64,9 @@ def stops(
     return marked
 
 
-def _corner(a, b, acceleration: Callable[[Direction, Point], float], stopping: bool) -> float:
+def _corner(
+    a: Move, b: Move, acceleration: Callable[[Direction, Point], float], stopping: bool
+) -> float:
     """Return the distance at which blending would pass the corner between two elements.
 
     ``stopping``: at the end of ``b``; such a move is not blended, and has all the acceleration.
@@ -80,14 +85,14 @@ def _corner(a, b, acceleration: Callable[[Direction, Point], float], stopping: b
     return half_sine * square / (2.0 * from_a) * max(1.0, min(unequal, MOST_UNEQUAL))
 
 
-def _place(a, b) -> Point:
+def _place(a: Move, b: Move) -> Point:
     """Return where two elements meet in the plane; anywhere between two plunges."""
     if not isinstance(a, Plunge):
         return a.x1, a.c1
     return (1.0, 0.0) if isinstance(b, Plunge) else (b.x0, b.c0)
 
 
-def _direction(element: Line | Arc | Plunge, in_plane) -> tuple[float, float, float]:
+def _direction(element: Move, in_plane: Callable[[Line | Arc], Point]) -> Direction:
     """Return the unit vector (X, C, Z) of an element where ``in_plane`` gives its direction."""
     if isinstance(element, Plunge):
         return 0.0, 0.0, 1.0 if element.z1 > element.z0 else -1.0
@@ -99,7 +104,7 @@ def _direction(element: Line | Arc | Plunge, in_plane) -> tuple[float, float, fl
     return x * length / whole, c * length / whole, z / whole
 
 
-def _length(element: Line | Arc | Plunge) -> float:
+def _length(element: Move) -> float:
     """Return the length of an element in space."""
     along = 0.0 if isinstance(element, Plunge) else path_length(element)
     return hypot(along, element.z1 - element.z0)

@@ -15,6 +15,9 @@ from __future__ import annotations
 from math import degrees, hypot
 from typing import NamedTuple
 
+from g12.compensation.contour import Arc, Line
+
+Piece = tuple[float, float, float, float]  # of a move: where X, C and Z (or Z, C and X) end, and F
 LEAST_TURN = 1e-9  # degrees: no turn at all
 
 
@@ -40,8 +43,8 @@ def keeps_slide(split: Split, least: float) -> bool:
 
 
 def pieces_with_feed(
-    split: Split, start: tuple[float, float, float], move, entry: float, least: float
-) -> list[tuple]:
+    split: Split, start: tuple[float, float, float], move: Line | Arc, entry: float, least: float
+) -> list[Piece]:
     """Return the pieces ``(slide, c, other, F)`` of a move that the machine makes from ``start``.
 
     ``start`` is where it stands: the plane's slide, C in degrees, and the other slide, which makes

@@ -43,7 +43,7 @@ def check_entry(
         f"X0 must be the spindle's axis: G52 or G92 shifts X by {shift};"
         " cancel it with G92.1 (an X offset of G54 may stay)"
     )
-    *others, last = needed
+    *others, last = tuple(needed)
     for holds, rule in (
         (
             set(needed) <= set(axes),
@@ -70,8 +70,8 @@ def tolerance_of(start: SectionStart, settings: Settings) -> float:
 
 def rapid_feed_of(start: SectionStart, settings: Settings) -> float | None:
     """Return the feed of G0, None where it is refused."""
-    feeds = settings.polar_g0 == "feed"
-    return settings.polar_g0_feed * start.machine_unit if feeds else None
+    feed = settings.polar_g0_feed
+    return None if settings.polar_g0 != "feed" or feed is None else feed * start.machine_unit
 
 
 def travel(start: SectionStart, axes: dict[str, Axis]) -> SoftLimits:

@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple, Protocol, TypeGuard
 
 from g12.errors import number
 from g12.lengths import converts
 from g12.machine_ini import Axis
-from g12.moves.steps import BlockMoves
 
 
 class AxisScale(NamedTuple):
@@ -17,6 +16,18 @@ class AxisScale(NamedTuple):
 
     factor: float
     offset: float
+
+
+class Moving(Protocol):
+    """A step of a plan that moves axes: X, C and Z of each piece come first."""
+
+    @property
+    def line(self) -> int:
+        """The line of the program."""
+
+    @property
+    def pieces(self) -> Sequence[tuple[float, ...]]:
+        """Where the axes go, one after the other."""
 
 
 class Beyond(NamedTuple):
@@ -63,19 +74,19 @@ class SoftLimits:
         ]
         self._scales = scales
 
-    def beyond(self, steps: Iterable[BlockMoves | object]) -> Beyond | None:
+    def beyond(self, steps: Iterable[object]) -> Beyond | None:
         """Return the first move that leaves the travel of an axis, None if all stay within.
 
         Steps without ``pieces`` move nothing.
         """
-        runs = [step for step in steps if hasattr(step, "pieces")]
+        runs = [step for step in steps if _moves(step)]
         columns = zip(*(piece[:3] for run in runs for piece in run.pieces))
         for (letter, limits), positions in zip(self._ranges, columns):
             if min(positions) < limits[0] or limits[1] < max(positions):
                 return self._first(runs, letter, limits)
         return None
 
-    def _first(self, runs: list[BlockMoves], letter: str, limits: list[float]) -> Beyond:
+    def _first(self, runs: list[Moving], letter: str, limits: list[float]) -> Beyond:
         at = "XCZ".index(letter)
         line, position = next(
             (run.line, piece[at])
@@ -88,3 +99,7 @@ class SoftLimits:
         unit = "degrees" if letter == "C" else self._unit
         there, end = (value * factor + offset for value in (position, limit))
         return Beyond(line, letter, there, end, unit, converts(factor))
+
+
+def _moves(step: object) -> TypeGuard[Moving]:
+    return hasattr(step, "pieces")

@@ -33,7 +33,7 @@ LOSS = 0.18  # pieces: what is lost where an element ends exactly on the path
 WORTH_A_CUT = 0.5  # pieces: an apsis nearer to an end of the element is left alone
 MOST_PIECES = 100_000  # of an element: more would take LinuxCNC's time and memory
 
-Density = Callable[[float], "tuple[float, float]"]
+Density = Callable[[float], tuple[float, float]]
 
 
 class TooManyPieces(Exception):
@@ -56,14 +56,14 @@ class _Part(NamedTuple):
     """A part of an element between two cuts, and one step after the other along it.
 
     ``places`` begin at the end nearer to the pole, and end beyond the other; ``shares`` are those
-    between two of them. ``count`` pieces would do. ``losses`` are those at the start and at the end
-    of the part, ``cut`` is its start.
+    between two of them. ``number`` pieces would do. ``losses`` are those at the start and at the
+    end of the part, ``cut`` is its start.
     """
 
     cut: float
     places: list[float]
     shares: list[float]
-    count: float
+    number: float
     backwards: bool
     losses: tuple[float, float]
 
@@ -76,12 +76,12 @@ def spaced(stretch: Stretch, density: Density) -> tuple[list[float], list[float]
     `TooManyPieces`.
     """
     parts = _parts(stretch, density)
-    _check_count(sum(part.count for part in parts))
+    _check_count(sum(part.number for part in parts))
     ends = [(stretch.start, 0.0)]
     for part in parts:
         lost = sum(part.losses)
-        pieces = ceil(part.count + lost - 1e-9)
-        length = part.count / (pieces - lost)
+        pieces = ceil(part.number + lost - 1e-9)
+        length = part.number / (pieces - lost)
         if part.losses[0] == 0.0:
             ends.append((part.cut, length**2 * density(part.cut)[1]))
         ends.extend(_inner_ends(part, pieces, length))
@@ -104,7 +104,9 @@ def _parts(stretch: Stretch, density: Density) -> list[_Part]:
     ]
 
 
-def _part(a: float, b: float, losses: tuple[float, float], stretch: Stretch, density) -> _Part:
+def _part(
+    a: float, b: float, losses: tuple[float, float], stretch: Stretch, density: Density
+) -> _Part:
     """Return the part between two cuts, measured in steps from its end nearer to the pole.
 
     The step in front of one tells where its middle will be. Near the pole the steps are shortest:
@@ -113,7 +115,7 @@ def _part(a: float, b: float, losses: tuple[float, float], stretch: Stretch, den
     backwards = stretch.nearness(b) < stretch.nearness(a)
     place, far = (b, a) if backwards else (a, b)
     unit = 1.0 if far > place else -1.0
-    places, shares = [place], []
+    places, shares = [place], list[float]()
     step = unit / density(place)[0]
     while not shares or (far - place) * unit > 0.0:
         pieces, share = density(place + 0.5 * step)
@@ -122,8 +124,8 @@ def _part(a: float, b: float, losses: tuple[float, float], stretch: Stretch, den
         places.append(place)
         shares.append(share)
         _check_count(len(shares))
-    count = len(shares) - (place - far) / step
-    return _Part(a, places, shares, count, backwards, losses)
+    number = len(shares) - (place - far) / step
+    return _Part(a, places, shares, number, backwards, losses)
 
 
 def _check_count(pieces: float) -> None:

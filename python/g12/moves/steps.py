@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from g12.compensation.contour import Arc, Contour, Line, Mark, Start
-from g12.moves.feed import Split, keeps_slide
+from g12.compensation.contour import Arc, Contour, Element, Line, Mark, Start
+from g12.moves.feed import Piece, Split, keeps_slide
 from g12.moves.spacing import MOST_PIECES, TooManyPieces
 
 CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
@@ -39,7 +39,7 @@ class BlockMoves(NamedTuple):
 
     line: int
     axes: str
-    pieces: list[tuple[float, float, float, float]]
+    pieces: list[Piece]
     stop: bool
 
 
@@ -51,7 +51,7 @@ class SectionPlan(NamedTuple):
     behind them, ``angle`` what its C is to the contour, in radians. ``notes`` are for the operator.
     """
 
-    steps: list
+    steps: list[object]
     place: Position
     angle: float
     notes: list[str]
@@ -66,16 +66,16 @@ class StepMaker:
     """Makes the steps of a plan, one element of the tool centre's path after the other."""
 
     def __init__(self, contour: Contour, place: Position) -> None:
-        self.steps: list = []
+        self.steps: list[object] = []
         self.place = place
         self._contour = contour
 
-    def _run(self, line: int, axes: str, pieces: list, stop: bool) -> None:
+    def _run(self, line: int, axes: str, pieces: list[Piece], stop: bool) -> None:
         if pieces:
             self.steps.append(BlockMoves(line, axes, pieces, stop))
             self.place = Position(*pieces[-1][:3])
 
-    def _make_up(self, path: list, x: float, z: float, least: float) -> None:
+    def _make_up(self, path: Sequence[Element], x: float, z: float, least: float) -> None:
         """Add what the last pieces of a path left over of the slides, which belong at x and z."""
         there = {"X": x - self.place.x, "Z": z - self.place.z}
         axes = "".join(axis for axis, off in there.items() if abs(off) > LEFT_OVER * least)

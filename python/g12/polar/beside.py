@@ -24,11 +24,13 @@ to the left, and the slide moves by cos p + beside / s sin p per unit of the pat
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan2, copysign, hypot, pi, sqrt
 
 from g12.compensation.contour import (
     Arc,
     Contour,
+    Element,
     Line,
     Point,
     arc_radius,
@@ -60,7 +62,7 @@ def along_and_around(direction: Point, slide_direction: Point) -> Point:
     return tx * ex + tc * ec, ex * tc - ec * tx
 
 
-def check_reach(contour: Contour, path: list, beside: float, tolerance: float) -> None:
+def check_reach(contour: Contour, path: Sequence[Element], beside: float, tolerance: float) -> None:
     """Refuse a path that comes nearer to the pole than the tool can."""
     least = abs(beside) + tolerance
     for move in filter(is_move, path):

@@ -50,11 +50,10 @@ def in_face(move: Line | Arc | Plunge, angle: float) -> Line | Arc | Plunge:
     (x0, c0), (x1, c1) = (
         _turned(*place, -angle) for place in ((move.x0, move.c0), (move.x1, move.c1))
     )
-    turned = move._replace(x0=x0, c0=c0, x1=x1, c1=c1)
     if isinstance(move, Line):
-        return turned
+        return move._replace(x0=x0, c0=c0, x1=x1, c1=c1)
     cx, cc = _turned(move.cx, move.cc, -angle)
-    return turned._replace(cx=cx, cc=cc)
+    return move._replace(x0=x0, c0=c0, x1=x1, c1=c1, cx=cx, cc=cc)
 
 
 def _turned(x: float, c: float, angle: float) -> tuple[float, float]:

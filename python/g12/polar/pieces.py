@@ -86,7 +86,9 @@ def _split_line(move: Line, law: Law) -> Split:
     )
 
 
-def _is_one_piece(u0, u1, distance: float, deviation: float, rise: float, ripple: float) -> bool:
+def _is_one_piece(
+    u0: float, u1: float, distance: float, deviation: float, rise: float, ripple: float
+) -> bool:
     """Return whether a line is so short that it is one piece wherever its density is greatest.
 
     ``rise`` is the change of the radius relative to twice its mean.
@@ -169,7 +171,9 @@ def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density
     return density
 
 
-def _arc_polar(radius: float, away: float, deviation: float, places, shares):
+def _arc_polar(
+    radius: float, away: float, deviation: float, places: list[float], shares: list[float]
+) -> tuple[list[float], list[float]]:
     """Return radii, and angles from the direction of the arc's centre on, of places off the arc."""
     radii, angles = [], []
     for a, share in zip(places, shares):

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from math import copysign, degrees, pi, radians, remainder
 from typing import NamedTuple
 
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Arc, Contour, Line, Mark, Plunge, Point, is_move
+from g12.compensation.contour import Arc, Contour, Element, Line, Mark, Plunge, Point, is_move
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, pieces_with_feed
 from g12.moves.steps import (
@@ -110,7 +111,7 @@ class _SlideAndSpindle(StepMaker):
         x, self.angle, z = contour.start
         super().__init__(contour, Position(x, c + degrees(self.angle), z))
         self._settings, self._entry = settings, c
-        self._face: float | None = None  # angle of its X axis, while the machine is on it
+        self._on_face, self._face_angle = False, 0.0  # the angle is that of the face's X axis
         self._laws: dict[tuple[float, float], Law] = {}
 
     def cut(self, move: Line | Arc, stop: bool) -> None:
@@ -132,8 +133,8 @@ class _SlideAndSpindle(StepMaker):
 
     def switch(self, line: int, share: float) -> None:
         """Go to the face, with a share of its acceleration, or back (0.0), if not there yet."""
-        if bool(share) is not (self._face is not None):
-            self._face = self.angle if share else None
+        if bool(share) is not self._on_face:
+            self._on_face, self._face_angle = bool(share), self.angle
             self.steps.append(FaceSwitch(line, bool(share), self.place, share or 1.0))
 
     def cut_on_face(self, move: Line | Arc | Plunge) -> None:
@@ -144,14 +145,14 @@ class _SlideAndSpindle(StepMaker):
             there = passed(move, self.angle, self._settings.beside)
             self.angle = there[-1][1]
             places = [(slide, self._entry + degrees(angle), z) for slide, angle, z in there]
-        self.steps.append(FaceMove(move.line, in_face(move, self._face), places))
+        self.steps.append(FaceMove(move.line, in_face(move, self._face_angle), places))
         self.place = Position(*places[-1])
 
     def plunge(self, move: Plunge, stop: bool) -> None:
         """Add a move of Z alone."""
         self._run(move.line, "Z", [(self.place.x, self.place.c, move.z1, move.feed)], stop)
 
-    def finish(self, path: list) -> None:
+    def finish(self, path: Sequence[Element]) -> None:
         """Come back from the face; add what the last pieces left over of X and Z."""
         self.switch(path[-1].line if path else 0, 0.0)
         slide, z = self.place.x, self.place.z

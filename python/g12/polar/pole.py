@@ -8,11 +8,13 @@ beside the pole is replaced that a radius leaves by no more than a fifth of ``re
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import asin, hypot, sqrt
 
 from g12.compensation.contour import (
     Arc,
     Contour,
+    Element,
     Line,
     Plunge,
     arc_radius,
@@ -25,9 +27,11 @@ POLE = (0.0, 0.0)
 FLAT_SHARE = 0.2  # of the reach: how far the radii that replace an arc may be from it
 
 
-def through_pole(contour: Contour, path: list, reach: float, refused: bool) -> list:
+def through_pole(
+    contour: Contour, path: Sequence[Element], reach: float, refused: bool
+) -> list[Element]:
     """Return the path with each move that comes within ``reach`` of the pole led into it."""
-    led = []
+    led: list[Element] = []
     for move in path:
         parts = _led(move, reach) if is_move(move) else None
         if parts is None:
@@ -43,7 +47,7 @@ def through_pole(contour: Contour, path: list, reach: float, refused: bool) -> l
     return led
 
 
-def _led(move: Line | Arc, reach: float) -> list | None:
+def _led(move: Line | Arc, reach: float) -> list[Element] | None:
     """Return what replaces a move that comes within ``reach`` of the pole, None for others."""
     r0, r1 = hypot(move.x0, move.c0), hypot(move.x1, move.c1)
     ends = [float(k) for k, radius in enumerate((r0, r1)) if radius <= reach]
@@ -77,11 +81,13 @@ def _arc_passes(move: Arc, radius: float, reach: float) -> list[float]:
     return [part] if part < 1.0 else []
 
 
-def _replaced(move: Line | Arc, passes: list[float], half: float, reach: float) -> list | None:
+def _replaced(
+    move: Line | Arc, passes: list[float], half: float, reach: float
+) -> list[Element] | None:
     """Return the move with its parts up to ``half`` beside each pass replaced by radii."""
     if not passes:
         return None
-    moves, done = [], 0.0
+    moves, done = list[Element](), 0.0
     for part in passes:
         if part - half > done:
             moves.append(part_of_move(move, done, part - half))
@@ -94,7 +100,9 @@ def _replaced(move: Line | Arc, passes: list[float], half: float, reach: float) 
     return moves
 
 
-def _radius(move: Line | Arc, part: float, at_pole: float, reach: float, outwards=False) -> list:
+def _radius(
+    move: Line | Arc, part: float, at_pole: float, reach: float, outwards: bool = False
+) -> list[Element]:
     """Return the radius between a place of a move and the pole: nothing where it is there."""
     place, height = place_at(move, part), height_at(move, part)
     pole_height = height_at(move, at_pole)

@@ -40,7 +40,8 @@ def polar_setup(
 
     ``face`` are the axes of the part's face, if the machine has its kinematics.
     """
-    if settings.polar_kinematics == "1" and not face:
+    switches = settings.polar_kinematics == "1"
+    if switches and not face:
         raise start.place.refuse(
             "needs [KINS] KINEMATICS = polar_xzc for [G12] POLAR_KINEMATICS = 1"
         )
@@ -48,9 +49,7 @@ def polar_setup(
     return SectionSetup(
         _word_rules(start, settings),
         _planning(start, settings, axes, tolerance)._replace(
-            face=_face_limits(start, settings, face, axes["C"])
-            if settings.polar_kinematics == "1"
-            else None
+            face=_face_limits(start, settings, face, axes["C"]) if switches and face else None
         ),
         travel(start, axes),
         tolerance,

@@ -7,6 +7,8 @@ the rule and the value in the same way.
 
 from __future__ import annotations
 
+from typing import overload
+
 from g12.errors import BlockRefusal, number
 from g12.lengths import LARGEST
 
@@ -51,30 +53,49 @@ class Words:
 
     def require(self, letter: str, meaning: str) -> float:
         """Return the word's value; refuse a block without it."""
-        if letter not in self._left:
-            raise self.refuse(f"{letter} is missing: {meaning}")
+        self._check_there(letter, meaning)
         return self._left.pop(letter)
 
     def take_positive(self, letter: str) -> float | None:
         """Return the word's value, which must be above zero, or None."""
-        value = self.take(letter)
-        if value is not None and not value > 0:
-            raise self.refuse(f"{self.written(letter, value)} must be greater than 0")
-        return value
+        return self._positive(letter) if letter in self._left else None
 
     def require_positive(self, letter: str, meaning: str) -> float:
         """Return the word's value, above zero; refuse a block without it."""
-        if letter not in self._left:
-            raise self.refuse(f"{letter} is missing: {meaning}")
-        return self.take_positive(letter)
+        self._check_there(letter, meaning)
+        return self._positive(letter)
+
+    @overload
+    def take_whole(self, letter: str, least: int, default: int, most: int | None = None) -> int: ...
+
+    @overload
+    def take_whole(
+        self, letter: str, least: int, default: None = None, most: int | None = None
+    ) -> int | None: ...
 
     def take_whole(
         self, letter: str, least: int, default: int | None = None, most: int | None = None
     ) -> int | None:
         """Return the word's value, a whole number from ``least`` (to ``most``), or the default."""
-        value = self.take(letter)
-        if value is None:
-            return default
+        return self._whole(letter, least, most) if letter in self._left else default
+
+    def require_whole(self, letter: str, meaning: str, least: int, most: int) -> int:
+        """Return the word's value, a whole number; refuse a block without it."""
+        self._check_there(letter, meaning)
+        return self._whole(letter, least, most)
+
+    def _check_there(self, letter: str, meaning: str) -> None:
+        if letter not in self._left:
+            raise self.refuse(f"{letter} is missing: {meaning}")
+
+    def _positive(self, letter: str) -> float:
+        value = self._left.pop(letter)
+        if not value > 0:
+            raise self.refuse(f"{self.written(letter, value)} must be greater than 0")
+        return value
+
+    def _whole(self, letter: str, least: int, most: int | None) -> int:
+        value = self._left.pop(letter)
         if abs(value - round(value)) > WHOLE:
             raise self.refuse(f"{self.written(letter, value)} must be a whole number")
         if round(value) < least:
@@ -95,7 +116,7 @@ class Words:
         """Return two positive words that need each other, or None if both are absent."""
         if not self.has_pair(first, second):
             return None
-        return self.take_positive(first), self.take_positive(second)
+        return self._positive(first), self._positive(second)
 
     def check_known(self, known: str) -> None:
         """Refuse a word that the dialect does not have; ``known`` lists its letters."""

@@ -132,7 +132,8 @@ def _kind(bare: str, control: re.Match[str]) -> str:
         return {"98": "call", "99": "return"}[control[1]]
     name = _NAME.match(bare, control.end())
     behind = name.end() if name else value_end(bare, control.end())
-    return _KEYWORD.match(bare, behind)[0] or "program"
+    keyword = _KEYWORD.match(bare, behind)
+    return (keyword and keyword[0]) or "program"
 
 
 def _words_of(wanted: str, words: list[tuple[str, str]]) -> str:
@@ -165,9 +166,9 @@ def value_end(text: str, start: int) -> int:
 
     The proof of a section reads values with a function of its own, so that it finds a slip here.
     """
-    at = _SIGNS.match(text, start).end()
+    at = _end(_SIGNS, text, start)
     if text[at : at + 2] == "#<":
-        return _NAME.match(text, at + 1).end()
+        return _end(_NAME, text, at + 1)
     if text[at : at + 1] == "#":
         return value_end(text, at + 1)
     function = _FUNCTION.match(text, at)
@@ -177,10 +178,15 @@ def value_end(text: str, start: int) -> int:
     return end
 
 
+def _end(pattern: re.Pattern[str], text: str, start: int) -> int:
+    match = pattern.match(text, start)
+    return match.end() if match else start
+
+
 def _bracket_end(text: str, start: int) -> int:
     """Where the bracket that opens at ``start`` closes, or the number there ends."""
     if text[start : start + 1] != "[":
-        return _DIGITS.match(text, start).end()
+        return _end(_DIGITS, text, start)
     depth = 0
     for bracket in _BRACKET.finditer(text, start):
         depth += {"[": 1, "]": -1}.get(bracket[0], 0)

@@ -100,7 +100,7 @@ def comment_text(comment: str, value_of: Callable[[str], float | None]) -> str:
     def filled(match: re.Match[str]) -> str:
         nonlocal decimals
         if match[1]:
-            decimals = {"d": 0, "f": 4}.get(match[1]) if match[1] in "df" else int(match[1][1])
+            decimals = {"d": 0, "f": 4}[match[1]] if match[1] in "df" else int(match[1][1])
             return ""
         value = value_of("".join(match[2].split()).strip("<>").lower())
         return "######" if value is None else f"{value:.{decimals}f}"

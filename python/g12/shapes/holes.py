@@ -86,13 +86,13 @@ class Hole(NamedTuple):
 
 
 class HolesPlan(NamedTuple):
-    """Holes that are fit to make: ``count`` of them, C turning by ``turn`` from one to the next.
+    """Holes that are fit to make: ``holes`` of them, C turning by ``turn`` from one to the next.
 
     ``first_turn`` is how far C turns to the first one, from ``c``; ``travel`` the height at which
     the tool goes there.
     """
 
-    count: int
+    holes: int
     c: float
     first_turn: float
     turn: float
@@ -102,15 +102,15 @@ class HolesPlan(NamedTuple):
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of the subs beside their entries; X is a radius."""
-        own = {name: getattr(self, name) for name in ("count", "first_turn", "turn", "travel")}
+        own = {name: getattr(self, name) for name in ("first_turn", "turn", "travel")}
         place = {f"at_{name}": value for name, value in self.place._asdict().items()}
-        return {**own, **place, **self.hole._asdict()}
+        return {"count": self.holes, **own, **place, **self.hole._asdict()}
 
     def extent(self) -> Extent:
         """Return how far the axes go, from where the tool travels."""
         place, heights = self.place, (-self.hole.depth, self.travel)
         first = self.c + self.first_turn
-        angles = (self.c, first, first + self.turn * (self.count - 1))
+        angles = (self.c, first, first + self.turn * (self.holes - 1))
         ends = [
             (place.x + place.x_axis * height, place.z + place.z_axis * height) for height in heights
         ]
@@ -167,7 +167,7 @@ def plan_holes(
     hole = hole_of(entries, context, machine)
     check_moves(entries, count * (3 * hole.pecks + 3), "count and peck make")
     return HolesPlan(
-        count=count,
+        holes=count,
         c=machine.c,
         first_turn=shorter_way(place.angle - machine.c),
         turn=shorter_way(turn),
@@ -185,10 +185,7 @@ def check_tool(entries: ShapeEntries, context: Context) -> None:
 
 def count_of(entries: ShapeEntries) -> int:
     """Return how many holes there are."""
-    count = entries.take_whole("count", least=1, most=MOST_HOLES)
-    if count is None:
-        raise entries.refuse("count is missing: how many holes")
-    return count
+    return entries.require_whole("count", "how many holes", least=1, most=MOST_HOLES)
 
 
 def hole_turn(entries: ShapeEntries, count: int) -> float:

@@ -167,9 +167,7 @@ def plan_polygon(entries: ShapeEntries, context: Context, machine: ShapeMachine)
 
 def form_of(entries: ShapeEntries) -> tuple[PolygonForm, float]:
     """Return the polygon and the stock's radius."""
-    if "sides" not in entries:
-        entries.require("sides", "how many, 2 for two flats")
-    sides = entries.take_whole("sides", least=FLATS, most=MOST_SIDES)
+    sides = entries.require_whole("sides", "how many, 2 for two flats", FLATS, MOST_SIDES)
     flats = entries.require_positive("across_flats", "the distance between two flats")
     stock = entries.require_positive("stock_diameter", "the bar's")
     if not stock > flats:

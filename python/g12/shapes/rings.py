@@ -11,7 +11,7 @@ Lengths are in program units.
 
 from __future__ import annotations
 
-from math import ceil, inf, pi, radians, tan
+from math import ceil, pi, radians, tan
 from typing import NamedTuple
 
 from g12.errors import number
@@ -85,8 +85,8 @@ def clearing_rings(
         rule = f"must not be less than the cutter's {context.tool_size(2 * cutter)}"
         raise entries.refuse(f"{entries.written(width, size)} {rule}")
     if rough < -rounding:
-        size = context.tool_size(2 * cutter)
-        rule = f"the cutter of {size} does not fit between the walls that it leaves"
+        diameter = context.tool_size(2 * cutter)
+        rule = f"the cutter of {diameter} does not fit between the walls that it leaves"
         raise entries.refuse(f"{entries.written('allowance', allowance)}: {rule}")
     check_finish(entries, context, allowance, cutter)
     smallest = context.length(SMALLEST_RING_MM)
@@ -111,7 +111,7 @@ def ramp_of(
     round_ = pi * rings.first_ring
     fall = (length + round_) * tan(radians(machine.entry_angle))
     first, following = (
-        ceil(height / fall) if height < MOST_HALF_TURNS * fall else inf
+        ceil(height / fall) if height < MOST_HALF_TURNS * fall else MOST_HALF_TURNS + 1
         for height in (heights.near_z + levels.step_down, levels.step_down)
     )
     if first > MOST_HALF_TURNS:

@@ -140,7 +140,7 @@ class IniText:
         """Return the values of a key in the section LinuxCNC reads, with their first lines."""
         lines = list(self.lines())
         found = entries_of([line.text for line in lines], section)
-        return [(lines[entry.index], entry.value) for entry in found if entry.key == key]
+        return [(lines[entry.row], entry.value) for entry in found if entry.key == key]
 
     def end_of_section(self, section: str) -> Place | None:
         """Return the place behind the section's last entry, in the INI itself if that can be.
