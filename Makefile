@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 PYTHON := /usr/bin/python3
 RUFF_VERSION := 0.17.5
-RUFF := build/venv/bin/ruff
+MYPY_VERSION := 2.4.1
+LINTERS := build/venv/ruff-$(RUFF_VERSION)-mypy-$(MYPY_VERSION)
 MINUTES := 10
 SEED := $(shell date +%s)
 # What make soak tries: its own, and the properties of the normal tests.
@@ -44,10 +45,11 @@ test: setup
 test-on:
 	@sh .ci/test-on $(SUITE)
 
-lint: $(RUFF)-$(RUFF_VERSION)
-	@echo "lint: ruff $(RUFF_VERSION)"
-	@$(RUFF) check --quiet
-	@$(RUFF) format --check --quiet
+lint: $(LINTERS)
+	@echo "lint: ruff $(RUFF_VERSION), mypy $(MYPY_VERSION)"
+	@build/venv/bin/ruff check --quiet
+	@build/venv/bin/ruff format --check --quiet
+	@build/venv/bin/mypy --cache-dir build/mypy --no-error-summary
 
 bench: setup kinematics
 	@echo "bench: figures as ratios, each measured side by side in one run"
@@ -69,9 +71,10 @@ clean:
 	@rm -rf build .pytest_cache .ruff_cache .hypothesis
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
-$(RUFF)-$(RUFF_VERSION):
+$(LINTERS):
 	@sh .ci/setup python3-venv
-	@echo "lint: fetching ruff $(RUFF_VERSION)"
+	@echo "lint: fetching ruff $(RUFF_VERSION), mypy $(MYPY_VERSION)"
 	@$(PYTHON) -m venv --clear build/venv
-	@build/venv/bin/pip install --quiet --disable-pip-version-check ruff==$(RUFF_VERSION)
+	@build/venv/bin/pip install --quiet --disable-pip-version-check ruff==$(RUFF_VERSION) \
+		mypy==$(MYPY_VERSION)
 	@touch $@

@@ -37,7 +37,9 @@ def check_cylinder_start(start: SectionStart, axes: Collection[str]) -> None:
         raise start.place.refuse(f"{RADIUS}{number(word)}, the cylinder's radius, {rule}")
 
 
-def cylinder_setup(start: SectionStart, settings: Settings, axes: dict[str, Axis]) -> SectionSetup:
+def cylinder_setup(
+    start: SectionStart, settings: Settings, axes: dict[str, Axis]
+) -> SectionSetup[CylinderSettings]:
     """Return what a section goes by; ``settings`` and ``axes`` are in machine units."""
     radius = start.words[RADIUS] * (0.5 if settings.cylinder_word == "diameter" else 1.0)
     tolerance = tolerance_of(start, settings)

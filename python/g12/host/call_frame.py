@@ -12,13 +12,15 @@ from collections.abc import Iterator
 
 from interpreter import INTERP_EXECUTE_FINISH
 
+from g12.host.interp import Interp
+
 NO_O_WORD = 0  # o_type
 NOT_CALLED, CALLED_AS_REMAP = 0, 4  # call_type
 NO_CODE = -1
 MOTION = 1  # modal group
 
 
-def kept(interp: object, text: str) -> str:
+def kept(interp: Interp, text: str) -> str:
     """Return a text that lives as long as the interpreter, which keeps no copies of names."""
     texts = getattr(interp, "g12_texts", None)
     if texts is None:
@@ -26,7 +28,7 @@ def kept(interp: object, text: str) -> str:
     return texts.setdefault(text, text)
 
 
-def locals_at(interp: object, level: int) -> dict[str, float]:
+def locals_at(interp: Interp, level: int) -> dict[str, float]:
     """Return the local parameters of a call level; level 0 has the global ones too."""
     found, interp.call_level = interp.call_level, level
     params = interp.params
@@ -35,7 +37,7 @@ def locals_at(interp: object, level: int) -> dict[str, float]:
     return values
 
 
-def set_locals_at(interp: object, level: int, values: dict[str, float]) -> None:
+def set_locals_at(interp: Interp, level: int, values: dict[str, float]) -> None:
     """Set local parameters of a call level."""
     found, interp.call_level = interp.call_level, level
     params = interp.params
@@ -47,7 +49,7 @@ def set_locals_at(interp: object, level: int, values: dict[str, float]) -> None:
 class CallFrame:
     """The frame of the handler at work, and of its caller, which is in the file ``home``."""
 
-    def __init__(self, interp: object, home: str) -> None:
+    def __init__(self, interp: Interp, home: str) -> None:
         self.interp, self.home = interp, home
         self.level, self.remap_level = interp.call_level, interp.remap_level
         block = interp.blocks[self.remap_level]

@@ -17,6 +17,7 @@ import hal
 import linuxcnc
 
 from g12.errors import number
+from g12.host.interp import Interp
 from g12.host.program_lines import without_line
 from g12.section.modes import decimal
 
@@ -39,14 +40,14 @@ def face_in_force() -> bool:
     return bool(status.din[FACE_INPUT])
 
 
-def modes_found(interp: object) -> str:
+def modes_found(interp: Interp) -> str:
     """Return the block that gives back what `ON_THE_FACE` changes."""
     active = without_line(interp.active_g_codes)
     centres = next(CENTRES[code] for code in active if code in CENTRES)
     return f"{PLANES[interp.plane]}{centres}"
 
 
-def accelerate(interp: object, share: float) -> None:
+def accelerate(interp: Interp, share: float) -> None:
     """Have X and Y accelerate with a share of what the INI says, from the next wait on."""
     if not interp.task:
         return
@@ -57,7 +58,7 @@ def accelerate(interp: object, share: float) -> None:
         hal.set_p(pin, repr(share * acceleration))
 
 
-def to_face(interp: object, machine_unit: float, asked: int, share: float = 1.0) -> Iterator[str]:
+def to_face(interp: Interp, machine_unit: float, asked: int, share: float = 1.0) -> Iterator[str]:
     """Go to the face; yield the block to wait for.
 
     ``machine_unit`` is one in program units, ``share`` is of the INI's accelerations.
@@ -70,24 +71,24 @@ def to_face(interp: object, machine_unit: float, asked: int, share: float = 1.0)
     yield f"M66P{FACE_INPUT}L3Q{SWITCHING}"
 
 
-def to_axes(interp: object) -> Iterator[str]:
+def to_axes(interp: Interp) -> Iterator[str]:
     """Go back to X, Z and C; yield the block to wait for."""
     interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")
     yield f"M66P{FACE_INPUT}L4Q{SWITCHING}"
     accelerate(interp, 1.0)  # not before the machine has been there: LinuxCNC reads ahead
 
 
-def has_switched(interp: object) -> bool:
+def has_switched(interp: Interp) -> bool:
     """Tell behind the wait whether the machine has done it."""
     return not interp.task or interp.params[INPUT_FOUND] != TIMED_OUT
 
 
-def y_offset(interp: object) -> float:
+def y_offset(interp: Interp) -> float:
     """Return what a program's Y lacks of the machine's, which is the face's: its centre is 0."""
     return interp.origin_offset_y + interp.axis_offset_y + interp.tool_offset.y
 
 
-def other_offset(interp: object, beside: float) -> str:
+def other_offset(interp: Interp, beside: float) -> str:
     """Return what is wrong where the kinematics have the tool elsewhere beside the X line, else "".
 
     The machine stands on the face at its beginning; ``beside`` is what the settings say, both in

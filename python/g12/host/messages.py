@@ -15,6 +15,7 @@ import linuxcnc
 from interpreter import INTERP_ERROR
 
 from g12.errors import LONGEST_MESSAGE, BlockRefusal, Refusal
+from g12.host.interp import Interp
 from g12.host.program_lines import line_of_block, line_of_call
 
 NO_FILE = ""  # the interpreter keeps no copy of it: a constant lives as long as the module
@@ -27,7 +28,7 @@ def say_at_start(text: str) -> None:
     emccanon.CANON_ERROR(f"g12: {text}")
 
 
-def refuse_block(interp: object, error: Exception) -> int:
+def refuse_block(interp: Interp, error: Exception) -> int:
     """Tell the operator why the block being remapped is not executed; return the error status.
 
     Raising or returning a string would not do: LinuxCNC shows "pycall(...) failed" instead. It
@@ -43,7 +44,7 @@ def refuse_block(interp: object, error: Exception) -> int:
     return INTERP_ERROR
 
 
-def line_of_refusal(interp: object, refusal: BlockRefusal) -> int | None:
+def line_of_refusal(interp: Interp, refusal: BlockRefusal) -> int | None:
     """Return the line of a refused block, None where it is typed in MDI.
 
     A code that stands for a sub refuses in the sub's name: the line is the one that calls.
@@ -56,7 +57,7 @@ def line_of_refusal(interp: object, refusal: BlockRefusal) -> int | None:
     return find(interp, in_program=not mdi)
 
 
-def in_mdi(interp: object) -> bool:
+def in_mdi(interp: Interp) -> bool:
     """Tell whether the block, or what called its sub, was typed in MDI."""
     if not interp.task:
         return False
@@ -85,7 +86,7 @@ def handler(function):
     return guarded
 
 
-def forget_return(interp: object) -> None:
+def forget_return(interp: Interp) -> None:
     """Let the caller of the remap at work go on with its next line, should this one fail.
 
     `Interp::unwind_call` (rs274ngc_pre.cc) goes back to where each frame was to return to. The
@@ -94,7 +95,7 @@ def forget_return(interp: object) -> None:
     interp.sub_context[interp.call_level - 1].filename = NO_FILE
 
 
-def code_of_block(interp: object) -> str:
+def code_of_block(interp: Interp) -> str:
     """Return the remapped code as the operator wrote it: ``G12``, ``G12.2``."""
     return interp.blocks[interp.remap_level].executing_remap.name.upper()
 
@@ -104,7 +105,7 @@ def message(text: str) -> None:
     emccanon.MESSAGE(text)
 
 
-def message_once(interp: object, key: object, text: str) -> None:
+def message_once(interp: Interp, key: object, text: str) -> None:
     """Show a message once for each program and ``key``, as long as LinuxCNC runs."""
     shown = getattr(interp, "g12_shown", None) or set()
     interp.g12_shown = shown | {(main_program(interp), key)}
@@ -112,7 +113,7 @@ def message_once(interp: object, key: object, text: str) -> None:
         message(text)
 
 
-def main_program(interp: object) -> tuple[str, int] | None:
+def main_program(interp: Interp) -> tuple[str, int] | None:
     """Return the file at the bottom of the call stack and when it was last written.
 
     In MDI it is the one that is open, if any.

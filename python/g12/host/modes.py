@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import emccanon
 
+from g12.host.interp import Interp
 from g12.lengths import MM_PER_INCH
 
 DIAMETER = 15  # index into a block's g_modes, and into active_g_codes
@@ -12,7 +13,7 @@ G7 = 70
 INCH = 1  # length_units
 
 
-def program_units_per_machine_unit(interp: object) -> float:
+def program_units_per_machine_unit(interp: Interp) -> float:
     """Return the factor from INI file and tool table lengths to the program's."""
     return millimetres_per_machine_unit() / millimetres_per_unit(interp)
 
@@ -22,17 +23,17 @@ def millimetres_per_machine_unit() -> float:
     return 1 / emccanon.GET_EXTERNAL_LENGTH_UNITS()
 
 
-def millimetres_per_unit(interp: object) -> float:
+def millimetres_per_unit(interp: Interp) -> float:
     """Return the program's unit in mm."""
     return MM_PER_INCH if interp.length_units == INCH else 1.0
 
 
-def spindle_speed(interp: object) -> float:
+def spindle_speed(interp: Interp) -> float:
     """Return the commanded speed of the spindle in use."""
     return interp.speed[feed_spindle(interp)]
 
 
-def feed_spindle(interp: object) -> int:
+def feed_spindle(interp: Interp) -> int:
     """Return the number of the spindle in use, to which feeds per revolution refer.
 
     LinuxCNC leaves it unset until a block names one with $.
@@ -41,13 +42,13 @@ def feed_spindle(interp: object) -> int:
     return spindle if 0 <= spindle < interp.num_spindles else 0
 
 
-def diameter_mode(interp: object) -> bool:
+def diameter_mode(interp: Interp) -> bool:
     """Tell whether G7 is active (the active codes are those before this block)."""
     commanded = interp.blocks[interp.remap_level].g_modes[DIAMETER]
     return (interp.active_g_codes[DIAMETER] if commanded == -1 else commanded) == G7
 
 
-def run_code(interp: object, block: str) -> None:
+def run_code(interp: Interp, block: str) -> None:
     """Execute a block whose code may be remapped to a sub, with the sub's lines.
 
     `Interp::_execute` (rs274ngc_pre.cc) does so itself for a block typed in MDI, but then goes on

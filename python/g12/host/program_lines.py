@@ -15,6 +15,8 @@ from collections.abc import Iterable
 from itertools import accumulate
 from typing import NamedTuple
 
+from g12.host.interp import Interp
+
 INTERP_OK = 0
 NO_MOTION = -1
 NO_REPEATS = 0  # L of an M98
@@ -48,6 +50,8 @@ def read_source(filename: str, known: ProgramFile | None = None) -> ProgramFile:
 class LineOfFile(int):
     """The number of a line in another file than the section's: ``3 of flat.ngc``."""
 
+    file: str
+
     def __new__(cls, line: int, file: str) -> LineOfFile:
         """Return the number, with the file's name for messages."""
         number = super().__new__(cls, line)
@@ -59,19 +63,19 @@ class LineOfFile(int):
         return f"{int(self)} of {self.file:.80}"
 
 
-def line_of_block(interp: object, *, in_program: bool) -> int | None:
+def line_of_block(interp: Interp, *, in_program: bool) -> int | None:
     """Return the line of the block being remapped; ``in_program``: a program runs, not MDI."""
     offset = interp.blocks[interp.remap_level].offset
     return _line_at(interp, interp.filename, offset, in_program)
 
 
-def line_of_call(interp: object, *, in_program: bool) -> int | None:
+def line_of_call(interp: Interp, *, in_program: bool) -> int | None:
     """Return the line that calls the sub in which the block being remapped stands."""
     frame = interp.sub_context[interp.call_level - 2]
     return _line_at(interp, frame.filename, frame.position - 1, in_program)
 
 
-def _line_at(interp: object, filename: str, offset: int, in_program: bool) -> int | None:
+def _line_at(interp: Interp, filename: str, offset: int, in_program: bool) -> int | None:
     """Return the line at a byte, which tells its file if that is not the program's own."""
     try:
         with open(filename, "rb") as file:
@@ -82,12 +86,12 @@ def _line_at(interp: object, filename: str, offset: int, in_program: bool) -> in
     return line if own else LineOfFile(line, os.path.basename(filename))
 
 
-def running_file(interp: object) -> str:
+def running_file(interp: Interp) -> str:
     """Return the name of the file of the program that runs, in its subs too."""
     return interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
 
 
-def error_text(interp: object) -> str:
+def error_text(interp: Interp) -> str:
     """Return the interpreter's text of its last error; not all of them are UTF-8."""
     try:
         return interp.get_errormsg()
@@ -103,7 +107,7 @@ class ProgramLines:
     of an earlier section, which may be in the same file.
     """
 
-    def __init__(self, interp: object, known: ProgramFile | None = None) -> None:
+    def __init__(self, interp: Interp, known: ProgramFile | None = None) -> None:
         self.interp = interp
         self.home = self.source = read_source(interp.filename, known)
         offset = interp.blocks[interp.remap_level].offset

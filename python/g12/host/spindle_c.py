@@ -12,6 +12,7 @@ from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal, number
 from g12.host import messages
+from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 
 INPUT = 2  # of motion, as in spindle_c.hal and spindle_c_on.ngc
@@ -46,7 +47,7 @@ def spindle_c_off(self, **words):
     return INTERP_OK
 
 
-def in_section(interp: object) -> bool:
+def in_section(interp: Interp) -> bool:
     """Tell whether the block being remapped stands in a section."""
     remaps = (interp.blocks[level].executing_remap for level in range(1, interp.remap_level))
     return any(remap and remap.remap_py in SECTIONS for remap in remaps)
@@ -59,7 +60,7 @@ def is_c() -> bool:
     return bool(status.din[INPUT])
 
 
-def missing_code(interp: object) -> str:
+def missing_code(interp: Interp) -> str:
     """Return the code that has to make the spindle C first, "" where nothing has to."""
     code = MACHINE.spindle_c_code
     return code if code and interp.task and not is_c() else ""

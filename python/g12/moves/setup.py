@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 from g12.errors import number
 from g12.lengths import is_inch
@@ -18,14 +18,17 @@ ROUNDING_MM = 1e-6  # of an offset that was given in another unit
 CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
 
 
-class SectionSetup(NamedTuple):
+Planning = TypeVar("Planning")
+
+
+class SectionSetup(NamedTuple, Generic[Planning]):
     """What a section is read, planned and moved by; ``tolerance`` in program units.
 
     ``plan`` are the settings of its planner.
     """
 
     words: WordRules
-    plan: NamedTuple
+    plan: Planning
     limits: SoftLimits
     tolerance: float
 

@@ -35,7 +35,7 @@ def check_section_start(start: SectionStart, axes: Collection[str]) -> None:
 
 def polar_setup(
     start: SectionStart, settings: Settings, axes: dict[str, Axis], face: FaceAxes | None
-) -> SectionSetup:
+) -> SectionSetup[PolarSettings]:
     """Return what a section goes by; ``settings`` and ``axes`` are in machine units.
 
     ``face`` are the axes of the part's face, if the machine has its kinematics.

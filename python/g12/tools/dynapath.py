@@ -137,7 +137,7 @@ def check_entries(entries: Mapping[str, WrittenEntry], line: int) -> None:
 
 def broken_rule(letter: str, entry: WrittenEntry) -> str | None:
     """Return the rule of its letter that an entry breaks, None if it keeps them."""
-    written = f"{entry.letter}{number(entry.value)}"
+    written = f"{entry.letter}{number(float(entry.value))}"
     if entry.incremental and letter not in INCREMENTAL:
         return f"{entry.letter}/ cannot be incremental"
     if letter in CHOICES and entry.value not in CHOICES[letter]:

@@ -10,6 +10,7 @@ import functools
 import itertools
 
 from g12.cycles.entry import PocketEntry
+from g12.host.interp import Block, Interp, ToolEntry
 from g12.host.machine import MACHINE
 from g12.host.messages import code_of_block, main_program, message_once
 from g12.host.modes import (
@@ -72,7 +73,7 @@ class CycleState:
         self.first_plane: tuple[float, tuple[str, int] | None] | None = None
 
 
-def state_of(interp: object) -> CycleState:
+def state_of(interp: Interp) -> CycleState:
     """Return the package's state of this interpreter."""
     try:
         return interp.g12_state
@@ -81,7 +82,7 @@ def state_of(interp: object) -> CycleState:
         return interp.g12_state
 
 
-def words_of_block(interp: object) -> Words:
+def words_of_block(interp: Interp) -> Words:
     """Return the words of the block being remapped; refuse a second code that reads them."""
     block = interp.blocks[interp.remap_level]
     values = {
@@ -100,7 +101,7 @@ def words_of_block(interp: object) -> Words:
     return words
 
 
-def code_reading_words(block: object, words: Words) -> str | None:
+def code_reading_words(block: Block, words: Words) -> str | None:
     """Return a code of the block that would read a word of the cycle too, or change its tool.
 
     (The interpreter knows the tool that M6 brings only behind the block.)
@@ -118,7 +119,7 @@ def code_reading_words(block: object, words: Words) -> str | None:
     return None
 
 
-def entries_of_sub(interp: object, sub: str, count: int) -> list[float] | None:
+def entries_of_sub(interp: Interp, sub: str, count: int) -> list[float] | None:
     """Return the entries of ``o<sub> call`` if the code stands alone in that sub, else None.
 
     The frame of the remap is on top of the sub's; #1 to #30 are still the sub's in a prolog.
@@ -128,18 +129,18 @@ def entries_of_sub(interp: object, sub: str, count: int) -> list[float] | None:
     return [interp.params[index] for index in range(1, count + 1)]
 
 
-def tool_from_entry(interp: object, entry: object) -> Tool:
+def tool_from_entry(interp: Interp, entry: ToolEntry) -> Tool:
     """Return a tool table entry's number and radius in program units."""
     return Tool(entry.toolno, entry.diameter / 2 * program_units_per_machine_unit(interp))
 
 
-def tool_in_spindle(interp: object) -> Tool | None:
+def tool_in_spindle(interp: Interp) -> Tool | None:
     """Return the loaded tool, None if there is none."""
     entry = interp.tool_table[0]
     return tool_from_entry(interp, entry) if entry.toolno > 0 else None
 
 
-def tool_in_table(interp: object, tool_number: int) -> Tool | None:
+def tool_in_table(interp: Interp, tool_number: int) -> Tool | None:
     """Return the tool of that number from the tool table, None if it is not there.
 
     The table is in the order of the tool file; `find_tool_pocket` would give the pocket, which
@@ -153,7 +154,7 @@ def tool_in_table(interp: object, tool_number: int) -> Tool | None:
     return None
 
 
-def last_radius(interp: object) -> float | None:
+def last_radius(interp: Interp) -> float | None:
     """Return the cutter radius of the last D commanded, by a cycle or by G41/G42.
 
     The interpreter keeps its compensation radius after G40 and converts it with G20/G21, and
@@ -164,19 +165,19 @@ def last_radius(interp: object) -> float | None:
     return radius if state.radius_commanded else None
 
 
-def remember_radius(interp: object, radius: float) -> None:
+def remember_radius(interp: Interp, radius: float) -> None:
     """Store the cutter radius of a D word as the last commanded."""
     interp.cutter_comp_radius = radius
     state_of(interp).radius_commanded = True
 
 
-def report_other_cutter(interp: object, context: Context, text: str | None) -> None:
+def report_other_cutter(interp: Interp, context: Context, text: str | None) -> None:
     """Show the operator that D is not the loaded tool: once for each program and tool."""
-    if text:
+    if text and context.spindle_tool:
         message_once(interp, context.spindle_tool.number, text)
 
 
-def first_plane(interp: object) -> float | None:
+def first_plane(interp: Interp) -> float | None:
     """Return the circle mill's first reference plane as last commanded by this program.
 
     Another program's, or that of a text since edited, would send the tool to a height that this
@@ -188,13 +189,13 @@ def first_plane(interp: object) -> float | None:
     return plane[0] / millimetres_per_unit(interp)
 
 
-def remember_first_plane(interp: object, height: float) -> None:
+def remember_first_plane(interp: Interp, height: float) -> None:
     """Store the first reference plane as the last commanded."""
     plane = height * millimetres_per_unit(interp), main_program(interp)
     state_of(interp).first_plane = plane
 
 
-def snapshot(interp: object) -> Context:
+def snapshot(interp: Interp) -> Context:
     """Return what the block finds: modes, units, position, tools."""
     return Context(
         inch=interp.length_units == INCH,
@@ -216,14 +217,14 @@ def snapshot(interp: object) -> Context:
     )
 
 
-def other_unit(interp: object) -> str:
+def other_unit(interp: Interp) -> str:
     """Return the program's unit of length where the machine's is another, else ""."""
     if not converts(program_units_per_machine_unit(interp)):
         return ""
     return "in" if interp.length_units == INCH else "mm"
 
 
-def stay_within_limits(interp: object, words: Words, extent: CycleExtent) -> None:
+def stay_within_limits(interp: Interp, words: Words, extent: CycleExtent) -> None:
     """Refuse a cycle that leaves the machine's travel.
 
     Not in a preview: it shows a program also before the work offset is set.
@@ -232,7 +233,7 @@ def stay_within_limits(interp: object, words: Words, extent: CycleExtent) -> Non
         check_travel(words, extent, machine_frame(interp), MACHINE.travel)
 
 
-def machine_frame(interp: object) -> MachineFrame:
+def machine_frame(interp: Interp) -> MachineFrame:
     """Return where program coordinates lie on the machine: work offset, G92, rotation, tool."""
     tool = interp.tool_offset
     return MachineFrame(
@@ -248,7 +249,7 @@ def machine_frame(interp: object) -> MachineFrame:
     )
 
 
-def per_revolution(interp: object) -> bool:
+def per_revolution(interp: Interp) -> bool:
     """Tell whether feeds are per revolution (G95)."""
     return interp.feed_mode == PER_REVOLUTION
 
@@ -259,12 +260,12 @@ def pocket_entry() -> PocketEntry:
     return PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
 
 
-def traverse_feed(interp: object) -> float:
+def traverse_feed(interp: Interp) -> float:
     """Return the feed per minute of Yasnac's fast moves in program units, 0 for rapids."""
     return MACHINE.settings.yasnac_traverse * program_units_per_machine_unit(interp)
 
 
-def hand_over(interp: object, **locals_: float) -> None:
+def hand_over(interp: Interp, **locals_: float) -> None:
     """Set the named locals of the NGC sub that is about to run, and note the modes it finds."""
     params = interp.params
     for name, value in locals_.items():
@@ -272,7 +273,7 @@ def hand_over(interp: object, **locals_: float) -> None:
     note_modes(interp)
 
 
-def note_modes(interp: object) -> None:
+def note_modes(interp: Interp) -> None:
     """Note the modes that a cycle or a shape finds, and its F."""
     state = state_of(interp)
     state.feed = interp.feed_rate
@@ -284,7 +285,7 @@ def note_modes(interp: object) -> None:
     )
 
 
-def restore_modes(interp: object) -> None:
+def restore_modes(interp: Interp) -> None:
     """Put back the modes the block found: motion, G90/G91, G90.1/G91.1, G7/G8."""
     motion, distance, centre, diameter = state_of(interp).modes
     interp.motion_mode = motion

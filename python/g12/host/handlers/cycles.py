@@ -9,6 +9,7 @@ from g12.cycles import circle_mill, mitsubishi, yasnac
 from g12.cycles.haas import plan_pocket
 from g12.host import messages
 from g12.host.handlers import cycle_state
+from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 from g12.request.common import other_cutter
 from g12.request.words import Words
@@ -21,7 +22,7 @@ def check_at_start() -> None:
     MACHINE.read("settings", "travel")
 
 
-def prepare_haas(interp: object, arc: int) -> int:
+def prepare_haas(interp: Interp, arc: int) -> int:
     """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     other = other_cutter(words.code, words.value("D"), context, context.last_radius)
@@ -50,7 +51,7 @@ def g13_haas(self, **words):
     return prepare_haas(self, COUNTERCLOCKWISE)
 
 
-def prepare_yasnac(interp: object, arc: int) -> int:
+def prepare_yasnac(interp: Interp, arc: int) -> int:
     """Check a Yasnac G12/G13 block and hand its circle to `ngc/g12_yasnac.ngc`."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     other = other_cutter(words.code, words.value("D"), context)
@@ -80,7 +81,7 @@ def g13_yasnac(self, **words):
     return prepare_yasnac(self, COUNTERCLOCKWISE)
 
 
-def prepare_mitsubishi(interp: object, arc: int) -> int:
+def prepare_mitsubishi(interp: Interp, arc: int) -> int:
     """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_mitsubishi.ngc`."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     other = other_cutter(words.code, words.value("D"), context)
@@ -103,7 +104,7 @@ def g13_mitsubishi(self, **words):
     return prepare_mitsubishi(self, COUNTERCLOCKWISE)
 
 
-def planned_event(interp: object, pocket: bool) -> circle_mill.MillEvent:
+def planned_event(interp: Interp, pocket: bool) -> circle_mill.MillEvent:
     """Return the event of a code block, or of the call if the code stands in o<circle_mill>."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     plane = cycle_state.first_plane(interp)
@@ -118,7 +119,7 @@ def planned_event(interp: object, pocket: bool) -> circle_mill.MillEvent:
     return event
 
 
-def prepare_circle_mill(interp: object, pocket: bool) -> int:
+def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
     """Check a circle mill event and hand it to `ngc/g12_circle_mill.ngc`."""
     event = planned_event(interp, pocket)
     cycle_state.hand_over(interp, **event.locals())

@@ -17,6 +17,7 @@ import emccanon
 from g12.errors import BlockRefusal
 from g12.host import messages
 from g12.host.call_frame import CallFrame
+from g12.host.interp import Interp
 from g12.host.kinematics_switch import (
     BY_HAND,
     FACE_OUTPUT,
@@ -55,7 +56,7 @@ class ByHand(NamedTuple):
     ended: bool = False  # by an abort or an error
 
 
-def switch_on(interp: object, start: SectionStart, beside: float) -> Iterator[int]:
+def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[int]:
     """Go to the face where a section could begin, with the tool ``beside`` the X line."""
     code = start.place.code
     if y_offset(interp):
@@ -72,7 +73,7 @@ def switch_on(interp: object, start: SectionStart, beside: float) -> Iterator[in
     _lock(interp)
 
 
-def switch_off(interp: object) -> Iterator[int]:
+def switch_off(interp: Interp) -> Iterator[int]:
     """Come back from the face, if that is where the machine is, to the modes that were found."""
     code = messages.code_of_block(interp)
     if getattr(interp, "g12_by_hand", None) and interp.cutter_comp_side in COMPENSATED:
@@ -87,7 +88,7 @@ def switch_off(interp: object) -> Iterator[int]:
         yield from _switch(interp, code, frame, line, to_axes(interp))
 
 
-def abort(interp: object) -> None:
+def abort(interp: Interp) -> None:
     """Come back behind an abort: nothing can be waited for, so ask and go on.
 
     `Interp::read_inputs` (rs274ngc_pre.cc) takes the position that the machine has then when it
@@ -108,7 +109,7 @@ def abort(interp: object) -> None:
     interp.toolchange_flag = True
 
 
-def _lock(interp: object) -> None:
+def _lock(interp: Interp) -> None:
     """Have LinuxCNC refuse on the face what it refuses where compensation is on.
 
     G41 and G42 are among it, and planes, offsets, tools and M52. With a radius of 0, and no move
@@ -118,7 +119,7 @@ def _lock(interp: object) -> None:
     interp.cutter_comp_firstmove = True
 
 
-def _unlock(interp: object) -> ByHand | None:
+def _unlock(interp: Interp) -> ByHand | None:
     """Undo `_lock`, and a compensation that began behind a G40; return what was locked."""
     by_hand, interp.g12_by_hand = getattr(interp, "g12_by_hand", None), None
     if by_hand and not by_hand.ended:
@@ -127,20 +128,20 @@ def _unlock(interp: object) -> ByHand | None:
     return by_hand
 
 
-def give_back_modes(interp: object) -> None:
+def give_back_modes(interp: Interp) -> None:
     """Give back the modes that `switch_on`, or a section, found."""
     found, interp.g12_found = getattr(interp, "g12_found", None), None
     if found:
         interp.execute(found)
 
 
-def adaptive_feed(interp: object) -> str:
+def adaptive_feed(interp: Interp) -> str:
     """Return the block that gives back M52 as it is."""
     return f"M52P{int(ADAPTIVE in without_line(interp.active_m_codes))}"
 
 
 def _switch(
-    interp: object, code: str, frame: CallFrame, line: int, blocks: Iterator[str]
+    interp: Interp, code: str, frame: CallFrame, line: int, blocks: Iterator[str]
 ) -> Iterator[int]:
     frame.enter()
     for block in blocks:

@@ -11,6 +11,7 @@ from interpreter import INTERP_OK
 from g12.errors import BlockRefusal, Refusal
 from g12.host import messages, modes
 from g12.host.handlers import face_by_hand
+from g12.host.interp import Interp
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section.kind import (
@@ -24,6 +25,7 @@ from g12.host.section.start import start_of_section
 from g12.machine_ini import owns_g12_1, refuse_owned_codes
 from g12.moves.setup import SectionSetup
 from g12.polar import plan as polar
+from g12.polar.plan import PolarSettings
 from g12.polar.start import check_section_start, polar_setup
 from g12.section.codes import SectionCodes, codes_of_section
 from g12.section.start import SectionStart
@@ -76,7 +78,7 @@ def polar_off(self, **words) -> Iterator[int]:
     yield INTERP_OK
 
 
-def after_abort(interp: object) -> None:
+def after_abort(interp: Interp) -> None:
     """Open the clamp of C, and come back from the face, after an abort.
 
     In this order: coming back ends with what acts on the next line that is read.
@@ -87,7 +89,7 @@ def after_abort(interp: object) -> None:
         face_by_hand.abort(interp)
 
 
-def run_by_hand(interp: object) -> Iterator[int]:
+def run_by_hand(interp: Interp) -> Iterator[int]:
     """Switch on in MDI, where nothing behind can be read: it could be an old program's."""
     start = start_of_section(interp, 0)
     if not MACHINE.switches_kinematics:
@@ -99,7 +101,7 @@ def run_by_hand(interp: object) -> Iterator[int]:
     yield from face_by_hand.switch_on(interp, start, setup.words.beside)
 
 
-def _setup(start: SectionStart) -> SectionSetup:
+def _setup(start: SectionStart) -> SectionSetup[PolarSettings]:
     return polar_setup(start, MACHINE.settings, MACHINE.axes, MACHINE.face)
 
 
@@ -116,7 +118,7 @@ POLAR = SectionKind(
 )
 
 
-def _setup_of_shape(start: SectionStart) -> SectionSetup:
+def _setup_of_shape(start: SectionStart) -> SectionSetup[PolarSettings]:
     """Return the setup of a shape's section, whose tool goes down along a ramp."""
     setup = _setup(start)
     return setup._replace(words=setup.words._replace(third_with_others=True))

@@ -8,7 +8,7 @@ gives the sub the numbers of its motion; G13.4 puts back the modes that G12.4 fo
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 from interpreter import INTERP_OK
 
@@ -16,6 +16,7 @@ from g12.errors import BlockRefusal
 from g12.host import messages
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
+from g12.host.interp import Interp
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section.kind import check_ini
@@ -23,7 +24,7 @@ from g12.host.section.output import path_control
 from g12.host.section.start import stands_alone, start_of_section
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
-from g12.polar.plan import POLE_SHARE
+from g12.polar.plan import POLE_SHARE, PolarSettings
 from g12.polar.start import check_section_start, polar_setup
 from g12.request.context import Context
 from g12.section.codes import code_of_handler
@@ -35,19 +36,32 @@ from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, check_nearest
 from g12.shapes.holes import HoleMachine
 
 
-class Shape(NamedTuple):
-    """A shape: the names of its entries, and what plans it."""
+class Plan(Protocol):
+    """What a planner of shapes or holes returns."""
+
+    def locals(self) -> dict[str, float]:
+        """Return the named locals of the sub."""
+
+    def extent(self) -> Extent:
+        """Return how far the axes go."""
+
+
+Machine = TypeVar("Machine")
+
+
+class Shape(NamedTuple, Generic[Machine]):
+    """A shape: the names of its entries, and what plans it for a machine."""
 
     entries: tuple[str, ...]
-    plan: Callable[[ShapeEntries, Context, ShapeMachine], NamedTuple]
+    plan: Callable[[ShapeEntries, Context, Machine], Plan]
 
 
-SHAPES = {
+SHAPES: dict[str, Shape[ShapeMachine]] = {
     "polar_polygon": Shape(polygon.ENTRIES, polygon.plan_polygon),
     "polar_slot": Shape(slot.ENTRIES, slot.plan_slot),
     "polar_pocket": Shape(round_pocket.ENTRIES, round_pocket.plan_round_pocket),
 }
-HOLES = {
+HOLES: dict[str, Shape[HoleMachine]] = {
     "face_holes": Shape(holes.FACE_HOLES, holes.plan_face_holes),
     "side_holes": Shape(holes.SIDE_HOLES, holes.plan_side_holes),
     "face_hole_at": Shape(holes.FACE_HOLE_AT, holes.plan_face_hole_at),
@@ -85,7 +99,7 @@ def polar_shape(self, **words):
 
 
 def prepare_holes(
-    interp: object, level: int, name: str, start: SectionStart, setup: SectionSetup
+    interp: Interp, level: int, name: str, start: SectionStart, setup: SectionSetup[PolarSettings]
 ) -> int:
     """Check holes and set the locals of their motion, which is made in G61 as drilling cycles are.
 
@@ -116,7 +130,9 @@ def check_clamp(entries: ShapeEntries) -> None:
             )
 
 
-def hole_machine(interp: object, start: SectionStart, setup: SectionSetup) -> HoleMachine:
+def hole_machine(
+    interp: Interp, start: SectionStart, setup: SectionSetup[PolarSettings]
+) -> HoleMachine:
     """Return what holes have to know of the machine."""
     return HoleMachine(
         c=start.c,
@@ -141,7 +157,7 @@ OWN_CODES, USER_CODES = range(3, 10), range(100, 200)  # M codes without a REMAP
 SPINDLE = 2  # index into active_m_codes: 3, 4 or 5
 
 
-def shape_at_work(interp: object) -> str:
+def shape_at_work(interp: Interp) -> str:
     """Return the name of the shape in whose sub the code stands; refuse it anywhere else."""
     name, code = interp.sub_context[interp.call_level - 1].subname, messages.code_of_block(interp)
     if name not in SHAPES and name not in HOLES:
@@ -153,7 +169,7 @@ def shape_at_work(interp: object) -> str:
     return name
 
 
-def start_of_shape(interp: object, name: str) -> SectionStart:
+def start_of_shape(interp: Interp, name: str) -> SectionStart:
     """Return what the shape finds; refuse modes in which no section can begin."""
     start = start_of_section(interp, 0)
     line = messages.line_of_refusal(interp, BlockRefusal(name, ""))
@@ -162,7 +178,7 @@ def start_of_shape(interp: object, name: str) -> SectionStart:
     return start
 
 
-def shape_machine(setup: SectionSetup) -> ShapeMachine:
+def shape_machine(setup: SectionSetup[PolarSettings]) -> ShapeMachine:
     """Return what a shape has to know of the machine."""
     beside = setup.words.beside
     return ShapeMachine(
@@ -178,14 +194,18 @@ def shape_machine(setup: SectionSetup) -> ShapeMachine:
 def section_codes(entries: ShapeEntries) -> dict[str, float]:
     """Return the locals by which the sub begins and ends its section: the G codes."""
     remaps = MACHINE.remaps.values()
-    numbers = {name: code_of_handler(remaps, name) for name in ("polar_on", "polar_off")}
-    for name, found in numbers.items():
-        if found is None:
+    numbers = {}
+    for name in ("polar_on", "polar_off"):
+        code = code_of_handler(remaps, name)
+        if code is None:
             raise entries.refuse(f"needs a REMAP line with python={name}")
+        numbers[name] = code
     return numbers
 
 
-def stay_in_travel(entries: ShapeEntries, extent: Extent, setup: SectionSetup) -> None:
+def stay_in_travel(
+    entries: ShapeEntries, extent: Extent, setup: SectionSetup[PolarSettings]
+) -> None:
     """Refuse a shape that leaves the travel of an axis."""
     corners = [(x, c, z, 0.0) for x, c, z in zip(extent.x[::-1], extent.c, extent.z)]
     beyond = setup.limits.beyond([BlockMoves(0, "XCZ", corners, False)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from typing import Generic, NamedTuple
 
 import emccanon
 from interpreter import MODE_ABSOLUTE
@@ -14,6 +14,7 @@ from g12.compensation.contour import Contour
 from g12.errors import BlockRefusal, Refusal
 from g12.host import messages, modes
 from g12.host.call_frame import CallFrame
+from g12.host.interp import Interp
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.program_lines import LineOfFile, ProgramLines, running_file
@@ -21,7 +22,7 @@ from g12.host.section.output import SectionOutput
 from g12.host.section.reader import SectionReader
 from g12.host.section.run import Section
 from g12.host.section.start import start_of_section
-from g12.moves.setup import SectionSetup
+from g12.moves.setup import Planning, SectionSetup
 from g12.moves.steps import SectionPlan
 from g12.section.codes import SectionCodes
 from g12.section.line import line_named, with_line
@@ -33,7 +34,7 @@ TURN, REPORTED_TURN = 360.0, 540.0  # a contour that closes and its leads take m
 NOT_IN_MDI = "is not possible in MDI: it needs the lines behind it"
 
 
-class SectionKind(NamedTuple):
+class SectionKind(NamedTuple, Generic[Planning]):
     """What one kind of section does its own way.
 
     ``letters`` are those of the block that switches on. ``check`` refuses to begin a section,
@@ -43,9 +44,9 @@ class SectionKind(NamedTuple):
 
     letters: str
     check: Callable[[SectionStart], None]
-    setup: Callable[[SectionStart], SectionSetup]
+    setup: Callable[[SectionStart], SectionSetup[Planning]]
     codes: Callable[[str], SectionCodes]
-    plan: Callable[[Contour, SectionSetup, SectionStart], SectionPlan]
+    plan: Callable[[Contour, SectionSetup[Planning], SectionStart], SectionPlan]
 
 
 def check_ini() -> None:
@@ -53,12 +54,12 @@ def check_ini() -> None:
     MACHINE.read("settings", "remaps", "coordinates", "axes", "face")
 
 
-def is_typed(interp: object) -> bool:
+def is_typed(interp: Interp) -> bool:
     """Tell whether the block being remapped was typed in MDI; a sub that MDI calls was not."""
     return messages.in_mdi(interp) and interp.call_level == TYPED
 
 
-def program_behind(interp: object) -> ProgramLines:
+def program_behind(interp: Interp) -> ProgramLines:
     """Return the program that goes on behind the block; refuse one whose file is gone."""
     try:
         program = ProgramLines(interp, getattr(interp, "g12_source", None))
@@ -69,7 +70,7 @@ def program_behind(interp: object) -> ProgramLines:
     return program
 
 
-def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
+def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
     """Run the section that begins with the block being remapped."""
     program, running = program_behind(interp), running_file(interp)
     frame, c = CallFrame(interp, program.home.filename), interp.CC_current
@@ -87,7 +88,7 @@ def run_section(interp: object, kind: SectionKind) -> Iterator[int]:
         raise
 
 
-def report_turns(interp: object, turned: float) -> None:
+def report_turns(interp: Interp, turned: float) -> None:
     """Show the operator, once a program, that C has to unwind more than a turn (degrees)."""
     if abs(turned) > REPORTED_TURN and not interp.c_axis_wrapped:
         code, turns = messages.code_of_block(interp), abs(turned) / TURN
@@ -98,7 +99,9 @@ def report_turns(interp: object, turned: float) -> None:
         messages.message_once(interp, "turns", text)
 
 
-def _section(interp: object, kind: SectionKind, frame: CallFrame, program: ProgramLines) -> Section:
+def _section(
+    interp: Interp, kind: SectionKind[Planning], frame: CallFrame, program: ProgramLines
+) -> Section:
     """Return the section; refuse to begin it where it cannot."""
     start = start_of_section(interp, program.place, kind.letters)
     if MACHINE.switches_kinematics and interp.task and face_in_force():

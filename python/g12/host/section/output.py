@@ -18,6 +18,7 @@ from collections.abc import Container, Iterator, Sequence
 from typing import NamedTuple
 
 from g12.compensation.contour import Arc, Plunge
+from g12.host.interp import Canon, Interp
 from g12.host.kinematics_switch import (
     BY_PROGRAM,
     INPUT_FOUND,
@@ -31,6 +32,7 @@ from g12.host.kinematics_switch import (
     y_offset,
 )
 from g12.host.program_lines import error_text
+from g12.moves.feed import Piece
 from g12.moves.steps import BlockMoves
 from g12.polar.face import FaceMove, FaceSwitch, flows_into
 from g12.section.block_rules import G1
@@ -67,12 +69,15 @@ class Action(NamedTuple):
     level: int | None = None
 
 
+Step = BlockMoves | FaceMove | FaceSwitch | Action  # of a plan
+
+
 def tolerances(settings: Sequence[float]) -> str:
     """Return the block that commands G64 with the tolerances of the active settings."""
     return f"G64P{decimal(settings[TOLERANCE])}Q{decimal(settings[MERGING])}"
 
 
-def path_control(interp: object) -> str:
+def path_control(interp: Interp) -> str:
     """Return the block that commands the path control in force."""
     code = interp.active_g_codes[PATH_ACTIVE]
     return tolerances(interp.active_settings) if code == G64 else f"G{code / 10:g}"
@@ -86,7 +91,7 @@ class PathControl:
     that LinuxCNC starts with, program units: on the face it counts for none.
     """
 
-    def __init__(self, interp: object, smooth: str, initial: float) -> None:
+    def __init__(self, interp: Interp, smooth: str, initial: float) -> None:
         self.interp, self.smooth, self._initial = interp, smooth, initial
         self.find()
 
@@ -155,15 +160,15 @@ class SectionOutput:
 
     def __init__(
         self,
-        interp: object,
+        interp: Interp,
         code: str,
         *,
         x_factor: float,
         blending: float,
         initial: float,
         machine_unit: float,
-        absolute: object,
-        canon: object,
+        absolute: int,
+        canon: Canon,
         beside: float = 0.0,
     ) -> None:
         self.interp, self.code = interp, code
@@ -175,7 +180,7 @@ class SectionOutput:
         self._begun = False
 
     def run(
-        self, steps: Sequence[BlockMoves | Action], modes: SectionModes, exact_lines: Container[int]
+        self, steps: Sequence[Step], modes: SectionModes, exact_lines: Container[int]
     ) -> Iterator[str]:
         """Hand over all steps, and release the interpreter in ``modes``.
 
@@ -206,7 +211,7 @@ class SectionOutput:
         interp.execute("G91" if modes.incremental else "G90")
         interp.motion_mode = modes.motion
 
-    def _stop_in_front(self, steps: Sequence[BlockMoves | Action]) -> None:
+    def _stop_in_front(self, steps: Sequence[Step]) -> None:
         if steps and not self._begun:
             self.interp.sequence_number = steps[0].line
             self.interp.execute(STOP_HERE)
@@ -230,7 +235,7 @@ class SectionOutput:
         self.path.at_end(run.stop, exact_stop, block_ends)
         self._block(run.axes, *run.pieces[-1])
 
-    def _moves(self, line: int, axes: str, pieces: list[tuple[float, ...]]) -> None:
+    def _moves(self, line: int, axes: str, pieces: Sequence[Piece]) -> None:
         """Hand over moves of one block.
 
         The first is a block to the interpreter, which tells the machine the line and the modes.

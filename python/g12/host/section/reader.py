@@ -17,6 +17,7 @@ from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
 
 from g12.compensation.contour import Contour, PlaneNames, Start
 from g12.errors import number
+from g12.host.interp import Block, Interp
 from g12.host.program_lines import ProgramLines, error_text
 from g12.host.section.output import BLOCK_END, PER_MINUTE, PER_REVOLUTION, Action
 from g12.section.block_rules import (
@@ -75,7 +76,7 @@ class MoveWords(NamedTuple):
     relative: str = ""
 
 
-def block_of(parsed: object) -> SectionBlock:
+def block_of(parsed: Block) -> SectionBlock:
     """Return the interpreter's parsed block as plain data."""
     words = {
         letter: getattr(parsed, value) for letter, flag, value in WORDS if getattr(parsed, flag)
@@ -87,7 +88,7 @@ class SectionReader:
     """Collects the blocks of one section, as the interpreter parsed them, in ``contour``."""
 
     def __init__(
-        self, interp: object, start: SectionStart, rules: WordRules, program: ProgramLines
+        self, interp: Interp, start: SectionStart, rules: WordRules, program: ProgramLines
     ) -> None:
         self.interp, self.start, self.rules, self.program = interp, start, rules, program
         self.parsed = interp.blocks[0]
@@ -109,12 +110,13 @@ class SectionReader:
         known = rules.words
         angle = start.c if self._own_c else 0.0
         x, c, z = self._to_plane((start.x, angle * rules.c_scale, start.z))
+        first, second, third = tuple(known.plane)
         return Contour(
             x,
             z,
             c,
             code=start.place.code,
-            names=PlaneNames(*known.plane, known.centre_name),
+            names=PlaneNames(first, second, third, known.centre_name),
             diameter=rules.diameter if known.plane[0] == "X" else None,
             closing=rules.closing,
             start=Start(start.x, radians(angle), start.z),
@@ -254,8 +256,8 @@ class SectionReader:
         if block.g[COMPENSATION] != NO_CODE:
             self._compensate(block.g[COMPENSATION] // 10)
         if block.moves:
-            words = MoveWords(*map(block.words.get, "XCZIJRK"), relative=line.relative)
-            self._move(block.motion, words)
+            x, c, z, i, j, r, k = map(block.words.get, "XCZIJRK")
+            self._move(block.motion, MoveWords(x, c, z, i, j, r, k, line.relative))
         self._mark(stop_text(block))
 
     def comment(self, line: TextLine) -> None:

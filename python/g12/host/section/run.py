@@ -11,13 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator
 from enum import Enum
+from typing import Any, cast
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.host import messages
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import MOVING, ProgramLines
-from g12.host.section.output import SectionOutput
+from g12.host.section.output import SectionOutput, Step
 from g12.host.section.reader import SectionReader, block_of
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import SectionPlan
@@ -59,7 +60,7 @@ class Section:
     def __init__(
         self,
         codes: SectionCodes,
-        setup: SectionSetup,
+        setup: SectionSetup[Any],
         plan: Callable[[Contour], SectionPlan],
         frame: CallFrame,
         program: ProgramLines,
@@ -255,7 +256,8 @@ class Section:
             messages.message(note)
         reader.show_machine()
         self._phase = Phase.MOVING
-        for waiting in self.output.run(plan.steps, reader.modes, reader.exact_lines):
+        steps = cast(list[Step], plan.steps)  # the actions of its marks are the reader's
+        for waiting in self.output.run(steps, reader.modes, reader.exact_lines):
             yield from self.frame.execute_and_wait(waiting)
         self._phase = Phase.READING
         reader.remember_machine()

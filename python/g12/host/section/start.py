@@ -6,6 +6,7 @@ from __future__ import annotations
 from interpreter import MODE_INCREMENTAL
 
 from g12.host import messages, modes
+from g12.host.interp import Block, Interp
 from g12.host.program_lines import without_line
 from g12.host.section.output import PER_REVOLUTION
 from g12.host.section.reader import block_of
@@ -21,7 +22,7 @@ INVERSE_TIME = 1  # feed_mode
 G96 = 960
 
 
-def start_of_section(interp: object, line: int, words: str = "") -> SectionStart:
+def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart:
     """Return what a section finds that begins with the block being remapped, on ``line``.
 
     ``words`` are the letters that the block may have.
@@ -55,13 +56,13 @@ def start_of_section(interp: object, line: int, words: str = "") -> SectionStart
     )
 
 
-def stands_alone(block: object, words: str = "") -> bool:
+def stands_alone(block: Block, words: str = "") -> bool:
     """Tell whether a block holds only its code, and those words."""
     others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
     return alone(block_of(block), words) and not others
 
 
-def _modes(interp: object) -> SectionModes:
+def _modes(interp: Interp) -> SectionModes:
     return SectionModes(
         incremental=interp.distance_mode == MODE_INCREMENTAL,
         per_revolution=interp.feed_mode == PER_REVOLUTION,
@@ -71,12 +72,12 @@ def _modes(interp: object) -> SectionModes:
     )
 
 
-def _tool_radius(interp: object, machine_unit: float) -> float | None:
+def _tool_radius(interp: Interp, machine_unit: float) -> float | None:
     entry = interp.tool_table[0]
     return entry.diameter / 2 * machine_unit if entry.toolno > 0 else None
 
 
-def _offsets(interp: object) -> dict[str, float]:
+def _offsets(interp: Interp) -> dict[str, float]:
     """Return what the work offset, G92 and the tool offset add to a program's X, Z and C."""
     tool = interp.tool_offset
     return {

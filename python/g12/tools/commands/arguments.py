@@ -8,6 +8,7 @@ import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any, NoReturn
 
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.headless.machine import MachineError, StartupError
@@ -38,12 +39,12 @@ class Parser(argparse.ArgumentParser):
     ``prog`` and the examples of ``epilog`` name it ``g12``; shown is what is typed here.
     """
 
-    def __init__(self, prog: str, description: str = "", epilog: str = "", **options) -> None:
-        shape = {"formatter_class": argparse.RawDescriptionHelpFormatter, **options}
-        texts = {"prog": typed(prog), "epilog": typed(epilog)}
-        super().__init__(description=description.replace("`", ""), **texts, **shape)
+    def __init__(self, prog: str, description: str = "", epilog: str = "", **options: Any) -> None:
+        options.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
+        text = description.replace("`", "")
+        super().__init__(typed(prog), description=text, epilog=typed(epilog), **options)
 
-    def error(self, message: str) -> None:
+    def error(self, message: str) -> NoReturn:
         """End the program: ``message`` says what is wrong with its words."""
         name = self.prog.replace(CALL, "g12")
         self.exit(USAGE, f"{name}: {message} (usage: {self.prog} --help)\n")
@@ -115,7 +116,7 @@ def stock_of(options: argparse.Namespace) -> StockText | None:
 def add_override(parser: argparse.ArgumentParser, whose: str) -> None:
     """Add the feed override of a run."""
     text = f"feed override {whose} (default 100): real time is what a run takes"
-    percent = {"type": number_above(0), "default": 100.0, "metavar": "PERCENT"}
+    percent: dict[str, Any] = {"type": number_above(0), "default": 100.0, "metavar": "PERCENT"}
     parser.add_argument("--override", **percent, help=text)
 
 

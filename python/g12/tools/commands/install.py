@@ -9,6 +9,7 @@ new config is loaded in the stock interpreter before anything of the user's is c
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
 from g12.tools.errors import UsageError
@@ -41,7 +42,7 @@ def command_parser() -> Parser:
         epilog=EXAMPLES.format(features=listed),
     )
     parser.add_argument("ini", nargs="?", type=Path, help="INI file of the machine")
-    wanted = {"dest": "wanted", "nargs": "+", "default": [], "metavar": "FEATURE"}
+    wanted: dict[str, Any] = {"dest": "wanted", "nargs": "+", "default": [], "metavar": "FEATURE"}
     parser.add_argument("--with", **wanted, help="what to install (see below)")
     parser.add_argument("--pins", type=Path, metavar="TOML", help="inputs of the drive: spindle-c")
     parser.add_argument("--dry-run", action="store_true", help="show the changes only")

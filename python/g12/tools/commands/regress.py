@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import os
 from pathlib import Path
+from typing import Any
 
 from g12.tools.commands.arguments import (
     FINDING,
@@ -89,7 +90,7 @@ def _add_file(parser: argparse.ArgumentParser, name: str, text: str, metavar: st
 
 
 def _add_common(parser: argparse.ArgumentParser) -> None:
-    directory = {"type": Path, "required": True, "metavar": "DIR"}
+    directory: dict[str, Any] = {"type": Path, "required": True, "metavar": "DIR"}
     parser.add_argument("-d", "--directory", **directory, help="the recordings")
     for name, default, metavar, text in (
         ("--tolerance", Terms.ends, "LENGTH", "of ends, in machine units and degrees"),
@@ -99,7 +100,7 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
         help_ = f"{text} (default {default:g})"
         read = number_above(0) if name == "--timeout" else number_from(0)
         parser.add_argument(name, type=read, default=default, metavar=metavar, help=help_)
-    jobs = {"type": count_from(1), "default": os.cpu_count(), "metavar": "N"}
+    jobs: dict[str, Any] = {"type": count_from(1), "default": os.cpu_count(), "metavar": "N"}
     parser.add_argument("--jobs", **jobs, help="default: all cores")
     parser.add_argument("--json", action="store_true", help="report as JSON")
 

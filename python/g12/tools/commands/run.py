@@ -11,6 +11,7 @@ import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from g12.machine_ini import AXES
 from g12.tools.commands.arguments import (
@@ -95,7 +96,7 @@ def command_parser() -> Parser:
     parser = program_parser("run", __doc__, EXAMPLES)
     add_override(parser, "of the run")
     usual = f"{USUAL_TIMEOUT:g}, or twice what the program needs"
-    timeout = {"type": number_above(0), "metavar": "SECONDS"}
+    timeout: dict[str, Any] = {"type": number_above(0), "metavar": "SECONDS"}
     parser.add_argument("--timeout", **timeout, help=f"give up after this (default {usual})")
     return parser
 
@@ -111,8 +112,8 @@ def main(arguments: list[str]) -> int:
         timeout = options.timeout or patience(preview, ini, options.override)
         with working(run_text(options.program, options.override, preview, ini), clock=True):
             result = run_anyhow(opened.path, *files, options.override, timeout=timeout)
-    for line in lines_of_run(result, ini):
-        print(line)
+    for text in lines_of_run(result, ini):
+        print(text)
     if result.error:
         line = opened.source_line(line_of_preview(result.error, preview))
         place = f"{options.program}:{line}" if line else options.program

@@ -8,6 +8,8 @@ in machine coordinates. A line begins with the program's own line number.
 
 from __future__ import annotations
 
+from typing import Any
+
 from g12.machine_ini import AXES
 from g12.tools.commands.arguments import (
     GOOD,
@@ -52,7 +54,7 @@ def _moves(move: Move, axis: str) -> bool:
 def command_parser() -> Parser:
     """Return what reads the command line."""
     parser = program_parser("trace", __doc__, EXAMPLES)
-    digits = {"type": count_from(0), "default": 6, "metavar": "N"}
+    digits: dict[str, Any] = {"type": count_from(0), "default": 6, "metavar": "N"}
     parser.add_argument("--digits", **digits, help="decimals (default 6)")
     return parser
 

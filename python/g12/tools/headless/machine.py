@@ -196,17 +196,14 @@ class Machine:
     def _private_ini(self, ini: Ini, tools: Tools, parameters: Parameters) -> Ini:
         """Return the INI with this machine's own screen and files, which it writes."""
         any_override = {} if face_joints(ini.get) else ANY_OVERRIDE  # where no feed goes by it
+        table = write_tools(tools, ini, self.folder / "tool.tbl")
+        variables = write_parameters(parameters, self.folder / "machine.var")
         return ini.replaced(
             {
                 "DISPLAY": {**SCREEN, **any_override, "INTRO_GRAPHIC": None, "OPEN_FILE": None},
                 "APPLICATIONS": {"APP": None},
-                "EMCIO": {
-                    "TOOL_TABLE": write_tools(tools, ini, self.folder / "tool.tbl"),
-                    "DB_PROGRAM": None,
-                },
-                "RS274NGC": {
-                    "PARAMETER_FILE": write_parameters(parameters, self.folder / "machine.var")
-                },
+                "EMCIO": {"TOOL_TABLE": str(table), "DB_PROGRAM": None},
+                "RS274NGC": {"PARAMETER_FILE": str(variables)},
             }
         )
 

@@ -19,7 +19,7 @@ import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from g12.tools.system import PYTHON
 
@@ -71,7 +71,7 @@ class Isolated:
         adds variables, of which a screen's are otherwise not handed on.  Without namespaces it
         waits until another program's turn ends.
         """
-        job = {
+        job: dict[str, Any] = {
             "command": list(command),
             "environment": {**self._environment(), **(environment or {})},
             "copies": {str(directory): dict(files) for directory, files in copies.items()},
@@ -157,7 +157,7 @@ def started(script: Path, job: Mapping[str, object], log: IO, *kept: int) -> sub
 
     ``kept`` are open files that it has too.
     """
-    streams = {"stdin": subprocess.PIPE, "stdout": log, "stderr": log}
+    streams: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": log, "stderr": log}
     command = [PYTHON, str(script)]
     process = subprocess.Popen(command, **streams, pass_fds=kept, start_new_session=True)
     process.stdin.write(json.dumps(job).encode() + b"\n")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from typing import Any
 
 import linuxcnc
 
@@ -70,7 +71,7 @@ class Panel:
         said, self._messages = self._messages, []
         return said
 
-    def wait(self, condition: Callable[[object], bool], timeout: float, what: str) -> None:
+    def wait(self, condition: Callable[[Any], bool], timeout: float, what: str) -> None:
         """Wait up to ``timeout`` seconds until ``condition`` of the status holds."""
         end = time.monotonic() + timeout
         while not condition(self.look()):

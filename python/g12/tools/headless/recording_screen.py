@@ -150,7 +150,7 @@ def serve_runner(address: str, positions: list[str], kind: type = RecordingScree
         try:
             connection.send((True, screen.answer(*request)))
         except PanelError as error:
-            kind = "timeout" if isinstance(error, PanelTimeout) else "failure"
-            connection.send((False, (kind, str(error))))
+            outcome = "timeout" if isinstance(error, PanelTimeout) else "failure"
+            connection.send((False, (outcome, str(error))))
         except Exception as error:
             connection.send((False, ("failure", f"{type(error).__name__}: {error}")))

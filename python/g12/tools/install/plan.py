@@ -162,7 +162,7 @@ def put_section(text: IniText, section: str, interpreter: Place, lines: Sequence
         put_block(text, text.end_of_file(), [f"[{section}]", *lines])
     elif lines:
         header = text.headers("RS274NGC")[0]
-        put_block(text, Place(header.file, header.index), [f"[{section}]", *lines])
+        put_block(text, Place(header.file, header.row), [f"[{section}]", *lines])
 
 
 def package_folder(config: Config) -> tuple[str, bool]:

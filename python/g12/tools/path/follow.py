@@ -61,7 +61,7 @@ class Followed:
 class Worst(NamedTuple):
     """The largest deviation of a run from the moves at feed, mm."""
 
-    index: int  # of the sample
+    sample: int
     deviation: float
     point: np.ndarray
     nearest: np.ndarray

@@ -61,7 +61,8 @@ def pace_of_path(every: Sequence[int], cutting: Sequence[int], path: Track) -> P
     seconds = sum(path.seconds(index) for index in every)
     feeds = [(path.part_feed(i), i) for i in cutting if path.part_length(i) > LEAST_LENGTH]
     lowest, index = min(feeds, default=(0.0, every[0]))
-    return Pace(lowest, path.end(index), index, seconds, seconds)
+    x, y, z = path.end(index)
+    return Pace(lowest, (x, y, z), index, seconds, seconds)
 
 
 def real_pace(

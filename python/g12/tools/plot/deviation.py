@@ -38,10 +38,10 @@ def draw_window(figure: Figure, corner: tuple[float, float], scene: Scene) -> No
 def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
     real, moves, unit = scene.real, scene.moves, scene.unit
     half = max(WINDOW * worst.deviation, LEAST_WINDOW)
-    before, after = real.points[max(0, worst.index - 1) : worst.index + 2][[0, -1]]
+    before, after = real.points[max(0, worst.sample - 1) : worst.sample + 2][[0, -1]]
     pair = most_telling(worst.point - worst.nearest, after - before)
     origin = worst.nearest[pair]
-    around = moves[max(0, real.move[worst.index] - NEIGHBOURS) :][: 2 * NEIGHBOURS + 1]
+    around = moves[max(0, real.move[worst.sample] - NEIGHBOURS) :][: 2 * NEIGHBOURS + 1]
     programmed = [line[:, pair] - origin for line in paths(scene.path.part, around, half / 500)]
     sampled = _stretch(real.points, worst, half)[:, pair] - origin
     style.draw(axes, programmed, style.PATH, 2.6)
@@ -73,10 +73,10 @@ def most_telling(away: np.ndarray, way: np.ndarray) -> list[int]:
 def _stretch(points: np.ndarray, worst: Worst, half: float) -> np.ndarray:
     """Return the samples in sequence about the worst one, as far as the window shows them."""
     away = np.max(np.abs(points - worst.point), axis=1) > 3 * half
-    before = np.flatnonzero(away[: worst.index])
-    after = np.flatnonzero(away[worst.index :])
+    before = np.flatnonzero(away[: worst.sample])
+    after = np.flatnonzero(away[worst.sample :])
     first = before[-1] if len(before) else 0
-    last = worst.index + after[0] if len(after) else len(points) - 1
+    last = worst.sample + after[0] if len(after) else len(points) - 1
     return points[first : last + 1]
 
 

@@ -299,10 +299,15 @@ def _block(
         (letter, values.get(index, float(value) if is_number(value) else 0.0))
         for index, (letter, value) in enumerate(text.words)
     ]
+    g, m, entries = (
+        tuple(value for letter, value in words if letter == wanted) for wanted in ("G", "M", "")
+    )
     return Block(
         text,
         {letter: value for letter, value in words if letter not in ("G", "M", "")},
-        *(tuple(value for letter, value in words if letter == wanted) for wanted in ("G", "M", "")),
+        g,
+        m,
+        entries,
         opened.state,
         opened.at,
         end,

@@ -165,7 +165,8 @@ class Move(NamedTuple):
         else:
             direction = [b - a for a, b in zip(self.start[:3], self.end[:3])]
         size = math.hypot(*direction)
-        return tuple(value / size if size else 0.0 for value in direction)
+        x, y, z = (value / size if size else 0.0 for value in direction)
+        return x, y, z
 
     def _arc_direction(self, fraction: float) -> list[float]:
         one, two, _ = self._in_plane(self.point(fraction))
@@ -182,14 +183,16 @@ class Move(NamedTuple):
         if self.rotation:
             x, y = _turned(x, y, -self.rotation)
         third = THIRD_AXIS[self.plane]
-        return ((x, y, z) * 2)[third + 1 : third + 4]
+        first, second, last = ((x, y, z) * 2)[third + 1 : third + 4]
+        return first, second, last
 
     def _out_of_plane(self, values: Sequence[float]) -> tuple[float, float, float]:
         """Back from the plane's axes to X, Y, Z."""
         third = THIRD_AXIS[self.plane]
         x, y, z = (tuple(values) * 2)[2 - third : 5 - third]
         x, y = _turned(x, y, self.rotation)
-        return tuple(value + origin for value, origin in zip((x, y, z), self.centre))
+        x0, y0, z0 = self.centre
+        return x + x0, y + y0, z + z0
 
 
 @dataclass(frozen=True)
@@ -229,7 +232,7 @@ def modes(gcodes: Iterable[int], mcodes: Iterable[int], settings: Sequence[float
         tuple(f"M{code}" for code in mcodes if code > 0),
         settings[0],
         settings[1],
-        tuple(settings[2:4]),
+        (settings[2], settings[3]),
     )
 
 

@@ -19,13 +19,15 @@ import shutil
 import signal
 import time
 import traceback
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection
+from typing import Any
 
 MM = 25.4  # the preview reports inches
 FRESH, START = "G12 TRACE SET-UP", "G12 TRACE STARTS HERE"
 EMPTY = (-1, *[0.0] * 12, 0)  # no tool yet
 UNLOADED = (0, *[0.0] * 12, 0)  # after T0 M6
+Position = tuple[float, float, float, float, float, float, float, float, float]  # XYZABCUVW
 NO_OFFSET = (0.0,) * 9
 LINEAR = (0, 1, 2, 6, 7, 8)
 STILL = 1e-8  # mm: of less LinuxCNC makes nothing (CART_FUZZ)
@@ -491,7 +493,7 @@ def is_exact() -> bool:
     return emccanon.GET_EXTERNAL_MOTION_CONTROL_MODE() != CONTINUOUS
 
 
-def in_mm(position) -> tuple:
+def in_mm(position: Sequence[float]) -> Position:
     """Return the preview's X Y Z U V W, inches, in mm; degrees stay."""
     x, y, z, a, b, c, u, v, w = (*position, *NO_OFFSET[len(position) :])
     return (x * MM, y * MM, z * MM, a, b, c, u * MM, v * MM, w * MM)
@@ -541,7 +543,11 @@ def interpret(machine: dict, tools: Tools, request: dict) -> dict:
     error = None
     if result > gcode.MIN_ERROR:
         error = (gcode.strerror(result), canon.lines.of_error() if canon.started else 0)
-    answer = {"moves": canon.moves, "messages": canon.messages, "events": canon.events}
+    answer: dict[str, Any] = {
+        "moves": canon.moves,
+        "messages": canon.messages,
+        "events": canon.events,
+    }
     answer["error"], answer["files"] = error, sorted(canon.files)
     answer["tool_sizes"] = tool_sizes(len(tools))
     return {**answer, "position": canon.position, "seconds": seconds, **left_behind(request)}

@@ -144,7 +144,7 @@ class Phrases:
         if isinstance(group[0].was, str):
             return ", ".join(dict.fromkeys(f"{c.was} → {c.now}" for c in group))
         scale = self._scale(what)
-        values = {told_apart(change.was / scale, change.now / scale) for change in group}
+        values = {told_apart(float(c.was) / scale, float(c.now) / scale) for c in group}
         was, now = next(iter(values))
         most = max((change.by for change in group), key=abs)
         if "feed" in what:
@@ -203,7 +203,8 @@ def _signed(size: str) -> str:
 
 
 def _of_notes(steps: Sequence[Step], indices: tuple[int, ...], word: str) -> str:
-    texts = [steps[index].text for index in indices if not isinstance(steps[index], Move)]
+    found = (steps[index] for index in indices)
+    texts = [step.text for step in found if not isinstance(step, Move)]
     return f"{word}: {', '.join(texts)}" if texts else ""
 
 

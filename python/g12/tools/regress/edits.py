@@ -71,17 +71,17 @@ def edits_of(was: Sequence[Step], now: Sequence[Step], tolerance: Tolerance) -> 
     paired = _paired(was, now, _place, tolerance)
     for before, after, pair in _walk(paired, range(len(was)), range(len(now))):
         found += _gap(was, now, before, after, tolerance)
-        found += _pair(was, now, *pair, tolerance) if pair else []
+        found += _pair(was, now, pair, tolerance) if pair else []
     return found
 
 
-def _paired(was, now, numbers, tolerance: Tolerance) -> list[tuple]:
+def _paired(was, now, numbers, tolerance: Tolerance) -> list[tuple[int, int]]:
     """Return pairs of steps that are about equal in the numbers of their moves."""
     keys = _keys([*was, *now], numbers, tolerance)
     return pairs(keys[: len(was)], keys[len(was) :])
 
 
-def _keys(steps: Sequence[Step], numbers, tolerance: Tolerance) -> list[tuple]:
+def _keys(steps: Sequence[Step], numbers, tolerance: Tolerance) -> list[tuple[int, int]]:
     """Return a key for each step; keys of moves are equal if their numbers are about equal."""
     rows = [numbers(step) for step in steps if isinstance(step, Move)]
     columns = np.array(rows).reshape(-1, 12).T
@@ -140,7 +140,7 @@ def _same_ways(was, now, paired, before, after, tolerance: Tolerance) -> Iterato
             yield from _as_many(was, now, some, others, tolerance)
         else:
             yield Edit(tuple(some), tuple(others))
-        yield from _pair(was, now, *pair, tolerance) if pair else ()
+        yield from _pair(was, now, pair, tolerance) if pair else ()
 
 
 def _are_as_many(was, now, before: range, after: range) -> bool:
@@ -156,14 +156,15 @@ def _as_many(was, now, before: range, after: range, tolerance: Tolerance) -> Ite
     elif notes or other_notes:
         yield Edit(notes, other_notes)
     for i, j in both:
-        yield from _pair(was, now, i, j, tolerance)
+        yield from _pair(was, now, (i, j), tolerance)
 
 
 def _only(steps: Sequence[Step], indices: range, kind: type) -> tuple[int, ...]:
     return tuple(index for index in indices if isinstance(steps[index], kind))
 
 
-def _pair(was, now, i: int, j: int, tolerance: Tolerance) -> Iterator[Edit]:
+def _pair(was, now, pair: tuple[int, int], tolerance: Tolerance) -> Iterator[Edit]:
+    i, j = pair
     found = changes(was[i], now[j], tolerance)
     if found:
         yield Edit((i,), (j,), tuple(found))
@@ -171,8 +172,9 @@ def _pair(was, now, i: int, j: int, tolerance: Tolerance) -> Iterator[Edit]:
 
 def changes(was: Step, now: Step, tolerance: Tolerance) -> list[Change]:
     """Return what is different between two steps of the same kind."""
-    if isinstance(was, Note):
+    if isinstance(was, Note) and isinstance(now, Note):
         return [Change("note", 0.0, was.text, now.text)] if was.text != now.text else []
+    assert isinstance(was, Move) and isinstance(now, Move)
     found = [
         Change(axis, b - a, a, b)
         for axis, a, b, most in zip(AXES, was.end, now.end, tolerance.ends)

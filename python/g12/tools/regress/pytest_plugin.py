@@ -65,8 +65,9 @@ def gcode_regression(
         folder = here / programs_in if programs_in else None
         terms = Terms(tolerance, feed_tolerance)
         try:
-            options = {"programs": folder, "terms": terms}
-            results, notes = check(here / directory, programs, gcode_recorders, **options)
+            results, notes = check(
+                here / directory, programs, gcode_recorders, programs=folder, terms=terms
+            )
         except UsageError as error:
             pytest.fail(str(error), pytrace=False)
         if any(result.verdict != SAME for result in results):

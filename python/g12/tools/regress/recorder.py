@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.filter import opened_program
@@ -150,7 +151,11 @@ class Recorder:
         """Return the recording of a program as text."""
         facts = {"program": f"{name} {hash_of(program.read_bytes())}", **self._facts}
         machine = self._machine
-        options = {"parameters": machine.parameters, "timeout": machine.timeout, "alone": True}
+        options: dict[str, Any] = {
+            "parameters": machine.parameters,
+            "timeout": machine.timeout,
+            "alone": True,
+        }
         try:
             with opened_program(program, self._ini) as opened:
                 trace = trace_in_source(self._tracer.trace(opened.path, **options), opened)

@@ -8,6 +8,7 @@ the last translation of each block holds on every way. A mode can only become un
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
+from typing import Any
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall
@@ -245,5 +246,5 @@ def apply_rules(draft: Draft) -> None:
 
 def start_state(control: Control) -> ModalState:
     """Return the modes that hold when a program begins."""
-    known = {GROUP_OF[code]: code for code in control.start if code in GROUP_OF}
+    known: dict[str, Any] = {GROUP_OF[code]: code for code in control.start if code in GROUP_OF}
     return ModalState(**known)

@@ -23,27 +23,27 @@ CONTINUED = re.compile(r"\\\r?\n?\Z")
 
 
 class IniLine(NamedTuple):
-    """A line of the expanded INI: ``index`` counts from 0 in ``file``, ``text`` has no line end.
+    """A line of the expanded INI: ``row`` counts from 0 in ``file``, ``text`` has no line end.
 
     ``host`` is the index of the INI's own line that brings it: itself or an #INCLUDE.
     """
 
     file: Path
-    index: int
+    row: int
     text: str
     host: int
 
     @property
     def place(self) -> str:
         """File and line number for messages."""
-        return f"{self.file.name}:{self.index + 1}"
+        return f"{self.file.name}:{self.row + 1}"
 
 
 class Place(NamedTuple):
-    """A gap between lines: in front of line ``index`` of ``file``."""
+    """A gap between lines: in front of line ``row`` of ``file``."""
 
     file: Path
-    index: int
+    row: int
 
 
 def lines_with_ends(path: Path) -> list[str]:
@@ -117,7 +117,7 @@ class IniText:
             yield line
             included = included_file(line.text, folder)
             for index, text in enumerate(self.files.get(included, ())):
-                yield IniLine(included, index, text.rstrip("\r\n"), line.index)
+                yield IniLine(included, index, text.rstrip("\r\n"), line.row)
 
     def ini(self) -> Ini:
         """Return the expanded INI, edits included, for looking values up."""
@@ -166,7 +166,7 @@ class IniText:
                 return Place(self.path, self._behind(self.path, host))
         for line in reversed(found):
             if belongs(line.text):
-                return Place(line.file, self._behind(line.file, line.index))
+                return Place(line.file, self._behind(line.file, line.row))
         return None
 
     def _behind(self, file: Path, index: int) -> int:
@@ -185,25 +185,25 @@ class IniText:
         lines = self.files[place.file]
         end = line_end(lines)
         new = [text + end for text in texts]
-        if place.index == len(lines) and lines and not lines[-1].endswith("\n"):
+        if place.row == len(lines) and lines and not lines[-1].endswith("\n"):
             lines[-1] += end
             new[-1] = texts[-1]
-        lines[place.index : place.index] = new
+        lines[place.row : place.row] = new
 
     def put_in_place(self, line: IniLine, text: str, begin: str) -> None:
         """Put an entry between markers in place of a line, which stays there as a comment."""
-        self.insert(Place(line.file, line.index + 1), [NOW + text, text, END])
+        self.insert(Place(line.file, line.row + 1), [NOW + text, text, END])
         self.replace(line, WAS + line.text)
-        self.insert(Place(line.file, line.index), [begin])
+        self.insert(Place(line.file, line.row), [begin])
 
     def replace(self, line: IniLine, text: str) -> None:
         """Put another text in place of a line; its line end stays."""
         lines = self.files[line.file]
-        lines[line.index] = text + lines[line.index][len(line.text) :]
+        lines[line.row] = text + lines[line.row][len(line.text) :]
 
     def append_to_value(self, line: IniLine, text: str) -> None:
         """Append to the value of the entry that begins at ``line``."""
-        index = self._behind(line.file, line.index) - 1
+        index = self._behind(line.file, line.row) - 1
         lines = self.files[line.file]
         body = lines[index].rstrip()
         lines[index] = body + text + lines[index][len(body) :]
@@ -211,8 +211,8 @@ class IniText:
     def remove_from_value(self, line: IniLine, entry: str) -> None:
         """Take an entry out of the list, separated by colons, that begins at ``line``."""
         lines = self.files[line.file]
-        lines[line.index] = re.sub(rf"(=\s*){re.escape(entry)}:", r"\1", lines[line.index], count=1)
-        for index in range(line.index, self._behind(line.file, line.index)):
+        lines[line.row] = re.sub(rf"(=\s*){re.escape(entry)}:", r"\1", lines[line.row], count=1)
+        for index in range(line.row, self._behind(line.file, line.row)):
             lines[index] = re.sub(rf":{re.escape(entry)}(?=[:\s]|$)", "", lines[index])
 
     def blocks(self) -> list[list[IniLine]]:
@@ -244,7 +244,7 @@ class IniText:
     def remove(self, doomed: Sequence[IniLine]) -> None:
         """Take lines out."""
         for file in {line.file for line in doomed}:
-            indices = {line.index for line in doomed if line.file == file}
+            indices = {line.row for line in doomed if line.file == file}
             self.files[file] = without(self.files[file], indices)
 
 

@@ -92,7 +92,7 @@ def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None
     if not version:
         return Config(text, ini, remaps_in(text), version, None, frozenset(), "no LinuxCNC")
     failure = load_failure(ini)
-    python, owned, diameters = None, frozenset(), None
+    python, owned, diameters = None, frozenset[str](), None
     try:
         with Tracer(ini, overrides=NO_REMAPS) as tracer:
             python = ask_python(tracer)

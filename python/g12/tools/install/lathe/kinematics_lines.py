@@ -120,7 +120,7 @@ def wrong_entries(config: Config, text: IniText) -> Iterator[str]:
         for line, _ in text.entries(section, key)[:1]:
             if line.file != text.path:
                 yield f"{line.place}: {key} stands in an included file"
-            elif CONTINUED.search(text.files[line.file][line.index]):
+            elif CONTINUED.search(text.files[line.file][line.row]):
                 yield f"{line.place}: {key} goes on in the next line"
 
 

@@ -11,7 +11,7 @@ import re
 import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from g12.tools.errors import UsageError
 from g12.tools.install.config.features import ROOT
@@ -96,7 +96,8 @@ def read_pins(path: Path) -> Pins:
         entries = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise UsageError(f"{path}: {error}") from None
-    known = {**dict.fromkeys(DRIVE, str), **{key.lower(): (int, float) for key in NUMBERS}}
+    known: dict[str, Any] = dict.fromkeys(DRIVE, str)
+    known |= {key.lower(): (int, float) for key in NUMBERS}
     for key, value in entries.items():
         if key not in known:
             raise UsageError(f"{path}: {key} is none of {', '.join(known)}")

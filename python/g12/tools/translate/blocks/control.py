@@ -19,6 +19,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 CONTROLS = Path(__file__).parents[1] / "controls"
 HOLES = (  # cycles of a lathe
@@ -132,7 +133,7 @@ class Control:
         """Whether X is programmed as a diameter, and U W H are increments."""
         return self.machine == "lathe"
 
-    def value(self, table: str, key: str, default: object = "") -> object:
+    def value(self, table: str, key: str, default: object = "") -> Any:
         """Return a value of one of the tables."""
         return self.tables.get(table, {}).get(key, default)
 
@@ -243,7 +244,7 @@ class _Checked:
                 if not re.fullmatch("[A-Z]{2}", key) or not re.fullmatch("[A-Z]", str(value)):
                     self._refuse(key, f'{key} = "{value}": a word of two letters, and one of one')
 
-    def _value(self, key: str, value: object, kind: object) -> None:
+    def _value(self, key: str, value: Any, kind: Any) -> None:
         if isinstance(kind, tuple):
             if value not in kind:
                 self._refuse(key, f"{key} = {value!r} must be one of {', '.join(kind)}")

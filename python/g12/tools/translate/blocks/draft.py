@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
@@ -85,7 +85,7 @@ class Draft:
         self.unsure: tuple[str, ...] = ()
         self.setting: tuple[str, str] | None = None
 
-    def change(self, **modes: object) -> None:
+    def change(self, **modes: Any) -> None:
         """Carry the state on."""
         self.state = self.state._replace(**modes)
 

@@ -241,8 +241,8 @@ def _statement(line: int, text: str) -> ForeignBlock:
     if statement:
         block = READERS[statement[0]](line, rest[statement.end() :])
     elif NAMED_PROGRAM.match(rest):
-        number = program_number(rest[1:])
-        block = ForeignBlock(line, words=(ForeignWord("O", number),), comments=(rest,))
+        word = ForeignWord("O", program_number(rest[1:]))
+        block = ForeignBlock(line, words=(word,), comments=(rest,))
     elif ASSIGNMENT.match(rest):
         block = _assignment(line, rest)
     else:
@@ -351,7 +351,7 @@ def _words(text: str) -> tuple[ForeignWord, ...]:
 def _word(text: str, at: int) -> tuple[ForeignWord, int]:
     plain = PLAIN_WORD.match(text, at)
     if plain:
-        return _plain_word(plain.groups()), plain.end()
+        return _plain_word((plain[1], plain[2])), plain.end()
     named = NAMED_WORD.match(text, at)
     letter, start = (named[1], named.end()) if named else (text[at], at + 1)
     if text[at : at + 2] in CORNERS:

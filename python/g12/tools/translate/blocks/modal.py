@@ -99,7 +99,7 @@ def merged(one: ModalState, other: ModalState) -> ModalState:
     """Return what is sure when a line is reached in either of two states."""
     if one == other:
         return one
-    state = ModalState(*(a if a == b else UNSURE for a, b in zip(one, other)))
+    state = ModalState._make(a if a == b else UNSURE for a, b in zip(one, other))
     kept, others = dict(one.kept), dict(other.kept)
     same = {
         key: kept.get(key) if kept.get(key) == others.get(key) else UNSURE

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from g12.tools.translate.blocks.control import MEANINGS
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
@@ -25,7 +28,7 @@ def keep_as_comments(draft: Draft) -> None:
 def map_codes(draft: Draft) -> None:
     """Replace every code, keep it, hand it to its rule, or refuse it."""
     part_builders_codes(draft)
-    named = draft.control.tables.get("words", {})
+    named: Mapping[str, Any] = draft.control.tables.get("words", {})
     live = speed_by_p(draft)
     words: list[ForeignWord] = []
     for word in draft.words:

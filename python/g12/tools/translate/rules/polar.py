@@ -7,6 +7,8 @@ it a radius here. Y is C and V is H. A rapid in polar mode is what the control's
 
 from __future__ import annotations
 
+from typing import Any
+
 from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
@@ -251,5 +253,5 @@ def programs_feed(draft: Draft) -> list[str]:
 
 def slides_again(draft: Draft) -> list[str]:
     """Return the words of slides that LinuxCNC has not moved yet (`turning/feed_of_c`)."""
-    held = draft.sure("held", "a slide of LinuxCNC's is behind the program's")
+    held: Any = draft.sure("held", "a slide of LinuxCNC's is behind the program's")
     return [f"{axis}{value_text(known_place(draft.start, axis))}" for axis, _ in held]

@@ -8,6 +8,7 @@ modal: blocks of X, Z, U and W alone repeat them from the same start.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
@@ -85,7 +86,7 @@ def check_turning_modes(draft: Draft) -> None:
         raise NotTranslated("a turning cycle needs the plane of X and Z: write G18 before it")
 
 
-def write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **modes: object) -> None:
+def write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **modes: Any) -> None:
     """Write moves behind the block's other words; they end where the tool stood."""
     state = draft.state
     draft.before += own_feed_ended(draft)
@@ -244,7 +245,7 @@ def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     again = draft.start.turn == meaning and meaning not in draft.meanings
     own = take_end(draft, start)
     taper = take_number(draft, "R")
-    said = draft.sure("pass_words", "the cycle takes what was said before") if again else ()
+    said: Any = draft.sure("pass_words", "the cycle takes what was said before") if again else ()
     words = {**dict(said), **own}
     words.update({} if taper is None else {"R": taper})
     if not {"X", "Z"} <= words.keys():
