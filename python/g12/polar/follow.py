@@ -141,8 +141,10 @@ def _slowness(turning: float, feed: float, limits: FaceLimits) -> float:
     chords are shorter, with the root of the distance, and C is slower.
     """
     even = limits.slide_acceleration / limits.c_acceleration
-    slowest = max(1.0, even * turning) ** 0.75 / (PIECES * max(limits.pieces_speed, LEAST_SPEED))
-    slowed = ((60.0 / feed) ** SOFT + slowest**SOFT) ** (1.0 / SOFT)
+    slowest: float = max(1.0, even * turning) ** 0.75 / (
+        PIECES * max(limits.pieces_speed, LEAST_SPEED)
+    )
+    slowed: float = ((60.0 / feed) ** SOFT + slowest**SOFT) ** (1.0 / SOFT)
     return max(slowed, turning / limits.c_speed)
 
 

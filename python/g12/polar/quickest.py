@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 from g12.compensation.contour import (
     Arc,
+    Element,
     Line,
     end_direction,
     is_move,
@@ -44,7 +45,7 @@ STRAIGHT_ON = radians(5.0)  # a corner of more is taken for a stop
 class OnFace(NamedTuple):
     """A path with the share of the INI's acceleration each element is made with, 0.0 in pieces."""
 
-    path: list
+    path: list[Element]
     stopping: list[bool]
     shares: list[float]
 
@@ -55,7 +56,7 @@ class _Element(NamedTuple):
     ``corner`` tells whether one follows, ``in_pieces`` about how long pieces take, in seconds.
     """
 
-    move: object
+    move: Element
     stop: bool
     length: float = 0.0
     places: Sequence[Demand] = ()
@@ -76,13 +77,13 @@ class _Span(NamedTuple):
         return (self.last - self.first) * self.element.length
 
 
-def quickest(path: list, stopping: list[bool], limits: FaceLimits) -> OnFace:
+def quickest(path: Sequence[Element], stopping: list[bool], limits: FaceLimits) -> OnFace:
     """Return a path, its moves parted, as it is soonest made.
 
     ``stopping`` tells of each element whether it ends in a stop; so does what is returned.
     """
     elements = [_seen(*each, limits) for each in zip(path, stopping, [*path[1:], None])]
-    best, least, chosen = [], 0.0, 0.0
+    best, least, chosen = list[_Span](), 0.0, 0.0
     for share in SHARES:
         spans = _worth_it([span for one in elements for span in _spans(one, limits, share)])
         seconds = _seconds(spans, share * limits.round_acceleration)
@@ -94,11 +95,11 @@ def quickest(path: list, stopping: list[bool], limits: FaceLimits) -> OnFace:
     return OnFace([_made(span) for span in best], stops, _raised(best, limits, chosen))
 
 
-def _seen(move: object, stop: bool, following: object, limits: FaceLimits) -> _Element:
+def _seen(move: Element, stop: bool, following: Element | None, limits: FaceLimits) -> _Element:
     if not is_move(move):
         return _Element(move, stop)
     places, length = demands_of(move, limits), path_length(move)
-    corner = not is_move(following) or not _goes_straight_on(move, following)
+    corner = following is None or not is_move(following) or not _goes_straight_on(move, following)
     return _Element(move, stop, length, places, corner, length * _slowness(places))
 
 
@@ -118,8 +119,10 @@ def _slowness(places: Sequence[Demand]) -> float:
 def _spans(element: _Element, limits: FaceLimits, share: float) -> list[_Span]:
     """Return an element in spans, each at a feed that is followed all along it, if at any."""
     move, places = element.move, element.places
-    if not places or are_able(move, places, limits, share):
-        return [_Span(element, 0.0, 1.0, move.feed if places else 1.0)]
+    if not is_move(move):
+        return [_Span(element, 0.0, 1.0, 1.0)]
+    if are_able(move, places, limits, share):
+        return [_Span(element, 0.0, 1.0, move.feed)]
     levels = [
         _level(CAREFUL * followed(move, place, limits, share / CAREFUL) / move.feed)
         for place in places
@@ -175,19 +178,21 @@ def _joined(run: list[_Span]) -> _Span:
     return run[0]._replace(last=run[-1].last)
 
 
-def _made(span: _Span) -> object:
+def _made(span: _Span) -> Element:
     """Return the element, or the part of it, that a span is."""
     move = span.element.move
+    if not is_move(move):
+        return move
     if (span.first, span.last) != (0.0, 1.0):
         move = part_of_move(move, span.first, span.last)
-    return move._replace(feed=span.feed) if span.feed and span.element.places else move
+    return move._replace(feed=span.feed) if span.feed else move
 
 
 def _raised(spans: list[_Span], limits: FaceLimits, share: float) -> list[float]:
     """Return the shares, of each stretch between two switches the most that is followed."""
     shares = []
     for on_face, run in _stretches(spans):
-        moves = [_made(span) for span in run if span.element.places]
+        moves = [move for move in map(_made, run) if is_move(move)]
         more = (one for one in SHARES if one > share)
         able = (one for one in more if all(is_able(move, limits, one) for move in moves))
         shares += [next(able, share) if on_face else 0.0] * len(run)

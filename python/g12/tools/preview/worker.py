@@ -206,7 +206,7 @@ class Canon:
         self.tip = NO_OFFSET  # in program coordinates
         self.position = self._beside_x(NO_OFFSET)  # in machine coordinates
         self.work = self.g92 = self.length = NO_OFFSET
-        self.shift = NO_OFFSET  # of the tip since the last move, by G43 and G49
+        self.shift: tuple[float, ...] = NO_OFFSET  # of the tip since the last move, by G43 and G49
         self.rotation, self.cos, self.sin = 0.0, 1.0, 0.0
         self.plane = 17
         self.feed = self.program_feed = 0.0

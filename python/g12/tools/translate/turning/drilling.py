@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import ceil
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from g12.tools.translate.blocks.control import HOLES
 from g12.tools.translate.blocks.draft import PARTNERS, Draft, line_as_word
@@ -138,9 +138,10 @@ def drill_hole(draft: Draft, meaning: str) -> None:
     """Write the holes of one block."""
     begins = meaning in draft.meanings
     code = draft.meanings.pop(meaning, None)
-    kept = {}
+    kept: dict[str, Any] = {}
     if draft.state.cycle == meaning:
-        kept = dict(draft.sure("cycle_words", "a drilling cycle takes what was said before"))
+        said: Any = draft.sure("cycle_words", "a drilling cycle takes what was said before")
+        kept = dict(said)
     cycle = lathe_cycle(meaning)
     side = shift_word(draft, kept) if cycle.side is None else cycle.side
     times = holes_in_block(draft)
