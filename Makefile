@@ -29,7 +29,7 @@ help:
 	@echo "make soak MINUTES=10   random blocks, contours, texts, aborts and kills"
 	@echo "make deb    build the Debian package build/linuxcnc-g12_VERSION_all.deb"
 	@echo "make clean  remove what the others made"
-	@echo "RIP=DIR behind demo, test, bench or kinematics: with the LinuxCNC built in DIR"
+	@echo "RIP=DIR after demo, test, bench or kinematics: with the LinuxCNC built in DIR"
 
 setup:
 	@RIP=$(RIP) sh .ci/setup

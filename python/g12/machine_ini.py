@@ -188,7 +188,7 @@ def remap_from_value(value: str) -> Remap:
 def code_number(code: str) -> tuple[str, int]:
     """Return a code's letter and ten times its number, ("", 0) if it is none.
 
-    LinuxCNC adds what stands behind the point as a whole number: G12.10 is 130, which is G13.
+    LinuxCNC adds what stands after the point as a whole number: G12.10 is 130, which is G13.
     """
     match = CODE.match(code)
     if not match:

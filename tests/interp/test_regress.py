@@ -548,7 +548,7 @@ def test_a_damaged_recording_is_named_and_can_be_recorded_again(pocket):
     )
     other = pocket.trace("sub/plain.ngc")
     other.write_text(other.read_text(encoding="utf-8") + "junk\n", encoding="utf-8")
-    assert "something behind the end" in wrong(pocket, "check", "sub/plain.ngc")
+    assert "something after the end" in wrong(pocket, "check", "sub/plain.ngc")
     assert pocket.run("record")[0] == 0
     assert pocket.check()[0] == 0
 

@@ -180,7 +180,7 @@ def test_mdi_is_refused(ready):
     ready.run_text(section("G1 Z-1"))
     ready.mdi("G07.1 C20")
     assert [error.text for error in ready.errors()] == [
-        "G7.1: is not possible in MDI: it needs the lines behind it"
+        "G7.1: is not possible in MDI: it needs the lines after it"
     ]
     ready.mdi("G07.1 C0")
     assert ready.errors() == []

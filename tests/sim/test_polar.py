@@ -333,7 +333,7 @@ def test_mdi_is_refused(lathe):
     lathe.run_text(part())
     lathe.mdi("G12.1")
     assert [error.text for error in lathe.errors()] == [
-        "G12.1: is not possible in MDI: it needs the lines behind it"
+        "G12.1: is not possible in MDI: it needs the lines after it"
     ]
     lathe.mdi("G13.1")
     assert lathe.errors() == []

@@ -152,7 +152,7 @@ def test_what_does_not_move_is_not_in_a_line():
         ("  feed X1 F9", "  arc X1 F9", "line 8: an arc without its centre"),
         ("  feed X1 F9", "<<<<<<< mine", "line 8: neither a line of the program nor its end"),
         ("\nend: M2\n", "", "the last line, end or error, is missing"),
-        ("end: M2\n", "end: M2\n\njunk\n", "line 12: something behind the end"),
+        ("end: M2\n", "end: M2\n\njunk\n", "line 12: something after the end"),
     ],
 )
 def test_a_text_that_was_damaged_is_refused_with_its_line(old, new, problem):

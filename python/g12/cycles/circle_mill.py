@@ -107,7 +107,7 @@ class EventEntries(NamedTuple):
 
 
 class EventCircle(NamedTuple):
-    """The circle as programmed, and on which side of it the tool's centre goes round."""
+    """The circle as programmed, and on which side of it the tool's centre runs."""
 
     x: float
     y: float

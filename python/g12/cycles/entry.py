@@ -49,7 +49,7 @@ class Helix(NamedTuple):
     last: int = 0
 
     def descent(self, height: float) -> Descent:
-        """Return the way down by a height, no steeper than the slope and a whole turn long."""
+        """Return the descent by a height, no steeper than the slope and a whole turn long."""
         if not self.radius or height <= 0.0:
             return Descent()
         rest = 0.5 * self.last
@@ -105,7 +105,7 @@ def way_down(
     cutter: float,
     heights: tuple[float, float],
 ) -> WayDown:
-    """Return the way down in a pocket, or refuse a helix that hardly comes down.
+    """Return the descent in a pocket, or refuse a helix that hardly comes down.
 
     ``first`` is the radius of the first ring of the tool's centre, ``cutter`` the cutter's, and
     ``heights`` are those of the first level and of each further one.

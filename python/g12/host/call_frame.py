@@ -61,7 +61,7 @@ class CallFrame:
 
     @property
     def is_current(self) -> bool:
-        """Tell whether the line taken last is of the handler's own level, not of a sub's."""
+        """Return whether the line taken last is of the handler's own level, not of a sub's."""
         return self.interp.call_level == self.level
 
     def enter(self) -> None:
@@ -79,15 +79,16 @@ class CallFrame:
         self.interp.sequence_number = line
         self.interp.mdi_interrupt = self._interrupted
 
-    def give_up(self, line: int, *, called: bool, behind: int | None) -> None:
-        """Let an error be that of ``line``, and the line behind follow that begins at ``behind``.
+    def give_up(self, line: int, *, called: bool, goes_on: int | None) -> None:
+        """Let an error be that of ``line``, and the program go on at byte ``goes_on``.
 
         `Interp::unwind_call` (rs274ngc_pre.cc) takes both from the frames. What counts is the main
         program's line. In a file that the section calls (``called``), or for a section that is
         itself in another file, it is the line that calls.
         """
         interp, frames = self.interp, self.interp.sub_context
-        frames[self.level - 1].position = frames[self.level].position if behind is None else behind
+        position = frames[self.level].position if goes_on is None else goes_on
+        frames[self.level - 1].position = position
         if called:
             line = frames[self.level].sequence_number
         if frames[0].filename != self.home:
@@ -106,12 +107,12 @@ class CallFrame:
 
         What goes on after the wait is block 0: `Interp::_read` (rs274ngc_pre.cc) reads no new line,
         and `Interp::execute_call` (interp_o_word.cc) resumes the handler, only if it is the call of
-        a remap, at the level where the handler was called. Else milltask crashes. Behind the wait
+        a remap, at the level where the handler was called. Else milltask crashes. After the wait
         the mark must go, or the next line would not be read either.
         (Without it: `test_waiting_for_an_input` in tests/sim/test_polar.py.)
 
         In a sub that MDI has called, `Interp::_execute` marks the wait with ``mdi_interrupt``, to
-        read on in the sub behind it. It would as well behind each block executed here, so the mark
+        read on in the sub after it. It would as well after each block executed here, so the mark
         is put aside until the handler waits again or is done.
         (Without it: `test_in_mdi` in tests/sim/test_shapes.py, with kinematics.)
         """

@@ -34,7 +34,7 @@ NOT_SWITCHED = "the machine did not change its kinematics: is polar_kinematics.h
 
 
 def face_in_force() -> bool:
-    """Tell whether the machine is on the face now."""
+    """Return whether the machine is on the face now."""
     status = linuxcnc.stat()
     status.poll()
     return bool(status.din[FACE_INPUT])
@@ -48,7 +48,7 @@ def modes_found(interp: Interp) -> str:
 
 
 def accelerate(interp: Interp, share: float) -> None:
-    """Have X and Y accelerate with a share of what the INI says, from the next wait on."""
+    """Have X and Y accelerate with a share of the INI, from the next wait on."""
     if not interp.task:
         return
     of_ini = getattr(interp, "g12_accelerations", None)
@@ -79,7 +79,7 @@ def to_axes(interp: Interp) -> Iterator[str]:
 
 
 def has_switched(interp: Interp) -> bool:
-    """Tell behind the wait whether the machine has done it."""
+    """Return, after the wait, whether the machine has done it."""
     return not interp.task or interp.params[INPUT_FOUND] != TIMED_OUT
 
 

@@ -14,7 +14,7 @@ from g12.host import messages
 def loaded_handlers(module: str, names: Iterable[str]) -> dict[str, Callable]:
     """Return the handlers of a module by name.
 
-    If it does not load, the operator is told when LinuxCNC comes up, and each refuses with that.
+    If it does not load, the operator reads why when LinuxCNC comes up, and each refuses with that.
     (An exception here would stop LinuxCNC with an empty message on the screen.)
     """
     try:

@@ -25,9 +25,9 @@ from g12.settings import Settings, settings_from_ini
 
 
 def ini_file() -> str | None:
-    """Return the name of the INI file as LinuxCNC tells it in ``INI_FILE_NAME``.
+    """Return the name of the INI file that LinuxCNC gives in ``INI_FILE_NAME``.
 
-    `rs274 -i` does so behind Python's start, which is when `os.environ` is made.
+    `rs274 -i` does so after Python's start, which is when `os.environ` is made.
     """
     getenv = ctypes.CDLL(None).getenv
     getenv.restype = ctypes.c_char_p

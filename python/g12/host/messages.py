@@ -23,13 +23,13 @@ NO_FILE = ""  # the interpreter keeps no copy of it: a constant lives as long as
 
 @functools.cache  # both halves may have the same to say
 def say_at_start(text: str) -> None:
-    """Tell the operator, when LinuxCNC comes up, what cannot work."""
+    """Report to the operator, when LinuxCNC comes up, what cannot work."""
     print(f"g12: {text}", file=sys.stderr)
     emccanon.CANON_ERROR(f"g12: {text}")
 
 
 def refuse_block(interp: Interp, error: Exception) -> int:
-    """Tell the operator why the block being remapped is not executed; return the error status.
+    """Report to the operator why the block being remapped is not executed; return the error status.
 
     Raising or returning a string would not do: LinuxCNC shows "pycall(...) failed" instead. It
     hands a failed execute over as a SystemError, whose own text stands already.
@@ -58,7 +58,7 @@ def line_of_refusal(interp: Interp, refusal: BlockRefusal) -> int | None:
 
 
 def in_mdi(interp: Interp) -> bool:
-    """Tell whether the block, or what called its sub, was typed in MDI."""
+    """Return whether the block, or what called its sub, was typed in MDI."""
     if not interp.task:
         return False
     status = linuxcnc.stat()
@@ -67,7 +67,7 @@ def in_mdi(interp: Interp) -> bool:
 
 
 def fault_text(error: Exception) -> str:
-    """Return what the operator is told of an exception that is no refusal."""
+    """Return what the operator reads of an exception that is no refusal."""
     return f"g12: a fault of the package, please report it: {type(error).__name__}: {error}"
 
 

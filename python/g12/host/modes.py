@@ -43,7 +43,7 @@ def feed_spindle(interp: Interp) -> int:
 
 
 def diameter_mode(interp: Interp) -> bool:
-    """Tell whether G7 is active (the active codes are those before this block)."""
+    """Return whether G7 is active (the active codes are those before this block)."""
     commanded = interp.blocks[interp.remap_level].g_modes[DIAMETER]
     return (interp.active_g_codes[DIAMETER] if commanded == -1 else commanded) == G7
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The program behind a block being remapped: its lines, read here and parsed by the interpreter.
+"""The program from the block being remapped on: its lines, read here and parsed by the interpreter.
 
 Lines are handed to the interpreter's parser as strings, since it would choke on some of them.
 O-words too: they are told their place in the file, so that loops come back to it. Where they
 lead, the interpreter moves on in its file; it is moved past the lines read here when it has to
-come back to them, from a sub or behind the section.
+come back to them, from a sub or after the section.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class LineOfFile(int):
         return number
 
     def __format__(self, spec: str) -> str:
-        """Return the number and the file, which leaves room for the rule behind it."""
+        """Return the number and the file, which leaves room for the rule after it."""
         return f"{int(self)} of {self.file:.80}"
 
 
@@ -136,7 +136,7 @@ class ProgramLines:
         return lines[line]
 
     def has_letter(self, place: int, letters: str) -> bool:
-        """Tell whether one of the letters is on a line of the section's own file."""
+        """Return whether one of the letters is on a line of the section's own file."""
         own = not isinstance(place, LineOfFile)
         return own and not set(letters).isdisjoint(self.home.lines[place - 1].upper())
 
@@ -178,7 +178,7 @@ class ProgramLines:
         return status
 
     def catch_up(self) -> None:
-        """Make the interpreter read on behind the line taken.
+        """Make the interpreter read on after the line taken.
 
         Nothing but the return from a sub moves its place in a file: so call an empty one, and
         change where it returns to. `Interp::execute_call` (interp_o_word.cc) notes the place in
@@ -198,7 +198,7 @@ class ProgramLines:
         self._in_file = interp.sequence_number = line
 
     def skipping(self) -> bool:
-        """Tell whether the interpreter skips lines: a false if, or on the way to a sub."""
+        """Return whether the interpreter skips lines: a false if, or on the way to a sub."""
         self.interp.read("G1")
         return self.interp.blocks[0].motion_to_be == NO_MOTION
 

@@ -48,13 +48,13 @@ def spindle_c_off(self, **words):
 
 
 def in_section(interp: Interp) -> bool:
-    """Tell whether the block being remapped stands in a section."""
+    """Return whether the block being remapped stands in a section."""
     remaps = (interp.blocks[level].executing_remap for level in range(1, interp.remap_level))
     return any(remap and remap.remap_py in SECTIONS for remap in remaps)
 
 
 def is_c() -> bool:
-    """Tell whether the spindle is C now."""
+    """Return whether the spindle is C now."""
     status = linuxcnc.stat()
     status.poll()
     return bool(status.din[INPUT])

@@ -11,7 +11,7 @@ X turns back or stands, as LinuxCNC takes the angle of X, Y and Z alone: so it i
                * corner
            . ' | ' .            The velocity turns from v1 to v2 in the time t at the even rate
      v1  .     |    .  v2       (v2 - v1) / t. That is a parabola from t / 2 in front of the corner
-       .   . - + - .   .        to t / 2 behind it. It passes the corner at |v2 - v1| t / 8, and
+       .   . - + - .   .        to t / 2 after it. It passes the corner at |v2 - v1| t / 8, and
      .  . '         ' .  .      |v2 - v1| is 2 v sin(d / 2).
 
 A stop costs v / a in time, about as much as the blending.

@@ -34,7 +34,7 @@ class Split(NamedTuple):
 
 
 def keeps_slide(split: Split, least: float) -> bool:
-    """Tell whether a piece of an element turns C and moves the slide by less than the least."""
+    """Return whether a piece of an element turns C and moves the slide by less than the least."""
     slides, angles = split.slides, split.angles
     return any(
         abs(x1 - x0) < least and x1 != x0 and abs(a1 - a0) > LEAST_TURN

@@ -11,7 +11,7 @@ limited by LinuxCNC's blending, which cuts the corners between pieces: where the
 the programmed speed, it cuts by up to 4/3 of the bulge (measured), so the bulge may be 3/2 of the
 deviation, and less where an end of an element is exactly on the path.
 
-An element is cut into parts at its apsides, the points nearest to the pole and farthest from it,
+An element is divided at its apsides, the points nearest to the pole and farthest from it,
 which are ends of pieces: X turns round there, and a piece across would move C alone, or hardly any
 X.
 
@@ -37,7 +37,7 @@ Density = Callable[[float], tuple[float, float]]
 
 
 class TooManyPieces(Exception):
-    """An element would be cut into more than `MOST_PIECES`."""
+    """An element would need more pieces than `MOST_PIECES`."""
 
 
 class Stretch(NamedTuple):

@@ -48,7 +48,7 @@ class SectionPlan(NamedTuple):
 
     ``steps`` holds each :class:`BlockMoves` (on the face moves and switches of its own,
     `g12.polar.face`), and each mark's action, in order. ``place`` is where the machine stands
-    behind them, ``angle`` what its C is to the contour, in radians. ``notes`` are for the operator.
+    after them, ``angle`` what its C is to the contour, in radians. ``notes`` are for the operator.
     """
 
     steps: list[object]
@@ -58,7 +58,7 @@ class SectionPlan(NamedTuple):
 
     @property
     def end(self) -> Start:
-        """Where a contour that goes on behind this one starts."""
+        """Where a contour that goes on after this one starts."""
         return Start(self.place.x, self.angle, self.place.z)
 
 

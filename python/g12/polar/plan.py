@@ -37,7 +37,7 @@ class PolarSettings(NamedTuple):
     least_x: float  # 0.001 mm: no piece with a turn of C changes X by less, other than not at all
     x_acceleration: float  # per second squared
     c_acceleration: float  # degrees per second squared
-    c_speed: float  # degrees per minute, for a turn in place at X0
+    c_speed: float  # degrees per minute, for a rotation at the pole at X0
     pole_refused: bool = False  # POLAR_POLE = refuse
     face: FaceLimits | None = None  # POLAR_KINEMATICS = 1
     beside: float = 0.0  # POLAR_TOOL_OFFSET
@@ -164,7 +164,7 @@ class _SlideAndSpindle(StepMaker):
         self._make_up(path, slide, z, self._settings.least_x)
 
     def _turn(self, move: Line | Arc, angle: float) -> None:
-        """Add a turn in place, the shorter way; of two equal ways the one that unwinds C."""
+        """Add a rotation at the pole, the shorter way; of two equal ways the one that unwinds C."""
         turn = remainder(angle - self.angle, 2 * pi)
         if abs(abs(turn) - pi) < SAME_ANGLE:
             turn = copysign(pi, -self.angle)

@@ -20,7 +20,7 @@ DIRECTIONS = {XY: (X, Y), XZ: (Z, X), YZ: (Y, Z)}
 
 
 class CycleExtent(NamedTuple):
-    """The largest circle that a cycle's tool centre goes round, in program coordinates and units.
+    """The largest circle that a cycle's tool centre follows, in program coordinates and units.
 
     ``heights`` are where else along Z than in the centre it goes.
     """

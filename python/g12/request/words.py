@@ -31,7 +31,7 @@ class Words:
                 raise self.refuse(f"{self.written(letter, value)} is beyond {number(LARGEST)}")
 
     def __contains__(self, letter: str) -> bool:
-        """Tell whether the word is in the block and not yet taken."""
+        """Return whether the word is in the block and not yet taken."""
         return letter in self._left
 
     def refuse(self, rule: str) -> BlockRefusal:
@@ -105,7 +105,7 @@ class Words:
         return round(value)
 
     def has_pair(self, first: str, second: str) -> bool:
-        """Tell whether two words are in the block; refuse one without the other."""
+        """Return whether two words are in the block; refuse one without the other."""
         if (first in self) != (second in self):
             present, absent = (first, second) if first in self else (second, first)
             given = self.written(present, self._left[present])

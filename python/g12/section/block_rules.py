@@ -91,7 +91,7 @@ class SectionBlock(NamedTuple):
 
     @property
     def moves(self) -> bool:
-        """Tell whether the block is a piece of the contour."""
+        """Return whether the block is a piece of the contour."""
         return any(letter in self.words for letter in MOVING_WORDS)
 
 
@@ -195,12 +195,12 @@ def feed_modes(block: SectionBlock) -> set[bool]:
 
 
 def alone(block: SectionBlock, words: str = "") -> bool:
-    """Tell whether the block holds only a motion code, and its ``words``."""
+    """Return whether the block holds only a motion code, and its ``words``."""
     others = [*block.g[:MOTION], *block.g[MOTION + 1 :], *block.m]
     return set(block.words) <= set(words) and max(others) == NO_CODE
 
 
 def m_code_alone(block: SectionBlock, m_code: int) -> bool:
-    """Tell whether the block holds only ``m_code`` and its arguments."""
+    """Return whether the block holds only ``m_code`` and its arguments."""
     codes = [code for code in (*block.g, *block.m) if code != NO_CODE]
     return codes == [m_code] and set(block.words) <= set("PQLE")

@@ -25,11 +25,11 @@ class SectionCodes(NamedTuple):
     word: str = ""
 
     def begins(self, block: SectionBlock) -> bool:
-        """Tell whether a block switches on."""
+        """Return whether a block switches on."""
         return block.g[MOTION] in self.on and not self.ends(block)
 
     def ends(self, block: SectionBlock) -> bool:
-        """Tell whether a block switches off."""
+        """Return whether a block switches off."""
         off = not self.word or block.words.get(self.word) == 0.0
         return off and block.g[MOTION] in self.off
 
@@ -51,7 +51,7 @@ def codes_of_section(code: str, remaps: Collection[Remap], on: str, off: str) ->
 
 
 def codes_with_word(code: str, remaps: Collection[Remap], handler: str, word: str) -> SectionCodes:
-    """Return the codes for a section begun by ``code``, which 0 behind ``word`` ends."""
+    """Return the codes for a section begun by ``code``, which 0 after ``word`` ends."""
     codes = frozenset(map(_number_of, (code, *_codes_with(handler, remaps))))
     return SectionCodes(codes, codes, f"{code} {word}0", _remapped(remaps), word)
 

@@ -33,7 +33,7 @@ PYTHON_LINE = ";py,"  # Interp::read_semicolon (interp_read.cc): at the very sta
 
 
 def plain_line_of(letters: str) -> Callable[[str], object]:
-    """Return what tells a line of nothing but G1 to G3, and numbers behind some letters."""
+    """Return what tells a line of nothing but G1 to G3, and numbers after some letters."""
     either = letters + letters.lower()
     return re.compile(
         rf"(?:[Nn]\d+)?[ \t]*(?:(?:[{either}]{_NUMBER}|[Gg]0?[123](?![\d.]))[ \t]*)+\r?", re.ASCII
@@ -89,12 +89,12 @@ class TextLine(NamedTuple):
 
     @property
     def empty(self) -> bool:
-        """Tell whether the line holds no words."""
+        """Return whether the line holds no words."""
         return not self.text.lstrip("/")
 
     @property
     def deletable(self) -> bool:
-        """Tell whether the line goes out with block delete."""
+        """Return whether the line goes out with block delete."""
         return self.text[:1] == "/"
 
 
@@ -127,12 +127,12 @@ def split_line(raw: str, known: SectionWords) -> TextLine:
 
 
 def _kind(bare: str, control: re.Match[str]) -> str:
-    """Return the kind of an O-word: its keyword stands behind a name, a number or an expression."""
+    """Return the kind of an O-word: its keyword stands after a name, a number or an expression."""
     if control[1]:
         return {"98": "call", "99": "return"}[control[1]]
     name = _NAME.match(bare, control.end())
-    behind = name.end() if name else value_end(bare, control.end())
-    keyword = _KEYWORD.match(bare, behind)
+    after = name.end() if name else value_end(bare, control.end())
+    keyword = _KEYWORD.match(bare, after)
     return (keyword and keyword[0]) or "program"
 
 

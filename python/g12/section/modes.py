@@ -73,7 +73,7 @@ def action_text(block: SectionBlock, line: TextLine) -> str:
 
 
 def stop_text(block: SectionBlock) -> str:
-    """Return the block's M0, M1 or M60, which acts behind its motion; "" if there is none."""
+    """Return the block's M0, M1 or M60, which acts after its motion; "" if there is none."""
     return "" if block.m[M_STOP] == NO_CODE else f"M{block.m[M_STOP]}"
 
 
@@ -83,7 +83,7 @@ def decimal(value: float) -> str:
 
 
 def may_fail(comment: str) -> bool:
-    """Tell whether a comment may stop the program: (ABORT,), (PY,) and their like."""
+    """Return whether a comment may stop the program: (ABORT,), (PY,) and their like."""
     return comment.lstrip().lower().startswith(("abort,", "py"))
 
 

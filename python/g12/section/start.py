@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a section finds where it begins, and how the words behind it are read. Plain data."""
+"""What a section finds where it begins, and how the words after it are read. Plain data."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ class SectionWords(NamedTuple):
 
     ``foreign`` are letters that the parser is not given as they are, and what it is given instead;
     ``relative`` those that are increments of an axis. ``plain`` tells a line that has nothing but
-    numbers behind a move's letters.
+    numbers after a move's letters.
 
     ``planes`` are the G codes of planes that may stand inside. ``plane_name`` and ``centre_name``
     are for messages; ``refused`` are reasons by letter, ``own_block`` is that of a third axis which

@@ -58,7 +58,7 @@ NO_L = -1  # a block's l_number without an L word
 class CycleState:
     """What the package remembers of one interpreter; it lives on the interpreter object.
 
-    ``modes`` are those a cycle found and has to put back, ``feed`` the F that a shape found,
+    ``modes`` are those a cycle found and has to restore, ``feed`` the F that a shape found,
     ``path`` the path control that holes found;
     ``radius_commanded`` tells a D of radius 0 from no D at all, which the interpreter's own last
     compensation radius cannot.
@@ -104,7 +104,7 @@ def words_of_block(interp: Interp) -> Words:
 def code_reading_words(block: Block, words: Words) -> str | None:
     """Return a code of the block that would read a word of the cycle too, or change its tool.
 
-    (The interpreter knows the tool that M6 brings only behind the block.)
+    (The interpreter knows the tool that M6 brings only after the block.)
     """
     g_modes = block.g_modes
     if g_modes[MODAL_0] != NO_CODE:
@@ -250,7 +250,7 @@ def machine_frame(interp: Interp) -> MachineFrame:
 
 
 def per_revolution(interp: Interp) -> bool:
-    """Tell whether feeds are per revolution (G95)."""
+    """Return whether feeds are per revolution (G95)."""
     return interp.feed_mode == PER_REVOLUTION
 
 
@@ -286,7 +286,7 @@ def note_modes(interp: Interp) -> None:
 
 
 def restore_modes(interp: Interp) -> None:
-    """Put back the modes the block found: motion, G90/G91, G90.1/G91.1, G7/G8."""
+    """Restore the modes the block found: motion, G90/G91, G90.1/G91.1, G7/G8."""
     motion, distance, centre, diameter = state_of(interp).modes
     interp.motion_mode = motion
     # a block after the assignment, or the active codes shown would still be the cycle's

@@ -89,10 +89,10 @@ def switch_off(interp: Interp) -> Iterator[int]:
 
 
 def abort(interp: Interp) -> None:
-    """Come back behind an abort: nothing can be waited for, so ask and go on.
+    """Come back after an abort: nothing can be waited for, so ask and go on.
 
     `Interp::read_inputs` (rs274ngc_pre.cc) takes the position that the machine has then when it
-    reads the next line, as behind a tool change: the one that LinuxCNC took is the face's. The
+    reads the next line, as after a tool change: the one that LinuxCNC took is the face's. The
     canonical function asks where M68 could not, with compensation on.
     """
     by_hand = _unlock(interp)
@@ -120,7 +120,7 @@ def _lock(interp: Interp) -> None:
 
 
 def _unlock(interp: Interp) -> ByHand | None:
-    """Undo `_lock`, and a compensation that began behind a G40; return what was locked."""
+    """Undo `_lock`, and a compensation that began after a G40; return what was locked."""
     by_hand, interp.g12_by_hand = getattr(interp, "g12_by_hand", None), None
     if by_hand and not by_hand.ended:
         interp.cutter_comp_side, interp.cutter_comp_radius = COMPENSATION_OFF, by_hand.radius

@@ -61,7 +61,7 @@ def polar_off(self, **words) -> Iterator[int]:
     """End what G12.1 in MDI began: the handler of G13.1 outside a section.
 
     Otherwise it is a safety line and does nothing. With a P word it is LinuxCNC's
-    ON_ABORT_COMMAND, which gets the reason behind it.
+    ON_ABORT_COMMAND, which gets the reason after it.
     """
     try:
         messages.forget_return(self)
@@ -90,7 +90,7 @@ def after_abort(interp: Interp) -> None:
 
 
 def run_by_hand(interp: Interp) -> Iterator[int]:
-    """Switch on in MDI, where nothing behind can be read: it could be an old program's."""
+    """Switch on in MDI, where nothing after it can be read: it could be an old program's."""
     start = start_of_section(interp, 0)
     if not MACHINE.switches_kinematics:
         raise BlockRefusal(start.place.code, NOT_IN_MDI)

@@ -2,7 +2,7 @@
 """G12.4 and G13.4, the first and the last block of the subs of shapes and holes.
 
 G12.4 takes the entries of the call from the sub's named locals, checks the shape as a whole, and
-gives the sub the numbers of its motion; G13.4 puts back the modes that G12.4 found.
+gives the sub the numbers of its motion; G13.4 restores the modes that G12.4 found.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ def hole_machine(
 
 @messages.handler
 def polar_shape_done(self, **words):
-    """Put back the modes that the shape found, F among them: G13.4."""
+    """Restore the modes that the shape found, F among them: G13.4."""
     shape_at_work(self)
     cycle_state.restore_modes(self)
     state = cycle_state.state_of(self)

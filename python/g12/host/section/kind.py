@@ -31,7 +31,7 @@ from g12.section.start import SectionStart
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 TYPED = 1  # call level of a block that stands in no sub
 TURN, REPORTED_TURN = 360.0, 540.0  # a contour that closes and its leads take more than one
-NOT_IN_MDI = "is not possible in MDI: it needs the lines behind it"
+NOT_IN_MDI = "is not possible in MDI: it needs the lines after it"
 
 
 class SectionKind(NamedTuple, Generic[Planning]):
@@ -55,12 +55,12 @@ def check_ini() -> None:
 
 
 def is_typed(interp: Interp) -> bool:
-    """Tell whether the block being remapped was typed in MDI; a sub that MDI calls was not."""
+    """Return whether the block being remapped was typed in MDI; a sub that MDI calls was not."""
     return messages.in_mdi(interp) and interp.call_level == TYPED
 
 
-def program_behind(interp: Interp) -> ProgramLines:
-    """Return the program that goes on behind the block; refuse one whose file is gone."""
+def rest_of_program(interp: Interp) -> ProgramLines:
+    """Return the program that goes on after the block; refuse one whose file is gone."""
     try:
         program = ProgramLines(interp, getattr(interp, "g12_source", None))
     except OSError as problem:
@@ -72,7 +72,7 @@ def program_behind(interp: Interp) -> ProgramLines:
 
 def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
     """Run the section that begins with the block being remapped."""
-    program, running = program_behind(interp), running_file(interp)
+    program, running = rest_of_program(interp), running_file(interp)
     frame, c = CallFrame(interp, program.home.filename), interp.CC_current
     try:
         yield from _section(interp, kind, frame, program).run()
@@ -81,7 +81,7 @@ def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
     except Exception as error:
         line = line_named(error)
         called = program.source is not program.home and not line
-        frame.give_up(line or program.line, called=called, behind=program.next_at_home)
+        frame.give_up(line or program.line, called=called, goes_on=program.next_at_home)
         if isinstance(error, Refusal) and line and program.home.filename != running:
             file = os.path.basename(program.home.filename)
             raise with_line(error, LineOfFile(line, file)) from None

@@ -120,7 +120,7 @@ class PathControl:
 
     @property
     def exact(self) -> bool:
-        """Tell whether blocks end in an exact path or stop."""
+        """Return whether blocks end in an exact path or stop."""
         return self._commanded in EXACT_PATHS
 
     def at_end(self, stop: bool, exact_stop: bool, block_ends: bool) -> None:
@@ -254,7 +254,7 @@ class SectionOutput:
         interp.current_x, interp.CC_current, interp.current_z, _ = pieces[-1]
 
     def _block(self, axes: str, x: float, c: float, z: float, feed: float) -> None:
-        # every digit: X must come back as the number that the moves behind this one have
+        # every digit: X must come back as the number that the moves after this one have
         values = {"X": x * self.x_factor, "C": c, "Z": z, "F": feed}
         self.interp.execute("".join(f"{word}{values[word]:.17f}" for word in (*axes, "F")))
 

@@ -156,7 +156,7 @@ class SectionReader:
         self.set_modes(self._modes_found)
 
     def deletes(self, line: TextLine) -> bool:
-        """Tell whether a line goes out with block delete."""
+        """Return whether a line goes out with block delete."""
         return line.deletable and emccanon.GET_BLOCK_DELETE()
 
     def set_modes(self, modes: SectionModes) -> None:
@@ -173,12 +173,12 @@ class SectionReader:
         interp.current_x, interp.CC_current, interp.current_z = self.programmed
 
     def has_moved(self) -> bool:
-        """Tell whether the interpreter has left the position that it was shown."""
+        """Return whether the interpreter has left the position that it was shown."""
         interp = self.interp
         return (interp.current_x, interp.CC_current, interp.current_z) != self.programmed
 
     def plain_line(self, raw: str) -> None:
-        """Take a line of nothing but numbers behind G1 to G3, F and the words of a move."""
+        """Take a line of nothing but numbers after G1 to G3, F and the words of a move."""
         self.program.parse(raw)
         has_f, f, motion, has_x, x, has_c, c, has_z, z, has_i, i, has_j, j, has_r, r = plain_words(
             self.parsed
@@ -248,7 +248,7 @@ class SectionReader:
         return text
 
     def move(self, line: TextLine, block: SectionBlock) -> None:
-        """Add the block's motion and compensation, and keep the stop behind it."""
+        """Add the block's motion and compensation, and keep the stop after it."""
         if line.exact_stop:
             self.exact_lines.add(self.program.line)
         if block.moves:

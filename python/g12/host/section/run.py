@@ -3,7 +3,7 @@
 
 The handler of G12.1 or G7.1 goes on reading the program itself (`ProgramLines`). The interpreter
 parses every line and obeys O-words at once; what the other blocks do is collected
-(`SectionReader`). Behind the code that switches off the contour is planned (`g12.polar.plan`,
+(`SectionReader`). After the code that switches off the contour is planned (`g12.polar.plan`,
 `g12.cylinder.plan`) and handed over (`SectionOutput`).
 """
 
@@ -227,7 +227,7 @@ class Section:
     # Motion.
 
     def _wait_for_input(self, text: str) -> Iterator[int]:
-        """Obey M66: all before it has to happen before the lines behind it can be read."""
+        """Obey M66: all before it has to happen before the lines after it can be read."""
         self.reader.contour.wait(line=self.program.place)
         planned = yield from self._emit()
         yield from self.frame.execute_and_wait(text)

@@ -57,7 +57,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
 
 
 def stands_alone(block: Block, words: str = "") -> bool:
-    """Tell whether a block holds only its code, and those words."""
+    """Return whether a block holds only its code, and those words."""
     others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
     return alone(block_of(block), words) and not others
 

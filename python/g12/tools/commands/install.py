@@ -50,7 +50,7 @@ def command_parser() -> Parser:
 
 
 def ini_and_features(ini: Path | None, words: Sequence[str]) -> tuple[Path | None, list[str]]:
-    """Return the INI, which may stand behind the features, and the features, each once."""
+    """Return the INI, which may stand after the features, and the features, each once."""
     if not ini and len(words) > 1 and words[-1].lower() not in features.NAMES:
         *words, last = words
         ini = Path(last)

@@ -84,7 +84,7 @@ def flushed(name: str, arguments: list[str]) -> int:
 
 
 def nobody_reads() -> bool:
-    """Tell whether whoever read the standard output has closed it, as ``| head`` does."""
+    """Return whether whoever read the standard output has closed it, as ``| head`` does."""
     output = select.poll()
     output.register(sys.stdout, 0)
     return bool(output.poll(0))

@@ -44,7 +44,7 @@ def shown_or_failed(sample: Sample, job: Future, output: Path) -> tuple[str, boo
 
 
 def is_sound(proof: Proof) -> bool:
-    """Tell whether every circle and contour came out right.
+    """Return whether every circle and contour came out right.
 
     The manuals leave material in some and have rapids through what was left: that is told.
     """

@@ -38,7 +38,7 @@ PACKAGE = Path(__file__).resolve().parents[3]  # the directory that holds the pa
 MARGIN = 10.0  # s that an answer may take beyond the timeout asked for
 NS_PER_S = 1e9
 LOG_LINES = 60
-FAREWELL = "LinuxCNC terminated with an error"  # behind it only where to read the same
+FAREWELL = "LinuxCNC terminated with an error"  # after it only where to read the same
 SHUTTING_DOWN = ("Shutting down", "Note: Using POSIX")
 
 SCREEN_NAME = "g12-recording-screen"

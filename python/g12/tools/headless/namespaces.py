@@ -138,7 +138,7 @@ def lock_file() -> IO:
 
 @functools.cache
 def has_namespaces() -> bool:
-    """Tell whether this system allows namespaces, and the user if it does not."""
+    """Return whether this system allows namespaces, and the user if it does not."""
     nothing = {"command": ["true"], "environment": {}, "copies": {}, "covers": {}, "scratch": ""}
     with (
         tempfile.TemporaryFile("w+", encoding="utf-8") as log,

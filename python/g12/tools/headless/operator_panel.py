@@ -162,7 +162,7 @@ class Panel:
 
     @staticmethod
     def is_idle(stat) -> bool:
-        """Tell whether the interpreter is done and the axes stand."""
+        """Return whether the interpreter is done and the axes stand."""
         done = stat.interp_state == linuxcnc.INTERP_IDLE and not stat.queue
         return done and stat.inpos and stat.exec_state in (linuxcnc.EXEC_DONE, linuxcnc.EXEC_ERROR)
 

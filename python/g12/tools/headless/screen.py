@@ -3,7 +3,7 @@
 """The screen of a machine without one: ``[DISPLAY] DISPLAY`` of the headless INIs.
 
 Switches the machine on, homes it, runs one program to its end and leaves, whereupon LinuxCNC
-shuts down.  The program is the one named behind the INI on LinuxCNC's command line, or else
+shuts down.  The program is the one named after the INI on LinuxCNC's command line, or else
 ``[DISPLAY] OPEN_FILE``; with neither it only homes.  A program stop (M0, M1) is passed over.
 The exit code, LinuxCNC's too, is 0 if the program came to its end and 1 if not.
 """
@@ -59,7 +59,7 @@ def run_to_end(panel: Panel, program: OpenedProgram | None) -> bool:
 
 
 def main(arguments: list[str]) -> int:
-    """Run as LinuxCNC calls its screen: ``-ini INI`` and what the user named behind the INI."""
+    """Run as LinuxCNC calls its screen: ``-ini INI`` and what the user named after the INI."""
     parser = argparse.ArgumentParser(description="The screen of a machine without one.")
     parser.add_argument("-ini", required=True)
     parser.add_argument("program", nargs="*")

@@ -149,7 +149,7 @@ def bring_copy_up_to_date(copy: Path) -> list[str]:
 
 
 def out_of_date(copy: Path) -> bool:
-    """Tell whether a copy lacks files of this package; from inside itself it cannot be mended."""
+    """Return whether a copy lacks files of this package; from inside itself it cannot be mended."""
     if not copy.exists() or not copy.samefile(features.ROOT):
         return bool(package_copy.stale(copy))
     for name in package_copy.missing(copy):
@@ -159,5 +159,5 @@ def out_of_date(copy: Path) -> bool:
 
 
 def is_marked(path: Path) -> bool:
-    """Tell whether a file has lines of an earlier installation, and so a kept old version."""
+    """Return whether a file has lines of an earlier installation, and so a kept old version."""
     return b"by g12 install" in path.read_bytes() or b">>> g12 install" in path.read_bytes()

@@ -57,12 +57,12 @@ def digest_of(path: Path) -> str:
 
 
 def is_package(folder: Path) -> bool:
-    """Tell whether a folder holds the package, copied by whomever."""
+    """Return whether a folder holds the package, copied by whomever."""
     return (folder / "python" / "g12" / "__init__.py").is_file() and (folder / "ngc").is_dir()
 
 
 def is_copy(folder: Path) -> bool:
-    """Tell whether a folder is a copy that `install` made."""
+    """Return whether a folder is a copy that `install` made."""
     return (folder / MANIFEST).is_file()
 
 
@@ -105,7 +105,7 @@ def missing(folder: Path) -> list[str]:
 
 
 def is_lost(path: Path, value: str) -> bool:
-    """Tell whether a file is gone, or empty though its digest was another's."""
+    """Return whether a file is gone, or empty though its digest was another's."""
     found = digest_of(path)
     return not found or found == digest(b"") != value
 

@@ -83,7 +83,7 @@ def with_lines(path: Path, new: Sequence[str]) -> bytes:
 
 
 def marked(path: Path, statement: str) -> bool:
-    """Tell whether an earlier installation put a statement into a module."""
+    """Return whether an earlier installation put a statement into a module."""
     return any(line.rstrip().endswith(statement + MARK) for line in lines_with_ends(path))
 
 
@@ -348,13 +348,13 @@ def own_modules(config: Config, wanted: Sequence[str]) -> list[tuple[Path, str, 
 
 
 def is_package_module(path: Path) -> bool:
-    """Tell whether a module is the package's own toplevel.py or remap.py."""
+    """Return whether a module is the package's own toplevel.py or remap.py."""
     own = features.ROOT / "python" / path.name
     return own.is_file() and own.read_bytes() == path.read_bytes()
 
 
 def is_ours(module: str | None) -> bool:
-    """Tell whether a function's module belongs to the package."""
+    """Return whether a function's module belongs to the package."""
     return (module or "").split(".")[0] == "g12"
 
 

@@ -133,7 +133,7 @@ def keys_standing_in(block: list[IniLine]) -> set[str]:
 
 
 def is_by_install(line: IniLine) -> bool:
-    """Tell whether a line between the markers is one that `install` puts there."""
+    """Return whether a line between the markers is one that `install` puts there."""
     key, value = key_and_value(line.text)
     if OWN_FILTER.fullmatch(line.text) or forms.OWN_LINE.fullmatch(line.text):
         return True
@@ -161,7 +161,7 @@ def take_out_path(text: IniText, entry: str, shared: bool) -> None:
 
 
 def still_installed(text: IniText) -> bool:
-    """Tell whether another INI of the folder has the package by `install`."""
+    """Return whether another INI of the folder has the package by `install`."""
     for other in other_inis(text):
         other.files.update({file: text.files[file] for file in text.files if file in other.files})
         if other.blocks() or any(line.file not in text.files for line in names_copy(other)):

@@ -571,7 +571,7 @@ def findings_of(config: Config) -> list[ConfigFinding]:
 def function_missing(config: Config) -> str:
     """Return what LinuxCNC says of a REMAP line whose function is missing, empty if none is.
 
-    The preview of 2.9.9 does not tell: it goes on without that line and all behind it.
+    The preview of 2.9.9 does not tell: it goes on without that line and all after it.
     """
     python = config.python
     if not python or python.error:

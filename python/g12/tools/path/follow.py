@@ -122,7 +122,7 @@ def _programmed(
 
 
 def is_plain_arc(move: Move) -> bool:
-    """Tell whether a move is an arc of one radius in its plane."""
+    """Return whether a move is an arc of one radius in its plane."""
     if move.kind != "arc":
         return False
     ends = (np.array([move.start[:3], move.end[:3]]) - move.centre) @ plane_axes(move).T
@@ -204,7 +204,7 @@ def windows_of(path: Track, moves: Sequence[Move], lines: np.ndarray) -> Windows
 def _segments(path: np.ndarray, points: np.ndarray, within: np.ndarray) -> np.ndarray:
     """Return the index of the segment of the path that each point is on, never going back.
 
-    The nearest place is looked for only as far ahead as the tool can have come, and not behind
+    The nearest place is looked for only as far ahead as the tool can have come, and not back
     where it was: a path may cross, repeat or retrace itself, but the tool cannot jump along it.
     """
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])

@@ -221,7 +221,7 @@ def disc(centre: Sequence[float], radius: float, chord_error: float = CHORD_ERRO
 
 
 def is_sideways(move: Move) -> bool:
-    """Tell whether a move goes anywhere but along the tool's axis Z."""
+    """Return whether a move goes anywhere but along the tool's axis Z."""
     if move.kind == "arc":
         return True
     return any(abs(move.end[axis] - move.start[axis]) > 1e-6 for axis in (X, Y, C))

@@ -21,7 +21,7 @@ from g12.tools.preview.moves import LINEAR, Move, Trace
 
 UNLIMITED = math.inf
 STILL = 1e-8  # mm or degrees: of less LinuxCNC makes nothing (CART_FUZZ)
-DWELL = "dwell "  # an event, and the seconds behind it
+DWELL = "dwell "  # an event, and the seconds after it
 
 
 @dataclass(frozen=True)

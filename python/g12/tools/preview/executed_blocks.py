@@ -100,7 +100,7 @@ Wanted = Callable[[Text], bool]
 
 
 def is_number(text: str) -> bool:
-    """Tell whether a word's value is a plain number."""
+    """Return whether a word's value is a plain number."""
     return bool(re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)", text))
 
 
@@ -238,7 +238,7 @@ def after(text: Text, skip: int = 0) -> Iterator[str]:
 
 
 def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
-    """Return the blocks that a trace tells of, each behind those executed inside it."""
+    """Return the blocks that a trace tells of, each after those executed inside it."""
     found: list[Block] = []
     opened: list[_Opened] = []
     told: list[Event] = []
@@ -271,7 +271,7 @@ def state_told(values: Sequence[float]) -> dict[str, float]:
 
 
 class _Opened(NamedTuple):
-    """A block that has begun: where in the moves, with which state, behind how many events."""
+    """A block that has begun: where in the moves, with which state, after how many events."""
 
     text: Text
     at: int

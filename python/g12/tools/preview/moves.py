@@ -199,7 +199,7 @@ class Move(NamedTuple):
 class Trace:
     """What one program did.
 
-    ``error`` is None for a program that ran to its end.  ``modes`` is the state behind the last
+    ``error`` is None for a program that ran to its end.  ``modes`` is the state after the last
     block that succeeded, M2 included; ``state`` the interpreter's variables themselves, after
     the refused block if there was one (motion_mode, plane, feed_rate …, program units).
     ``printed`` is the text of ``(print, …)`` and of Python, ``position`` where the last move

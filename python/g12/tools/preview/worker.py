@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The process behind ``trace.Tracer``: LinuxCNC's preview interpreter on a pipe.
+"""The process of ``trace.Tracer``: LinuxCNC's preview interpreter on a pipe.
 
 It stands alone, outside the package, because the machine's INI decides which copy of ``g12``
 the interpreter imports.  A request is a dict with ``program``, ``setup``, ``parameter_file`` and
@@ -47,7 +47,7 @@ STATE = (
 )  # fmt: skip
 SPINDLE_MODE = 13  # place of G96, G97 in the active G codes
 OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)}  # from where on
-OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number behind is always the same
+OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number after them is always the same
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 BY_MACHINE = (280, 300, 530)
 FEED_DECIMALS = 12
@@ -178,7 +178,7 @@ class Lines:
         return line + 1
 
     def _calls(self, line: int, sub: str) -> bool:
-        """Tell whether a line calls a numbered sub by M98, or may, with an expression."""
+        """Return whether a line calls a numbered sub by M98, or may, with an expression."""
         text = COMMENT.sub(b"", b"".join(self._lines[line - 1 : line])).upper()
         number = re.search(rb"P(\d+)", text)
         return bool(M98.search(text)) and (not number or int(number[1]) == int(sub))
@@ -481,13 +481,13 @@ def conditions(state) -> tuple:
 
 
 def goes_by_machine() -> bool:
-    """Tell whether a block that moves names a place of the machine: G53, G28, G30."""
+    """Return whether a block that moves names a place of the machine: G53, G28, G30."""
     this = interpreter_object()
     return this.blocks[this.remap_level].g_modes[0] in BY_MACHINE
 
 
 def is_exact() -> bool:
-    """Tell whether moves end in an exact path or stop (G61, G61.1)."""
+    """Return whether moves end in an exact path or stop (G61, G61.1)."""
     import emccanon
 
     return emccanon.GET_EXTERNAL_MOTION_CONTROL_MODE() != CONTINUOUS
@@ -550,11 +550,11 @@ def interpret(machine: dict, tools: Tools, request: dict) -> dict:
     }
     answer["error"], answer["files"] = error, sorted(canon.files)
     answer["tool_sizes"] = tool_sizes(len(tools))
-    return {**answer, "position": canon.position, "seconds": seconds, **left_behind(request)}
+    return {**answer, "position": canon.position, "seconds": seconds, **state_after(request)}
 
 
-def left_behind(request: dict) -> dict:
-    """Return the interpreter's state behind the program."""
+def state_after(request: dict) -> dict:
+    """Return the interpreter's state after the program."""
     this = interpreter_object()
     names = set(this.params.globals()) - set(request.get("known_globals", ()))
     return {

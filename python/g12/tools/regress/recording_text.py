@@ -186,7 +186,7 @@ def _changed(before: Sequence[str], after: Sequence[str]) -> list[str]:
 
 
 def turns_only(move: Move) -> bool:
-    """Tell whether only rotary axes move, at a feed in degrees."""
+    """Return whether only rotary axes move, at a feed in degrees."""
     ends = zip(move.start, move.end, LINEAR)
     return move.kind != "arc" and not any(linear and a != b for a, b, linear in ends)
 
@@ -289,10 +289,10 @@ def read_recording(text: str) -> Recording:
 
 
 def _require_end(lines: Iterator[tuple[int, str]]) -> None:
-    """Raise TraceTextError if there is anything behind the last line."""
+    """Raise TraceTextError if there is anything after the last line."""
     for number_of_line, line in lines:
         if line:
-            raise TraceTextError(f"line {number_of_line}: something behind the end")
+            raise TraceTextError(f"line {number_of_line}: something after the end")
 
 
 def _step(reader: RecordingReader, block: int, line: str, number_of_line: int) -> Step:

@@ -102,7 +102,7 @@ def model_of(remap: Remap) -> tuple[str, Remap] | None:
 
 
 def is_misspelt(remap: Remap, model: Remap) -> bool:
-    """Tell whether a REMAP line of the same code names nothing but what a line names, misspelt."""
+    """Return whether a REMAP line of the same code names only what a line names, misspelt."""
     names = own_names(remap) if remap.number == model.number else ()
     close = [get_close_matches(name, own_names(model), cutoff=CLOSE) for name in names]
     return bool(close) and all(close)

@@ -62,17 +62,17 @@ def line_end(lines: Sequence[str]) -> str:
 
 
 def is_entry(text: str) -> bool:
-    """Tell whether a line says anything: neither blank nor a comment."""
+    """Return whether a line says anything: neither blank nor a comment."""
     return bool(text.strip()) and text.lstrip()[0] not in "#;"
 
 
 def belongs(text: str) -> bool:
-    """Tell whether a line belongs to the section in front of it; comments may not."""
+    """Return whether a line belongs to the section in front of it; comments may not."""
     return is_entry(text) or text.startswith(END)
 
 
 def opens_section(text: str, section: str) -> bool:
-    """Tell whether LinuxCNC takes the line for the header of that section."""
+    """Return whether LinuxCNC takes the line for the header of that section."""
     return text.lstrip().startswith(f"[{section}]")
 
 
@@ -143,7 +143,7 @@ class IniText:
         return [(lines[entry.row], entry.value) for entry in found if entry.key == key]
 
     def end_of_section(self, section: str) -> Place | None:
-        """Return the place behind the section's last entry, in the INI itself if that can be.
+        """Return the place after the section's last entry, in the INI itself if that can be.
 
         For RS274NGC that is here in front of the empty line::
 
@@ -163,14 +163,14 @@ class IniText:
         for host, line in reversed(last_inside.items()):
             included = line.file != self.path
             if line == last_of[host] and (included or belongs(line.text)):
-                return Place(self.path, self._behind(self.path, host))
+                return Place(self.path, self._after(self.path, host))
         for line in reversed(found):
             if belongs(line.text):
-                return Place(line.file, self._behind(line.file, line.row))
+                return Place(line.file, self._after(line.file, line.row))
         return None
 
-    def _behind(self, file: Path, index: int) -> int:
-        """Index behind the line at ``index`` and its continuation lines."""
+    def _after(self, file: Path, index: int) -> int:
+        """Index after the line at ``index`` and its continuation lines."""
         lines = self.files[file]
         while CONTINUED.search(lines[index]) and index + 1 < len(lines):
             index += 1
@@ -203,7 +203,7 @@ class IniText:
 
     def append_to_value(self, line: IniLine, text: str) -> None:
         """Append to the value of the entry that begins at ``line``."""
-        index = self._behind(line.file, line.row) - 1
+        index = self._after(line.file, line.row) - 1
         lines = self.files[line.file]
         body = lines[index].rstrip()
         lines[index] = body + text + lines[index][len(body) :]
@@ -212,7 +212,7 @@ class IniText:
         """Take an entry out of the list, separated by colons, that begins at ``line``."""
         lines = self.files[line.file]
         lines[line.row] = re.sub(rf"(=\s*){re.escape(entry)}:", r"\1", lines[line.row], count=1)
-        for index in range(line.row, self._behind(line.file, line.row)):
+        for index in range(line.row, self._after(line.file, line.row)):
             lines[index] = re.sub(rf":{re.escape(entry)}(?=[:\s]|$)", "", lines[index])
 
     def blocks(self) -> list[list[IniLine]]:

@@ -104,7 +104,7 @@ def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None
 
 
 def is_owned(tracer: Tracer, code: str) -> bool:
-    """Tell whether LinuxCNC itself has a meaning for a code; REMAP lines must be out of the way.
+    """Return whether LinuxCNC itself has a meaning for a code; REMAP lines must be out of the way.
 
     Its text about an unknown M code, unlike that about a G code, ends with the code.
     """

@@ -142,7 +142,7 @@ def wrong_hal(config: Config) -> Iterator[str]:
 
 
 def every_hal_line(config: Config) -> list[HalLine]:
-    """Return the lines of all HAL files, those for behind the screen's start included."""
+    """Return the lines of all HAL files, those for after the screen's start included."""
     later = [folder_from_ini(config.ini, name) for name in config.ini.all("HAL", "POSTGUI_HALFILE")]
     files = [*hal_files(config), *map(hal_lines, later)]
     commands = (HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD"))
@@ -153,10 +153,10 @@ def in_place(config: Config) -> Iterator[tuple[str, str, str]]:
     """Yield section, key and new value of the entries that change."""
     letters = joints(config)
     axes = coordinates_of(config.ini.get)
-    behind = axes.index("X") + 1
+    after_x = axes.index("X") + 1
     values = limits(config)
     yield "KINS", "KINEMATICS", f"{FACE_KINEMATICS} coordinates={letters}"
-    yield "TRAJ", "COORDINATES", " ".join(f"{axes[:behind]}Y{axes[behind:]}")
+    yield "TRAJ", "COORDINATES", " ".join(f"{axes[:after_x]}Y{axes[after_x:]}")
     yield "AXIS_X", "MIN_LIMIT", values["MIN_LIMIT"]
     yield "AXIS_X", "MAX_ACCELERATION", values["MAX_ACCELERATION"]
     if config.ini.get("G12", "POLAR_KINEMATICS"):

@@ -56,23 +56,23 @@ def module_file(name: str) -> Path | None:
 
 
 def module_installed(name: str) -> bool:
-    """Tell whether the LinuxCNC on this computer finds a realtime module."""
+    """Return whether the LinuxCNC on this computer finds a realtime module."""
     return module_file(name) is not None
 
 
 def module_has(text: str) -> bool:
-    """Tell whether the installed kinematics hold a text; where none are, it is not their fault."""
+    """Return whether the installed kinematics hold a text, or none are installed."""
     file = module_file(FACE_KINEMATICS)
     return file is None or text.encode() in file.read_bytes()
 
 
 def wanted(config: Config) -> bool:
-    """Tell whether a config asks for the face's kinematics."""
+    """Return whether a config asks for the face's kinematics."""
     return uses_them(config) or bool(face_joints(config.ini.get))
 
 
 def uses_them(config: Config) -> bool:
-    """Tell whether G12.1 is to move X and Y; a wrong setting is another rule's finding."""
+    """Return whether G12.1 is to move X and Y; a wrong setting is another rule's finding."""
     try:
         return settings_from_lines(config.ini.lines).polar_kinematics == "1"
     except Refusal:
@@ -192,7 +192,7 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
         yield problem(
             "kinematics-hal",
             f"no HALFILE of [HAL] connects {FACE_KINEMATICS}: it would never leave X, Z and C",
-            f"add HALFILE = …/{OWN_HAL} behind the file that loads motion",
+            f"add HALFILE = …/{OWN_HAL} after the file that loads motion",
         )
         return
     loading = [number for number, lines in enumerate(files) if names(lines, "motmod", "EMCMOT")]
@@ -200,7 +200,7 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
         yield problem(
             "kinematics-hal",
             f"the HALFILE with {FACE_KINEMATICS} stands in front of the one that loads motion",
-            "move its HALFILE line behind that one",
+            "move its HALFILE line after that one",
         )
     others = [line for number, lines in enumerate(files) if number not in guards for line in lines]
     yield from hal_in_the_way(others)
@@ -258,7 +258,7 @@ def hal_lines(path: Path) -> list[HalLine]:
 
 
 def names(lines: list[HalLine], *words: str) -> bool:
-    """Tell whether a HAL file has one of some words."""
+    """Return whether a HAL file has one of some words."""
     return any(word in line.text for line in lines for word in words)
 
 
@@ -275,7 +275,7 @@ def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
             "tool-offset",
             f"[G12] POLAR_TOOL_OFFSET = {wanted_offset:g}, but {OFFSET} is {found:g}: "
             "G12.1 is refused",
-            f"HALFILE = …/{OFFSET_HAL} behind the file that loads motion, and nothing else for it",
+            f"HALFILE = …/{OFFSET_HAL} after the file that loads motion, and nothing else for it",
         )
     elif wanted_offset and not module_has(OFFSET.removeprefix("polar-xzc")):
         yield problem(
@@ -296,7 +296,7 @@ def told_offset(text: str, wanted_offset: float) -> float | None:
 
 
 def all_hal(config: Config) -> list[HalLine]:
-    """Return the lines of all HAL files, and those of HALCMD behind them."""
+    """Return the lines of all HAL files, and those of HALCMD after them."""
     lines = [line for lines in hal_files(config) for line in lines]
     return [*lines, *(HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD"))]
 

@@ -23,7 +23,7 @@ def geometry_for(axes: str) -> str:
 
 
 def turns_with_c(geometry: str) -> bool:
-    """Tell whether a GEOMETRY turns the picture by C before it moves along X."""
+    """Return whether a GEOMETRY turns the picture by C before it moves along X."""
     letters = geometry.upper().replace("-", "")
     return "C" in letters and letters.find("C") < letters.find("X")
 
@@ -71,7 +71,7 @@ def never_set_g28(config: Config) -> Iterator[ConfigFinding]:
 
 
 def is_set(value: str) -> bool:
-    """Tell whether a parameter's value in the var file is a position other than 0."""
+    """Return whether a parameter's value in the var file is a position other than 0."""
     try:
         return float(value) != 0.0
     except ValueError:

@@ -214,7 +214,7 @@ def not_connected(config: Config) -> Iterator[ConfigFinding]:
         yield problem(
             "spindle-c-hal",
             "no HALFILE of [HAL] lets the spindle become C: its code would wait in vain",
-            f"add HALFILE = …/{OWN_HAL} behind the files that wire the spindle",
+            f"add HALFILE = …/{OWN_HAL} after the files that wire the spindle",
         )
     lines = every_hal_line(config)
     text = "\n".join(line.text for line in other_lines(config))
@@ -317,7 +317,7 @@ def other_lines(config: Config) -> list[HalLine]:
 
 
 def after_own(config: Config) -> list[HalLine]:
-    """Return the lines behind those of spindle_c.hal."""
+    """Return the lines after those of spindle_c.hal."""
     lines = every_hal_line(config)
     own = [number for number, line in enumerate(lines) if CONNECTS in line.text]
     last = max((n for n, line in enumerate(lines) if line.place.startswith("spindle_c.hal:")),
