@@ -9,9 +9,7 @@ import pytest
 from g12.tools import units
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
-from g12.tools.verify.as_json import as_json
-from g12.tools.verify.findings import pocket_notes
-from g12.tools.verify.pocket import judge_pocket
+from g12.tools.verify.measures import as_json
 from g12.tools.verify.proof import prove
 from g12.tools.verify.report import as_text
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
@@ -627,9 +625,10 @@ def far(tmp_path, *head, centre=490, stored=None):
     program = tmp_path / "program.ngc"
     lines = [*MM, *head, f"G0 X{centre} Y0 Z1", "G12 I20 Z-1 D4", "M2", ""]
     program.write_text("\n".join(lines))
-    (facts,) = prove(program, machine).pockets
-    found = [finding.text() for finding in judge_pocket(facts, 0.005)]
-    return found, list(pocket_notes(facts))
+    judged = prove(program, machine).judged
+    travel = [each for each in judged if each.code.startswith("travel")]
+    found = [each.text() for each in travel if each.is_finding]
+    return found, [each.text() for each in travel if each.is_note]
 
 
 def test_a_pocket_beyond_the_travel_is_noted_without_a_work_offset(tmp_path):

@@ -22,11 +22,9 @@ from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import heading, scene_of
 from g12.tools.plot.unrolled import unrolled
 from g12.tools.units import MM, UNITS, clock, plain
-from g12.tools.verify.in_material import MaterialFacts
-from g12.tools.verify.proof import subject_of
-from g12.tools.verify.reading.circles import Cutter
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.seen import Seen, StandingRings, WrongCutter
+from g12.tools.verify.seen import Seen
+from g12.tools.verify.subject import subject_of
 from support.made_moves import Hand, samples_of
 
 FAST = [line for axis in "XYZ" for line in (f"[AXIS_{axis}]", "MAX_VELOCITY = 1e12")]
@@ -230,17 +228,21 @@ def test_a_rapid_through_material_is_in_the_legend():
     path = np.array([[60.0, 0, -4], [90, 0, -4]])
     hit = Finding("rapid-through", 1, {"path": path, "at": path[0], "to": path[1]}, path[0])
     assert not any("material" in e.get_label() for e in plan_view.motion_entries(shown))
-    shown = replace(shown, seen=Seen(MaterialFacts((hit,))))
+    shown = replace(shown, seen=Seen((hit,)))
     assert any("through material" in e.get_label() for e in plan_view.motion_entries(shown))
 
 
-def test_what_stands_and_another_cutter_than_d_are_in_the_legend_and_the_view():
-    area = Point(50, 0).buffer(30).difference(Point(50, 0).buffer(20))
-    ring = StandingRings(1, area, (50.0, 0.0), -4.0)
-    wrong = WrongCutter(1, (50.0, 0.0), Cutter(10.0, 4, 5.0, 6))
-    shown = replace(scene(pocket()), seen=Seen(MaterialFacts(), (ring,), (wrong,)))
+def uncut(centre):
+    """Return that a ring stands about a centre."""
+    ring = Point(centre).buffer(30).difference(Point(centre).buffer(20))
+    values = {"area": ring.area, "shape": ring, "floor": -4.0}
+    return Finding("uncut", 1, values, (*centre, -4.0))
+
+
+def test_what_stands_is_in_the_legend_and_the_view():
+    shown = replace(scene(pocket()), seen=Seen((uncut((50.0, 0.0)),)))
     told = [entry.get_label() for entry in plan_view.warning_entries(shown)]
-    assert told == ["material left standing", "T4 is not D6 (⌀ 20)"]
+    assert told == ["material left standing"]
     low, high = plan_view.bounds_of(shown, [])
     assert low[0] < 20 and high[0] > 80 and low[1] < -30
 
@@ -253,8 +255,7 @@ def test_a_finding_with_a_place_has_a_sign():
 
 
 def test_what_stands_is_cut_through_the_pockets_middle_in_the_side_view():
-    shape = Point(50, 7).buffer(30).difference(Point(50, 7).buffer(20))
-    boxes = cut_through(StandingRings(1, shape, (50.0, 7.0), -4.0), 0.0)
+    boxes = cut_through(uncut((50.0, 7.0)), 0.0)
     assert [part.bounds for part in boxes.geoms] == [
         pytest.approx((20, -4, 30, 0)),
         pytest.approx((70, -4, 80, 0)),

@@ -18,8 +18,7 @@ from g12.tools.preview.executed_blocks import Block
 from g12.tools.units import UNITS
 from g12.tools.verify.expected.circle_mill import EventPlace, event_of
 from g12.tools.verify.expected.haas import HaasWords
-from g12.tools.verify.findings import pocket_notes
-from g12.tools.verify.pocket import judge_pocket, measure_pocket
+from g12.tools.verify.pocket import measure_pocket
 from g12.tools.verify.reading.circles import Cutter, Source, Target, Wall
 from g12.tools.verify.workpiece import Program, assumed_workpiece
 from support.made_moves import LIMITS, Hand, samples_of
@@ -60,14 +59,13 @@ def measure(moves, wanted, real_shift=None):
         path = track(MILL, moves, LIMITS)
         real = follow(path, moves, samples_of(path, 8000, shift=real_shift), 1.0)
     block = Block(None, {}, (), (), (), {}, 1, len(moves))
-    piece = assumed_workpiece(
-        Program(moves, MILL, [(block, wanted)], [], {1: 2 * wanted.cutter.loaded})
-    )
+    loaded = {1: 2 * wanted.cutter.loaded}
+    piece = assumed_workpiece(Program(moves, MILL, [(block, wanted)], [], loaded, real))
     return measure_pocket(block, wanted, moves, piece.material, TOLERANCE, pace, real)
 
 
 def codes(moves, wanted, **options):
-    return [found.code for found in judge_pocket(measure(moves, wanted, **options), TOLERANCE)]
+    return [found.code for found in measure(moves, wanted, **options).judged]
 
 
 def event(**entries):
@@ -82,7 +80,7 @@ def event(**entries):
 def test_a_good_pocket_has_no_findings():
     wanted = target()
     facts = measure(made(wanted), wanted)
-    assert list(judge_pocket(facts, TOLERANCE)) == []
+    assert facts.judged == ()
     assert facts.reached == pytest.approx(20) and facts.deviation < 1e-9 and facts.left == 0
     assert facts.rings == pytest.approx((3, 8, 13, 17)) and facts.turns == (-1,)
 
@@ -102,7 +100,7 @@ def test_another_plane_is_measured_the_same():
 def test_a_small_ring_is_round(ring):
     wanted = target((ring,))
     facts = measure(made(wanted), wanted)
-    assert facts.left == 0 and list(judge_pocket(facts, TOLERANCE)) == []
+    assert facts.left == 0 and facts.judged == ()
 
 
 CHANGES = {
@@ -169,7 +167,7 @@ def test_too_wide_a_stepover_leaves_the_area_between_the_rings(step):
     facts = measure(made(wanted), wanted)
     between = math.pi * ((outer - 3 - 2 * TOLERANCE) ** 2 - (inner + 3) ** 2)
     assert 0.6 * between < facts.left < between  # links and leads cut some of it
-    assert [found.code for found in judge_pocket(facts, TOLERANCE)] == ["uncut"]
+    assert [found.code for found in facts.judged] == ["uncut"]
 
 
 def test_real_motion_beside_the_path_is_found():
@@ -177,7 +175,7 @@ def test_real_motion_beside_the_path_is_found():
     facts = measure(made(wanted), wanted, real_shift=0.03)
     assert facts.off_rings == pytest.approx(0.03, rel=0.01)
     assert facts.too_far == pytest.approx(0.03, rel=0.02) and facts.left > 0.5
-    found = [finding.code for finding in judge_pocket(facts, TOLERANCE)]
+    found = [finding.code for finding in facts.judged]
     assert found == ["uncut", "wall-run"]
     assert codes(made(wanted), wanted, real_shift=0.0) == []
 
@@ -195,18 +193,18 @@ def test_a_pocket_above_the_tool_cuts_air():
     [
         (3.0, [], ""),
         (1.5, ["wrong-cutter", "uncut"], ""),
-        (3.1, [], "T1 (⌀ 6.2) is not D2 (⌀ 6): measured with the cutter of D2"),
+        (3.1, [], "the loaded tool T1 (⌀ 6.2) is not D2 (⌀ 6): measured with the cutter of D2"),
         (0.0, [], "T1 has no diameter: measured with the diameter of D2"),
     ],
 )
 def test_a_tool_that_is_not_that_of_d(loaded, found, noted):
     wanted = replace(target(), cutter=Cutter(3.0, 1, loaded, 2))
     facts = measure(made(wanted), wanted)
-    assert [finding.code for finding in judge_pocket(facts, TOLERANCE)] == found
-    assert noted in " | ".join(pocket_notes(facts)) and bool(noted) == any(pocket_notes(facts))
+    assert [each.code for each in facts.judged if each.is_finding] == found
+    assert [each.text() for each in facts.judged if each.is_note] == [noted] * bool(noted)
 
 
 def test_sizes_of_tools_are_reported_in_the_units_asked_for():
     wanted = replace(target(), cutter=Cutter(3.0, 1, 12.7, 2))
-    found = next(judge_pocket(measure(made(wanted), wanted), TOLERANCE))
+    found = measure(made(wanted), wanted).judged[0]
     assert "T1 (⌀ 1)" in found.text(UNITS["inch"])

@@ -43,14 +43,13 @@ class Pockets(Hand):
     def in_material(self, real=None):
         path = track(MILL, self.moves, LIMITS)
         run = follow(path, self.moves, real(path), 1.0) if real else None
-        program = Program(self.moves, MILL, self.asked, [], DIAMETERS, run)
-        return program, assumed_workpiece(program)
+        return assumed_workpiece(Program(self.moves, MILL, self.asked, [], DIAMETERS, run))
 
     def found(self, real=None):
-        return list(rapids_through(*self.in_material(real)))
+        return list(rapids_through(self.in_material(real)))
 
     def assumed(self):
-        return [note.text() for note in assumptions(self.in_material()[1])]
+        return [note.text() for note in assumptions(self.in_material())]
 
 
 def start(z=2.0):
@@ -150,7 +149,7 @@ def test_a_run_that_rounds_the_corner_of_a_retract_is_found_if_it_cuts(rings, cu
 
 def test_a_bore_counts_down_to_where_it_was_looked_at_and_no_deeper():
     program = Pockets().rapid(x=50, z=2).rapid(z=-3).mill([17], depth=-3.0, bore=16.0)
-    material = program.in_material()[1].material
+    material = program.in_material().material
     hole = disc((50, 0), 15)
     low, high = (material.standing(hole, level).area for level in (-5.0, -1.0))
     assert low == pytest.approx(hole.area - np.pi * 9, rel=1e-2) and high == 0

@@ -15,7 +15,6 @@ from g12.tools.verify.compare.section_plane import plane_of
 from g12.tools.verify.expected.compensated import contour_path
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.sections.section import measure_section
-from g12.tools.verify.sections.section_findings import judge_section
 from g12.tools.verify.sections.section_motion import SectionAxes
 from support.made_moves import LIMITS, Hand, samples_of
 
@@ -85,7 +84,7 @@ def measure(hand, elements, real=None, **options):
 
 def codes(facts):
     """Return the codes of what is found and noted, each with its line; a hand knows no stops."""
-    found = ((each.code, each.line) for each in judge_section(facts))
+    found = ((each.code, each.line) for each in facts.judged)
     return [each for each in found if not each[0].startswith("blended")]
 
 
@@ -172,7 +171,7 @@ def test_coarse_pieces_stray_from_the_contour():
 
 def test_an_unread_contour_is_no_proof():
     facts = measure(cut(around(TOOL)), square(-1), doubt="line 3 calls o<x>")
-    (found,) = judge_section(facts)
+    (found,) = facts.judged
     assert found.text() == "the contour cannot be read from the words: line 3 calls o<x>"
 
 
@@ -199,7 +198,7 @@ def test_c_turns_in_place_by_half_a_turn_at_the_most(turn, far):
 
 def test_a_place_is_told_as_the_program_writes_it():
     facts = measure(cut(around(TOOL + 0.02)), square(-1), diameters=True)
-    (found,) = [each for each in judge_section(facts) if each.code == "path-off"]
+    (found,) = [each for each in facts.judged if each.code == "path-off"]
     assert found.text().endswith("at X52.04 C0.05 Z0")
     assert found.place == pytest.approx((26.02, 0.05, 0))
 
@@ -251,7 +250,8 @@ def test_another_feed_is_told_with_its_line(feed, off):
     facts = blockwise((-1.0, -1.0), feed)
     assert codes(facts) == [("feed", 1)] * off
     if off:
-        assert (facts.feed_off.made, facts.feed_off.asked) == pytest.approx((feed, 600.0))
+        found = next(each.values for each in facts.judged if each.code == "feed")
+        assert (found["made"], found["expected"]) == pytest.approx((feed, 600.0))
 
 
 @pytest.mark.parametrize(("x", "turn"), [(2.0, 72.0), (3.0, 60.0)])
@@ -284,4 +284,4 @@ def test_chords_round_a_small_arc_last_as_long_as_it_does(share, found):
         hand.moves[index] = move._replace(feed=feed)
     arc = Element(2, start, places[-1], 0, False, 0.0, centre, math.pi, 600.0)
     facts = measure(hand, [arc], x=start.real)
-    assert bool(facts.feed_off) is found
+    assert ("feed", 2) in codes(facts) if found else codes(facts) == []

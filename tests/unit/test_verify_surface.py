@@ -17,7 +17,6 @@ from g12.tools.path.surface import Surface
 from g12.tools.path.track import Limits, track
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.sections.section import measure_section
-from g12.tools.verify.sections.section_findings import judge_section
 from g12.tools.verify.sections.section_motion import SectionAxes
 from support.made_moves import LIMITS, Hand, samples_of
 
@@ -81,7 +80,7 @@ def findings(hand, elements):
 
 def texts(facts):
     """Return what is found and noted: codes, lines and sentences."""
-    return " | ".join(f"{each.code} {each.line}: {each.text()}" for each in judge_section(facts))
+    return " | ".join(f"{each.code} {each.line}: {each.text()}" for each in facts.judged)
 
 
 def groove(feed=600.0, c=0.0, z=0.0):
@@ -130,8 +129,7 @@ def test_c_too_fast_for_its_limit_is_found():
 
 
 def test_a_corner_that_is_blended_is_found():
-    facts = facts_of(groove(), ASKED)
-    assert "blended-corner" in [off.code for off in facts.motion_off]
+    assert "blended-corner" in texts(facts_of(groove(), ASKED))
 
 
 def arc(count, radius=10.0):

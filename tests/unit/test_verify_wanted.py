@@ -274,7 +274,7 @@ def test_a_radius_that_is_found_to_be_0_begins_no_section():
     empty, full = (replace(block(f"G7.1 C{radius}"), text=text) for radius in (0, 20))
     run = [empty, block("G1 Z-5"), block("G7.1 C0"), full, block("G7.1 C0")]
     assert [group[0] for group in section_reading.grouped(run, CODES)] == [full]
-    assert len(section_reading.paths_behind(run, CODES)) == 1
+    assert len(section_reading.paths_of(run, CODES)) == 1
 
 
 @pytest.mark.parametrize(("handler", "turn"), [("g12", -1), ("g13", 1)])
@@ -351,7 +351,7 @@ def test_x_is_halved_in_diameter_mode_only():
 def test_an_arc_by_its_centre():
     (arc,) = drawn("G3 X0 C20 I-20")
     assert arc.centre == 0 and arc.sweep == pytest.approx(math.pi / 2)
-    assert abs(arc.point(0.5) - cmath.rect(20, math.pi / 4)) < 1e-12
+    assert abs(arc.curve.point(0.5) - cmath.rect(20, math.pi / 4)) < 1e-12
 
 
 def test_a_full_circle_has_no_end():
@@ -391,13 +391,6 @@ def test_saved_modes_come_back(save):
 
 def test_modes_are_saved_before_the_blocks_own_codes_act():
     assert drawn("M70 G91 X-1", "M72 X7")[-1].end == 7
-
-
-def test_left_is_left():
-    (line,) = drawn("C5")
-    assert line.normal(0.3) == -1
-    (arc,) = drawn("G3 X0 C20 I-20")
-    assert arc.normal(0) == pytest.approx(-1)  # towards the centre
 
 
 @pytest.mark.parametrize(

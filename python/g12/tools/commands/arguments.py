@@ -17,6 +17,7 @@ from g12.tools.machine.files import existing
 from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini, IniError, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
+from g12.tools.material.stock import StockText
 from g12.tools.path.samples import Samples
 from g12.tools.path.track import program_seconds
 from g12.tools.preview.moves import Trace
@@ -24,7 +25,6 @@ from g12.tools.preview.tracer import TraceFailure
 from g12.tools.progress import working
 from g12.tools.system import CALL
 from g12.tools.units import UNITS, clock
-from g12.tools.verify.proof import StockText
 
 GOOD, FINDING, USAGE = 0, 1, 2
 VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"

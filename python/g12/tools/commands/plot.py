@@ -39,9 +39,9 @@ from g12.tools.preview.moves import message_lines
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import trace
 from g12.tools.progress import working
-from g12.tools.verify.proof import subject_of
 from g12.tools.verify.result.sentences import NOTES
 from g12.tools.verify.seen import seen_in
+from g12.tools.verify.subject import subject_of
 
 EXAMPLES = """\
 examples:

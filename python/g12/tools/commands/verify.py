@@ -32,7 +32,7 @@ from g12.tools.machine.ini import Ini
 from g12.tools.preview.ended import traced
 from g12.tools.progress import working
 from g12.tools.units import unit_of
-from g12.tools.verify.as_json import as_json
+from g12.tools.verify.measures import as_json
 from g12.tools.verify.proof import Proof, prove
 from g12.tools.verify.report import as_text
 

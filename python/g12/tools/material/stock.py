@@ -60,6 +60,13 @@ class Stock(NamedTuple):
         return whole.difference(unary_union([Polygon(), *bores]))
 
 
+class StockText(NamedTuple):
+    """A stock as a user says it, and the name of the unit of its numbers; None: the program's."""
+
+    text: str
+    units: str | None = None
+
+
 def read_stock(text: str, turning: bool, unit: Unit) -> Stock:
     """Return the stock that a text says, for a machine that turns its part or a mill.
 

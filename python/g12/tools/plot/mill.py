@@ -35,7 +35,7 @@ from g12.tools.plot.plan_view import (
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
-from g12.tools.verify.seen import StandingRings
+from g12.tools.verify.result.finding import Finding
 
 PAGE = 11.0  # wide
 WIDE = 2.0  # plans wider than this times their height have the legend below
@@ -121,21 +121,22 @@ def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float)
     for order, level in enumerate(reversed(levels)):
         shape = scaled(removed_at(level, max(top, level.z)), 1 / unit, 1 / unit, origin=(0, 0))
         style.fill(axes, shape, *floor(scene, level), 1 + order / 100)
-    for ring in scene.seen.rings:
-        style.hatch(axes, scaled(cut_through(ring, top), 1 / unit, 1 / unit, origin=(0, 0)))
+    for each in scene.seen.uncut:
+        style.hatch(axes, scaled(cut_through(each, top), 1 / unit, 1 / unit, origin=(0, 0)))
     draw_heights(axes, scene, levels)
     draw_paths(axes, scene, levels, SIDE)
     true = abs(stretch - 1) < 0.02
     style.caption(axes, "Side" if true else f"Side, heights drawn {plain(stretch, 2)} : 1")
 
 
-def cut_through(ring: StandingRings, top: float) -> BaseGeometry:
+def cut_through(uncut: Finding, top: float) -> BaseGeometry:
     """Return what stands in a pocket as a cut along X through the pocket's middle shows it."""
-    low, high = ring.shape.bounds[::2]
-    middle = ring.centre[1]
-    across = ring.shape.intersection(LineString([(low, middle), (high, middle)]))
+    shape, low_z = uncut.values["shape"], uncut.values["floor"]
+    low, high = shape.bounds[::2]
+    middle = uncut.place[1]
+    across = shape.intersection(LineString([(low, middle), (high, middle)]))
     lines = [line.bounds for line in getattr(across, "geoms", [across]) if line.length]
-    return unary_union([box(line[0], ring.floor, line[2], top) for line in lines])
+    return unary_union([box(line[0], low_z, line[2], top) for line in lines])
 
 
 def block_from_the_side(scene: Scene) -> BaseGeometry | None:

@@ -119,7 +119,10 @@ def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.nda
     shown = at_feed(scene) or range(len(scene.moves))
     points = np.concatenate([scene.path.points[scene.path.vertices(index)] for index in shown])
     low, high = points.min(axis=0), points.max(axis=0)
-    for shape in (*(level.area for level in levels), *(ring.shape for ring in scene.seen.rings)):
+    for shape in (
+        *(level.area for level in levels),
+        *(each.values["shape"] for each in scene.seen.uncut),
+    ):
         bounds = shape.bounds
         low[:2], high[:2] = np.minimum(low[:2], bounds[:2]), np.maximum(high[:2], bounds[2:])
     high[2] = max(high[2], top_of(scene))
@@ -171,12 +174,10 @@ def draw_plan(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
 
 
 def draw_warnings(axes: Axes, scene: Scene) -> None:
-    """Hatch what stands in pockets, put signs at findings and where the cutter is not D's."""
+    """Hatch what stands in pockets, put signs at the other findings."""
     unit = scene.unit.mm
-    for ring in scene.seen.rings:
-        style.hatch(axes, scaled(ring.shape, 1 / unit, 1 / unit, origin=(0, 0)))
-    for wrong in scene.seen.cutters:
-        style.draw_sign(axes, np.array(wrong.centre) / unit)
+    for each in scene.seen.uncut:
+        style.hatch(axes, scaled(each.values["shape"], 1 / unit, 1 / unit, origin=(0, 0)))
     for finding in scene.seen.signs:
         style.draw_sign(axes, np.array(finding.place[:2]) / unit)
 
@@ -222,7 +223,7 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
         style.draw(axes, lines, shade, 2.6 if wide else width_for(scene))
     if scene.real is not None:
         draw_real(axes, scene, pair)
-    hit = [found.values["path"][:, pair] / unit for found in scene.seen.material.rapids]
+    hit = [found.values["path"][:, pair] / unit for found in scene.seen.rapids]
     style.draw(axes, hit, style.CRASH, 3.0, 3.8)
 
 
@@ -359,13 +360,10 @@ def motion_entries(scene: Scene) -> list:
 def warning_entries(scene: Scene) -> list:
     """Return the legend's entries of what there is to warn of."""
     listed = []
-    if scene.seen.material.rapids:
+    if scene.seen.rapids:
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
-    if scene.seen.rings:
+    if scene.seen.uncut:
         listed.append(style.standing("material left standing"))
-    for cutter in dict.fromkeys(wrong.cutter for wrong in scene.seen.cutters):
-        size = scene.unit.text(2 * cutter.radius)
-        listed.append(style.sign(f"T{cutter.tool} is not D{cutter.named} (⌀ {size})"))
     lines = dict.fromkeys(finding.line for finding in scene.seen.signs)
     if lines:
         listed.append(style.sign(f"finding in line {', '.join(map(str, lines))}"))

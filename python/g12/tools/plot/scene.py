@@ -16,8 +16,9 @@ from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import COMMENT
 from g12.tools.preview.moves import Move
 from g12.tools.units import Unit, clock, plain, unit_of
-from g12.tools.verify.proof import Proof, Subject
+from g12.tools.verify.proof import Proof
 from g12.tools.verify.seen import Seen, seen_of_proof
+from g12.tools.verify.subject import Subject
 
 HEAD_COMMENT = re.compile(r"\s*(?:[Oo]\d+\s*)?(?:\(([^()]*)\)|;\s*([^;]+))[\s;]*")
 MOTION = re.compile(r"[xyzabcuvw]", re.IGNORECASE)

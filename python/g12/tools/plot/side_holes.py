@@ -10,7 +10,7 @@ from g12.tools.path.part import C, X, Z
 from g12.tools.preview.executed_blocks import executed
 from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
-from g12.tools.verify.proof import Subject
+from g12.tools.verify.subject import Subject
 
 SUB, DIAMETER = "side_holes", 4  # the entry of the call
 

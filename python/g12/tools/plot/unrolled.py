@@ -29,7 +29,6 @@ from g12.tools.plot.plan_view import (
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.preview.moves import Move
-from g12.tools.verify.in_material import MaterialFacts
 
 WIDTH, MOST, LEAST = 11.9, 4.6, 0.9  # of the page; the surface's height
 LEFT, RIGHT, TOP = style.MARGIN, 0.35, 1.3
@@ -119,7 +118,9 @@ def unrolled(scene: Scene) -> Scene:
     vertices = Vertices(positions, np.zeros_like(positions), path.move, path.time)
     flat = Track(Flat(turning=False), moves, lambda: vertices, path.seconds)
     trace = replace(subject.trace, moves=moves)
-    shown = scene.seen._replace(material=MaterialFacts())
+    radius = scene.seen.surface
+    own = (each for each in scene.seen.findings if each.values.get("surface", radius) == radius)
+    shown = scene.seen._replace(findings=tuple(own))
     return replace(scene, subject=replace(subject, trace=trace, drawn=flat), seen=shown)
 
 

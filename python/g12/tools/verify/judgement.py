@@ -3,48 +3,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 from g12.tools.path.part import Z, part_of
 from g12.tools.path.track import limits_of
-from g12.tools.preview.executed_blocks import Text
+from g12.tools.preview.executed_blocks import read_lines
 from g12.tools.preview.moves import Move
-from g12.tools.units import MM, Unit
-from g12.tools.verify.compare.drilled import judge_holes
-from g12.tools.verify.findings import (
-    pocket_notes,
-)
+from g12.tools.verify.asked import Asked
 from g12.tools.verify.mistakes.cut import ProgramCut
 from g12.tools.verify.mistakes.feeds import judge_feeds, judge_native_c
 from g12.tools.verify.mistakes.levels import judge_levels
 from g12.tools.verify.mistakes.modes import judge_return_levels
 from g12.tools.verify.mistakes.spindle import judge_spindle
 from g12.tools.verify.mistakes.tool_length import judge_tool_length
-from g12.tools.verify.pocket import judge_pocket
+from g12.tools.verify.mistakes.travel import judge_travel
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.sections.section_findings import judge_section
-from g12.tools.verify.shape import judge_shape
-
-if TYPE_CHECKING:
-    from g12.tools.verify.proof import Asked, Proof
-
-Judge = Callable[..., Iterator[str]]
-Texts = Callable[[Unit], list[str]]
+from g12.tools.verify.subject import Subject
 
 
-def judged(proof: Proof, texts: Sequence[Text]) -> list[Finding]:
-    """Return the findings and notes of a proof; ``texts`` are the program's lines."""
-    subject = proof.subject
-    trace, ini = subject.trace, subject.ini
-    moves = trace.moves
-    cuts = list(cuts_of(proof.asked, moves))
-    known = {index for some in proof.asked.moves for index in some}
+def judged(
+    subject: Subject,
+    asked: Asked,
+    there: Sequence[Move] | None,
+    unseen: Sequence[tuple[int, str]],
+    said: Sequence[Finding],
+) -> list[Finding]:
+    """Return what was ``said`` of cuts and material with what the rules find.
+
+    ``there`` are the moves on the machine, None if they are not known.
+    """
+    trace, ini, known = subject.trace, subject.ini, asked.moves
+    moves, cuts = trace.moves, list(cuts_of(asked, trace.moves))
     found = [
-        *said_of_cuts(proof),
-        *proof.material.judged,
+        *said,
+        *(Finding("not-measured", line, {"code": code}) for line, code in unseen),
+        *(Finding("not-cut", line, {"code": code}) for line, code in asked.still),
+        *judge_travel(asked.circles, there, trace.events, ini),
         *judge_tool_length(cuts, moves, trace.lengths, trace.events),
         *judge_feeds(cuts, moves, limits_of(ini)),
         *judge_spindle(cuts, trace.events, ini),
@@ -52,6 +47,7 @@ def judged(proof: Proof, texts: Sequence[Text]) -> list[Finding]:
         *not_judged(moves, known),
     ]
     if part_of(ini).turning:
+        texts = read_lines(subject.program)
         found += [
             *judge_native_c(moves, known, subject.path),
             *judge_return_levels(texts, Codes(ini)),
@@ -81,38 +77,3 @@ def not_judged(moves: Sequence[Move], known: set[int]) -> Iterator[Finding]:
     lines = list(dict.fromkeys(others))
     if lines:
         yield Finding("plain-moves", lines[0], {"count": len(lines), "last": lines[-1]})
-
-
-def said_of_cuts(proof: Proof) -> Iterator[Finding]:
-    """Yield what the judges of the kinds of cuts say."""
-    tolerances = proof.tolerances
-    for facts in proof.pockets:
-        source = facts.target.source
-        yield from judge_pocket(facts, tolerances.pocket)
-        yield from noted(source.line, source.file, pocket_notes, facts)
-    for facts in proof.sections:
-        yield from judge_section(facts)
-    for facts in proof.shapes:
-        yield from judge_shape(facts)
-    for facts in proof.holes:
-        yield from judge_holes(facts)
-    for line, code in proof.unseen:
-        yield Finding("not-measured", line, {"code": code})
-    for line, code in proof.still:
-        yield Finding("not-cut", line, {"code": code})
-
-
-def noted(line: int, file: str, judge: Judge, facts: object) -> Iterator[Finding]:
-    """Yield the notes of a judge that gives sentences."""
-    yield from in_words("noted", line, file, lambda unit: list(judge(facts, unit)))
-
-
-def in_words(code: str, line: int, file: str, texts: Texts) -> Iterator[Finding]:
-    """Yield a finding for each sentence that a function of the unit returns."""
-    for at in range(len(texts(MM))):
-        yield Finding(code, line, {"text": partial(nth, texts, at)}, file=file)
-
-
-def nth(texts: Texts, at: int, unit: Unit) -> str:
-    """Return one of the sentences that a function of the unit returns."""
-    return texts(unit)[at]

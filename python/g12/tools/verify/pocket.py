@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from shapely.geometry.base import BaseGeometry
 
 from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.material.material import Material
@@ -20,20 +21,14 @@ from g12.tools.path.part import arc_points, plane_axes
 from g12.tools.path.slowest import Pace
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.axis_limits import Overrun
 from g12.tools.verify.compare.path import FEED, OFF, Laid, Made, lay
 from g12.tools.verify.compare.path_judge import judge_path
-from g12.tools.verify.compare.state import (
-    StateDifference,
-    extra_events,
-    judge_state,
-    state_differences,
-)
-from g12.tools.verify.pocket_area import is_wrong_tool, uncut, uncut_in_run
+from g12.tools.verify.compare.state import extra_events, judge_state, state_differences
+from g12.tools.verify.pocket_area import is_wrong_tool, uncut
 from g12.tools.verify.reading.circles import Target, Wall
 from g12.tools.verify.reading.codes import EVENT
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.result.tolerances import AREA, RUN
+from g12.tools.verify.result.tolerances import AREA, RUN, SIZE
 
 STILL = 1e-8  # mm: a shorter move is none
 SAME_AXIS = 1e-9
@@ -52,25 +47,27 @@ class HelixFacts(NamedTuple):
 class PocketFacts:
     """What was measured of one pocket.
 
-    ``laid`` is what was made along the expected toolpath; ``left`` the area that the words leave
-    at the deepest level, or that a run does. ``reached`` is the wall's radius as cut.
-    ``off_path``, ``off_rings`` and ``too_far`` are those of a run, None without one: its largest
-    deviations, and how far it went beyond the wall. ``overruns`` are the axes that would leave
-    their travel, None if that is not known.
+    ``laid`` is what was made along the expected toolpath; ``uncut`` what remains at the deepest
+    level. ``reached`` is the wall's radius as cut. ``off_path``, ``off_rings`` and ``too_far`` are
+    those of a run, None without one: its largest deviations, and how far it went beyond the wall.
+    ``judged`` are the pocket's findings and notes.
     """
 
     target: Target
     laid: Laid
     reached: float
-    left: float
+    uncut: BaseGeometry
     pace: Pace
     lengths: tuple[float, float]
-    state: tuple[StateDifference, ...] = ()
-    events: tuple[str, ...] = ()
     off_path: float | None = None
     off_rings: float | None = None
     too_far: float | None = None
-    overruns: tuple[Overrun, ...] | None = ()
+    judged: tuple[Finding, ...] = ()
+
+    @property
+    def left(self) -> float:
+        """Return the area that remains at the deepest level."""
+        return self.uncut.area
 
     @property
     def deviation(self) -> float:
@@ -117,22 +114,24 @@ def measure_pocket(
     laid = lay(target.path, made_in(target.wall, moves, own), tolerance)
     cutting = [i for i in own if is_cutting(moves[i], target.wall)]
     lengths = [moves[index].length for index in cutting] or [0.0]
-    if real:
-        of_run = facts_of_run(block, target, laid, cutting, real, material, tolerance)
-    else:
-        of_run = {"left": uncut(block, target, material, tolerance).area}
-    return PocketFacts(
+    facts = PocketFacts(
         target,
         laid,
-        **{
-            "reached": reached(target, laid, moves),
-            "pace": pace(own, cutting),
-            "lengths": (min(lengths), max(lengths)),
-            "state": state_differences(block.left, target.leaves),
-            "events": extra_events(block),
-            **of_run,
-        },
+        reached(target, laid, moves),
+        uncut(block, target, material, tolerance, real is None),
+        pace(own, cutting),
+        (min(lengths), max(lengths)),
+        **(facts_of_run(target, laid, cutting, real) if real else {}),
     )
+    judged = [
+        *judge_cutter(target),
+        *judge_depth(target, tolerance),
+        *judge_path(laid, target.source.line, "", target.wall.machine),
+        *judge_cut(facts, tolerance),
+        *judge_left(block, facts),
+    ]
+    file = target.source.file
+    return replace(facts, judged=tuple(replace(each, file=file) for each in judged))
 
 
 def made_in(wall: Wall, moves: Sequence[Move], own: range) -> Iterator[Made]:
@@ -189,22 +188,10 @@ def reached(target: Target, laid: Laid, moves: Sequence[Move]) -> float:
 
 
 def facts_of_run(
-    block: Block,
-    target: Target,
-    laid: Laid,
-    cutting: Sequence[int],
-    real: Followed,
-    material: Material,
-    tolerance: float,
+    target: Target, laid: Laid, cutting: Sequence[int], real: Followed
 ) -> dict[str, float]:
     """Return those members of ``PocketFacts`` that only a run has."""
     wall, cutter = target.wall, target.cutter.radius
-    floor = [
-        index
-        for move, indices in zip(target.path, laid.moves)
-        if move.end_level == target.deepest and move.start_level == target.deepest
-        for index in indices
-    ]
     full = {id(move) for move in target.circles}
     circles = [i for move, made in zip(target.path, laid.moves) if id(move) in full for i in made]
     lines = [wall.local(real.points[real.during(index)]) for index in cutting]
@@ -212,55 +199,55 @@ def facts_of_run(
     far = radii.max(initial=0.0) + cutter - wall.radius
     if not wall.inside:
         far = wall.radius - (radii.min(initial=math.inf) - cutter)
-    own = [line for index, line in zip(cutting, lines) if index in floor]
-    left = uncut_in_run(block, target, material, own, tolerance)
     return {
         "off_path": real.largest(cutting),
         "off_rings": real.largest(circles),
         "too_far": max(0.0, float(far)),
-        "left": left,
     }
 
 
-def judge_pocket(facts: PocketFacts, tolerance: float) -> Iterator[Finding]:
-    """Yield what is wrong with a pocket."""
-    source, wall = facts.target.source, facts.target.wall
-    where = (source.line, source.file)
-    yield from mistakes(facts, tolerance)
-    yield from judge_path(facts.laid, *where, wall.machine)
-    if facts.left > AREA:
-        place = wall.machine((0j, facts.target.deepest))
-        yield Finding("uncut", source.line, {"area": facts.left}, place, source.file)
-    if (facts.too_far or 0.0) > tolerance + RUN:
-        place = wall.machine((complex(wall.radius), facts.target.deepest))
-        yield Finding("wall-run", source.line, {"size": facts.too_far}, place, source.file)
-    yield from judge_state(left_otherwise(facts), facts.events, *where)
-    for overrun in facts.overruns or ():
-        if overrun.certain:
-            values = {"axis": overrun.letter, "position": overrun.position, "limit": overrun.limit}
-            yield Finding("travel", source.line, values, file=source.file)
-
-
-def left_otherwise(facts: PocketFacts) -> Iterator[StateDifference]:
-    """Yield what the pocket leaves otherwise: of a feed that it was cut at no more is said."""
-    other_feed = any(each.kind == FEED for each in facts.laid.differences)
-    return (each for each in facts.state if not (other_feed and each.name == "_feed"))
-
-
-def mistakes(facts: PocketFacts, tolerance: float) -> Iterator[Finding]:
-    """Yield what the words of a pocket most likely do not mean."""
-    target, source = facts.target, facts.target.source
-    cutter, wall = target.cutter, target.wall
+def judge_cutter(target: Target) -> Iterator[Finding]:
+    """Yield what is to know of the cutter: that of D, the loaded one, or none."""
+    cutter, wall, line = target.cutter, target.wall, target.source.line
+    values = {
+        "tool": cutter.tool,
+        "named": cutter.named,
+        "loaded": 2 * cutter.loaded,
+        "diameter": 2 * cutter.radius,
+    }
+    if cutter.word:
+        yield Finding("centre-on-circle", line)
     if is_wrong_tool(cutter):
-        values = {
-            "tool": cutter.tool,
-            "named": cutter.named,
-            "loaded": 2 * cutter.loaded,
-            "diameter": 2 * cutter.radius,
-            "wall": wall.radius,
-            "cut": wall.radius - cutter.radius + cutter.loaded,
-        }
-        yield Finding("wrong-cutter", source.line, values, file=source.file)
-    if source.dialect != EVENT and target.deepest > tolerance:  # an event begins at its W
-        values = {"depth": wall.height(target.deepest), "start": wall.height(0.0)}
-        yield Finding("cuts-air", source.line, values, file=source.file)
+        cut = wall.radius - cutter.radius + cutter.loaded
+        values |= {"wall": wall.radius, "cut": cut}
+        yield Finding("wrong-cutter", line, values, wall.machine((0j, target.deepest)))
+    elif cutter.named is not None and not cutter.loaded:
+        yield Finding("loaded-unknown" if cutter.tool > 0 else "none-loaded", line, values)
+    elif cutter.named is not None and abs(cutter.radius - cutter.loaded) > SIZE:
+        yield Finding("worn-cutter", line, values)
+
+
+def judge_depth(target: Target, tolerance: float) -> Iterator[Finding]:
+    """Yield that a circle lies above where the tool comes from; an event begins at its W."""
+    if target.source.dialect != EVENT and target.deepest > tolerance:
+        values = {"depth": target.wall.height(target.deepest), "start": target.wall.height(0.0)}
+        yield Finding("cuts-air", target.source.line, values)
+
+
+def judge_cut(facts: PocketFacts, tolerance: float) -> Iterator[Finding]:
+    """Yield material that remains, and a wall that a run cut too far."""
+    wall, deepest, line = facts.target.wall, facts.target.deepest, facts.target.source.line
+    if facts.left > AREA:
+        values = {"area": facts.left, "shape": facts.uncut, "floor": wall.height(deepest)}
+        yield Finding("uncut", line, values, wall.machine((0j, deepest)))
+    if (facts.too_far or 0.0) > tolerance + RUN:
+        place = wall.machine((complex(wall.radius), deepest))
+        yield Finding("wall-run", line, {"size": facts.too_far, "at": place}, place)
+
+
+def judge_left(block: Block, facts: PocketFacts) -> Iterator[Finding]:
+    """Yield the state that a pocket leaves otherwise; of another feed no more is said."""
+    other_feed = any(each.kind == FEED for each in facts.laid.differences)
+    state = state_differences(block.left, facts.target.leaves)
+    state = (each for each in state if not (other_feed and each.name == "_feed"))
+    yield from judge_state(state, extra_events(block), facts.target.source.line)

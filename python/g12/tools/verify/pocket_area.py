@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-import numpy as np
 from shapely.affinity import translate
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
-from shapely.ops import unary_union
 
 from g12.tools.material.material import Material
 from g12.tools.path.part import Z, disc
@@ -19,8 +17,6 @@ from g12.tools.verify.result.tolerances import WEAR
 
 FINE = 1e-5  # chord error of the circles about a pocket's centre
 LEAST_CORE = 0.01  # a smaller circle about the centre is none
-SAMPLED = 1e-4  # how far a run's motion may be off, drawn with fewer points
-QUARTER = 64  # sides of a quarter of the cutter
 NOTHING = Polygon()
 
 
@@ -35,36 +31,18 @@ def cutting_radius(cutter: Cutter) -> float:
     return cutter.loaded if is_wrong_tool(cutter) else cutter.radius
 
 
-def uncut(block: Block, target: Target, material: Material, tolerance: float) -> BaseGeometry:
-    """Return what remains of a pocket after its block, in machine coordinates of the plane XY."""
+def uncut(
+    block: Block, target: Target, material: Material, tolerance: float, as_emitted: bool
+) -> BaseGeometry:
+    """Return what remains of a pocket after its block, in machine coordinates of the plane XY.
+
+    ``as_emitted``: its circles are those of its moves, not what a run made of them.
+    """
     wall = target.wall
-    if not target.cutter.radius or clears(target, tolerance) or wall.plane != Z:
+    if wall.plane != Z or not target.cutter.radius or (as_emitted and clears(target, tolerance)):
         return NOTHING
     wanted = translate(region(target, tolerance), *wall.origin[:2])
     return material.standing(wanted, wall.height(target.deepest), block.end)
-
-
-def uncut_in_run(
-    block: Block,
-    target: Target,
-    material: Material,
-    lines: Sequence[np.ndarray],
-    tolerance: float,
-) -> float:
-    """Return the area that a run leaves; ``lines`` (n, 3) are its motion at the deepest level.
-
-    They are seen from the wall's centre.
-    """
-    wall, wanted = target.wall, region(target, tolerance)
-    if not target.cutter.radius:
-        return 0.0
-    if wall.plane == Z:
-        there = translate(wanted, *wall.origin[:2])
-        there = material.standing(there, wall.height(target.deepest), block.at)
-        wanted = translate(there, *-wall.origin[:2])
-    paths = [LineString(line[:, :2]).simplify(SAMPLED) for line in lines if len(line) > 1]
-    swept = unary_union([path.buffer(cutting_radius(target.cutter), QUARTER) for path in paths])
-    return wanted.difference(swept).area
 
 
 def region(target: Target, tolerance: float) -> BaseGeometry:

@@ -26,11 +26,9 @@ from g12.tools.material.material import SAME_LEVEL, Material
 from g12.tools.path.part import X, Z, disc
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.section_plane import Plane, plane_of
-from g12.tools.verify.expected.contour import Element, SectionContour
+from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.pocket_walls import WALL
-from g12.tools.verify.sections.closed_contour import as_points, is_closed, trimmed
-from g12.tools.verify.sections.contour_side import SAME, area_within
-from g12.tools.verify.sections.section_size import stretches_of
+from g12.tools.verify.sections.outline import LENGTHLESS, Outline, outlines_of, vectors
 
 BEYOND = 10.0  # bars: how far an open contour's ends are drawn on
 PROBE = 1e-3  # mm beside a contour
@@ -111,9 +109,9 @@ def face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -
     top = min(plane.base, next(falls, plane.base))
     if lowest > top - SAME_LEVEL:
         return
-    for stretch in stretches_of(section):
-        if min(element.depth for element in stretch) < -SAME_LEVEL:
-            yield material_side(stretch, plane), top
+    for outline in outlines_of(section):
+        if outline.depth < -SAME_LEVEL:
+            yield material_side(outline, plane), top
     if not any(element.side for element in section.elements):
         deep = [element for element in section.elements if element.depth < -SAME_LEVEL]
         ends = [abs(place) for element in deep for place in (element.start, element.end)]
@@ -134,46 +132,35 @@ def cylinder_solids(section: SectionContour, moves: Sequence[Move], cutter: floa
         yield box(-FAR, low, FAR, high), top
 
 
-def material_side(stretch: Sequence[Element], plane: Plane) -> BaseGeometry:
+def material_side(outline: Outline, plane: Plane) -> BaseGeometry:
     """Return what a compensated contour leaves of the part beside it, nothing without a side."""
-    side, contour = stretch[0].side, [each for each in trimmed(stretch) if each.length > SAME]
-    if not side or not contour:
+    if not outline.side or not outline.curves:
         return Polygon()
-    points = plane.on_part(np.concatenate([as_points(element) for element in contour]))
-    if not is_closed(contour):
-        line = LineString(vectors(points))
-        return line.buffer(-side * WALL, single_sided=True, join_style=2)
-    shape = Polygon(vectors(points)).buffer(0)
-    if (area_within(points) > 0.0) == (side > 0):
-        return shape.buffer(WALL).difference(shape)
-    return shape
+    points = vectors(plane.on_part(outline.points))
+    if not outline.is_closed:
+        return LineString(points).buffer(-outline.side * WALL, single_sided=True, join_style=2)
+    shape = Polygon(points).buffer(0)
+    return shape.buffer(WALL).difference(shape) if outline.tool_is_inside else shape
 
 
-def beyond(stretch: Sequence[Element], plane: Plane, bar: BaseGeometry) -> BaseGeometry | None:
+def beyond(outline: Outline, plane: Plane, bar: BaseGeometry) -> BaseGeometry:
     """Return what of a bar lies on the tool's side of a contour that it is to be cut away to.
 
-    None where the tool works inside of a closed contour, or without compensation.
+    Nothing where the tool works inside of a closed contour, or without compensation.
     """
-    contour = [element for element in trimmed(stretch) if element.length > SAME]
-    side = stretch[0].side
-    if not side or not contour:
-        return None
-    points = plane.on_part(np.concatenate([as_points(element) for element in contour]))
-    if is_closed(contour):
-        inside = (area_within(points) > 0.0) == (side > 0)
-        return None if inside else bar.difference(Polygon(vectors(points)).buffer(0))
-    points = points[np.append(True, np.abs(np.diff(points)) > SAME)]
+    if not outline.side or not outline.curves:
+        return Polygon()
+    points = plane.on_part(outline.points)
+    if outline.is_closed:
+        shape = Polygon(vectors(points)).buffer(0)
+        return Polygon() if outline.tool_is_inside else bar.difference(shape)
+    points = points[np.append(True, np.abs(np.diff(points)) > LENGTHLESS)]
     along = np.diff(points) / np.abs(np.diff(points))
-    middles = (points[:-1] + points[1:]) / 2 + 1j * side * along * PROBE
+    middles = (points[:-1] + points[1:]) / 2 + 1j * outline.side * along * PROBE
     probe = middles[np.abs(middles).argmin()]
     reach = BEYOND * float(np.abs(np.array(bar.bounds)).max())
     ends = points[0] - along[0] * reach, points[-1] + along[-1] * reach
     edge = vectors(np.array([ends[0], *points, ends[1]]))
     pieces = split(bar, LineString(edge)).geoms
     near = [piece for piece in pieces if piece.contains(Point(probe.real, probe.imag))]
-    return unary_union(near) if len(pieces) > 1 else None
-
-
-def vectors(points: np.ndarray) -> list[tuple[float, float]]:
-    """Return complex points as pairs."""
-    return [(point.real, point.imag) for point in points]
+    return unary_union(near) if len(pieces) > 1 else Polygon()

@@ -15,14 +15,17 @@ from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
+from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
 from g12.tools.material.material import Material
-from g12.tools.material.stock import Stock
+from g12.tools.material.stock import Stock, StockText, read_stock
 from g12.tools.path.follow import Followed
-from g12.tools.path.part import Part, Z, disc, is_sideways
+from g12.tools.path.part import Part, Z, disc, is_sideways, part_of
 from g12.tools.path.surface import Surface
 from g12.tools.preview.moves import Move
+from g12.tools.units import unit_of
+from g12.tools.verify.asked import Asked
 from g12.tools.verify.expected.calls import SubCall
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.pocket_walls import (
@@ -33,14 +36,18 @@ from g12.tools.verify.pocket_walls import (
     holes_entered,
     holes_of_words,
 )
+from g12.tools.verify.reading.block_words import BlockInMm
 from g12.tools.verify.section_walls import add_cylinder, add_face, surface_key
+from g12.tools.verify.subject import Subject
 
 FLAT = 17  # the plane whose arcs keep their level
 CHUNK = 32  # moves of a lathe whose area is worked out at once
+SAMPLED = 1e-4  # how far a run's motion may be off, drawn with fewer points
 
 
-class Program(NamedTuple):
-    """What is judged: a program's moves on its part, its circles, sections, cutters and holes.
+@dataclass(frozen=True)
+class Program:
+    """What cuts: a program's moves on its part, its circles, sections, cutters and holes.
 
     ``real`` is its motion if it ran.
     """
@@ -55,9 +62,8 @@ class Program(NamedTuple):
 
     def points(self, index: int, part: Part) -> np.ndarray:
         """Return the tool's points (n, 3) along a move, as programmed or as they were."""
-        if self.real:
-            return part.points(self.real.positions[self.real.during(index)])
-        return part.polyline(self.moves[index])
+        sampled = self.real.positions[self.real.during(index)] if self.real else ()
+        return part.points(sampled) if len(sampled) else part.polyline(self.moves[index])
 
     def line(self, index: int) -> int:
         """Return the program's line of a move; a cycle's own lines are in its subroutine."""
@@ -65,27 +71,41 @@ class Program(NamedTuple):
         in_section = move.remap and any(move.remap == each.code for each in self.sections)
         return move.line if in_section else move.block
 
-
-class Cutters:
-    """The radius of the cutter of each move: the loaded tool's, in a cycle D's if it has none."""
-
-    def __init__(self, program: Program) -> None:
-        self._moves, self._diameters = program.moves, program.diameters
-        self._named = {
-            index: target.cutter.radius
-            for block, target in program.circles
-            for index in range(block.at, block.end)
-        }
-
     def radius(self, index: int) -> float:
-        """Return the radius of a move's cutter, 0 if nothing tells it."""
-        loaded = self._diameters.get(self._moves[index].tool, 0.0) / 2
+        """Return the radius of a move's cutter: the loaded one's, else D's; 0 if none is known."""
+        loaded = self.diameters.get(self.moves[index].tool, 0.0) / 2
         return loaded or self._named.get(index, 0.0)
 
     @cached_property
+    def _named(self) -> dict[int, float]:
+        return {
+            index: target.cutter.radius
+            for block, target in self.circles
+            for index in range(block.at, block.end)
+        }
+
+    @cached_property
     def widest(self) -> float:
-        """The largest radius of the program."""
-        return max((self.radius(index) for index in range(len(self._moves))), default=0.0)
+        """The largest radius of a cutter."""
+        return max((self.radius(index) for index in range(len(self.moves))), default=0.0)
+
+    @property
+    def on_face(self) -> list[SectionContour]:
+        """The sections on the face."""
+        return [section for section in self.sections if not section.surface]
+
+    def zero(self) -> np.ndarray:
+        """Return the program's zero where it first cuts; on a lathe X is that of the spindle.
+
+        A section on a cylinder tells nothing of it.
+        """
+        for section in self.on_face:
+            return np.array([0.0, 0.0, self.moves[section.at].start[Z] - section.height])
+        for block, _ in self.circles:
+            return BlockInMm(block, self.moves[block.at]).zero()
+        for call in self.holes:
+            return np.array([0.0, 0.0, call.zero[1]])
+        return np.zeros(3)
 
 
 class PartView(NamedTuple):
@@ -106,13 +126,13 @@ class PartView(NamedTuple):
 
 @dataclass(frozen=True)
 class Workpiece:
-    """The material of a program, and the holes that were assumed in it.
+    """The material that a program cuts, and the holes that were assumed in it.
 
     ``shape`` and ``top`` are those of the given ``stock``.
     """
 
+    program: Program
     views: Sequence[PartView]
-    cutters: Cutters
     holes: Sequence[AssumedHole] = ()
     stock: Stock | None = None
     shape: BaseGeometry | None = None
@@ -129,28 +149,41 @@ class Workpiece:
         return self.top - self.stock.size[Z] if self.stock and self.stock.size else None
 
 
+def workpiece_of(subject: Subject, asked: Asked, stock: StockText | None) -> Workpiece:
+    """Return what a program is cut from, assumed where no stock is given.
+
+    Raises UsageError for a text that is no stock of the machine's.
+    """
+    trace, circles, sections = subject.trace, asked.circles, asked.sections
+    real, holes = subject.real, [call for _, call in asked.holes]
+    cuts = (circles, sections, trace.diameters, real, holes)
+    program = Program(trace.moves, subject.part, *cuts)
+    if stock is None:
+        return assumed_workpiece(program)
+    unit = unit_of(trace.modes.gcodes, stock.units)
+    return given_workpiece(program, read_stock(stock.text, part_of(subject.ini).turning, unit))
+
+
 def assumed_workpiece(program: Program) -> Workpiece:
     """Return what a program's words assume that it is cut from."""
-    cutters, view = Cutters(program), PartView(program.part, Material(), face_tools(program))
+    material, moves = Material(), program.moves
     walls = [(block, target) for block, target in program.circles if target.wall.plane == Z]
-    approaches = [approach_to(block, program.moves) for block, _ in walls]
-    add_circles(view.material, walls, approaches)
-    add_face(view.material, face_sections(program), program.moves, cutters.radius)
+    approaches = [approach_to(block, moves) for block, _ in walls]
+    add_circles(material, walls, approaches)
+    add_face(material, program.on_face, moves, program.radius)
     bores = list(holes_of_words(walls))
-    entered = holes_entered(walls, approaches, program.moves, view.material, cutters.radius)
+    entered = holes_entered(walls, approaches, moves, material, program.radius)
     for hole in bores:
-        view.material.open(disc(hole.place, hole.radius), hole.place[Z])
+        material.open(disc(hole.place, hole.radius), hole.place[Z])
     for hole in entered:
-        view.material.open(disc(hole.place, hole.radius))
-    views = [view, *cylinders(program, cutters)]
-    for each in views:
-        add_cuts(each, program.moves, cutters)
-    return Workpiece(views, cutters, [*bores, *entered])
+        material.open(disc(hole.place, hole.radius))
+    views = views_of(program, material, face_tools(program))
+    return Workpiece(program, views, [*bores, *entered])
 
 
-def given_workpiece(program: Program, stock: Stock, zero: np.ndarray) -> Workpiece:
+def given_workpiece(program: Program, stock: Stock) -> Workpiece:
     """Return the stock; of a bore alone the pockets are known to be in something."""
-    cutters, material = Cutters(program), Material()
+    material, zero = Material(), program.zero()
     flat = [(block, target) for block, target in program.circles if target.wall.plane == Z]
     pockets = [(wall.origin, wall.radius) for wall in (t.wall for _, t in flat) if wall.inside]
     shape = stock.shape(zero, pockets)
@@ -160,16 +193,16 @@ def given_workpiece(program: Program, stock: Stock, zero: np.ndarray) -> Workpie
         add_circles(material, flat, [approach_to(block, program.moves) for block, _ in flat])
         for _, target in flat:
             material.open(disc(target.wall.origin, stock.bore / 2))
-    view = PartView(program.part, material, face_tools(program) if stock.diameter else None)
-    views = [view, *cylinders(program, cutters)]
-    for each in views:
-        add_cuts(each, program.moves, cutters)
-    return Workpiece(views, cutters, (), stock, shape, float(zero[Z]))
+    views = views_of(program, material, face_tools(program) if stock.diameter else None)
+    return Workpiece(program, views, (), stock, shape, float(zero[Z]))
 
 
-def face_sections(program: Program) -> list[SectionContour]:
-    """Return the sections on the face."""
-    return [section for section in program.sections if not section.surface]
+def views_of(program: Program, material: Material, tools: frozenset[int] | None) -> list[PartView]:
+    """Return the views of the part with what the program cuts of each."""
+    views = [PartView(program.part, material, tools), *cylinders(program)]
+    for view in views:
+        add_cuts(view, program)
+    return views
 
 
 def face_tools(program: Program) -> frozenset[int] | None:
@@ -180,38 +213,40 @@ def face_tools(program: Program) -> frozenset[int] | None:
     if not program.sections and not program.part.turning:
         return None
     drilled = [(call.moves.start, call.is_side) for call in program.holes]
-    cuts = [(section.at, False) for section in face_sections(program)] + drilled
+    cuts = [(section.at, False) for section in program.on_face] + drilled
     face, side = (
         {program.moves[at].tool for at, its in cuts if its is way} for way in (False, True)
     )
     return frozenset(face - side)
 
 
-def cylinders(program: Program, cutters: Cutters) -> Iterator[PartView]:
+def cylinders(program: Program) -> Iterator[PartView]:
     """Yield a view of each cylinder that sections are cut on."""
     moves, sections = program.moves, [each for each in program.sections if each.surface]
     for surface in dict.fromkeys(surface_key(section, moves) for section in sections):
         material = Material(period=2 * math.pi * surface.radius)
-        add_cylinder(material, sections, surface, moves, cutters.radius)
+        add_cylinder(material, sections, surface, moves, program.radius)
         own = (each for each in sections if surface_key(each, moves) == surface)
         tools = frozenset(moves[section.at].tool for section in own)
         part = Surface(turning=True, radius=surface.radius)
         yield PartView(part, material, tools, surface.radius)
 
 
-def add_cuts(view: PartView, moves: Sequence[Move], cutters: Cutters) -> None:
+def add_cuts(view: PartView, program: Program) -> None:
     """Cut what moves at feed sweep; a cutter nobody knows is as wide as the widest."""
+    moves = program.moves
     for (rapid, level, *_), group in groupby(range(len(moves)), partial(kind_of_cut, view, moves)):
         own = list(group)
         if rapid or (view.surface and not view.judges(moves[own[0]])):
             continue
-        radius = cutters.radius(own[0]) or cutters.widest
-        points = partial(points_along, view.part, [moves[index] for index in own])
+        radius = program.radius(own[0]) or program.widest
+        points = partial(points_along, program, view.part, own)
         if level is None:
             view.material.cut(own[-1], points(), radius)
         else:
             bounds = bounds_of_level([moves[index] for index in own])
-            view.material.cut_level(own[-1], bounds, level, partial(across, points), radius)
+            draw = partial(across, points, program.real is not None)
+            view.material.cut_level(own[-1], bounds, level, draw, radius)
 
 
 def kind_of_cut(view: PartView, moves: Sequence[Move], index: int) -> tuple:
@@ -228,14 +263,16 @@ def kind_of_cut(view: PartView, moves: Sequence[Move], index: int) -> tuple:
     return rapid, move.end[Z], move.tool, move.block
 
 
-def points_along(part: Part, moves: Sequence[Move]) -> np.ndarray:
+def points_along(program: Program, part: Part, own: Sequence[int]) -> np.ndarray:
     """Return the tool's points (n, 3) along moves that follow each other."""
-    return np.concatenate([part.polyline(move) for move in moves])
+    return np.concatenate([program.points(index, part) for index in own])
 
 
-def across(points: partial) -> np.ndarray:
-    """Return drawn points without their level."""
-    return points()[:, :2]
+def across(points: partial, sampled: bool) -> np.ndarray:
+    """Return drawn points without their level, of a run no more than are needed."""
+    drawn = points()[:, :2]
+    many = sampled and len(drawn) > 2
+    return np.array(LineString(drawn).simplify(SAMPLED).coords) if many else drawn
 
 
 def bounds_of_level(moves: Sequence[Move]) -> tuple[float, ...]:

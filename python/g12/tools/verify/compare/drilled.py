@@ -15,7 +15,7 @@ from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.compare.path import OFF, Laid, Made, lay
 from g12.tools.verify.compare.path_judge import judge_path
-from g12.tools.verify.compare.state import StateDifference, judge_state, state_differences
+from g12.tools.verify.compare.state import judge_state, state_differences
 from g12.tools.verify.expected.calls import SubCall
 from g12.tools.verify.expected.contour import ACTS
 from g12.tools.verify.expected.holes import Holes, HolesPath, holes_of
@@ -26,21 +26,15 @@ from g12.tools.verify.result.tolerances import LEVEL
 
 @dataclass(frozen=True)
 class HolesFacts:
-    """What was measured of the holes of one call.
+    """What was measured of the holes of one call, and its findings.
 
-    ``laid`` are its moves along the ``expected`` ones, ``run`` is the motion of a run likewise.
-    ``blended`` says that a move is not in exact path mode, ``acts`` are findings of its dwells and
-    pitches.
+    ``laid`` are its moves along the expected ones, ``run`` is the motion of a run likewise.
     """
 
     holes: Holes
-    expected: Sequence[Expected]
     laid: Laid
     run: Laid | None
-    state: tuple[StateDifference, ...]
-    events: tuple[str, ...]
-    acts: tuple[Finding, ...]
-    blended: bool
+    judged: tuple[Finding, ...]
 
     @property
     def deviation(self) -> float:
@@ -72,17 +66,23 @@ def measure_holes(
             if len(at)
         )
         run = lay(expected, made, tolerance)
+    where = (call.line, call.file)
     events = [each for each in block.own_events if ACTS.match(each.text) and not clamps]
-    return HolesFacts(
-        holes,
-        expected,
-        laid,
-        run,
-        state_differences(block.left, call.leaves()),
-        tuple(dict.fromkeys(e.text for e in events if not e.text.startswith("dwell"))),
-        tuple(judge_acts(holes, block.own_events, moves)),
-        any(moves[i].kind == "rapid" and not moves[i].exact for i in own),
-    )
+    texts = dict.fromkeys(each.text for each in events if not each.text.startswith("dwell"))
+    state = state_differences(block.left, call.leaves())
+    judged = [
+        *(
+            each
+            for one in (laid, run)
+            if one
+            for each in judge_path(one, *where, holes.place, holes.words)
+        ),
+        *passed_over(holes, expected, laid),
+        *judge_rapids(call, moves, own),
+        *judge_dwells(holes, block.own_events, moves),
+        *judge_state(state, texts, *where),
+    ]
+    return HolesFacts(holes, laid, run, tuple(judged))
 
 
 def made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[Made]:
@@ -97,7 +97,7 @@ def made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[M
             yield Made(index, ends, curve, feed, rapid, move.feed_mode == "G95")
 
 
-def judge_acts(holes: Holes, events: Sequence[Event], moves: Sequence[Move]) -> Iterator[Finding]:
+def judge_dwells(holes: Holes, events: Sequence[Event], moves: Sequence[Move]) -> Iterator[Finding]:
     """Yield what is wrong with the dwells at the bottoms, and with the pitches of taps."""
     call = holes.call
     asked = f"dwell {holes.dwell:g}" if holes.dwell else f"pitch {holes.pitch:.10g} mm"
@@ -114,23 +114,16 @@ def judge_acts(holes: Holes, events: Sequence[Event], moves: Sequence[Move]) -> 
         yield Finding("act-off-bottom", call.line, {"act": asked}, file=call.file)
 
 
-def passed_over(facts: HolesFacts) -> Iterator[Finding]:
+def passed_over(holes: Holes, expected: Sequence[Expected], laid: Laid) -> Iterator[Finding]:
     """Yield the first move that is not made: a way back and again lies on the way down."""
-    missing = (move for move, made in zip(facts.expected, facts.laid.moves) if not made)
-    for move in list(missing)[:1]:
-        at, holes = move.point(1.0), facts.holes
+    missing = [move for move, made in zip(expected, laid.moves) if not made]
+    for move in missing[:1] if not laid.difference else ():
+        at = move.point(1.0)
         values = {"what": move.name, "at": holes.words(at)}
         yield Finding("path-missing", move.line, values, holes.place(at), holes.call.file)
 
 
-def judge_holes(facts: HolesFacts) -> Iterator[Finding]:
-    """Yield what is wrong with the holes of a call."""
-    holes, call = facts.holes, facts.holes.call
-    for laid in filter(None, (facts.laid, facts.run)):
-        yield from judge_path(laid, call.line, call.file, holes.place, holes.words)
-    if not facts.laid.difference:
-        yield from passed_over(facts)
-    if facts.blended:
+def judge_rapids(call: SubCall, moves: Sequence[Move], own: range) -> Iterator[Finding]:
+    """Yield that a rapid is not in exact path mode."""
+    if any(moves[i].kind == "rapid" and not moves[i].exact for i in own):
         yield Finding("blended-hole", call.line, file=call.file)
-    yield from facts.acts
-    yield from judge_state(facts.state, facts.events, call.line, call.file)

@@ -8,6 +8,7 @@ its F gives it: how far the segment itself goes off the toolpath is not asked.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
@@ -16,17 +17,13 @@ import numpy as np
 from g12.tools.path.follow import Followed
 from g12.tools.path.track import Track, feed_length, rate
 from g12.tools.preview.moves import Move
-from g12.tools.verify.compare.path import (
-    Laid,
-    Made,
-    PathDifference,
-    Span,
-    lay,
-)
+from g12.tools.verify.compare.path import OFF, Laid, Made, PathDifference, Point, Span, lay
+from g12.tools.verify.compare.path_judge import judge_path
 from g12.tools.verify.compare.section_plane import Plane
 from g12.tools.verify.expected.compensated import ContourStep
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.expected.toolpath import Expected
+from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import FEED, JOINT
 
 
@@ -47,9 +44,22 @@ class SectionPath(NamedTuple):
         return max(laid.deviation for laid in (self.emitted, self.run) if laid)
 
     @property
+    def laid(self) -> Laid:
+        """What was laid: the moves if they differ or nothing ran, else the run."""
+        return self.emitted if self.emitted.difference or not self.run else self.run
+
+    @property
     def difference(self) -> PathDifference | None:
-        """The first difference: of the moves, else of the run."""
-        return self.emitted.difference or (self.run and self.run.difference)
+        """The first difference."""
+        return self.laid.difference
+
+    @property
+    def off(self) -> float:
+        """The greatest distance from where it should be, inf if part is missing; mm."""
+        difference = self.difference
+        if difference is None:
+            return self.deviation
+        return difference.size if difference.kind == OFF else math.inf
 
 
 def lay_section(
@@ -85,6 +95,33 @@ def made_of(
         heights = positions[:, plane.third] - plane.base
         points = list(zip(plane.points(positions).tolist(), heights.tolist()))
         yield Made(index, points, rapid=moves[index].kind == "rapid")
+
+
+def judge_toolpath(
+    found: SectionPath,
+    plane: Plane,
+    diameters: bool,
+    moves: Sequence[Move],
+    slower: dict[int, float],
+    line: int,
+    file: str = "",
+) -> Iterator[Finding]:
+    """Yield where it is off the toolpath, and the first feed that is not the words'.
+
+    ``diameters``: X words are; ``slower`` are the moves that may be slower: see ``feed_off``;
+    ``line`` is that of a move that the words do not ask for.
+    """
+
+    def words(at: Point) -> Sequence[tuple[str, float | str]]:
+        return plane.words(at, diameters)
+
+    yield from judge_path(found.laid, line, file, plane.place, words)
+    off = feed_off(found, moves, slower)
+    if off:
+        end = off.expected.point(1.0)
+        values = {"what": off.expected.name, "made": off.made, "expected": off.asked}
+        values, place = {**values, "at": words(end)}, plane.place(end)
+        yield Finding("feed", off.expected.line or line, values, place, file)
 
 
 class OffFeed(NamedTuple):

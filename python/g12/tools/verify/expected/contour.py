@@ -7,10 +7,9 @@ axis is X where the section begins; on a cylinder it is the unrolled surface.
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from g12.geometry.curve import Arc, Curve, Line
@@ -54,29 +53,7 @@ class Element:
     @property
     def length(self) -> float:
         """Return its length."""
-        if self.centre is None:
-            return abs(self.end - self.start)
-        return abs(self.start - self.centre) * abs(self.sweep)
-
-    def point(self, fraction: float) -> complex:
-        """Return the point after a fraction of it."""
-        if self.centre is None:
-            return self.start + (self.end - self.start) * fraction
-        turn = complex(math.cos(self.sweep * fraction), math.sin(self.sweep * fraction))
-        return self.centre + (self.start - self.centre) * turn
-
-    def part(self, first: float, last: float) -> Element:
-        """Return the stretch between two fractions of it."""
-        start, end = self.point(first), self.point(last)
-        return replace(self, start=start, end=end, sweep=self.sweep * (last - first))
-
-    def normal(self, fraction: float) -> complex:
-        """Return the direction to the left of its path at a fraction."""
-        if self.centre is None:
-            along = self.end - self.start
-        else:
-            along = (self.point(fraction) - self.centre) * math.copysign(1, self.sweep) * 1j
-        return 1j * along / (abs(along) or 1.0)
+        return self.curve.length
 
 
 class ZeroLine(NamedTuple):
@@ -162,6 +139,11 @@ class SectionContour:
     asked_paths: tuple[str, ...] = ()
     surface: float = 0.0
     file: str = ""
+
+    @property
+    def is_still(self) -> bool:
+        """Tell whether it moves nothing, though its words draw something."""
+        return bool(self.elements) and self.at == self.end
 
     @property
     def exact(self) -> bool:

@@ -34,7 +34,7 @@ def judge_tool_length(
             continue
         reported.add((first.tool, deeper))
         values = {"tool": first.tool, "length": first.tool_offset[Z], "off": abs(deeper)}
-        yield Finding(_code_of(deeper, expected), cut.line, values, first.end[:3], cut.file)
+        yield Finding(_code_of(deeper, expected), cut.line, values, file=cut.file)
 
 
 def last_of(events: Sequence[Event], before: int) -> str:

@@ -73,15 +73,15 @@ def sections(
     if [own[0].text for own in found] != [group[0].text for group in groups]:
         raise moves_otherwise(program)
     doubts = doubts_of(section_lines(texts, copies.lines), codes, subs)
-    paths = zip(*(paths_behind(some, codes) for some in (blocks, copied)))
+    paths = zip(*(paths_of(some, codes) for some in (blocks, copied)))
     return [
         replace(
             section_of(own, group, codes, pens, doubts.get(place_of(own[0].text), "")),
-            paths=() if restores(group) else path,
+            paths=() if restores(group) else (left, asked),
             path=begun,
             asked_paths=(begun, *paths_told(group)),
         )
-        for own, group, path, begun in zip(found, groups, paths, paths_at_start(copied, codes))
+        for own, group, ((_, left), (begun, asked)) in zip(found, groups, paths)
     ]
 
 
@@ -172,27 +172,19 @@ def place_of(text: Text) -> Place:
     return text.file, text.number
 
 
-def paths_behind(blocks: Sequence[Block], codes: Codes) -> list[str]:
-    """Return G61 or G64 and its tolerances as in force behind each section."""
-    return paths_at(blocks, codes, "off")
+def paths_of(blocks: Sequence[Block], codes: Codes) -> list[list[str]]:
+    """Return G61 or G64 as in force where each section begins and where it ends.
 
-
-def paths_at_start(blocks: Sequence[Block], codes: Codes) -> list[str]:
-    """Return G61 or G64 and its tolerances as in force where each section begins.
-
-    ``blocks`` are those of the copy, where a section's events come behind its first block.
+    In the copy a section's events come behind its first block.
     """
-    return paths_at(blocks, codes, "on")
-
-
-def paths_at(blocks: Sequence[Block], codes: Codes, wanted: str) -> list[str]:
-    """Return what is in force where each section is switched "on" or "off"."""
-    path, inside, found = "", False, []
+    path, found, inside = "", [], False
     for block in blocks:
         path = next(iter(paths_told([block])[::-1]), path)
         switch = switched(block, codes, inside)
-        if switch == wanted and (inside or wanted == "on"):
-            found.append(path)
+        if switch == "on" and not inside:
+            found.append([path, path])
+        elif switch == "off" and inside:
+            found[-1][1] = path
         inside = switch == "on" if switch else inside
     return found
 

@@ -40,9 +40,29 @@ class Finding:
         """Tell whether it is a note."""
         return self.code in NOTES
 
+    @property
+    def is_not_judged(self) -> bool:
+        """Tell whether it is something that was not judged."""
+        return self.code in NOT_JUDGED
+
     def text(self, unit: Unit = MM) -> str:
         """Return the sentence with sizes in a unit."""
-        return _Writer(unit).vformat(SENTENCES[self.code], (), self.values)
+        return in_words(SENTENCES[self.code], self.values, unit)
+
+
+def in_words(sentence: str, values: Mapping[str, Any], unit: Unit) -> str:
+    """Return a sentence with its values, sizes in a unit."""
+    return _Writer(unit).vformat(sentence, (), values)
+
+
+def is_known(sentence: str, values: Mapping[str, Any]) -> bool:
+    """Tell whether there is a value for each of a sentence's braces, and none is None."""
+    writer = string.Formatter()
+    names = [name for _, name, _, _ in writer.parse(sentence) if name]
+    try:
+        return all(writer.get_field(name, (), values)[0] is not None for name in names)
+    except (KeyError, TypeError):  # no such measure, or None in its place
+        return False
 
 
 class _Writer(string.Formatter):
@@ -50,8 +70,8 @@ class _Writer(string.Formatter):
 
     ``mm`` and ``length`` a length, ``fine`` a small one, ``mm2`` an area, ``feed`` a feed, ``xyz``
     a place (of X, Y and Z, or of other letters, each with its length or with a text), ``place``
-    one with its letters, ``list`` several lengths; each with its unit but ``mm`` and ``list``. A
-    number stands for decimals.
+    one with its letters, ``list`` several lengths, ``span`` a least and a greatest, ``pace`` a feed
+    that was measured; each with its unit but ``mm`` and ``list``. A number stands for decimals.
     """
 
     def __init__(self, unit: Unit) -> None:
@@ -66,7 +86,8 @@ class _Writer(string.Formatter):
             "feed": lambda value: f"{unit.text(value)} {unit.name}/min",
             "xyz": lambda value: words_of_place(value, unit),
             "list": lambda value: ", ".join(map(unit.text, value)),
-            "said": lambda value: value(unit),
+            "span": lambda ends: f"{unit.text(ends[0])} to {unit.text(ends[1])} {unit.name}",
+            "pace": lambda value: f"{plain(value / unit.mm, 1)} {unit.name}/min",
         }
 
     def format_field(self, value: Any, format_spec: str) -> str:
@@ -78,5 +99,5 @@ class _Writer(string.Formatter):
 
 def words_of_place(place: Sequence[Any], unit: Unit) -> str:
     """Return a place in words: its letters and values."""
-    words = place if isinstance(place[0], tuple) else zip("XYZ", place)
+    words = place if isinstance(place[0], Sequence) else zip("XYZ", place)
     return " ".join(a + (at if isinstance(at, str) else unit.text(at)) for a, at in words)

@@ -127,7 +127,21 @@ NOTES = {
     "spindle-m4": "the spindle turns counterclockwise (M4): right-hand tools cut with M3",
     "main-spindle-turns": "the main spindle turns at {code}: C cannot hold a part that turns",
     "above-zero": "nothing of it goes below the program's Z0: its lowest Z is {level:mm} above",
-    "noted": "{text:said}",
+    "travel-perhaps": (
+        "with no work offset the {axis} axis would go to {position:mm}, its limit is {limit:length}"
+    ),
+    "travel-unknown": (
+        "its travel is not known: with the machine's var file the program moves otherwise"
+    ),
+    "centre-on-circle": (
+        "the tool's centre goes round on the circle, the wall is a tool radius farther"
+    ),
+    "loaded-unknown": "T{tool} has no diameter: measured with the diameter of D{named}",
+    "none-loaded": "no tool is loaded: measured with the diameter of D{named}",
+    "worn-cutter": (
+        "the loaded tool T{tool} (⌀ {loaded:mm}) is not D{named} (⌀ {diameter:mm}): "
+        "measured with the cutter of D{named}"
+    ),
 }
 NOT_JUDGED = {
     "first-rapid": (

@@ -8,52 +8,50 @@ millimetres, angles degrees, C's speed degrees/s.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from g12.machine_ini import AXES
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import C
 from g12.tools.path.slowest import Pace, pace_of
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
-from g12.tools.verify.compare.path import OFF
-from g12.tools.verify.compare.section import OffFeed, SectionPath, feed_off, lay_section
+from g12.tools.verify.compare.section import SectionPath, judge_toolpath, lay_section
 from g12.tools.verify.compare.section_plane import Plane, plane_of
-from g12.tools.verify.compare.state import StateDifference
 from g12.tools.verify.expected.compensated import contour_path
 from g12.tools.verify.expected.contour import SectionContour
-from g12.tools.verify.result.tolerances import LAST_DECIMAL
-from g12.tools.verify.sections.contour_side import OtherSide, other_side
+from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.tolerances import LAST_DECIMAL, LEVEL, SIZE, TURNING
+from g12.tools.verify.sections.contour_side import judge_side
+from g12.tools.verify.sections.outline import outlines_of
 from g12.tools.verify.sections.section_motion import (
     G64_P,
-    OffMotion,
     SectionAxes,
-    motion_off,
+    judge_motion,
     slower_on_face,
 )
-from g12.tools.verify.sections.section_size import SectionSize, contour_size, stretches_of
-from g12.tools.verify.sections.section_state import OffAct, act_off, left_by_section
-from g12.tools.verify.sections.section_turns import InPlace, Turns, turns_of
+from g12.tools.verify.sections.section_size import SectionSize, contour_size
+from g12.tools.verify.sections.section_state import judge_section_state
+from g12.tools.verify.sections.section_turns import Turns, turns_of
 
 TINY_PIECE = 1e-6
+SAME_ANGLE = 1e-3  # degree
 
 
 @dataclass(frozen=True)
 class SectionFacts:
     """What was measured of one section.
 
-    ``path`` is its toolpath, expected and made, ``feed_off`` the first feed that is not the words'.
-    ``size`` is that of the contour, ``other_side`` says that compensation takes the tool to the
-    other side than it comes from. ``jump`` is the greatest change of direction from segment to
-    segment of one block, ``c_limit`` C's greatest speed, ``tool`` the cutter's radius.
+    ``path`` is its toolpath, expected and made, ``size`` that of the contour. ``jump`` is the
+    greatest change of direction from segment to segment of one block, ``c_limit`` C's greatest
+    speed, ``tool`` the cutter's radius.
 
     ``zero`` is the angle of C where the section begins, ``start_height`` Z there, ``lowest`` the
     lowest Z, on a cylinder X. ``slowest_at`` is the place of the lowest feed as the section's own
-    X (a radius), C and Z, ``slowest_line`` its block. ``motion_off`` and ``act_off`` are the first
-    lines and acts that are not as they should be, ``left_behind`` is what is left otherwise.
+    X (a radius), C and Z, ``slowest_line`` its block. ``judged`` are its findings and notes.
     """
 
     section: SectionContour
@@ -61,9 +59,7 @@ class SectionFacts:
     tool: float
     sides: tuple[int, ...]
     path: SectionPath
-    feed_off: OffFeed | None
     size: SectionSize
-    other_side: OtherSide | None
     jump: float
     pieces: int
     shortest: float
@@ -76,22 +72,12 @@ class SectionFacts:
     lowest: float
     slowest_at: tuple[float, float, float]
     slowest_line: int
-    motion_off: tuple[OffMotion, ...] = ()
-    act_off: OffAct | None = None
-    left_behind: tuple[StateDifference, ...] = ()
+    judged: tuple[Finding, ...] = ()
 
     @property
     def deviation(self) -> float:
         """The tool centre's greatest distance from where it should be, inf if part is missing."""
-        difference = self.path.difference
-        if difference is None:
-            return self.path.deviation
-        return difference.size if difference.kind == OFF else math.inf
-
-    @property
-    def in_place(self) -> InPlace:
-        """How far and how long C turns in place below the part's face."""
-        return self.turns.in_place
+        return self.path.off
 
 
 def measure_section(
@@ -116,15 +102,13 @@ def measure_section(
     points = points_of(plane, across, path, real)
     lengths = [path.part_length(index) for index in across] or [0.0]
     pace = pace_of(own, across, path, real)
-    return SectionFacts(
+    facts = SectionFacts(
         section,
         plane,
         tool,
-        tuple(sorted({stretch[0].side for stretch in stretches_of(section)})),
+        tuple(sorted({outline.side for outline in outlines_of(section)})),
         found,
-        feed_off(found, moves, slower_on_face(found, moves, path, axes)),
         contour_size(section, found, points, tool, plane.sizes),
-        other_side(section, tool),
         jump=jump_between(across, moves, points_of(plane, across, path)),
         pieces=len(across),
         shortest=min(lengths),
@@ -137,10 +121,52 @@ def measure_section(
         lowest=min(moves[index].end[section.third] for index in own),
         slowest_at=plane.of_part(pace.point),
         slowest_line=moves[pace.move].line,
-        motion_off=tuple(motion_off(section, moves, path, axes, tolerance)),
-        act_off=act_off(section, moves),
-        left_behind=left_by_section(section),
     )
+    judged = [Finding("contour-unread", section.line, {"why": section.doubt})]
+    if not section.doubt:
+        motion = judge_motion(section, found, moves, path, axes, tolerance)
+        slower = slower_on_face(found, moves, path, axes)
+        judged = [
+            *judge_words(facts),
+            *judge_toolpath(found, plane, section.diameters, moves, slower, section.last),
+            *judge_turns(facts),
+            *motion,
+            *judge_section_state(section, moves),
+        ]
+    return replace(facts, judged=tuple(replace(each, file=section.file) for each in judged))
+
+
+def judge_words(facts: SectionFacts) -> Iterator[Finding]:
+    """Yield what the words of a section most likely do not mean, and what to know of them."""
+    section, zero = facts.section, facts.section.zero_line
+    yield from judge_side(section, facts.tool)
+    if not zero.commanded and zero.turned:
+        values = {"line": zero.line, "turned": zero.turned}
+        yield Finding("zero-line-turned", section.line, values)
+    if not zero.commanded and not zero.line:
+        yield Finding("zero-line-unknown", section.line, {"angle": facts.zero})
+    letter, factor = AXES[section.third], 2 if section.surface and section.diameters else 1
+    depths = [each.depth for each in section.elements if each.side and not each.ramp]
+    if depths and min(depths) > section.height + LEVEL:
+        levels = {"level": factor * min(depths), "start": factor * section.height}
+        yield Finding("above-start", section.line, {"letter": letter, **levels})
+    if section.surface and facts.lowest >= facts.start_height - SIZE:
+        values = {"letter": letter, "code": section.code}
+        yield Finding("not-below-start", section.line, values)
+    if not facts.tool and any(facts.sides):
+        yield Finding("no-diameter", section.line)
+
+
+def judge_turns(facts: SectionFacts) -> Iterator[Finding]:
+    """Yield where C is faster than it may be, turns farther than it needs to, or rubs."""
+    turns, line = facts.turns, facts.section.line
+    speed = max(turns.speed, turns.asked)
+    if speed > facts.c_limit * TURNING:
+        yield Finding("c-speed", line, {"made": speed, "limit": facts.c_limit})
+    if turns.too_far is not None:
+        yield Finding("c-turned-too-far", turns.too_far[0], {"turned": turns.too_far[1]})
+    if turns.in_place.degrees > SAME_ANGLE:
+        yield Finding("rubs", line, turns.in_place._asdict())
 
 
 def blending_asked(section: SectionContour) -> float:

@@ -21,10 +21,8 @@ from __future__ import annotations
 import cmath
 import math
 import re
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby, islice
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -34,12 +32,16 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
+from g12.tools.verify.compare.path import Span
 from g12.tools.verify.compare.section import SectionPath
-from g12.tools.verify.expected.contour import Element, SectionContour
+from g12.tools.verify.expected.contour import SectionContour
+from g12.tools.verify.expected.toolpath import Expected
+from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.sections.face_follow import FollowLimits, follow_off, is_slow_enough
 
 G64_P = re.compile(r"G64 P(\S+)")
 STILL = 1e-7  # mm: C turns in place
+NO_LENGTH = 1e-4  # mm, of what is left of a move
 SMOOTH = math.radians(1.0)
 CORNER = math.radians(15.0)  # chords of an arc make smaller ones
 LESS_ON_FACE, LEAST_ON_FACE = 0.86, 0.05  # of the feed: what C cannot follow is made at between
@@ -84,27 +86,28 @@ class SectionAxes(NamedTuple):
 
 
 class Joint(NamedTuple):
-    """Where a move of a section ends and another begins.
+    """Where a move (``index``) of a section ends and the next one begins.
 
-    ``into`` and ``out`` are the directions (3,), zero where C turns in place.
+    ``into`` and ``out`` are the directions (3,), zero where C turns in place. ``within``: both are
+    of one element of the contour; ``corner``: there the toolpath has a corner by the words.
     """
 
+    index: int
     place: np.ndarray
     into: np.ndarray
     out: np.ndarray
+    within: bool
+    corner: bool
+
+    @property
+    def goes_on(self) -> bool:
+        """Tell whether the tool moves along the part before it and after it."""
+        return bool(self.into.any() and self.out.any())
 
     @property
     def half_sine(self) -> float:
         """The sine of half the angle that the path turns by."""
         return float(np.linalg.norm(self.out - self.into)) / 2
-
-
-class OffMotion(NamedTuple):
-    """A line whose motion is not as it should be: the code of its sentence, and its values."""
-
-    line: int
-    code: str
-    values: Mapping[str, object] = MappingProxyType({})
 
 
 def axes_of_section(ini: Ini) -> SectionAxes:
@@ -118,22 +121,165 @@ def axes_of_section(ini: Ini) -> SectionAxes:
     return SectionAxes(*lengths, speed, True, beside, slide=slide, override=override)
 
 
-def motion_off(
+def judge_motion(
     section: SectionContour,
+    found: SectionPath,
     moves: Sequence[Move],
     path: Track,
     axes: SectionAxes,
     tolerance: float,
-) -> Iterator[OffMotion]:
+) -> Iterator[Finding]:
     """Yield the first of each kind of motion that is not as it should be."""
-    if is_blended_into(section, moves):
-        yield OffMotion(section.line, "blended-in")
-    yield from islice(rounded(section, moves, path, axes, tolerance), 1)
+    if section.at > 0 and not (section.stopped or moves[section.at - 1].exact):
+        yield Finding("blended-in", section.line)
+    joints = list(joints_along(section, found, moves, path))
+    yield from islice(rounded(section, joints, moves, path, axes, tolerance), 1)
     if axes.face:
         yield from islice(not_followed(section, moves, path, axes), 1)
     else:  # to go there and back the machine stands, also inside a line
-        yield from islice(stopped_inside(section, moves, path), 1)
+        inside = (each for each in joints if each.within and moves[each.index].exact)
+        smooth = (each for each in inside if each.goes_on and each.half_sine < SMOOTH)
+        yield from (Finding("stops-inside", moves[each.index].line) for each in islice(smooth, 1))
     yield from islice(not_exact(section, moves), 1)
+
+
+def joints_along(
+    section: SectionContour, found: SectionPath, moves: Sequence[Move], path: Track
+) -> Iterator[Joint]:
+    """Yield the joints between the moves of a section, as far as it follows its toolpath."""
+    points, owner = path.points, path.move
+    spans = found.emitted.spans
+    begin, end = path.vertices(section.at).start, path.vertices(section.end - 1).stop
+    directions = directions_of(points[begin:end])
+    for each in np.flatnonzero(np.diff(owner[begin + 1 : end])) + 1:
+        index = int(owner[begin + each])
+        if index in spans and index + 1 in spans:
+            before, after = spans[index].last, first_made(found, spans[index + 1])
+            within = found.elements[before] is found.elements[after]
+            within = within and moves[index].line == moves[index + 1].line
+            into, out = directions[each - 1], directions[each]
+            corner = before != after and is_corner(found.expected[before], found.expected[after])
+            yield Joint(index, points[begin + each], into, out, within, corner)
+
+
+def first_made(found: SectionPath, span: Span) -> int:
+    """Return the first move of the toolpath of which a span has more than rounding."""
+    rest = (1.0 - span.share) * found.expected[span.index].length
+    return span.index + (rest < NO_LENGTH and span.index < span.last)
+
+
+def is_corner(one: Expected, other: Expected) -> bool:
+    """Tell whether the toolpath turns where a move ends and another begins, or may turn."""
+    leave, meet = one.curve.direction(1.0), other.curve.direction(0.0)
+    return not (leave and meet) or abs(cmath.phase(meet / leave)) > CORNER
+
+
+def rounded(
+    section: SectionContour,
+    joints: Sequence[Joint],
+    moves: Sequence[Move],
+    path: Track,
+    axes: SectionAxes,
+    tolerance: float,
+) -> Iterator[Finding]:
+    """Yield the corners that blending rounds by more than a tolerance, the section's end first.
+
+    On the kinematics' face, and where it is gone to or left, there is other motion than C's.
+    """
+    end = section.end - 1
+    stands = axes.face and not turns(moves[end])
+    if section.end < len(moves) and not (moves[end].exact or stands):
+        yield Finding("blended-out", moves[end].line)
+    lengths = lengths_of_lines(section, moves, path)
+    for joint in joints:
+        one, other = moves[joint.index], moves[joint.index + 1]
+        if one.exact or joint.half_sine < math.sin(SMOOTH / 2):
+            continue
+        if axes.face and (
+            is_switch(one, other)
+            or (not turns(one) and is_limited(section, joint.index, tolerance))
+        ):
+            continue
+        if not joint.goes_on:
+            yield Finding("blended-turn", one.line)
+        elif joint.corner and joint.half_sine > math.sin(CORNER / 2):
+            off = rounding(joint, path, axes, lengths)
+            if off > tolerance:
+                yield Finding("blended-corner", one.line, {"off": off})
+
+
+def is_switch(one: Move, other: Move) -> bool:
+    """Tell whether the machine goes to the face or back between two moves, and so stands."""
+    return turns(one) != turns(other) or one.end != other.start
+
+
+def is_limited(section: SectionContour, index: int, tolerance: float) -> bool:
+    """Tell whether what is cut of the corner behind a move is limited, where C does not move.
+
+    What is in force at a move is told when the next one begins, perhaps.
+    """
+    told = [event for event in section.told if event.text.startswith("G6")]
+    before = [section.path, *(event.text for event in told if event.at <= index)]
+    paths = [before[-1], *(event.text for event in told if event.at == index + 1)]
+    return any(keeps_corners(path, section, tolerance) for path in paths)
+
+
+def keeps_corners(path: str, section: SectionContour, tolerance: float) -> bool:
+    """Tell whether a path control keeps to corners: its P is as asked for, or a tolerance."""
+    given = G64_P.match(path)
+    if not given or path in section.asked_paths:
+        return not given or float(given[1]) > 0.0
+    return 0.0 < float(given[1]) * section.unit <= tolerance
+
+
+def rounding(joint: Joint, path: Track, axes: SectionAxes, lengths: dict[int, float]) -> float:
+    """Return by how much a corner is rounded at least; see the formula above.
+
+    A line too short to reach its feed is as fast as its ``lengths`` allow.
+    """
+    index = joint.index
+    into, out = (axes.along(direction, joint.place) for direction in (joint.into, joint.out))
+    speed = min(path.part_feed(index), path.part_feed(index + 1)) / 60.0
+    square = min(speed * speed, into * lengths[index], out * lengths[index + 1])
+    return joint.half_sine * square * out / (into * (into + out))
+
+
+def not_exact(section: SectionContour, moves: Sequence[Move]) -> Iterator[Finding]:
+    """Yield the lines with G9, or under G61, that do not end in an exact stop."""
+    exact = {
+        element.line: section.exact if element.exact is None else element.exact
+        for element in section.elements
+    }
+    for line, run in groupby(range(section.at, section.end), lambda index: moves[index].line):
+        if exact.get(line) and not moves[list(run)[-1]].exact:
+            yield Finding("not-exact", line)
+
+
+def not_followed(
+    section: SectionContour, moves: Sequence[Move], path: Track, axes: SectionAxes
+) -> Iterator[Finding]:
+    """Yield the moves on the face that ask more of C or the slide than they can do."""
+    for index in range(section.at, section.end):
+        move, speed = moves[index], path.part_feed(index) / 60.0
+        off = follow_off(move, speed, path.part.centre, axes.beside, follow_limits(move, axes))
+        if off:
+            yield Finding("face-acceleration", moves[index].line, off._asdict())
+
+
+def lengths_of_lines(
+    section: SectionContour, moves: Sequence[Move], path: Track
+) -> dict[int, float]:
+    """Return for each move of a section the length of the moves of one line that it is among."""
+    lengths = {}
+    for _, run in groupby(range(section.at, section.end), lambda index: moves[index].line):
+        indices = list(run)
+        lengths.update(dict.fromkeys(indices, sum(map(path.part_length, indices))))
+    return lengths
+
+
+def turns(move: Move) -> bool:
+    """Tell whether a move turns C."""
+    return move.start[C] != move.end[C]
 
 
 def slower_on_face(
@@ -163,172 +309,6 @@ def follow_limits(move: Move, axes: SectionAxes) -> FollowLimits:
     """Return what X, Y, the slide and C can do while a move is made on the face."""
     plane, speed = move.acceleration * axes.x, math.radians(axes.c_speed)
     return FollowLimits(plane, axes.slide, axes.c, speed)
-
-
-def not_followed(
-    section: SectionContour, moves: Sequence[Move], path: Track, axes: SectionAxes
-) -> Iterator[OffMotion]:
-    """Yield the moves on the face that ask more of C or the slide than they can do."""
-    for index in range(section.at, section.end):
-        move, speed = moves[index], path.part_feed(index) / 60.0
-        off = follow_off(move, speed, path.part.centre, axes.beside, follow_limits(move, axes))
-        if off:
-            yield OffMotion(moves[index].line, "face-acceleration", off._asdict())
-
-
-def is_blended_into(section: SectionContour, moves: Sequence[Move]) -> bool:
-    """Tell whether the move in front of a section is blended into its first one."""
-    return section.at > 0 and not (section.stopped or moves[section.at - 1].exact)
-
-
-def rounded(
-    section: SectionContour,
-    moves: Sequence[Move],
-    path: Track,
-    axes: SectionAxes,
-    tolerance: float,
-) -> Iterator[OffMotion]:
-    """Yield the corners that blending rounds by more than a tolerance, the section's end first.
-
-    On the kinematics' face, and where it is gone to or left, there is other motion than C's.
-    """
-    end = section.end - 1
-    stands = axes.face and not turns(moves[end])
-    if section.end < len(moves) and not (moves[end].exact or stands):
-        yield OffMotion(moves[end].line, "blended-out")
-    lengths = lengths_of_lines(section, moves, path)
-    corners = corners_of(section)
-    for index in sharp_joints(section, path):
-        one, other = moves[index], moves[index + 1]
-        if one.exact or (axes.face and is_switch(one, other)):
-            continue
-        if axes.face and not turns(one) and is_limited(section, index, tolerance):
-            continue
-        joint = joint_behind(index, path)
-        if not (joint.into.any() and joint.out.any()):
-            yield OffMotion(one.line, "blended-turn")
-        elif corners.get((one.line, other.line)) and joint.half_sine > math.sin(CORNER / 2):
-            off = rounding(joint, index, path, axes, lengths)
-            if off > tolerance:
-                yield OffMotion(one.line, "blended-corner", {"off": off})
-
-
-def is_switch(one: Move, other: Move) -> bool:
-    """Tell whether the machine goes to the face or back between two moves, and so stands."""
-    return turns(one) != turns(other) or one.end != other.start
-
-
-def is_limited(section: SectionContour, index: int, tolerance: float) -> bool:
-    """Tell whether what is cut of the corner behind a move is limited, where C does not move.
-
-    What is in force at a move is told when the next one begins, perhaps.
-    """
-    told = [event for event in section.told if event.text.startswith("G6")]
-    before = [section.path, *(event.text for event in told if event.at <= index)]
-    paths = [before[-1], *(event.text for event in told if event.at == index + 1)]
-    return any(keeps_corners(path, section, tolerance) for path in paths)
-
-
-def keeps_corners(path: str, section: SectionContour, tolerance: float) -> bool:
-    """Tell whether a path control keeps to corners: its P is as asked for, or a tolerance."""
-    given = G64_P.match(path)
-    if not given or path in section.asked_paths:
-        return not given or float(given[1]) > 0.0
-    return 0.0 < float(given[1]) * section.unit <= tolerance
-
-
-def corners_of(section: SectionContour) -> dict[tuple[int, int], bool]:
-    """Tell by the lines of neighbours whether the tool's path has a corner between them.
-
-    An outside corner of a compensated contour becomes an arc.
-    """
-    return {
-        (one.line, other.line): is_corner(one, other)
-        for one, other in zip(section.elements, section.elements[1:])
-        if one.line != other.line
-    }
-
-
-def is_corner(one: Element, other: Element) -> bool:
-    """Tell whether the tool's path turns where an element meets the next one."""
-    leave, meet = one.normal(1.0), other.normal(0.0)
-    if not (leave and meet) or one.ramp or other.ramp:
-        return True
-    turned = cmath.phase(meet / leave)
-    return abs(turned) > CORNER and turned * one.side >= 0.0
-
-
-def rounding(
-    joint: Joint, index: int, path: Track, axes: SectionAxes, lengths: dict[int, float]
-) -> float:
-    """Return by how much a corner behind a move is rounded at least; see the formula above.
-
-    A line too short to reach its feed is as fast as its ``lengths`` allow.
-    """
-    into, out = (axes.along(direction, joint.place) for direction in (joint.into, joint.out))
-    speed = min(path.part_feed(index), path.part_feed(index + 1)) / 60.0
-    square = min(speed * speed, into * lengths[index], out * lengths[index + 1])
-    return joint.half_sine * square * out / (into * (into + out))
-
-
-def stopped_inside(
-    section: SectionContour, moves: Sequence[Move], path: Track
-) -> Iterator[OffMotion]:
-    """Yield the lines inside which the tool stops where the path goes straight on."""
-    often = {line for line, count in Counter(lines_drawn(section)).items() if count > 1}
-    for index in range(section.at, section.end - 1):
-        line = moves[index].line
-        if moves[index].exact and moves[index + 1].line == line and line not in often:
-            joint = joint_behind(index, path)
-            if joint.into.any() and joint.out.any() and joint.half_sine < SMOOTH:
-                yield OffMotion(line, "stops-inside")
-
-
-def not_exact(section: SectionContour, moves: Sequence[Move]) -> Iterator[OffMotion]:
-    """Yield the lines with G9, or under G61, that do not end in an exact stop."""
-    exact = {
-        element.line: section.exact if element.exact is None else element.exact
-        for element in section.elements
-    }
-    for line, run in groupby(range(section.at, section.end), lambda index: moves[index].line):
-        if exact.get(line) and not moves[list(run)[-1]].exact:
-            yield OffMotion(line, "not-exact")
-
-
-def lines_drawn(section: SectionContour) -> list[int]:
-    """Return the line of each element of a section's contour."""
-    return [element.line for element in section.elements]
-
-
-def lengths_of_lines(
-    section: SectionContour, moves: Sequence[Move], path: Track
-) -> dict[int, float]:
-    """Return for each move of a section the length of the moves of one line that it is among."""
-    lengths = {}
-    for _, run in groupby(range(section.at, section.end), lambda index: moves[index].line):
-        indices = list(run)
-        lengths.update(dict.fromkeys(indices, sum(map(path.part_length, indices))))
-    return lengths
-
-
-def turns(move: Move) -> bool:
-    """Tell whether a move turns C."""
-    return move.start[C] != move.end[C]
-
-
-def joint_behind(index: int, path: Track) -> Joint:
-    """Return the joint between a move and the one after it."""
-    one, other = (path.points[path.vertices(each)] for each in (index, index + 1))
-    return Joint(one[-1], *(directions_of(points)[0] for points in (one[-2:], other[:2])))
-
-
-def sharp_joints(section: SectionContour, path: Track) -> list[int]:
-    """Return the moves behind which the path turns, or C turns in place."""
-    begin, end = path.vertices(section.at).start, path.vertices(section.end - 1).stop
-    owner, directions = path.move[begin:end], directions_of(path.points[begin:end])
-    ends = np.flatnonzero(np.diff(owner[1:])) + 1
-    turned = np.linalg.norm(directions[ends] - directions[ends - 1], axis=1) / 2
-    return [int(owner[each]) for each in ends[turned > math.sin(SMOOTH / 2)]]
 
 
 def directions_of(points: np.ndarray) -> np.ndarray:

@@ -7,8 +7,8 @@ centre; leads that stick out of a closed contour are no part of it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -16,11 +16,9 @@ import numpy as np
 from g12.geometry.curve import Curve, Line
 from g12.tools.verify.compare.section import SectionPath
 from g12.tools.verify.expected.contour import Element, SectionContour
-from g12.tools.verify.expected.toolpath import Expected
-from g12.tools.verify.sections.closed_contour import MEETS, trimmed
-from g12.tools.verify.sections.contour_width import across_flats
+from g12.tools.verify.sections.outline import LENGTHLESS, MEETS, outlines_of
 
-LENGTHLESS = 1e-6
+PARALLEL = 1e-4  # radians between parallel sides
 
 
 class SectionSize(NamedTuple):
@@ -31,9 +29,10 @@ class SectionSize(NamedTuple):
     flats: tuple[tuple[float, float], ...]
 
 
-class Walls(NamedTuple):
-    """Points of the wall along an element: of the contour, and as reached."""
+class CutWall(NamedTuple):
+    """A wall along an element: where its points are by the words, and as reached."""
 
+    element: Element
     wanted: np.ndarray
     reached: np.ndarray
 
@@ -50,50 +49,27 @@ def contour_size(
     ``points`` are those of the tool's centre in the plane by move, ``sizes`` what counts of them.
     """
     sides = {each.side for each in section.elements if not each.ramp} - {0} or {0}
-    leads = [lead for stretch in stretches_of(section) for lead in leads_of(stretch)]
-    cut = [
-        (element, on_shape(walls, leads))
-        for element, walls in walls_along(found, points, radius)
-        if element.side in sides
+    leads = [lead for outline in outlines_of(section) for lead in outline.leads]
+    walls = [
+        on_shape(wall, leads)
+        for wall in walls_along(found, points, radius)
+        if wall.element.side in sides
     ]
-    wanted = [sizes(walls.wanted) for _, walls in cut]
-    reached = [sizes(walls.reached) for _, walls in cut]
-    flats = across_flats([(each, walls.reached) for each, walls in cut if each.side])
-    return SectionSize(span(wanted), span(reached), tuple(flats))
+    wanted, reached = ([sizes(wall[at]) for wall in walls] for at in (1, 2))
+    flats = across_flats([wall for wall in walls if wall.element.side])
+    return SectionSize(span(wanted), span(reached), tuple(sorted(flats, reverse=True)))
 
 
-def stretches_of(section: SectionContour) -> list[list[Element]]:
-    """Return the stretches of contour with the tool on one side, ramps aside."""
-    longer = (element for element in section.elements if element.length > LENGTHLESS)
-    groups = groupby(longer, key=lambda element: (element.side, element.ramp))
-    return [list(stretch) for (_, ramp), stretch in groups if not ramp]
-
-
-def leads_of(stretch: Sequence[Element]) -> list[Curve]:
-    """Return what sticks out of a closed contour where its end meets its beginning."""
-    if not stretch[0].side:
-        return []
-    pairs = zip(stretch, trimmed(stretch))
-    cut = [(whole.curve, kept) for whole, kept in pairs if kept.length < whole.length - LENGTHLESS]
-    ends = [(each, each.share_of(kept.start), each.share_of(kept.end)) for each, kept in cut]
-    parts = [
-        part
-        for curve, first, last in ends
-        for part in (curve.portion(0.0, first), curve.portion(last, 1.0))
-    ]
-    return [part for part in parts if part.length > LENGTHLESS]
-
-
-def on_shape(walls: Walls, leads: Sequence[Curve]) -> Walls:
-    """Return the walls that are no lead."""
-    on = [all(lead.distance(place) > MEETS for lead in leads) for place in walls.wanted]
-    return Walls(walls.wanted[on], walls.reached[on])
+def on_shape(wall: CutWall, leads: Sequence[Curve]) -> CutWall:
+    """Return what of a wall is no lead."""
+    on = [all(lead.distance(place) > MEETS for lead in leads) for place in wall.wanted]
+    return CutWall(wall.element, wall.wanted[on], wall.reached[on])
 
 
 def walls_along(
     found: SectionPath, points: Mapping[int, np.ndarray], radius: float
-) -> Iterator[tuple[Element, Walls]]:
-    """Yield the walls of each element that is cut."""
+) -> Iterator[CutWall]:
+    """Yield the wall of each element that is cut."""
     pieces: dict[int, list[np.ndarray]] = {}
     for index, made in (found.run or found.emitted).spans.items():
         whole = made.index == made.last or made.share > 1.0 - LENGTHLESS
@@ -101,23 +77,53 @@ def walls_along(
             before = pieces.setdefault(made.last, [])
             before.append(points[index][1 if before else 0 :])
     for at, centres in pieces.items():
-        element = found.elements[at]
-        offset = element.side * radius
-        yield element, wall_of(found.expected[at], np.concatenate(centres), offset)
+        element, curve, centre = (
+            found.elements[at],
+            found.expected[at].curve,
+            np.concatenate(centres),
+        )
+        nearest, normal = beside(curve, centre)
+        aside = element.side * radius * normal
+        yield CutWall(element, nearest - aside, centre - aside)
 
 
-def wall_of(move: Expected, centre: np.ndarray, offset: float) -> Walls:
-    """Return the wall beside a toolpath, on its right if ``offset`` is above 0, and as reached."""
-    curve = move.curve
+def beside(curve: Curve, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points next to others of the line or circle of a curve, its left normals there."""
     if isinstance(curve, Line):
-        normal = 1j * curve.direction()
-        along = ((centre - curve.start) / curve.direction()).real
-        nearest = curve.start + along * curve.direction()
-    else:
-        outward = (centre - curve.centre) / np.maximum(np.abs(centre - curve.centre), LENGTHLESS)
-        normal = -np.sign(curve.sweep) * outward
-        nearest = curve.centre + curve.radius * outward
-    return Walls(nearest - offset * normal, centre - offset * normal)
+        along = curve.direction()
+        return curve.start + ((points - curve.start) / along).real * along, 1j * along
+    outward = (points - curve.centre) / np.maximum(np.abs(points - curve.centre), LENGTHLESS)
+    return curve.centre + curve.radius * outward, -np.sign(curve.sweep) * outward
+
+
+def across_flats(walls: Sequence[CutWall]) -> Iterator[tuple[float, float]]:
+    """Yield the width, programmed and reached, between the outermost sides of each direction."""
+    flat = [each for each in walls if isinstance(each.element.curve, Line) and len(each.reached)]
+    for parallel in groups_by_direction(flat):
+        outward = 1j * parallel[0].element.curve.direction()
+        order = sorted(parallel, key=lambda wall: along(outward, wall.element.start))
+        first, last = order[0].element, order[-1].element
+        if (first.curve.direction() / last.curve.direction()).real < 0.0:
+            low, high = (along(outward, wall.reached).mean() for wall in (order[0], order[-1]))
+            yield float(along(outward, last.start - first.start)), float(high - low)
+
+
+def groups_by_direction(walls: Sequence[CutWall]) -> list[list[CutWall]]:
+    """Return straight walls, those that are parallel together."""
+    if not walls:
+        return []
+    angles = np.array([np.angle(wall.element.curve.direction() ** 2) / 2 for wall in walls])
+    order = np.argsort(angles)
+    gaps = np.diff(angles[order], append=angles.min() + math.pi) > PARALLEL
+    order = np.roll(order, -1 - int(gaps.argmax()))  # a gap is where the last one ends
+    gaps = np.roll(gaps, -1 - int(gaps.argmax()))
+    groups = np.split(order, 1 + np.flatnonzero(gaps[:-1]))
+    return [[walls[index] for index in group] for group in groups]
+
+
+def along(direction: complex, points: np.ndarray | complex) -> np.ndarray | float:
+    """Return how far points lie in a direction of length 1."""
+    return (np.conj(direction) * points).real
 
 
 def span(distances: Sequence[np.ndarray]) -> tuple[float, float]:

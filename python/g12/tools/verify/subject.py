@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A program on a machine, as it was traced and perhaps as it ran, and as its parts see it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+from g12.tools.machine.ini import Ini
+from g12.tools.path.follow import Followed, follow
+from g12.tools.path.part import Part, part_of_program
+from g12.tools.path.samples import Samples
+from g12.tools.path.surface import Surface
+from g12.tools.path.track import Track, limits_of, track
+from g12.tools.preview.moves import Trace
+from g12.tools.verify.compare.section_plane import x0_of
+from g12.tools.verify.expected.contour import SectionContour
+
+SAME_X0 = 1e-6  # mm
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A program on a machine, as traced, and as a part sees it; ``samples`` are those of a run.
+
+    It is of its ``own`` moves alone, if those are given and nothing ran; ``drawn`` is their path,
+    if it is known.
+    """
+
+    program: Path
+    ini: Ini
+    trace: Trace
+    part: Part
+    samples: Samples | None = None
+    own: range | None = None
+    drawn: Track | None = None
+
+    @cached_property
+    def path(self) -> Track:
+        """The moves as one polyline in time."""
+        limits, speed = limits_of(self.ini), self.trace.modes.speed
+        return self.drawn or track(self.part, self.trace.moves, limits, speed, own=self.own)
+
+    @cached_property
+    def real(self) -> Followed | None:
+        """The motion of the run, laid on the path."""
+        if not self.samples:
+            return None
+        return follow(self.path, self.trace.moves, self.samples, self.ini.mm)
+
+    def about(self, centre: float, own: range | None = None) -> Subject:
+        """Return the same with the spindle's axis at another machine X; of its ``own`` moves."""
+        same = abs(self.part.centre - centre) < SAME_X0
+        return self if same else self._seen_as(replace(self.part, centre=centre), own)
+
+    def on_surface(self, radius: float, own: range | None = None) -> Subject:
+        """Return the same on a cylinder's unrolled surface."""
+        return self._seen_as(Surface(turning=True, radius=radius), own)
+
+    def of_section(self, section: SectionContour) -> Subject:
+        """Return the same as the part of a section sees it."""
+        own = range(section.at, section.end)
+        if section.surface:
+            return self.on_surface(section.surface, own)
+        return self.about(x0_of(section, self.trace.moves[section.at]), own)
+
+    def _seen_as(self, part: Part, own: range | None) -> Subject:
+        return replace(self, part=part, own=None if self.samples else own)
+
+
+def subject_of(program: Path, ini: Ini, trace: Trace, samples: Samples | None = None) -> Subject:
+    """Return a traced program as its part sees it, and a run of it."""
+    return Subject(program, ini, trace, part_of_program(ini, trace), samples)
