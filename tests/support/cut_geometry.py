@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Independent geometry: what was cut, derived from emitted moves alone.
 
-Nothing here knows the planners. Lengths are mm, as in a trace.
+Nothing here knows the planners; areas are those of the tools. Lengths are mm, as in a trace.
 """
 
 import math
 from typing import NamedTuple
 
 import numpy as np
-from shapely.geometry import LineString, Point
-from shapely.ops import unary_union
+from shapely.geometry import Point
+
+from g12.tools.path import part
 
 SAME_POINT = 1e-6  # mm
 CHORD_ERROR = 1e-4  # mm, of the polylines that stand for arcs
+MILL = part.Part(turning=False)
 
 
 class Circle(NamedTuple):
@@ -81,16 +83,12 @@ def path_length(moves):
 
 def polyline(move):
     """Return points along a move, close enough for `CHORD_ERROR`."""
-    pieces = 1
-    if move.kind == "arc":
-        step = 2 * math.acos(max(0.0, 1 - CHORD_ERROR / max(move.radius, CHORD_ERROR)))
-        pieces = max(8, math.ceil(abs(move.sweep) / step))
-    return [move.point(index / pieces)[:2] for index in range(pieces + 1)]
+    return MILL.polyline(move, CHORD_ERROR)[:, :2]
 
 
 def swept(moves, cutter_radius):
     """Return the area in XY that a cutter of that radius sweeps (shapely)."""
-    return unary_union([LineString(polyline(move)).buffer(cutter_radius, 64) for move in moves])
+    return part.swept(map(polyline, moves), cutter_radius)
 
 
 def disc(x, y, radius):

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -13,8 +12,9 @@ from g12.tools.path.part import C
 from g12.tools.path.track import STILL
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Event, Move
-from g12.tools.verify.compare.path import OFF, Laid, Made, lay
+from g12.tools.verify.compare.path import Laid, Made, lay
 from g12.tools.verify.compare.path_judge import judge_path
+from g12.tools.verify.compare.section import SectionPath
 from g12.tools.verify.compare.state import judge_state, state_differences
 from g12.tools.verify.expected.calls import SubCall
 from g12.tools.verify.expected.contour import ACTS
@@ -26,23 +26,16 @@ from g12.tools.verify.result.tolerances import LEVEL
 
 @dataclass(frozen=True)
 class HolesFacts:
-    """What was measured of the holes of one call, and its findings.
-
-    ``laid`` are its moves along the expected ones, ``run`` is the motion of a run likewise.
-    """
+    """What was measured of the holes of one call, and its findings."""
 
     holes: Holes
-    laid: Laid
-    run: Laid | None
+    path: SectionPath
     judged: tuple[Finding, ...]
 
     @property
     def deviation(self) -> float:
         """The greatest distance from the toolpath, inf if part of it is missing; mm."""
-        laid = next((each for each in (self.laid, self.run) if each and each.difference), None)
-        if laid:
-            return laid.difference.size if laid.difference.kind == OFF else math.inf
-        return max(each.deviation for each in (self.laid, self.run) if each)
+        return self.path.off
 
 
 def measure_holes(
@@ -66,23 +59,18 @@ def measure_holes(
             if len(at)
         )
         run = lay(expected, made, tolerance)
-    where = (call.line, call.file)
+    found, where = SectionPath(expected, [], laid, run), (call.line, call.file)
     events = [each for each in block.own_events if ACTS.match(each.text) and not clamps]
     texts = dict.fromkeys(each.text for each in events if not each.text.startswith("dwell"))
     state = state_differences(block.left, call.leaves())
     judged = [
-        *(
-            each
-            for one in (laid, run)
-            if one
-            for each in judge_path(one, *where, holes.place, holes.words)
-        ),
+        *judge_path(found.laid, *where, holes.place, holes.words),
         *passed_over(holes, expected, laid),
         *judge_rapids(call, moves, own),
         *judge_dwells(holes, block.own_events, moves),
         *judge_state(state, texts, *where),
     ]
-    return HolesFacts(holes, laid, run, tuple(judged))
+    return HolesFacts(holes, found, tuple(judged))
 
 
 def made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[Made]:

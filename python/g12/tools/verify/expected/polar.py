@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from g12.geometry.curve import recentred
+from g12.geometry.curve import recentred, sweep_between
 from g12.lengths import MM_PER_INCH
 from g12.tools.preview.executed_blocks import FORGOTTEN, Block
 from g12.tools.verify.expected.contour import Element, WordReading
@@ -156,30 +156,21 @@ class Pen:
         """Return an arc's centre and its sweep; no centre for a line."""
         if self.motion not in (2.0, 3.0):
             return None, 0.0
-        sign = 1.0 if self.motion == 3.0 else -1.0
-        arm = self._arm(words)
+        turn, arm = (1 if self.motion == 3.0 else -1), self._arm(words)
+        whole = abs(end - self.at) < SAME_END
         if "R" in words:
-            centre = centre_of(self.at, end, words["R"] * self.unit, sign)
+            centre = centre_of(self.at, end, words["R"] * self.unit, turn)
         elif arm is not None:
-            whole = abs(end - self.at) < SAME_END
             centre = self.at + arm if whole else recentred(self.at, end, self.at + arm)
         else:
             return None, 0.0
-        return centre, sweep_of(self.at - centre, end - centre, sign)
+        return centre, sweep_between(self.at, self.at if whole else end, centre, turn)
 
 
-def centre_of(start: complex, end: complex, radius: float, sign: float) -> complex:
+def centre_of(start: complex, end: complex, radius: float, turn: int) -> complex:
     """Return the centre of an arc by its radius; a negative one is for the arc over 180 degrees."""
     chord = end - start
     half = abs(chord) / 2
     height = math.sqrt(max(0.0, radius * radius - half * half))
     left = 1j * chord / abs(chord)
-    return (start + end) / 2 + left * height * sign * math.copysign(1.0, radius)
-
-
-def sweep_of(start: complex, end: complex, sign: float) -> float:
-    """Return the signed angle from one direction to another; the same point is a full turn."""
-    if abs(end - start) < SAME_END:
-        return sign * 2 * math.pi
-    angle = math.atan2((end / start).imag, (end / start).real)
-    return angle if angle * sign > 0 else angle + sign * 2 * math.pi
+    return (start + end) / 2 + left * height * turn * math.copysign(1.0, radius)
