@@ -2,6 +2,7 @@
 """The pages: every link leads somewhere, what they name is there, `install` copies them whole."""
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -142,3 +143,28 @@ def test_every_function_that_the_page_names_exists():
             assert any(map(there.search, texts)), f"{file}.{name}"
             looked += 1
     assert looked > 30
+
+
+def test_the_rooms_page_names_what_is_there():
+    page = (ROOT / "python/g12/README.md").read_text(encoding="utf-8")
+    within = ("", "python/g12", "python/g12/host", "python/g12/tools", "python/g12/tools/verify")
+    roots = [ROOT / folder for folder in within]
+    named = re.findall(r"`((?:[a-z_]+/)+[a-z_0-9]*)(?:\.(\w+))?`", page)
+    assert len(named) > 60
+    for path, name in named:
+        if "NAME" in f"{path}{name}":
+            continue
+        places = [root / path for root in roots]
+        files = [place.with_suffix(".py") for place in places if place.with_suffix(".py").is_file()]
+        if files:
+            assert name in ("", "py") or re.search(rf"\b{name}\b", files[0].read_text()), (
+                path,
+                name,
+            )
+        else:
+            end = f".{name}" if name else ""
+            assert any(Path(f"{place}{end}").exists() for place in places), (path, name)
+
+
+def test_the_rooms_page_is_short_enough_to_be_read():
+    assert len((ROOT / "python/g12/README.md").read_text().splitlines()) < 250
