@@ -237,9 +237,9 @@ def left_material(
     # the entry clears the tool radius and the helix, the first ring begins at I - 2 tool radii
     most = 3 + helix
     if first > most * cutter.radius + rounding:
-        left = "a ring is left about the centre" if helix else "a core is left in the centre"
+        remains = "a ring is left about the centre" if helix else "a core is left in the centre"
         return (
             f"{words.code}: I{number(first)} is greater than {number(most / 2)} x the tool diameter"
-            f" {context.tool_size(2 * cutter.radius)}: {left}"
+            f" {context.tool_size(2 * cutter.radius)}: {remains}"
         )
     return None

@@ -68,7 +68,7 @@ class YasnacCircle(NamedTuple):
         return CycleExtent(XY, (self.x, self.y, z), abs(self.radius))
 
 
-class Reach(NamedTuple):
+class OffsetRadii(NamedTuple):
     """Tool-centre positions along X of a block's radii: each less the tool radius, sign of I."""
 
     words: Words
@@ -112,11 +112,11 @@ def plan_circle(words: Words, context: Context) -> YasnacCircle:
     spiral = take_spiral(words)
     circles = words.take_whole("L", least=1, default=1)
     tool = commanded_tool(words, context) or Tool(0, 0.0)
-    reach = reach_of(words, context, finished, sound_tool(words, tool, f"D{tool.number}"))
+    radii = offset_radii(words, context, finished, sound_tool(words, tool, f"D{tool.number}"))
 
-    radius = reach.position(finished)
-    approach = approach_of(reach, traverse, finished)
-    first, half_turns, growth, shrink = half_turns_of(reach, spiral, approach, finished)
+    radius = radii.position(finished)
+    approach = approach_of(radii, traverse, finished)
+    first, half_turns, growth, shrink = half_turns_of(radii, spiral, approach, finished)
     check_count(words, half_turns + circles, "K, Q and L make")
     return YasnacCircle(
         context.x, context.y, approach, first, half_turns, growth, shrink, radius, circles
@@ -139,8 +139,8 @@ def take_spiral(words: Words) -> tuple[float, float] | None:
     return None if first is None or pitch is None else (first, pitch)
 
 
-def reach_of(words: Words, context: Context, finished: float, tool: Tool) -> Reach:
-    """Return the reach of a block; refuse a finished circle that the cutter cannot mill."""
+def offset_radii(words: Words, context: Context, finished: float, tool: Tool) -> OffsetRadii:
+    """Return the radii of a block; refuse a finished circle that the cutter cannot mill."""
     size = context.tool_size(tool.radius)
     cutter = f"tool radius {size}, D{tool.number}" if tool.number else "no D"
     smallest = context.length(SMALLEST_RING_MM)
@@ -152,40 +152,40 @@ def reach_of(words: Words, context: Context, finished: float, tool: Tool) -> Rea
             f"I{number(finished)} must exceed the tool radius {size} (D{tool.number}) in size"
         )
     offset = copysign(tool.radius, finished)
-    return Reach(words, offset, cutter, context.length(ROUNDING_MM), smallest)
+    return OffsetRadii(words, offset, cutter, context.length(ROUNDING_MM), smallest)
 
 
-def approach_of(reach: Reach, traverse: tuple[str, float] | None, finished: float) -> float:
+def approach_of(radii: OffsetRadii, traverse: tuple[str, float] | None, finished: float) -> float:
     """Return where the fast move ends, 0 without R."""
     if traverse is None:
         return 0.0
-    last, approach = reach.position(finished), reach.position(traverse[1])
+    last, approach = radii.position(finished), radii.position(traverse[1])
     source = f"where I{number(finished)} puts it"
     if not 0.0 <= approach / last < 1.0:
-        raise reach.refuse(*traverse, f"it must be from 0 to less than X{number(last)}, {source}")
-    reach.check_apart(*traverse, last, source)
+        raise radii.refuse(*traverse, f"it must be from 0 to less than X{number(last)}, {source}")
+    radii.check_apart(*traverse, last, source)
     return approach
 
 
 def half_turns_of(
-    reach: Reach, spiral: tuple[float, float] | None, approach: float, finished: float
+    radii: OffsetRadii, spiral: tuple[float, float] | None, approach: float, finished: float
 ) -> tuple[float, int, float, float]:
     """Return first radius, number, growth and shrink of the spiral's half turns.
 
     Whole turns only, so that the finished circle begins on the side of I. The last turn grows
     by what is left.
     """
-    last = reach.position(finished)
+    last = radii.position(finished)
     if spiral is None:
         return last, 0, 0.0, 0.0
-    first, pitch = reach.position(spiral[0]), spiral[1]
+    first, pitch = radii.position(spiral[0]), spiral[1]
     source = f"where I{number(finished)} puts it"
     if not approach / last < first / last < 1.0:
         bounds = f"between X{number(approach)} and X{number(last)}, {source}"
-        raise reach.refuse("K", spiral[0], f"it must be {bounds}")
-    reach.check_apart("K", spiral[0], approach, "where the cut begins")
-    reach.check_apart("K", spiral[0], last, source)
-    turns = steps_between(abs(first), abs(last), pitch, reach.rounding)
+        raise radii.refuse("K", spiral[0], f"it must be {bounds}")
+    radii.check_apart("K", spiral[0], approach, "where the cut begins")
+    radii.check_apart("K", spiral[0], last, source)
+    turns = steps_between(abs(first), abs(last), pitch, radii.rounding)
     rest = abs(last) - abs(first) - pitch * (turns - 1)
     growth = copysign(pitch if turns > 1 else rest, last) / 2
     return first, 2 * turns, growth, 1 - rest / pitch

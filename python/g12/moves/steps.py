@@ -113,5 +113,5 @@ def chord_deviation(tolerance: float, stop: bool, kept: float = 0.0) -> float:
 
     ``kept`` is by how much a piece that keeps a slide where it is may be off besides.
     """
-    left = max(tolerance - kept, 0.5 * tolerance)
-    return min((STOP_SHARE if stop else CHORD_SHARE) * tolerance, CHORD_SHARE * left)
+    remaining = max(tolerance - kept, 0.5 * tolerance)
+    return min((STOP_SHARE if stop else CHORD_SHARE) * tolerance, CHORD_SHARE * remaining)

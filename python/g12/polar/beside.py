@@ -92,11 +92,11 @@ def split_beside(move: Line | Arc, law: Law, beside: float) -> Split:
     return Split([slide for slide, _ in stands], _angles(stands), places)
 
 
-def _moved(move: Line | Arc, part: float, left: float) -> Point:
+def _moved(move: Line | Arc, part: float, leftwards: float) -> Point:
     """Return a place of a move, moved to its left."""
     x, c = place = place_at(move, part)
     tx, tc = direction_at(move, place)
-    return x - left * tc, c + left * tx
+    return x - leftwards * tc, c + leftwards * tx
 
 
 def _angles(stands: list[tuple[float, Point]]) -> list[float]:

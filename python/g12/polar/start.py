@@ -57,8 +57,8 @@ def polar_setup(
 
 
 def _word_rules(start: SectionStart, settings: Settings) -> WordRules:
-    g7, meant = start.diameter, settings.polar_x
-    diameter = g7 if meant == "inherit" else meant == "diameter"
+    g7, setting = start.diameter, settings.polar_x
+    diameter = g7 if setting == "inherit" else setting == "diameter"
     return WordRules(
         words=POLAR_WORDS,
         diameter=diameter,
