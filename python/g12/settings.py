@@ -70,20 +70,26 @@ class Number:
 
 
 @dataclass(frozen=True)
-class TwoCodes:
-    """A setting of two M codes."""
+class MachineCodes:
+    """A setting of some M codes, as many as its ``example`` has; none by default."""
 
-    legal = "two M codes such as M10 M11"
+    example: str
+
+    @property
+    def legal(self) -> str:
+        """The legal values, for the start-up error."""
+        return f"{'two M codes' if ' ' in self.example else 'an M code'} such as {self.example}"
 
     def read(self, text: str) -> tuple[int, ...]:
         """Return the numbers of the codes, or raise ValueError."""
         words = text.upper().split()
-        if len(words) != 2 or not all(M_CODE.fullmatch(word) for word in words):
+        known = all(M_CODE.fullmatch(word) for word in words)
+        if not known or len(words) != len(self.example.split()):
             raise ValueError(text)
         return tuple(int(word[1:]) for word in words)
 
 
-TABLE: dict[str, Choice | Number | TwoCodes] = {
+TABLE: dict[str, Choice | Number | MachineCodes] = {
     "CLEARING": Choice(("rings", "spiral")),
     "ENTRY": Choice(("plunge", "helix")),
     "ENTRY_ANGLE": Number(most=45.0),
@@ -99,7 +105,8 @@ TABLE: dict[str, Choice | Number | TwoCodes] = {
     "POLAR_TOOL_OFFSET": Number(least=-math.inf),
     "CYLINDER_WORD": Choice(("radius", "diameter")),
     "CYLINDER_X": Choice(("refuse", "allow")),
-    "C_CLAMP": TwoCodes(),
+    "C_CLAMP": MachineCodes("M10 M11"),
+    "C_CLAMP_SHAPES": MachineCodes("M12"),
 }
 
 
@@ -128,6 +135,7 @@ class Settings:
     cylinder_word: str = "radius"
     cylinder_x: str = "refuse"
     c_clamp: tuple[int, ...] = ()
+    c_clamp_shapes: tuple[int, ...] = ()
 
     def tolerance(self, millimetres: float) -> float:
         """Return POLAR_TOLERANCE in machine units, which are ``millimetres`` long."""

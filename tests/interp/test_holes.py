@@ -143,18 +143,22 @@ def test_a_bore_is_fed_out_and_a_tap_has_its_pitch(lathe):
     assert c == pytest.approx(26.565051)
 
 
-def test_the_clamp_is_closed_for_every_hole_and_open_between(tmp_path):
-    for code in ("m10", "m11"):
+def with_clamp(folder, **settings):
+    """Return what makes a machine know M10 to M12, whose subs show messages of their names."""
+    for code in ("m10", "m11", "m12"):
         text = f"o<{code}> sub\n(MSG,{code})\no<{code}> endsub\n"
-        (tmp_path / f"{code}.ngc").write_text(text)
+        (folder / f"{code}.ngc").write_text(text)
     ini = read_ini(SIM / "lathe_mm.ini")
-    own = [f"M{n} modalgroup=10 ngc=m{n}" for n in (10, 11)]
+    own = [f"M{n} modalgroup=10 ngc=m{n}" for n in (10, 11, 12)]
     lines = {
         "REMAP": [*ini.all("RS274NGC", "REMAP"), *own],
-        "SUBROUTINE_PATH": f"{ini.get('RS274NGC', 'SUBROUTINE_PATH')}:{tmp_path}",
+        "SUBROUTINE_PATH": f"{ini.get('RS274NGC', 'SUBROUTINE_PATH')}:{folder}",
     }
-    overrides = {"RS274NGC": lines, "G12": {"C_CLAMP": "M10 m11"}}
-    with Tracer(SIM / "lathe_mm.ini", overrides=overrides, tools={1: 6.0}) as lathe:
+    return {"RS274NGC": lines, "G12": {"C_CLAMP": "M10 m11", **settings}}
+
+
+def test_the_clamp_is_closed_for_every_hole_and_open_between(tmp_path):
+    with Tracer(SIM / "lathe_mm.ini", overrides=with_clamp(tmp_path), tools={1: 6.0}) as lathe:
         traced = lathe.trace_text(program(call("face_holes")))
     assert traced.error is None
     closed, at, seen = False, 0, []
@@ -168,11 +172,39 @@ def test_the_clamp_is_closed_for_every_hole_and_open_between(tmp_path):
     assert sum(turned for _, _, turned in seen) == 4  # the start's, and one to each hole
 
 
-def test_a_clamp_whose_codes_are_unknown_is_refused():
-    with Tracer(SIM / "lathe_mm.ini", overrides={"G12": {"C_CLAMP": "M110 M11"}}) as lathe:
-        traced = lathe.trace_text(program(call("face_holes")))
-    why = "[G12] C_CLAMP: M11 is no code of this machine: a REMAP line?"
-    assert traced.error.text == f"face_holes line 6: {why}" and len(traced.moves) == 1
+SECTIONS = {
+    "polar": ["C0", "G12.1", "G1 X40 C5", "X30", "G13.1"],
+    "cylinder": ["G7.1 C20", "G1 C30 Z3", "G7.1 C0"],
+    "shape": ["C0", "o<polar_slot> call [8] [30] [1] [-9999] [-9999] [300] [-9999] [0]"],
+}
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_sections_and_shapes_are_cut_with_a_light_drag(tmp_path, name):
+    overrides = with_clamp(tmp_path, C_CLAMP_SHAPES="M12")
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides, tools={1: 6.0}) as lathe:
+        traced = lathe.trace_text(program(*SECTIONS[name], "(DEBUG,#<_c>)"))
+    assert traced.error is None, traced.error
+    drag, off = [e.at for e in traced.events if e.text in ("message m12", "message m11")]
+    cuts = [n for n, move in enumerate(traced.moves) if move.kind != "rapid"]
+    assert drag == cuts[0] and off in (cuts[-1] + 1, cuts[-1] + 2) and cuts
+
+
+@pytest.mark.parametrize(
+    ("settings", "block", "why"),
+    [
+        ({"C_CLAMP": "M110 M11"}, call("face_holes"),
+         "face_holes line 6: [G12] C_CLAMP: M11 is no code of this machine: a REMAP line?"),
+        ({"C_CLAMP": "M110 M111", "C_CLAMP_SHAPES": "M12"}, "G12.1",
+         "G12.1 line 6: [G12] C_CLAMP: M12 is no code of this machine: a REMAP line?"),
+        ({"C_CLAMP_SHAPES": "M112"}, "G12.1",
+         "G12.1 line 6: [G12] C_CLAMP_SHAPES needs C_CLAMP, whose second code opens the clamp"),
+    ],
+)  # fmt: skip
+def test_a_clamp_whose_codes_are_unknown_is_refused(settings, block, why):
+    with Tracer(SIM / "lathe_mm.ini", overrides={"G12": settings}) as lathe:
+        traced = lathe.trace_text(program(block, "G1 X3", "G13.1"))
+    assert traced.error.text == why and len(traced.moves) == 1
 
 
 def test_300_random_bad_calls_move_nothing(lathe):

@@ -84,6 +84,7 @@ def test_the_tolerance_is_in_machine_units(text, mm, tolerance):
             "[G12] POLAR_TOLERANCE = 1e-12: must be a number from 0.00001",
         ),
         ("C_CLAMP", "M10", "[G12] C_CLAMP = M10: must be two M codes such as M10 M11"),
+        ("C_CLAMP_SHAPES", "M1 M2", "[G12] C_CLAMP_SHAPES = M1 M2: must be an M code such as M12"),
         ("C_CLAMP", "10 11", "[G12] C_CLAMP = 10 11: must be two M codes such as M10 M11"),
         ("YASNAC_TRAVERSE", "-1", "[G12] YASNAC_TRAVERSE = -1: must be a number from 0"),
         ("YASNAC_TRAVERSE", "fast", "[G12] YASNAC_TRAVERSE = fast: must be a number from 0"),

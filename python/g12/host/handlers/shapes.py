@@ -19,7 +19,7 @@ from g12.host.handlers import cycle_state
 from g12.host.interp import Interp
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
-from g12.host.section.kind import check_ini
+from g12.host.section.kind import check_ini, clamp_codes
 from g12.host.section.output import path_control
 from g12.host.section.start import stands_alone, start_of_section
 from g12.moves.setup import SectionSetup
@@ -106,28 +106,18 @@ def prepare_holes(
     Rapids that LinuxCNC blends would let C turn before the tool is out of its hole.
     """
     entries = ShapeEntries(name, HOLES[name].entries, locals_at(interp, level))
-    check_clamp(entries)
+    close, opens = clamp_codes(entries.refuse, MACHINE.settings.c_clamp) or (0, 0)
     machine = hole_machine(interp, start, setup)
     plan = HOLES[name].plan(entries, cycle_state.snapshot(interp), machine)
     stay_in_travel(entries, plan.extent(), setup)
     numbers = plan.locals()
     for x_word in ("at_x", "at_x_axis"):
         numbers[x_word] *= 1 + start.diameter
-    close, opens = MACHINE.settings.c_clamp or (0, 0)
     set_locals_at(interp, level, {**numbers, "clamp": close, "unclamp": opens})
     cycle_state.note_modes(interp)
     cycle_state.state_of(interp).path = path_control(interp)
     interp.execute("G61")
     return INTERP_OK
-
-
-def check_clamp(entries: ShapeEntries) -> None:
-    """Refuse M codes of C's clamp that this LinuxCNC cannot know."""
-    for code in MACHINE.settings.c_clamp:
-        if f"M{code}" not in MACHINE.remaps and code not in OWN_CODES and code not in USER_CODES:
-            raise entries.refuse(
-                f"[G12] C_CLAMP: M{code} is no code of this machine: a REMAP line?"
-            )
 
 
 def hole_machine(
@@ -153,7 +143,6 @@ def polar_shape_done(self, **words):
     return INTERP_OK
 
 
-OWN_CODES, USER_CODES = range(3, 10), range(100, 200)  # M codes without a REMAP line
 SPINDLE = 2  # index into active_m_codes: 3, 4 or 5
 
 

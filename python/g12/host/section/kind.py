@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Generic, NamedTuple
 
 import emccanon
@@ -28,6 +28,7 @@ from g12.section.codes import SectionCodes
 from g12.section.line import line_named, with_line
 from g12.section.start import SectionStart
 
+OWN_CODES, USER_CODES = range(3, 10), range(100, 200)  # M codes without a REMAP line
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 TYPED = 1  # call level of a block that stands in no sub
 TURN, REPORTED_TURN = 360.0, 540.0  # a contour that closes and its leads take more than one
@@ -76,6 +77,8 @@ def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
     frame, c = CallFrame(interp, program.home.filename), interp.CC_current
     try:
         yield from _section(interp, kind, frame, program).run()
+        if MACHINE.settings.c_clamp_shapes:
+            modes.run_code(interp, f"M{MACHINE.settings.c_clamp[1]}")
         if not kind.letters:  # on a cylinder the turns are the program's words
             report_turns(interp, interp.CC_current - c)
     except Exception as error:
@@ -99,6 +102,16 @@ def report_turns(interp: Interp, turned: float) -> None:
         messages.message_once(interp, "turns", text)
 
 
+def clamp_codes(refuse: Callable[[str], Refusal], codes: Sequence[int]) -> Sequence[int]:
+    """Return M codes of C's clamp; refuse those that this LinuxCNC cannot know."""
+    for code in codes:
+        if f"M{code}" not in MACHINE.remaps and code not in OWN_CODES and code not in USER_CODES:
+            raise refuse(f"[G12] C_CLAMP: M{code} is no code of this machine: a REMAP line?")
+    if codes and not MACHINE.settings.c_clamp:
+        raise refuse("[G12] C_CLAMP_SHAPES needs C_CLAMP, whose second code opens the clamp")
+    return codes
+
+
 def _section(
     interp: Interp, kind: SectionKind[Planning], frame: CallFrame, program: ProgramLines
 ) -> Section:
@@ -108,6 +121,7 @@ def _section(
         raise start.place.refuse("the face is on already, by hand: G13.1 first")
     kind.check(start)
     setup = kind.setup(start)
+    drag = clamp_codes(start.place.refuse, MACHINE.settings.c_clamp_shapes)
     output = SectionOutput(
         interp,
         start.place.code,
@@ -127,4 +141,5 @@ def _section(
         program,
         SectionReader(interp, start, setup.words, program),
         output,
+        "".join(f"M{code}" for code in drag),
     )

@@ -66,10 +66,13 @@ class Section:
         program: ProgramLines,
         reader: SectionReader,
         output: SectionOutput,
+        first: str = "",
     ) -> None:
+        """``first`` is a code that is obeyed as if the section's first line had it."""
         self.codes, self.setup, self.plan = codes, setup, plan
         self.frame, self.program = frame, program
         self.reader, self.output = reader, output
+        self._first = first
         self._phase = Phase.READING
         self._skipped_for = ""  # the O-word whose lines are skipped
 
@@ -101,6 +104,10 @@ class Section:
         program, plain_line = self.program, self.reader.plain_line
         known = self.setup.words.words
         is_plain = known.plain
+        if self._first:
+            self.program.parse_rewritten(self._first)
+            first = split_line(self._first, known)
+            yield from self._obey(first, block_of(self.reader.parsed))
         for _ in range(MOST_LINES):
             raw = program.take()
             if raw is None:
