@@ -110,3 +110,15 @@ def test_a_wrong_entry_is_refused_and_nothing_is_cut(lathe, tmp_path, form, wron
     assert found.error is not None
     assert message in found.error.text
     assert all(move.kind == "rapid" for move in found.moves)
+
+
+@BOTH
+def test_the_live_tool_beside_a_main_spindle_that_is_c(tmp_path, unit):
+    program = filled_in(
+        f"form_face_holes_{unit}", tmp_path / "auto.ngc", tool=1, on=3, off=5, spindle=1
+    )
+    with Tracer(SIM / f"lathe_spindle_c_{unit}.ini", tools={1: CUTTER}) as spindle_lathe:
+        lines = program.read_text().splitlines()
+        show = ";py,print('live', this.speed[1], this.speed[0])"
+        found = spindle_lathe.trace_text(["G0 X60 Z20", *lines[:-1], show, "M2"])
+    assert found.error is None and "live 2000.0 0.0" in found.printed

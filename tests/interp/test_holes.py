@@ -250,3 +250,38 @@ def test_the_side_is_drawn_unrolled(tmp_path):
     text.write_text("\n".join(program(call("face_holes"))))
     assert main(["plot", str(text), "--ini", ini, "-o", str(picture)]) == 0
     assert "The part's face" in picture.read_text()
+
+
+@pytest.fixture(scope="module")
+def spindle_lathe():
+    with Tracer(SIM / "lathe_spindle_c_mm.ini", tools={1: 6.0}) as opened:
+        yield opened
+
+
+@pytest.mark.parametrize(
+    ("blocks", "why"),
+    [
+        ([], "M3 and S, $1 beside them"),
+        (["S500 M3", "M3 $1"], "M3 and S, $1 beside them"),
+        (["S500 M4 $1"], "M3 and S, $1 beside them"),
+        (["S500 M3 $1"], None),
+    ],
+)
+def test_a_tap_is_the_live_tools_where_the_main_spindle_is_c(spindle_lathe, blocks, why):
+    head = ["G21 G18 G7 G90 G94", "T1 M6", "G0 X60 Z10", *blocks]
+    tap = call("face_hole_at", kind=1, feed=1.5)
+    traced = spindle_lathe.trace_text([*head, tap, "M2"])
+    if why:
+        assert traced.error.text.endswith(f"the tool's spindle must turn, by {why}")
+        assert len(traced.moves) == 1
+    else:
+        assert traced.error is None and "pitch 1.5 mm" in [e.text for e in traced.events]
+
+
+def test_the_spindle_of_feeds_per_revolution_is_afterwards_the_same(spindle_lathe):
+    head = ["G21 G18 G7 G90 G94", "T1 M6", "G0 X60 Z10", "S500 M3 $1"]
+    tap = call("face_hole_at", kind=1, feed=1.5)
+    for speeds, spindle in ((["G97 S200"], 0), (["S300 G97 $1"], 1)):
+        show = ";py,print('used', this.active_spindle)"
+        traced = spindle_lathe.trace_text([*head, *speeds, tap, show, "M2"])
+        assert traced.error is None and f"used {spindle}" in traced.printed

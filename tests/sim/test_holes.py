@@ -18,21 +18,21 @@ from support.sim_machines import SIM, machine_scope
 RAPID = 1  # kind of a sampled move
 X, Z, C = 0, 2, 5
 START = [FIRST, "T3 M6", "G0 X40 Z8 C100", "F900"]
-CLOSED = "motion.digital-out-00"
+CLOSED, DRAG = "motion.digital-out-00", "motion.digital-out-01"
 FACE = "o<face_holes> call [3] [30] [20] [-9999] [4] [2] [1200] [1.5] [0.1] [0]"
 SIDE = "o<side_holes> call [2] [-10] [30] [270] [40] [5] [3] [1200] [-2] [0] [0]"
 SAME = 0.002  # mm, degrees: within the servo's sampling
 
 
 def with_clamp(name, folder):
-    """Return a machine whose M10 closes the clamp of C, a digital output, and M11 opens it."""
-    for code, block in (("m10", "M64 P0"), ("m11", "M65 P0")):
+    """Return a machine whose M10 closes the clamp of C, M12 half; outputs, which M11 takes back."""
+    for code, block in (("m10", "M64 P0"), ("m11", "M65 P0\nM65 P1"), ("m12", "M64 P1")):
         (folder / f"{code}.ngc").write_text(f"o<{code}> sub\n{block}\no<{code}> endsub\n")
     ini = read_ini(SIM / f"{name}.ini")
-    own = [f"M{n} modalgroup=10 ngc=m{n}" for n in (10, 11)]
+    own = [f"M{n} modalgroup=10 ngc=m{n}" for n in (10, 11, 12)]
     path = ini.get("RS274NGC", "SUBROUTINE_PATH")
     return {
-        "G12": {"C_CLAMP": "M10 M11"},
+        "G12": {"C_CLAMP": "M10 M11", "C_CLAMP_SHAPES": "M12"},
         "RS274NGC": {
             "REMAP": [*ini.all("RS274NGC", "REMAP"), *own],
             "SUBROUTINE_PATH": f"{path}:{folder}",
@@ -51,12 +51,12 @@ def lathe(request, tmp_path_factory):
         yield running
 
 
-def opened(lathe):
+def opened(lathe, pin=CLOSED):
     """Tell whether the clamp is open, at the latest in a second."""
     until = time.monotonic() + 1
-    while lathe.get(CLOSED) and time.monotonic() < until:
+    while lathe.get(pin) and time.monotonic() < until:
         time.sleep(0.01)
-    return not lathe.get(CLOSED)
+    return not lathe.get(pin)
 
 
 def beyond_the_start(samples):
@@ -145,6 +145,34 @@ def test_aborts_in_every_phase_leave_the_clamp_open(lathe):
         assert lathe.stat().position[X] == pytest.approx(50) and not lathe.errors()
     run = lathe.run_text([*START, FACE, "M2"])
     assert run.error is None and len(bottoms(run.samples, "Z", -4)) == 3
+
+
+SLOT = "o<polar_slot> call [6] [30] [1] [-9999] [-9999] [2000] [-9999] [0]"
+
+
+def test_a_shape_is_cut_with_a_light_drag(lathe):
+    lathe.reset()
+    assert not lathe.get(DRAG)
+    lathe.open_text([*START, SLOT, "G0 C0", "M2"])
+    lathe.start()
+    lathe.wait_for(lambda status: status.actual[Z] < 0)
+    assert lathe.get(DRAG) and not lathe.get(CLOSED)
+    lathe.wait_for(lambda status: status.actual[Z] > 2)
+    assert opened(lathe, DRAG) and not lathe.errors()
+
+
+def test_an_abort_takes_the_drag_back(lathe):
+    for depth in (0.5, -0.9):
+        lathe.reset()
+        lathe.open_text([*START, SLOT, "M2"])
+        lathe.start()
+        lathe.wait_for(lambda status: status.actual[Z] < depth)  # noqa: B023
+        lathe.abort()
+        lathe.errors()
+        assert opened(lathe, DRAG) and opened(lathe)
+        lathe.mdi("G90 G0 Z20")
+    run = lathe.run_text([*START, SLOT, "M2"])
+    assert run.error is None
 
 
 def test_in_mdi(lathe):

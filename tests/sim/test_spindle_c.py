@@ -130,6 +130,14 @@ def test_flats_lie_where_they_lay_before_ten_changes(lathe):
             ["M254", "G12.1", "G1 X30 F100", "M255", "G13.1"],
             "G12.1 line 6: M255 line 7: the section needs C to its end",
         ),
+        (
+            ["o<face_holes> call [3] [30] [0] [-9999] [4] [2] [900] [0] [0] [0]"],
+            "face_holes line 3: needs the spindle as C: M254 first",
+        ),
+        (
+            ["o<side_holes> call [3] [-9] [0] [-9999] [40] [4] [2] [900] [0] [0] [0]"],
+            "side_holes line 3: needs the spindle as C: M254 first",
+        ),
         (["M255", "G0 C30"], "Linear move on line 4 would exceed C's positive limit"),
         (["G1 X30 C-30 F100"], "Linear move on line 3 would exceed C's negative limit"),
     ],
@@ -241,6 +249,28 @@ def test_feed_per_revolution_of_the_live_tool(lathe):
     line = len(FIRST) + len(start) + 3
     cut = run.samples.line == line
     assert np.median(run.samples.requested[cut]) * 60 == pytest.approx(200, rel=0.2)
+
+
+def test_holes_with_the_live_tool(lathe):
+    """The tap follows the live tool's spindle; the encoder of C is where the holes are."""
+    face = "o<face_holes> call [3] [30] [20] [-9999] [4] [2] [1200] [1.5] [0.1] [0]"
+    side = "o<side_holes> call [2] [-10] [30] [-9999] [40] [4] [2] [1200] [-2] [0] [0]"
+    tap = "o<face_hole_at> call [10] [0] [3] [2] [1] [0] [0] [1]"
+    start = ["M254", "G0 X40 Z5 C0", "S300 M3 $1", face, "G0 X40", side, "G0 Z5"]
+    run = lathe.run_text([*FIRST, "T1 M6", *start, tap, "M5 $1", "M255", "M2"], timeout=60)
+    assert run.error is None
+    line, axes = run.samples.line, run.samples.axes
+    low = axes["Z"] < -3.998
+    angles = 360 * axes["T"][low & (axes["X"] > 14.9) & (axes["X"] < 15.1)]
+    assert {round(angle) % 360 for angle in angles} == {20, 140, 260}
+    deep = axes["X"] < 16.002
+    sides = 360 * axes["T"][deep & (np.abs(axes["Z"] + 10) < 0.01)]
+    assert {round(angle) % 360 for angle in sides} == {30, 210}
+    inside = (axes["Z"][1:] < 1.99) & (axes["Z"][1:] > -9) & (axes["X"][1:] < 20)
+    assert np.abs(np.diff(axes["C"])[inside]).max() < 1e-6
+    tapped = axes["Z"][np.abs(axes["X"] - 10) < 1e-3]
+    assert tapped.min() == pytest.approx(-3, abs=0.2)
+    assert line.max() > 0
 
 
 def test_the_manuals_program_switches_c_on_by_m35():

@@ -15,7 +15,7 @@ from g12.shapes.holes import HoleMachine, shorter_way
 from support.planner_context import MM
 
 STANDING = MM._replace(spindle_tool=Tool(1, 3.0), x=30.0, z=10.0, speed=500.0)
-MACHINE = HoleMachine(c=0.0, spindle_code=3, beside=0.0, diameters=True)
+MACHINE = HoleMachine(c=0.0, spindle=0, spindle_code=3, speed=500.0, beside=0.0, diameters=True)
 HOLE = {"depth": 8.0, "retract": 2.0, "feed": 120.0}
 PLANS = {
     "face_holes": (holes.FACE_HOLES, holes.plan_face_holes),
@@ -116,7 +116,7 @@ REFUSED = [
     ("face_holes", {"kind": 1, "peck": -1}, "peck -1 is for drilling (kind 0), not for kind 1"),
     ("face_holes", {"kind": 3, "peck": 1}, "peck 1 is for drilling (kind 0), not for kind 3"),
     ("face_holes", {"kind": 2}, "kind 2 taps a left-hand thread: the tool's spindle must turn"),
-    ("face_holes", {"kind": 1, "found": STANDING._replace(speed=0.0)}, "kind 1 taps a right-hand"),
+    ("face_holes", {"kind": 1, "machine": MACHINE._replace(speed=0.0)}, "kind 1 taps a right-hand"),
     ("face_holes", {"peck": 1e-4}, "count and peck make 1440018 moves, the most is 100000"),
     ("face_holes", {"feed": LEFT_OUT, "found": STANDING._replace(feed=0.0)}, "feed is missing"),
     ("face_holes", {"found": STANDING._replace(per_revolution=True, speed=0.0)}, "feed per rev"),

@@ -42,12 +42,15 @@ CHIP_MM = 0.254  # how far a drill goes back to break a chip, or stays off when 
 class HoleMachine(NamedTuple):
     """What holes have to know of the machine and its state.
 
-    ``c`` is where C stands, ``spindle_code`` the M code of the spindle in use: 3, 4 or 5. The tool
-    stands ``beside`` the X line, towards C+. ``diameters``: an X entry is a diameter.
+    ``c`` is where C stands, ``spindle`` the number of the one that drives the tool,
+    ``spindle_code`` its M code, 3, 4 or 5, ``speed`` its S. The tool stands ``beside`` the X line,
+    towards C+. ``diameters``: an X entry is a diameter.
     """
 
     c: float
+    spindle: int
     spindle_code: int
+    speed: float
     beside: float
     diameters: bool
 
@@ -230,7 +233,7 @@ def hole_of(entries: ShapeEntries, context: Context, machine: HoleMachine) -> Ho
         raise entries.refuse(f"{entries.written('peck', peck)} {rule}")
     dwell = entries.from_zero("dwell")
     if tap:
-        check_tapping(entries, context, machine, kind)
+        check_tapping(entries, machine, kind)
     rounding = context.length(ROUNDING_MM)
     pecks = ceil(min((depth - rounding) / abs(peck), 1e9)) if peck else 1
     clear = min(context.length(CHIP_MM), abs(peck) / 2) if peck else 0.0
@@ -251,11 +254,12 @@ def hole_feed(entries: ShapeEntries, context: Context, tap: bool) -> float:
     return feed
 
 
-def check_tapping(entries: ShapeEntries, context: Context, machine: HoleMachine, kind: int) -> None:
+def check_tapping(entries: ShapeEntries, machine: HoleMachine, kind: int) -> None:
     """Refuse a tap whose spindle stands, or turns the other way: it would wait, or break."""
     code = SPINDLE_CODES[kind]
-    if machine.spindle_code != code or not context.speed:
+    if machine.spindle_code != code or not machine.speed:
         hand = "right" if kind == TAP_RIGHT else "left"
+        its = f" and S, ${machine.spindle} beside them" if machine.spindle else " and S"
         raise entries.refuse(
-            f"kind {kind} taps a {hand}-hand thread: the tool's spindle must turn, by M{code} and S"
+            f"kind {kind} taps a {hand}-hand thread: the tool's spindle must turn, by M{code}{its}"
         )

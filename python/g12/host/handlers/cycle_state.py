@@ -59,7 +59,7 @@ class CycleState:
     """What the package remembers of one interpreter; it lives on the interpreter object.
 
     ``modes`` are those a cycle found and has to restore, ``feed`` the F that a shape found,
-    ``path`` the path control that holes found;
+    ``path`` the path control and ``spindle`` the number of the one in use that holes found;
     ``radius_commanded`` tells a D of radius 0 from no D at all, which the interpreter's own last
     compensation radius cannot.
     ``first_plane`` is the circle mill's modal reference plane in mm and the program that
@@ -68,7 +68,7 @@ class CycleState:
 
     def __init__(self) -> None:
         self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
-        self.feed, self.path = 0.0, ""
+        self.feed, self.path, self.spindle = 0.0, "", 0
         self.radius_commanded = False
         self.first_plane: tuple[float, tuple[str, int] | None] | None = None
 

@@ -13,7 +13,7 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal
-from g12.host import messages
+from g12.host import messages, modes
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
 from g12.host.interp import Interp
@@ -113,9 +113,11 @@ def prepare_holes(
     numbers = plan.locals()
     for x_word in ("at_x", "at_x_axis"):
         numbers[x_word] *= 1 + start.diameter
-    set_locals_at(interp, level, {**numbers, "clamp": close, "unclamp": opens})
+    own = {"clamp": close, "unclamp": opens, "spindle": machine.spindle}
+    set_locals_at(interp, level, {**numbers, **own})
     cycle_state.note_modes(interp)
-    cycle_state.state_of(interp).path = path_control(interp)
+    state = cycle_state.state_of(interp)
+    state.path, state.spindle = path_control(interp), interp.active_spindle
     interp.execute("G61")
     return INTERP_OK
 
@@ -124,9 +126,13 @@ def hole_machine(
     interp: Interp, start: SectionStart, setup: SectionSetup[PolarSettings]
 ) -> HoleMachine:
     """Return what holes have to know of the machine."""
+    spindle = tool_spindle(interp)
+    turning = type(interp).spindle_turning.fget(interp, spindle)  # a property with an argument
     return HoleMachine(
         c=start.c,
-        spindle_code=interp.active_m_codes[SPINDLE],
+        spindle=spindle,
+        spindle_code=SPINDLE_CODES.get(turning, 5),
+        speed=interp.speed[spindle],
         beside=setup.words.beside,
         diameters=setup.words.diameter,
     )
@@ -139,11 +145,21 @@ def polar_shape_done(self, **words):
     cycle_state.restore_modes(self)
     state = cycle_state.state_of(self)
     path, state.path = state.path, ""
+    if path:  # of holes: a tap has named its spindle, and feeds per revolution would refer to it
+        self.active_spindle = state.spindle
     self.execute(f"{path}F{decimal(state.feed)}")
     return INTERP_OK
 
 
-SPINDLE = 2  # index into active_m_codes: 3, 4 or 5
+SPINDLE_CODES = {2: 3, 3: 4}  # M codes by CANON_DIRECTION; 1 stands
+LIVE_SPINDLE = 1  # where the main spindle is C
+
+
+def tool_spindle(interp: object) -> int:
+    """Return the number of the spindle that drives the tool: never one that is C."""
+    if MACHINE.spindle_c_code and interp.num_spindles > LIVE_SPINDLE:
+        return LIVE_SPINDLE
+    return modes.feed_spindle(interp)
 
 
 def shape_at_work(interp: Interp) -> str:
