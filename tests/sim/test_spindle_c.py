@@ -13,10 +13,12 @@ from support.sim_machines import PROGRAMS, copy_of_machines
 from support.spindle_lathe import (
     FIRST,
     FLATS,
+    INTERRUPTS,
     TEN_CHANGES,
     SpindleLathe,
     angle_of_flat,
     changes_of,
+    interrupted,
     jumps,
     kept_lathe,
     motor_jumps,
@@ -199,46 +201,11 @@ def test_a_spindle_that_cannot_become_c():
         assert not machine.get("spindle.0.orient")
 
 
-PROGRAM = [
-    *FIRST,
-    "S600 M3",
-    "G4 P0.3",
-    "M254",
-    *FLATS[1:-1],
-    "G0 C50",
-    "M255",
-    "S500 M4",
-    "G4 P0.3",
-]
-
-
-@pytest.mark.parametrize("interrupt", ["abort", "estop"])
+@pytest.mark.parametrize("interrupt", INTERRUPTS)
 def test_interrupted_at_any_time(lathe, interrupt):
     chance = random.Random(interrupt)
-    for _ in range(5):
-        interrupted(lathe, interrupt, chance.uniform(0.1, 7))
-
-
-def interrupted(lathe, interrupt, moment):
-    """Interrupt the program, look at what is left, and let the next one run."""
-    lathe.open_text([*PROGRAM, "M5", "M2"])
-    lathe.start()
-    time.sleep(moment)
-    was_c = lathe.is_c()
-    getattr(lathe, interrupt)()
-    lathe.wait_for(lambda _: abs(lathe.get("spindle-rps")) < 0.01, timeout=10)
-    stood = lathe.get("spindle-turns")
-    time.sleep(0.3)
-    assert lathe.get("spindle-turns") == pytest.approx(stood, abs=1e-3)
-    assert lathe.is_c() == (was_c and interrupt == "abort")
-    assert lathe.get("spindle-c-holds") == lathe.is_c()
-    told = "The spindle is no longer C: the machine was off. C on again before C moves"
-    assert (told in [error.text for error in lathe.errors()]) == (was_c and interrupt == "estop")
-    lathe.enable()
-    time.sleep(0.2)
-    assert lathe.get("spindle-turns") == pytest.approx(stood, abs=1e-3)
-    run = lathe.run_text([*FIRST, "M254", "G0 C10", "M255", "M2"])
-    assert run.error is None
+    for _ in range(3):
+        interrupted(lathe, interrupt, chance)
 
 
 def test_feed_per_revolution_of_the_live_tool(lathe):

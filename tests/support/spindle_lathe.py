@@ -2,6 +2,7 @@
 """The lathe whose spindle becomes C, with its spindle and its drive recorded beside the axes."""
 
 import random
+import time
 
 import numpy as np
 import pytest
@@ -51,6 +52,64 @@ def kept_lathe(name):
             yield machine
 
     return running
+
+
+CUT = [*FIRST, "S600 M3", "G4 P0.3", "M254", *FLATS[1:-1], "G0 C50", "M255", "S500 M4", "G4 P0.3"]
+LOST = "The spindle is no longer C: the machine was off. C on again before C moves"
+TYPED = (
+    "M254",
+    "M255",
+    "G0 C77",
+    "S300 M3",
+    "G1 C-30 F2000",
+    "o<face_hole_at> call [9] [0] [1] [1]",
+)
+PINS_OFF = {  # what makes LinuxCNC switch the machine off, and what ends it
+    "machine off": ("motion.enable", False),
+    "limit": ("joint.0.pos-lim-sw-in", True),
+}
+INTERRUPTS = ("abort", "estop", *PINS_OFF, "mdi", "mdi estop")
+
+
+def interrupted(lathe, interrupt, chance):
+    """Interrupt the program or MDI at a random moment, look at what is left, run the next one."""
+    if interrupt.startswith("mdi"):
+        for block in chance.choices(TYPED, k=3):
+            lathe.mdi(block)
+        lathe.errors()
+        lathe.mdi(chance.choice(TYPED), wait=False)
+        time.sleep(chance.uniform(0, 1.5))
+    else:
+        lathe.open_text([*CUT, "M5", "M2"])
+        lathe.start()
+        time.sleep(chance.uniform(0.1, 7))
+    was_c, pin = lathe.is_c(), PINS_OFF.get(interrupt)
+    if pin:
+        lathe.set(*pin)
+        lathe.wait_for(lambda _: not lathe.get("motion.motion-enabled"), timeout=10)
+        lathe.set(pin[0], not pin[1])
+    else:
+        (lathe.estop if "estop" in interrupt else lathe.abort)()
+    check_what_is_left(lathe, was_c, keeps=interrupt in ("abort", "mdi"))
+    lathe.errors()
+    lathe.enable()
+    stood = lathe.get("spindle-turns")
+    time.sleep(0.2)
+    assert lathe.get("spindle-turns") == pytest.approx(stood, abs=1e-3)
+    lathe.mdi("M5")
+    run = lathe.run_text([*FIRST, "M254", "G0 C10", "M255", "M2"])
+    assert run.error is None, run.error
+
+
+def check_what_is_left(lathe, was_c, keeps):
+    """Assert that the spindle stands and is one of the two, as it must be; it says so."""
+    lathe.wait_for(lambda _: abs(lathe.get("spindle-rps")) < 0.01, timeout=10)
+    stood = lathe.get("spindle-turns")
+    time.sleep(0.3)
+    assert lathe.get("spindle-turns") == pytest.approx(stood, abs=1e-3)
+    assert lathe.is_c() == (was_c and keeps)
+    assert lathe.get("spindle-c-holds") == lathe.is_c()
+    assert (LOST in [error.text for error in lathe.errors()]) == (was_c and not keeps)
 
 
 def random_changes(seed, count):

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The spindle that becomes C is interrupted at random moments; the next program runs."""
+
+import random
+
+import pytest
+
+from soak import SEED, Tried, often
+from support.spindle_lathe import INTERRUPTS, SpindleLathe, interrupted
+
+
+@pytest.mark.parametrize("interrupt", INTERRUPTS)
+def test_interrupts(interrupt, request):
+    tried = Tried(request, f"spindle and C, {interrupt}, and the next program")
+    chance = random.Random(f"{interrupt} {SEED}")
+    with SpindleLathe() as lathe:
+        for _ in range(often(100)):
+            interrupted(lathe, interrupt, chance)
+            tried.one()
