@@ -114,11 +114,13 @@ def test_a_wrong_entry_is_refused_and_nothing_is_cut(lathe, tmp_path, form, wron
 
 @BOTH
 def test_the_live_tool_beside_a_main_spindle_that_is_c(tmp_path, unit):
-    program = filled_in(
-        f"form_face_holes_{unit}", tmp_path / "auto.ngc", tool=1, on=3, off=5, spindle=1
-    )
+    """A tap is refused unless spindle 1 turns; the main spindle never does."""
+    tap = dict(kind=1, feed=1.5 / UNITS[unit], on=3, off=5)
     with Tracer(SIM / f"lathe_spindle_c_{unit}.ini", tools={1: CUTTER}) as spindle_lathe:
-        lines = program.read_text().splitlines()
-        show = ";py,print('live', this.speed[1], this.speed[0])"
-        found = spindle_lathe.trace_text(["G0 X60 Z20", *lines[:-1], show, "M2"])
-    assert found.error is None and "live 2000.0 0.0" in found.printed
+        for spindle in (0, 1):
+            path = tmp_path / f"{spindle}.ngc"
+            form = f"form_face_holes_{unit}"
+            program = filled_in(form, path, tool=1, spindle=spindle, **tap).read_text()
+            found = spindle_lathe.trace_text(["G0 X60 Z20", *program.splitlines()])
+            assert (found.error is None) == (spindle == 1)
+            assert ("M3" in [event.text for event in found.events]) == (spindle == 0)

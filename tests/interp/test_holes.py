@@ -278,10 +278,11 @@ def test_a_tap_is_the_live_tools_where_the_main_spindle_is_c(spindle_lathe, bloc
         assert traced.error is None and "pitch 1.5 mm" in [e.text for e in traced.events]
 
 
-def test_the_spindle_of_feeds_per_revolution_is_afterwards_the_same(spindle_lathe):
+def test_the_spindle_in_use_is_afterwards_the_same(spindle_lathe):
+    """LinuxCNC refuses G33.1 where the one in use stands: here spindle 0 does."""
     head = ["G21 G18 G7 G90 G94", "T1 M6", "G0 X60 Z10", "S500 M3 $1"]
     tap = call("face_hole_at", kind=1, feed=1.5)
-    for speeds, spindle in ((["G97 S200"], 0), (["S300 G97 $1"], 1)):
-        show = ";py,print('used', this.active_spindle)"
-        traced = spindle_lathe.trace_text([*head, *speeds, tap, show, "M2"])
-        assert traced.error is None and f"used {spindle}" in traced.printed
+    for code, works in (("G97 S200", False), ("S500 G97 $1", True)):
+        traced = spindle_lathe.trace_text([*head, code, tap, "G33.1 Z5 K1", "M2"])
+        assert (traced.error is None) == works, traced.error
+        assert works or "not turning in G33.1" in traced.error.text
