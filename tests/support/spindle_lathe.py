@@ -61,7 +61,7 @@ TYPED = (
     "M255",
     "G0 C77",
     "S300 M3",
-    "G1 C-30 F2000",
+    "G0 C-30",
     "o<face_hole_at> call [9] [0] [1] [1]",
 )
 PINS_OFF = {  # what makes LinuxCNC switch the machine off, and what ends it
