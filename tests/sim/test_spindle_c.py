@@ -240,6 +240,23 @@ def test_holes_with_the_live_tool(lathe):
     assert line.max() > 0
 
 
+def test_aborts_in_holes_leave_it_c(lathe):
+    chance = random.Random(28)
+    face = "o<face_holes> call [3] [30] [20] [-9999] [4] [2] [900] [1.5] [0.1] [0]"
+    for _ in range(4):
+        lathe.open_text([*FIRST, "T1 M6", "M254", "G0 X40 Z5 C0", "S300 M3 $1", face, "M2"])
+        lathe.start()
+        depth = chance.uniform(-4, 5)
+        lathe.wait_for(lambda status: lathe.is_c() and status.actual[2] < depth)  # noqa: B023
+        lathe.abort()
+        lathe.errors()
+        assert lathe.is_c() and lathe.get("spindle-c-holds")
+        lathe.mdi("G90 G0 Z20")
+        assert lathe.errors() == []
+    run = lathe.run_text([*FIRST, "T1 M6", "M254", "G0 X40 Z5 C0", face, "M255", "M2"])
+    assert run.error is None and run.samples.axes["Z"].min() == pytest.approx(-4, abs=0.002)
+
+
 def test_the_manuals_program_switches_c_on_by_m35():
     with SpindleLathe("lathe_spindle_c_inch") as machine:
         run = machine.run(PROGRAMS / "polar" / "manual_a.ngc")
