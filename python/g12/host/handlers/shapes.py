@@ -155,7 +155,7 @@ SPINDLE_CODES = {2: 3, 3: 4}  # M codes by CANON_DIRECTION; 1 stands
 LIVE_SPINDLE = 1  # where the main spindle is C
 
 
-def tool_spindle(interp: object) -> int:
+def tool_spindle(interp: Interp) -> int:
     """Return the number of the spindle that drives the tool: never one that is C."""
     if MACHINE.spindle_c_code and interp.num_spindles > LIVE_SPINDLE:
         return LIVE_SPINDLE
