@@ -52,6 +52,7 @@ net polar-jog polar-xzc.jog-inhibit => motion.jog-inhibit
 net polar-line motion.program-line => polar-xzc.program-line
 net polar-hold polar-xzc.hold => motion.feed-inhibit
 net polar-speed motion.requested-vel => polar-xzc.speed
+net polar-feed-upm motion.feed-upm => polar-xzc.feed-upm
 net polar-feed polar-xzc.feed => motion.adaptive-feed
 setp polar-xzc.acceleration [AXIS_X]MAX_ACCELERATION
 setp polar-xzc.c-speed [AXIS_C]MAX_VELOCITY
@@ -70,6 +71,10 @@ inhibited.
 M68 E3 Q2 asks for the face by hand: for lines of MDI, which nobody has looked at before. With M52
 P1 their speed is kept such that C can follow, the slower the nearer to the centre, and a move of a
 program's line is held.
+
+With M68 E3 Q1 and M52 P1 the operator's feed override counts up to \\fBmost-override\\fR, if that is not 0:
+what it is turned up beyond that is taken back by \\fBfeed\\fR. G12.1 sets the pin, and \\fBunit\\fR, which it
+needs to know the override: a program's unit in the machine's.
 
 .B What is refused.
 A move that means nothing in the type in force fails, in words: one to a Y other than 0 in type 0,
@@ -98,6 +103,9 @@ pin in bit program "a program or MDI moves the machine, not a jog: motion.coord-
 pin in bit stands "the machine stands: motion.in-position";
 pin in s32 program_line "line of the move that is made, 0 in MDI: motion.program-line";
 pin in float speed "speed that is asked for: motion.requested-vel";
+pin in float feed_upm "feed under way, program units a minute: motion.feed-upm";
+pin in float unit = 1.0 "of the program, in the machine's";
+pin in float most_override "of the feed on the face by program, 0 for any";
 pin in float acceleration "of the face's X and Y: [AXIS_X]MAX_ACCELERATION";
 pin in float c_speed "[AXIS_C]MAX_VELOCITY";
 pin in float c_acceleration "[AXIS_C]MAX_ACCELERATION";
@@ -105,7 +113,7 @@ pin out float type "for motion.switchkins-type";
 pin out bit face "type 1 is in force";
 pin out bit jog_inhibit "type 1 is in force without a program or MDI: for motion.jog-inhibit";
 pin out bit hold "a program moves the face by hand: for motion.feed-inhibit";
-pin out float feed = 1.0 "share of the speed that C can follow by hand: for motion.adaptive-feed";
+pin out float feed = 1.0 "share of the speed that C can follow: for motion.adaptive-feed";
 
 function guard "Choose the type.";
 
@@ -129,6 +137,7 @@ author "the g12 package";
 #define LAG (0.1 * DEGREE) /* of C by hand, where the planner's acceleration is more than C's */
 #define NEARER 1.2 /* that begins so much outside of where the two are equal */
 #define SETTLED 10 /* cycles of standing: LinuxCNC smooths the joints' way over the last few */
+#define LEAST_FEED 0.01 /* by program: no override is so high that it needs less */
 #define ASIDE 0.4  /* of the acceleration: the rest is for what the slide has to do beside it */
 
 enum { XZC, FACE, BY_HAND, NO_MOVES };
@@ -319,12 +328,32 @@ static double followed(const struct __comp_state *__comp_inst, double r)
     return v * r / sqrt(r * r + state.beside * state.beside); /* the slide is so much faster */
 }
 
+/* Return the operator's feed override, as it last moved the machine: LinuxCNC tells what it makes of
+   F, together with the share that `feed` was in the cycle before. */
+static double override(const struct __comp_state *__comp_inst)
+{
+    static double known = 1.0;
+
+    if (feed_upm > 0.0 && speed > 0.0) known = feed_upm * unit / (60.0 * speed * feed);
+    return known;
+}
+
+/* Return the share of the speed that C can follow of what program and operator ask for. */
+static double share(const struct __comp_state *__comp_inst, int by_hand)
+{
+    double most = c_acceleration > 0.0 ? followed(__comp_inst, state.slide) : 0.0, turned_up;
+
+    if (by_hand) return speed > most ? most / speed : 1.0;
+    turned_up = override(__comp_inst);
+    if (!face || most_override <= 0.0 || turned_up <= most_override) return 1.0;
+    return fmax(most_override / turned_up, LEAST_FEED);
+}
+
 /* A switch while a jog is under way would make the axes jump to where the jog stood before it. */
 FUNCTION(guard)
 {
     static int standing;
     int asked = request == FACE || request == BY_HAND, by_hand;
-    double most = c_acceleration > 0.0 ? followed(__comp_inst, state.slide) : 0.0;
 
     state.spent = asked && (state.spent || !enabled || !program);
     standing = stands ? standing + (standing < SETTLED) : 0;
@@ -333,7 +362,7 @@ FUNCTION(guard)
     by_hand = face && request == BY_HAND;
     jog_inhibit = face && !program;
     hold = by_hand && program_line > 0;
-    feed = by_hand && speed > most ? most / speed : 1.0;
+    feed = share(__comp_inst, by_hand);
     state.given = 1;
 }
 

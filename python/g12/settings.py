@@ -102,6 +102,7 @@ TABLE: dict[str, Choice | Number | MachineCodes] = {
     "POLAR_TOLERANCE": Number(least=0.00001),  # less than any machine's step
     "POLAR_POLE": Choice(("rotate", "refuse")),
     "POLAR_KINEMATICS": Choice(("0", "1")),
+    "POLAR_SWITCH_TIME": Number(most=3600.0),
     "POLAR_TOOL_OFFSET": Number(least=-math.inf),
     "CYLINDER_WORD": Choice(("radius", "diameter")),
     "CYLINDER_X": Choice(("refuse", "allow")),
@@ -115,8 +116,8 @@ class Settings:
     """The settings of section ``[G12]``.
 
     Lengths and feeds are in machine units (per minute), ``entry_angle`` in degrees,
-    ``plunge_feed`` in per cent of F. ``None`` means that the default
-    depends on the machine: a tolerance of 0.005 mm or 0.0002 in.
+    ``plunge_feed`` in per cent of F, ``polar_switch_time`` in seconds. ``None`` means that the
+    default depends on the machine: a tolerance of 0.005 mm or 0.0002 in.
     """
 
     clearing: str = "rings"
@@ -131,6 +132,7 @@ class Settings:
     polar_tolerance: float | None = None
     polar_pole: str = "rotate"
     polar_kinematics: str = "0"
+    polar_switch_time: float = 10.0
     polar_tool_offset: float = 0.0
     cylinder_word: str = "radius"
     cylinder_x: str = "refuse"

@@ -22,7 +22,7 @@ from support.polar_drawings import HEXAGON, INCHES, MILLIMETRES
 from support.polar_programs import Cut
 from support.sim_machines import SIM
 
-FEEDS = ((1000, 1.02), (2000, 1.05), (3000, 1.05))  # and the most of the ideal time
+FEEDS = ((1000, 1.02), (2000, 1.03), (3000, 1.03))  # and the most of the ideal time
 ROUNDING = 1e-3
 NO_SLOWER = 1.19  # than pieces at 1000 mm/s²: the axes of the face have 707, whose root that is
 THIRD = 2 * math.pi / 3  # C turns the other way in between
@@ -31,9 +31,9 @@ CIRCLE = [  # r 10, 20 off the axis
 ]
 SLIDE, SPINDLE = (150.0, 1000.0), (math.radians(360), math.radians(3600))  # speed, acceleration
 SLOW_SLIDE, SLOW_SPINDLE = (150.0, 1500.0), (math.radians(90), math.radians(1200))
-OF_LEAST = {1000: 1.05, 2000: 1.12, 3000: 1.21}  # the circle's time on the face
-OF_LEAST_SLOW = {500: 1.05, 1000: 1.30, 2000: 1.80}  # with an override of 1.5 in reserve
-HEXAGON_SLOW = {500: 1.05, 2000: 1.40}
+OF_LEAST = {1000: 1.05, 2000: 1.12, 3000: 1.20}  # the circle's time on the face
+OF_LEAST_SLOW = {500: 1.05, 1000: 1.12, 2000: 1.20}
+HEXAGON_SLOW = {500: 1.05, 2000: 1.15}
 SLOT_BLOCK, SLOT_LENGTH = (7,), 36.0  # of slot.ngc: through the pole
 
 

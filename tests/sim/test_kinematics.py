@@ -317,7 +317,9 @@ def test_single_steps_on_the_face(lathe):
         lathe.step()
         lathe.wait_for(lambda status: status.paused or status.idle)
         time.sleep(0.05)
-        status = lathe.wait_for(lambda status: not lathe.get("motion.current-vel"))
+        lathe.wait_for(lambda _: not lathe.get("motion.current-vel"))
+        time.sleep(0.1)  # on a busy machine the status is later than the pins
+        status = lathe.stat()
         stood.append(complex(status.position[X], status.position[Y]))
         heights.append(status.position[2])
         if 2 in heights and heights[-1] == 5:  # behind G13.1, no longer where it starts from
@@ -431,6 +433,46 @@ def test_a_section_has_its_own_acceleration(lathe):
     assert face_accelerations(lathe) == [707, 707]
 
 
+def test_a_section_that_fails_leaves_the_acceleration_of_the_ini(lathe):
+    """A block that cannot be executed between the moves, and a move that is refused."""
+    for fails in ("M66 P77 L0", "G1 X400"):
+        run = lathe.run_text([*CIRCLE_NEAR[:-2], fails, "G1 X30", *CIRCLE_NEAR[-2:]])
+        assert run.error
+        lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707], timeout=SOON)
+        assert not on_the_face(lathe)
+        lathe.errors()
+
+
+@pytest.mark.parametrize("own", ["M52 P0", "M52 P1"])
+def test_adaptive_feed_is_in_force_on_the_face_and_as_it_was_behind(lathe, own):
+    def adaptive():
+        return "M52" in lathe.stat().modes.mcodes
+
+    lathe.open_text([own, *CIRCLE_NEAR])
+    lathe.start()
+    lathe.wait_for(lambda _: on_the_face(lathe) and not lathe.get("motion.in-position"))
+    assert adaptive()
+    lathe.wait_idle()
+    assert adaptive() is (own == "M52 P1")
+    lathe.mdi("M52 P0")
+
+
+def test_the_feed_is_turned_up_as_far_as_c_follows(lathe):
+    lathe.open_text([*CIRCLE_NEAR[:-2], *["G3 I-10"] * 4, *CIRCLE_NEAR[-2:]])
+    lathe.start()
+    lathe.feed_override(2.0)
+    lathe.wait_for(lambda _: on_the_face(lathe) and lathe.get("motion.current-vel") > 49)
+    most = lathe.get("polar-xzc.most-override")
+    assert 1.0 <= most < 1.2
+    lathe.wait_for(lambda _: lathe.get("motion.current-vel") == pytest.approx(50 * most))
+    assert lathe.get("polar-xzc.feed") == pytest.approx(most / 2.0)
+    lathe.feed_override(0.5)
+    lathe.wait_for(lambda _: lathe.get("motion.current-vel") == pytest.approx(25))
+    lathe.feed_override(1.0)
+    lathe.wait_idle()
+    assert lathe.errors() == []
+
+
 @pytest.mark.parametrize("interrupt", [abort, emergency_stop, jog_mode])
 def test_an_interrupted_section_leaves_the_acceleration_of_the_ini(lathe, interrupt):
     lathe.open_text(CIRCLE_NEAR)
@@ -460,3 +502,13 @@ def test_c_and_the_slide_keep_their_limits_at_any_override():
             if not exceeds_limits_itself(machine):
                 assert np.abs(np.diff(c, 2)).max() * 1e6 <= 1200 * 1.001
                 assert np.abs(np.diff(x, 2)).max() * 1e6 <= 1500 * 1.001
+
+
+def test_a_switch_that_does_not_come_is_refused_after_the_time_that_the_ini_says():
+    """Nothing drives the guard."""
+    own = {"HAL": {"HALFILE": "parts/three_joints.hal"}, "G12": {"POLAR_SWITCH_TIME": "0.5"}}
+    with Machine(SIM / "lathe_mm_kinematics.ini", overrides=own) as machine:
+        run = machine.run_text(CIRCLE_NEAR)
+        assert "did not change its kinematics within 0.5 s" in run.error.text
+        assert run.seconds < 3
+        assert face_accelerations(machine) == [707, 707]

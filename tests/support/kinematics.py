@@ -8,7 +8,7 @@ import pytest
 from g12.tools.install.lathe.kinematics_rules import module_has, module_installed
 
 needs_kinematics = pytest.mark.skipif(
-    not (module_installed("polar_xzc") and module_has(".tool-offset")),
+    not (module_installed("polar_xzc") and module_has(".most-override")),
     reason="first: make kinematics",
 )
 

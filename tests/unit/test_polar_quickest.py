@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Arc, Line, Mark, Plunge, path_length
 from g12.polar.follow import FaceLimits, is_able
-from g12.polar.quickest import SHARES, quickest
+from g12.polar.quickest import SHARES, FaceStretch, quickest
 
 QUICK = FaceLimits(1000.0, 707.0, 1000.0, radians(3600.0), radians(360.0), 1.0, 20.0)
 SLOW = FaceLimits(1500.0, 1060.0, 1500.0, radians(1200.0), radians(90.0), 1.5, 35.0)
@@ -31,9 +31,14 @@ def made_of(path, limits):
     return quickest(path, [False] * len(path), limits)
 
 
+def shares_of(made):
+    return [stretch.share if stretch else 0.0 for stretch in made.stretches]
+
+
 def test_far_from_the_pole_nothing_is_softened():
     path = [line((60, -20), (60, 20), feed=3000.0), Mark(2, "M8")]
-    assert quickest(path, [True, False], QUICK) == (path, [True, False], [1.0, 1.0])
+    made = quickest(path, [True, False], QUICK)
+    assert made == (path, [True, False], [FaceStretch(1.0, 1.0)] * 2)
 
 
 @pytest.mark.parametrize("feed", [1000.0, 2000.0])
@@ -41,24 +46,24 @@ def test_a_circle_nearer_to_the_pole_is_whole_on_a_softer_face(feed):
     whole = circle(10, 20, feed)
     made = made_of([whole], QUICK)
     assert made.path == [whole]
-    (share,) = made.shares
+    (share,) = shares_of(made)
     assert is_able(whole, QUICK, share)
     assert not any(is_able(whole, QUICK, one) for one in SHARES if one > share)
 
 
 def test_where_c_is_too_slow_the_feed_is_what_it_can_follow():
     made = made_of([circle(10, 20, 2000.0)], SLOW)
-    feeds = [part.feed for part, share in zip(made.path, made.shares) if share]
+    feeds = [part.feed for part, share in zip(made.path, shares_of(made)) if share]
     assert 2000.0 == max(feeds) > min(feeds)
     assert hypot(made.path[-1].x1, made.path[-1].c1) == pytest.approx(30.0)
 
 
 def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
     made = quickest([line((-90, 0.5), (90, 0.5), feed=3000.0)], [True], QUICK)
-    there, *beside, back = made.shares
+    there, *beside, back = shares_of(made)
     assert there == back > 0.0 in beside
     assert made.stopping == [*[False] * (len(made.path) - 1), True]
-    in_pieces = [part for part, share in zip(made.path, made.shares) if not share]
+    in_pieces = [part for part, share in zip(made.path, shares_of(made)) if not share]
     assert [part.feed for part in in_pieces] == [3000.0]
     assert path_length(in_pieces[0]) < 40
     for before, after in zip(made.path, made.path[1:]):
@@ -68,7 +73,7 @@ def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
 def test_the_quicker_pieces_are_the_more_is_made_of_them():
     def on_face(speed):
         made = made_of([line((-90, 2), (90, 2), feed=3000.0)], QUICK._replace(pieces_speed=speed))
-        return sum(path_length(part) for part, share in zip(made.path, made.shares) if share)
+        return sum(path_length(part) for part, share in zip(made.path, shares_of(made)) if share)
 
     assert on_face(1.0) > on_face(20.0) > on_face(80.0)
 
@@ -79,7 +84,7 @@ MARK, PLUNGE = Mark(2, "M8"), Plunge(3, 500.0, 0.0, -1.0)
 
 def test_marks_and_plunges_go_with_what_is_in_front():
     path = [MARK, FAR, MARK, PLUNGE, NEAR._replace(c0=-1, c1=1), PLUNGE, FAR, MARK]
-    on = [bool(share) for share in made_of(path, QUICK).shares]
+    on = [bool(share) for share in shares_of(made_of(path, QUICK))]
     assert on == [False, True, True, True, False, False, True, True]
 
 
@@ -87,18 +92,31 @@ def test_marks_and_plunges_go_with_what_is_in_front():
 def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
     far = line((40, 0), (40, 10 * seconds), feed=600.0)
     near = NEAR._replace(c0=-1, c1=1)
-    assert [*map(bool, made_of([near, far, MARK, near], QUICK).shares)] == [False, worth, worth, 0]
+    assert [*map(bool, shares_of(made_of([near, far, MARK, near], QUICK)))] == [
+        False,
+        worth,
+        worth,
+        0,
+    ]
 
 
 def test_a_stretch_between_two_switches_has_its_own_acceleration():
     near = NEAR._replace(c0=-1, c1=1)
-    shares = made_of([circle(10, 20, 2000.0), near, FAR], QUICK).shares
+    shares = shares_of(made_of([circle(10, 20, 2000.0), near, FAR], QUICK))
     assert 0.0 < shares[0] < shares[-1] == 1.0
+
+
+@pytest.mark.parametrize(("feed", "override"), [(2000.0, 1.5), (2900.0, 1.2), (3470.0, 1.0)])
+def test_the_feed_may_be_turned_up_as_far_as_c_follows(feed, override):
+    """At 60 mm from the pole and 1 radian a second C is at its speed with F3600, 0.002 s early."""
+    slow = QUICK._replace(c_speed=1.0, override=1.5)
+    (stretch,) = made_of([line((60, -5), (60, 5), feed=feed)], slow).stretches
+    assert stretch.override == pytest.approx(override, abs=0.01)
 
 
 def test_a_machine_that_follows_all_of_it_is_asked_for_nothing():
     free = QUICK._replace(c_acceleration=inf, c_speed=inf, slide_acceleration=inf)
-    assert made_of([line((0.01, -20), (0.01, 20), feed=9000.0)], free).shares == [1.0]
+    assert shares_of(made_of([line((0.01, -20), (0.01, 20), feed=9000.0)], free)) == [1.0]
 
 
 def test_a_long_section_near_the_pole_is_planned_soon():
@@ -128,9 +146,9 @@ circles = st.builds(
 @given(st.one_of(ways, circles), st.sampled_from([QUICK, SLOW]))
 def test_all_of_the_path_is_made_and_followed(path, limits):
     made = made_of(path, limits)
-    assert len(made.path) == len(made.stopping) == len(made.shares)
+    assert len(made.path) == len(made.stopping) == len(made.stretches)
     assert sum(map(path_length, made.path)) == pytest.approx(sum(map(path_length, path)))
-    for share, run in groupby(zip(made.path, made.shares), lambda one: one[1]):
+    for share, run in groupby(zip(made.path, shares_of(made)), lambda one: one[1]):
         for move, _ in run:
             assert not share or is_able(move, limits, share)
             assert share or move.feed in [one.feed for one in path]

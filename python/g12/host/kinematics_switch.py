@@ -6,7 +6,8 @@ answers with, is wired in polar_kinematics.hal.
 
 The acceleration of X and Y on the face is that of the section. LinuxCNC takes it from HAL pins each
 time before it goes on with the interpreter (`check_ini_hal_items` in emctaskmain.cc), and canon
-asks for it at each move.
+asks for it at each move. How far the operator may turn the feed up there is told to polar_xzc,
+which keeps to it by adaptive feed, M52 P1.
 """
 
 from __future__ import annotations
@@ -18,19 +19,21 @@ import linuxcnc
 
 from g12.errors import number
 from g12.host.interp import Interp
+from g12.host.machine import MACHINE
 from g12.host.program_lines import without_line
 from g12.section.modes import decimal
 
 ACCELERATIONS = ("ini.x.max_acceleration", "ini.y.max_acceleration")  # HAL pins
+OVERRIDE, UNIT = "polar-xzc.most-override", "polar-xzc.unit"
+ADAPTIVE = 52  # active_m_codes
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
 OFF, BY_PROGRAM, BY_HAND, NO_MOVES = 0, 1, 2, 3  # what is asked for
-SWITCHING = 10  # seconds that it may take at most, on a busy machine
 INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
 SAME_OFFSET = 1e-4  # program units
 PLANES = {1: "G17", 2: "G19", 3: "G18"}  # interp.plane
 CENTRES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
-ON_THE_FACE = "G17G91.1"
-NOT_SWITCHED = "the machine did not change its kinematics: is polar_kinematics.hal loaded?"
+ON_THE_FACE = "G17G91.1M52P1"
+OLDER = "the module polar_xzc is older than this package: build it again, make kinematics"
 
 
 def face_in_force() -> bool:
@@ -44,7 +47,12 @@ def modes_found(interp: Interp) -> str:
     """Return the block that gives back what `ON_THE_FACE` changes."""
     active = without_line(interp.active_g_codes)
     centres = next(CENTRES[code] for code in active if code in CENTRES)
-    return f"{PLANES[interp.plane]}{centres}"
+    return f"{PLANES[interp.plane]}{centres}{adaptive_feed(interp)}"
+
+
+def adaptive_feed(interp: Interp) -> str:
+    """Return the block that gives back M52 as it is."""
+    return f"M52P{int(ADAPTIVE in without_line(interp.active_m_codes))}"
 
 
 def accelerate(interp: Interp, share: float) -> None:
@@ -58,23 +66,43 @@ def accelerate(interp: Interp, share: float) -> None:
         hal.set_p(pin, repr(share * acceleration))
 
 
-def to_face(interp: Interp, machine_unit: float, asked: int, share: float = 1.0) -> Iterator[str]:
+def limit_override(interp: Interp, machine_unit: float, most: float) -> None:
+    """Tell polar_xzc how far the feed may be turned up on the face."""
+    if interp.task and not is_older():
+        hal.set_p(OVERRIDE, repr(most))
+        hal.set_p(UNIT, repr(1.0 / machine_unit))
+
+
+def is_older() -> bool:
+    """Tell whether the module polar_xzc that is loaded cannot limit the override."""
+    try:
+        hal.get_value(OVERRIDE)
+    except RuntimeError:
+        return True
+    return False
+
+
+def to_face(
+    interp: Interp, machine_unit: float, asked: int, share: float = 1.0, override: float = 1.0
+) -> Iterator[str]:
     """Go to the face; yield the block to wait for.
 
-    ``machine_unit`` is one in program units, ``share`` is of the INI's accelerations.
+    ``machine_unit`` is one in program units, ``share`` is of the INI's accelerations, and so far
+    may the feed ``override`` go.
     """
     accelerate(interp, share)
+    limit_override(interp, machine_unit, override)
     centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
     interp.execute(f"M68E{CENTRE_OUTPUT}Q{decimal(centre / machine_unit)}")
     interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")  # the last request may have ended by itself
     interp.execute(f"M68E{FACE_OUTPUT}Q{asked}")
-    yield f"M66P{FACE_INPUT}L3Q{SWITCHING}"
+    yield f"M66P{FACE_INPUT}L3Q{decimal(MACHINE.settings.polar_switch_time)}"
 
 
 def to_axes(interp: Interp) -> Iterator[str]:
     """Go back to X, Z and C; yield the block to wait for."""
     interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")
-    yield f"M66P{FACE_INPUT}L4Q{SWITCHING}"
+    yield f"M66P{FACE_INPUT}L4Q{decimal(MACHINE.settings.polar_switch_time)}"
     accelerate(interp, 1.0)  # not before the machine has been there: LinuxCNC reads ahead
 
 
@@ -83,17 +111,28 @@ def has_switched(interp: Interp) -> bool:
     return not interp.task or interp.params[INPUT_FOUND] != TIMED_OUT
 
 
+def not_switched() -> str:
+    """Return the sentence for a switch that has not come in time."""
+    return (
+        "the machine did not change its kinematics within "
+        f"{number(MACHINE.settings.polar_switch_time)} s ([G12] POLAR_SWITCH_TIME): "
+        "is polar_kinematics.hal loaded, and do all axes stand?"
+    )
+
+
 def y_offset(interp: Interp) -> float:
     """Return what a program's Y lacks of the machine's, which is the face's: its centre is 0."""
     return interp.origin_offset_y + interp.axis_offset_y + interp.tool_offset.y
 
 
-def other_offset(interp: Interp, beside: float) -> str:
-    """Return what is wrong where the kinematics have the tool elsewhere beside the X line, else "".
+def other_module(interp: Interp, beside: float) -> str:
+    """Return what is wrong with the module polar_xzc, else "".
 
-    The machine stands on the face at its beginning; ``beside`` is what the settings say, both in
-    program units.
+    It is an older one, or has the tool elsewhere beside the X line: the machine stands on the face
+    at its beginning, ``beside`` is what the settings say, both in program units.
     """
+    if is_older():
+        return OLDER
     found = interp.current_y + y_offset(interp)
     if abs(found - beside) <= SAME_OFFSET:
         return ""

@@ -21,6 +21,7 @@ class FaceSwitch(NamedTuple):
     on: bool
     place: tuple[float, float, float]  # X (radius value), C in degrees, Z
     share: float = 1.0  # of the INI's accelerations of X and Y, until the way back
+    override: float = 1.0  # so far the operator may turn the feed up there
 
 
 class FaceMove(NamedTuple):

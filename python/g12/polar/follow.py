@@ -40,6 +40,7 @@ from g12.polar.beside import along_and_around, stand
 from g12.polar.pole import POLE
 
 LOOKS = 16  # places on a line, and on each quarter of an arc, that are looked at
+OVERSHOOT = 0.002  # seconds until polar_xzc sees that the feed is turned up
 LEAST_SPEED = 1e-3  # program units per second
 MOST_TURNING = 1e6  # radians for a unit of length: at the pole
 LEAST_SQUARE = 1e-12  # of p and q / R together: nothing is asked of an axis
@@ -55,7 +56,7 @@ class FaceLimits(NamedTuple):
     slide_acceleration: float
     c_acceleration: float  # radians per second squared
     c_speed: float  # radians per second
-    override: float  # the most that the operator may turn the feed up by
+    override: float  # the most that the operator may turn the feed up to
     pieces_speed: float  # about what pieces reach far from the pole
     slide_speed: float = inf
     beside: float = 0.0  # the X line is the tool, towards C+
@@ -83,7 +84,8 @@ def demands_of(move: Line | Arc, limits: FaceLimits) -> Sequence[Demand]:
 def followed(move: Line | Arc, place: Demand, limits: FaceLimits, share: float = 1.0) -> float:
     """Return the most speed that C and the slide can follow at a place, a minute's way.
 
-    At that and at any below, with a share of the planner's acceleration in use.
+    At that and at any below, with a share of the planner's acceleration in use; inf where the
+    planner itself goes no faster.
     """
     bend, most = 0.0, share * limits.acceleration
     if isinstance(move, Arc):
@@ -97,9 +99,9 @@ def followed(move: Line | Arc, place: Demand, limits: FaceLimits, share: float =
         under = p * p - both * (1.0 - standing * standing)
         if both > LEAST_SQUARE and under >= 0.0:
             square = min(square, max(0.0, p - sqrt(under)) / both)
-    if square * bend >= most:  # the planner goes no faster round the arc
+    if square * bend >= most:
         return inf
-    return 60.0 * sqrt(square) / limits.override
+    return 60.0 * max(0.0, sqrt(square) - OVERSHOOT * most)
 
 
 def is_able(move: Line | Arc, limits: FaceLimits, share: float = 1.0) -> bool:

@@ -23,7 +23,7 @@ from g12.polar.face import FaceMove, FaceSwitch, in_face, passed
 from g12.polar.follow import FaceLimits
 from g12.polar.pieces import Law, split_move
 from g12.polar.pole import POLE, through_pole
-from g12.polar.quickest import quickest
+from g12.polar.quickest import FaceStretch, quickest
 
 POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
 SAME_ANGLE = 1e-9  # radians
@@ -64,10 +64,10 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
     )
     stopping = stops(path, ROUNDING_SHARE * tolerance, quick)
     machine = _SlideAndSpindle(contour, settings, c)
-    shares = [0.0] * len(path)
+    stretches: list[FaceStretch | None] = [None] * len(path)
     if settings.face:
-        path, stopping, shares = quickest(path, stopping, settings.face)
-    for element, stop, face in zip(path, stopping, shares):
+        path, stopping, stretches = quickest(path, stopping, settings.face)
+    for element, stop, face in zip(path, stopping, stretches):
         machine.switch(element.line, face)
         if isinstance(element, Mark):
             machine.steps.append(element.action)
@@ -131,11 +131,11 @@ class _SlideAndSpindle(StepMaker):
         law, beside = self._law(move.feed, deviation), self._settings.beside
         return split_beside(move, law, beside) if beside else split_move(move, law)
 
-    def switch(self, line: int, share: float) -> None:
-        """Go to the face, with a share of its acceleration, or back (0.0), if not there yet."""
-        if bool(share) is not self._on_face:
-            self._on_face, self._face_angle = bool(share), self.angle
-            self.steps.append(FaceSwitch(line, bool(share), self.place, share or 1.0))
+    def switch(self, line: int, stretch: FaceStretch | None) -> None:
+        """Go to the face for a stretch of the path, or back (None), if not there yet."""
+        if (stretch is not None) is not self._on_face:
+            self._on_face, self._face_angle = stretch is not None, self.angle
+            self.steps.append(FaceSwitch(line, stretch is not None, self.place, *(stretch or ())))
 
     def cut_on_face(self, move: Line | Arc | Plunge) -> None:
         """Add a move on the face as it is."""
@@ -154,7 +154,7 @@ class _SlideAndSpindle(StepMaker):
 
     def finish(self, path: Sequence[Element]) -> None:
         """Come back from the face; add what the last pieces left over of X and Z."""
-        self.switch(path[-1].line if path else 0, 0.0)
+        self.switch(path[-1].line if path else 0, None)
         slide, z = self.place.x, self.place.z
         for element in path:
             z = z if isinstance(element, Mark) else element.z1

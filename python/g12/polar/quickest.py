@@ -42,12 +42,22 @@ WORTH_IT = 0.1  # seconds: two switches cost about as much
 STRAIGHT_ON = radians(5.0)  # a corner of more is taken for a stop
 
 
+class FaceStretch(NamedTuple):
+    """What is made on the face from one switch to the next.
+
+    With a share of the INI's acceleration, and the feed ``override`` that C and the slide follow.
+    """
+
+    share: float
+    override: float
+
+
 class OnFace(NamedTuple):
-    """A path with the share of the INI's acceleration each element is made with, 0.0 in pieces."""
+    """A path with the stretch that each element is made in, None in pieces."""
 
     path: list[Element]
     stopping: list[bool]
-    shares: list[float]
+    stretches: list[FaceStretch | None]
 
 
 class _Element(NamedTuple):
@@ -92,7 +102,7 @@ def quickest(path: Sequence[Element], stopping: list[bool], limits: FaceLimits) 
         if len(spans) == len(path) and all(span.feed for span in spans):
             break  # all of it as programmed: softer is slower
     stops = [span.element.stop and span.last == 1.0 for span in best]
-    return OnFace([_made(span) for span in best], stops, _raised(best, limits, chosen))
+    return OnFace([_made(span) for span in best], stops, _on_face(best, limits, chosen))
 
 
 def _seen(move: Element, stop: bool, following: Element | None, limits: FaceLimits) -> _Element:
@@ -188,15 +198,25 @@ def _made(span: _Span) -> Element:
     return move._replace(feed=span.feed) if span.feed else move
 
 
-def _raised(spans: list[_Span], limits: FaceLimits, share: float) -> list[float]:
-    """Return the shares, of each stretch between two switches the most that is followed."""
-    shares = []
+def _on_face(spans: list[_Span], limits: FaceLimits, share: float) -> list[FaceStretch | None]:
+    """Return each span's stretch, with the most acceleration and override that is followed."""
+    stretches: list[FaceStretch | None] = []
     for on_face, run in _stretches(spans):
         moves = [move for move in map(_made, run) if is_move(move)]
         more = (one for one in SHARES if one > share)
         able = (one for one in more if all(is_able(move, limits, one) for move in moves))
-        shares += [next(able, share) if on_face else 0.0] * len(run)
-    return shares
+        stretch = _most(moves, limits, next(able, share)) if on_face else None
+        stretches += [stretch] * len(run)
+    return stretches
+
+
+def _most(moves: list[Line | Arc], limits: FaceLimits, share: float) -> FaceStretch:
+    overrides = (
+        followed(move, place, limits, share) / move.feed
+        for move in moves
+        for place in demands_of(move, limits)
+    )
+    return FaceStretch(share, max(1.0, min(limits.override, *overrides)))
 
 
 def _seconds(spans: list[_Span], acceleration: float) -> float:

@@ -22,22 +22,21 @@ from g12.host.kinematics_switch import (
     BY_HAND,
     FACE_OUTPUT,
     NO_MOVES,
-    NOT_SWITCHED,
     OFF,
     ON_THE_FACE,
     accelerate,
     face_in_force,
     has_switched,
     modes_found,
-    other_offset,
+    not_switched,
+    other_module,
     to_axes,
     to_face,
     y_offset,
 )
-from g12.host.program_lines import ProgramLines, read_source, without_line
+from g12.host.program_lines import ProgramLines, read_source
 from g12.section.start import SectionStart
 
-ADAPTIVE = 52  # active_m_codes
 MDI_LINE = 0  # of the moves that follow, by which polar_xzc knows them
 
 
@@ -61,14 +60,14 @@ def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[in
     code = start.place.code
     if y_offset(interp):
         raise BlockRefusal(code, "needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis")
-    interp.g12_found = modes_found(interp) + adaptive_feed(interp)
+    interp.g12_found = modes_found(interp)
     asked = to_face(interp, start.machine_unit, BY_HAND)
     yield from _switch(interp, code, CallFrame(interp, messages.NO_FILE), MDI_LINE, asked)
-    wrong = other_offset(interp, beside)
+    wrong = other_module(interp, beside)
     if wrong:
         yield from switch_off(interp)
         raise BlockRefusal(code, wrong)
-    interp.execute(f"{ON_THE_FACE}M52P1")
+    interp.execute(ON_THE_FACE)
     interp.g12_by_hand = ByHand(code, interp.cutter_comp_radius)
     _lock(interp)
 
@@ -135,11 +134,6 @@ def give_back_modes(interp: Interp) -> None:
         interp.execute(found)
 
 
-def adaptive_feed(interp: Interp) -> str:
-    """Return the block that gives back M52 as it is."""
-    return f"M52P{int(ADAPTIVE in without_line(interp.active_m_codes))}"
-
-
 def _switch(
     interp: Interp, code: str, frame: CallFrame, line: int, blocks: Iterator[str]
 ) -> Iterator[int]:
@@ -148,4 +142,4 @@ def _switch(
         yield from frame.execute_and_wait(block)
     frame.leave(line)
     if not has_switched(interp):
-        raise BlockRefusal(code, NOT_SWITCHED)
+        raise BlockRefusal(code, not_switched())

@@ -22,11 +22,11 @@ from g12.host.interp import Canon, Interp
 from g12.host.kinematics_switch import (
     BY_PROGRAM,
     INPUT_FOUND,
-    NOT_SWITCHED,
     ON_THE_FACE,
     has_switched,
     modes_found,
-    other_offset,
+    not_switched,
+    other_module,
     to_axes,
     to_face,
     y_offset,
@@ -265,7 +265,8 @@ class SectionOutput:
         found = interp.params[INPUT_FOUND]
         if step.on:
             interp.g12_found = modes_found(interp)
-            yield from to_face(interp, self.machine_unit, BY_PROGRAM, step.share)
+            most = step.share, step.override
+            yield from to_face(interp, self.machine_unit, BY_PROGRAM, *most)
             interp.execute(ON_THE_FACE)
             self.path.renew()
         else:
@@ -273,7 +274,7 @@ class SectionOutput:
             interp.g12_found = None
             yield from to_axes(interp)
         if not has_switched(interp):
-            raise SectionPlace(self.code, step.line).refuse(NOT_SWITCHED)
+            raise SectionPlace(self.code, step.line).refuse(not_switched())
         wrong = self._wrong_place(step.place) if step.on and interp.task else ""
         if wrong:
             yield from to_axes(interp)
@@ -290,7 +291,7 @@ class SectionOutput:
         "" if it is.
         """
         off = (abs(there - planned) for there, planned in zip(self._stands(), place))
-        return ELSEWHERE if max(off) > SAME_PLACE else other_offset(self.interp, self.beside)
+        return ELSEWHERE if max(off) > SAME_PLACE else other_module(self.interp, self.beside)
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
         """Hand over a line, an arc or a move of Z on the face."""

@@ -33,7 +33,9 @@ PINS = (
     "motion.jog-inhibit",
     "motion.feed-inhibit",
     "motion.adaptive-feed",
+    "motion.feed-upm",
 )
+NEWEST_PIN = ".most-override"  # of the module
 NEEDED = {"num_aio": 4, "num_dio": 4}  # of motmod, which has four if it is not told
 LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
 SLACK = 1.001
@@ -96,6 +98,12 @@ def module_missing(config: Config) -> Iterator[ConfigFinding]:
             "no-kinematics",
             f"LinuxCNC has no module {FACE_KINEMATICS}",
             f"build it: make kinematics ({PAGE})",
+        )
+    elif not module_has(NEWEST_PIN):
+        yield problem(
+            "no-kinematics",
+            f"LinuxCNC's module {FACE_KINEMATICS} is older than this package: G12.1 is refused",
+            f"build it again: make kinematics ({PAGE})",
         )
 
 
@@ -276,12 +284,6 @@ def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
             f"[G12] POLAR_TOOL_OFFSET = {wanted_offset:g}, but {OFFSET} is {found:g}: "
             "G12.1 is refused",
             f"HALFILE = …/{OFFSET_HAL} after the file that loads motion, and nothing else for it",
-        )
-    elif wanted_offset and not module_has(OFFSET.removeprefix("polar-xzc")):
-        yield problem(
-            "no-kinematics",
-            f"LinuxCNC's module {FACE_KINEMATICS} is older than this package: it has no {OFFSET}",
-            f"build it again: make kinematics ({PAGE})",
         )
 
 

@@ -51,9 +51,9 @@ class SectionAxes(NamedTuple):
     """What a machine's axes can do: accelerations of X and Z in mm, of C in radians, per second².
 
     ``c_speed`` is C's greatest speed, degrees/s; ``face`` tells of the kinematics of the face,
-    ``slide`` is the acceleration of the X slide there and ``override`` what the feed may be turned
-    up to, ``beside`` how far the tool stands from the X line, mm. ``surface`` is the radius of the
-    cylinder whose unrolled surface the part is, mm, 0 of its face.
+    ``slide`` is the acceleration of the X slide there, ``beside`` how far the tool stands from the
+    X line, mm. ``surface`` is the radius of the cylinder whose unrolled surface the part is, mm, 0
+    of its face.
     """
 
     x: float
@@ -64,7 +64,6 @@ class SectionAxes(NamedTuple):
     beside: float = 0.0
     surface: float = 0.0
     slide: float = 0.0
-    override: float = 1.0
 
     def of(self, section: SectionContour) -> SectionAxes:
         """Return the same for a section: nothing but polar interpolation uses the kinematics."""
@@ -117,8 +116,7 @@ def axes_of_section(ini: Ini) -> SectionAxes:
     lengths, beside = (x * ini.mm, z * ini.mm, math.radians(c)), ini.tool_beside
     if not face:
         return SectionAxes(*lengths, speed, beside=beside)
-    slide, override = face.slide.acceleration * ini.mm, max(1.0, face.override)
-    return SectionAxes(*lengths, speed, True, beside, slide=slide, override=override)
+    return SectionAxes(*lengths, speed, True, beside, slide=face.slide.acceleration * ini.mm)
 
 
 def judge_motion(
@@ -296,11 +294,7 @@ def slower_on_face(
         move, feed = moves[index], path.part_feed(index)
         asked = (found.expected[span.last].feed or 0.0) * LESS_ON_FACE
         place = path.part.centre, axes.beside, follow_limits(move, axes)
-        if (
-            not turns(move)
-            and feed <= asked
-            and is_slow_enough(move, axes.override * feed / 60.0, *place)
-        ):
+        if not turns(move) and feed <= asked and is_slow_enough(move, feed / 60.0, *place):
             slower[index] = LEAST_ON_FACE
     return slower
 
