@@ -108,6 +108,7 @@ TABLE: dict[str, Choice | Number | MachineCodes] = {
     "CYLINDER_X": Choice(("refuse", "allow")),
     "C_CLAMP": MachineCodes("M10 M11"),
     "C_CLAMP_SHAPES": MachineCodes("M12"),
+    "LIVE_SPINDLE": Choice(tuple("01234567")),
 }
 
 
@@ -138,6 +139,7 @@ class Settings:
     cylinder_x: str = "refuse"
     c_clamp: tuple[int, ...] = ()
     c_clamp_shapes: tuple[int, ...] = ()
+    live_spindle: str = ""
 
     def tolerance(self, millimetres: float) -> float:
         """Return POLAR_TOLERANCE in machine units, which are ``millimetres`` long."""

@@ -33,7 +33,10 @@ def tracer_of(control, tools=None):
     if control.endswith("lathe"):
         codes = [f"M{number} modalgroup=10 ngc=m35" for number in BUILDERS_CODES]
         codes += ["M133 modalgroup=10 ngc=m35"]
-        overrides = {"RS274NGC": {"REMAP": [*read_ini(ini).all("RS274NGC", "REMAP"), *codes]}}
+        overrides = {
+            "RS274NGC": {"REMAP": [*read_ini(ini).all("RS274NGC", "REMAP"), *codes]},
+            "TRAJ": {"SPINDLES": 2},
+        }
     return Tracer(ini, overrides=overrides, tools=tools)
 
 

@@ -163,10 +163,10 @@ def test_lines_of_the_users_between_the_markers_stay(tmp_path):
     ini = config_in(tmp_path)
     put_in(ini, "polar", features.KINEMATICS)
     ini.write_text(
-        ini.read_text().replace("POLAR_KINEMATICS = 1\n", "POLAR_KINEMATICS = 1\nPOLAR_Z = allow\n")
+        ini.read_text().replace("KINEMATICS = 1\n", "KINEMATICS = 1\nPOLAR_X = radius\n")
     )
     list(removal.uninstall(IniText(ini), dry_run=False))
-    assert ini.read_text() == LATHE + "[G12]\nPOLAR_Z = allow\n"
+    assert ini.read_text() == LATHE + "[G12]\nPOLAR_X = radius\n"
 
 
 EDITS = [  # what install wrote, what the user makes of it, and how often it is there

@@ -7,7 +7,7 @@ from g12.tools.install import installation, package_copy, removal
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.install.rules import installed_programs, wrong_filters
-from support.small_configs import config_of, write_config
+from support.small_configs import LATHE, config_of, write_config
 
 FILTER = """\
 PROGRAM_EXTENSION = .nc Programs of haas-mill
@@ -72,7 +72,7 @@ def test_a_filter_of_the_users_own_for_the_suffix_is_refused(tmp_path):
     ("control", "text"),
     [
         ("haas-mill", "g12/python/g12 is not there"),
-        ("hass-mill", "no control hass-mill: there are fanuc-lathe"),
+        ("hass-mill", "no control hass-mill: there are colchester-lathe"),
         ("own.toml", "own.toml:1: colour is no key of a control"),
     ],
 )
@@ -87,3 +87,23 @@ def test_what_is_wrong_with_a_filter(tmp_path, control, text):
     )
     (finding,) = wrong_filters(config_of(ini), [])
     assert text in finding.text
+
+
+@pytest.mark.parametrize(
+    ("own", "lines"),
+    [
+        ("", "POLAR_Z = allow\nLIVE_SPINDLE = 0\n"),
+        ("[TRAJ]\nSPINDLES = 2\n", "POLAR_Z = allow\nLIVE_SPINDLE = 1\n"),
+        ("[G12]\nPOLAR_Z = refuse\n", "LIVE_SPINDLE = 0\n"),
+    ],
+)
+def test_a_lathes_programs_need_settings(tmp_path, own, lines):
+    text = LATHE.replace("[TRAJ]\n", own) if "TRAJ" in own else f"{LATHE}\n{own}"
+    ini = write_config(tmp_path, text)
+    before = ini.read_bytes()
+    put_in(ini, "programs-doosan-lathe")
+    assert lines in ini.read_text() and ini.read_text().count("POLAR_Z") == 1
+    put_in(ini, "programs-doosan-lathe")
+    assert ini.read_text().count("LIVE_SPINDLE") == 1
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert ini.read_bytes() == before

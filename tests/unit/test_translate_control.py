@@ -7,8 +7,9 @@ from g12.tools.translate.blocks.control import ControlError, read_control, shipp
 from g12.tools.translate.listing import listing_of
 
 NAMES = [
-    "fanuc-lathe", "fanuc-lathe-b", "fanuc-lathe-c", "fanuc-mill", "haas-lathe", "haas-mill",
-    "mazak-lathe", "mitsubishi-lathe", "mitsubishi-mill", "okuma-lathe", "yasnac-mill",
+    "colchester-lathe", "dmg-mori-lathe", "doosan-lathe", "fanuc-lathe", "fanuc-lathe-b",
+    "fanuc-lathe-c", "fanuc-mill", "haas-lathe", "haas-mill", "mazak-integrex", "mazak-lathe",
+    "mitsubishi-lathe", "mitsubishi-mill", "okuma-lathe", "takisawa-lathe", "yasnac-mill",
 ]  # fmt: skip
 
 
@@ -95,7 +96,7 @@ def test_what_is_no_toml_is_refused_with_its_line(control):
 
 
 def test_a_control_that_is_nowhere():
-    with pytest.raises(ControlError, match="no control hass-mill: there are fanuc-lathe, "):
+    with pytest.raises(ControlError, match="no control hass-mill: there are colchester-lathe, "):
         read_control("hass-mill")
     with pytest.raises(ControlError, match=r"nowhere\.toml"):
         read_control("nowhere.toml")

@@ -203,7 +203,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G1 X1. R.1 F5.", "R beside G1: write the arc of the corner"),
         (HAAS, "G1 X1. ,C.1 F5.", ",C.1: a corner that is broken or rounded by a word"),
         (HAAS, "G84 Z-1. R.1 J2 F5.", "G84 with J is not translated"),
-        (LATHE, "G10.9 X1.", "G10.9: X as diameter or radius"),
+        (LATHE, "G10.9 X2.", "G10.9 needs X0, radii, or X1, diameters, and no other axis"),
         (HAAS, "G0 X1. ?", "? does not start with a word"),
         (HAAS, "G0 X1.)", ") without a ( before it"),
         (HAAS, "H1", "H without G43"),
@@ -768,6 +768,92 @@ def test_diameters_of_c_and_the_speed_of_a_live_tool(tmp_path):
     text = "M133 P1500\nG1 X50. C8. F9.\n"
     translated = behind(read_control(str(own)), f"{text}G13.1\nM30\n", SECTION)
     assert translated[:2] == ["M3 $1 S1500", "G1 X50. C[8. / 2] F9."]
+
+
+LIVE_TOOLS = [
+    ("haas-lathe", "P3000 M133\nM135", ["M3 $1 S3000", "M5 $1"]),
+    ("doosan-lathe", "G97 S30 M3 P12\nS40\nM5 P12\nS50 M3 P11", [
+        "G97 S30 M3 $1", "S40 $1", "M5 $1", "S50 M3",
+    ]),
+    ("takisawa-lathe", "S30 M70\nM72\nS40", ["S30 M3 $1", "M5 $1", "S40"]),
+    ("dmg-mori-lathe", "S30 M13\nM5\nS40", ["S30 M3 $1", "M5 $-1", "S40"]),
+    ("mazak-integrex", "S30 M3\nM5\nS40 M203", ["S30 M3 $1", "M5 $1", "S40 M3"]),
+]  # fmt: skip
+TWO = "[TRAJ]\nSPINDLES = 2\nLINEAR_UNITS = mm\nCOORDINATES = XZC\n"
+
+
+@pytest.mark.parametrize(("name", "text", "wanted"), LIVE_TOOLS)
+@pytest.mark.parametrize(("spindle", "dollar"), [("1", True), ("0", False)])
+def test_the_live_tool_is_a_spindle_of_the_machine(tmp_path, name, text, wanted, spindle, dollar):
+    (tmp_path / "m.ini").write_text(f"{TWO}[G12]\nLIVE_SPINDLE = {spindle}\n")
+    control = translate.with_facts_of(read_control(name), read_ini(tmp_path / "m.ini"))
+    wanted = wanted if dollar else [re.sub(r" \$\S+", "", line) for line in wanted]
+    assert behind(control, f"{text}\nM30\n", TURN)[:-1] == wanted
+    (tmp_path / "m.ini").write_text(TWO)
+    control = translate.with_facts_of(read_control(name), read_ini(tmp_path / "m.ini"))
+    assert "say [G12] LIVE_SPINDLE" in sentence(control, f"{TURN}{text}\nM30\n").sentence
+
+
+def test_p_names_a_spindle_beside_m3_only():
+    doosan = read_control("doosan-lathe")
+    assert sentence(doosan, f"{TURN}S9 M3 P13\nM30\n").sentence == (
+        "P13: no spindle of the machine: there are P11, P12"
+    )
+    assert "M98 P12" in lines(doosan, f"{TURN}M98 P12\nM30\nO12\nM99\n")
+
+
+@pytest.mark.parametrize(
+    ("ini", "wanted"),
+    [
+        ("", ["(M35)", "(M89)", "(M90)", "(M34)"]),
+        (
+            "[G12]\nC_CLAMP = M10 M11\n[RS274NGC]\n"
+            "REMAP = M254 modalgroup=10 prolog=spindle_c_on ngc=spindle_c_on\n"
+            "REMAP = M255 modalgroup=10 prolog=spindle_c_off ngc=spindle_c_off\n",
+            ["M254", "M10", "M11", "M255"],
+        ),
+    ],
+)
+def test_clamp_and_c_are_the_machines_own(tmp_path, ini, wanted):
+    (tmp_path / "m.ini").write_text(TWO + ini)
+    control = translate.with_facts_of(read_control("doosan-lathe"), read_ini(tmp_path / "m.ini"))
+    assert behind(control, "M35\nM89\nM90\nM34\nM30\n", TURN)[:-1] == wanted
+    codes = frozenset(code for code in wanted if code[0] == "M")
+    parted = lines(control, f"{TURN}M35 M89\nM30\n", machine_codes=codes)[2:]
+    assert parted[:2] == (["M254", "M10 (line 3)"] if codes else ["(M35)(M89)", "M30"])
+
+
+def test_zeros_of_axes_that_the_machine_lacks():
+    integrex = read_control("mazak-integrex")
+    assert behind(integrex, "G0 G53 X9. Y0.\nG0 G53 B0.\nM30\n", TURN)[:2] == [
+        "G0 G53 X9. (Y0.)",
+        "G0 (G53)(B0.)",
+    ]
+    assert behind(integrex, "G28 V0.\nM30\n", TURN)[0] == "(G28)(V0.)"
+    assert "axes XZC" in sentence(integrex, f"{TURN}G0 B90.\nM30\n").sentence
+    assert "axes XZC" in sentence(integrex, f"{TURN}G0 Y1.\nM30\n").sentence
+
+
+def test_x_as_radii_by_g10_9():
+    integrex = read_control("mazak-integrex")
+    head = "(HEAD)\nG21 G10.9 X0\nG0 X50. Z5. C0.\n"
+    inside = "G12.1\nG1 X20. F100.\nG13.1\nG10.9 X1\nG0 X60.\nM30\n"
+    same = ["G12.1", "G1 X20. F100.", "G13.1"]
+    behind_it = ["G7", "G0 X60.", "M30"]
+    assert lines(integrex, head + inside)[1:] == [
+        "G8 G21", "G0 X50. Z5. C0.", *same, *behind_it,
+    ]  # fmt: skip
+    fanuc = [re.sub(r" \(line.*", "", line) for line in lines(LATHE, head + inside)]
+    assert fanuc[3:8] == ["G7", *same, "G8"]
+    refused = sentence(LATHE, f"{head}G90 X9. Z1. F9.\nM30\n").sentence
+    assert refused == "a turning cycle where X words are radii: write G10.9 X1 before it"
+
+
+def test_y_alone_beside_g41_of_a_haas_moves():
+    text = "G20 G0 X2. Z.1 C0\nG112\nG1 X1. Y0 F9.\nG41 Y.5\nG40 Y1.\nG113\nM30\n"
+    assert [line for line in lines(HAAS_LATHE, text) if "G4" in line[:4]] == [
+        "G41 C.5", "G40 C1.",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("value", "said"), [("0.0", True), ("-1.5", False)])

@@ -30,6 +30,7 @@ from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.translate.blocks.control import Control, ControlError, read_control, shipped_controls
 from g12.tools.translate.blocks.lexer import program_text
 from g12.tools.translate.listing import listing_of
+from g12.tools.translate.on_machine import on_machine
 from g12.tools.translate.program import RefusedBlock, translate_program
 
 EXAMPLES = """\
@@ -138,6 +139,7 @@ def with_facts_of(control: Control, ini: Ini) -> Control:
     reference = {**control.tables.get("reference", {}), **unset}
     control = replace(control, tables={**control.tables, "reference": reference})
     remaps = remap_lines(ini.all)
+    control = on_machine(control, ini.settings, remaps)
     pair = polar_pair(remaps)
     control = replace(control, polar_codes=pair) if pair else control
     control = replace(control, meanings={**control.meanings, **codes_of_c(control, remaps)})

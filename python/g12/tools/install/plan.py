@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from g12.settings import SECTION as SETTINGS
 from g12.tools.install import package_copy
 from g12.tools.install.config import features, forms
 from g12.tools.install.config.findings import problem
@@ -29,6 +30,7 @@ from g12.tools.install.lathe import kinematics_lines, spindle_c
 from g12.tools.install.lathe.kinematics_rules import uses_them
 from g12.tools.install.lathe.rules import ON_A_LATHE, geometry_for
 from g12.tools.install.rules import codes_of, installed_programs, odd_folder
+from g12.tools.translate.blocks.control import read_control
 
 BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"
 NOTE = "# also by g12 install: "
@@ -115,8 +117,11 @@ def make_plan(
     )
     put_section(plan.text, "PYTHON", place, python)
     put_section(plan.text, "FILTER", place, filters)
-    geometry = {"DISPLAY": geometry_lines(plan, config, wanted)}
-    for lines_of in (form_lines(plan, config, wanted), geometry, added, spindle):
+    alone = {
+        "DISPLAY": geometry_lines(plan, config, wanted),
+        SETTINGS: program_settings(config, wanted),
+    }
+    for lines_of in (form_lines(plan, config, wanted), alone, added, spindle):
         for section, lines in lines_of.items():
             put_section(plan.text, section, place, lines)
     for path in plan.changes():
@@ -249,6 +254,16 @@ def filter_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> li
         f"PROGRAM_EXTENSION = .{FILTERED} Programs of {control}",
         f"{FILTERED} = python3 {plan.prefix}/python/g12 translate --control {control}",
     ]
+
+
+def program_settings(config: Config, wanted: Sequence[str]) -> list[str]:
+    """Return the settings that a lathe's programs need; those of the user's own stay."""
+    controls = [features.PROGRAMS[name] for name in wanted if name in features.PROGRAMS]
+    if not any(read_control(control).is_lathe for control in controls):
+        return []
+    several = config.ini.number("TRAJ", "SPINDLES", 1) > 1
+    asked = {"POLAR_Z": "allow", "LIVE_SPINDLE": "1" if several else "0"}
+    return [f"{key} = {value}" for key, value in asked.items() if not config.ini.get(SETTINGS, key)]
 
 
 def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict[str, list[str]]:

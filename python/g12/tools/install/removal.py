@@ -39,8 +39,9 @@ OWN_ENDS = {
 }
 HEADERS = {f"[{section}]": section for section in ("PYTHON", "FILTER", "HAL", "G12", "AXIS_Y")}
 EDITED = "# before uninstall: "
-OWN_FILTER = re.compile(
+OF_PROGRAMS = re.compile(
     r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S+"
+    r"|POLAR_Z = allow|LIVE_SPINDLE = [01]"
 )
 
 
@@ -135,7 +136,7 @@ def keys_standing_in(block: list[IniLine]) -> set[str]:
 def is_by_install(line: IniLine) -> bool:
     """Return whether a line between the markers is one that `install` puts there."""
     key, value = key_and_value(line.text)
-    if OWN_FILTER.fullmatch(line.text) or forms.OWN_LINE.fullmatch(line.text):
+    if OF_PROGRAMS.fullmatch(line.text) or forms.OWN_LINE.fullmatch(line.text):
         return True
     own = (kinematics_lines.OWN_LINE, GEOMETRY_LINE, spindle_c.OWN_LINE)
     if any(rule.fullmatch(line.text) for rule in own):

@@ -10,6 +10,8 @@ refused with its line. What a code does is one of
 - ``refuse: sentence``: refused, the sentence says what to do instead
 - a name of MEANINGS: a rule of the translation
 - codes of LinuxCNC, ``M7`` or ``M3 $1``: written in its place; in ``M3 $1 S=P`` S is its P word
+- what each machine has in its own way (PLACES): ``clamp C``, ``C axis on``; ``M3 $live`` starts the
+  spindle that drives the tool, ``M5 $all`` stops each
 """
 
 from __future__ import annotations
@@ -36,12 +38,14 @@ MEANINGS = {
         "threading", "thread",
         "circle of holes", "arc of holes", "row of holes", "turned", "turned back",
         *HOLES,
+        "radius or diameter",
     ),
     "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
         "no thread chamfer", "rigid tapping",
     ),
 }  # fmt: skip
-OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$[0-9]+|S=P))*")
+PLACES = ("clamp C", "unclamp C", "C axis on", "C axis off")  # of M codes: `machine_codes`
+OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$(?:[0-9]+|live|all)|S=P))*")
 CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")
 RANGE = re.compile(r"([GM])([0-9]{1,3})-([GM])([0-9]{1,3})")
 CLASSES = (
@@ -56,7 +60,7 @@ CLASSES = (
 TOP = {
     "title": str, "based_on": str, "machine": ("mill", "lathe"), "axes": str, "start": str,
     "decimals": ("least", "whole"), "feed_of_c": ("mm and degrees", "degrees", "mm", "say"),
-    "remarks": bool, "sources": list, "readings": list,
+    "at_zero": str, "remarks": bool, "sources": list, "readings": list,
 }  # fmt: skip
 TABLES: dict[str, dict[str, object]] = {
     "increments": dict.fromkeys(CLASSES, float),
@@ -87,6 +91,7 @@ TABLES: dict[str, dict[str, object]] = {
     },
     "c_axis": {"on": str, "off": str},
     "words": None,
+    "spindles": None,
     "g_codes": None,
     "m_codes": None,
 }  # fmt: skip
@@ -94,7 +99,7 @@ OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that n
     f"M{n}" for n in (*range(10), 19, 30, *range(48, 54), *range(60, 74))
 )
 COMMENT = re.compile(r"comment( [A-Z])*")
-PATTERN = re.compile(r"R*T+O+")
+PATTERN = re.compile(r"R*T+O*")
 
 
 class ControlError(ValueError):
@@ -108,9 +113,11 @@ class Control:
     ``axes`` are the machine's axes, ``start`` the codes that hold when a program begins,
     ``decimals`` what a number without a point is (``least`` increments, ``whole`` units, ``""`` if
     that is not known), ``feed_of_c`` what F is over where C and a slide move together (``say``: not
-    known). ``meanings`` has the codes, ``tables`` the values of the file;
-    ``polar_codes`` are LinuxCNC's codes on the machine for polar mode on and off,
-    ``cylinder_code`` is that for a cylinder, with what its C is (``radius`` or ``diameter``).
+    known), ``at_zero`` are axes that the machine lacks and whose words may be 0. ``meanings`` has
+    the codes, ``tables`` the values of the file; ``live_spindle`` is LinuxCNC's spindle that drives
+    the tool, "" if that is not known, ``polar_codes`` are LinuxCNC's codes on the machine for polar
+    mode on and off, ``cylinder_code`` is that for a cylinder, with what its C is (``radius`` or
+    ``diameter``).
     """
 
     name: str
@@ -120,11 +127,13 @@ class Control:
     start: tuple[str, ...]
     decimals: str
     feed_of_c: str
+    at_zero: str
     remarks: bool
     sources: tuple[str, ...]
     readings: tuple[str, ...]
     meanings: Mapping[str, str]
     tables: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+    live_spindle: str = "1"
     polar_codes: tuple[str, str] = ("G12.1", "G13.1")
     cylinder_code: tuple[str, str] = ("G7.1", "radius")
 
@@ -158,6 +167,7 @@ def read_control(name: str) -> Control:
         start=tuple(data.get("start", "").split()),
         decimals=data.get("decimals", ""),
         feed_of_c=data.get("feed_of_c", "say"),
+        at_zero=data.get("at_zero", ""),
         remarks=data.get("remarks", False),
         sources=tuple(data.get("sources", ())),
         readings=tuple(data.get("readings", ())),
@@ -243,6 +253,9 @@ class _Checked:
             for key, value in table.items():
                 if not re.fullmatch("[A-Z]{2}", key) or not re.fullmatch("[A-Z]", str(value)):
                     self._refuse(key, f'{key} = "{value}": a word of two letters, and one of one')
+        for key, value in table.items() if name == "spindles" else ():
+            if not re.fullmatch("P[0-9]+", key) or value not in ("main", "live"):
+                self._refuse(key, f'{key} = "{value}" must be a P word, and main or live')
 
     def _value(self, key: str, value: Any, kind: Any) -> None:
         if isinstance(kind, tuple):
@@ -308,7 +321,8 @@ class _Checked:
         return [code]
 
     def _meaning(self, letter: str, key: str, value: str) -> str:
-        known = value in ("same", "machine", *MEANINGS[letter]) or COMMENT.fullmatch(value)
+        places = PLACES if letter == "M" else ()
+        known = value in ("same", "machine", *MEANINGS[letter], *places) or COMMENT.fullmatch(value)
         if not known and not value.startswith("refuse: ") and not OWN_CODES.fullmatch(value):
             names = ", ".join(("same", "comment", "machine", "refuse: …", *MEANINGS[letter]))
             self._refuse(key, f'{key} = "{value}" must be one of {names}, or codes of LinuxCNC')

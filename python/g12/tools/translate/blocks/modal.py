@@ -24,6 +24,7 @@ GROUPS = {
     "spindle_mode": ("G96", "G97"),
     "path": ("G61", "G64"),
     "retract": ("G98", "G99"),
+    "x_words": ("G7", "G8"),
 }
 CONSUMERS = frozenset(
     ("G10", "G28", "G30", "G52", "G92", "G12", "G13", "G12.2", "G13.2", "G7.1")
@@ -49,7 +50,8 @@ class ModalState(NamedTuple):
     that X and Z repeat, ``pass_words`` what it was given, ``kept`` what first blocks of cycles say;
     ``chamfers`` tells whether threads end with one. ``turned`` is the work offset that G68 has
     turned, ``rigid`` the speed of a rigid tap and ``tap_top`` the height that it goes back to,
-    ``sizes`` are the diameters that G10 L12 has set, by tool.
+    ``sizes`` are the diameters that G10 L12 has set, by tool. ``x_words`` tells whether X words are
+    diameters, ``live`` is the ``$`` word of a spindle that drives the tool and turns.
     """
 
     motion: str = UNKNOWN
@@ -84,6 +86,8 @@ class ModalState(NamedTuple):
     chamfers: bool | str = True
     turned: str = UNKNOWN
     retract: str = UNKNOWN
+    x_words: str = UNKNOWN
+    live: str = UNKNOWN
     rigid: str = UNKNOWN
     tap_top: float | str = UNKNOWN
     sizes: tuple = ()

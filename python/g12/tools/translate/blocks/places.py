@@ -16,6 +16,7 @@ LOST = dict.fromkeys(FIELDS.values(), UNKNOWN)
 FOLLOWED = frozenset(  # a block of these codes alone ends at its words
     f"G{n}" for n in (*range(5), 7, 8, *range(17, 22), 33, 40, 41, 42, 61, 64, 80, 90, 91)
 ) | frozenset(f"G{n}" for n in range(93, 100))
+IN_POLAR = {"Y": "C", "V": "H"}
 SHIFTING = frozenset(["G43", "G49", "G54", "G55", "G56", "G57", "G58", "G59"])
 PATTERNS = frozenset(("circle of holes", "arc of holes", "row of holes"))
 DRILLING = PATTERNS | {"drilling cycle"}
@@ -87,5 +88,7 @@ def follow_places(draft: Draft) -> None:
     if other:
         return
     words = [*draft.axis_words(), *(draft.increments() if draft.control.is_lathe else ())]
+    if draft.state.polar == "on":  # Y is C there
+        words = [w._replace(letter=IN_POLAR.get(w.letter, w.letter)) for w in words]
     if words:
         draft.change(**{FIELDS[axis_of(w.letter)]: end_of_word(draft.state, w) for w in words})

@@ -6,12 +6,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from g12.tools.translate.blocks.control import MEANINGS
+from g12.tools.translate.blocks.control import MEANINGS, PLACES
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 
 RULES = frozenset((*MEANINGS["G"], *MEANINGS["M"]))
+BUILDERS = frozenset(("machine", *PLACES))
+SPINDLES = {"$live": "$1", "$all": "$-1"}  # where the machine is not known
 
 
 def keep_as_comments(draft: Draft) -> None:
@@ -47,7 +49,12 @@ def speed_by_p(draft: Draft) -> list[ForeignWord]:
         return []
     draft.words = [other for other in draft.words if other is not word]
     speed = draft.take("P")
-    texts = meanings[word.text].replace("S=P", f"S{speed.value}" if speed else "").split()
+    return own_words(meanings[word.text].replace("S=P", f"S{speed.value}" if speed else ""))
+
+
+def own_words(meaning: str) -> list[ForeignWord]:
+    """Return the words of LinuxCNC's codes in the place of one."""
+    texts = (SPINDLES.get(text, text) for text in meaning.split())
     return [ForeignWord(text[0], text[1:]) for text in texts]
 
 
@@ -62,8 +69,8 @@ def part_builders_codes(draft: Draft) -> None:
 def is_own(draft: Draft, word: ForeignWord) -> bool:
     """Tell whether a code is one that the machine has besides LinuxCNC's."""
     meaning = draft.control.meanings.get(word.code, "")
-    known = word.code in (draft.machine_codes or ()) and meaning not in RULES
-    return known or meaning == "machine"
+    known = {word.code, meaning} & (draft.machine_codes or frozenset())
+    return bool(known and meaning not in RULES) or meaning in BUILDERS
 
 
 def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
@@ -77,7 +84,7 @@ def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
         return [word]
     if meaning in RULES:
         return handed_over(draft, meaning, word)
-    if meaning == "machine":
+    if meaning in BUILDERS:
         return builders_code(draft, word)
     return replaced(code, meaning, control.name)
 
@@ -107,4 +114,4 @@ def replaced(code: str, meaning: str, control: str) -> list[ForeignWord]:
     if not meaning:
         table = f"[{code[0].lower()}_codes]"
         raise NotTranslated(f"{code} is not known of {control}: say under {table} what it is")
-    return [ForeignWord(text[0], text[1:]) for text in meaning.split()]
+    return own_words(meaning)

@@ -44,6 +44,8 @@ def class_of(draft: Draft, word: ForeignWord) -> str:
         return "feed_rev" if draft.state.feed_mode == "G95" else "feed"
     if letter in "IJK" and is_cycle(draft) and not is_arc(draft):
         return ""  # K counts there, the others are refused
+    if letter == "H" and "G43" in draft.codes():
+        return ""
     if letter in "HC" and draft.control.is_lathe:
         return "length" if draft.state.polar == "on" else "angle"
     if letter in ANGLES:

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUP_OF
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUP_OF, UNKNOWN
 
 INSIDE = {"on": "UH", "cylinder": "UWH"}  # what polar mode and a cylinder have besides
 LETTERS = frozenset("NGMFSTDHIJKLPQR$")
+MACHINES_OWN = frozenset(("G28", "G30", "G53"))
 
 
 def zero_of_missing_axis(draft: Draft) -> None:
@@ -64,6 +65,33 @@ def follow_surface_speed(draft: Draft) -> None:
     word = next((word for word in draft.words if word.letter == "S"), None)
     if word and draft.state.spindle_mode == "G96" and not draft.meanings:
         draft.change(surface=word.value)
+
+
+def axes_at_zero(draft: Draft) -> None:
+    """Keep words of an axis that the machine lacks as comments: it always stands at their 0."""
+    if draft.state.polar != "off" or {"polar on", "cylinder"}.intersection(draft.meanings):
+        return
+    lacking = set(draft.control.at_zero) - set(draft.control.axes)
+    letters = [*lacking, *(inc for inc, axis in PARTNERS.items() if axis in lacking)]
+    gone = [w for w in draft.words if w.letter in letters and _is_zero(w)]
+    draft.words = [word for word in draft.words if word not in gone]
+    if gone and not draft.axis_words() and not draft.increments():
+        draft.comments += draft.take_codes(MACHINES_OWN)  # without an axis G28 moves each of them
+    draft.comments += [word.text for word in gone]
+
+
+def radius_or_diameter(draft: Draft) -> None:
+    """Write G10.9 X0 and X1, X words as radii or diameters, as G8 and G7."""
+    code = draft.meanings.pop("radius or diameter", None)
+    if not code:
+        return
+    word = draft.take("X")
+    modes = {"0": "G8", "1": "G7"}
+    if not word or word.value.rstrip(".") not in modes or draft.axis_words():
+        raise NotTranslated(f"{code.code} needs X0, radii, or X1, diameters, and no other axis")
+    mode = modes[word.value.rstrip(".")]
+    draft.put_first(mode)
+    draft.change(x_words=mode, at_x=UNKNOWN)
 
 
 def refuse_leftovers(draft: Draft) -> None:

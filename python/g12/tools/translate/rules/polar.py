@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Polar interpolation: G112, G137 and their like as G12.1 and G13.1.
 
-X in polar mode is a diameter on most controls and a radius on some: G8 before and G7 behind make
-it a radius here. Y is C and V is H. A rapid in polar mode is what the control's file says.
+X in polar mode is a diameter on most controls and a radius on some: where it is not as outside, G7
+or G8 before the section says so, and the other behind it. Y is C and V is H. A rapid in polar mode
+is what the control's file says.
 """
 
 from __future__ import annotations
@@ -13,13 +14,14 @@ from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
-from g12.tools.translate.blocks.places import axis_of, known_place, value_text
+from g12.tools.translate.blocks.places import IN_POLAR, axis_of, known_place, value_text
 
 IN_PLANE = frozenset("XCUH")
 MOVING = frozenset("XYZABCUVWHF")
 PLANES = frozenset(("G17", "G18", "G19"))
 SECTIONS = {"on": "in polar mode", "cylinder": "on a cylinder", UNSURE: "in polar mode"}
-RENAMED = {"Y": "C", "V": "H"}
+MODES_OF_X = {"diameter": "G7", "radius": "G8"}
+X_OF = {"G7": 2.0, "G8": 1.0}  # the word of a point whose radius is 1
 
 
 def switch_polar(draft: Draft) -> None:
@@ -57,23 +59,31 @@ def turn_on(draft: Draft, code: str) -> None:
         )
     if draft.control.is_lathe and "C" in draft.letters() and is_zero(draft.words[-1]):
         draft.take("C")
-    scale = 0.5 if x == "radius" else 1.0
-    lines = [*own_feed_ended(draft), *(["G8"] if x == "radius" else [])]
+    outside, inside = x_modes(draft)
+    lines = [*own_feed_ended(draft), *([inside] if inside != outside else [])]
     own_block(draft, code, [*lines, draft.control.polar_codes[0]])
-    draft.change(polar="on", own_motion=UNSURE, at_c=0.0, **slides_kept(draft, scale))
+    kept = slides_kept(draft, X_OF[inside] / X_OF[outside])
+    draft.change(polar="on", own_motion=UNSURE, at_c=0.0, **kept)
+
+
+def x_modes(draft: Draft) -> tuple[str, str]:
+    """Return what X words are outside of polar mode and in it: G7, diameters, or G8, radii."""
+    outside = draft.sure("x_words", "polar mode") or "G8"
+    return outside, MODES_OF_X.get(draft.control.value("polar", "x"), outside)
 
 
 def turn_off(draft: Draft, code: str) -> None:
     """Write G13.1, which means nothing outside of polar mode."""
-    back = draft.state.polar != "off" and draft.control.value("polar", "x") == "radius"
-    own_block(draft, code, [draft.control.polar_codes[1], *(["G7"] if back else [])])
+    outside, inside = x_modes(draft)
+    back = draft.state.polar != "off" and outside != inside
+    own_block(draft, code, [draft.control.polar_codes[1], *([outside] if back else [])])
     if draft.state.polar != "off":
         if draft.state.delayed:
             raise NotTranslated(
                 f"G40 stands behind the last move of the section: write a move in X or C with it "
                 f"before {code}"
             )
-        kept = slides_kept(draft, 2.0 if back else 1.0)
+        kept = slides_kept(draft, X_OF[outside] / X_OF[inside])
         draft.change(polar="off", own_motion=UNSURE, **kept)
 
 
@@ -103,7 +113,7 @@ def inside_polar(draft: Draft) -> None:
         return
     if draft.state.polar == "on":
         draft.words = [
-            word._replace(letter=RENAMED.get(word.letter, word.letter)) for word in draft.words
+            word._replace(letter=IN_POLAR.get(word.letter, word.letter)) for word in draft.words
         ]
     for letter in "CH":
         if sum(word.letter == letter for word in draft.words) > 1:

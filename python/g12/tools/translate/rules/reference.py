@@ -50,7 +50,7 @@ def place_of_increment(draft: Draft, word: ForeignWord) -> ForeignWord:
         raise NotTranslated(f"{word.text} beside an absolute word, with G41 or G42 on")
     axis = PARTNERS[word.letter]
     here = f"#{5419 + AXIS_NUMBERS[axis]}"
-    if axis == "X" and "G7" in draft.control.start:
+    if axis == "X" and draft.sure("x_words", f"{word.text} is an increment") == "G7":
         here = f"2 * {here}"
     moved = word.kind == "expression" or word.number
     value = f"[{here} + [{word.value}]]" if moved else f"[{here}]"

@@ -13,6 +13,10 @@ from g12.tools.translate.blocks.modal import UNKNOWN
 LONGEST_WAIT = "Q30"  # s, then LinuxCNC says that the spindle is not oriented
 STOPS = frozenset(("M5", "M9"))
 RAPIDS = frozenset(("G0", "G28", "G30", "G53"))
+TURNING = frozenset(("M3", "M4", "M5"))
+NO_LIVE_TOOL = (
+    "{} is the live tool's spindle: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's that drives it"
+)
 POCKETS = frozenset(("G12", "G13", "G12.2", "G13.2"))
 
 
@@ -47,6 +51,35 @@ def limit_now(draft: Draft, code: str, limit: str) -> None:
     if surface == UNKNOWN:
         raise NotTranslated(f"{code} S within G96, and the S of G96 is not known here")
     draft.after.append(f"G96 S{surface} D{limit}")
+
+
+def live_tool(draft: Draft) -> None:
+    """Name the spindle of M3, M4, M5 and S: that of the block's P word, or the live tool's."""
+    codes = {w.code for w in draft.words if w.letter == "M" and w.kind == "number"} & TURNING
+    named = named_spindle(draft, bool(codes))
+    if codes - {"M5"}:
+        draft.change(live=named)
+    elif codes and named in (draft.state.live, "$-1"):
+        draft.change(live=UNKNOWN)
+    elif "S" in draft.letters() and not codes and not named:
+        live = draft.sure("live", "S is a spindle's")
+        draft.words += [word_of(live)] if live else []
+
+
+def named_spindle(draft: Draft, turns: bool) -> str:
+    """Return the block's ``$`` word, "" for the first spindle; its P word is written as one."""
+    spindles = draft.control.tables.get("spindles", {})
+    word = next((w for w in draft.words if w.letter == "P" and spindles), None)
+    if word and turns and word.text not in spindles:
+        known = ", ".join(spindles)
+        raise NotTranslated(f"{word.text}: no spindle of the machine: there are {known}")
+    if word and (turns or (word.text in spindles and "S" in draft.letters())):
+        draft.take("P")
+        live, is_live = draft.control.live_spindle, spindles[word.text] == "live"
+        if is_live and not live:
+            raise NotTranslated(NO_LIVE_TOOL.format(word.text))
+        draft.words += [word_of(f"${live}")] if is_live and live != "0" else []
+    return next((w.text for w in draft.words if w.letter == "$"), UNKNOWN)
 
 
 def orientation(draft: Draft) -> None:

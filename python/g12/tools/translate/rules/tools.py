@@ -42,14 +42,18 @@ def turret_word(draft: Draft) -> None:
     tool, offset = parts_of(draft, word)
     loaded = not tool or draft.state.tool == str(tool)
     words = [] if loaded else [word_of(f"T{tool}"), word_of("M6")]
-    words += [word_of("G43"), word_of(f"H{offset}")] if offset else [word_of("G49")]
+    if offset >= 0:
+        words += [word_of("G43"), word_of(f"H{offset}")] if offset else [word_of("G49")]
     draft.replace(word, *words)
     draft.comments += [word.text] if loaded else []
-    draft.change(tool=str(tool) if tool else draft.state.tool, length=str(offset))
+    draft.change(tool=str(tool) if tool else draft.state.tool, length=str(max(offset, 0)))
 
 
 def parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
-    """Return tool and offset of ``T0303``; the shortest pattern that has room for it."""
+    """Return tool and offset of ``T0303``; the shortest pattern that has room for it.
+
+    The offset is -1 where G43 H says it.
+    """
     patterns = sorted(draft.control.value("tools", "patterns", ()), key=len)
     if word.kind != "number" or not word.value.isdigit():
         raise NotTranslated(f"{word.text}: a tool word must be a whole number")
@@ -66,7 +70,7 @@ def parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
         )
     digits = word.value.zfill(len(pattern))
     tool, offset = (
-        int("".join(d for d, p in zip(digits, pattern) if p == place)) for place in "TO"
+        int("".join(d for d, p in zip(digits, pattern) if p == place) or -1) for place in "TO"
     )
     return tool, offset
 

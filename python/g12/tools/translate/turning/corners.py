@@ -26,6 +26,8 @@ def direct_drawing(draft: Draft) -> None:
             f"{word.text}: a corner that is broken or rounded by a word: write its line or arc as "
             "a block"
         )
+    if draft.sure("x_words", "a corner's X is a diameter") != "G7":
+        raise NotTranslated("a corner by a word where X words are radii: write it as a block")
     start = start_point(draft)
     blocks, _ = contour_blocks(draft, chain_of(draft))
     own = [s for s in contour_of(blocks, start) if s.block is blocks[0]]

@@ -63,6 +63,8 @@ def turning_cycle(draft: Draft) -> None:
     if not meaning:
         return
     check_turning_modes(draft)
+    if draft.sure("x_words", "X of a turning cycle is a diameter") != "G7":
+        raise NotTranslated("a turning cycle where X words are radii: write G10.9 X1 before it")
     if meaning != modal:
         draft.change(turn=UNKNOWN)
     CYCLES[meaning](draft)

@@ -61,7 +61,9 @@ def distances(draft: Draft, axes: set[str]) -> dict[str, float]:
 
 def scale_of(draft: Draft, axis: str) -> float:
     """Return the length that 1 of a word's number is."""
-    return 0.5 if axis == "X" and "G7" in draft.control.start else 1.0
+    if axis != "X":
+        return 1.0
+    return 0.5 if draft.sure("x_words", "C beside a slide") == "G7" else 1.0
 
 
 def check_rule(draft: Draft, rule: str) -> None:

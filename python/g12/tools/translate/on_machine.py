@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What each machine has in its own way: the clamp of C, C itself, the spindle that drives the tool.
+
+A control says ``clamp C``, ``C axis on`` and ``M3 $live``; the machine's INI says which of its
+codes these are. A machine without a clamp, or whose C is always an axis, needs none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from g12.machine_ini import Remap
+from g12.settings import Settings
+from g12.tools.translate.blocks.control import Control
+
+SPINDLE_C = {"C axis on": "spindle_c_on", "C axis off": "spindle_c_off"}
+NO_LIVE_TOOL = (
+    "refuse: it is the live tool's: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's spindle that "
+    "drives the tool (install --with programs-… sets it)"
+)
+
+
+def on_machine(control: Control, settings: Settings, remaps: Sequence[Remap]) -> Control:
+    """Return a control with the machine's own codes in the place of those meanings."""
+    places = {
+        **dict(zip(("clamp C", "unclamp C"), (f"M{code}" for code in settings.c_clamp))),
+        **{
+            meaning: remap.code
+            for meaning, name in SPINDLE_C.items()
+            for remap in remaps
+            if name in remap.handlers or remap.keywords.get("ngc") == name
+        },
+    }
+    meanings = {
+        code: meaning_here(meaning, places, settings.live_spindle)
+        for code, meaning in control.meanings.items()
+    }
+    return replace(control, meanings=meanings, live_spindle=settings.live_spindle)
+
+
+def meaning_here(meaning: str, places: dict[str, str], live: str) -> str:
+    """Return what a code is on the machine; ``live`` is the live tool's spindle, "" unknown."""
+    if meaning in ("clamp C", "unclamp C", *SPINDLE_C):
+        return places.get(meaning, "comment")
+    if "$live" not in meaning and "$all" not in meaning:
+        return meaning
+    if not live:
+        return meaning.replace(" $all", "") if "$all" in meaning else NO_LIVE_TOOL
+    first = live == "0"
+    texts = {"$live": "" if first else f"${live}", "$all": "" if first else "$-1"}
+    return " ".join(filter(None, (texts.get(text, text) for text in meaning.split())))

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Programs as six stock posts write them: on an installed lathe they cut their drawing."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from g12.tools.commands import main
+from g12.tools.preview.tracer import Tracer
+from support.cam_parts import PARTS, points_of
+from support.contour_geometry import Round, Straight, outward, spaced
+from support.foreign_programs import FOREIGN, translation
+from support.sim_machines import copy_of_machines
+
+CAM = FOREIGN / "cam"
+POSTS = sorted(folder.name for folder in CAM.iterdir())
+CUTTERS = {"mm": {1: 12.0, 2: 10.0, 3: 6.0}, "inch": {1: 12 / 25.4, 2: 10 / 25.4, 3: 6 / 25.4}}
+TOLERANCE = 0.008  # mm: POLAR_TOLERANCE, and the last digit of the posts
+DEEPEST_RAPID = 0.9  # mm: what is below is cut
+HOME = {
+    "mm": ["G21 G7 G90", "G0 Z400", "G0 X300", "G0 C0"],
+    "inch": ["G20 G7 G90", "G0 Z10", "G0 X10", "G0 C0"],
+}
+
+
+@pytest.fixture(scope="module")
+def lathe(tmp_path_factory):
+    """Return a function: the Tracer of a lathe on which a control's programs were installed."""
+    machines = copy_of_machines(tmp_path_factory.mktemp("lathes"))
+
+    @cache
+    def installed(control):
+        unit = "inch" if control == "haas-lathe" else "mm"
+        for part in machines.glob("parts/lathe_*.inc"):
+            part.write_text(part.read_text().replace("[FILTER]\n", "[OLD_FILTER]\n"))
+        ini = machines / f"{control}.ini"
+        ini.write_text((machines / f"lathe_{unit}.ini").read_text())
+        assert main.main(["install", str(ini), "--with", "polar", f"programs-{control}"]) == 0
+        return Tracer(ini, tools=CUTTERS[unit])
+
+    yield installed
+
+
+def test_there_are_ten_programs_for_each_post():
+    assert len(POSTS) == 6
+    assert all({path.stem for path in (CAM / post).glob("*.nc")} == {*PARTS} for post in POSTS)
+
+
+@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("post", POSTS)
+def test_a_posted_program_cuts_its_drawing(lathe, post, part):
+    tracer = lathe(post)
+    home = HOME["inch" if post == "haas-lathe" else "mm"]
+    program = CAM / post / f"{part}.nc"
+    text = translation(program, post, "--ini", str(tracer.ini.path))
+    traced = tracer.trace_text(text, setup=home, alone=True)
+    assert traced.error is None, traced.error
+    made, wanted = on_the_part(traced.moves), wanted_path(PARTS[part])
+    assert distances(made[made[:, 2] < DEEPEST_RAPID], wanted).max() < TOLERANCE
+    assert distances(wanted, made).max() < TOLERANCE
+    assert rapids_turn_above_the_part(traced.moves)
+
+
+def rapids_turn_above_the_part(moves):
+    rapids = [m for m in moves if m.kind == "rapid"]
+    turning = [m for m in rapids if m.start[:1] + m.start[5:6] != m.end[:1] + m.end[5:6]]
+    return all(min(m.start[2], m.end[2]) > DEEPEST_RAPID for m in turning)
+
+
+def on_the_part(moves):
+    """Return points of the tool's way over the part, X and C as LinuxCNC goes them."""
+    legs = []
+    for m in moves:
+        start, end = (np.array([e[0], e[2], e[5]]) for e in (m.start, m.end))
+        length = np.hypot(*(end - start)[:2]) + np.radians(abs(end[2] - start[2])) * end[0]
+        share = np.linspace(0, 1, max(2, int(np.ceil(length / 0.1))))
+        legs.append(start + (end - start) * share[:, None])
+    x, z, c = np.concatenate(legs).T
+    return np.column_stack([x * np.cos(np.radians(c)), x * np.sin(np.radians(c)), z])
+
+
+def wanted_path(part):
+    """Return points along what the drawing has the tool's centre cut."""
+    if part.side == 40:
+        return points_of(part)
+    entry = points_of(part._replace(path=part.path[: part.lead]))
+    contour = compensated(part)
+    level = part.path[part.lead][3]
+    path = np.column_stack([contour.real, contour.imag, np.full(len(contour), level)])
+    leave = points_of(part._replace(path=(("line", *path[-1]), *part.path[-2:])))
+    return np.concatenate([entry, path, leave])
+
+
+def compensated(part):
+    """Return the centre of a cutter that follows the contour on the left."""
+    shapes, here = [], complex(*part.path[part.lead][1:3])
+    for kind, *to in part.path[part.lead + 1 : -2]:
+        end = complex(*to[:2])
+        if kind == "arc":
+            centre = here + complex(*to[3:5])
+            sweep = np.angle((end - centre) / (here - centre)) * to[5] % (2 * np.pi) * to[5]
+            shapes.append(Round(here, centre, sweep))
+        else:
+            shapes.append(Straight(here, end))
+        here = end
+    pieces = [piece for group in outward(shapes, CUTTERS["mm"][part.tool] / 2) for piece in group]
+    return np.concatenate([spaced(piece, 0.1) for piece in pieces])
+
+
+def distances(points, path):
+    """Return how far points lie from the polyline through the points of a path."""
+    start, along = path[:-1], np.diff(path, axis=0)
+    there = np.linalg.norm(along, axis=1) > 1e-9
+    start, along = start[there], along[there]
+    found = []
+    for some in np.array_split(points, max(1, len(points) // 200)):
+        arms = some[:, None] - start
+        share = np.clip((arms * along).sum(2) / (along**2).sum(1), 0, 1)
+        found.append(np.linalg.norm(arms - share[..., None] * along, axis=2).min(1))
+    return np.concatenate(found)
