@@ -139,3 +139,25 @@ def along_arc(start, end, i, j, turns, step):
     share = np.linspace(0, 1, max(3, math.ceil(abs(sweep * arms[0]) / step) + 1))
     plane = centre + arms[0] * np.exp(1j * sweep * share)
     return np.column_stack([plane.real, plane.imag, start[2] + (end[2] - start[2]) * share])
+
+
+def mill_program(part):
+    """Return a part as a mill's program, as a post for LinuxCNC writes it."""
+    rows, modal = [], {}
+
+    def word(letter, value):
+        text = f"{letter}{value:.4f}"
+        changed = modal.get(letter) != text
+        modal[letter] = text
+        return text if changed else ""
+
+    for at, (kind, *to) in enumerate(part.path):
+        codes = {"rapid": "G0", "line": "G1", "arc": "G3" if to[-1] == 1 else "G2"}
+        side = {part.lead: f"G{part.side} D{part.tool}", len(part.path) - 2: "G40"}
+        comp = side.get(at, "") if part.side != 40 else ""
+        words = [word(letter, value) for letter, value in zip("XYZ", to)]
+        words += [f"I{to[3]:.4f} J{to[4]:.4f}"] if kind == "arc" else []
+        words += [word("F", part.feed)] if kind != "rapid" else []
+        rows.append(" ".join(filter(None, [codes[kind], comp, *words])))
+    head = ["G17 G54 G40 G49 G80 G90", "G21", f"T{part.tool} M6", f"G43 H{part.tool}", "S900 M3"]
+    return "\n".join([*head, *rows, "M5", "M2", ""])

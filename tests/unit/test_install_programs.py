@@ -107,3 +107,13 @@ def test_a_lathes_programs_need_settings(tmp_path, own, lines):
     assert ini.read_text().count("LIVE_SPINDLE") == 1
     list(removal.uninstall(IniText(ini), dry_run=False))
     assert ini.read_bytes() == before
+
+
+@pytest.mark.parametrize(("name", "key"), [("face", "POLAR_Z"), ("round", "CYLINDER_X")])
+def test_a_mills_programs_on_a_lathe_need_a_setting(tmp_path, name, key):
+    ini = write_config(tmp_path, LATHE)
+    before = ini.read_bytes()
+    put_in(ini, {"face": "programs-mill-on-face", "round": "programs-mill-round-part"}[name])
+    assert f"[G12]\n{key} = allow\nLIVE_SPINDLE = 0\n" in ini.read_text()
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert ini.read_bytes() == before

@@ -80,6 +80,8 @@ def command_parser() -> Parser:
     parser.add_argument(
         "--decimals", choices=("least", "whole"), help="what numbers without a decimal point are"
     )
+    parser.add_argument("--safe", type=float, help="Z from which on a mill's rapids are clear")
+    parser.add_argument("--diameter", type=float, help="of the part that a mill's program is round")
     parser.add_argument("--polar-x", choices=("diameter", "radius"), help="X in polar mode")
     return parser
 
@@ -106,6 +108,10 @@ def changed(control: Control, asked: argparse.Namespace) -> Control:
     tables = dict(control.tables)
     if asked.polar_x:
         tables["polar"] = {**tables.get("polar", {}), "x": asked.polar_x}
+    mill = {key: value for key in ("safe", "diameter") if (value := getattr(asked, key))}
+    if mill and not control.onto:
+        raise UsageError(f"--{min(mill)} is for mill-on-face and mill-round-part")
+    tables["mill"] = {**tables.get("mill", {}), **mill}
     start = (*control.start, *([UNITS[asked.units]] if asked.units else []))
     return replace(control, start=start, decimals=asked.decimals or control.decimals, tables=tables)
 

@@ -258,11 +258,13 @@ def filter_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> li
 
 def program_settings(config: Config, wanted: Sequence[str]) -> list[str]:
     """Return the settings that a lathe's programs need; those of the user's own stay."""
-    controls = [features.PROGRAMS[name] for name in wanted if name in features.PROGRAMS]
-    if not any(read_control(control).is_lathe for control in controls):
+    names = [features.PROGRAMS[name] for name in wanted if name in features.PROGRAMS]
+    controls = [control for name in names if (control := read_control(name)).turns_c]
+    if not controls:
         return []
+    depth = "CYLINDER_X" if controls[0].onto == "round" else "POLAR_Z"
     several = config.ini.number("TRAJ", "SPINDLES", 1) > 1
-    asked = {"POLAR_Z": "allow", "LIVE_SPINDLE": "1" if several else "0"}
+    asked = {depth: "allow", "LIVE_SPINDLE": "1" if several else "0"}
     return [f"{key} = {value}" for key, value in asked.items() if not config.ini.get(SETTINGS, key)]
 
 

@@ -41,7 +41,7 @@ HEADERS = {f"[{section}]": section for section in ("PYTHON", "FILTER", "HAL", "G
 EDITED = "# before uninstall: "
 OF_PROGRAMS = re.compile(
     r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S+"
-    r"|POLAR_Z = allow|LIVE_SPINDLE = [01]"
+    r"|(POLAR_Z|CYLINDER_X) = allow|LIVE_SPINDLE = [01]"
 )
 
 

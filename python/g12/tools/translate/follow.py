@@ -15,6 +15,7 @@ from g12.tools.translate.blocks.draft import Draft, SubprogramCall
 from g12.tools.translate.blocks.errors import NotSaid, NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
+from g12.tools.translate.on_lathe.sections import before_loop
 from g12.tools.translate.rules.plain import is_plain
 from g12.tools.translate.statements import STATEMENTS
 from g12.tools.translate.structure import MAIN, Structure, programs_of_blocks, ways_from
@@ -116,6 +117,8 @@ class FollowedProgram:
                 raise NotTranslated(problem)
             statement = STATEMENTS.get(block.kind)
             if statement:
+                if block.kind == "while":
+                    before_loop(draft)
                 statement(draft, index, self.structure)
             elif index in self.structure.starts or draft.begins_program():
                 self._head(draft, index)

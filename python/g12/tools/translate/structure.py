@@ -159,14 +159,16 @@ def jumping(
 def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
     """Yield the ways on from a block that neither calls nor ends: the last block on it, the next.
 
-    A WHILE leads behind its END, too.
+    A WHILE leads behind its END, too, and an END to where its WHILE leads: what is written before
+    a loop's head is run once.
     """
     kind, partner = structure.blocks[index].kind, structure.partners.get(index)
     target = structure.jumps.targets.get(index)
     if target is not None:
         yield index, target
     if partner is not None and kind == "end":
-        yield index, partner
+        yield partner, partner + 1
+        yield index, index + 1
     elif target is None or structure.blocks[index].expression:
         yield index, index + 1
     if partner is not None and kind == "while":

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from g12.tools.translate.blocks import places
 from g12.tools.translate.milling import hole_patterns, rigid_tapping, rotation
+from g12.tools.translate.on_lathe import holes, sections
 from g12.tools.translate.rules import (
     codes,
     cycles,
@@ -46,6 +47,7 @@ WORD_RULES = (
     offsets.numbered_offset,
     offsets.offset_by_program,
     reference.reference_point,
+    sections.mill_block,
     polar.switch_polar,
     cylinder.switch_cylinder,
     cylinder.on_the_surface,
@@ -59,7 +61,9 @@ WORD_RULES = (
     increments.incremental_words,
     hole_patterns.hole_pattern,
     rigid_tapping.rigid_tap,
+    holes.whole_cycle,
     cycles.drilling_cycle,
+    holes.hole_call,
     reference.machine_position,
     motion.motion_mode,
     motion.distance_mode,

@@ -92,6 +92,10 @@ TABLES: dict[str, dict[str, object]] = {
     "c_axis": {"on": str, "off": str},
     "words": None,
     "spindles": None,
+    "mill": {
+        "onto": ("face", "round"), "safe_mm": float, "safe_inch": float, "safe": float,
+        "diameter": float,
+    },
     "g_codes": None,
     "m_codes": None,
 }  # fmt: skip
@@ -141,6 +145,16 @@ class Control:
     def is_lathe(self) -> bool:
         """Whether X is programmed as a diameter, and U W H are increments."""
         return self.machine == "lathe"
+
+    @property
+    def turns_c(self) -> bool:
+        """Whether its programs are for a lathe with C and a live tool."""
+        return self.is_lathe or bool(self.onto)
+
+    @property
+    def onto(self) -> str:
+        """Where a mill's program goes on a lathe: ``face``, ``round``, "" for any other control."""
+        return self.value("mill", "onto")
 
     def value(self, table: str, key: str, default: object = "") -> Any:
         """Return a value of one of the tables."""

@@ -50,8 +50,10 @@ class ModalState(NamedTuple):
     that X and Z repeat, ``pass_words`` what it was given, ``kept`` what first blocks of cycles say;
     ``chamfers`` tells whether threads end with one. ``turned`` is the work offset that G68 has
     turned, ``rigid`` the speed of a rigid tap and ``tap_top`` the height that it goes back to,
-    ``sizes`` are the diameters that G10 L12 has set, by tool. ``x_words`` tells whether X words are
-    diameters, ``live`` is the ``$`` word of a spindle that drives the tool and turns.
+    ``waiting`` is where a mill's program goes on a lathe before its next cut, ``section`` the
+    program in which that began. ``sizes`` are the diameters that G10 L12 has set, by tool.
+    ``x_words`` tells whether X words are diameters, ``live`` is the ``$`` word of a spindle that
+    drives the tool and turns.
     """
 
     motion: str = UNKNOWN
@@ -88,6 +90,8 @@ class ModalState(NamedTuple):
     retract: str = UNKNOWN
     x_words: str = UNKNOWN
     live: str = UNKNOWN
+    waiting: tuple | str = ()
+    section: int | str = UNKNOWN
     rigid: str = UNKNOWN
     tap_top: float | str = UNKNOWN
     sizes: tuple = ()

@@ -19,7 +19,7 @@ def is_plain(draft: Draft) -> bool:
     So it is for one motion code or none, numbers with points, and no mode that LinuxCNC lacks.
     """
     state, control = draft.state, draft.control
-    if state.turn:
+    if state.turn or control.onto:
         return False
     at = (state.cycle, state.polar, state.own_motion, state.own_distance, state.own_feed)
     if at != SETTLED:

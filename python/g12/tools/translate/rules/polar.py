@@ -19,7 +19,12 @@ from g12.tools.translate.blocks.places import IN_POLAR, axis_of, known_place, va
 IN_PLANE = frozenset("XCUH")
 MOVING = frozenset("XYZABCUVWHF")
 PLANES = frozenset(("G17", "G18", "G19"))
-SECTIONS = {"on": "in polar mode", "cylinder": "on a cylinder", UNSURE: "in polar mode"}
+SECTIONS = {
+    "on": "in polar mode",
+    "cylinder": "on a cylinder",
+    "off": "to where a section begins",
+    UNSURE: "in polar mode",
+}
 MODES_OF_X = {"diameter": "G7", "radius": "G8"}
 X_OF = {"G7": 2.0, "G8": 1.0}  # the word of a point whose radius is 1
 

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a mill's program says that a lathe's section cannot have, and where its tool stands.
+
+The mill's X and Y lie on the bar's face, its Z is along the spindle (``onto`` face), or X along
+the bar, Y round it and Z out of it (``onto`` round). Points are in the mill's own axes here.
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import UNKNOWN
+from g12.tools.translate.blocks.places import known_place
+
+SAFE = {"G20": ("safe_inch", 0.1), "G21": ("safe_mm", 2.0)}
+PLANES = frozenset(("G18", "G19"))
+NEEDLESS = frozenset(("G17", "G98", "G99"))  # in a section G98 and G99 are feed modes
+OTHER_FEEDS = {"G93": "inverse time", "G95": "a feed per revolution"}
+
+
+def is_on_lathe(draft: Draft) -> bool:
+    """Tell whether the control is for a mill's programs on a lathe."""
+    return bool(draft.control.onto)
+
+
+def refuse_foreign(draft: Draft) -> None:
+    """Refuse what a program of X, Y and Z in G17 does not have."""
+    codes = set(draft.codes())
+    for word in draft.words:
+        if word.letter in "ABC" and not draft.call:
+            raise NotTranslated(
+                f"{word.text}: a program for the {draft.control.onto} has X, Y and Z alone"
+            )
+    if codes & PLANES:
+        raise NotTranslated(f"{min(codes & PLANES)}: arcs lie in X and Y here (G17)")
+    for code in codes & OTHER_FEEDS.keys():
+        raise NotTranslated(f"{code}, {OTHER_FEEDS[code]}: write G94 and F per minute")
+    draft.comments += draft.take_codes(NEEDLESS)
+
+
+def safe_height(draft: Draft) -> float:
+    """Return the Z from which on a rapid is clear of the part, in the program's units."""
+    said = draft.control.value("mill", "safe", None)
+    if said is not None:
+        return said
+    units = draft.sure("units", "how high a rapid must be hangs on the units")
+    if units not in SAFE:
+        raise NotTranslated("how high a rapid must be hangs on the units: say G20 or G21 (--units)")
+    return draft.control.value("mill", *SAFE[units])
+
+
+def start_height(draft: Draft) -> float | None:
+    """Return where Z stands before the block, None if that is not known."""
+    return known_place(draft.start, "Z")
+
+
+def end_height(draft: Draft) -> float | None:
+    """Return where Z stands after the block, None if that is not known."""
+    if any(word.letter == "Z" for word in draft.words):
+        return known_place(draft.state, "Z")
+    return start_height(draft)
+
+
+def moves_by_rapid(draft: Draft) -> bool:
+    """Tell whether the block's moves are rapids."""
+    codes = {"G0", "G1", "G2", "G3"}.intersection(draft.codes())
+    motion = min(codes) if codes else draft.sure("motion", "X, Y or Z without G0 or G1")
+    if motion == UNKNOWN:
+        raise NotTranslated("X, Y or Z without G0 or G1, and none before them")
+    return motion == "G0"
+
+
+def check_rapid(draft: Draft, across: bool) -> None:
+    """Refuse a rapid below the safe height; ``across``: it moves in X or Y. Up is allowed."""
+    safe, start, end = safe_height(draft), start_height(draft), end_height(draft)
+    if end is None or (across and start is None):
+        raise NotTranslated("G0, and where Z stands is not known here: write Z as a number first")
+    lowest = end if start is None or not across else min(start, end)
+    if lowest < safe and (across or start is None or end < start):
+        raise NotTranslated(
+            f"G0 at Z{lowest:g}, below {safe:g} where rapids are clear of the part: write G1 "
+            "and F, or say --safe"
+        )

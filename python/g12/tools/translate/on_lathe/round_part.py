@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A mill's words round a part: X along it, Y round it in G07.1, Z out of its surface.
+
+Y is C the other way round: seen from outside with X upwards, the mill's Y points to the left, C to
+the right. Arcs and compensation keep their sense.
+"""
+
+from __future__ import annotations
+
+from math import degrees, fmod
+
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.on_lathe.values import DrilledHole, MilledSurface, is_plain_number, times
+
+TURN = 360.0
+
+
+def slides_alone(draft: Draft) -> None:
+    """Write Z as the X slide's diameter, X as Z; Y is dropped: there is no such slide."""
+    words_round(draft)
+    word = draft.take("C")
+    draft.comments += ["Y: no such slide here"] if word else []
+
+
+def words_round(draft: Draft) -> None:
+    """Write a block's words in the axes of the lathe."""
+    plus = diameter(draft) if draft.state.distance == "G90" else 0.0
+    changed = {
+        "X": ("Z", 1.0, 0.0),
+        "Y": ("C", angle_of(draft), 0.0),
+        "Z": ("X", 2.0, plus),
+        "I": ("K", 1.0, 0.0),
+        "J": ("J", -1.0, 0.0),
+    }
+    draft.words = [
+        moved_word(word, *changed[word.letter]) if word.letter in changed else word
+        for word in draft.words
+    ]
+
+
+def moved_word(word: ForeignWord, letter: str, factor: float, plus: float) -> ForeignWord:
+    """Return a word in another axis."""
+    value = times(word.value, factor, plus)
+    return ForeignWord(letter, value) if is_plain_number(value) else bracketed(letter, value)
+
+
+def bracketed(letter: str, value: str) -> ForeignWord:
+    """Return a word whose value is an expression."""
+    return ForeignWord(letter, f"[{value}]", "expression")
+
+
+def diameter(draft: Draft) -> float:
+    """Return the surface's diameter in the program's units."""
+    value = draft.control.value("mill", "diameter", 0.0)
+    if not value:
+        raise NotTranslated("the diameter of the part is not known: say --diameter")
+    return value
+
+
+def angle_of(draft: Draft) -> float:
+    """Return the angle of C that a length of 1 along Y is."""
+    return -degrees(2 / diameter(draft))
+
+
+def begin_round(draft: Draft, point: tuple[str, str], feed: float) -> list[str]:
+    """Return the lines that begin a section at a point; it is gone to by rapid."""
+    x, y = point
+    code, word = draft.control.cylinder_code
+    size = diameter(draft) if word == "diameter" else diameter(draft) / 2
+    c = times(y, angle_of(draft))
+    return [f"G0 Z{x} C{c if is_plain_number(c) else f'[{c}]'}", f"{code} C{size:g}"]
+
+
+def end_round(draft: Draft) -> list[str]:
+    """Return the lines that end a section."""
+    return [f"{draft.control.cylinder_code[0]} C0"]
+
+
+def side_hole(draft: Draft, hole: DrilledHole) -> str:
+    """Return the call that drills a hole towards the axis."""
+    angle = times(hole.y, angle_of(draft))
+    if is_plain_number(angle):
+        angle = times(str(fmod(float(angle), TURN)), 1.0)
+    surface = f"{diameter(draft):g}"
+    entries = (hole.depth, hole.retract, hole.feed, hole.peck, hole.dwell)
+    place = f"[1] [{hole.x}] [{angle}] [-9999] [{surface}]"
+    return f"o<side_holes> call {place} {' '.join(f'[{entry}]' for entry in entries)} [0]"
+
+
+ROUND = MilledSurface(
+    "X", "cylinder", "Y", words_round, slides_alone, begin_round, end_round, side_hole
+)

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where a section begins and ends in a mill's program, so that every cut lies in one.
+
+1. Rapids in X and Y outside a section wait: the lathe goes there when something is cut.
+2. The first block at a feed begins the section: the slide and C go to its start at the safe
+   height, then the section's code.
+3. A call and a loop begin one before them, or what they cut would lie in one only sometimes.
+4. A tool, an offset, G28, a drilling cycle, the end, a return: the section ends before it.
+"""
+
+from __future__ import annotations
+
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.blocks.places import known_place, value_text
+from g12.tools.translate.on_lathe.face import FACE
+from g12.tools.translate.on_lathe.mill_words import (
+    check_rapid,
+    is_on_lathe,
+    moves_by_rapid,
+    refuse_foreign,
+    safe_height,
+    start_height,
+)
+from g12.tools.translate.on_lathe.round_part import ROUND
+from g12.tools.translate.on_lathe.values import MilledSurface
+from g12.tools.translate.rules.polar import feed_of_rapids
+
+SURFACES = {"face": FACE, "round": ROUND}
+ENDING = frozenset(("G20", "G21", "G28", "G30", "G43", "G49", "G53"))
+OFFSETS = frozenset(f"G{number}" for number in range(54, 60))
+ARC = frozenset("IJR")
+CHANGES = frozenset(("M6", "M2", "M30"))
+
+
+def mill_block(draft: Draft) -> None:
+    """Put a block of a mill's program into a section, or outside of one."""
+    if not is_on_lathe(draft):
+        return
+    draft.sure("polar", "a section has begun on one way to this block, and not on another")
+    refuse_foreign(draft)
+    if "cancel cycle" in draft.meanings:
+        draft.comments.append(draft.meanings.pop("cancel cycle").code)
+        draft.change(cycle=UNKNOWN, cycle_words=())
+    if draft.state.polar != "off" and ends_here(draft):
+        end_section(draft)
+    go_home(draft)
+    if drills(draft):
+        return
+    if draft.letters() & {"X", "Y", "Z", *ARC} and not machines_own(draft):
+        write_move(draft)
+    elif draft.call and draft.state.polar == "off" and draft.state.waiting:
+        begin_section(draft)
+    if draft.state.polar != "off":
+        milled_surface(draft).inside(draft)
+
+
+def milled_surface(draft: Draft) -> MilledSurface:
+    """Return where the control's programs go."""
+    return SURFACES[draft.control.onto]
+
+
+def before_loop(draft: Draft) -> None:
+    """Begin a section before a loop, so that each round of it lies in one."""
+    if is_on_lathe(draft) and draft.state.polar == "off" and draft.state.waiting:
+        begin_section(draft)
+
+
+def machines_own(draft: Draft) -> bool:
+    """Tell whether the block's axes are not the program's: G28 and G30."""
+    return bool({"G28", "G30"}.intersection(draft.codes())) or bool(draft.call)
+
+
+def drills(draft: Draft) -> bool:
+    """Tell whether the block begins a drilling cycle or repeats one."""
+    if "drilling cycle" in draft.meanings:
+        return True
+    motions = {"G0", "G1", "G2", "G3", "G28", "G30"}.intersection(draft.codes())
+    return bool(draft.state.cycle) and not motions and bool(draft.letters() & set("XYZR"))
+
+
+def ends_here(draft: Draft) -> bool:
+    """Tell whether a section cannot go on over a block."""
+    codes = set(draft.codes())
+    changed = draft.start.units != draft.state.units
+    tools = "T" in draft.letters() or draft.ends
+    tools = tools or any(w.letter == "M" and w.code in CHANGES for w in draft.words)
+    returns = draft.returns and draft.state.section == program_begun_in(draft)
+    other = codes & (ENDING - {"G20", "G21"} | OFFSETS) or changed
+    return bool(tools or returns or other or drills(draft))
+
+
+def program_begun_in(draft: Draft) -> int:
+    """Return what tells the block's program from the file's others."""
+    return draft.program[0][0]
+
+
+def write_move(draft: Draft) -> None:
+    """Write a block that moves; a rapid in X and Y outside a section waits."""
+    across = bool(draft.letters() & {"X", "Y"})
+    if not moves_by_rapid(draft):
+        if draft.state.polar == "off":
+            begin_section(draft)
+    elif draft.state.polar != "off":
+        check_rapid(draft, across)
+    else:
+        rapid_outside(draft, across)
+
+
+def rapid_outside(draft: Draft, across: bool) -> None:
+    """Keep X and Y of a rapid for later, write Z."""
+    has_height = any(word.letter == "Z" for word in draft.words)
+    if has_height or start_height(draft) is not None:
+        check_rapid(draft, across and start_height(draft) is not None)
+    if across and draft.state.distance != "G90":
+        raise NotTranslated("a rapid in X or Y under G91 before the first cut: write it under G90")
+    waiting = dict(draft.sure("waiting", "where X and Y go hangs on the way to this block"))
+    for letter in ("X", "Y"):
+        word = draft.take(letter)
+        if word:
+            waiting[letter] = word.value
+            draft.comments.append(f"{word.text} with the next cut")
+    draft.change(waiting=tuple(sorted(waiting.items())))
+    milled_surface(draft).outside(draft)
+
+
+def begin_section(draft: Draft) -> None:
+    """Go to where the section begins, and begin it, on lines before the block."""
+    height, safe = start_height(draft), safe_height(draft)
+    if height is None or height < safe:
+        where = "not known" if height is None else f"{height:g}"
+        raise NotTranslated(
+            f"a cut begins here with the tool at Z {where}: G0 Z at or above {safe:g} before it, "
+            "with X and Y"
+        )
+    feed = feed_of_rapids(draft)
+    lines = milled_surface(draft).begin(draft, section_start(draft), feed)
+    absolute = draft.start.distance == "G90"
+    draft.before += lines if absolute else [f"G90 {lines[0]}", *lines[1:], "G91"]
+    y = known_place(draft.state, "Y")
+    draft.change(
+        polar=milled_surface(draft).section,
+        section=program_begun_in(draft),
+        waiting=(),
+        own_motion="G1",
+        own_feed="other",
+        at_c=UNKNOWN if y is None else y,
+    )
+
+
+def section_start(draft: Draft) -> tuple[str, str]:
+    """Return the values of X and Y at which the section begins."""
+    waiting = dict(draft.sure("waiting", "where X and Y stand hangs on the way to this block"))
+    values = []
+    for axis in "XY":
+        place = known_place(draft.start, axis)
+        if axis not in waiting and place is None:
+            raise NotTranslated(
+                f"a cut begins here, and where {axis} stands is not known: G0 X Y before it"
+            )
+        values.append(waiting.get(axis) or value_text(place))
+    return values[0], values[1]
+
+
+def end_section(draft: Draft) -> None:
+    """End the section on lines before the block."""
+    if draft.start.compensation != "G40" or draft.state.delayed:
+        raise NotTranslated("G41 or G42 is on where the section ends: G40 with a move before it")
+    draft.before += milled_surface(draft).end(draft)
+    own = drills(draft) and "Y" in draft.letters()  # of the hole, which no section is for
+    y = known_place(draft.state, "Y" if own else milled_surface(draft).y_in)
+    draft.change(
+        polar="off",
+        section=UNKNOWN,
+        own_motion=UNSURE,
+        at_y=UNKNOWN if y is None else y,
+        at_c=UNKNOWN,
+    )
+
+
+def go_home(draft: Draft) -> None:
+    """Write G28, G30 and G53 in the lathe's axes; the mill's machine zero means nothing there."""
+    codes = {"G28", "G30", "G53"}.intersection(draft.codes())
+    if not codes:
+        return
+    if codes == {"G53"}:
+        machine_zero(draft)
+    else:
+        milled_surface(draft).outside(draft)
+        if not draft.axis_words():
+            draft.comments += draft.take_codes(codes)  # without an axis G28 moves each of them
+    draft.change(waiting=())
+
+
+def machine_zero(draft: Draft) -> None:
+    """Write G53 as G28 away from the part if it has Z, as a comment if not."""
+    motions = draft.take_codes({"G0", "G1"})
+    gone = [word for word in draft.words if word.letter in "XYZ"]
+    draft.words = [word for word in draft.words if word not in gone]
+    draft.comments += [*draft.take_codes({"G53"}), *(word.text for word in gone)]
+    if any(word.letter == "Z" for word in gone):
+        absolute = [] if draft.state.distance == "G91" else ["G90"]
+        draft.after += [f"G91 G28 {milled_surface(draft).home}0", *absolute]
+    if motions:
+        draft.change(motion=motions[0], own_motion=UNSURE)

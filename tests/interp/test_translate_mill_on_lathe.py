@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A mill's program on a bar's face and round a part cuts what it cuts on a mill."""
+
+import numpy as np
+import pytest
+
+from g12.tools.preview.tracer import Tracer
+from interp.test_translate_cam import (
+    DEEPEST_RAPID,
+    HOME,
+    TOLERANCE,
+    distances,
+    on_the_part,
+    rapids_turn_above_the_part,
+    wanted_path,
+)
+from support.cam_parts import PARTS, mill_program
+from support.foreign_programs import translation
+from support.sim_machines import SIM
+
+SETTINGS = {"POLAR_Z": "allow", "CYLINDER_X": "allow", "LIVE_SPINDLE": "0"}
+DIAMETER = 50.0
+ROUND = ("--diameter", "50")
+
+
+@pytest.fixture(scope="module")
+def lathe(tmp_path_factory):
+    """Return a function: the trace of a mill's program, as a lathe cuts it."""
+    folder = tmp_path_factory.mktemp("mill")
+    with Tracer(SIM / "lathe_mm.ini", overrides={"G12": SETTINGS}) as tracer:
+
+        def cut(text, control, *options):
+            program = folder / "part.nc"
+            program.write_text(text)
+            translated = translation(program, control, *options)
+            traced = tracer.trace_text(translated.replace(" $1", ""), setup=HOME["mm"], alone=True)
+            assert traced.error is None, (traced.error, translated)
+            return traced.moves
+
+        yield cut
+
+
+def round_the_part(moves):
+    """Return points of the tool's way over the unrolled surface, as the mill has them."""
+    legs = [np.linspace([m.start[i] for i in (0, 2, 5)], [m.end[i] for i in (0, 2, 5)], 200)
+            for m in moves]  # fmt: skip
+    x, z, c = np.concatenate(legs).T
+    return np.column_stack([z, -np.radians(c) * DIAMETER / 2, x - DIAMETER / 2])
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_on_the_face(lathe, part):
+    moves = lathe(mill_program(PARTS[part]), "mill-on-face", "--safe", "1")
+    assert_cut(on_the_part(moves), PARTS[part])
+    assert rapids_turn_above_the_part(moves)
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_round_the_part(lathe, part):
+    moves = lathe(mill_program(PARTS[part]), "mill-round-part", "--safe", "1", *ROUND)
+    assert_cut(round_the_part(moves), PARTS[part])
+    assert all(m.start[0] > DIAMETER / 2 < m.end[0] for m in moves if m.kind == "rapid")
+
+
+def assert_cut(made, part):
+    wanted = wanted_path(part)
+    assert distances(made[made[:, 2] < DEEPEST_RAPID], wanted).max() < TOLERANCE
+    assert distances(wanted[wanted[:, 2] < DEEPEST_RAPID], made).max() < TOLERANCE
+
+
+HOLES = """G21 G90 G54
+T3 M6
+G43 H3
+G0 X8 Y-3 S900 M3
+Z5
+G1 Z-1 F100
+G1 X6 Y-2 F200
+G0 Z5
+G81 X5 Y5 Z-6 R2 F80
+X-5
+G83 X0 Y-7 Z-4 Q1.5
+G80
+G0 Z5
+M2
+"""
+WANTED = [(5, 5, -6), (-5, 5, -6), (0, -7, -4)]
+
+
+@pytest.mark.parametrize(
+    ("control", "options", "made_by"),
+    [("mill-on-face", (), on_the_part), ("mill-round-part", ROUND, round_the_part)],
+)
+def test_holes_are_where_the_mill_has_them(lathe, control, options, made_by):
+    moves = lathe(HOLES, control, *options)
+    first = max(n for n, m in enumerate(moves) if m.kind == "feed" and m.start[5] != m.end[5])
+    downs = made_by(moves[first + 2 :])
+    for x, y, depth in WANTED:
+        near = downs[np.hypot(downs[:, 0] - x, downs[:, 1] - y) < 1e-3]
+        assert near[:, 2].min() == pytest.approx(depth)
+    deep = downs[downs[:, 2] < 0]
+    assert all(min(np.hypot(p[0] - x, p[1] - y) for x, y, _ in WANTED) < 1e-3 for p in deep)
