@@ -22,7 +22,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from g12.lengths import is_inch
-from g12.machine_ini import Remap, code_number, code_of_prolog, remap_lines
+from g12.machine_ini import Remap, code_number, remap_lines
 from g12.tools.commands.arguments import GOOD, Parser, one_line
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.files import existing
@@ -148,7 +148,6 @@ def with_facts_of(control: Control, ini: Ini) -> Control:
     control = on_machine(control, ini.settings, remaps)
     pair = polar_pair(remaps)
     control = replace(control, polar_codes=pair) if pair else control
-    control = replace(control, meanings={**control.meanings, **codes_of_c(control, remaps)})
     codes = [r.code for r in remaps if CYLINDER_HANDLER in r.handlers and r.code[0] == "G"]
     word = ini.settings.cylinder_word
     return replace(control, cylinder_code=(codes[0], word)) if codes else control
@@ -218,15 +217,6 @@ def polar_pair(remaps: list[Remap]) -> tuple[str, str] | None:
     found = {name: r.code for r in remaps for name in POLAR_HANDLERS if name in r.handlers}
     good = all(code_number(found.get(name, ""))[0] == "G" for name in POLAR_HANDLERS)
     return (found["polar_on"], found["polar_off"]) if good else None
-
-
-def codes_of_c(control: Control, remaps: list[Remap]) -> dict[str, str]:
-    """Return the machine's codes for a spindle that becomes C, by those of the control."""
-    own = {way: code_of_prolog(remaps, f"spindle_c_{way}") for way in ("on", "off")}
-    return {
-        code: own[way] for way in own if own[way]
-        for code in str(control.value("c_axis", way)).split()
-    }  # fmt: skip
 
 
 def progress() -> Callable[[float], None]:

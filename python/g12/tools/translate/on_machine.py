@@ -28,7 +28,7 @@ def on_machine(control: Control, settings: Settings, remaps: Sequence[Remap]) ->
         **{
             meaning: remap.code
             for meaning, name in SPINDLE_C.items()
-            for remap in remaps
+            for remap in reversed(remaps)  # the first counts
             if name in remap.handlers or remap.keywords.get("ngc") == name
         },
     }
@@ -36,7 +36,15 @@ def on_machine(control: Control, settings: Settings, remaps: Sequence[Remap]) ->
         code: meaning_here(meaning, places, settings.live_spindle)
         for code, meaning in control.meanings.items()
     }
-    return replace(control, meanings=meanings, live_spindle=settings.live_spindle)
+    tables = {**control.tables, "holes": {**control.tables.get("holes", {}), **of_holes(settings)}}
+    return replace(control, meanings=meanings, tables=tables, live_spindle=settings.live_spindle)
+
+
+def of_holes(settings: Settings) -> dict[str, object]:
+    """Return what drilling cycles of a lathe have to know of the machine."""
+    clamp = " ".join(f"M{code}" for code in settings.c_clamp)
+    found = {"clamp": clamp} if clamp else {}
+    return {**found, "spindle": int(settings.live_spindle)} if settings.live_spindle else found
 
 
 def meaning_here(meaning: str, places: dict[str, str], live: str) -> str:

@@ -89,7 +89,6 @@ TABLES: dict[str, dict[str, object]] = {
         "r": ("from start", "level", "none"), "q": ("increments", "lengths"),
         "peck_word": ("Q", "D"), "out": ("full", "chip"), "clamp": str, "spindle": int,
     },
-    "c_axis": {"on": str, "off": str},
     "words": None,
     "spindles": None,
     "mill": {

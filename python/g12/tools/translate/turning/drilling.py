@@ -229,8 +229,8 @@ def spindle_on(draft: Draft, cycle: LatheCycle) -> list[str]:
 
 def tap_spindle(draft: Draft, cycle: LatheCycle) -> list[str]:
     """Return the word that names LinuxCNC's spindle of a tap, if it is not the main spindle."""
-    number = draft.control.value("holes", "spindle", 0)
-    if cycle.live and not number:
+    number = draft.control.value("holes", "spindle", None)
+    if cycle.live and number is None:
         raise NotSaid(
             "a live tap: which spindle of LinuxCNC's drives it? say spindle = 1 under [holes]",
             "holes",
