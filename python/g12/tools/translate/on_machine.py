@@ -43,7 +43,7 @@ def on_machine(control: Control, settings: Settings, remaps: Sequence[Remap]) ->
 def of_holes(settings: Settings) -> dict[str, object]:
     """Return what drilling cycles of a lathe have to know of the machine."""
     clamp = " ".join(f"M{code}" for code in settings.c_clamp)
-    found = {"clamp": clamp} if clamp else {}
+    found: dict[str, object] = {"clamp": clamp} if clamp else {}
     return {**found, "spindle": int(settings.live_spindle)} if settings.live_spindle else found
 
 

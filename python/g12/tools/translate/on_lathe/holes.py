@@ -10,7 +10,12 @@ from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
 from g12.tools.translate.blocks.places import known_place, value_text
-from g12.tools.translate.on_lathe.mill_words import is_on_lathe, safe_height, start_height
+from g12.tools.translate.on_lathe.mill_words import (
+    is_on_lathe,
+    safe_height,
+    start_height,
+    waiting_point,
+)
 from g12.tools.translate.on_lathe.sections import milled_surface
 from g12.tools.translate.on_lathe.values import DrilledHole, is_plain_number, times
 
@@ -66,7 +71,7 @@ def hole_from_cycle(draft: Draft, cycle: str, given: dict[str, str]) -> DrilledH
 
 def hole_place(draft: Draft, axis: str, given: dict[str, str]) -> str:
     """Return where a hole is along X or Y."""
-    waiting = dict(draft.sure("waiting", "where the hole is hangs on the way to this block"))
+    waiting = waiting_point(draft)
     place = known_place(draft.state, axis)
     value = given.get(axis) or waiting.get(axis)
     if value is None and place is None:

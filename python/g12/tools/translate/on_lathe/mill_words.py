@@ -7,6 +7,8 @@ the bar, Y round it and Z out of it (``onto`` round). Points are in the mill's o
 
 from __future__ import annotations
 
+from typing import Any
+
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN
@@ -47,6 +49,12 @@ def safe_height(draft: Draft) -> float:
     if units not in SAFE:
         raise NotTranslated("how high a rapid must be hangs on the units: say G20 or G21 (--units)")
     return draft.control.value("mill", *SAFE[units])
+
+
+def waiting_point(draft: Draft) -> dict[str, str]:
+    """Return the values of X and Y to which rapids lead that are not written yet."""
+    waiting: Any = draft.sure("waiting", "where X and Y go hangs on the way to this block")
+    return dict(waiting)
 
 
 def start_height(draft: Draft) -> float | None:

@@ -22,6 +22,7 @@ from g12.tools.translate.on_lathe.mill_words import (
     refuse_foreign,
     safe_height,
     start_height,
+    waiting_point,
 )
 from g12.tools.translate.on_lathe.round_part import ROUND
 from g12.tools.translate.on_lathe.values import MilledSurface
@@ -115,7 +116,7 @@ def rapid_outside(draft: Draft, across: bool) -> None:
         check_rapid(draft, across and start_height(draft) is not None)
     if across and draft.state.distance != "G90":
         raise NotTranslated("a rapid in X or Y under G91 before the first cut: write it under G90")
-    waiting = dict(draft.sure("waiting", "where X and Y go hangs on the way to this block"))
+    waiting = waiting_point(draft)
     for letter in ("X", "Y"):
         word = draft.take(letter)
         if word:
@@ -151,7 +152,7 @@ def begin_section(draft: Draft) -> None:
 
 def section_start(draft: Draft) -> tuple[str, str]:
     """Return the values of X and Y at which the section begins."""
-    waiting = dict(draft.sure("waiting", "where X and Y stand hangs on the way to this block"))
+    waiting = waiting_point(draft)
     values = []
     for axis in "XY":
         place = known_place(draft.start, axis)
