@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""10,000 lines of CAM output: translated, and read as a section before it moves."""
+
+import math
+import resource
+import statistics
+import tempfile
+from pathlib import Path
+
+from bench import Figure
+from bench.haas import cpu_seconds
+from g12.tools.machine.ini import read_ini
+from g12.tools.translate.blocks.control import read_control
+from g12.tools.translate.program import translate_program
+from support.sim_machines import SIM
+
+LINES, RUNS = 10000, 3
+LONGEST_TRANSLATION, LONGEST_READING = 5.0, 2.0  # s of CPU time
+
+
+def figures():
+    """Yield the rows of CAM output."""
+    text = spiral()
+    control = read_control("mill-on-face")
+    before = used()
+    translated = translate_program(text, control).text
+    yield Figure(
+        "translate: 10,000 lines of a mill's program onto the face, CPU time",
+        used() - before,
+        LONGEST_TRANSLATION,
+        " s",
+        f"lines of {mean_length():.2f} mm with Z",
+    )
+    yield reading(translated.replace(" $1", ""))
+
+
+def spiral():
+    """Return a surface's path in short lines, as a post for mills writes it."""
+    rows = ["G21 G90 G17", "T1 M6", "G43 H1", "G0 X15 Y0", "G0 Z3", "G1 Z-1 F500"]
+    rows += [f"G1 X{x:.4f} Y{y:.4f} Z{z:.4f}" for x, y, z in map(point, range(1, LINES + 1))]
+    return "\n".join([*rows, "G0 Z5", "M2", ""])
+
+
+def point(number):
+    """Return one point of the path."""
+    angle = 0.02 * number
+    radius = 15 - 10 * number / LINES + 0.3 * math.sin(7 * angle)
+    return radius * math.cos(angle), radius * math.sin(angle), -1 - 0.2 * math.sin(3 * angle)
+
+
+def mean_length():
+    """Return the mean length of a line, mm."""
+    points = [point(number) for number in range(LINES)]
+    return statistics.mean(map(math.dist, points, points[1:]))
+
+
+def reading(program):
+    """Measure how long the stock interpreter reads and plans the section."""
+    with tempfile.TemporaryDirectory() as folder:
+        scratch = Path(folder)
+        ini = read_ini(SIM / "lathe_mm.ini").replaced({"G12": {"POLAR_Z": "allow"}})
+        (scratch / "machine.ini").write_text(ini.text)
+        (scratch / "tool.tbl").write_text("T1 P1 D12\n")
+        for name, text in (("section", program), ("empty", "M2\n")):
+            (scratch / f"{name}.ngc").write_text(text)
+        times = [
+            cpu_seconds(scratch, scratch / "section.ngc")
+            - cpu_seconds(scratch, scratch / "empty.ngc")
+            for _ in range(RUNS)
+        ]
+    return Figure(
+        "polar: reading a section of 10,000 lines of CAM output, CPU time",
+        min(times),
+        LONGEST_READING,
+        " s",
+        f"the least of {RUNS} runs, without start-up",
+    )
+
+
+def used():
+    """Return the CPU time of this process, s."""
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    return usage.ru_utime + usage.ru_stime
