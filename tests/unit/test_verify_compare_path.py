@@ -127,6 +127,17 @@ def test_a_rounded_corner_is_off_by_what_it_misses():
     assert laid.deviation == pytest.approx(0.1 / math.sqrt(2), abs=1e-3)
 
 
+@pytest.mark.parametrize(("missed", "kind"), [(0.008, None), (0.02, OFF)])
+def test_a_blended_corner_of_a_sharp_reversal_is_followed(missed, kind):
+    tip, ahead = 1 + 0j, cmath.rect(1.0, math.radians(150))
+    begin, end = tip - missed, tip + missed * ahead
+    points = [begin * step / 1000 for step in range(1001)]
+    points += [end + (tip + ahead - end) * step / 1000 for step in range(1001)]
+    run = Made(0, [(point, -1.0) for point in points], sampled=True)
+    laid = lay(expected(*lines([0j, tip, tip + ahead])), [run], 0.01)
+    assert (laid.difference and laid.difference.kind) == kind
+
+
 def test_a_helix_is_followed_round_and_down():
     helix = Expected("helix", Arc(5 + 0j, 0j, 4 * math.pi), 0.0, -2.0, 100.0)
     points = [(cmath.rect(5.0, i * math.pi / 20), -2.0 * i / 80) for i in range(81)]

@@ -238,6 +238,7 @@ class _Cursor:
     slack: float
     index: int = 0
     share: float = 0.0
+    _end_seen: tuple[int, float] = (-1, math.inf)  # a move, how near its end what was made came
     _lengths: list[float] = field(default_factory=list)
     _ends: list[float] = field(default_factory=list)  # lengths of the path up to each move's end
 
@@ -312,10 +313,22 @@ class _Cursor:
                 return
             within = self._within(move, (first, last), index, share, 1.0)
             end = expected.point(1.0)
-            passed = max(passed, within, (move.distance(end, first, last), end), key=_size)
+            missed = self._missed(index, move.distance(end, first, last))
+            passed = max(passed, within, (missed, end), key=_size)
             if passed[0] > least:
                 return
             share = 0.0
+
+    def _missed(self, index: int, distance: float) -> float:
+        """Return how far a move's end is from what was made: of the present one, so far.
+
+        A blended corner comes nearest to it before what is made turns away.
+        """
+        if index != self.index:
+            return distance
+        seen = self._end_seen[1] if self._end_seen[0] == index else math.inf
+        self._end_seen = index, min(seen, distance)
+        return self._end_seen[1]
 
     def _within(
         self, move: Made, ends: tuple[Point, Point], index: int, begin: float, end: float
