@@ -51,7 +51,7 @@ def interpreting():
     return Figure(
         "G12: interpreting 1,000 pockets of 10 rings, against the same moves as plain G-code",
         statistics.median(ratios),
-        2.0,
+        3.0,
         "",
         f"CPU time of rs274 less its start-up, median of {PAIRS} pairs"
         f" ({ratios[0]:.2f} to {ratios[-1]:.2f})",

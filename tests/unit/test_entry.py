@@ -75,16 +75,16 @@ def test_what_the_subroutine_is_told(first, side):
     way = down(first, (3.0, 2.0))
     told = way.locals(first)
     assert told["side"] == side
-    assert told["outward"] == pytest.approx(first / min(first, 4.5))
+    assert told["helix_radius"] == min(first, 4.5)
     assert (told["turns"], told["fall"]) == way.first == way.helix.descent(3.0)
     assert (told["next_turns"], told["next_fall"]) == way.further == way.helix.descent(2.0)
-    assert (told["last_turns"], told["slow"]) == (3, False)
+    assert told["last_turns"] == 3
 
 
-@pytest.mark.parametrize(("share", "slow"), [(100.0, False), (40.0, True)])
-def test_straight_down_is_at_its_share_of_the_feed(share, slow):
+@pytest.mark.parametrize("share", [100.0, 40.0])
+def test_straight_down_is_at_its_share_of_the_feed(share):
     told = down(3.0, (3.0, 2.0), PocketEntry(feed=share)).locals(3.0)
-    assert told == {"turns": 0, "slow": slow, "feed": 600.0, "plunge_feed": 6.0 * share}
+    assert told == {"turns": 0, "feed": 600.0, "plunge_feed": 6.0 * share}
 
 
 def test_a_helix_of_a_thousand_turns_is_refused_by_the_first_level_alone():

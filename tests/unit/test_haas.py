@@ -286,14 +286,12 @@ def test_the_locals_of_the_subroutine():
         "levels": 1,
         "first_radius": 0.625,
         "links": 2,
-        "growth": 0.8,
-        "shrink": 0.5,
-        "keep": pytest.approx(0.625 / 1.375),
-        "again": 0.0,
-        "slow": False,
+        "step": 0.5,
+        "shorter": 0.25,
+        "restart": False,
         "rings": True,
     }
     assert {name: rings[name] for name in wanted} == wanted
     deeper = plan(I=0.75, K=1.5, Q=0.5, Z=-0.5, L=2, D=1, found=FOUND._replace(incremental=True))
     found = deeper.locals()
-    assert [found[name] for name in ("z_step", "keep", "again")] == [-0.5, 0.0, 0.625]
+    assert [found[name] for name in ("z_step", "restart")] == [-0.5, True]

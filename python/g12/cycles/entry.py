@@ -71,20 +71,18 @@ class WayDown(NamedTuple):
         """Return the named locals of `ngc/g12_haas.ngc` that are about it."""
         common = {
             "turns": self.first.turns,
-            "slow": self.plunge_feed < self.feed,
             "feed": self.feed,
             "plunge_feed": self.plunge_feed,
         }
         if not self.first.turns:
             return common
-        outward = first_radius / self.helix.radius
         return common | {
             "fall": self.first.fall,
             "next_turns": self.further.turns,
             "next_fall": self.further.fall,
             "last_turns": self.helix.last,
-            "outward": outward,
-            "side": -1 if outward > 1 else 1,
+            "helix_radius": self.helix.radius,
+            "side": -1 if first_radius > self.helix.radius else 1,
         }
 
 

@@ -82,10 +82,9 @@ class Pocket(NamedTuple):
             "levels": self.levels,
             "first_radius": self.first_radius,
             "links": self.links,
-            "growth": self.first_grow / self.first_radius,
-            "shrink": self.shrink,
-            "keep": self.first_radius / self.last_radius if goes_on else 0.0,
-            "again": 0.0 if goes_on else self.first_radius,
+            "step": self.first_grow,
+            "shorter": self.shrink * self.first_grow,
+            "restart": not goes_on,
             "rings": not self.spiral,
             **self.down.locals(self.first_radius),
         }
