@@ -30,8 +30,6 @@ not too small; the deepest rough level below W; not too many circles; L not too 
 `check_start` is not asked: the first move goes to the plunge point, which X and Y name.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from g12.errors import BlockRefusal, number

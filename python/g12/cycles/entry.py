@@ -6,8 +6,6 @@ so that the tool turns no corner where it comes to the level; there it goes once
 where it began. Lengths are in program units.
 """
 
-from __future__ import annotations
-
 from math import atan, ceil, pi, radians, tan
 from typing import NamedTuple
 

@@ -22,8 +22,6 @@ from 0, in the tool table, or a cutter known without it; I above 0, greater than
 a ring that can be cut, less than K; not too many circles; a helix that comes down.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from g12.cycles.entry import CLEARED, STRAIGHT_DOWN, PocketEntry, WayDown, way_down

@@ -13,8 +13,6 @@ Rules, in the order of the checks: G17, G18 or G19 and the modes of `check_modes
 greater than the offset. A negative diameter in the tool table enlarges the circle.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from g12.errors import number

@@ -23,8 +23,6 @@ less than I - d; K - d between R - d and I - d; each of them apart by an arc tha
 too many circles.
 """
 
-from __future__ import annotations
-
 from math import copysign
 from typing import NamedTuple
 

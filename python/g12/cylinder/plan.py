@@ -6,8 +6,6 @@ that length are proportional to what the axes do: a line is one piece, exactly. 
 bulge alike everywhere; spacing shares the deviation between them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from math import copysign, cos, degrees, hypot, radians, sin, sqrt

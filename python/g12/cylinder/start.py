@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """From what a section finds and the machine's settings to the values it is read and planned by."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from math import radians
 

@@ -6,8 +6,6 @@ and G41 has the tool on the left, whatever plane is active. An arc's centre is J
 K along Z, both lengths on the surface from the arc's start.
 """
 
-from __future__ import annotations
-
 from g12.section.block_rules import NO_TOOL_CHANGE, OWN_RADIUS
 from g12.section.line import plain_line_of
 from g12.section.words import SectionWords

@@ -17,8 +17,6 @@ X turns back or stands, as LinuxCNC takes the angle of X, Y and Z alone: so it i
 A stop costs v / a in time, about as much as the blending.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from math import hypot, inf, sqrt
 

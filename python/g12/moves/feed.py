@@ -10,8 +10,6 @@ a piece that would move it by less than ``least`` keeps it, to the last digit, a
 takes the rest over.
 """
 
-from __future__ import annotations
-
 from math import degrees, hypot
 from typing import NamedTuple
 

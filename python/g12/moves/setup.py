@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What sections of every kind take of what they find and of the machine's settings."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable
 from typing import Generic, NamedTuple, TypeVar
 

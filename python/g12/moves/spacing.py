@@ -21,8 +21,6 @@ X.
       ' '           ' '           ' '            from o to o a piece bulges by 3/2 deviations
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import ceil
 from typing import NamedTuple

@@ -6,8 +6,6 @@ Counts of rings, levels and turns are decided here once, never rounded again in 
 Lengths are in program units.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a block finds when it starts: modes, units, position, tools. Plain data, no LinuxCNC."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

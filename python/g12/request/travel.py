@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Whether a cycle stays within the travel of the machine's axes, before anything of it moves."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from math import cos, hypot, radians, sin
 from typing import NamedTuple

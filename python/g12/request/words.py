@@ -5,8 +5,6 @@ Every rule about a single word lives here, so that each refusal names the code, 
 the rule and the value in the same way.
 """
 
-from __future__ import annotations
-
 from typing import overload
 
 from g12.errors import BlockRefusal, number

@@ -4,8 +4,6 @@
 Codes are the parser's: a G code times ten, by modal group.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import NamedTuple
 

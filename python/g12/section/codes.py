@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Which codes switch a section on and off: the user's choice, by the REMAP lines."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from typing import NamedTuple
 

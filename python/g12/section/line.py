@@ -7,8 +7,6 @@ and says what they meant. A line of plain words, as most lines of a program are,
 `SectionWords.plain` and needs none of it.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from typing import NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a section finds where it begins, and how the words after it are read. Plain data."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from g12.section.line import SectionPlace

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """``g12 demo``: run the manuals' programs in headless LinuxCNC, draw and measure what they cut."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -8,8 +8,6 @@ Nothing is printed unless every line is good. Made for a [FILTER] of LinuxCNC's 
   dyn = python3 /path/to/g12/python/g12 dynapath --units inch
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from g12.errors import Refusal

@@ -7,8 +7,6 @@ surface, both over time too; a turning program in Z and X. A refused program is 
 refused line; of a section that line's contour is shown without compensation.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from dataclasses import replace

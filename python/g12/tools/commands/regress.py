@@ -6,8 +6,6 @@ interprets the programs again and compares. For a shop that updates LinuxCNC (sa
 post-processor (new programs, ``--programs``), or edits its INI, its remaps or its tools.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 from pathlib import Path

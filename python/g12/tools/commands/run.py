@@ -5,8 +5,6 @@ It is isolated from any other LinuxCNC on the computer, and nothing of the machi
 written. M0 and M1 are passed over.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Iterator

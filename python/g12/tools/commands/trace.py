@@ -6,8 +6,6 @@ degrees, whatever the program and the machine use; positions are those of the co
 in machine coordinates. A line begins with the program's own line number.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from g12.machine_ini import AXES

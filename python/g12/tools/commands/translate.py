@@ -10,8 +10,6 @@ Nothing is printed unless every block is understood. Made for a [FILTER] of Linu
 LinuxCNC names its INI to a filter (INI_FILE_NAME): M codes that this machine knows stay.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import re

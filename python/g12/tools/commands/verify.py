@@ -6,8 +6,6 @@ the program's words, what is cut is measured from the motion that LinuxCNC makes
 --run from the real motion of a headless run.
 """
 
-from __future__ import annotations
-
 import argparse
 from dataclasses import replace
 from pathlib import Path

@@ -9,8 +9,6 @@ The job is that of ``namespaces_init``, and ``turn``, the open file whose lock s
 is; of the files that ``covers`` names only programs can be had.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

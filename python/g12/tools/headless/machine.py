@@ -10,14 +10,13 @@ rotary axes; sampled positions are those of the axes, tool length included, or o
 the kinematics makes the axes mean other things (`polar_xzc`).
 """
 
-from __future__ import annotations
-
 import shutil
 import socket
 import time
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 
@@ -133,7 +132,7 @@ class Machine:
             self.close()
             raise
 
-    def __enter__(self) -> Machine:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_exception: object) -> None:

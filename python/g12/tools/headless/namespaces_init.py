@@ -12,8 +12,6 @@ the file to be seen in its place, and ``scratch``, a directory to be removed if 
 standard input goes away.
 """
 
-from __future__ import annotations
-
 import ctypes
 import json
 import os

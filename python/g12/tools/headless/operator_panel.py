@@ -4,8 +4,6 @@
 Used inside a LinuxCNC session, by the headless screen and by the recording screen.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any

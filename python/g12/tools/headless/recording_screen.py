@@ -5,8 +5,6 @@ LinuxCNC starts it in place of the INI's screen.  A request is a tuple of a meth
 its arguments, the answer a pair: whether it worked, and the result or the error.
 """
 
-from __future__ import annotations
-
 import array
 import socket
 import subprocess

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Programs run to their end, each on a headless LinuxCNC of its own."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

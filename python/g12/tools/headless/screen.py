@@ -8,8 +8,6 @@ shuts down.  The program is the one named after the INI on LinuxCNC's command li
 The exit code, LinuxCNC's too, is 0 if the program came to its end and 1 if not.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from contextlib import nullcontext

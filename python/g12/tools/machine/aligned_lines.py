@@ -7,8 +7,6 @@ taken one by one; what is put in belongs to the line before it, what one line ha
 Where a stretch of lines has become another number of lines, it is not known.
 """
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_left
 from collections import Counter

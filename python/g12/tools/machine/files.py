@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Changing a user's files: the difference shown, the old file kept, the new one there at once."""
 
-from __future__ import annotations
-
 import contextlib
 import difflib
 import os

@@ -6,8 +6,6 @@ filter's lines are found in both texts. Where they cannot be, lines are those th
 and it is said so.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

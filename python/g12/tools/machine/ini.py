@@ -6,14 +6,12 @@ to the INI's directory.  A value is looked up in the first section of its name o
 2.9 does; 2.10 reads all of them.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Self, TypeVar
 
 from g12.errors import Refusal
 from g12.ini_sections import (
@@ -110,7 +108,7 @@ class Ini:
         name = self.get(section, key)
         return self.directory / os.path.expanduser(name) if name else None
 
-    def replaced(self, overrides: Overrides) -> Ini:
+    def replaced(self, overrides: Overrides) -> Self:
         """Return an INI with values replaced or added.
 
         ``overrides`` maps section to key to value; a list or tuple gives one line of the key
@@ -122,13 +120,13 @@ class Ini:
                 ini = ini._with(section, key, value)
         return ini
 
-    def _with(self, section: str, key: str, value: Value) -> Ini:
+    def _with(self, section: str, key: str, value: Value) -> Self:
         body = section_extent(self.lines, section)
         head, tail = self.lines[: body.start], self.lines[body.stop :]
         if not body.start:
             head, tail = (*self.lines, f"[{section}]"), ()
         kept = _without(self.lines[body.start : body.stop], key)
-        return Ini(self.path, (*head, *_entries(key, value), *kept, *tail))
+        return replace(self, lines=(*head, *_entries(key, value), *kept, *tail))
 
 
 def read_ini(path: str | os.PathLike) -> Ini:

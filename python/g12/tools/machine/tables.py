@@ -4,8 +4,6 @@
 LinuxCNC, which alone reads them, takes any file, and says little of what it cannot read.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

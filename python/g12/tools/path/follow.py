@@ -4,8 +4,6 @@
 Lengths are millimetres, angles of rotary axes degrees, times seconds.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

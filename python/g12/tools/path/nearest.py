@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Points of straight segments next to points, for arrays of both at once."""
 
-from __future__ import annotations
-
 import numpy as np
 
 NO_LENGTH = 1e-30  # a square: a segment so short is a point

@@ -8,8 +8,6 @@ X points right; angles grow counterclockwise, so a tool at X, C stands at (X cos
 Lengths are millimetres, angles radians unless a name says degrees.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Iterable, Sequence

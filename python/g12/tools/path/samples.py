@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The real motion of a machine, as recorded at the servo rate."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

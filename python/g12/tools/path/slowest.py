@@ -4,8 +4,6 @@
 Feeds are along the part in mm/min, times in seconds.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

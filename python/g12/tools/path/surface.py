@@ -5,8 +5,6 @@ Its points are the way round, which grows with C, along Z, and X as the height a
 seen from outside: with Z upwards C grows to the right.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

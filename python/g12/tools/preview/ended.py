@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Traces that come to their end, and what a machine says of a program that does not."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path

@@ -8,8 +8,6 @@ then: ``(DEBUG, …)`` lines around the blocks tell, in a copy of the program th
 Nothing is shared with the planners: this is how ``verify`` knows what was programmed.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Which LinuxCNC is here, and whether it loads a machine config."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 from functools import cache

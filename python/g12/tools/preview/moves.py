@@ -8,8 +8,6 @@ with no work offset they are the program's positions.  (A real machine's axes st
 position plus ``Move.tool_offset``.)
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence

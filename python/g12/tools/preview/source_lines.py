@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A trace of a filtered program with the lines of the file that the user wrote."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from g12.tools.machine.filter import OpenedProgram

@@ -9,8 +9,6 @@ change, it forgets G64's tolerances (it takes 0.1) where the machine converts th
 too; the worker restores F at the next line that asks the machine for anything.)
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import shutil
@@ -21,6 +19,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Self
 
 from g12.lengths import is_inch
 from g12.machine_ini import AXES
@@ -66,7 +65,7 @@ class Tracer:
         self._machine = _machine(self.ini, tools, self.folder)
         self._start()
 
-    def __enter__(self) -> Tracer:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_exception: object) -> None:

@@ -7,8 +7,6 @@ the interpreter imports.  A request is a dict with ``program``, ``setup``, ``par
 interpreter object, as in a GUI that opens a program again.
 """
 
-from __future__ import annotations
-
 import bisect
 import ctypes
 import math

@@ -6,8 +6,6 @@ with its square. A short stretch between them, of items that occur more than onc
 by item.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Iterator, Sequence
 from difflib import SequenceMatcher
 

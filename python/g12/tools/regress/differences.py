@@ -5,8 +5,6 @@ Moves that follow each other with the same sort of change are one difference, an
 say the same of several places are one too.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace

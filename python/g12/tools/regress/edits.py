@@ -9,8 +9,6 @@ go if most of them go it as before, as in a program shifted sideways; else they 
 Lengths are millimetres, angles degrees.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple

@@ -4,8 +4,6 @@
 Lengths are millimetres until they are drawn; those of the layout are inches on the page.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path

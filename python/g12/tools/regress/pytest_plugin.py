@@ -15,8 +15,6 @@
         gcode_regression(REGRESS, program)
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Recording programs in a directory and checking them against it: what ``g12 regress`` does."""
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Sequence

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Recordings made and compared by several interpreters at once, each of them a process."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import time
@@ -11,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.filter import opened_program
@@ -174,7 +172,7 @@ class Recorders:
         self._idle: defaultdict[TracedMachine, list[Recorder]] = defaultdict(list)
         self._all: list[Recorder] = []
 
-    def __enter__(self) -> Recorders:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_exception: object) -> None:

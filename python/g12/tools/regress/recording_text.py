@@ -25,8 +25,6 @@ refused. Ten decimals are finer than what an inch conversion leaves of a double;
 rounding that differs from one build of LinuxCNC to the next.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace

@@ -6,8 +6,6 @@ from, all relative to the directory; ``tool.tbl`` and ``parameters.var`` are cop
 wears or a work offset that is touched off changes no trace. Everything in it is text to commit.
 """
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Iterable

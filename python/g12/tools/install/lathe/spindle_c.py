@@ -5,8 +5,6 @@
 files have already, with the inputs of its drive, which only the owner knows: a TOML file of pins.
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterable, Iterator
