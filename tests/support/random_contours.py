@@ -9,7 +9,7 @@ import numpy as np
 from shapely.geometry import LineString
 
 from g12.compensation import offset
-from g12.compensation.contour import Contour, Line, is_move
+from g12.compensation.contour import Contour, PlaneMove
 from support.contour_geometry import Round, Straight
 from support.planned_cuts import add
 
@@ -48,16 +48,12 @@ def contour_of(drawn, depth=-1.0):
 
 
 def points_of(shape):
-    """Return points of a shape, or of an element of the tool's path."""
-    if isinstance(shape, (Straight, Round)):
-        bend, radius = (shape.sweep, shape.radius) if isinstance(shape, Round) else (0.0, 1.0)
-    elif isinstance(shape, Line):
-        shape = Straight(complex(shape.x0, shape.c0), complex(shape.x1, shape.c1))
-        bend, radius = 0.0, 1.0
-    else:
-        shape = Round(complex(shape.x0, shape.c0), complex(shape.cx, shape.cc), shape.sweep)
-        bend, radius = shape.sweep, shape.radius
-    return shape.points(2 + math.ceil(abs(bend) * math.sqrt(radius / FINE)))
+    """Return points of a shape, or of a move of the tool's path."""
+    shape = getattr(shape, "curve", shape)
+    bend, radius = getattr(shape, "sweep", 0.0), getattr(shape, "radius", 1.0)
+    count = 2 + math.ceil(abs(bend) * math.sqrt(radius / FINE))
+    drawn = Round(*shape) if bend else Straight(*shape)
+    return drawn.points(count)
 
 
 def as_shapely(shapes):
@@ -70,7 +66,7 @@ def blind_path(monkeypatch, contour):
     with monkeypatch.context() as patch:
         patch.setattr(offset, "check_gouges", lambda *_: None)
         path = offset.tool_path(contour, contour.elements, TOLERANCE)
-    return [element for element in path if is_move(element) and element.line > 1]
+    return [element for element in path if isinstance(element, PlaneMove) and element.line > 1]
 
 
 def depth(path, drawn):

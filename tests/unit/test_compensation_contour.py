@@ -8,8 +8,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Arc, Contour, Line, Mark, Plunge
+from g12.compensation.contour import Contour, Mark, Plunge
 from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.geometry.curve import Arc
+from support import planned_moves
 
 
 def started(**options):
@@ -27,8 +29,8 @@ def test_a_coordinate_left_out_stays():
     contour.line(x=-4.0, line=2, feed=50.0)
     contour.line(z=1.0, line=3, feed=25.0)
     assert contour.elements == [
-        Line(1, 100.0, 0.0, 10.0, 0.0, 5.0, 10.0, 3.0, 5.0),
-        Line(2, 50.0, 0.0, 10.0, 3.0, 5.0, -4.0, 3.0, 5.0),
+        planned_moves.line(10.0, 0.0, 10.0, 3.0, 5.0, 5.0),
+        planned_moves.line(10.0, 3.0, -4.0, 3.0, 5.0, 5.0, number=2, feed=50.0),
         Plunge(3, 25.0, 5.0, 1.0),
     ]
     assert (contour.x, contour.c, contour.z) == (-4.0, 3.0, 1.0)
@@ -51,7 +53,7 @@ def arc_of(turn, *end, **words):
     contour = started()
     contour.arc(turn, *end, line=1, feed=100.0, **words)
     (arc,) = contour.elements
-    return arc
+    return arc.curve
 
 
 @pytest.mark.parametrize(
@@ -67,7 +69,7 @@ def arc_of(turn, *end, **words):
 )
 def test_arcs_to_the_top_of_a_circle(turn, words, centre, sweep):
     arc = arc_of(turn, 0.0, 10.0, **words)
-    assert (arc.cx, arc.cc) == pytest.approx(centre, abs=1e-12)
+    assert arc.centre == pytest.approx(complex(*centre), abs=1e-12)
     assert arc.sweep == pytest.approx(sweep)
 
 
@@ -85,9 +87,10 @@ def test_an_arc_anywhere_by_its_centre_and_by_its_radius(start, arm, angle, turn
         contour = Contour(start.real, 5.0, start.imag)
         contour.arc(turn, end.real, end.imag, -2.0, line=1, feed=100.0, **words)
         (arc,) = contour.elements
-        assert arc[3:9] == (start.real, start.imag, 5.0, end.real, end.imag, -2.0)
-        assert complex(arc.cx, arc.cc) == pytest.approx(centre, abs=1e-9)
-        assert arc.sweep == pytest.approx(turn * angle, abs=1e-9)
+        assert (arc.start, arc.z0, arc.z1) == (start, 5.0, -2.0)
+        assert arc.end == pytest.approx(end, abs=1e-9)
+        assert arc.curve.centre == pytest.approx(centre, abs=1e-9)
+        assert arc.curve.sweep == pytest.approx(turn * angle, abs=1e-9)
 
 
 @pytest.mark.parametrize("words", [dict(i=-3.0), dict(j=4.0), dict(i=-3.0, j=4.0)])
@@ -96,26 +99,26 @@ def test_an_arc_anywhere_by_its_centre_and_by_its_radius(start, arm, angle, turn
 def test_no_end_or_the_start_as_end_is_a_full_circle(turn, end, words):
     arc = arc_of(turn, *end, **words)
     assert arc.sweep == turn * 2 * math.pi
-    assert (arc.cx, arc.cc) == (10.0 + words.get("i", 0.0), words.get("j", 0.0))
+    assert arc.centre == complex(10.0 + words.get("i", 0.0), words.get("j", 0.0))
 
 
 def test_a_rounded_centre_is_moved_to_be_as_far_from_both_ends():
     arc = arc_of(1, 0.0, 10.0, i=-10.0, j=0.004)
-    assert math.hypot(10.0 - arc.cx, arc.cc) == pytest.approx(math.hypot(arc.cx, 10.0 - arc.cc))
-    assert math.hypot(arc.cx, arc.cc) < 0.004
+    assert abs(10.0 - arc.centre) == pytest.approx(abs(10j - arc.centre))
+    assert abs(arc.centre) < 0.004
 
 
 def test_a_half_circle_with_a_rounded_radius_closes():
     contour = started(closing=0.001)
     contour.arc(1, -10.0, 0.0, radius=9.9996, line=1, feed=100.0)
-    assert contour.elements[0].sweep == pytest.approx(math.pi)
+    assert contour.elements[0].curve.sweep == pytest.approx(math.pi)
 
 
 def test_a_helix_keeps_its_heights():
     contour = started()
     contour.arc(1, z=-3.0, i=-10.0, line=1, feed=100.0)
     (arc,) = contour.elements
-    assert isinstance(arc, Arc)
+    assert isinstance(arc.curve, Arc)
     assert (arc.z0, arc.z1, contour.z) == (5.0, -3.0, -3.0)
 
 
@@ -431,6 +434,5 @@ def test_behind_a_g1_an_arc_begins_where_that_was_programmed_to_end():
     contour.line(30.0, line=6, feed=100.0)
     contour.arc(1, 0.0, 30.0, i=-30.0, line=7, feed=100.0)
     line, arc = contour.elements
-    assert (line.x0, line.c0, line.x1, line.c1) == (20.0, 3.0, 30.0, 0.0)
-    assert (arc.x0, arc.c0) == (30.0, 0.0)
-    assert arc.sweep == pytest.approx(math.pi / 2)
+    assert (line.start, line.end, arc.start) == (20.0 + 3j, 30.0 + 0j, 30.0 + 0j)
+    assert arc.curve.sweep == pytest.approx(math.pi / 2)

@@ -14,18 +14,7 @@ import numpy as np
 import pytest
 from shapely.geometry import Polygon
 
-from g12.compensation.closing import closing_of
-from g12.compensation.contour import Arc, Contour, Line, direction_at, is_move, path_length
-from g12.compensation.gouge import (
-    Cut,
-    greatest_heights,
-    in_plane,
-    place_count,
-    places_along,
-    stretches,
-    without_repeats,
-)
-from g12.compensation.intersect import along_start, nearest_place, place_at
+from g12.compensation.contour import Contour
 from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
 from support.contour_geometry import Round, Straight, arc, lines
@@ -186,7 +175,7 @@ def test_leads_that_cross_are_told(side):
 def test_what_a_loop_cuts_again_is_told_once():
     drawn = Drawn(extended(5.0, 5.0), LEFT, 3.0, [])
     contour, again = contour_of(drawn), contour_of(drawn)
-    contour.line(again.elements[0].x0, again.elements[0].c0, line=9001, feed=300.0)
+    contour.line(again.elements[0].start.real, again.elements[0].start.imag, line=9001, feed=300.0)
     contour.elements += again.elements
     assert refusal(contour) == ""
     assert len(contour.notes) == 1
@@ -445,169 +434,6 @@ def test_a_contour_that_hardly_crosses_itself_behind_a_corner_is_refused():
     assert "cuts into the other" in cut(sliver, LEFT, 1.0)[0]
 
 
-# Where a contour closes, and which of its ends are leads.
-
-
-def closing(shapes, radius=3.0):
-    """Return where shapes that are cut one behind the other close, and their moves."""
-    contour = contour_of(Drawn(shapes, LEFT, radius, shapes))
-    moves = [move for move in contour.elements if is_move(move) and 3 <= move.line < 9000]
-    return closing_of(moves, NEAR), moves
-
-
-NEAR = 0.02
-
-
-def ends_of(shapes, radius=3.0):
-    """Return whether shapes close, and from which place to which they are a contour."""
-    found, moves = closing(shapes, radius)
-    places = (
-        place_at(moves[at], along / path_length(moves[at]))
-        for at, along in ((found.first, found.start), (found.last, found.end))
-    )
-    return found.closed, *(complex(*(round(value, 3) for value in place)) for place in places)
-
-
-def rolled(on, off, overlap):
-    """Return the square with an arc to lead on and one to lead off, and lines beyond them."""
-    start, end = 10 + 0j, 10 - 1j * overlap
-    arc_on = Round(start + 5 + 5j, start + 5, 0.5 * math.pi)
-    arc_off = Round(end, end + 5, 0.5 * math.pi)
-    corners = [start, *SQUARE[1:], SQUARE[0], end]
-    far, near = arc_on.start, arc_off.end
-    front = [Straight(far + 4 * k + 4, far + 4 * k) for k in reversed(range(on - 1))]
-    behind = [Straight(near + 4 * k, near + 4 * k + 4) for k in range(off - 1)]
-    return [*front, arc_on, *(Straight(*pair) for pair in zip(corners, corners[1:])), arc_off,
-            *behind]  # fmt: skip
-
-
-@pytest.mark.parametrize("overlap", [0.0, 2.0])
-@pytest.mark.parametrize(
-    ("on", "off", "closes"),
-    [(1, 3, True), (3, 1, True), (2, 2, True), (1, 4, False), (4, 1, False), (4, 4, False)],
-)
-def test_leads_have_up_to_three_moves(on, off, closes, overlap):
-    shapes = rolled(on, off, overlap)
-    assert closing(shapes)[0].closed is closes
-    assert (cut(shapes, LEFT, 3.0)[0] == "") is closes
-    if closes and not overlap:
-        assert ends_of(shapes) == (True, 10 + 0j, 10 + 0j)
-
-
-@pytest.mark.parametrize("behind", [False, True])
-@pytest.mark.parametrize(
-    ("lead", "radius", "closes"),
-    [(39.0, 6.0, True), (41.0, 6.0, False), (41.0, 4.9, True), (41.0, 5.1, False)],
-)
-def test_a_contour_is_half_as_long_as_its_leads_or_four_tool_radii(lead, radius, closes, behind):
-    """The square is 20 round; anything shorter is the spur of an open contour."""
-    corners = [5 + 0j, 0j, 5j, 5 + 5j]
-    first, second, third, last = closed(corners)
-    if behind:
-        last = Straight(last.start, last.end - 1j * lead)
-    else:
-        first = Straight(first.start + lead, first.end)
-    assert closing([first, second, third, last], radius)[0].closed is closes
-
-
-@pytest.mark.parametrize(("gap", "closes"), [(0.019, True), (0.021, False)])
-def test_places_near_to_each_other_close_a_contour(gap, closes):
-    around = Round(10 + 0j, 0j, -2 * math.pi + gap / 10)
-    assert closing([around])[0].closed is closes
-    sides = closed(SQUARE)
-    short = [*sides[:-1], Straight(sides[-1].start, sides[-1].end - gap)]
-    assert closing(short)[0].closed is closes
-
-
-def test_of_a_contour_that_does_not_close_all_is_contour():
-    zigzag = lines((0, 0), (20, 0), (20, 20), (45, 20))
-    found, moves = closing(zigzag)
-    assert found == (0, 0.0, 2, 25.0, False, False)
-    assert [found.part(k, moves[0]) for k in (-1, 3)] == [(0.0, 0.0)] * 2
-
-
-def test_of_two_places_the_one_with_more_of_the_leads_beyond_it():
-    """The last side, an arc, goes through the first one twice."""
-    sides = [*lines((10, 40), (10, -10), (-10, -10), (-10, 10)), Round(-10 + 10j, 5 + 15j, 5.0)]
-    assert ends_of(sides) == (True, 10 + 0j, 10 + 0j)
-
-
-def test_a_contour_that_ends_where_it_began_closes_though_it_crosses_itself_beside_its_end():
-    """What is beyond that is shorter than four radii of the tool."""
-    sides = lines((0, 0), (0, 50), (3, 50))
-    sides += [Round(3 + 50j, 26.5 + 23.5j, cmath.phase((-26.5 - 23.5j) / (-23.5 + 26.5j)))]
-    for radius, start in ((1.0, 47j), (6.0, 0j)):
-        assert ends_of(sides, radius) == (True, start, start)
-
-
-def test_what_lies_beyond_the_closing_is_no_contour():
-    found, moves = closing(extended(5.0, 15.0))
-    assert found[:4] == (0, pytest.approx(5.0), 3, pytest.approx(20.0))
-    parts = [found.part(k, move) for k, move in enumerate(moves)]
-    assert parts == [
-        (pytest.approx(0.2), 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, pytest.approx(20 / 35)),
-    ]  # fmt: skip
-    led, moves = closing(rolled(2, 2, 0.0))
-    assert [led.part(k, moves[k])[1] > led.part(k, moves[k])[0] for k in (0, 2, 5, 8)] == [
-        False, True, True, False,
-    ]  # fmt: skip
-
-
-def crossing(shapes):
-    """Return whether a contour closes where it crosses itself."""
-    found, _ = closing(shapes)
-    return found.closed and found.crossing
-
-
-@pytest.mark.parametrize(
-    ("on", "off", "corners", "closes"),
-    [
-        *((0, 0, 3, True), (1, 1, 3, True), (1, 1, 4, True), (2, 2, 3, False), (2, 2, 4, False)),
-        *((0, 1, 4, True), (1, 0, 4, True), (1, 2, 4, False), (2, 1, 4, False)),
-    ],
-)
-def test_leads_may_cross_with_one_move_beyond_them(on, off, corners, closes):
-    ring = [20 * cmath.exp(-2j * math.pi * k / corners) for k in range(corners)]
-    first, *others, last = closed(ring)
-    overrun = 0.2
-    sides = [first.between(-overrun, 1.0), *others, last.between(0.0, 1.0 + overrun)]
-    for _ in range(on):
-        sides = [Straight(1.1 * sides[0].start, sides[0].start), *sides]
-    for _ in range(off):
-        sides = [*sides, Straight(sides[-1].end, 1.1 * sides[-1].end)]
-    assert crossing(sides) is closes
-
-
-def test_two_sides_with_leads_are_no_contour():
-    bow = [Straight(-20 + 0j, 20 + 0j), Round(20 + 0j, 5 + 0j, -1.1 * math.pi)]
-    assert crossing(bow)
-    led = [Straight(-20 + 20j, -20 + 0j), *bow, Straight(bow[-1].end, 2 * bow[-1].end)]
-    assert not crossing(led)
-
-
-@pytest.mark.parametrize(("share", "closes"), [(0.48, False), (0.55, True)])
-def test_two_moves_meet_in_the_second_half_of_the_last(share, closes):
-    """An arc that goes through the line before it, so far behind their joint."""
-    centre = 5 + 15j / math.tan(0.45 * math.pi)
-    bow = [Straight(-20 + 0j, 20 + 0j), Round(20 + 0j, centre, -0.9 * math.pi / share)]
-    assert closing(bow)[0].closed is closes
-    assert not closes or ends_of(bow) == (True, -10 + 0j, -10 + 0j)
-
-
-@pytest.mark.parametrize(("slope", "through"), [(0.06, True), (0.04, False), (-1.0, False)])
-@pytest.mark.parametrize(("turned", "size"), [(0.0, 1.0), (0.7, 1.0), (2.5, 0.025)])
-def test_a_side_goes_through_where_two_others_join(slope, through, turned, size):
-    """A lead comes to the corner from beyond the last side: from this side it does not cross it."""
-    first, *others, last = closed(SQUARE)
-    on = Straight(first.start + 20 + 20j * slope, first.start)
-    over = Straight(last.start, last.end + 5)
-    around = cmath.rect(size, turned)
-    assert crossing([s.turned(around) for s in (on, first, *others, over)]) is through
-    flipped = [Straight(s.end * 1j, s.start * 1j) for s in (over, *reversed(others), first, on)]
-    flipped = [Straight(s.start.conjugate(), s.end.conjugate()) for s in flipped]
-    assert crossing([s.turned(around) for s in flipped]) is through
-
-
 # Heights.
 
 
@@ -769,95 +595,6 @@ BOSS_FIRST = (
 )
 def test_a_level_is_a_part_unless_it_is_above_both_beside_it(path, heights, deep):
     assert ("cuts into the other" in refusal(levels_of(*zip(heights, path)))) is deep
-
-
-# What the looks at a contour have in common.
-
-
-def line(x0, c0, x1, c1, z0=-1.0, z1=-1.0, offset=3.0):
-    return Line(1, 300.0, offset, x0, c0, z0, x1, c1, z1)
-
-
-def circle(x, c, sweep=2 * math.pi, z=-1.0):
-    """Return a full circle from the origin, about a place."""
-    return Arc(1, 300.0, 3.0, 0.0, 0.0, z, 0.0, 0.0, z, x, c, sweep)
-
-
-@pytest.mark.parametrize(
-    ("under_compensation", "expected"),
-    [
-        ("", []),
-        ("---", []),
-        ("--++--", [("cd", "be")]),
-        ("-+--++-", [("b", "ac"), ("ef", "dg")]),
-        ("+-+", [("a", "b"), ("c", "b")]),
-    ],
-)
-def test_a_stretch_is_what_lies_between_two_ramps(under_compensation, expected):
-    cuts = [Cut(name, (), sign == "+") for name, sign in zip("abcdefg", under_compensation)]
-    found = [("".join(cut.move for cut in part) for part in pair) for pair in stretches(cuts)]
-    assert [tuple(pair) for pair in found] == expected
-
-
-def test_moves_are_one_in_the_plane_if_places_centre_and_sweep_are_the_same():
-    moves = [line(0.0, 0.0, 1.0, 0.0), line(0.0, 0.0, 0.0, 1.0), line(0.0, 0.0, 1.0, 1e-5)]
-    moves += [line(1.0, 0.0, 0.0, 0.0), line(0.0, 1e-5, 1.0, 0.0)]
-    moves += [circle(2.0, 0.0), circle(-2.0, 0.0), circle(0.0, 2.0), circle(2.0, 0.0, -2 * math.pi)]
-    assert len(set(map(in_plane, moves))) == len(moves)
-    for move in moves:
-        again = move._replace(line=7, feed=1.0, offset=-2.0, z0=3.0, z1=5.0, x0=move.x0 + 1e-9)
-        assert in_plane(again) == in_plane(move)
-
-
-@pytest.mark.parametrize("tolerance", [0.005, 0.1])
-@pytest.mark.parametrize("offset", [3.0, -0.4])
-@pytest.mark.parametrize(
-    "move",
-    [line(1.0, 2.0, 40.0, -7.0), line(1.0, 2.0, 1.0, 2.3), line(0.0, 0.0, 0.01, 0.0),
-     circle(-5.0, 3.0), circle(4.0, 0.0, -2 * math.pi)],
-)  # fmt: skip
-def test_no_cut_falls_between_two_places_of_a_move(move, offset, tolerance):
-    """A tool that is a tolerance deep in a line is so on a chord of its radius."""
-    places = list(places_along(move._replace(offset=offset), tolerance))
-    assert len(places) == place_count(move._replace(offset=offset), tolerance)
-    length, half_chord = path_length(move), math.sqrt(2.0 * abs(offset) * tolerance)
-    ways = [along_start(move, place) % length for (place, *_) in places]
-    assert np.allclose(ways, np.linspace(ways[0], ways[-1], len(ways)), atol=1e-9)
-    assert ways[0] == pytest.approx(length - ways[-1], abs=1e-9)
-    assert 0.0 < ways[0] == pytest.approx(min(tolerance, 0.25 * length))
-    assert len(ways) - 2 < length / half_chord <= len(ways) - 1
-    for place, way, normal in places:
-        assert place == pytest.approx(nearest_place(move, place))
-        assert way == direction_at(move, place)
-        left = complex(*normal) / complex(*way)
-        assert left == pytest.approx(math.copysign(1.0, offset) * 1j)
-
-
-def test_of_repeated_passes_the_deepest_is_kept_for_the_first_of_its_moves():
-    high, low = line(0.0, 0.0, 9.0, 0.0, -1.0, -1.0), line(0.0, 0.0, 9.0, 0.0, 0.0, -2.0)
-    other = line(0.0, 1.0, 9.0, 1.0)
-    assert without_repeats([(1, high), (2, other), (3, low)]) == [(1, low), (2, other)]
-    assert without_repeats([(1, low), (2, other), (3, high)]) == [(1, low), (2, other)]
-
-
-def test_a_repeated_move_is_as_high_as_any_of_them():
-    first, other = line(0.0, 0.0, 9.0, 0.0, -3.0, -2.0), line(9.0, 0.0, 9.0, 5.0, -2.0, -2.0)
-    for again in (first._replace(z0=-1.0), first._replace(z1=-1.0)):
-        assert greatest_heights([first, other, again]) == {0: -1.0, 1: -2.0}
-        assert greatest_heights([again, other, first]) == {0: -1.0, 1: -2.0}
-
-
-def test_a_way_that_comes_down_or_goes_up_along_moves_is_not_through_the_air():
-    """It counts how high a level begins behind the one before, and how it ends."""
-    ends = [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0), (0.0, 5.0)]
-    for heights, material in (
-        ([(-1, -1), (5, 5), (5, 5), (-1, -1)], {0, 3}),
-        ([(-1, -1), (5, 5), (5, -3), (-1, -1)], {0, 1, 2, 3}),
-        ([(-1, -1), (-3, 5), (5, 5), (-1, -1)], {0, 1, 2, 3}),
-        ([(-1, -1), (5, -3), (-3, 5), (-1, -1)], {0, 3}),
-    ):
-        moves = [line(*one, *other, *z) for one, other, z in zip(ends, ends[1:], heights)]
-        assert set(greatest_heights(moves)) == material
 
 
 # How long it takes.

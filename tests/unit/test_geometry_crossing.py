@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
-from g12.geometry.crossing import crossings
+from g12.geometry.crossing import common_points, crossings
 from g12.geometry.curve import Arc, Line
 
 NUMBER = st.floats(-20, 20).map(lambda value: round(value, 3))
@@ -48,6 +48,18 @@ def test_crossings_are_on_both_and_all_there_are(one, other):
     assume(not isinstance(one, Arc) or not isinstance(other, Arc) or one.centre != other.centre)
     for place in (place for place in places if abs(place) < 500):
         assert min(abs(place - each) for each in found) < 0.05
+
+
+ARC = st.builds(Arc, PLACE, PLACE, st.sampled_from([-6.0, -3.0, -1.0, 0.5, 2.0, 5.0]))
+
+
+@given(st.one_of(LINE, ARC.filter(lambda arc: arc.radius > 0.1)), LINE)
+def test_common_points_are_the_crossings_on_both_curves(one, other):
+    for pair in ((one, other), (other, one)):
+        found = common_points(*pair)
+        assert all(curve.distance(point) < 2e-6 for curve in pair for point in found)
+        beside = [point for point in crossings(*pair) if point not in found]
+        assert all(max(curve.distance(point) for curve in pair) > 1e-6 for point in beside)
 
 
 def test_a_line_touches_a_circle_in_one_place_twice():

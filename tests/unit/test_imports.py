@@ -38,7 +38,6 @@ ROLES = {
     "plan_circle",
     "left_material",
 }  # one meaning, many files
-ROLES |= {"Line", "Arc", "recentred", "sweep_between"}  # the planners' move to g12.geometry
 MOST_FILES = 16  # of a room, its __init__ among them
 SHARED = [path.stem for path in PACKAGE.glob("*.py") if path.stem[:2] != "__"]
 

@@ -10,9 +10,11 @@ from functools import partial
 
 import pytest
 
-from g12.compensation.contour import Line, Mark, Plunge
+from g12.compensation.contour import Mark, Plunge
+from g12.geometry.curve import Line
 from g12.moves import exact_stops
 from g12.polar.plan import quickness
+from support import planned_moves
 
 FEED = 600.0  # 10 per second
 C = 1000.0 / 30.0  # as quick as X at the corners, which are at radius 30
@@ -26,14 +28,14 @@ def stops(path, rounding, x, c):
 
 
 def line(x0, c0, x1, c1, z0=0.0, z1=0.0, feed=FEED):
-    return Line(1, feed, 0.0, x0, c0, z0, x1, c1, z1)
+    return planned_moves.line(x0, c0, x1, c1, z0, z1, feed=feed)
 
 
 def first_stops(path, rounding, x=1000.0, c=C):
     """Say whether the tool stops at the end of the first move; the last one is not the end."""
     away = path[-1]
-    behind = line(away.x1, away.c1, away.x1 + (away.x1 - away.x0), away.c1 + (away.c1 - away.c0))
-    return stops([*path, behind], rounding, x, c)[0]
+    after = away._replace(curve=Line(away.end, 2 * away.end - away.start))
+    return stops([*path, after], rounding, x, c)[0]
 
 
 RIGHT_ANGLE = [line(20, 0, 30, 0), line(30, 0, 30, 10)]
@@ -113,12 +115,13 @@ def test_a_slope_has_its_angle_and_its_axes_in_space(level, on, rise, share, sto
     onwards = line(*on, *far, slope.z1, slope.z1 + 10.0 * rise)
     up = [level._replace(z0=2.0, z1=2.0), slope, onwards]
     assert stops(up, rounding / steep, 1000.0, C)[0] is stop
-    beyond = line(level.x0, level.c0, 2 * level.x0 - 30, 2 * level.c0, 2.0, 2.0)
+    on = level.start
+    beyond = line(on.real, on.imag, 2 * on.real - 30, 2 * on.imag, 2.0, 2.0)
     assert stops([*map(turned_back, up[::-1]), beyond], rounding * steep, 1000.0, C)[1] is stop
 
 
 def turned_back(move):
-    return line(move.x1, move.c1, move.x0, move.c0, move.z1, move.z0)
+    return move.reversed()
 
 
 def test_down_and_up_again_is_a_turn_back():

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Line
 from g12.moves.feed import Split, keeps_slide, pieces_with_feed
+from support import planned_moves
 
 START = (10.0, 0.0, 0.0)
 LEAST = 0.001
@@ -16,7 +16,7 @@ LEAST = 0.001
 
 def move(z1=0.0):
     """Return a move at F120; its split is what counts."""
-    return Line(1, 120.0, 0.0, 10.0, 0.0, 0.0, 0.0, 0.0, z1)
+    return planned_moves.line(10.0, 0.0, 0.0, 0.0, z1=z1, feed=120.0)
 
 
 def pieces(*ends, z1=0.0, entry=0.0):

@@ -8,12 +8,13 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Contour, Line
+from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.moves.steps import BlockMoves
 from g12.polar.face import passed
 from g12.polar.follow import FaceLimits, is_able
 from g12.polar.plan import PolarSettings, plan
+from support import planned_moves
 from support.contour_geometry import Round, Straight, distance, distance_from_path
 from support.planned_cuts import add, programmed
 
@@ -156,7 +157,7 @@ places = st.tuples(st.floats(-60, 60), st.floats(-60, 60))
 @settings(max_examples=200, deadline=None)
 @given(places, places, st.floats(100, 6000), offsets)
 def test_on_the_face_an_able_line_keeps_c_and_the_slide_within_their_limits(a, b, feed, beside):
-    move = Line(1, feed, 0.0, *a, 0.0, *b, 0.0)
+    move = planned_moves.line(*a, *b, feed=feed)
     assume(math.dist(a, b) > 0.1)
     limits = LIMITS._replace(beside=beside, slide_speed=120.0)
     if not is_able(move, limits):

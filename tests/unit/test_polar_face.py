@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Which moves of a section go out as X and Y of the face, and how."""
 
+import cmath
 from math import atan2, degrees, hypot, pi
 
 import numpy as np
@@ -8,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Contour, Line, Plunge
+from g12.compensation.contour import Contour, Plunge
 from g12.moves.steps import BlockMoves
 from g12.polar.face import FaceMove, FaceSwitch, flows_into, in_face, passed
 from g12.polar.plan import PolarSettings, plan
+from support import planned_moves
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
 
 SETTINGS = PolarSettings(0.005, 0.001, 707.0, 3600.0, 21600.0, face=LIMITS)
@@ -51,10 +53,10 @@ def test_passed_tells_the_end_and_the_farthest(move, off):
     points = motion(move)[0]
     if abs(points).min() < 0.5:
         return
-    begin = atan2(move.c0, move.x0) + off
+    begin = cmath.phase(move.start) + off
     places = passed(move, begin)
     angles = np.unwrap(np.angle(points))
-    assert places[-1][0] == pytest.approx(hypot(move.x1, move.c1))
+    assert places[-1][0] == pytest.approx(abs(move.end))
     assert places[-1][1] - begin == pytest.approx(angles[-1] - angles[0], abs=1e-6)
     assert max(radius for radius, *_ in [*places, (abs(points[0]),)]) >= abs(points).max() - 1e-4
 
@@ -64,7 +66,7 @@ def contour(*points, feed=2000.0):
     drawn = Contour(30.0, 0.0, code="G12.1", diameter=False, closing=0.0127)
     x, c = 30.0, 0.0
     for number, (to_x, to_c) in enumerate(points, 7):
-        drawn.elements.append(Line(number, feed, 0.0, x, c, 0.0, to_x, to_c, 0.0))
+        drawn.elements.append(planned_moves.line(x, c, to_x, to_c, number=number, feed=feed))
         x, c = to_x, to_c
     return drawn
 
@@ -91,7 +93,7 @@ def test_arcs_on_the_face_leave_the_machine_at_their_end():
     assert len(arc_on.pieces) > 40
     assert made.place == pytest.approx(line_on.pieces[-1])
     assert (there.place, back.place) == ((60.0, 10.0, 0.0), made.place)
-    assert hypot(line_on.move.x0, line_on.move.c0) == pytest.approx(hypot(40, 20))
+    assert abs(line_on.move.start) == pytest.approx(hypot(40, 20))
 
 
 def test_the_part_beside_the_pole_is_made_of_pieces_and_the_face_begins_anew():
@@ -100,9 +102,9 @@ def test_the_part_beside_the_pole_is_made_of_pieces_and_the_face_begins_anew():
     assert {step.line for step in made.steps if isinstance(step, BlockMoves)} == {9}
     *_, at = (k for k, step in enumerate(made.steps) if isinstance(step, FaceSwitch) and step.on)
     switch, again = made.steps[at : at + 2]
-    assert (again.line, again.move.c0) == (9, pytest.approx(0.0, abs=0.002))
-    assert again.move.x0 == pytest.approx(switch.place[0])
-    assert 0.2 < again.move.x0 < hypot(3, 30)
+    assert (again.line, again.move.start.imag) == (9, pytest.approx(0.0, abs=0.002))
+    assert again.move.start.real == pytest.approx(switch.place[0])
+    assert 0.2 < again.move.start.real < hypot(3, 30)
 
 
 def test_without_kinematics_all_is_pieces():

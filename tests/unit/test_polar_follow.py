@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How fast C and the slide can follow moves on the face."""
 
-from math import hypot, inf, pi
+from math import inf, pi
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Arc
+from g12.geometry.curve import Arc
 from g12.polar.follow import OVERSHOOT, FaceLimits, is_able
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
 
@@ -87,9 +87,9 @@ def share_of_limits(move, limits):
     slide = np.sqrt(abs(points) ** 2 - limits.beside**2)
     angle = np.unwrap(np.angle(points) - np.arctan2(limits.beside, slide))
     most, curving = limits.acceleration, 0.0
-    if isinstance(move, Arc):
+    if isinstance(move.curve, Arc):
         most = limits.round_acceleration
-        curving = speed**2 / hypot(move.x0 - move.cx, move.c0 - move.cc)
+        curving = speed**2 / move.curve.radius
     step, slower = abs(points[1] - points[0]), np.linspace(0.0, 1.0, 20)[:, None] ** 0.5
     left = np.sqrt(np.maximum(0.0, most**2 - (slower**2 * curving) ** 2))
     shares = []
@@ -129,8 +129,8 @@ def test_what_is_able_does_not_depend_on_the_unit(move, beside, quick):
         beside=beside, slide_speed=60.0, c_acceleration=quick * LIMITS.c_acceleration
     )
     small = {name: 1e-4 * getattr(limits, name) for name in LENGTHS}
-    ends = {name: 1e-4 * getattr(move, name) for name in move._fields if name[:1] in "xc"}
-    scaled = move._replace(feed=1e-4 * move.feed, **ends)
+    ends = [1e-4 * end for end in move.curve[:2]]
+    scaled = move._replace(feed=1e-4 * move.feed, curve=type(move.curve)(*ends, *move.curve[2:]))
     assert is_able(scaled, limits._replace(**small)) == is_able(move, limits)
 
 

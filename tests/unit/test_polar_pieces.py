@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Arc, Line
+from g12.geometry.curve import Arc, Line
 from g12.polar.beside import _curvature, _density, split_beside
 from g12.polar.pieces import Law, _arc_density, _line_density, split_move
 from support.axes_of_places import along, axes_of, bend, change_of_bend, places_of, rates
@@ -32,12 +32,9 @@ laws = st.builds(
 offsets = st.sampled_from([-8.0, -0.3, 2.0, 9.0])
 
 
-def move_of(shape):
-    """Return a shape as the planner's move."""
-    ends = (shape.start.real, shape.start.imag, 0.0, shape.end.real, shape.end.imag, 0.0)
-    if isinstance(shape, Straight):
-        return Line(1, 250.0, 0.0, *ends)
-    return Arc(1, 250.0, 0.0, *ends, shape.centre.real, shape.centre.imag, shape.sweep)
+def curve_of(shape):
+    """Return a shape as the planner's curve."""
+    return Line(*shape) if isinstance(shape, Straight) else Arc(*shape)
 
 
 def clear_of(shape, beside=0.0):
@@ -88,7 +85,7 @@ def test_beside_x_s_line_pieces_are_as_long_as_the_first_limit_allows(shape, par
         1.0 / shape.length,
     )
     wanted = longest(measured, even_feed(slide, sliding, turning, law), law, slide)
-    pieces, share = _density(move_of(shape), law, beside)(at)
+    pieces, share = _density(curve_of(shape), law, beside)(at)
     assert pieces == pytest.approx(wanted, rel=0.01)
     assert share == pytest.approx(share_of(difference, pieces, law), abs=0.02)
 
@@ -166,8 +163,8 @@ def test_ends_of_pieces_are_beside_the_path_where_their_lengths_tell(shape, law,
     """
     assume(clear_of(shape, beside))
     law = law._replace(ripple=0.01, x_hold=3.0, c_hold=3.0)
-    move, path = move_of(shape), along(shape)
-    split = split_beside(move, law, beside) if beside else split_move(move, law)
+    curve, path = curve_of(shape), along(shape)
+    split = split_beside(curve, law, beside) if beside else split_move(curve, law)
     slides, angles, lengths = map(np.array, split)
     assert (lengths[0], lengths[-1]) == pytest.approx((0.0, shape.length))
     assert (np.diff(lengths) > 0).all()
@@ -199,7 +196,7 @@ def test_the_way_back_is_cut_into_the_same_pieces(shape, law, beside):
     if isinstance(shape, Round):
         back = Round(shape.end, shape.centre, -shape.sweep)
     there, again = (
-        split_beside(move_of(one), law, beside) if beside else split_move(move_of(one), law)
+        split_beside(curve_of(one), law, beside) if beside else split_move(curve_of(one), law)
         for one in (shape, back)
     )
     assert len(there.lengths) == len(again.lengths)
@@ -235,13 +232,13 @@ def test_a_short_line_is_one_piece_while_that_keeps_the_limits(law, first, foot)
     for length, whole in ((0.99 * low, True), (1.01 * low, False)):
         ends = (start, start + 1j * length)
         for line in (Straight(*ends), Straight(*ends[::-1])):
-            assert (len(split_move(move_of(line), law).lengths) == 2) is whole
+            assert (len(split_move(curve_of(line), law).lengths) == 2) is whole
 
 
 @pytest.mark.parametrize(("away", "whole"), [(0.0024, True), (0.0026, False)])
 def test_an_arc_is_one_piece_if_its_radii_differ_by_less_than_the_deviation(away, whole):
     circle = Round(complex(10 + away), complex(away), 2 * math.pi)
-    split = split_move(move_of(circle), Law(0.005, 1e9, INF, INF))
+    split = split_move(curve_of(circle), Law(0.005, 1e9, INF, INF))
     assert (len(split.lengths) == 2) is whole
 
 
@@ -261,6 +258,6 @@ HALF_WAY = Round(20.006 + 0j, 10.006 + 0j, math.pi)  # to 0.006 beside the pole
     ],
 )
 def test_no_end_is_farther_off_than_half_the_way_to_the_pole(shape, deviation):
-    split = split_move(move_of(shape), Law(0.005, 1e9, INF, INF))
+    split = split_move(curve_of(shape), Law(0.005, 1e9, INF, INF))
     off = abs(places_of(*map(np.array, split[:2])) - along(shape)(np.array(split.lengths)))
     assert 0.8 * deviation < off.max() <= deviation * 1.0001

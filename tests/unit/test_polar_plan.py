@@ -617,7 +617,7 @@ def test_no_axis_exceeds_its_acceleration_along_any_direction(place, heading, sl
     needs = (abs(sliding) / 500.0, abs(math.sin(slope)) / 500.0, abs(turning) / math.radians(900.0))
     quick = quickness(
         (unit.real, unit.imag, math.sin(slope)),
-        (place.real, place.imag),
+        place,
         x_acceleration=500.0,
         c_acceleration=900.0,
         beside=beside,

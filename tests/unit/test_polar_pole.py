@@ -9,21 +9,20 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Arc, Contour, Line, Mark, Plunge
+from g12.compensation.contour import Contour, Mark, Plunge
+from g12.geometry.curve import Arc, Line
 from g12.polar.pole import through_pole
+from support import planned_moves
 
 REACH = 0.0025
 
 
 def line(x0, c0, x1, c1, z0=0.0, z1=0.0):
-    return Line(3, 100.0, 0.0, x0, c0, z0, x1, c1, z1)
+    return planned_moves.line(x0, c0, x1, c1, z0, z1, number=3)
 
 
 def arc(cx, cc, x0, c0, sweep, z0=0.0, z1=0.0):
-    x, c = x0 - cx, c0 - cc
-    x1 = cx + x * math.cos(sweep) - c * math.sin(sweep)
-    c1 = cc + x * math.sin(sweep) + c * math.cos(sweep)
-    return Arc(3, 100.0, 0.0, x0, c0, z0, x1, c1, z1, cx, cc, sweep)
+    return planned_moves.arc(complex(cx, cc), complex(x0, c0), sweep, z0, z1, number=3)
 
 
 def led(*path, reach=REACH, refused=False):
@@ -33,9 +32,9 @@ def led(*path, reach=REACH, refused=False):
 def ends(parts):
     """Return the ends of moves, one behind the other, and check that they are."""
     for one, other in zip(parts, parts[1:]):
-        assert (one.x1, one.c1, one.z1) == pytest.approx((other.x0, other.c0, other.z0), abs=1e-12)
-    first, places = parts[0], [(part.x1, part.c1, part.z1) for part in parts]
-    return [(first.x0, first.c0, first.z0), *places]
+        assert (one.end, one.z1) == (pytest.approx(other.start, abs=1e-12), pytest.approx(other.z0))
+    first, places = parts[0], [(part.end.real, part.end.imag, part.z1) for part in parts]
+    return [(first.start.real, first.start.imag, first.z0), *places]
 
 
 def test_marks_plunges_and_what_is_far_from_the_pole_stay():
@@ -72,20 +71,20 @@ def test_a_line_inside_the_reach_is_no_way_but_for_its_z():
 def test_a_circle_through_the_pole(sweep, beside, passes):
     """Radii take the place of what is within a fifth of the reach of them on either side."""
     made = led(arc(5 + beside, 0, 10 + beside, 0, sweep, 0.0, -4.0))
-    assert [type(part) for part in made] == ([Arc, Line, Line, Arc] if passes else [Arc])
+    assert [type(part.curve) for part in made] == ([Arc, Line, Line, Arc] if passes else [Arc])
     if passes:
         first, to, fro, second = made
         assert ends(made)[2] == pytest.approx((0.0, 0.0, -2.0))
-        assert (first.sweep, second.sweep) == pytest.approx((second.sweep, first.sweep))
-        length = math.hypot(to.x0, to.c0)
+        assert first.curve.sweep == pytest.approx(second.curve.sweep)
+        length = abs(to.start)
         assert length**2 / 8 / 5 == pytest.approx(0.2 * REACH, rel=0.02) if not beside else True
-        assert math.hypot(fro.x1, fro.c1) == pytest.approx(length)
+        assert abs(fro.end) == pytest.approx(length)
 
 
 @pytest.mark.parametrize("turn", [1, -1])
 def test_an_arc_from_the_pole_back_to_it(turn):
     made = led(arc(5, 0, 0, 0, turn * 2 * math.pi, 0.0, -4.0))
-    assert [type(part) for part in made] == [Line, Arc, Line]
+    assert [type(part.curve) for part in made] == [Line, Arc, Line]
     places = ends(made)
     assert places[0][:2] == places[-1][:2] == (0.0, 0.0)
     assert (places[0][2], places[-1][2]) == pytest.approx((0.0, -4.0))
@@ -94,10 +93,10 @@ def test_an_arc_from_the_pole_back_to_it(turn):
 @pytest.mark.parametrize("sweep", [1.0, -1.0])
 def test_an_arc_that_ends_or_begins_at_the_pole_passes_it_once(sweep):
     inwards = led(arc(5, 0, 5 - 5 * math.cos(sweep), 5 * math.sin(sweep), sweep))
-    assert [type(part) for part in inwards] == [Arc, Line]
+    assert [type(part.curve) for part in inwards] == [Arc, Line]
     assert ends(inwards)[-1][:2] == (0.0, 0.0)
     outwards = led(arc(5, 0, 0, 0, sweep))
-    assert [type(part) for part in outwards] == [Line, Arc]
+    assert [type(part.curve) for part in outwards] == [Line, Arc]
     assert ends(outwards)[0][:2] == (0.0, 0.0)
 
 
@@ -114,15 +113,15 @@ def test_a_small_circle_about_the_pole_is_not_led_through_it():
 @pytest.mark.parametrize("radius", [0.003, 0.0039])
 def test_of_a_small_circle_a_sixth_on_either_side_is_replaced_at_most(radius):
     first, to, fro, last = led(arc(radius, 0, 2 * radius, 0, 2 * math.pi))
-    assert math.hypot(to.x0, to.c0) == pytest.approx(radius)
-    assert math.hypot(fro.x1, fro.c1) == pytest.approx(radius)
-    assert (first.sweep, last.sweep) == pytest.approx((2 / 3 * math.pi, 2 / 3 * math.pi))
+    assert abs(to.start) == pytest.approx(radius)
+    assert abs(fro.end) == pytest.approx(radius)
+    assert [part.curve.sweep for part in (first, last)] == pytest.approx([2 / 3 * math.pi] * 2)
 
 
 @pytest.mark.parametrize("radius", [0.003, 0.0009])
 def test_the_smallest_circles_through_the_pole(radius):
     first, *between, last = led(arc(radius, 0, 2 * radius, 0, 2 * math.pi))
-    assert max(map(abs, (first.x0, last.x1))) <= 2 * radius + 1e-12
+    assert max(map(abs, (first.start.real, last.end.real))) <= 2 * radius + 1e-12
     assert between == [] or all(part.line == 3 for part in between)
 
 
@@ -135,10 +134,10 @@ def points(move, count):
     """Return places of a move, complex, and their heights."""
     parts = np.linspace(0.0, 1.0, count)
     heights = move.z0 + parts * (move.z1 - move.z0)
-    start, end = complex(move.x0, move.c0), complex(move.x1, move.c1)
-    if isinstance(move, Arc):
-        centre = complex(move.cx, move.cc)
-        return centre + (start - centre) * np.exp(1j * parts * move.sweep), heights
+    start, end = move.start, move.end
+    if isinstance(move.curve, Arc):
+        centre = move.curve.centre
+        return centre + (start - centre) * np.exp(1j * parts * move.curve.sweep), heights
     return start + parts * (end - start), heights
 
 
@@ -180,17 +179,17 @@ def test_what_is_led_through_the_pole_is_the_move_but_for_its_reach(move):
     assert near < REACH or made == [move]
     places = [place for place, _ in groupby(place[:2] for place in places)]
     passes = places.count((0.0, 0.0))
-    assert passes == (near < REACH) * (1 + (isinstance(move, Arc) and ends_twice(move)))
+    assert passes == (near < REACH) * (1 + (isinstance(move.curve, Arc) and ends_twice(move)))
     for part in made:
         assert (part.line, part.feed) == (3, 100.0)
         for place, height in zip(*points(part, 7)):
             nearest = abs(whole - place).argmin()
             assert abs(whole[nearest] - place) <= 1.2 * REACH + step
             assert abs(heights[abs(whole - place) < 1.5 * REACH + step] - height).min() < 0.02
-    turns = {math.copysign(1.0, part.sweep) for part in made if isinstance(part, Arc)}
-    assert turns <= {math.copysign(1.0, getattr(move, "sweep", 0.0))}
+    turns = {math.copysign(1.0, part.curve.sweep) for part in made if isinstance(part.curve, Arc)}
+    assert turns <= {math.copysign(1.0, getattr(move.curve, "sweep", 0.0))}
 
 
 def ends_twice(move):
     """Return whether an arc both begins and ends within reach, with a way between them."""
-    return max(math.hypot(move.x0, move.c0), math.hypot(move.x1, move.c1)) <= REACH
+    return max(abs(move.start), abs(move.end)) <= REACH

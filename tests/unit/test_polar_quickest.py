@@ -9,22 +9,25 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Arc, Line, Mark, Plunge, path_length
+from g12.compensation.contour import Mark, Plunge
 from g12.polar.follow import FaceLimits, is_able
 from g12.polar.quickest import SHARES, FaceStretch, quickest
+from support import planned_moves
 
 QUICK = FaceLimits(1000.0, 707.0, 1000.0, radians(3600.0), radians(360.0), 1.0, 20.0)
 SLOW = FaceLimits(1500.0, 1060.0, 1500.0, radians(1200.0), radians(90.0), 1.5, 35.0)
 
 
 def line(*ends, feed):
-    (x0, c0), (x1, c1) = ends
-    return Line(1, feed, 0.0, x0, c0, 0.0, x1, c1, 0.0)
+    return planned_moves.line(*ends[0], *ends[1], feed=feed)
 
 
 def circle(radius, off, feed, sweep=2 * pi):
-    there = off + radius * cos(sweep), radius * sin(sweep)
-    return Arc(1, feed, 0.0, off + radius, 0.0, 0.0, *there, 0.0, off, 0.0, sweep)
+    return planned_moves.arc(off + 0j, off + radius + 0j, sweep, feed=feed)
+
+
+def length_of(path):
+    return sum(part.length for part in path)
 
 
 def made_of(path, limits):
@@ -55,7 +58,7 @@ def test_where_c_is_too_slow_the_feed_is_what_it_can_follow():
     made = made_of([circle(10, 20, 2000.0)], SLOW)
     feeds = [part.feed for part, share in zip(made.path, shares_of(made)) if share]
     assert 2000.0 == max(feeds) > min(feeds)
-    assert hypot(made.path[-1].x1, made.path[-1].c1) == pytest.approx(30.0)
+    assert abs(made.path[-1].end) == pytest.approx(30.0)
 
 
 def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
@@ -65,25 +68,25 @@ def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
     assert made.stopping == [*[False] * (len(made.path) - 1), True]
     in_pieces = [part for part, share in zip(made.path, shares_of(made)) if not share]
     assert [part.feed for part in in_pieces] == [3000.0]
-    assert path_length(in_pieces[0]) < 40
+    assert in_pieces[0].length < 40
     for before, after in zip(made.path, made.path[1:]):
-        assert (before.x1, before.c1) == pytest.approx((after.x0, after.c0))
+        assert before.end == pytest.approx(after.start)
 
 
 def test_the_quicker_pieces_are_the_more_is_made_of_them():
     def on_face(speed):
         made = made_of([line((-90, 2), (90, 2), feed=3000.0)], QUICK._replace(pieces_speed=speed))
-        return sum(path_length(part) for part, share in zip(made.path, shares_of(made)) if share)
+        return sum(part.length for part, share in zip(made.path, shares_of(made)) if share)
 
     assert on_face(1.0) > on_face(20.0) > on_face(80.0)
 
 
-FAR, NEAR = line((40, -20), (40, 20), feed=1000.0), line((1e-4, -20), (1e-4, 20), feed=1000.0)
+FAR, SHORT = line((40, -20), (40, 20), feed=1000.0), line((1e-4, -1), (1e-4, 1), feed=1000.0)
 MARK, PLUNGE = Mark(2, "M8"), Plunge(3, 500.0, 0.0, -1.0)
 
 
 def test_marks_and_plunges_go_with_what_is_in_front():
-    path = [MARK, FAR, MARK, PLUNGE, NEAR._replace(c0=-1, c1=1), PLUNGE, FAR, MARK]
+    path = [MARK, FAR, MARK, PLUNGE, SHORT, PLUNGE, FAR, MARK]
     on = [bool(share) for share in shares_of(made_of(path, QUICK))]
     assert on == [False, True, True, True, False, False, True, True]
 
@@ -91,18 +94,12 @@ def test_marks_and_plunges_go_with_what_is_in_front():
 @pytest.mark.parametrize(("seconds", "worth"), [(0.0995, False), (0.1005, True)])
 def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
     far = line((40, 0), (40, 10 * seconds), feed=600.0)
-    near = NEAR._replace(c0=-1, c1=1)
-    assert [*map(bool, shares_of(made_of([near, far, MARK, near], QUICK)))] == [
-        False,
-        worth,
-        worth,
-        0,
-    ]
+    shares = shares_of(made_of([SHORT, far, MARK, SHORT], QUICK))
+    assert [*map(bool, shares)] == [False, worth, worth, False]
 
 
 def test_a_stretch_between_two_switches_has_its_own_acceleration():
-    near = NEAR._replace(c0=-1, c1=1)
-    shares = shares_of(made_of([circle(10, 20, 2000.0), near, FAR], QUICK))
+    shares = shares_of(made_of([circle(10, 20, 2000.0), SHORT, FAR], QUICK))
     assert 0.0 < shares[0] < shares[-1] == 1.0
 
 
@@ -147,7 +144,7 @@ circles = st.builds(
 def test_all_of_the_path_is_made_and_followed(path, limits):
     made = made_of(path, limits)
     assert len(made.path) == len(made.stopping) == len(made.stretches)
-    assert sum(map(path_length, made.path)) == pytest.approx(sum(map(path_length, path)))
+    assert length_of(made.path) == pytest.approx(length_of(path))
     for share, run in groupby(zip(made.path, shares_of(made)), lambda one: one[1]):
         for move, _ in run:
             assert not share or is_able(move, limits, share)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The flat contour: lines and arcs in a plane, their compensation, and what is wrong with them.
+"""The programmed contour in a plane, its compensation, and what is wrong with it.
 
 The plane is unrolled or turned onto the machine elsewhere; nothing here knows how.
 """

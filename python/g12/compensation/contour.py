@@ -1,28 +1,29 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The programmed contour: lines and arcs in a flat plane, each with the block it comes from.
 
-The plane has the axes x and c, and z at right angles to it, all in program units. On a part's face
-they are X (a radius value, whatever the X words meant), C as a length, and Z, with their origin in
-the spindle's centre; on a cylinder C as a length, Z, and X. An angle grows from +x to +c; a
-positive sweep is counterclockwise (G3), in radians.
+The plane has the axes x and c, and z at right angles to it, all in program units; its points are
+complex numbers x + jc. On a part's face they are X (a radius value, whatever the X words meant), C
+as a length, and Z, with their origin in the spindle's centre; on a cylinder C as a length, Z, and
+X. An angle grows from +x to +c; a positive sweep is counterclockwise (G3), in radians.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import copy
-from math import atan2, copysign, hypot, pi, sqrt
-from typing import NamedTuple, NoReturn, TypeGuard
+from math import copysign, sqrt
+from typing import NamedTuple, NoReturn
 
 from g12.errors import Refusal, number
+from g12.geometry.curve import FULL_TURN, Arc, Curve, Line, recentred, sweep_between
 from g12.lengths import LARGEST
 
-Point = tuple[float, float]  # x, c
 SAME_PLACE = 1e-6  # program units: closer points are one point, a shorter move is rounding
 CLOSING_RATIO = 0.001  # of the radius: the mismatch LinuxCNC allows any arc
 
 
-class Line(NamedTuple):
-    """A straight move in the plane, with Z from ``z0`` to ``z1``.
+class PlaneMove(NamedTuple):
+    """A line or an arc in the plane, with Z from ``z0`` to ``z1``.
 
     ``offset`` is the compensation in force: the tool's radius, above zero with the tool on the
     left of the path (G41), below zero on its right (G42), 0 without. ``feed`` is the tool centre's
@@ -32,32 +33,42 @@ class Line(NamedTuple):
     line: int
     feed: float
     offset: float
-    x0: float
-    c0: float
+    curve: Curve
     z0: float
-    x1: float
-    c1: float
     z1: float
 
+    @property
+    def start(self) -> complex:
+        """The start in the plane."""
+        return self.curve.start
 
-class Arc(NamedTuple):
-    """A circular move about (``cx``, ``cc``) by the signed angle ``sweep``.
+    @property
+    def end(self) -> complex:
+        """The end in the plane."""
+        return self.curve.end
 
-    The other members are those of :class:`Line`.
-    """
+    @property
+    def length(self) -> float:
+        """The length in the plane."""
+        return self.curve.length
 
-    line: int
-    feed: float
-    offset: float
-    x0: float
-    c0: float
-    z0: float
-    x1: float
-    c1: float
-    z1: float
-    cx: float
-    cc: float
-    sweep: float
+    @property
+    def lowest(self) -> float:
+        """The least Z."""
+        return min(self.z0, self.z1)
+
+    def level(self, share: float) -> float:
+        """Return Z at a share of the move."""
+        return self.z0 + share * (self.z1 - self.z0)
+
+    def reversed(self) -> PlaneMove:
+        """Return the move from its end to its start, with the same compensation."""
+        return self._replace(curve=self.curve.reversed(), z0=self.z1, z1=self.z0)
+
+    def portion(self, first: float, last: float) -> PlaneMove:
+        """Return the move between two shares of it."""
+        curve = self.curve.portion(first, last)
+        return self._replace(curve=curve, z0=self.level(first), z1=self.level(last))
 
 
 class Plunge(NamedTuple):
@@ -96,65 +107,7 @@ class Start(NamedTuple):
     z: float
 
 
-Move = Line | Arc | Plunge
-Element = Move | Mark  # of a contour, or of the tool centre's path
-
-
-def is_move(element: Element) -> TypeGuard[Line | Arc]:
-    """Return whether an element moves in the plane."""
-    return isinstance(element, (Line, Arc))
-
-
-def arc_radius(move: Arc) -> float:
-    """Return an arc's radius."""
-    return hypot(move.x0 - move.cx, move.c0 - move.cc)
-
-
-def path_length(move: Line | Arc) -> float:
-    """Return the length of a move in the plane."""
-    if isinstance(move, Line):
-        return hypot(move.x1 - move.x0, move.c1 - move.c0)
-    return abs(move.sweep) * arc_radius(move)
-
-
-def start_direction(move: Line | Arc) -> Point:
-    """Return the unit vector of the motion in the plane at the move's start."""
-    return direction_at(move, (move.x0, move.c0))
-
-
-def end_direction(move: Line | Arc) -> Point:
-    """Return the unit vector of the motion in the plane at the move's end."""
-    return direction_at(move, (move.x1, move.c1))
-
-
-def direction_at(move: Line | Arc, place: Point) -> Point:
-    """Return the unit vector of the motion in the plane at a place of the move."""
-    if isinstance(move, Line):
-        tx, tc = move.x1 - move.x0, move.c1 - move.c0
-    else:
-        turn = 1.0 if move.sweep > 0.0 else -1.0
-        tx, tc = turn * (move.cc - place[1]), turn * (place[0] - move.cx)
-    length = hypot(tx, tc)
-    return tx / length, tc / length
-
-
-def recentred(start: Point, end: Point, centre: Point) -> Point:
-    """Return the point nearest to ``centre`` that is equally far from ``start`` and ``end``."""
-    ux, uc = end[0] - start[0], end[1] - start[1]
-    mx, mc = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
-    along = ((centre[0] - mx) * ux + (centre[1] - mc) * uc) / (ux * ux + uc * uc)
-    return centre[0] - along * ux, centre[1] - along * uc
-
-
-def sweep_between(start: Point, end: Point, centre: Point, turn: int) -> float:
-    """Return the signed angle from one point to another about a third.
-
-    ``turn``: +1 counterclockwise, -1 clockwise. A full turn where the angle is none.
-    """
-    ax, ac = start[0] - centre[0], start[1] - centre[1]
-    bx, bc = end[0] - centre[0], end[1] - centre[1]
-    angle = turn * atan2(ax * bc - ac * bx, ax * bx + ac * bc)
-    return turn * (angle if angle > 0.0 else angle + 2 * pi)
+Element = PlaneMove | Plunge | Mark  # of a contour, or of the tool centre's path
 
 
 class Contour:
@@ -187,8 +140,8 @@ class Contour:
     ) -> None:
         self.x, self.c, self.z = x, c, z
         self.code, self.names, self.diameter, self.closing = code, names, diameter, closing
-        self.elements: list[Line | Arc | Plunge | Mark] = []
-        self._end = (x, c + beside, z)  # of the elements; else less than SAME_PLACE away
+        self.elements: list[Element] = []
+        self._end, self._level = complex(x, c + beside), z  # of the elements, within SAME_PLACE
         self.side = 40
         self.start = start or Start(x, 0.0, z)
         self._offset = self._radius = 0.0
@@ -210,22 +163,23 @@ class Contour:
         feed: float,
     ) -> None:
         """Add a G1 to the absolute point given; a coordinate left out stays."""
-        x0, c0, z0 = self._end
         x1 = self.x if x is None else x
         c1 = self.c if c is None else c
         z1 = self.z if z is None else z
         if max(abs(x1), abs(c1), abs(z1)) > LARGEST:
             self._check_place(line, x1, c1, z1)
         across = x is not None or c is not None
-        length = hypot(x1 - x0, c1 - c0) if across else 0.0
+        end, z0 = complex(x1, c1), self._level
+        length = abs(end - self._end) if across else 0.0
         self._check_feed(feed, line)
         self._check_switch(line, length)
         if length > SAME_PLACE:
-            self.elements.append(Line(line, feed, self._offset, x0, c0, z0, x1, c1, z1))
-            self._end = x1, c1, z1
+            curve = Line(self._end, end)
+            self.elements.append(PlaneMove(line, feed, self._offset, curve, z0, z1))
+            self._end, self._level = end, z1
         elif abs(z1 - z0) > SAME_PLACE:
             self.elements.append(Plunge(line, feed, z0, z1))
-            self._end = x0, c0, z1
+            self._level = z1
         self.x, self.c, self.z = x1, c1, z1
 
     def arc(
@@ -248,17 +202,20 @@ class Contour:
         ``i``/``j``.
         """
         self._check_arc(turn, i, j, radius, line, feed)
-        end = (self.x if x is None else x, self.c if c is None else c)
+        x1 = self.x if x is None else x
+        c1 = self.c if c is None else c
         z1 = self.z if z is None else z
-        self._check_place(line, *end, z1)
+        self._check_place(line, x1, c1, z1)
         centre = dict(zip(self.names.centre.split(" and "), (i, j)))
         self._check_lengths(line, **centre, R=radius)
+        end = complex(x1, c1)
         if radius is None:
-            centre, sweep = self._about_centre(turn, end, i or 0.0, j or 0.0, line)
+            curve = self._about_centre(turn, end, complex(i or 0.0, j or 0.0), line)
         else:
-            centre, sweep = self._with_radius(turn, end, radius, line)
-        self.elements.append(Arc(line, feed, self._offset, *self._end, *end, z1, *centre, sweep))
-        self.x, self.c, self.z = self._end = (*end, z1)
+            curve = self._with_radius(turn, end, radius, line)
+        self.elements.append(PlaneMove(line, feed, self._offset, curve, self._level, z1))
+        self._end, self._level = end, z1
+        self.x, self.c, self.z = x1, c1, z1
 
     def compensation(self, side: int, radius: float, *, line: int) -> None:
         """Switch to G40, G41 or G42 (``side`` 40, 41, 42) with the next block, which must be a G1.
@@ -346,7 +303,7 @@ class Contour:
         self._switch = None
 
     def _check_arc(self, turn, i, j, radius, line, feed) -> None:
-        name, beside = _name(turn), abs(self._end[1] - self.c)
+        name, beside = _name(turn), abs(self._end.imag - self.c)
         self._check_feed(feed, line)
         if beside > SAME_PLACE:
             self.refuse(
@@ -361,25 +318,25 @@ class Contour:
         if radius is None and not i and not j:
             self.refuse(line, f"{name} needs R, or the centre in {self.names.centre}")
 
-    def _about_centre(self, turn, end, i, j, line):
-        """Return centre and sweep of an arc about a centre, which is equally far from both ends."""
-        start, centre = self._end[:2], (self.x + i, self.c + j)
-        if hypot(end[0] - start[0], end[1] - start[1]) <= SAME_PLACE:
-            return centre, turn * 2 * pi
-        from_start, from_end = hypot(i, j), hypot(end[0] - centre[0], end[1] - centre[1])
+    def _about_centre(self, turn: int, end: complex, arm: complex, line: int) -> Arc:
+        """Return an arc about a centre, which is made equally far from both ends."""
+        start, centre = self._end, complex(self.x, self.c) + arm
+        if abs(end - start) <= SAME_PLACE:
+            return Arc(start, centre, turn * FULL_TURN)
+        from_start, from_end = abs(arm), abs(end - centre)
         if not self._closes(from_start, from_end):
             self.refuse(
                 line,
                 f"{_name(turn)} does not close: its centre is {number(from_start)} from the start, "
-                f"{number(from_end)} from the end{self._hint(self._centre_closes, end, i, j)}",
+                f"{number(from_end)} from the end{self._hint(self._centre_closes, end, arm)}",
             )
         centre = recentred(start, end, centre)
-        return centre, sweep_between(start, end, centre, turn)
+        return Arc(start, centre, sweep_between(start, end, centre, turn))
 
-    def _with_radius(self, turn, end, radius, line):
-        """Return centre and sweep of an arc with R."""
-        start = self._end[:2]
-        apart = hypot(end[0] - start[0], end[1] - start[1])
+    def _with_radius(self, turn: int, end: complex, radius: float, line: int) -> Arc:
+        """Return an arc with R."""
+        start = self._end
+        apart = abs(end - start)
         half, name = 0.5 * apart, f"{_name(turn)} R{number(radius)}"
         if apart <= SAME_PLACE:
             self.refuse(line, f"{name}: a full circle needs {self.names.centre}, not R")
@@ -391,11 +348,8 @@ class Contour:
             )
         height = sqrt(max(0.0, radius * radius - half * half)) / apart
         height = copysign(height, turn * radius)
-        centre = (
-            0.5 * (start[0] + end[0]) - height * (end[1] - start[1]),
-            0.5 * (start[1] + end[1]) + height * (end[0] - start[0]),
-        )
-        return centre, sweep_between(start, end, centre, turn)
+        centre = (start + end) / 2 + 1j * height * (end - start)
+        return Arc(start, centre, sweep_between(start, end, centre, turn))
 
     def _closes(self, from_start: float, from_end: float) -> bool:
         return abs(from_start - from_end) <= max(self.closing, CLOSING_RATIO * from_start)
@@ -403,19 +357,20 @@ class Contour:
     def _spans(self, half: float, radius: float) -> bool:
         return half - abs(radius) <= max(0.5 * self.closing, CLOSING_RATIO * half)
 
-    def _centre_closes(self, x0, x1, c1, i, j) -> bool:
-        return self._closes(hypot(i, j), hypot(x1 - x0 - i, c1 - self.c - j))
+    def _centre_closes(self, start: complex, end: complex, arm: complex) -> bool:
+        return self._closes(abs(arm), abs(end - start - arm))
 
-    def _radius_closes(self, x0, x1, c1, radius) -> bool:
-        return self._spans(0.5 * hypot(x1 - x0, c1 - self.c), radius)
+    def _radius_closes(self, start: complex, end: complex, radius: float) -> bool:
+        return self._spans(0.5 * abs(end - start), radius)
 
-    def _hint(self, closes, end, *words) -> str:
+    def _hint(self, closes: Callable[..., bool], end: complex, word: complex) -> str:
         """Return which other reading of the X words, if any, would close the arc."""
         if self.diameter is None:
             return ""
         other, ratio = ("radius", 2.0) if self.diameter else ("diameter", 0.5)
         for x0 in (self.x * ratio, self.x):
-            if closes(x0, end[0] * ratio, end[1], *words):
+            start = complex(x0, self.c)
+            if closes(start, complex(end.real * ratio, end.imag), word):
                 return f"; it would close with X read as a {other} (POLAR_X = {other})"
         return ""
 

@@ -9,33 +9,20 @@ neighbours:
 - ramp on: ends square to the start of the next element of the contour; ramp off: starts square to
   the end of the last one. Blocks without motion in the plane are looked through.
 
-What the tool cannot reach is refused, and so is a path that cuts into its contour (`gouge`) or
-another one (`between`).
+What the tool cannot reach is refused, and so is a path on which the tool gouges (`gouge`).
 """
 
 from __future__ import annotations
 
 from copy import copy
-from math import copysign, hypot
+from math import copysign
 from typing import NamedTuple, NoReturn
 
-from g12.compensation.between import check_contours
-from g12.compensation.contour import (
-    SAME_PLACE,
-    Arc,
-    Contour,
-    Line,
-    Plunge,
-    Point,
-    arc_radius,
-    end_direction,
-    is_move,
-    start_direction,
-    sweep_between,
-)
+from g12.compensation.contour import SAME_PLACE, Contour, PlaneMove, Plunge
 from g12.compensation.gouge import Cut, LeadRefusal, check_gouges
-from g12.compensation.intersect import PARALLEL, along_end, along_start, crossing
 from g12.errors import Refusal, number
+from g12.geometry.crossing import PARALLEL, crossings
+from g12.geometry.curve import Arc, Curve, Line, sweep_between
 
 JOINED = 0.04  # tolerances: moved by no more, parallels are joined without an arc
 BESIDE = 2.0  # tolerances: places so near to each other are one corner
@@ -44,8 +31,8 @@ BESIDE = 2.0  # tolerances: places so near to each other are one corner
 class _Step(NamedTuple):
     """A move of the contour, its parallel, and whether it is ``cut`` along or ``ramp`` to one."""
 
-    move: Line | Arc
-    parallel: Line | Arc
+    move: PlaneMove
+    parallel: Curve
     cut: bool
     ramp: bool
 
@@ -53,9 +40,9 @@ class _Step(NamedTuple):
 class _Joint(NamedTuple):
     """Where the tool's centre leaves one move and meets the next, turning about a corner."""
 
-    leave: Point
-    meet: Point
-    corner: Point | None = None
+    leave: complex
+    meet: complex
+    corner: complex | None = None
 
 
 def tool_path(contour: Contour, elements: list, tolerance: float) -> list:
@@ -63,7 +50,7 @@ def tool_path(contour: Contour, elements: list, tolerance: float) -> list:
 
     ``tolerance`` in program units: a small part of it is what the path may be off.
     """
-    moves = [e for e in elements if is_move(e)]
+    moves = [e for e in elements if isinstance(e, PlaneMove)]
     if not any(e.offset for e in moves):
         return elements
     try:
@@ -72,7 +59,7 @@ def tool_path(contour: Contour, elements: list, tolerance: float) -> list:
         raise _with_other_side(refusal, contour, moves, tolerance) from None
     path = []
     for element in elements:
-        path.extend(next(centred) if is_move(element) else (element,))
+        path.extend(next(centred) if isinstance(element, PlaneMove) else (element,))
     return path
 
 
@@ -93,7 +80,7 @@ def _centred(contour: Contour, moves: list, tolerance: float) -> list[tuple]:
     """Return for each move the moves of the tool's centre."""
     steps = _steps(contour, moves)
     joints = [_joint(contour, a, b, tolerance) for a, b in zip([None, *steps], steps)]
-    joints.append(_Joint(_last_place(contour, steps), (0.0, 0.0)))
+    joints.append(_Joint(_last_place(contour, steps), 0j))
     cuts = []
     for k, step in enumerate(steps):
         joint, end = joints[k], joints[k + 1].leave
@@ -105,7 +92,6 @@ def _centred(contour: Contour, moves: list, tolerance: float) -> list[tuple]:
                 path = (_corner_arc(step.move, joint), *path)
         cuts.append(Cut(step.move, path, step.cut))
     check_gouges(contour, cuts, tolerance)
-    check_contours(contour, cuts, tolerance)
     return [cut.path for cut in cuts]
 
 
@@ -115,19 +101,19 @@ def _steps(contour: Contour, moves: list) -> list[_Step]:
     for move in moves:
         ramp = bool(move.offset) and not offset
         cut = bool(move.offset) and bool(offset)
-        steps.append(_Step(move, _parallel(contour, move) if cut else move, cut, ramp))
+        steps.append(_Step(move, _parallel(contour, move) if cut else move.curve, cut, ramp))
         offset = move.offset
     return steps
 
 
-def _last_place(contour: Contour, steps: list[_Step]) -> Point:
+def _last_place(contour: Contour, steps: list[_Step]) -> complex:
     """Return where the tool's centre ends."""
     step = steps[-1]
     if step.ramp:
         contour.refuse(
             step.move.line, f"{_code(step.move)} needs a block of the contour behind its G1"
         )
-    return _end(step.parallel)
+    return step.parallel.end
 
 
 def _joint(contour: Contour, a: _Step | None, b: _Step, tolerance: float) -> _Joint:
@@ -138,36 +124,47 @@ def _joint(contour: Contour, a: _Step | None, b: _Step, tolerance: float) -> _Jo
             f"G40 follows {_code(a.move)} of line {a.move.line} with nothing between them to cut",
         )
     if a is None or not a.cut:
-        place = _start(b.parallel)
+        place = b.parallel.start
         return _Joint(place, place)
     if not b.cut:
-        place = _end(a.parallel)
+        place = a.parallel.end
         return _Joint(place, place)
     return _corner(contour, a, b, tolerance)
 
 
 def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:
     """Return the joint between two elements under compensation."""
-    ax, ac = end_direction(a.move)
-    bx, bc = start_direction(b.move)
-    sine, cosine = ax * bc - ac * bx, ax * bx + ac * bc
-    leave, meet = _end(a.parallel), _start(b.parallel)
-    corner, offset = (b.move.x0, b.move.c0), b.move.offset
-    gap = hypot(meet[0] - leave[0], meet[1] - leave[1])
-    if cosine > 0.0 and _is_joined(a, b, gap, abs(sine), tolerance):
-        place = (0.5 * (leave[0] + meet[0]), 0.5 * (leave[1] + meet[1]))
+    turned = a.move.curve.direction(1.0).conjugate() * b.move.curve.direction(0.0)
+    sine, cosine = turned.imag, turned.real
+    leave, meet, offset = a.parallel.end, b.parallel.start, b.move.offset
+    if cosine > 0.0 and _is_joined(a, b, abs(meet - leave), abs(sine), tolerance):
+        place = (leave + meet) / 2
         return _Joint(place, place)
     if sine * offset <= PARALLEL * abs(offset):
-        return _Joint(leave, meet, corner)
-    place = crossing(a.parallel, b.parallel)
+        return _Joint(leave, meet, b.move.start)
+    place = _crossing(a.parallel, b.parallel)
     if place is None:
         _refuse_tight(contour, a, b)
     return _Joint(place, place)
 
 
+def _crossing(one: Curve, other: Curve) -> complex | None:
+    """Return where ``one`` is left for ``other``: their crossing nearest to the corner, if any."""
+    length, best, nearest = one.length, None, 0.0
+    for point in crossings(one, other):
+        leave, meet = one.length_to(point, late=True), other.length_to(point)
+        on_both = (
+            -SAME_PLACE <= leave <= length + SAME_PLACE
+            and -SAME_PLACE <= meet <= other.length + SAME_PLACE
+        )
+        if on_both and (best is None or length - leave + meet < nearest):
+            best, nearest = point, length - leave + meet
+    return best
+
+
 def _is_joined(a: _Step, b: _Step, gap: float, sine: float, tolerance: float) -> bool:
     """Return whether two parallels need no arc between them: it would be a very short piece."""
-    straight = isinstance(a.move, Line) and isinstance(b.move, Line)
+    straight = isinstance(a.parallel, Line) and isinstance(b.parallel, Line)
     moved = gap * sine / 8.0
     return moved <= JOINED * tolerance and (straight or gap <= BESIDE * tolerance)
 
@@ -180,101 +177,68 @@ def _refuse_tight(contour: Contour, a: _Step, b: _Step) -> NoReturn:
     )
 
 
-def _code(move: Line | Arc) -> str:
+def _code(move: PlaneMove) -> str:
     return "G41" if move.offset > 0.0 else "G42"
 
 
-def _corner_arc(move: Line | Arc, joint: _Joint) -> Arc:
-    """Return the arc about an outside corner in front of ``move``."""
+def _corner_arc(move: PlaneMove, joint: _Joint) -> PlaneMove:
+    """Return the arc about an outside corner before ``move``."""
     turn = -1 if move.offset > 0.0 else 1
     sweep = sweep_between(joint.leave, joint.meet, joint.corner, turn)
-    return Arc(
-        move.line,
-        move.feed,
-        move.offset,
-        *joint.leave,
-        move.z0,
-        *joint.meet,
-        move.z0,
-        *joint.corner,
-        sweep,
-    )
+    return move._replace(curve=Arc(joint.leave, joint.corner, sweep), z1=move.z0)
 
 
-def _parallel(contour: Contour, move: Line | Arc) -> Line | Arc:
-    """Return the move shifted by its offset: the path of the tool's centre along it."""
-    if isinstance(move, Line):
-        tx, tc = start_direction(move)
-        dx, dc = -tc * move.offset, tx * move.offset
-        return _placed(move, (move.x0 + dx, move.c0 + dc), (move.x1 + dx, move.c1 + dc))
-    radius = arc_radius(move)
-    scale = 1.0 - copysign(move.offset, move.offset * move.sweep) / radius
-    if scale * radius < -SAME_PLACE:
-        contour.refuse(
-            move.line,
-            f"the arc of radius {number(radius)} is smaller than the tool radius "
-            f"{number(abs(move.offset))} ({_neighbours(contour, move)})",
-        )
-    cx, cc = move.cx, move.cc
-    return _placed(
-        move,
-        (cx + (move.x0 - cx) * scale, cc + (move.c0 - cc) * scale),
-        (cx + (move.x1 - cx) * scale, cc + (move.c1 - cc) * scale),
-    )
+def _parallel(contour: Contour, move: PlaneMove) -> Curve:
+    """Return the curve shifted by its offset: the path of the tool's centre along it."""
+    curve = move.curve
+    if isinstance(curve, Arc):
+        inward = move.offset if curve.sweep > 0.0 else -move.offset
+        if inward - curve.radius > SAME_PLACE:
+            contour.refuse(
+                move.line,
+                f"the arc of radius {number(curve.radius)} is smaller than the tool radius "
+                f"{number(abs(move.offset))} ({_neighbours(contour, move)})",
+            )
+    return curve.offset(move.offset)
 
 
-def _neighbours(contour: Contour, move: Line | Arc) -> str:
+def _neighbours(contour: Contour, move: PlaneMove) -> str:
     """Return the lines of the moves beside one, for a message."""
-    moves = [e for e in contour.elements if is_move(e)]
-    k = moves.index(move)  # a ramp is in front of it, and one behind
+    moves = [e for e in contour.elements if isinstance(e, PlaneMove)]
+    k = moves.index(move)  # one ramp comes before it, another after it
     return f"between lines {moves[k - 1].line} and {moves[k + 1].line}"
 
 
-def _trimmed(contour: Contour, steps: list[_Step], k: int, start: Point, end: Point) -> tuple:
-    """Return the parallel of a step from one place on it to another that must lie behind."""
+def _trimmed(contour: Contour, steps: list[_Step], k: int, start: complex, end: complex) -> tuple:
+    """Return the parallel of a step from one point on it to another, which must come after it."""
     move, parallel = steps[k].move, steps[k].parallel
-    first, last = along_start(parallel, start), along_end(parallel, end)
-    if last - first < -SAME_PLACE:
+    length = parallel.length_to(end, late=True) - parallel.length_to(start)
+    if length < -SAME_PLACE:
         contour.refuse(
             move.line,
             f"too short for the tool radius {number(abs(move.offset))} between its inside corners "
             f"with lines {steps[k - 1].move.line} and {steps[k + 1].move.line}",
         )
-    if last - first <= SAME_PLACE:
+    if length <= SAME_PLACE:
         return _in_place(move)
-    if isinstance(move, Line):
-        return (_placed(move, start, end),)
-    sweep = copysign((last - first) / arc_radius(parallel), move.sweep)
-    return (_placed(move, start, end, sweep),)
+    if isinstance(parallel, Line):
+        return (move._replace(curve=Line(start, end)),)
+    sweep = copysign(length / parallel.radius, parallel.sweep)
+    return (move._replace(curve=Arc(start, parallel.centre, sweep)),)
 
 
-def _uncut(move: Line | Arc, start: Point, end: Point) -> tuple:
+def _uncut(move: PlaneMove, start: complex, end: complex) -> tuple:
     """Return a ramp, or a move without compensation, between the joints at its ends.
 
-    A ramp square to the contour and as long as the tool's radius is no way at all.
+    A ramp square to the contour and as long as the tool's radius has no length.
     """
-    if isinstance(move, Line) and hypot(end[0] - start[0], end[1] - start[1]) <= SAME_PLACE:
+    if isinstance(move.curve, Arc):
+        return (move,)
+    if abs(end - start) <= SAME_PLACE:
         return _in_place(move)
-    return (_placed(move, start, end),)
+    return (move._replace(curve=Line(start, end)),)
 
 
-def _in_place(move: Line | Arc) -> tuple:
-    """Return what is left of a move whose way in the plane is none: its Z."""
+def _in_place(move: PlaneMove) -> tuple:
+    """Return what remains of a move without a length in the plane: its Z."""
     return () if move.z0 == move.z1 else (Plunge(move.line, move.feed, move.z0, move.z1),)
-
-
-def _placed(move: Line | Arc, start: Point, end: Point, sweep: float | None = None) -> Line | Arc:
-    """Return the move with other end points."""
-    places = (*start, move.z0, *end, move.z1)
-    if isinstance(move, Line):
-        return Line(move.line, move.feed, move.offset, *places)
-    sweep = move.sweep if sweep is None else sweep
-    return Arc(move.line, move.feed, move.offset, *places, move.cx, move.cc, sweep)
-
-
-def _start(move: Line | Arc) -> Point:
-    return move.x0, move.c0
-
-
-def _end(move: Line | Arc) -> Point:
-    return move.x1, move.c1

@@ -9,10 +9,9 @@ tolerance is left out and its neighbours meet instead; its Z is kept.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
 
-from g12.compensation.contour import Arc, Line, Plunge, is_move, path_length
-from g12.compensation.intersect import distance_from
+from g12.compensation.contour import SAME_PLACE, PlaneMove, Plunge
+from g12.geometry.curve import Line
 
 MOST_POINTS = 100  # that one line stands for: all of them are looked at for each one more
 
@@ -25,17 +24,17 @@ def without_short_moves(elements: Sequence, limit: float) -> tuple[list, float]:
     kept: list = []
     last, moved = None, 0.0  # the index of the move kept last
     for element in elements:
-        if not is_move(element):
+        if not isinstance(element, PlaneMove):
             kept.append(element)
             continue
         before = None if last is None else kept[last]
-        away = 0.0 if before is None else _distance(before, element.x1, element.c1)
+        away = 0.0 if before is None else abs(element.end - before.end)
         if before and _is_short(before, element, limit) and away <= limit:
             moved = max(moved, away)
             if element.z0 != element.z1:
                 kept.append(Plunge(element.line, element.feed, element.z0, element.z1))
             continue
-        if before and _distance(before, element.x0, element.c0) > 0.0:
+        if before and abs(element.start - before.end) > SAME_PLACE:
             kept[last], *between, element = _meeting(before, element)
             kept.extend(between)
         last = len(kept)
@@ -43,14 +42,13 @@ def without_short_moves(elements: Sequence, limit: float) -> tuple[list, float]:
     return kept, moved
 
 
-def _meeting(before: Line | Arc, move: Line | Arc) -> list[Line | Arc]:
+def _meeting(before: PlaneMove, move: PlaneMove) -> list[PlaneMove]:
     """Return two moves and what is between them, each beginning where the one before ends."""
-    if isinstance(move, Line):
-        return [before, move._replace(x0=before.x1, c0=before.c1)]
-    if isinstance(before, Line):
-        return [before._replace(x1=move.x0, c1=move.c0), move]
-    start, end = (before.x1, before.c1, move.z0), (move.x0, move.c0, move.z0)
-    return [before, Line(move.line, move.feed, move.offset, *start, *end), move]
+    if isinstance(move.curve, Line):
+        return [before, move._replace(curve=Line(before.end, move.end))]
+    if isinstance(before.curve, Line):
+        return [before._replace(curve=Line(before.start, move.start)), move]
+    return [before, move._replace(curve=Line(before.end, move.start), z1=move.z0), move]
 
 
 def with_points_left_out(elements: Sequence, limit: float) -> tuple[list, float]:
@@ -67,10 +65,10 @@ def with_points_left_out(elements: Sequence, limit: float) -> tuple[list, float]
         element = elements[at]
         beside = offset != 0.0  # else this is the ramp: it ends where the contour begins
         last, away = _reach(elements, at, limit) if beside else (at, 0.0)
-        offset = element.offset if is_move(element) else offset
+        offset = element.offset if isinstance(element, PlaneMove) else offset
         if last > at:
             moved = max(moved, away)
-            element = element._replace(x1=elements[last].x1, c1=elements[last].c1)
+            element = element._replace(curve=Line(element.start, elements[last].end))
         kept.append(element)
         at = last + 1
     return kept, moved
@@ -81,12 +79,10 @@ def _reach(elements: Sequence, first: int, limit: float) -> tuple[int, float]:
     last, most = first, 0.0
     end_at = min(len(elements), first + MOST_POINTS)
     while last + 1 < end_at and _is_like(elements[first], elements[last + 1]):
-        end = elements[last + 1]
-        chord = elements[first]._replace(x1=end.x1, c1=end.c1)
-        if path_length(chord) <= limit:
+        chord = Line(elements[first].start, elements[last + 1].end)
+        if chord.length <= limit:
             break
-        points = elements[first : last + 1]
-        away = max(distance_from(chord, (point.x1, point.c1)) for point in points)
+        away = max(chord.distance(point.end) for point in elements[first : last + 1])
         if away > limit:
             break
         last, most = last + 1, away
@@ -95,17 +91,16 @@ def _reach(elements: Sequence, first: int, limit: float) -> tuple[int, float]:
 
 def _is_like(one: object, other: object) -> bool:
     """Return whether two elements are lines under compensation that may be one."""
-    if not (isinstance(one, Line) and isinstance(other, Line) and one.offset):
+    if not (_is_line(one) and _is_line(other) and one.offset):
         return False
     level = one.z0 == one.z1 == other.z1
     return level and one.feed == other.feed and one.offset == other.offset
 
 
-def _is_short(before: Line | Arc, move: Line | Arc, limit: float) -> bool:
+def _is_line(element: object) -> bool:
+    return isinstance(element, PlaneMove) and isinstance(element.curve, Line)
+
+
+def _is_short(before: PlaneMove, move: PlaneMove, limit: float) -> bool:
     """Return whether a move that follows another under compensation may be left out."""
-    return bool(before.offset and move.offset) and path_length(move) <= limit
-
-
-def _distance(move: Line | Arc, x: float, c: float) -> float:
-    """Return how far a place is from the end of a move."""
-    return hypot(x - move.x1, c - move.c1)
+    return bool(before.offset and move.offset) and move.length <= limit

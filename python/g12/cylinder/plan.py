@@ -6,23 +6,15 @@ that length are proportional to what the axes do: a line is one piece, exactly. 
 bulge alike everywhere; spacing shares the deviation between them.
 """
 
+import cmath
 from collections.abc import Sequence
 from functools import partial
-from math import copysign, cos, degrees, hypot, radians, sin, sqrt
+from math import copysign, degrees, radians, sqrt
 from typing import NamedTuple
 
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import (
-    Arc,
-    Contour,
-    Element,
-    Line,
-    Mark,
-    Plunge,
-    Point,
-    arc_radius,
-    is_move,
-)
+from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Plunge
+from g12.geometry.curve import Arc
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, pieces_with_feed
 from g12.moves.spacing import BULGE, Stretch, spaced
@@ -68,7 +60,7 @@ def plan(contour: Contour, settings: CylinderSettings) -> SectionPlan:
     return SectionPlan(machine.steps, machine.place, radians(machine.place.c), contour.notes)
 
 
-def _acceleration(direction: Direction, _place: Point, *, settings: CylinderSettings) -> float:
+def _acceleration(direction: Direction, _place: complex, *, settings: CylinderSettings) -> float:
     """Return the acceleration along a direction that no axis exceeds; it is the same everywhere."""
     around, along, deep = map(abs, direction)
     surface = settings.radius * radians(settings.c_acceleration)
@@ -85,7 +77,7 @@ class _Surface(StepMaker):
         super().__init__(contour, Position(x, degrees(angle), z))
         self._settings = settings
 
-    def cut(self, move: Line | Arc, stop: bool) -> None:
+    def cut(self, move: PlaneMove, stop: bool) -> None:
         """Add the pieces of a move on the surface."""
         settings, (x, c, z) = self._settings, self.place
         split_by = partial(split_on_cylinder, move, settings.radius)
@@ -103,41 +95,31 @@ class _Surface(StepMaker):
         x, z = self.place.x, self.place.z
         for element in path:
             x = x if isinstance(element, Mark) else element.z1
-            z = element.c1 if is_move(element) else z
+            z = element.end.imag if isinstance(element, PlaneMove) else z
         self._make_up(path, x, z, self._settings.least_z)
 
 
-def split_on_cylinder(move: Line | Arc, radius: float, deviation: float) -> Split:
+def split_on_cylinder(move: PlaneMove, radius: float, deviation: float) -> Split:
     """Return the ends of the pieces of a move on the surface: Z, the angle of C, and the length."""
-    if isinstance(move, Line):
-        length = hypot(move.x1 - move.x0, move.c1 - move.c0)
-        places = [(move.x0, move.c0), (move.x1, move.c1)]
-        lengths = [0.0, length]
+    if isinstance(move.curve, Arc):
+        places, lengths = _along_arc(move.curve, deviation)
     else:
-        places, lengths = _along_arc(move, deviation)
-    return Split([z for _, z in places], [s / radius for s, _ in places], lengths)
+        places, lengths = [move.start, move.end], [0.0, move.length]
+    return Split([at.imag for at in places], [at.real / radius for at in places], lengths)
 
 
-def _along_arc(move: Arc, deviation: float) -> tuple[list[Point], list[float]]:
+def _along_arc(arc: Arc, deviation: float) -> tuple[list[complex], list[float]]:
     """Return the ends of an arc's pieces, and the length of the arc up to them."""
-    radius, turn = arc_radius(move), copysign(1.0, move.sweep)
+    radius, turn = arc.radius, copysign(1.0, arc.sweep)
     bulging = sqrt(radius / (8.0 * BULGE * deviation))
     pieces = max(bulging, FEWEST)
     density = (pieces, (bulging / pieces) ** 2)
-    stretch = Stretch(0.0, abs(move.sweep), [], lambda _: 0.0)
+    stretch = Stretch(0.0, abs(arc.sweep), [], lambda _: 0.0)
     angles, shares = spaced(stretch, lambda _: density)
-    x, z = (move.x0 - move.cx) / radius, (move.c0 - move.cc) / radius
+    outward = (arc.start - arc.centre) / radius
     places = [
-        _turned((x, z), (move.cx, move.cc), turn * angle, radius + deviation * share)
+        arc.centre + (radius + deviation * share) * outward * cmath.rect(1.0, turn * angle)
         for angle, share in zip(angles, shares)
     ]
-    places[0], places[-1] = (move.x0, move.c0), (move.x1, move.c1)
+    places[0], places[-1] = arc.start, arc.end
     return places, [radius * angle for angle in angles]
-
-
-def _turned(direction: Point, centre: Point, angle: float, radius: float) -> Point:
-    """Return the place at a radius about a centre, an angle on from a direction."""
-    (x, z), sine, cosine = direction, sin(angle), cos(angle)
-    return centre[0] + radius * (x * cosine - z * sine), centre[1] + radius * (
-        x * sine + z * cosine
-    )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where the straight lines and circles on which curves lie meet.
+"""Where curves meet, and where the straight lines and circles do on which they lie.
 
 A circle that just misses by less than ``TOUCHES`` touches: rounding makes it so.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from g12.geometry.curve import COINCIDENT, Arc, Curve, Line
+from g12.geometry.curve import Arc, Curve, Line
 
 PARALLEL = 1e-9  # sine of the angle between lines that are parallel
 TOUCHES = 1e-6
@@ -19,6 +19,15 @@ def crossings(one: Curve, other: Curve) -> list[complex]:
     if isinstance(one, Line):
         return _line_line(one, other) if isinstance(other, Line) else _line_circle(one, other)
     return _line_circle(other, one) if isinstance(other, Line) else _circle_circle(one, other)
+
+
+def common_points(one: Curve, other: Curve) -> list[complex]:
+    """Return the points at which two curves cross or touch; none where they run on each other."""
+    return [
+        point
+        for point in crossings(one, other)
+        if one.distance(point) <= TOUCHES and other.distance(point) <= TOUCHES
+    ]
 
 
 def _line_line(one: Line, other: Line) -> list[complex]:
@@ -37,7 +46,7 @@ def _line_circle(line: Line, circle: Arc) -> list[complex]:
 
 def _circle_circle(one: Arc, other: Arc) -> list[complex]:
     apart = abs(other.centre - one.centre)
-    if apart <= COINCIDENT:
+    if apart <= TOUCHES:
         return []
     along = (other.centre - one.centre) / apart
     foot = (apart + (one.radius - other.radius) * (one.radius + other.radius) / apart) / 2

@@ -12,6 +12,9 @@ from typing import NamedTuple
 
 COINCIDENT = 1e-12  # a shorter line is a point: it has a length of 0 and no direction
 FULL_TURN = 2 * math.pi
+LEAST_MARGIN = 0.5  # radians beside the ends of a nearly full circle
+
+Box = tuple[float, float, float, float]  # least x and y, greatest x and y
 
 
 class Line(NamedTuple):
@@ -58,6 +61,16 @@ class Line(NamedTuple):
     def distance(self, point: complex) -> float:
         """Return the distance of a point from the line."""
         return abs(point - self.point(self.share_of(point)))
+
+    def length_to(self, point: complex, late: bool = False) -> float:
+        """Return the length to a point's foot: below 0 before the start, more beyond the end."""
+        return ((point - self.start) * self.direction().conjugate()).real
+
+    @property
+    def box(self) -> Box:
+        """The least box around the line."""
+        (x0, y0), (x1, y1) = _pair(self.start), _pair(self.end)
+        return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
 
 
 class Arc(NamedTuple):
@@ -109,14 +122,17 @@ class Arc(NamedTuple):
 
     def share_of(self, point: complex) -> float:
         """Return the share of the arc's point nearest to a point."""
-        return self.share_between(point, 0.0, 1.0)
+        angle, sweep = self._angle_to(point), abs(self.sweep)
+        if angle <= sweep:
+            return angle / (sweep or 1.0)
+        return 0.0 if abs(point - self.start) <= abs(point - self.end) else 1.0
 
     def share_between(self, point: complex, least: float, most: float) -> float:
         """Return the share nearest to a point among those between two shares."""
         start, there = self.start - self.centre, point - self.centre
         if not self.sweep or abs(there) <= COINCIDENT or abs(start) <= COINCIDENT:
             return least
-        turned = cmath.phase(there / start) * math.copysign(1.0, self.sweep) % FULL_TURN
+        turned = angle_of(there * start.conjugate()) * math.copysign(1.0, self.sweep) % FULL_TURN
         shares = [(turned + turn) / abs(self.sweep) for turn in (-FULL_TURN, 0.0, FULL_TURN)]
         within = [share for share in shares if least <= share <= most]
         ends = min((least, most), key=lambda share: abs(self.point(share) - point))
@@ -124,10 +140,50 @@ class Arc(NamedTuple):
 
     def distance(self, point: complex) -> float:
         """Return the distance of a point from the arc."""
-        return abs(point - self.point(self.share_of(point)))
+        if self._angle_to(point) <= abs(self.sweep):
+            return abs(abs(point - self.centre) - self.radius)
+        return min(abs(point - self.start), abs(point - self.end))
+
+    def length_to(self, point: complex, late: bool = False) -> float:
+        """Return the length to a point's foot: below 0 before the start, more beyond the end.
+
+        What is beside both ends of an arc counts as before its start up to the middle of the gap.
+        That may be narrow or none: there it counts so for half a radian, with ``late`` as beyond
+        the end.
+        """
+        sweep = abs(self.sweep)
+        margin = max(math.pi - sweep / 2, LEAST_MARGIN)
+        highest = sweep + margin if late else FULL_TURN - margin
+        return self.radius * (highest - (highest - self._angle_to(point)) % FULL_TURN)
+
+    def _angle_to(self, point: complex) -> float:
+        """Return the angle from the start to the direction of a point, below a full turn."""
+        start, there = self.start - self.centre, point - self.centre
+        if abs(there) <= COINCIDENT or abs(start) <= COINCIDENT:
+            return 0.0
+        return angle_of(there * start.conjugate()) * math.copysign(1.0, self.sweep) % FULL_TURN
+
+    @property
+    def box(self) -> Box:
+        """A box around the arc, not always the least."""
+        (x0, y0), (x1, y1) = _pair(self.start), _pair(self.end)
+        if abs(self.sweep) > math.pi:
+            (x, y), radius = _pair(self.centre), self.radius
+            return x - radius, y - radius, x + radius, y + radius
+        rise = self.radius * (1.0 - math.cos(self.sweep / 2))
+        return min(x0, x1) - rise, min(y0, y1) - rise, max(x0, x1) + rise, max(y0, y1) + rise
 
 
 Curve = Line | Arc
+
+
+def angle_of(vector: complex) -> float:
+    """Return the angle of a vector; `cmath.phase` fails where one of its parts underflows."""
+    return math.atan2(vector.imag, vector.real)
+
+
+def _pair(point: complex) -> tuple[float, float]:
+    return point.real, point.imag
 
 
 def recentred(start: complex, end: complex, centre: complex) -> complex:
@@ -142,5 +198,5 @@ def sweep_between(start: complex, end: complex, centre: complex, turn: int) -> f
 
     ``turn``: +1 counterclockwise, -1 clockwise. A full turn where the angle is none.
     """
-    angle = (turn * cmath.phase((end - centre) / (start - centre))) % FULL_TURN
+    angle = (turn * angle_of((end - centre) * (start - centre).conjugate())) % FULL_TURN
     return turn * (angle or FULL_TURN)

@@ -20,26 +20,16 @@ A stop costs v / a in time, about as much as the blending.
 from collections.abc import Callable, Sequence
 from math import hypot, inf, sqrt
 
-from g12.compensation.contour import (
-    Arc,
-    Element,
-    Line,
-    Mark,
-    Move,
-    Plunge,
-    Point,
-    end_direction,
-    path_length,
-    start_direction,
-)
+from g12.compensation.contour import Element, Mark, PlaneMove, Plunge
 
 Direction = tuple[float, float, float]  # unit vector: along x and c of the plane, and z
+Move = PlaneMove | Plunge
 TANGENT = 1e-4  # half the angle between two directions that are one
 MOST_UNEQUAL = 2.2  # rounding where the second move is much quicker, relative to equal ones
 
 
 def stops(
-    path: Sequence[Element], rounding: float, acceleration: Callable[[Direction, Point], float]
+    path: Sequence[Element], rounding: float, acceleration: Callable[[Direction, complex], float]
 ) -> list[bool]:
     """Return for each element of the tool centre's path whether the tool must stop at its end.
 
@@ -63,14 +53,14 @@ def stops(
 
 
 def _corner(
-    a: Move, b: Move, acceleration: Callable[[Direction, Point], float], stopping: bool
+    a: Move, b: Move, acceleration: Callable[[Direction, complex], float], stopping: bool
 ) -> float:
     """Return the distance at which blending would pass the corner between two elements.
 
     ``stopping``: at the end of ``b``; such a move is not blended, and has all the acceleration.
     """
     place = _place(a, b)
-    leave, meet = _direction(a, end_direction), _direction(b, start_direction)
+    leave, meet = _direction(a, 1.0), _direction(b, 0.0)
     from_a, from_b = acceleration(leave, place), acceleration(meet, place)
     if not from_a:
         return inf
@@ -83,26 +73,26 @@ def _corner(
     return half_sine * square / (2.0 * from_a) * max(1.0, min(unequal, MOST_UNEQUAL))
 
 
-def _place(a: Move, b: Move) -> Point:
+def _place(a: Move, b: Move) -> complex:
     """Return where two elements meet in the plane; anywhere between two plunges."""
-    if not isinstance(a, Plunge):
-        return a.x1, a.c1
-    return (1.0, 0.0) if isinstance(b, Plunge) else (b.x0, b.c0)
+    if isinstance(a, PlaneMove):
+        return a.end
+    return b.start if isinstance(b, PlaneMove) else 1 + 0j
 
 
-def _direction(element: Move, in_plane: Callable[[Line | Arc], Point]) -> Direction:
-    """Return the unit vector (X, C, Z) of an element where ``in_plane`` gives its direction."""
+def _direction(element: Move, share: float) -> Direction:
+    """Return the unit vector (X, C, Z) of an element at a share of it."""
     if isinstance(element, Plunge):
         return 0.0, 0.0, 1.0 if element.z1 > element.z0 else -1.0
-    x, c = in_plane(element)
+    along = element.curve.direction(share)
     if element.z0 == element.z1:
-        return x, c, 0.0
-    length, z = path_length(element), element.z1 - element.z0
+        return along.real, along.imag, 0.0
+    length, z = element.length, element.z1 - element.z0
     whole = hypot(length, z)
-    return x * length / whole, c * length / whole, z / whole
+    return along.real * length / whole, along.imag * length / whole, z / whole
 
 
 def _length(element: Move) -> float:
     """Return the length of an element in space."""
-    along = 0.0 if isinstance(element, Plunge) else path_length(element)
+    along = element.length if isinstance(element, PlaneMove) else 0.0
     return hypot(along, element.z1 - element.z0)

@@ -13,7 +13,7 @@ takes the rest over.
 from math import degrees, hypot
 from typing import NamedTuple
 
-from g12.compensation.contour import Arc, Line
+from g12.compensation.contour import PlaneMove
 
 Piece = tuple[float, float, float, float]  # of a move: where X, C and Z (or Z, C and X) end, and F
 LEAST_TURN = 1e-9  # degrees: no turn at all
@@ -41,7 +41,7 @@ def keeps_slide(split: Split, least: float) -> bool:
 
 
 def pieces_with_feed(
-    split: Split, start: tuple[float, float, float], move: Line | Arc, entry: float, least: float
+    split: Split, start: tuple[float, float, float], move: PlaneMove, entry: float, least: float
 ) -> list[Piece]:
     """Return the pieces ``(slide, c, other, F)`` of a move that the machine makes from ``start``.
 

@@ -4,7 +4,7 @@
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from g12.compensation.contour import Arc, Contour, Element, Line, Mark, Start
+from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Start
 from g12.moves.feed import Piece, Split, keeps_slide
 from g12.moves.spacing import MOST_PIECES, TooManyPieces
 
@@ -83,7 +83,7 @@ class StepMaker:
 
     def _split(
         self,
-        move: Line | Arc,
+        move: PlaneMove,
         split: Callable[[float], Split],
         tolerance: float,
         stop: bool,

@@ -25,48 +25,37 @@ to the left, and the slide moves by cos p + beside / s sin p per unit of the pat
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, copysign, hypot, pi, sqrt
+from math import copysign, pi, sqrt
 
-from g12.compensation.contour import (
-    Arc,
-    Contour,
-    Element,
-    Line,
-    Point,
-    arc_radius,
-    direction_at,
-    is_move,
-    path_length,
-)
-from g12.compensation.intersect import distance_from, place_at
+from g12.compensation.contour import Contour, Element, PlaneMove
 from g12.errors import number
+from g12.geometry.curve import Arc, Curve, Line, angle_of
 from g12.moves.feed import Split
 from g12.moves.spacing import BULGE, Density, Stretch, spaced
 from g12.polar.pieces import Law
 from g12.polar.pole import POLE
 
 
-def stand(place: Point, beside: float) -> tuple[float, Point]:
-    """Return where the slide stands for a place of the plane, and its direction in the plane."""
-    x, c = place
-    square = x * x + c * c
+def stand(place: complex, beside: float) -> tuple[float, complex]:
+    """Return where the slide stands for a point of the plane, and its direction in the plane."""
+    square = (place * place.conjugate()).real
     if not square:
-        return 0.0, (1.0, 0.0)
+        return 0.0, 1 + 0j
     slide = sqrt(max(0.0, square - beside * beside))
-    return slide, ((slide * x + beside * c) / square, (slide * c - beside * x) / square)
+    return slide, place * complex(slide, -beside) / square
 
 
-def along_and_around(direction: Point, slide_direction: Point) -> Point:
-    """Return the parts of a direction along the slide's and to its left."""
-    (tx, tc), (ex, ec) = direction, slide_direction
-    return tx * ex + tc * ec, ex * tc - ec * tx
+def along_and_around(direction: complex, slide_direction: complex) -> tuple[float, float]:
+    """Return the components of a direction along the slide's and to its left."""
+    turned = direction * slide_direction.conjugate()
+    return turned.real, turned.imag
 
 
 def check_reach(contour: Contour, path: Sequence[Element], beside: float, tolerance: float) -> None:
     """Refuse a path that comes nearer to the pole than the tool can."""
     least = abs(beside) + tolerance
-    for move in filter(is_move, path):
-        nearest = distance_from(move, POLE)
+    for move in (element for element in path if isinstance(element, PlaneMove)):
+        nearest = move.curve.distance(POLE)
         if nearest < least:
             contour.refuse(
                 move.line,
@@ -76,61 +65,57 @@ def check_reach(contour: Contour, path: Sequence[Element], beside: float, tolera
             )
 
 
-def split_beside(move: Line | Arc, law: Law, beside: float) -> Split:
+def split_beside(curve: Curve, law: Law, beside: float) -> Split:
     """Return the pieces of a move of a tool beside the X line: where the slide stands, and C."""
-    length = path_length(move)
+    length = curve.length
 
     def radius(at: float) -> float:
-        return hypot(*place_at(move, at / length))
+        return abs(curve.point(at / length))
 
-    stretch = Stretch(0.0, length, _apsides(move, length), radius)
-    places, shares = spaced(stretch, _density(move, law, beside))
+    stretch = Stretch(0.0, length, _apsides(curve, length), radius)
+    places, shares = spaced(stretch, _density(curve, law, beside))
     stands = [
-        stand(_moved(move, at / length, law.deviation * share), beside)
-        for at, share in zip(places, shares)
+        stand(_moved(curve, at / length, law.deviation * used), beside)
+        for at, used in zip(places, shares)
     ]
     return Split([slide for slide, _ in stands], _angles(stands), places)
 
 
-def _moved(move: Line | Arc, part: float, leftwards: float) -> Point:
-    """Return a place of a move, moved to its left."""
-    x, c = place = place_at(move, part)
-    tx, tc = direction_at(move, place)
-    return x - leftwards * tc, c + leftwards * tx
+def _moved(curve: Curve, share: float, leftwards: float) -> complex:
+    """Return a point of a move, moved to its left."""
+    return curve.point(share) + 1j * leftwards * curve.direction(share)
 
 
-def _angles(stands: list[tuple[float, Point]]) -> list[float]:
+def _angles(stands: list[tuple[float, complex]]) -> list[float]:
     """Return the angles of the slide's directions, without a jump."""
-    ex, ec = stands[0][1]
-    angles = [atan2(ec, ex)]
-    for _, (x, c) in stands[1:]:
-        angles.append(angles[-1] + atan2(ex * c - ec * x, ex * x + ec * c))
-        ex, ec = x, c
+    before = stands[0][1]
+    angles = [angle_of(before)]
+    for _, direction in stands[1:]:
+        angles.append(angles[-1] + angle_of(direction * before.conjugate()))
+        before = direction
     return angles
 
 
-def _apsides(move: Line | Arc, length: float) -> list[float]:
+def _apsides(curve: Curve, length: float) -> list[float]:
     """Return the places of a move, or beyond its ends, nearest to the pole or farthest from it."""
-    if isinstance(move, Line):
-        dx, dc = (move.x1 - move.x0) / length, (move.c1 - move.c0) / length
-        foot = -(move.x0 * dx + move.c0 * dc)
-        return [foot]
-    turn = copysign(1.0, move.sweep)
-    from_start = atan2(move.cc, move.cx) - atan2(move.c0 - move.cc, move.x0 - move.cx)
+    if isinstance(curve, Line):
+        return [curve.length_to(POLE)]
+    turn = copysign(1.0, curve.sweep)
+    from_start = angle_of(curve.centre) - angle_of(curve.start - curve.centre)
     first = turn * from_start % pi
-    return [arc_radius(move) * (first + half) for half in (0.0, pi)]
+    return [curve.radius * (first + half) for half in (0.0, pi)]
 
 
-def _density(move: Line | Arc, law: Law, beside: float) -> Density:
+def _density(curve: Curve, law: Law, beside: float) -> Density:
     """Return the pieces per unit of length, and the part of the deviation they use, to the left."""
-    length, even = path_length(move), 0.5 / law.ripple
-    own = copysign(1.0 / arc_radius(move), move.sweep) if isinstance(move, Arc) else 0.0
+    length, even = curve.length, 0.5 / law.ripple
+    own = copysign(1.0 / curve.radius, curve.sweep) if isinstance(curve, Arc) else 0.0
     bulging, flat = 1.0 / (8.0 * BULGE * law.deviation), 1.0 / (18.0 * BULGE * law.deviation)
 
     def density(at: float) -> tuple[float, float]:
-        place = place_at(move, min(max(at / length, 0.0), 1.0))
-        slide, way = stand(place, beside)
-        along, around = along_and_around(direction_at(move, place), way)
+        share = min(max(at / length, 0.0), 1.0)
+        slide, way = stand(curve.point(share), beside)
+        along, around = along_and_around(curve.direction(share), way)
         bend, change = _curvature(slide, along, around, beside, own)
         wanted = sqrt(bulging * abs(bend - own))
         growth, turning = abs(along + beside / slide * around) / slide, abs(around) / slide
@@ -143,7 +128,9 @@ def _density(move: Line | Arc, law: Law, beside: float) -> Density:
     return density
 
 
-def _curvature(slide: float, along: float, around: float, beside: float, own: float) -> Point:
+def _curvature(
+    slide: float, along: float, around: float, beside: float, own: float
+) -> tuple[float, float]:
     """Return the curvature of a straight move of X and C, and how it changes along the path.
 
     The path has the curvature ``own``, the directions are as of `along_and_around`.

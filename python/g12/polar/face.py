@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, sin
+import cmath
 from typing import NamedTuple
 
-from g12.compensation.contour import Arc, Line, Plunge, end_direction, start_direction
-from g12.compensation.intersect import height_at, place_at
+from g12.compensation.contour import PlaneMove, Plunge
+from g12.geometry.curve import Arc, Line, angle_of
 from g12.polar.beside import stand
 from g12.polar.follow import looks
 
@@ -32,45 +32,40 @@ class FaceMove(NamedTuple):
     """
 
     line: int
-    move: Line | Arc | Plunge
+    move: PlaneMove | Plunge
     pieces: list[tuple[float, float, float]]
 
 
 def flows_into(move: object, following: object) -> bool:
     """Return whether an arc goes on in its own direction: nothing stops or is blended there."""
-    if not isinstance(move, Arc) or not isinstance(following, (Line, Arc)):
+    if not isinstance(move, PlaneMove) or not isinstance(following, PlaneMove):
         return False
-    (x0, c0), (x1, c1) = end_direction(move), start_direction(following)
-    return x0 * x1 + c0 * c1 > 0.0 and abs(x0 * c1 - c0 * x1) <= SAME_DIRECTION
+    turned = move.curve.direction(1.0).conjugate() * following.curve.direction(0.0)
+    same = turned.real > 0.0 and abs(turned.imag) <= SAME_DIRECTION
+    return same and isinstance(move.curve, Arc)
 
 
-def in_face(move: Line | Arc | Plunge, angle: float) -> Line | Arc | Plunge:
+def in_face(move: PlaneMove | Plunge, angle: float) -> PlaneMove | Plunge:
     """Return a move of the plane in X and Y of a face whose X axis is at ``angle``, radians."""
     if isinstance(move, Plunge):
         return move
-    (x0, c0), (x1, c1) = (
-        _turned(*place, -angle) for place in ((move.x0, move.c0), (move.x1, move.c1))
-    )
-    if isinstance(move, Line):
-        return move._replace(x0=x0, c0=c0, x1=x1, c1=c1)
-    cx, cc = _turned(move.cx, move.cc, -angle)
-    return move._replace(x0=x0, c0=c0, x1=x1, c1=c1, cx=cx, cc=cc)
+    curve, back = move.curve, cmath.rect(1.0, -angle)
+    if isinstance(curve, Line):
+        return move._replace(curve=Line(curve.start * back, curve.end * back))
+    return move._replace(curve=Arc(curve.start * back, curve.centre * back, curve.sweep))
 
 
-def _turned(x: float, c: float, angle: float) -> tuple[float, float]:
-    return x * cos(angle) - c * sin(angle), x * sin(angle) + c * cos(angle)
-
-
-def passed(move: Line | Arc, angle: float, beside: float = 0.0) -> list[tuple[float, float, float]]:
+def passed(move: PlaneMove, angle: float, beside: float = 0.0) -> list[tuple[float, float, float]]:
     """Return places that a move passes: where the slide stands, C's angle in radians, Z.
 
     The farthest one and the end are among them. ``angle`` is that at the start; the angles go on
     from there without a jump.
     """
-    places, (_, before) = [], stand((move.x0, move.c0), beside)
-    for part in looks(move) if isinstance(move, Arc) else (1.0,):
-        slide, (x, c) = stand(place_at(move, part), beside)
-        angle += atan2(before[0] * c - before[1] * x, before[0] * x + before[1] * c)
-        places.append((slide, angle, height_at(move, part)))
-        before = x, c
+    curve, (_, before) = move.curve, stand(move.start, beside)
+    places = []
+    for share in looks(curve) if isinstance(curve, Arc) else (1.0,):
+        slide, direction = stand(curve.point(share), beside)
+        angle += angle_of(direction * before.conjugate())
+        places.append((slide, angle, move.level(share)))
+        before = direction
     return places

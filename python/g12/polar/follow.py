@@ -23,19 +23,11 @@ by p times C's.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, hypot, inf, pi, sqrt
+from math import ceil, copysign, inf, pi, sqrt
 from typing import NamedTuple
 
-from g12.compensation.contour import (
-    SAME_PLACE,
-    Arc,
-    Line,
-    Point,
-    arc_radius,
-    direction_at,
-    sweep_between,
-)
-from g12.compensation.intersect import place_at
+from g12.compensation.contour import SAME_PLACE, PlaneMove
+from g12.geometry.curve import Arc, Curve, sweep_between
 from g12.polar.beside import along_and_around, stand
 from g12.polar.pole import POLE
 
@@ -76,20 +68,20 @@ class Demand(NamedTuple):
     slowness: float
 
 
-def demands_of(move: Line | Arc, limits: FaceLimits) -> Sequence[Demand]:
+def demands_of(move: PlaneMove, limits: FaceLimits) -> Sequence[Demand]:
     """Return the places of a move that are looked at, its ends among them."""
-    return [_seen(move, part, limits) for part in (0.0, *looks(move))]
+    return [_seen(move, part, limits) for part in (0.0, *looks(move.curve))]
 
 
-def followed(move: Line | Arc, place: Demand, limits: FaceLimits, share: float = 1.0) -> float:
+def followed(move: PlaneMove, place: Demand, limits: FaceLimits, share: float = 1.0) -> float:
     """Return the most speed that C and the slide can follow at a place, a minute's way.
 
     At that and at any below, with a share of the planner's acceleration in use; inf where the
     planner itself goes no faster.
     """
     bend, most = 0.0, share * limits.acceleration
-    if isinstance(move, Arc):
-        bend, most = 1.0 / arc_radius(move), share * limits.round_acceleration
+    if isinstance(move.curve, Arc):
+        bend, most = 1.0 / move.curve.radius, share * limits.round_acceleration
     square = place.fastest * place.fastest
     for p, q in place.axes:
         standing = q * most
@@ -104,26 +96,25 @@ def followed(move: Line | Arc, place: Demand, limits: FaceLimits, share: float =
     return 60.0 * max(0.0, sqrt(square) - OVERSHOOT * most)
 
 
-def is_able(move: Line | Arc, limits: FaceLimits, share: float = 1.0) -> bool:
+def is_able(move: PlaneMove, limits: FaceLimits, share: float = 1.0) -> bool:
     """Return whether C and the slide can follow a move on the face, wherever it is stopped."""
     return are_able(move, demands_of(move, limits), limits, share)
 
 
-def are_able(move: Line | Arc, places: Sequence[Demand], limits: FaceLimits, share: float) -> bool:
+def are_able(move: PlaneMove, places: Sequence[Demand], limits: FaceLimits, share: float) -> bool:
     """Return the same by the places of a move."""
     return all(SLACK * followed(move, place, limits, share) >= move.feed for place in places)
 
 
-def _seen(move: Line | Arc, part: float, limits: FaceLimits) -> Demand:
-    place, beside = place_at(move, part), limits.beside
+def _seen(move: PlaneMove, part: float, limits: FaceLimits) -> Demand:
+    curve, beside = move.curve, limits.beside
+    place = curve.point(part)
     slide, way = stand(place, beside)
-    along, around = along_and_around(direction_at(move, place), way)
+    along, around = along_and_around(curve.direction(part), way)
     slowness = _slowness(min(MOST_TURNING, abs(around) / max(slide, SAME_PLACE)), move.feed, limits)
-    if hypot(*place) <= abs(beside) + SAME_PLACE:
+    if abs(place) <= abs(beside) + SAME_PLACE:
         return Demand(part, 0.0, (), slowness)
-    bent = 0.0
-    if isinstance(move, Arc):
-        bent = (1.0 if move.sweep > 0.0 else -1.0) / arc_radius(move)
+    bent = copysign(1.0 / curve.radius, curve.sweep) if isinstance(curve, Arc) else 0.0
     turning = around / slide
     sliding = along + beside * turning
     pushed = (bent * along - 2.0 * turning * sliding + beside * turning * turning) / slide
@@ -150,23 +141,21 @@ def _slowness(turning: float, feed: float, limits: FaceLimits) -> float:
     return max(slowed, turning / limits.c_speed)
 
 
-def looks(move: Line | Arc) -> list[float]:
-    """Return the parts of a move to look at: evenly spaced, and where it may be nearest."""
+def looks(curve: Curve) -> list[float]:
+    """Return the shares of a move to look at: evenly spaced, and where it may be nearest."""
     count = LOOKS
-    if isinstance(move, Arc):
-        count *= ceil(abs(move.sweep) / (pi / 2))
-        special = [_part_towards(move, place) for place in (POLE, (2 * move.cx, 2 * move.cc))]
+    if isinstance(curve, Arc):
+        count *= ceil(abs(curve.sweep) / (pi / 2))
+        special = [_share_towards(curve, place) for place in (POLE, 2 * curve.centre)]
     else:
-        dx, dc = move.x1 - move.x0, move.c1 - move.c0
-        square = dx * dx + dc * dc
-        special = [-(move.x0 * dx + move.c0 * dc) / square]
-        far = (move.x0 * move.x0 + move.c0 * move.c0) / square
-        if far > 4.0:  # seen from the pole a short line hardly turns
-            count = ceil(2.0 * count / sqrt(far))
+        special = [curve.length_to(POLE) / curve.length]
+        far = abs(curve.start) / curve.length
+        if far > 2.0:  # seen from the pole a short line hardly turns
+            count = ceil(2.0 * count / far)
     return sorted({k / count for k in range(1, count + 1)} | {k for k in special if 0.0 < k < 1.0})
 
 
-def _part_towards(move: Arc, place: Point) -> float:
-    """Return the part of an arc at which it is in the direction of a place from its centre."""
-    turn = 1 if move.sweep > 0.0 else -1
-    return sweep_between((move.x0, move.c0), place, (move.cx, move.cc), turn) / move.sweep
+def _share_towards(arc: Arc, place: complex) -> float:
+    """Return the share of an arc at which it is in the direction of a point from its centre."""
+    turn = 1 if arc.sweep > 0.0 else -1
+    return sweep_between(arc.start, place, arc.centre, turn) / arc.sweep

@@ -31,7 +31,7 @@ from __future__ import annotations
 from math import atan, atan2, copysign, cos, hypot, pi, sin, sqrt
 from typing import NamedTuple
 
-from g12.compensation.contour import Arc, Line, arc_radius
+from g12.geometry.curve import Arc, Curve, Line, angle_of
 from g12.moves.feed import Split
 from g12.moves.spacing import BULGE, WHOLE_BULGE, Density, Stretch, spaced
 
@@ -52,26 +52,25 @@ class Law(NamedTuple):
     c_hold: float
 
 
-def split_move(move: Line | Arc, law: Law) -> Split:
+def split_move(curve: Curve, law: Law) -> Split:
     """Return the pieces of a move of the tool's centre that does not run through the pole."""
-    return _split_line(move, law) if isinstance(move, Line) else _split_arc(move, law)
+    return _split_line(curve, law) if isinstance(curve, Line) else _split_arc(curve, law)
 
 
-def _split_line(move: Line, law: Law) -> Split:
-    x0, c0, x1, c1 = move.x0, move.c0, move.x1, move.c1
-    length = hypot(x1 - x0, c1 - c0)
-    tx, tc = (x1 - x0) / length, (c1 - c0) / length
-    distance = x0 * tc - c0 * tx
-    r0, r1 = hypot(x0, c0), hypot(x1, c1)
+def _split_line(line: Line, law: Law) -> Split:
+    length = line.length
+    started = line.start.conjugate() * line.direction()  # along the line, and across it
+    distance = started.imag
+    r0, r1 = abs(line.start), abs(line.end)
     if abs(distance) <= RADIAL:
-        angle = atan2(c0, x0) if r0 > r1 else atan2(c1, x1)
+        angle = angle_of(line.start if r0 > r1 else line.end)
         return Split([r0, r1], [angle, angle], [0.0, length])
     turn = 1.0 if distance > 0.0 else -1.0
     distance = abs(distance)
     deviation = min(law.deviation, 0.5 * distance)  # never off the path by so much as to the pole
-    u0 = (x0 * tx + c0 * tc) / distance
+    u0 = started.real / distance
     u1 = u0 + length / distance
-    foot = atan2(c0, x0) - turn * atan(u0)
+    foot = angle_of(line.start) - turn * atan(u0)
     if _is_one_piece(u0, u1, distance, deviation, abs(r1 - r0) / (r0 + r1), law.ripple):
         return Split([r0, r1], [foot + turn * atan(u0), foot + turn * atan(u1)], [0.0, length])
     density = _line_density(distance, deviation, law)
@@ -122,14 +121,14 @@ def _line_density(distance: float, deviation: float, law: Law) -> Density:
     return density
 
 
-def _split_arc(move: Arc, law: Law) -> Split:
-    radius, away = arc_radius(move), hypot(move.cx, move.cc)
-    turn = 1.0 if move.sweep > 0.0 else -1.0
-    outward = atan2(move.cc, move.cx)
-    a0 = turn * (atan2(move.c0 - move.cc, move.x0 - move.cx) - outward)
+def _split_arc(arc: Arc, law: Law) -> Split:
+    radius, away = arc.radius, abs(arc.centre)
+    turn = 1.0 if arc.sweep > 0.0 else -1.0
+    outward = angle_of(arc.centre)
+    a0 = turn * (angle_of(arc.start - arc.centre) - outward)
     a0 = (a0 + pi) % (2 * pi) - pi
-    a1 = a0 + abs(move.sweep)
-    r0, r1 = hypot(move.x0, move.c0), hypot(move.x1, move.c1)
+    a1 = a0 + abs(arc.sweep)
+    r0, r1 = abs(arc.start), abs(arc.end)
     nearest = abs(radius - away) if a0 <= pi <= a1 else min(r0, r1)
     deviation = min(law.deviation, 0.5 * nearest)
     places, shares = [a0, a1], [0.0, 0.0]

@@ -9,7 +9,7 @@ from math import copysign, degrees, pi, radians, remainder
 from typing import NamedTuple
 
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Arc, Contour, Element, Line, Mark, Plunge, Point, is_move
+from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Plunge
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, pieces_with_feed
 from g12.moves.steps import (
@@ -83,7 +83,7 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
 
 def quickness(
     direction: Direction,
-    place: Point,
+    place: complex,
     *,
     x_acceleration: float,
     c_acceleration: float,
@@ -96,10 +96,11 @@ def quickness(
     """
     if place == POLE:
         return 0.0
-    if not any(direction[:2]):
+    in_plane = complex(*direction[:2])
+    if not in_plane:
         return x_acceleration
     slide, way = stand(place, beside)
-    along, around = along_and_around(direction[:2], way)
+    along, around = along_and_around(in_plane, way)
     moved = max(abs(along + beside / slide * around), abs(direction[2]))
     return 1.0 / max(moved / x_acceleration, abs(around) / (slide * radians(c_acceleration)))
 
@@ -114,12 +115,12 @@ class _SlideAndSpindle(StepMaker):
         self._on_face, self._face_angle = False, 0.0  # the angle is that of the face's X axis
         self._laws: dict[tuple[float, float], Law] = {}
 
-    def cut(self, move: Line | Arc, stop: bool) -> None:
+    def cut(self, move: PlaneMove, stop: bool) -> None:
         """Add the pieces of a move in the plane."""
         settings = self._settings
         split = partial(self._split_move, move)
         parts = self._split(move, split, settings.tolerance, stop, settings.least_x)
-        if (move.x0, move.c0) == POLE:
+        if move.start == POLE:
             self._turn(move, parts.angles[0])
         turns = round((self.angle - parts.angles[0]) / (2 * pi))
         entry = self._entry + 360.0 * turns
@@ -127,9 +128,10 @@ class _SlideAndSpindle(StepMaker):
         self.angle = parts.angles[-1] + 2 * pi * turns
         self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", pieces, stop)
 
-    def _split_move(self, move: Line | Arc, deviation: float) -> Split:
+    def _split_move(self, move: PlaneMove, deviation: float) -> Split:
         law, beside = self._law(move.feed, deviation), self._settings.beside
-        return split_beside(move, law, beside) if beside else split_move(move, law)
+        curve = move.curve
+        return split_beside(curve, law, beside) if beside else split_move(curve, law)
 
     def switch(self, line: int, stretch: FaceStretch | None) -> None:
         """Go to the face for a stretch of the path, or back (None), if not there yet."""
@@ -137,7 +139,7 @@ class _SlideAndSpindle(StepMaker):
             self._on_face, self._face_angle = stretch is not None, self.angle
             self.steps.append(FaceSwitch(line, stretch is not None, self.place, *(stretch or ())))
 
-    def cut_on_face(self, move: Line | Arc | Plunge) -> None:
+    def cut_on_face(self, move: PlaneMove | Plunge) -> None:
         """Add a move on the face as it is."""
         if isinstance(move, Plunge):
             places = [(*self.place[:2], move.z1)]
@@ -158,13 +160,13 @@ class _SlideAndSpindle(StepMaker):
         slide, z = self.place.x, self.place.z
         for element in path:
             z = z if isinstance(element, Mark) else element.z1
-        moves = [element for element in path if is_move(element)]
+        moves = [element for element in path if isinstance(element, PlaneMove)]
         if moves:
-            slide, _ = stand((moves[-1].x1, moves[-1].c1), self._settings.beside)
+            slide, _ = stand(moves[-1].end, self._settings.beside)
         self._make_up(path, slide, z, self._settings.least_x)
 
-    def _turn(self, move: Line | Arc, angle: float) -> None:
-        """Add a rotation at the pole, the shorter way; of two equal ways the one that unwinds C."""
+    def _turn(self, move: PlaneMove, angle: float) -> None:
+        """Add a turn in place, the shorter way; of two equal ways the one that unwinds C."""
         turn = remainder(angle - self.angle, 2 * pi)
         if abs(abs(turn) - pi) < SAME_ANGLE:
             turn = copysign(pi, -self.angle)

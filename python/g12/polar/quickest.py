@@ -15,20 +15,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
-from math import ceil, hypot, log, radians, sqrt
+from math import ceil, log, radians, sqrt
 from operator import itemgetter
 from typing import NamedTuple
 
-from g12.compensation.contour import (
-    Arc,
-    Element,
-    Line,
-    end_direction,
-    is_move,
-    path_length,
-    start_direction,
-)
-from g12.compensation.intersect import part_of_move
+from g12.compensation.contour import Element, PlaneMove
 from g12.polar.follow import Demand, FaceLimits, are_able, demands_of, followed, is_able
 
 SHARES = (*(0.96**k for k in range(14)), 0.5, 0.4, 0.28, 0.18, 0.1, 0.05)  # of the INI's
@@ -106,16 +97,15 @@ def quickest(path: Sequence[Element], stopping: list[bool], limits: FaceLimits) 
 
 
 def _seen(move: Element, stop: bool, following: Element | None, limits: FaceLimits) -> _Element:
-    if not is_move(move):
+    if not isinstance(move, PlaneMove):
         return _Element(move, stop)
-    places, length = demands_of(move, limits), path_length(move)
-    corner = following is None or not is_move(following) or not _goes_straight_on(move, following)
+    places, length = demands_of(move, limits), move.length
+    corner = not isinstance(following, PlaneMove) or not _goes_straight_on(move, following)
     return _Element(move, stop, length, places, corner, length * _slowness(places))
 
 
-def _goes_straight_on(move: Line | Arc, following: Line | Arc) -> bool:
-    (x0, c0), (x1, c1) = end_direction(move), start_direction(following)
-    return hypot(x1 - x0, c1 - c0) < STRAIGHT_ON
+def _goes_straight_on(move: PlaneMove, following: PlaneMove) -> bool:
+    return abs(following.curve.direction(0.0) - move.curve.direction(1.0)) < STRAIGHT_ON
 
 
 def _slowness(places: Sequence[Demand]) -> float:
@@ -129,7 +119,7 @@ def _slowness(places: Sequence[Demand]) -> float:
 def _spans(element: _Element, limits: FaceLimits, share: float) -> list[_Span]:
     """Return an element in spans, each at a feed that is followed all along it, if at any."""
     move, places = element.move, element.places
-    if not is_move(move):
+    if not isinstance(move, PlaneMove):
         return [_Span(element, 0.0, 1.0, 1.0)]
     if are_able(move, places, limits, share):
         return [_Span(element, 0.0, 1.0, move.feed)]
@@ -191,18 +181,18 @@ def _joined(run: list[_Span]) -> _Span:
 def _made(span: _Span) -> Element:
     """Return the element, or the part of it, that a span is."""
     move = span.element.move
-    if not is_move(move):
+    if not isinstance(move, PlaneMove):
         return move
     if (span.first, span.last) != (0.0, 1.0):
-        move = part_of_move(move, span.first, span.last)
-    return move._replace(feed=span.feed) if span.feed else move
+        move = move.portion(span.first, span.last)
+    return move._replace(feed=span.feed) if span.feed and span.element.places else move
 
 
 def _on_face(spans: list[_Span], limits: FaceLimits, share: float) -> list[FaceStretch | None]:
     """Return each span's stretch, with the most acceleration and override that is followed."""
     stretches: list[FaceStretch | None] = []
     for on_face, run in _stretches(spans):
-        moves = [move for move in map(_made, run) if is_move(move)]
+        moves = [move for move in map(_made, run) if isinstance(move, PlaneMove)]
         more = (one for one in SHARES if one > share)
         able = (one for one in more if all(is_able(move, limits, one) for move in moves))
         stretch = _most(moves, limits, next(able, share)) if on_face else None
@@ -210,7 +200,7 @@ def _on_face(spans: list[_Span], limits: FaceLimits, share: float) -> list[FaceS
     return stretches
 
 
-def _most(moves: list[Line | Arc], limits: FaceLimits, share: float) -> FaceStretch:
+def _most(moves: list[PlaneMove], limits: FaceLimits, share: float) -> FaceStretch:
     overrides = (
         followed(move, place, limits, share) / move.feed
         for move in moves

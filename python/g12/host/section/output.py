@@ -17,7 +17,8 @@ from __future__ import annotations
 from collections.abc import Container, Iterator, Sequence
 from typing import NamedTuple
 
-from g12.compensation.contour import Arc, Plunge
+from g12.compensation.contour import PlaneMove
+from g12.geometry.curve import Arc
 from g12.host.interp import Canon, Interp
 from g12.host.kinematics_switch import (
     BY_PROGRAM,
@@ -303,14 +304,15 @@ class SectionOutput:
         if ends or (isinstance(following, FaceMove) and flows_into(move, following.move)):
             self.path.set(EXACT_PATH)  # nothing to blend: LinuxCNC halves its acceleration for it
         self.path.at_end(False, exact_stop, block_ends)
-        words = "G1" if not isinstance(move, Arc) else "G3" if move.sweep > 0.0 else "G2"
+        curve = move.curve if isinstance(move, PlaneMove) else None
+        words = "G1" if not isinstance(curve, Arc) else "G3" if curve.sweep > 0.0 else "G2"
         values = {"F": move.feed}
-        if not isinstance(move, Plunge):
-            values["X"] = move.x1 * self.x_factor
-            values["Y"] = move.c1 - y_offset(interp)
-        if isinstance(move, Arc):
-            values["I"] = move.cx - interp.current_x
-            values["J"] = move.cc - y_offset(interp) - interp.current_y
+        if curve:
+            values["X"] = curve.end.real * self.x_factor
+            values["Y"] = curve.end.imag - y_offset(interp)
+        if isinstance(curve, Arc):
+            values["I"] = curve.centre.real - interp.current_x
+            values["J"] = curve.centre.imag - y_offset(interp) - interp.current_y
         if move.z0 != move.z1:
             values["Z"] = move.z1
         interp.execute(words + "".join(f"{word}{value:.17f}" for word, value in values.items()))

@@ -16,7 +16,7 @@ BODY = re.compile(r"/?(?:n[0-9.]+)?o(?:<([^>]+)>|([0-9.]+))(sub|endsub)")
 POSITION = "#<_", "#54"  # position parameters, which a copy without motion cannot follow
 
 
-class Line(NamedTuple):
+class SectionLine(NamedTuple):
     """A line of a file: what it says, as it is written, and the sub whose body it is in."""
 
     text: Text
@@ -29,19 +29,19 @@ class Line(NamedTuple):
         return any(name in self.written.replace(" ", "") for name in POSITION)
 
 
-def section_lines(texts: Sequence[Text], written: Sequence[str]) -> list[Line]:
+def section_lines(texts: Sequence[Text], written: Sequence[str]) -> list[SectionLine]:
     """Return the lines of a file."""
     found, sub = [], ""
     for text, line in zip(texts, written):
         body = BODY.match(re.sub(r"\s", "", COMMENT.sub("", line)).lower())
         name = body and (body[1] or body[2])
         sub = name if body and body[3] == "sub" else sub
-        found.append(Line(text, line, sub))
+        found.append(SectionLine(text, line, sub))
         sub = "" if body and body[3] == "endsub" else sub
     return found
 
 
-def followed_subs(files: Sequence[Sequence[Line]], codes: Codes) -> set[str]:
+def followed_subs(files: Sequence[Sequence[SectionLine]], codes: Codes) -> set[str]:
     """Return the subs that are called in sections and nowhere else, and ask for no position."""
     subs = {line.text.call for lines in files for line in lines if is_call(line)}
     subs -= {line.sub for lines in files for line in lines if line.asks_position}
@@ -53,7 +53,9 @@ def followed_subs(files: Sequence[Sequence[Line]], codes: Codes) -> set[str]:
         subs -= elsewhere
 
 
-def with_flags(lines: Sequence[Line], codes: Codes, subs: set[str]) -> Iterator[tuple[Line, bool]]:
+def with_flags(
+    lines: Sequence[SectionLine], codes: Codes, subs: set[str]
+) -> Iterator[tuple[SectionLine, bool]]:
     """Yield lines, each with whether it is in a section: its first one is, its last is not."""
     inside = False
     for line in lines:
@@ -62,6 +64,6 @@ def with_flags(lines: Sequence[Line], codes: Codes, subs: set[str]) -> Iterator[
         yield line, inside or line.sub in subs
 
 
-def is_call(line: Line) -> bool:
+def is_call(line: SectionLine) -> bool:
     """Tell whether a line calls a sub by an O-word."""
     return line.text.control and bool(line.text.call)

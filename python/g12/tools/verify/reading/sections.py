@@ -30,7 +30,7 @@ from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.verify.expected.contour import ACTS, Act, Element, SectionContour
 from g12.tools.verify.reading.codes import Codes, kept_state
 from g12.tools.verify.reading.executed_subs import Copies, called_files, files_with
-from g12.tools.verify.reading.inside import Line, followed_subs, section_lines, with_flags
+from g12.tools.verify.reading.inside import SectionLine, followed_subs, section_lines, with_flags
 
 ACTING_M = {*map(float, (3, 4, 5, 7, 8, 9, 48, 49, 50, 51, 52, 53)), *map(float, range(100, 200))}
 DWELL = 4.0
@@ -94,7 +94,7 @@ def flattened_file(
 
 
 def flattened(
-    lines: Sequence[Line], codes: Codes, subs: set[str], skip: int = 0
+    lines: Sequence[SectionLine], codes: Codes, subs: set[str], skip: int = 0
 ) -> Iterator[tuple[str, ...]]:
     """Yield the lines that stand for each line in the copy without the sections' motion.
 
@@ -150,7 +150,7 @@ def switched(block: Block, codes: Codes, inside: bool) -> str:
     return "off" if switch == "on" and block.words.get("C") == 0.0 else switch
 
 
-def doubts_of(lines: Sequence[Line], codes: Codes, subs: set[str]) -> dict[Place, str]:
+def doubts_of(lines: Sequence[SectionLine], codes: Codes, subs: set[str]) -> dict[Place, str]:
     """Return what the copy of the program cannot follow, by the place of a section's start."""
     doubts: dict[Place, str] = {}
     first: Place | None = None

@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A contour from its G41 or G42 to its G40: its walls, and the passes of the tool along it.
+
+A wall is what a move leaves beside it on the side away from the tool. Leads are no walls, nor what
+is made in the air between two plunges. Program units.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cached_property
+from itertools import accumulate, groupby
+from math import ceil, copysign, inf, sqrt
+from typing import NamedTuple
+
+from g12.compensation.closing import closing_of
+from g12.compensation.contour import SAME_PLACE, Contour, PlaneMove
+from g12.geometry.boxes import BoxTree
+from g12.geometry.curve import Arc
+
+MEETING = 4.0  # tolerances: points so near to each other close a contour
+RAMP = -1  # in place of a move's index
+
+
+class Cut(NamedTuple):
+    """A move of the contour and the tool centre's ``path`` for it.
+
+    ``cut`` tells that it is under compensation at both ends: it is no ramp.
+    """
+
+    move: PlaneMove
+    path: tuple
+    cut: bool
+
+
+class Pass(NamedTuple):
+    """A move of the tool's centre for the contour's move ``index``, and all its Z levels."""
+
+    index: int
+    move: PlaneMove
+    levels: frozenset[int]
+
+    def touched(self, share: float, offset: float) -> complex:
+        """Return the point of the contour that the tool touches at a share of the pass."""
+        return self.move.curve.point(share) - 1j * offset * self.move.curve.direction(share)
+
+
+class WallPoint(NamedTuple):
+    """A point of the move ``index``, so far along the contour, and the contour's direction."""
+
+    index: int
+    along: float
+    point: complex
+    direction: complex
+
+
+class CompensatedContour:
+    """A contour from one ramp to the next.
+
+    ``walls`` are the portions of its moves that are walls, by their indices, each with the
+    greatest Z of all moves that repeat it.
+    """
+
+    def __init__(
+        self, contour: Contour, cuts: Sequence[Cut], ramps: Sequence[Cut], tolerance: float
+    ) -> None:
+        self.moves, self.tolerance = [cut.move for cut in cuts], tolerance
+        self.offset = self.moves[0].offset
+        self.radius = abs(self.offset)
+        curves = [move.curve for move in self.moves]
+        near = max(MEETING * tolerance, 2 * contour.closing)
+        self.closing = closing_of(curves, self.radius, near)
+        self.ends = [0.0, *accumulate(curve.length for curve in curves)]
+        self.walls: dict[int, PlaneMove] = {}
+        for index, level in sorted(greatest_levels(self.moves).items()):
+            first, last = self.closing.shares(index, curves[index])
+            if first < last:
+                wall = self.moves[index].portion(first, last)
+                self.walls[index] = wall._replace(z0=level, z1=level)
+        self.levels = frozenset(_level(self.moves[index].z1) for index in self.walls)
+        made = [(index, move) for index, cut in enumerate(cuts) for move in cut.path]
+        self.passes = passes_of(made)
+        self.ramps = passes_of((RAMP, move) for ramp in ramps for move in ramp.path)
+
+    @property
+    def reach(self) -> float:
+        """How near to a wall the tool's centre has to come to gouge it."""
+        return self.radius - self.tolerance
+
+    @property
+    def spacing(self) -> float:
+        """The length between two points of a wall: half the chord at a depth of the tolerance."""
+        return sqrt(2.0 * self.radius * self.tolerance)
+
+    @cached_property
+    def tree(self) -> BoxTree:
+        """The passes, found by where they are."""
+        return BoxTree([each.move.curve for each in self.passes])
+
+    @cached_property
+    def wall_tree(self) -> BoxTree:
+        """The walls, found by where they are."""
+        return BoxTree([wall.curve for wall in self.walls.values()])
+
+    @cached_property
+    def _contour_tree(self) -> BoxTree:
+        return BoxTree([move.curve for move in self.moves])
+
+    def points(self) -> Iterator[WallPoint]:
+        """Yield points of the walls, so close that no gouge falls between two of them.
+
+        A tool that is a tolerance deep in a wall is so on a chord of its radius. Short moves in
+        line have their points together.
+        """
+        spacing = self.spacing
+        straight, last = 4.0 * self.tolerance / spacing, None
+        for index, wall in self.walls.items():
+            curve, length = wall.curve, wall.length
+            begin = self.ends[index] + self.closing.start * (index == self.closing.first)
+            if last and begin + length - last.along < spacing:
+                turned = last.direction.conjugate() * curve.direction(1.0)
+                if turned.real > 0.0 and abs(turned.imag) < straight:
+                    continue
+            step = spacing
+            if isinstance(curve, Arc):
+                step = min(step, 2.0 * sqrt(curve.radius * self.tolerance))
+            count, inset = ceil(length / step), min(0.25, self.tolerance / length)
+            for k in range(count + 1):
+                share = inset + (1.0 - 2.0 * inset) * k / count
+                along, direction = begin + share * length, curve.direction(share)
+                last = WallPoint(index, along, curve.point(share), direction)
+                yield last
+
+    def length_to(self, index: int, point: complex) -> float:
+        """Return the length along the contour to a point on one of its moves."""
+        return self.ends[index] + self.moves[index].curve.length_to(point)
+
+    def point_at(self, along: float) -> complex:
+        """Return the point at a length along the contour, from where it closes at most."""
+        closing = self.closing
+        first = self.ends[closing.first] + closing.start
+        last = self.ends[closing.last] + closing.end
+        along = min(max(along, first), last)
+        index = min(bisect_right(self.ends, along), len(self.moves)) - 1
+        move = self.moves[index]
+        return move.curve.point(min((along - self.ends[index]) / move.length, 1.0))
+
+    def height(self, point: complex) -> tuple[float, bool]:
+        """Return how far a point is from the walls, below zero in the material.
+
+        And whether it is beyond an end of an open contour: nobody knows what is there.
+        """
+        near, across, foot = _nearest(self.wall_tree, point)
+        ends = () if self.closing.closed else (self.moves[0].start, self.moves[-1].end)
+        at_end = any(abs(foot - end) <= SAME_PLACE for end in ends)
+        return copysign(near, across * self.offset), at_end
+
+    def side(self, point: complex, along: float, reach: float) -> float:
+        """Return how far a point is to the left of the contour within a length of a point of it."""
+        first = bisect_right(self.ends, along - reach) - 1
+        last = bisect_right(self.ends, along + reach)
+        return _nearest(self._contour_tree, point, lambda k: first <= k < last)[1]
+
+    def is_lead(self, index: int, centre: complex) -> bool:
+        """Return whether a pass for a move leads in or out where the tool's centre is."""
+        closing, curve = self.closing, self.moves[index].curve
+        if not closing.closed or closing.crossing:
+            return not closing.first < index < closing.last
+        first, last = closing.shares(index, curve)
+        share = curve.share_of(centre)
+        return first >= last or (first > 0.0 and share <= first) or (last < 1.0 and share >= last)
+
+
+def compensated_contours(
+    contour: Contour, cuts: Sequence[Cut], tolerance: float
+) -> Iterator[CompensatedContour]:
+    """Yield each contour between two ramps."""
+    at = 0
+    for cut, group in groupby(cuts, key=lambda cut: cut.cut):
+        own = list(group)
+        if cut:
+            ramps = [*cuts[max(at - 1, 0) : at], *cuts[at + len(own) :][:1]]
+            yield CompensatedContour(contour, own, ramps, tolerance)
+        at += len(own)
+
+
+def is_low(move: PlaneMove, level: float) -> bool:
+    """Return whether a move of the tool is not above a level all along."""
+    return move.lowest <= level + SAME_PLACE
+
+
+def passes_of(path: Iterable[tuple[int, object]]) -> list[Pass]:
+    """Return passes along moves, by their indices; repeated ones once, at the lowest of levels."""
+    kept: dict[tuple, Pass] = {}
+    for index, move in path:
+        if not isinstance(move, PlaneMove):
+            continue
+        place, level = in_plane(move), frozenset([_level(move.z1)])
+        before = kept.get(place)
+        if before:
+            index, level = before.index, level | before.levels
+            move = min(before.move, move, key=lambda each: each.lowest)
+        kept[place] = Pass(index, move, level)
+    return list(kept.values())
+
+
+def greatest_levels(moves: Sequence[PlaneMove]) -> dict[int, float]:
+    """Return the greatest Z of each move, by its index; of repeated ones only the first's index.
+
+    Moves in the air, between a plunge up and a plunge down, are not there.
+    """
+    levels: dict[int, float] = {}
+    first: dict[tuple, int] = {}
+    for index in _in_material(moves):
+        move = moves[index]
+        kept = first.setdefault(in_plane(move), index)
+        levels[kept] = max(levels.get(kept, -inf), move.z0, move.z1)
+    return levels
+
+
+def _in_material(moves: Sequence[PlaneMove]) -> Iterator[int]:
+    """Yield the indices of the moves that are not made in the air."""
+    runs: list[list[int]] = [[0]]
+    for index in range(1, len(moves)):
+        if abs(moves[index].z0 - moves[index - 1].z1) > SAME_PLACE:
+            runs.append([])
+        runs[-1].append(index)
+    for k, run in enumerate(runs):
+        lifted = k > 0 and moves[run[0]].z0 > moves[run[0] - 1].z1
+        lowered = k + 1 < len(runs) and moves[run[-1]].z1 > moves[run[-1] + 1].z0
+        if not (lifted and lowered):
+            yield from run
+
+
+def in_plane(move: PlaneMove) -> tuple:
+    """Return what tells one move in the plane from another, rounding aside."""
+    curve = move.curve
+    points, sweep = (curve.start, curve.end), 0.0
+    if isinstance(curve, Arc):
+        points, sweep = (*points, curve.centre), curve.sweep
+    places = [axis for point in points for axis in (point.real, point.imag)]
+    return tuple(round(place / SAME_PLACE) for place in (*places, sweep))
+
+
+def _nearest(
+    tree: BoxTree, point: complex, counts: Callable[[int], bool] = lambda _: True
+) -> tuple[float, float, complex]:
+    """Return how far a point is from the nearest curve that counts, how far to its left, and where.
+
+    Of curves that are equally near the one counts that it is farthest beside.
+    """
+    near, _ = tree.nearest(point, inf, counts)
+    reach = near + SAME_PLACE
+    found = []
+    for index in filter(counts, tree.near((point.real, point.imag) * 2, reach)):
+        curve = tree.curves[index]
+        share = curve.share_of(point)
+        foot = curve.point(share)
+        if abs(point - foot) <= reach:
+            across = (curve.direction(share).conjugate() * (point - foot)).imag
+            found.append((near, across, foot))
+    return max(found, key=lambda each: abs(each[1]))
+
+
+def _level(z: float) -> int:
+    """Return a Z level that is the same but for rounding."""
+    return round(z / SAME_PLACE)

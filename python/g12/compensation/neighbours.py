@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Gouges between contours: the tool, on its way along one, cuts deep into the wall of another.
+
+That is refused where nothing else can be meant:
+
+- the contour that is cut closes, and is not cut all round;
+- what cuts it is no lead and no ramp, and at a Z level at which it is cut itself;
+- neither contour enters the other one's material anywhere, as a finishing pass does, a slot across
+  a boss or a step; nor does a third contour where it cuts the same point;
+- the cut is deeper than an allowance for finishing can be: an offset that is too large on purpose
+  makes a way between two contours narrower by twice the allowance.
+
+Everything else is left to ``g12 verify``. Program units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import partial
+from math import ceil, inf
+
+from g12.compensation.compensated import CompensatedContour, Pass, WallPoint, is_low
+from g12.compensation.contour import Contour, PlaneMove
+from g12.errors import number
+from g12.geometry.boxes import BoxTree, apart
+
+ALLOWANCE = 0.5  # of the tool's radius: what is cut deeper is none that a finishing pass takes off
+ENTERED = 2.0  # tolerances: so deep is what enters the material
+STEP = 16.0  # tolerances: in such steps a contour is followed into the material
+FIRST_LOOK = 2  # passes of another contour: most that may enter do so there
+
+
+def check_neighbours(contour: Contour, contours: Sequence[CompensatedContour]) -> None:
+    """Refuse a contour on whose way the tool cuts deep into another one that closes."""
+    walled = [each for each in contours if each.walls]
+    for wall in walled:
+        others = [other for other in walled if wall.closing.closed and _may_cut(other, wall)]
+        found = _Neighbourhood(wall, others).deepest() if others else None
+        if found:
+            point, by = found
+            lines = sorted((wall.moves[point.index].line, by.move.line))
+            contour.refuse(
+                lines[1],
+                f"the tool of radius {number(wall.radius)} cannot follow both lines "
+                f"{lines[0]} and {lines[1]}: beside one of them it cuts into the other",
+            )
+
+
+def _may_cut(other: CompensatedContour, wall: CompensatedContour) -> bool:
+    """Return whether two contours have a Z level in common, and neither is seen to enter at once.
+
+    Without that look a hundred roughing passes about each other would take minutes.
+    """
+    if other is wall or wall.levels.isdisjoint(other.levels):
+        return False
+    if apart(wall.wall_tree.box, other.tree.box, other.radius):
+        return False
+    some = other.passes[:: len(other.passes) // FIRST_LOOK + 1]
+    return not enters(some, other, wall, inf)
+
+
+class _Neighbourhood:
+    """A contour that closes, and others that may cut into it."""
+
+    def __init__(self, wall: CompensatedContour, others: Sequence[CompensatedContour]) -> None:
+        self._wall, self._others = wall, others
+        self._passes = [(other, each) for other in others for each in other.passes]
+        self._tree = BoxTree([each.move.curve for _, each in self._passes])
+        self._meant: dict[int, bool] = {}
+
+    def deepest(self) -> tuple[WallPoint, Pass] | None:
+        """Return the wall's point that is cut deepest without being meant, and by which pass.
+
+        Of points that are cut as deep it is the last.
+        """
+        found, reach = None, ALLOWANCE * max(other.radius for other in self._others)
+        points = list(self._wall.points())
+        every = 1 + int(reach / self._wall.spacing)
+        around = reach + every * self._wall.spacing
+        if all(self._tree.nearest(p.point, around)[1] is None for p in points[::every]):
+            return None
+        for point in reversed(points):
+            away, by = self._tree.nearest(point.point, reach, partial(self._cuts, point))
+            if by is not None:
+                reach, found = away, (point, self._passes[by][1])
+        return found
+
+    def _cuts(self, point: WallPoint, by: int) -> bool:
+        """Return whether a pass that is near enough cuts a point and is not meant to."""
+        other, (index, move, levels) = self._passes[by]
+        if self._meant.get(id(other)) or self._wall.levels.isdisjoint(levels):
+            return False
+        if not is_low(move, self._level(point)):
+            return False
+        share = move.curve.share_of(point.point)
+        centre = move.curve.point(share)
+        if abs(centre - point.point) >= ALLOWANCE * other.radius or other.is_lead(index, centre):
+            return False
+        return not self._is_meant(other) and not self._is_gone(point)
+
+    def _level(self, point: WallPoint) -> float:
+        return self._wall.walls[point.index].z0
+
+    def _is_meant(self, other: CompensatedContour) -> bool:
+        """Return whether a contour may cut into the wall: one enters the other, or cuts it all."""
+        if id(other) not in self._meant:
+            wall = self._wall
+            self._meant[id(other)] = (
+                enters(other.passes, other, wall, STEP)
+                or enters(wall.passes, wall, other, STEP)
+                or all(self._is_cut(point, other) for point in wall.points())
+            )
+        return self._meant[id(other)]
+
+    def _is_cut(self, point: WallPoint, other: CompensatedContour) -> bool:
+        level = self._level(point)
+        passes = other.passes
+        found = other.tree.nearest(
+            point.point, other.reach, lambda by: is_low(passes[by].move, level)
+        )
+        return found[1] is not None
+
+    def _is_gone(self, point: WallPoint) -> bool:
+        """Return whether a contour that cuts a point enters the material on the way there."""
+        level = self._level(point)
+        return any(
+            enters([each], other, self._wall, STEP)
+            for other, each in self._passes
+            if is_low(each.move, level) and each.move.curve.distance(point.point) < other.reach
+        )
+
+
+def enters(
+    passes: Iterable[Pass], other: CompensatedContour, wall: CompensatedContour, step: float
+) -> bool:
+    """Return whether the tool touches its contour in a wall's material, where it cuts that wall.
+
+    Looked at is the contour ``other`` at the ends of steps of so many tolerances.
+    """
+    levels = [each.z0 for each in wall.walls.values()]
+    for each in passes:
+        curve = each.move.curve
+        if apart(curve.box, wall.wall_tree.box, other.reach):
+            continue
+        low = partial(_is_as_low, each.move, levels)
+        count = max(1, ceil(curve.length / (step * wall.tolerance)))
+        for share in (k / count for k in range(count + 1)):
+            if wall.wall_tree.nearest(curve.point(share), other.reach, low)[1] is None:
+                continue
+            height, at_end = wall.height(each.touched(share, other.offset))
+            if at_end or height < -ENTERED * wall.tolerance:
+                return True
+    return False
+
+
+def _is_as_low(move: PlaneMove, levels: Sequence[float], index: int) -> bool:
+    return is_low(move, levels[index])

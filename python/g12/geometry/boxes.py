@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Curves found by their boxes: which of many are near to a box, which is nearest to a point."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from math import sqrt
+
+from g12.geometry.curve import Box, Curve
+
+LEAF = 4  # curves in a box that is not divided
+
+
+class BoxTree:
+    """A tree of boxes around curves, which are known by their indices in a sequence."""
+
+    def __init__(self, curves: Sequence[Curve]) -> None:
+        self.curves = curves
+        self._root = _Node([(index, curve.box) for index, curve in enumerate(curves)])
+
+    @property
+    def box(self) -> Box:
+        """The box around all curves."""
+        return self._root.box
+
+    def near(self, box: Box, reach: float) -> Iterator[int]:
+        """Yield the indices of the curves whose boxes are within ``reach`` of a box."""
+        waiting = [self._root]
+        while waiting:
+            node = waiting.pop()
+            if not apart(node.box, box, reach):
+                waiting.extend(node.halves)
+                yield from (index for index, around in node.items if not apart(around, box, reach))
+
+    def nearest(
+        self, point: complex, reach: float, counts: Callable[[int], bool] = lambda _: True
+    ) -> tuple[float, int | None]:
+        """Return how far the nearest curve that counts is from a point, and its index.
+
+        The ``reach`` and None where none is nearer than that.
+        """
+        found, x, y = None, point.real, point.imag
+        waiting = [(0.0, self._root)]
+        while waiting:
+            away, node = waiting.pop()
+            if away >= reach:
+                continue
+            if node.halves:
+                one, other = node.halves
+                to_one, to_other = _away(x, y, one.box), _away(x, y, other.box)
+                pairs = (to_other, other), (to_one, one)
+                waiting.extend(pairs if to_one < to_other else pairs[::-1])
+            for index, around in node.items:
+                if _away(x, y, around) < reach:
+                    away = self.curves[index].distance(point)
+                    if away < reach and counts(index):
+                        reach, found = away, index
+        return reach, found
+
+
+class _Node:
+    """A box around some curves: two halves, or a few curves with their own boxes."""
+
+    __slots__ = ("box", "halves", "items")
+
+    def __init__(self, items: list[tuple[int, Box]]) -> None:
+        self.items = items if len(items) <= LEAF else []
+        middle = len(items) // 2
+        self.halves: tuple[_Node, ...] = (
+            () if self.items else (_Node(items[:middle]), _Node(items[middle:]))
+        )
+        boxes = [box for _, box in self.items] or [half.box for half in self.halves]
+        low_x, low_y, high_x, high_y = zip(*boxes)
+        self.box: Box = (min(low_x), min(low_y), max(high_x), max(high_y))
+
+
+def apart(one: Box, other: Box, reach: float) -> bool:
+    """Tell whether two boxes are farther than ``reach`` from each other."""
+    return (
+        one[0] - other[2] > reach
+        or other[0] - one[2] > reach
+        or one[1] - other[3] > reach
+        or other[1] - one[3] > reach
+    )
+
+
+def _away(x: float, y: float, box: Box) -> float:
+    """Return how far a point is from a box, 0 in it."""
+    low_x, low_y, high_x, high_y = box
+    dx = low_x - x if x < low_x else x - high_x if x > high_x else 0.0
+    dy = low_y - y if y < low_y else y - high_y if y > high_y else 0.0
+    return sqrt(dx * dx + dy * dy) if dx and dy else dx + dy

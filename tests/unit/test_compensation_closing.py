@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where a contour closes, and which of its ends are leads."""
+
+import cmath
+import math
+
+import pytest
+
+from g12.compensation.closing import Closing, closing_of
+from g12.geometry.curve import Arc, Line
+from support.contour_geometry import Round, Straight, lines
+
+NEAR = 0.02
+SQUARE = [10 + 10j, 10 - 10j, -10 - 10j, -10 + 10j]
+
+
+def closed(corners):
+    return [Straight(*ends) for ends in zip(corners, [*corners[1:], corners[0]])]
+
+
+def curves_of(shapes):
+    plain = [[complex(value) for value in each[:2]] + list(each[2:]) for each in shapes]
+    return [Line(*each) if len(each) == 2 else Arc(*each) for each in plain]
+
+
+def closing(shapes, radius=3.0):
+    """Return where shapes that are cut one after the other close."""
+    return closing_of(curves_of(shapes), radius, NEAR)
+
+
+def ends_of(shapes, radius=3.0):
+    """Return whether shapes close, and from which point to which they are a contour."""
+    found, curves = closing(shapes, radius), curves_of(shapes)
+    points = (
+        curves[at].point(along / curves[at].length)
+        for at, along in ((found.first, found.start), (found.last, found.end))
+    )
+    return found.closed, *(complex(round(at.real, 3), round(at.imag, 3)) for at in points)
+
+
+def rolled(on, off, overlap):
+    """Return the square with an arc to lead on and one to lead off, and lines beyond them."""
+    start, end = 10 + 0j, 10 - 1j * overlap
+    arc_on = Round(start + 5 + 5j, start + 5, 0.5 * math.pi)
+    arc_off = Round(end, end + 5, 0.5 * math.pi)
+    corners = [start, *SQUARE[1:], SQUARE[0], end]
+    far, near = arc_on.start, arc_off.end
+    front = [Straight(far + 4 * k + 4, far + 4 * k) for k in reversed(range(on - 1))]
+    behind = [Straight(near + 4 * k, near + 4 * k + 4) for k in range(off - 1)]
+    return [*front, arc_on, *(Straight(*pair) for pair in zip(corners, corners[1:])), arc_off,
+            *behind]  # fmt: skip
+
+
+@pytest.mark.parametrize("overlap", [0.0, 2.0])
+@pytest.mark.parametrize(
+    ("on", "off", "closes"),
+    [(1, 3, True), (3, 1, True), (2, 2, True), (1, 4, False), (4, 1, False), (4, 4, False)],
+)
+def test_leads_have_up_to_three_moves(on, off, closes, overlap):
+    shapes = rolled(on, off, overlap)
+    assert closing(shapes).closed is closes
+    if closes and not overlap:
+        assert ends_of(shapes) == (True, 10 + 0j, 10 + 0j)
+
+
+@pytest.mark.parametrize("behind", [False, True])
+@pytest.mark.parametrize(
+    ("lead", "radius", "closes"),
+    [(39.0, 6.0, True), (41.0, 6.0, False), (41.0, 4.9, True), (41.0, 5.1, False)],
+)
+def test_a_contour_is_half_as_long_as_its_leads_or_four_tool_radii(lead, radius, closes, behind):
+    """The square is 20 round; anything shorter is the spur of an open contour."""
+    corners = [5 + 0j, 0j, 5j, 5 + 5j]
+    first, second, third, last = closed(corners)
+    if behind:
+        last = Straight(last.start, last.end - 1j * lead)
+    else:
+        first = Straight(first.start + lead, first.end)
+    assert closing([first, second, third, last], radius).closed is closes
+
+
+@pytest.mark.parametrize(("gap", "closes"), [(0.019, True), (0.021, False)])
+def test_places_near_to_each_other_close_a_contour(gap, closes):
+    around = Round(10 + 0j, 0j, -2 * math.pi + gap / 10)
+    assert closing([around]).closed is closes
+    sides = closed(SQUARE)
+    short = [*sides[:-1], Straight(sides[-1].start, sides[-1].end - gap)]
+    assert closing(short).closed is closes
+
+
+def test_of_a_contour_that_does_not_close_all_is_contour():
+    zigzag = lines((0, 0), (20, 0), (20, 20), (45, 20))
+    found = closing(zigzag)
+    assert found == (0, 0.0, 2, 25.0, False, False)
+    assert [found.shares(k, curves_of(zigzag)[0]) for k in (-1, 3)] == [(0.0, 0.0)] * 2
+
+
+def test_of_two_places_the_one_with_more_of_the_leads_beyond_it():
+    """The last side, an arc, goes through the first one twice."""
+    sides = [*lines((10, 40), (10, -10), (-10, -10), (-10, 10)), Round(-10 + 10j, 5 + 15j, 5.0)]
+    assert ends_of(sides) == (True, 10 + 0j, 10 + 0j)
+
+
+def test_a_contour_that_ends_where_it_began_closes_though_it_crosses_itself_beside_its_end():
+    """What is beyond that is shorter than four radii of the tool."""
+    sides = lines((0, 0), (0, 50), (3, 50))
+    sides += [Round(3 + 50j, 26.5 + 23.5j, cmath.phase((-26.5 - 23.5j) / (-23.5 + 26.5j)))]
+    for radius, start in ((1.0, 47j), (6.0, 0j)):
+        assert ends_of(sides, radius) == (True, start, start)
+
+
+def test_what_lies_beyond_the_closing_is_no_contour():
+    first, *others, last = closed(SQUARE)
+    sides = [Straight(first.start + 5j, first.end), *others, Straight(last.start, last.end + 15)]
+    found = closing(sides)
+    assert found[:4] == (0, pytest.approx(5.0), 3, pytest.approx(20.0))
+    parts = [found.shares(k, curve) for k, curve in enumerate(curves_of(sides))]
+    assert parts == [
+        (pytest.approx(0.2), 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, pytest.approx(20 / 35)),
+    ]  # fmt: skip
+    led, curves = closing(rolled(2, 2, 0.0)), curves_of(rolled(2, 2, 0.0))
+    assert [led.shares(k, curves[k]) != (0.0, 0.0) for k in (0, 2, 5, 8)] == [
+        False, True, True, False,
+    ]  # fmt: skip
+    line = Line(0j, 2 + 0j)  # what is only rounding of a move is no part of a contour
+    assert Closing(0, 2.0 - 1e-12, 4, 1.0, True, False).shares(0, line) == (0.0, 0.0)
+    assert Closing(0, 1.0, 4, 1.0, True, False).shares(0, line) == (0.5, 1.0)
+
+
+def crossing(shapes):
+    """Return whether a contour closes where it crosses itself."""
+    return closing(shapes).closed and closing(shapes).crossing
+
+
+@pytest.mark.parametrize(
+    ("on", "off", "corners", "closes"),
+    [
+        *((0, 0, 3, True), (1, 1, 3, True), (1, 1, 4, True), (2, 2, 3, False), (2, 2, 4, False)),
+        *((0, 1, 4, True), (1, 0, 4, True), (1, 2, 4, False), (2, 1, 4, False)),
+    ],
+)
+def test_leads_may_cross_with_one_move_beyond_them(on, off, corners, closes):
+    ring = [20 * cmath.exp(-2j * math.pi * k / corners) for k in range(corners)]
+    first, *others, last = closed(ring)
+    overrun = 0.2
+    sides = [first.between(-overrun, 1.0), *others, last.between(0.0, 1.0 + overrun)]
+    for _ in range(on):
+        sides = [Straight(1.1 * sides[0].start, sides[0].start), *sides]
+    for _ in range(off):
+        sides = [*sides, Straight(sides[-1].end, 1.1 * sides[-1].end)]
+    assert crossing(sides) is closes
+
+
+def test_two_sides_with_leads_are_no_contour():
+    bow = [Straight(-20 + 0j, 20 + 0j), Round(20 + 0j, 5 + 0j, -1.1 * math.pi)]
+    assert crossing(bow)
+    led = [Straight(-20 + 20j, -20 + 0j), *bow, Straight(bow[-1].end, 2 * bow[-1].end)]
+    assert not crossing(led)
+
+
+@pytest.mark.parametrize(("share", "closes"), [(0.48, False), (0.55, True)])
+def test_two_moves_meet_in_the_second_half_of_the_last(share, closes):
+    """An arc that goes through the line before it, so far behind their joint."""
+    centre = 5 + 15j / math.tan(0.45 * math.pi)
+    bow = [Straight(-20 + 0j, 20 + 0j), Round(20 + 0j, centre, -0.9 * math.pi / share)]
+    assert closing(bow).closed is closes
+    assert not closes or ends_of(bow) == (True, -10 + 0j, -10 + 0j)
+
+
+@pytest.mark.parametrize(("slope", "through"), [(0.06, True), (0.04, False), (-1.0, False)])
+@pytest.mark.parametrize(("turned", "size"), [(0.0, 1.0), (0.7, 1.0), (2.5, 0.025)])
+def test_a_side_goes_through_where_two_others_join(slope, through, turned, size):
+    """A lead comes to the corner from beyond the last side: from this side it does not cross it."""
+    first, *others, last = closed(SQUARE)
+    on = Straight(first.start + 20 + 20j * slope, first.start)
+    over = Straight(last.start, last.end + 5)
+    around = cmath.rect(size, turned)
+    assert crossing([s.turned(around) for s in (on, first, *others, over)]) is through
+    flipped = [Straight(s.end * 1j, s.start * 1j) for s in (over, *reversed(others), first, on)]
+    flipped = [Straight(s.start.conjugate(), s.end.conjugate()) for s in flipped]
+    assert crossing([s.turned(around) for s in flipped]) is through

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What of a compensated contour is a wall, at which points it is looked at, which passes count."""
+
+import cmath
+import math
+
+import pytest
+
+from g12.compensation.compensated import (
+    CompensatedContour,
+    Cut,
+    compensated_contours,
+    greatest_levels,
+    in_plane,
+    passes_of,
+)
+from g12.compensation.contour import Contour, Plunge
+from support.planned_moves import arc, line
+
+TOLERANCE, RADIUS = 0.005, 3.0
+
+
+def walls_of(*moves, tolerance=TOLERANCE):
+    """Return a contour of moves that are all under compensation."""
+    cuts = [Cut(move, (), True) for move in moves]
+    return CompensatedContour(Contour(50.0, 0.0), cuts, [], tolerance)
+
+
+@pytest.mark.parametrize(
+    ("under_compensation", "expected"),
+    [
+        ("", []),
+        ("---", []),
+        ("--++--", [((2, 3), {1, 4})]),
+        ("-+--++-", [((1,), {0, 2}), ((4, 5), {3, 6})]),
+        ("+-+", [((0,), {1}), ((2,), {1})]),
+    ],
+)
+def test_a_contour_is_what_lies_between_two_ramps(under_compensation, expected):
+    made = [line(k, 0.0, k + 1.0, 0.0, number=k, offset=RADIUS) for k in range(7)]
+    cuts = [Cut(move, (move,), sign == "+") for move, sign in zip(made, under_compensation)]
+    found = [
+        (tuple(move.line for move in each.moves), {ramp.move.line for ramp in each.ramps})
+        for each in compensated_contours(Contour(50.0, 0.0), cuts, TOLERANCE)
+    ]
+    assert found == expected
+
+
+def test_moves_are_one_in_the_plane_if_ends_centre_and_sweep_are_the_same():
+    moves = [line(0.0, 0.0, 1.0, 0.0), line(0.0, 0.0, 0.0, 1.0), line(0.0, 0.0, 1.0, 1e-5)]
+    moves += [line(1.0, 0.0, 0.0, 0.0), line(0.0, 1e-5, 1.0, 0.0)]
+    moves += [arc(centre, 0j, 2 * math.pi) for centre in (2 + 0j, -2 + 0j, 2j)]
+    moves += [arc(2 + 0j, 0j, -2 * math.pi)]
+    assert len(set(map(in_plane, moves))) == len(moves)
+    for move in moves:
+        near = move.curve._replace(start=move.start + 1e-9)
+        again = move._replace(line=7, feed=1.0, offset=-2.0, z0=3.0, z1=5.0, curve=near)
+        assert in_plane(again) == in_plane(move)
+
+
+def polyline(count, bend):
+    """Return lines of a 20th each that turn by a share of a radian from one to the next."""
+    ends = [0j]
+    for k in range(count):
+        ends.append(ends[-1] + 0.05 * cmath.rect(1.0, bend * k))
+    return [
+        line(one.real, one.imag, other.real, other.imag, offset=RADIUS)
+        for one, other in zip(ends, ends[1:])
+    ]
+
+
+@pytest.mark.parametrize("tolerance", [0.005, 0.1])
+@pytest.mark.parametrize(
+    "moves",
+    [[line(1.0, 2.0, 40.0, -7.0, offset=RADIUS)], [line(1.0, 2.0, 1.0, 2.3, offset=-RADIUS)],
+     [line(0.0, 0.0, 0.01, 0.0, offset=RADIUS)], [arc(-5 + 3j, 0j, 5.0, offset=RADIUS)],
+     [arc(0.1 + 0j, 0j, -3.0, offset=RADIUS)], polyline(300, 0.0), polyline(300, 0.01),
+     polyline(3, 1.5)],
+)  # fmt: skip
+def test_no_gouge_falls_between_two_points_of_a_wall(moves, tolerance):
+    """A tool that is a tolerance deep in a line is so on a chord of its radius."""
+    contour = walls_of(*moves, tolerance=tolerance)
+    points, half_chord = list(contour.points()), math.sqrt(2.0 * RADIUS * tolerance)
+    along = [each.along for each in points]
+    assert along == sorted(along) and along[0] <= 1.001 * tolerance
+    assert max(b - a for a, b in zip(along, along[1:])) <= half_chord + 2 * tolerance
+    for each in points:
+        curve = contour.moves[each.index].curve
+        assert curve.distance(each.point) < 1e-9
+        assert each.point == pytest.approx(contour.point_at(each.along))
+        assert each.direction == pytest.approx(curve.direction(curve.share_of(each.point)))
+    gaps = [(a.point + b.point) / 2 for a, b in zip(points, points[1:])]
+    middles = [contour.point_at((a + b) / 2) for a, b in zip(along, along[1:])]
+    assert max(abs(gap - middle) for gap, middle in zip(gaps, middles)) <= tolerance
+    assert len(points) <= 3 + 2 * contour.ends[-1] / half_chord or len(moves) == 3 or (
+        getattr(moves[0].curve, "radius", 9.0) < 1.0
+    )  # fmt: skip
+
+
+def test_of_repeated_passes_the_deepest_is_kept_for_the_first_of_its_moves():
+    high, low = line(0.0, 0.0, 9.0, 0.0, -1.0, -1.0), line(0.0, 0.0, 9.0, 0.0, 0.0, -2.0)
+    other = line(0.0, 1.0, 9.0, 1.0)
+    for one, again in ((high, low), (low, high)):
+        made = passes_of([(1, one), (2, Plunge(5, 9.0, 0.0, 1.0)), (2, other), (3, again)])
+        assert [(each.index, each.move) for each in made] == [(1, low), (2, other)]
+        assert len(made[0].levels) == 2
+
+
+def test_a_repeated_move_is_as_high_as_any_of_them():
+    first, other = line(0.0, 0.0, 9.0, 0.0, -3.0, -2.0), line(9.0, 0.0, 9.0, 5.0, -2.0, -2.0)
+    for again in (first._replace(z0=-1.0), first._replace(z1=-1.0)):
+        assert greatest_levels([first, other, again]) == {0: -1.0, 1: -2.0}
+        assert greatest_levels([again, other, first]) == {0: -1.0, 1: -2.0}
+
+
+def test_what_comes_down_or_goes_up_along_moves_is_not_through_the_air():
+    """It counts how high a level begins after the one before, and how it ends."""
+    ends = [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0), (0.0, 5.0)]
+    for heights, material in (
+        ([(-1, -1), (5, 5), (5, 5), (-1, -1)], {0, 3}),
+        ([(-1, -1), (5, 5), (5, -3), (-1, -1)], {0, 1, 2, 3}),
+        ([(-1, -1), (-3, 5), (5, 5), (-1, -1)], {0, 1, 2, 3}),
+        ([(-1, -1), (5, -3), (-3, 5), (-1, -1)], {0, 3}),
+    ):
+        moves = [line(*one, *other, *z) for one, other, z in zip(ends, ends[1:], heights)]
+        assert set(greatest_levels(moves)) == material
+
+
+def test_beyond_the_ends_of_an_open_contour_nobody_knows():
+    """Before, after and beside an angle, and on its own lines."""
+    angle = walls_of(line(0, 10, 0, 0, offset=RADIUS), line(0, 0, 20, 0, offset=RADIUS))
+    beyond = [11j, 3 + 11j, -3 + 11j, 21 + 0j, 21 + 3j, 21 - 3j]
+    assert [angle.height(point)[1] for point in beyond] == [True] * 6
+    heights = {3 + 9j: 3.0, -3 + 9j: -3.0, 3 + 2j: 2.0, -3 - 4j: -5.0, 19 + 1j: 1.0, 19 - 1j: -1.0}
+    for point, height in heights.items():
+        assert angle.height(point) == (pytest.approx(height), False)
