@@ -69,3 +69,18 @@ def test_rough_with_an_allowance_and_finish_in_one_section(form, found):
 def test_a_sub_that_is_called_outside_too_is_no_proof(found):
     lines = ["o100 sub", "F900", "o100 endsub", *HEAD, "G1 X30 F800", "o100 call", "X20", *OUT[:2]]
     assert found(*lines, "o100 call", "M2", "") == [("contour-unread", 8)]
+
+
+@pytest.mark.parametrize(("pin", "notes"), [(31, 0), (29, 2)])
+def test_a_passage_narrower_than_the_cutter_is_a_note(pin, notes, tmp_path):
+    """A square and a pin beside it: the cutter of 12 mm goes between them."""
+    square = ["G1 X40 F300", "G41 X10", "Z-1", "C-10", "X-10", "C10", "X10", "C0", "G40 X40"]
+    lines = [*HEAD[:1], "T1 M6", *HEAD[2:], *square, f"G41 X{pin}", f"G2 X{pin} C0 I-4",
+             "G1 G40 X40", *OUT]  # fmt: skip
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join(lines))
+    proof = prove(program, read_ini(SIM / "lathe_mm.ini"))
+    found = [each for each in proof.judged if each.code == "cuts-contour"]
+    assert sorted((each.line, each.values["line"]) for each in found) == [(9, 16), (16, 9)][:notes]
+    assert all(each.values["size"] == pytest.approx(1.0, abs=0.01) for each in found)
+    assert not any(each.is_finding for each in proof.judged)

@@ -100,6 +100,7 @@ NOTES = {
         "C turns in place at the centre, by {degrees:1}° in all: there the tool rubs for "
         "{seconds:1} s"
     ),
+    "cuts-contour": "the tool cuts {size:fine} into the contour of line {line}",
     "no-diameter": "the tool has no diameter: only the toolpath of its centre is measured",
     "length-higher": (
         "the tool length in force, {length:mm}, is not that of T{tool}: "

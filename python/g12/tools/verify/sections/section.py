@@ -26,6 +26,7 @@ from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import LAST_DECIMAL, LEVEL, SIZE, TURNING
 from g12.tools.verify.sections.contour_side import judge_side
+from g12.tools.verify.sections.neighbour_cuts import NeighbourCut, neighbour_cuts
 from g12.tools.verify.sections.outline import outlines_of
 from g12.tools.verify.sections.section_motion import (
     G64_P,
@@ -130,6 +131,7 @@ def measure_section(
             *judge_words(facts),
             *judge_toolpath(found, plane, section.diameters, moves, slower, section.last),
             *judge_turns(facts),
+            *judge_neighbours(neighbour_cuts(steps, tool, tolerance) if tool else ()),
             *motion,
             *judge_section_state(section, moves),
         ]
@@ -155,6 +157,12 @@ def judge_words(facts: SectionFacts) -> Iterator[Finding]:
         yield Finding("not-below-start", section.line, values)
     if not facts.tool and any(facts.sides):
         yield Finding("no-diameter", section.line)
+
+
+def judge_neighbours(cuts: Sequence[NeighbourCut]) -> Iterator[Finding]:
+    """Yield where the tool of one contour cuts into another one."""
+    for cut in cuts:
+        yield Finding("cuts-contour", cut.line, {"size": cut.size, "line": cut.other})
 
 
 def judge_turns(facts: SectionFacts) -> Iterator[Finding]:
