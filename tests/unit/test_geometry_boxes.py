@@ -52,3 +52,8 @@ def test_the_curves_near_to_a_box_are_found(count):
 def test_boxes_are_apart_by_more_than_a_reach(beside):
     for one, other in (((0, 0, 10, 10), beside), (beside, (0, 0, 10, 10))):
         assert apart(one, other, 1.9) and not apart(one, other, 2.0)
+
+
+def test_a_tree_of_no_curves_has_none_near():
+    assert BoxTree([]).nearest(0j, math.inf) == (math.inf, None)
+    assert list(BoxTree([]).near((0.0, 0.0, 1.0, 1.0), 5.0)) == []

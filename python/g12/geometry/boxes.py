@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from math import sqrt
+from math import inf, sqrt
 
 from g12.geometry.curve import Box, Curve
 
 LEAF = 4  # curves in a box that is not divided
+NOWHERE = (inf, inf, -inf, -inf)  # the box around no curves
 
 
 class BoxTree:
@@ -64,13 +65,12 @@ class _Node:
     __slots__ = ("box", "halves", "items")
 
     def __init__(self, items: list[tuple[int, Box]]) -> None:
-        self.items = items if len(items) <= LEAF else []
-        middle = len(items) // 2
-        self.halves: tuple[_Node, ...] = (
-            () if self.items else (_Node(items[:middle]), _Node(items[middle:]))
-        )
+        self.items, self.halves = items, list[_Node]()
+        if len(items) > LEAF:
+            middle = len(items) // 2
+            self.items, self.halves = [], [_Node(items[:middle]), _Node(items[middle:])]
         boxes = [box for _, box in self.items] or [half.box for half in self.halves]
-        low_x, low_y, high_x, high_y = zip(*boxes)
+        low_x, low_y, high_x, high_y = zip(*boxes or [NOWHERE])
         self.box: Box = (min(low_x), min(low_y), max(high_x), max(high_y))
 
 
