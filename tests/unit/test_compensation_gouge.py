@@ -8,11 +8,9 @@ import cmath
 import math
 import random
 import time
-from itertools import accumulate
 
 import numpy as np
 import pytest
-from shapely.geometry import Polygon
 
 from g12.compensation.contour import Contour
 from g12.compensation.offset import tool_path
@@ -345,61 +343,6 @@ def test_round_passes_may_not_go_to_both_sides_of_each_other(count, found):
         assert ("cuts into the other" in text) is found
 
 
-def peak_of(foot, flank, far, below, pieces):
-    """Return corners of a part with a peak on it, and of one that lies within it, clockwise.
-
-    In degrees: the peak's ``foot``, the ``flank`` up to its top, and its ``far`` side, behind
-    another flank as steep and made of ``pieces``. The parts touch at the origin, where foot and
-    flank meet; from there the inner one runs so far ``below`` the peak.
-    """
-    steep, mild = cmath.rect(1.0, math.radians(flank)), cmath.rect(4.0, -math.radians(far))
-    up, *down = pieces
-    peak = [0j, *accumulate([up * steep, *(piece * steep.conjugate() for piece in down)])]
-    before, behind = -cmath.rect(4.0, math.radians(foot)), peak[-1] + mild
-    low = min(before.imag, behind.imag) - 6
-    ends = [complex(behind.real + 4, low), complex(before.real - 4, low)]
-    outer = [before - 4, before, *peak, behind, behind + 4]
-    way = cmath.rect(1.0, math.radians(0.5 * (foot + flank)))  # the tool hardly cuts into either
-    inner = [before - 4, before - 2, before + 0.8 - 0.5j, -1.2 * way]
-    inner += [-0.001 * way, 0j, 0.001 * way]
-    inner += [cmath.rect(1.02, -math.radians(below)), behind - 0.6 - 0.6j, behind + 4 - 0.8j]
-    return [*outer, *ends], [*inner, *ends]
-
-
-def terraced(outer, inner):
-    """Return a step and a higher one within it, down at the origin, outside of both in one."""
-    way = [cmath.rect(2.0, cmath.phase(b - a)) for a, b in (outer[:2], (inner[-1], inner[0]))]
-    start, end = outer[0] + 1j * way[0], outer[0] + 1j * way[1]
-    contour = Contour(start.real, AIR)
-    contour.line(start.real, start.imag, line=1, feed=300.0)
-    contour.compensation(LEFT, 1.0, line=2)
-    contour.line(outer[0].real, outer[0].imag, line=2, feed=300.0)
-    contour.line(z=-2.0, line=2, feed=300.0)
-    for line, corner in enumerate([*outer[1:], outer[0]], 3):
-        contour.line(corner.real, corner.imag, line=line, feed=300.0)
-    contour.line(z=-1.0, line=30, feed=300.0)
-    for line, corner in enumerate([*inner[1:], inner[0]], 31):
-        contour.line(corner.real, corner.imag, -1.0 if corner else -2.0, line=line, feed=300.0)
-    contour.compensation(40, 0.0, line=60)
-    contour.line(end.real, end.imag, line=60, feed=300.0)
-    return contour
-
-
-@pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize(
-    "peak",
-    [(50.0, 60.0, 40.0, 25.0, (0.55, 0.5)), (62.0, 73.0, 45.0, 12.5, (1.5, 0.6, 0.95))],
-)
-def test_passes_that_touch_do_not_cross_where_one_takes_a_longer_way(peak, mirrored):
-    """It goes over a peak, and comes back to where the other has come by the short way below."""
-    outer, inner = peak_of(*peak)
-    if mirrored:
-        outer, inner = ([-p.conjugate() for p in (c[0], *c[:0:-1])] for c in (outer, inner))
-    shapes = [Polygon([(p.real, p.imag) for p in corners]) for corners in (outer, inner)]
-    assert shapes[0].buffer(1e-9).covers(shapes[1])
-    assert refusal(terraced(outer, inner)) == ""
-
-
 def test_a_pass_may_touch_the_tip_of_another():
     """It comes from beyond one flank of a sharp corner, or of the other, and crosses neither."""
     spike = lines((-20, 0), (-20, 8), (0, 8), (30, 0), (0, -8), (-20, -8), (-20, 0))
@@ -567,34 +510,6 @@ def levels_of(*paths):
 def test_a_way_is_through_the_air_from_a_lift_to_a_plunge(first, across, last, through_the_air):
     contour = levels_of((first, BOSS), (across, ACROSS[1:]), (last, BEYOND[1:]))
     assert (refusal(contour) == "") is through_the_air
-
-
-# What is cut at a level between two others: the tool rounds BOSS beside the end of a wall.
-WALL_FIRST = (
-    [-40 - 60j, -40 - 30j],
-    [-40 + 0j, -11.5 + 0j, -11.5 + 60j, 10 + 60j, 10 + 30j],
-    [10 - 10j, -10 - 10j, -10 + 5j],
-)
-BOSS_FIRST = (
-    [10 + 10j, 10 - 10j, -10 - 10j, -10 + 5j],
-    [-10 + 40j, -60 + 40j, -60 + 0j, -11.5 + 0j, -11.5 + 20j],
-    [-11.5 + 30j],
-)
-
-
-@pytest.mark.parametrize(
-    ("path", "heights", "deep"),
-    [
-        (WALL_FIRST, (-1.0, -2.0, -3.0), True),
-        (WALL_FIRST, (-3.0, -2.0, -3.0), False),
-        (WALL_FIRST, (-3.0, -2.0, -1.0), False),
-        (BOSS_FIRST, (-3.0, -2.0, -1.0), True),
-        (BOSS_FIRST, (-3.0, -2.0, -3.0), False),
-        (BOSS_FIRST, (-1.0, -2.0, -3.0), False),
-    ],
-)
-def test_a_level_is_a_part_unless_it_is_above_both_beside_it(path, heights, deep):
-    assert ("cuts into the other" in refusal(levels_of(*zip(heights, path)))) is deep
 
 
 # How long it takes.
