@@ -29,7 +29,7 @@ def words_round(draft: Draft) -> None:
     plus = diameter(draft) if draft.state.distance == "G90" else 0.0
     changed = {
         "X": ("Z", 1.0, 0.0),
-        "Y": ("C", angle_of(draft), 0.0),
+        "Y": ("C", degrees_per_length(draft), 0.0),
         "Z": ("X", 2.0, plus),
         "I": ("K", 1.0, 0.0),
         "J": ("J", -1.0, 0.0),
@@ -59,7 +59,7 @@ def diameter(draft: Draft) -> float:
     return value
 
 
-def angle_of(draft: Draft) -> float:
+def degrees_per_length(draft: Draft) -> float:
     """Return the angle of C that a length of 1 along Y is."""
     return -degrees(2 / diameter(draft))
 
@@ -69,7 +69,7 @@ def begin_round(draft: Draft, point: tuple[str, str], feed: float) -> list[str]:
     x, y = point
     code, word = draft.control.cylinder_code
     size = diameter(draft) if word == "diameter" else diameter(draft) / 2
-    c = times(y, angle_of(draft))
+    c = times(y, degrees_per_length(draft))
     return [f"G0 Z{x} C{c if is_plain_number(c) else f'[{c}]'}", f"{code} C{size:g}"]
 
 
@@ -80,7 +80,7 @@ def end_round(draft: Draft) -> list[str]:
 
 def side_hole(draft: Draft, hole: DrilledHole) -> str:
     """Return the call that drills a hole towards the axis."""
-    angle = times(hole.y, angle_of(draft))
+    angle = times(hole.y, degrees_per_length(draft))
     if is_plain_number(angle):
         angle = times(str(fmod(float(angle), TURN)), 1.0)
     surface = f"{diameter(draft):g}"
