@@ -354,6 +354,13 @@ def test_an_arc_by_its_centre():
     assert abs(arc.curve.point(0.5) - cmath.rect(20, math.pi / 4)) < 1e-12
 
 
+@pytest.mark.parametrize(("code", "turn"), [("G2", -1), ("G3", 1)])
+def test_a_full_circle_is_whole_whatever_its_centre_rounds_to(code, turn):
+    for words in ("I-3.314 J5.371", "I.1 J.7", "I-7.3 J.003"):
+        circle = drawn("G1 X11.902 C-25.519", f"{code} {words}")[-1]
+        assert circle.sweep == turn * 2 * math.pi
+
+
 def test_a_full_circle_has_no_end():
     (circle,) = drawn("G2 I-5")
     assert circle.sweep == pytest.approx(-2 * math.pi) and circle.centre == 15

@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from g12.geometry.curve import recentred, sweep_between
+from g12.geometry.curve import FULL_TURN, recentred, sweep_between
 from g12.lengths import MM_PER_INCH
 from g12.tools.preview.executed_blocks import FORGOTTEN, Block
 from g12.tools.verify.expected.contour import Element, WordReading
@@ -164,7 +164,7 @@ class Pen:
             centre = self.at + arm if whole else recentred(self.at, end, self.at + arm)
         else:
             return None, 0.0
-        return centre, sweep_between(self.at, self.at if whole else end, centre, turn)
+        return centre, turn * FULL_TURN if whole else sweep_between(self.at, end, centre, turn)
 
 
 def centre_of(start: complex, end: complex, radius: float, turn: int) -> complex:
