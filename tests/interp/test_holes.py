@@ -128,7 +128,7 @@ def test_pecks_by_full_retract_and_by_chip_breaking(lathe):
     out = [("rapid", 2), ("rapid", -2.746)]
     deeper = [("rapid", 2), ("rapid", -5.746), ("feed", -8), ("rapid", 2)]
     assert z_of(full) == [("feed", -3), *out, ("feed", -6), *deeper]
-    assert [event.text for event in full.events if "dwell" in event.text] == ["dwell 0.5"]
+    assert [e.text for e in full.events if "dwell" in e.text] == ["dwell 0", "dwell 0.5"]
     chips = lathe.trace_text(program(call("face_hole_at", peck=-4)))
     assert z_of(chips) == [("feed", -4), ("rapid", -3.746), ("feed", -8), ("rapid", 2)]
 

@@ -20,7 +20,7 @@ from g12.host.interp import Interp
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section.kind import check_ini, clamp_codes
-from g12.host.section.output import path_control
+from g12.host.section.output import STOP_HERE, path_control
 from g12.host.section.start import stands_alone, start_of_section
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
@@ -95,6 +95,7 @@ def polar_shape(self, **words):
     x_words = {"x_word": 1 + setup.words.diameter, "x_rapid": 1 + start.diameter}
     set_locals_at(self, level, {**numbers, **x_words, **section_codes(entries)})
     cycle_state.note_modes(self)
+    self.execute(STOP_HERE)
     return INTERP_OK
 
 
@@ -103,7 +104,8 @@ def prepare_holes(
 ) -> int:
     """Check holes and set the locals of their motion, which is made in G61 as drilling cycles are.
 
-    Rapids that LinuxCNC blends would let C turn before the tool is out of its hole.
+    Rapids that LinuxCNC blends would let C turn before the tool is out of its hole, or before the
+    move in front of the call is at its end.
     """
     entries = ShapeEntries(name, HOLES[name].entries, locals_at(interp, level))
     close, opens = clamp_codes(entries.refuse, MACHINE.settings.c_clamp) or (0, 0)
@@ -118,7 +120,7 @@ def prepare_holes(
     cycle_state.note_modes(interp)
     state = cycle_state.state_of(interp)
     state.path, state.spindle = path_control(interp), interp.active_spindle
-    interp.execute("G61")
+    interp.execute(f"{STOP_HERE}G61")
     return INTERP_OK
 
 

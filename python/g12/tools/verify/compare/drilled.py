@@ -51,14 +51,8 @@ def measure_holes(
     turns = (moves[i].end[C] - moves[i].start[C] for i in own)
     expected = HolesPath(holes, next((turn for turn in turns if abs(turn) > STILL), 0.0)).toolpath()
     laid, run = lay(expected, made_of_holes(holes, moves, own), tolerance), None
-    if real and not laid.difference:
-        sampled = ((i, real.positions[real.during(i)]) for i in own)
-        made = (
-            Made(i, list(map(holes.point, at)), rapid=moves[i].kind == "rapid", sampled=True)
-            for i, at in sampled
-            if len(at)
-        )
-        run = lay(expected, made, tolerance)
+    if real and not laid.difference and not holes.pitch:
+        run = laid_run(holes, expected, real, own, tolerance)
     found, where = SectionPath(expected, [], laid, run), (call.line, call.file)
     events = [each for each in block.own_events if ACTS.match(each.text) and not clamps]
     texts = dict.fromkeys(each.text for each in events if not each.text.startswith("dwell"))
@@ -71,6 +65,21 @@ def measure_holes(
         *judge_state(state, texts, *where),
     ]
     return HolesFacts(holes, found, tuple(judged))
+
+
+def laid_run(
+    holes: Holes, expected: Sequence[Expected], real: Followed, own: range, tolerance: float
+) -> Laid:
+    """Return the motion of a run laid along the moves, from where they begin.
+
+    Which of its samples are rapids is not known: at the ends of moves they are not told apart.
+    """
+    points = [holes.point(at) for index in own for at in real.positions[real.during(index)]]
+    begin, level = expected[0].point(0.0)
+    near = (n for n, at in enumerate(points) if abs(at[0] - begin) + abs(at[1] - level) < tolerance)
+    path = [move._replace(rapid=False, feed=None) for move in expected]
+    made = Made(own.start, points[next(near, 0) :], sampled=True)
+    return lay(path, [made] if len(made.points) > 1 else [], tolerance)
 
 
 def made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[Made]:
