@@ -16,7 +16,7 @@ Everything else is left to ``g12 verify``. Program units.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import partial
+from functools import cached_property, partial
 from math import ceil, inf
 
 from g12.compensation.compensated import CompensatedContour, Pass, WallPoint, is_low
@@ -33,9 +33,10 @@ FIRST_LOOK = 2  # passes of another contour: most that may enter do so there
 def check_neighbours(contour: Contour, contours: Sequence[CompensatedContour]) -> None:
     """Refuse a contour on whose way the tool cuts deep into another one that closes."""
     walled = [each for each in contours if each.walls]
+    section = _SectionPasses(walled)
     for wall in walled:
         others = [other for other in walled if wall.closing.closed and _may_cut(other, wall)]
-        found = _Neighbourhood(wall, others).deepest() if others else None
+        found = _Neighbourhood(wall, others, section).deepest() if others else None
         if found:
             point, by = found
             lines = sorted((wall.moves[point.index].line, by.move.line))
@@ -59,13 +60,35 @@ def _may_cut(other: CompensatedContour, wall: CompensatedContour) -> bool:
     return not enters(some, other, wall, inf)
 
 
-class _Neighbourhood:
-    """A contour that closes, and others that may cut into it."""
+class _SectionPasses:
+    """The passes of all contours of a section, each with its contour, and one tree of them."""
 
-    def __init__(self, wall: CompensatedContour, others: Sequence[CompensatedContour]) -> None:
+    def __init__(self, contours: Sequence[CompensatedContour]) -> None:
+        self._contours = contours
+
+    @cached_property
+    def passes(self) -> list[tuple[CompensatedContour, Pass]]:
+        """The passes in the order of the contours."""
+        return [(contour, each) for contour in self._contours for each in contour.passes]
+
+    @cached_property
+    def tree(self) -> BoxTree:
+        """The tree of the passes."""
+        return BoxTree([each.move.curve for _, each in self.passes])
+
+
+class _Neighbourhood:
+    """A contour that closes, and others of its section that may cut into it."""
+
+    def __init__(
+        self,
+        wall: CompensatedContour,
+        others: Sequence[CompensatedContour],
+        section: _SectionPasses,
+    ) -> None:
         self._wall, self._others = wall, others
-        self._passes = [(other, each) for other in others for each in other.passes]
-        self._tree = BoxTree([each.move.curve for _, each in self._passes])
+        self._passes, self._tree = section.passes, section.tree
+        self._ids = {id(other) for other in others}
         self._meant: dict[int, bool] = {}
 
     def deepest(self) -> tuple[WallPoint, Pass] | None:
@@ -77,7 +100,8 @@ class _Neighbourhood:
         points = list(self._wall.points())
         every = 1 + int(reach / self._wall.spacing)
         around = reach + every * self._wall.spacing
-        if all(self._tree.nearest(p.point, around)[1] is None for p in points[::every]):
+        looks = (self._tree.nearest(p.point, around, self._is_other) for p in points[::every])
+        if all(by is None for _, by in looks):
             return None
         for point in reversed(points):
             away, by = self._tree.nearest(point.point, reach, partial(self._cuts, point))
@@ -85,10 +109,17 @@ class _Neighbourhood:
                 reach, found = away, (point, self._passes[by][1])
         return found
 
+    def _is_other(self, by: int) -> bool:
+        return id(self._passes[by][0]) in self._ids
+
     def _cuts(self, point: WallPoint, by: int) -> bool:
         """Return whether a pass that is near enough cuts a point and is not meant to."""
         other, (index, move, levels) = self._passes[by]
-        if self._meant.get(id(other)) or self._wall.levels.isdisjoint(levels):
+        if (
+            not self._is_other(by)
+            or self._meant.get(id(other))
+            or self._wall.levels.isdisjoint(levels)
+        ):
             return False
         if not is_low(move, self._level(point)):
             return False
@@ -126,7 +157,9 @@ class _Neighbourhood:
         return any(
             enters([each], other, self._wall, STEP)
             for other, each in self._passes
-            if is_low(each.move, level) and each.move.curve.distance(point.point) < other.reach
+            if id(other) in self._ids
+            and is_low(each.move, level)
+            and each.move.curve.distance(point.point) < other.reach
         )
 
 

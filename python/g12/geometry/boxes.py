@@ -66,12 +66,14 @@ class _Node:
 
     def __init__(self, items: list[tuple[int, Box]]) -> None:
         self.items, self.halves = items, list[_Node]()
+        low_x, low_y, high_x, high_y = zip(*[box for _, box in items] or [NOWHERE])
+        self.box: Box = (min(low_x), min(low_y), max(high_x), max(high_y))
         if len(items) > LEAF:
+            # Across the longer side: rings about each other are in one another's boxes.
+            low = 0 if self.box[2] - self.box[0] > self.box[3] - self.box[1] else 1
+            items.sort(key=lambda item: item[1][low] + item[1][low + 2])
             middle = len(items) // 2
             self.items, self.halves = [], [_Node(items[:middle]), _Node(items[middle:])]
-        boxes = [box for _, box in self.items] or [half.box for half in self.halves]
-        low_x, low_y, high_x, high_y = zip(*boxes or [NOWHERE])
-        self.box: Box = (min(low_x), min(low_y), max(high_x), max(high_y))
 
 
 def apart(one: Box, other: Box, reach: float) -> bool:
