@@ -14,6 +14,7 @@ from g12.tools.verify.mistakes.cut import ProgramCut
 from g12.tools.verify.mistakes.feeds import judge_feeds, judge_native_c
 from g12.tools.verify.mistakes.levels import judge_levels
 from g12.tools.verify.mistakes.modes import judge_return_levels
+from g12.tools.verify.mistakes.reversals import judge_reversals
 from g12.tools.verify.mistakes.spindle import judge_spindle
 from g12.tools.verify.mistakes.tool_length import judge_tool_length
 from g12.tools.verify.mistakes.travel import judge_travel
@@ -44,6 +45,7 @@ def judged(
         *judge_feeds(cuts, moves, limits_of(ini)),
         *judge_spindle(cuts, trace.events, ini),
         *judge_levels(cuts, moves),
+        *judge_reversals(asked.sections),
         *not_judged(moves, known),
     ]
     if part_of(ini).turning:

@@ -101,6 +101,7 @@ NOTES = {
         "{seconds:1} s"
     ),
     "cuts-contour": "the tool cuts {size:fine} into the contour of line {line}",
+    "goes-back": "goes back along line {line}: under {code} the tool cuts both sides of that line",
     "no-diameter": "the tool has no diameter: only the toolpath of its centre is measured",
     "length-higher": (
         "the tool length in force, {length:mm}, is not that of T{tool}: "
