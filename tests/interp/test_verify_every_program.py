@@ -25,7 +25,8 @@ def machine_of(program):
     if not folder.startswith("lathe"):
         return ini
     codes = [f"M{code} modalgroup=10 ngc=m35" for code in (*BUILDERS_CODES, 133)]
-    return ini.replaced({"RS274NGC": {"REMAP": [*ini.all("RS274NGC", "REMAP"), *codes]}})
+    remaps = {"REMAP": [*ini.all("RS274NGC", "REMAP"), *codes]}
+    return ini.replaced({"RS274NGC": remaps, "TRAJ": {"SPINDLES": "2"}})
 
 
 @pytest.mark.parametrize("program", EVERY, ids=lambda path: f"{path.parent.name}-{path.stem}")
