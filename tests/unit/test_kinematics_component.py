@@ -32,6 +32,7 @@ typedef unsigned long KINEMATICS_INVERSE_FLAGS;
 typedef enum { KINEMATICS_BOTH = 4 } KINEMATICS_TYPE;
 struct __comp_state {
     double request, centre, tool_offset, type, speed, acceleration, c_speed, c_acceleration, feed;
+    double feed_upm, unit, most_override;
     int enabled, program, stands, face, program_line, jog_inhibit, hold;
 } pins;
 #define request (__comp_inst->request)
@@ -50,6 +51,9 @@ struct __comp_state {
 #define jog_inhibit (__comp_inst->jog_inhibit)
 #define hold (__comp_inst->hold)
 #define feed (__comp_inst->feed)
+#define feed_upm (__comp_inst->feed_upm)
+#define unit (__comp_inst->unit)
+#define most_override (__comp_inst->most_override)
 #define FUNCTION(name) static void name(struct __comp_state *__comp_inst)
 #define EXTRA_SETUP() \\
     static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extra_arg)
@@ -74,6 +78,9 @@ NUMBERS = [
     "c_speed",
     "c_acceleration",
     "feed",
+    "feed_upm",
+    "unit",
+    "most_override",
 ]
 BITS = ["enabled", "program", "stands", "face", "program_line", "jog_inhibit", "hold"]
 
@@ -93,6 +100,8 @@ class Kinematics:
         self.pins.request = self.pins.centre = self.pins.tool_offset = 0.0
         self.pins.enabled = self.pins.program = self.pins.stands = 1
         self.pins.program_line = self.pins.speed = 0
+        self.pins.feed_upm = self.pins.most_override = 0.0
+        self.pins.feed = self.pins.unit = 1.0
         self.pins.acceleration, self.pins.c_speed, self.pins.c_acceleration = 707, 360, 3600
         self.library.kinematicsSwitch(0)
         self.library.run_guard()
@@ -333,6 +342,17 @@ def by_hand(kinematics, radius, request=2.0, speed=150.0, tool_offset=0.0, **pin
 
 def test_a_programs_feed_is_its_own(kinematics):
     assert by_hand(kinematics, 1, request=1.0) == 150
+
+
+@pytest.mark.parametrize(("override", "feed"), [(0.5, 1.0), (1.2, 1.0), (1.5, 0.8), (2.4, 0.5)])
+def test_an_override_beyond_the_most_is_taken_back(kinematics, override, feed):
+    kinematics.pins.unit = 25.4
+    kinematics.guard(request=1.0, program_line=7, speed=25.4, most_override=1.2)
+    kinematics.face(30.0, 0.0, 0.0)
+    for _ in range(9):  # LinuxCNC's feed goes down with the share of the cycle before
+        kinematics.pins.feed_upm = 60.0 * override * kinematics.pins.feed
+        kinematics.library.run_guard()
+    assert kinematics.pins.feed == pytest.approx(feed)
 
 
 @settings(max_examples=300, deadline=None)
