@@ -27,10 +27,10 @@ def real_deviation(name, drawing, cut):
     """Compare the motion, sampled at 1 kHz, with the drawing, or with the way beside it."""
     points = cut.of(drawing.contour)
     if drawing.beside:
-        away = distance(points @ FROM_COLUMNS, drawing.pieces) - drawing.beside
+        away = distance(points @ FROM_COLUMNS, drawing.segments) - drawing.beside
         worst, how = np.abs(away).max(), f"{len(points)} samples, a cutter's radius beside it"
     else:
-        worst = max(deviation(drawing.pieces, points, 0.1))
+        worst = max(deviation(drawing.segments, points, 0.1))
         how = f"{len(points)} samples, and the contour against them"
     what = f"cylinder: real motion against the programmed contour, {name}"
     return Figure(what, worst, TOLERANCE + 0.001, " mm", how)
@@ -41,7 +41,7 @@ def against_ideal(name, drawing, cut):
 
     The way beside a contour that ends in the direction in which it began is as long as it.
     """
-    length = sum(piece.length for piece in drawing.pieces)
+    length = sum(segment.length for segment in drawing.segments)
     seconds = cut.seconds(drawing.contour)
     return Figure(
         f"cylinder: section time against the ideal at F250, {name}",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G12.1 with kinematics beside G12.1 with pieces, and what a post-processor makes of it."""
+"""G12.1 with kinematics beside G12.1 with segments, and what a post-processor makes of it."""
 
 import cmath
 import math
@@ -24,7 +24,7 @@ from support.sim_machines import SIM
 
 FEEDS = ((1000, 1.02), (2000, 1.03), (3000, 1.03))  # and the most of the ideal time
 ROUNDING = 1e-3
-NO_SLOWER = 1.19  # than pieces at 1000 mm/s²: the axes of the face have 707, whose root that is
+NO_SLOWER = 1.19  # than segments at 1000 mm/s²: the axes of the face have 707, whose root that is
 THIRD = 2 * math.pi / 3  # C turns the other way in between
 CIRCLE = [  # r 10, 20 off the axis
     Round(20 + 10 * cmath.rect(1, turn), 20, THIRD) for turn in (0, THIRD, 2 * THIRD)
@@ -38,54 +38,57 @@ SLOT_BLOCK, SLOT_LENGTH = (7,), 36.0  # of slot.ngc: through the pole
 
 
 def figures():
-    """Yield the rows of kinematics and pieces side by side."""
-    with Machine(SIM / "lathe_mm.ini") as pieces, Machine(SIM / "lathe_mm_kinematics.ini") as face:
+    """Yield the rows of kinematics and segments side by side."""
+    with (
+        Machine(SIM / "lathe_mm.ini") as segments,
+        Machine(SIM / "lathe_mm_kinematics.ini") as face,
+    ):
         for feed, most in FEEDS:
-            yield hexagon(face, pieces, feed, most)
+            yield hexagon(face, segments, feed, most)
         for feed, _ in FEEDS:
-            yield circle(face, pieces, feed)
-            yield slot(face, pieces, feed)
+            yield circle(face, segments, feed)
+            yield slot(face, segments, feed)
         yield deviation_on_face(face)
         for name in ("slot", "circles"):
             yield from spindle_limits(face, name)
     with Machine(SIM / "lathe_slow_c_mm_kinematics.ini") as slow:
         yield from slow_spindle(slow)
     with (
-        Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as pieces,
+        Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as segments,
         Machine(SIM / "lathe_inch_kinematics.ini", tools=MANUAL_TOOLS) as face,
     ):
         for name in INCHES:
-            yield manual(face, pieces, name)
+            yield manual(face, segments, name)
 
 
-def hexagon(face, pieces, feed, most):
+def hexagon(face, segments, feed, most):
     """Compare the hexagon on the face with its length over the feed."""
     program = at_feed((SAMPLES / "hexagon.ngc").read_text(), f"F{feed}", HEXAGON_BLOCKS)
     path = MILLIMETRES["hexagon"].path
-    ideal = sum(piece.length for block in HEXAGON_BLOCKS for piece in path[block]) / feed * 60
+    ideal = sum(segment.length for block in HEXAGON_BLOCKS for segment in path[block]) / feed * 60
     ours, others = (
-        seconds_in(lathe.run_text(program), HEXAGON_BLOCKS) / ideal for lathe in (face, pieces)
+        seconds_in(lathe.run_text(program), HEXAGON_BLOCKS) / ideal for lathe in (face, segments)
     )
-    around = [piece for group in outward(HEXAGON, 6) for piece in group]
+    around = [segment for group in outward(HEXAGON, 6) for segment in group]
     return Figure(
         f"polar with kinematics: hexagon against the ideal at F{feed}",
         ours,
         most,
         "",
-        f"with pieces {others:.3f}, {posted(pieces, around, feed)}",
+        f"with segments {others:.3f}, {posted(segments, around, feed)}",
     )
 
 
-def circle(face, pieces, feed):
+def circle(face, segments, feed):
     """Compare the times of a circle beside the axis."""
-    ours, others = (seconds_in(lathe.run_text(circle_at(feed)), (4,)) for lathe in (face, pieces))
+    ours, others = (seconds_in(lathe.run_text(circle_at(feed)), (4,)) for lathe in (face, segments))
     shortest = least(CIRCLE, feed)
     return Figure(
         f"polar with kinematics: circle r 10, 20 off the axis, F{feed}, against least time",
         ours / shortest,
         OF_LEAST[feed],
         "",
-        f"with pieces {others / shortest:.3f}, {posted(pieces, CIRCLE, feed)}",
+        f"with segments {others / shortest:.3f}, {posted(segments, CIRCLE, feed)}",
     )
 
 
@@ -94,9 +97,9 @@ def circle_at(feed):
     return ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", f"G3 I-10 F{feed}", "G13.1", "M2"]
 
 
-def least(pieces, feed, slide=SLIDE, spindle=SPINDLE):
+def least(segments, feed, slide=SLIDE, spindle=SPINDLE):
     """Return the least time that the slide's and C's own limits allow, whoever plans it."""
-    points = np.concatenate([piece.points(1000)[:-1] for piece in pieces])
+    points = np.concatenate([segment.points(1000)[:-1] for segment in segments])
     return least_seconds(points, feed / 60, slide, spindle)
 
 
@@ -108,32 +111,32 @@ def slow_spindle(lathe):
         ours = seconds_in(lathe.run_text(circle_at(feed)), (4,))
         ratio = ours / least(CIRCLE, feed, *axes)
         yield Figure(f"{title} circle r 10, 20 off the axis, F{feed}", ratio, most, "", "")
-    around = [piece for group in outward(HEXAGON, 6) for piece in group]
+    around = [segment for group in outward(HEXAGON, 6) for segment in group]
     for feed, most in HEXAGON_SLOW.items():
         program = at_feed((SAMPLES / "hexagon.ngc").read_text(), f"F{feed}", HEXAGON_BLOCKS)
         ours = seconds_in(lathe.run_text(program), HEXAGON_BLOCKS)
-        shortest = sum(least([piece], feed, *axes) for piece in around)
+        shortest = sum(least([segment], feed, *axes) for segment in around)
         yield Figure(f"{title} hexagon, F{feed}", ours / shortest, most, "", "side by side")
 
 
-def slot(face, pieces, feed):
+def slot(face, segments, feed):
     """Compare the times of a slot through the pole, where C has to turn."""
     program = at_feed((SAMPLES / "slot.ngc").read_text(), f"F{feed}", SLOT_BLOCK)
     return beside(
         f"slot through the pole, F{feed}",
-        [seconds_in(lathe.run_text(program), SLOT_BLOCK) for lathe in (face, pieces)],
+        [seconds_in(lathe.run_text(program), SLOT_BLOCK) for lathe in (face, segments)],
         SLOT_LENGTH / feed * 60,
         "C turns in place for 0.6 s",
     )
 
 
-def manual(face, pieces, name):
+def manual(face, segments, name):
     """Compare the times of a manual's whole program."""
-    runs = [lathe.run(SAMPLES / f"{name}.ngc") for lathe in (face, pieces)]
+    runs = [lathe.run(SAMPLES / f"{name}.ngc") for lathe in (face, segments)]
     assert [run.error for run in runs] == [None, None]
     ours, others = (run.seconds for run in runs)
     return Figure(
-        f"polar both ways: {name}, with kinematics against pieces",
+        f"polar both ways: {name}, with kinematics against segments",
         ours / others,
         NO_SLOWER,
         "",
@@ -145,7 +148,7 @@ def beside(what, seconds, ideal, more):
     """Return the row of two times."""
     ours, others = seconds
     return Figure(
-        f"polar both ways: {what}, with kinematics against pieces",
+        f"polar both ways: {what}, with kinematics against segments",
         ours / others,
         NO_SLOWER,
         "",
@@ -153,21 +156,21 @@ def beside(what, seconds, ideal, more):
     )
 
 
-def posted(lathe, pieces, feed):
+def posted(lathe, segments, feed):
     """Tell the time of what posts do: equal angles of C within the tolerance, F as programmed.
 
     In G94 LinuxCNC takes F for X alone, so the speed on the part is another one.
     """
-    points = np.concatenate([equal_angles(piece) for piece in pieces])
-    start = pieces[0].start
+    points = np.concatenate([equal_angles(segment) for segment in segments])
+    start = segments[0].start
     blocks, c = [], math.degrees(np.angle(start))
     head = ["G21 G18 G8 G90 G94 G64 P0.0025", f"G0 X{abs(start):.6f} Z2 C{c:.6f}", f"F{feed}"]
     for x, angle in zip(points[:, 0], np.degrees(np.unwrap(points[:, 1]))):
         blocks.append(f"G1 X{x:.3f} C{angle:.3f}")  # the decimals of a post
     run = lathe.run_text([*head, *blocks, "M2"])
     seconds = seconds_in(run, range(4, 4 + len(blocks)))
-    ideal = sum(piece.length for piece in pieces) / feed * 60
-    off = deviation(pieces, Cut(run).points, 0.1)[0]
+    ideal = sum(segment.length for segment in segments) / feed * 60
+    off = deviation(segments, Cut(run).points, 0.1)[0]
     return f"a post's {len(blocks)} blocks {seconds / ideal:.3f} ({off:.3f} mm off)"
 
 
@@ -178,7 +181,7 @@ def deviation_on_face(face):
     cut = Cut(face.run_text(program))
     return Figure(
         "polar with kinematics: real motion against the hexagon at F3000, G64 P0.002",
-        deviation(MILLIMETRES["hexagon"].pieces, cut.points, 0.1)[0],
+        deviation(MILLIMETRES["hexagon"].segments, cut.points, 0.1)[0],
         0.002,
         " mm",
         f"{len(cut.points)} samples",

@@ -46,7 +46,7 @@ def real_deviation(lathe, name, units, drawing):
     """Compare the motion of a sample program, sampled at 1 kHz, with its drawing."""
     scale = 1 if units == "mm" else MM_PER_INCH
     cut = Cut(lathe.run(SAMPLES / f"{name}.ngc"))
-    worst = scale * max(deviation(drawing.pieces, cut.points, 0.1 / scale))
+    worst = scale * max(deviation(drawing.segments, cut.points, 0.1 / scale))
     return Figure(
         f"polar: real motion against the programmed contour, {name}",
         worst,
@@ -60,7 +60,9 @@ def against_ideal(lathe, name, scale, feed, blocks, drawings):
     """Compare the time of a contour at F250 with its length over the feed."""
     program = at_feed((SAMPLES / f"{name}.ngc").read_text(), feed, blocks)
     seconds = seconds_in(lathe.run_text(program), blocks)
-    length = scale * sum(piece.length for block in blocks for piece in drawings[name].path[block])
+    length = scale * sum(
+        segment.length for block in blocks for segment in drawings[name].path[block]
+    )
     return Figure(
         f"polar: section time against the ideal at F250, {name}",
         seconds / (length / 250 * 60),
@@ -74,8 +76,8 @@ def against_equal_angles(lathe):
     """Compare the hexagon at F1000 with the coarsest equal angles of the same tolerance."""
     text = (SAMPLES / "hexagon.ngc").read_text()
     ours = seconds_in(lathe.run_text(at_feed(text, "F1000", HEXAGON_BLOCKS)), HEXAGON_BLOCKS)
-    pieces = [piece for group in outward(HEXAGON, 6) for piece in group]
-    points = np.concatenate([equal_angles(piece) for piece in pieces])
+    segments = [segment for group in outward(HEXAGON, 6) for segment in group]
+    points = np.concatenate([equal_angles(segment) for segment in segments])
     lathe.mdi("G21 G90 G94 G8 G0 Z5")
     theirs = lathe.run_text(blocks_of(points, 1000))
     seconds = seconds_in(theirs, range(5, 5 + len(points)))
@@ -85,23 +87,23 @@ def against_equal_angles(lathe):
         1.0,
         "",
         f"{ours:.2f} s against {seconds:.2f} s for {len(points)} equal angles "
-        f"(which leave the contour by {deviation(pieces, Cut(theirs).points, 0.1)[0]:.4f} mm)",
+        f"(which leave the contour by {deviation(segments, Cut(theirs).points, 0.1)[0]:.4f} mm)",
     )
 
 
-def equal_angles(piece, tolerance=TOLERANCE["mm"]):
-    """Return the fewest points on a piece, at equal C angles, whose X-C moves stay near it."""
-    fine = spaced(piece, 0.002)
+def equal_angles(segment, tolerance=TOLERANCE["mm"]):
+    """Return the fewest points on a segment, at equal C angles, whose X-C moves stay near it."""
+    fine = spaced(segment, 0.002)
     radii, angles = abs(fine), np.unwrap(np.angle(fine))
     if angles[-1] < angles[0]:
         radii, angles = radii[::-1], angles[::-1]
     for count in range(1, 10000):
         at = np.linspace(angles[0], angles[-1], count + 1)
         straight = np.interp(angles, at, np.interp(at, angles, radii))
-        if piece.distance(straight * np.exp(1j * angles)).max() <= tolerance:
+        if segment.distance(straight * np.exp(1j * angles)).max() <= tolerance:
             break
     x = np.interp(at, angles, radii)
-    if (piece.start * np.exp(-1j * at[0])).real < x[0] - 1e-6:
+    if (segment.start * np.exp(-1j * at[0])).real < x[0] - 1e-6:
         x, at = x[::-1], at[::-1]
     return np.column_stack([x[1:], at[1:]])
 

@@ -22,10 +22,10 @@ sys.path.insert(0, "{python}")
 sys.modules["{module}"] = None
 import remap
 """
-HALVES = ["g12.request.words", "g12.polar.pieces"]
+HALVES = ["g12.request.words", "g12.polar.segments"]
 PROGRAMS = {  # of the half whose codes they use
     "g12.request.words": ("mill_mm", ["F600", "G0 X0 Y0", "G12 I20 D1 Z-1", "M2"]),
-    "g12.polar.pieces": (
+    "g12.polar.segments": (
         "lathe_mm",
         ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "G1 X15", "G13.1", "M2"],
     ),

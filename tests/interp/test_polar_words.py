@@ -38,7 +38,7 @@ def test_the_manuals_sample_runs_with_the_machines_own_tools():
 
 
 def part_speeds(traced):
-    """Speed along the part of each piece, in mm/min: its length in the plane over its time."""
+    """Speed along the part of each segment, in mm/min: its length in the plane over its time."""
     speeds = []
     for move in feed_moves(traced):
         start, end = in_plane(move.start), in_plane(move.end)
@@ -289,7 +289,7 @@ PathControl.inside = spied
 
 
 @pytest.mark.parametrize(("units", "tolerance"), [("G21", 0.0025), ("G20", 0.0025 / INCH)])
-def test_pieces_are_blended_with_half_the_tolerance(tmp_path, units, tolerance):
+def test_segments_are_blended_with_half_the_tolerance(tmp_path, units, tolerance):
     toplevel = tmp_path / "toplevel.py"
     toplevel.write_text(SPY.format(python=SIM.parents[1] / "python"))
     program = section("G1 X7 C3", "X2 C5", first=FIRST.replace("G21", units), start="G0 X8 Z0 C0")

@@ -104,8 +104,10 @@ def compensated(part):
         else:
             shapes.append(Straight(here, end))
         here = end
-    pieces = [piece for group in outward(shapes, CUTTERS["mm"][part.tool] / 2) for piece in group]
-    return np.concatenate([spaced(piece, 0.1) for piece in pieces])
+    segments = [
+        segment for group in outward(shapes, CUTTERS["mm"][part.tool] / 2) for segment in group
+    ]
+    return np.concatenate([spaced(segment, 0.1) for segment in segments])
 
 
 def distances(points, path):

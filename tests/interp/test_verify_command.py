@@ -94,7 +94,7 @@ def test_json_of_a_polar_section(capsys):
     assert code == 0
     assert section["radii"][0] == pytest.approx(13.5)
     assert 0 < section["deviation"] < 0.005 and section["c_speed"] < section["c_limit"] == 360
-    assert section["pieces"] > 20 and section["shortest"] <= section["longest"]
+    assert section["segments"] > 20 and section["shortest"] <= section["longest"]
 
 
 def test_a_contour_that_is_not_cut_is_told(written, capsys, monkeypatch):

@@ -487,7 +487,7 @@ def test_the_size_of_the_hexagon():
 
 
 @pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
-def test_short_pieces_close_by_the_centre_are_longer_than_their_line(machine, tmp_path):
+def test_short_segments_close_by_the_centre_are_longer_than_their_line(machine, tmp_path):
     lines = ["G21 G18 G7 G90 G94 G64 P0.01", "G0 X120 Z5 C0", "G12.1", "F1008.844"]
     lines += ["G1 X-57.93351 C0.11121", "G13.1", "M2"]
     assert not proof_of_text(tmp_path, lines, machine).findings

@@ -41,7 +41,7 @@ def cuts(request):
 @pytest.mark.parametrize("name", ["helix", "slot", "cam_groove"])
 def test_the_real_motion_is_on_the_contour(cuts, name):
     drawing = DRAWINGS[name]
-    there, back = deviation(drawing.pieces, cuts(name).of(drawing.contour), step=0.1)
+    there, back = deviation(drawing.segments, cuts(name).of(drawing.contour), step=0.1)
     assert there <= LIMIT
     assert back <= LIMIT
 
@@ -51,17 +51,17 @@ def test_the_textbooks_groove_is_cut_beside_its_contour(cuts):
     drawing = DRAWINGS["textbook"]
     cut = cuts("textbook")
     points = cut.of(drawing.contour) @ FROM_COLUMNS
-    away = distance(points, drawing.pieces) - drawing.beside
+    away = distance(points, drawing.segments) - drawing.beside
     assert (away.min(), away.max()) == pytest.approx((0.0, 0.0), abs=LIMIT)
     assert cut.of([13])[:, 1].mean() == pytest.approx(60 - 6, abs=0.01)  # right of the way along C
-    for line, (piece,) in drawing.contour.items():
-        beside = np.abs(piece.distance(cut.of([line]) @ FROM_COLUMNS) - drawing.beside)
+    for line, (segment,) in drawing.contour.items():
+        beside = np.abs(segment.distance(cut.of([line]) @ FROM_COLUMNS) - drawing.beside)
         assert np.median(beside) <= LIMIT, line
 
 
 @pytest.mark.parametrize("name", DRAWINGS)
 def test_feed_is_the_speed_on_the_surface(cuts, name):
-    lengths = {line: sum(piece.length for piece in pieces) for line, pieces in
+    lengths = {line: sum(segment.length for segment in segments) for line, segments in
                DRAWINGS[name].contour.items()}  # fmt: skip
     long = [line for line, length in lengths.items() if length > 8.0]
     assert [cuts(name).speed(line) for line in long] == pytest.approx([FEED] * len(long), rel=0.01)
@@ -70,7 +70,7 @@ def test_feed_is_the_speed_on_the_surface(cuts, name):
 @pytest.mark.parametrize("name", DRAWINGS)
 def test_a_section_takes_hardly_longer_than_its_length_at_f(cuts, name):
     blocks = DRAWINGS[name].contour
-    length = sum(piece.length for piece in DRAWINGS[name].pieces)
+    length = sum(segment.length for segment in DRAWINGS[name].segments)
     assert cuts(name).seconds(blocks) <= 1.05 * length / FEED * 60
 
 

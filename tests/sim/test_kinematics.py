@@ -105,25 +105,25 @@ def test_y_is_refused_off_the_face(lathe):
 def hexagon(feed):
     """Return a program of the hexagon's centre path on the face, and the path.
 
-    Its first and last piece are the ways to it and from it, at speed.
+    Its first and last segment are the ways to it and from it, at speed.
     """
-    around = [piece for group in outward(HEXAGON, 6) for piece in group]
-    ends = [point for piece in (around[0], around[-1]) for point in (piece.start, piece.end)]
+    around = [segment for group in outward(HEXAGON, 6) for segment in group]
+    ends = [point for segment in (around[0], around[-1]) for point in (segment.start, segment.end)]
     start, end = (
         8 * cmath.rect(1, heading)
         for heading in (around[0].headings()[0], around[-1].headings()[1])
     )
     path = [Straight(ends[0] - start, ends[0]), *around, Straight(ends[3], ends[3] + end)]
     x, y = xy(path[0].start)
-    blocks = [block_of(piece) for piece in path]
+    blocks = [block_of(segment) for segment in path]
     return [*START, *ON, f"G1 X{x:.6f} Y{y:.6f} F{feed}", "G4 P0.1", *blocks, *OFF, "M2"], path
 
 
-def block_of(piece):
-    x, y = xy(piece.end)
-    if isinstance(piece, Round):
-        i, j = xy(piece.centre - piece.start)
-        return f"{'G3' if piece.sweep > 0 else 'G2'} X{x:.6f} Y{y:.6f} I{i:.6f} J{j:.6f}"
+def block_of(segment):
+    x, y = xy(segment.end)
+    if isinstance(segment, Round):
+        i, j = xy(segment.centre - segment.start)
+        return f"{'G3' if segment.sweep > 0 else 'G2'} X{x:.6f} Y{y:.6f} I{i:.6f} J{j:.6f}"
     return f"G1 X{x:.6f} Y{y:.6f}"
 
 
@@ -140,7 +140,7 @@ def test_hexagon_at_its_feed_and_on_its_path(lathe, feed, most):
     timed = np.isin(run.samples.line, range(first + 1, first + len(path) - 1))
     points = Cut(run).all_points[timed] @ FROM_COLUMNS
     assert distance(points, path).max() <= TOLERANCE
-    ideal = sum(piece.length for piece in path[1:-1]) / feed * 60
+    ideal = sum(segment.length for segment in path[1:-1]) / feed * 60
     assert 0.99 <= timed.sum() * 0.001 / ideal <= most
 
 
@@ -151,7 +151,7 @@ def test_hexagon_at_its_feed_and_on_its_path(lathe, feed, most):
 def test_g12_1_is_on_the_contour_and_within_the_limits(lathe, name):
     run = lathe.run(PROGRAMS / "polar" / f"{name}.ngc")
     assert run.error is None
-    there, back = deviation(MILLIMETRES[name].pieces, Cut(run).points, step=0.1)
+    there, back = deviation(MILLIMETRES[name].segments, Cut(run).points, step=0.1)
     assert max(there, back) <= 0.006
     keeps_its_limits(run.samples)
     assert not on_the_face(lathe)
@@ -160,13 +160,13 @@ def test_g12_1_is_on_the_contour_and_within_the_limits(lathe, name):
         assert accelerations(run.samples.axes["C"])[cutting[2:]].max() <= C_ACCELERATION * 1.01
 
 
-def test_a_long_move_beside_the_pole_is_pieces_only_near_it(lathe):
+def test_a_long_move_beside_the_pole_is_segments_only_near_it(lathe):
     run = lathe.run_text([*ROUGHLY, "G1 X10 C-60 F3000 G61", "C60", "X45 C0", "G13.1", "M2"])
     assert run.error is None
     beside = run.samples.line == 5
     x, c = run.samples.axes["X"], np.radians(run.samples.axes["C"])
     assert np.abs(x * np.cos(c) - 10)[beside].max() <= 0.006
-    assert beside.sum() * 0.001 <= 4.9  # 4.05 s on a quiet computer; pieces alone take 5.5 s
+    assert beside.sum() * 0.001 <= 4.9  # 4.05 s on a quiet computer; segments alone take 5.5 s
     keeps_its_limits(run.samples)
     if not exceeds_limits_itself(lathe):
         assert np.abs(np.diff(c, 2)).max() * 1e6 <= np.radians(3600) * 1.01
@@ -179,10 +179,10 @@ def test_g12_1_keeps_the_feed(lathe, feed, most):
     lines = (PROGRAMS / "polar" / "hexagon.ngc").read_text().splitlines()
     lines[9] += f" F{feed}"
     run = lathe.run_text([line.replace("F1000.", "") for line in lines])
-    pieces = [piece for block in blocks for piece in MILLIMETRES["hexagon"].path[block]]
+    segments = [segment for block in blocks for segment in MILLIMETRES["hexagon"].path[block]]
     seconds = np.isin(run.samples.line, blocks).sum() * 0.001
-    feeds = [in_arcs if isinstance(piece, Round) else feed for piece in pieces]
-    ideal = sum(piece.length / feed * 60 for piece, feed in zip(pieces, feeds))
+    feeds = [in_arcs if isinstance(segment, Round) else feed for segment in segments]
+    ideal = sum(segment.length / feed * 60 for segment, feed in zip(segments, feeds))
     assert 0.97 <= seconds / ideal <= most
 
 
@@ -213,7 +213,7 @@ def test_g12_1_with_offsets_inches_and_diameters(lathe):
 
 @pytest.mark.parametrize("plane", ["G17", "G18"])
 @pytest.mark.parametrize("modes", ["G90 G94 F500 G64 P0.01", "G91 G95 F1 G61 G90.1 S500 M3"])
-def test_modes_behind_g13_1_are_those_of_a_section_in_pieces(plane, modes):
+def test_modes_behind_g13_1_are_those_of_a_section_in_segments(plane, modes):
     section = ("G12.1", "G1 C20", "X-5", "M8", "G3 I0 J-5", "G13.1")
     asked = (
         "motion_mode plane ijk_absolute_mode incremental feed units_per_rev coolant_flood x y z c"
@@ -274,7 +274,7 @@ def test_verify_finds_nothing_wrong_in_a_corner_with_a_lead(tmp_path, capsys):
     assert code == 0, said
     (facts,) = json.loads(said.out)["sections"]
     assert facts["deviation"] < 0.005
-    assert facts["pieces"] < 10  # cut on the face
+    assert facts["segments"] < 10  # cut on the face
 
 
 def test_blocks_that_wait_cut_a_section_in_two(lathe):

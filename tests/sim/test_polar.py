@@ -80,7 +80,7 @@ def test_every_sample_is_on_the_contour(cuts, name):
     units, drawing = ("mm", MILLIMETRES) if name in MILLIMETRES else ("inch", INCHES)
     points = cuts(name).points
     limit = TOLERANCE[units] + SAMPLING[units]
-    there, back = deviation(drawing[name].pieces, points, step=20 * TOLERANCE[units])
+    there, back = deviation(drawing[name].segments, points, step=20 * TOLERANCE[units])
     assert there <= limit
     assert back <= limit
     assert cuts(name).x.min() >= -1e-9

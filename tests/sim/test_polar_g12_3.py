@@ -28,4 +28,4 @@ def test_the_other_pair_cuts_the_same(ini):
     with Machine(ini, overrides={"RS274NGC": {"REMAP": other_pair()}}) as machine:
         run = machine.run_text(text.splitlines())
     assert run.error is None
-    assert max(deviation(MILLIMETRES[HEXAGON].pieces, Cut(run).points, step=0.1)) <= 0.006
+    assert max(deviation(MILLIMETRES[HEXAGON].segments, Cut(run).points, step=0.1)) <= 0.006

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The shapes on a lathe's face: what real motion cuts, in pieces and with kinematics."""
+"""The shapes on a lathe's face: what real motion cuts, in segments and with kinematics."""
 
 import numpy as np
 import pytest

@@ -56,9 +56,9 @@ def test_the_hexagon_is_the_same_on_the_part(tmp_path, name, offset):
         run = lathe.run(HEXAGON)
     assert run.error is None
     points = on_the_part(run.samples, offset)[np.isin(run.samples.line, AROUND)]
-    drawn = [piece for line in AROUND for piece in MILLIMETRES["hexagon"].path[line]]
+    drawn = [segment for line in AROUND for segment in MILLIMETRES["hexagon"].path[line]]
     assert distance(points, drawn).max() <= 0.006
-    corners = np.array([piece.start for piece in drawn])
+    corners = np.array([segment.start for segment in drawn])
     assert distance_from_path(corners, points).max() <= 0.006
 
 
@@ -71,7 +71,7 @@ def test_lines_and_arcs_in_inches(tmp_path, name):
     assert run.error is None
     points = on_the_part(run.samples, -0.3)[run.samples.line > 3]
     assert distance(points, DRAWN).max() <= 0.00024
-    ends = np.array([piece.end for piece in DRAWN])
+    ends = np.array([segment.end for segment in DRAWN])
     assert distance_from_path(ends, points).max() <= 0.00024
 
 

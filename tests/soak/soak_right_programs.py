@@ -12,7 +12,7 @@ from soak import SEED, often
 from support.right_programs import MACHINES, machine_of, right_program
 from support.sim_machines import ROOT, copy_of_machines
 
-PIECES = 20  # pockets or sections in a program
+SEGMENTS = 20  # pockets or sections in a program
 KINEMATICS = ROOT / "configs" / "kinematics"
 OFFSET = "beside kinematics"  # in the name of a kind: the component has to know of the tool's place
 
@@ -34,9 +34,9 @@ def test_programs_as_they_are_read(kind, tmp_path):
     ini = machine_of(kind)
     for number in range(often(2)):
         seed = f"{SEED} {number}"
-        proof = prove(written(tmp_path, kind, seed, PIECES), ini)
-        assert len(proof.pockets) + len(proof.sections) >= PIECES, seed
-        assert len(proof.shapes) >= PIECES * kind.startswith("shapes"), seed
+        proof = prove(written(tmp_path, kind, seed, SEGMENTS), ini)
+        assert len(proof.pockets) + len(proof.sections) >= SEGMENTS, seed
+        assert len(proof.shapes) >= SEGMENTS * kind.startswith("shapes"), seed
         assert proof.findings == [], seed
 
 

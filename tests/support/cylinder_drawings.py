@@ -23,8 +23,8 @@ class Unrolled(NamedTuple):
     beside: float = 0.0
 
     @property
-    def pieces(self):
-        return [piece for pieces in self.contour.values() for piece in pieces]
+    def segments(self):
+        return [segment for segments in self.contour.values() for segment in segments]
 
 
 def degrees(radius, *places):
@@ -32,9 +32,9 @@ def degrees(radius, *places):
     return [(math.radians(c) * radius, z) for c, z in places]
 
 
-def by_line(first, pieces):
-    """Return pieces by program lines that follow each other."""
-    return {line: [piece] for line, piece in enumerate(pieces, first)}
+def by_line(first, segments):
+    """Return segments by program lines that follow each other."""
+    return {line: [segment] for line, segment in enumerate(segments, first)}
 
 
 def _rise(start, end):
@@ -61,10 +61,10 @@ def _textbook():
         (270, 120), (360, 120),
     )]  # fmt: skip
     bends = {1: (-1, 30), 3: (1, 10), 5: (1, 75), 7: (-1, 75)}
-    pieces = []
+    segments = []
     for k, (start, end) in enumerate(zip(place, place[1:])):
-        pieces.append(bend(start, end, *bends[k]) if k in bends else Straight(*_two(start, end)))
-    return by_line(9, pieces)
+        segments.append(bend(start, end, *bends[k]) if k in bends else Straight(*_two(start, end)))
+    return by_line(9, segments)
 
 
 def _two(start, end):

@@ -50,7 +50,7 @@ class Hand:
         return self
 
     def polar(self, points, feed=600.0):
-        """Straight pieces in X and C through points (complex) of the part plane."""
+        """Straight segments in X and C through points (complex) of the part plane."""
         angle = self.at[5]
         for point in points:
             wanted = math.degrees(math.atan2(point.imag, point.real))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a polar plan cuts: its pieces turned back into the plane by r exp(j angle).
+"""What a polar plan cuts: its segments turned back into the plane by r exp(j angle).
 
 Nothing here knows how the planner works.
 """
@@ -13,7 +13,7 @@ from g12.compensation.contour import Contour
 from g12.moves.steps import BlockMoves
 from support.contour_geometry import Straight
 
-SAGITTA = 2e-4  # of the chords that stand for a piece
+SAGITTA = 2e-4  # of the chords that stand for a segment
 
 
 def programmed(shapes, *, feed=250.0, by_radius=False):
@@ -39,7 +39,7 @@ def add(contour, shape, *, line, feed, by_radius=False):
 
 
 class Cut(NamedTuple):
-    """One piece as the machine makes it: radius, angle in radians and Z at its ends, seconds.
+    """One segment as the machine makes it: radius, angle in radians and Z at its ends, seconds.
 
     ``run`` counts the runs of the plan.
     """
@@ -68,7 +68,7 @@ class Cut(NamedTuple):
 
     @property
     def speeds(self):
-        """The speed along the part at the piece's ends, per minute."""
+        """The speed along the part at the segment's ends, per minute."""
         x = (self.radius[1] - self.radius[0]) / self.seconds
         z = (self.z[1] - self.z[0]) / self.seconds
         turn = (self.angle[1] - self.angle[0]) / self.seconds
@@ -81,11 +81,11 @@ def seconds(dx, dz, degrees, feed):
 
 
 def cuts(contour, plan, c=0.0):
-    """Return the pieces of a plan whose plane has its zero angle at ``c`` degrees."""
+    """Return the segments of a plan whose plane has its zero angle at ``c`` degrees."""
     x, angle, z = contour.start
     degrees, made = c + math.degrees(angle), []
     for count, run in enumerate(step for step in plan.steps if isinstance(step, BlockMoves)):
-        for to_x, to_c, to_z, feed in run.pieces:
+        for to_x, to_c, to_z, feed in run.segments:
             assert "X" in run.axes or (to_x == x and to_c == degrees)
             assert "Z" in run.axes or to_z == z
             ends = (math.radians(degrees - c), math.radians(to_c - c))
@@ -96,5 +96,5 @@ def cuts(contour, plan, c=0.0):
 
 
 def path(made):
-    """Return the path in the plane of all pieces."""
+    """Return the path in the plane of all segments."""
     return np.concatenate([cut.points for cut in made])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The drawings of the polar sample programs: the path of the cutter's centre, block by block.
 
-Each drawing maps a block's line in the program to the pieces of its path in the plane, in the
+Each drawing maps a block's line in the program to the segments of its path in the plane, in the
 program's units.
 """
 
@@ -18,8 +18,8 @@ class Drawing(NamedTuple):
     cutter: float
 
     @property
-    def pieces(self):
-        return [piece for pieces in self.path.values() for piece in pieces]
+    def segments(self):
+        return [segment for segments in self.path.values() for segment in segments]
 
 
 def _compensated(first, contour, cutter, approach, leave=None):
@@ -75,8 +75,10 @@ def _flat(first, approach):
 
 
 def _turned(path):
-    """Return straight pieces turned by 180 degrees."""
-    return {block: [Straight(-piece.start, -piece.end) for piece in path[block]] for block in path}
+    """Return straight segments turned by 180 degrees."""
+    return {
+        block: [Straight(-segment.start, -segment.end) for segment in path[block]] for block in path
+    }
 
 
 SECOND_START = math.hypot(0.9, 0.4153)  # where the first flat leaves the X slide

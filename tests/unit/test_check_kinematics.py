@@ -56,7 +56,7 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
     ("coordinates=XZC", "coordinates=XZ", "kins", "C have to be there"),
     ("JOINTS = 3", "JOINTS = 4", "kins", "JOINTS = 4, but"),
     ("COORDINATES = X Y Z C", "COORDINATES = X Z C", "coordinates", "lacks Y"),
-    ("POLAR_KINEMATICS = 1", "POLAR_KINEMATICS = 0", "kinematics-unused", "makes pieces"),
+    ("POLAR_KINEMATICS = 1", "POLAR_KINEMATICS = 0", "kinematics-unused", "makes segments"),
     ("ON_ABORT_COMMAND = G13.1 P\n", "", "abort", "ON_ABORT_COMMAND is missing"),
     ("COMMAND = G13.1 P", "COMMAND = O <mine> call", "abort", "= O <mine> call"),
     ("G13.1 modalgroup", "G13.3 modalgroup", "abort", "on the face"),

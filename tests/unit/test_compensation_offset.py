@@ -377,7 +377,7 @@ def test_a_line_hardly_beside_its_tangent_gets_no_corner_arc():
 
 
 @pytest.mark.parametrize(
-    ("bend", "by", "pieces"),
+    ("bend", "by", "segments"),
     [
         (0.0280, 0.0, 1),  # a 25th of the tolerance nearer to the corner than an arc
         (0.0286, 0.0, 2),
@@ -387,7 +387,7 @@ def test_a_line_hardly_beside_its_tangent_gets_no_corner_arc():
         (0.0051, -1.0, 2),
     ],
 )
-def test_parallels_are_joined_where_nobody_could_tell(bend, by, pieces):
+def test_parallels_are_joined_where_nobody_could_tell(bend, by, segments):
     """An outside corner of a few minutes of arc, from a line to a line or to an arc."""
     way, corner = cmath.exp(1j * bend), 20 + 5j
     follows = Round(corner, corner + 5j * by * way, by) if by else Straight(corner, corner + way)
@@ -399,19 +399,19 @@ def test_parallels_are_joined_where_nobody_could_tell(bend, by, pieces):
     contour.compensation(40, 0.0, line=4)
     contour.line(30.0, -10.0, line=4, feed=100.0)
     made = [move for move in tool_path(contour, contour.elements, TOLERANCE) if move.line == 3]
-    assert len(made) == pieces
+    assert len(made) == segments
     assert abs(abs(made[0].start - corner) - 2.0) <= 0.04 * TOLERANCE
 
 
-@pytest.mark.parametrize(("bend", "pieces"), [(0.0049, 1), (0.0051, 2)])
+@pytest.mark.parametrize(("bend", "segments"), [(0.0049, 1), (0.0051, 2)])
 @pytest.mark.parametrize("by", [1.0, -1.0])
-def test_an_arc_is_joined_to_a_line_as_a_line_to_an_arc(by, bend, pieces):
+def test_an_arc_is_joined_to_a_line_as_a_line_to_an_arc(by, bend, segments):
     corner = 20 + 5j
     centre = corner + 5j * by
     start = centre + (corner - centre) * cmath.exp(-1j * by)
     shapes = [Round(start, centre, by), Straight(corner, corner + 5 * cmath.exp(1j * bend))]
     moves = centre_moves(shapes, 42, 2.0)
-    assert len([move for move in moves if move.line == 4]) == pieces
+    assert len([move for move in moves if move.line == 4]) == segments
 
 
 def test_the_feed_is_that_of_the_tools_centre():

@@ -56,7 +56,7 @@ def test_a_line_is_one_move_with_the_feed_of_the_surface():
     contour = empty(c=30.0)
     contour.line(math.radians(210) * RADIUS, 5.0, line=1, feed=100.0)
     (run,) = runs(contour)
-    ((x, c, z, feed),) = run.pieces
+    ((x, c, z, feed),) = run.segments
     assert (run.axes, x, c, z) == ("ZC", 22.0, pytest.approx(210.0), 5.0)
     assert feed == pytest.approx(100.0 * 5.0 / math.hypot(5.0, math.pi * RADIUS))
 
@@ -64,7 +64,7 @@ def test_a_line_is_one_move_with_the_feed_of_the_surface():
 def test_round_about_alone_f_is_degrees():
     contour = empty()
     contour.line(math.radians(-90) * RADIUS, line=1, feed=100.0)
-    assert runs(contour)[0].pieces == [
+    assert runs(contour)[0].segments == [
         (22.0, pytest.approx(-90.0), 0.0, pytest.approx(100.0 / (RADIUS * math.pi / 180)))
     ]
 
@@ -73,17 +73,17 @@ def test_a_little_z_is_left_to_the_next_move_and_to_the_end():
     contour = empty()
     contour.line(10.0, 0.0004, line=1, feed=100.0)
     contour.line(20.0, 0.0008, line=2, feed=100.0)
-    made = [(run.line, run.axes, run.pieces[0][2]) for run in runs(contour)]
+    made = [(run.line, run.axes, run.segments[0][2]) for run in runs(contour)]
     assert made == [(1, "ZC", 0.0), (2, "ZC", 0.0), (2, "Z", 0.0008)]
 
 
-def test_pieces_that_keep_z_stay_within_the_tolerance():
-    """Two circles, one after the other: without a stop pieces are as far off as they may be."""
+def test_segments_that_keep_z_stay_within_the_tolerance():
+    """Two circles, one after the other: without a stop segments are as far off as they may be."""
     contour, arm = empty(), 3.186 + 2j
     for line in (1, 2):
         contour.arc(1, 0.0, 0.0, i=arm.real, j=arm.imag, line=line, feed=100.0)
     places = [
-        math.radians(c) * RADIUS + 1j * z for run in runs(contour) for _, c, z, _ in run.pieces
+        math.radians(c) * RADIUS + 1j * z for run in runs(contour) for _, c, z, _ in run.segments
     ]
     assert abs(abs(np.array(places) - arm) - abs(arm)).max() < 0.005
 
@@ -91,7 +91,7 @@ def test_pieces_that_keep_z_stay_within_the_tolerance():
 def test_a_little_depth_is_made_up_at_the_end():
     contour = empty()
     contour.line(10.0, 0.0, 21.9996, line=1, feed=100.0)
-    made = [(run.axes, run.pieces[0][0]) for run in runs(contour)]
+    made = [(run.axes, run.segments[0][0]) for run in runs(contour)]
     assert made == [("XZC", 22.0), ("X", 21.9996)]
 
 
@@ -102,7 +102,7 @@ def test_depth_is_a_move_of_x_alone_and_stops_where_the_corner_would_be_cut():
     contour.line(10.0, 9.0, line=3, feed=9000.0)
     made = [(run.axes, run.stop) for run in runs(contour)]
     assert made[0] == ("X", False) and made[-1] == ("ZC", True)
-    assert runs(contour)[0].pieces == [(18.0, 0.0, 0.0, 100.0)]
+    assert runs(contour)[0].segments == [(18.0, 0.0, 0.0, 100.0)]
     contour.elements[1] = contour.elements[1]._replace(feed=9000.0)
     assert [run.stop for run in runs(contour)] == [True, True, True]
 
@@ -133,10 +133,10 @@ def test_a_section_cut_in_two_goes_on_where_the_machine_stands():
     assert planned.place == pytest.approx((22.0, 400.0, 7.0))
     second = first.continued(planned.end)
     second.line(z=20.0, line=2, feed=100.0)
-    assert plan(second, MACHINE).steps[0].pieces == [(20.0, pytest.approx(400.0), 7.0, 100.0)]
+    assert plan(second, MACHINE).steps[0].segments == [(20.0, pytest.approx(400.0), 7.0, 100.0)]
 
 
-def test_an_arc_of_too_many_pieces_is_refused():
+def test_an_arc_of_too_many_segments_is_refused():
     contour = empty()
     contour.arc(1, j=9e5, line=3, feed=100.0)
     with pytest.raises(Refusal, match="line 3: more than 100000 moves would be needed"):
@@ -152,7 +152,7 @@ def test_an_arc_of_too_many_pieces_is_refused():
     surface=st.floats(0.5, 300.0),
     deviation=st.sampled_from([1e-4, 0.005, 0.1]),
 )
-def test_the_pieces_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, deviation):
+def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, deviation):
     """Chords between the ends are no farther from the circle than half as much again inside."""
     start, end = centre + size * np.exp(1j * np.array([0.3, 0.3 + turn * sweep]))
     arc = planned_moves.arc(centre, complex(start), turn * sweep)

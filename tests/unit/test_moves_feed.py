@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""F words: a piece lasts as long as its path at the feed, and X moves enough or not at all."""
+"""F words: a segment lasts as long as its path at the feed, and X moves enough or not at all."""
 
 import math
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.moves.feed import Split, keeps_slide, pieces_with_feed
+from g12.moves.feed import Split, keeps_slide, segments_with_feed
 from support import planned_moves
 
 START = (10.0, 0.0, 0.0)
@@ -19,63 +19,63 @@ def move(z1=0.0):
     return planned_moves.line(10.0, 0.0, 0.0, 0.0, z1=z1, feed=120.0)
 
 
-def pieces(*ends, z1=0.0, entry=0.0):
-    """Return the pieces of a split whose ends are (radius, degrees, length)."""
+def segments(*ends, z1=0.0, entry=0.0):
+    """Return the segments of a split whose ends are (radius, degrees, length)."""
     radii, degrees, lengths = zip((10.0, 0.0, 0.0), *ends)
     angles = [math.radians(angle) for angle in degrees]
-    return pieces_with_feed(
+    return segments_with_feed(
         Split(list(radii), angles, list(lengths)), START, move(z1), entry, LEAST
     )
 
 
 def test_f_is_for_x_where_x_moves():
     """2 of X in a path of 5 at F120."""
-    assert pieces((12.0, 25.0, 5.0)) == [(12.0, pytest.approx(25.0), 0.0, pytest.approx(48.0))]
+    assert segments((12.0, 25.0, 5.0)) == [(12.0, pytest.approx(25.0), 0.0, pytest.approx(48.0))]
 
 
 def test_f_is_degrees_per_minute_where_x_stays():
     """30 degrees in a path of 5 at F120, a 24th of a minute."""
-    assert pieces((10.0, 30.0, 5.0)) == [(10.0, pytest.approx(30.0), 0.0, pytest.approx(720.0))]
+    assert segments((10.0, 30.0, 5.0)) == [(10.0, pytest.approx(30.0), 0.0, pytest.approx(720.0))]
 
 
 def test_f_is_for_x_and_z_on_a_helix():
     """3 of X and 4 of Z: 5 in a path of hypot(12, 4) at F120."""
-    ((_, _, z, feed),) = pieces((13.0, 60.0, 12.0), z1=-4.0)
+    ((_, _, z, feed),) = segments((13.0, 60.0, 12.0), z1=-4.0)
     assert z == -4.0
     assert feed == pytest.approx(5.0 * 120.0 / math.hypot(12.0, 4.0))
 
 
-def test_what_x_would_move_too_little_goes_to_the_next_piece():
-    made = pieces((10.0006, 5.0, 1.0), (10.0012, 10.0, 2.0))
-    assert [piece[0] for piece in made] == [10.0, 10.0012]
+def test_what_x_would_move_too_little_goes_to_the_next_segment():
+    made = segments((10.0006, 5.0, 1.0), (10.0012, 10.0, 2.0))
+    assert [segment[0] for segment in made] == [10.0, 10.0012]
     assert made[0][3] == pytest.approx(5.0 * 120.0)
     assert made[1][3] == pytest.approx(0.0012 * 120.0)
 
 
-def test_what_the_other_slide_would_move_too_little_goes_to_a_later_piece():
-    """Debian's 2.9.0~pre1 would run the first piece three times too fast."""
-    made = pieces((10.0, 5.0, 1.0), (10.0, 20.0, 4.0), z1=-0.0016)
-    assert [piece[2] for piece in made] == [0.0, pytest.approx(-0.0016)]
+def test_what_the_other_slide_would_move_too_little_goes_to_a_later_segment():
+    """Debian's 2.9.0~pre1 would run the first segment three times too fast."""
+    made = segments((10.0, 5.0, 1.0), (10.0, 20.0, 4.0), z1=-0.0016)
+    assert [segment[2] for segment in made] == [0.0, pytest.approx(-0.0016)]
     assert made[0][3] == pytest.approx(5.0 * 120.0, rel=1e-6)
     assert made[1][3] == pytest.approx(0.0016 * 120.0 / 3.0, rel=1e-6)
 
 
 def test_x_alone_may_move_as_little_as_it_likes():
-    assert pieces((10.0002, 0.0, 0.0002)) == [(10.0002, 0.0, 0.0, pytest.approx(120.0))]
-    made = pieces((10.0003, 0.0, 0.0003), z1=-0.0004)
+    assert segments((10.0002, 0.0, 0.0002)) == [(10.0002, 0.0, 0.0, pytest.approx(120.0))]
+    made = segments((10.0003, 0.0, 0.0003), z1=-0.0004)
     assert made == [(10.0003, 0.0, pytest.approx(-0.0004), pytest.approx(120.0))]
 
 
 def test_a_turn_by_rounding_is_none():
-    assert pieces((10.0002, 1e-12, 0.0002)) == [(10.0002, 0.0, 0.0, pytest.approx(120.0))]
+    assert segments((10.0002, 1e-12, 0.0002)) == [(10.0002, 0.0, 0.0, pytest.approx(120.0))]
 
 
-def test_a_piece_to_nowhere_leaves_its_time_to_the_next():
-    assert pieces((10.0, 0.0, 1.0), (12.0, 0.0, 2.0)) == [(12.0, 0.0, 0.0, pytest.approx(120.0))]
+def test_a_segment_to_nowhere_leaves_its_time_to_the_next():
+    assert segments((10.0, 0.0, 1.0), (12.0, 0.0, 2.0)) == [(12.0, 0.0, 0.0, pytest.approx(120.0))]
 
 
 def test_c_counts_from_where_it_stood_at_entry():
-    ((_, c, _, _),) = pieces_with_feed(
+    ((_, c, _, _),) = segments_with_feed(
         Split([10.0, 12.0], [0.0, 1.0], [0.0, 5.0]), (10.0, 90.0, 0.0), move(), 90.0, LEAST
     )
     assert c == pytest.approx(90.0 + math.degrees(1.0))
@@ -88,7 +88,7 @@ ends = st.lists(st.tuples(step, turn, st.floats(0.01, 5.0)), min_size=1, max_siz
 
 @settings(max_examples=150, deadline=None)
 @given(ends, st.sampled_from([0.0, -0.002, -4.0]), st.sampled_from([0.0, 90.0]))
-def test_all_pieces_together_last_as_long_as_the_path(steps, rise, entry):
+def test_all_segments_together_last_as_long_as_the_path(steps, rise, entry):
     """None turns C and moves the slides by less than the least step, and none does nothing."""
     slides, turns, lengths = ([first] for first in (10.0, 0.0, 0.0))
     for by, turned, long in steps:
@@ -97,17 +97,17 @@ def test_all_pieces_together_last_as_long_as_the_path(steps, rise, entry):
         lengths.append(lengths[-1] + long)
     split = Split(slides, [math.radians(angle) for angle in turns], lengths)
     start, along = (10.0, entry, -5.0), move(-5.0 + rise)._replace(z0=-5.0)
-    made, at = pieces_with_feed(split, start, along, entry, LEAST), start
+    made, at = segments_with_feed(split, start, along, entry, LEAST), start
     space, minutes = math.hypot(1.0, rise / lengths[-1]) / 120.0, 0.0
-    for piece in made:
-        slid, turned = math.hypot(piece[0] - at[0], piece[2] - at[2]), abs(piece[1] - at[1])
+    for segment in made:
+        slid, turned = math.hypot(segment[0] - at[0], segment[2] - at[2]), abs(segment[1] - at[1])
         assert slid or turned
         assert not turned or not slid or slid > 0.999 * LEAST
-        minutes += (slid or turned) / piece[3]
+        minutes += (slid or turned) / segment[3]
         assert min(abs(minutes - length * space) for length in lengths) < 1e-9
         done = lengths[min(range(len(lengths)), key=lambda k: abs(minutes - lengths[k] * space))]
-        assert abs(piece[2] - (-5.0 + rise * done / lengths[-1])) <= LEAST
-        at = piece
+        assert abs(segment[2] - (-5.0 + rise * done / lengths[-1])) <= LEAST + 1e-9
+        at = segment
     if made:
         assert at[0] == pytest.approx(slides[-1], abs=LEAST)
         assert at[1] == pytest.approx(entry + turns[-1], abs=1e-9)
@@ -116,5 +116,5 @@ def test_all_pieces_together_last_as_long_as_the_path(steps, rise, entry):
 @pytest.mark.parametrize(
     ("angles", "keeps"), [([0.5, 0.5], False), ([0.1, -0.1], True), ([0.5, 0.6], True)]
 )
-def test_a_piece_keeps_its_slide_where_c_turns(angles, keeps):
+def test_a_segment_keeps_its_slide_where_c_turns(angles, keeps):
     assert keeps_slide(Split([10.0, 10.0 + 1e-7], angles, [0.0, 1.0]), 1e-6) is keeps

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Spacing by itself: shares of a deviation, and no element that takes pieces for ever."""
+"""Spacing by itself: shares of a deviation, and no element that takes segments for ever."""
 
 import math
 
@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from g12.errors import Refusal
-from g12.moves.spacing import MOST_PIECES, Stretch, TooManyPieces, spaced
-from g12.polar.pieces import Law, _arc_density, _line_density
+from g12.moves.spacing import MOST_SEGMENTS, Stretch, TooManySegments, spaced
 from g12.polar.plan import PolarSettings, plan
+from g12.polar.segments import Law, _arc_density, _line_density
 from support.contour_geometry import Round
 from support.planned_cuts import programmed
 
@@ -24,16 +24,16 @@ def stretch(start, end, *apsides):
 def test_a_density_that_never_arrives_is_refused(density):
     """The step is too short, goes the wrong way, or is nothing beside a far place."""
     far = 1e300 if density == 2e-5 else 3.0
-    with pytest.raises(TooManyPieces):
+    with pytest.raises(TooManySegments):
         spaced(stretch(1.0, far), lambda _: (density, 0.0))
 
 
-def test_the_most_pieces_are_made():
-    places, _ = spaced(stretch(0.0, 1.0), lambda _: (MOST_PIECES - 1.0, 1.0))
-    assert len(places) == MOST_PIECES + 1
+def test_the_most_segments_are_made():
+    places, _ = spaced(stretch(0.0, 1.0), lambda _: (MOST_SEGMENTS - 1.0, 1.0))
+    assert len(places) == MOST_SEGMENTS + 1
 
 
-def test_an_arc_of_too_many_pieces_is_refused_with_its_line():
+def test_an_arc_of_too_many_segments_is_refused_with_its_line():
     far = Round(1e6 + 0j, 1e5 + 0j, 2 * math.pi)
     with pytest.raises(Refusal) as refused:
         plan(programmed([far]), FINEST, c=0.0)
@@ -45,11 +45,11 @@ def test_an_arc_of_too_many_pieces_is_refused_with_its_line():
 def test_a_circle_of_a_metre_is_cut_at_the_finest_tolerance():
     around = Round(1000 + 0j, 100 + 0j, 2 * math.pi)
     run = plan(programmed([around]), FINEST, c=0.0).steps[0]
-    assert 5_000 < len(run.pieces) < MOST_PIECES
+    assert 5_000 < len(run.segments) < MOST_SEGMENTS
 
 
-def test_an_apsis_is_an_end_of_pieces_and_off_the_path_by_its_share():
-    """Four pieces long and four used on each side: the losses of the outer ends come on top."""
+def test_an_apsis_is_an_end_of_segments_and_off_the_path_by_its_share():
+    """Four segments long and four used on each side: the losses of the outer ends come on top."""
     places, shares = spaced(stretch(-4.0, 4.0, 0.0), lambda _: (1.0, 0.5))
     assert 0.0 in places
     length = 4.0 / (5 - 0.18)
@@ -62,19 +62,19 @@ def test_an_apsis_is_an_end_of_pieces_and_off_the_path_by_its_share():
     "density",
     [lambda law: _line_density(3.0, 0.005, law), lambda law: _arc_density(9, 0.4, 0.005, law)],
 )
-def test_pieces_made_shorter_for_an_even_feed_use_a_share_of_the_deviation(density):
-    """What a piece bulges by goes with the square of its length."""
+def test_segments_made_shorter_for_an_even_feed_use_a_share_of_the_deviation(density):
+    """What a segment bulges by goes with the square of its length."""
     longest, even = (density(Law(0.005, ripple, 1e9, 1e9)) for ripple in (1e9, 1e-4))
     for place in (0.3, 0.8, 1.2, 2.0):
-        (pieces, share), (more, less) = longest(place), even(place)
-        assert more > 2 * pieces
-        assert less == pytest.approx(share * (pieces / more) ** 2)
+        (segments, share), (more, less) = longest(place), even(place)
+        assert more > 2 * segments
+        assert less == pytest.approx(share * (segments / more) ** 2)
 
 
 @pytest.mark.parametrize(("start", "end"), [(0.5, 4.0), (-4.0, -0.5), (-3.0, 4.0)])
 @pytest.mark.parametrize("fine", [2.9, 7.3, 40.0])
-def test_pieces_are_equal_parts_of_the_density_but_for_what_the_ends_lose(start, end, fine):
-    """An end that is exactly on the path loses 0.18 pieces; an apsis, at 0 here, loses none."""
+def test_segments_are_equal_parts_of_the_density_but_for_what_the_ends_lose(start, end, fine):
+    """An end that is exactly on the path loses 0.18 segments; an apsis, at 0 here, loses none."""
     apsides = [0.0] if start * end < 0.0 else []
     steps = []
 
@@ -85,8 +85,8 @@ def test_pieces_are_equal_parts_of_the_density_but_for_what_the_ends_lose(start,
     places, shares = spaced(Stretch(start, end, apsides, abs), density)
     assert max(map(abs, steps)) < max(abs(start), abs(end)) + 1.0 / fine
     every = np.linspace(start, end, 4001)
-    pieces = np.append(0.0, np.cumsum(abs(np.diff(every)) * fine / (1.0 + 0.2 * abs(every[1:]))))
-    measured = np.interp(places, every, pieces)
+    segments = np.append(0.0, np.cumsum(abs(np.diff(every)) * fine / (1.0 + 0.2 * abs(every[1:]))))
+    measured = np.interp(places, every, segments)
     cuts = [start, *apsides, end]
     for first, last in zip(cuts, cuts[1:]):
         inside = slice(places.index(first), places.index(last) + 1)
@@ -105,18 +105,18 @@ def test_pieces_are_equal_parts_of_the_density_but_for_what_the_ends_lose(start,
 
 
 @pytest.mark.parametrize(("near", "cut"), [(0.49, False), (0.51, True)])
-def test_an_apsis_nearer_to_an_end_than_half_a_piece_is_left_alone(near, cut):
+def test_an_apsis_nearer_to_an_end_than_half_a_segment_is_left_alone(near, cut):
     for start, end, apsis in ((3.0 - near, 9.0, 3.0), (-9.0, -3.0 + near, -3.0)):
         places, _ = spaced(stretch(start, end, apsis), lambda _: (1.0, 0.5))
         assert (apsis in places) is cut
 
 
-def test_what_is_whole_but_for_rounding_takes_no_piece_more():
+def test_what_is_whole_but_for_rounding_takes_no_segment_more():
     for count in range(2, 40):
         places, _ = spaced(stretch(0.0, count - 0.36), lambda _: (1.0, 1.0))
         assert len(places) == count + 1
 
 
 def test_the_parts_of_an_element_count_together():
-    with pytest.raises(TooManyPieces):
-        spaced(stretch(-1.0, 1.0, 0.0), lambda _: (0.6 * MOST_PIECES, 1.0))
+    with pytest.raises(TooManySegments):
+        spaced(stretch(-1.0, 1.0, 0.0), lambda _: (0.6 * MOST_SEGMENTS, 1.0))

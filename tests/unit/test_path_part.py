@@ -40,8 +40,8 @@ def test_the_face_turns_counterclockwise_with_c():
 
 @given(radius=st.floats(0.01, 500), sweep=st.floats(0.01, 2 * math.pi), error=st.floats(1e-5, 0.1))
 def test_chords_of_an_arc_stay_within_the_error(radius, sweep, error):
-    pieces = part.arc_pieces(radius, sweep, error)
-    sagitta = radius * (1 - math.cos(sweep / pieces / 2))
+    segments = part.arc_segments(radius, sweep, error)
+    sagitta = radius * (1 - math.cos(sweep / segments / 2))
     assert sagitta <= error * (1 + 1e-6)
 
 

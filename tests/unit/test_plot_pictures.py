@@ -311,7 +311,7 @@ def test_plunges_on_the_face_are_where_the_part_is():
     assert (x, y, tool) == (pytest.approx(0, abs=1e-6), pytest.approx(20), 1)
 
 
-def test_pieces_of_one_block_are_one_element_of_the_face():
+def test_segments_of_one_block_are_one_element_of_the_face():
     hand = flats()
     hand.block = 7
     hand.line(z=-3).polar([complex(-20, y) for y in (8, 4, 0)])

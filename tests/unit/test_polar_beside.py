@@ -56,7 +56,7 @@ def on_the_part(contour, beside, planned):
     x, c = contour.start.x, 0.0
     parts, points = np.linspace(0.0, 1.0, 60), []
     for run in planned.steps:
-        for to_x, to_c, _, _ in run.pieces:
+        for to_x, to_c, _, _ in run.segments:
             slide, turn = x + (to_x - x) * parts, np.radians(c + (to_c - c) * parts)
             assert slide.min() >= 0.0
             points.append((slide + 1j * beside) * np.exp(1j * turn))
@@ -87,16 +87,16 @@ def test_the_tool_is_on_the_contour_or_it_is_refused(drawn):
     assert distance_from_path(np.concatenate([s.points(40) for s in shapes]), made).max() <= 0.0053
 
 
-def test_every_piece_lasts_as_long_as_its_path_at_the_feed():
+def test_every_segment_lasts_as_long_as_its_path_at_the_feed():
     shapes = [Straight(40 + 8j, 15 + 0j), Straight(15 + 0j, 15 - 20j), Straight(15 - 20j, -9 - 20j)]
     contour = contour_of(8.0, shapes)
     planned = plan(contour, LATHE._replace(beside=8.0), c=0.0)
     x, c, seconds = 40.0, 0.0, 0.0
-    for to_x, to_c, _, feed in (piece for run in planned.steps for piece in run.pieces):
+    for to_x, to_c, _, feed in (segment for run in planned.steps for segment in run.segments):
         seconds += (abs(to_x - x) or abs(to_c - c)) / feed * 60
         x, c = to_x, to_c
     assert seconds == pytest.approx(sum(shape.length for shape in shapes) / 250 * 60, rel=1e-3)
-    assert max(len(run.pieces) for run in planned.steps) < 40
+    assert max(len(run.segments) for run in planned.steps) < 40
 
 
 def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
@@ -117,7 +117,7 @@ def test_z_goes_down_and_up_beside_x_s_line_as_on_it():
     for line, z in enumerate((-1.0, -2.0, 5.0), 2):
         contour.line(z=z, line=line, feed=60.0)
     _, *plunges = plan(contour, LATHE._replace(beside=8.0), c=0.0).steps
-    assert [(run.axes, run.pieces[0][2], run.stop) for run in plunges] == [
+    assert [(run.axes, run.segments[0][2], run.stop) for run in plunges] == [
         ("Z", -1.0, False),
         ("Z", -2.0, False),
         ("Z", 5.0, True),
@@ -138,14 +138,14 @@ def test_z_goes_down_and_up_beside_x_s_line_as_on_it():
         Round(30 + 0j, 0j, -2 * math.pi),
     ],
 )
-def test_a_tool_hardly_beside_its_line_needs_the_same_pieces_as_one_on_it(shape, feed, quick):
+def test_a_tool_hardly_beside_its_line_needs_the_same_segments_as_one_on_it(shape, feed, quick):
     """For an even feed at F60, or, if the axes are too slow for that, for the tolerance alone."""
     machine = LATHE._replace(x_acceleration=1000.0 * quick, c_acceleration=3600.0 * quick)
-    on_line = plan(programmed([shape], feed=feed), machine, c=0.0).steps[0].pieces
+    on_line = plan(programmed([shape], feed=feed), machine, c=0.0).steps[0].segments
     contour = Contour(shape.start.real, 0.0, beside=1e-4)
     contour.line(c=0.0, line=1, feed=feed)
     add(contour, shape, line=2, feed=feed)
-    beside = plan(contour, machine._replace(beside=1e-4), c=0.0).steps[-1].pieces
+    beside = plan(contour, machine._replace(beside=1e-4), c=0.0).steps[-1].segments
     assert len(beside) == len(on_line)
     for one, other in zip(on_line, beside):
         assert other[:2] == pytest.approx(one[:2], rel=0.01, abs=0.05)
@@ -184,9 +184,9 @@ def test_kinds_of_steps():
     for line, (x, c) in enumerate([(30, 20), (-30, 20), (-30, 0)], 7):
         contour.line(x, c, line=line, feed=2000.0)
     face = plan(contour, LATHE._replace(beside=8.0, face=LIMITS._replace(beside=8.0)), c=10.0)
-    pieces = plan(contour, LATHE._replace(beside=8.0), c=10.0)
-    assert {type(step) for step in pieces.steps} == {BlockMoves}
+    segments = plan(contour, LATHE._replace(beside=8.0), c=10.0)
+    assert {type(step) for step in segments.steps} == {BlockMoves}
     assert not {type(step) for step in face.steps} & {BlockMoves}
-    assert face.place == pytest.approx(pieces.place)
+    assert face.place == pytest.approx(segments.place)
     slide = math.sqrt(30**2 - 8**2)
     assert face.place[:2] == pytest.approx((slide, 190 - math.degrees(math.atan2(8, slide))))

@@ -89,14 +89,14 @@ def test_arcs_on_the_face_leave_the_machine_at_their_end():
     made = plan(drawn, SETTINGS, c=10.0)
     there, arc_on, line_on, back = made.steps
     for step, (x, c), z in ((arc_on, (40, 20), 0.0), (line_on, (40, 30), -1.0)):
-        assert step.pieces[-1] == pytest.approx((hypot(x, c), 10 + degrees(atan2(c, x)), z))
-    assert len(arc_on.pieces) > 40
-    assert made.place == pytest.approx(line_on.pieces[-1])
+        assert step.segments[-1] == pytest.approx((hypot(x, c), 10 + degrees(atan2(c, x)), z))
+    assert len(arc_on.segments) > 40
+    assert made.place == pytest.approx(line_on.segments[-1])
     assert (there.place, back.place) == ((60.0, 10.0, 0.0), made.place)
     assert abs(line_on.move.start) == pytest.approx(hypot(40, 20))
 
 
-def test_the_part_beside_the_pole_is_made_of_pieces_and_the_face_begins_anew():
+def test_the_part_beside_the_pole_is_made_of_segments_and_the_face_begins_anew():
     made = plan(contour((30, 20), (0.2, 20), (0.2, -30), (30, -30), (30, 0)), SETTINGS, c=0.0)
     assert [step.on for step in made.steps if isinstance(step, FaceSwitch)] == [True, False] * 2
     assert {step.line for step in made.steps if isinstance(step, BlockMoves)} == {9}
@@ -107,7 +107,7 @@ def test_the_part_beside_the_pole_is_made_of_pieces_and_the_face_begins_anew():
     assert 0.2 < again.move.start.real < hypot(3, 30)
 
 
-def test_without_kinematics_all_is_pieces():
+def test_without_kinematics_all_is_segments():
     made = plan(contour((30, 20), (-30, 20)), SETTINGS._replace(face=None), c=0.0)
     assert {type(step) for step in made.steps} == {BlockMoves}
 
@@ -118,6 +118,6 @@ def test_a_plunge_on_the_face_keeps_x_and_c():
     made = plan(drawn, SETTINGS, c=10.0)
     down, back = made.steps[-2:]
     assert down.move == Plunge(9, 500.0, 0.0, -1.0)
-    assert [pytest.approx((hypot(30, 20), 10 + degrees(atan2(20, -30)), -1.0))] == down.pieces
+    assert [pytest.approx((hypot(30, 20), 10 + degrees(atan2(20, -30)), -1.0))] == down.segments
     assert back == FaceSwitch(9, False, made.place)
     assert made.place.z == -1.0

@@ -48,7 +48,7 @@ def test_a_higher_feed_needs_more_room():
     assert not is_able(fast, LIMITS)
 
 
-def test_no_limits_no_pieces():
+def test_no_limits_no_segments():
     free = LIMITS._replace(c_acceleration=inf, c_speed=inf, slide_acceleration=inf)
     assert is_able(line((0.001, -20), (0.001, 20)), free)
 

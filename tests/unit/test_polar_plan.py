@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Polar planning, whole sections: the contour is cut, at its feed, in as few pieces as can be."""
+"""Polar planning, whole sections: the contour is cut, at its feed, in as few segments as can be."""
 
 import cmath
 import math
@@ -20,7 +20,7 @@ from support.planned_cuts import SAGITTA, cuts, path, programmed
 TOLERANCE = 0.005
 LATHE = PolarSettings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
 EXACT = LATHE._replace(least_x=1e-9)  # nothing is handed on, so that all of the deviation is seen
-DRIVEN = EXACT._replace(x_acceleration=1e-3, c_acceleration=1e-3)  # no pieces for an even speed
+DRIVEN = EXACT._replace(x_acceleration=1e-3, c_acceleration=1e-3)  # no segments for an even speed
 
 coordinate = st.floats(-30.0, 30.0) | st.sampled_from([0.0, 1e-9, 0.001, -0.004, 0.02, 1.0, -7.0])
 point = st.builds(complex, coordinate, coordinate)
@@ -96,7 +96,7 @@ def test_turns_without_a_jump_and_never_to_negative_x(shapes):
 
 
 def deviation(shape, settings=EXACT, feed=250.0):
-    """Return how far the pieces are off a shape that begins anywhere."""
+    """Return how far the segments are off a shape that begins anywhere."""
     start = abs(shape.start)
     shape = shape.turned(start / shape.start)
     contour = programmed([shape], feed=feed)
@@ -128,14 +128,14 @@ def test_arcs_beside_the_pole(beside, radius):
 @pytest.mark.parametrize("beside", [0.0026, 0.003, -0.003, 0.1])
 @pytest.mark.parametrize("radius", [2.5e4, 2.5e5, 9e5])
 def test_arcs_beside_the_pole_that_are_nearly_lines(radius, beside):
-    """In as few pieces as a line: rounding must not make of 1e-12 of the radius what it likes."""
+    """In as few segments as a line: rounding must not make of 1e-12 of the radius what it likes."""
     away, reach = radius - beside, math.sqrt(400.0 + 2 * radius * abs(beside))
     height = math.sqrt(radius * radius - reach * reach) - away
     arc = Round(reach + 1j * height, -1j * away, 2 * math.asin(reach / radius))
     assert deviation(arc) <= TOLERANCE
     contour = programmed([arc.turned(abs(arc.start) / arc.start)])
     (run,) = runs(plan(contour, EXACT, c=0.0))
-    assert len(run.pieces) <= 45
+    assert len(run.segments) <= 45
 
 
 @pytest.mark.parametrize("away", [0.0023, 0.003, 0.006, 0.02, 0.05, 0.1, 0.25, 0.6, 1.5])
@@ -154,11 +154,11 @@ def test_a_short_line_is_split_for_an_even_feed():
     assert all(speed == pytest.approx(100.0, rel=0.011) for cut in made for speed in cut.speeds)
 
 
-@pytest.mark.parametrize(("feed", "pieces"), [(60.0, 27), (250.0, 21), (1000.0, 21)])
-def test_an_even_feed_is_held_where_the_machine_is_quick_enough(feed, pieces):
-    """X has 1000 mm/s²: at F250 it takes 8 ms to gather speed, and the pieces near X0 are short."""
+@pytest.mark.parametrize(("feed", "segments"), [(60.0, 27), (250.0, 21), (1000.0, 21)])
+def test_an_even_feed_is_held_where_the_machine_is_quick_enough(feed, segments):
+    """X has 1000 mm/s²: at F250 it takes 8 ms to speed up, and the segments near X0 are short."""
     run = plan(programmed([Straight(1 + 0j, 20 + 20j)], feed=feed), LATHE, c=0.0).steps[0]
-    assert len(run.pieces) == pieces
+    assert len(run.segments) == segments
 
 
 @pytest.mark.parametrize("length", [0.1 * count for count in range(1, 40)])
@@ -197,8 +197,8 @@ def test_inches_make_the_same_moves():
     in_inches = runs(plan(programmed(small, feed=10.0), inch, c=0.0))
     assert len(in_mm) == len(in_inches) >= 3
     for one, other in zip(in_mm, in_inches):
-        assert len(one.pieces) == len(other.pieces)
-        for (x, c, _, _), (x_inch, c_inch, _, _) in zip(one.pieces, other.pieces):
+        assert len(one.segments) == len(other.segments)
+        for (x, c, _, _), (x_inch, c_inch, _, _) in zip(one.segments, other.segments):
             assert (x_inch * 25.4, c_inch) == pytest.approx((x, c), abs=1e-7)
 
 
@@ -226,7 +226,7 @@ def is_small(shape):
 
 @settings(max_examples=100, deadline=None)
 @given(drawings(), st.floats(20.0, 2000.0))
-def test_every_piece_lasts_as_long_as_its_path_at_the_feed(shapes, feed):
+def test_every_segment_lasts_as_long_as_its_path_at_the_feed(shapes, feed):
     contour = programmed(shapes, feed=feed)
     for cut in cuts(contour, plan(contour, EXACT, c=0.0)):
         if min(cut.radius) > 0.5 and not is_small(shapes[cut.line - 1]):
@@ -235,7 +235,7 @@ def test_every_piece_lasts_as_long_as_its_path_at_the_feed(shapes, feed):
 
 @settings(max_examples=100, deadline=None)
 @given(drawings())
-def test_the_feed_is_even_inside_a_piece_where_the_machine_can_hold_it(shapes):
+def test_the_feed_is_even_inside_a_segment_where_the_machine_can_hold_it(shapes):
     contour = programmed(shapes, feed=100.0)
     for cut in cuts(contour, plan(contour, EXACT, c=0.0)):
         if min(cut.radius) > 2.0 and not is_small(shapes[cut.line - 1]):
@@ -243,21 +243,21 @@ def test_the_feed_is_even_inside_a_piece_where_the_machine_can_hold_it(shapes):
 
 
 @pytest.mark.parametrize(
-    ("feed", "pieces"), [(600.0, [24, 25]), (1200.0, [16, 17]), (3000.0, [10, 11])]
+    ("feed", "segments"), [(600.0, [24, 25]), (1200.0, [16, 17]), (3000.0, [10, 11])]
 )
-def test_for_an_even_feed_pieces_are_no_shorter_than_the_machine_can_follow(feed, pieces):
+def test_for_an_even_feed_segments_are_no_shorter_than_the_machine_can_follow(feed, segments):
     # twice the square of the feed by the acceleration of X or C: at F3000 the tolerance decides
     contour = programmed([Straight(20 + 0j, 2 + 8j), Straight(2 + 8j, -20 + 9j)], feed=feed)
     planned = plan(contour, LATHE._replace(tolerance=0.05), c=0.0)
-    assert [len(run.pieces) for run in runs(planned)] == pieces
+    assert [len(run.segments) for run in runs(planned)] == segments
 
 
-def test_what_the_pieces_leave_over_of_x_comes_last_and_stops():
-    # a quarter turn about a centre 0.0002 beside the spindle: no piece changes X by 0.001
+def test_what_the_segments_leave_over_of_x_comes_last_and_stops():
+    # a quarter turn about a centre 0.0002 beside the spindle: no segment changes X by 0.001
     shape = Round(20 + 0j, 0.0002 + 0j, math.pi / 2)
     *turned, last = runs(plan(programmed([shape]), LATHE, c=0.0))
-    assert {x for run in turned for x, *_ in run.pieces} == {20.0}
-    ((x, *_),) = last.pieces
+    assert {x for run in turned for x, *_ in run.segments} == {20.0}
+    ((x, *_),) = last.segments
     assert x == pytest.approx(abs(shape.end), abs=1e-9) and last.stop
 
 
@@ -272,11 +272,11 @@ def test_a_helix_has_its_feed_in_space():
     assert planned.place.z == -22.0
 
 
-# In as few pieces as can be.
+# In as few segments as can be.
 
 
 def fewest(shape, bulge):
-    """Count the longest pieces with both ends on the shape that bulge by no more than that."""
+    """Count the longest segments with both ends on the shape that bulge by no more than that."""
     points, start, count = shape.points(4001), 0, 0
     radius, angle = abs(points), np.unwrap(np.angle(points))
     while start < 4000:
@@ -297,8 +297,8 @@ def fewest(shape, bulge):
 
 @settings(max_examples=40, deadline=None)
 @given(drawings(most=1))
-def test_no_splitting_needs_many_pieces_less(shapes):
-    """No path within the tolerance on both sides has pieces that bulge by more than twice of it.
+def test_no_splitting_needs_many_segments_less(shapes):
+    """No path within the tolerance on both sides has segments that bulge by more than twice of it.
 
     Three quarters of that are left by the blending, the share of the tolerance takes the rest.
     """
@@ -306,15 +306,15 @@ def test_no_splitting_needs_many_pieces_less(shapes):
     end, before = shapes[0].end, shapes[0].points(10001)[-2]
     tangent = Straight(end, end + (end - before) / abs(end - before))
     planned = plan(programmed([*shapes, tangent]), DRIVEN, c=0.0)
-    pieces = sum(len(run.pieces) for run in runs(planned) if run.line == 1)
-    assert pieces <= 1.21 * fewest(shapes[0], 2 * TOLERANCE) + 5
+    segments = sum(len(run.segments) for run in runs(planned) if run.line == 1)
+    assert segments <= 1.21 * fewest(shapes[0], 2 * TOLERANCE) + 5
 
 
 def bulge(x):
     return x[len(x) // 2] - (x[0] + x[-1]) / 2
 
 
-def test_pieces_of_a_line_share_the_deviation():
+def test_segments_of_a_line_share_the_deviation():
     side = Straight(20 - 12j, 20 + 12j)
     contour = programmed([Straight(abs(side.start) + 0j, side.start), side])
     made = [cut for cut in cuts(contour, plan(contour, DRIVEN, c=0.0)) if cut.line == 2]
@@ -322,7 +322,7 @@ def test_pieces_of_a_line_share_the_deviation():
     assert max(bulges) / min(bulges) < 1.1
 
 
-def test_pieces_use_the_tolerance_but_for_what_a_stop_takes():
+def test_segments_use_the_tolerance_but_for_what_a_stop_takes():
     side, on = Straight(20 + 0j, 20 + 30j), Straight(20 + 30j, 20 + 31j)
     for shapes, least, most in (([side], 0.55, 0.7), ([side, on], 0.75, 0.96)):
         contour = programmed(shapes)
@@ -331,11 +331,11 @@ def test_pieces_use_the_tolerance_but_for_what_a_stop_takes():
 
 
 @pytest.mark.parametrize(("feed", "most"), [(1000.0, 168), (250.0, 168)])
-def test_hexagon_needs_fewer_pieces_than_the_longest_piece_that_fits(feed, most):
-    """27 mm across flats, 12 mm cutter: the longest pieces of half the deviation are 246."""
+def test_hexagon_needs_fewer_segments_than_the_longest_segment_that_fits(feed, most):
+    """27 mm across flats, 12 mm cutter: the longest segments of half the deviation are 246."""
     planned = plan(hexagon(feed), LATHE, c=0.0)
     cut = [run for run in runs(planned) if 4 <= run.line <= 10]
-    assert sum(len(run.pieces) for run in cut) <= most
+    assert sum(len(run.segments) for run in cut) <= most
 
 
 def hexagon(feed, flat=13.5, tool=6.0):
@@ -357,24 +357,24 @@ def hexagon(feed, flat=13.5, tool=6.0):
     return contour
 
 
-@pytest.mark.parametrize(("away", "pieces"), [(2.0, 36), (5.0, 56), (9.0, 72)])
-def test_a_circle_beside_the_spindle_needs_no_more_pieces_where_it_curves_like_a_spiral(
-    away, pieces
+@pytest.mark.parametrize(("away", "segments"), [(2.0, 36), (5.0, 56), (9.0, 72)])
+def test_a_circle_beside_the_spindle_needs_no_more_segments_where_it_curves_like_a_spiral(
+    away, segments
 ):
     circle = Round(complex(away + 10), complex(away), 2 * math.pi)
-    assert len(runs(plan(programmed([circle]), DRIVEN, c=0.0))[0].pieces) <= pieces
+    assert len(runs(plan(programmed([circle]), DRIVEN, c=0.0))[0].segments) <= segments
 
 
-def test_a_circle_about_the_spindle_is_one_piece():
+def test_a_circle_about_the_spindle_is_one_segment():
     contour = programmed([Round(10 + 0j, 0j, -2 * math.pi)], feed=300.0)
     (run,) = runs(plan(contour, LATHE, c=15.0))
-    ((x, c, z, feed),) = run.pieces
+    ((x, c, z, feed),) = run.segments
     assert (x, z) == (10.0, 0.0)
     assert c == pytest.approx(-345.0)
     assert feed == pytest.approx(300.0 / 10.0 * 180.0 / math.pi)
 
 
-def test_a_radius_is_one_piece():
+def test_a_radius_is_one_segment():
     contour = programmed([Straight(10 + 0j, 25 + 0j)], feed=300.0)
     assert runs(plan(contour, LATHE, c=0.0)) == [
         BlockMoves(1, "XC", [(25.0, 0.0, 0.0, 300.0)], True)
@@ -385,16 +385,16 @@ def test_a_radius_does_not_turn_c_by_rounding():
     third = cmath.rect(10.0, math.pi / 3)
     shapes = [Round(10 + 0j, 0j, math.pi / 3), Straight(third, 2 * third)]
     around, outwards = runs(plan(programmed(shapes), LATHE, c=0.1))
-    assert [piece[1] for piece in outwards.pieces] == [around.pieces[-1][1]]
+    assert [segment[1] for segment in outwards.segments] == [around.segments[-1][1]]
 
 
 def test_what_x_was_left_over_is_made_up_at_the_end():
     contour = programmed([Round(10 + 0j, 0.0004 + 0j, math.pi / 2)])
     around, rest = runs(plan(contour, LATHE, c=0.0))
-    (end,) = rest.pieces
-    assert around.pieces[-1][0] == 10.0
+    (end,) = rest.segments
+    assert around.segments[-1][0] == 10.0
     assert end[0] == math.hypot(contour.x, contour.c)
-    assert end[1] == around.pieces[-1][1]
+    assert end[1] == around.segments[-1][1]
 
 
 def test_what_was_left_over_is_made_up_at_the_feed_of_the_last_move():
@@ -403,18 +403,18 @@ def test_what_was_left_over_is_made_up_at_the_feed_of_the_last_move():
     end = Round(10 + 0j, 0.0004 + 0j, math.pi / 2).end
     contour.arc(1, end.real, end.imag, i=-9.9996, line=2, feed=250.0)
     rest = runs(plan(contour, LATHE, c=0.0))[-1]
-    assert (rest.line, len(rest.pieces), rest.pieces[0][3]) == (2, 1, 250.0)
+    assert (rest.line, len(rest.segments), rest.segments[0][3]) == (2, 1, 250.0)
 
 
-@pytest.mark.parametrize(("length", "pieces"), [(0.3, 1), (0.35, 2)])
-def test_a_line_beside_the_pole_is_one_piece_up_to_its_deviation(length, pieces):
-    """Square to the radius 5: a whole piece bulges by its length squared through 8 radii."""
+@pytest.mark.parametrize(("length", "segments"), [(0.3, 1), (0.35, 2)])
+def test_a_line_beside_the_pole_is_one_segment_up_to_its_deviation(length, segments):
+    """Square to the radius 5: a whole segment bulges by its length squared through 8 radii."""
     half = 0.5 * length
     first, last = 5 - 1j * half, 5 + 1j * half
     corners = [abs(first) + 0j, first, last, 9 + 9j]
     contour = programmed([Straight(*ends) for ends in zip(corners, corners[1:])])
     (made,) = (run for run in runs(plan(contour, DRIVEN, c=0.0)) if run.line == 2)
-    assert len(made.pieces) == pieces
+    assert len(made.segments) == segments
 
 
 def test_repeated_points_are_harmless():
@@ -444,24 +444,24 @@ def test_a_slot_through_the_pole_does_not_wind_c_up():
 def test_turns_the_shorter_way_at_the_pole():
     bent = [Straight(10 + 0j, 0j), Straight(0j, 0 - 5j)]
     planned = plan(programmed(bent), LATHE, c=0.0)
-    assert runs(planned)[1].pieces == [(0.0, -90.0, 0.0, 21600.0)]
+    assert runs(planned)[1].segments == [(0.0, -90.0, 0.0, 21600.0)]
 
 
 def test_reverses_at_the_pole_without_a_turn():
     bent = [Straight(10 + 0j, 0j), Straight(0j, 5 + 0j)]
     planned = plan(programmed(bent), LATHE, c=0.0)
-    assert [run.pieces[-1][:2] for run in runs(planned)] == [(0.0, 0.0), (5.0, 0.0)]
+    assert [run.segments[-1][:2] for run in runs(planned)] == [(0.0, 0.0), (5.0, 0.0)]
 
 
 def test_a_circle_through_the_pole_turns_half_a_turn_there():
     planned = plan(programmed([Round(10 + 0j, 5 + 0j, 2 * math.pi)]), LATHE, c=0.0)
-    (turn,) = [run for run in runs(planned) if run.pieces[0][3] == LATHE.c_speed]
+    (turn,) = [run for run in runs(planned) if run.segments[0][3] == LATHE.c_speed]
     half, last = runs(planned).index(turn), runs(planned)[-1]
-    assert runs(planned)[half - 1].pieces[-1][:2] == pytest.approx((0.0, 90.0), abs=1.0)
-    assert turn.pieces[0][1] - runs(planned)[half - 1].pieces[-1][1] == pytest.approx(
+    assert runs(planned)[half - 1].segments[-1][:2] == pytest.approx((0.0, 90.0), abs=1.0)
+    assert turn.segments[0][1] - runs(planned)[half - 1].segments[-1][1] == pytest.approx(
         -180.0, abs=2.0
     )
-    assert last.pieces[-1][:2] == pytest.approx((10.0, 0.0))
+    assert last.segments[-1][:2] == pytest.approx((10.0, 0.0))
 
 
 @pytest.mark.parametrize("shape", [Straight(9 + 0j, -9 + 0.003j), Round(9 + 0j, 4.501 + 0j, 5.0)])
@@ -508,7 +508,7 @@ def test_a_corner_is_rounded_by_half_the_tolerance_at_most(feed, stop):
     assert [run.stop for run in runs(plan(contour, LATHE, c=0.0))] == [stop, True]
 
 
-def test_marks_keep_their_place_and_pieces_their_lines():
+def test_marks_keep_their_place_and_segments_their_lines():
     contour = Contour(10.0, 2.0)
     contour.mark("M8", line=1)
     contour.line(12.0, 0.0, line=2, feed=100.0)
@@ -547,16 +547,18 @@ def test_the_next_section_begins_where_c_stands():
     second.line(z=-2.0, line=2, feed=60.0)
     (run,) = runs(plan(second, LATHE, c=30.0))
     assert run.axes == "Z"
-    assert run.pieces[0][1] == first.place.c == pytest.approx(30 + math.degrees(math.atan2(10, 5)))
+    assert (
+        run.segments[0][1] == first.place.c == pytest.approx(30 + math.degrees(math.atan2(10, 5)))
+    )
 
 
-def test_what_the_pieces_leave_over_of_both_slides_comes_last():
+def test_what_the_segments_leave_over_of_both_slides_comes_last():
     contour = Contour(10.0, 0.0)
     end = Round(10 + 0j, 0.0004 + 0j, math.pi / 2).end
     contour.arc(1, end.real, end.imag, 0.0003, i=-9.9996, line=2, feed=250.0)
     *_, rest = runs(plan(contour, LATHE, c=0.0))
     assert (rest.axes, rest.stop) == ("XZ", True)
-    assert (rest.pieces[0][0], rest.pieces[0][2]) == (abs(end), 0.0003)
+    assert (rest.segments[0][0], rest.segments[0][2]) == (abs(end), 0.0003)
     contour = Contour(10.0, 0.0)
     contour.arc(1, 0.0, 10.0, 0.0003, i=-10.0, line=2, feed=250.0)
     assert runs(plan(contour, LATHE, c=0.0))[-1].axes == "Z"
@@ -570,8 +572,8 @@ def test_z_alone_is_a_section_too():
     assert planned.place == (10.0, 15.0, -3.0)
 
 
-def test_pieces_that_keep_x_stay_within_the_tolerance():
-    """Two circles, one after the other: without a stop pieces are as far off as they may be."""
+def test_segments_that_keep_x_stay_within_the_tolerance():
+    """Two circles, one after the other: without a stop segments are as far off as they may be."""
     centre, size = 30.8521 - 0.1765j, abs(5.3802 - 0.1765j)
     contour = Contour(25.4718, 0.0)
     for line in (1, 2):
@@ -589,14 +591,14 @@ def test_nothing_is_no_motion():
     ("stop", "kept", "share"),
     [(True, 0.0, 0.7), (False, 0.0, 0.96), (True, 0.2, 0.7), (False, 0.2, 0.768), (True, 2, 0.48)],
 )
-def test_how_far_off_pieces_may_be(stop, kept, share):
+def test_how_far_off_segments_may_be(stop, kept, share):
     """By what is left of the tolerance where a slide is kept, half of it at the least."""
     deviation = chord_deviation(TOLERANCE, stop, kept * TOLERANCE)
     assert deviation == pytest.approx(share * TOLERANCE)
 
 
-def test_what_limits_the_pieces_at_a_feed():
-    """Pieces are no shorter than the way on which X or C gathers the speed and loses it."""
+def test_what_limits_the_segments_at_a_feed():
+    """Segments are no shorter than the way on which X or C gathers the speed and loses it."""
     machine = _SlideAndSpindle(Contour(10.0, 0.0), LATHE, 0.0)
     deviation, ripple, x_hold, c_hold = machine._law(600.0, 0.003)
     assert (deviation, ripple) == (0.003, 0.01)

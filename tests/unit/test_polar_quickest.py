@@ -66,16 +66,16 @@ def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
     there, *beside, back = shares_of(made)
     assert there == back > 0.0 in beside
     assert made.stopping == [*[False] * (len(made.path) - 1), True]
-    in_pieces = [part for part, share in zip(made.path, shares_of(made)) if not share]
-    assert [part.feed for part in in_pieces] == [3000.0]
-    assert in_pieces[0].length < 40
+    in_segments = [part for part, share in zip(made.path, shares_of(made)) if not share]
+    assert [part.feed for part in in_segments] == [3000.0]
+    assert in_segments[0].length < 40
     for before, after in zip(made.path, made.path[1:]):
         assert before.end == pytest.approx(after.start)
 
 
-def test_the_quicker_pieces_are_the_more_is_made_of_them():
+def test_the_quicker_segments_are_the_more_is_made_of_them():
     def on_face(speed):
-        made = made_of([line((-90, 2), (90, 2), feed=3000.0)], QUICK._replace(pieces_speed=speed))
+        made = made_of([line((-90, 2), (90, 2), feed=3000.0)], QUICK._replace(segments_speed=speed))
         return sum(part.length for part, share in zip(made.path, shares_of(made)) if share)
 
     assert on_face(1.0) > on_face(20.0) > on_face(80.0)

@@ -134,7 +134,7 @@ def test_what_the_axes_of_the_face_allow(override, kept):
         c_acceleration=radians(700.0),
         c_speed=radians(50.0),
         override=kept,
-        pieces_speed=pytest.approx(0.7 * sqrt(20.0 * INCH * chord)),
+        segments_speed=pytest.approx(0.7 * sqrt(20.0 * INCH * chord)),
     )
     assert polar_setup(start, Settings(), axes, FaceAxes(x, y, slide, 1.0)).plan.face is None
 

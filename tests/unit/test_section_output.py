@@ -102,15 +102,15 @@ def handed_over(steps, interp=None, modes=MODES, exact=(), x_factor=1.0):
     return interp
 
 
-def run(stop=False, line=7, axes="XC", pieces=LINE):
-    return BlockMoves(line, axes, pieces, stop)
+def run(stop=False, line=7, axes="XC", segments=LINE):
+    return BlockMoves(line, axes, segments, stop)
 
 
 SMOOTH, OLD = "G64P0.0025Q0", "G64P0Q0"
 RELEASED = ["F100", "G90"]
 
 
-def test_pieces_run_under_g64_with_a_tolerance_and_the_old_one_comes_back():
+def test_segments_run_under_g64_with_a_tolerance_and_the_old_one_comes_back():
     assert handed_over([run()]).done == [SMOOTH, FIRST, *NEXT, OLD, *RELEASED]
 
 
@@ -138,7 +138,7 @@ def test_a_programmed_tolerance_is_kept():
     [(0.0, 0.0, SMOOTH), (0.0254, 0.0, SMOOTH), (0.0254, 0.0254, None), (0.02, 0.0, None)],
 )
 def test_on_the_face_the_tolerance_that_linuxcnc_starts_with_is_none(tolerance, merging, blended):
-    """Between pieces of C it may stay: P does nothing there."""
+    """Between segments of C it may stay: P does nothing there."""
     interp = Interpreter(tolerance=tolerance, merging=merging)
     path = PathControl(interp, SMOOTH, 0.0254)
     path.on_face()
@@ -183,7 +183,7 @@ def test_every_move_has_the_line_of_its_block():
     assert [line for text, line in zip(interp.done, interp.lines) if is_move(text)] == [7, 7, 9, 9]
 
 
-def test_c_is_not_wrapped_while_pieces_go_out():
+def test_c_is_not_wrapped_while_segments_go_out():
     interp = handed_over([run()])
     assert [on for text, on in zip(interp.done, interp.wrapped) if is_move(text)] == [False, False]
     assert interp.c_axis_wrapped is True
@@ -191,7 +191,7 @@ def test_c_is_not_wrapped_while_pieces_go_out():
 
 
 def test_axes_and_diameters():
-    steps = [run(axes="Z", pieces=[(10.0, 0.0, -2.0, 50.0)]), run(axes="XCZ", pieces=LINE[:1])]
+    steps = [run(axes="Z", segments=[(10.0, 0.0, -2.0, 50.0)]), run(axes="XCZ", segments=LINE[:1])]
     assert handed_over(steps, x_factor=2.0).done[1:3] == [
         written(Z=-2, F=50),
         written(X=20, C=0.5, Z=0, F=250),
@@ -240,7 +240,7 @@ def test_saved_state_is_that_of_its_call_level():
 
 
 def test_a_block_ends_where_it_is_marked():
-    steps = [run(pieces=LINE[:1]), Action(7, BLOCK_END, None), run(pieces=LINE[1:])]
+    steps = [run(segments=LINE[:1]), Action(7, BLOCK_END, None), run(segments=LINE[1:])]
     done = handed_over(steps, exact={7}).done
     assert [what for what in done if what == "G61.1"] == ["G61.1"]
     assert done.index("G61.1") < done.index(FIRST)

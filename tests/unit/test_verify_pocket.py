@@ -60,8 +60,8 @@ def measure(moves, wanted, real_shift=None):
         real = follow(path, moves, samples_of(path, 8000, shift=real_shift), 1.0)
     block = Block(None, {}, (), (), (), {}, 1, len(moves))
     loaded = {1: 2 * wanted.cutter.loaded}
-    piece = assumed_workpiece(Program(moves, MILL, [(block, wanted)], [], loaded, real))
-    return measure_pocket(block, wanted, moves, piece.material, TOLERANCE, pace, real)
+    workpiece = assumed_workpiece(Program(moves, MILL, [(block, wanted)], [], loaded, real))
+    return measure_pocket(block, wanted, moves, workpiece.material, TOLERANCE, pace, real)
 
 
 def codes(moves, wanted, **options):

@@ -160,13 +160,13 @@ def test_the_tool_centre_on_the_contour():
     assert facts.size.reached[0] == pytest.approx(20, abs=1e-3)
 
 
-def test_coarse_pieces_stray_from_the_contour():
+def test_coarse_segments_stray_from_the_contour():
     turn = np.exp(1j * math.pi / 4)  # the plane turns with the part, which begins at C-45
     hand = Hand().rapid(x=abs(20 - 20j), c=-45.0).next_block().polar([20 + 5j, 20 + 20j])
     wall = line(2, (20 - 20j) * turn, (20 + 20j) * turn)
     facts = measure(hand, [wall], x=abs(20 - 20j))
     assert facts.deviation > 0.5
-    assert facts.pieces == 2 and facts.longest > facts.shortest > 10
+    assert facts.segments == 2 and facts.longest > facts.shortest > 10
 
 
 def test_an_unread_contour_is_no_proof():
@@ -271,9 +271,9 @@ def test_a_spiral_beside_the_centre_lasts_as_long_as_the_line_that_it_is_for(x, 
 
 @pytest.mark.parametrize(("share", "found"), [(0.98, True), (1.0, False), (1.02, True)])
 def test_chords_round_a_small_arc_last_as_long_as_it_does(share, found):
-    centre, radius, pieces = 20 + 0j, 0.125, 6
-    angle = math.pi / pieces
-    places = centre + radius * np.exp(1j * angle * np.arange(1, pieces + 1))
+    centre, radius, segments = 20 + 0j, 0.125, 6
+    angle = math.pi / segments
+    places = centre + radius * np.exp(1j * angle * np.arange(1, segments + 1))
     places[:-1] += (places[:-1] - centre) / radius * TOLERANCE  # outside of the arc
     start = centre + radius
     hand = Hand().rapid(x=start.real).next_block().polar(places)

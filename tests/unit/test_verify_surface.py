@@ -95,7 +95,7 @@ ASKED = drawn(30 + 0j, RISE)
 def test_a_groove_of_lines_is_exact():
     facts = facts_of(groove(), ASKED)
     assert findings(groove(), ASKED) == ""
-    assert facts.deviation < 1e-9 and facts.pieces == 2
+    assert facts.deviation < 1e-9 and facts.segments == 2
     assert facts.size.wanted == pytest.approx((0, 12))
     assert facts.size.reached == pytest.approx((0, 12))
     assert (facts.lowest, facts.start_height) == (DEPTH, AIR)
@@ -139,7 +139,7 @@ def arc(count, radius=10.0):
 
 
 @pytest.mark.parametrize(("count", "off"), [(40, 0.002), (4, 0.19)])
-def test_the_pieces_of_an_arc(count, off):
+def test_the_segments_of_an_arc(count, off):
     hand = Unrolled().down().cut(30 + 0j).cut(*arc(count)).up()
     line = drawn(30 + 0j)
     up = replace(line[2], start=QUARTER.end, end=QUARTER.end)

@@ -163,7 +163,7 @@ def _crossing(one: Curve, other: Curve) -> complex | None:
 
 
 def _is_joined(a: _Step, b: _Step, gap: float, sine: float, tolerance: float) -> bool:
-    """Return whether two parallels need no arc between them: it would be a very short piece."""
+    """Return whether two parallels need no arc between them: it would be a very short segment."""
     straight = isinstance(a.parallel, Line) and isinstance(b.parallel, Line)
     moved = gap * sine / 8.0
     return moved <= JOINED * tolerance and (straight or gap <= BESIDE * tolerance)

@@ -2,8 +2,8 @@
 """The plan of a section on a cylinder: moves of Z and C, with their feeds.
 
 With the radius r of the surface an angle of C is as long as r times the angle in radians. Z and
-that length are proportional to what the axes do: a line is one piece, exactly. The pieces of an arc
-bulge alike everywhere; spacing shares the deviation between them.
+that length are proportional to what the axes do: a line is one segment, exactly. The segments of an
+arc bulge alike everywhere; spacing shares the deviation between them.
 """
 
 import cmath
@@ -16,7 +16,7 @@ from g12.compensation.centre_path import centre_path
 from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Plunge
 from g12.geometry.curve import Arc
 from g12.moves.exact_stops import Direction, stops
-from g12.moves.feed import Split, pieces_with_feed
+from g12.moves.feed import Split, segments_with_feed
 from g12.moves.spacing import BULGE, Stretch, spaced
 from g12.moves.steps import (
     ROUNDING_SHARE,
@@ -25,7 +25,7 @@ from g12.moves.steps import (
     StepMaker,
 )
 
-FEWEST = 2.0  # pieces per radian of an arc: fewer would not be like it any more
+FEWEST = 2.0  # segments per radian of an arc: fewer would not be like it any more
 
 
 class CylinderSettings(NamedTuple):
@@ -33,7 +33,7 @@ class CylinderSettings(NamedTuple):
 
     radius: float  # of the surface
     tolerance: float
-    least_z: float  # 0.001 mm: no piece with a turn of C changes Z by less, other than not at all
+    least_z: float  # 0.001 mm: no segment with a turn of C changes Z by less, other than not at all
     x_acceleration: float  # per second squared
     z_acceleration: float
     c_acceleration: float  # degrees per second squared
@@ -78,11 +78,11 @@ class _Surface(StepMaker):
         self._settings = settings
 
     def cut(self, move: PlaneMove, stop: bool) -> None:
-        """Add the pieces of a move on the surface."""
+        """Add the segments of a move on the surface."""
         settings, (x, c, z) = self._settings, self.place
         split_by = partial(split_on_cylinder, move, settings.radius)
         split = self._split(move, split_by, settings.tolerance, stop, settings.least_z)
-        made = pieces_with_feed(split, (z, c, x), move, 0.0, settings.least_z)
+        made = segments_with_feed(split, (z, c, x), move, 0.0, settings.least_z)
         axes = "ZC" if move.z0 == move.z1 else "XZC"
         self._run(move.line, axes, [(x, c, z, feed) for z, c, x, feed in made], stop)
 
@@ -91,7 +91,7 @@ class _Surface(StepMaker):
         self._run(move.line, "X", [(move.z1, *self.place[1:], move.feed)], stop)
 
     def finish(self, path: Sequence[Element]) -> None:
-        """Add what the last pieces left over of Z and X."""
+        """Add what the last segments left over of Z and X."""
         x, z = self.place.x, self.place.z
         for element in path:
             x = x if isinstance(element, Mark) else element.z1
@@ -100,7 +100,7 @@ class _Surface(StepMaker):
 
 
 def split_on_cylinder(move: PlaneMove, radius: float, deviation: float) -> Split:
-    """Return the ends of the pieces of a move on the surface: Z, the angle of C, and the length."""
+    """Return where the segments of a move on the cylinder end: Z, the angle of C, the length."""
     if isinstance(move.curve, Arc):
         places, lengths = _along_arc(move.curve, deviation)
     else:
@@ -109,11 +109,11 @@ def split_on_cylinder(move: PlaneMove, radius: float, deviation: float) -> Split
 
 
 def _along_arc(arc: Arc, deviation: float) -> tuple[list[complex], list[float]]:
-    """Return the ends of an arc's pieces, and the length of the arc up to them."""
+    """Return the ends of an arc's segments, and the length of the arc up to them."""
     radius, turn = arc.radius, copysign(1.0, arc.sweep)
     bulging = sqrt(radius / (8.0 * BULGE * deviation))
-    pieces = max(bulging, FEWEST)
-    density = (pieces, (bulging / pieces) ** 2)
+    segments = max(bulging, FEWEST)
+    density = (segments, (bulging / segments) ** 2)
     stretch = Stretch(0.0, abs(arc.sweep), [], lambda _: 0.0)
     angles, shares = spaced(stretch, lambda _: density)
     outward = (arc.start - arc.centre) / radius

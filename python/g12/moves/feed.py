@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pieces with their F words.
+"""Segments with their F words.
 
 LinuxCNC in G94 takes F for the X and Z part of a move, or for degrees per minute where only C
-moves. Every piece gets the F that makes it last as long as its part of the path at the programmed
+moves. Every segment gets the F that makes it last as long as its part of the path at the programmed
 feed.
 
-Debian's 2.9.0~pre1 runs a piece too fast that moves a slide by next to nothing together with C. So
-a piece that would move it by less than ``least`` keeps it, to the last digit, and the next one
+Debian's 2.9.0~pre1 runs a segment too fast that moves a slide by next to nothing together with C.
+So a segment that would move it by less than ``least`` keeps it, to the last digit, and the next one
 takes the rest over.
 """
 
@@ -15,12 +15,14 @@ from typing import NamedTuple
 
 from g12.compensation.contour import PlaneMove
 
-Piece = tuple[float, float, float, float]  # of a move: where X, C and Z (or Z, C and X) end, and F
+Segment = tuple[
+    float, float, float, float
+]  # of a move: where X, C and Z (or Z, C and X) end, and F
 LEAST_TURN = 1e-9  # degrees: no turn at all
 
 
 class Split(NamedTuple):
-    """The ends of an element's pieces, its start first.
+    """The ends of an element's segments, its start first.
 
     Where the slide of the plane stands, angle of C in radians, continuous over the element, and
     length of the path up to there.
@@ -32,7 +34,7 @@ class Split(NamedTuple):
 
 
 def keeps_slide(split: Split, least: float) -> bool:
-    """Return whether a piece of an element turns C and moves the slide by less than the least."""
+    """Return whether a segment of an element turns C and moves the slide by less than the least."""
     slides, angles = split.slides, split.angles
     return any(
         abs(x1 - x0) < least and x1 != x0 and abs(a1 - a0) > LEAST_TURN
@@ -40,10 +42,10 @@ def keeps_slide(split: Split, least: float) -> bool:
     )
 
 
-def pieces_with_feed(
+def segments_with_feed(
     split: Split, start: tuple[float, float, float], move: PlaneMove, entry: float, least: float
-) -> list[Piece]:
-    """Return the pieces ``(slide, c, other, F)`` of a move that the machine makes from ``start``.
+) -> list[Segment]:
+    """Return the segments ``(slide, c, other, F)`` of a move that the machine makes from ``start``.
 
     ``start`` is where it stands: the plane's slide, C in degrees, and the other slide, which makes
     the move's z. ``entry`` is the C angle in degrees at the plane's zero angle.
@@ -51,7 +53,7 @@ def pieces_with_feed(
     x, c, z = start
     rise = (move.z1 - move.z0) / split.lengths[-1]
     feed = move.feed / hypot(1.0, rise)
-    pieces, done = [], 0.0
+    segments, done = [], 0.0
     for slide, angle, length in zip(split.slides[1:], split.angles[1:], split.lengths[1:]):
         to_c = entry + degrees(angle)
         turn = abs(to_c - c)
@@ -64,6 +66,6 @@ def pieces_with_feed(
             to_z = z
         distance = hypot(slide - x, to_z - z) or turn
         if distance:
-            pieces.append((slide, to_c, to_z, feed * distance / (length - done)))
+            segments.append((slide, to_c, to_z, feed * distance / (length - done)))
             x, c, z, done = slide, to_c, to_z, length
-    return pieces
+    return segments

@@ -11,7 +11,7 @@ from g12.moves.soft_limits import AxisScale, SoftLimits
 from g12.section.start import SectionStart, WordRules
 from g12.settings import Settings
 
-LEAST_MM = 0.001  # a smaller part of a slide makes LinuxCNC 2.9 get the feed of a piece wrong
+LEAST_MM = 0.001  # a smaller part of a slide makes LinuxCNC 2.9 get the feed of a segment wrong
 ROUNDING_MM = 1e-6  # of an offset that was given in another unit
 CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
 

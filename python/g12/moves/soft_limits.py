@@ -17,14 +17,14 @@ class AxisScale(NamedTuple):
 
 
 class Moving(Protocol):
-    """A step of a plan that moves axes: X, C and Z of each piece come first."""
+    """A step of a plan that moves axes: X, C and Z of each segment come first."""
 
     @property
     def line(self) -> int:
         """The line of the program."""
 
     @property
-    def pieces(self) -> Sequence[tuple[float, ...]]:
+    def segments(self) -> Sequence[tuple[float, ...]]:
         """Where the axes go, one after the other."""
 
 
@@ -75,10 +75,10 @@ class SoftLimits:
     def beyond(self, steps: Iterable[object]) -> Beyond | None:
         """Return the first move that leaves the travel of an axis, None if all stay within.
 
-        Steps without ``pieces`` move nothing.
+        Steps without ``segments`` move nothing.
         """
         runs = [step for step in steps if _moves(step)]
-        columns = zip(*(piece[:3] for run in runs for piece in run.pieces))
+        columns = zip(*(segment[:3] for run in runs for segment in run.segments))
         for (letter, limits), positions in zip(self._ranges, columns):
             if min(positions) < limits[0] or limits[1] < max(positions):
                 return self._first(runs, letter, limits)
@@ -87,10 +87,10 @@ class SoftLimits:
     def _first(self, runs: list[Moving], letter: str, limits: list[float]) -> Beyond:
         at = "XCZ".index(letter)
         line, position = next(
-            (run.line, piece[at])
+            (run.line, segment[at])
             for run in runs
-            for piece in run.pieces
-            if not limits[0] <= piece[at] <= limits[1]
+            for segment in run.segments
+            if not limits[0] <= segment[at] <= limits[1]
         )
         limit = limits[0] if position < limits[0] else limits[1]
         factor, offset = self._scales[letter]
@@ -100,4 +100,4 @@ class SoftLimits:
 
 
 def _moves(step: object) -> TypeGuard[Moving]:
-    return hasattr(step, "pieces")
+    return hasattr(step, "segments")

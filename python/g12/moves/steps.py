@@ -5,14 +5,14 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Start
-from g12.moves.feed import Piece, Split, keeps_slide
-from g12.moves.spacing import MOST_PIECES, TooManyPieces
+from g12.moves.feed import Segment, Split, keeps_slide
+from g12.moves.spacing import MOST_SEGMENTS, TooManySegments
 
 CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
 STOP_SHARE = (
     0.7  # of the tolerance: a move that stops starts quicker, and cuts deeper into the path
 )
-ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the pieces' own deviation
+ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the segments' own deviation
 LEFT_OVER = 1e-3  # of the least step of a slide: less than that is rounding
 
 
@@ -27,17 +27,17 @@ class Position(NamedTuple):
 class BlockMoves(NamedTuple):
     """G1 moves of one block, one after the other, all in G90 and G94.
 
-    ``axes`` are the words to write, as "XC", "XZC" or "Z". Each piece is
-    ``(x, c, z, feed)``: X radius value, C in degrees, continuous over the section (it may leave
-    0..360), and F as G94 wants it: for the X and Z part of the move, or in degrees per minute where
-    neither changes; it may be small, so write it with six significant digits. A piece that keeps a
-    slide where it is repeats the same number. With ``stop`` the last piece must end in an exact
-    stop (G61), because LinuxCNC would round the corner by more than the tolerance.
+    ``axes`` are the words to write, as "XC", "XZC" or "Z". Each segment is ``(x, c, z, feed)``: X
+    radius value, C in degrees, continuous over the section (it may leave 0..360), and F as G94
+    wants it: for the X and Z part of the move, or in degrees per minute where neither changes; it
+    may be small, so write it with six significant digits. A segment that keeps a slide where it is
+    repeats the same number. With ``stop`` the last segment must end in an exact stop (G61), because
+    LinuxCNC would round the corner by more than the tolerance.
     """
 
     line: int
     axes: str
-    pieces: list[Piece]
+    segments: list[Segment]
     stop: bool
 
 
@@ -68,13 +68,13 @@ class StepMaker:
         self.place = place
         self._contour = contour
 
-    def _run(self, line: int, axes: str, pieces: list[Piece], stop: bool) -> None:
-        if pieces:
-            self.steps.append(BlockMoves(line, axes, pieces, stop))
-            self.place = Position(*pieces[-1][:3])
+    def _run(self, line: int, axes: str, segments: list[Segment], stop: bool) -> None:
+        if segments:
+            self.steps.append(BlockMoves(line, axes, segments, stop))
+            self.place = Position(*segments[-1][:3])
 
     def _make_up(self, path: Sequence[Element], x: float, z: float, least: float) -> None:
-        """Add what the last pieces of a path left over of the slides, which belong at x and z."""
+        """Add what the last segments of a path left over of the slides, which belong at x and z."""
         there = {"X": x - self.place.x, "Z": z - self.place.z}
         axes = "".join(axis for axis, off in there.items() if abs(off) > LEFT_OVER * least)
         if axes:
@@ -91,25 +91,25 @@ class StepMaker:
     ) -> Split:
         """Return what ``split`` makes of a move; refuse one that would be cut too small.
 
-        That is asked for a deviation, once more where a piece would move its slide by less than
-        ``least``: such a piece keeps it, and is that much farther off.
+        That is asked for a deviation, once more where a segment would move its slide by less than
+        ``least``: such a segment keeps it, and is that much farther off.
         """
         try:
             made = split(chord_deviation(tolerance, stop))
             if keeps_slide(made, least):
                 made = split(chord_deviation(tolerance, stop, least))
             return made
-        except TooManyPieces:
+        except TooManySegments:
             self._contour.refuse(
                 move.line,
-                f"more than {MOST_PIECES} moves would be needed to stay within POLAR_TOLERANCE",
+                f"more than {MOST_SEGMENTS} moves would be needed to stay within POLAR_TOLERANCE",
             )
 
 
 def chord_deviation(tolerance: float, stop: bool, kept: float = 0.0) -> float:
-    """Return how far the pieces of a move may be off it; ``stop``: at its end.
+    """Return how far the segments of a move may be off it; ``stop``: at its end.
 
-    ``kept`` is by how much a piece that keeps a slide where it is may be off besides.
+    ``kept`` is by how much a segment that keeps a slide where it is may be off besides.
     """
     remaining = max(tolerance - kept, 0.5 * tolerance)
     return min((STOP_SHARE if stop else CHORD_SHARE) * tolerance, CHORD_SHARE * remaining)

@@ -11,6 +11,6 @@ are in program units throughout.
    the centre stays clear of it.
 3. `g12.moves.exact_stops`: where the tool must stop.
 4. ``face``: what LinuxCNC plans itself as lines and arcs, with the kinematics of the face.
-5. ``pieces``: of the rest the fewest straight moves in X and C that stay within the tolerance;
+5. ``segments``: of the rest the fewest straight moves in X and C that stay within the tolerance;
    `g12.moves.feed`: their F words.
 """

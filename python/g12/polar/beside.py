@@ -13,7 +13,7 @@ from the pole the slide has to stand at s, and C to be turned by less than the p
                  s
 
 A place nearer to the pole than ``beside`` cannot be reached at all, and none is tried: the path is
-farther from it by the tolerance, and pieces are off the path by less.
+farther from it by the tolerance, and segments are off the path by less.
 
 Where the path makes the angle p with e, a straight move of X and C has the curvature
 
@@ -32,8 +32,8 @@ from g12.errors import number
 from g12.geometry.curve import Arc, Curve, Line, angle_of
 from g12.moves.feed import Split
 from g12.moves.spacing import BULGE, Density, Stretch, spaced
-from g12.polar.pieces import Law
 from g12.polar.pole import POLE
+from g12.polar.segments import Law
 
 
 def stand(place: complex, beside: float) -> tuple[float, complex]:
@@ -66,7 +66,7 @@ def check_reach(contour: Contour, path: Sequence[Element], beside: float, tolera
 
 
 def split_beside(curve: Curve, law: Law, beside: float) -> Split:
-    """Return the pieces of a move of a tool beside the X line: where the slide stands, and C."""
+    """Return the segments of a move of a tool beside the X line: where the slide stands, and C."""
     length = curve.length
 
     def radius(at: float) -> float:
@@ -107,7 +107,7 @@ def _apsides(curve: Curve, length: float) -> list[float]:
 
 
 def _density(curve: Curve, law: Law, beside: float) -> Density:
-    """Return the pieces per unit of length, and the part of the deviation they use, to the left."""
+    """Return the segments per unit of length, and their share of the deviation (+ is left)."""
     length, even = curve.length, 0.5 / law.ripple
     own = copysign(1.0 / curve.radius, curve.sweep) if isinstance(curve, Arc) else 0.0
     bulging, flat = 1.0 / (8.0 * BULGE * law.deviation), 1.0 / (18.0 * BULGE * law.deviation)
@@ -119,11 +119,11 @@ def _density(curve: Curve, law: Law, beside: float) -> Density:
         bend, change = _curvature(slide, along, around, beside, own)
         wanted = sqrt(bulging * abs(bend - own))
         growth, turning = abs(along + beside / slide * around) / slide, abs(around) / slide
-        pieces = max(wanted, growth, turning, (flat * abs(change)) ** (1.0 / 3.0), 1.0 / length)
+        segments = max(wanted, growth, turning, (flat * abs(change)) ** (1.0 / 3.0), 1.0 / length)
         smooth = even * growth * around * around
-        if smooth > pieces:
-            pieces = max(pieces, min(smooth, law.x_hold, law.c_hold * slide))
-        return pieces, copysign((wanted / pieces) ** 2, bend - own)
+        if smooth > segments:
+            segments = max(segments, min(smooth, law.x_hold, law.c_hold * slide))
+        return segments, copysign((wanted / segments) ** 2, bend - own)
 
     return density
 

@@ -27,13 +27,13 @@ class FaceSwitch(NamedTuple):
 class FaceMove(NamedTuple):
     """A move on the face, in its X and Y: C's zero line is where C stood at the switch.
 
-    ``pieces`` are places that the machine passes, X (radius value), C in degrees and Z: the last
+    ``segments`` are places that the machine passes, X (radius value), C in degrees and Z: the last
     is the end, and no axis goes farther than they tell.
     """
 
     line: int
     move: PlaneMove | Plunge
-    pieces: list[tuple[float, float, float]]
+    segments: list[tuple[float, float, float]]
 
 
 def flows_into(move: object, following: object) -> bool:

@@ -37,7 +37,7 @@ LEAST_SPEED = 1e-3  # program units per second
 MOST_TURNING = 1e6  # radians for a unit of length: at the pole
 LEAST_SQUARE = 1e-12  # of p and q / R together: nothing is asked of an axis
 SLACK = 1.0 + 1e-9  # rounding: X and Y together may have just what the slide has
-PIECES, SOFT = 1.2, 4.0  # how pieces come near to their speed: measured on a circle
+SEGMENTS, SOFT = 1.2, 4.0  # how segments come near to their speed: measured on a circle
 
 
 class FaceLimits(NamedTuple):
@@ -49,7 +49,7 @@ class FaceLimits(NamedTuple):
     c_acceleration: float  # radians per second squared
     c_speed: float  # radians per second
     override: float  # the most that the operator may turn the feed up to
-    pieces_speed: float  # about what pieces reach far from the pole
+    segments_speed: float  # about what segments reach far from the pole
     slide_speed: float = inf
     beside: float = 0.0  # the X line is the tool, towards C+
 
@@ -59,7 +59,7 @@ class Demand(NamedTuple):
 
     ``part`` of the move lies in front of it. Of their speeds it asks for all at ``fastest``, of
     their accelerations p times the square of the speed and q times that along the path, ``axes``.
-    ``slowness`` is the time that pieces take about there, for a unit of length.
+    ``slowness`` is the time that segments take about there, for a unit of length.
     """
 
     part: float
@@ -128,14 +128,14 @@ def _seen(move: PlaneMove, part: float, limits: FaceLimits) -> Demand:
 
 
 def _slowness(turning: float, feed: float, limits: FaceLimits) -> float:
-    """Return about how long pieces take for a unit of length where C turns so much for it.
+    """Return about how long segments take for a unit of length where C turns so much for it.
 
-    ``pieces_speed`` is that where C accelerates as quickly as the slide. Nearer to the pole the
+    ``segments_speed`` is that where C accelerates as quickly as the slide. Nearer to the pole the
     chords are shorter, with the root of the distance, and C is slower.
     """
     even = limits.slide_acceleration / limits.c_acceleration
     slowest: float = max(1.0, even * turning) ** 0.75 / (
-        PIECES * max(limits.pieces_speed, LEAST_SPEED)
+        SEGMENTS * max(limits.segments_speed, LEAST_SPEED)
     )
     slowed: float = ((60.0 / feed) ** SOFT + slowest**SOFT) ** (1.0 / SOFT)
     return max(slowed, turning / limits.c_speed)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The plan of a polar section: pieces in X and C, with their feeds, in the order of the program."""
+"""The plan of a polar section: segments in X and C with their feeds, in program order."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import NamedTuple
 from g12.compensation.centre_path import centre_path
 from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Plunge
 from g12.moves.exact_stops import Direction, stops
-from g12.moves.feed import Split, pieces_with_feed
+from g12.moves.feed import Split, segments_with_feed
 from g12.moves.steps import (
     ROUNDING_SHARE,
     Position,
@@ -21,20 +21,20 @@ from g12.moves.steps import (
 from g12.polar.beside import along_and_around, check_reach, split_beside, stand
 from g12.polar.face import FaceMove, FaceSwitch, in_face, passed
 from g12.polar.follow import FaceLimits
-from g12.polar.pieces import Law, split_move
 from g12.polar.pole import POLE, through_pole
 from g12.polar.quickest import FaceStretch, quickest
+from g12.polar.segments import Law, split_move
 
 POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
 SAME_ANGLE = 1e-9  # radians
-RIPPLE = 0.01  # by so much may the speed differ from F inside a piece
+RIPPLE = 0.01  # by so much may the speed differ from F inside a segment
 
 
 class PolarSettings(NamedTuple):
     """What the machine and its owner want of a section; lengths in program units."""
 
     tolerance: float  # POLAR_TOLERANCE
-    least_x: float  # 0.001 mm: no piece with a turn of C changes X by less, other than not at all
+    least_x: float  # 0.001 mm: no segment with a turn of C changes X by less, other than not at all
     x_acceleration: float  # per second squared
     c_acceleration: float  # degrees per second squared
     c_speed: float  # degrees per minute, for a rotation at the pole at X0
@@ -116,7 +116,7 @@ class _SlideAndSpindle(StepMaker):
         self._laws: dict[tuple[float, float], Law] = {}
 
     def cut(self, move: PlaneMove, stop: bool) -> None:
-        """Add the pieces of a move in the plane."""
+        """Add the segments of a move in the plane."""
         settings = self._settings
         split = partial(self._split_move, move)
         parts = self._split(move, split, settings.tolerance, stop, settings.least_x)
@@ -124,9 +124,9 @@ class _SlideAndSpindle(StepMaker):
             self._turn(move, parts.angles[0])
         turns = round((self.angle - parts.angles[0]) / (2 * pi))
         entry = self._entry + 360.0 * turns
-        pieces = pieces_with_feed(parts, self.place, move, entry, settings.least_x)
+        segments = segments_with_feed(parts, self.place, move, entry, settings.least_x)
         self.angle = parts.angles[-1] + 2 * pi * turns
-        self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", pieces, stop)
+        self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", segments, stop)
 
     def _split_move(self, move: PlaneMove, deviation: float) -> Split:
         law, beside = self._law(move.feed, deviation), self._settings.beside
@@ -155,7 +155,7 @@ class _SlideAndSpindle(StepMaker):
         self._run(move.line, "Z", [(self.place.x, self.place.c, move.z1, move.feed)], stop)
 
     def finish(self, path: Sequence[Element]) -> None:
-        """Come back from the face; add what the last pieces left over of X and Z."""
+        """Come back from the face; add what the last segments left over of X and Z."""
         self.switch(path[-1].line if path else 0, None)
         slide, z = self.place.x, self.place.z
         for element in path:
@@ -173,8 +173,8 @@ class _SlideAndSpindle(StepMaker):
         self.angle += turn
         if abs(turn) > SAME_ANGLE:
             x, _, z = self.place
-            piece = (x, self._entry + degrees(self.angle), z, self._settings.c_speed)
-            self._run(move.line, "XC", [piece], True)
+            segment = (x, self._entry + degrees(self.angle), z, self._settings.c_speed)
+            self._run(move.line, "XC", [segment], True)
 
     def _law(self, feed: float, deviation: float) -> Law:
         law = self._laws.get((feed, deviation))

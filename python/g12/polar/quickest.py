@@ -5,7 +5,7 @@ The planner brakes anywhere with all of the face's acceleration, so C and the sl
 to follow that anywhere. The less it is, the nearer to the pole the face is good for; the more, the
 sooner the tool is at its feed. The best is a matter of the section: it is chosen here, and set
 where the machine stands to go to the face. Where C cannot follow F, the feed is what it can follow,
-or pieces are made of the part, whichever is quicker.
+or segments are made of the part, whichever is quicker.
 
 The time of a way is that of a trapezoid of speed from stop to stop, with less than the
 acceleration, as LinuxCNC halves it where moves may be blended.
@@ -27,7 +27,7 @@ PLANNED = 0.7  # of the acceleration is what the planner uses along the path
 STEP, LEAST_FEED = 0.85, 0.08  # the feeds are powers of it, of the programmed one, no less
 CAREFUL = 0.98  # of the limits, where only some places are looked at
 GAIN = 0.02  # seconds: less is not worth a softer machine
-LEAST_GAIN = 0.9  # of the time: less is not worth the stops where pieces begin and end
+LEAST_GAIN = 0.9  # of the time: less is not worth the stops where segments begin and end
 SWITCHING = 0.05  # seconds of standing, there and back
 WORTH_IT = 0.1  # seconds: two switches cost about as much
 STRAIGHT_ON = radians(5.0)  # a corner of more is taken for a stop
@@ -44,7 +44,7 @@ class FaceStretch(NamedTuple):
 
 
 class OnFace(NamedTuple):
-    """A path with the stretch that each element is made in, None in pieces."""
+    """A path with the stretch that each element is made in, None in segments."""
 
     path: list[Element]
     stopping: list[bool]
@@ -54,7 +54,7 @@ class OnFace(NamedTuple):
 class _Element(NamedTuple):
     """An element of the path, and what is looked at; without places it is no move in the plane.
 
-    ``corner`` tells whether one follows, ``in_pieces`` about how long pieces take, in seconds.
+    ``corner`` tells whether one follows, ``in_segments`` about how long segments take, in seconds.
     """
 
     move: Element
@@ -62,11 +62,11 @@ class _Element(NamedTuple):
     length: float = 0.0
     places: Sequence[Demand] = ()
     corner: bool = False
-    in_pieces: float = 0.0
+    in_segments: float = 0.0
 
 
 class _Span(NamedTuple):
-    """A part of an element, with the feed that it has on the face, 0.0 in pieces."""
+    """A part of an element, with the feed that it has on the face, 0.0 in segments."""
 
     element: _Element
     first: float
@@ -109,7 +109,7 @@ def _goes_straight_on(move: PlaneMove, following: PlaneMove) -> bool:
 
 
 def _slowness(places: Sequence[Demand]) -> float:
-    """Return about how long pieces take from the first to the last, for a unit of the length."""
+    """Return about how long segments take from the first to the last, for a unit of the length."""
     return sum(
         0.5 * (one.slowness + other.slowness) * (other.part - one.part)
         for one, other in zip(places, places[1:])
@@ -146,9 +146,9 @@ def _level(share: float) -> float:
 
 
 def _worth(feed: float, ends: Sequence[Demand]) -> float:
-    """Return a feed between two places, 0.0 if pieces are quicker."""
-    in_pieces = 0.5 * (ends[0].slowness + ends[1].slowness)
-    return feed if feed * in_pieces > LEAST_GAIN * 60.0 else 0.0
+    """Return a feed between two places, 0.0 if segments are quicker."""
+    in_segments = 0.5 * (ends[0].slowness + ends[1].slowness)
+    return feed if feed * in_segments > LEAST_GAIN * 60.0 else 0.0
 
 
 def _worth_it(spans: list[_Span]) -> list[_Span]:
@@ -215,17 +215,17 @@ def _seconds(spans: list[_Span], acceleration: float) -> float:
     for on_face, run in _stretches(spans):
         moves = [span for span in run if span.length]
         if not on_face:
-            total += sum(map(_in_pieces, moves))
+            total += sum(map(_in_segments, moves))
         elif moves:
             smooth = (_trapezoid(each, PLANNED * acceleration) for each in _smooth(moves))
             total += SWITCHING + sum(smooth)
     return total
 
 
-def _in_pieces(span: _Span) -> float:
+def _in_segments(span: _Span) -> float:
     element = span.element
     if (span.first, span.last) == (0.0, 1.0):
-        return element.in_pieces
+        return element.in_segments
     there = [place for place in element.places if span.first <= place.part <= span.last]
     return element.length * _slowness(there)
 

@@ -23,7 +23,7 @@ from g12.polar.words import POLAR_WORDS
 from g12.section.start import SectionStart, WordRules
 from g12.settings import Settings
 
-PIECES_SHARE = 0.7  # of what a chord's length and the acceleration allow: measured
+SEGMENTS_SHARE = 0.7  # of what a chord's length and the acceleration allow: measured
 
 
 def check_section_start(start: SectionStart, axes: Collection[str]) -> None:
@@ -99,7 +99,7 @@ def _face_limits(start: SectionStart, settings: Settings, face: FaceAxes, c: Axi
         c_acceleration=radians(c.acceleration),
         c_speed=radians(c.velocity),
         override=max(1.0, face.override),
-        pieces_speed=PIECES_SHARE * sqrt(slide * chord),
+        segments_speed=SEGMENTS_SHARE * sqrt(slide * chord),
         slide_speed=face.slide.velocity * start.machine_unit if beside else inf,  # else X's own
         beside=beside,
     )

@@ -89,7 +89,7 @@ class SectionBlock(NamedTuple):
 
     @property
     def moves(self) -> bool:
-        """Return whether the block is a piece of the contour."""
+        """Return whether the block is a segment of the contour."""
         return any(letter in self.words for letter in MOVING_WORDS)
 
 

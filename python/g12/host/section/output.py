@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The moves and actions of a planned section, handed to the machine in order.
 
-While pieces go out the interpreter is in G90 G94 with C unwrapped, and blends them in G64.
+While segments go out the interpreter is in G90 G94 with C unwrapped, and blends them in G64.
 `SectionOutput.release` puts everything back to what the program commanded; so it is wherever the
 program can see it, or the machine waits.
 
-A move in front of the section would be blended into its first piece: a dwell of no time stops it.
+A move in front of the section would be blended into its first segment: a dwell of no time stops it.
 (Also under G61: what a move ends in is told by what was in force at it.)
 
 On the face (`configs/kinematics`) lines and arcs go out as they are, in X and Y. To go there and
@@ -33,7 +33,7 @@ from g12.host.kinematics_switch import (
     y_offset,
 )
 from g12.host.program_lines import error_text
-from g12.moves.feed import Piece
+from g12.moves.feed import Segment
 from g12.moves.steps import BlockMoves
 from g12.polar.face import FaceMove, FaceSwitch, flows_into
 from g12.section.block_rules import G1
@@ -85,9 +85,9 @@ def path_control(interp: Interp) -> str:
 
 
 class PathControl:
-    """G61, G61.1 or G64 as the program commanded it, and as the pieces of a section need it.
+    """G61, G61.1 or G64 as the program commanded it, and as the segments of a section need it.
 
-    Between the pieces of one block the path is blended, with ``smooth`` if the program gave no
+    Between the segments of one block the path is blended, with ``smooth`` if the program gave no
     tolerance; at the end of a block it is what the program commanded. ``initial`` is the tolerance
     that LinuxCNC starts with, program units: on the face it counts for none.
     """
@@ -112,7 +112,7 @@ class PathControl:
         self._in_force = ""
 
     def inside(self) -> None:
-        """Set what blends the pieces of one block."""
+        """Set what blends the segments of one block."""
         self.set(self._within)
 
     def on_face(self) -> None:
@@ -125,7 +125,7 @@ class PathControl:
         return self._commanded in EXACT_PATHS
 
     def at_end(self, stop: bool, exact_stop: bool, block_ends: bool) -> None:
-        """Set what the last piece of a run must end in.
+        """Set what the last segment of a run must end in.
 
         ``stop`` is asked for by the planner, ``exact_stop`` by G9.
         """
@@ -199,7 +199,7 @@ class SectionOutput:
             elif step.stop or exact_lines or self.path.exact:
                 self._moves_to_an_end(step, following, step.line in exact_lines)
             else:
-                self._moves(step.line, step.axes, step.pieces)
+                self._moves(step.line, step.axes, step.segments)
         self.release(modes)
 
     def release(self, modes: SectionModes) -> None:
@@ -230,13 +230,13 @@ class SectionOutput:
     def _moves_to_an_end(self, run: BlockMoves, following: object, exact_stop: bool) -> None:
         """Hand over moves of which the last ends in another path control."""
         block_ends = not isinstance(following, BlockMoves) or following.line != run.line
-        if len(run.pieces) > 1:
-            self._moves(run.line, run.axes, run.pieces[:-1])
+        if len(run.segments) > 1:
+            self._moves(run.line, run.axes, run.segments[:-1])
         self.interp.sequence_number = run.line
         self.path.at_end(run.stop, exact_stop, block_ends)
-        self._block(run.axes, *run.pieces[-1])
+        self._block(run.axes, *run.segments[-1])
 
-    def _moves(self, line: int, axes: str, pieces: Sequence[Piece]) -> None:
+    def _moves(self, line: int, axes: str, segments: Sequence[Segment]) -> None:
         """Hand over moves of one block.
 
         The first is a block to the interpreter, which tells the machine the line and the modes.
@@ -245,14 +245,14 @@ class SectionOutput:
         interp = self.interp
         interp.sequence_number = line
         self.path.inside()
-        self._block(axes, *pieces[0])
+        self._block(axes, *segments[0])
         y, a, b = interp.current_y, interp.AA_current, interp.BB_current
         u, v, w = interp.u_current, interp.v_current, interp.w_current
         set_feed, move = self.canon.SET_FEED_RATE, self.canon.STRAIGHT_FEED
-        for x, c, z, feed in pieces[1:]:
+        for x, c, z, feed in segments[1:]:
             set_feed(feed)
             move(line, x, y, z, a, b, c, u, v, w)
-        interp.current_x, interp.CC_current, interp.current_z, _ = pieces[-1]
+        interp.current_x, interp.CC_current, interp.current_z, _ = segments[-1]
 
     def _block(self, axes: str, x: float, c: float, z: float, feed: float) -> None:
         # every digit: X must come back as the number that the moves after this one have

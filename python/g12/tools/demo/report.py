@@ -20,7 +20,7 @@ from g12.tools.verify.sections.section import SectionFacts
 
 FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
 POCKET_HEADS = ("line", "code", "centre", "radius", "tool-centre rings", "Z", "off circles", "time")
-SECTION_HEADS = ("lines", "pieces", "off contour", "allowed", "lowest feed", "C at most", "time")
+SECTION_HEADS = ("lines", "segments", "off contour", "allowed", "lowest feed", "C at most", "time")
 
 
 def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
@@ -88,7 +88,7 @@ def section_row(facts: SectionFacts, allowed: float, unit: Unit) -> tuple[str, .
     """Return a polar section's row of the table."""
     return (
         f"{facts.section.line}-{facts.section.last}",
-        str(facts.pieces),
+        str(facts.segments),
         f"{unit.fine(facts.deviation)} {unit.name}",
         f"{unit.fine(allowed)} {unit.name}",
         f"{plain(facts.pace.lowest / unit.mm, 1)} {unit.name}/min",

@@ -64,7 +64,7 @@ class Part:
 
         They are so close together that chords between them follow the part's own curves.
         """
-        count = self._pieces(move, chord_error)
+        count = self._segments(move, chord_error)
         if move.kind == "arc":
             return arc_points(move, np.linspace(0.0, 1.0, count + 1))
         if count == 1:
@@ -75,14 +75,14 @@ class Part:
         """Return part points (n, 3) along a move, its ends included."""
         return self.points(self.machine_points(move, chord_error))
 
-    def _pieces(self, move: Move, chord_error: float) -> int:
+    def _segments(self, move: Move, chord_error: float) -> int:
         """Into how many chords a move is cut."""
         if move.kind == "arc":
-            return arc_pieces(move.radius, move.sweep, chord_error)
+            return arc_segments(move.radius, move.sweep, chord_error)
         if self.turning:
             turn = math.radians(move.end[C] - move.start[C]) + self._face_turn(move)
             radius = max(abs(place[X] - self.centre) for place in (move.start, move.end))
-            return max(arc_pieces(radius, turn, chord_error), _spiral_pieces(move, chord_error))
+            return max(arc_segments(radius, turn, chord_error), _spiral_segments(move, chord_error))
         return 1
 
     def _face_turn(self, move: Move) -> float:
@@ -119,8 +119,8 @@ def x0_text(part: Part, unit: Unit) -> str:
     return f"X0, the spindle's axis, is at machine X{place}" if place != "0" else ""
 
 
-def _spiral_pieces(move: Move, chord_error: float) -> int:
-    """Return the pieces of a move that crosses the part while C turns, but for the turn's own bow.
+def _spiral_segments(move: Move, chord_error: float) -> int:
+    """Return the segments of a move across the part while C turns, the turn's own bow left out.
 
     The second derivative of w exp(ic) is 2i w' c' exp(ic) besides: a bow of way times turn / 4.
     """
@@ -158,7 +158,7 @@ def spindle_angles(points: np.ndarray, c: np.ndarray, beside: float = 0.0) -> np
     return c[0] + np.append(0.0, np.cumsum(steps))
 
 
-def arc_pieces(radius: float, sweep: float, chord_error: float) -> int:
+def arc_segments(radius: float, sweep: float, chord_error: float) -> int:
     """Return into how many chords an arc is cut that stay within ``chord_error``."""
     if abs(sweep) < 1e-12:
         return 1
@@ -192,7 +192,7 @@ def paths(part: Part, moves: Iterable[Move], chord_error: float = CHORD_ERROR) -
             found[-1].append(points[1:])
         else:
             found.append([points])
-    return [np.concatenate(pieces) for pieces in found]
+    return [np.concatenate(segments) for segments in found]
 
 
 def swept(lines: Iterable[np.ndarray], radius: float) -> BaseGeometry:
@@ -214,8 +214,8 @@ def _swept_line(line: np.ndarray, radius: float) -> BaseGeometry:
 
 def disc(centre: Sequence[float], radius: float, chord_error: float = CHORD_ERROR) -> BaseGeometry:
     """Return the full disc about a point of the part plane."""
-    pieces = arc_pieces(radius, math.pi / 2, chord_error)
-    return Point(centre[0], centre[1]).buffer(radius, pieces)
+    segments = arc_segments(radius, math.pi / 2, chord_error)
+    return Point(centre[0], centre[1]).buffer(radius, segments)
 
 
 def is_sideways(move: Move) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 from g12.tools.path.part import C, Part, X, Z
 from g12.tools.preview.moves import Move
 
-LONGEST_PIECE, LEAST_PIECES, MOST_PIECES = 0.5, 4, 5000  # mm, of a move
+LONGEST_SEGMENT, LEAST_SEGMENTS, MOST_SEGMENTS = 0.5, 4, 5000  # mm, of a move
 
 
 @dataclass(frozen=True)
@@ -36,9 +36,9 @@ class Surface(Part):
         around = np.radians(positions[:, C]) * self.radius
         return np.stack([around, positions[:, Z], positions[:, X]], axis=1)
 
-    def _pieces(self, move: Move, chord_error: float) -> int:
+    def _segments(self, move: Move, chord_error: float) -> int:
         if move.kind == "arc":
-            return super()._pieces(move, chord_error)
+            return super()._segments(move, chord_error)
         start, end = self.points(np.array([move.start, move.end]))
-        pieces = math.ceil(np.linalg.norm(end - start) / LONGEST_PIECE)
-        return min(max(LEAST_PIECES, pieces), MOST_PIECES)
+        segments = math.ceil(np.linalg.norm(end - start) / LONGEST_SEGMENT)
+        return min(max(LEAST_SEGMENTS, segments), MOST_SEGMENTS)

@@ -311,7 +311,7 @@ def draw_arrows(axes: Axes, scene: Scene, pair: Sequence[int] = (0, 1)) -> None:
 
 
 def elements(scene: Scene) -> list[np.ndarray]:
-    """Return the path of each cutting block (n, 3); pieces of one line of the program are one."""
+    """Return the path of each cutting block (n, 3); segments of one line of the program are one."""
     part, blocks = scene.path.part, []
     cutting = (scene.moves[index] for index in at_feed(scene))
     whole = (lambda move: (move.block, move.line)) if part.turning else id

@@ -40,13 +40,13 @@ def with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
     first = f"{lines[0]} {whole}".rstrip() if lines else whole
     if size(first) <= LONGEST_LINE - LONGEST_MARK:
         return [first, *lines[1:]]
-    pieces = [
+    rest = [
         f"({comment[at : at + length]})"
         for comment in comments
         for length in (LONGEST_COMMENT if comment.isascii() else LONGEST_COMMENT // 4,)
         for at in range(0, len(comment), length)
     ]
-    return [*lines, *pieces]
+    return [*lines, *rest]
 
 
 def size(text: str) -> int:

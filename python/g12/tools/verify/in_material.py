@@ -29,13 +29,13 @@ LEAST_SHARE = 0.01  # of a cutter that plunges into the stock
 Place = tuple[float, float, float]
 
 
-def judge_material(piece: Workpiece) -> Iterator[Finding]:
+def judge_material(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield what a program does to what it is cut from."""
-    yield from once_a_line(rapids_through(piece))
-    yield from first_way(piece)
-    yield from inside_surfaces(piece)
-    yield from judged_in_stock(piece) if piece.stock else ()
-    yield from assumptions(piece)
+    yield from once_a_line(rapids_through(workpiece))
+    yield from first_way(workpiece)
+    yield from inside_surfaces(workpiece)
+    yield from judged_in_stock(workpiece) if workpiece.stock else ()
+    yield from assumptions(workpiece)
 
 
 def once_a_line(found: Iterator[Finding]) -> list[Finding]:
@@ -46,13 +46,13 @@ def once_a_line(found: Iterator[Finding]) -> list[Finding]:
 # ---------------------------------------------------------------- rapids
 
 
-def rapids_through(piece: Workpiece) -> Iterator[Finding]:
+def rapids_through(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield the rapids that go through material."""
-    program = piece.program
+    program = workpiece.program
     unknown, first = unknown_places(program), first_known(program)
     moves = range(first, len(program.moves))
     rapids = [i for i in moves if program.moves[i].kind == "rapid" and i not in unknown]
-    for view in piece.views:
+    for view in workpiece.views:
         for index in (each for each in rapids if view.judges(program.moves[each])):
             points = program.points(index, view.part)
             if index == first or index - 1 in unknown:
@@ -84,9 +84,9 @@ def words_of(program: Program, view: PartView, point: Place) -> tuple[tuple[str,
     return ("X", double * x), ("C", c), ("Z", z)
 
 
-def first_way(piece: Workpiece) -> Iterator[Finding]:
+def first_way(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield that the way of a first rapid that ends in a part is not judged."""
-    program, view = piece.program, piece.views[0]
+    program, view = workpiece.program, workpiece.views[0]
     first = first_known(program)
     if program.moves and program.moves[first].kind == "rapid":
         place = place_after(program, first)
@@ -133,31 +133,31 @@ def first_change(moves: Sequence[Move], axis: int) -> int:
 # ---------------------------------------------------------------- what is assumed
 
 
-def inside_surfaces(piece: Workpiece) -> Iterator[Finding]:
+def inside_surfaces(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield the sections on a cylinder that begin inside of its surface, where nothing is cut."""
-    for section in piece.program.sections:
-        first = piece.program.moves[section.at]
+    for section in workpiece.program.sections:
+        first = workpiece.program.moves[section.at]
         inside = (
             section.surface and plane_of(section, first).base + section.surface - first.start[X]
         )
-        if inside > SAME_LEVEL and not is_cut_before(section, piece):
+        if inside > SAME_LEVEL and not is_cut_before(section, workpiece):
             values = {"code": section.code, "radius": section.surface, "inside": inside}
             yield Finding("inside-surface", section.line, values, first.start[:3])
 
 
-def is_cut_before(section: SectionContour, piece: Workpiece) -> bool:
+def is_cut_before(section: SectionContour, workpiece: Workpiece) -> bool:
     """Tell whether something is cut where a section begins."""
-    view = next(view for view in piece.views if view.surface == round(section.surface, 6))
-    point = view.part.points(np.array(piece.program.moves[section.at].start))[0]
-    region = Point(point[:2]).buffer(piece.program.radius(section.at) or ALLOWED)
+    view = next(view for view in workpiece.views if view.surface == round(section.surface, 6))
+    point = view.part.points(np.array(workpiece.program.moves[section.at].start))[0]
+    region = Point(point[:2]).buffer(workpiece.program.radius(section.at) or ALLOWED)
     return view.material.is_cut(region, point[2], section.at)
 
 
-def assumptions(piece: Workpiece) -> Iterator[Finding]:
+def assumptions(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield one note of the holes that are assumed."""
-    if piece.holes:
-        line, place, _ = piece.holes[0]
-        others = sorted({hole.line for hole in piece.holes} - {line})
+    if workpiece.holes:
+        line, place, _ = workpiece.holes[0]
+        others = sorted({hole.line for hole in workpiece.holes} - {line})
         more = f" (also in line {', '.join(map(str, others))})" if others else ""
         values = {"at": tuple(zip("XYZ", place)), "more": more}
         yield Finding("bored-assumed", line, values, place)
@@ -166,75 +166,75 @@ def assumptions(piece: Workpiece) -> Iterator[Finding]:
 # ---------------------------------------------------------------- in a stock that is given
 
 
-def judged_in_stock(piece: Workpiece) -> Iterator[Finding]:
+def judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield plunges, what meets no stock, cuts below a block, and what remains of a bar."""
-    program, view = piece.program, piece.views[0]
+    program, view = workpiece.program, workpiece.views[0]
     moves = program.moves
     fed = [
         index
         for index in range(first_known(program), len(moves))
         if moves[index].kind != "rapid" and program.radius(index) and view.judges(moves[index])
     ]
-    yield from once_a_line(filter(None, (plunge(piece, index) for index in fed)))
+    yield from once_a_line(filter(None, (plunge(workpiece, index) for index in fed)))
     cuts = [(each.line, each) for each in program.on_face]
     cuts += [(target.source.line, block) for block, target in program.circles]
     for line, each in cuts:
-        if not any(meets_stock(piece, index) for index in range(each.at, each.end)):
+        if not any(meets_stock(workpiece, index) for index in range(each.at, each.end)):
             yield Finding("no-stock-met", line)
-    if piece.bottom is not None and fed:
+    if workpiece.bottom is not None and fed:
         lowest = min(fed, key=lambda index: moves[index].end[Z])
-        below = piece.bottom - moves[lowest].end[Z]
+        below = workpiece.bottom - moves[lowest].end[Z]
         if below > SAME_LEVEL:
             line, place = program.line(lowest), place_after(program, lowest)
             yield Finding("below-block", line, {"size": below}, place)
-    if piece.stock.diameter:
-        yield from filter(None, (remaining(piece, section) for section in program.on_face))
+    if workpiece.stock.diameter:
+        yield from filter(None, (remaining(workpiece, section) for section in program.on_face))
     for call in (each for each in program.holes if each.is_side):
         level, bar = (
             call.length("surface_diameter") + 2 * call.length("retract"),
-            piece.stock.diameter,
+            workpiece.stock.diameter,
         )
         if level < bar - SAME_LEVEL:  # its tool goes by rapid to where the bar is
             values = {"level": level, "bar": bar}
             yield Finding("in-the-bar", call.line, values, file=call.file)
 
 
-def plunge(piece: Workpiece, index: int) -> Finding | None:
+def plunge(workpiece: Workpiece, index: int) -> Finding | None:
     """Return that a move at feed goes straight down into the stock, if it does."""
-    program, move = piece.program, piece.program.moves[index]
+    program, move = workpiece.program, workpiece.program.moves[index]
     if is_sideways(move) or move.end[Z] >= move.start[Z]:
         return None
     place = place_after(program, index)
     cutter = Point(place[:2]).buffer(program.radius(index))
-    share = piece.material.standing(cutter, place[Z], index).area / cutter.area
+    share = workpiece.material.standing(cutter, place[Z], index).area / cutter.area
     if share <= LEAST_SHARE:
         return None
-    of = " of the face" if piece.stock.diameter else ""
+    of = " of the face" if workpiece.stock.diameter else ""
     values = {"share": 100 * share, "at": tuple(zip("XY", place)), "of": of}
     return Finding("plunge-into-stock", program.line(index), values, place)
 
 
-def meets_stock(piece: Workpiece, index: int) -> bool:
+def meets_stock(workpiece: Workpiece, index: int) -> bool:
     """Tell whether a move's cutter comes into the stock."""
-    radius, move = piece.program.radius(index), piece.program.moves[index]
-    if not radius or move.end[Z] >= piece.top:
+    radius, move = workpiece.program.radius(index), workpiece.program.moves[index]
+    if not radius or move.end[Z] >= workpiece.top:
         return False
-    points = piece.program.part.polyline(move)[:, :2]
+    points = workpiece.program.part.polyline(move)[:, :2]
     line = LineString(points) if len(points) > 1 else Point(points[0])
-    return line.distance(piece.shape) < radius - SAME_LEVEL
+    return line.distance(workpiece.shape) < radius - SAME_LEVEL
 
 
-def remaining(piece: Workpiece, section: SectionContour) -> Finding | None:
+def remaining(workpiece: Workpiece, section: SectionContour) -> Finding | None:
     """Return what remains of a bar beyond a contour that it is to be cut away to, if anything."""
-    moves = piece.program.moves
+    moves = workpiece.program.moves
     level = min(moves[index].end[Z] for index in range(section.at, section.end))
     plane = Plane(section, moves[section.at])
-    wanted = unary_union([beyond(each, plane, piece.shape) for each in outlines_of(section)])
-    if level < piece.top - SAME_LEVEL:
-        left = piece.material.standing(wanted, level)
+    wanted = unary_union([beyond(each, plane, workpiece.shape) for each in outlines_of(section)])
+    if level < workpiece.top - SAME_LEVEL:
+        left = workpiece.material.standing(wanted, level)
         wanted = left.buffer(-ALLOWED).buffer(ALLOWED)  # slivers are the contour's rounding
     if wanted.area <= LEAST_AREA:
         return None
     place = (*wanted.representative_point().coords[0], level)
-    values = {"area": wanted.area, "level": level - piece.top, "shape": wanted}
+    values = {"area": wanted.area, "level": level - workpiece.top, "shape": wanted}
     return Finding("bar-remains", section.line, values, place)

@@ -122,7 +122,7 @@ def section_values(facts: SectionFacts, proof: Proof) -> dict:
         "across_flats": [list(flat) for flat in facts.size.flats],
         "deviation": finite(facts.deviation),
         "direction_jump": facts.jump,
-        "pieces": facts.pieces,
+        "segments": facts.segments,
         "shortest": facts.shortest,
         "longest": facts.longest,
         "c_speed": facts.turns.speed,
@@ -167,9 +167,13 @@ def holes_values(facts: HolesFacts, proof: Proof) -> dict:
     }
 
 
-def stock_values(piece: Workpiece) -> dict:
+def stock_values(workpiece: Workpiece) -> dict:
     """Return the stock as plain values."""
-    return {"text": piece.stock.text, "bounds": list(piece.shape.bounds), "top": piece.top}
+    return {
+        "text": workpiece.stock.text,
+        "bounds": list(workpiece.shape.bounds),
+        "top": workpiece.top,
+    }
 
 
 def pace_values(pace: Pace) -> dict:

@@ -51,14 +51,14 @@ class Tolerances(NamedTuple):
 class Proof:
     """What was measured, and ``judged`` of it: findings, notes, what was not, in order of lines.
 
-    ``asked`` is what the words ask for, ``piece`` what is cut. ``unseen`` are lines whose blocks
-    make a cycle cut that belongs to nothing measured, and the cycle's code. ``opened`` is the
-    user's file, None where that is what was read.
+    ``asked`` is what the words ask for, ``workpiece`` what is cut. ``unseen`` are lines whose
+    blocks make a cycle cut that belongs to nothing measured, and the cycle's code. ``opened`` is
+    the user's file, None where that is what was read.
     """
 
     subject: Subject
     asked: Asked
-    piece: Workpiece
+    workpiece: Workpiece
     tolerances: Tolerances
     pockets: Sequence[PocketFacts] = ()
     sections: Sequence[SectionFacts] = ()
@@ -76,7 +76,7 @@ class Proof:
     @property
     def given(self) -> Workpiece | None:
         """What is cut if a stock was given, None if it is assumed."""
-        return self.piece if self.piece.stock else None
+        return self.workpiece if self.workpiece.stock else None
 
     def user_line(self, line: int, file: str = "") -> int:
         """Return a line in the user's file; one in a sub's own ``file`` stays."""
@@ -131,18 +131,18 @@ def prove_traced(
     for first in [each for each in asked.sections if not each.surface][:1]:
         subject = subject.about(x0_of(first, subject.trace.moves[first.at]))
     allowed = tolerances_of(subject, tolerance)
-    piece = workpiece_of(subject, asked, stock)
-    pockets = measured_pockets(subject, asked, piece.material, allowed.pocket, tell)
+    workpiece = workpiece_of(subject, asked, stock)
+    pockets = measured_pockets(subject, asked, workpiece.material, allowed.pocket, tell)
     sections = measured_sections(subject, asked, allowed.polar, tell)
     shapes = measured_shapes(subject, asked, allowed.polar, tell)
     holes = measured_holes(subject, asked, allowed.polar)
     tell("looking for rapids through material")
     unseen = unseen_in(subject, asked)
     said = [each for facts in (*pockets, *sections, *shapes, *holes) for each in facts.judged]
-    said += judge_material(piece)
+    said += judge_material(workpiece)
     found = judged(subject, asked, there, unseen, said)
     cuts = {"pockets": pockets, "sections": sections, "shapes": shapes, "holes": holes}
-    return Proof(subject, asked, piece, allowed, unseen=unseen, judged=found, **cuts)
+    return Proof(subject, asked, workpiece, allowed, unseen=unseen, judged=found, **cuts)
 
 
 def tolerances_of(subject: Subject, tolerance: float | None) -> Tolerances:

@@ -70,8 +70,8 @@ SECTION: tuple[Row, ...] = (
     ("from centre", "programmed {radii:span}, reached {reached:span}"),
     ("across flats", "programmed {flats:list}, reached {flats_reached:list}"),
     *DEVIATION,
-    ("pieces", "{pieces}, {shortest:mm} to {longest:length} long"),
-    ("direction jump", "{direction_jump:2}° from piece to piece"),
+    ("segments", "{segments}, {shortest:mm} to {longest:length} long"),
+    ("direction jump", "{direction_jump:2}° from segment to segment"),
     ("lowest feed", "{lowest_feed:pace} at {lowest_feed_words:xyz} (line {lowest_feed_line})"),
     ("speed of C", "{c_speed:1} degrees/s at most, limit {c_limit:1}"),
     *PACE,
@@ -132,7 +132,7 @@ def zero_text(proof: Proof, unit: Unit) -> str:
     program's. Where X0 lies must be the spindle's axis.
     """
     contours = [facts.section for facts in proof.sections]
-    zero = proof.piece.program.zero()
+    zero = proof.workpiece.program.zero()
     words = [*zip(AXES, zero)][Z if contours else 0 :]
     said = "places are those of the machine: the program's zero is {zero:xyz}"
     moved = in_words(said, {"zero": words}, unit) if max(abs(zero)) >= SIZE else ""

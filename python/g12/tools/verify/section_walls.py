@@ -161,6 +161,6 @@ def beyond(outline: Outline, plane: Plane, bar: BaseGeometry) -> BaseGeometry:
     reach = BEYOND * float(np.abs(np.array(bar.bounds)).max())
     ends = points[0] - along[0] * reach, points[-1] + along[-1] * reach
     edge = vectors(np.array([ends[0], *points, ends[1]]))
-    pieces = split(bar, LineString(edge)).geoms
-    near = [piece for piece in pieces if piece.contains(Point(probe.real, probe.imag))]
-    return unary_union(near) if len(pieces) > 1 else Polygon()
+    regions = split(bar, LineString(edge)).geoms
+    near = [region for region in regions if region.contains(Point(probe.real, probe.imag))]
+    return unary_union(near) if len(regions) > 1 else Polygon()

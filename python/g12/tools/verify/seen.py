@@ -77,5 +77,5 @@ def seen_of_proof(proof: Proof) -> Seen:
         proof.given,
         tuple(each.line for each in proof.judged if each.code == "spindle-stands"),
         radii[0] if radii and all(radii) else 0.0,
-        float(proof.piece.program.zero()[Z]),
+        float(proof.workpiece.program.zero()[Z]),
     )

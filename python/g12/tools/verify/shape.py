@@ -65,8 +65,8 @@ def measure_shape(
     """Return the facts of a shape; ``path`` is that of the face about its X0."""
     block, call = called
     plane, expected = FacePlane(*call.zero), shape_path(call)
-    pieces = ((index, path.positions[path.vertices(index)]) for index in call.moves)
-    laid = lay(expected, made_of(pieces, moves, plane), tolerance + LAST_DECIMAL)
+    segments = ((index, path.positions[path.vertices(index)]) for index in call.moves)
+    laid = lay(expected, made_of(segments, moves, plane), tolerance + LAST_DECIMAL)
     found = SectionPath(expected, [], laid)
     slower, where = slower_on_face(found, moves, path, axes), (call.line, call.file)
     state = state_differences(block.left, call.leaves())

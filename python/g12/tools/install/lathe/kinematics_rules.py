@@ -86,7 +86,7 @@ def not_used(config: Config) -> Iterator[ConfigFinding]:
     if not uses_them(config):
         yield warning(
             "kinematics-unused",
-            f"[KINS] KINEMATICS = {FACE_KINEMATICS}, but G12.1 makes pieces",
+            f"[KINS] KINEMATICS = {FACE_KINEMATICS}, but G12.1 makes segments",
             "add POLAR_KINEMATICS = 1 to [G12]",
         )
 
@@ -187,7 +187,7 @@ def limits_wrong(config: Config) -> Iterator[ConfigFinding]:
         yield warning(
             "face-acceleration",
             f"[AXIS_X] and [AXIS_Y] MAX_ACCELERATION {x.acceleration:g} and {y.acceleration:g}: "
-            f"together more than the slide's {slide.acceleration:g}, so G12.1 makes pieces",
+            f"together more than the slide's {slide.acceleration:g}, so G12.1 makes segments",
             f"MAX_ACCELERATION = {least:g} in both",
         )
 

@@ -32,7 +32,7 @@ class ContourBlock(NamedTuple):
     others: tuple[str, ...] = ()
 
 
-class Segment(NamedTuple):
+class ContourMove(NamedTuple):
     """A line, or an arc about ``centre``, counter-clockwise if ``sense`` is 1, else -1."""
 
     start: complex
@@ -47,14 +47,14 @@ class Segment(NamedTuple):
         return self.block.motion if self.centre is None else ("G3" if self.sense > 0 else "G2")
 
 
-def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[Segment]:
+def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[ContourMove]:
     """Return the segments of a contour's blocks from where the tool stands."""
     at, sides = start, []
     for block, end in zip(blocks, ends_of(blocks, start)):
         if end != at or is_circle(block):
             sides.append(_segment(block, at, end))
         at = end
-    segments: list[Segment] = []
+    segments: list[ContourMove] = []
     for number, side in enumerate(sides):
         behind = sides[number + 1] if number + 1 < len(sides) else None
         begin = segments[-1].end if segments else side.start
@@ -123,9 +123,9 @@ def _meeting(
     return at + one * ((end - at).conjugate() * two).imag / cross
 
 
-def _segment(block: ContourBlock, start: complex, end: complex) -> Segment:
+def _segment(block: ContourBlock, start: complex, end: complex) -> ContourMove:
     if block.motion not in ("G2", "G3"):
-        return Segment(start, end, block)
+        return ContourMove(start, end, block)
     sense = 1 if block.motion == "G3" else -1
     values = block.values
     if "R" in values:
@@ -134,7 +134,7 @@ def _segment(block: ContourBlock, start: complex, end: complex) -> Segment:
         centre = start + complex(values.get("K", 0.0), values.get("I", 0.0))
         if abs(abs(start - centre) - abs(end - centre)) > ROUNDED or centre == start:
             raise NotTranslated(f"line {block.line}: I and K are no centre of the arc to its end")
-    return Segment(start, end, block, centre, sense)
+    return ContourMove(start, end, block, centre, sense)
 
 
 def centre_by_radius(start: complex, end: complex, radius: float, line: int) -> complex:
@@ -146,7 +146,7 @@ def centre_by_radius(start: complex, end: complex, radius: float, line: int) -> 
     return (start + end) / 2 + 1j * chord / abs(chord) * (height if radius > 0 else -height)
 
 
-def _with_corner(side: Segment, behind: Segment | None) -> list[Segment]:
+def _with_corner(side: ContourMove, behind: ContourMove | None) -> list[ContourMove]:
     """Return a side and the chamfer or the rounding behind it."""
     size, rounded = corner_of(side)
     if not size:
@@ -160,7 +160,7 @@ def _with_corner(side: Segment, behind: Segment | None) -> list[Segment]:
     if abs(turn) < SAME or abs(abs(turn) - pi) < SAME or cut > min(abs(one), abs(two)) + SAME:
         raise NotTranslated(f"line {line}: a corner of {size:g} has no room between its lines")
     first, last = behind.start - cut * one / abs(one), behind.start + cut * two / abs(two)
-    corner = Segment(first, last, side.block)
+    corner = ContourMove(first, last, side.block)
     if rounded:
         sense = 1 if turn > 0 else -1
         centre = first + 1j * sense * size * one / abs(one)
@@ -168,7 +168,7 @@ def _with_corner(side: Segment, behind: Segment | None) -> list[Segment]:
     return [side._replace(end=first), corner]
 
 
-def corner_of(side: Segment) -> tuple[float, bool]:
+def corner_of(side: ContourMove) -> tuple[float, bool]:
     """Return the size of the corner behind a line, 0 if it is sharp, and whether it is rounded."""
     values = side.block.values
     if side.centre is None and side.block.motion == "G1":
@@ -180,7 +180,7 @@ def corner_of(side: Segment) -> tuple[float, bool]:
     return 0.0, False
 
 
-def offset_by(segments: Sequence[Segment], by: complex) -> list[Segment]:
+def offset_by(segments: Sequence[ContourMove], by: complex) -> list[ContourMove]:
     """Return segments in another place."""
     return [
         s._replace(

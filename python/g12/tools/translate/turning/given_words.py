@@ -11,7 +11,7 @@ from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
 from g12.tools.translate.blocks.modal import ModalState
 from g12.tools.translate.blocks.places import known_place
 from g12.tools.translate.rules import codes, decimals, modes
-from g12.tools.translate.turning.contour import ContourBlock, Segment, contour_of
+from g12.tools.translate.turning.contour import ContourBlock, ContourMove, contour_of
 
 SHAPING = frozenset(("X", "Z", "U", "W", "I", "K", "R", "A", "C", ",A", ",C", ",R"))
 BESIDE = frozenset("FSM")  # what a finishing cut does with its moves
@@ -107,7 +107,9 @@ def named_blocks(draft: Draft, first: int, last: int) -> tuple[range, int]:
     return range(begin, end + 1), draft.index + 1 if recalled else end + 1
 
 
-def read_contour(draft: Draft, indices: range, start: complex) -> tuple[list[Segment], ModalState]:
+def read_contour(
+    draft: Draft, indices: range, start: complex
+) -> tuple[list[ContourMove], ModalState]:
     """Return the contour of some blocks, and the modes behind it."""
     found, state = contour_blocks(draft, indices)
     segments = contour_of(found, start)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.places import value_text
-from g12.tools.translate.turning.contour import SAME, Segment
+from g12.tools.translate.turning.contour import SAME, ContourMove
 
 DIGITS = 1e-6  # a word is written where its value changes by that
 
@@ -35,7 +35,7 @@ def feed_to(point: complex) -> CycleMove:
     return CycleMove("G1", point)
 
 
-def moves_along(segments: Sequence[Segment], own_words: bool = False) -> list[CycleMove]:
+def moves_along(segments: Sequence[ContourMove], own_words: bool = False) -> list[CycleMove]:
     """Return the moves along segments, with the words beside them for a finishing cut."""
     moves: list[CycleMove] = []
     last = None

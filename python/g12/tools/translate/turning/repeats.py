@@ -14,25 +14,29 @@ from math import copysign
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.turning.contour import SAME, Segment, offset_by
+from g12.tools.translate.turning.contour import SAME, ContourMove, offset_by
 from g12.tools.translate.turning.moves import CycleMove, feed_to, moves_along, rapid_to, return_by
 
 MOST_PASSES = 5000
 
 
-def finishing_cut(start: complex, contour: Sequence[Segment]) -> list[CycleMove]:
+def finishing_cut(start: complex, contour: Sequence[ContourMove]) -> list[CycleMove]:
     """Return the moves of a finishing cut."""
     return [*moves_along(contour, True), *return_by(start, contour[-1].end, tool_side(contour))]
 
 
-def tool_side(contour: Sequence[Segment]) -> int:
+def tool_side(contour: Sequence[ContourMove]) -> int:
     """Return on which side of the part the tool is: 1 outside, -1 in a bore."""
     start, ends = contour[0].start.imag, [segment.end.imag for segment in contour]
     return 1 if start - min(ends) >= max(ends) - start else -1
 
 
 def repeated_cuts(
-    start: complex, contour: Sequence[Segment], relief: complex, allowance: complex, passes: int
+    start: complex,
+    contour: Sequence[ContourMove],
+    relief: complex,
+    allowance: complex,
+    passes: int,
 ) -> list[CycleMove]:
     """Return the moves of a repeated pattern; ``relief`` is how far off the first pass is."""
     if not 1 <= passes <= MOST_PASSES:

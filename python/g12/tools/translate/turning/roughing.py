@@ -18,7 +18,7 @@ from math import floor, pi, sqrt
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.turning.contour import SAME, Segment, offset_by
+from g12.tools.translate.turning.contour import SAME, ContourMove, offset_by
 from g12.tools.translate.turning.moves import CycleMove, feed_to, moves_along, rapid_to
 
 MOST_LEVELS = 5000
@@ -55,36 +55,36 @@ class CutView(NamedTuple):
         return complex(point.imag, point.real) if self.along_x else point
 
 
-def rough(start: complex, contour: Sequence[Segment], given: RoughCuts) -> list[CycleMove]:
+def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> list[CycleMove]:
     """Return the moves of a roughing cycle; the first segment leads from the start to the part."""
     contour = without_retreat(contour)
     view = view_of(start, contour, given)
     allowed = offset_by(contour, given.allowance)
     allowed[0] = allowed[0]._replace(start=start)
-    pieces = [piece for segment in allowed[1:] for piece in _pieces(segment, view)]
-    check_direction(pieces, view)
+    portions = [portion for segment in allowed[1:] for portion in _portions(segment, view)]
+    check_direction(portions, view)
     at = view.seen(start)
-    top = max(at.imag, *(p.imag for piece in pieces for p in piece.ends))
-    lowest = min(p.imag for piece in pieces for p in piece.ends)
+    top = max(at.imag, *(p.imag for portion in portions for p in portion.ends))
+    lowest = min(p.imag for portion in portions for p in portion.ends)
     count = floor((at.imag - lowest) / given.depth - SAME)
     if count > MOST_LEVELS:
         raise NotTranslated(f"{count} cuts: the depth of cut is too small")
     moves: list[CycleMove] = []
     for number in range(1, count + 1):
         level = at.imag - number * given.depth
-        moves += _level(pieces, level, at, top, given, view)
+        moves += _level(portions, level, at, top, given, view)
     end = view.seen(allowed[-1].end)
     back = [view.real(end.real, top), view.real(at.real, top), start]
     return [*moves, rapid_to(start), *moves_along(allowed), *map(rapid_to, back)]
 
 
-def without_retreat(contour: Sequence[Segment]) -> Sequence[Segment]:
+def without_retreat(contour: Sequence[ContourMove]) -> Sequence[ContourMove]:
     """Return a contour without the rapids behind its last cut."""
     cuts = [number for number, segment in enumerate(contour) if segment.motion != "G0"]
     return contour[: cuts[-1] + 1] if cuts else contour
 
 
-def view_of(start: complex, contour: Sequence[Segment], given: RoughCuts) -> CutView:
+def view_of(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> CutView:
     """Return how the cuts see the part; refuse what gives no direction."""
     plain = CutView(1, 1, given.along_x)
     first, last = (plain.seen(contour[n].end) - plain.seen(start) for n in (0, -1))
@@ -102,28 +102,28 @@ def view_of(start: complex, contour: Sequence[Segment], given: RoughCuts) -> Cut
     return view
 
 
-class Piece(NamedTuple):
-    """A part of a segment along which neither coordinate turns back, as the cuts see it."""
+class Monotone(NamedTuple):
+    """A portion of a segment along which neither coordinate turns back, as the cuts see it."""
 
     ends: tuple[complex, complex]
     at_depth: Callable[[float], float]
     line: int
 
 
-def _pieces(segment: Segment, view: CutView) -> list[Piece]:
-    """Return the parts of a segment."""
+def _portions(segment: ContourMove, view: CutView) -> list[Monotone]:
+    """Return the monotone portions of a segment."""
     points = [view.seen(p) for p in turning_points(segment)]
     line, centre = segment.block.line, segment.centre
     if centre is None:
-        return [Piece((a, b), _on_line(a, b), line) for a, b in zip(points, points[1:])]
+        return [Monotone((a, b), _on_line(a, b), line) for a, b in zip(points, points[1:])]
     middle, radius = view.seen(centre), abs(segment.start - centre)
     return [
-        Piece((a, b), _on_arc(middle, radius, (a + b).real / 2), line)
+        Monotone((a, b), _on_arc(middle, radius, (a + b).real / 2), line)
         for a, b in zip(points, points[1:])
     ]
 
 
-def turning_points(segment: Segment) -> list[complex]:
+def turning_points(segment: ContourMove) -> list[complex]:
     """Return a segment's ends, and where an arc turns back in Z or X."""
     if segment.centre is None:
         return [segment.start, segment.end]
@@ -151,38 +151,43 @@ def _on_arc(middle: complex, radius: float, near: float) -> Callable[[float], fl
     return lambda depth: middle.real + side * sqrt(max(0.0, radius**2 - (depth - middle.imag) ** 2))
 
 
-def check_direction(pieces: Sequence[Piece], view: CutView) -> None:
+def check_direction(portions: Sequence[Monotone], view: CutView) -> None:
     """Refuse a contour that goes back along the cuts."""
-    for piece in pieces:
-        if piece.ends[1].real > piece.ends[0].real + SAME:
+    for portion in portions:
+        if portion.ends[1].real > portion.ends[0].real + SAME:
             axis = "X" if view.along_x else "Z"
             raise NotTranslated(
-                f"line {piece.line}: the contour goes back in {axis}: a cut cannot follow it"
+                f"line {portion.line}: the contour goes back in {axis}: a cut cannot follow it"
             )
 
 
-def gaps_at(pieces: Sequence[Piece], level: float, start: float) -> list[tuple[float, float]]:
+def gaps_at(portions: Sequence[Monotone], level: float, start: float) -> list[tuple[float, float]]:
     """Return from where to where the contour is below a level, as the cuts go."""
     gaps = []
-    begun = start if pieces[0].ends[0].imag < level else None
-    for piece in pieces:
-        below = [end.imag < level for end in piece.ends]
+    begun = start if portions[0].ends[0].imag < level else None
+    for portion in portions:
+        below = [end.imag < level for end in portion.ends]
         if below[0] and not below[1]:
-            gaps.append((begun, piece.at_depth(level)))
+            gaps.append((begun, portion.at_depth(level)))
             begun = None
         elif below[1] and not below[0]:
-            begun = piece.at_depth(level)
+            begun = portion.at_depth(level)
     if begun is not None:
-        gaps.append((begun, pieces[-1].ends[1].real))
+        gaps.append((begun, portions[-1].ends[1].real))
     return [gap for gap in gaps if gap[0] - gap[1] > SAME]
 
 
 def _level(
-    pieces: Sequence[Piece], level: float, at: complex, top: float, given: RoughCuts, view: CutView
+    portions: Sequence[Monotone],
+    level: float,
+    at: complex,
+    top: float,
+    given: RoughCuts,
+    view: CutView,
 ) -> list[CycleMove]:
     """Return the cuts of one level."""
     moves: list[CycleMove] = []
-    for begin, end in gaps_at(pieces, level, at.real):
+    for begin, end in gaps_at(portions, level, at.real):
         is_open = begin == at.real
         off = given.retract if is_open else min(given.retract, (begin - end) / 2)
         lifted = view.real(min(begin, end + off), level + off)

@@ -77,8 +77,8 @@ def lay_section(
     """
     expected, elements = [step.move for step in steps], [step.element for step in steps]
     own = range(section.at, section.end)
-    pieces = ((index, path.positions[path.vertices(index)]) for index in own)
-    emitted = lay(expected, made_of(pieces, moves, plane), allowed[0])
+    segments = ((index, path.positions[path.vertices(index)]) for index in own)
+    emitted = lay(expected, made_of(segments, moves, plane), allowed[0])
     if real is None or emitted.difference:
         return SectionPath(expected, elements, emitted)
     sampled = ((index, real.positions[real.during(index)]) for index in own)
@@ -88,10 +88,10 @@ def lay_section(
 
 
 def made_of(
-    pieces: Iterable[tuple[int, np.ndarray]], moves: Sequence[Move], plane: Plane
+    segments: Iterable[tuple[int, np.ndarray]], moves: Sequence[Move], plane: Plane
 ) -> Iterator[Made]:
     """Yield what was made: of each move its index and its machine positions (n, 9)."""
-    for index, positions in pieces:
+    for index, positions in segments:
         heights = positions[:, plane.third] - plane.base
         points = list(zip(plane.points(positions).tolist(), heights.tolist()))
         yield Made(index, points, rapid=moves[index].kind == "rapid")

@@ -88,11 +88,11 @@ def cuts_into(one: _Side, other: _Side, tool: float, tolerance: float) -> Iterat
     """Yield where the tool cuts one contour's part along another contour that does not enter it."""
     swept = other.path.buffer(tool - tolerance).intersection(one.part)
     entering = other.contour.intersection(one.part.buffer(-ENTERED * tolerance))
-    for piece in getattr(swept, "geoms", [swept]):
-        wall = one.contour.intersection(piece.buffer(tolerance / 2))
-        if wall.is_empty or piece.area < tolerance**2:
+    for region in getattr(swept, "geoms", [swept]):
+        wall = one.contour.intersection(region.buffer(tolerance / 2))
+        if wall.is_empty or region.area < tolerance**2:
             continue
-        if not entering.is_empty and entering.distance(piece) < 2.0 * tolerance:
+        if not entering.is_empty and entering.distance(region) < 2.0 * tolerance:
             continue
         point, _ = nearest_points(wall, other.path)
         at, size = complex(point.x, point.y), tool - wall.distance(other.path)

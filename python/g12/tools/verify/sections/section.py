@@ -38,7 +38,7 @@ from g12.tools.verify.sections.section_size import SectionSize, contour_size
 from g12.tools.verify.sections.section_state import judge_section_state
 from g12.tools.verify.sections.section_turns import Turns, turns_of
 
-TINY_PIECE = 1e-6
+TINY_SEGMENT = 1e-6
 SAME_ANGLE = 1e-3  # degree
 
 
@@ -62,7 +62,7 @@ class SectionFacts:
     path: SectionPath
     size: SectionSize
     jump: float
-    pieces: int
+    segments: int
     shortest: float
     longest: float
     pace: Pace
@@ -93,7 +93,7 @@ def measure_section(
     """Return the facts of a section that moves; ``path`` and ``real`` are those of its part."""
     plane, axes = plane_of(section, moves[section.at]), axes.of(section)
     own = range(section.at, section.end)
-    cutting = [i for i in own if moves[i].kind != "rapid" and path.part_length(i) > TINY_PIECE]
+    cutting = [i for i in own if moves[i].kind != "rapid" and path.part_length(i) > TINY_SEGMENT]
     across = [index for index in cutting if plane.goes_across(moves[index])]
     tool = diameters.get(moves[section.at].tool, 0.0) / 2
     steps = contour_path(section.elements, section.height, tool, tolerance)
@@ -111,7 +111,7 @@ def measure_section(
         found,
         contour_size(section, found, points, tool, plane.sizes),
         jump=jump_between(across, moves, points_of(plane, across, path)),
-        pieces=len(across),
+        segments=len(across),
         shortest=min(lengths),
         longest=max(lengths),
         pace=pace,

@@ -70,13 +70,13 @@ def walls_along(
     found: SectionPath, points: Mapping[int, np.ndarray], radius: float
 ) -> Iterator[CutWall]:
     """Yield the wall of each element that is cut."""
-    pieces: dict[int, list[np.ndarray]] = {}
+    segments: dict[int, list[np.ndarray]] = {}
     for index, made in (found.run or found.emitted).spans.items():
         whole = made.index == made.last or made.share > 1.0 - LENGTHLESS
         if whole and found.expected[made.last].name == "contour" and index in points:
-            before = pieces.setdefault(made.last, [])
+            before = segments.setdefault(made.last, [])
             before.append(points[index][1 if before else 0 :])
-    for at, centres in pieces.items():
+    for at, centres in segments.items():
         element, curve, centre = (
             found.elements[at],
             found.expected[at].curve,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How long pieces may be at a place, and where on the path they end, measured by small steps."""
+"""How long segments may be at a place, and where on the path they end, measured by small steps."""
 
 import cmath
 import math
@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from g12.geometry.curve import Arc, Line
 from g12.polar.beside import _curvature, _density, split_beside
-from g12.polar.pieces import Law, _arc_density, _line_density, split_move
+from g12.polar.segments import Law, _arc_density, _line_density, split_move
 from support.axes_of_places import along, axes_of, bend, change_of_bend, places_of, rates
 from support.contour_geometry import Round, Straight
 
@@ -44,34 +44,34 @@ def clear_of(shape, beside=0.0):
 
 
 def longest(measured, even, law, slide):
-    """Return the pieces per unit of the path: the fewest that keep every limit.
+    """Return the segments per unit of the path: the fewest that keep every limit.
 
-    Those ``measured`` are kept in any case; the even feed by pieces that are no shorter than the
+    Those ``measured`` are kept in any case; the even feed by segments that are no shorter than the
     axes can follow.
     """
     return max(*measured, min(even, law.x_hold, law.c_hold * slide))
 
 
 def bulging(difference, law):
-    """Return the pieces per unit that bulge by 3/2 deviations."""
+    """Return the segments per unit that bulge by 3/2 deviations."""
     return math.sqrt(abs(difference) / (12.0 * law.deviation))
 
 
 def even_feed(slide, sliding, turning, law):
-    """Return the pieces per unit in which the speed is off its mean by the ripple at most.
+    """Return the segments per unit in which the speed is off its mean by the ripple at most.
 
     With slide and C at even speeds the tool is faster by C's part the farther out it is.
     """
     return abs(sliding) / slide * (turning * slide) ** 2 / (2.0 * law.ripple)
 
 
-def share_of(difference, pieces, law):
-    return math.copysign((bulging(difference, law) / pieces) ** 2, difference)
+def share_of(difference, segments, law):
+    return math.copysign((bulging(difference, law) / segments) ** 2, difference)
 
 
 @settings(max_examples=150, deadline=None)
 @given(shapes, st.floats(0.0, 1.0), laws, offsets)
-def test_beside_x_s_line_pieces_are_as_long_as_the_first_limit_allows(shape, part, law, beside):
+def test_beside_x_s_line_segments_are_as_long_as_the_first_limit_allows(shape, part, law, beside):
     """They bulge, X and C turn by no radian, and where nothing bulges its change counts."""
     assume(clear_of(shape, beside))
     path, at = along(shape), part * shape.length
@@ -85,9 +85,9 @@ def test_beside_x_s_line_pieces_are_as_long_as_the_first_limit_allows(shape, par
         1.0 / shape.length,
     )
     wanted = longest(measured, even_feed(slide, sliding, turning, law), law, slide)
-    pieces, share = _density(curve_of(shape), law, beside)(at)
-    assert pieces == pytest.approx(wanted, rel=0.01)
-    assert share == pytest.approx(share_of(difference, pieces, law), abs=0.02)
+    segments, share = _density(curve_of(shape), law, beside)(at)
+    assert segments == pytest.approx(wanted, rel=0.01)
+    assert share == pytest.approx(share_of(difference, segments, law), abs=0.02)
 
 
 @settings(max_examples=100, deadline=None)
@@ -106,7 +106,7 @@ def test_how_a_move_of_x_and_c_curves_and_how_that_changes(slide, beside, headin
 
 @settings(max_examples=100, deadline=None)
 @given(lines, st.floats(0.0, 1.0), laws)
-def test_pieces_of_a_line_are_as_long_as_the_first_limit_allows(line, part, law):
+def test_segments_of_a_line_are_as_long_as_the_first_limit_allows(line, part, law):
     """The place on a line is told by the tangent of the angle from the foot."""
     foot = (line.start * np.conj(heading := (line.end - line.start) / line.length)).imag
     distance = abs(foot)
@@ -117,15 +117,15 @@ def test_pieces_of_a_line_are_as_long_as_the_first_limit_allows(line, part, law)
     even = even_feed(slide, sliding, turning, law)
     wanted = longest((bulging(difference, law), abs(sliding) / slide), even, law, slide)
     place = (path(at) * np.conj(heading)).real / distance
-    pieces, share = _line_density(distance, law.deviation, law)(place)
-    assert pieces / distance == pytest.approx(wanted, rel=0.01)
+    segments, share = _line_density(distance, law.deviation, law)(place)
+    assert segments / distance == pytest.approx(wanted, rel=0.01)
     assert share == pytest.approx(share_of(difference, wanted, law), abs=0.02)
 
 
 @settings(max_examples=150, deadline=None)
 @given(arcs, st.floats(0.0, 1.0), laws)
 @example(Round(0.6 + cmath.rect(0.5, 1.5), 0.6 + 0j, 0.3), 0.5, Law(0.05, 1e9, INF, INF))
-def test_pieces_of_an_arc_are_as_long_as_the_first_limit_allows(arc, part, law):
+def test_segments_of_an_arc_are_as_long_as_the_first_limit_allows(arc, part, law):
     """The place is told by the angle from where it is farthest out, shares are above 0 outside."""
     path, at, e = along(arc), part * arc.length, abs(arc.centre) / arc.radius
     assume(clear_of(arc) and e > 0.01)
@@ -136,8 +136,8 @@ def test_pieces_of_an_arc_are_as_long_as_the_first_limit_allows(arc, part, law):
     wanted = longest((bulging(difference, law), abs(sliding) / slide, flat), even, law, slide)
     turn = math.copysign(1.0, arc.sweep)
     place = turn * np.angle((path(at) - arc.centre) / arc.centre)
-    pieces, share = _arc_density(arc.radius, e, law.deviation, law)(place)
-    assert pieces / arc.radius == pytest.approx(wanted, rel=0.01)
+    segments, share = _arc_density(arc.radius, e, law.deviation, law)(place)
+    assert segments / arc.radius == pytest.approx(wanted, rel=0.01)
     assert share == pytest.approx(-turn * share_of(difference, wanted, law), abs=0.02)
 
 
@@ -155,10 +155,10 @@ def turning_points(shape):
 @given(shapes, laws, st.just(0.0) | offsets)
 @example(Straight(0.6 + 5j, -4 + 5j), Law(1e-5, 0.01, 3.0, 3.0), 2.0)
 @example(Straight(4 + 5j, -0.6 + 5j), Law(1e-5, 0.01, 3.0, 3.0), 2.0)
-def test_ends_of_pieces_are_beside_the_path_where_their_lengths_tell(shape, law, beside):
-    """Inner ends are off to the side that pieces do not bulge to, the ends of the path are on it.
+def test_ends_of_segments_are_beside_the_path_where_their_lengths_tell(shape, law, beside):
+    """Inner ends are off to the side that segments do not bulge to, the ends of the path are on it.
 
-    The angles go on from one to the next as they do along the path. Where X turns round a piece
+    The angles go on from one to the next as they do along the path. Where X turns round a segment
     ends, unless that is next to an end of the path.
     """
     assume(clear_of(shape, beside))
@@ -184,12 +184,12 @@ def test_ends_of_pieces_are_beside_the_path_where_their_lengths_tell(shape, law,
         k = np.searchsorted(lengths, at)
         near = lengths[max(k - 1, 0) : k + 1]
         ends = at / lengths[1], (shape.length - at) / (shape.length - lengths[-2])
-        assert abs(near - at).min() < 1e-3 or len(near) < 2 or min(ends) < 2.5  # pieces
+        assert abs(near - at).min() < 1e-3 or len(near) < 2 or min(ends) < 2.5  # segments
 
 
 @settings(max_examples=100, deadline=None)
 @given(shapes, laws, st.just(0.0) | offsets)
-def test_the_way_back_is_cut_into_the_same_pieces(shape, law, beside):
+def test_the_way_back_is_cut_into_the_same_segments(shape, law, beside):
     """They are spaced from the end nearer to the pole, where they are shortest."""
     assume(clear_of(shape, beside))
     back = Straight(shape.end, shape.start)
@@ -205,7 +205,7 @@ def test_the_way_back_is_cut_into_the_same_pieces(shape, law, beside):
 
 
 def is_whole(line, law):
-    """Return whether one piece is off by 3/4 deviations at most and keeps the feed even enough.
+    """Return whether one segment is off by 3/4 deviations at most and keeps the feed even enough.
 
     As if the line were all the way as it is where it is nearest to the pole.
     """
@@ -221,7 +221,7 @@ def is_whole(line, law):
 @pytest.mark.parametrize("law", [Law(0.005, 1e9, INF, INF), Law(1e9, 0.01, INF, INF)])
 @pytest.mark.parametrize("first", [-1.0, -0.04, 0.0, 0.3, 0.98, 2.5])
 @pytest.mark.parametrize("foot", [2.0, -30.0])
-def test_a_short_line_is_one_piece_while_that_keeps_the_limits(law, first, foot):
+def test_a_short_line_is_one_segment_while_that_keeps_the_limits(law, first, foot):
     """It begins as far behind the foot of the pole's perpendicular, and back again."""
     start = complex(foot, first * abs(foot))
     low, high = 1e-3, 50.0
@@ -236,7 +236,7 @@ def test_a_short_line_is_one_piece_while_that_keeps_the_limits(law, first, foot)
 
 
 @pytest.mark.parametrize(("away", "whole"), [(0.0024, True), (0.0026, False)])
-def test_an_arc_is_one_piece_if_its_radii_differ_by_less_than_the_deviation(away, whole):
+def test_an_arc_is_one_segment_if_its_radii_differ_by_less_than_the_deviation(away, whole):
     circle = Round(complex(10 + away), complex(away), 2 * math.pi)
     split = split_move(curve_of(circle), Law(0.005, 1e9, INF, INF))
     assert (len(split.lengths) == 2) is whole

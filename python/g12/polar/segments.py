@@ -2,12 +2,12 @@
 """Splitting: straight moves of X and C along a line or an arc, as long as the deviation allows.
 
 A straight move of X and C draws a spiral r = r0 + k (angle - angle0) in the plane. Where the path
-makes the angle p with the radius, the spiral has the curvature sin p (1 + cos(p)**2) / r. A piece
-of length L bulges from a path of another curvature by |difference| L**2 / 8: so many pieces per
+makes the angle p with the radius, the spiral has the curvature sin p (1 + cos(p)**2) / r. A segment
+of length L bulges from a path of another curvature by |difference| L**2 / 8: so many segments per
 unit of length are sqrt(|difference| / (8 bulge)).
 
-The speed along the part is not constant inside a piece: it changes by the part sin(p)**2 dr / r.
-And where r grows by more than e times, none of this is true any more: pieces end before.
+The speed along the part is not constant inside a segment: it changes by the part sin(p)**2 dr / r.
+And where r grows by more than e times, none of this is true any more: segments end before.
 
                        r  . ' * place                             * place
                      . '     |                         r  . '   /
@@ -39,11 +39,11 @@ RADIAL = 1e-9  # program units: a line that close to the pole is a radius
 
 
 class Law(NamedTuple):
-    """What limits the length of a piece, program units.
+    """What limits the length of a segment, program units.
 
-    ``deviation`` from the path; ``ripple``: how far the speed may be from its mean within a piece,
-    relative. For an even speed pieces are not made shorter than 1 / ``x_hold`` or
-    1 / (r ``c_hold``): on shorter ones the machine would not reach the speed at all.
+    ``deviation`` from the path; ``ripple``: how far the speed may be from its mean within a
+    segment, relative. For an even speed segments are not made shorter than 1 / ``x_hold`` or 1 / (r
+    ``c_hold``): on shorter ones the machine would not reach the speed at all.
     """
 
     deviation: float
@@ -53,7 +53,7 @@ class Law(NamedTuple):
 
 
 def split_move(curve: Curve, law: Law) -> Split:
-    """Return the pieces of a move of the tool's centre that does not run through the pole."""
+    """Return the segments of a move of the tool's centre that does not run through the pole."""
     return _split_line(curve, law) if isinstance(curve, Line) else _split_arc(curve, law)
 
 
@@ -71,7 +71,7 @@ def _split_line(line: Line, law: Law) -> Split:
     u0 = started.real / distance
     u1 = u0 + length / distance
     foot = angle_of(line.start) - turn * atan(u0)
-    if _is_one_piece(u0, u1, distance, deviation, abs(r1 - r0) / (r0 + r1), law.ripple):
+    if _is_one_segment(u0, u1, distance, deviation, abs(r1 - r0) / (r0 + r1), law.ripple):
         return Split([r0, r1], [foot + turn * atan(u0), foot + turn * atan(u1)], [0.0, length])
     density = _line_density(distance, deviation, law)
     places, shares = spaced(Stretch(u0, u1, [0.0], abs), density)
@@ -85,10 +85,10 @@ def _split_line(line: Line, law: Law) -> Split:
     )
 
 
-def _is_one_piece(
+def _is_one_segment(
     u0: float, u1: float, distance: float, deviation: float, rise: float, ripple: float
 ) -> bool:
-    """Return whether a line is so short that it is one piece wherever its density is greatest.
+    """Return whether a line is so short that it is one segment wherever its density is greatest.
 
     ``rise`` is the change of the radius relative to twice its mean.
     """
@@ -102,7 +102,7 @@ def _is_one_piece(
 
 
 def _line_density(distance: float, deviation: float, law: Law) -> Density:
-    """Return the pieces per unit of u, and the part of the deviation they use."""
+    """Return the segments per unit of u, and the part of the deviation they use."""
     bulging = sqrt(distance / (8.0 * BULGE * deviation))
     even = 0.5 / law.ripple
     x_hold, c_hold = law.x_hold * distance, law.c_hold * distance * distance
@@ -112,11 +112,11 @@ def _line_density(distance: float, deviation: float, law: Law) -> Density:
         m = 1.0 + v
         wanted = bulging * sqrt(m + v) / m
         growth = abs(u) / m
-        pieces = max(wanted, growth)
+        segments = max(wanted, growth)
         smooth = even * growth / m
-        if smooth > pieces:
-            pieces = max(pieces, min(smooth, x_hold, c_hold * sqrt(m)))
-        return pieces, (wanted / pieces) ** 2
+        if smooth > segments:
+            segments = max(segments, min(smooth, x_hold, c_hold * sqrt(m)))
+        return segments, (wanted / segments) ** 2
 
     return density
 
@@ -144,9 +144,9 @@ def _split_arc(arc: Arc, law: Law) -> Split:
 
 
 def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density:
-    """Return the pieces per radian, and the part of the deviation they use, above zero outside.
+    """Return the segments per radian, and the part of the deviation they use, above zero outside.
 
-    Where the curvatures are the same they have the length of a piece that begins there.
+    Where the curvatures are the same they have the length of a segment that begins there.
     """
     bulging = sqrt(radius / (8.0 * BULGE * deviation))
     flat = (min(e, 1.0) * radius / (18.0 * BULGE * deviation)) ** (1.0 / 3.0)
@@ -161,11 +161,11 @@ def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density
         p = m * m - w * (2.0 * m - w * w)
         wanted = bulging * sqrt(abs(p)) / m
         growth = e * abs(sin(a)) / m
-        pieces = max(wanted, growth, flat)
+        segments = max(wanted, growth, flat)
         smooth = even * growth * w * w / m
-        if smooth > pieces:
-            pieces = max(pieces, min(smooth, x_hold, c_hold * sqrt(m)))
-        return pieces, copysign((wanted / pieces) ** 2, p)
+        if smooth > segments:
+            segments = max(segments, min(smooth, x_hold, c_hold * sqrt(m)))
+        return segments, copysign((wanted / segments) ** 2, p)
 
     return density
 
