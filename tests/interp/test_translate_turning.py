@@ -292,7 +292,7 @@ REFUSED = [
         "G71 U2. R.5\nG71 P10 Q20\nN10 G0 X20.\nG1 Z-9.\nX30. Z-5.\nN20 X50. Z-10.",
         "line 7: the contour goes back in Z",
     ),
-    ("G71 P10 Q20 U.4\nN10 G0 X20.\nG1 Z-9.\nN20 X50.", "G71 has no depth of cut"),
+    ("G71 P10 Q20 U.4\nN10 G0 X20.\nG1 Z-9.\nN20 X50.", "G71 needs a depth of cut above 0"),
     (
         "G71 U2. R.5\nG71 P10 Q20\nN10 G0 X20.\nG1 Z#1\nN20 X50.",
         "line 6 in the contour: Z#1: a cont",
@@ -307,10 +307,12 @@ REFUSED = [
     ),
     ("G28 U0\nG71 U2.\nG71 P10 Q20\nN10 G0 X20.\nN20 G1 X50.", "this begins where the tool stands"),
     (
-        "G90",
+        "G90\nX40. Z-5.",
         "G90 is a cycle here, the turning pass, with X and Z and no G0 or G1: where it is",
     ),
-    ("G90 G0 X20. Z1.", "G90 is a cycle here, the turning pass"),
+    ("G0 G90 X20. Z1.", "G90 is a cycle here, the turning pass"),
+    ("M6", "M6 without T: the turret turns by T alone, take it out"),
+    ("G95", "G95: feed per revolution is G99 in system A: where your control has G95, say G95"),
     ("G92 X20. Z-5. F#1", "a thread needs F, its lead, as a number"),
     ("G76 X20. Z-5. P500 F1.", "the thread's height and the depth of its first pass"),
     ("G1 X20. ,R5.\nX10.", "line 3: a corner of 5 has no room between its lines"),
@@ -321,6 +323,24 @@ REFUSED = [
     ("G75 X40. Z-9. P100", "the cycle has no step to the next place"),
     ("G12.1\nG71 P1 Q2", "a turning cycle in a section"),
 ]
+
+
+HARMLESS = [
+    ("G90 G54\nG1 X40. F.2", "G54 (G90)\nG1 X40. F.2"),
+    ("G90 G0 X40. Z1.", "G0 X40. Z1. (G90)"),
+    ("G90 G28 U0", "(G90)"),
+    ("G90 G0 X40. Z1.\nG71 U2. R.5\nG71 P1 Q2\nN1 G0 X30.\nN2 G1 Z-5.", "G1 Z-5"),
+    ("T0303 M6", "T3 M6 G43 H3 (M6)"),
+    ("T00", "G49"),
+]
+
+
+@pytest.mark.parametrize(("blocks", "lines"), HARMLESS)
+def test_a_code_that_changes_nothing_is_a_comment(blocks, lines):
+    text = f"G21 G99 S500 M3\nG0 X50. Z2.\n{blocks}\nM30\n"
+    result = translate_program(text, read_control("fanuc-lathe"))
+    assert not result.refused
+    assert lines in result.text
 
 
 @pytest.mark.parametrize(("blocks", "sentence"), REFUSED)

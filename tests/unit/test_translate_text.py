@@ -82,6 +82,7 @@ def test_numbers_keep_their_text():
         ("(SÄGE 5° — ½)", "(SÄGE 5° — ½)"),
         ("(X;Y)", "(X,Y)"),
         ("{BRACES}", "(BRACES)"),
+        ("(ONE { BRACE)", "(ONE { BRACE)"),
         ("(TAB\tHERE)", "(TAB HERE)"),
     ],
 )
@@ -205,7 +206,8 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G84 Z-1. R.1 J2 F5.", "G84 with J is not translated"),
         (LATHE, "G10.9 X2.", "G10.9 needs X0, radii, or X1, diameters, and no other axis"),
         (HAAS, "G0 X1. ?", "? does not start with a word"),
-        (HAAS, "G0 X1.)", ") without a ( before it"),
+        (HAAS, "G0 X1.)", ") without its opening bracket before it"),
+        (HAAS, "G0 X1. {a", "a comment is not closed: } is missing"),
         (HAAS, "H1", "H without G43"),
         (HAAS, "G43 Z1.", "G43 without H"),
         (HAAS, "G41 X1.", "G41 or G42 without D"),

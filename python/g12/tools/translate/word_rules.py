@@ -30,6 +30,7 @@ from g12.tools.translate.turning import corners, cycles_of_turning, drilling, fe
 WORD_RULES = (
     codes.keep_as_comments,
     codes.map_codes,
+    cycles_of_turning.no_pass_yet,
     spindle.orientation,
     modes.follow_modes,
     polar.plane_letters,

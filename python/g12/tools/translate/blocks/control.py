@@ -41,7 +41,7 @@ MEANINGS = {
         "radius or diameter",
     ),
     "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
-        "no thread chamfer", "rigid tapping",
+        "no thread chamfer", "rigid tapping", "tool change",
     ),
 }  # fmt: skip
 PLACES = ("clamp C", "unclamp C", "C axis on", "C axis off")  # of M codes: `machine_codes`

@@ -39,7 +39,7 @@ CALLED_PROGRAM = re.compile(r"O([0-9]{1,8}|[A-PR-Z][A-PR-Z0-9]{1,3})(?:Q([0-9]{1
 NAMED_PROGRAMS = 5_000_000  # O and a name of up to four characters is a number above this
 ASSIGNMENT = re.compile(r"#([0-9]+)=")
 OBEYED = re.compile(r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I)
-BRACES = str.maketrans("{}", "()")  # remarks in some manuals; a comment has round ones
+BRACKETS = {"(": ")", "{": "}"}  # of comments; braces in some manuals
 MINUS = "\N{MINUS SIGN}"
 EMPTY_CHARACTERS = "\ufeff\u200b\0"
 LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -144,8 +144,7 @@ def blocks_of(line: int, text: str, remarks: bool = False) -> Iterator[ForeignBl
 
 def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, ...]]:
     """Return the blocks of a line without blanks, and its comments."""
-    text = text.translate(BRACES)
-    if "(" in text or ")" in text:
+    if any(bracket in text for bracket in "(){}"):
         code, comments = _split_comments(text)
     else:
         code, comments = text, []
@@ -163,22 +162,23 @@ def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, .
 
 
 def _split_comments(text: str) -> tuple[str, list[str]]:
-    code, comments, depth, start = [], [], 0, 0
+    code, comments, depth, start, opened = [], [], 0, 0, ""
     for at, character in enumerate(text):
-        if character == "(":
+        if character == opened or (not depth and character in BRACKETS):
             if depth == 0:
+                opened = character
                 code.append(text[start:at])
                 start = at + 1
             depth += 1
-        elif character == ")":
+        elif depth and character == BRACKETS[opened]:
             depth -= 1
-            if depth < 0:
-                raise NotTranslated(") without a ( before it")
             if depth == 0:
                 comments.append(text[start:at])
-                start = at + 1
+                start, opened = at + 1, ""
+        elif not depth and character in BRACKETS.values():
+            raise NotTranslated(f"{character} without its opening bracket before it")
     if depth:
-        raise NotTranslated("a comment is not closed: ) is missing")
+        raise NotTranslated(f"a comment is not closed: {BRACKETS[opened]} is missing")
     return "".join([*code, text[start:]]), comments
 
 

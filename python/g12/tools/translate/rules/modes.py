@@ -48,7 +48,9 @@ def follow_modes(draft: Draft) -> None:
         if word.letter == "G" and word.code in GROUP_OF:
             group = GROUP_OF[word.code]
             if group in modes:
-                raise NotTranslated(f"{modes[group]} and {word.code} in one block")
+                raise NotTranslated(
+                    f"{modes[group]} and {word.code} in one block: give one a block of its own"
+                )
             modes[group] = word.code
         elif word.letter == "F":
             modes["feed"] = word.value

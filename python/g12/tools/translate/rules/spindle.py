@@ -49,7 +49,7 @@ def limit_now(draft: Draft, code: str, limit: str) -> None:
     """Write the limit for the surface speed that is on."""
     surface = draft.sure("surface", f"{code} S within G96")
     if surface == UNKNOWN:
-        raise NotTranslated(f"{code} S within G96, and the S of G96 is not known here")
+        raise NotTranslated(f"{code} S within G96, and the S of G96 is not known: write it before")
     draft.after.append(f"G96 S{surface} D{limit}")
 
 

@@ -37,8 +37,12 @@ def follow_tool(draft: Draft) -> None:
 def turret_word(draft: Draft) -> None:
     """Write a lathe's T word as tool change and offset."""
     word = next((word for word in draft.words if word.letter == "T"), None)
+    change = draft.meanings.pop("tool change", None)
+    if change and not word:
+        raise NotTranslated(f"{change.code} without T: the turret turns by T alone, take it out")
     if not word:
         return
+    draft.comments += [change.text] if change else []
     tool, offset = parts_of(draft, word)
     loaded = not tool or draft.state.tool == str(tool)
     words = [] if loaded else [word_of(f"T{tool}"), word_of("M6")]
@@ -57,6 +61,8 @@ def parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
     patterns = sorted(draft.control.value("tools", "patterns", ()), key=len)
     if word.kind != "number" or not word.value.isdigit():
         raise NotTranslated(f"{word.text}: a tool word must be a whole number")
+    if not int(word.value):
+        return 0, 0  # T00: no tool is changed, its offset ends
     if not patterns:
         raise NotTranslated(f"{word.text}: [tools] patterns does not say what its digits are")
     pattern = next((p for p in patterns if len(p) >= len(word.value)), None)

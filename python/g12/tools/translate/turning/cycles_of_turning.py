@@ -49,6 +49,24 @@ SHORTEST = 1e-5  # of a thread
 METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True)}  # Haas's P
 
 
+def no_pass_yet(draft: Draft) -> None:
+    """Keep a G90 as a comment where a move's code ends it: absolute, too, where it is a mode.
+
+    Of two codes of a group the last one counts; a G90 without X and Z cuts nothing yet.
+    """
+    code = draft.meanings.get("turning pass")
+    if not code:
+        return
+    order = [word.code for word in draft.block.words if word.letter == "G"]
+    moves = [at for at, one in enumerate(order) if one in MOTIONS]
+    ended = moves[-1:] > [order.index(code.code)]
+    if not ended and (moves or (len(draft.meanings) == 1 and has_own_words(draft))):
+        return
+    del draft.meanings["turning pass"]
+    draft.change(turn=UNKNOWN if ended else "turning pass", pass_words=())
+    draft.comments.append(code.text)
+
+
 def turning_cycle(draft: Draft) -> None:
     """Write the moves of a turning cycle."""
     follow_chamfers(draft)
@@ -58,7 +76,7 @@ def turning_cycle(draft: Draft) -> None:
         codes = set(draft.codes())
         if codes & MOTIONS or draft.meanings:
             draft.change(turn=UNKNOWN)
-        elif draft.letters() & set("XZUW") and not codes & {*CONSUMERS, "G53"}:
+        elif has_own_words(draft):
             meaning = draft.sure("turn", "X and Z may repeat a turning cycle")
     if not meaning:
         return
@@ -69,6 +87,12 @@ def turning_cycle(draft: Draft) -> None:
         draft.change(turn=UNKNOWN)
     CYCLES[meaning](draft)
     draft.meanings.pop(meaning, None)
+
+
+def has_own_words(draft: Draft) -> bool:
+    """Tell whether X Z U W of a block are there for a cycle, not for a code such as G28."""
+    taken = {*CONSUMERS, "G53"}.intersection(draft.codes())
+    return bool(draft.letters() & set("XZUW")) and not taken
 
 
 def follow_chamfers(draft: Draft) -> None:
@@ -146,7 +170,9 @@ def roughing(draft: Draft, meaning: str, along_x: bool) -> None:
     given = RoughCuts(depth, kept_value(draft, meaning, "retract"), take_allowance(draft), along_x)
     if given.depth <= 0:
         code = draft.meanings[meaning].code
-        raise NotTranslated(f"{code} has no depth of cut: {depth_word} in its first block, or D")
+        raise NotTranslated(
+            f"{code} needs a depth of cut above 0: {depth_word} in its first block, or D"
+        )
     segments, _ = read_contour(draft, indices, start)
     given = given._replace(approach=segments[0].motion)
     moves = rough(start, segments, given)
@@ -248,6 +274,8 @@ def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     own = take_end(draft, start)
     taper = take_number(draft, "R")
     said: Any = draft.sure("pass_words", "the cycle takes what was said before") if again else ()
+    if again and not said:
+        raise NotTranslated(other_meaning("G90", meaning))
     words = {**dict(said), **own}
     words.update({} if taper is None else {"R": taper})
     if not {"X", "Z"} <= words.keys():
@@ -260,10 +288,15 @@ def refuse_other_meanings(draft: Draft, meaning: str) -> None:
     """Refuse the code of a single pass that means a mode: that of another G code system."""
     code = draft.meanings.get(meaning)
     if code and (set(draft.codes()) & MOTIONS or not draft.letters() & set("XZUW")):
-        raise NotTranslated(
-            f"{code.code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it "
-            "is a mode, the control is fanuc-lathe-b or fanuc-lathe-c; else take it out"
-        )
+        raise NotTranslated(other_meaning(code.code, meaning))
+
+
+def other_meaning(code: str, meaning: str) -> str:
+    """Return what to write where a code is not meant as the cycle that it is."""
+    return (
+        f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it "
+        "is a mode, the control is fanuc-lathe-b or fanuc-lathe-c; else take it out"
+    )
 
 
 def one_thread_pass(draft: Draft) -> None:
