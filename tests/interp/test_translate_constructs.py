@@ -128,7 +128,7 @@ CONSTRUCTS = [
     ("fanuc-lathe", "G1 X45.\nG28 U0 W0", "G1 X45\nG53 G0 X0 Z0\nG1"),
     ("fanuc-lathe", "G0 C20.\nG28 H0", "G0 C20\nG53 C0"),
     ("fanuc-lathe", "G1 X45.\nG30 U2. W1.", "G1 X45\nG0 X47 Z6\nG53 X0 Z0\nG1"),
-    ("fanuc-lathe", "T0101\nT0100", "T1 M6\nG49"),
+    ("fanuc-lathe", "T0101\nT0100", "T1 M6 M3\nG49"),
     ("fanuc-lathe", "G50 S900\nG96 S100 M3\nX45.\nG97 S50 M5\nX46.",
      "(G50)\nG96 D900 S100 M3\nX45\nG97 S50 M5\nX46"),
     ("fanuc-lathe", "G50 X10. Z0\nX20.\nG50 X60. Z5.", "G0 X60\nG92 X60 Z5"),

@@ -93,12 +93,16 @@ class Draft:
         """Return the G codes of the block, as LinuxCNC's."""
         return [w.code for w in self.words if w.letter == "G" and w.kind == "number"]
 
+    def m_codes(self) -> list[str]:
+        """Return the M codes of the block, as LinuxCNC's."""
+        return [w.code for w in self.words if w.letter == "M" and w.kind == "number"]
+
     @property
     def ends(self) -> bool:
         """Whether the program ends with the block, by M2, M30 or an alarm."""
         if self.block.kind == "stop" and self.block.label == "3000":
             return True
-        return any(w.letter == "M" and w.kind == "number" and w.code in ENDS for w in self.words)
+        return not ENDS.isdisjoint(self.m_codes())
 
     def letters(self) -> set[str]:
         """Return the letters of the words that are left."""

@@ -53,7 +53,7 @@ class ModalState(NamedTuple):
     ``waiting`` is where a mill's program goes on a lathe before its next cut, ``section`` the
     program in which that began. ``sizes`` are the diameters that G10 L12 has set, by tool.
     ``x_words`` tells whether X words are diameters, ``live`` is the ``$`` word of a spindle that
-    drives the tool and turns.
+    drives the tool and turns; ``spindle`` is the M3 or M4 that turns the first one.
     """
 
     motion: str = UNKNOWN
@@ -90,6 +90,7 @@ class ModalState(NamedTuple):
     retract: str = UNKNOWN
     x_words: str = UNKNOWN
     live: str = UNKNOWN
+    spindle: str = UNKNOWN
     waiting: tuple | str = ()
     section: int | str = UNKNOWN
     rigid: str = UNKNOWN

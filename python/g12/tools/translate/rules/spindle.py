@@ -55,8 +55,10 @@ def limit_now(draft: Draft, code: str, limit: str) -> None:
 
 def live_tool(draft: Draft) -> None:
     """Name the spindle of M3, M4, M5 and S: that of the block's P word, or the live tool's."""
-    codes = {w.code for w in draft.words if w.letter == "M" and w.kind == "number"} & TURNING
+    codes = TURNING.intersection(draft.m_codes())
     named = named_spindle(draft, bool(codes))
+    if codes and named in ("", "$0", "$-1"):
+        draft.change(spindle=next(iter(codes - {"M5"}), UNKNOWN))
     if codes - {"M5"}:
         draft.change(live=named)
     elif codes and named in (draft.state.live, "$-1"):

@@ -13,6 +13,7 @@ from g12.tools.translate.blocks.modal import UNKNOWN
 COMPENSATION = frozenset(("G41", "G42"))
 POCKETS = frozenset(("G12", "G13"))
 USES_D = COMPENSATION | POCKETS
+TURNING = frozenset(("M3", "M4", "M5"))
 
 
 def tool_and_offsets(draft: Draft) -> None:
@@ -30,7 +31,7 @@ def follow_tool(draft: Draft) -> None:
     word = next((word for word in draft.words if word.letter == "T"), None)
     if word:
         draft.change(next_tool=word.value.lstrip("0") or "0")
-    if any(w.letter == "M" and w.kind == "number" and w.code == "M6" for w in draft.words):
+    if "M6" in draft.m_codes():
         draft.change(tool=draft.state.next_tool)
 
 
@@ -49,8 +50,17 @@ def turret_word(draft: Draft) -> None:
     if offset >= 0:
         words += [word_of("G43"), word_of(f"H{offset}")] if offset else [word_of("G49")]
     draft.replace(word, *words)
+    if not loaded:
+        spindle_goes_on(draft)
     draft.comments += [word.text] if loaded else []
     draft.change(tool=str(tool) if tool else draft.state.tool, length=str(max(offset, 0)))
+
+
+def spindle_goes_on(draft: Draft) -> None:
+    """Start the spindle again that turns while the turret does: LinuxCNC's M6 stops it."""
+    turning = draft.sure("spindle", "LinuxCNC's tool change stops the spindle")
+    if turning and not draft.state.live and not TURNING.intersection(draft.m_codes()):
+        draft.words.append(word_of(turning))
 
 
 def parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
