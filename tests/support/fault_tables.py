@@ -48,7 +48,7 @@ class MachinedProgram(NamedTuple):
 
 def program_of(table: str, name: str) -> MachinedProgram:
     """Return a program of a table of faults."""
-    asked = TABLES[table]["programs"][name]
+    asked = TABLES[table][name]
     text = asked.get("text") or (PROGRAMS / asked["file"]).read_text(encoding="utf-8")
     tools = {int(tool): size for tool, size in asked["tools"].items()} if "tools" in asked else None
     machine = asked.get("ini", TABLES[table]["ini"])
