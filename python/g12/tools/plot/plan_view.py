@@ -6,7 +6,7 @@ Lengths are millimetres until they are drawn.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import groupby, takewhile
 from typing import NamedTuple
 
@@ -103,7 +103,7 @@ def milled(part: Part, moves: Sequence[Move]) -> list[np.ndarray]:
 
 
 def swept_by(
-    part: Part, moves: Sequence[Move], diameters: dict[int, float]
+    part: Part, moves: Sequence[Move], diameters: Mapping[int, float]
 ) -> tuple[BaseGeometry, float]:
     """Return the area that the cutters of moves sweep, and the radius of the largest."""
     areas, radii = [], []
@@ -190,7 +190,7 @@ def draw_stock(axes: Axes, scene: Scene, shape: BaseGeometry | None) -> None:
         style.fill(axes, area, "none", style.STOCK_EDGE, 2.2)
 
 
-def floor(scene: Scene, level: Level) -> tuple:
+def floor(scene: Scene, level: Level) -> tuple[object, object]:
     """Return the fill and the outline of a level's area; grey where colours tell feeds."""
     if scene.feed_colours:
         return style.grey(level.shade.floor), style.RAPID
@@ -217,10 +217,10 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
     lines = (scene.path.part.polyline(move, PICTURE_CHORD) for move in rapids)
     style.draw_rapids(axes, once([line[:, pair] / unit for line in lines]))
     wide = scene.real is not None
-    for lines, colour in coloured_paths(scene, levels):
-        lines = [line[:, pair] / unit for line in lines]
+    for path, colour in coloured_paths(scene, levels):
         shade = style.tint(colour, 0.4) if wide else colour
-        style.draw(axes, lines, shade, 2.6 if wide else width_for(scene))
+        width = 2.6 if wide else width_for(scene)
+        style.draw(axes, [line[:, pair] / unit for line in path], shade, width)
     if scene.real is not None:
         draw_real(axes, scene, pair)
     hit = [found.values["path"][:, pair] / unit for found in scene.seen.rapids]
@@ -229,7 +229,9 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
 
 def draw_real(axes: Axes, scene: Scene, pair: list[int]) -> None:
     """Draw the real motion in two of the part's axes, rapids dashed."""
-    real, cuts, rapids = scene.real, [], []
+    real = scene.real
+    cuts: list[np.ndarray] = []
+    rapids: list[np.ndarray] = []
     edges = np.flatnonzero(np.diff(real.move)) + 1
     for stretch in np.split(np.arange(len(real.move)), edges):
         shown = real.points[max(0, stretch[0] - 1) : stretch[-1] + 1, pair] / scene.unit.mm
@@ -241,7 +243,7 @@ def draw_real(axes: Axes, scene: Scene, pair: list[int]) -> None:
 
 def once(lines: Sequence[np.ndarray]) -> list[np.ndarray]:
     """Return polylines without those that go there and back again: two dashed lines look solid."""
-    found = {}
+    found: dict[frozenset[tuple[float, ...]], np.ndarray] = {}
     for line in lines:
         ends = np.round(line[[0, len(line) // 2, -1]] / max(np.ptp(line, axis=0).max(), 1e-6), 2)
         found.setdefault(frozenset(map(tuple, ends + 0.0)), line)

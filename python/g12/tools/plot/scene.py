@@ -99,8 +99,8 @@ def scene_of(subject: Subject, units: str | None = None, feed_colours: bool = Fa
 def scene_of_proof(proof: Proof, override: float = 100.0) -> Scene:
     """Return what to show of a program that was measured, its real motion included."""
     contour = max((facts.deviation for facts in proof.sections), default=None)
-    shown = {"seen": seen_of_proof(proof), "contour": contour, "override": override}
-    return replace(scene_of(proof.subject), **shown)
+    seen = seen_of_proof(proof)
+    return replace(scene_of(proof.subject), seen=seen, contour=contour, override=override)
 
 
 def heading(program: Path) -> str:

@@ -15,7 +15,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from g12.tools.path.part import Part
-from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track, Vertices
 from g12.tools.plot import style
 from g12.tools.plot.deviation import SIZE, draw_window
@@ -124,7 +123,7 @@ def unrolled(scene: Scene) -> Scene:
     return replace(scene, subject=replace(subject, trace=trace, drawn=flat), seen=shown)
 
 
-def unrolled_move(move: Move, part: Surface) -> Move:
+def unrolled_move(move: Move, part: Part) -> Move:
     """Return a straight move on the surface as one of a mill."""
     start, end = map(tuple, as_positions(part.points(np.array([move.start, move.end]))).tolist())
     return move._replace(kind="feed" if move.kind == "arc" else move.kind, start=start, end=end)
