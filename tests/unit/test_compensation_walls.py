@@ -85,7 +85,7 @@ def test_no_gouge_falls_between_two_points_of_a_wall(moves, tolerance):
     assert along == sorted(along) and along[0] <= 1.001 * tolerance
     assert max(b - a for a, b in zip(along, along[1:])) <= half_chord + 2 * tolerance
     for each in points:
-        curve = contour.moves[each.index].curve
+        curve = contour.moves[each.move_index].curve
         assert curve.distance(each.point) < 1e-9
         assert each.point == pytest.approx(contour.point_at(each.along))
         assert each.direction == pytest.approx(curve.direction(curve.share_of(each.point)))
@@ -102,7 +102,7 @@ def test_of_repeated_passes_the_deepest_is_kept_for_the_first_of_its_moves():
     other = line(0.0, 1.0, 9.0, 1.0)
     for one, again in ((high, low), (low, high)):
         made = passes_of([(1, one), (2, Plunge(5, 9.0, 0.0, 1.0)), (2, other), (3, again)])
-        assert [(each.index, each.move) for each in made] == [(1, low), (2, other)]
+        assert [(each.move_index, each.move) for each in made] == [(1, low), (2, other)]
         assert len(made[0].levels) == 2
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from g12.compensation.contour import Contour
+from g12.compensation.contour import Contour, Element
 from g12.compensation.offset import tool_path
 from g12.compensation.simplify import with_points_left_out, without_short_moves
 from g12.errors import Refusal
@@ -11,7 +11,7 @@ from g12.errors import Refusal
 SHORT_SHARE = 0.3  # of the tolerance: a shorter move under compensation is rounding
 
 
-def centre_path(contour: Contour, tolerance: float) -> tuple[list, float]:
+def centre_path(contour: Contour, tolerance: float) -> tuple[list[Element], float]:
     """Return the path of the tool's centre, and by how much the contour was moved for it.
 
     Points nearer to each other than their last decimal allows make corners that no tool reaches:

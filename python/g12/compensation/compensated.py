@@ -15,7 +15,7 @@ from math import ceil, copysign, inf, sqrt
 from typing import NamedTuple
 
 from g12.compensation.closing import closing_of
-from g12.compensation.contour import SAME_PLACE, Contour, PlaneMove
+from g12.compensation.contour import SAME_PLACE, Contour, Element, PlaneMove
 from g12.geometry.boxes import BoxTree
 from g12.geometry.curve import Arc
 
@@ -30,14 +30,14 @@ class Cut(NamedTuple):
     """
 
     move: PlaneMove
-    path: tuple
+    path: tuple[Element, ...]
     cut: bool
 
 
 class Pass(NamedTuple):
     """A move of the tool's centre for the contour's move ``index``, and all its Z levels."""
 
-    index: int
+    move_index: int
     move: PlaneMove
     levels: frozenset[int]
 
@@ -49,7 +49,7 @@ class Pass(NamedTuple):
 class WallPoint(NamedTuple):
     """A point of the move ``index``, so far along the contour, and the contour's direction."""
 
-    index: int
+    move_index: int
     along: float
     point: complex
     direction: complex
@@ -192,14 +192,14 @@ def is_low(move: PlaneMove, level: float) -> bool:
 
 def passes_of(path: Iterable[tuple[int, object]]) -> list[Pass]:
     """Return passes along moves, by their indices; repeated ones once, at the lowest of levels."""
-    kept: dict[tuple, Pass] = {}
+    kept: dict[tuple[int, ...], Pass] = {}
     for index, move in path:
         if not isinstance(move, PlaneMove):
             continue
         place, level = in_plane(move), frozenset([_level(move.z1)])
         before = kept.get(place)
         if before:
-            index, level = before.index, level | before.levels
+            index, level = before.move_index, level | before.levels
             move = min(before.move, move, key=lambda each: each.lowest)
         kept[place] = Pass(index, move, level)
     return list(kept.values())
@@ -211,7 +211,7 @@ def greatest_levels(moves: Sequence[PlaneMove]) -> dict[int, float]:
     Moves in the air, between a plunge up and a plunge down, are not there.
     """
     levels: dict[int, float] = {}
-    first: dict[tuple, int] = {}
+    first: dict[tuple[int, ...], int] = {}
     for index in _in_material(moves):
         move = moves[index]
         kept = first.setdefault(in_plane(move), index)
@@ -233,12 +233,12 @@ def _in_material(moves: Sequence[PlaneMove]) -> Iterator[int]:
             yield from run
 
 
-def in_plane(move: PlaneMove) -> tuple:
+def in_plane(move: PlaneMove) -> tuple[int, ...]:
     """Return what tells one move in the plane from another, rounding aside."""
     curve = move.curve
-    points, sweep = (curve.start, curve.end), 0.0
+    points, sweep = [curve.start, curve.end], 0.0
     if isinstance(curve, Arc):
-        points, sweep = (*points, curve.centre), curve.sweep
+        points, sweep = [*points, curve.centre], curve.sweep
     places = [axis for point in points for axis in (point.real, point.imag)]
     return tuple(round(place / SAME_PLACE) for place in (*places, sweep))
 

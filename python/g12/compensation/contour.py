@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
+from functools import partial
 from math import copysign, sqrt
 from typing import NamedTuple, NoReturn
 
@@ -302,7 +303,15 @@ class Contour:
             )
         self._switch = None
 
-    def _check_arc(self, turn, i, j, radius, line, feed) -> None:
+    def _check_arc(
+        self,
+        turn: int,
+        i: float | None,
+        j: float | None,
+        radius: float | None,
+        line: int,
+        feed: float,
+    ) -> None:
         name, beside = _name(turn), abs(self._end.imag - self.c)
         self._check_feed(feed, line)
         if beside > SAME_PLACE:
@@ -325,10 +334,11 @@ class Contour:
             return Arc(start, centre, turn * FULL_TURN)
         from_start, from_end = abs(arm), abs(end - centre)
         if not self._closes(from_start, from_end):
+            hint = self._hint(partial(self._centre_closes, arm), end)
             self.refuse(
                 line,
                 f"{_name(turn)} does not close: its centre is {number(from_start)} from the start, "
-                f"{number(from_end)} from the end{self._hint(self._centre_closes, end, arm)}",
+                f"{number(from_end)} from the end{hint}",
             )
         centre = recentred(start, end, centre)
         return Arc(start, centre, sweep_between(start, end, centre, turn))
@@ -344,7 +354,7 @@ class Contour:
             self.refuse(
                 line,
                 f"{name} does not close: the ends are {number(apart)} apart, R must be at least "
-                f"{number(half)}{self._hint(self._radius_closes, end, radius)}",
+                f"{number(half)}{self._hint(partial(self._radius_closes, radius), end)}",
             )
         height = sqrt(max(0.0, radius * radius - half * half)) / apart
         height = copysign(height, turn * radius)
@@ -357,20 +367,20 @@ class Contour:
     def _spans(self, half: float, radius: float) -> bool:
         return half - abs(radius) <= max(0.5 * self.closing, CLOSING_RATIO * half)
 
-    def _centre_closes(self, start: complex, end: complex, arm: complex) -> bool:
+    def _centre_closes(self, arm: complex, start: complex, end: complex) -> bool:
         return self._closes(abs(arm), abs(end - start - arm))
 
-    def _radius_closes(self, start: complex, end: complex, radius: float) -> bool:
+    def _radius_closes(self, radius: float, start: complex, end: complex) -> bool:
         return self._spans(0.5 * abs(end - start), radius)
 
-    def _hint(self, closes: Callable[..., bool], end: complex, word: complex) -> str:
+    def _hint(self, closes: Callable[[complex, complex], bool], end: complex) -> str:
         """Return which other reading of the X words, if any, would close the arc."""
         if self.diameter is None:
             return ""
         other, ratio = ("radius", 2.0) if self.diameter else ("diameter", 0.5)
         for x0 in (self.x * ratio, self.x):
             start = complex(x0, self.c)
-            if closes(start, complex(end.real * ratio, end.imag), word):
+            if closes(start, complex(end.real * ratio, end.imag)):
                 return f"; it would close with X read as a {other} (POLAR_X = {other})"
         return ""
 

@@ -82,7 +82,7 @@ class _Sweep:
         self._tree = BoxTree([each.move.curve for each in self._passes])
         self._of_move: dict[int, list[int]] = {}
         for by, each in enumerate(self._passes):
-            self._of_move.setdefault(each.index, []).append(by)
+            self._of_move.setdefault(each.move_index, []).append(by)
         self._ahead = 0  # by so many moves another pass ran behind the last point, if one did
         self._is_repeated = False  # a pass runs behind a wall, or may be a lead
 
@@ -96,7 +96,7 @@ class _Sweep:
                 last.line,
                 "cross: taken for the leads of a contour that closes there",
             )
-        for index, points in groupby(own.points(), key=lambda point: point.index):
+        for index, points in groupby(own.points(), key=lambda point: point.move_index):
             hits = [hit for point in points for hit in self._hits(point)]
             worst = min(hits, key=lambda hit: (hit.lead, hit.ramp), default=None)
             line = own.moves[index].line
@@ -127,8 +127,8 @@ class _Sweep:
     def _hits(self, point: WallPoint) -> list[_Hit]:
         """Return the passes that cut a point of a wall, none where one runs behind it."""
         own, reach, place = self._own, self._own.reach, point.point
-        low = partial(self._is_low, own.walls[point.index].z0)
-        guess = self._of_move.get(point.index + self._ahead, ()) if self._is_repeated else ()
+        low = partial(self._is_low, own.walls[point.move_index].z0)
+        guess = self._of_move.get(point.move_index + self._ahead, ()) if self._is_repeated else ()
         if any(low(by) and self._kind(point, by) == PASSED for by in guess):
             return []
         _, nearest = self._tree.nearest(place, reach, low)
@@ -138,7 +138,7 @@ class _Sweep:
         for by in filter(low, (nearest, *self._tree.near((place.real, place.imag) * 2, reach))):
             kind = self._kind(point, by)
             if kind == PASSED:
-                self._ahead = self._passes[by].index - point.index
+                self._ahead = self._passes[by].move_index - point.move_index
                 self._is_repeated = True
                 return []
             if kind:
@@ -166,7 +166,7 @@ class _Sweep:
 
     def _hit(self, point: WallPoint, by: int, kind: str) -> _Hit:
         """Return the hit of a point by a pass."""
-        own, closing, index = self._own, self._own.closing, point.index
+        own, closing, index = self._own, self._own.closing, point.move_index
         cutting, move, _ = self._passes[by]
         if closing.crossing:
             lead = all(k <= closing.first or k >= closing.last for k in (index, cutting))
@@ -204,7 +204,7 @@ class _Sweep:
         return False
 
 
-def signature(contour: CompensatedContour) -> tuple:
+def signature(contour: CompensatedContour) -> tuple[float | tuple[int, ...], ...]:
     """Return what tells a contour from others, wherever it is along Z."""
     moves = [*contour.moves, *(each.move for each in contour.ramps)]
     z = moves[0].z0

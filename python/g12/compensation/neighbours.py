@@ -39,7 +39,7 @@ def check_neighbours(contour: Contour, contours: Sequence[CompensatedContour]) -
         found = _Neighbourhood(wall, others, section).deepest() if others else None
         if found:
             point, by = found
-            lines = sorted((wall.moves[point.index].line, by.move.line))
+            lines = sorted((wall.moves[point.move_index].line, by.move.line))
             contour.refuse(
                 lines[1],
                 f"the tool of radius {number(wall.radius)} cannot follow both lines "
@@ -130,7 +130,7 @@ class _Neighbourhood:
         return not self._is_meant(other) and not self._is_gone(point)
 
     def _level(self, point: WallPoint) -> float:
-        return self._wall.walls[point.index].z0
+        return self._wall.walls[point.move_index].z0
 
     def _is_meant(self, other: CompensatedContour) -> bool:
         """Return whether a contour may cut into the wall: one enters the other, or cuts it all."""

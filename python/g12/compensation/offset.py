@@ -18,7 +18,7 @@ from copy import copy
 from math import copysign
 from typing import NamedTuple, NoReturn
 
-from g12.compensation.contour import SAME_PLACE, Contour, PlaneMove, Plunge
+from g12.compensation.contour import SAME_PLACE, Contour, Element, PlaneMove, Plunge
 from g12.compensation.gouge import Cut, LeadRefusal, check_gouges
 from g12.errors import Refusal, number
 from g12.geometry.crossing import PARALLEL, crossings
@@ -45,7 +45,7 @@ class _Joint(NamedTuple):
     corner: complex | None = None
 
 
-def tool_path(contour: Contour, elements: list, tolerance: float) -> list:
+def tool_path(contour: Contour, elements: list[Element], tolerance: float) -> list[Element]:
     """Return a contour's elements as the tool's centre makes them, all in their places.
 
     ``tolerance`` in program units: a small part of it is what the path may be off.
@@ -57,17 +57,19 @@ def tool_path(contour: Contour, elements: list, tolerance: float) -> list:
         centred = iter(_centred(contour, moves, tolerance))
     except LeadRefusal as refusal:
         raise _with_other_side(refusal, contour, moves, tolerance) from None
-    path = []
+    path: list[Element] = []
     for element in elements:
         path.extend(next(centred) if isinstance(element, PlaneMove) else (element,))
     return path
 
 
-def _with_other_side(refusal: Refusal, contour: Contour, moves: list, tolerance: float) -> Refusal:
+def _with_other_side(
+    refusal: Refusal, contour: Contour, moves: list[PlaneMove], tolerance: float
+) -> Refusal:
     """Return a refusal that asks whether the other of G41 and G42 is meant, where that is cut."""
     others = [move._replace(offset=-move.offset) for move in moves]
     trial = copy(contour)
-    trial.elements, trial.notes = others, []
+    trial.elements, trial.notes = list(others), []
     try:
         _centred(trial, others, tolerance)
     except Refusal:
@@ -76,7 +78,9 @@ def _with_other_side(refusal: Refusal, contour: Contour, moves: list, tolerance:
     return Refusal(f"{refusal.message}. {' and '.join(codes)}?")
 
 
-def _centred(contour: Contour, moves: list, tolerance: float) -> list[tuple]:
+def _centred(
+    contour: Contour, moves: list[PlaneMove], tolerance: float
+) -> list[tuple[Element, ...]]:
     """Return for each move the moves of the tool's centre."""
     steps = _steps(contour, moves)
     joints = [_joint(contour, a, b, tolerance) for a, b in zip([None, *steps], steps)]
@@ -89,13 +93,13 @@ def _centred(contour: Contour, moves: list, tolerance: float) -> list[tuple]:
         else:
             path = _trimmed(contour, steps, k, joint.meet, end)
             if joint.corner is not None:
-                path = (_corner_arc(step.move, joint), *path)
+                path = (_corner_arc(step.move, joint, joint.corner), *path)
         cuts.append(Cut(step.move, path, step.cut))
     check_gouges(contour, cuts, tolerance)
     return [cut.path for cut in cuts]
 
 
-def _steps(contour: Contour, moves: list) -> list[_Step]:
+def _steps(contour: Contour, moves: list[PlaneMove]) -> list[_Step]:
     steps = []
     offset = 0.0
     for move in moves:
@@ -142,10 +146,10 @@ def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:
         return _Joint(place, place)
     if sine * offset <= PARALLEL * abs(offset):
         return _Joint(leave, meet, b.move.start)
-    place = _crossing(a.parallel, b.parallel)
-    if place is None:
+    crossing = _crossing(a.parallel, b.parallel)
+    if crossing is None:
         _refuse_tight(contour, a, b)
-    return _Joint(place, place)
+    return _Joint(crossing, crossing)
 
 
 def _crossing(one: Curve, other: Curve) -> complex | None:
@@ -181,11 +185,11 @@ def _code(move: PlaneMove) -> str:
     return "G41" if move.offset > 0.0 else "G42"
 
 
-def _corner_arc(move: PlaneMove, joint: _Joint) -> PlaneMove:
+def _corner_arc(move: PlaneMove, joint: _Joint, corner: complex) -> PlaneMove:
     """Return the arc about an outside corner before ``move``."""
     turn = -1 if move.offset > 0.0 else 1
-    sweep = sweep_between(joint.leave, joint.meet, joint.corner, turn)
-    return move._replace(curve=Arc(joint.leave, joint.corner, sweep), z1=move.z0)
+    sweep = sweep_between(joint.leave, joint.meet, corner, turn)
+    return move._replace(curve=Arc(joint.leave, corner, sweep), z1=move.z0)
 
 
 def _parallel(contour: Contour, move: PlaneMove) -> Curve:
@@ -209,7 +213,9 @@ def _neighbours(contour: Contour, move: PlaneMove) -> str:
     return f"between lines {moves[k - 1].line} and {moves[k + 1].line}"
 
 
-def _trimmed(contour: Contour, steps: list[_Step], k: int, start: complex, end: complex) -> tuple:
+def _trimmed(
+    contour: Contour, steps: list[_Step], k: int, start: complex, end: complex
+) -> tuple[Element, ...]:
     """Return the parallel of a step from one point on it to another, which must come after it."""
     move, parallel = steps[k].move, steps[k].parallel
     length = parallel.length_to(end, late=True) - parallel.length_to(start)
@@ -227,7 +233,7 @@ def _trimmed(contour: Contour, steps: list[_Step], k: int, start: complex, end: 
     return (move._replace(curve=Arc(start, parallel.centre, sweep)),)
 
 
-def _uncut(move: PlaneMove, start: complex, end: complex) -> tuple:
+def _uncut(move: PlaneMove, start: complex, end: complex) -> tuple[Element, ...]:
     """Return a ramp, or a move without compensation, between the joints at its ends.
 
     A ramp square to the contour and as long as the tool's radius has no length.
@@ -239,6 +245,6 @@ def _uncut(move: PlaneMove, start: complex, end: complex) -> tuple:
     return (move._replace(curve=Line(start, end)),)
 
 
-def _in_place(move: PlaneMove) -> tuple:
+def _in_place(move: PlaneMove) -> tuple[Element, ...]:
     """Return what remains of a move without a length in the plane: its Z."""
     return () if move.z0 == move.z1 else (Plunge(move.line, move.feed, move.z0, move.z1),)

@@ -9,19 +9,20 @@ tolerance is left out and its neighbours meet instead; its Z is kept.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeGuard
 
-from g12.compensation.contour import SAME_PLACE, PlaneMove, Plunge
+from g12.compensation.contour import SAME_PLACE, Element, PlaneMove, Plunge
 from g12.geometry.curve import Line
 
 MOST_POINTS = 100  # that one line stands for: all of them are looked at for each one more
 
 
-def without_short_moves(elements: Sequence, limit: float) -> tuple[list, float]:
+def without_short_moves(elements: Sequence[Element], limit: float) -> tuple[list[Element], float]:
     """Return a contour's elements without the moves under compensation up to ``limit`` long.
 
     Also returns by how much that has moved the contour at most, up to ``limit``. Program units.
     """
-    kept: list = []
+    kept: list[Element] = []
     last, moved = None, 0.0  # the index of the move kept last
     for element in elements:
         if not isinstance(element, PlaneMove):
@@ -51,14 +52,14 @@ def _meeting(before: PlaneMove, move: PlaneMove) -> list[PlaneMove]:
     return [before, move._replace(curve=Line(before.end, move.start), z1=move.z0), move]
 
 
-def with_points_left_out(elements: Sequence, limit: float) -> tuple[list, float]:
+def with_points_left_out(elements: Sequence[Element], limit: float) -> tuple[list[Element], float]:
     """Return a contour's elements without the points of polylines that are only rounding.
 
     Lines under compensation that follow each other at one feed and Z become one line, as long as
     all points between stay within ``limit`` of it. Also returns by how much that has moved the
     contour at most. Program units.
     """
-    kept: list = []
+    kept: list[Element] = []
     moved = offset = 0.0
     at = 0
     while at < len(elements):
@@ -66,38 +67,44 @@ def with_points_left_out(elements: Sequence, limit: float) -> tuple[list, float]
         beside = offset != 0.0  # else this is the ramp: it ends where the contour begins
         last, away = _reach(elements, at, limit) if beside else (at, 0.0)
         offset = element.offset if isinstance(element, PlaneMove) else offset
-        if last > at:
+        end = elements[last]
+        if last > at and isinstance(element, PlaneMove) and isinstance(end, PlaneMove):
             moved = max(moved, away)
-            element = element._replace(curve=Line(element.start, elements[last].end))
+            element = element._replace(curve=Line(element.start, end.end))
         kept.append(element)
         at = last + 1
     return kept, moved
 
 
-def _reach(elements: Sequence, first: int, limit: float) -> tuple[int, float]:
+def _reach(elements: Sequence[Element], first: int, limit: float) -> tuple[int, float]:
     """Return the last of the elements that one line can stand for, and how far it is off them."""
-    last, most = first, 0.0
-    end_at = min(len(elements), first + MOST_POINTS)
-    while last + 1 < end_at and _is_like(elements[first], elements[last + 1]):
-        chord = Line(elements[first].start, elements[last + 1].end)
+    one, most = elements[first], 0.0
+    if not _is_line(one):
+        return first, most
+    lines = [one]
+    for at in range(first + 1, min(len(elements), first + MOST_POINTS)):
+        other = elements[at]
+        if not (_is_line(other) and _is_like(one, other)):
+            break
+        chord = Line(one.start, other.end)
         if chord.length <= limit:
             break
-        away = max(chord.distance(point.end) for point in elements[first : last + 1])
+        away = max(chord.distance(line.end) for line in lines)
         if away > limit:
             break
-        last, most = last + 1, away
-    return last, most
+        lines.append(other)
+        most = away
+    return first + len(lines) - 1, most
 
 
-def _is_like(one: object, other: object) -> bool:
-    """Return whether two elements are lines under compensation that may be one."""
-    if not (_is_line(one) and _is_line(other) and one.offset):
-        return False
+def _is_like(one: PlaneMove, other: PlaneMove) -> bool:
+    """Return whether two lines are under compensation and may be one."""
     level = one.z0 == one.z1 == other.z1
-    return level and one.feed == other.feed and one.offset == other.offset
+    alike = one.feed == other.feed and one.offset == other.offset
+    return one.offset != 0.0 and level and alike
 
 
-def _is_line(element: object) -> bool:
+def _is_line(element: Element) -> TypeGuard[PlaneMove]:
     return isinstance(element, PlaneMove) and isinstance(element.curve, Line)
 
 
