@@ -84,3 +84,16 @@ def test_a_passage_narrower_than_the_cutter_is_a_note(pin, notes, tmp_path):
     assert sorted((each.line, each.values["line"]) for each in found) == [(9, 16), (16, 9)][:notes]
     assert all(each.values["size"] == pytest.approx(1.0, abs=0.01) for each in found)
     assert not any(each.is_finding for each in proof.judged)
+
+
+def test_a_line_that_a_copy_puts_into_a_section_does_not_change_its_plan(tmp_path):
+    """On the face a message between two moves counts as a corner, which decides between ways."""
+    ini = read_ini(SIM / "lathe_mm_kinematics_headless.ini")
+    program, head = tmp_path / "program.ngc", "G21 G18 G8 G40 G90 G94 G61"
+    ramp = ["G1 X20.06308 C-0.64048 F1448.16", "G41 X10.62862 C-0.3393", "Z-2.282"]
+    corners = ["X10.45765 C-5.69514", "X0.43899 C-11.89976", "X-10.43434 C-5.73773"]
+    corners += ["X-9.92562 C6.57868", "X1.71171 C11.78419", "X10.7996 C5.01654"]
+    end = ["X10.62862 C-0.3393", "G40 X20.06308 C-0.64048", "G13.1", "G0 Z5", "M2", ""]
+    start = [head, "T1 M6", "S500", "G0 X60 Z5 C0", "G12.1"]
+    program.write_text("\n".join([*start, *ramp, *corners, *end]))
+    assert prove(program, ini.replaced({"G12": {"POLAR_TOOL_OFFSET": "-0.7"}})).findings == []

@@ -261,8 +261,9 @@ def test_codes_know_cycles_and_sections_by_their_handlers():
 )
 def test_one_code_switches_sections_on_a_cylinder_on_and_off(line, inside, does):
     assert CODES.switch(read_line(1, line), inside) == does
-    assert not CODES.wanted(read_line(1, "T1 M6"))
-    assert CODES.wanted(read_line(1, "G[13] I5")) and CODES.wanted(read_line(1, "G#5 I5"))
+    lines = ["T1 M6", "G[13] I5", "G#5 I5", "G41 D1", "G12.1", "G41 X1", "G13.1"]
+    texts = [read_line(number, line) for number, line in enumerate(lines)]
+    assert {text.number for text in CODES.wanted_in(texts)} == {1, 2, 3, 4, 6}
     assert [CODES.knows(code) for code in ("G13", "G12.1", "G2", "M6", "")] == [True, True] + 3 * [
         False
     ]

@@ -17,10 +17,8 @@ def judge_return_levels(texts: Sequence[Text], codes: Codes) -> Iterator[Finding
     """Yield the first G98 and G99 outside of sections, where no drilling cycle uses them."""
     if any(code in DRILLING for text in texts for code in text.codes):
         return
-    waiting, inside = dict(RETURN_LEVELS), False
-    for text in texts:
-        switch = codes.switch(text, inside)
-        inside = switch == "on" if switch else inside
+    waiting = dict(RETURN_LEVELS)
+    for text, _, inside in codes.with_switches(texts):
         for code in () if inside else text.codes:
             if code in waiting:
                 values = {"code": f"G{code:g}", "meant": waiting.pop(code)}

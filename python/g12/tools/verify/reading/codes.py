@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from g12.machine_ini import Remap, code_number, remap_lines
@@ -110,11 +110,32 @@ class Codes:
             return "off" if inside or (is_number(radius) and not float(radius)) else "on"
         return found.handler.rpartition("_")[2] if found else ""
 
-    def wanted(self, text: Text) -> bool:
-        """Tell whether a line's words matter for what is programmed, or may: G[12], G#1."""
+    def with_switches(self, texts: Iterable[Text]) -> Iterator[tuple[Text, str, bool]]:
+        """Yield lines, each with how it switches a section, and whether one is on after it."""
+        inside = False
+        for text in texts:
+            switch = self.switch(text, inside)
+            inside = switch == "on" if switch else inside
+            yield text, switch, inside
+
+    def wanted_in(self, texts: Iterable[Text]) -> set[Text]:
+        """Return the lines of a file whose words matter for what is programmed, or may: G[12], G#1.
+
+        In a section compensation does not: a line that is put beside it may change its plan.
+        """
+        return {
+            text
+            for text, switch, inside in self.with_switches(texts)
+            if switch or self._is_wanted(text) or (compensates(text.codes) and not inside)
+        }
+
+    def sections_in(self, texts: Iterable[Text]) -> bool:
+        """Tell whether a file has a line that switches a section."""
+        return any(map(self.section, texts))
+
+    def _is_wanted(self, text: Text) -> bool:
         cycle = self.cycle_of(text.call, text.codes)
-        asks = cycle or self.section(text) or self.shape_of(text) or self.holes_of(text)
-        return bool(compensates(text.codes) or asks or text.hides_code)
+        return bool(cycle or self.shape_of(text) or self.holes_of(text) or text.hides_code)
 
 
 def compensates(codes: Sequence[float]) -> bool:

@@ -42,13 +42,19 @@ def executed_everywhere(
     are all.
     """
     named = called_files(read_lines(program), tracer.ini)
-    files = files_with(codes.wanted, {*map(Path, trace.files), *named})
+    files = files_with(codes.wanted_in, {*map(Path, trace.files), *named})
     if files:
-        copies = Copies(program, files, partial(watched, wanted=codes.wanted))
+        copies = Copies(program, files, partial(watched_file, codes=codes))
         copy = copies.trace(tracer, tools, parameters, watch_offsets=True)
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
             return blocks_in(copy, copies.texts)
-    return executed(tracer, program, trace, codes.wanted, parameters)
+    wanted = codes.wanted_in(read_lines(program))
+    return executed(tracer, program, trace, wanted.__contains__, parameters)
+
+
+def watched_file(path: Path, texts: Sequence[Text], codes: Codes, skip: int) -> list[str]:
+    """Return the lines of a file and those that tell of its blocks that matter."""
+    return watched(path, texts, codes.wanted_in(texts).__contains__, skip)
 
 
 class Copies:
@@ -82,11 +88,9 @@ class Copies:
                 return other.trace_text(self._program, parameters=parameters, **options)
 
 
-def files_with(wanted: Callable[[Text], bool], files: Iterable[Path]) -> list[Path]:
-    """Return those files of subs that have a line that matters; the event's own is a cycle."""
-    return [
-        file for file in sorted(files) if file.stem != CALL and any(map(wanted, read_lines(file)))
-    ]
+def files_with(lines: Callable[[list[Text]], object], files: Iterable[Path]) -> list[Path]:
+    """Return those files of subs that have ``lines`` that matter; the event's own is a cycle."""
+    return [file for file in sorted(files) if file.stem != CALL and lines(read_lines(file))]
 
 
 def called_files(texts: Sequence[Text], ini: Ini) -> set[Path]:

@@ -34,8 +34,7 @@ def section_lines(texts: Sequence[Text], written: Sequence[str]) -> list[Section
     found, sub = [], ""
     for text, line in zip(texts, written):
         body = BODY.match(re.sub(r"\s", "", COMMENT.sub("", line)).lower())
-        name = body and (body[1] or body[2])
-        sub = name if body and body[3] == "sub" else sub
+        sub = (body[1] or body[2]) if body and body[3] == "sub" else sub
         found.append(SectionLine(text, line, sub))
         sub = "" if body and body[3] == "endsub" else sub
     return found

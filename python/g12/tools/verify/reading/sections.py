@@ -63,7 +63,7 @@ def sections(
         file: section_lines(read_lines(file), lines_as_written(file)) for file in (program, *every)
     }
     subs = followed_subs(list(read.values()), codes)
-    files = files_with(codes.section, every)
+    files = files_with(codes.sections_in, every)
     files += [file for file in every if file.stem in subs and file not in files]
     copies = Copies(program, sorted(files), partial(flattened_file, codes=codes, subs=subs))
     copy = copies.trace(tracer, tools, parameters)

@@ -50,10 +50,7 @@ def lines_with_c(texts: Sequence[Text], codes: Codes, ini: Ini) -> set[int]:
 
 def outside(texts: Iterable[Text], codes: Codes) -> Iterator[Text]:
     """Yield the lines outside of sections, of which C may be no axis."""
-    inside = False
-    for text in texts:
-        switch = codes.switch(text, inside)
-        inside = switch == "on" if switch else inside
+    for text, switch, inside in codes.with_switches(texts):
         if not (inside or switch):
             yield text
 
