@@ -14,6 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
+from g12.geometry.curve import Arc
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.expected import circle_mill, haas
@@ -140,7 +141,11 @@ class Target:
     def walls(self) -> list[Expected]:
         """Return the circles that cut the wall."""
         centre = self.wall.radius + (-1 if self.wall.inside else 1) * self.cutter.radius
-        return [move for move in self.circles if abs(move.curve.radius - centre) < TOUCHING]
+        return [
+            move
+            for move in self.circles
+            if isinstance(move.curve, Arc) and abs(move.curve.radius - centre) < TOUCHING
+        ]
 
 
 def is_full_circle(move: Expected) -> bool:
@@ -292,13 +297,13 @@ class CircleReader:
         )
         asked = circle_mill.event_of(entries, place, loaded, view.feed(), view.rev)
         inner = radius - abs(entries.get("L", 0.0)) - 2 * loaded
-        on_circle = {}
+        cutter = Cutter(loaded, view.tool, loaded)
         if side == 0:
-            on_circle = {"word": "R", "circle": radius}
+            cutter = replace(cutter, word="R", circle=radius)
             radius, inner = radius + loaded, radius - loaded
         cleared = 0.0 if asked.pocket else max(0.0, inner)
         wall = Wall(centre, view.axes, radius, cleared, inside=side <= 0)
-        return wall, Cutter(loaded, view.tool, loaded, **on_circle), asked
+        return wall, cutter, asked
 
     def _handler_of(self, block: Block) -> str:
         """Return a handler's name that turns as the first arc does: the machine has its own."""
