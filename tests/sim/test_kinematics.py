@@ -484,6 +484,21 @@ def test_an_interrupted_section_leaves_the_acceleration_of_the_ini(lathe, interr
     lathe.errors()
 
 
+@pytest.mark.parametrize("interrupt", [abort, jog_mode])
+@pytest.mark.parametrize("own", ["M52 P0", "M52 P1"])
+def test_an_interrupted_section_leaves_the_adaptive_feed_that_it_found(lathe, own, interrupt):
+    lathe.open_text([own, *CIRCLE_NEAR])
+    lathe.start()
+    lathe.wait_for(lambda _: on_the_face(lathe) and not lathe.get("motion.in-position"))
+    interrupt(lathe)
+    found = own == "M52 P1"
+    lathe.wait_for(lambda now: ("M52" in now.modes.mcodes) is found, timeout=SOON)
+    lathe.mdi("G13.1")
+    assert ("M52" in lathe.stat().modes.mcodes) is found
+    lathe.mdi("M52 P0")
+    lathe.errors()
+
+
 def test_c_and_the_slide_keep_their_limits_at_any_override():
     """Where C is slow, the operator turns the feed up and down while it is cut."""
     chance = random.Random(3)

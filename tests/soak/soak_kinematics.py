@@ -14,7 +14,7 @@ from support.sim_machines import SIM
 
 pytestmark = needs_kinematics
 
-START = ["G21 G18 G8 G90 G94 G64 P0.002 Q0", "G0 X25 Z2 C0"]
+START = ["M52 P0", "G21 G18 G8 G90 G94 G64 P0.002 Q0", "G0 X25 Z2 C0"]  # M52: on after an e-stop
 PROGRAMS = {
     "contour": [*START, "G12.1", "G1 C20 F3000", "X-25", "C-20", "G3 X25 C-20 R25", "X25 C0 R15",
                 "G1 X20", "Z-1", "X-20", "C25", "X25", "C0", "G13.1", "G0 Z5", "M2"],

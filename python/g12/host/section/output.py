@@ -272,8 +272,8 @@ class SectionOutput:
             self.path.renew()
         else:
             interp.execute(interp.g12_found)
-            interp.g12_found = None
             yield from to_axes(interp)
+            interp.g12_found = None  # not before: an abort in the wait drops what was executed
         if not has_switched(interp):
             raise SectionPlace(self.code, step.line).refuse(not_switched())
         wrong = self._wrong_place(step.place) if step.on and interp.task else ""
