@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 
 import pytest
@@ -53,6 +54,14 @@ def unhurried():
     """Keep commands that a test calls from telling of their progress, on slow systems too."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(progress, "LINE_TICK", 3600.0)
+        yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def unsynced():
+    """Write no file through to the disk: a copy of the package is two hundred of them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fsync", lambda _: None)
         yield
 
 
