@@ -56,10 +56,10 @@ class _Cuts:
     """Areas with their levels and moves, found by their bounds."""
 
     def __init__(self) -> None:
-        self.areas: list[_Area] = []
+        self.areas: list[_Area | _Given] = []
         self._rows: list[tuple[float, ...]] = []
 
-    def add(self, area: _Area, level: float, move: int) -> None:
+    def add(self, area: _Area | _Given, level: float, move: int) -> None:
         self.areas.append(area)
         self._rows.append((*area.bounds, level, move))
         self.__dict__.pop("_table", None)

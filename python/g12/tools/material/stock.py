@@ -74,14 +74,15 @@ def read_stock(text: str, turning: bool, unit: Unit) -> Stock:
     """
     words = " ".join(text.lower().replace("×", "x").split())
     match = (BAR if turning else BLOCK).fullmatch(words)
-    numbers = match and [group and float(group) for group in match.groups()[:-1]]
-    if not match or not any(numbers) or any(number == 0 for number in numbers[:3]):
+    *numbers, name = match.groups() if match else (None,)
+    mm = UNITS_MM.get(name, unit.mm)
+    sizes = [float(number or 0) * mm for number in numbers]
+    least = [size for size, number in zip(sizes[:3], numbers) if number]
+    if not any(sizes) or not all(least):
         forms = BAR_FORMS if turning else BLOCK_FORMS
         raise UsageError(f"--stock {text!r} is not {forms}")
-    mm = UNITS_MM.get(match.groups()[-1], unit.mm)
-    sizes = [number and number * mm for number in numbers]
     if turning:
         return Stock(words, diameter=sizes[0])
     size = tuple(sizes[:3]) if sizes[0] else None
-    corner = tuple(sizes[3:5]) if sizes[3] is not None else None
-    return Stock(words, size=size, corner=corner, bore=sizes[5] or 0.0)
+    corner = tuple(sizes[3:5]) if numbers[3] else None
+    return Stock(words, size=size, corner=corner, bore=sizes[5])

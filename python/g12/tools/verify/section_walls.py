@@ -39,64 +39,50 @@ Solids = Iterator[tuple[BaseGeometry, float]]
 
 
 class SurfaceKey(NamedTuple):
-    """A cylinder's surface: its radius, and where it is along X."""
+    """A part's surface: a cylinder's radius and where it is along X, or 0 and a face's Z."""
 
     radius: float
     face: float
 
 
-def add_face(
-    material: Material, sections: Sequence[SectionContour], moves: Sequence[Move], radius: Radius
-) -> None:
-    """Make solid what sections on a face are cut in."""
-    faces = [round(Plane(section, moves[section.at]).base, 6) for section in sections]
-    for section, span in zip(sections, spans(sections, faces, faces, moves, Z)):
-        for area, top in face_solids(section, moves, radius(section.at)):
-            material.add(area, top, *span)
-
-
-def add_cylinder(
+def add_sections(
     material: Material,
     sections: Sequence[SectionContour],
-    surface: SurfaceKey,
     moves: Sequence[Move],
     radius: Radius,
+    surface: SurfaceKey | None = None,
 ) -> None:
-    """Make solid what those of the sections on cylinders are cut in that are on one surface."""
+    """Make solid what sections on a face are cut in, or those on one ``surface`` of a cylinder."""
     keys = [surface_key(section, moves) for section in sections]
-    tops = [key.face for key in keys]
-    for section, key, span in zip(sections, keys, spans(sections, keys, tops, moves, X)):
-        if key == surface:
-            for area, top in cylinder_solids(section, moves, radius(section.at)):
+    solids, axis = (cylinder_solids, X) if surface else (face_solids, Z)
+    for section, key, span in zip(sections, keys, spans(sections, keys, moves, axis)):
+        if surface in (None, key):
+            for area, top in solids(section, moves, radius(section.at)):
                 material.add(area, top, *span)
 
 
 def surface_key(section: SectionContour, moves: Sequence[Move]) -> SurfaceKey:
-    """Return the surface of a section on a cylinder: its radius, and where it is along X."""
-    face = plane_of(section, moves[section.at]).base + section.surface
+    """Return the surface of a section: a cylinder's radius, and where it is along X or Z."""
+    face = plane_of(section, moves[section.at]).face
     return SurfaceKey(round(section.surface, 6), round(face, 6))
 
 
 def spans(
-    sections: Sequence[SectionContour],
-    keys: Sequence,
-    tops: Sequence[float],
-    moves: Sequence[Move],
-    axis: int,
+    sections: Sequence[SectionContour], keys: Sequence[SurfaceKey], moves: Sequence[Move], axis: int
 ) -> Iterator[tuple[int, float]]:
     """Yield the moves for which the material of each section counts: from it on.
 
     It is another part, or another end of it, where a section has another key: up to the retract
     before that.
     """
-    for at, (section, key, top) in enumerate(zip(sections, keys, tops)):
+    for at, (section, key) in enumerate(zip(sections, keys)):
         others = (i for i in range(at + 1, len(sections)) if keys[i] != key)
         other = next(others, None)
         if other is None:
             yield section.at, math.inf
             continue
         last, begin = sections[other - 1].end, sections[other].at
-        up = (i for i in range(last - 1, begin) if moves[i].end[axis] > top - SAME_LEVEL)
+        up = (i for i in range(last - 1, begin) if moves[i].end[axis] > key.face - SAME_LEVEL)
         yield section.at, next(up, begin)
 
 

@@ -37,7 +37,7 @@ from g12.tools.verify.pocket_walls import (
     holes_of_words,
 )
 from g12.tools.verify.reading.block_words import BlockInMm
-from g12.tools.verify.section_walls import add_cylinder, add_face, surface_key
+from g12.tools.verify.section_walls import add_sections, surface_key
 from g12.tools.verify.subject import Subject
 
 FLAT = 17  # the plane whose arcs keep their level
@@ -170,7 +170,7 @@ def assumed_workpiece(program: Program) -> Workpiece:
     walls = [(block, target) for block, target in program.circles if target.wall.plane == Z]
     approaches = [approach_to(block, moves) for block, _ in walls]
     add_circles(material, walls, approaches)
-    add_face(material, program.on_face, moves, program.radius)
+    add_sections(material, program.on_face, moves, program.radius)
     bores = list(holes_of_words(walls))
     entered = holes_entered(walls, approaches, moves, material, program.radius)
     for hole in bores:
@@ -225,7 +225,7 @@ def cylinders(program: Program) -> Iterator[PartView]:
     moves, sections = program.moves, [each for each in program.sections if each.surface]
     for surface in dict.fromkeys(surface_key(section, moves) for section in sections):
         material = Material(period=2 * math.pi * surface.radius)
-        add_cylinder(material, sections, surface, moves, program.radius)
+        add_sections(material, sections, moves, program.radius, surface)
         own = (each for each in sections if surface_key(each, moves) == surface)
         tools = frozenset(moves[section.at].tool for section in own)
         part = Surface(turning=True, radius=surface.radius)

@@ -89,6 +89,7 @@ class Joint(NamedTuple):
 
     ``into`` and ``out`` are the directions (3,), zero where C turns in place. ``within``: both are
     of one element of the contour; ``corner``: there the toolpath has a corner by the words.
+    ``lengths`` are those of the toolpath's moves before and after it.
     """
 
     index: int
@@ -97,6 +98,7 @@ class Joint(NamedTuple):
     out: np.ndarray
     within: bool
     corner: bool
+    lengths: tuple[float, float]
 
     @property
     def goes_on(self) -> bool:
@@ -156,8 +158,9 @@ def joints_along(
             within = found.elements[before] is found.elements[after]
             within = within and moves[index].line == moves[index + 1].line
             into, out = directions[each - 1], directions[each]
-            corner = before != after and is_corner(found.expected[before], found.expected[after])
-            yield Joint(index, points[begin + each], into, out, within, corner)
+            one, other = found.expected[before], found.expected[after]
+            corner, lengths = before != after and is_corner(one, other), (one.length, other.length)
+            yield Joint(index, points[begin + each], into, out, within, corner, lengths)
 
 
 def first_made(found: SectionPath, span: Span) -> int:
@@ -188,7 +191,6 @@ def rounded(
     stands = axes.face and not turns(moves[end])
     if section.end < len(moves) and not (moves[end].exact or stands):
         yield Finding("blended-out", moves[end].line)
-    lengths = lengths_of_lines(section, moves, path)
     for joint in joints:
         one, other = moves[joint.index], moves[joint.index + 1]
         if one.exact or joint.half_sine < math.sin(SMOOTH / 2):
@@ -201,7 +203,7 @@ def rounded(
         if not joint.goes_on:
             yield Finding("blended-turn", one.line)
         elif joint.corner and joint.half_sine > math.sin(CORNER / 2):
-            off = rounding(joint, path, axes, lengths)
+            off = rounding(joint, path, axes)
             if off > tolerance:
                 yield Finding("blended-corner", one.line, {"off": off})
 
@@ -230,15 +232,15 @@ def keeps_corners(path: str, section: SectionContour, tolerance: float) -> bool:
     return 0.0 < float(given[1]) * section.unit <= tolerance
 
 
-def rounding(joint: Joint, path: Track, axes: SectionAxes, lengths: dict[int, float]) -> float:
+def rounding(joint: Joint, path: Track, axes: SectionAxes) -> float:
     """Return by how much a corner is rounded at least; see the formula above.
 
-    A line too short to reach its feed is as fast as its ``lengths`` allow.
+    A line too short to reach its feed is as fast as its length allows.
     """
     index = joint.index
     into, out = (axes.along(direction, joint.place) for direction in (joint.into, joint.out))
     speed = min(path.part_feed(index), path.part_feed(index + 1)) / 60.0
-    square = min(speed * speed, into * lengths[index], out * lengths[index + 1])
+    square = min(speed * speed, *(a * way for a, way in zip((into, out), joint.lengths)))
     return joint.half_sine * square * out / (into * (into + out))
 
 
@@ -262,17 +264,6 @@ def not_followed(
         off = follow_off(move, speed, path.part.centre, axes.beside, follow_limits(move, axes))
         if off:
             yield Finding("face-acceleration", moves[index].line, off._asdict())
-
-
-def lengths_of_lines(
-    section: SectionContour, moves: Sequence[Move], path: Track
-) -> dict[int, float]:
-    """Return for each move of a section the length of the moves of one line that it is among."""
-    lengths = {}
-    for _, run in groupby(range(section.at, section.end), lambda index: moves[index].line):
-        indices = list(run)
-        lengths.update(dict.fromkeys(indices, sum(map(path.part_length, indices))))
-    return lengths
 
 
 def turns(move: Move) -> bool:
