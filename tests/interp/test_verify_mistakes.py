@@ -392,3 +392,15 @@ def test_return_levels_and_c_beside_x_are_noted_on_a_lathe(proof_of):
     assert codes(proof) == ["return-level", "native-c"]
     (native,) = (each for each in proof.judged if each.code == "native-c")
     assert native.line == 5 and native.values["most"] > 1000
+
+
+@pytest.mark.parametrize(
+    ("machine", "stored", "noted"),
+    [("lathe_mm", "", True), ("lathe_mm", "5163\t-12.5\n", False), ("mill_mm", "", False)],
+)
+def test_a_g28_whose_place_was_never_set_is_noted_on_a_lathe(machine, stored, noted, tmp_path):
+    (tmp_path / "own.var").write_text(stored)
+    (tmp_path / "a.ngc").write_text("G21 G90 G94\nG28\nG28\nM2\n")
+    values = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "own.var")}}
+    proof = prove(tmp_path / "a.ngc", read_ini(SIM / f"{machine}_headless.ini").replaced(values))
+    assert [each.line for each in proof.judged if each.code == "place-not-set"] == [2] * noted

@@ -25,6 +25,7 @@ from g12.tools.commands.arguments import GOOD, Parser, one_line
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, read_ini
+from g12.tools.machine.stored_places import unset_places
 from g12.tools.translate.blocks.control import Control, ControlError, read_control, shipped_controls
 from g12.tools.translate.blocks.lexer import program_text
 from g12.tools.translate.listing import listing_of
@@ -43,8 +44,6 @@ exit code: 0 the program is printed, 1 a block is refused, 2 wrong use
 USER_CODE = re.compile(r"M(1[0-9]{2})")
 SAYS_UNITS = re.compile(r"G\s*0*(2[01])(?![0-9.])", re.IGNORECASE)
 UNITS = {"inch": "G20", "mm": "G21"}
-PARAMETER = re.compile(r"^\s*([0-9]+)\s+(-?[0-9]+(?:\.[0-9]+)?)", re.MULTILINE)
-PLACES = {"G28": 5161, "G30": 5181}  # the first parameter of each
 POLAR_HANDLERS = ("polar_on", "polar_off")
 CYLINDER_HANDLER = "cylinder_mode"
 PROGRESS_EVERY = 0.2  # s
@@ -149,19 +148,6 @@ def with_facts_of(control: Control, ini: Ini) -> Control:
     codes = [r.code for r in remaps if CYLINDER_HANDLER in r.handlers and r.code[0] == "G"]
     word = ini.settings.cylinder_word
     return replace(control, cylinder_code=(codes[0], word)) if codes else control
-
-
-def unset_places(ini: Ini) -> tuple[str, ...]:
-    """Return which of G28 and G30 lead to machine zero: G28.1 or G30.1 was never used."""
-    name = ini.get("RS274NGC", "PARAMETER_FILE")
-    path = ini.directory / os.path.expanduser(name) if name else None
-    text = path.read_text(errors="replace") if path and path.is_file() else ""
-    values = dict(PARAMETER.findall(text))
-    return tuple(
-        code
-        for code, first in PLACES.items()
-        if not any(float(values.get(str(n), 0)) for n in range(first, first + 9))
-    )
 
 
 def units_code(ini: Ini) -> str:

@@ -12,6 +12,7 @@ from g12.tools.preview.moves import Move
 from g12.tools.verify.asked import Asked
 from g12.tools.verify.mistakes.cut import ProgramCut
 from g12.tools.verify.mistakes.feeds import judge_feeds, judge_native_c
+from g12.tools.verify.mistakes.home import judge_home
 from g12.tools.verify.mistakes.levels import judge_levels
 from g12.tools.verify.mistakes.modes import judge_return_levels
 from g12.tools.verify.mistakes.reversals import judge_reversals
@@ -53,6 +54,7 @@ def judged(
         found += [
             *judge_native_c(moves, known, subject.path),
             *judge_return_levels(texts, Codes(ini)),
+            *judge_home(texts, ini),
         ]
     return sorted(found, key=lambda finding: finding.line)
 

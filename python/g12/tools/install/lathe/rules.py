@@ -9,10 +9,10 @@ from g12.tools.install.config.findings import ConfigFinding, note, warning
 from g12.tools.install.config.forms import screen_of
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.kinematics_rules import uses_them
+from g12.tools.machine.stored_places import unset_places
 
 WITH_PREVIEW = ("axis", "gmoccapy", "gscreen", "qtvcp", "touchy")
 GEOMETRY_LINE = re.compile(r"GEOMETRY = CXY?Z!")
-HOME_POSITIONS = range(5161, 5170)  # parameters that G28.1 sets, an axis each
 TURN = 360.0
 ON_A_LATHE = tuple(features.AXES)
 
@@ -58,24 +58,13 @@ def unwinding_c(config: Config) -> Iterator[ConfigFinding]:
 def never_set_g28(config: Config) -> Iterator[ConfigFinding]:
     """Find a position of G28 that was never set: it is machine zero."""
     path = config.ini.file("RS274NGC", "PARAMETER_FILE")
-    lines = path.read_text(errors="replace").splitlines() if path and path.is_file() else []
-    words = [line.split() for line in lines]
-    values = {pair[0]: pair[1] for pair in words if len(pair) == 2}
-    if not any(is_set(values.get(str(number), "0")) for number in HOME_POSITIONS):
+    if "G28" in unset_places(config.ini):
         yield note(
             "g28",
             f"G28.1 was never set ({path.name if path else 'no var file'}: #5161 to #5169 are 0): "
             "G28 U0 W0 is one rapid, X and Z together, to machine zero",
             "jog where tools are changed and run G28.1 in MDI once",
         )
-
-
-def is_set(value: str) -> bool:
-    """Return whether a parameter's value in the var file is a position other than 0."""
-    try:
-        return float(value) != 0.0
-    except ValueError:
-        return True
 
 
 def lathe_findings(config: Config, there: Iterable[str]) -> Iterator[ConfigFinding]:

@@ -128,6 +128,10 @@ NOTES = {
     ),
     "spindle-m4": "the spindle turns counterclockwise (M4): right-hand tools cut with M3",
     "main-spindle-turns": "the main spindle turns at {code}: C cannot hold a part that turns",
+    "place-not-set": (
+        "{code}.1 was never set on this machine: {code} is one rapid, its axes together, "
+        "to machine zero; jog where tools are changed and run {code}.1 in MDI once"
+    ),
     "above-zero": "nothing of it goes below the program's Z0: its lowest Z is {level:mm} above",
     "travel-perhaps": (
         "with no work offset the {axis} axis would go to {position:mm}, its limit is {limit:length}"
