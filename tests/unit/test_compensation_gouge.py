@@ -402,9 +402,6 @@ def levels(*depths, across=None):
 def test_what_leads_through_the_air_is_no_part():
     assert refusal(levels(-1.0, across=5.0)) == ""
     assert "cuts into the other" in refusal(levels(-1.0, across=-1.0))
-
-
-def test_a_contour_may_be_cut_at_many_levels():
     assert refusal(levels(-1.0, -2.0, -3.0)) == ""
 
 

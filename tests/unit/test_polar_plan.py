@@ -49,28 +49,25 @@ def runs(planned):
 
 
 @settings(max_examples=150, deadline=None)
-@given(drawings(), st.floats(-400.0, 400.0))
-@example([Straight(10 + 0j, -10 + 0j)], 0.0)
-@example([Straight(10 + 0j, -10 + 0.004j)], 30.0)
-@example([Round(10 + 0j, 5 + 0j, 2 * math.pi)], 0.0)
-@example([Round(10 + 0j, 5.0008 + 0j, -2 * math.pi)], 0.0)
+@given(drawings(), st.floats(-400.0, 400.0), st.sampled_from([0.0005, 0.002, TOLERANCE, 0.02]))
+@example([Straight(10 + 0j, -10 + 0j)], 0.0, TOLERANCE)
+@example([Straight(10 + 0j, -10 + 0.004j)], 30.0, TOLERANCE)
+@example([Round(10 + 0j, 5 + 0j, 2 * math.pi)], 0.0, TOLERANCE)
+@example([Round(10 + 0j, 5.0008 + 0j, -2 * math.pi)], 0.0, TOLERANCE)
 @example(
-    [Straight(5 + 0j, 0j), Straight(0j, 3j), Round(3j, 1.5j, math.pi), Straight(0j, 4 + 4j)], 0.0
+    [Straight(5 + 0j, 0j), Straight(0j, 3j), Round(3j, 1.5j, math.pi), Straight(0j, 4 + 4j)],
+    0.0,
+    TOLERANCE,
 )
-def test_stays_within_the_tolerance_of_the_contour_both_ways(shapes, c):
+def test_stays_within_any_tolerance_of_the_contour_both_ways_and_keeps_x(shapes, c, tolerance):
     contour = programmed(shapes)
-    made = path(cuts(contour, plan(contour, EXACT, c=c), c))
-    assert distance(made, shapes).max() <= TOLERANCE + 1e-9
+    made = cuts(contour, plan(contour, EXACT._replace(tolerance=tolerance), c=c), c)
+    assert distance(path(made), shapes).max() <= tolerance + 1e-9
     drawn = np.concatenate([shape.points(40) for shape in shapes])
-    assert distance_from_path(drawn, made).max() <= TOLERANCE + SAGITTA
-
-
-@settings(max_examples=80, deadline=None)
-@given(drawings(), st.sampled_from([0.0005, 0.002, 0.02]))
-def test_keeps_any_tolerance(shapes, tolerance):
-    contour = programmed(shapes)
-    made = path(cuts(contour, plan(contour, EXACT._replace(tolerance=tolerance), c=0.0)))
-    assert distance(made, shapes).max() <= tolerance + 1e-9
+    assert distance_from_path(drawn, path(made)).max() <= tolerance + SAGITTA
+    assert all(min(cut.radius) >= 0.0 for cut in made)
+    length, wanted = (sum(each.length for each in every) for every in (made, shapes))
+    assert length == pytest.approx(wanted, rel=5e-3, abs=0.05)  # no turn too many
 
 
 @settings(max_examples=80, deadline=None)
@@ -83,16 +80,6 @@ def test_moves_x_by_the_least_step_or_not_at_all(shapes):
         assert step == 0.0 or step >= LATHE.least_x or abs(cut.angle[1] - cut.angle[0]) < 1e-12
     assert distance(path(made), shapes).max() <= TOLERANCE + LATHE.least_x
     assert made[-1].radius[1] == pytest.approx(abs(shapes[-1].end), abs=0.51 * TOLERANCE)
-
-
-@settings(max_examples=80, deadline=None)
-@given(drawings())
-def test_turns_without_a_jump_and_never_to_negative_x(shapes):
-    contour = programmed(shapes)
-    made = cuts(contour, plan(contour, EXACT, c=0.0))
-    assert all(min(cut.radius) >= 0.0 for cut in made)
-    length = sum(cut.length for cut in made)
-    assert length == pytest.approx(sum(shape.length for shape in shapes), rel=5e-3, abs=0.05)
 
 
 def deviation(shape, settings=EXACT, feed=250.0):
@@ -581,10 +568,6 @@ def test_segments_that_keep_x_stay_within_the_tolerance():
     made = cuts(contour, plan(contour, LATHE, c=0.0))
     assert any(cut.radius[0] == cut.radius[1] for cut in made)
     assert abs(abs(path(made) - centre) - size).max() < TOLERANCE
-
-
-def test_nothing_is_no_motion():
-    assert plan(Contour(10.0, 0.0), LATHE, c=12.0).steps == []
 
 
 @pytest.mark.parametrize(

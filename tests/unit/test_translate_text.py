@@ -620,13 +620,13 @@ def test_a_hostile_line_takes_a_bounded_time(line):
     assert time.monotonic() - start < 5
 
 
-def test_a_hundred_thousand_lines_take_not_the_square_of_their_number():
+def test_many_lines_take_not_the_square_of_their_number():
     arcs = "N{0} G02 X{0}.5 Y{0}.25 R10. F{0}. (ARC {0});\n"
-    blocks = "".join(arcs.format(n) + f"X{n}.1 Y-{n}.2\nG01X{n}.3Z-.5\n" * 5 for n in range(9091))
+    blocks = "".join(arcs.format(n) + f"X{n}.1 Y-{n}.2\nG01X{n}.3Z-.5\n" * 5 for n in range(2273))
     start = time.process_time()
     translated = lines(HAAS, f"{MILL}{blocks}M30\n")
-    assert len(translated) == 100_004
-    assert time.process_time() - start < 40  # about four where nothing else runs
+    assert len(translated) == 25_006
+    assert time.process_time() - start < 10  # about one where nothing else runs
 
 
 # ---------------------------------------------------------------- C beside a slide
