@@ -9,6 +9,7 @@ import pytest
 from g12.tools.commands.main import main
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
+from g12.tools.verify.reading.codes import HOLES, SHAPES
 from support.sim_machines import SIM
 
 INCH = 25.4
@@ -239,6 +240,18 @@ def test_300_random_bad_calls_move_nothing(lathe):
 def test_where_no_hole_can_be_made(lathe, blocks, rule):
     traced = lathe.trace_text(program(*blocks, call("face_holes")))
     assert traced.error.text.startswith(f"face_holes line 7: {rule}")
+
+
+@pytest.mark.parametrize("name", [*HOLES, *SHAPES])
+@pytest.mark.parametrize(("on", "off"), [("G12.1", "G13.1"), ("G7.1 C20", "G7.1 C0")])
+def test_inside_a_section_the_refusal_says_what_to_write(lathe, name, on, off):
+    inside = [on, f"N7 o<{name.upper()}> call [1] (here)", off]
+    traced = lathe.trace_text(program("C0", *inside))
+    assert traced.error.text == (
+        f"{on.split()[0]} line 8: o<{name}> is made outside of a section: "
+        f"{off} in the line before it, {on.split()[0]} again after it"
+    )
+    assert traced.error.line == 8 and len(traced.moves) == 2
 
 
 def test_the_side_is_drawn_unrolled(tmp_path):

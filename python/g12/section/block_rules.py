@@ -4,6 +4,7 @@
 Codes are the parser's: a G code times ten, by modal group.
 """
 
+import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -78,6 +79,8 @@ ORIENT = 19
 WAIT_FOR_INPUT, AT_ONCE = 66, 0  # M66, and the L that does not wait
 LONGEST_WAIT = "Q above zero, the longest wait in seconds"
 
+MADE_OUTSIDE = re.compile(r"o<(face_holes?(?:_at)?|side_holes|polar_(?:polygon|slot|pocket))>call")
+
 
 class SectionBlock(NamedTuple):
     """What the parser made of a line: codes by modal group, -1 is none, and word values."""
@@ -108,6 +111,19 @@ def check_codes(
             _check_g(GROUP_OF_G[code], code, known, rapid_allowed, place)
         elif letter == "M":
             _check_m(code // 10, place)
+
+
+def check_call(text: str, off_code: str, place: SectionPlace) -> None:
+    """Refuse a call of holes or a shape by its name; ``text`` has no blanks, in lower case.
+
+    Its sub turns C and moves by itself, while a section is planned whole before any of it moves.
+    """
+    called = MADE_OUTSIDE.search(text)
+    if called:
+        raise place.refuse(
+            f"o<{called[1]}> is made outside of a section: "
+            f"{off_code} in the line before it, {place.code} again after it"
+        )
 
 
 def check_letters(line: TextLine, known: SectionWords, place: SectionPlace) -> None:

@@ -30,6 +30,7 @@ from g12.section.block_rules import (
     SectionBlock,
     alone,
     check_block,
+    check_call,
     check_codes,
     check_letters,
     m_code_alone,
@@ -193,6 +194,7 @@ class Section:
             return
         if self._phase is Phase.READING and self.frame.is_current:
             self._check_level(line)
+        check_call(line.text, self.codes.off_code, self.reader.place)
         self.reader.show_plane()
         self._check_done(self.program.control(line.control))
         self.reader.returned()
