@@ -8,7 +8,8 @@ import pytest
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from g12.tools.verify.proof import StockText, prove
-from support.sim_machines import SIM
+from support.fault_tables import MachinedProgram
+from support.sim_machines import ROOT, SIM
 
 HEAD = ["{units} G18 {mode} G40 G90 G94 G64 P0.02", "T1 M6", "S500 M3", "G0 X{x} Z{z} C100", "F{f}"]
 FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
@@ -67,6 +68,17 @@ def test_random_valid_calls_have_no_finding(tmp_path, units, mode):
         ]
     path = written(tmp_path, *calls, units=units, mode=mode)
     assert findings(path, read_ini(SIM / "lathe_mm_headless.ini")) == []
+
+
+def test_a_clamp_that_is_right_has_no_finding(tmp_path):
+    chance = random.Random("clamp")
+    calls = [line for _ in range(40) for line in (a_call(chance, 1.0), "G0 X60 Z10")]
+    section = ["C0", "G12.1", "G1 Z-1 F90", "X40 C5", "X30", "G13.1", "G0 X60 Z10"]
+    slot = "o<polar_slot> call [8] [30] [1] [-9999] [-9999] [300] [-9999] [0]"
+    path = written(tmp_path, *calls, *section, slot, "G0 X60 Z10", SIDE, "M10", "M11")
+    settings = {"C_CLAMP": "M10 M11", "C_CLAMP_SHAPES": "M10"}
+    ini = MachinedProgram("", "", "lathe_mm", settings, None).ini(ROOT)
+    assert findings(path, ini) == []
 
 
 def test_a_bar_that_is_in_the_way(tmp_path):

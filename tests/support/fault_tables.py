@@ -9,6 +9,7 @@ from g12.tools.machine.ini import read_ini
 from support.sim_machines import PROGRAMS, ROOT
 
 FAULTS = ROOT / "tests" / "faults"
+CLAMP = ROOT / "tests" / "support" / "clamp"  # the subs of M10 and M11
 TABLES = {path.stem: tomllib.loads(path.read_text()) for path in sorted(FAULTS.glob("*.toml"))}
 FOLDERS = {
     "circle_mill": "mill_mm",
@@ -41,9 +42,17 @@ class MachinedProgram(NamedTuple):
         return path
 
     def ini(self, package: Path):
-        """Return its machine, of the package in a folder."""
+        """Return its machine, of the package in a folder; a clamp's codes are those of `clamp`."""
         ini = read_ini(package / "configs" / "sim" / f"{self.machine}_headless.ini")
-        return ini.replaced({"G12": self.settings})
+        own = [f"{code} modalgroup=10 ngc={code.lower()}" for code in self.clamp]
+        path = f"{ini.get('RS274NGC', 'SUBROUTINE_PATH')}:{CLAMP}"
+        remaps = {"REMAP": [*ini.all("RS274NGC", "REMAP"), *own], "SUBROUTINE_PATH": path}
+        return ini.replaced({"G12": self.settings, "RS274NGC": remaps if own else {}})
+
+    @property
+    def clamp(self) -> list[str]:
+        """The codes that close and open C's clamp."""
+        return str(self.settings.get("C_CLAMP", "")).split()
 
 
 def program_of(table: str, name: str) -> MachinedProgram:

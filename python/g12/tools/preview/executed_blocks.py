@@ -19,6 +19,7 @@ from g12.tools.preview.moves import Event, Trace
 from g12.tools.preview.tracer import Parameters, Tracer
 
 TAG = "g12-verify"
+CLAMP = "clamp"  # what the sub of a code of C's clamp tells, and its event's first word
 VALUE = "#<@>"  # short: a line that LinuxCNC reads has 252 characters at most
 LONGEST_LINE = 252
 ENLARGED = 1_000_000  # times: of less than 0.0001 LinuxCNC 2.9 tells that it is 0
@@ -246,6 +247,9 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
             told.append(event)
             continue
         kind, number, *rest = event.text.split(f"{TAG} ", 1)[1].split()
+        if kind == CLAMP:
+            told.append(event._replace(text=f"{CLAMP} {number}"))
+            continue
         values = [float(value) for value in rest]
         if kind == "begin":
             state = state_told(values)

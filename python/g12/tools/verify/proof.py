@@ -25,12 +25,14 @@ from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import Unit
 from g12.tools.verify.asked import Asked, asked_of, moves_there
+from g12.tools.verify.compare.clamp import Clamp
 from g12.tools.verify.compare.drilled import HolesFacts, measure_holes
 from g12.tools.verify.compare.section_plane import x0_of
 from g12.tools.verify.in_material import judge_material
 from g12.tools.verify.judgement import judged
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
 from g12.tools.verify.reading.codes import Codes
+from g12.tools.verify.reading.executed_subs import clamp_files
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import RUN, WALL
 from g12.tools.verify.sections.section import SectionFacts, measure_section
@@ -203,8 +205,9 @@ def measured_shapes(
 
 def measured_holes(subject: Subject, asked: Asked, tolerance: float) -> list[HolesFacts]:
     """Return what is measured of a program's holes with C."""
-    moves, clamps = subject.trace.moves, bool(subject.ini.settings.c_clamp)
-    return [measure_holes(each, moves, tolerance, clamps, subject.real) for each in asked.holes]
+    moves, codes = subject.trace.moves, [f"M{code}" for code in subject.ini.settings.c_clamp]
+    clamp = Clamp(codes, bool(clamp_files(subject.ini)))
+    return [measure_holes(each, moves, tolerance, clamp, subject.real) for each in asked.holes]
 
 
 def unseen_in(subject: Subject, asked: Asked) -> list[tuple[int, str]]:

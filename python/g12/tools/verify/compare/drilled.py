@@ -12,6 +12,7 @@ from g12.tools.path.part import C
 from g12.tools.path.track import STILL
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Event, Move
+from g12.tools.verify.compare.clamp import Clamp, judge_clamp
 from g12.tools.verify.compare.path import Laid, Made, lay
 from g12.tools.verify.compare.path_judge import judge_path
 from g12.tools.verify.compare.section import SectionPath
@@ -42,10 +43,10 @@ def measure_holes(
     called: tuple[Block, SubCall],
     moves: Sequence[Move],
     tolerance: float,
-    clamps: bool,
+    clamp: Clamp,
     real: Followed | None = None,
 ) -> HolesFacts:
-    """Return the facts of a call; with ``clamps`` M codes of C's clamp come in it."""
+    """Return the facts of a call."""
     block, call = called
     holes, own = holes_of(call), range(block.at, block.end)
     turns = (moves[i].end[C] - moves[i].start[C] for i in own)
@@ -54,7 +55,7 @@ def measure_holes(
     if real and not laid.difference and not holes.pitch:
         run = laid_run(holes, expected, real, own, tolerance)
     found, where = SectionPath(expected, [], laid, run), (call.line, call.file)
-    events = [each for each in block.own_events if ACTS.match(each.text) and not clamps]
+    events = [each for each in block.own_events if ACTS.match(each.text) and not clamp.codes]
     texts = dict.fromkeys(each.text for each in events if not each.text.startswith("dwell"))
     state = state_differences(block.left, call.leaves())
     judged = [
@@ -62,6 +63,7 @@ def measure_holes(
         *passed_over(holes, expected, laid),
         *judge_rapids(call, moves, own),
         *judge_dwells(holes, block.own_events, moves),
+        *judge_clamp(holes, expected, laid, block, clamp),
         *judge_state(state, texts, *where),
     ]
     return HolesFacts(holes, found, tuple(judged))

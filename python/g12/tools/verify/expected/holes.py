@@ -79,6 +79,13 @@ class Holes:
         across, level = (z, x - self.x) if self.side else (x, z)
         return complex(across, c * self.round_scale), level
 
+    def clamped(self, move: Expected) -> bool | None:
+        """Return whether C's clamp is closed: in a hole it is, where C turns not, else None."""
+        if abs(move.curve.end.imag - move.curve.start.imag) > SAME_TURN:
+            return False
+        lowest = min(move.start_level, move.end_level)
+        return True if lowest < self.call.length("retract") - ROUNDING else None
+
     def words(self, at: tuple[complex, float]) -> tuple[tuple[str, float | str], ...]:
         """Return a point and its level as a program writes it."""
         x, z = (at[1] + self.x, at[0].real) if self.side else (at[0].real, at[1])

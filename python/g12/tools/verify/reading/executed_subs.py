@@ -8,13 +8,17 @@ program does; see `executed_blocks`.
 from __future__ import annotations
 
 import os
+import re
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+from g12.machine_ini import remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import (
+    CLAMP,
+    TAG,
     Block,
     Text,
     blocks_in,
@@ -26,6 +30,8 @@ from g12.tools.preview.executed_blocks import (
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer, write_program
 from g12.tools.verify.reading.codes import CALL, Codes
+
+BEGIN = re.compile(r"\s*o\s*<[^>]*>\s*sub\b", re.IGNORECASE)
 
 
 def executed_everywhere(
@@ -41,10 +47,10 @@ def executed_everywhere(
     ``trace`` is the program's. Where LinuxCNC does not take the copies, the blocks of the program
     are all.
     """
-    named = called_files(read_lines(program), tracer.ini)
-    files = files_with(codes.wanted_in, {*map(Path, trace.files), *named})
-    if files:
-        copies = Copies(program, files, partial(watched_file, codes=codes))
+    named, clamps = called_files(read_lines(program), tracer.ini), clamp_files(tracer.ini)
+    files = files_with(codes.wanted_in, {*map(Path, trace.files), *named}.difference(clamps))
+    for some in filter(None, dict.fromkeys(((*files, *clamps), tuple(clamps)))):
+        copies = Copies(program, some, partial(watched_file, codes=codes, clamps=clamps))
         copy = copies.trace(tracer, tools, parameters, watch_offsets=True)
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
             return blocks_in(copy, copies.texts)
@@ -52,8 +58,17 @@ def executed_everywhere(
     return executed(tracer, program, trace, wanted.__contains__, parameters)
 
 
-def watched_file(path: Path, texts: Sequence[Text], codes: Codes, skip: int) -> list[str]:
-    """Return the lines of a file and those that tell of its blocks that matter."""
+def watched_file(
+    path: Path, texts: Sequence[Text], codes: Codes, clamps: Mapping[Path, str], skip: int
+) -> list[str]:
+    """Return the lines of a file and those that tell of its blocks that matter.
+
+    The sub of a clamp's code tells that it is called.
+    """
+    if path in clamps:
+        told = f"(DEBUG,{TAG} {CLAMP} {clamps[path]})"
+        lines = lines_as_written(path)
+        return [f"{line}\n{told}" if BEGIN.match(line) else line for line in lines]
     return watched(path, texts, codes.wanted_in(texts).__contains__, skip)
 
 
@@ -109,6 +124,22 @@ def called_files(texts: Sequence[Text], ini: Ini) -> set[Path]:
                 found.add(file)
                 waiting.append(read_lines(file))
     return found
+
+
+def clamp_files(ini: Ini) -> dict[Path, str]:
+    """Return the files of the subs that execute the codes of C's clamp, each with its code.
+
+    None where one of them is no sub: what it does is not seen.
+    """
+    subs = {remap.code: remap.keywords.get("ngc", "") for remap in remap_lines(ini.all)}
+    folders = [ini.directory / os.path.expanduser(folder) for folder in folders_of_subs(ini)]
+    found = {}
+    for code in (f"M{number}" for number in ini.settings.c_clamp):
+        files = (folder / f"{subs.get(code)}.ngc" for folder in folders)
+        file = next(filter(Path.is_file, files), None)
+        if file:
+            found[file] = code
+    return found if len(found) == len(ini.settings.c_clamp) else {}
 
 
 def folders_of_subs(ini: Ini) -> list[str]:

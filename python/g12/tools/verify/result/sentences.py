@@ -40,6 +40,9 @@ FINDINGS = {
     "blended-hole": (
         "it is not in exact path mode (G61): C would turn before the tool is out of the hole"
     ),
+    "clamp-open": "the clamp of C is open in the {what}: {code} does not come before it",
+    "clamp-closed": "the clamp of C is not open for the {what}: {code} does not come before it",
+    "clamp-left": "the clamp of C is closed after the holes: {code} does not come",
     # the material
     "rapid-through": "a rapid goes through material, from {at:place} to {to:place}",
     "rapid-into": "a rapid goes down into {area:mm2} of material, at {at:place}",
