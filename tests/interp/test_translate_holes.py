@@ -10,7 +10,7 @@ from g12.tools.commands import translate
 from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.program import translate_program
 from support.foreign_programs import near, tracer_of
-from support.sim_machines import SIM
+from support.sim_machines import PROGRAMS, SIM
 
 X, Z, C = 0, 2, 5
 HEADS = {
@@ -84,6 +84,20 @@ def test_the_face_in_pecks_with_modal_blocks(tracer):
     assert found.moves[-1].kind == "rapid" and found.moves[-1].end[X] == near(25)
     stops = sum(event.text.startswith("dwell") for event in found.events)
     assert stops == 1 + 3 * 7  # before, above each hole, in it, and behind it
+
+
+def test_the_recorded_program_is_what_translate_makes():
+    """Its moves are those of tests/programs/holes/regress; here the holes that they drill."""
+    recorded = (PROGRAMS / "holes" / "from_haas.ngc").read_text()
+    foreign = (PROGRAMS / "foreign" / "recorded" / "holes.nc").read_text()
+    assert translate_program(foreign, read_control("haas-lathe")).text == recorded
+    with tracer_of("haas-lathe") as tracer:
+        found = tracer.trace_text(recorded, alone=True)
+    assert found.error is None
+    deep = [m.end for m in found.moves if m.kind == "feed" and (m.end[Z] < -11 or m.end[X] < 16)]
+    face = [(20, -12, c) for c in (0, 90, 120, 150)]
+    side = [(15, -10, 45), (15, -10, 135), (15, -15, 135)]
+    assert [(end[X], end[Z], end[C]) for end in deep] == [near(each) for each in face + side]
 
 
 def test_chips_are_broken_where_the_control_says_so(tracer, tmp_path):
