@@ -80,7 +80,7 @@ class Holes:
         return complex(across, c * self.round_scale), level
 
     def clamped(self, move: Expected) -> bool | None:
-        """Return whether C's clamp is closed: in a hole it is, where C turns not, else None."""
+        """Return whether C's clamp is to be closed: in a hole, not where C turns; None: either."""
         if abs(move.curve.end.imag - move.curve.start.imag) > SAME_TURN:
             return False
         lowest = min(move.start_level, move.end_level)

@@ -45,7 +45,7 @@ def executed_everywhere(
     """Return every execution of the blocks that matter, in order.
 
     ``trace`` is the program's. Where LinuxCNC does not take the copies, the blocks of the program
-    are all.
+    are all, with what the subs of C's clamp tell.
     """
     named, clamps = called_files(read_lines(program), tracer.ini), clamp_files(tracer.ini)
     files = files_with(codes.wanted_in, {*map(Path, trace.files), *named}.difference(clamps))
