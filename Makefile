@@ -40,7 +40,7 @@ demo: setup
 
 test: setup
 	@echo "test: every test, on $(JOBS) cores"
-	@$(IN_PLACE) $(PYTHON) -m pytest -n $(WORKERS) --dist loadfile
+	@$(IN_PLACE) $(PYTHON) -m pytest -n $(WORKERS) --dist loadgroup
 
 test-on:
 	@sh .ci/test-on $(SUITE)

@@ -25,8 +25,12 @@ def missing(folder):
     return "LinuxCNC is not installed" if needed else None
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
+    """Skip what cannot run here; a file's tests stay on one core unless they say otherwise."""
     for item in items:
+        if not item.get_closest_marker("xdist_group"):
+            item.add_marker(pytest.mark.xdist_group(f"{item.path.parent.name}/{item.path.stem}"))
         why = missing(item.path.parent.name)
         if why:
             item.add_marker(pytest.mark.skip(reason=why))

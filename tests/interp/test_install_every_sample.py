@@ -21,7 +21,6 @@ from g12.tools.install.config.loaded import Config, Python, load_config, remaps_
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.install.rules import codes_of, findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems
-from g12.tools.machine import files
 from g12.tools.machine.ini import read_ini
 from support.sample_configs import SAMPLES, copy_samples, tree
 
@@ -40,12 +39,8 @@ PACKAGE = {
        ("python/toplevel.py", "python/remap.py", "python/g12/__init__.py", forms.PAGE)},
     **dict.fromkeys(("python/g12/__main__.py", *(f"ngc/{sub}.ngc" for sub in SUBS)), b""),
 }  # fmt: skip
-NO_MACHINE = {
-    "interpreter",
-    "does-not-load",
-    "no-sub",
-    "python-fails",
-}  # of samples that are none by themselves
+# of samples that are no machines by themselves
+NO_MACHINE = {"interpreter", "does-not-load", "no-sub", "python-fails"}
 
 
 def screen_of(path):
@@ -127,7 +122,6 @@ def in_and_out(path, names):
 @pytest.fixture
 def no_interpreter(monkeypatch):
     """Install a small package, and take the modules of each config for loaded."""
-    monkeypatch.setattr(files.os, "fsync", lambda _: None)
     monkeypatch.setattr(package_copy, "package_files", lambda: PACKAGE)
     asked = {}
 
@@ -143,9 +137,8 @@ def no_interpreter(monkeypatch):
     def loaded(text, codes, overlay=None):
         remaps = remaps_in(text)
         installed = bool(codes_of(remaps))
-        python, failure = (
-            (Python(), None) if installed and text.path not in asked else own_python(text)
-        )
+        unasked = installed and text.path not in asked
+        python, failure = (Python(), None) if unasked else own_python(text)
         if installed:
             python = replace(python, remap={**python.remap, **HANDLERS})
         ini = text.ini().replaced(overlay or {})
@@ -185,8 +178,14 @@ def refusal_in_memory(path, name):
     return set()
 
 
+def on_a_core(name):
+    """Return a sample as a parameter: those below one folder go to one core."""
+    group = pytest.mark.xdist_group("/".join(name.parts[:2]))
+    return pytest.param(name, marks=group, id=str(name))
+
+
 @pytest.mark.usefixtures("no_interpreter")
-@pytest.mark.parametrize("name", INIS, ids=str)
+@pytest.mark.parametrize("name", map(on_a_core, INIS))
 def test_every_feature_goes_in_and_out(samples, content, package, name):
     path = samples / name
     ini, before = read_ini(path), content(path.parent)
