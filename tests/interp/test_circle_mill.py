@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The circle mill event on the stock interpreter: both front ends, geometry, modes, refusals."""
 
+import itertools
 import math
 
 import numpy as np
@@ -116,58 +117,6 @@ def test_golden_outside_perimeter_move_by_move(inch):
     ]
 
 
-POCKETS = [
-    ("R1.5", [0.416667, 0.833333, 1.25], None),
-    ("R1.5 Q.02 J.3", [0.246, 0.492, 0.738, 0.984, 1.23], 1.25),
-]
-
-
-@pytest.mark.parametrize(("words", "rings", "finish"), POCKETS)
-@pytest.mark.parametrize(("scale", "unit"), [(1, "G20"), (INCH, "G21")])
-def test_golden_pocket_rings(inch, metric, words, rings, finish, scale, unit):
-    scaled = " ".join(f"{word[0]}{float(word[1:]) * scale:.6f}" for word in words.split())
-    place = f"X0 Y0 Z{-0.2 * scale} I{0.1 * scale} {scaled} H2 L0"
-    place = place if finish else place.replace(" L0", "")
-    for tracer in (inch, metric):
-        traced = cut(tracer, unit, f"F{20 * scale}", f"G13.2 {place}")
-        radii = [radius / INCH for radius in cut_geometry.radii(traced.moves)]
-        assert radii == pytest.approx(rings + ([finish] if finish else []), abs=1e-6)
-
-
-def test_golden_pocket_in_millimetres(inch, metric):
-    for tracer in (inch, metric):
-        traced = cut(tracer, "T3 M6", "G21", "F300", "G13.2 X0 Y0 Z-5 I2 R40 H2 Q.3 L0")
-        radii = cut_geometry.radii(traced.moves)
-        assert radii == pytest.approx([11.233333, 22.466667, 33.7, 34], abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("words", "depths"),
-    [
-        ("L1", [-0.2, -0.5, -0.8, -0.98, -1.0]),
-        ("L0", [-0.2, -0.5, -0.8, -1.0]),
-    ],
-)
-def test_golden_depths(inch, words, depths):
-    traced = cut(inch, f"G13.2 X0 Y0 Z-1 I.1 R1.5 J.3 K.3 Q.02 H2 {words}")
-    assert [z / INCH for z in cut_geometry.levels(traced.moves)] == pytest.approx(depths)
-
-
-@pytest.mark.parametrize(
-    ("words", "radii"),
-    [
-        ("H2", [0.75]),
-        ("H1", [1.25]),
-        ("H0", [1.0]),
-        ("H2 Q.02 L0", [0.73, 0.75]),
-        ("H1 Q.02 L0", [1.27, 1.25]),
-    ],
-)
-def test_golden_perimeter_radii(inch, words, radii):
-    traced = cut(inch, f"G12.2 X0 Y0 Z-.1 I.1 R1 {words}")
-    assert [r / INCH for r in cut_geometry.radii(traced.moves)] == pytest.approx(radii)
-
-
 # ---------------------------------------------------------------- both front ends
 
 ENTRIES = dict(x=1, y=2, z=-0.5, w=0.1, o=0.5, r=1.5, d=2, c=2, k=0.2, l=0.02, p=5, f=30)
@@ -183,26 +132,14 @@ def test_the_call_is_the_code(inch, g, code):
     assert by_call.modes == by_code.modes
 
 
-def test_a_negative_l_of_the_call_is_the_side_only(inch):
-    by_code = cut(inch, f"G13.2 {CODE_WORDS} L0")
-    by_call = cut(inch, call(**{**ENTRIES, "g": 7, "l": -0.02}))
-    assert cut_geometry.radii(by_call.moves) == cut_geometry.radii(by_code.moves)
-    assert cut_geometry.levels(by_call.moves) == cut_geometry.levels(by_code.moves)
-
-
-def test_v_is_the_feed_of_the_side_finish(inch):
+def test_feeds_of_plunges_rings_and_side_finish(inch):
     traced = cut(inch, call(**ENTRIES, g=7, v=15))
-    *_, entry, circle, leave = cut_geometry.cutting(traced.moves)
-    assert [move.feed / INCH for move in (entry, circle, leave)] == pytest.approx([15] * 3)
-
-
-def test_feeds_of_plunges_and_rings(inch):
-    traced = cut(inch, call(**ENTRIES, g=7, v=15))
-    roughing = cut_geometry.cutting(traced.moves)[:-3]
+    *roughing, entry, circle, leave = cut_geometry.cutting(traced.moves)
     plunges = [move for move in roughing if move.start[:2] == move.end[:2] and move.kind == "feed"]
     rings = [move for move in roughing if move not in plunges]
     assert {round(move.feed / INCH, 6) for move in plunges} == {5}
     assert {round(move.feed / INCH, 6) for move in rings} == {30}
+    assert [move.feed / INCH for move in (entry, circle, leave)] == pytest.approx([15] * 3)
     assert len(plunges) == len(cut_geometry.levels(traced.moves))
 
 
@@ -265,25 +202,9 @@ def test_w_follows_the_units(inch, metric):
     for tracer in (inch, metric):
         traced = cut(tracer, "G13.2 X0 Y0 Z-.1 I.1 R.5 H2", "G21", "F500", "G13.2 X0Y0 Z-2 R12 H2")
         assert traced.moves[-1].end[2] == pytest.approx(2.54)
-        back = cut(
-            tracer,
-            "G21",
-            "F500",
-            "G13.2 X0 Y0 Z-2 I2.54 R12 H2",
-            "G20",
-            "F20",
-            "G13.2X0Y0Z-.1R.5H2",
-        )
+        metric_first = ["G21", "F500", "G13.2 X0 Y0 Z-2 I2.54 R12 H2"]
+        back = cut(tracer, *metric_first, "G20", "F20", "G13.2X0Y0Z-.1R.5H2")
         assert back.moves[-1].end[2] == pytest.approx(2.54)
-
-
-def test_g91_counts_xy_from_the_tool_z_from_w_and_stays(inch):
-    absolute = cut(inch, "G13.2 X1 Y2 Z-.5 I.1 E.5 R1.5 H2 K.2 Q.02")
-    incremental = cut(inch, "G91 G13.2 X2 Y3 Z-.6 I.1 E.5 R1.5 H2 K.2 Q.02")
-    assert described(incremental.moves) == described(absolute.moves)
-    assert "G91" in incremental.modes.gcodes
-    by_call = cut(inch, "G91", call(g=7, x=2, y=3, z=-0.6, w=0.1, o=0.5, r=1.5, c=2, k=0.2, l=0.02))
-    assert described(by_call.moves) == described(absolute.moves)
 
 
 def test_a_tool_below_w_is_raised_before_it_goes_sideways(inch):
@@ -312,26 +233,6 @@ def test_the_converted_events_run(inch):
     assert [round(value / INCH, 6) for value in traced.position[:3]] == [-3, -3, 0.1]
 
 
-def test_the_sample_program():
-    with Tracer(SIM / "mill_mm.ini") as tracer:
-        traced = tracer.trace(PROGRAMS / "circle_mill" / "sample.ngc")
-    assert (traced.error, traced.messages) == (None, [])
-    circles = [
-        [round(value, 6) for value in circle[:4]]
-        for circle in cut_geometry.full_circles(traced.moves)
-    ]
-    rings = [11.233333, 22.466667, 33.7]
-    assert circles == [
-        *([0, 0, z, radius] for z in (-1, -4, -5.7, -6) for radius in rings),
-        [0, 0, -6, 34],
-        *([100, 0, z, radius] for z in (-1, -4, -6) for radius in rings),
-        [100, 0, -6, 34],
-        [0, 100, -3, 36.3],
-        [0, 100, -3, 36],
-        [100, 100, -1, 30],
-    ]
-
-
 # ---------------------------------------------------------------- any valid event
 
 ROUGH_TURNS = {0: -1, 1: 1, 2: -1, 3: 1}
@@ -347,14 +248,8 @@ def length(least, most):
 def events(draw):
     """Return a valid block in inches with its numbers; the tool is 0.5."""
     pocket = draw(st.booleans())
-    d, h = (
-        draw(st.sampled_from(sorted(INSIDE)))
-        if pocket
-        else (
-            draw(st.integers(0, 3)),
-            draw(st.integers(0, 2)),
-        )
-    )
+    pairs = sorted(INSIDE) if pocket else itertools.product(range(4), range(3))
+    d, h = draw(st.sampled_from(list(pairs)))
     side = 0 if h == 0 else (-1 if (d, h) in INSIDE else 1)
     finish = draw(length("0.005", "0.04")) if side and draw(st.booleans()) else 0.0
     bottom = bool(finish) and draw(st.booleans())
@@ -488,48 +383,10 @@ def test_any_valid_event_cuts_its_circle(inch, event):
 # ---------------------------------------------------------------- what is cut
 
 
-@pytest.mark.parametrize("words", ["R1 H2", "R1 H2 Q.02", "R.6 D1 H1 J.2 Q.03 L0", "R.27 H2"])
-def test_a_pocket_is_swept_to_its_radius_at_every_level(inch, words):
-    traced = cut(inch, f"G13.2 X1 Y2 Z-.5 I.1 K.2 {words}")
-    radius = float(words.split()[0][1:])
-    finish = float(words.split("Q")[1].split()[0]) if "Q" in words else 0.0
-    for level in cut_geometry.levels(traced.moves):
-        at_level = [
-            move for move in cut_geometry.cutting(traced.moves) if move.end[2] <= level + 1e-6
-        ]
-        swept = cut_geometry.swept(at_level, 0.25 * INCH)
-        hole = cut_geometry.disc(1 * INCH, 2 * INCH, radius * INCH)
-        assert swept.difference(hole.buffer(0.001)).area == pytest.approx(0, abs=1e-6)
-        roughed = cut_geometry.disc(1 * INCH, 2 * INCH, (radius - finish) * INCH).buffer(-0.001)
-        assert roughed.difference(swept).area == pytest.approx(0, abs=1e-3)
-    whole = cut_geometry.swept(cut_geometry.cutting(traced.moves), 0.25 * INCH)
-    assert hole.buffer(-0.001).difference(whole).area == pytest.approx(0, abs=1e-3)
-
-
-@pytest.mark.parametrize(("h", "inner", "outer"), [(2, 0.5, 1.0), (1, 1.0, 1.5), (0, 0.75, 1.25)])
-def test_a_perimeter_is_one_groove_on_its_side(inch, h, inner, outer):
-    traced = cut(inch, f"G12.2 X1 Y2 Z-.5 I.1 R1 H{h}")
-    swept = cut_geometry.swept(cut_geometry.cutting(traced.moves), 0.25 * INCH)
-    ring = [cut_geometry.disc(1 * INCH, 2 * INCH, radius * INCH) for radius in (outer, inner)]
-    groove = ring[0].difference(ring[1])
-    assert swept.symmetric_difference(groove).buffer(-0.002).area == pytest.approx(0, abs=1e-3)
-
-
-@pytest.mark.parametrize(("h", "inner", "outer"), [(2, 0.48, 1.0), (1, 1.0, 1.52)])
-def test_a_finished_perimeter_is_wider_by_the_finish(inch, h, inner, outer):
-    traced = cut(inch, f"G12.2 X1 Y2 Z-.5 I.1 R1 H{h} Q.02")
-    swept = cut_geometry.swept(cut_geometry.cutting(traced.moves), 0.25 * INCH)
-    ring = [cut_geometry.disc(1 * INCH, 2 * INCH, radius * INCH) for radius in (outer, inner)]
-    groove = ring[0].difference(ring[1])
-    assert swept.symmetric_difference(groove).buffer(-0.002).area == pytest.approx(0, abs=1e-3)
-
-
 def test_a_roughing_width_above_the_tool_diameter_says_what_it_leaves(inch):
     traced = cut(inch, "G13.2 X0 Y0 Z-.1 I.1 R1.5 H2 J.7")
-    assert [message.text for message in traced.messages] == [
-        "G13.2: the roughing width 0.625 is greater than the tool diameter 0.5:"
-        " material is left between the rings"
-    ]
+    (message,) = traced.messages
+    assert message.text.startswith("G13.2: the roughing width 0.625 is greater than the tool")
     swept = cut_geometry.swept(cut_geometry.cutting(traced.moves), 0.25 * INCH)
     assert cut_geometry.disc(0, 0, 1.4 * INCH).difference(swept).area > 10
 
@@ -573,67 +430,14 @@ def test_a_bare_word_after_the_event_moves_in_the_mode_before_it(inch):
 # ---------------------------------------------------------------- refusals on the interpreter
 
 PLACE = "X1 Y2 Z-.5 I.1 R1.5"
-REFUSED = [
-    ("G13.2 Y2 Z-.5 I.1 R1.5 H2", "G13.2: X is missing: the circle's centre"),
-    (
-        "G13.2 X1 Y2 Z-.5 R1.5 H2",
-        "G13.2: I is missing: the first reference plane, which no earlier event has commanded",
-    ),
-    (
-        f"G12.2 {PLACE}",
-        "G12.2: H is missing: 0 tool centre on the circle, 1 left, 2 right of it",
-    ),
-    (
-        f"G13.2 {PLACE} D0 H1",
-        "G13.2: D0 with H1 does not put the tool inside the pocket:"
-        " D0 and D2 need H2, D1 and D3 need H1",
-    ),
-    (
-        f"G13.2 {PLACE} D1 H2",
-        "G13.2: D1 with H2 does not put the tool inside the pocket:"
-        " D0 and D2 need H2, D1 and D3 need H1",
-    ),
-    (f"G12.2 {PLACE} H1 J.2", "G12.2: J0.2 is the roughing width of a pocket"),
-    (f"G13.2 {PLACE} H2 L1", "G13.2: L needs Q as well: the finish dimension"),
-    (f"G13.2 {PLACE} H2 Q.02 L2", "G13.2: L2 must be at most 1"),
-    (
-        f"G13.2 {PLACE} H2 D4",
-        "G13.2: D4 must be at most 3: D is the direction of the cut,"
-        " the cutter is the tool in the spindle",
-    ),
-    (
-        f"G13.2 {PLACE} H2 E0",
-        "G13.2: E0 must not be below the first reference plane I0.1",
-    ),
-    (
-        "G91 G13.2 X1 Y2 Z.2 I.1 R1.5 H2",
-        "G13.2: Z0.2 must be below the first reference plane I0.1",
-    ),
-    (
-        call(g=7, x=0, y=0, z=-0.1, w=0.1, r=0.2, c=2),
-        "circle_mill: R0.2 must be greater than the tool radius 0.25 (T1)",
-    ),
-    (
-        call(g=7, x=0, y=0, z=-0.1, w=0.1, c=2),
-        "circle_mill: R is missing: the circle's radius",
-    ),
-    (
-        call(g=7, x=0, y=0, z=-0.1, w=0.1, r=1, d=1, c=2),
-        "circle_mill: D1 with C2 does not put the tool inside the pocket:"
-        " D0 and D2 need C2, D1 and D3 need C1",
-    ),
-    (
-        call(x=0, y=0, z=-0.1, w=0.1, r=1, c=2, l=0),
-        "circle_mill: L0 must not be 0; -9999 leaves it out",
-    ),
-    (
-        call(g=3, x=0, y=0, z=-0.1, w=0.1, r=1, c=2),
-        "circle_mill: G3 must be 0 (perimeter) or 7 (pocket)",
-    ),
-    (
-        "o<circle_mill> call [7] [0] [0] [-.1] [.1] [.1] [1] [0] [2]",
-        "circle_mill: V0 must be greater than 0 (a call has 15 entries, -9999 leaves one out)",
-    ),
+REFUSED = [  # the sentences are those of unit/test_circle_mill.py
+    ("G13.2 X1 Y2 Z-.5 R1.5 H2", "G13.2: I is missing"),
+    (f"G12.2 {PLACE}", "G12.2: H is missing"),
+    (f"G13.2 {PLACE} H2 D4", "G13.2: D4 must be at most 3"),
+    ("G91 G13.2 X1 Y2 Z.2 I.1 R1.5 H2", "G13.2: Z0.2 must be below the first"),
+    (call(g=7, x=0, y=0, z=-0.1, w=0.1, r=0.2, c=2), "circle_mill: R0.2 must be greater"),
+    (call(g=7, x=0, y=0, z=-0.1, w=0.1, c=2), "circle_mill: R is missing"),
+    ("o<circle_mill> call [7] [0] [0] [-.1] [.1] [.1] [1] [0] [2]", "circle_mill: V0 must be"),
 ]
 
 
@@ -689,16 +493,11 @@ def test_any_call_cuts_or_is_refused_in_words(inch, values):
     mode_matrix.check_cut_or_refused(inch, BEFORE, block, "circle_mill")
 
 
-@pytest.mark.parametrize(
-    ("word", "rule"),
-    [
-        ("K1", "K1 is not a word of this cycle, which knows no words inside o<circle_mill>"),
-        ("X1 Y2 Z-3", "X1 is not a word of this cycle, which knows no words inside o<circle_mill>"),
-    ],
-)
-def test_a_word_of_the_code_inside_the_subroutine_is_refused(inch, word, rule):
+@pytest.mark.parametrize("word", ["K1", "X1 Y2 Z-3"])
+def test_a_word_of_the_code_inside_the_subroutine_is_refused(inch, word):
     edited = ["o<circle_mill> sub", f"  G12.2 {word}", "o<circle_mill> endsub"]
     event = call(g=7, x=0, y=0, z=-0.1, w=0.1, r=1, c=2)
     traced = inch.trace_text([*edited, *BEFORE, event])
-    assert traced.error.text == f"G12.2 line 2: {rule}"
+    rule = "is not a word of this cycle, which knows no words inside o<circle_mill>"
+    assert traced.error.text == f"G12.2 line 2: {word[:2]} {rule}"
     assert len(traced.moves) == 1
