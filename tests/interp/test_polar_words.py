@@ -221,21 +221,8 @@ def test_offset_zero_is_legal():
 
 def test_actions_between_the_blocks_of_a_compensated_corner(lathe):
     plain = ["G1 C9", "G41 X12", "C-9", "G2 X-12 R15", "G1 C9", "G40 X-20"]
-    busy = [
-        "G1 C9",
-        "M8",
-        "(MSG, x)",
-        "G41 X12 (ramp)",
-        "Z-2",
-        "S500",
-        "C-9",
-        "M9",
-        "G2 X-12 R15",
-        "#1=2",
-        "G1 C9",
-        "Z5",
-        "G40 X-20",
-    ]
+    busy = ["G1 C9", "M8", "(MSG, x)", "G41 X12 (ramp)", "Z-2", "S500", "C-9", "M9"]
+    busy += ["G2 X-12 R15", "#1=2", "G1 C9", "Z5", "G40 X-20"]
     points = [set(ends(cut(lathe, *body))) for body in (plain, busy)]
     assert points[0] == points[1]
 
@@ -342,11 +329,8 @@ def test_a_wrapped_axis_winds_the_same_way():
     with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as wrapped:
         traced = cut(wrapped, *body, after=["G0 C350", "C10", "G90 C-20"])
     assert [move.end for move in traced.moves[: len(plain)]] == plain
-    assert [round(move.end[5]) for move in traced.moves[len(plain) :]] == [
-        710,
-        730,
-        380,
-    ]  # C-20 turns back to the 20 below
+    # C-20 turns back to the 20 below
+    assert [round(move.end[5]) for move in traced.moves[len(plain) :]] == [710, 730, 380]
 
 
 def test_the_other_pair_of_codes():
@@ -401,13 +385,11 @@ def test_a_machine_unit_may_be_a_number():
         ("lathe_mm.ini", "mm", {1: 12.7}),
         ("lathe_mm.ini", "1.0", {1: 12.7}),
     ]
-    moves = [
-        [
-            move.end
-            for move in on_lathe(name, {"TRAJ": {"LINEAR_UNITS": text}}, *body, tools=tools).moves
-        ]
+    traces = [
+        on_lathe(name, {"TRAJ": {"LINEAR_UNITS": text}}, *body, tools=tools)
         for name, text, tools in machines
     ]
+    moves = [[move.end for move in traced.moves] for traced in traces]
     assert np.allclose(moves[0], moves[1], atol=1e-6)
     assert np.allclose(moves[2], moves[3], atol=1e-6)
 
