@@ -25,10 +25,14 @@ def proof_of(program, machine, **options):
     return prove(PROGRAMS / program, ini(machine), **options)
 
 
-def proof_of_text(tmp_path, lines, machine="mill_mm", **options):
+def proof_of_text(tmp_path, lines, machine="mill_mm", changed=None, **options):
     program = tmp_path / "program.ngc"
-    program.write_text("\n".join(lines) + "\n")
-    return prove(program, ini(machine), **options)
+    program.write_text("\n".join([*lines, "M2", ""]))
+    return prove(program, ini(machine).replaced(changed or {}), **options)
+
+
+def radii_of(proof):
+    return [facts.target.wall.radius for facts in proof.pockets]
 
 
 MM = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6 S3000 M3"]  # a 10 mm cutter
@@ -84,7 +88,7 @@ def test_the_area_left_between_wide_rings():
 )
 def test_samples_of_every_dialect_are_good(program, machine, radii):
     proof = proof_of(program, machine)
-    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx(radii)
+    assert radii_of(proof) == pytest.approx(radii)
     assert proof.findings == []
 
 
@@ -103,20 +107,16 @@ def test_samples_of_every_dialect_are_good(program, machine, radii):
 )
 @pytest.mark.parametrize("traverse", ["0", "3000"])
 def test_yasnac_circles(block, traverse, tmp_path):
-    lines = ["G21 G17 G40 G49 G90 F600", "T10 M6", "G0 X3 Y4 Z5", "Z-5", block, "M2"]
-    program = tmp_path / "program.ngc"
-    program.write_text("\n".join([*lines, ""]))
-    machine = ini("mill_yasnac_mm").replaced({"G12": {"YASNAC_TRAVERSE": traverse}})
-    proof = prove(program, machine)
+    lines = ["G21 G17 G40 G49 G90 F600", "T10 M6", "G0 X3 Y4 Z5", "Z-5", block]
+    changed = {"G12": {"YASNAC_TRAVERSE": traverse}}
+    proof = proof_of_text(tmp_path, lines, "mill_yasnac_mm", changed)
     assert proof.findings == [] and len(proof.pockets) == 1
 
 
 @pytest.mark.parametrize("mode", ["rings", "spiral"])
 def test_both_ways_of_clearing_come_out_right(mode, tmp_path):
-    program = tmp_path / "program.ngc"
-    program.write_text("\n".join([*MM, "G0 X0 Y0 Z1", "G13 I7 K40 Q6 Z-3 D4", "M2", ""]))
-    machine = ini("mill_mm").replaced({"G12": {"CLEARING": mode}})
-    proof = prove(program, machine)
+    lines = [*MM, "G0 X0 Y0 Z1", "G13 I7 K40 Q6 Z-3 D4"]
+    proof = proof_of_text(tmp_path, lines, changed={"G12": {"CLEARING": mode}})
     (facts,) = proof.pockets
     assert proof.findings == []
     assert facts.target.asked.stepover == pytest.approx(6)
@@ -125,10 +125,8 @@ def test_both_ways_of_clearing_come_out_right(mode, tmp_path):
 @pytest.mark.parametrize("distance", ["G90", "G91"])
 @pytest.mark.parametrize("repeats", ["", "L3"])
 def test_a_pocket_without_z_is_measured_where_the_tool_stands(distance, repeats, tmp_path):
-    program = tmp_path / "program.ngc"
     rough, finish = "G13 I7 K20 Q6 Z-3 D4", f"{distance} G13 I20.5 {repeats} D4"
-    program.write_text("\n".join([*MM, "G0 X3 Y4 Z1", rough, finish, "G90 G0 Z1", "M2", ""]))
-    proof = prove(program, ini("mill_mm"))
+    proof = proof_of_text(tmp_path, [*MM, "G0 X3 Y4 Z1", rough, finish, "G90 G0 Z1"])
     assert proof.findings == []
     depths = [facts.target.wall.height(facts.target.deepest) for facts in proof.pockets]
     assert depths == pytest.approx([-3, -3])
@@ -145,10 +143,9 @@ def test_a_pocket_without_z_is_measured_where_the_tool_stands(distance, repeats,
     ],
 )
 def test_what_a_pass_before_has_cleared_is_not_uncut(pockets, left, entry, tmp_path):
-    program = tmp_path / "program.ngc"
-    program.write_text("\n".join([*MM, "G0 X0 Y0 Z1", *pockets, "G0 Z5", "M2", ""]))
-    machine = ini("mill_mm").replaced({"G12": {"ENTRY": entry}})
-    found = [each.code for each in prove(program, machine).judged if each.is_finding]
+    lines = [*MM, "G0 X0 Y0 Z1", *pockets, "G0 Z5"]
+    proof = proof_of_text(tmp_path, lines, changed={"G12": {"ENTRY": entry}})
+    found = [each.code for each in proof.judged if each.is_finding]
     assert found == ["uncut"] * left
 
 
@@ -166,67 +163,57 @@ def test_expressions_loops_and_skipped_blocks(tmp_path):
         "/G13 I8 Z-2 D4",
         "#2 = [#2 + 1]",
         "o100 endwhile",
-        "M2",
     ]
     proof = proof_of_text(tmp_path, lines)
-    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx([12, 13, 14])
+    assert radii_of(proof) == pytest.approx([12, 13, 14])
     assert [facts.target.wall.origin[0] for facts in proof.pockets] == pytest.approx([0, 60, 120])
     assert {facts.target.source.line for facts in proof.pockets} == {7}
     assert proof.findings == []
 
 
-def test_an_expression_may_come_to_next_to_nothing(tmp_path):
-    """LinuxCNC 2.9 tells that less than 0.0001 is 0."""
-    lines = ["G20 G18 G8 G40 G90 G94 F10", "T1 M6 S1000 M3", "G0 X2 Z.1 C0", "G12.1"]
-    lines += ["G1 Z[.5-.49991]", "X1", "Z-.1", "X2", "G13.1", "M2"]
-    proof = proof_of_text(tmp_path, lines, "lathe_inch")
-    assert proof.sections and proof.findings == []
+def long_block(start, length):
+    """Return a block that has a length and ends in an expression whose value is 10."""
+    return f"{start}[10{'+0' * ((length - len(start) - len('[10]')) // 2)}]"
 
 
-def test_a_section_may_begin_next_to_zero(tmp_path):
+HOLE = ["o<hole> sub", "G0 Z1", "G12 I#1 Z#2 D4", "G0 Z1", "o<hole> endsub"]
+AT_0 = "G0 X0 Y0 Z1"
+
+
+@pytest.mark.parametrize(
+    ("lines", "radii"),
+    [
+        ([*HOLE, *MM, "o<hole> call [9] [-2]", "G0 X40", "o<hole> call [11] [-3]"], [9, 11]),
+        ([*MM, AT_0, "G12 I7 K20 Q6 Z-2 D4 M2"], [20]),  # a cycle in the last block
+        # in inches a spring pass does not move down again
+        ([*MM, "G20 G0 X0 Y0 Z.1", "G12 I.3 K.8 Q.2 Z-.1 L3 D4 F20"], [0.8 * INCH]),
+        ([*MM, "#5 = 12", AT_0, "G[10 + 2] I7 K20 Q6 Z-2 D4"], [20]),
+        ([*MM, "#5 = 12", AT_0, "G#5 I7 K20 Q6 Z-2 D4"], [20]),
+        ([*MM, AT_0, long_block("G12Z-2I", 235)], [10]),
+        ([*MM, AT_0, long_block("G12Z-2I", 251)], [10]),  # as long as LinuxCNC reads it
+        ([*MM, "G20 G0 X0 Y0 Z.1", "G21 G13 I8 K40 Q5 Z-12 D4 F500"], [40]),
+        ([*MM, "G64 P.02", "G0 X0 Y0 Z3", "G20 G13 I.3 K1. Q.3 Z-.5 D4 F20"], [INCH]),
+        ([*MM, "G64 P.02", "G0 X0 Y0 Z3", "G20 G13.2 X0 Y0 Z-.2 I.1 R1. D1 H1 F20"], [INCH]),
+    ],
+)
+def test_pockets_that_are_written_in_other_ways(lines, radii, tmp_path):
+    proof = proof_of_text(tmp_path, lines)
+    assert radii_of(proof) == pytest.approx(radii) and proof.findings == []
+
+
+@pytest.mark.parametrize(
+    ("place", "cut", "height"),
+    [
+        ("Z.1 C0", ["G1 Z[.5-.49991]", "X1", "Z-.1", "X2"], 0.1),
+        ("Z.00009 C-.00009", ["G1 Z-.1", "X1", "Z.00009", "X2 C-.00009"], 0.00009),
+    ],
+)
+def test_next_to_zero_is_not_zero(place, cut, height, tmp_path):
     """LinuxCNC 2.9 tells that less than 0.0001 is 0."""
-    lines = ["G20 G18 G8 G40 G90 G94 F10", "T1 M6 S1000 M3", "G0 X2 Z.00009 C-.00009", "G12.1"]
-    lines += ["G1 Z-.1", "X1", "Z.00009", "X2 C-.00009", "G13.1", "M2"]
-    proof = proof_of_text(tmp_path, lines, "lathe_inch")
+    lines = ["G20 G18 G8 G40 G90 G94 F10", "T1 M6 S1000 M3", f"G0 X2 {place}", "G12.1", *cut]
+    proof = proof_of_text(tmp_path, [*lines, "G13.1"], "lathe_inch")
     (facts,) = proof.sections
-    assert facts.section.height == pytest.approx(0.00009 * INCH, abs=1e-9)
-    assert proof.findings == []
-
-
-def test_a_pocket_in_a_subroutine_of_the_program(tmp_path):
-    lines = [
-        "o<hole> sub",
-        "G0 Z1",
-        "G12 I#1 Z#2 D4",
-        "G0 Z1",
-        "o<hole> endsub",
-        *MM,
-        "o<hole> call [9] [-2]",
-        "G0 X40",
-        "o<hole> call [11] [-3]",
-        "M2",
-    ]
-    proof = proof_of_text(tmp_path, lines)
-    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx([9, 11])
-    assert proof.findings == []
-
-
-def test_a_cycle_in_the_last_block(tmp_path):
-    proof = proof_of_text(tmp_path, [*MM, "G0 X0 Y0 Z1", "G12 I7 K20 Q6 Z-2 D4 M2"])
-    assert len(proof.pockets) == 1 and proof.findings == []
-
-
-def test_spring_passes_in_inches_do_not_move_down_again(tmp_path):
-    lines = [*MM, "G20 G0 X0 Y0 Z.1", "G12 I.3 K.8 Q.2 Z-.1 L3 D4 F20", "M2"]
-    proof = proof_of_text(tmp_path, lines)
-    assert len(proof.pockets) == 1 and proof.findings == []
-
-
-@pytest.mark.parametrize("code", ["G[10 + 2]", "G#5"])
-def test_a_code_that_is_an_expression(code, tmp_path):
-    lines = [*MM, "#5 = 12", "G0 X0 Y0 Z1", f"{code} I7 K20 Q6 Z-2 D4", "M2"]
-    proof = proof_of_text(tmp_path, lines)
-    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx([20])
+    assert facts.section.height == pytest.approx(height * INCH, abs=1e-9)
     assert proof.findings == []
 
 
@@ -239,10 +226,7 @@ def with_sub(tmp_path):
         folder.mkdir()
         (folder / f"{name}.ngc").write_text("\n".join([*body, ""]))
         path = f"{ini(machine).get('RS274NGC', 'SUBROUTINE_PATH')}:{folder}"
-        changed = ini(machine).replaced({"RS274NGC": {"SUBROUTINE_PATH": path}})
-        program = tmp_path / "program.ngc"
-        program.write_text("\n".join([*lines, "M2", ""]))
-        return prove(program, changed)
+        return proof_of_text(tmp_path, lines, machine, {"RS274NGC": {"SUBROUTINE_PATH": path}})
 
     return proof
 
@@ -252,17 +236,17 @@ def with_sub(tmp_path):
     [
         (
             "hole",
-            ["o<hole> sub", "G0 Z1", "G12 I#1 Z-2 D4", "o<hole> endsub", "M2"],
+            ["o<hole> sub", "G0 Z1", "G12 I#1 Z-2 D4", "o<hole> endsub"],
             "o<hole> call",
         ),
-        ("77", ["o77 sub", "G0 Z1", "G12 I[#1] Z-2 D4", "o77 endsub", "M2"], "o77 call"),
+        ("77", ["o77 sub", "G0 Z1", "G12 I[#1] Z-2 D4", "o77 endsub"], "o77 call"),
         ("77", ["O77", "G0 Z1", "G[12] I#1 Z-2 D4", "M99"], "M98 P77"),
     ],
 )
 def test_a_pocket_in_a_sub_of_another_file_is_measured(name, body, call, with_sub):
     lines = ["#1 = 9", call if "98" in call else f"{call} [9]", "G12 I11 Z-3 D4"]
     proof = with_sub(name, body, *MM, *lines)
-    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx([9, 11])
+    assert radii_of(proof) == pytest.approx([9, 11])
     sources = [facts.target.source for facts in proof.pockets]
     assert [(source.line, source.file) for source in sources] == [
         (3, f"{name}.ngc"),
@@ -281,7 +265,7 @@ def test_an_event_in_a_sub_that_a_sub_calls_is_measured(with_sub):
     ]
     own = ["o<way> sub", "o<event> call [#1]", "o<way> endsub"]
     proof = with_sub("event", body, *own, *MM, "G0 Z1", "o<way> call [20]", "o<way> call [30]")
-    assert [facts.target.wall.radius for facts in proof.pockets] == pytest.approx([20, 30])
+    assert radii_of(proof) == pytest.approx([20, 30])
     assert proof.findings == []
 
 
@@ -296,30 +280,15 @@ def test_a_sub_that_linuxcnc_finds_elsewhere_than_the_copy_is_a_finding(tmp_path
 
 @pytest.mark.parametrize("body", [["G41 D6 G1 X40 F100", "Y-30", "G40 X80"], ["G41 D6", "G40"]])
 def test_a_d_that_a_sub_in_its_own_file_commanded_is_remembered(body, with_sub):
-    body = ["o<offset> sub", *body, "o<offset> endsub", "M2"]
+    body = ["o<offset> sub", *body, "o<offset> endsub"]
     proof = with_sub("offset", body, *MM, "G0 Z1", "o<offset> call", "G0 X0 Y0", "G12 I30 Z-2")
     (facts,) = proof.pockets
     assert (facts.target.cutter.named, facts.target.cutter.radius) == (6, 10)
     assert "the toolpath" not in str(proof.findings)
 
 
-def long_block(start, length):
-    """Return a block that has a length and ends in an expression whose value is 10."""
-    return f"{start}[10{'+0' * ((length - len(start) - len('[10]')) // 2)}]"
-
-
-@pytest.mark.parametrize("length", [235, 251])
-def test_a_block_as_long_as_linuxcnc_reads_is_measured(length, tmp_path):
-    lines = [*MM, "G0 X0 Y0 Z1", long_block("G12Z-2I", length), "M2"]
-    proof = proof_of_text(tmp_path, lines)
-    assert len(proof.pockets) == 1 and proof.findings == []
-
-
-UNMEASURED = "a cycle cuts here that could not be measured"
-
-
 def test_a_section_in_a_sub_of_another_file_is_measured(with_sub):
-    body = ["o<flat> sub", "G12.1", "G1 X#1 F500", "C5", "G13.1", "o<flat> endsub", "M2"]
+    body = ["o<flat> sub", "G12.1", "G1 X#1 F500", "C5", "G13.1", "o<flat> endsub"]
     lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X30 Z2 C40", "o<flat> call [20]"]
     lines += ["G0 X30 C0", "o<flat> call [15]"]
     proof = with_sub("flat", body, *lines, machine="lathe_mm")
@@ -333,7 +302,7 @@ def test_a_section_in_a_sub_of_another_file_is_measured(with_sub):
 
 
 def test_a_section_of_another_file_that_asks_for_a_position_is_in_doubt(with_sub):
-    body = ["o<flat> sub", "G12.1", "G1 X[#<_x> - 5] F500", "G13.1", "o<flat> endsub", "M2"]
+    body = ["o<flat> sub", "G12.1", "G1 X[#<_x> - 5] F500", "G13.1", "o<flat> endsub"]
     lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X30 Z2 C40", "o<flat> call"]
     proof = with_sub("flat", body, *lines, machine="lathe_mm")
     assert [facts.section.doubt for facts in proof.sections] == ["line 3 asks for a position"]
@@ -347,7 +316,7 @@ def test_the_shapes_come_out_as_programmed():
 
 
 def test_a_sub_of_another_file_without_a_cycle_is_none(with_sub):
-    body = ["o<way> sub", "G0 Z1", "G1 X50", "o<way> endsub", "M2"]
+    body = ["o<way> sub", "G0 Z1", "G1 X50", "o<way> endsub"]
     proof = with_sub("way", body, *MM, "o<way> call", "G12 I7 K20 Q6 Z-3 D4")
     assert len(proof.pockets) == 1 and proof.findings == []
 
@@ -355,7 +324,7 @@ def test_a_sub_of_another_file_without_a_cycle_is_none(with_sub):
 @pytest.mark.parametrize("mode", ["G90", "G91"])
 def test_the_call_form_goes_from_the_tool_in_incremental_mode(mode, tmp_path):
     call = "o<circle_mill> call [7] [50] [7] [-6] [2] [10] [40] [2] [2] [3] [-9999] [.3] [150]"
-    lines = [*MM, "G0 X10 Y10 Z5", mode, f"{call} [800] [400]", "M2"]
+    lines = [*MM, "G0 X10 Y10 Z5", mode, f"{call} [800] [400]"]
     proof = proof_of_text(tmp_path, lines)
     (facts,) = proof.pockets
     centre, depth = ([60, 17], -4) if mode == "G91" else ([50, 7], -6)
@@ -376,7 +345,6 @@ def test_modes_and_work_coordinates_do_not_matter(modes, offset, tmp_path):
         modes,
         f"G13 X{5 / unit:.9f} Y{-2 / unit:.9f} I{7 / unit:.9f} K{20 / unit:.9f} Q{5 / unit:.9f}"
         f" Z{depth:.9f} D4 F{600 / unit}",
-        "M2",
     ]
     proof = proof_of_text(tmp_path, lines)
     (facts,) = proof.pockets
@@ -384,15 +352,9 @@ def test_modes_and_work_coordinates_do_not_matter(modes, offset, tmp_path):
     assert facts.target.wall.radius == pytest.approx(20, abs=1e-6)
 
 
-ROUND_A_FLAT = (
-    "G0 X30 Z2 C0",
-    "G12.1",
-    "G1 X20 C3 F900",
-    "G42 X14 C0 F600",
-    "Z-1 F200",
-    "C10 F600",
-)
-ROUND_A_FLAT += ("X-10", "C-10", "X14", "C0", "G40 X20 C-3", "Z2", "G13.1")
+FACE = ["G21 G18 G8 G40 G90 G94 G64", "T3 M6", "S1000 M3", "G0 X30 Z2 C0"]
+ROUND_A_FLAT = ["G0 X30 Z2 C0", "G12.1", "G1 X20 C3 F900", "G42 X14 C0 F600", "Z-1 F200"]
+ROUND_A_FLAT += ["C10 F600", "X-10", "C-10", "X14", "C0", "G40 X20 C-3", "Z2", "G13.1"]
 
 
 @pytest.mark.parametrize("units", ["", "G20"])
@@ -400,16 +362,8 @@ ROUND_A_FLAT += ("X-10", "C-10", "X14", "C0", "G40 X20 C-3", "Z2", "G13.1")
     "offset", ["G10 L2 P1 X4 Z-3 C20", "G10 L2 P1 X-9", "G10 L20 P1 X35 Z4", "G55 G10 L2 P2 X70 C9"]
 )
 def test_the_spindle_is_where_x0_is(offset, units, tmp_path):
-    last = [units and "G20", "M2"]  # X0 is told in the units of the end
-    lines = [
-        "G21 G18 G8 G40 G90 G94",
-        "T3 M6",
-        "S1000 M3",
-        "G0 X31 Z9 C0",
-        offset,
-        *ROUND_A_FLAT,
-        *last,
-    ]
+    last = units and "G20"  # X0 is told in the units of the end
+    lines = [*FACE[:3], "G0 X31 Z9 C0", offset, *ROUND_A_FLAT, last]
     proof = proof_of_text(tmp_path, lines, "lathe_mm")
     assert proof.findings == [] and len(proof.sections) == 1
     (facts,), moves = proof.sections, proof.subject.trace.moves
@@ -419,14 +373,13 @@ def test_the_spindle_is_where_x0_is(offset, units, tmp_path):
 
 
 def test_each_section_is_seen_about_its_own_x0(tmp_path):
-    begin = ["G21 G18 G8 G40 G90 G94", "T3 M6", "S1000 M3", "G0 Z5"]
-    lines = [*begin, "G10 L2 P1 X4", *ROUND_A_FLAT, "G10 L2 P1 X-9 C30", *ROUND_A_FLAT, "M2"]
+    lines = [*FACE[:3], "G0 Z5", "G10 L2 P1 X4", *ROUND_A_FLAT, "G10 L2 P1 X-9 C30", *ROUND_A_FLAT]
     proof = proof_of_text(tmp_path, lines, "lathe_mm")
     assert proof.findings == [] and len(proof.sections) == 2
 
 
 def test_another_tool_than_d_names_is_found(tmp_path):
-    proof = proof_of_text(tmp_path, [*MM, "G0 Z1", "G12 I20 Z-1 D6", "M2"])
+    proof = proof_of_text(tmp_path, [*MM, "G0 Z1", "G12 I20 Z-1 D6"])
     (_, text), (_, uncut) = proof.findings
     assert "remain uncut" in uncut
     assert text == (
@@ -434,21 +387,9 @@ def test_another_tool_than_d_names_is_found(tmp_path):
     )
 
 
-@pytest.mark.parametrize(
-    "lines",
-    [
-        ["G20 G0 X0 Y0 Z.1", "G21 G13 I8 K40 Q5 Z-12 D4 F500"],
-        ["G64 P.02", "G0 X0 Y0 Z3", "G20 G13 I.3 K1. Q.3 Z-.5 D4 F20"],
-        ["G64 P.02", "G0 X0 Y0 Z3", "G20 G13.2 X0 Y0 Z-.2 I.1 R1. D1 H1 F20"],
-    ],
-)
-def test_units_changed_in_the_pockets_own_block(lines, tmp_path):
-    assert proof_of_text(tmp_path, [*MM, *lines, "M2"]).findings == []
-
-
 def test_a_program_that_moves_by_its_line_numbers_is_told_in_one_line(tmp_path):
     condition = ["o1 if [#<_line> GT 6]", "G0 X5", "o1 endif"]
-    lines = [*MM, "G0 X0 Y0 Z1", "G12 I20 Z-1 D4", *condition, "M2"]
+    lines = [*MM, "G0 X0 Y0 Z1", "G12 I20 Z-1 D4", *condition]
     with pytest.raises(ProgramError, match="moves otherwise where lines are put between its own"):
         proof_of_text(tmp_path, lines)
 
@@ -489,7 +430,7 @@ def test_the_size_of_the_hexagon():
 @pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
 def test_short_segments_close_by_the_centre_are_longer_than_their_line(machine, tmp_path):
     lines = ["G21 G18 G7 G90 G94 G64 P0.01", "G0 X120 Z5 C0", "G12.1", "F1008.844"]
-    lines += ["G1 X-57.93351 C0.11121", "G13.1", "M2"]
+    lines += ["G1 X-57.93351 C0.11121", "G13.1"]
     assert not proof_of_text(tmp_path, lines, machine).findings
 
 
@@ -506,7 +447,6 @@ def test_a_section_with_expressions_and_a_loop(tmp_path):
         "X[20 * cos[#1 * 90]] C[20 * sin[#1 * 90]]",
         "o1 endwhile",
         "G13.1",
-        "M2",
     ]
     proof = proof_of_text(tmp_path, lines, "lathe_mm")
     (facts,) = proof.sections
@@ -514,25 +454,9 @@ def test_a_section_with_expressions_and_a_loop(tmp_path):
     assert facts.size.wanted[0] == pytest.approx(20 / math.sqrt(2), abs=1e-3)
 
 
-FLATS = [
-    "o100 sub",
-    "G0 C#1",
-    "G12.1",
-    "G1 C25 F2000",
-    "G41 X#2 F1000",
-    "Z-5",
-    "C-25",
-    "G40 X60 F2000",
-    "G13.1",
-    "G0 Z2",
-    "o100 endsub",
-    "G21 G18 G7 G40 G90 G94",
-    "T1 M6",
-    "G0 X60 Z2 C0",
-    "o100 call [0] [27]",
-    "o100 call [180] [30]",
-    "M2",
-]
+FLATS = ["o100 sub", "G0 C#1", "G12.1", "G1 C25 F2000", "G41 X#2 F1000", "Z-5",
+         "C-25", "G40 X60 F2000", "G13.1", "G0 Z2", "o100 endsub", "G21 G18 G7 G40 G90 G94",
+         "T1 M6", "G0 X60 Z2 C0", "o100 call [0] [27]", "o100 call [180] [30]"]  # fmt: skip
 
 
 def test_a_section_in_a_sub_is_measured_at_every_call(tmp_path):
@@ -545,7 +469,6 @@ def test_a_section_in_a_sub_is_measured_at_every_call(tmp_path):
 
 
 AGAIN = ["G13.1", "G0 X30 C0"]
-FACE = ["G21 G18 G8 G40 G90 G94 G64", "T3 M6", "S1000 M3", "G0 X30 Z2 C0"]
 
 
 @pytest.mark.parametrize(
@@ -560,29 +483,21 @@ FACE = ["G21 G18 G8 G40 G90 G94 G64", "T3 M6", "S1000 M3", "G0 X30 Z2 C0"]
     ],
 )
 def test_feed_and_path_control_before_in_and_behind_a_section(lines, tmp_path):
-    proof = proof_of_text(tmp_path, [*FACE, *lines, "G0 Z5", "M2"], "lathe_mm")
+    proof = proof_of_text(tmp_path, [*FACE, *lines, "G0 Z5"], "lathe_mm")
     assert proof.findings == []
 
 
 def test_what_cannot_be_followed_is_a_finding(tmp_path):
-    lines = [
-        "G21 G18 G8 G40 G90 G94",
-        "T3 M6",
-        "G0 X30 Z2 C0",
-        "G12.1",
-        "G1 X[#<_x> - 5] F500",
-        "G13.1",
-        "M2",
-    ]
+    lines = [*FACE, "G12.1", "G1 X[#<_x> - 5] F500", "G13.1"]
     ((line, text),) = proof_of_text(tmp_path, lines, "lathe_mm").findings
-    assert (line, "line 5 asks for a position" in text) == (4, True)
+    assert (line, "line 6 asks for a position" in text) == (5, True)
 
 
 # ---------------------------------------------------------------- rapids
 
 
 def test_a_forgotten_retract_between_pockets_is_found(tmp_path):
-    lines = [*MM, "G0 X0 Y0 Z2", "G13 I7 K20 Q6 Z-3 D4", "G13 X60 I7 K20 Q6 Z-3", "G0 Z2", "M2"]
+    lines = [*MM, "G0 X0 Y0 Z2", "G13 I7 K20 Q6 Z-3 D4", "G13 X60 I7 K20 Q6 Z-3", "G0 Z2"]
     ((line, text),) = proof_of_text(tmp_path, lines).findings
     assert line == 5
     assert text.startswith("a rapid goes through material, from X15.372 Y0 Z−3 to ")
@@ -592,20 +507,17 @@ def test_a_forgotten_retract_between_pockets_is_found(tmp_path):
 
 def test_a_circle_cut_where_the_tool_stands_was_come_down_to(tmp_path):
     head = ["G21 G17 G40 G49 G90 F600", "T10 M6", "G0 X0 Y0 Z5", "Z-5"]
-    lines = [*head, "G12 I30 D10", "G0 X100", "G12 I30 D10", "G0 Z5", "M2"]
+    lines = [*head, "G12 I30 D10", "G0 X100", "G12 I30 D10", "G0 Z5"]
     found = proof_of_text(tmp_path, lines, "mill_mitsubishi_mm").findings
     assert [line for line, _ in found] == [6]
 
 
 def test_a_rapid_above_pockets_with_a_helix_is_good(tmp_path):
-    program = tmp_path / "program.ngc"
-    pocket = "I10 K20 Q6 Z-3"
-    lines = [*MM, "G0 X0 Y0 Z1", f"G13 X30 {pocket} D4", "G0 Z1", f"G12 X90 Y9 {pocket}", "M2", ""]
-    program.write_text("\n".join(lines))
-    machine = ini("mill_mm").replaced({"G12": {"ENTRY": "helix"}})
-    assert prove(program, machine).findings == []
-    program.write_text("\n".join([*lines[:4], *lines[5:]]))
-    assert [line for line, _ in prove(program, machine).findings] == [5]
+    pocket, helix = "I10 K20 Q6 Z-3", {"G12": {"ENTRY": "helix"}}
+    lines = [*MM, "G0 X0 Y0 Z1", f"G13 X30 {pocket} D4", "G0 Z1", f"G12 X90 Y9 {pocket}"]
+    assert proof_of_text(tmp_path, lines, changed=helix).findings == []
+    del lines[4]
+    assert [line for line, _ in proof_of_text(tmp_path, lines, changed=helix).findings] == [5]
 
 
 # ---------------------------------------------------------------- the machine's travel
@@ -616,17 +528,15 @@ def far(tmp_path, *head, centre=490, stored=None):
 
     ``stored`` is the work offset of G54 in X, or the parameters that the var file holds.
     """
-    machine = ini("mill_mm")
+    changed = {}
     if stored is not None:
         stored = stored if isinstance(stored, dict) else {5220: 1, 5221: stored}
         lines = [f"{number} {value}" for number, value in sorted(stored.items())]
         (tmp_path / "its.var").write_text("\n".join([*lines, ""]))
-        machine = machine.replaced({"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "its.var")}})
-    program = tmp_path / "program.ngc"
-    lines = [*MM, *head, f"G0 X{centre} Y0 Z1", "G12 I20 Z-1 D4", "M2", ""]
-    program.write_text("\n".join(lines))
-    judged = prove(program, machine).judged
-    travel = [each for each in judged if each.code.startswith("travel")]
+        changed = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "its.var")}}
+    lines = [*MM, *head, f"G0 X{centre} Y0 Z1", "G12 I20 Z-1 D4"]
+    proof = proof_of_text(tmp_path, lines, changed=changed)
+    travel = [each for each in proof.judged if each.code.startswith("travel")]
     found = [each.text() for each in travel if each.is_finding]
     return found, [each.text() for each in travel if each.is_note]
 
@@ -649,12 +559,9 @@ def test_an_offset_that_the_program_sets_counts(tmp_path):
 
 
 def test_a_pocket_wider_than_the_travel_fits_nowhere(tmp_path):
-    machine = ini("mill_mm").replaced({"AXIS_Y": {"MIN_LIMIT": 0, "MAX_LIMIT": 25}})
-    program = tmp_path / "program.ngc"
-    program.write_text("\n".join([*MM, "G0 Z1", "G12 I20 Z-1 D4", "M2", ""]))
-    assert [text for _, text in prove(program, machine).findings] == [
-        "the Y axis would go to −15, its limit is 0 mm"
-    ]
+    changed = {"AXIS_Y": {"MIN_LIMIT": 0, "MAX_LIMIT": 25}}
+    proof = proof_of_text(tmp_path, [*MM, "G0 Z1", "G12 I20 Z-1 D4"], changed=changed)
+    assert [text for _, text in proof.findings] == ["the Y axis would go to −15, its limit is 0 mm"]
 
 
 TO_505 = ["the X axis would go to 505, its limit is 500 mm"]
@@ -692,19 +599,16 @@ def test_a_program_that_moves_otherwise_with_the_var_file_is_noted(tmp_path):
 
 
 def test_what_a_program_starts_with_can_be_given(tmp_path):
-    program = tmp_path / "program.ngc"
-    program.write_text("\n".join([*MM, "G0 X0 Y0 Z1", "G12 I#31 Z-1 D4", "M2", ""]))
-    proof = prove(program, ini("mill_mm"), parameters={31: 20, 5221: 490})
+    lines = [*MM, "G0 X0 Y0 Z1", "G12 I#31 Z-1 D4"]
+    proof = proof_of_text(tmp_path, lines, parameters={31: 20, 5221: 490})
     assert proof.pockets[0].target.wall.radius == 20
     assert [text for _, text in proof.findings] == TO_505
 
 
 def test_a_part_on_the_face_may_be_slower_where_c_could_not_follow_it(tmp_path):
     lines = ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", "G1 X10 C-30 F5000", "C30",
-             "G13.1", "M2"]  # fmt: skip
-    program = tmp_path / "program.ngc"
-    program.write_text("\n".join(lines) + "\n")
-    proof = prove(program, read_ini(SIM / "lathe_mm_kinematics.ini"))
+             "G13.1"]  # fmt: skip
+    proof = proof_of_text(tmp_path, lines, "lathe_mm_kinematics")
     own = [move for move in proof.subject.trace.moves if move.line == 5]
     assert min(move.feed for move in own if move.start[5] == move.end[5]) < 4999
     assert proof.findings == []
@@ -712,7 +616,7 @@ def test_a_part_on_the_face_may_be_slower_where_c_could_not_follow_it(tmp_path):
 
 def test_a_line_on_the_face_may_be_slower_however_near_it_comes(tmp_path):
     lines = ["G21 G18 G8 G90 G94 G64 P0.01", "T1 M6", "G0 X60 Z5 C-45", "G12.1", "F6637.24"]
-    lines += ["G1 X-15.50263 C-22.13613", "X-8 C-12", "X-20 F200", "G13.1", "M2"]
+    lines += ["G1 X-15.50263 C-22.13613", "X-8 C-12", "X-20 F200", "G13.1"]
     proof = proof_of_text(tmp_path, lines, "lathe_mm_kinematics")
     own = [move for move in proof.subject.trace.moves if move.line == 6]
     assert min(move.feed for move in own) < 5000 and len(own) < 10
