@@ -11,9 +11,3 @@ def line(x0, c0, x1, c1, z0=0.0, z1=0.0, *, number=1, feed=100.0, offset=0.0):
 
 def arc(centre, start, sweep, z0=0.0, z1=0.0, *, number=1, feed=100.0, offset=0.0):
     return PlaneMove(number, feed, offset, Arc(start, centre, sweep), z0, z1)
-
-
-def move_of(shape, *, number=1, feed=250.0):
-    """Return a drawn line or arc as a move."""
-    curve = Arc(*shape) if hasattr(shape, "sweep") else Line(*shape)
-    return PlaneMove(number, feed, 0.0, curve, 0.0, 0.0)
