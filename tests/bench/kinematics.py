@@ -15,8 +15,8 @@ from bench.polar import (
     equal_angles,
     seconds_in,
 )
+from g12.tools.path.least_time import least_seconds
 from support.contour_geometry import Round, deviation, outward
-from support.least_time import least_seconds
 from support.operated_machine import Machine
 from support.polar_drawings import HEXAGON, INCHES, MILLIMETRES
 from support.polar_programs import Cut

@@ -2,6 +2,7 @@
 """The commands plot and verify as they are called: output, exit codes, wrong uses."""
 
 import json
+import re
 
 import pytest
 
@@ -95,6 +96,21 @@ def test_json_of_a_polar_section(capsys):
     assert section["radii"][0] == pytest.approx(13.5)
     assert 0 < section["deviation"] < 0.005 and section["c_speed"] < section["c_limit"] == 360
     assert section["segments"] > 20 and section["shortest"] <= section["longest"]
+    assert section["seconds_planned"]["segments"] == pytest.approx(10.3, rel=0.01)  # of a run
+
+
+def test_what_a_section_gains_from_kinematics(written, capsys):
+    hexagon = (PROGRAMS / "polar" / "hexagon.ngc").read_text().replace("F1000", "F2000")
+    _, out, _ = verify(capsys, written(hexagon), "--ini", LATHE, "--full")
+    (row,) = [line for line in out.splitlines() if line.startswith("  kinematics ")]
+    segments, face, least = map(float, re.findall(r"([0-9.]+) s ", row))
+    assert (segments, face) == pytest.approx((7.7, 5.8), rel=0.05)  # of runs
+    assert 5.5 < least <= face
+    _, out, _ = verify(capsys, written(hexagon), "--ini", LATHE)
+    assert "kinematics" not in out
+    round_part = str(PROGRAMS / "cylinder" / "helix.ngc")
+    told = json.loads(verify(capsys, round_part, "--ini", LATHE, "--json")[1])
+    assert told["sections"] and not any(each["seconds_planned"] for each in told["sections"])
 
 
 def test_a_contour_that_is_not_cut_is_told(written, capsys, monkeypatch):

@@ -9,6 +9,7 @@ from g12.tools.install.config.findings import NOTE, WARNING
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.installation import write_changes
 from g12.tools.install.lathe.rules import lathe_findings
+from g12.tools.install.lathe.segments_rules import gained_by_kinematics
 from g12.tools.install.plan import make_plan
 from support.small_configs import LATHE, MILL, config_of, with_lines, write_config
 
@@ -84,3 +85,28 @@ def test_install_sets_the_geometry_and_uninstall_takes_it_out(tmp_path, text, ge
     assert make_plan(config_of(ini, **own), ["polar"]).changes() == {}
     list(removal.uninstall(IniText(ini), dry_run=False))
     assert ini.read_bytes() == before
+
+
+AXES = "".join(
+    f"[AXIS_{letter}]\nMAX_VELOCITY = {speed}\nMAX_ACCELERATION = {acceleration}\n"
+    for letter, speed, acceleration in (("X", 150, 1000), ("C", 360, 3600))
+)
+KINS = "[KINS]\nKINEMATICS = polar_xzc coordinates=XZC\n"
+
+
+def gained(folder, text, features=("polar",)):
+    """Return the texts of what a lathe is said to gain from kinematics."""
+    config = config_of(write_config(folder, text))
+    return [finding.text for finding in gained_by_kinematics(config, features)]
+
+
+def test_what_a_lathe_in_segments_would_gain(tmp_path):
+    text = LATHE.replace("[AXIS_C]\nWRAPPED_ROTARY = 1\n", AXES)
+    (said,) = gained(tmp_path, text)
+    assert "hexagon of 27 mm 7.9 and 5.9 s, with kinematics 7.9 and 4.0 s" in said
+    (slower,) = gained(tmp_path, text.replace("3600", "360"))
+    assert slower != said
+    for other in (LATHE, text + KINS, f"{text}[G12]\nPOLAR_TOOL_OFFSET = 3\n"):
+        assert gained(tmp_path, other) == []
+    assert gained(tmp_path, text, ["cylinder"]) == []
+    assert gained(tmp_path, text.replace("150", "0")) == []  # another rule's

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The bench's least time against motions whose least time is known."""
+"""The least time of a path against motions whose least time is known."""
 
 import math
 
 import numpy as np
 import pytest
 
-from support.least_time import least_seconds
+from g12.tools.path.least_time import least_seconds
 
 FREE = (1e9, 1e9)
 

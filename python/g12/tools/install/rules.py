@@ -23,6 +23,7 @@ from g12.tools.install.config.ini_edit import IniLine
 from g12.tools.install.config.loaded import MOST_FOLDERS, Config, folder_from_ini, subs_named
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe.rules import lathe_findings
+from g12.tools.install.lathe.segments_rules import gained_by_kinematics
 from g12.tools.install.lathe.spindle_c import spindle_c_findings
 from g12.tools.system import CALL
 from g12.tools.translate.blocks.control import ControlError, read_control
@@ -555,6 +556,7 @@ def findings_of(config: Config) -> list[ConfigFinding]:
     found += form_findings(config, {code.feature for code in codes})
     found += kinematics_findings(config)
     found += lathe_findings(config, {code.feature for code in codes})
+    found += gained_by_kinematics(config, {code.feature for code in codes})
     found += spindle_c_findings(config)
     failure = config.failure or function_missing(config)
     if failure and not any(finding.kind in STOPPING for finding in found):

@@ -15,6 +15,7 @@ from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.sections.section import SectionFacts
+from g12.tools.verify.sections.section_gain import times_of_section
 from g12.tools.verify.shape import ShapeFacts
 from g12.tools.verify.workpiece import Workpiece
 
@@ -104,6 +105,7 @@ def section_values(facts: SectionFacts, proof: Proof) -> dict:
     is_modal = on_cylinder or reading == "inherit"
     depth = section.surface - (facts.lowest - facts.start_height + section.height)
     x, c, z = facts.slowest_at
+    times = times_of_section(facts.section, facts.path.expected, proof.subject.ini)
     return {
         "lines": [section.line, section.last],
         "file": section.file or None,
@@ -129,6 +131,7 @@ def section_values(facts: SectionFacts, proof: Proof) -> dict:
         "c_limit": finite(facts.c_limit),
         "turned_in_place": facts.turns.in_place._asdict(),
         **pace_values(facts.pace),
+        "seconds_planned": times and times._asdict(),
         "lowest_feed_words": [
             ["X", 2 * x if section.diameters else x],
             ["C", plain(c, 3) if on_cylinder else c],

@@ -75,6 +75,11 @@ SECTION: tuple[Row, ...] = (
     ("lowest feed", "{lowest_feed:pace} at {lowest_feed_words:xyz} (line {lowest_feed_line})"),
     ("speed of C", "{c_speed:1} degrees/s at most, limit {c_limit:1}"),
     *PACE,
+    (
+        "kinematics",
+        "about {seconds_planned[segments]:1} s in segments, {seconds_planned[kinematics]:1} s with "
+        "kinematics, {seconds_planned[least]:1} s at the limits of X and C",
+    ),
 )
 SHAPE: tuple[Row, ...] = (
     ("cutter", "⌀ {cutter:mm}"),

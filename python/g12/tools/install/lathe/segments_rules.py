@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a lathe that makes polar sections in segments would gain from kinematics.
+
+Two contours stand for others: the cutter of 12 mm around a hexagon of 27 mm across flats, and a
+circle of radius 10 mm, 20 mm off the axis.
+"""
+
+from collections.abc import Iterable, Iterator
+from math import pi, sqrt, tau
+
+from g12.geometry.curve import Arc, Curve, Line
+from g12.tools.install.config import features
+from g12.tools.install.config.findings import ConfigFinding, note
+from g12.tools.install.config.loaded import Config
+from g12.tools.install.lathe.kinematics_rules import PAGE, wanted
+from g12.tools.machine.ini import IniError
+from g12.tools.path.section_times import Leg, TurningMachine, section_times, turning_machine
+
+FLAT, CUTTER = 13.5, 6.0  # mm, radii
+SIXTH = pi / 3
+FEEDS = (1000.0, 2000.0)  # mm/min
+
+
+def hexagon() -> list[Curve]:
+    """Return the path of the cutter's centre around the hexagon."""
+    path: list[Curve] = []
+    for side in range(6):
+        turn = complex(0.5, -sqrt(0.75)) ** side
+        corner = FLAT * complex(1.0, -1.0 / sqrt(3.0))
+        first, last = corner.conjugate() + CUTTER, corner + CUTTER
+        path += [Line(first * turn, last * turn), Arc(last * turn, corner * turn, -SIXTH)]
+    return path
+
+
+CONTOURS: dict[str, list[Curve]] = {
+    "a hexagon of 27 mm": hexagon(),
+    "a circle of radius 10 mm, 20 mm off the axis": [Arc(30 + 0j, 20 + 0j, tau)],
+}
+
+
+def takes(path: list[Curve], machine: TurningMachine) -> str:
+    """Return the times of a contour in words."""
+    times = (section_times([Leg(curve, feed / 60.0) for curve in path], machine) for feed in FEEDS)
+    segments, face, least = (" and ".join(f"{t:.1f}" for t in ways) for ways in zip(*times))
+    return f"{segments} s, with kinematics {face} s, at the limits of X and C {least} s"
+
+
+def gained_by_kinematics(config: Config, there: Iterable[str]) -> Iterator[ConfigFinding]:
+    """Tell what polar sections take on a lathe whose INI says what X and C can do."""
+    ini = config.ini
+    if set(features.POLAR).isdisjoint(there) or wanted(config) or not {"X", "C"} <= set(ini.axes):
+        return
+    known = all(ini.all(f"AXIS_{letter}", "MAX_ACCELERATION") for letter in "XC")
+    try:
+        machine = turning_machine(ini) if known and not ini.tool_beside else None
+    except IniError:  # another rule's finding
+        return
+    if machine:
+        times = "; ".join(f"{what} {takes(path, machine)}" for what, path in CONTOURS.items())
+        yield note(
+            "segments",
+            f"polar sections are made in segments, at 1000 and 2000 mm/min about: {times}",
+            f"nothing, or make kinematics if that is worth it ({PAGE})",
+        )

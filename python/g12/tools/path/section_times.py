@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a polar section gains from kinematics: about its time both ways, and the least one.
+
+Lengths are mm, times seconds, angles radians. The tool's path is taken as even steps from one
+corner to the next, where it stands, and in place while C turns at the pole.
+
+In segments LinuxCNC is no faster in one than it can stop in it. A segment of X and C is a spiral.
+Where the path makes the angle p with the radius r, the spiral has the curvature
+sin p (1 + cos(p)**2) / r, and what the path's own differs from that gives its length.
+
+On the face the planner may brake anywhere with all of its acceleration A, and C and the slide have
+to follow. Of an axis the path asks for the share p v**2 and braking for q times its acceleration:
+p v**2 + q sqrt(A**2 - v**4 / R**2) is at most 1. A is chosen once a section, as it is soonest made.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from g12.geometry.curve import Arc, Curve
+from g12.machine_ini import face_of
+from g12.tools.machine.ini import Ini
+from g12.tools.path.least_time import Rates, least_seconds, seconds_at
+
+STEP, FEWEST, MOST = 0.1, 40, 4000  # mm, and how many from one corner to the next
+STRAIGHT_ON = math.radians(5.0)  # a corner of more is a stop
+SEGMENT_BULGE = 1.44  # of the tolerance
+STOPPED_IN = 0.4  # of a segment's length times its acceleration is its speed's square: measured
+SHARES = 0.8 ** np.arange(10)  # of the face's acceleration: those that are tried
+PLANNED, SWITCHING = 0.7, 0.05  # of it along the path; seconds, there and back
+OF_SLIDE = 0.7  # acceleration of X and Y on a machine without kinematics
+TINY = 1e-9
+
+
+class Leg(NamedTuple):
+    """A move of the tool across the face: its curve, and its feed along it in mm/s."""
+
+    curve: Curve
+    feed: float
+
+
+class TurningMachine(NamedTuple):
+    """What slide and C can do, the face's acceleration in X and in Y, and POLAR_TOLERANCE."""
+
+    slide: Rates
+    spindle: Rates
+    face: tuple[float, float]
+    tolerance: float
+
+
+class SectionTimes(NamedTuple):
+    """Seconds of a section: in segments, with kinematics, and at the limits of slide and C."""
+
+    segments: float
+    kinematics: float
+    least: float
+
+
+class _Stretch(NamedTuple):
+    """Places (complex) a step apart from one stop to the next, with their feeds.
+
+    ``bend`` is the path's signed curvature there, ``along`` and ``around`` its direction seen
+    from the pole.
+    """
+
+    places: np.ndarray
+    feed: np.ndarray
+    bend: np.ndarray
+    along: np.ndarray
+    around: np.ndarray
+
+    @property
+    def step(self) -> float:
+        return float(np.abs(np.diff(self.places)).mean())
+
+
+def turning_machine(ini: Ini) -> TurningMachine:
+    """Return what the X slide and C of a lathe can do."""
+    axes, face = ini.axis_limits, face_of(ini.get)
+    slide, spindle = (face.slide if face else axes["X"]), axes["C"]
+    usual = OF_SLIDE * slide.acceleration
+    ours = (face.x.acceleration, face.y.acceleration) if face else (usual, usual)
+    return TurningMachine(
+        (slide.velocity * ini.mm, slide.acceleration * ini.mm),
+        (math.radians(spindle.velocity), math.radians(spindle.acceleration)),
+        (ours[0] * ini.mm, ours[1] * ini.mm),
+        ini.settings.tolerance(ini.mm) * ini.mm,
+    )
+
+
+def section_times(legs: Sequence[Leg], machine: TurningMachine) -> SectionTimes:
+    """Return about how long moves of the tool in a row take."""
+    stretches = [stretch for run in _smooth(legs) for stretch in _off_pole(_drawn(run))]
+    turns = sum(
+        _turn(one.places[-1], other.places[0], machine)
+        for one, other in zip(stretches, stretches[1:])
+    )
+    segments = [_in_segments(each, machine) for each in stretches]
+    chorded = sum(_seconds(each, *how) for each, how in zip(stretches, segments))
+    face = min(
+        sum(_on_face(each, *how, machine, share) for each, how in zip(stretches, segments))
+        for share in SHARES
+    )
+    least = sum(
+        least_seconds(each.places, each.feed, machine.slide, machine.spindle) for each in stretches
+    )
+    return SectionTimes(chorded + turns, min(chorded, face + SWITCHING) + turns, least + turns)
+
+
+def _smooth(legs: Iterable[Leg]) -> Iterator[list[Leg]]:
+    """Yield moves without a corner between them."""
+    run: list[Leg] = []
+    for leg in legs:
+        if run and abs(leg.curve.direction(0.0) - run[-1].curve.direction(1.0)) > STRAIGHT_ON:
+            yield run
+            run = []
+        run.append(leg)
+    if run:
+        yield run
+
+
+def _drawn(run: Sequence[Leg]) -> _Stretch:
+    """Return moves without a corner as places that lie evenly."""
+    ends = np.cumsum([0.0, *(leg.curve.length for leg in run)])
+    count = int(min(MOST, max(FEWEST, ends[-1] / STEP)))
+    lengths = np.linspace(0.0, ends[-1], count + 1)
+    owners = np.clip(np.searchsorted(ends, lengths, side="right") - 1, 0, len(run) - 1)
+    legs = [run[owner] for owner in owners]
+    shares = (lengths - ends[owners]) / np.diff(ends)[owners]
+    places = np.array([leg.curve.point(share) for leg, share in zip(legs, shares)])
+    heading = np.array([leg.curve.direction(share) for leg, share in zip(legs, shares)])
+    bends = np.array([_bend(leg.curve) for leg in run])[owners]
+    feeds = np.array([leg.feed for leg in run])[owners]
+    seen = heading * places.conjugate() / np.maximum(np.abs(places), TINY)
+    return _Stretch(places, feeds, bends, seen.real, seen.imag)
+
+
+def _bend(curve: Curve) -> float:
+    return math.copysign(1.0 / curve.radius, curve.sweep) if isinstance(curve, Arc) else 0.0
+
+
+def _off_pole(stretch: _Stretch) -> Iterator[_Stretch]:
+    """Yield the parts of a stretch that are off the pole, by more than a step."""
+    off = np.abs(stretch.places) > max(STEP, stretch.step)
+    edges = np.flatnonzero(np.diff([0, *off.astype(int), 0]))
+    for first, last in zip(edges[::2], edges[1::2]):
+        if last - first > 2:
+            yield _Stretch(*(each[first:last] for each in stretch))
+
+
+def _turn(end: complex, start: complex, machine: TurningMachine) -> float:
+    """Return how long C turns in place between two places, 0 where they are the same."""
+    turn = abs(np.angle(start * np.conj(end)))
+    speed, acceleration = machine.spindle
+    top = min(speed, math.sqrt(turn * acceleration))
+    return float(turn / top + top / acceleration) if turn > TINY else 0.0
+
+
+def _in_segments(stretch: _Stretch, machine: TurningMachine) -> tuple[np.ndarray, np.ndarray]:
+    """Return the speeds that segments have, and the acceleration along the path."""
+    radius, along, around = np.abs(stretch.places), np.abs(stretch.along), np.abs(stretch.around)
+    (speed, slide), (c_speed, spindle) = machine.slide, machine.spindle
+    spiral = stretch.around * (1.0 + along**2) / radius
+    deviation = np.minimum(machine.tolerance, 0.5 * radius)
+    bulge = 8.0 * SEGMENT_BULGE * deviation / np.maximum(np.abs(stretch.bend - spiral), TINY)
+    length = np.minimum(np.sqrt(bulge), len(radius) * stretch.step)
+    length = np.where(around > TINY, np.minimum(length, radius / np.maximum(along, TINY)), length)
+    quick = np.minimum(slide / np.maximum(along, TINY), spindle * radius / np.maximum(around, TINY))
+    most = np.minimum(speed / np.maximum(along, TINY), c_speed * radius / np.maximum(around, TINY))
+    chorded = np.sqrt(STOPPED_IN * quick * length)
+    return np.minimum(np.minimum(stretch.feed, most), chorded), quick
+
+
+def _on_face(
+    stretch: _Stretch,
+    chorded: np.ndarray,
+    quick: np.ndarray,
+    machine: TurningMachine,
+    share: float,
+) -> float:
+    """Return the seconds with kinematics, with segments where those are quicker."""
+    whole = share * math.hypot(*machine.face)
+    most = np.where(stretch.bend, share * min(machine.face), whole)
+    followed = np.minimum(stretch.feed, _followed(stretch, machine, most))
+    braking = np.where(followed >= chorded, PLANNED * whole, quick)
+    return _seconds(stretch, np.maximum(followed, chorded), braking)
+
+
+def _followed(stretch: _Stretch, machine: TurningMachine, most: np.ndarray) -> np.ndarray:
+    """Return the most speed that C and the slide can follow, whatever the planner does."""
+    radius, along, around = np.abs(stretch.places), stretch.along, stretch.around
+    (speed, slide), (c_speed, spindle) = machine.slide, machine.spindle
+    turning = np.maximum(np.abs(around), TINY) / radius
+    pushed = np.abs(along * (stretch.bend - 2.0 * around / radius)) / radius
+    lifted = np.abs(around * (around / radius - stretch.bend))
+    square = np.minimum(speed / np.maximum(np.abs(along), TINY), c_speed / turning) ** 2
+    square = np.minimum(square, most / np.maximum(np.abs(stretch.bend), TINY))
+    for p, q in ((pushed / spindle, turning / spindle), (lifted / slide, np.abs(along) / slide)):
+        both = np.maximum(p * p + (q * stretch.bend) ** 2, TINY**2)
+        under = p * p - both * (1.0 - (q * most) ** 2)
+        bound = (p - np.sqrt(np.maximum(under, 0.0))) / both
+        square = np.where(under >= 0.0, np.minimum(square, np.maximum(bound, 0.0)), square)
+        square = np.where(q * most > 1.0 + 1e-6, 0.0, square)
+    return np.sqrt(square)
+
+
+def _seconds(stretch: _Stretch, speeds: np.ndarray, braking: np.ndarray) -> float:
+    """Return the time of a stretch from standing to standing, at most with these speeds."""
+    gains = (2.0 * stretch.step * braking).tolist()
+    squares = np.square(speeds).tolist()
+    for order in (range(len(squares)), range(len(squares) - 1, -1, -1)):
+        reached = 0.0
+        for at in order:
+            squares[at] = min(squares[at], reached)
+            reached = squares[at] + gains[at]
+    return seconds_at(squares, stretch.step)
