@@ -12,14 +12,14 @@ from g12.geometry.curve import Arc
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.executed_blocks import STATE, Block, read_line
 from g12.tools.preview.moves import Move
-from g12.tools.verify.expected.calls import CallReading, SubCall, equal_steps
+from g12.tools.verify.expected.calls import SubCall, equal_steps
 from g12.tools.verify.expected.shapes import shape_path
 from g12.tools.verify.reading.codes import Codes
 from support.shape_geometry import area_off, disc, polygon, slot, swept_by
 from support.sim_machines import SIM
 
 LATHE, MILL = (read_ini(SIM / f"{name}_mm_headless.ini") for name in ("lathe", "mill"))
-READING = CallReading("inherit", 0.5, 3.0)
+INI = LATHE.replaced({"G12": {"PLUNGE_FEED": 50}})
 FOUND = {"_x": 40.0, "_z": 5.0, "_c": 0.0, "_metric": 1.0, "_feed": 150.0, "_rpm": 1000.0}
 CUTTER = 3.0
 OUT = -9999
@@ -31,7 +31,7 @@ def asked(shape, *entries, start=(40.0, 0.0, 5.0, 0.0, 0.0, 0.0), turned=0.0, **
     block = Block(read_line(7, f"o<{shape}> call"), {}, (), (), entries, found, 0, 1)
     place, end = (*start, 0.0, 0.0, 0.0), (*start[:5], start[5] + turned, 0.0, 0.0, 0.0)
     move = Move("rapid", 7, 7, place, end, 0.0, "G94", 18, 3, (0.0,) * 9)
-    return SubCall(block, move, CUTTER, READING)
+    return SubCall(block, move, CUTTER, INI)
 
 
 def hexagon(**state):

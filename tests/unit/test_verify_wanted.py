@@ -21,7 +21,6 @@ from g12.tools.preview.executed_blocks import (
     read_line,
 )
 from g12.tools.preview.moves import Event
-from g12.tools.verify.expected.contour import WordReading
 from g12.tools.verify.expected.cylinder import SurfacePen
 from g12.tools.verify.expected.polar import Pen
 from g12.tools.verify.reading import sections as section_reading
@@ -39,7 +38,8 @@ REMAPS = (
     "REMAP = G7.1 modalgroup=1 python=cylinder_mode",
     "REMAP = M6 modalgroup=6 ngc=change",
 )
-CODES = Codes(Ini(Path("x.ini"), REMAPS))
+INI = Ini(Path("x.ini"), REMAPS)
+CODES = Codes(INI)
 YASNAC = Codes(Ini(Path("x.ini"), tuple(line.replace("haas", "yasnac") for line in REMAPS)))
 
 
@@ -159,7 +159,7 @@ def block(line, number=1, at=1, end=2, **state):
 
 def target(line, moves=None, **state):
     moves = moves or Hand().rapid(x=3, y=4, z=5).line(z=4).moves
-    reader = CircleReader(CODES, moves, {1: 6.0, 2: 10.0})
+    reader = CircleReader(CODES, INI, moves, {1: 6.0, 2: 10.0})
     return next(found for _, found in reader.targets([block(line, **state)]))
 
 
@@ -204,7 +204,7 @@ def test_d0_puts_the_tool_centre_on_the_circle():
     ],
 )
 def test_yasnac_leaves_the_middle_by_design(words, core, bore):
-    found = CircleReader(YASNAC, Hand().rapid(z=5).line(z=4).moves, {1: 6.0, 2: 10.0})
+    found = CircleReader(YASNAC, INI, Hand().rapid(z=5).line(z=4).moves, {1: 6.0, 2: 10.0})
     ((_, wanted),) = found.targets([block(f"G13 {words}")])
     assert (wanted.wall.cleared, wanted.wall.bore) == (core, bore)
 
@@ -227,7 +227,7 @@ def test_inch_words_become_millimetres():
 
 def test_the_last_d_is_remembered():
     moves = Hand().rapid(z=5).line(z=4).line(z=3).moves
-    reader = CircleReader(CODES, moves, {1: 6.0, 2: 10.0})
+    reader = CircleReader(CODES, INI, moves, {1: 6.0, 2: 10.0})
     again = block("G12 I9 Z-1", at=2, end=3)
     blocks = [block("G41 D2 X1", at=0, end=1), block("G12 I9 Z-1"), block("G12 I9 Z-1 D1")]
     cutters = [found.cutter.radius for _, found in reader.targets([*blocks, again])]
@@ -283,7 +283,7 @@ def test_the_turn_is_that_of_the_handler_whatever_the_code(handler, turn):
     line = f"REMAP = G22 modalgroup=1 prolog={handler}_haas ngc=g12_haas epilog=cycle_done"
     codes = Codes(Ini(Path("x.ini"), ("[RS274NGC]", line)))
     moves = Hand().rapid(z=5).line(z=4).moves
-    reader = CircleReader(codes, moves, {1: 6.0})
+    reader = CircleReader(codes, INI, moves, {1: 6.0})
     ((_, found),) = reader.targets([block("G22 I9 Z-1")])
     assert (found.asked.turn, found.source.code) == (turn, "G22")
 
@@ -309,7 +309,8 @@ def test_loops_are_spring_passes_or_further_levels():
 )
 def test_only_a_helix_that_goes_down_clears_the_core_of_one_ring(line, core):
     moves = Hand().rapid(x=3, y=4, z=5).line(z=4).moves
-    reader = CircleReader(CODES, moves, {1: 6.0, 2: 10.0}, helix_angle=3.0)
+    ini = INI.replaced({"G12": {"ENTRY": "helix"}})
+    reader = CircleReader(CODES, ini, moves, {1: 6.0, 2: 10.0})
     ((_, found),) = reader.targets([block(line, **HERE)])
     assert found.wall.cleared == pytest.approx(core)
 
@@ -334,7 +335,8 @@ def test_the_feed_is_the_blocks_or_the_one_in_force(line, state, feed):
 
 def drawn(*lines, reading="inherit", **state):
     """Return the elements that lines inside a section describe; it begins at X20."""
-    pen = Pen(block("G12.1", **{"_x": 20, "_motion_mode": 10, **state}), WordReading(reading))
+    ini = INI.replaced({"G12": {"POLAR_X": reading}})
+    pen = Pen(block("G12.1", **{"_x": 20, "_motion_mode": 10, **state}), ini)
     return [e for number, line in enumerate(lines, 2) for e in pen.draw(block(line, number))]
 
 
@@ -455,7 +457,7 @@ def unrolled(*lines, radius="C20", reading="radius", **state):
     """Return a pen on a cylinder, and what it draws; it begins at X24 C10 Z-5."""
     place = {"_x": 24, "_z": -5, "_c": 10, "_motion_mode": 10}
     first = block(f"G7.1 {radius}", **{**place, **state})
-    pen = SurfacePen(first, WordReading("inherit", surface=reading))
+    pen = SurfacePen(first, INI.replaced({"G12": {"CYLINDER_WORD": reading}}))
     return pen, [e for number, line in enumerate(lines, 2) for e in pen.draw(block(line, number))]
 
 

@@ -10,8 +10,7 @@ from typing import NamedTuple
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
-from g12.tools.verify.expected.calls import CallReading
-from g12.tools.verify.expected.contour import SectionContour, WordReading
+from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.cylinder import SurfacePen
 from g12.tools.verify.expected.polar import Pen
 from g12.tools.verify.reading.circles import CircleReader, Target
@@ -49,22 +48,8 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
     """Return what a program's words ask for."""
     codes, program, trace = Codes(subject.ini), subject.program, subject.trace
     blocks = executed_everywhere(tracer, program, trace, codes, tools, parameters)
-    settings, mm = subject.ini.settings, subject.ini.mm
-    reader = CircleReader(
-        codes,
-        trace.moves,
-        trace.diameters,
-        spiral=settings.clearing == "spiral",
-        traverse=settings.yasnac_traverse * mm,
-        helix_angle=settings.entry_angle if settings.entry == "helix" else None,
-        plunge_share=settings.plunge_feed / 100,
-    )
-    rapid_feed, beside = (
-        settings.polar_g0_feed and settings.polar_g0_feed * mm,
-        subject.ini.tool_beside,
-    )
-    reading = WordReading(settings.polar_x, rapid_feed, beside, settings.cylinder_word)
-    pens = {kind: partial(pen, reading=reading) for kind, pen in PENS.items()}
+    reader = CircleReader(codes, subject.ini, trace.moves, trace.diameters)
+    pens = {kind: partial(pen, ini=subject.ini) for kind, pen in PENS.items()}
     found = sections(tracer, program, codes, pens, blocks, tools, parameters)
     still = [
         *still_blocks(blocks, codes),
@@ -72,8 +57,7 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
     ]
     cut = [each for each in found if each.end > each.at]
     cut = with_zero_lines(cut, trace.moves, program, codes, subject.ini)
-    calls = CallReading(settings.polar_x, settings.plunge_feed / 100, settings.entry_angle)
-    called = partial(called_subs, blocks, trace.moves, trace.diameters, calls)
+    called = partial(called_subs, blocks, trace.moves, trace.diameters, subject.ini)
     shapes, holes = (list(called(sub)) for sub in (codes.shape_of, codes.holes_of))
     return Asked(list(reader.targets(blocks)), cut, still, shapes, holes)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from g12.tools.machine.ini import Ini
 from g12.tools.path.track import Track
 from g12.tools.preview.executed_blocks import Block, Text
 from g12.tools.preview.moves import Move
@@ -16,7 +17,7 @@ from g12.tools.verify.compare.path import lay
 from g12.tools.verify.compare.section import SectionPath, judge_toolpath, made_of
 from g12.tools.verify.compare.section_plane import FacePlane
 from g12.tools.verify.compare.state import judge_state, state_differences
-from g12.tools.verify.expected.calls import CallReading, SubCall
+from g12.tools.verify.expected.calls import SubCall
 from g12.tools.verify.expected.contour import ACTS
 from g12.tools.verify.expected.shapes import shape_path
 from g12.tools.verify.result.finding import Finding
@@ -49,14 +50,14 @@ def called_subs(
     blocks: Sequence[Block],
     moves: Sequence[Move],
     diameters: Mapping[int, float],
-    reading: CallReading,
+    ini: Ini,
     named: Callable[[Text], str],
 ) -> Iterator[CalledShape]:
     """Yield each call of the subs that are ``named`` which moves anything."""
     for block in blocks:
         if named(block.text) and block.end > block.at:
             first = moves[block.at]
-            yield block, SubCall(block, first, diameters.get(first.tool, 0.0) / 2, reading)
+            yield block, SubCall(block, first, diameters.get(first.tool, 0.0) / 2, ini)
 
 
 def measure_shape(

@@ -7,9 +7,9 @@ Lengths are mm, angles degrees. X is a radius; the program's zero is X0, Z0 and 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from g12.lengths import MM_PER_INCH
+from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C, X, Y, Z
 from g12.tools.preview.executed_blocks import FORGOTTEN, PLACES, STATE, Block
 from g12.tools.preview.moves import Move
@@ -30,17 +30,6 @@ ENTRIES = {
 }
 
 
-class CallReading(NamedTuple):
-    """What a machine's [G12] settings make of a call.
-
-    ``x`` is POLAR_X, ``plunge_share`` of F the feed down, ``entry_angle`` the steepest way down.
-    """
-
-    x: str
-    plunge_share: float
-    entry_angle: float
-
-
 class SubCall:
     """One call: its entries, the tool and its place when it begins, and how the sub reads it.
 
@@ -49,17 +38,17 @@ class SubCall:
     stands from the X line, ``turned`` by how much the first move turns C.
     """
 
-    def __init__(self, block: Block, first: Move, cutter: float, reading: CallReading) -> None:
+    def __init__(self, block: Block, first: Move, cutter: float, ini: Ini) -> None:
         self.name, self.line, self.file = block.text.call, block.text.number, block.text.file
         self.moves = range(block.at, block.end)
         names = ENTRIES[self.name]
         values = (*block.arguments, *[0.0] * len(names))  # LinuxCNC makes up for those that lack
         self.given = {n: value for n, value in zip(names, values) if value != LEFT_OUT}
-        self.cutter, self.reading = cutter, reading
+        self.cutter, self.settings = cutter, ini.settings
         self._state = state = block.state
         self.unit = 1.0 if state["_metric"] else MM_PER_INCH
         in_g7 = bool(state["_lathe_diameter_mode"])
-        self.diameters = {"diameter": True, "radius": False}.get(reading.x, in_g7)
+        self.diameters = {"diameter": True, "radius": False}.get(self.settings.polar_x, in_g7)
         self.at = (state["_x"] * self.unit, state["_z"] * self.unit, state["_c"])
         self._start, self.beside = first.start, first.start[Y]
         self.turned = first.end[C] - first.start[C]
@@ -100,7 +89,7 @@ class SubCall:
         if "plunge_feed" in self.given:
             return self.given["plunge_feed"] * self._per_minute
         feed = self.feed()
-        return None if feed is None else feed * self.reading.plunge_share
+        return None if feed is None else feed * self.settings.plunge_feed / 100
 
     @property
     def _per_minute(self) -> float:

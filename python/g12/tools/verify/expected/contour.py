@@ -72,19 +72,6 @@ class ZeroLine(NamedTuple):
 BEGUN = ZeroLine(True)
 
 
-class WordReading(NamedTuple):
-    """How a machine reads a section's words: by its [G12] settings.
-
-    ``x`` is POLAR_X, ``rapid_feed`` POLAR_G0_FEED in mm/min, ``beside`` POLAR_TOOL_OFFSET in mm:
-    there the tool is where a polar section begins. ``surface`` is CYLINDER_WORD.
-    """
-
-    x: str
-    rapid_feed: float | None = None
-    beside: float = 0.0
-    surface: str = "radius"
-
-
 class Act(NamedTuple):
     """Something that a section does besides moving, as a trace tells it, and its block's line.
 

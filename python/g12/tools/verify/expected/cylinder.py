@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import math
 
+from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import Block
-from g12.tools.verify.expected.contour import WordReading
 from g12.tools.verify.expected.polar import Pen
 
 
@@ -21,11 +21,12 @@ class SurfacePen(Pen):
 
     across = "CHZWIJKR"
 
-    def __init__(self, first: Block, reading: WordReading) -> None:
+    def __init__(self, first: Block, ini: Ini) -> None:
         state = first.state
-        super().__init__(first, reading)
+        super().__init__(first, ini)
         self.x_unit = self.unit / 2 if state["_lathe_diameter_mode"] else self.unit
-        self.surface = first.words["C"] * self.unit / (2 if reading.surface == "diameter" else 1)
+        halves = 2 if ini.settings.cylinder_word == "diameter" else 1
+        self.surface = first.words["C"] * self.unit / halves
         self._degree = math.radians(self.surface)  # mm
         self.at = self.tool = complex(state["_c"] * self._degree, state["_z"] * self.unit)
         self.depth = state["_x"] * self.unit

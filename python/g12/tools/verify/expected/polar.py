@@ -14,8 +14,9 @@ from dataclasses import replace
 
 from g12.geometry.curve import FULL_TURN, recentred, sweep_between
 from g12.lengths import MM_PER_INCH
+from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import FORGOTTEN, Block
-from g12.tools.verify.expected.contour import Element, WordReading
+from g12.tools.verify.expected.contour import Element
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
 CONTOUR = "XYCUHIJRZWK"
@@ -33,17 +34,18 @@ class Pen:
     surface = 0.0
     across = "XYCUHIJR"  # the letters of moves in the plane
 
-    def __init__(self, first: Block, reading: WordReading) -> None:
-        state = first.state
+    def __init__(self, first: Block, ini: Ini) -> None:
+        state, settings = first.state, ini.settings
         self.unit = 1.0 if state["_metric"] else MM_PER_INCH
-        diameter = {"diameter": True, "radius": False}.get(reading.x, state["_lathe_diameter_mode"])
-        self.x_unit = self.unit / 2 if diameter else self.unit
+        in_g7 = state["_lathe_diameter_mode"]
+        diameters = {"diameter": True, "radius": False}.get(settings.polar_x, in_g7)
+        self.x_unit = self.unit / 2 if diameters else self.unit
         self.at = complex(state["_x"] * self.unit, 0.0)
-        self.beside, self.tool = reading.beside, self.at + 1j * reading.beside
+        self.beside, self.tool = ini.tool_beside, self.at + 1j * ini.tool_beside
         self.depth = state["_z"] * self.unit
         self.absolute = bool(state["_absolute"])
         self.motion, self.side, self.changes = state["_motion_mode"] / 10, 0, False
-        self.rapid_feed = reading.rapid_feed
+        self.rapid_feed = settings.polar_g0_feed and settings.polar_g0_feed * ini.mm
         self.exact: bool | None = None
         self.feed = None if state["_feed"] == FORGOTTEN else state["_feed"] * self.unit
         self.per_revolution, self.speed = bool(state["_units_per_rev"]), state["_rpm"]

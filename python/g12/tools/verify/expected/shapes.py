@@ -196,7 +196,7 @@ class Rings:
     def _down(self, height: float) -> None:
         """Write the fewest half turns of the first ring that are not too steep."""
         length = 2 * self._reach + math.pi * self.first
-        steepest = math.tan(math.radians(self._shape.call.reading.entry_angle))
+        steepest = math.tan(math.radians(self._shape.call.settings.entry_angle))
         count = math.ceil(height / (length * steepest))
         for _ in range(count):
             self.half_turn(self._way_down, self.first, height / count)

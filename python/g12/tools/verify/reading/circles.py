@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from g12.geometry.curve import Arc
+from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.expected import circle_mill, haas
@@ -158,23 +159,15 @@ Reading = tuple[Wall, Cutter, Asked]
 
 @dataclass
 class CircleReader:
-    """Reads blocks in the order of execution; remembers D and W as the control does.
-
-    ``spiral`` and ``traverse`` (mm/min, 0 for rapids) are [G12] CLEARING and YASNAC_TRAVERSE;
-    ``helix_angle`` (degrees) is ENTRY_ANGLE, None for ENTRY = plunge, ``plunge_share`` of F the
-    feed down.
-    """
+    """Reads blocks in the order of execution; remembers D and W as the control does."""
 
     codes: Codes
+    ini: Ini
     moves: Sequence[Move]
     diameters: Mapping[int, float]
     offset: float | None = None  # radius of the D last commanded, mm
     number: int | None = None  # the tool that it named
     plane: float = 0.0  # W last commanded, mm in program coordinates
-    spiral: bool = False
-    traverse: float = 0.0
-    helix_angle: float | None = None
-    plunge_share: float = 1.0
 
     def targets(self, blocks: Sequence[Block]) -> Iterator[tuple[Block, Target]]:
         """Yield each block that cuts a circle with what it asks for."""
@@ -215,12 +208,13 @@ class CircleReader:
         return replace(wall, cleared=0.0 if "K" in words else core), cutter, asked
 
     def _haas_pocket(self, view: BlockInMm, turn: int, offset: float, start: complex) -> HaasWords:
-        words, step = view.words, view.length("Q")
+        words, step, settings = view.words, view.length("Q"), self.ini.settings
+        is_spiral = settings.clearing == "spiral"
         first = view.length("I") - offset
         last = view.length("K") - offset if "K" in words else first
-        rings = [first, last] if self.spiral and step else haas.rings_between(first, last, step)
+        rings = [first, last] if is_spiral and step else haas.rings_between(first, last, step)
         helix = 0.0
-        if self.helix_angle is not None:
+        if settings.entry == "helix":
             helix = min(first, haas.CLEARED * offset) if offset else first
         feed = view.feed()
         return HaasWords(
@@ -229,10 +223,10 @@ class CircleReader:
             self._depths(view),
             turn,
             feed,
-            None if feed is None else feed * self.plunge_share,
-            step if self.spiral else 0.0,
+            None if feed is None else feed * settings.plunge_feed / 100,
+            step if is_spiral else 0.0,
             helix,
-            math.radians(self.helix_angle or 0.0),
+            math.radians(settings.entry_angle),
             view.line,
             view.rev,
         )
@@ -259,7 +253,7 @@ class CircleReader:
             cycle.turn,
             view.feed(),
             view.length("Q"),
-            self.traverse,
+            self.ini.settings.yasnac_traverse * self.ini.mm,
             view.line,
             view.rev,
         )
