@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.tools.verify.expected import circle_mill, haas
-from g12.tools.verify.expected.circle_mill import EventPlace, event_of
+from g12.tools.verify.expected import haas
+from g12.tools.verify.expected.circle_mill import EventPlace, EventWords
 from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.expected.mitsubishi import MitsubishiWords
 from g12.tools.verify.expected.yasnac import YasnacWords
@@ -155,7 +155,7 @@ HERE = EventPlace(3 + 4j, 5.0, 0.1, True)
 
 def event(cutter=0.25, place=HERE, **entries):
     given = {"R": 1.5, "Z": -0.5, "C": 2.0, **entries}
-    return event_of(given, place, cutter, 20.0)
+    return EventWords(given, place, cutter, 20.0)
 
 
 @pytest.mark.parametrize(
@@ -182,7 +182,8 @@ def test_event_steps_are_alike(entries, rings):
 def test_event_perimeters(entries, rough, finish):
     found = event(R=1.0, **entries)
     assert found.rings == pytest.approx([rough])
-    assert (found.finish.radius if finish else found.finish) == pytest.approx(finish)
+    wall = [move.curve.radius for move in found.toolpath() if move.name == "finish circle"]
+    assert wall == pytest.approx([finish] if finish else [])
 
 
 @pytest.mark.parametrize(
@@ -195,17 +196,23 @@ def test_event_perimeters(entries, rough, finish):
     ],
 )
 def test_event_pecks_from_its_first_plane(entries, levels):
-    absolute = circle_mill.event_levels({"Z": -1.0, **entries}, HERE)
-    assert absolute == pytest.approx(levels)
+    seen = [level - HERE.level for level in levels]
+    assert event(**{"Z": -1.0, **entries}).levels == pytest.approx(seen)
     from_plane = HERE._replace(absolute=False)
-    assert circle_mill.event_levels({"Z": -1.1, **entries}, from_plane) == pytest.approx(levels)
+    assert event(place=from_plane, **{"Z": -1.1, **entries}).levels == pytest.approx(seen)
+
+
+def feeds_of(found):
+    """Return the feeds of the plunge, of roughing and of the finish."""
+    made = {move.name: move.feed for move in found.toolpath()}
+    return tuple(made[name] for name in ("plunge", "circle", "finish circle"))
 
 
 def test_event_has_feeds_of_its_own():
     found = event(F=8.0, P=1.0, V=4.0, L=0.1)
-    assert (found.plunge_feed, found.feed, found.finish.feed) == (1, 8, 4)
+    assert feeds_of(found) == (1, 8, 4)
     found = event(L=-0.1)
-    assert (found.plunge_feed, found.feed, found.finish.feed) == (20, 20, 20)
+    assert feeds_of(found) == (20, 20, 20)
 
 
 @pytest.mark.parametrize(
@@ -213,7 +220,7 @@ def test_event_has_feeds_of_its_own():
     [(0, 0, 0), (0, 1, 1), (0, 2, -1), (1, 1, -1), (1, 2, 1), (2, 2, -1), (3, 1, -1)],
 )
 def test_event_puts_the_cutter_where_the_manual_says(direction, compensation, side):
-    assert circle_mill.side_of({"D": direction, "C": compensation}) == side
+    assert event(D=direction, C=compensation).side == side
 
 
 @pytest.mark.parametrize("entries", [{"G": 7.0, "K": 0.3}, {"C": 1.0}, {"C": 2.0, "D": 2.0}])

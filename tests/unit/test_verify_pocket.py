@@ -16,7 +16,7 @@ from g12.tools.path.slowest import programmed_pace
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.units import UNITS
-from g12.tools.verify.expected.circle_mill import EventPlace, event_of
+from g12.tools.verify.expected.circle_mill import EventPlace, EventWords
 from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.pocket import measure_pocket
 from g12.tools.verify.reading.circles import Cutter, Source, Target, Wall
@@ -71,7 +71,7 @@ def codes(moves, wanted, **options):
 def event(**entries):
     place = EventPlace(5 + 2j, 3.0, 1.0, True)
     words = {"R": 20.0, "Z": -1.0, "C": 2.0, "L": 0.5, **entries}
-    asked = event_of(words, place, 3.0, 600.0)
+    asked = EventWords(words, place, 3.0, 600.0)
     core = 0.0 if "G" in entries else 13.5
     origin = np.array([50.0, 0.0, 3.0])
     return target((17.0,), asked=asked, origin=origin, cleared=core)

@@ -26,6 +26,7 @@ from g12.tools.path.surface import Surface
 from g12.tools.preview.moves import Move
 from g12.tools.units import unit_of
 from g12.tools.verify.asked import Asked
+from g12.tools.verify.expected.block_words import BlockInMm
 from g12.tools.verify.expected.calls import SubCall
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.pocket_walls import (
@@ -36,7 +37,6 @@ from g12.tools.verify.pocket_walls import (
     holes_entered,
     holes_of_words,
 )
-from g12.tools.verify.reading.block_words import BlockInMm
 from g12.tools.verify.section_walls import add_sections, surface_key
 from g12.tools.verify.subject import Subject
 

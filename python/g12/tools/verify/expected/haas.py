@@ -8,16 +8,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
-from g12.tools.verify.expected.toolpath import Expected, Writer
+from g12.settings import Settings
+from g12.tools.verify.expected.block_words import BlockInMm
+from g12.tools.verify.expected.toolpath import CircleWords, Expected, Writer, core_within
 
 CLEARED = 0.9  # of the cutter's radius: the helix is not larger
 LEAST_CORNER = math.radians(0.99)  # between two half turns of the helix
 ROUNDING = 1e-6  # mm
 
 
-class HaasWords(NamedTuple):
+@dataclass(frozen=True)
+class HaasWords(CircleWords):
     """A block's words: where the tool stands from the centre, the radii of the rings, the depths.
 
     ``depths`` has one for each pass. ``pitch`` is what a spiral grows by in a turn, 0 for rings.
@@ -36,6 +39,43 @@ class HaasWords(NamedTuple):
     angle: float = 0.0
     line: int = 0
     per_rev: bool = False
+    word: str = ""
+
+    @classmethod
+    def of(cls, view: BlockInMm, turn: int, offset: float, settings: Settings) -> HaasWords:
+        """Return the words of a block; ``offset`` is the radius in force."""
+        word, step, feed = "K" if "K" in view.words else "I", view.length("Q"), view.feed()
+        first, last = view.length("I") - offset, view.length(word) - offset
+        is_spiral = settings.clearing == "spiral"
+        helix = 0.0
+        if settings.entry == "helix":
+            helix = min(first, CLEARED * offset) if offset else first
+        return cls(
+            view.seen_from(view.centre()),
+            [first, last] if is_spiral and step else rings_between(first, last, step),
+            pass_depths(view),
+            turn,
+            feed,
+            None if feed is None else feed * settings.plunge_feed / 100,
+            step if is_spiral else 0.0,
+            helix,
+            math.radians(settings.entry_angle),
+            view.line,
+            view.rev,
+            "" if offset else word,
+        )
+
+    @property
+    def final(self) -> float:
+        """Return the radius of the last ring."""
+        return self.rings[-1]
+
+    def cleared(self, cutter: float) -> float:
+        """Return the radius within which something may stand: with one ring only."""
+        if len(self.rings) > 1:
+            return 0.0
+        goes_down = min(self.depths) < 0.0 and self.helix < self.final
+        return core_within(self.final, cutter, self.helix if goes_down else 0.0)
 
     @property
     def stepover(self) -> float | None:
@@ -134,3 +174,11 @@ def rings_between(first: float, last: float, step: float) -> list[float]:
     """Return the radii of rings that grow by a step; the last step may be shorter."""
     count = math.ceil((last - first - ROUNDING) / step) if last > first + ROUNDING else 0
     return [first + index * step for index in range(count)] + [last]
+
+
+def pass_depths(view: BlockInMm) -> list[float]:
+    """Return the depth of each pass, from where the tool stands."""
+    passes = int(view.words.get("L", 1))
+    repeated = view.absolute or "Z" not in view.words
+    counts = [1] * passes if repeated else range(1, passes + 1)
+    return [view.height("Z", count) - view.start[2] for count in counts]

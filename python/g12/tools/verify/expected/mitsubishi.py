@@ -4,25 +4,37 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
 
-from g12.tools.verify.expected.toolpath import Expected, Writer
+from g12.tools.verify.expected.block_words import BlockInMm
+from g12.tools.verify.expected.toolpath import CircleWords, Expected, Writer, core_within
 
 
-class MitsubishiWords(NamedTuple):
-    """A block's words; ``radius`` is the tool centre's, ``turn`` +1 counterclockwise, else -1."""
+@dataclass(frozen=True)
+class MitsubishiWords(CircleWords):
+    """A block's words; ``final`` is the tool centre's radius, ``turn`` +1 counterclockwise."""
 
-    radius: float
+    final: float
     turn: int
     feed: float | None
     line: int = 0
     per_rev: bool = False
-    stepover: float | None = None  # there is but one circle
+    word: str = ""
+
+    @classmethod
+    def of(cls, view: BlockInMm, turn: int, offset: float) -> MitsubishiWords:
+        """Return the words of a block; ``offset`` is the radius of D."""
+        final, word = abs(view.length("I")) - offset, "" if offset else "I"
+        return cls(final, turn, view.feed(), view.line, view.rev, word)
+
+    def cleared(self, cutter: float) -> float:
+        """Return the radius within which something may stand."""
+        return core_within(self.final, cutter)
 
     def toolpath(self) -> list[Expected]:
         """Return the expected moves: half a circle out along the first axis, round, and back."""
         writer, half = Writer(0j, 0.0, self.line, self.per_rev), self.turn * math.pi
-        writer.arc("lead-in", complex(self.radius) / 2, half, self.feed)
+        writer.arc("lead-in", complex(self.final) / 2, half, self.feed)
         writer.arc("circle", 0j, 2 * half, self.feed)
-        writer.arc("lead-out", complex(self.radius) / 2, half, self.feed)
+        writer.arc("lead-out", complex(self.final) / 2, half, self.feed)
         return writer.path

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from g12.geometry.curve import Arc, Curve, Line
 
 NO_LENGTH = 1e-6  # mm
+TOUCHING = 0.01  # mm: so far over each other two rings leave nothing
 
 
 class Expected(NamedTuple):
@@ -123,3 +124,31 @@ class Writer:
         if move.length > NO_LENGTH:
             self.path.append(move)
             self.at, self.level = curve.end, level
+
+
+class CircleWords:
+    """What a block that cuts a circle says, where its dialect does not say otherwise."""
+
+    @property
+    def inside(self) -> bool:
+        """Tell whether the cutter works inside the wall."""
+        return True
+
+    @property
+    def stepover(self) -> float | None:
+        """Return the distance between neighbouring passes, None with one ring."""
+        return None
+
+    def bore(self, cutter: float) -> float:
+        """Return the radius of the hole that was there before; ``cutter`` is a radius."""
+        return 0.0
+
+
+def core_within(ring: float, cutter: float, begun: float = 0.0) -> float:
+    """Return the radius of what one ring along a wall leaves standing by design.
+
+    The cutter, by its radius, begins in the centre, or on a circle of radius ``begun`` there: a
+    ring that touches what it clears there leaves nothing.
+    """
+    inner = ring - cutter
+    return inner if inner > begun + cutter - TOUCHING else 0.0

@@ -8,19 +8,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
+from dataclasses import dataclass
 
-from g12.tools.verify.expected.toolpath import Expected, Writer
+from g12.tools.machine.ini import Ini
+from g12.tools.verify.expected.block_words import BlockInMm
+from g12.tools.verify.expected.toolpath import CircleWords, Expected, Writer, core_within
 
 ROUNDING = 1e-6  # mm
 
 
-class YasnacWords(NamedTuple):
+@dataclass(frozen=True)
+class YasnacWords(CircleWords):
     """A block's words: where the fast move ends (0 without one), the spiral, the circle.
 
     ``first`` is where the half circle ends: on the circle, or on the spiral's first turn, which
     grows by ``pitch`` (0 without a spiral). ``traverse`` is the feed of the fast moves in mm per
-    minute, 0 for rapids. ``turn`` is +1 counterclockwise, -1 clockwise.
+    minute, 0 for rapids. ``turn`` is +1 counterclockwise, -1 clockwise. ``hole`` is the radius of
+    the hole that was there before, without an offset that of the tool's centre in it.
     """
 
     approach: float
@@ -33,6 +37,46 @@ class YasnacWords(NamedTuple):
     traverse: float = 0.0
     line: int = 0
     per_rev: bool = False
+    word: str = ""
+    hole: float = 0.0
+
+    @classmethod
+    def of(cls, view: BlockInMm, turn: int, offset: float, ini: Ini) -> YasnacWords:
+        """Return the words of a block; ``offset`` is the radius of D, 0 without it."""
+        words, hole = view.words, view.length("R") or view.length("J")
+        inward = math.copysign(offset, words["I"])
+        radius = view.length("I") - inward
+        return cls(
+            hole - inward if hole else 0.0,
+            view.length("K") - inward if "K" in words else radius,
+            radius,
+            int(words.get("L", 1)),
+            turn,
+            view.feed(),
+            view.length("Q"),
+            ini.settings.yasnac_traverse * ini.mm,
+            view.line,
+            view.rev,
+            "" if offset else "I",
+            abs(hole),
+        )
+
+    @property
+    def final(self) -> float:
+        """Return the radius of the last circle."""
+        return abs(self.radius)
+
+    def bore(self, cutter: float) -> float:
+        """Return the radius of the hole that was there before."""
+        return self.hole + (cutter if self.hole and self.word else 0.0)
+
+    def cleared(self, cutter: float) -> float:
+        """Return the radius within which something may stand.
+
+        A spiral has gone all round when it has grown by Q.
+        """
+        spiral = max(0.0, self.final - abs(self.first) - self.pitch)
+        return self.bore(cutter) or core_within(self.final - spiral, cutter)
 
     @property
     def stepover(self) -> float | None:

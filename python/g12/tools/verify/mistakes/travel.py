@@ -17,7 +17,7 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.part import axes_of_plane
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Event, Move
-from g12.tools.verify.reading.block_words import BlockInMm
+from g12.tools.verify.expected.block_words import BlockInMm
 from g12.tools.verify.reading.circles import Target
 from g12.tools.verify.result.finding import Finding
 

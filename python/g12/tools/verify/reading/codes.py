@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from g12.machine_ini import Remap, code_number, remap_lines
@@ -30,11 +30,6 @@ DIALECT_OF_HANDLER = {
 DIALECT_OF_SUB = {f"g12_{name}": name for name in DIALECTS}
 SUBS = {*DIALECT_OF_SUB, "g12_circle_mill"}
 NAMED = {"#<polar_on>": "polar_on", "#<polar_off>": "polar_off"}  # G codes as parameters
-SETTING = {  # modes that no cycle changes, and the codes that do
-    "_plane": {17.0, 18.0, 19.0},
-    "_ijk_absolute_mode": {90.1, 91.1},
-    "_lathe_diameter_mode": {7.0, 8.0},
-}
 
 
 class Cycle(NamedTuple):
@@ -150,9 +145,3 @@ def cycle_of_line(line: Remap) -> Cycle | None:
             return Cycle(DIALECT_OF_HANDLER[handler], handler)
     dialect = DIALECT_OF_SUB.get(line.keywords.get("ngc", ""))
     return Cycle(dialect) if dialect else None
-
-
-def kept_state(state: Mapping[str, float], codes: Iterable[float]) -> dict[str, float]:
-    """Return what must be behind blocks as it was: the modes that none of their codes sets."""
-    given = set(codes)
-    return {name: state[name] for name, setting in SETTING.items() if not given & setting}

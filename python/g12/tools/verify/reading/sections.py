@@ -27,8 +27,9 @@ from g12.tools.preview.executed_blocks import (
     read_lines,
 )
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
+from g12.tools.verify.expected.block_words import kept_state
 from g12.tools.verify.expected.contour import ACTS, Act, Element, SectionContour
-from g12.tools.verify.reading.codes import Codes, kept_state
+from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.reading.executed_subs import Copies, called_files, files_with
 from g12.tools.verify.reading.inside import SectionLine, followed_subs, section_lines, with_flags
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -11,7 +11,12 @@ from g12.lengths import MM_PER_INCH
 from g12.tools.path.part import plane_axes
 from g12.tools.preview.executed_blocks import FORGOTTEN, Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.reading.codes import kept_state
+
+SETTING = {  # modes that no cycle changes, and the codes that do
+    "_plane": {17.0, 18.0, 19.0},
+    "_ijk_absolute_mode": {90.1, 91.1},
+    "_lathe_diameter_mode": {7.0, 8.0},
+}
 
 
 class BlockInMm:
@@ -117,3 +122,9 @@ def turned(way: np.ndarray, degrees: float) -> np.ndarray:
     """Return a direction turned about Z."""
     cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     return np.array([way[0] * cos - way[1] * sin, way[0] * sin + way[1] * cos, way[2]])
+
+
+def kept_state(state: Mapping[str, float], codes: Iterable[float]) -> dict[str, float]:
+    """Return what must be behind blocks as it was: the modes that none of their codes sets."""
+    given = set(codes)
+    return {name: state[name] for name, setting in SETTING.items() if not given & setting}
