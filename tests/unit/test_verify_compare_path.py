@@ -3,6 +3,7 @@
 
 import cmath
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -114,9 +115,9 @@ def test_another_level_is_off_by_it():
 def test_feeds_and_rapids_are_compared():
     path, curves = expected(*lines(SQUARE)), lines(SQUARE)
     assert lay(path, made(curves, feed=101.0), TOLERANCE).difference.kind == FEED
-    rapid = [move._replace(rapid=True) for move in made(curves)]
+    rapid = [replace(move, rapid=True) for move in made(curves)]
     assert lay(path, rapid, TOLERANCE).difference.kind == RAPID
-    unknown = [move._replace(feed=None) for move in made(curves)]
+    unknown = [replace(move, feed=None) for move in made(curves)]
     assert lay(path, unknown, TOLERANCE).difference is None
 
 

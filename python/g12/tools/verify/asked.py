@@ -39,9 +39,10 @@ class Asked(NamedTuple):
     @property
     def moves(self) -> set[int]:
         """The moves that they are cut by, by their indices."""
-        drilled = (block for block, _ in self.holes)
-        every = [*(block for block, _ in self.circles), *self.sections, *drilled]
-        return {index for each in every for index in range(each.at, each.end)}
+        blocks = [block for block, _ in (*self.circles, *self.holes)]
+        cuts = [(each.at, each.end) for each in blocks]
+        cuts += [(each.at, each.end) for each in self.sections]
+        return {index for cut in cuts for index in range(*cut)}
 
 
 def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Parameters) -> Asked:

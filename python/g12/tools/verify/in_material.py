@@ -59,7 +59,7 @@ def rapids_through(workpiece: Workpiece) -> Iterator[Finding]:
                 points = points[-1:]
             touch = view.material.touched(points, program.radius(index), index)
             if touch:
-                at, to = (tuple(map(float, point)) for point in touch.points[[0, -1]])
+                at, to = (place_at(point) for point in touch.points[[0, -1]])
                 values = {
                     "at": words_of(program, view, at),
                     "to": words_of(program, view, to),
@@ -97,7 +97,13 @@ def first_way(workpiece: Workpiece) -> Iterator[Finding]:
 
 def place_after(program: Program, index: int) -> Place:
     """Return where a move ends on the part."""
-    return tuple(map(float, program.part.points(np.array(program.moves[index].end))[0]))
+    return place_at(program.part.points(np.array(program.moves[index].end))[0])
+
+
+def place_at(point: np.ndarray) -> Place:
+    """Return a point (3,) as a place."""
+    x, y, z = map(float, point)
+    return x, y, z
 
 
 def axes_known(program: Program) -> tuple[int, ...]:
@@ -176,10 +182,10 @@ def judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
         if moves[index].kind != "rapid" and program.radius(index) and view.judges(moves[index])
     ]
     yield from once_a_line(filter(None, (plunge(workpiece, index) for index in fed)))
-    cuts = [(each.line, each) for each in program.on_face]
-    cuts += [(target.source.line, block) for block, target in program.circles]
-    for line, each in cuts:
-        if not any(meets_stock(workpiece, index) for index in range(each.at, each.end)):
+    cuts = [(each.line, each.at, each.end) for each in program.on_face]
+    cuts += [(target.source.line, block.at, block.end) for block, target in program.circles]
+    for line, at, end in cuts:
+        if not any(meets_stock(workpiece, index) for index in range(at, end)):
             yield Finding("no-stock-met", line)
     if workpiece.bottom is not None and fed:
         lowest = min(fed, key=lambda index: moves[index].end[Z])

@@ -67,9 +67,9 @@ def cuts_of(asked: Asked, moves: Sequence[Move]) -> Iterator[ProgramCut]:
         yield ProgramCut(source.line, source.file, source.code, at, end, target.wall.face, False)
     for section in asked.sections:
         face = moves[section.at].start[Z] - section.height
-        source = (section.line, section.file, section.code, section.at, section.end)
+        known = (section.line, section.file, section.code, section.at, section.end)
         feeds = tuple(element.feed for element in section.elements if element.feed)
-        yield ProgramCut(*source, None if section.surface else face, True, feeds)
+        yield ProgramCut(*known, None if section.surface else face, True, feeds)
     for block, call in asked.holes:
         level = None if call.is_side else call.zero[1]
         yield ProgramCut(call.line, call.file, call.name, block.at, block.end, level, True)

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 
 from g12.tools.path.slowest import Pace
 from g12.tools.units import MM, plain
@@ -87,7 +88,7 @@ def pocket_values(facts: PocketFacts, proof: Proof) -> dict:
         "square_to": AXES[wall.plane],
         "depths": [wall.height(depth) for depth in target.depths],
         "z": None if in_plane else [float(wall.origin[2]) + side for side in (-reach, reach)],
-        "entry": {"way": "helix", **helix._asdict()} if helix else {"way": "straight"},
+        "entry": {"way": "helix", **asdict(helix)} if helix else {"way": "straight"},
         "stepover": target.asked.stepover,
         "shortest": facts.lengths[0],
         "longest": facts.lengths[1],

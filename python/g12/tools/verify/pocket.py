@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from shapely.geometry.base import BaseGeometry
@@ -35,7 +34,8 @@ SAME_AXIS = 1e-9
 SHARES = np.linspace(0.0, 1.0, 25)  # of an arc that stands across the pocket's plane
 
 
-class HelixFacts(NamedTuple):
+@dataclass(frozen=True)
+class HelixFacts:
     """The helices of a pocket: how many, the radius of the tool's centre, the greatest angle."""
 
     count: int
@@ -78,22 +78,23 @@ class PocketFacts:
     @property
     def rings(self) -> tuple[float, ...]:
         """Return the radii of the tool centre's circles, each once."""
-        return tuple(dict.fromkeys(round(move.curve.radius, 6) for move in self.target.circles))
+        return tuple(dict.fromkeys(round(arc.radius, 6) for arc in self.target.arcs))
 
     @property
     def turns(self) -> tuple[int, ...]:
         """Return the turns of the circles, each once."""
-        return tuple(sorted({round(math.copysign(1, c.curve.sweep)) for c in self.target.circles}))
+        return tuple(sorted({round(math.copysign(1, arc.sweep)) for arc in self.target.arcs}))
 
     @property
     def helix(self) -> HelixFacts | None:
         """Return what the helices of the pocket are like, None without one."""
         falls = [move.name == "helix" for move in self.target.path]
-        if not any(falls):
-            return None
         falling = [move for move in self.target.path if move.name == "helix"]
+        curve = falling[0].curve if falling else None
+        if not isinstance(curve, Arc):
+            return None
         fall = max(move.start_level - move.end_level for move in falling)
-        curve, count = falling[0].curve, sum(now > before for before, now in zip(falls, falls[1:]))
+        count = sum(now > before for before, now in zip(falls, falls[1:]))
         return HelixFacts(count, curve.radius, math.degrees(math.atan2(fall, curve.length)))
 
 
@@ -121,7 +122,7 @@ def measure_pocket(
         uncut(block, target, material, tolerance, real is None),
         pace(own, cutting),
         (min(lengths), max(lengths)),
-        **(facts_of_run(target, laid, cutting, real) if real else {}),
+        *(facts_of_run(target, laid, cutting, real) if real else (None, None, None)),
     )
     judged = [
         *judge_cutter(target),
@@ -189,8 +190,8 @@ def reached(target: Target, laid: Laid, moves: Sequence[Move]) -> float:
 
 def facts_of_run(
     target: Target, laid: Laid, cutting: Sequence[int], real: Followed
-) -> dict[str, float]:
-    """Return those members of ``PocketFacts`` that only a run has."""
+) -> tuple[float, float, float]:
+    """Return ``off_path``, ``off_rings`` and ``too_far`` of ``PocketFacts``."""
     wall, cutter = target.wall, target.cutter.radius
     full = {id(move) for move in target.circles}
     circles = [i for move, made in zip(target.path, laid.moves) if id(move) in full for i in made]
@@ -199,11 +200,7 @@ def facts_of_run(
     far = radii.max(initial=0.0) + cutter - wall.radius
     if not wall.inside:
         far = wall.radius - (radii.min(initial=math.inf) - cutter)
-    return {
-        "off_path": real.largest(cutting),
-        "off_rings": real.largest(circles),
-        "too_far": max(0.0, float(far)),
-    }
+    return real.largest(cutting), real.largest(circles), max(0.0, float(far))
 
 
 def judge_cutter(target: Target) -> Iterator[Finding]:
@@ -249,5 +246,5 @@ def judge_left(block: Block, facts: PocketFacts) -> Iterator[Finding]:
     """Yield the state that a pocket leaves otherwise; of another feed no more is said."""
     other_feed = any(each.kind == FEED for each in facts.laid.differences)
     state = state_differences(block.left, facts.target.leaves)
-    state = (each for each in state if not (other_feed and each.name == "_feed"))
-    yield from judge_state(state, extra_events(block), facts.target.source.line)
+    told = [each for each in state if not (other_feed and each.name == "_feed")]
+    yield from judge_state(told, extra_events(block), facts.target.source.line)

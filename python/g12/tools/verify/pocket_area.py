@@ -9,6 +9,7 @@ from shapely.affinity import translate
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from g12.geometry.curve import Arc
 from g12.tools.material.material import Material
 from g12.tools.path.part import Z, disc
 from g12.tools.preview.executed_blocks import Block
@@ -80,6 +81,6 @@ def _cleared(target: Target) -> Iterator[tuple[float, float]]:
     if any(abs(move.curve.start) < FINE for move in floor):
         yield 0.0, cutter
     for move in target.circles:
-        if move.end_level == target.deepest:
+        if move.end_level == target.deepest and isinstance(move.curve, Arc):
             radius = move.curve.radius
             yield (radius - cutter if radius > cutter else 0.0), radius + cutter

@@ -107,8 +107,8 @@ def holes_of_words(circles: Circles) -> Iterator[AssumedHole]:
     """Yield the holes that words say there are: R of Yasnac."""
     for _, target in circles:
         if target.wall.bore:
-            place = tuple(map(float, target.wall.origin))
-            yield AssumedHole(target.source.line, place, target.wall.bore)
+            x, y, z = map(float, target.wall.origin)
+            yield AssumedHole(target.source.line, (x, y, z), target.wall.bore)
 
 
 def holes_entered(
@@ -133,8 +133,8 @@ def holes_entered(
             end = np.array([moves[index].end[:3]])
             below = not found and end[0, Z] < min(target.wall.face, approach.came) - SAME_LEVEL
             if below or material.touched(end, radius(index), 0):
-                hole = AssumedHole(moves[index].block, tuple(map(float, end[0])), radius(index))
-                found.append(hole)
+                x, y, z = map(float, end[0])
+                found.append(AssumedHole(moves[index].block, (x, y, z), radius(index)))
         if not found:
             break
     return found

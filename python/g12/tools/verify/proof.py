@@ -41,6 +41,8 @@ from g12.tools.verify.shape import ShapeFacts, measure_shape
 from g12.tools.verify.subject import Subject, subject_of
 from g12.tools.verify.workpiece import Workpiece, workpiece_of
 
+Facts = PocketFacts | SectionFacts | ShapeFacts | HolesFacts
+
 
 class Tolerances(NamedTuple):
     """What a wall or a contour may be off, mm."""
@@ -140,11 +142,12 @@ def prove_traced(
     holes = measured_holes(subject, asked, allowed.polar)
     tell("looking for rapids through material")
     unseen = unseen_in(subject, asked)
-    said = [each for facts in (*pockets, *sections, *shapes, *holes) for each in facts.judged]
+    cuts: list[Facts] = [*pockets, *sections, *shapes, *holes]
+    said = [each for facts in cuts for each in facts.judged]
     said += judge_material(workpiece)
     found = judged(subject, asked, there, unseen, said)
-    cuts = {"pockets": pockets, "sections": sections, "shapes": shapes, "holes": holes}
-    return Proof(subject, asked, workpiece, allowed, unseen=unseen, judged=found, **cuts)
+    cut = pockets, sections, shapes, holes
+    return Proof(subject, asked, workpiece, allowed, *cut, unseen=unseen, judged=found)
 
 
 def tolerances_of(subject: Subject, tolerance: float | None) -> Tolerances:
@@ -180,7 +183,8 @@ def measured_sections(
     """Return what is measured of a program's sections, those on a cylinder on its surface."""
     axes = axes_of_section(subject.ini) if asked.sections else None
     moves, diameters = subject.trace.moves, subject.trace.diameters
-    found, surfaces = [], {}
+    found: list[SectionFacts] = []
+    surfaces: dict[float, Subject] = {}
     for each in counted(asked.sections, "measuring section", tell):
         view = surfaces.get(each.surface) or subject.of_section(each)
         if each.surface and subject.samples:  # of a run: all of it, to be used again

@@ -146,16 +146,16 @@ def zero_text(proof: Proof, unit: Unit) -> str:
 
 def paragraphs_of(proof: Proof, unit: Unit) -> Iterator[str]:
     """Yield every measure of each pocket, shape and section, and of the stock."""
-    for facts in proof.pockets:
-        yield pocket_text(facts, proof, unit)
-    for facts in proof.shapes:
-        yield call_text(facts.call, SHAPE, shape_values(facts, proof), proof, unit)
-    for facts in proof.holes:
-        angles = ", ".join(plain(angle, 3) for angle in facts.holes.angles)
-        values = {**holes_values(facts, proof), "count": facts.holes.count, "c": angles}
-        yield call_text(facts.holes.call, HOLES, values, proof, unit)
-    for facts in proof.sections:
-        yield section_text(facts, proof, unit)
+    for pocket in proof.pockets:
+        yield pocket_text(pocket, proof, unit)
+    for shape in proof.shapes:
+        yield call_text(shape.call, SHAPE, shape_values(shape, proof), proof, unit)
+    for drilled in proof.holes:
+        angles = ", ".join(plain(angle, 3) for angle in drilled.holes.angles)
+        values = {**holes_values(drilled, proof), "count": drilled.holes.count, "c": angles}
+        yield call_text(drilled.holes.call, HOLES, values, proof, unit)
+    for section in proof.sections:
+        yield section_text(section, proof, unit)
     if proof.given:
         values = stock_values(proof.given)
         yield paragraph(f"stock: {values['text']}", rows_of(STOCK, values, unit))

@@ -15,9 +15,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import accumulate, chain
-from typing import NamedTuple
 
 from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.verify.expected.toolpath import Expected
@@ -33,7 +32,8 @@ SAME_FEED = 1e-5  # relative; a trace tells feeds with nine decimals
 OFF, MISSING, EXTRA, RAPID, FEED, FEED_MODE = "off", "missing", "extra", "rapid", "feed", "mode"
 
 
-class Made(NamedTuple):
+@dataclass(frozen=True)
+class Made:
     """A move that was made: its points, the first of them its start, and how it was commanded.
 
     Between its points it follows ``curve``, straight lines without one; of a curve the start and
@@ -54,15 +54,8 @@ class Made(NamedTuple):
         """Yield the stretches of the move, those of an arc short enough to be followed."""
         points = self.points
         if isinstance(self.curve, Arc) and len(points) == 2:
-            points = self._along_the_arc(*points)
+            points = along_the_arc(self.curve, *points)
         return zip(points, points[1:])
-
-    def _along_the_arc(self, start: Point, end: Point) -> list[Point]:
-        count = math.ceil(abs(self.curve.sweep) / ARC_STEP) + 1
-        shares = [step / count for step in range(1, count)]
-        rise = end[1] - start[1]
-        between = [(self.curve.point(share), start[1] + share * rise) for share in shares]
-        return [start, *between, end]
 
     def off_as_a_whole(self, expected: Expected) -> float:
         """Return how far the move is at most off an expected one, from its start to its end.
@@ -70,11 +63,11 @@ class Made(NamedTuple):
         Infinite where the two are not of one kind.
         """
         curve, other = self.curve, expected.curve
-        if type(curve) is not type(other):
+        if curve is None or type(curve) is not type(other):
             return math.inf
         (start, start_level), (end, end_level) = self.points[0], self.points[-1]
         off = max(abs(start_level - expected.start_level), abs(end_level - expected.end_level))
-        if isinstance(other, Arc):
+        if isinstance(curve, Arc) and isinstance(other, Arc):
             turned = abs(curve.sweep - other.sweep) * other.radius
             moved = 2 * abs(curve.centre - other.centre) + abs(curve.start - other.start)
             return off + turned + moved + abs(end - curve.end)
@@ -89,7 +82,16 @@ class Made(NamedTuple):
         return max(0.0, away - _apart(first, last) / 2) if self.sampled else away
 
 
-class PathDifference(NamedTuple):
+def along_the_arc(arc: Arc, start: Point, end: Point) -> list[Point]:
+    """Return points of an arc that climbs, short steps apart."""
+    count = math.ceil(abs(arc.sweep) / ARC_STEP) + 1
+    shares = [step / count for step in range(1, count)]
+    rise = end[1] - start[1]
+    return [start, *((arc.point(share), start[1] + share * rise) for share in shares), end]
+
+
+@dataclass(frozen=True)
+class PathDifference:
     """The first thing that is not as expected.
 
     ``kind`` is OFF, MISSING, EXTRA, RAPID, FEED or FEED_MODE; ``size`` is the distance of OFF in
@@ -104,7 +106,8 @@ class PathDifference(NamedTuple):
     index: int | None = None
 
 
-class Span(NamedTuple):
+@dataclass(frozen=True)
+class Span:
     """The part of a toolpath that a move was made along: from a share of one move to another's."""
 
     index: int
@@ -181,14 +184,14 @@ def _at_its_worst(
     farther ahead, what is between is missing.
     """
     at = next(index for index, move in enumerate(path) if move is off.expected)
-    ahead, found = path[at : at + AHEAD], off._replace(size=0.0)
+    ahead, found = path[at : at + AHEAD], replace(off, size=0.0)
     for move in moves:
         if move.index == off.index and _farthest(move, ahead[1:])[0] <= tolerance:
             return PathDifference(MISSING, off.expected, off.expected.point(1.0), index=off.index)
         size, where = _farthest(move, ahead)
         if size <= found.size + TIE:
             break
-        found = off._replace(size=size, at=where, index=move.index)
+        found = replace(off, size=size, at=where, index=move.index)
     return found if found.size > tolerance else off
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -83,7 +84,7 @@ def lay_section(
         return SectionPath(expected, elements, emitted)
     sampled = ((index, real.positions[real.during(index)]) for index in own)
     seen = [(index, positions) for index, positions in sampled if len(positions)]
-    run = (made._replace(sampled=True) for made in made_of(seen, moves, plane))
+    run = (replace(made, sampled=True) for made in made_of(seen, moves, plane))
     return SectionPath(expected, elements, emitted, lay(expected, run, allowed[1]))
 
 
@@ -124,7 +125,8 @@ def judge_toolpath(
         yield Finding("feed", off.expected.line or line, values, place, file)
 
 
-class OffFeed(NamedTuple):
+@dataclass(frozen=True)
+class OffFeed:
     """A move (index) whose feed along the toolpath is not the words'; mm/min."""
 
     index: int

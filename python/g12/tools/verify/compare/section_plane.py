@@ -24,7 +24,8 @@ class Plane:
     it, and ``base`` where the program has its 0.
     """
 
-    axes, third = (X, Y, C), Z
+    axes: tuple[int, ...] = (X, Y, C)
+    third = Z
 
     def __init__(self, section: SectionContour, first: Move) -> None:
         self._centre = x0_of(section, first)

@@ -129,6 +129,11 @@ class Target:
         """The full circles of the toolpath about the centre."""
         return [move for move in self.path if is_full_circle(move)]
 
+    @property
+    def arcs(self) -> list[Arc]:
+        """The curves of the circles."""
+        return [move.curve for move in self.circles if isinstance(move.curve, Arc)]
+
     @cached_property
     def depths(self) -> tuple[float, ...]:
         """The depths of the circles, each once, downward."""

@@ -8,7 +8,7 @@ millimetres, angles degrees, C's speed degrees/s.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -85,7 +85,7 @@ def measure_section(
     section: SectionContour,
     path: Track,
     moves: Sequence[Move],
-    diameters: dict[int, float],
+    diameters: Mapping[int, float],
     axes: SectionAxes,
     tolerance: float,
     real: Followed | None = None,
@@ -153,8 +153,7 @@ def judge_words(facts: SectionFacts) -> Iterator[Finding]:
         levels = {"level": factor * min(depths), "start": factor * section.height}
         yield Finding("above-start", section.line, {"letter": letter, **levels})
     if section.surface and facts.lowest >= facts.start_height - SIZE:
-        values = {"letter": letter, "code": section.code}
-        yield Finding("not-below-start", section.line, values)
+        yield Finding("not-below-start", section.line, {"letter": letter, "code": section.code})
     if not facts.tool and any(facts.sides):
         yield Finding("no-diameter", section.line)
 

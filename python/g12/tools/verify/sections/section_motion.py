@@ -22,6 +22,7 @@ import cmath
 import math
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import groupby, islice
 from typing import NamedTuple
 
@@ -84,7 +85,8 @@ class SectionAxes(NamedTuple):
         return 1.0 / max(linear, abs(seen.imag) / (slide * self.c), 1e-12)
 
 
-class Joint(NamedTuple):
+@dataclass(frozen=True)
+class Joint:
     """Where a move (``index``) of a section ends and the next one begins.
 
     ``into`` and ``out`` are the directions (3,), zero where C turns in place. ``within``: both are

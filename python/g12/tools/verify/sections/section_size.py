@@ -104,7 +104,7 @@ def across_flats(walls: Sequence[CutWall]) -> Iterator[tuple[float, float]]:
         order = sorted(parallel, key=lambda wall: along(outward, wall.element.start))
         first, last = order[0].element, order[-1].element
         if (first.curve.direction() / last.curve.direction()).real < 0.0:
-            low, high = (along(outward, wall.reached).mean() for wall in (order[0], order[-1]))
+            low, high = (np.mean(along(outward, wall.reached)) for wall in (order[0], order[-1]))
             yield float(along(outward, last.start - first.start)), float(high - low)
 
 
