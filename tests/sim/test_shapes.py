@@ -106,3 +106,15 @@ def test_an_abort_in_a_shape_and_the_same_call_again(lathe):
     run = lathe.run_text(["G0 Z5", *START, CALLS["flats"][0], "M2"])
     assert run.error is None
     check_cut("flats", real_path(run.samples))
+
+
+def test_a_coarse_g64_does_not_shorten_a_ramp():
+    """LinuxCNC rounds a corner of X and Z by all of P where C stands, at F60 as well."""
+    lines = [*START, "G64 P0.1", "o<polar_slot> call [6] [10] [1] [-9999] [-9999] [2000] [60] [0]"]
+    with Machine(SIM / "lathe_mm.ini") as lathe:
+        axes = lathe.run_text("\n".join([*lines, "G0 Z5", "M2", ""])).samples.axes
+    x, z = axes["X"], axes["Z"]
+    sloping = (z[1:-1] > -0.9) & (z[1:-1] < 0.5) & (x[1:-1] > 1.0)
+    turning = sloping & (x[1:-1] >= x[:-2]) & (x[1:-1] > x[2:])
+    assert turning.any()
+    assert np.abs(x[1:-1][turning] - 2.0).max() < 0.005

@@ -133,6 +133,15 @@ def test_a_programmed_tolerance_is_kept():
     assert handed_over([run()], interp).done == [FIRST, *NEXT, *RELEASED]
 
 
+@pytest.mark.parametrize(("tolerance", "blended"), [(0.1, [SMOOTH, "G64P0.1Q0"]), (0.001, [])])
+def test_where_c_stands_the_tolerance_is_no_coarser_than_the_section_s(tolerance, blended):
+    interp = Interpreter(tolerance=tolerance)
+    path = PathControl(interp, 0.0025, 0.0254)
+    for turning in (True, False, True):
+        path.inside(turning)
+    assert interp.done == blended
+
+
 @pytest.mark.parametrize(
     ("tolerance", "merging", "blended"),
     [(0.0, 0.0, SMOOTH), (0.0254, 0.0, SMOOTH), (0.0254, 0.0254, None), (0.02, 0.0, None)],
@@ -140,7 +149,7 @@ def test_a_programmed_tolerance_is_kept():
 def test_on_the_face_the_tolerance_that_linuxcnc_starts_with_is_none(tolerance, merging, blended):
     """Between segments of C it may stay: P does nothing there."""
     interp = Interpreter(tolerance=tolerance, merging=merging)
-    path = PathControl(interp, SMOOTH, 0.0254)
+    path = PathControl(interp, 0.0025, 0.0254)
     path.on_face()
     assert interp.done == ([blended] if blended else [])
     path.give_back()
