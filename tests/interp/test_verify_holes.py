@@ -81,6 +81,13 @@ def test_a_clamp_that_is_right_has_no_finding(tmp_path):
     assert findings(path, ini) == []
 
 
+def test_a_clamp_that_no_trace_shows_is_named_as_not_judged(tmp_path):
+    ini = read_ini(SIM / "lathe_mm_headless.ini").replaced({"G12": {"C_CLAMP": "M110 M111"}})
+    path = written(tmp_path, FACE)
+    (found,) = (each for each in prove(path, ini, tools={1: 6.0}).judged if each.line)
+    assert (found.code, found.line, found.is_not_judged) == ("clamp-unseen", 6, True)
+
+
 def test_a_bar_that_is_in_the_way(tmp_path):
     ini = read_ini(SIM / "lathe_mm_headless.ini")
     path = written(tmp_path, SIDE, "G0 Z10", FACE)

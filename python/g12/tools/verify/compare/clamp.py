@@ -24,10 +24,16 @@ class Clamp(NamedTuple):
 def judge_clamp(
     holes: Holes, expected: Sequence[Expected], laid: Laid, block: Block, clamp: Clamp
 ) -> Iterator[Finding]:
-    """Yield the first move of each kind in which the clamp is otherwise, or that it stays so."""
-    if not clamp.seen:
+    """Yield the first move of each kind in which the clamp is otherwise, or that it stays so.
+
+    Also that it was not judged, where there are codes of which no event tells.
+    """
+    if not clamp.codes:
         return
     (close, opens), call = clamp.codes, holes.call
+    if not clamp.seen:
+        yield Finding("clamp-unseen", call.line, {"codes": f"{close} and {opens}"}, file=call.file)
+        return
     for closed, name, code in ((True, "clamp-open", close), (False, "clamp-closed", opens)):
         wrong = (
             move.name

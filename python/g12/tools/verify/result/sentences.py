@@ -153,6 +153,9 @@ NOTES = {
     ),
 }
 NOT_JUDGED = {
+    "clamp-unseen": (
+        "the clamp of C: {codes} are not both remapped to a sub (ngc=), so no trace shows them"
+    ),
     "first-rapid": (
         "what the first rapid goes through on its way to {at:place}: "
         "where the tool comes from is not known"
