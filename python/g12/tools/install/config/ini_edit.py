@@ -90,6 +90,8 @@ class IniText:
         self.path = path.absolute()
         self.files: dict[Path, list[str]] = {self.path: self._read(self.path)}
         self.unreadable: list[IniLine] = []
+        self._lines: list[IniLine] = []
+        self._files_of_lines: dict[Path, list[str]] = {}
         for line in self._own_lines():
             self._load_included(line)
 
@@ -110,8 +112,17 @@ class IniText:
         for index, text in enumerate(self.files[self.path]):
             yield IniLine(self.path, index, text.rstrip("\r\n"), index)
 
-    def lines(self) -> Iterator[IniLine]:
-        """Yield every line as LinuxCNC sees it, an #INCLUDE line in front of what it includes."""
+    def lines(self) -> Sequence[IniLine]:
+        """Return every line as LinuxCNC sees it, an #INCLUDE line in front of what it includes.
+
+        They are kept until an edit: `install` asks for them some hundred times.
+        """
+        if self._files_of_lines != self.files:
+            self._lines = list(self._expanded())
+            self._files_of_lines = {file: list(lines) for file, lines in self.files.items()}
+        return self._lines
+
+    def _expanded(self) -> Iterator[IniLine]:
         folder = self.path.parent
         for line in self._own_lines():
             yield line
@@ -132,13 +143,13 @@ class IniText:
 
     def section(self, section: str) -> list[IniLine]:
         """Return the lines LinuxCNC finds in a section, its header first."""
-        lines = list(self.lines())
+        lines = self.lines()
         extent = section_extent([line.text for line in lines], section)
-        return lines[extent.start - 1 : extent.stop] if extent.start else []
+        return list(lines[extent.start - 1 : extent.stop]) if extent.start else []
 
     def entries(self, section: str, key: str) -> list[tuple[IniLine, str]]:
         """Return the values of a key in the section LinuxCNC reads, with their first lines."""
-        lines = list(self.lines())
+        lines = self.lines()
         found = entries_of([line.text for line in lines], section)
         return [(lines[entry.row], entry.value) for entry in found if entry.key == key]
 
