@@ -268,8 +268,8 @@ sys.path.insert(0, "{python}")
 import remap
 from g12.host.section.output import PathControl
 within = PathControl.within = getattr(PathControl, "within", PathControl.inside)  # loaded twice
-def spied(self):
-    within(self)
+def spied(self, turning):
+    within(self, turning)
     self.interp.params[7] = self.interp.active_settings[3]
 PathControl.inside = spied
 """

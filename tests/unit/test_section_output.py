@@ -142,6 +142,11 @@ def test_where_c_stands_the_tolerance_is_no_coarser_than_the_section_s(tolerance
     assert interp.done == blended
 
 
+def test_a_g9_in_another_block_leaves_no_coarse_tolerance_where_c_stands():
+    still = run(segments=[(10.0, 0.0, 0.0, 250.0)])
+    assert handed_over([still], Interpreter(tolerance=0.1), exact=(9,)).done[0] == SMOOTH
+
+
 @pytest.mark.parametrize(
     ("tolerance", "merging", "blended"),
     [(0.0, 0.0, SMOOTH), (0.0254, 0.0, SMOOTH), (0.0254, 0.0254, None), (0.02, 0.0, None)],

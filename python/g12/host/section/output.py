@@ -238,6 +238,8 @@ class SectionOutput:
         if len(run.segments) > 1:
             self._moves(run.line, run.axes, run.segments[:-1])
         self.interp.sequence_number = run.line
+        if not (run.stop or (block_ends and (exact_stop or self.path.exact))):
+            self.path.inside(run.segments[-1][1] != self.interp.CC_current)
         self.path.at_end(run.stop, exact_stop, block_ends)
         self._block(run.axes, *run.segments[-1])
 
