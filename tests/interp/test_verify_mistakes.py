@@ -404,3 +404,12 @@ def test_a_g28_whose_place_was_never_set_is_noted_on_a_lathe(machine, stored, no
     values = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "own.var")}}
     proof = prove(tmp_path / "a.ngc", read_ini(SIM / f"{machine}_headless.ini").replaced(values))
     assert [each.line for each in proof.judged if each.code == "place-not-set"] == [2] * noted
+
+
+def test_a_g28_1_in_the_program_sets_the_place(tmp_path):
+    (tmp_path / "a.ngc").write_text("G21 G90 G94\nG28.1\nG28\nG30\nM2\n")
+    values = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "own.var")}}
+    ini = read_ini(SIM / "lathe_mm_headless.ini").replaced(values)
+    (tmp_path / "own.var").write_text("")
+    judged = prove(tmp_path / "a.ngc", ini).judged
+    assert [each.line for each in judged if each.code == "place-not-set"] == [4]

@@ -17,6 +17,7 @@ def judge_home(texts: Sequence[Text], ini: Ini) -> Iterator[Finding]:
     """Yield the first G28 and the first G30 of which the var file has no place."""
     waiting = set(unset_places(ini))
     for text in texts:
+        waiting -= {STORED.get(round(number - 0.1, 1), "") for number in text.codes}  # set here
         for code in waiting.intersection(STORED.get(number, "") for number in text.codes):
             waiting.discard(code)
             yield Finding("place-not-set", text.number, {"code": code})
