@@ -92,6 +92,7 @@ def orientation(draft: Draft) -> None:
     angles = [word for letter in "RP" if (word := draft.take(letter))]
     if len(angles) > 1:
         raise NotTranslated(f"{code.code} with R and P: one of them is its angle")
+    draft.change(spindle=UNKNOWN)  # M19 stops it
     line = " ".join(["M19", *(f"R{word.value}" for word in angles), LONGEST_WAIT])
     if draft.alone():
         draft.words.append(line_as_word(line))
