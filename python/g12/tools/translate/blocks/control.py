@@ -120,7 +120,7 @@ class Control:
     the codes, ``tables`` the values of the file; ``live_spindle`` is LinuxCNC's spindle that drives
     the tool, "" if that is not known, ``polar_codes`` are LinuxCNC's codes on the machine for polar
     mode on and off, ``cylinder_code`` is that for a cylinder, with what its C is (``radius`` or
-    ``diameter``).
+    ``diameter``). ``c_axis_on`` are the codes that make the main spindle C: it stands then.
     """
 
     name: str
@@ -139,6 +139,7 @@ class Control:
     live_spindle: str = "1"
     polar_codes: tuple[str, str] = ("G12.1", "G13.1")
     cylinder_code: tuple[str, str] = ("G7.1", "radius")
+    c_axis_on: frozenset[str] = frozenset()
 
     @property
     def is_lathe(self) -> bool:
@@ -185,6 +186,7 @@ def read_control(name: str) -> Control:
         sources=tuple(data.get("sources", ())),
         readings=tuple(data.get("readings", ())),
         meanings={**data["g_codes"], **data["m_codes"]},
+        c_axis_on=frozenset(code for code, as_ in data["m_codes"].items() if as_ == "C axis on"),
         tables={name: data[name] for name in TABLES if name in data and name[1:] != "_codes"},
     )
 

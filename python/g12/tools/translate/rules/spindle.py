@@ -55,6 +55,8 @@ def limit_now(draft: Draft, code: str, limit: str) -> None:
 
 def live_tool(draft: Draft) -> None:
     """Name the spindle of M3, M4, M5 and S: that of the block's P word, or the live tool's."""
+    if draft.control.c_axis_on.intersection(word.code for word in draft.block.words):
+        draft.change(spindle=UNKNOWN)
     codes = TURNING.intersection(draft.m_codes())
     named = named_spindle(draft, bool(codes))
     if codes and named in ("", "$0", "$-1"):

@@ -9,11 +9,11 @@ from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN
+from g12.tools.translate.rules.spindle import TURNING
 
 COMPENSATION = frozenset(("G41", "G42"))
 POCKETS = frozenset(("G12", "G13"))
 USES_D = COMPENSATION | POCKETS
-TURNING = frozenset(("M3", "M4", "M5"))
 
 
 def tool_and_offsets(draft: Draft) -> None:
@@ -58,8 +58,11 @@ def turret_word(draft: Draft) -> None:
 
 def spindle_goes_on(draft: Draft) -> None:
     """Start the spindle again that turns while the turret does: LinuxCNC's M6 stops it."""
-    turning = draft.sure("spindle", "LinuxCNC's tool change stops the spindle")
-    if turning and not draft.state.live and not TURNING.intersection(draft.m_codes()):
+    if TURNING.intersection(draft.m_codes()) or draft.state.live:
+        return
+    why = "LinuxCNC's tool change stops the spindle (say M3, M4 or M5 in the block of T)"
+    turning = draft.sure("spindle", why)
+    if turning:
         draft.words.append(word_of(turning))
 
 
