@@ -35,6 +35,7 @@ class Asked(NamedTuple):
     still: list[tuple[int, str]]
     shapes: Sequence[CalledShape] = ()
     holes: Sequence[CalledShape] = ()
+    clamp_is_seen: bool = False
 
     @property
     def moves(self) -> set[int]:
@@ -48,7 +49,7 @@ class Asked(NamedTuple):
 def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Parameters) -> Asked:
     """Return what a program's words ask for."""
     codes, program, trace = Codes(subject.ini), subject.program, subject.trace
-    blocks = executed_everywhere(tracer, program, trace, codes, tools, parameters)
+    blocks, clamp_is_seen = executed_everywhere(tracer, program, trace, codes, tools, parameters)
     reader = CircleReader(codes, subject.ini, trace.moves, trace.diameters)
     pens = {kind: partial(pen, ini=subject.ini) for kind, pen in PENS.items()}
     found = sections(tracer, program, codes, pens, blocks, tools, parameters)
@@ -60,7 +61,7 @@ def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Paramet
     cut = with_zero_lines(cut, trace.moves, program, codes, subject.ini)
     called = partial(called_subs, blocks, trace.moves, trace.diameters, subject.ini)
     shapes, holes = (list(called(sub)) for sub in (codes.shape_of, codes.holes_of))
-    return Asked(list(reader.targets(blocks)), cut, still, shapes, holes)
+    return Asked(list(reader.targets(blocks)), cut, still, shapes, holes, clamp_is_seen)
 
 
 def still_blocks(blocks: Iterable[Block], codes: Codes) -> Iterator[tuple[int, str]]:

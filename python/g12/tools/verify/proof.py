@@ -32,7 +32,6 @@ from g12.tools.verify.in_material import judge_material
 from g12.tools.verify.judgement import judged
 from g12.tools.verify.pocket import PocketFacts, measure_pocket
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.reading.executed_subs import clamp_files
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import RUN, WALL
 from g12.tools.verify.sections.section import SectionFacts, measure_section
@@ -210,7 +209,7 @@ def measured_shapes(
 def measured_holes(subject: Subject, asked: Asked, tolerance: float) -> list[HolesFacts]:
     """Return what is measured of a program's holes with C."""
     moves, codes = subject.trace.moves, [f"M{code}" for code in subject.ini.settings.c_clamp]
-    clamp = Clamp(codes, bool(clamp_files(subject.ini)))
+    clamp = Clamp(codes, asked.clamp_is_seen)
     return [measure_holes(each, moves, tolerance, clamp, subject.real) for each in asked.holes]
 
 

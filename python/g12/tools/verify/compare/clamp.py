@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import NamedTuple
@@ -34,20 +35,24 @@ def judge_clamp(
     if not clamp.seen:
         yield Finding("clamp-unseen", call.line, {"codes": f"{close} and {opens}"}, file=call.file)
         return
+    at, told = clamp_events(block)
     for closed, name, code in ((True, "clamp-open", close), (False, "clamp-closed", opens)):
         wrong = (
             move.name
             for move, made in zip(expected, laid.moves)
-            if holes.clamped(move) is closed and any(in_force(block, at) != code for at in made)
+            if holes.clamped(move) is closed
+            and any(told[bisect(at, index)] != code for index in made)
         )
         for what in islice(wrong, 1):
             yield Finding(name, call.line, {"what": what, "code": code}, file=call.file)
-    if in_force(block, block.end) != opens:
+    if told[-1] != opens:
         yield Finding("clamp-left", call.line, {"code": opens}, file=call.file)
 
 
-def in_force(block: Block, index: int) -> str:
-    """Return the clamp's code that came last in a block before a move, "" before the first."""
-    texts = [each.text for each in block.own_events if each.at <= index]
-    codes = [text.split()[1] for text in texts if text.startswith(f"{CLAMP} ")]
-    return codes[-1] if codes else ""
+def clamp_events(block: Block) -> tuple[list[int], list[str]]:
+    """Return before which moves of a block a code of the clamp came, and the codes.
+
+    The codes begin with that before the first, "": the one in force at a move is `bisect`'s.
+    """
+    events = [each for each in block.own_events if each.text.startswith(f"{CLAMP} ")]
+    return [each.at for each in events], ["", *(each.text.split()[1] for each in events)]

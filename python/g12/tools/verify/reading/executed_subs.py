@@ -41,11 +41,11 @@ def executed_everywhere(
     codes: Codes,
     tools: Tools,
     parameters: Parameters = None,
-) -> list[Block]:
-    """Return every execution of the blocks that matter, in order.
+) -> tuple[list[Block], bool]:
+    """Return every execution of the blocks that matter, in order; whether C's clamp is told of.
 
     ``trace`` is the program's. Where LinuxCNC does not take the copies, the blocks of the program
-    are all, with what the subs of C's clamp tell.
+    are all, with what the subs of C's clamp tell, if it takes those.
     """
     named, clamps = called_files(read_lines(program), tracer.ini), clamp_files(tracer.ini)
     files = files_with(codes.wanted_in, {*map(Path, trace.files), *named}.difference(clamps))
@@ -53,9 +53,9 @@ def executed_everywhere(
         copies = Copies(program, some, partial(watched_file, codes=codes, clamps=clamps))
         copy = copies.trace(tracer, tools, parameters, watch_offsets=True)
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
-            return blocks_in(copy, copies.texts)
+            return blocks_in(copy, copies.texts), bool(clamps)
     wanted = codes.wanted_in(read_lines(program))
-    return executed(tracer, program, trace, wanted.__contains__, parameters)
+    return executed(tracer, program, trace, wanted.__contains__, parameters), False
 
 
 def watched_file(

@@ -154,7 +154,7 @@ NOTES = {
 }
 NOT_JUDGED = {
     "clamp-unseen": (
-        "the clamp of C: {codes} are not both remapped to a sub (ngc=), so no trace shows them"
+        "the clamp of C: no trace shows {codes}; both have to be remapped to a sub (ngc=)"
     ),
     "first-rapid": (
         "what the first rapid goes through on its way to {at:place}: "
