@@ -55,6 +55,8 @@ CONSTRUCTS = [
      "G0 X1 Y4\nG1 X1 Y5\nG0 X3"),
     ("haas-mill", "#100=-45.\nG68 R#100\nG0 X2.\nG1 Y3.\nG69",
      "G0 X[1+SQRT[.5]] Y[1-SQRT[.5]]\nG1 X[1+3*SQRT[.5]] Y[1+SQRT[.5]]"),
+    ("haas-mill", "G52 X1. Y-2.\nG68 X0 Y0 R90.\nG0 X3. Y2.\nG1 X4.\nG69\nG52 X0 Y0\nG0 X3.",
+     "G52 X0 Y0\nG0 X-1 Y1\nG1 X-1 Y2\nG0 X3"),
     ("haas-mill", "G10 L12 P1 R.5\nG10 L13 P1 R.02\nT1 M6\nG41 D1 G1 X2.\nY3.\nG40 X4.",
      "G10 L1 P1 R.26\nT1 M6\nG41 D1 G1 X2\nY3\nG40 X4"),
     # rigid tapping: G33.1, which follows the spindle

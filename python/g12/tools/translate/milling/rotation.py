@@ -3,6 +3,9 @@
 
 LinuxCNC turns a work offset about its origin. G59.3 becomes a copy of the offset in force, with the
 origin where the turn takes it: the offset itself is not touched, and G69 selects it again.
+
+A local offset, G52 or G92, is turned with the rest on LinuxCNC, on the control it is not: c being
+the centre, g the local offset and R the turn, the origin goes on by (1 - R)(c + g).
 """
 
 from __future__ import annotations
@@ -22,6 +25,8 @@ from g12.tools.translate.rules.offsets import (
 )
 
 HERE = {"X": "#5420", "Y": "#5421"}
+CENTRES = {"X": "#<turn_x>", "Y": "#<turn_y>"}
+LOCAL_OFFSETS = {"X": "#5210 * #5211", "Y": "#5210 * #5212"}  # 0 where none is active
 
 
 def rotation(draft: Draft) -> None:
@@ -29,6 +34,8 @@ def rotation(draft: Draft) -> None:
     turned = draft.state.turned
     if turned and (OWN_SYSTEMS.intersection(draft.codes()) or "numbered offset" in draft.meanings):
         raise NotTranslated("another work offset within G68: write G69 before it")
+    if turned and not {"G52", "G92"}.isdisjoint(draft.codes()):
+        raise NotTranslated("a local offset within G68, which turns with it here: write G69 first")
     if "turned back" in draft.meanings:
         draft.comments.append(draft.meanings.pop("turned back").code)
         if turned:
@@ -50,19 +57,23 @@ def turn(draft: Draft, code: str) -> None:
     words = {letter: draft.take(letter) for letter in "XYR"}
     if not words["R"]:
         raise NotTranslated(f"{code} needs R, the angle")
-    x, y = (words[a].value if words[a] else HERE[a] for a in "XY")
+    centres = [
+        f"{name}=[[{words[a].value if words[a] else HERE[a]}] * {SCALE} + {LOCAL_OFFSETS[a]}]"
+        for a, name in CENTRES.items()
+    ]
+    x, y = CENTRES.values()
     angle = f"[{words['R'].value}]"
     first = G54_PARAMETER + 20 * (int(system[1:]) - 54)
     shift = {
-        "X": f"[[{x}] * [1 - COS{angle}] + [{y}] * SIN{angle}]",
-        "Y": f"[[{y}] * [1 - COS{angle}] - [{x}] * SIN{angle}]",
+        "X": f"{x} * [1 - COS{angle}] + {y} * SIN{angle}",
+        "Y": f"{y} * [1 - COS{angle}] - {x} * SIN{angle}",
     }
     values = [
         f"#{SLOT_PARAMETER + n - 1}=[#{first + n - 1}"
-        + (f" + {shift[axis]} * {SCALE}]" if axis in shift else "]")
+        + (f" + {shift[axis]}]" if axis in shift else "]")
         for axis, n in AXIS_NUMBERS.items()
         if axis in draft.control.axes
     ]
     draft.comments.append(f"{code} overwrites {SLOT}")
-    draft.after += [SET_SCALE, *values, f"G10 L2 P9 R{angle}", SLOT]
+    draft.after += [SET_SCALE, *centres, *values, f"G10 L2 P9 R{angle}", SLOT]
     draft.change(turned=system, **LOST)
