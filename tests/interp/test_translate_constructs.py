@@ -32,6 +32,14 @@ CONSTRUCTS = [
     ("haas-mill", "G1 X2.\nG80\nX2.5", "G1 X2\nX2.5"),
     ("haas-mill", "G81 X2. Z.5 R.9\nG80 X2.5", "G81 X2 Z.5 R.9\nG80\nG0 X2.5"),
     ("haas-mill", "G1 X1.5\nG82 X2. Z.5 R.9 P100\nG80", "G1 X1.5\nG82 X2 Z.5 R.9 P.1\nG80\nG1"),
+    # what a condition rules: words, an assignment and words, nothing, a return
+    ("haas-mill", "#1=1.\nIF[#1EQ1]G1 X2. F5.\nIF[#1EQ2]THEN G0 Y2.\nIF[#1EQ1]", "G1 X2 F5"),
+    ("haas-mill", "#1=1.\nIF[#1EQ1]THEN#2=3. Y#2\nIF[#1EQ2]THEN#2=4. Y#2\nX#2", "Y3\nX3"),
+    ("haas-mill", "#100=0.\nM98 P5\nM98 P5\nM30\nO5\n#100=#100+1.\nIF[#100EQ2]M99\nX3.\nM99",
+     "X3"),
+    ("haas-mill", "G65 P5 A2.\nG65 P5 A3.\nM30\nO5\nIF[#1EQ2]M99\nX#1\nM99", "X3"),
+    ("haas-mill", "#1=1.\nIF[#1EQ1]M98 P5\nX2.\nN7 Y3.\nM30\nO5\nM99 P7", "Y3"),
+    ("haas-mill", "#1=1.\n/IF[#1EQ1]X2.\nN7 IF[#1LT3]THEN#1=#1+1 X#1\nIF[#1LT3]GOTO7", "X2\nX3"),
     # drilling cycles
     ("haas-mill", "G81 Z.5 R.9 L0\nX2.\nG80", "G81 X2 Z.5 R.9\nG80\nG0"),
     ("haas-mill", "G81 X2. Z.5\nG80", "G81 X2 Z.5 R1\nG80\nG0"),

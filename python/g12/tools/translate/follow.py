@@ -15,6 +15,7 @@ from g12.tools.translate.blocks.draft import Draft, SubprogramCall
 from g12.tools.translate.blocks.errors import NotSaid, NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
+from g12.tools.translate.jumps import OPENING
 from g12.tools.translate.on_lathe.sections import before_loop
 from g12.tools.translate.rules.plain import is_plain
 from g12.tools.translate.statements import STATEMENTS
@@ -117,7 +118,7 @@ class FollowedProgram:
                 raise NotTranslated(problem)
             statement = STATEMENTS.get(block.kind)
             if statement:
-                if block.kind == "while":
+                if block.kind in OPENING:
                     before_loop(draft)
                 statement(draft, index, self.structure)
             elif index in self.structure.starts or draft.begins_program():
@@ -155,8 +156,11 @@ class FollowedProgram:
             draft.return_text = f"o<macro_{number}> {'endsub' if last else 'return'}"
 
     def _parted(self, index: int) -> bool:
-        """Tell whether a block is in what jumps part, so that no program can end with it."""
-        return any(first <= index <= last for first, last in self.structure.jumps.spans)
+        """Tell whether a block is in what jumps part or a condition rules: no program ends so."""
+        ruled = [at for at in self.structure.partners.items() if at[0] < index < at[1]]
+        return bool(ruled) or any(
+            first <= index <= last for first, last in self.structure.jumps.spans
+        )
 
     def ends_of_macros(self) -> dict[int, str]:
         """Return the end that a macro needs behind its last block, if that is no return."""

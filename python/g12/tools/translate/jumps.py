@@ -32,6 +32,7 @@ from g12.tools.translate.blocks.lexer import ForeignBlock
 
 MOST_LOOPS = 8  # that one jump may leave
 NO_LOOP = -1
+OPENING = ("while", "if")  # kinds of blocks that a partner closes
 
 
 @dataclass
@@ -60,7 +61,7 @@ class _Loops:
         opened = [NO_LOOP]
         for index, block in enumerate(blocks):
             self.about.append(opened[-1])
-            if index in partners and block.kind == "while":
+            if index in partners and block.kind in OPENING:
                 opened.append(index)
             elif index in partners:
                 opened.pop()

@@ -14,6 +14,7 @@ from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.expressions import SHARED
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.follow import FollowedProgram
+from g12.tools.translate.jumps import OPENING
 from g12.tools.translate.rules.subprograms import ARGUMENTS
 from g12.tools.translate.structure import asked_by, ways_from
 
@@ -63,8 +64,8 @@ def passed_on(
     condition = block.expression
     for following in {*ways, *([index + 1] if block.skipped else [])}:
         known = given | set_by(block)
-        if condition and block.kind in ("goto", "while"):
-            onward = (following == index + 1) == (block.kind == "while")
+        if condition and block.kind in ("goto", *OPENING):
+            onward = (following == index + 1) == (block.kind in OPENING)
             known |= condition.set_if_true if onward else condition.set_if_false
         if not followed.structure.is_over(following):
             yield following, known
@@ -79,21 +80,13 @@ def given_by_all(calls: list[Draft]) -> frozenset[int]:
 def read_by(block: ForeignBlock) -> frozenset[int]:
     """Return the local variables that a block reads."""
     read = frozenset().union(*(word.read for word in block.words))
-    if block.expression:
-        read |= block.expression.read
-    then = block.then.expression if block.then else None
-    return read | (then.read - block.expression.set_if_true if then else frozenset())
+    return read | block.expression.read if block.expression else read
 
 
 def set_by(block: ForeignBlock) -> frozenset[int]:
     """Return the variables that surely have a value behind a block because of it."""
-    if block.skipped:
-        return frozenset()
-    if block.kind == "assign":
-        return frozenset((block.variable,))
-    if block.kind == "if" and block.then.kind == "assign":
-        return block.expression.set_if_false & {block.then.variable}
-    return frozenset()
+    sets = block.kind == "assign" and not block.skipped
+    return frozenset((block.variable,)) if sets else frozenset()
 
 
 def unset_sentence(number: int, variable: int) -> str:
@@ -115,5 +108,4 @@ def shared_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
 
 def used_by(block: ForeignBlock) -> Iterable[int]:
     """Return the local variables that a block reads, asks for or sets."""
-    parts = [block, block.then] if block.then else [block]
-    return {*read_by(block), *asked_by(block), *(part.variable for part in parts)}
+    return {*read_by(block), *asked_by(block), block.variable}

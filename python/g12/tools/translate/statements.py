@@ -38,36 +38,32 @@ def end_of_loop(draft: Draft, index: int, structure: Structure) -> None:
     labelled(draft, f"o<while_{structure.partners[index]}> endwhile")
 
 
-def if_then(draft: Draft, index: int, structure: Structure) -> None:
-    """Write a condition with one assignment."""
-    then = draft.block.then
-    text = assignment_text(then) if then.kind == "assign" else block_of_stop(draft, then.label)
+def condition(draft: Draft, index: int, structure: Structure) -> None:
+    """Write the head of what a condition rules."""
     labelled(draft, f"o<if_{index}> if {draft.block.expression.text}")
-    draft.after += [text, f"o<if_{index}> endif"]
+
+
+def end_of_condition(draft: Draft, index: int, structure: Structure) -> None:
+    """Write the end of what a condition rules."""
+    labelled(draft, f"o<if_{structure.partners[index]}> endif")
 
 
 def goto(draft: Draft, index: int, structure: Structure) -> None:
     """Write a jump, with its condition if it has one."""
     lines = structure.jumps.at[index]
-    condition = draft.block.expression
-    if condition:
-        lines = [f"o<if_{index}> if {condition.text}", *lines, f"o<if_{index}> endif"]
+    asked = draft.block.expression
+    if asked:
+        lines = [f"o<if_{index}> if {asked.text}", *lines, f"o<if_{index}> endif"]
     labelled(draft, lines[0])
     draft.after += lines[1:]
 
 
 def stop(draft: Draft, index: int, structure: Structure) -> None:
-    """Write an alarm or a stop with a message."""
-    draft.words = [*draft.block.words, line_as_word(block_of_stop(draft, draft.block.label))]
-
-
-def block_of_stop(draft: Draft, variable: str) -> str:
-    """Return the block for #3000, an alarm, and #3006, a stop, with the comment as its text."""
+    """Write #3000, an alarm, or #3006, a stop, with the comment as its text."""
     message = ", ".join(draft.comments) or "stopped by the program"
     draft.comments = []
-    if variable == "3006":
-        return f"M0 (MSG, {message})"
-    return f"(ABORT, {message})"
+    text = f"M0 (MSG, {message})" if draft.block.label == "3006" else f"(ABORT, {message})"
+    draft.words = [*draft.block.words, line_as_word(text)]
 
 
 def labelled(draft: Draft, text: str) -> None:
@@ -87,7 +83,8 @@ STATEMENTS = {
     "assign": assign,
     "while": while_loop,
     "end": end_of_loop,
-    "if": if_then,
+    "if": condition,
+    "endif": end_of_condition,
     "goto": goto,
     "stop": stop,
 }

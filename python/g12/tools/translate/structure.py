@@ -10,7 +10,7 @@ from itertools import count
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import ENDS
 from g12.tools.translate.blocks.lexer import NAMED_PROGRAMS, ForeignBlock, program_name
-from g12.tools.translate.jumps import Jumps, find_jumps
+from g12.tools.translate.jumps import OPENING, Jumps, find_jumps
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS, called_program
 
 MAIN = -1  # the number of the main program
@@ -27,7 +27,7 @@ class Structure:
     is the block that is reached first; ``entries`` has the first block of each other program by its
     number, ``starts`` the numbers by the block, with MAIN for a main program that others stand
     before. ``doubled`` are numbers that several programs have. ``partners`` joins each WHILE and
-    its END, ``problems`` has what is wrong with a block, ``last_returns`` the block in which each
+    its END, each condition and its end, ``problems`` has what is wrong with a block, ``last_returns`` the block in which each
     program returns for the last time, ``jumps`` where GOTO and M99 P lead, ``asked`` the variables
     that each program compares with #0.
 
@@ -127,8 +127,7 @@ def find_ends(structure: Structure, control: Control) -> None:
 
 def asked_by(block: ForeignBlock) -> frozenset[int]:
     """Return the variables that a block compares with #0."""
-    parts = [part.expression for part in (block, block.then) if part and part.expression]
-    return frozenset().union(*(part.asked for part in parts))
+    return block.expression.asked if block.expression else frozenset()
 
 
 def programs_of_blocks(structure: Structure) -> list[int]:
@@ -160,7 +159,7 @@ def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
     """Yield the ways on from a block that neither calls nor ends: the last block on it, the next.
 
     A WHILE leads behind its END, too, and an END to where its WHILE leads: what is written before
-    a loop's head is run once.
+    a loop's head is run once. A condition leads to its end, too.
     """
     kind, partner = structure.blocks[index].kind, structure.partners.get(index)
     target = structure.jumps.targets.get(index)
@@ -173,6 +172,8 @@ def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
         yield index, index + 1
     if partner is not None and kind == "while":
         yield partner, partner + 1
+    if partner is not None and kind == "if":
+        yield index, partner
 
 
 def places_of_returns(
@@ -327,9 +328,9 @@ def pair_loops(structure: Structure) -> None:
     for index, block in enumerate(structure.blocks):
         if index in structure.starts:
             unclosed(structure, opened)
-        if block.kind == "while":
+        if block.kind in OPENING:
             opened.append(index)
-        elif block.kind == "end":
+        elif block.kind in ("end", "endif"):
             pair(structure, opened, index)
     unclosed(structure, opened)
 

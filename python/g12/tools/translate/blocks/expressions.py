@@ -63,10 +63,15 @@ def bracketed_from(text: str, start: int) -> Expression:
 
 def whole_expression(text: str) -> Expression:
     """Return what stands on the right of ``=``, which needs no brackets there."""
-    found = _chain(text, 0, 0)
+    found = expression_from(text, 0)
     if found.end < len(text):
         raise NotTranslated(f"{excerpt(text[found.end :])} is no part of an expression")
     return found
+
+
+def expression_from(text: str, start: int) -> Expression:
+    """Return values with operators between them, as far as they go."""
+    return _chain(text, start, 0)
 
 
 def _operand(text: str, start: int, depth: int) -> Expression:

@@ -18,6 +18,7 @@ from g12.tools.translate.blocks.errors import NotTranslated, excerpt
 from g12.tools.translate.blocks.expressions import (
     Expression,
     bracketed_from,
+    expression_from,
     value_from,
     variable_number,
     whole_expression,
@@ -38,6 +39,7 @@ NAMED_PROGRAM = re.compile(r"O([A-PR-Z][A-PR-Z0-9]{1,3})$")  # Q is how often, i
 CALLED_PROGRAM = re.compile(r"O([0-9]{1,8}|[A-PR-Z][A-PR-Z0-9]{1,3})(?:Q([0-9]{1,4}))?")
 NAMED_PROGRAMS = 5_000_000  # O and a name of up to four characters is a number above this
 ASSIGNMENT = re.compile(r"#([0-9]+)=")
+STOPS = ("3000", "3006")  # an alarm, a stop with a message
 OBEYED = re.compile(r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I)
 BRACKETS = {"(": ")", "{": "}"}  # of comments; braces in some manuals
 MINUS = "\N{MINUS SIGN}"
@@ -93,10 +95,10 @@ class ForeignBlock(NamedTuple):
     """One block of a program, or what stands in its place.
 
     ``kind`` is ``words``, ``tape`` (a ``%``), ``assign`` (``variable`` = ``expression``),
-    ``while``, ``do``, ``end``, ``if`` (``expression`` and the assignment ``then``), ``stop`` or
-    ``goto`` (``expression`` if it has a condition). ``line`` counts from 1; ``label`` is the number
-    of DO, END and GOTO; ``problem`` is why the block
-    could not be read, None if it could.
+    ``while``, ``do``, ``end``, ``if`` and ``endif`` around the blocks that a condition rules,
+    ``stop`` or ``goto`` (``expression`` if it has a condition). ``line`` counts from 1; ``label``
+    is the number of DO, END and GOTO; ``problem`` is why the block could not be read, None if it
+    could; ``ruled`` are those behind a condition, until `blocks_of` puts them after it.
     """
 
     line: int
@@ -107,7 +109,7 @@ class ForeignBlock(NamedTuple):
     expression: Expression | None = None
     variable: int = 0
     label: str = ""
-    then: ForeignBlock | None = None
+    ruled: tuple[ForeignBlock, ...] = ()
     problem: str | None = None
 
 
@@ -139,7 +141,19 @@ def blocks_of(line: int, text: str, remarks: bool = False) -> Iterator[ForeignBl
         block = _block(line, part, comments if number == 0 else ())
         if number and block.problem:
             block = block._replace(problem=f"{block.problem}; {REMARKS}")
-        yield block
+        yield from _opened(block) if block.kind == "if" else (block,)
+
+
+def _opened(block: ForeignBlock) -> Iterator[ForeignBlock]:
+    """Yield a condition, the blocks that it rules and its end; a stop needs the comments."""
+    inside = [ruled._replace(skipped=block.skipped) for ruled in block.ruled]
+    stops = [at for at, ruled in enumerate(inside) if ruled.kind == "stop"]
+    if stops:
+        inside[stops[0]] = inside[stops[0]]._replace(comments=block.comments)
+        block = block._replace(comments=())
+    yield block._replace(ruled=())
+    yield from inside
+    yield ForeignBlock(block.line, "endif", skipped=block.skipped)
 
 
 def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, ...]]:
@@ -252,7 +266,7 @@ def _statement(line: int, text: str) -> ForeignBlock:
 
 def _assignment(line: int, text: str) -> ForeignBlock:
     match = ASSIGNMENT.match(text)
-    if match[1] in ("3000", "3006"):
+    if match[1] in STOPS:
         return ForeignBlock(line, "stop", label=match[1])
     variable = variable_number(match[1])
     return ForeignBlock(
@@ -261,16 +275,27 @@ def _assignment(line: int, text: str) -> ForeignBlock:
 
 
 def _if(line: int, text: str) -> ForeignBlock:
+    """Return a condition with the rest of its block, which a Haas obeys with THEN or without."""
     condition = bracketed_from(text, 0)
-    rest = text[condition.end :]
+    rest = text[condition.end :].removeprefix("THEN")
     if rest.startswith("GOTO"):
         return _goto(line, rest[4:])._replace(expression=condition)
-    if not rest.startswith("THEN"):
-        raise NotTranslated("IF […] needs THEN and an assignment, or GOTO, behind it")
-    then = _parsed(line, rest[4:])
-    if then.kind not in ("assign", "stop"):
-        raise NotTranslated("behind THEN only an assignment is translated, #… = …")
-    return ForeignBlock(line, "if", expression=condition, then=then)
+    return ForeignBlock(line, "if", expression=condition, ruled=tuple(_ruled(line, rest)))
+
+
+def _ruled(line: int, text: str) -> Iterator[ForeignBlock]:
+    """Yield the blocks behind a condition: an assignment, words, or both."""
+    match = ASSIGNMENT.match(text)
+    if match and match[1] not in STOPS:
+        value = expression_from(text, match.end())
+        variable = variable_number(match[1])
+        yield ForeignBlock(line, "assign", variable=variable, expression=value)
+        text = text[value.end :]
+    if text:
+        block = _parsed(line, text)
+        if block.kind not in ("words", "stop") or block.skipped:
+            raise NotTranslated("behind IF […] only GOTO, #… = … and words are translated")
+        yield block
 
 
 def _while(line: int, text: str) -> ForeignBlock:
