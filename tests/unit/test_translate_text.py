@@ -174,7 +174,8 @@ def test_zeros_of_an_axis_that_the_machine_lacks_are_dropped():
     written = behind(HAAS, "G0 X1. A0. B0\nA0.\nG1 Y1. A0 F5.\nM30\n")
     assert written[0] == "G0 X1. (A0.: no A here)(B0: no B here)"
     assert written[1:3] == ["(A0.: no A here)", "G1 Y1. F5. (A0: no A here)"]
-    for block in ("G28 A0.", "G53 A0.", "G91 G28 A0", "G92 A0.", "G0 A#1", "G81 X0 Z-1. R.1\nA0."):
+    blocks = "G28 A0.|G53 A0.|G91 G28 A0|G92 A0.|#1=0\nG0 A#1|G81 X0 Z-1. R.1\nA0."
+    for block in blocks.split("|"):
         assert "the axes XYZ" in sentence(HAAS, f"{MILL}G0 F5.\n{block}\nM30\n").sentence, block
 
 
@@ -282,6 +283,8 @@ def test_what_is_refused_is_told(control, block, start):
         ("M98 P5\nM30\nO5\nGOTO6\nM99\nO6\nN6 M99", 6, "there is no N6 in this program"),
         ("M98 P5\nN1 M30\nO5\n/M99\nM99 P1", 7, "M99 with and without P in one program"),
         ("M98 P5 L2\nN1 M30\nO5\nM99 P1", 3, "the called program returns by M99 P"),
+        ("G0 X#1", 3, "X#1: nothing sets #1 before, LinuxCNC takes 0"),
+        ("M98 P5\nM30\nO5\nG0 X[#1+1.]\nZ-#3\nWHILE[#1LT2]DO1\n#3=1.\nEND1\nM99", 7, "Z-#3: n"),
         ("G65 P5\nG65 P6\nM30\nO5\n#31=1\nM99\nO6\n#31=1\nM99", 10, "#31 is used in two pr"),
         ("G65 P5\nM30\nO5\nIF[#33EQ#0]GOTO9\nN9 M99", 6, "#33 EQ #0: no letter of G65"),
         ("G65 P5\nM30\nO5\nIF[#1EQ2]GOTO9\n#2=1\nN9 X#2\nM99", 6, "O5 reads #1 (A of"),
@@ -301,6 +304,10 @@ def test_jumps_and_variables_that_are_not_sound(blocks, line, start):
         "G65 P5\nM30\nO5\nIF[[#2NE#0]AND[#3NE#0]]GOTO9\nM99\nN9 X#2 Y#3\nM99",
         "G65 P5\nM30\nO5\nIF[#2EQ#0]THEN#2=3.\nX#2\nM99",
         "G65 P5\nM30\nO5\nIF[#2NE#0]THEN#3=#2\nM99",
+        "M98 P5\nX#1\nM30\nO5\nIF[#100EQ1]THEN#1=2.\nM99",
+        "#1=2.\nM98 P5\nM30\nO5\nX#1\nM99",
+        "GOTO8\nN7 X#1\nM30\nN8 #1=2.\nGOTO7",
+        "#100=0\nWHILE[#100LT2]DO1\nIF[#100EQ1]X#1\n#1=2.\n#100=#100+1\nEND1",
         "G65 P5\nM30\nO5\nWHILE[#2EQ#0]DO1\n#2=1\nEND1\nX#2\nM99",
         "G65 P5\nM30\nO5\nGOTO8\nN7 X#2\nM99\nN8 #2=1\nGOTO7\n",
     ],

@@ -2,13 +2,15 @@
 """Local variables of macros: one that no call gives and no line sets is empty on the control.
 
 There an empty variable makes its word vanish; LinuxCNC takes 0. So such a macro is refused, unless
-it has asked before, with #0, whether the variable is empty.
+it has asked before, with #0, whether the variable is empty. All programs that no G65 calls share
+their local variables: a word of one that nothing can have set before is refused.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
+from functools import partial
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.expressions import SHARED
@@ -16,7 +18,7 @@ from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.jumps import OPENING
 from g12.tools.translate.rules.subprograms import ARGUMENTS
-from g12.tools.translate.structure import asked_by, ways_from
+from g12.tools.translate.structure import MAIN, asked_by, ways_from
 
 LETTERS = {number: letter for letter, number in ARGUMENTS.items()}
 
@@ -36,20 +38,57 @@ def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
                 yield block.line, f"#{variable} EQ #0: no letter of G65 gives #{variable} a value"
         elif number not in macros and followed.drafts[index] and asked_by(block):
             yield block.line, "#0, the empty variable, is translated in a program of G65 only"
+    yield from never_set(followed, macros)
     yield from shared_locals(followed)
+
+
+def never_set(followed: FollowedProgram, macros: Collection[int]) -> Iterator[tuple[int, str]]:
+    """Yield the blocks outside macros where a word is a local variable that nothing sets before."""
+    if not any(word.read for block in followed.structure.blocks for word in block.words):
+        return
+    called = [
+        block
+        for index, block in enumerate(followed.structure.blocks)
+        if followed.program_of(index) not in (MAIN, *macros)
+    ]
+    set_by_calls = frozenset().union(*map(set_by, called))
+
+    def onward(index: int, known: frozenset[int]) -> Iterator[tuple[int, frozenset[int]]]:
+        draft = followed.drafts[index]
+        entry = followed.structure.entries.get(draft.call.number) if draft and draft.call else None
+        if entry is not None and draft.call.kind == "sub":
+            yield entry, known
+            known |= set_by_calls
+        yield from passed_on(followed, index, known)
+
+    known = spread({followed.structure.main: frozenset()}, onward, frozenset.union)
+    for index, values in known.items():
+        block = followed.structure.blocks[index]
+        for word in block.words:
+            number = min(word.read, default=0)
+            if number and number not in values and word.value.lstrip("-") == f"#{number}":
+                yield block.line, f"{word.text}: nothing sets #{number} before, LinuxCNC takes 0"
 
 
 def given_in(followed: FollowedProgram, number: int) -> dict[int, frozenset[int]]:
     """Return the variables that surely have a value before each block of a macro."""
-    entry = followed.structure.entries[number]
-    given = {entry: given_by_all(followed.calls[number])}
-    pending = [entry]
+    start = {followed.structure.entries[number]: given_by_all(followed.calls[number])}
+    return spread(start, partial(passed_on, followed), frozenset.intersection)
+
+
+def spread(
+    given: dict[int, frozenset[int]],
+    onward: Callable[[int, frozenset[int]], Iterator[tuple[int, frozenset[int]]]],
+    merge: Callable[[frozenset[int], frozenset[int]], frozenset[int]],
+) -> dict[int, frozenset[int]]:
+    """Return variables before each block that is reached; ``merge`` joins two ways to a block."""
+    pending = [*given]
     while pending:
         index = pending.pop()
-        for following, values in passed_on(followed, index, given[index]):
-            common = given.get(following, values) & values
-            if given.get(following) != common:
-                given[following] = common
+        for following, values in onward(index, given[index]):
+            merged = merge(given.get(following, values), values)
+            if given.get(following) != merged:
+                given[following] = merged
                 pending.append(following)
     return given
 

@@ -27,9 +27,9 @@ class Structure:
     is the block that is reached first; ``entries`` has the first block of each other program by its
     number, ``starts`` the numbers by the block, with MAIN for a main program that others stand
     before. ``doubled`` are numbers that several programs have. ``partners`` joins each WHILE and
-    its END, each condition and its end, ``problems`` has what is wrong with a block, ``last_returns`` the block in which each
-    program returns for the last time, ``jumps`` where GOTO and M99 P lead, ``asked`` the variables
-    that each program compares with #0.
+    its END, each condition and its end, ``problems`` has what is wrong with a block,
+    ``last_returns`` the block in which each program returns for the last time, ``jumps`` where GOTO
+    and M99 P lead, ``asked`` the variables that each program compares with #0.
 
     Behind the file's ``own`` blocks stand those of copies: programs that are called in modes that
     differ, once for each. ``copies`` has the number that each is a copy of, ``called_as`` the
