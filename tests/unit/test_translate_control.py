@@ -82,6 +82,9 @@ def test_a_file_may_be_based_on_a_file_beside_it(tmp_path):
         ("[m_codes]\nM31 = ['same']\n", 3, "M31 must be a text"),
         ("[m_codes]\nsame = 'M31'\n", 3, "same must be a list of codes"),
         ("[g_codes]\nG12.1 = 'polar on'\n", 3, 'a code with a point is written in quotes: "G12.1"'),
+        ("[variables]\n3020 = 'time'\n", 3, '3020 = "time" must be a number, and a parameter'),
+        ("[variables]\n3020 = 5\n", 3, "3020 in [variables] must be a text"),
+        ("[variables]\n3-x = 'clock'\n", 3, '3-x = "clock" must be a number, and a parameter'),
         ("g_codes = 5\n", 2, "g_codes is a table: [g_codes]"),
     ],
 )

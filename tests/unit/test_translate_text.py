@@ -243,6 +243,10 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "END1", "END1 without WHILE"),
         (HAAS, "WHILE[1 EQ 1]DO1", "WHILE […] DO1 has no END1"),
         (HAAS, "#1=#4001", "#4001 means something else"),
+        (HAAS, "#1=#[2400+#2]", "#[2400 + #2]: #2400 means something else"),
+        (HAAS, "#1=#3020\n#102=#1+1\nX#102", "what stands here comes of the control's clock"),
+        (HAAS, "IF[#3001GT5.]X1.", "what stands here comes of the control's clock"),
+        (FANUC, "#1=#10002", "#10002 means something else"),
         (HAAS, "G0 X#0", "X has no value: #0, the empty variable"),
         (HAAS, "#1=#0", "#0, the empty variable, is translated in #… EQ #0"),
         (HAAS, "G0 X[#1EQ#0]", "X: #0, the empty variable, is translated in conditions only"),
@@ -272,6 +276,18 @@ def test_what_is_refused_is_told(control, block, start):
     refused = sentence(control, f"{head}{block}\nM30\n")
     assert refused.line == 2 + 1 + block.count("\n")
     assert refused.sentence.startswith(start)
+
+
+def test_variables_of_a_haas_and_times_that_a_program_only_notes():
+    text = "#10002=#3020-#10000 (T)\n#10000=#3020\n#3001=0\n#10150=#3026\nX#150 Y#10007\nM30\n"
+    assert behind(HAAS, text) == [
+        "(a time: LinuxCNC has no clock)(T)",
+        "(a time: LinuxCNC has no clock)",
+        "(a time: LinuxCNC has no clock)",
+        "#150=[#5400]",
+        "X#150 Y#1007",
+        "M30",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from functools import partial
 
 from g12.tools.translate.blocks.draft import Draft
-from g12.tools.translate.blocks.expressions import SHARED
+from g12.tools.translate.blocks.expressions import LOCAL, SHARED
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.jumps import OPENING
@@ -66,7 +66,7 @@ def never_set(followed: FollowedProgram, macros: Collection[int]) -> Iterator[tu
         block = followed.structure.blocks[index]
         for word in block.words:
             number = min(word.read, default=0)
-            if number and number not in values and word.value.lstrip("-") == f"#{number}":
+            if number in LOCAL and number not in values and word.value.lstrip("-") == f"#{number}":
                 yield block.line, f"{word.text}: nothing sets #{number} before, LinuxCNC takes 0"
 
 
@@ -119,7 +119,8 @@ def given_by_all(calls: list[Draft]) -> frozenset[int]:
 def read_by(block: ForeignBlock) -> frozenset[int]:
     """Return the local variables that a block reads."""
     read = frozenset().union(*(word.read for word in block.words))
-    return read | block.expression.read if block.expression else read
+    read |= block.expression.read if block.expression else frozenset()
+    return read.intersection(LOCAL)
 
 
 def set_by(block: ForeignBlock) -> frozenset[int]:

@@ -15,6 +15,7 @@ from g12.tools.translate.blocks.lexer import (
     blocks_of,
     source_lines,
 )
+from g12.tools.translate.clocks import without_clocks
 from g12.tools.translate.copies import followed_program
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.locals import unset_locals
@@ -80,11 +81,12 @@ def read_blocks(
 ) -> list[ForeignBlock]:
     """Return the blocks of a file's lines."""
     blocks: list[ForeignBlock] = []
+    variables = control.variables()
     for line, row in enumerate(rows, 1):
-        blocks += blocks_of(line, row, control.remarks)
+        blocks += blocks_of(line, row, control.remarks, variables)
         if line % 1000 == 0:
             progress(READ * line / len(rows))
-    return blocks
+    return without_clocks(blocks)
 
 
 def circular_calls(followed: FollowedProgram, circular: frozenset[int]) -> Iterator[RefusedBlock]:

@@ -23,6 +23,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from g12.tools.translate.blocks.expressions import CLOCK, OWN
+
 CONTROLS = Path(__file__).parents[1] / "controls"
 HOLES = (  # cycles of a lathe
     "hole", "bore", "face tap right", "face tap left",
@@ -80,6 +82,7 @@ TABLES: dict[str, dict[str, object]] = {
     "cylinder": {"word": ("radius", "diameter", "mapped")},
     "subprograms": {"repeat_digits": bool, "cycle_repeat": str},
     "offsets": {"first_parameter": int},
+    "variables": None,
     "turning": {
         "thread_chamfer": float,
         **{f"{name}_{unit}": float for unit in ("mm", "inch")
@@ -101,6 +104,8 @@ TABLES: dict[str, dict[str, object]] = {
 OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that number is not
     f"M{n}" for n in (*range(10), 19, 30, *range(48, 54), *range(60, 74))
 )
+VALUE = re.compile(r"#[1-9][0-9]{0,3}|[0-9]+\.?[0-9]*|clock|own")  # of a variable
+VALUES = "a parameter of LinuxCNC (#500), a value, clock, or own: refused"
 COMMENT = re.compile(r"comment( [A-Z])*")
 PATTERN = re.compile(r"R*T+O*")
 
@@ -155,6 +160,20 @@ class Control:
     def onto(self) -> str:
         """Where a mill's program goes on a lathe: ``face``, ``round``, "" for any other control."""
         return self.value("mill", "onto")
+
+    def variables(self) -> dict[int, str]:
+        """Return what is written for each variable that is the control's own."""
+        found: dict[int, str] = {}
+        for key, value in self.tables.get("variables", {}).items():
+            first, _, last = key.partition("-")
+            for place, number in enumerate(range(int(first), int(last or first) + 1)):
+                if value == "clock":
+                    found[number] = f"#{OWN}{CLOCK}"
+                elif value != "own":
+                    text = str(value)
+                    named = f"#{OWN}{int(text[1:]) + place}" if text.startswith("#") else text
+                    found[number] = named
+        return found
 
     def value(self, table: str, key: str, default: object = "") -> Any:
         """Return a value of one of the tables."""
@@ -268,6 +287,9 @@ class _Checked:
             for key, value in table.items():
                 if not re.fullmatch("[A-Z]{2}", key) or not re.fullmatch("[A-Z]", str(value)):
                     self._refuse(key, f'{key} = "{value}": a word of two letters, and one of one')
+        for key, value in table.items() if name == "variables" else ():
+            if not re.fullmatch("[0-9]{1,6}(-[0-9]{1,6})?", key) or not VALUE.fullmatch(str(value)):
+                self._refuse(key, f'{key} = "{value}" must be a number, and {VALUES}')
         for key, value in table.items() if name == "spindles" else ():
             if not re.fullmatch("P[0-9]+", key) or value not in ("main", "live"):
                 self._refuse(key, f'{key} = "{value}" must be a P word, and main or live')

@@ -27,14 +27,20 @@ LOCAL = range(1, 34)  # of one call, as LinuxCNC keeps them up to #30
 SHARED = frozenset((31, 32, 33))  # which LinuxCNC has once for all calls
 EMPTY = "-9999999"  # what a macro is given for an empty variable that it asks for
 EMPTY_VARIABLE = re.compile(r"#0+(?![0-9.])")
+MOST_PLACES = 99  # that an index adds to the number of a variable
 COMMON = (range(100, 200), range(500, 1000))
+OWN = "\0"  # before the number of a parameter of LinuxCNC's own: no program's text has it
+CLOCK = 0  # the number that a variable of the control's clock has
+OTHER_MEANING = (
+    "means something else on LinuxCNC: variables are #1 to #33, #100 to #199 and #500 to #999"
+)
 POSITION = {5041: 5420, 5042: 5421, 5043: 5422}  # where the tool stands, X Y Z
 
 
 class Expression(NamedTuple):
     """An expression as LinuxCNC reads it.
 
-    ``read`` are the numbers of the local variables in it, ``is_condition`` tells whether its
+    ``read`` are the numbers of the variables in it, ``is_condition`` tells whether its
     value is true or false, ``end`` is the index behind it in the text. ``asked`` are the local
     variables that it compares with #0; those of ``set_if_true`` and ``set_if_false`` have a value
     if the condition is true, and if it is false.
@@ -102,19 +108,23 @@ def _unsigned(text: str, at: int, depth: int) -> Expression:
 def _variable(text: str, at: int, depth: int) -> Expression:
     if text.startswith("[", at + 1):
         index = _brackets(text, at + 1, depth)
+        for number in NUMBER.findall(index.text):
+            if float(number) > MOST_PLACES and not _is_kept(float(number)):
+                raise NotTranslated(f"#{excerpt(index.text)}: #{number} {OTHER_MEANING}")
         return Expression(f"#{index.text}", index.read, False, index.end, index.asked)
-    digits = re.compile(r"[0-9]+").match(text, at + 1)
+    digits = re.compile(f"{OWN}?[0-9]+").match(text, at + 1)
     if not digits:
         raise NotTranslated(f"{excerpt(text[at:])} is no variable: # and a number")
     number = variable_number(digits[0])
-    read = frozenset((number,)) if number in LOCAL else frozenset()
-    return Expression(f"#{number}", read, False, digits.end())
+    return Expression(f"#{number}", frozenset((number,)), False, digits.end())
 
 
 def variable_number(digits: str) -> int:
     """Return LinuxCNC's number of a variable, or refuse one that it does not have."""
+    if digits.startswith(OWN):
+        return int(digits[1:])
     number = int(digits[:9])
-    if number in LOCAL or any(number in numbers for numbers in COMMON):
+    if _is_kept(number):
         return number
     if number in POSITION:
         return POSITION[number]
@@ -122,10 +132,13 @@ def variable_number(digits: str) -> int:
         raise NotTranslated(
             "#0, the empty variable, is translated in #… EQ #0 and #… NE #0 only, for #1 to #33"
         )
-    raise NotTranslated(
-        f"#{digits[:9]} means something else on LinuxCNC: variables are #1 to #33, "
-        "#100 to #199 and #500 to #999"
-    )
+    say = f'say under [variables] what it is, {digits[:9]} = "…"'
+    raise NotTranslated(f"#{digits[:9]} {OTHER_MEANING}; {say}")
+
+
+def _is_kept(number: float) -> bool:
+    """Tell whether a variable has its number on LinuxCNC, too, and no other meaning there."""
+    return any(number in numbers for numbers in (LOCAL, *COMMON))
 
 
 def _brackets(text: str, start: int, depth: int) -> Expression:
@@ -176,7 +189,7 @@ def _empty_question(first: Expression, text: str) -> Expression | None:
     """Return the question whether a local variable is empty, None if it is no such question."""
     operator = re.compile("EQ|NE").match(text, first.end)
     empty = operator and EMPTY_VARIABLE.match(text, operator.end())
-    if not empty or len(first.read) != 1 or first.text != f"#{min(first.read)}":
+    if not empty or first.text not in {f"#{n}" for n in first.read.intersection(LOCAL)}:
         return None
     asked, is_equal = first.read, operator[0] == "EQ"
     return Expression(

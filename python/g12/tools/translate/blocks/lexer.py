@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from types import MappingProxyType
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated, excerpt
 from g12.tools.translate.blocks.expressions import (
+    OWN,
     Expression,
     bracketed_from,
     expression_from,
@@ -38,7 +40,8 @@ STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])|RTS$")
 NAMED_PROGRAM = re.compile(r"O([A-PR-Z][A-PR-Z0-9]{1,3})$")  # Q is how often, in a call
 CALLED_PROGRAM = re.compile(r"O([0-9]{1,8}|[A-PR-Z][A-PR-Z0-9]{1,3})(?:Q([0-9]{1,4}))?")
 NAMED_PROGRAMS = 5_000_000  # O and a name of up to four characters is a number above this
-ASSIGNMENT = re.compile(r"#([0-9]+)=")
+ASSIGNMENT = re.compile(f"#({OWN}?[0-9]+)=")
+VARIABLE = re.compile("#([0-9]{1,9})")
 STOPS = ("3000", "3006")  # an alarm, a stop with a message
 OBEYED = re.compile(r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I)
 BRACKETS = {"(": ")", "{": "}"}  # of comments; braces in some manuals
@@ -67,7 +70,7 @@ class ForeignWord(NamedTuple):
 
     ``kind`` is ``number``, ``expression``, ``bare`` (a letter alone beside a plane code) or
     ``text`` (a line of LinuxCNC's that a rule has written); ``read``
-    holds the local variables of an expression.
+    holds the variables of an expression.
     """
 
     letter: str
@@ -126,10 +129,13 @@ def source_lines(text: str) -> list[str]:
     return re.split(r"\r\n|\r|\n", text.removesuffix("\n").removesuffix("\r"))
 
 
-def blocks_of(line: int, text: str, remarks: bool = False) -> Iterator[ForeignBlock]:
+def blocks_of(
+    line: int, text: str, remarks: bool = False, variables: Mapping[int, str] = MappingProxyType({})
+) -> Iterator[ForeignBlock]:
     """Yield the blocks of one line, at least one.
 
-    With ``remarks`` what stands behind ``;`` is a remark, else it is the next block.
+    With ``remarks`` what stands behind ``;`` is a remark, else it is the next block. ``variables``
+    has what is written for variables of the control's own.
     """
     comments: tuple[str, ...] = ()
     try:
@@ -138,6 +144,8 @@ def blocks_of(line: int, text: str, remarks: bool = False) -> Iterator[ForeignBl
         yield ForeignBlock(line, problem=str(problem))
         return
     for number, part in enumerate(parts):
+        if variables and "#" in part:
+            part = VARIABLE.sub(lambda found: variables.get(int(found[1]), found[0]), part)
         block = _block(line, part, comments if number == 0 else ())
         if number and block.problem:
             block = block._replace(problem=f"{block.problem}; {REMARKS}")
