@@ -67,6 +67,11 @@ CONSTRUCTS = [
      "G52 X0 Y0\nG0 X-1 Y1\nG1 X-1 Y2\nG0 X3"),
     ("haas-mill", "G10 L12 P1 R.5\nG10 L13 P1 R.02\nT1 M6\nG41 D1 G1 X2.\nY3.\nG40 X4.",
      "G10 L1 P1 R.26\nT1 M6\nG41 D1 G1 X2\nY3\nG40 X4"),
+    # G41 that is on already, surely or from a loop's last round
+    ("haas-mill", "T1 M6\nG41 D1 G1 X2.\nY3.\nG41 X3.\nG40 X4.",
+     "T1 M6\nG41 D1 G1 X2\nY3\nX3\nG40 X4"),
+    ("haas-mill", "T1 M6\n#1=2.\nWHILE[#1LT5]DO1\nG41 D1 G1 X#1 Y#1\n#1=#1+1.\nEND1\nG40 X8.",
+     "T1 M6\nG41 D1 G1 X2 Y2\nX3 Y3\nX4 Y4\nG40 X8"),
     # rigid tapping: G33.1, which follows the spindle
     ("haas-mill", "M29 S200\nG84 X2. Z.5 R.9 F10.\nX3.\nG80",
      "S200 (M29)\nM3 S200\nF10\nG0 X2\nZ.9\nG33.1 Z.5 K.05\nG0 Z1\nX3\nZ.9\n"

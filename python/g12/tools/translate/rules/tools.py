@@ -8,7 +8,7 @@ import re
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import UNKNOWN
+from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
 from g12.tools.translate.rules.spindle import TURNING
 
 COMPENSATION = frozenset(("G41", "G42"))
@@ -24,6 +24,8 @@ def tool_and_offsets(draft: Draft) -> None:
         length_offset(draft)
         radius_offset(draft)
         follow_tool(draft)
+    if draft.start.compensation != "G40":
+        compensated_again(draft)
 
 
 def follow_tool(draft: Draft) -> None:
@@ -127,6 +129,28 @@ def radius_offset(draft: Draft) -> None:
     elif not word and POCKETS.intersection(codes) and takes_last(draft):
         value = draft.sure("radius", "a pocket without D takes the last one")
         draft.words += [ForeignWord("D", value)] if value else []
+
+
+def compensated_again(draft: Draft) -> None:
+    """Write a G41 that is on already as a comment: LinuxCNC refuses it.
+
+    Where it is on in one way to the block only, as in a loop, LinuxCNC asks itself.
+    """
+    on = [w for w in draft.words if w.letter == "G" and w.code[:3] in COMPENSATION]
+    if not on or draft.start.polar != "off" or draft.control.onto:
+        return
+    if draft.start.compensation not in (on[0].code[:3], UNSURE):
+        return
+    words = [*on, *(w for w in draft.words if w.letter == "D")]
+    draft.words = [w for w in draft.words if w not in words]
+    if draft.start.compensation != UNSURE:
+        if draft.start.radius != draft.state.radius:
+            raise NotTranslated(f"{on[0].code} with another D than it is on with: G40 before it")
+        draft.comments += [on[0].code]
+        return
+    name, code = f"o<compensation_{draft.index}>", f"{on[0].code[1:3]}0"
+    text = " ".join(word.text for word in words)
+    draft.before += [f"{name} if [#<_ccomp> NE {code}]", text, f"{name} endif"]
 
 
 def takes_last(draft: Draft) -> bool:
