@@ -48,10 +48,11 @@ class ModalState(NamedTuple):
     slides that LinuxCNC has not moved yet, each with where it stands. ``known_offsets`` are the
     numbered work offsets that are known to be set, or asked about. ``turn`` is the turning cycle
     that X and Z repeat, ``pass_words`` what it was given, ``kept`` what first blocks of cycles say;
-    ``chamfers`` tells whether threads end with one. ``turned`` is the work offset that G68 has
-    turned, ``rigid`` the speed of a rigid tap and ``tap_top`` the height that it goes back to,
-    ``waiting`` is where a mill's program goes on a lathe before its next cut, ``section`` the
-    program in which that began. ``sizes`` are the diameters that G10 L12 has set, by tool.
+    ``chamfers`` tells whether threads end with one. ``local`` are X and Y of G52, as far as they
+    are known, ``turned`` is the work offset that G68 has turned, ``rigid`` the speed of a rigid tap
+    and ``tap_top`` the height that it goes back to, ``waiting`` is where a mill's program goes on a
+    lathe before its next cut, ``section`` the program in which that began. ``sizes`` are the
+    diameters that G10 L12 has set, by tool.
     ``x_words`` tells whether X words are diameters, ``live`` is the ``$`` word of a spindle that
     drives the tool and turns; ``spindle`` is the M3 or M4 that turns the first one.
     """
@@ -86,6 +87,7 @@ class ModalState(NamedTuple):
     kept: tuple = ()
     pass_words: tuple = ()
     chamfers: bool | str = True
+    local: tuple | str = ()
     turned: str = UNKNOWN
     retract: str = UNKNOWN
     x_words: str = UNKNOWN

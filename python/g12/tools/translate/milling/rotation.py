@@ -12,7 +12,9 @@ from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.modal import UNKNOWN
+from g12.tools.translate.blocks.expressions import NUMBER
+from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
 from g12.tools.translate.blocks.places import LOST
 from g12.tools.translate.rules.offsets import (
     G54_PARAMETER,
@@ -34,8 +36,7 @@ def rotation(draft: Draft) -> None:
     turned = draft.state.turned
     if turned and (OWN_SYSTEMS.intersection(draft.codes()) or "numbered offset" in draft.meanings):
         raise NotTranslated("another work offset within G68: write G69 before it")
-    if turned and not {"G52", "G92"}.isdisjoint(draft.codes()):
-        raise NotTranslated("a local offset within G68, which turns with it here: write G69 first")
+    follow_local_offset(draft)
     if "turned back" in draft.meanings:
         draft.comments.append(draft.meanings.pop("turned back").code)
         if turned:
@@ -45,6 +46,26 @@ def rotation(draft: Draft) -> None:
         turn(draft, draft.meanings.pop("turned").code)
     if draft.after and draft.alone():
         settle(draft)
+
+
+def follow_local_offset(draft: Draft) -> None:
+    """Take note of G52; within G68 it must not change, since it turns with the rest here."""
+    if {"G52", "G92"}.isdisjoint(draft.codes()):
+        return
+    state = draft.state
+    known: dict[str, float | str] = {} if isinstance(state.local, str) else dict(state.local)
+    known |= {w.letter: number_of(w) for w in draft.words if w.letter in HERE}
+    local = tuple(sorted(known.items()))
+    changed = local != state.local or UNSURE in known.values() or "G92" in draft.codes()
+    if state.turned and changed:
+        raise NotTranslated("a local offset within G68, which turns with it here: write G69 first")
+    draft.change(local=local)
+
+
+def number_of(word: ForeignWord) -> float | str:
+    """Return the value of a word, UNSURE where only the machine knows it."""
+    value = word.value.strip("[]")
+    return float(value) if NUMBER.fullmatch(value.removeprefix("-")) else UNSURE
 
 
 def turn(draft: Draft, code: str) -> None:
