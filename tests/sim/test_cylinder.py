@@ -225,6 +225,16 @@ def test_run_from_a_line_behind_a_section(ready):
     assert set(Surface(ready.samples(), R).lines.tolist()) == {8, 9}
 
 
+def test_c_keeps_its_speed_on_the_way_into_an_exact_stop(ready):
+    """LinuxCNC adds the segment that ends in G61 to the one before: 540 degrees a second."""
+    run = ready.run_text(section("G1 C180", "C360", "Z-20", "C180", "C0", feed="F30000"))
+    assert run.error is None
+    cut = Surface(run, R)
+    blended = 0.5 * C_ACCELERATION * 1e-3  # within one servo period LinuxCNC adds the two
+    assert np.abs(np.diff(cut.c)).max() * 1000 <= C_SPEED + 1.01 * blended
+    assert np.abs(cut.points @ FROM_COLUMNS - 360 * AROUND).min() <= LIMIT  # and it does stop
+
+
 def test_more_speed_than_c_has_only_slows_the_way_down(ready):
     """At F30000 C would turn at 1400 degrees a second."""
     run = ready.run_text(section("G1 Z-20 C720", "G3 Z0 R10", "G1 C0", feed="F30000"))

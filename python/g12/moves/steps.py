@@ -2,6 +2,7 @@
 """The moves of a planned section, in the order of the program. Lengths in program units."""
 
 from collections.abc import Callable, Sequence
+from math import copysign, hypot, sqrt
 from typing import NamedTuple
 
 from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Start
@@ -13,6 +14,7 @@ STOP_SHARE = (
     0.7  # of the tolerance: a move that stops starts quicker, and cuts deeper into the path
 )
 ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the segments' own deviation
+SAME_RATE = 1e-6  # of C's speed: rounding
 LEFT_OVER = 1e-3  # of the least step of a slide: less than that is rounding
 
 
@@ -24,6 +26,25 @@ class Position(NamedTuple):
     z: float
 
 
+class CAxis(NamedTuple):
+    """How fast C turns, degrees and seconds."""
+
+    speed: float
+    acceleration: float
+
+    def rate(self, start: Position, end: Position, feed: float) -> float:
+        """Return at which speed C goes through a move by G94's F, below zero backwards.
+
+        It gets no faster than it can stop within the move.
+        """
+        turn = end.c - start.c
+        length = hypot(end.x - start.x, end.z - start.z) or abs(turn)
+        if not turn:
+            return 0.0
+        asked = feed / 60.0 * abs(turn) / length
+        return copysign(min(asked, self.speed, sqrt(self.acceleration * abs(turn))), turn)
+
+
 class BlockMoves(NamedTuple):
     """G1 moves of one block, one after the other, all in G90 and G94.
 
@@ -32,13 +53,15 @@ class BlockMoves(NamedTuple):
     wants it: for the X and Z part of the move, or in degrees per minute where neither changes; it
     may be small, so write it with six significant digits. A segment that keeps a slide where it is
     repeats the same number. With ``stop`` the last segment must end in an exact stop (G61), because
-    LinuxCNC would round the corner by more than the tolerance.
+    LinuxCNC would round the corner by more than the tolerance. With ``surges`` C would exceed its
+    speed on the way into that G61: a dwell of no time has to make the stop.
     """
 
     line: int
     axes: str
     segments: list[Segment]
     stop: bool
+    surges: bool = False
 
 
 class SectionPlan(NamedTuple):
@@ -63,15 +86,28 @@ class SectionPlan(NamedTuple):
 class StepMaker:
     """Makes the steps of a plan, one element of the tool centre's path after the other."""
 
-    def __init__(self, contour: Contour, place: Position) -> None:
+    def __init__(self, contour: Contour, place: Position, c_axis: CAxis) -> None:
         self.steps: list[object] = []
         self.place = place
-        self._contour = contour
+        self._contour, self._c_axis = contour, c_axis
+        self._c_rate = 0.0  # at which C goes into the next segment, degrees per second
 
     def _run(self, line: int, axes: str, segments: list[Segment], stop: bool) -> None:
-        if segments:
-            self.steps.append(BlockMoves(line, axes, segments, stop))
-            self.place = Position(*segments[-1][:3])
+        """Add the moves of a block.
+
+        LinuxCNC 2.9 and 2.10 slow a segment down at half the acceleration while the next one of a
+        turn begins, at half of it too, unless it ends in G61: then at all of it, and the two add up
+        to the first one's speed and half of the second one's.
+        """
+        if not segments:
+            return
+        places = [Position(*at[:3]) for at in [self.place, *segments][-3:]]
+        feeds = [segment[3] for segment in segments[-2:]]
+        rates = map(self._c_axis.rate, places, places[1:], feeds)
+        *_, before, rate = [self._c_rate, *rates]
+        surges = abs(before + 0.5 * rate) > self._c_axis.speed * (1.0 + SAME_RATE)
+        self.steps.append(BlockMoves(line, axes, segments, stop, surges))
+        self.place, self._c_rate = places[-1], 0.0 if stop else rate
 
     def _make_up(self, path: Sequence[Element], x: float, z: float, least: float) -> None:
         """Add what the last segments of a path left over of the slides, which belong at x and z."""

@@ -241,9 +241,12 @@ class SectionOutput:
         if len(run.segments) > 1:
             self._moves(run.line, run.axes, run.segments[:-1])
         self.interp.sequence_number = run.line
-        if not self.path.at_end(run.stop, exact_stop, block_ends):
+        ends = self.path.at_end(run.stop, exact_stop, block_ends)
+        if run.surges or not ends:
             self.path.inside(run.segments[-1][1] != self.interp.CC_current)
         self._block(run.axes, *run.segments[-1])
+        if run.surges and ends:
+            self.interp.execute(STOP_HERE)
 
     def _moves(self, line: int, axes: str, segments: Sequence[Segment]) -> None:
         """Hand over moves of one block.

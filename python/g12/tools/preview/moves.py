@@ -96,8 +96,9 @@ class Move(NamedTuple):
     system about Z in degrees, which turns G18 and G19 planes.
 
     ``remap`` is the remapped code that makes the move, ``G12``, "" without one. ``exact`` says that
-    it ends in an exact path or stop (G61, G61.1), not blended into the next. ``by_machine`` says
-    that its block names a place of the machine (G53, G28, G30), which no work offset moves.
+    it ends in an exact path or stop (G61, G61.1, before a dwell), not blended into the next.
+    ``by_machine`` says that its block names a place of the machine (G53, G28, G30), which no work
+    offset moves.
     ``acceleration`` is a share of the INI's for X and Y, with which the face's kinematics make it.
     """
 

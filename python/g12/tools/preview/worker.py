@@ -318,8 +318,11 @@ class Canon:
         self._note(f"tool {self.spindle[0]}")
 
     def dwell(self, seconds: float) -> None:
-        """Note a pause."""
+        """Note a pause; the move in front of it is not blended into the next."""
         self._note(f"dwell {seconds:.10g}")
+        if self.moves:
+            *move, _, by_machine, share = self.moves[-1]
+            self.moves[-1] = (*move, True, by_machine, share)
 
     def user_defined_function(self, number: int, first: float, second: float) -> None:
         """Note a user's M code."""

@@ -95,7 +95,6 @@ class SectionContour:
     ``diameters`` says that X words are. ``surface`` is the radius of the cylinder whose unrolled
     surface the plane is, 0 of a polar section.
 
-    ``stopped`` says that a dwell comes between it and the move in front of it.
     ``acts`` are what it is to do besides moving, ``told`` what a trace tells of the section.
     ``leaves`` is the state behind it that the words ask for, as ``Block.left`` has it, and
     ``left`` the one that was found; ``paths`` are G61 or G64 as found and as asked, if known.
@@ -116,7 +115,6 @@ class SectionContour:
     c: float = 0.0
     left_c: float = 0.0
     zero_line: ZeroLine = BEGUN
-    stopped: bool = True
     acts: tuple[Act, ...] = ()
     told: tuple[Event, ...] = ()
     leaves: Mapping[str, float] = field(default_factory=dict)

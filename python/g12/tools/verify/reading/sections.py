@@ -229,10 +229,6 @@ def section_of(
         diameters,
         first.state["_c"],
         last.left.get("_c", math.nan),
-        stopped=any(
-            event.at == first.at and event.text.startswith("dwell")
-            for event in (*first.events, *told)
-        ),
         acts=tuple(acts),
         told=told,
         leaves={**pen.leaves(first.state), **kept_behind(group)},

@@ -132,7 +132,7 @@ def judge_motion(
     tolerance: float,
 ) -> Iterator[Finding]:
     """Yield the first of each kind of motion that is not as it should be."""
-    if section.at > 0 and not (section.stopped or moves[section.at - 1].exact):
+    if section.at > 0 and not moves[section.at - 1].exact:
         yield Finding("blended-in", section.line)
     joints = list(joints_along(section, found, moves, path))
     yield from islice(rounded(section, joints, moves, path, axes, tolerance), 1)
