@@ -217,7 +217,7 @@ def _block(line: int, text: str, comments: tuple[str, ...]) -> ForeignBlock:
         block = _parsed(line, text)
         return block._replace(comments=block.comments + comments)
     except NotTranslated as problem:
-        return ForeignBlock(line, comments=comments, problem=str(problem))
+        return ForeignBlock(line, comments=comments, problem=str(problem).replace(OWN, ""))
 
 
 def _parsed(line: int, text: str) -> ForeignBlock:
