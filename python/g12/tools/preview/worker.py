@@ -43,7 +43,7 @@ STATE = (
     "rotation_xy", "current_x", "current_y", "current_z", "AA_current", "BB_current",
     "CC_current", "current_tool", "call_level", "remap_level",
 )  # fmt: skip
-SPINDLE_MODE = 13  # place of G96, G97 in the active G codes
+LENGTH_CODE, SPINDLE_MODE = 9, 13  # places of G43, G49 and of G96, G97 in the active G codes
 OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)}  # from where on
 OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number after them is always the same
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
@@ -362,7 +362,7 @@ class Canon:
 
     def _note_conditions(self, state) -> None:
         """Note what the moves from here on run under, as far as it is new."""
-        known, self.in_force = self.in_force, conditions(state)
+        known, self.in_force = self.in_force, conditions(state, self.length)
         for word in self.in_force:
             if word not in known:
                 self._note(word)
@@ -460,7 +460,7 @@ def work_offsets() -> dict[str, tuple]:
     }
 
 
-def conditions(state) -> tuple:
+def conditions(state, length: tuple) -> tuple:
     """Return what has no part in the path, as words; ``state`` is the modal state of a line.
 
     LinuxCNC brings that state up to date at the end of a block.
@@ -470,7 +470,7 @@ def conditions(state) -> tuple:
     path = f"G{state.path_mode / 10:g}"
     return (
         f"G{state.origin / 10:g}",
-        f"G{state.tool_length_offset / 10:g}",
+        f"G{length_code(length)}",
         f"{path} P{blending[3]:.10g} Q{blending[4]:.10g}" if path == "G64" else path,
         f"G{state.gcodes[SPINDLE_MODE] / 10:g}",
         f"M{state.spindle}",
@@ -479,6 +479,11 @@ def conditions(state) -> tuple:
         "M8 on" if this.flood else "M8 off",
         f"M{state.overrides}",
     )
+
+
+def length_code(length: tuple) -> int:
+    """Return G43 or G49, whose number is in force: of a tool without length G49, also on 2.10."""
+    return 43 if any(length) else 49
 
 
 def goes_by_machine() -> bool:
@@ -551,15 +556,22 @@ def interpret(machine: dict, tools: Tools, request: dict) -> dict:
     }
     answer["error"], answer["files"] = error, sorted(canon.files)
     answer["tool_sizes"] = tool_sizes(len(tools))
-    return {**answer, "position": canon.position, "seconds": seconds, **state_after(request)}
+    return {
+        **answer,
+        "position": canon.position,
+        "seconds": seconds,
+        **state_after(request, canon.length),
+    }
 
 
-def state_after(request: dict) -> dict:
-    """Return the interpreter's state after the program."""
+def state_after(request: dict, length: tuple) -> dict:
+    """Return the interpreter's state after the program, with a tool of a ``length``."""
     this = interpreter_object()
+    codes = list(this.active_g_codes)
+    codes[LENGTH_CODE] = 10 * length_code(length)
     names = set(this.params.globals()) - set(request.get("known_globals", ()))
     return {
-        "gcodes": list(this.active_g_codes)[1:],
+        "gcodes": codes[1:],
         "mcodes": list(this.active_m_codes)[1:],
         "settings": list(this.active_settings)[1:],
         "globals": {name: this.params[name] for name in sorted(names)},
