@@ -245,7 +245,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "END1", "END1 without WHILE"),
         (HAAS, "WHILE[1 EQ 1]DO1", "WHILE […] DO1 has no END1"),
         (HAAS, "#1=#4001", "#4001 means something else"),
-        (HAAS, "#1=#[2400+#2]", "#[2400 + #2]: #2400 means something else"),
+        (HAAS, "#1=#[2400+#3026]", "#[2400 + #5400]: #2400 means something else"),
         (HAAS, "#1=#3020\n#102=#1+1\nX#102", "what stands here comes of the control's clock"),
         (HAAS, "IF[#3001GT5.]X1.", "what stands here comes of the control's clock"),
         (FANUC, "#1=#10002", "#10002 means something else"),

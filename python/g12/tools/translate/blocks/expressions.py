@@ -110,7 +110,8 @@ def _variable(text: str, at: int, depth: int) -> Expression:
         index = _brackets(text, at + 1, depth)
         for number in NUMBER.findall(index.text):
             if float(number) > MOST_PLACES and not _is_kept(float(number)):
-                raise NotTranslated(f"#{excerpt(index.text)}: #{number} {OTHER_MEANING}")
+                rule = f"{number} {OTHER_MEANING}; write the value in its place"
+                raise NotTranslated(f"#{excerpt(index.text)}: #{rule}")
         return Expression(f"#{index.text}", index.read, False, index.end, index.asked)
     digits = re.compile(f"{OWN}?[0-9]+").match(text, at + 1)
     if not digits:
