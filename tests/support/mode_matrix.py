@@ -113,12 +113,17 @@ def check_refused(tracer, before, block, message, keeps=None):
     line = len(before) + 1
     assert after.error.text.startswith(at_line(message, line)) and after.error.line == line
     assert len(after.error.text) <= 255
-    assert after.moves == found.moves
+    assert moved(after) == moved(found)
     assert after.modes == found.modes
     kept = found.state if keeps is None else keeps
     assert [after.state[name] for name in kept] == [found.state[name] for name in kept]
     assert after.globals == found.globals
     assert after.messages == found.messages
+
+
+def moved(traced):
+    """Return the moves but for what a G4 of the refused block, executed before it, makes exact."""
+    return [move._replace(exact=False) for move in traced.moves]
 
 
 OF_THE_PARSER = ("Non integer value for integer", "Negative h word used", "Negative l word used")

@@ -7,7 +7,6 @@ Judged by shapely: the way of the tool's centre against the part's outline.
 import cmath
 import math
 import random
-import time
 
 import numpy as np
 import pytest
@@ -16,6 +15,7 @@ from g12.compensation.contour import Contour
 from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
 from support.contour_geometry import Round, Straight, arc, lines
+from support.growth import growth
 from support.planned_cuts import add
 from support.random_contours import (
     TOLERANCE,
@@ -519,16 +519,20 @@ def waves(count, radius=20.0, wave=2.0):
     ]
 
 
-def seconds(shapes, side, radius):
-    contour = contour_of(Drawn(shapes, side, radius, shapes))
-    start = time.process_time()
-    assert refusal(contour) == ""
-    return time.process_time() - start
+def around(count):
+    points = waves(count)
+    return [Straight(*pair) for pair in zip(points, points[1:])]
 
 
-def test_ten_thousand_elements_are_not_compared_each_with_each():
-    points = waves(10000)
-    contour = [Straight(*pair) for pair in zip(points, points[1:])]
-    laps = polygon(SQUARE) * 2000
-    for shapes, side in ((contour, RIGHT), (contour, LEFT), (laps, LEFT)):
-        assert seconds(shapes, side, 3.0) < 5.0  # half a second where nothing else runs
+def laps(count):
+    return polygon(SQUARE) * (count // 5)
+
+
+@pytest.mark.parametrize(("made", "side"), [(around, RIGHT), (around, LEFT), (laps, LEFT)])
+def test_elements_are_not_compared_each_with_each(made, side):
+    def planned(count):
+        contour = contour_of(Drawn(made(count), side, 3.0, made(count)))
+        return lambda: refusal(contour)
+
+    assert planned(10_000)() == ""
+    assert growth(planned, 2500) < 10

@@ -470,7 +470,7 @@ def conditions(state, length: tuple) -> tuple:
     path = f"G{state.path_mode / 10:g}"
     return (
         f"G{state.origin / 10:g}",
-        f"G{length_code(length)}",
+        f"G{length_code(state.tool_length_offset, length) / 10:g}",
         f"{path} P{blending[3]:.10g} Q{blending[4]:.10g}" if path == "G64" else path,
         f"G{state.gcodes[SPINDLE_MODE] / 10:g}",
         f"M{state.spindle}",
@@ -481,9 +481,9 @@ def conditions(state, length: tuple) -> tuple:
     )
 
 
-def length_code(length: tuple) -> int:
-    """Return G43 or G49, whose number is in force: of a tool without length G49, also on 2.10."""
-    return 43 if any(length) else 49
+def length_code(code: int, length: tuple) -> int:
+    """Return ten times the G code of the tool length: a length of nothing is G49, also on 2.10."""
+    return code if any(length) else 490
 
 
 def goes_by_machine() -> bool:
@@ -568,7 +568,7 @@ def state_after(request: dict, length: tuple) -> dict:
     """Return the interpreter's state after the program, with a tool of a ``length``."""
     this = interpreter_object()
     codes = list(this.active_g_codes)
-    codes[LENGTH_CODE] = 10 * length_code(length)
+    codes[LENGTH_CODE] = length_code(codes[LENGTH_CODE], length)
     names = set(this.params.globals()) - set(request.get("known_globals", ()))
     return {
         "gcodes": codes[1:],
