@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a section finds where nothing forbids it to begin: tests replace what they are about."""
 
-from g12.section.line import SectionPlace
+from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes
 from g12.section.start import SectionStart
 
 START = SectionStart(
-    place=SectionPlace("G12.1", 7),
+    location=BlockLocation("G12.1", 7),
     words={},
     alone=True,
     level=1,

@@ -17,7 +17,7 @@ from g12.machine_ini import Axis
 from g12.moves.steps import BlockMoves
 from g12.section.block_rules import SectionBlock, check_codes, check_letters
 from g12.section.codes import codes_with_word
-from g12.section.line import SectionPlace, split_line
+from g12.section.line import BlockLocation, split_line
 from g12.settings import Settings
 from support import planned_moves
 from support.section_starts import START as POLAR_START
@@ -30,7 +30,7 @@ AXES = {
     "C": Axis(-720.0, 720.0, 360.0, 3600.0),
 }
 START = POLAR_START._replace(
-    place=SectionPlace("G7.1", 7),
+    location=BlockLocation("G7.1", 7),
     words={"C": RADIUS},
     x=22.0,
     c=30.0,
@@ -327,8 +327,8 @@ WORDS = "the section's words are Z, C, X, W, H and U"
 def test_words_that_are_refused(text, why):
     line = split_line(text, CYLINDER_WORDS)
     with pytest.raises(Refusal) as refused:
-        check_letters(line, CYLINDER_WORDS, START.place)
-        check_codes(line.codes, CYLINDER_WORDS, False, START.place)
+        check_letters(line, CYLINDER_WORDS, START.location)
+        check_codes(line.codes, CYLINDER_WORDS, False, START.location)
     assert refused.value.message == f"G7.1 line 7: {why}"
 
 
@@ -337,5 +337,5 @@ def test_words_that_are_refused(text, why):
 )
 def test_words_that_are_taken(text):
     line = split_line(text, CYLINDER_WORDS)
-    check_letters(line, CYLINDER_WORDS, START.place)
-    check_codes(line.codes, CYLINDER_WORDS, False, START.place)
+    check_letters(line, CYLINDER_WORDS, START.location)
+    check_codes(line.codes, CYLINDER_WORDS, False, START.location)

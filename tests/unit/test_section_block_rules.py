@@ -6,9 +6,9 @@ import pytest
 from g12.errors import Refusal
 from g12.polar.words import POLAR_WORDS
 from g12.section.block_rules import SectionBlock, check_block, check_codes, check_letters
-from g12.section.line import SectionPlace, split_line
+from g12.section.line import BlockLocation, split_line
 
-HERE = SectionPlace("G12.1", 7)
+HERE = BlockLocation("G12.1", 7)
 # By modal group as LinuxCNC's interp_array.cc numbers them.
 TAKEN = {
     0: "4",

@@ -8,7 +8,7 @@ import pytest
 from g12.errors import LONGEST_BLOCK, Refusal
 from g12.polar.words import POLAR_WORDS
 from g12.section.block_rules import SectionBlock, alone, check_block, check_letters, m_code_alone
-from g12.section.line import SectionPlace, line_named, split_line, split_words
+from g12.section.line import BlockLocation, line_named, split_line, split_words
 from g12.section.modes import (
     SectionModes,
     action_text,
@@ -19,7 +19,7 @@ from g12.section.modes import (
     stop_text,
 )
 
-HERE = SectionPlace("G12.1", 7)
+HERE = BlockLocation("G12.1", 7)
 MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
 
 

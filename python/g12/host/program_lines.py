@@ -102,9 +102,9 @@ def error_text(interp: Interp) -> str:
 class ProgramLines:
     """The lines that follow the block being remapped.
 
-    ``line`` is the number of the line taken last, counted from 1 as an editor does; ``place`` is
-    the same number, and tells the file in messages if that is another one. ``known`` is the source
-    of an earlier section, which may be in the same file.
+    ``line`` is the number of the line taken last, counted from 1 as an editor does; ``shown_line``
+    is the same number for messages; it names the file if that is not the program's own. ``known``
+    is the source of an earlier section, which may be in the same file.
     """
 
     def __init__(self, interp: Interp, known: ProgramFile | None = None) -> None:
@@ -116,7 +116,7 @@ class ProgramLines:
         interp.sequence_number = self.line
 
     @property
-    def place(self) -> int:
+    def shown_line(self) -> int:
         """The number of the line taken last, for the operator."""
         if self.source is self.home:
             return self.line
@@ -135,10 +135,10 @@ class ProgramLines:
         self.line = line + 1
         return lines[line]
 
-    def has_letter(self, place: int, letters: str) -> bool:
+    def has_letter(self, line: int, letters: str) -> bool:
         """Return whether one of the letters is on a line of the section's own file."""
-        own = not isinstance(place, LineOfFile)
-        return own and not set(letters).isdisjoint(self.home.lines[place - 1].upper())
+        own = not isinstance(line, LineOfFile)
+        return own and not set(letters).isdisjoint(self.home.lines[line - 1].upper())
 
     def parse(self, text: str | None = None) -> None:
         """Let the interpreter parse the line taken, or ``text`` in its place."""

@@ -61,7 +61,7 @@ def check_entry(
         *rules,
     ):
         if not holds:
-            raise start.place.refuse(rule)
+            raise start.location.refuse(rule)
 
 
 def tolerance_of(start: SectionStart, settings: Settings) -> float:

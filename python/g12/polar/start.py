@@ -42,7 +42,7 @@ def polar_setup(
     """
     switches = settings.polar_kinematics == "1"
     if switches and not face:
-        raise start.place.refuse(
+        raise start.location.refuse(
             "needs [KINS] KINEMATICS = polar_xzc for [G12] POLAR_KINEMATICS = 1"
         )
     tolerance = tolerance_of(start, settings)

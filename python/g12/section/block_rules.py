@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from g12.section.line import SectionPlace, TextLine
+from g12.section.line import BlockLocation, TextLine
 from g12.section.words import SectionWords
 
 NO_CODE = -1
@@ -100,7 +100,7 @@ def check_codes(
     codes: Iterable[tuple[str, int]],
     known: SectionWords,
     rapid_allowed: bool,
-    place: SectionPlace,
+    location: BlockLocation,
 ) -> None:
     """Refuse codes as they are written: what is wrong is the code, whatever words stand with it.
 
@@ -108,58 +108,58 @@ def check_codes(
     """
     for letter, code in codes:
         if letter == "G" and code in GROUP_OF_G:
-            _check_g(GROUP_OF_G[code], code, known, rapid_allowed, place)
+            _check_g(GROUP_OF_G[code], code, known, rapid_allowed, location)
         elif letter == "M":
-            _check_m(code // 10, place)
+            _check_m(code // 10, location)
 
 
-def check_call(text: str, off_code: str, place: SectionPlace) -> None:
+def check_call(text: str, off_code: str, location: BlockLocation) -> None:
     """Refuse a call of holes or a shape by its name; ``text`` has no blanks, in lower case.
 
     Its sub turns C and moves by itself, while a section is planned whole before any of it moves.
     """
     called = MADE_OUTSIDE.search(text)
     if called:
-        raise place.refuse(
+        raise location.refuse(
             f"o<{called[1]}> is made outside of a section: "
-            f"{off_code} in the line before it, {place.code} again after it"
+            f"{off_code} in the line before it, {location.code} again after it"
         )
 
 
-def check_letters(line: TextLine, known: SectionWords, place: SectionPlace) -> None:
+def check_letters(line: TextLine, known: SectionWords, location: BlockLocation) -> None:
     """Refuse words that a section does not know, and two words for one axis."""
     for letter in line.letters:
         if letter in known.refused:
-            raise place.refuse(f"{letter} is refused: {known.refused[letter]}")
+            raise location.refuse(f"{letter} is refused: {known.refused[letter]}")
     for axis, letters in known.letters:
         given = [letter for letter in letters if letter in line.letters]
         if len(given) > 1:
-            raise place.refuse(f"{given[0]} and {given[1]} both move {axis}: only one of them")
+            raise location.refuse(f"{given[0]} and {given[1]} both move {axis}: only one of them")
 
 
 def check_block(
-    block: SectionBlock, known: SectionWords, rapid_allowed: bool, place: SectionPlace
+    block: SectionBlock, known: SectionWords, rapid_allowed: bool, location: BlockLocation
 ) -> None:
     """Refuse codes that have no place in a section, each with its reason."""
     for group, code in enumerate(block.g):
         if code != NO_CODE:
-            _check_g(group, code, known, rapid_allowed, place)
+            _check_g(group, code, known, rapid_allowed, location)
     for code in block.m:
-        _check_m(code, place)
-    _check_arguments(block, place)
+        _check_m(code, location)
+    _check_arguments(block, location)
     if "P" in block.words and block.moves and block.motion in (G2, G3):
-        raise place.refuse("P is refused: an arc inside the section has no turns")
+        raise location.refuse("P is refused: an arc inside the section has no turns")
     if len(feed_modes(block)) > 1:
-        raise place.refuse("G94 and G98 are feed per minute, G95 and G99 per revolution: not both")
+        raise location.refuse("G94 and G98 are feed per minute, G95 and G99 per revolution: not both")
 
 
 def _check_g(
-    group: int, code: int, known: SectionWords, rapid_allowed: bool, place: SectionPlace
+    group: int, code: int, known: SectionWords, rapid_allowed: bool, location: BlockLocation
 ) -> None:
     taken = known.planes if group == PLANE else KNOWN_G.get(group, ())
     if code not in taken or (code == G0 and not rapid_allowed):
         reason = REASON_OF_G.get(code) or _reason_of_group(group, known)
-        raise place.refuse(f"G{code / 10:g} is refused: {reason}")
+        raise location.refuse(f"G{code / 10:g} is refused: {reason}")
 
 
 def _reason_of_group(group: int, known: SectionWords) -> str:
@@ -172,25 +172,25 @@ def _reason_of_group(group: int, known: SectionWords) -> str:
     return REASON_OF_GROUP.get(group, "it is not known here")
 
 
-def _check_m(code: int, place: SectionPlace) -> None:
+def _check_m(code: int, location: BlockLocation) -> None:
     if code in REASON_OF_M:
-        raise place.refuse(f"M{code} is refused: {REASON_OF_M[code]}")
+        raise location.refuse(f"M{code} is refused: {REASON_OF_M[code]}")
 
 
-def _check_arguments(block: SectionBlock, place: SectionPlace) -> None:
+def _check_arguments(block: SectionBlock, location: BlockLocation) -> None:
     """Refuse what LinuxCNC would find wrong with the words of an M code only between the moves."""
     words = block.words
     for code in block.m:
         needed = NEEDED_WORD.get(code)
         if needed and words.get(needed, -1.0) < 0.0:
-            raise place.refuse(f"M{code} needs {needed}, the number of the output")
+            raise location.refuse(f"M{code} needs {needed}, the number of the output")
     if ORIENT in block.m and words.get("Q", 1.0) <= 0.0:
-        raise place.refuse(f"M{ORIENT} needs {LONGEST_WAIT}")
+        raise location.refuse(f"M{ORIENT} needs {LONGEST_WAIT}")
     if WAIT_FOR_INPUT in block.m:
-        _check_waiting(words, place)
+        _check_waiting(words, location)
 
 
-def _check_waiting(words: dict[str, float], place: SectionPlace) -> None:
+def _check_waiting(words: dict[str, float], location: BlockLocation) -> None:
     """Refuse an M66 that LinuxCNC would refuse."""
     waits = words.get("L", AT_ONCE) != AT_ONCE
     for wrong, reason in (
@@ -200,7 +200,7 @@ def _check_waiting(words: dict[str, float], place: SectionPlace) -> None:
         (words.get("L", 0.0) not in range(5), "L from 0 to 4"),
     ):
         if wrong:
-            raise place.refuse(f"M{WAIT_FOR_INPUT} needs {reason}")
+            raise location.refuse(f"M{WAIT_FOR_INPUT} needs {reason}")
 
 
 def feed_modes(block: SectionBlock) -> set[bool]:

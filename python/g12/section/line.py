@@ -38,7 +38,7 @@ def plain_line_of(letters: str) -> Callable[[str], object]:
     ).fullmatch
 
 
-class SectionPlace(NamedTuple):
+class BlockLocation(NamedTuple):
     """Where something is refused: the section's code, and the line (0 in MDI)."""
 
     code: str

@@ -3,7 +3,7 @@
 
 from typing import NamedTuple
 
-from g12.section.line import SectionPlace
+from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes
 from g12.section.words import SectionWords
 
@@ -11,7 +11,7 @@ from g12.section.words import SectionWords
 class SectionStart(NamedTuple):
     """What a section takes of the interpreter, once: all that its parts know of the machine.
 
-    Lengths are in program units. ``place`` is that of the block that switches on, ``words`` are
+    Lengths are in program units. ``location`` is that of the block that switches on, ``words`` are
     those of the section in it, ``alone`` tells whether it holds nothing else, ``level`` is its call
     level. X is a radius value; C, where the
     axis stands, is in degrees. ``machine_unit`` is the length of a machine unit, ``millimetre``
@@ -21,7 +21,7 @@ class SectionStart(NamedTuple):
     that feeds per revolution refer to. ``tool_radius`` is None if no tool is loaded.
     """
 
-    place: SectionPlace
+    location: BlockLocation
     words: dict[str, float]
     alone: bool
     level: int

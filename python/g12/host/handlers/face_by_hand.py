@@ -57,7 +57,7 @@ class ByHand(NamedTuple):
 
 def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[int]:
     """Go to the face where a section could begin, with the tool ``beside`` the X line."""
-    code = start.place.code
+    code = start.location.code
     if y_offset(interp):
         raise BlockRefusal(code, "needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis")
     interp.g12_found = modes_found(interp)

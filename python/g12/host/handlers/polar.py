@@ -93,9 +93,9 @@ def run_by_hand(interp: Interp) -> Iterator[int]:
     """Switch on in MDI, where nothing after it can be read: it could be an old program's."""
     start = start_of_section(interp, 0)
     if not MACHINE.switches_kinematics:
-        raise BlockRefusal(start.place.code, NOT_IN_MDI)
+        raise BlockRefusal(start.location.code, NOT_IN_MDI)
     if face_in_force():
-        raise BlockRefusal(start.place.code, "is already on")
+        raise BlockRefusal(start.location.code, "is already on")
     check_section_start(start, MACHINE.coordinates)
     setup = _setup(start)  # refuses what the machine cannot
     yield from face_by_hand.switch_on(interp, start, setup.words.beside)

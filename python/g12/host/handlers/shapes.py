@@ -28,7 +28,7 @@ from g12.polar.plan import POLE_SHARE, PolarSettings
 from g12.polar.start import check_section_start, polar_setup
 from g12.request.context import Context
 from g12.section.codes import code_of_handler
-from g12.section.line import SectionPlace
+from g12.section.line import BlockLocation
 from g12.section.modes import decimal
 from g12.section.start import SectionStart
 from g12.shapes import holes, polygon, round_pocket, slot
@@ -180,7 +180,7 @@ def start_of_shape(interp: Interp, name: str) -> SectionStart:
     """Return what the shape finds; refuse modes in which no section can begin."""
     start = start_of_section(interp, 0)
     line = messages.line_of_refusal(interp, BlockRefusal(name, ""))
-    start = start._replace(place=SectionPlace(name, line or 0), x=1.0)  # it goes there by itself
+    start = start._replace(location=BlockLocation(name, line or 0), x=1.0)  # it goes there by itself
     check_section_start(start, MACHINE.coordinates)
     return start
 

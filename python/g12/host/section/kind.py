@@ -116,15 +116,15 @@ def _section(
     interp: Interp, kind: SectionKind[Planning], frame: CallFrame, program: ProgramLines
 ) -> Section:
     """Return the section; refuse to begin it where it cannot."""
-    start = start_of_section(interp, program.place, kind.letters)
+    start = start_of_section(interp, program.shown_line, kind.letters)
     if MACHINE.switches_kinematics and interp.task and face_in_force():
-        raise start.place.refuse("the face is on already, by hand: G13.1 first")
+        raise start.location.refuse("the face is on already, by hand: G13.1 first")
     kind.check(start)
     setup = kind.setup(start)
-    drag = clamp_codes(start.place.refuse, MACHINE.settings.c_clamp_shapes)
+    drag = clamp_codes(start.location.refuse, MACHINE.settings.c_clamp_shapes)
     output = SectionOutput(
         interp,
-        start.place.code,
+        start.location.code,
         x_factor=2.0 if start.diameter else 1.0,
         blending=setup.tolerance / 2,
         initial=INITIAL_TOLERANCE / modes.millimetres_per_unit(interp),
@@ -134,7 +134,7 @@ def _section(
         beside=setup.words.beside,
     )
     return Section(
-        kind.codes(start.place.code),
+        kind.codes(start.location.code),
         setup,
         lambda contour: kind.plan(contour, setup, start),
         frame,

@@ -37,7 +37,7 @@ from g12.moves.feed import Segment
 from g12.moves.steps import BlockMoves
 from g12.polar.face import FaceMove, FaceSwitch, flows_into
 from g12.section.block_rules import G1
-from g12.section.line import SectionPlace
+from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes, decimal
 
 PER_MINUTE, PER_REVOLUTION = 0, 2  # feed_mode
@@ -287,11 +287,11 @@ class SectionOutput:
             yield from to_axes(interp)
             interp.g12_found = None  # not before: an abort in the wait drops what was executed
         if not has_switched(interp):
-            raise SectionPlace(self.code, step.line).refuse(not_switched())
+            raise BlockLocation(self.code, step.line).refuse(not_switched())
         wrong = self._wrong_place(step.place) if step.on and interp.task else ""
         if wrong:
             yield from to_axes(interp)
-            raise SectionPlace(self.code, step.line).refuse(wrong)
+            raise BlockLocation(self.code, step.line).refuse(wrong)
         interp.params[INPUT_FOUND] = found
         interp.current_x, interp.CC_current, interp.current_z = step.place
         interp.current_y = step.on * self.beside - y_offset(interp)
@@ -345,20 +345,20 @@ class SectionOutput:
 
     def _execute(self, action: Action) -> None:
         """Execute the block as one of the program, which a remapped code must be."""
-        interp, place = self.interp, SectionPlace(self.code, action.line)
+        interp, location = self.interp, BlockLocation(self.code, action.line)
         level, stands = interp.call_level, self._stands()
         interp.call_level = level if action.level is None else action.level
         try:
             interp.read(action.text)
             status = interp.execute(None)
         except SystemError:  # how LinuxCNC hands a failed read or execute to Python
-            raise place.refuse(error_text(interp)) from None
+            raise location.refuse(error_text(interp)) from None
         finally:
             interp.call_level = level
         if status:
-            raise place.refuse(f"{action.text} waits for the machine: not inside a section")
+            raise location.refuse(f"{action.text} waits for the machine: not inside a section")
         if self._stands() != stands:
-            raise place.refuse(f"{action.text} moves the machine: not inside a section")
+            raise location.refuse(f"{action.text} moves the machine: not inside a section")
 
     def _stands(self) -> tuple[float, float, float]:
         return self.interp.current_x, self.interp.CC_current, self.interp.current_z

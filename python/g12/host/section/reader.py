@@ -37,7 +37,7 @@ from g12.section.block_rules import (
     STATE_CODES,
     SectionBlock,
 )
-from g12.section.line import SectionPlace, TextLine
+from g12.section.line import BlockLocation, TextLine
 from g12.section.modes import (
     SectionModes,
     action_text,
@@ -115,7 +115,7 @@ class SectionReader:
             x,
             z,
             c,
-            code=start.place.code,
+            code=start.location.code,
             names=PlaneNames(first, second, third, known.centre_name),
             diameter=rules.diameter if known.plane[0] == "X" else None,
             closing=rules.closing,
@@ -131,13 +131,13 @@ class SectionReader:
         return x, c / self.rules.c_scale, z
 
     @property
-    def place(self) -> SectionPlace:
+    def location(self) -> BlockLocation:
         """The line taken last, for the operator."""
-        return SectionPlace(self.start.place.code, self.program.place)
+        return BlockLocation(self.start.location.code, self.program.shown_line)
 
     def refuse_failed(self) -> Exception:
         """Return the refusal of a line that the interpreter could not read or execute."""
-        return self.place.refuse(error_text(self.interp))
+        return self.location.refuse(error_text(self.interp))
 
     def remember_machine(self) -> None:
         """Note where the machine stands, as the interpreter knows it now, and in which modes."""
@@ -223,7 +223,7 @@ class SectionReader:
         """Return the commanded speed of the spindle that feeds per revolution refer to."""
         named, count = int(line.spindle[1:] or MAIN_SPINDLE), len(self._speeds)
         if not ALL_SPINDLES <= named < count:
-            raise self.place.refuse(
+            raise self.location.refuse(
                 f"${named}: this machine has {count} spindle{'s' * (count > 1)}"
             )
         if "S" in block.words:
@@ -263,14 +263,14 @@ class SectionReader:
     def comment(self, line: TextLine) -> None:
         """Keep a comment, message or report, with its parameters as they are now."""
         if line.python:
-            self._keep(Action(self.program.place, line.python, self.modes))
+            self._keep(Action(self.program.shown_line, line.python, self.modes))
         for comment in line.comments[-1:]:  # the interpreter knows only the last one of a line
             if "#" in comment:
                 self.show_plane()
                 self.interp.read("")  # which renews #5420
             text = comment_text(comment, self._parameter)
             modes = self.modes if may_fail(comment) else None
-            self._keep(Action(self.program.place, text, modes))
+            self._keep(Action(self.program.shown_line, text, modes))
 
     def returned(self) -> None:
         """Restore what an M73 saved in subs that have ended."""
@@ -284,7 +284,7 @@ class SectionReader:
 
     def _mark(self, text: str) -> None:
         if text:
-            self._keep(Action(self.program.place, text, self.modes))
+            self._keep(Action(self.program.shown_line, text, self.modes))
 
     def _parameter(self, name: str) -> float | None:
         """Return a parameter by number or name, None if there is none."""
@@ -302,7 +302,7 @@ class SectionReader:
         x, c, z, i, j, r, k, relative = words
         if motion not in MOTIONS:
             code = f"G{motion / 10:g}"
-            raise self.place.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
+            raise self.location.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
         if x is not None:
             x *= self.rules.x_scale
         if c is not None:
@@ -314,7 +314,7 @@ class SectionReader:
             self._check_third(x, c, i, j)
         if modes.incremental or relative:
             x, c, z = self._absolute(x, c, z, "XCZ" if modes.incremental else relative)
-        line = self.program.place
+        line = self.program.shown_line
         if G1 < motion <= G3:
             turn = 1 if motion == G3 else -1
             contour.arc(turn, x, c, z, i=i, j=j, radius=r, line=line, feed=self._feed())
@@ -331,46 +331,46 @@ class SectionReader:
 
     def _keep_apart(self) -> None:
         """Mark the end of a block where the next one's line has the same number, as in a loop."""
-        line = self.program.place
+        line = self.program.shown_line
         if line == self._moved:
             self._keep(Action(line, BLOCK_END, None))
         self._moved = line
 
     def _check_third(self, *others: float | None) -> None:
         if not self.rules.third_with_others and any(other is not None for other in others):
-            raise self.place.refuse(self.rules.words.own_block)
+            raise self.location.refuse(self.rules.words.own_block)
 
     def _feed(self) -> float:
         """Return the feed along the part in program units per minute."""
         modes = self.modes
         if modes.feed > MOST_FEED:
-            raise self.place.refuse(
+            raise self.location.refuse(
                 f"F{number(modes.feed)} is no feed: at most {number(MOST_FEED)}"
             )
         if not modes.per_revolution:
             return modes.feed
         if not modes.speed:
-            raise self.place.refuse("feed per revolution (G95, G99) needs the spindle speed S")
+            raise self.location.refuse("feed per revolution (G95, G99) needs the spindle speed S")
         return modes.feed * modes.speed
 
     def _rapid_feed(self) -> float:
         feed = self.rules.rapid_feed
         if feed is None:
-            raise self.place.refuse(f"G0 is refused (it is still active): {REASON_OF_G[G0]}")
+            raise self.location.refuse(f"G0 is refused (it is still active): {REASON_OF_G[G0]}")
         return feed
 
     def _compensate(self, side: int) -> None:
         radius = self.start.tool_radius
         if radius is None:
-            raise self.place.refuse(
+            raise self.location.refuse(
                 f"G{side} needs a tool in the spindle: its radius is compensated"
             )
         if radius < 0:
             diameter = number(2 * radius)
-            raise self.place.refuse(
+            raise self.location.refuse(
                 f"G{side}: the loaded tool has the negative diameter {diameter} in the tool table"
             )
-        self.contour.compensation(side, radius, line=self.program.place)
+        self.contour.compensation(side, radius, line=self.program.shown_line)
 
     def _state_code(self, code: int) -> None:
         """Obey M70 to M73: here for the section's modes, between the moves for the machine's."""
@@ -380,15 +380,15 @@ class SectionReader:
         elif code == FORGET:
             self._saved.pop(level, None)
             self._restored_on_return.discard(level)
-            self._keep(Action(self.program.place, f"M{FORGET}", self.modes, level))
+            self._keep(Action(self.program.shown_line, f"M{FORGET}", self.modes, level))
         else:
             self._saved[level] = self.modes
             if code == SAVE_FOR_SUB and level > self.start.level:
                 self._restored_on_return.add(level)
-            self._keep(Action(self.program.place, f"M{SAVE}", self.modes, level))
+            self._keep(Action(self.program.shown_line, f"M{SAVE}", self.modes, level))
 
     def _restore(self, level: int) -> None:
         if level not in self._saved:
-            raise self.place.refuse("M72: no modes were saved in this section")
-        self._keep(Action(self.program.place, f"M{RESTORE}", self.modes, level))
+            raise self.location.refuse("M72: no modes were saved in this section")
+        self._keep(Action(self.program.shown_line, f"M{RESTORE}", self.modes, level))
         self.set_modes(self._saved[level])

@@ -123,7 +123,7 @@ class Section:
         raise self._refuse(f"{MOST_LINES} lines were read and {off} did not come: an endless loop?")
 
     def _refuse(self, reason: str) -> Refusal:
-        return self.reader.place.refuse(reason)
+        return self.reader.location.refuse(reason)
 
     def _line(self, line: TextLine) -> Iterator[int]:
         if self.reader.deletes(line):
@@ -138,9 +138,9 @@ class Section:
     def _words(self, line: TextLine) -> Iterator[int]:
         if line.text == "%":
             self._end_of_file()
-        place, known = self.reader.place, self.setup.words.words
-        check_codes(line.codes, known, self._rapid_allowed, place)
-        check_letters(line, known, place)
+        location, known = self.reader.location, self.setup.words.words
+        check_codes(line.codes, known, self._rapid_allowed, location)
+        check_letters(line, known, location)
         if "#" in line.text:
             self.reader.show_plane()
         if line.rewritten:
@@ -170,15 +170,15 @@ class Section:
         reader.move(line, block)
 
     def _check(self, block: SectionBlock) -> None:
-        codes, place = self.codes, self.reader.place
+        codes, location = self.codes, self.reader.location
         if codes.begins(block):
-            raise place.refuse(f"the section is already on: {codes.off_code} ends it")
+            raise location.refuse(f"the section is already on: {codes.off_code} ends it")
         if block.m[M_STOP] in (M2, M30):
             raise self._missing_off(f"M{block.m[M_STOP]} comes before it")
-        check_block(block, self.setup.words.words, self._rapid_allowed, place)
+        check_block(block, self.setup.words.words, self._rapid_allowed, location)
         for code in block.m:
             if code in codes.remapped and not m_code_alone(block, code):
-                raise place.refuse(
+                raise location.refuse(
                     f"M{code} is remapped: inside a section it needs a block of its own"
                 )
 
@@ -194,7 +194,7 @@ class Section:
             return
         if self._phase is Phase.READING and self.frame.is_current:
             self._check_level(line)
-        check_call(line.text, self.codes.off_code, self.reader.place)
+        check_call(line.text, self.codes.off_code, self.reader.location)
         self.reader.show_plane()
         self._check_done(self.program.control(line.control))
         self.reader.returned()
@@ -237,7 +237,7 @@ class Section:
 
     def _wait_for_input(self, text: str) -> Iterator[int]:
         """Obey M66: all before it has to happen before the lines after it can be read."""
-        self.reader.contour.wait(line=self.program.place)
+        self.reader.contour.wait(line=self.program.shown_line)
         planned = yield from self._emit()
         yield from self.frame.execute_and_wait(text)
         self.reader.remember_machine()
@@ -277,7 +277,7 @@ class Section:
         if beyond:
             lengths = self.setup.words.words.c_is_length
             by_c = beyond.axis == "X" and lengths and self.program.has_letter(beyond.line, "CHY")
-            raise self.reader.place._replace(line=beyond.line).refuse(
+            raise self.reader.location._replace(line=beyond.line).refuse(
                 f"{beyond.text(self.setup.words.diameter)}"
                 f"{': C and H are lengths here, not degrees' * by_c}"
             )

@@ -12,7 +12,7 @@ from g12.host.section.output import PER_REVOLUTION
 from g12.host.section.reader import block_of
 from g12.host.spindle_c import missing_code
 from g12.section.block_rules import alone
-from g12.section.line import SectionPlace
+from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes
 from g12.section.start import SectionStart
 
@@ -30,7 +30,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
     block = interp.blocks[interp.remap_level]
     machine_unit = modes.program_units_per_machine_unit(interp)
     return SectionStart(
-        place=SectionPlace(messages.code_of_block(interp), line),
+        location=BlockLocation(messages.code_of_block(interp), line),
         words=block_of(block).words,
         alone=stands_alone(block, words),
         level=interp.call_level,
