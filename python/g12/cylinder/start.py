@@ -29,7 +29,8 @@ def check_cylinder_start(start: SectionStart, axes: Collection[str]) -> None:
     check_entry(start, axes, "XZC", ())
     word = start.words.get(RADIUS)
     if word is None:
-        raise start.location.refuse(f"needs {RADIUS}, the cylinder's radius; {RADIUS}0 ends a section")
+        rule = f"needs {RADIUS}, the cylinder's radius; {RADIUS}0 ends a section"
+        raise start.location.refuse(rule)
     if not 0.0 < word <= LARGEST:
         rule = f"must be above 0 and at most {number(LARGEST)}"
         raise start.location.refuse(f"{RADIUS}{number(word)}, the cylinder's radius, {rule}")

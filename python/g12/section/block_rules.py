@@ -150,7 +150,9 @@ def check_block(
     if "P" in block.words and block.moves and block.motion in (G2, G3):
         raise location.refuse("P is refused: an arc inside the section has no turns")
     if len(feed_modes(block)) > 1:
-        raise location.refuse("G94 and G98 are feed per minute, G95 and G99 per revolution: not both")
+        raise location.refuse(
+            "G94 and G98 are feed per minute, G95 and G99 per revolution: not both"
+        )
 
 
 def _check_g(

@@ -180,7 +180,8 @@ def start_of_shape(interp: Interp, name: str) -> SectionStart:
     """Return what the shape finds; refuse modes in which no section can begin."""
     start = start_of_section(interp, 0)
     line = messages.line_of_refusal(interp, BlockRefusal(name, ""))
-    start = start._replace(location=BlockLocation(name, line or 0), x=1.0)  # it goes there by itself
+    # x: the sub itself moves the tool to its start
+    start = start._replace(location=BlockLocation(name, line or 0), x=1.0)
     check_section_start(start, MACHINE.coordinates)
     return start
 

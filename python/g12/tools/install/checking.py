@@ -30,7 +30,7 @@ def read_config_text(ini: Path) -> IniText:
     if not text.section("RS274NGC"):
         for line in text.lines():
             if MEANT_AS_INTERPRETER.match(line.text):
-                wrong = f"{line.place}: {line.text.strip()}: begins no section"
+                wrong = f"{line.location}: {line.text.strip()}: begins no section"
                 raise UsageError(f"{wrong}; write it as [RS274NGC]")
         raise UsageError(f"{ini}: no [RS274NGC] section: this is no machine's INI file")
     return text
@@ -65,7 +65,7 @@ def check_report(config: Config, found: list[ConfigFinding]) -> dict:
         "loads": config.failure is None,
         "axes": list(config.ini.axes),
         "codes": [
-            {"code": code.remap.code, "feature": code.feature, "line": code.line.place}
+            {"code": code.remap.code, "feature": code.feature, "line": code.line.location}
             for code in codes
         ],
         "programs": {suffix: control for suffix, control, _ in translating_filters(config)},

@@ -20,7 +20,7 @@ from g12.tools.install.config.ini_edit import (
     END,
     IniLine,
     IniText,
-    Place,
+    InsertionPoint,
     line_end,
     lines_with_ends,
     to_bytes,
@@ -103,11 +103,11 @@ def make_plan(
     filters = filter_lines(plan, config, wanted)
     added = face_lines(plan, config, wanted)
     spindle = spindle_lines(plan, config, wanted, pins)
-    place = plan.text.end_of_section("RS274NGC")
+    point = plan.text.end_of_section("RS274NGC")
     noted = {line.text for block in plan.text.blocks() for line in block}
     put_block(
         plan.text,
-        place,
+        point,
         [
             *(note for note in plan.notes if note not in noted),
             *subs,
@@ -115,15 +115,15 @@ def make_plan(
             *added.pop("RS274NGC", []),
         ],
     )
-    put_section(plan.text, "PYTHON", place, python)
-    put_section(plan.text, "FILTER", place, filters)
+    put_section(plan.text, "PYTHON", point, python)
+    put_section(plan.text, "FILTER", point, filters)
     alone = {
         "DISPLAY": geometry_lines(plan, config, wanted),
         SETTINGS: program_settings(config, wanted),
     }
     for lines_of in (form_lines(plan, config, wanted), alone, added, spindle):
         for section, lines in lines_of.items():
-            put_section(plan.text, section, place, lines)
+            put_section(plan.text, section, point, lines)
     for path in plan.changes():
         require_inside(config, path)
     return plan
@@ -149,25 +149,27 @@ def names_copy(text: IniText) -> list[IniLine]:
     return found
 
 
-def put_block(text: IniText, place: Place, lines: Sequence[str]) -> None:
+def put_block(text: IniText, point: InsertionPoint, lines: Sequence[str]) -> None:
     """Put lines in between the markers."""
     if lines:
-        text.insert(place, [BEGIN_LINE, *lines, END])
+        text.insert(point, [BEGIN_LINE, *lines, END])
 
 
-def put_section(text: IniText, section: str, interpreter: Place, lines: Sequence[str]) -> None:
+def put_section(
+    text: IniText, section: str, interpreter: InsertionPoint, lines: Sequence[str]
+) -> None:
     """Put lines into a section; a new one stands in the file of [RS274NGC].
 
     In an included file that is in front of a header, where no other section is cut in two.
     """
-    place = text.end_of_section(section)
-    if place:
-        put_block(text, place, lines)
+    point = text.end_of_section(section)
+    if point:
+        put_block(text, point, lines)
     elif lines and interpreter.file == text.path:
         put_block(text, text.end_of_file(), [f"[{section}]", *lines])
     elif lines:
         header = text.headers("RS274NGC")[0]
-        put_block(text, Place(header.file, header.row), [f"[{section}]", *lines])
+        put_block(text, InsertionPoint(header.file, header.row), [f"[{section}]", *lines])
 
 
 def package_folder(config: Config) -> tuple[str, bool]:

@@ -62,9 +62,9 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     for path, content in changes.items():
         yield from difference(path, content)
     yield from said
-    needing = sorted({line.place: line for line in lines_needing_package(text)}.values())
+    needing = sorted({line.location: line for line in lines_needing_package(text)}.values())
     for line in needing:
-        yield f"{line.place}: still needs the package: {line.text.strip()}"
+        yield f"{line.location}: still needs the package: {line.text.strip()}"
     if dry_run:
         yield "dry run: nothing was written"
         return
@@ -98,8 +98,11 @@ def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
         text.replace(line, EDITED + line.text)
     text.remove(doomed)
     return [
-        *(f"{line.place}: you changed it, it stays as a comment: {line.text}" for line in edited),
-        *(f"{line.place}: stays, it is not by install: {line.text}" for line in stay),
+        *(
+            f"{line.location}: you changed it, it stays as a comment: {line.text}"
+            for line in edited
+        ),
+        *(f"{line.location}: stays, it is not by install: {line.text}" for line in stay),
     ]
 
 

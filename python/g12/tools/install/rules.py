@@ -79,7 +79,7 @@ def unreadable_includes(config: Config, _codes: list[Code]) -> Iterator[ConfigFi
     for line in config.text.unreadable:
         yield warning(
             "include",
-            f"{line.place}: {line.text.strip()}: there is no such file to read: "
+            f"{line.location}: {line.text.strip()}: there is no such file to read: "
             "LinuxCNC 2.9 goes on, 2.10 does not start",
             "correct the file name or take the line out",
         )
@@ -91,8 +91,8 @@ def nested_includes(config: Config, _codes: list[Code]) -> Iterator[ConfigFindin
         if line.file != config.text.path and INCLUDE.match(line.text):
             yield warning(
                 "include",
-                f"{line.place}: {line.text.strip()}: an included file's #INCLUDE is only a comment "
-                "to LinuxCNC 2.9 and to this command; 2.10 reads that file",
+                f"{line.location}: {line.text.strip()}: an included file's #INCLUDE is only a "
+                "comment to LinuxCNC 2.9 and to this command; 2.10 reads that file",
                 f"put the #INCLUDE into {config.text.path.name} itself",
             )
 
@@ -107,13 +107,13 @@ def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding
         if features.model_of(remap_from_value(value)):
             yield problem(
                 "not-read",
-                f"{line.place}: {line.text.strip()}: not in the section [RS274NGC] that is read",
+                f"{line.location}: {line.text.strip()}: not in the section [RS274NGC] that is read",
                 "move the line into the first [RS274NGC]; LinuxCNC 2.9 reads no second one",
             )
     for header in config.text.headers(SECTION)[1:]:
         yield problem(
             "not-read",
-            f"{header.place}: a second [{SECTION}], which LinuxCNC 2.9 does not read",
+            f"{header.location}: a second [{SECTION}], which LinuxCNC 2.9 does not read",
             f"move its lines into the first [{SECTION}]",
         )
 
@@ -126,7 +126,7 @@ def broken_headers(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding
         if MEANT_AS_HEADER.match(text) and (other_case or not HEADER.match(text)):
             yield problem(
                 "header",
-                f"{line.place}: {text:.40}: begins no section for LinuxCNC 2.9: "
+                f"{line.location}: {text:.40}: begins no section for LinuxCNC 2.9: "
                 "what is below it does not act",
                 f"write the section's name between brackets, without blanks: as {OWN_HEADER}",
             )
@@ -139,7 +139,7 @@ def long_lines(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
             if len(line.text) > LONGEST_LINE:
                 yield problem(
                     "long-line",
-                    f"{line.place}: {len(line.text)} characters; LinuxCNC reads {LONGEST_LINE}",
+                    f"{line.location}: {len(line.text)} characters; LinuxCNC reads {LONGEST_LINE}",
                     "shorten the line, or break it with a backslash at the end",
                 )
 
@@ -198,9 +198,9 @@ def taken_codes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
                 continue
             yield problem(
                 "taken",
-                f"{line.place}: {remap.code} is remapped here already: REMAP = {remap.text}",
+                f"{line.location}: {remap.code} is remapped here already: REMAP = {remap.text}",
                 f"keep one meaning of {remap.code}: take this line out or the package's "
-                f"({code.line.place})",
+                f"({code.line.location})",
             )
 
 
@@ -214,7 +214,7 @@ def owned_codes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
             cure = "use the pair G12.3/G13.3: uninstall, then install --with polar-g12.3"
         yield problem(
             "owned",
-            f"{code.line.place}: {code.remap.code} is LinuxCNC's own code: its REMAP is ignored",
+            f"{code.line.location}: {code.remap.code} is LinuxCNC's own code: its REMAP is ignored",
             cure,
         )
 
@@ -228,7 +228,7 @@ def wrong_lines(_config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
         if wrong:
             yield problem(
                 "wrong-line",
-                f"{code.line.place}: REMAP = {code.remap.text}: should have {', '.join(wrong)}",
+                f"{code.line.location}: REMAP = {code.remap.text}: should have {', '.join(wrong)}",
                 code.remap.like(code.model),
             )
 
@@ -581,7 +581,7 @@ def function_missing(config: Config) -> str:
     for line, remap in config.remaps:
         name = remap.keywords.get("python")
         if name and name not in python.remap:
-            return f"{line.place}: '{name}' is not a Python callable function"
+            return f"{line.location}: '{name}' is not a Python callable function"
     return ""
 
 

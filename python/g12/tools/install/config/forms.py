@@ -105,11 +105,13 @@ def screen_lines(config: Config, prefix: str) -> dict[str, list[str]]:
         return {}
     if screen not in TABS:
         return {"HAL": [f"HALCMD = {WINDOW}{prefix}/{PAGE}"]}
-    places, tabs = (config.ini.all("DISPLAY", f"EMBED_TAB_{key}") for key in ("LOCATION", "NAME"))
+    locations, tabs = (
+        config.ini.all("DISPLAY", f"EMBED_TAB_{key}") for key in ("LOCATION", "NAME")
+    )
     # Screens count names and locations: where a tab of the user's has none, ours has none either.
-    place = [f"EMBED_TAB_LOCATION = {TABS[screen]}"] if len(places) == len(tabs) else []
+    location = [f"EMBED_TAB_LOCATION = {TABS[screen]}"] if len(locations) == len(tabs) else []
     command = f"EMBED_TAB_COMMAND = {TAB}{prefix}/{PAGE}"
-    return {"DISPLAY": ["EMBED_TAB_NAME = Forms", *(place if TABS[screen] else []), command]}
+    return {"DISPLAY": ["EMBED_TAB_NAME = Forms", *(location if TABS[screen] else []), command]}
 
 
 def packages(config: Config) -> list[str]:

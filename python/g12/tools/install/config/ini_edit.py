@@ -34,12 +34,12 @@ class IniLine(NamedTuple):
     host: int
 
     @property
-    def place(self) -> str:
+    def location(self) -> str:
         """File and line number for messages."""
         return f"{self.file.name}:{self.row + 1}"
 
 
-class Place(NamedTuple):
+class InsertionPoint(NamedTuple):
     """A gap between lines: in front of line ``row`` of ``file``."""
 
     file: Path
@@ -153,8 +153,8 @@ class IniText:
         found = entries_of([line.text for line in lines], section)
         return [(lines[entry.row], entry.value) for entry in found if entry.key == key]
 
-    def end_of_section(self, section: str) -> Place | None:
-        """Return the place after the section's last entry, in the INI itself if that can be.
+    def end_of_section(self, section: str) -> InsertionPoint | None:
+        """Return the point after the section's last entry, in the INI itself if that can be.
 
         For RS274NGC that is here in front of the empty line::
 
@@ -174,10 +174,10 @@ class IniText:
         for host, line in reversed(last_inside.items()):
             included = line.file != self.path
             if line == last_of[host] and (included or belongs(line.text)):
-                return Place(self.path, self._after(self.path, host))
+                return InsertionPoint(self.path, self._after(self.path, host))
         for line in reversed(found):
             if belongs(line.text):
-                return Place(line.file, self._after(line.file, line.row))
+                return InsertionPoint(line.file, self._after(line.file, line.row))
         return None
 
     def _after(self, file: Path, index: int) -> int:
@@ -187,25 +187,25 @@ class IniText:
             index += 1
         return index + 1
 
-    def end_of_file(self) -> Place:
-        """Return the place at the end of the INI itself."""
-        return Place(self.path, len(self.files[self.path]))
+    def end_of_file(self) -> InsertionPoint:
+        """Return the point at the end of the INI itself."""
+        return InsertionPoint(self.path, len(self.files[self.path]))
 
-    def insert(self, place: Place, texts: Sequence[str]) -> None:
+    def insert(self, point: InsertionPoint, texts: Sequence[str]) -> None:
         """Put lines in. At the end of a file without a last line end they have none either."""
-        lines = self.files[place.file]
+        lines = self.files[point.file]
         end = line_end(lines)
         new = [text + end for text in texts]
-        if place.row == len(lines) and lines and not lines[-1].endswith("\n"):
+        if point.row == len(lines) and lines and not lines[-1].endswith("\n"):
             lines[-1] += end
             new[-1] = texts[-1]
-        lines[place.row : place.row] = new
+        lines[point.row : point.row] = new
 
     def put_in_place(self, line: IniLine, text: str, begin: str) -> None:
         """Put an entry between markers in place of a line, which stays there as a comment."""
-        self.insert(Place(line.file, line.row + 1), [NOW + text, text, END])
+        self.insert(InsertionPoint(line.file, line.row + 1), [NOW + text, text, END])
         self.replace(line, WAS + line.text)
-        self.insert(Place(line.file, line.row), [begin])
+        self.insert(InsertionPoint(line.file, line.row), [begin])
 
     def replace(self, line: IniLine, text: str) -> None:
         """Put another text in place of a line; its line end stays."""
@@ -241,13 +241,13 @@ class IniText:
             if line.text.startswith(END):
                 if not open_:
                     raise IniError(
-                        f'{line.place}: the line "{BEGIN}" that begins this is missing: put it in '
+                        f'{line.location}: the line "{BEGIN}" that begins this is missing: put it in '
                         "front of the first line that install wrote"
                     )
                 open_ = False
         if open_:
             raise IniError(
-                f'{blocks[-1][0].place}: the line "{END}" that ends this is missing: put it after '
+                f'{blocks[-1][0].location}: the line "{END}" that ends this is missing: put it after '
                 "the last line that install wrote there"
             )
         return blocks

@@ -42,7 +42,7 @@ class Python:
 
     ``remap`` and ``oword`` map the functions of these modules to the module that made them, and
     are empty if the config has none. ``package`` is the folder of the package g12 in use.
-    ``error`` is the exception that stopped the modules, with its place.
+    ``error`` is the exception that stopped the modules, with its file and line.
     """
 
     remap: dict[str, str | None] = field(default_factory=dict)

@@ -101,7 +101,7 @@ def wrong_limits(config: Config) -> Iterator[str]:
     slide = f"JOINT_{letters.index('X')}"
     needed = [*(("AXIS_X", key) for key in LIMITS), *((slide, key) for key in LIMITS)]
     needed += [("AXIS_C", key) for key in LIMITS[2:]]
-    values = {place: leading_number(config.ini.get(*place) or "") for place in needed}
+    values = {key: leading_number(config.ini.get(*key) or "") for key in needed}
     for (section, key), value in values.items():
         if value is None:
             yield f"[{section}] has no {key}"
@@ -119,9 +119,9 @@ def wrong_entries(config: Config, text: IniText) -> Iterator[str]:
     for section, key in IN_PLACE:
         for line, _ in text.entries(section, key)[:1]:
             if line.file != text.path:
-                yield f"{line.place}: {key} stands in an included file"
+                yield f"{line.location}: {key} stands in an included file"
             elif CONTINUED.search(text.files[line.file][line.row]):
-                yield f"{line.place}: {key} goes on in the next line"
+                yield f"{line.location}: {key} goes on in the next line"
 
 
 def wrong_hal(config: Config) -> Iterator[str]:

@@ -45,7 +45,7 @@ class HalLine(NamedTuple):
     """A line of a HAL file without its comment, and where it is."""
 
     text: str
-    place: str
+    location: str
 
 
 def module_file(name: str) -> Path | None:
@@ -220,14 +220,14 @@ def pins_taken(
     """Find pins in a line that ``owner`` says whose they are."""
     for pin in pins:
         if pin in line.text.split():
-            yield problem("pin-taken", f"{line.place}: {line.text}: {pin} {owner}", cure)
+            yield problem("pin-taken", f"{line.location}: {line.text}: {pin} {owner}", cure)
 
 
 def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
     """Find what other HAL files do that the guard's cannot live with."""
-    for text, place in lines:
+    for text, location in lines:
         yield from pins_taken(
-            HalLine(text, place),
+            HalLine(text, location),
             PINS,
             "is the kinematics'",
             "use another pin here, or change it in a copy of polar_kinematics.hal",
@@ -236,7 +236,7 @@ def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
         if module and module[1] != FACE_KINEMATICS:
             yield problem(
                 "kins",
-                f"{place}: {text}: loads {module[1]}, whatever [KINS] says",
+                f"{location}: {text}: loads {module[1]}, whatever [KINS] says",
                 "loadrt [KINS]KINEMATICS",
             )
         for key, least in NEEDED.items():
@@ -244,7 +244,7 @@ def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
             if told and int(told[1]) < least:
                 yield problem(
                     "few-pins",
-                    f"{place}: {text}: motion has too few inputs and outputs for the kinematics",
+                    f"{location}: {text}: motion has too few inputs and outputs for the kinematics",
                     f"{key}={least}, or take {key} out",
                 )
 

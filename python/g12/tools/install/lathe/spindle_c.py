@@ -232,11 +232,11 @@ def feedback_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find a joint C whose feedback is not the one that follows while the spindle turns."""
     joint = config.ini.get("SPINDLE_C", "JOINT")
     pin = f"joint.{joint}.motor-pos-fb"
-    for text, place in after_own(config):
+    for text, location in after_own(config):
         if pin in text.split() and not text.startswith("unlinkp"):
             yield problem(
                 "spindle-c-feedback",
-                f"{place}: {text}: joint {joint} would not follow while the spindle turns",
+                f"{location}: {text}: joint {joint} would not follow while the spindle turns",
                 f"take the line out: {OWN_HAL} has joint C's feedback",
             )
 
@@ -281,12 +281,12 @@ def homing_moves(config: Config) -> Iterator[ConfigFinding]:
 
 def modules_twice(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
     """Find modules that other HAL files load too."""
-    for text, place in lines:
+    for text, location in lines:
         module = MODULES.match(text)
         if module and module[1] in OWN_MODULES:
             yield problem(
                 "spindle-c-module",
-                f"{place}: {text}: LinuxCNC loads a module once, and spindle_c.hal loads "
+                f"{location}: {text}: LinuxCNC loads a module once, and spindle_c.hal loads "
                 f"{module[1]} too",
                 f"name its components here as well, names=…,{components_of(module[1])}, and take "
                 "the line out of a copy of spindle_c.hal",
@@ -311,14 +311,16 @@ def others_in_the_way(config: Config) -> Iterator[ConfigFinding]:
 
 def other_lines(config: Config) -> list[HalLine]:
     """Return the lines of the HAL files other than spindle_c.hal, and those of HALCMD."""
-    return [line for line in every_hal_line(config) if not line.place.startswith("spindle_c.hal:")]
+    return [
+        line for line in every_hal_line(config) if not line.location.startswith("spindle_c.hal:")
+    ]
 
 
 def after_own(config: Config) -> list[HalLine]:
     """Return the lines after those of spindle_c.hal."""
     lines = every_hal_line(config)
     own = [number for number, line in enumerate(lines) if CONNECTS in line.text]
-    last = max((n for n, line in enumerate(lines) if line.place.startswith("spindle_c.hal:")),
+    last = max((n for n, line in enumerate(lines) if line.location.startswith("spindle_c.hal:")),
                default=own[-1] if own else len(lines))  # fmt: skip
     return lines[last + 1 :]
 
