@@ -149,7 +149,7 @@ def test_a_section_cut_in_two_goes_on_where_the_machine_stands():
     first = empty(c=350.0)
     first.line(math.radians(400) * RADIUS, 7.0, line=1, feed=100.0)
     planned = plan(first, MACHINE)
-    assert planned.place == pytest.approx((22.0, 400.0, 7.0))
+    assert planned.position == pytest.approx((22.0, 400.0, 7.0))
     second = first.continued(planned.end)
     second.line(z=20.0, line=2, feed=100.0)
     assert plan(second, MACHINE).steps[0].segments == [(20.0, pytest.approx(400.0), 7.0, 100.0)]

@@ -12,7 +12,7 @@ from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.moves.steps import BlockMoves
 from g12.polar.face import passed
-from g12.polar.follow import FaceLimits, is_able
+from g12.polar.follow import FaceLimits, can_follow
 from g12.polar.plan import PolarSettings, plan
 from support import planned_moves
 from support.contour_geometry import Round, Straight, distance, distance_from_path
@@ -160,7 +160,7 @@ def test_on_the_face_an_able_line_keeps_c_and_the_slide_within_their_limits(a, b
     move = planned_moves.line(*a, *b, feed=feed)
     assume(math.dist(a, b) > 0.1)
     limits = LIMITS._replace(beside=beside, slide_speed=120.0)
-    if not is_able(move, limits):
+    if not can_follow(move, limits):
         return
     points = np.linspace(complex(*a), complex(*b), 2000)
     step = abs(points[1] - points[0]) / (feed / 60)
@@ -187,6 +187,6 @@ def test_kinds_of_steps():
     segments = plan(contour, LATHE._replace(beside=8.0), c=10.0)
     assert {type(step) for step in segments.steps} == {BlockMoves}
     assert not {type(step) for step in face.steps} & {BlockMoves}
-    assert face.place == pytest.approx(segments.place)
+    assert face.position == pytest.approx(segments.position)
     slide = math.sqrt(30**2 - 8**2)
-    assert face.place[:2] == pytest.approx((slide, 190 - math.degrees(math.atan2(8, slide))))
+    assert face.position[:2] == pytest.approx((slide, 190 - math.degrees(math.atan2(8, slide))))

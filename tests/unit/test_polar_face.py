@@ -77,7 +77,7 @@ def test_a_section_goes_to_the_face_and_back():
     assert kinds == [FaceSwitch, FaceMove, FaceMove, FaceMove, FaceSwitch]
     assert [step.line for step in made.steps] == [7, 7, 8, 9, 9]
     assert made.steps[0] == FaceSwitch(7, True, (30.0, 10.0, 0.0))
-    assert made.place == pytest.approx((30.0, 190.0, 0.0))
+    assert made.position == pytest.approx((30.0, 190.0, 0.0))
     assert made.angle == pytest.approx(pi)
 
 
@@ -91,8 +91,8 @@ def test_arcs_on_the_face_leave_the_machine_at_their_end():
     for step, (x, c), z in ((arc_on, (40, 20), 0.0), (line_on, (40, 30), -1.0)):
         assert step.segments[-1] == pytest.approx((hypot(x, c), 10 + degrees(atan2(c, x)), z))
     assert len(arc_on.segments) > 40
-    assert made.place == pytest.approx(line_on.segments[-1])
-    assert (there.place, back.place) == ((60.0, 10.0, 0.0), made.place)
+    assert made.position == pytest.approx(line_on.segments[-1])
+    assert (there.position, back.position) == ((60.0, 10.0, 0.0), made.position)
     assert abs(line_on.move.start) == pytest.approx(hypot(40, 20))
 
 
@@ -103,7 +103,7 @@ def test_the_part_beside_the_pole_is_made_of_segments_and_the_face_begins_anew()
     *_, at = (k for k, step in enumerate(made.steps) if isinstance(step, FaceSwitch) and step.on)
     switch, again = made.steps[at : at + 2]
     assert (again.line, again.move.start.imag) == (9, pytest.approx(0.0, abs=0.002))
-    assert again.move.start.real == pytest.approx(switch.place[0])
+    assert again.move.start.real == pytest.approx(switch.position[0])
     assert 0.2 < again.move.start.real < hypot(3, 30)
 
 
@@ -119,5 +119,5 @@ def test_a_plunge_on_the_face_keeps_x_and_c():
     down, back = made.steps[-2:]
     assert down.move == Plunge(9, 500.0, 0.0, -1.0)
     assert [pytest.approx((hypot(30, 20), 10 + degrees(atan2(20, -30)), -1.0))] == down.segments
-    assert back == FaceSwitch(9, False, made.place)
-    assert made.place.z == -1.0
+    assert back == FaceSwitch(9, False, made.position)
+    assert made.position.z == -1.0

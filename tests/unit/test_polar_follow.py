@@ -9,12 +9,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from g12.geometry.curve import Arc
-from g12.polar.follow import OVERSHOOT, FaceLimits, is_able
+from g12.polar.follow import OVERSHOOT, FaceLimits, can_follow
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
 
 
 def test_far_from_the_pole_a_move_is_able():
-    assert is_able(line((40, -20), (40, 20)), LIMITS)
+    assert can_follow(line((40, -20), (40, 20)), LIMITS)
 
 
 @pytest.mark.parametrize(
@@ -27,30 +27,30 @@ def test_far_from_the_pole_a_move_is_able():
     ],
 )
 def test_near_the_pole_it_is_not(move):
-    assert not is_able(move, LIMITS)
+    assert not can_follow(move, LIMITS)
 
 
 def test_along_a_radius_it_is_however_near_it_comes():
-    assert is_able(line((30, 0), (1, 0)), LIMITS)
+    assert can_follow(line((30, 0), (1, 0)), LIMITS)
 
 
 @pytest.mark.parametrize(("slide_speed", "able"), [(52.0, True), (51.99, False)])
 def test_along_a_radius_the_slide_goes_as_fast_as_it_can(slide_speed, able):
     """F3000, and what is gained in two cycles by a feed that is turned up."""
     limits = LIMITS._replace(slide_speed=slide_speed)
-    assert is_able(line((30, 0), (10, 0), feed=3000.0), limits) is able
-    assert is_able(line((-3, 4), (-6, 8), feed=3000.0), limits) is able
+    assert can_follow(line((30, 0), (10, 0), feed=3000.0), limits) is able
+    assert can_follow(line((-3, 4), (-6, 8), feed=3000.0), limits) is able
 
 
 def test_a_higher_feed_needs_more_room():
     slow, fast = (line((17, -20), (17, 20), feed=feed) for feed in (500.0, 6000.0))
-    assert is_able(slow, LIMITS)
-    assert not is_able(fast, LIMITS)
+    assert can_follow(slow, LIMITS)
+    assert not can_follow(fast, LIMITS)
 
 
 def test_no_limits_no_segments():
     free = LIMITS._replace(c_acceleration=inf, c_speed=inf, slide_acceleration=inf)
-    assert is_able(line((0.001, -20), (0.001, 20)), free)
+    assert can_follow(line((0.001, -20), (0.001, 20)), free)
 
 
 @pytest.mark.parametrize("sweep", [0.9, -0.9, 2 * pi, -2 * pi])
@@ -60,13 +60,13 @@ def test_an_arc_is_looked_at_where_it_is_nearest_to_the_pole(sweep, part, share,
     """A circle of radius 10 about X20 passes the pole at 10, wherever it begins."""
     c_speed = (share * 1000.0 / 60.0 + OVERSHOOT * 1e5) / 10.0
     free = FaceLimits(1e5, 1e5, inf, inf, c_speed, 1.0, 0.0)
-    assert is_able(arc((20, 0), 10, pi - part * sweep, sweep), free) is able
+    assert can_follow(arc((20, 0), 10, pi - part * sweep, sweep), free) is able
 
 
 @settings(max_examples=400, deadline=None)
 @given(st.one_of(lines, arcs))
 def test_an_able_move_at_its_feed_keeps_c_and_the_slide_within_their_limits(move):
-    if not is_able(move, LIMITS):
+    if not can_follow(move, LIMITS):
         return
     points, speed = motion(move)
     radius, angle = abs(points), np.unwrap(np.angle(points))
@@ -118,7 +118,7 @@ def test_a_move_is_able_if_its_place_that_asks_the_most_is(move, beside, slide_s
     )
     assume(abs(motion(move)[0]).min() > abs(beside) + 0.5)
     share = share_of_limits(move, limits)
-    assert is_able(move, limits) == (share < 1.0) or 0.97 < share < 1.1
+    assert can_follow(move, limits) == (share < 1.0) or 0.97 < share < 1.1
 
 
 @settings(max_examples=100, deadline=None)
@@ -131,7 +131,7 @@ def test_what_is_able_does_not_depend_on_the_unit(move, beside, quick):
     small = {name: 1e-4 * getattr(limits, name) for name in LENGTHS}
     ends = [1e-4 * end for end in move.curve[:2]]
     scaled = move._replace(feed=1e-4 * move.feed, curve=type(move.curve)(*ends, *move.curve[2:]))
-    assert is_able(scaled, limits._replace(**small)) == is_able(move, limits)
+    assert can_follow(scaled, limits._replace(**small)) == can_follow(move, limits)
 
 
 LENGTHS = ("acceleration", "round_acceleration", "slide_acceleration", "slide_speed", "beside")

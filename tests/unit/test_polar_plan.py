@@ -157,7 +157,7 @@ def test_short_lines(length):
 def test_winds_on_turn_after_turn():
     circle = Round(12 + 0j, 2 + 0j, 2 * math.pi)
     contour = programmed([circle] * 50)
-    assert plan(contour, LATHE, c=90.0).place.c == pytest.approx(90.0 + 50 * 360.0, abs=1e-6)
+    assert plan(contour, LATHE, c=90.0).position.c == pytest.approx(90.0 + 50 * 360.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("by_radius", [False, True])
@@ -256,7 +256,7 @@ def test_a_helix_has_its_feed_in_space():
     assert [run.axes for run in runs(planned)] == ["XCZ", "XCZ"]
     for cut in cuts(contour, planned):
         assert 60.0 * cut.length / cut.seconds == pytest.approx(300.0, rel=0.01)
-    assert planned.place.z == -22.0
+    assert planned.position.z == -22.0
 
 
 # In as few segments as can be.
@@ -425,7 +425,7 @@ def test_through_the_pole_c_turns_in_place_as_fast_as_it_may():
 
 def test_a_slot_through_the_pole_does_not_wind_c_up():
     slot = [Straight(10 + 0j, -10 + 0j), Straight(-10 + 0j, 10 + 0j)]
-    assert plan(programmed(slot * 5), LATHE, c=45.0).place.c == 45.0
+    assert plan(programmed(slot * 5), LATHE, c=45.0).position.c == 45.0
 
 
 def test_turns_the_shorter_way_at_the_pole():
@@ -525,7 +525,7 @@ def test_goes_on_after_a_block_that_waits_for_the_machine():
     second.arc(1, end.real, end.imag, i=-5.0, j=-10.0, line=2, feed=250.0)
     after = plan(second, LATHE, c=30.0)
     assert distance(path(cuts(second, after, 30.0)), whole[1:]).max() <= TOLERANCE
-    assert after.place.c == pytest.approx(plan(programmed(whole), LATHE, c=30.0).place.c)
+    assert after.position.c == pytest.approx(plan(programmed(whole), LATHE, c=30.0).position.c)
 
 
 def test_the_next_section_begins_where_c_stands():
@@ -535,7 +535,9 @@ def test_the_next_section_begins_where_c_stands():
     (run,) = runs(plan(second, LATHE, c=30.0))
     assert run.axes == "Z"
     assert (
-        run.segments[0][1] == first.place.c == pytest.approx(30 + math.degrees(math.atan2(10, 5)))
+        run.segments[0][1]
+        == first.position.c
+        == pytest.approx(30 + math.degrees(math.atan2(10, 5)))
     )
 
 
@@ -556,7 +558,7 @@ def test_z_alone_is_a_section_too():
     contour.line(z=-3.0, line=1, feed=50.0)
     planned = plan(contour, LATHE, c=15.0)
     assert planned.steps == [BlockMoves(1, "Z", [(10.0, 15.0, -3.0, 50.0)], True)]
-    assert planned.place == (10.0, 15.0, -3.0)
+    assert planned.position == (10.0, 15.0, -3.0)
 
 
 def test_segments_that_keep_x_stay_within_the_tolerance():

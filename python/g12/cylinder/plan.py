@@ -59,10 +59,10 @@ def plan(contour: Contour, settings: CylinderSettings) -> SectionPlan:
         else:
             machine.cut(element, stop)
     machine.finish(path)
-    return SectionPlan(machine.steps, machine.place, radians(machine.place.c), contour.notes)
+    return SectionPlan(machine.steps, machine.position, radians(machine.position.c), contour.notes)
 
 
-def _acceleration(direction: Direction, _place: complex, *, settings: CylinderSettings) -> float:
+def _acceleration(direction: Direction, _point: complex, *, settings: CylinderSettings) -> float:
     """Return the acceleration along a direction that no axis exceeds; it is the same everywhere."""
     around, along, deep = map(abs, direction)
     surface = settings.radius * radians(settings.c_acceleration)
@@ -82,7 +82,7 @@ class _Surface(StepMaker):
 
     def cut(self, move: PlaneMove, stop: bool) -> None:
         """Add the segments of a move on the surface."""
-        settings, (x, c, z) = self._settings, self.place
+        settings, (x, c, z) = self._settings, self.position
         split_by = partial(split_on_cylinder, move, settings.radius)
         split = self._split(move, split_by, settings.tolerance, stop, settings.least_z)
         made = segments_with_feed(split, (z, c, x), move, 0.0, settings.least_z)
@@ -91,11 +91,11 @@ class _Surface(StepMaker):
 
     def plunge(self, move: Plunge, stop: bool) -> None:
         """Add a move of X alone."""
-        self._run(move.line, "X", [(move.z1, *self.place[1:], move.feed)], stop)
+        self._run(move.line, "X", [(move.z1, *self.position[1:], move.feed)], stop)
 
     def finish(self, path: Sequence[Element]) -> None:
         """Add what the last segments left over of Z and X."""
-        x, z = self.place.x, self.place.z
+        x, z = self.position.x, self.position.z
         for element in path:
             x = x if isinstance(element, Mark) else element.z1
             z = element.end.imag if isinstance(element, PlaneMove) else z
@@ -105,10 +105,10 @@ class _Surface(StepMaker):
 def split_on_cylinder(move: PlaneMove, radius: float, deviation: float) -> Split:
     """Return where the segments of a move on the cylinder end: Z, the angle of C, the length."""
     if isinstance(move.curve, Arc):
-        places, lengths = _along_arc(move.curve, deviation)
+        points, lengths = _along_arc(move.curve, deviation)
     else:
-        places, lengths = [move.start, move.end], [0.0, move.length]
-    return Split([at.imag for at in places], [at.real / radius for at in places], lengths)
+        points, lengths = [move.start, move.end], [0.0, move.length]
+    return Split([at.imag for at in points], [at.real / radius for at in points], lengths)
 
 
 def _along_arc(arc: Arc, deviation: float) -> tuple[list[complex], list[float]]:
@@ -120,9 +120,9 @@ def _along_arc(arc: Arc, deviation: float) -> tuple[list[complex], list[float]]:
     stretch = Stretch(0.0, abs(arc.sweep), [], lambda _: 0.0)
     angles, shares = spaced(stretch, lambda _: density)
     outward = (arc.start - arc.centre) / radius
-    places = [
+    points = [
         arc.centre + (radius + deviation * share) * outward * cmath.rect(1.0, turn * angle)
         for angle, share in zip(angles, shares)
     ]
-    places[0], places[-1] = arc.start, arc.end
-    return places, [radius * angle for angle in angles]
+    points[0], points[-1] = arc.start, arc.end
+    return points, [radius * angle for angle in angles]

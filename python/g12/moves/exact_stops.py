@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where the tool has to stop: corners that the trajectory planner would round by too much.
+"""Exact stops: corners that the trajectory planner would blend by more than is allowed.
 
 LinuxCNC blends two straight moves by starting the second while the first slows down, each with
 half the acceleration a. Where the path turns by the angle d at the speed v that takes t = 2 v / a,
@@ -10,7 +10,7 @@ X turns back or stands, as LinuxCNC takes the angle of X, Y and Z alone: so it i
 
                * corner
            . ' | ' .            The velocity turns from v1 to v2 in the time t at the even rate
-     v1  .     |    .  v2       (v2 - v1) / t. That is a parabola from t / 2 in front of the corner
+     v1  .     |    .  v2       (v2 - v1) / t. That is a parabola from t / 2 before the corner
        .   . - + - .   .        to t / 2 after it. It passes the corner at |v2 - v1| t / 8, and
      .  . '         ' .  .      |v2 - v1| is 2 v sin(d / 2).
 
@@ -34,7 +34,7 @@ def stops(
     """Return for each element of the tool centre's path whether the tool must stop at its end.
 
     That is at the path's end, and where the blending would leave the path by more than
-    ``rounding``. ``acceleration`` gives for a direction and a place in the plane how quick the axes
+    ``rounding``. ``acceleration`` gives for a direction and a point in the plane how quick the axes
     are, in program units per second squared; where that is 0 they have to stop.
     """
     marked = [False] * len(path)
@@ -59,9 +59,9 @@ def _corner(
 
     ``stopping``: at the end of ``b``; such a move is not blended, and has all the acceleration.
     """
-    place = _place(a, b)
+    point = _corner_point(a, b)
     leave, meet = _direction(a, 1.0), _direction(b, 0.0)
-    from_a, from_b = acceleration(leave, place), acceleration(meet, place)
+    from_a, from_b = acceleration(leave, point), acceleration(meet, point)
     if not from_a:
         return inf
     half_sine = 0.5 * sqrt(sum((p - q) ** 2 for p, q in zip(leave, meet)))
@@ -73,7 +73,7 @@ def _corner(
     return half_sine * square / (2.0 * from_a) * max(1.0, min(unequal, MOST_UNEQUAL))
 
 
-def _place(a: Move, b: Move) -> complex:
+def _corner_point(a: Move, b: Move) -> complex:
     """Return where two elements meet in the plane; anywhere between two plunges."""
     if isinstance(a, PlaneMove):
         return a.end

@@ -2,12 +2,12 @@
 """Segments with their F words.
 
 LinuxCNC in G94 takes F for the X and Z part of a move, or for degrees per minute where only C
-moves. Every segment gets the F that makes it last as long as its part of the path at the programmed
-feed.
+moves. Every segment gets the F that makes it last as long as its portion of the path at the
+programmed feed.
 
 Debian's 2.9.0~pre1 runs a segment too fast that moves a slide by next to nothing together with C.
-So a segment that would move it by less than ``least`` keeps it, to the last digit, and the next one
-takes the rest over.
+So a segment that would move it by less than ``least`` leaves the slide where it is, to the last
+digit; the next segment adds the remainder.
 """
 
 from math import degrees, hypot
@@ -24,8 +24,8 @@ LEAST_TURN = 1e-9  # degrees: no turn at all
 class Split(NamedTuple):
     """The ends of an element's segments, its start first.
 
-    Where the slide of the plane stands, angle of C in radians, continuous over the element, and
-    length of the path up to there.
+    Per end: the position of the plane's slide, the angle of C in radians, continuous over the
+    element, and the length of the path up to it.
     """
 
     slides: list[float]
@@ -47,8 +47,8 @@ def segments_with_feed(
 ) -> list[Segment]:
     """Return the segments ``(slide, c, other, F)`` of a move that the machine makes from ``start``.
 
-    ``start`` is where it stands: the plane's slide, C in degrees, and the other slide, which makes
-    the move's z. ``entry`` is the C angle in degrees at the plane's zero angle.
+    ``start`` is the machine's position: the plane's slide, C in degrees, and the other slide, which
+    makes the move's z. ``entry`` is the C angle in degrees at the plane's zero angle.
     """
     x, c, z = start
     rise = (move.z1 - move.z0) / split.lengths[-1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What sections of every kind take of what they find and of the machine's settings."""
+"""What sections of every kind derive from the interpreter's state and the machine's settings."""
 
 from collections.abc import Collection, Iterable
 from typing import Generic, NamedTuple, TypeVar
@@ -11,7 +11,7 @@ from g12.moves.soft_limits import AxisScale, SoftLimits
 from g12.section.start import SectionStart, WordRules
 from g12.settings import Settings
 
-LEAST_MM = 0.001  # a smaller part of a slide makes LinuxCNC 2.9 get the feed of a segment wrong
+LEAST_MM = 0.001  # with a smaller move of a slide beside C, LinuxCNC 2.9.0~pre1 gets the feed wrong
 ROUNDING_MM = 1e-6  # of an offset that was given in another unit
 CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
 
@@ -20,7 +20,7 @@ Planning = TypeVar("Planning")
 
 
 class SectionSetup(NamedTuple, Generic[Planning]):
-    """What a section is read, planned and moved by; ``tolerance`` in program units.
+    """The values that a section is read, planned and executed with; ``tolerance`` in program units.
 
     ``plan`` are the settings of its planner.
     """
@@ -34,7 +34,7 @@ class SectionSetup(NamedTuple, Generic[Planning]):
 def check_entry(
     start: SectionStart, axes: Collection[str], needed: str, rules: Iterable[tuple[bool, str]]
 ) -> None:
-    """Refuse to begin a section where none can, or where one of its own ``rules`` is broken.
+    """Refuse to begin a section in modes that none allows, or against its own ``rules``.
 
     ``axes`` are the letters of the machine's, ``needed`` those of the section.
     """
@@ -65,7 +65,7 @@ def check_entry(
 
 
 def tolerance_of(start: SectionStart, settings: Settings) -> float:
-    """Return how far the real path may be off the programmed one, in program units."""
+    """Return the allowed deviation from the programmed path, in program units."""
     return settings.tolerance(start.machine_unit / start.millimetre) * start.machine_unit
 
 

@@ -25,7 +25,7 @@ class Moving(Protocol):
 
     @property
     def segments(self) -> Sequence[tuple[float, ...]]:
-        """Where the axes go, one after the other."""
+        """The end positions, one after the other."""
 
 
 class Beyond(NamedTuple):
@@ -42,7 +42,7 @@ class Beyond(NamedTuple):
     converted: bool
 
     def text(self, diameters: bool) -> str:
-        """Return it in words; ``diameters`` tells whether the program's X words are."""
+        """Return the rule for the message; ``diameters``: the program's X words are diameters."""
         active = f" (G{20 if self.unit == 'mm' else 21} is active)"
         return (
             f"the {self.axis} axis would go to {number(self.position)} {self.unit}"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Spacing: the fewest segments along an element, with its deviation shared equally.
 
-An element is described by one parameter, its place, and by a density: how many segments of full
-length fit into a unit of it. The integral of the density, rounded up, is the number of segments;
-equal steps of that integral give them equal deviations.
+An element is described by one parameter, the position along it, and by a density: how many
+segments of full length fit into a unit of the parameter. The integral of the density, rounded up,
+is the number of segments; equal steps of that integral give them equal deviations.
 
 The inner ends of segments are moved off the path by the deviation, to the side that the segments do
 not bulge to. That lets the segments bulge by more than the deviation, and so be longer. How much
@@ -12,7 +12,7 @@ short for the programmed speed, it cuts by up to 4/3 of the bulge (measured), so
 3/2 of the deviation, and less where an end of an element is exactly on the path.
 
 An element is divided at its apsides, the points nearest to the pole and farthest from it, which are
-ends of segments: X turns round there, and a segment across would move C alone, or hardly any X.
+ends of segments: X reverses there, and a segment across would move C alone, or hardly any X.
 
               o             o             o      off the path by the deviation
            .    .         .   .         .
@@ -26,9 +26,9 @@ from typing import NamedTuple
 
 BULGE = 1.5  # deviations: of a segment between two ends moved off the path
 WHOLE_BULGE = 0.75  # deviations: of a segment with both ends exactly on the path
-LOSS = 0.18  # segments: what is lost where an element ends exactly on the path
+LOSS = 0.18  # segments: lost where an element ends exactly on the path
 WORTH_A_CUT = 0.5  # segments: an apsis nearer to an end of the element is left alone
-MOST_SEGMENTS = 100_000  # of an element: more would take LinuxCNC's time and memory
+MOST_SEGMENTS = 100_000  # of an element: more would cost LinuxCNC too much time and memory
 
 Density = Callable[[float], tuple[float, float]]
 
@@ -38,9 +38,9 @@ class TooManySegments(Exception):
 
 
 class Stretch(NamedTuple):
-    """The places of an element: its ends, and the apsides, of which those between them count.
+    """The ends of an element, as positions along it, and its apsides; those outside it are ignored.
 
-    ``nearness`` tells which of two places is nearer to the pole.
+    ``nearness`` is a sort key: the smaller, the nearer a position is to the pole.
     """
 
     start: float
@@ -49,16 +49,16 @@ class Stretch(NamedTuple):
     nearness: Callable[[float], float]
 
 
-class _Part(NamedTuple):
-    """A part of an element between two cuts, and one step after the other along it.
+class _Portion(NamedTuple):
+    """The portion of an element between two cuts, in steps of one segment each.
 
-    ``places`` begin at the end nearer to the pole, and end beyond the other; ``shares`` are those
-    between two of them. ``number`` segments would do. ``losses`` are those at the start and at the
-    end of the part, ``cut`` is its start.
+    ``positions`` begin at the end nearer to the pole and run past the other one. ``shares`` are the
+    shares of the deviation between two of them. ``number`` segments suffice. ``losses`` are those
+    at the start and the end of the portion, ``cut`` is its start.
     """
 
     cut: float
-    places: list[float]
+    positions: list[float]
     shares: list[float]
     number: float
     backwards: bool
@@ -66,27 +66,27 @@ class _Part(NamedTuple):
 
 
 def spaced(stretch: Stretch, density: Density) -> tuple[list[float], list[float]]:
-    """Return the places of the ends of an element's segments, and how far each is off the path.
+    """Return the ends of an element's segments, as positions along it, and their deviations.
 
-    ``density`` gives for a place the segments per unit, and the part of the deviation, with the
-    sign of the side, that they use. The distances are returned as parts of the deviation, too.
+    ``density`` returns for a position the segments per unit, and the share of the allowed deviation
+    that they use, with the sign of the side. The deviations are returned as such shares, too.
     Raises `TooManySegments`.
     """
-    parts = _parts(stretch, density)
-    _check_count(sum(part.number for part in parts))
+    portions = _portions(stretch, density)
+    _check_count(sum(portion.number for portion in portions))
     ends = [(stretch.start, 0.0)]
-    for part in parts:
-        lost = sum(part.losses)
-        segments = ceil(part.number + lost - 1e-9)
-        length = part.number / (segments - lost)
-        if part.losses[0] == 0.0:
-            ends.append((part.cut, length**2 * density(part.cut)[1]))
-        ends.extend(_inner_ends(part, segments, length))
-    places, shares = zip(*ends, (stretch.end, 0.0))
-    return list(places), list(shares)
+    for portion in portions:
+        lost = sum(portion.losses)
+        segments = ceil(portion.number + lost - 1e-9)
+        length = portion.number / (segments - lost)
+        if portion.losses[0] == 0.0:
+            ends.append((portion.cut, length**2 * density(portion.cut)[1]))
+        ends.extend(_inner_ends(portion, segments, length))
+    positions, shares = zip(*ends, (stretch.end, 0.0))
+    return list(positions), list(shares)
 
 
-def _parts(stretch: Stretch, density: Density) -> list[_Part]:
+def _portions(stretch: Stretch, density: Density) -> list[_Portion]:
     start, end = stretch.start, stretch.end
     apsides = [
         apsis
@@ -96,33 +96,33 @@ def _parts(stretch: Stretch, density: Density) -> list[_Part]:
     cuts = [start, *apsides, end]
     losses = [LOSS, *(0.0 for _ in apsides), LOSS]
     return [
-        _part(cuts[k], cuts[k + 1], (losses[k], losses[k + 1]), stretch, density)
+        _portion(cuts[k], cuts[k + 1], (losses[k], losses[k + 1]), stretch, density)
         for k in range(len(cuts) - 1)
     ]
 
 
-def _part(
+def _portion(
     a: float, b: float, losses: tuple[float, float], stretch: Stretch, density: Density
-) -> _Part:
-    """Return the part between two cuts, measured in steps from its end nearer to the pole.
+) -> _Portion:
+    """Return the portion between two cuts, stepped from its end nearer to the pole.
 
-    The step in front of one tells where its middle will be. Near the pole the steps are shortest:
-    measured from there they grow, and none is taken too far.
+    The step before one predicts its middle. Near the pole the steps are shortest: from there they
+    grow, and none is predicted too long.
     """
     backwards = stretch.nearness(b) < stretch.nearness(a)
-    place, far = (b, a) if backwards else (a, b)
-    unit = 1.0 if far > place else -1.0
-    places, shares = [place], list[float]()
-    step = unit / density(place)[0]
-    while not shares or (far - place) * unit > 0.0:
-        segments, share = density(place + 0.5 * step)
+    position, far = (b, a) if backwards else (a, b)
+    unit = 1.0 if far > position else -1.0
+    positions, shares = [position], list[float]()
+    step = unit / density(position)[0]
+    while not shares or (far - position) * unit > 0.0:
+        segments, share = density(position + 0.5 * step)
         step = unit / segments
-        place += step
-        places.append(place)
+        position += step
+        positions.append(position)
         shares.append(share)
         _check_count(len(shares))
-    number = len(shares) - (place - far) / step
-    return _Part(a, places, shares, number, backwards, losses)
+    number = len(shares) - (position - far) / step
+    return _Portion(a, positions, shares, number, backwards, losses)
 
 
 def _check_count(segments: float) -> None:
@@ -130,21 +130,21 @@ def _check_count(segments: float) -> None:
         raise TooManySegments
 
 
-def _inner_ends(part: _Part, segments: int, length: float) -> list[tuple[float, float]]:
-    """Return the ends of segments inside a part, in the sense of the motion.
+def _inner_ends(portion: _Portion, segments: int, length: float) -> list[tuple[float, float]]:
+    """Return the ends of segments inside a portion, in the direction of motion.
 
     ``length`` is that of each segment, in segments of full length; the deviation goes with its
     square.
     """
-    table, square = part.places, length * length
-    shares = [part.shares[0], *part.shares, part.shares[-1]]
-    near = part.losses[1 if part.backwards else 0]
+    table, square = portion.positions, length * length
+    shares = [portion.shares[0], *portion.shares, portion.shares[-1]]
+    near = portion.losses[1 if portion.backwards else 0]
     ends = []
     for k in range(1, segments):
         steps = length * (k - near)
         j = int(steps)
-        place = table[j] + (steps - j) * (table[j + 1] - table[j])
+        position = table[j] + (steps - j) * (table[j + 1] - table[j])
         middle = int(steps + 0.5)
         share = shares[middle] + (steps + 0.5 - middle) * (shares[middle + 1] - shares[middle])
-        ends.append((place, square * share))
-    return ends[::-1] if part.backwards else ends
+        ends.append((position, square * share))
+    return ends[::-1] if portion.backwards else ends

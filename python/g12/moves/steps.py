@@ -9,17 +9,17 @@ from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Start
 from g12.moves.feed import Segment, Split, keeps_slide
 from g12.moves.spacing import MOST_SEGMENTS, TooManySegments
 
-CHORD_SHARE = 0.96  # of the tolerance: the rest is what the estimate of it may lack
+CHORD_SHARE = 0.96  # of the tolerance: the estimate of the deviation may be too low by the rest
 STOP_SHARE = (
-    0.7  # of the tolerance: a move that stops starts quicker, and cuts deeper into the path
+    0.7  # of the tolerance: before a stop the move accelerates harder and cuts the corner deeper
 )
-ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, beside the segments' own deviation
+ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, on top of the segments' own deviation
 SAME_RATE = 1e-6  # of C's speed: rounding
 LEFT_OVER = 1e-3  # of the least step of a slide: less than that is rounding
 
 
 class Position(NamedTuple):
-    """Where the machine stands: X radius value, C in degrees, Z."""
+    """The machine's position: X radius value, C in degrees, Z."""
 
     x: float
     c: float
@@ -27,15 +27,15 @@ class Position(NamedTuple):
 
 
 class CAxis(NamedTuple):
-    """How fast C turns, degrees and seconds."""
+    """The limits of the C axis, in degrees and seconds."""
 
     speed: float
     acceleration: float
 
     def rate(self, start: Position, end: Position, feed: float) -> float:
-        """Return at which speed C goes through a move by G94's F, below zero backwards.
+        """Return C's speed within a move by G94's F, in degrees per second, negative backwards.
 
-        It gets no faster than it can stop within the move.
+        It is limited by what C can brake from within the move.
         """
         turn = end.c - start.c
         length = hypot(end.x - start.x, end.z - start.z) or abs(turn)
@@ -50,11 +50,11 @@ class BlockMoves(NamedTuple):
 
     ``axes`` are the words to write, as "XC", "XZC" or "Z". Each segment is ``(x, c, z, feed)``: X
     radius value, C in degrees, continuous over the section (it may leave 0..360), and F as G94
-    wants it: for the X and Z part of the move, or in degrees per minute where neither changes; it
-    may be small, so write it with six significant digits. A segment that keeps a slide where it is
+    takes it: for the X and Z portion of the move, or in degrees per minute where neither changes. F
+    may be small: write it with six significant digits. A segment that leaves a slide where it is
     repeats the same number. With ``stop`` the last segment must end in an exact stop (G61), because
     LinuxCNC would round the corner by more than the tolerance. With ``surges`` C would exceed its
-    speed on the way into that G61: a dwell of no time has to make the stop.
+    speed while braking into that G61: a G4 P0 makes the stop instead.
     """
 
     line: int
@@ -68,27 +68,27 @@ class SectionPlan(NamedTuple):
     """The moves of a section.
 
     ``steps`` holds each :class:`BlockMoves` (on the face moves and switches of its own,
-    `g12.polar.face`), and each mark's action, in order. ``place`` is where the machine stands
-    after them, ``angle`` what its C is to the contour, in radians. ``notes`` are for the operator.
+    `g12.polar.face`), and each mark's action, in order. ``position`` is the machine's after them,
+    ``angle`` that of C in the contour's plane, in radians. ``notes`` are messages for the operator.
     """
 
     steps: list[object]
-    place: Position
+    position: Position
     angle: float
     notes: list[str]
 
     @property
     def end(self) -> Start:
-        """Where a contour that goes on after this one starts."""
-        return Start(self.place.x, self.angle, self.place.z)
+        """The start of a contour that continues this one."""
+        return Start(self.position.x, self.angle, self.position.z)
 
 
 class StepMaker:
     """Makes the steps of a plan, one element of the tool centre's path after the other."""
 
-    def __init__(self, contour: Contour, place: Position, c_axis: CAxis) -> None:
+    def __init__(self, contour: Contour, position: Position, c_axis: CAxis) -> None:
         self.steps: list[object] = []
-        self.place = place
+        self.position = position
         self._contour, self._c_axis = contour, c_axis
         self._c_rate = 0.0  # at which C goes into the next segment, degrees per second
 
@@ -101,21 +101,21 @@ class StepMaker:
         """
         if not segments:
             return
-        places = [Position(*at[:3]) for at in [self.place, *segments][-3:]]
+        positions = [Position(*at[:3]) for at in [self.position, *segments][-3:]]
         feeds = [segment[3] for segment in segments[-2:]]
-        rates = map(self._c_axis.rate, places, places[1:], feeds)
+        rates = map(self._c_axis.rate, positions, positions[1:], feeds)
         *_, before, rate = [self._c_rate, *rates]
         surges = abs(before + 0.5 * rate) > self._c_axis.speed * (1.0 + SAME_RATE)
         self.steps.append(BlockMoves(line, axes, segments, stop, surges))
-        self.place, self._c_rate = places[-1], 0.0 if stop else rate
+        self.position, self._c_rate = positions[-1], 0.0 if stop else rate
 
     def _make_up(self, path: Sequence[Element], x: float, z: float, least: float) -> None:
-        """Add what the last segments of a path left over of the slides, which belong at x and z."""
-        there = {"X": x - self.place.x, "Z": z - self.place.z}
+        """Move the slides to x and z, by what the last segments of a path have left over."""
+        there = {"X": x - self.position.x, "Z": z - self.position.z}
         axes = "".join(axis for axis, off in there.items() if abs(off) > LEFT_OVER * least)
         if axes:
             last = [element for element in path if not isinstance(element, Mark)][-1]
-            self._run(last.line, axes, [(x, self.place.c, z, last.feed)], True)
+            self._run(last.line, axes, [(x, self.position.c, z, last.feed)], True)
 
     def _split(
         self,
@@ -127,8 +127,8 @@ class StepMaker:
     ) -> Split:
         """Return what ``split`` makes of a move; refuse one that would be cut too small.
 
-        That is asked for a deviation, once more where a segment would move its slide by less than
-        ``least``: such a segment keeps it, and is that much farther off.
+        ``split`` is called with a deviation, and again where a segment would move its slide by less
+        than ``least``: that segment leaves the slide where it is, and deviates by that much more.
         """
         try:
             made = split(chord_deviation(tolerance, stop))
@@ -143,9 +143,9 @@ class StepMaker:
 
 
 def chord_deviation(tolerance: float, stop: bool, kept: float = 0.0) -> float:
-    """Return how far the segments of a move may be off it; ``stop``: at its end.
+    """Return the deviation that the segments of a move may have; ``stop``: at its end.
 
-    ``kept`` is by how much a segment that keeps a slide where it is may be off besides.
+    ``kept`` is the further deviation of a segment that leaves a slide where it is.
     """
     remaining = max(tolerance - kept, 0.5 * tolerance)
     return min((STOP_SHARE if stop else CHORD_SHARE) * tolerance, CHORD_SHARE * remaining)

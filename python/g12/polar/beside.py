@@ -3,7 +3,7 @@
 
 The tool is at ``beside`` (POLAR_TOOL_OFFSET, Fanuc's parameter 5464) from the line on which the
 slide moves it, above zero on the side to which C words grow. For the tool to be at the distance r
-from the pole the slide has to stand at s, and C to be turned by less than the place's own angle:
+from the pole the slide has to stand at s, and C to be turned by less than the angle of the point:
 
                        . * tool           s = sqrt(r**2 - beside**2)
                 r . '    |
@@ -12,8 +12,8 @@ from the pole the slide has to stand at s, and C to be turned by less than the p
     pole +---------------+---> e
                  s
 
-A place nearer to the pole than ``beside`` cannot be reached at all, and none is tried: the path is
-farther from it by the tolerance, and segments are off the path by less.
+No point nearer to the pole than ``beside`` can be reached, and none is commanded: `check_reach`
+keeps the path outside by the tolerance, and segments deviate by less.
 
 Where the path makes the angle p with e, a straight move of X and C has the curvature
 
@@ -36,13 +36,13 @@ from g12.polar.pole import POLE
 from g12.polar.segments import Law
 
 
-def stand(place: complex, beside: float) -> tuple[float, complex]:
-    """Return where the slide stands for a point of the plane, and its direction in the plane."""
-    square = (place * place.conjugate()).real
+def stand(point: complex, beside: float) -> tuple[float, complex]:
+    """Return the slide's position for a point of the plane, and its direction in the plane."""
+    square = (point * point.conjugate()).real
     if not square:
         return 0.0, 1 + 0j
     slide = sqrt(max(0.0, square - beside * beside))
-    return slide, place * complex(slide, -beside) / square
+    return slide, point * complex(slide, -beside) / square
 
 
 def along_and_around(direction: complex, slide_direction: complex) -> tuple[float, float]:
@@ -66,19 +66,19 @@ def check_reach(contour: Contour, path: Sequence[Element], beside: float, tolera
 
 
 def split_beside(curve: Curve, law: Law, beside: float) -> Split:
-    """Return the segments of a move of a tool beside the X line: where the slide stands, and C."""
+    """Return the segments of a move of a tool beside the X line: positions of the slide, and C."""
     length = curve.length
 
     def radius(at: float) -> float:
         return abs(curve.point(at / length))
 
     stretch = Stretch(0.0, length, _apsides(curve, length), radius)
-    places, shares = spaced(stretch, _density(curve, law, beside))
+    lengths, shares = spaced(stretch, _density(curve, law, beside))
     stands = [
         stand(_moved(curve, at / length, law.deviation * used), beside)
-        for at, used in zip(places, shares)
+        for at, used in zip(lengths, shares)
     ]
-    return Split([slide for slide, _ in stands], _angles(stands), places)
+    return Split([slide for slide, _ in stands], _angles(stands), lengths)
 
 
 def _moved(curve: Curve, share: float, leftwards: float) -> complex:
@@ -97,7 +97,7 @@ def _angles(stands: list[tuple[float, complex]]) -> list[float]:
 
 
 def _apsides(curve: Curve, length: float) -> list[float]:
-    """Return the places of a move, or beyond its ends, nearest to the pole or farthest from it."""
+    """Return the lengths along a move, also outside it, of the apsides seen from the pole."""
     if isinstance(curve, Line):
         return [curve.length_to(POLE)]
     turn = copysign(1.0, curve.sweep)

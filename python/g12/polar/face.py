@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lines and arcs of a section as LinuxCNC plans them itself, in X and Y of the face."""
+"""Lines and arcs of a section in X and Y of the face, which LinuxCNC's own planner executes."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from typing import NamedTuple
 from g12.compensation.contour import PlaneMove, Plunge
 from g12.geometry.curve import Arc, Line, angle_of
 from g12.polar.beside import stand
-from g12.polar.follow import looks
+from g12.polar.follow import shares_to_check
 
 SAME_DIRECTION = 1e-6  # radians
 
 
 class FaceSwitch(NamedTuple):
-    """Going to the face (``on``), or back, where the machine stands at ``place``."""
+    """The switch to the face (``on``), or back, at the machine's ``position``."""
 
     line: int
     on: bool
-    place: tuple[float, float, float]  # X (radius value), C in degrees, Z
-    share: float = 1.0  # of the INI's accelerations of X and Y, until the way back
-    override: float = 1.0  # so far the operator may turn the feed up there
+    position: tuple[float, float, float]  # X (radius value), C in degrees, Z
+    share: float = 1.0  # of the INI's accelerations of X and Y, until the switch back
+    override: float = 1.0  # the highest feed override that is followed there
 
 
 class FaceMove(NamedTuple):
-    """A move on the face, in its X and Y: C's zero line is where C stood at the switch.
+    """A move on the face, in its X and Y: C's zero line is the angle of C at the switch.
 
-    ``segments`` are places that the machine passes, X (radius value), C in degrees and Z: the last
-    is the end, and no axis goes farther than they tell.
+    ``segments`` are positions on the move, X (radius value), C in degrees and Z. The last is the
+    end, and they include the extremes of every axis.
     """
 
     line: int
@@ -37,7 +37,7 @@ class FaceMove(NamedTuple):
 
 
 def flows_into(move: object, following: object) -> bool:
-    """Return whether an arc goes on in its own direction: nothing stops or is blended there."""
+    """Return whether an arc continues tangentially: nothing stops or is blended there."""
     if not isinstance(move, PlaneMove) or not isinstance(following, PlaneMove):
         return False
     turned = move.curve.direction(1.0).conjugate() * following.curve.direction(0.0)
@@ -56,16 +56,16 @@ def in_face(move: PlaneMove | Plunge, angle: float) -> PlaneMove | Plunge:
 
 
 def passed(move: PlaneMove, angle: float, beside: float = 0.0) -> list[tuple[float, float, float]]:
-    """Return places that a move passes: where the slide stands, C's angle in radians, Z.
+    """Return positions on a move: of the slide, of C in radians, of Z.
 
-    The farthest one and the end are among them. ``angle`` is that at the start; the angles go on
-    from there without a jump.
+    The farthest one and the end are among them. ``angle`` is C's at the start; the angles continue
+    from it without a jump.
     """
     curve, (_, before) = move.curve, stand(move.start, beside)
-    places = []
-    for share in looks(curve) if isinstance(curve, Arc) else (1.0,):
+    points = []
+    for share in shares_to_check(curve) if isinstance(curve, Arc) else (1.0,):
         slide, direction = stand(curve.point(share), beside)
         angle += angle_of(direction * before.conjugate())
-        places.append((slide, angle, move.level(share)))
+        points.append((slide, angle, move.level(share)))
         before = direction
-    return places
+    return points

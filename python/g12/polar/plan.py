@@ -26,16 +26,16 @@ from g12.polar.pole import POLE, through_pole
 from g12.polar.quickest import FaceStretch, quickest
 from g12.polar.segments import Law, split_move
 
-POLE_SHARE = 0.5  # of the tolerance: a path that near to the pole runs through it
+POLE_SHARE = 0.5  # of the tolerance: a path nearer to the pole than this runs through it
 SAME_ANGLE = 1e-9  # radians
-RIPPLE = 0.01  # by so much may the speed differ from F inside a segment
+RIPPLE = 0.01  # relative: how much the speed may differ from F inside a segment
 
 
 class PolarSettings(NamedTuple):
-    """What the machine and its owner want of a section; lengths in program units."""
+    """The machine's limits and the owner's settings for a section; lengths in program units."""
 
     tolerance: float  # POLAR_TOLERANCE
-    least_x: float  # 0.001 mm: no segment with a turn of C changes X by less, other than not at all
+    least_x: float  # 0.001 mm: a segment that turns C changes X by this at least, or not at all
     x_acceleration: float  # per second squared
     c_acceleration: float  # degrees per second squared
     c_speed: float  # degrees per minute, for a rotation at the pole at X0
@@ -79,35 +79,35 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
         else:
             machine.cut(element, stop)
     machine.finish(path)
-    return SectionPlan(machine.steps, machine.place, machine.angle, contour.notes)
+    return SectionPlan(machine.steps, machine.position, machine.angle, contour.notes)
 
 
 def quickness(
     direction: Direction,
-    place: complex,
+    point: complex,
     *,
     x_acceleration: float,
     c_acceleration: float,
     beside: float,
 ) -> float:
-    """Return the acceleration along a direction at a place that neither axis exceeds.
+    """Return the greatest acceleration along a direction at a point that both axes allow.
 
     ``c_acceleration`` in degrees per second squared, the tool is ``beside`` X's line. 0 at the
-    pole, where C would have to jump; straight down and up Z counts as quick as X at any place.
+    pole, where C would have to jump; straight down and up, Z's acceleration is taken to be X's.
     """
-    if place == POLE:
+    if point == POLE:
         return 0.0
     in_plane = complex(*direction[:2])
     if not in_plane:
         return x_acceleration
-    slide, way = stand(place, beside)
+    slide, way = stand(point, beside)
     along, around = along_and_around(in_plane, way)
     moved = max(abs(along + beside / slide * around), abs(direction[2]))
     return 1.0 / max(moved / x_acceleration, abs(around) / (slide * radians(c_acceleration)))
 
 
 class _SlideAndSpindle(StepMaker):
-    """The X slide and the C axis, making one element after the other."""
+    """Turns elements, one after the other, into moves of the X slide and the C axis."""
 
     def __init__(self, contour: Contour, settings: PolarSettings, c: float) -> None:
         x, self.angle, z = contour.start
@@ -126,7 +126,7 @@ class _SlideAndSpindle(StepMaker):
             self._turn(move, parts.angles[0])
         turns = round((self.angle - parts.angles[0]) / (2 * pi))
         entry = self._entry + 360.0 * turns
-        segments = segments_with_feed(parts, self.place, move, entry, settings.least_x)
+        segments = segments_with_feed(parts, self.position, move, entry, settings.least_x)
         self.angle = parts.angles[-1] + 2 * pi * turns
         self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", segments, stop)
 
@@ -136,30 +136,32 @@ class _SlideAndSpindle(StepMaker):
         return split_beside(curve, law, beside) if beside else split_move(curve, law)
 
     def switch(self, line: int, stretch: FaceStretch | None) -> None:
-        """Go to the face for a stretch of the path, or back (None), if not there yet."""
+        """Switch to the face for a stretch of the path, or back (None), if not there already."""
         if (stretch is not None) is not self._on_face:
             self._on_face, self._face_angle = stretch is not None, self.angle
-            self.steps.append(FaceSwitch(line, stretch is not None, self.place, *(stretch or ())))
+            self.steps.append(
+                FaceSwitch(line, stretch is not None, self.position, *(stretch or ()))
+            )
 
     def cut_on_face(self, move: PlaneMove | Plunge) -> None:
         """Add a move on the face as it is."""
         if isinstance(move, Plunge):
-            places = [(*self.place[:2], move.z1)]
+            points = [(*self.position[:2], move.z1)]
         else:
             there = passed(move, self.angle, self._settings.beside)
             self.angle = there[-1][1]
-            places = [(slide, self._entry + degrees(angle), z) for slide, angle, z in there]
-        self.steps.append(FaceMove(move.line, in_face(move, self._face_angle), places))
-        self.place = Position(*places[-1])
+            points = [(slide, self._entry + degrees(angle), z) for slide, angle, z in there]
+        self.steps.append(FaceMove(move.line, in_face(move, self._face_angle), points))
+        self.position = Position(*points[-1])
 
     def plunge(self, move: Plunge, stop: bool) -> None:
         """Add a move of Z alone."""
-        self._run(move.line, "Z", [(self.place.x, self.place.c, move.z1, move.feed)], stop)
+        self._run(move.line, "Z", [(self.position.x, self.position.c, move.z1, move.feed)], stop)
 
     def finish(self, path: Sequence[Element]) -> None:
-        """Come back from the face; add what the last segments left over of X and Z."""
+        """Switch back from the face; add what the last segments left over of X and Z."""
         self.switch(path[-1].line if path else 0, None)
-        slide, z = self.place.x, self.place.z
+        slide, z = self.position.x, self.position.z
         for element in path:
             z = z if isinstance(element, Mark) else element.z1
         moves = [element for element in path if isinstance(element, PlaneMove)]
@@ -168,13 +170,13 @@ class _SlideAndSpindle(StepMaker):
         self._make_up(path, slide, z, self._settings.least_x)
 
     def _turn(self, move: PlaneMove, angle: float) -> None:
-        """Add a turn in place, the shorter way; of two equal ways the one that unwinds C."""
+        """Rotate C at the pole, the shorter way; by half a turn in the direction that unwinds C."""
         turn = remainder(angle - self.angle, 2 * pi)
         if abs(abs(turn) - pi) < SAME_ANGLE:
             turn = copysign(pi, -self.angle)
         self.angle += turn
         if abs(turn) > SAME_ANGLE:
-            x, _, z = self.place
+            x, _, z = self.position
             segment = (x, self._entry + degrees(self.angle), z, self._settings.c_speed)
             self._run(move.line, "XC", [segment], True)
 

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What of a section is made on the face, with which acceleration and feeds: as it is soonest made.
+"""Which moves of a section run on the face, with which acceleration and feeds: the fastest choice.
 
-The planner brakes anywhere with all of the face's acceleration, so C and the slide have to be able
-to follow that anywhere. The less it is, the nearer to the pole the face is good for; the more, the
-sooner the tool is at its feed. The best is a matter of the section: it is chosen here, and set
-where the machine stands to go to the face. Where C cannot follow F, the feed is what it can follow,
-or segments are made of the part, whichever is quicker.
+The planner may brake anywhere with all of the face's acceleration, so C and the slide have to
+follow that everywhere. With less of it the tool comes nearer to the pole on the face; with more of
+it the tool reaches its feed sooner. The optimum depends on the section. It is chosen here, and set
+at the stop where the machine switches to the face. Where C cannot follow F, that portion runs at
+the feed that C can follow, or in segments, whichever is quicker.
 
-The time of a way is that of a trapezoid of speed from stop to stop, with less than the
-acceleration, as LinuxCNC halves it where moves may be blended.
+The estimated time is that of a trapezoidal speed profile from stop to stop. It uses less than the
+full acceleration, as LinuxCNC halves that where moves may be blended.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from g12.compensation.contour import Element, PlaneMove
-from g12.polar.follow import Demand, FaceLimits, are_able, demands_of, followed, is_able
+from g12.polar.follow import Demand, FaceLimits, can_follow, can_follow_at, demands_of, followed
 
 SHARES = (*(0.96**k for k in range(14)), 0.5, 0.4, 0.28, 0.18, 0.1, 0.05)  # of the INI's
-PLANNED = 0.7  # of the acceleration is what the planner uses along the path
-STEP, LEAST_FEED = 0.85, 0.08  # the feeds are powers of it, of the programmed one, no less
-CAREFUL = 0.98  # of the limits, where only some places are looked at
-GAIN = 0.02  # seconds: less is not worth a softer machine
-LEAST_GAIN = 0.9  # of the time: less is not worth the stops where segments begin and end
-SWITCHING = 0.05  # seconds of standing, there and back
-WORTH_IT = 0.1  # seconds: two switches cost about as much
-STRAIGHT_ON = radians(5.0)  # a corner of more is taken for a stop
+PLANNED = 0.7  # of the acceleration: the planner's along the path, measured
+STEP, LEAST_FEED = 0.85, 0.08  # tried feeds are F times powers of STEP, down to LEAST_FEED
+CAREFUL = 0.98  # of the limits, where only some points are checked
+GAIN = 0.02  # seconds: a lower acceleration has to save this at least
+LEAST_GAIN = 0.9  # of the time in segments: the face has to be quicker by this at least
+SWITCHING = 0.05  # seconds at rest for the switch to the face and the one back
+WORTH_IT = 0.1  # seconds: two switches cost about this
+STRAIGHT_ON = radians(5.0)  # a sharper corner counts as a stop
 
 
 class FaceStretch(NamedTuple):
-    """What is made on the face from one switch to the next.
+    """The moves on the face from one switch to the next.
 
-    With a share of the INI's acceleration, and the feed ``override`` that C and the slide follow.
+    They run at a ``share`` of the INI's acceleration. C and the slide follow the feed ``override``.
     """
 
     share: float
@@ -44,7 +44,7 @@ class FaceStretch(NamedTuple):
 
 
 class OnFace(NamedTuple):
-    """A path with the stretch that each element is made in, None in segments."""
+    """A path with the stretch that each element belongs to, None for one in segments."""
 
     path: list[Element]
     stopping: list[bool]
@@ -52,21 +52,21 @@ class OnFace(NamedTuple):
 
 
 class _Element(NamedTuple):
-    """An element of the path, and what is looked at; without places it is no move in the plane.
+    """An element of the path with its demands; without any it is no move in the plane.
 
-    ``corner`` tells whether one follows, ``in_segments`` about how long segments take, in seconds.
+    ``corner``: a corner follows. ``in_segments`` is the approximate time in segments, in seconds.
     """
 
     move: Element
     stop: bool
     length: float = 0.0
-    places: Sequence[Demand] = ()
+    demands: Sequence[Demand] = ()
     corner: bool = False
     in_segments: float = 0.0
 
 
 class _Span(NamedTuple):
-    """A part of an element, with the feed that it has on the face, 0.0 in segments."""
+    """A portion of an element, with its feed on the face, 0.0 in segments."""
 
     element: _Element
     first: float
@@ -79,11 +79,11 @@ class _Span(NamedTuple):
 
 
 def quickest(path: Sequence[Element], stopping: list[bool], limits: FaceLimits) -> OnFace:
-    """Return a path, its moves parted, as it is soonest made.
+    """Return a path with its moves divided so that it takes the least time.
 
-    ``stopping`` tells of each element whether it ends in a stop; so does what is returned.
+    ``stopping``, given and returned, holds for each element whether it ends in a stop.
     """
-    elements = [_seen(*each, limits) for each in zip(path, stopping, [*path[1:], None])]
+    elements = [_element(*each, limits) for each in zip(path, stopping, [*path[1:], None])]
     best, least, chosen = list[_Span](), 0.0, 0.0
     for share in SHARES:
         spans = _worth_it([span for one in elements for span in _spans(one, limits, share)])
@@ -91,70 +91,70 @@ def quickest(path: Sequence[Element], stopping: list[bool], limits: FaceLimits) 
         if not best or seconds < least - GAIN:
             best, least, chosen = spans, seconds, share
         if len(spans) == len(path) and all(span.feed for span in spans):
-            break  # all of it as programmed: softer is slower
+            break  # all of it at the programmed feed: a lower acceleration is slower
     stops = [span.element.stop and span.last == 1.0 for span in best]
-    return OnFace([_made(span) for span in best], stops, _on_face(best, limits, chosen))
+    return OnFace([_move_of(span) for span in best], stops, _on_face(best, limits, chosen))
 
 
-def _seen(move: Element, stop: bool, following: Element | None, limits: FaceLimits) -> _Element:
+def _element(move: Element, stop: bool, following: Element | None, limits: FaceLimits) -> _Element:
     if not isinstance(move, PlaneMove):
         return _Element(move, stop)
-    places, length = demands_of(move, limits), move.length
+    demands, length = demands_of(move, limits), move.length
     corner = not isinstance(following, PlaneMove) or not _goes_straight_on(move, following)
-    return _Element(move, stop, length, places, corner, length * _slowness(places))
+    return _Element(move, stop, length, demands, corner, length * _slowness(demands))
 
 
 def _goes_straight_on(move: PlaneMove, following: PlaneMove) -> bool:
     return abs(following.curve.direction(0.0) - move.curve.direction(1.0)) < STRAIGHT_ON
 
 
-def _slowness(places: Sequence[Demand]) -> float:
-    """Return about how long segments take from the first to the last, for a unit of the length."""
+def _slowness(demands: Sequence[Demand]) -> float:
+    """Return the approximate time in segments from first to last, for a unit of the length."""
     return sum(
-        0.5 * (one.slowness + other.slowness) * (other.part - one.part)
-        for one, other in zip(places, places[1:])
+        0.5 * (one.slowness + other.slowness) * (other.at - one.at)
+        for one, other in zip(demands, demands[1:])
     )
 
 
 def _spans(element: _Element, limits: FaceLimits, share: float) -> list[_Span]:
-    """Return an element in spans, each at a feed that is followed all along it, if at any."""
-    move, places = element.move, element.places
+    """Return an element in spans, each with a feed that C and the slide follow along all of it."""
+    move, demands = element.move, element.demands
     if not isinstance(move, PlaneMove):
         return [_Span(element, 0.0, 1.0, 1.0)]
-    if are_able(move, places, limits, share):
+    if can_follow_at(move, demands, limits, share):
         return [_Span(element, 0.0, 1.0, move.feed)]
     levels = [
-        _level(CAREFUL * followed(move, place, limits, share / CAREFUL) / move.feed)
-        for place in places
+        _level(CAREFUL * followed(move, demand, limits, share / CAREFUL) / move.feed)
+        for demand in demands
     ]
     feeds = [
-        _worth(move.feed * min(levels[k : k + 2]), places[k : k + 2])
-        for k in range(len(places) - 1)
+        _worth(move.feed * min(levels[k : k + 2]), demands[k : k + 2])
+        for k in range(len(demands) - 1)
     ]
     spans = []
-    for feed, run in groupby(zip(feeds, places, places[1:]), itemgetter(0)):
+    for feed, run in groupby(zip(feeds, demands, demands[1:]), itemgetter(0)):
         steps = list(run)
-        spans.append(_Span(element, steps[0][1].part, steps[-1][2].part, feed))
+        spans.append(_Span(element, steps[0][1].at, steps[-1][2].at, feed))
     return spans
 
 
 def _level(share: float) -> float:
-    """Return the greatest share of the feed that is tried and not above one, 0.0 for too little."""
+    """Return the greatest tried share of the feed that is at most ``share``, 0.0 for too little."""
     if share >= 1.0:
         return 1.0
     return STEP ** ceil(log(share) / log(STEP)) if share > LEAST_FEED else 0.0
 
 
 def _worth(feed: float, ends: Sequence[Demand]) -> float:
-    """Return a feed between two places, 0.0 if segments are quicker."""
+    """Return a feed between two points, 0.0 if segments are quicker."""
     in_segments = 0.5 * (ends[0].slowness + ends[1].slowness)
     return feed if feed * in_segments > LEAST_GAIN * 60.0 else 0.0
 
 
 def _worth_it(spans: list[_Span]) -> list[_Span]:
-    """Return spans of which those on the face last long enough to go there.
+    """Return spans, those on the face only where they last long enough to switch to it.
 
-    Elements that are no moves in the plane go with the one in front of them.
+    Elements that are no moves in the plane go with the one before them.
     """
     worth: list[_Span] = []
     for on_face, run in _stretches(spans):
@@ -168,7 +168,7 @@ def _stretches(spans: list[_Span]) -> Iterator[tuple[bool, list[_Span]]]:
     """Yield the spans from one switch to the next, and whether they are on the face."""
     on_face, led = False, []
     for span in spans:
-        on_face = bool(span.feed) if span.element.places else on_face
+        on_face = bool(span.feed) if span.element.demands else on_face
         led.append((on_face, span))
     for there, run in groupby(led, itemgetter(0)):
         yield there, [span for _, span in run]
@@ -178,23 +178,23 @@ def _joined(run: list[_Span]) -> _Span:
     return run[0]._replace(last=run[-1].last)
 
 
-def _made(span: _Span) -> Element:
-    """Return the element, or the part of it, that a span is."""
+def _move_of(span: _Span) -> Element:
+    """Return the element, or the portion of it, that a span covers."""
     move = span.element.move
     if not isinstance(move, PlaneMove):
         return move
     if (span.first, span.last) != (0.0, 1.0):
         move = move.portion(span.first, span.last)
-    return move._replace(feed=span.feed) if span.feed and span.element.places else move
+    return move._replace(feed=span.feed) if span.feed and span.element.demands else move
 
 
 def _on_face(spans: list[_Span], limits: FaceLimits, share: float) -> list[FaceStretch | None]:
-    """Return each span's stretch, with the most acceleration and override that is followed."""
+    """Return each span's stretch, with the highest acceleration and override to be followed."""
     stretches: list[FaceStretch | None] = []
     for on_face, run in _stretches(spans):
-        moves = [move for move in map(_made, run) if isinstance(move, PlaneMove)]
+        moves = [move for move in map(_move_of, run) if isinstance(move, PlaneMove)]
         more = (one for one in SHARES if one > share)
-        able = (one for one in more if all(is_able(move, limits, one) for move in moves))
+        able = (one for one in more if all(can_follow(move, limits, one) for move in moves))
         stretch = _most(moves, limits, next(able, share)) if on_face else None
         stretches += [stretch] * len(run)
     return stretches
@@ -202,15 +202,15 @@ def _on_face(spans: list[_Span], limits: FaceLimits, share: float) -> list[FaceS
 
 def _most(moves: list[PlaneMove], limits: FaceLimits, share: float) -> FaceStretch:
     overrides = (
-        followed(move, place, limits, share) / move.feed
+        followed(move, demand, limits, share) / move.feed
         for move in moves
-        for place in demands_of(move, limits)
+        for demand in demands_of(move, limits)
     )
     return FaceStretch(share, max(1.0, min(limits.override, *overrides)))
 
 
 def _seconds(spans: list[_Span], acceleration: float) -> float:
-    """Return about how long spans take, those on the face with an acceleration."""
+    """Return the approximate time of spans in seconds, those on the face with an acceleration."""
     total = 0.0
     for on_face, run in _stretches(spans):
         moves = [span for span in run if span.length]
@@ -226,7 +226,7 @@ def _in_segments(span: _Span) -> float:
     element = span.element
     if (span.first, span.last) == (0.0, 1.0):
         return element.in_segments
-    there = [place for place in element.places if span.first <= place.part <= span.last]
+    there = [demand for demand in element.demands if span.first <= demand.at <= span.last]
     return element.length * _slowness(there)
 
 
@@ -243,9 +243,9 @@ def _smooth(spans: list[_Span]) -> Iterator[list[_Span]]:
 
 
 def _trapezoid(spans: list[_Span], acceleration: float) -> float:
-    """Return the seconds of moves without a stop between them, from standing to standing.
+    """Return the seconds of moves from one stop to the next.
 
-    Each at the most speed that can be reached at its end and still be braked down from.
+    Each ends at the highest speed that can be reached, and braked from in what follows.
     """
     lengths, speeds = [span.length for span in spans], [span.feed / 60.0 for span in spans]
     ends = [0.0, *(min(pair) for pair in zip(speeds, speeds[1:])), 0.0]

@@ -9,21 +9,21 @@ unit of length are sqrt(|difference| / (8 bulge)).
 The speed along the part is not constant inside a segment: it changes by the part sin(p)**2 dr / r.
 And where r grows by more than e times, none of this is true any more: segments end before.
 
-                       r  . ' * place                             * place
+                       r  . ' * point                             * point
                      . '     |                         r  . '   /
                 . '          | s = d u                  . '     / R
            . '               |                     . '         / a
     pole +-------------------+ foot           pole +----------+- - - - a = 0
                   d                                   e R      centre
 
-Line: its place is u, the tangent of the angle from the foot of the perpendicular d to the pole;
+Line: its position is u, the tangent of the angle from the foot of the perpendicular d to the pole;
 along it s = d u and r = d sqrt(m) with m = 1 + u**2, and the curvature of the spirals is
 (1 + 2 u**2) / (d m**2).
 
-Arc of radius R about a centre e R from the pole: its place is the angle a about that centre, in the
-sense of the motion, 0 where it is farthest from the pole; r = R sqrt(m) with m = 1 + e**2 +
-2 e cos a = (1 - e)**2 + 4 e cos(a / 2)**2. With w = 1 + e cos a = (m + 1 - e**2) / 2 the sine of p
-is w / sqrt(m), and the curvatures differ by (m**2 - w (2 m - w**2)) / (R m**2).
+Arc of radius R about a centre e R from the pole: its position is the angle a about that centre, in
+the sense of the motion, 0 where it is farthest from the pole; r = R sqrt(m) with m = 1 + e**2 + 2 e
+cos a = (1 - e)**2 + 4 e cos(a / 2)**2. With w = 1 + e cos a = (m + 1 - e**2) / 2 the sine of p is w
+/ sqrt(m), and the curvatures differ by (m**2 - w (2 m - w**2)) / (R m**2).
 """
 
 from __future__ import annotations
@@ -74,14 +74,14 @@ def _split_line(line: Line, law: Law) -> Split:
     if _is_one_segment(u0, u1, distance, deviation, abs(r1 - r0) / (r0 + r1), law.ripple):
         return Split([r0, r1], [foot + turn * atan(u0), foot + turn * atan(u1)], [0.0, length])
     density = _line_density(distance, deviation, law)
-    places, shares = spaced(Stretch(u0, u1, [0.0], abs), density)
+    positions, shares = spaced(Stretch(u0, u1, [0.0], abs), density)
     moved = [distance - deviation * share for share in shares]
-    radii = [d * sqrt(1.0 + u * u) for d, u in zip(moved, places)]
+    radii = [d * sqrt(1.0 + u * u) for d, u in zip(moved, positions)]
     radii[0], radii[-1] = r0, r1
     return Split(
         radii,
-        [foot + turn * atan(u) for u in places],
-        [d * u - distance * u0 for d, u in zip(moved, places)],
+        [foot + turn * atan(u) for u in positions],
+        [d * u - distance * u0 for d, u in zip(moved, positions)],
     )
 
 
@@ -131,15 +131,15 @@ def _split_arc(arc: Arc, law: Law) -> Split:
     r0, r1 = abs(arc.start), abs(arc.end)
     nearest = abs(radius - away) if a0 <= pi <= a1 else min(r0, r1)
     deviation = min(law.deviation, 0.5 * nearest)
-    places, shares = [a0, a1], [0.0, 0.0]
+    positions, shares = [a0, a1], [0.0, 0.0]
     if 2.0 * away > deviation:
         e = away / radius
         density = _arc_density(radius, e, deviation, law)
-        places, shares = spaced(Stretch(a0, a1, [0.0, pi, 2 * pi], cos), density)
-    radii, angles = _arc_polar(radius, away, deviation, places, shares)
+        positions, shares = spaced(Stretch(a0, a1, [0.0, pi, 2 * pi], cos), density)
+    radii, angles = _arc_polar(radius, away, deviation, positions, shares)
     radii[0], radii[-1] = r0, r1
     return Split(
-        radii, [outward + turn * angle for angle in angles], [radius * (a - a0) for a in places]
+        radii, [outward + turn * angle for angle in angles], [radius * (a - a0) for a in positions]
     )
 
 
@@ -155,7 +155,7 @@ def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density
     nearest, inside = (1.0 - e) ** 2, (1.0 - e) * (1.0 + e)
 
     def density(a: float) -> tuple[float, float]:
-        half = cos(0.5 * a)  # unlike cos a it tells places beside the pole from each other
+        half = cos(0.5 * a)  # unlike cos a it tells positions beside the pole from each other
         m = nearest + 4.0 * e * half * half
         w = 0.5 * (m + inside)
         p = m * m - w * (2.0 * m - w * w)
@@ -171,11 +171,11 @@ def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density
 
 
 def _arc_polar(
-    radius: float, away: float, deviation: float, places: list[float], shares: list[float]
+    radius: float, away: float, deviation: float, positions: list[float], shares: list[float]
 ) -> tuple[list[float], list[float]]:
-    """Return radii, and angles from the direction of the arc's centre on, of places off the arc."""
+    """Return radii, and angles from the arc centre's direction, of positions off the arc."""
     radii, angles = [], []
-    for a, share in zip(places, shares):
+    for a, share in zip(positions, shares):
         moved = radius + deviation * share
         x, c = moved * cos(a), moved * sin(a)
         radii.append(hypot(away + x, c))

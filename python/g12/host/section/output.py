@@ -288,22 +288,22 @@ class SectionOutput:
             interp.g12_found = None  # not before: an abort in the wait drops what was executed
         if not has_switched(interp):
             raise BlockLocation(self.code, step.line).refuse(not_switched())
-        wrong = self._wrong_place(step.place) if step.on and interp.task else ""
+        wrong = self._wrong_position(step.position) if step.on and interp.task else ""
         if wrong:
             yield from to_axes(interp)
             raise BlockLocation(self.code, step.line).refuse(wrong)
         interp.params[INPUT_FOUND] = found
-        interp.current_x, interp.CC_current, interp.current_z = step.place
+        interp.current_x, interp.CC_current, interp.current_z = step.position
         interp.current_y = step.on * self.beside - y_offset(interp)
         if not interp.task:
             self.canon.COMMENT(f"{MEANINGS_CHANGED}{step.share}")
 
-    def _wrong_place(self, place: tuple[float, float, float]) -> str:
+    def _wrong_position(self, position: tuple[float, float, float]) -> str:
         """Return why the machine, which the interpreter has just asked, is not where it was meant.
 
         "" if it is.
         """
-        off = (abs(there - planned) for there, planned in zip(self._stands(), place))
+        off = (abs(there - planned) for there, planned in zip(self._stands(), position))
         return ELSEWHERE if max(off) > SAME_PLACE else other_module(self.interp, self.beside)
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:

@@ -241,14 +241,14 @@ class IniText:
             if line.text.startswith(END):
                 if not open_:
                     raise IniError(
-                        f'{line.location}: the line "{BEGIN}" that begins this is missing: put it in '
-                        "front of the first line that install wrote"
+                        f'{line.location}: the line "{BEGIN}" that begins this is missing: put it '
+                        "in front of the first line that install wrote"
                     )
                 open_ = False
         if open_:
             raise IniError(
-                f'{blocks[-1][0].location}: the line "{END}" that ends this is missing: put it after '
-                "the last line that install wrote there"
+                f'{blocks[-1][0].location}: the line "{END}" that ends this is missing: put it '
+                "after the last line that install wrote there"
             )
         return blocks
 
