@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a block finds in the planners' own tests: modes, position, tools, without LinuxCNC."""
+"""What a block finds in the planners' own tests, modes, position, tools; words and refusals."""
 
+import pytest
+
+from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.request.context import Context, Tool
 
 MM = Context(
@@ -32,3 +35,16 @@ BAD_MODES = [
     (dict(compensated=True), "brings its own cutter compensation: program G40 first"),
     (dict(feed=0.0), "F0 must be greater than 0 (no feed commanded?)"),
 ]
+
+
+def words_of(text):
+    """Return the words of a block, as "I50 R-40 D2"."""
+    return {word[0]: float(word[1:]) for word in text.split()}
+
+
+def told(planner, *arguments, **options):
+    """Return the sentence of a refusal, which there must be."""
+    with pytest.raises(Refusal) as refused:
+        planner(*arguments, **options)
+    assert len(refused.value.message) < LONGEST_MESSAGE
+    return refused.value.message

@@ -2,6 +2,7 @@
 """Blocks of a section as lines and arcs: what they mean, and which are refused."""
 
 import cmath
+import json
 import math
 
 import pytest
@@ -156,122 +157,138 @@ def test_marks_stand_between_the_moves():
     assert contour.elements == [Mark(1, "M8")]
 
 
-def refused(blocks, **options):
-    contour = started(**options)
+def block(contour, text, line):
+    """Give a contour a block, as "arc turn=1 x=3 radius=4"; its feed is 100 if it says none."""
+    name, *words = text.split()
+    values = {key: json.loads(value) for key, value in (word.split("=") for word in words)}
+    if name in ("line", "arc"):
+        values.setdefault("feed", 100.0)
+    getattr(contour, name)(**values, line=line)
+
+
+def refused(*blocks, start=(10.0, 5.0), **options):
+    """Return the sentence with which the last of the blocks from line 1 on is refused."""
+    contour = Contour(*start, **options)
+    for line, text in enumerate(blocks[:-1], 1):
+        block(contour, text, line)
     with pytest.raises(Refusal) as refusal:
-        for line, (block, words) in enumerate(blocks, 1):
-            getattr(contour, block)(**words, line=line)
+        block(contour, blocks[-1], len(blocks))
     assert len(refusal.value.message) < LONGEST_MESSAGE
     return refusal.value.message
 
 
-ON = [("compensation", dict(side=41, radius=2.0))]
-CUT = dict(feed=100.0)
-
-
-OWN_BLOCK = "G12.1 line 1: G41 needs a G1 with X or C in its own block"
-
-
-def ramp_on(contour):
-    contour.compensation(41, 2.0, line=1)
-    contour.line(c=5.0, line=1, feed=100.0)
+ON = "compensation side=41 radius=2"
+RAMP = "line c=5"
+OWN_BLOCK = "G41 needs a G1 with X or C in its own block"
+DIAMETER = "it would close with X read as a diameter (POLAR_X = diameter)"
 
 
 @pytest.mark.parametrize(
     ("blocks", "message"),
     [
+        (["line x=3 feed=0"], "F0 must be above zero (no feed commanded?)"),
+        (["arc turn=1 x=3 i=-1 feed=-1"], "F-1 must be above zero (no feed commanded?)"),
+        (["arc turn=1 x=3 i=-1 radius=4"], "G3: either R or I and J, not both"),
+        (["arc turn=-1 x=3 j=-1 radius=4"], "G2: either R or I and J, not both"),
+        (["arc turn=-1 x=3"], "G2 needs R, or the centre in I and J"),
+        (["arc turn=-1 x=3 i=0 j=0"], "G2 needs R, or the centre in I and J"),
+        (["arc turn=1 radius=4"], "G3 R4: a full circle needs I and J, not R"),
         (
-            [("line", dict(x=3.0, feed=0.0))],
-            "G12.1 line 1: F0 must be above zero (no feed commanded?)",
+            ["arc turn=1 x=0 radius=4"],
+            f"G3 R4 does not close: the ends are 10 apart, R must be at least 5; {DIAMETER}",
         ),
         (
-            [("arc", dict(turn=1, x=3.0, i=-1.0, feed=-1.0))],
-            "G12.1 line 1: F-1 must be above zero (no feed commanded?)",
+            ["arc turn=-1 x=0 c=10 i=-9"],
+            "G2 does not close: its centre is 9 from the start, 10.049876 from the end",
         ),
         (
-            [("arc", dict(turn=1, x=3.0, i=-1.0, radius=4.0, **CUT))],
-            "G12.1 line 1: G3: either R or I and J, not both",
+            ["arc turn=-1 x=0 c=5 i=-5"],
+            "G2 does not close: its centre is 5 from the start, 7.071068 from the end; " + DIAMETER,
         ),
-        (
-            [("arc", dict(turn=-1, x=3.0, j=-1.0, radius=4.0, **CUT))],
-            "G12.1 line 1: G2: either R or I and J, not both",
+        ([ON, "mark action=8"], OWN_BLOCK),
+        ([ON, "close"], OWN_BLOCK),
+        ([ON, RAMP], OWN_BLOCK),
+        ([ON, "compensation side=40 radius=0"], OWN_BLOCK),
+        ([ON, "arc turn=1 x=3 radius=9"], "G41 with G3: compensation is switched by a G1 only"),
+        *(
+            ([f"line {word}=-2e6"], f"{word.upper()}-2000000 is no length: at most 1000000")
+            for word in "xcz"
         ),
-        (
-            [("arc", dict(turn=-1, x=3.0, **CUT))],
-            "G12.1 line 1: G2 needs R, or the centre in I and J",
+        *(
+            (
+                [f"arc turn=1 x=1 i=1 {word}=2e6"],
+                f"{word.upper()}2000000 is no length: at most 1000000",
+            )
+            for word in "xczij"
         ),
-        (
-            [("arc", dict(turn=-1, x=3.0, i=0.0, j=0.0, **CUT))],
-            "G12.1 line 1: G2 needs R, or the centre in I and J",
-        ),
-        (
-            [("arc", dict(turn=1, radius=4.0, **CUT))],
-            "G12.1 line 1: G3 R4: a full circle needs I and J, not R",
-        ),
-        (
-            [("arc", dict(turn=1, x=0.0, radius=4.0, **CUT))],
-            "G12.1 line 1: G3 R4 does not close: the ends are 10 apart, R must be at least 5"
-            "; it would close with X read as a diameter (POLAR_X = diameter)",
-        ),
-        (
-            [("arc", dict(turn=-1, x=0.0, c=10.0, i=-9.0, **CUT))],
-            "G12.1 line 1: G2 does not close: its centre is 9 from the start, 10.049876 from "
-            "the end",
-        ),
-        (
-            [("arc", dict(turn=-1, x=0.0, c=5.0, i=-5.0, **CUT))],
-            "G12.1 line 1: G2 does not close: its centre is 5 from the start, 7.071068 from "
-            "the end; it would close with X read as a diameter (POLAR_X = diameter)",
-        ),
-        (
-            [*ON, ("mark", dict(action="M8"))],
-            OWN_BLOCK,
-        ),
-        ([*ON, ("close", {})], OWN_BLOCK),
-        (
-            [*ON, ("line", dict(c=5.0, **CUT))],
-            OWN_BLOCK,
-        ),
-        (
-            [*ON, ("compensation", dict(side=40, radius=0.0))],
-            OWN_BLOCK,
-        ),
-        (
-            [*ON, ("arc", dict(turn=1, x=3.0, radius=9.0, **CUT))],
-            "G12.1 line 2: G41 with G3: compensation is switched by a G1 only",
-        ),
+        (["arc turn=1 x=1 radius=2e6"], "R2000000 is no length: at most 1000000"),
     ],
 )
 def test_refused_blocks(blocks, message):
-    assert refused(blocks) == message
+    line = 2 if "with G3" in message else 1
+    assert refused(*blocks) == f"G12.1 line {line}: {message}"
 
 
-@pytest.mark.parametrize("reading", ["radius", "diameter"])
-def test_the_reading_of_x_that_closes_the_arc_is_named(reading):
-    """A quarter about the spindle, its X words read the other way."""
-    right = 20.0 if reading == "radius" else 5.0
-    quarter = dict(turn=1, x=0.0, c=right, i=-right, **CUT)
-    message = refused([("arc", quarter)], diameter=reading == "radius")
-    assert message.endswith(f"it would close with X read as a {reading} (POLAR_X = {reading})")
+@pytest.mark.parametrize(
+    ("length", "side", "message"),
+    [
+        (1.9, 41, "the G1 with G41 is 1.9 long: it must be at least the tool radius 2"),
+        (0.0, 42, "G42 needs a G1 with X or C in its own block"),
+    ],
+)
+def test_a_ramp_is_at_least_as_long_as_the_tool_radius(length, side, message):
+    contour = started()
+    contour.compensation(side, 2.0, line=7)
+    with pytest.raises(Refusal) as refusal:
+        contour.line(c=length, z=-1.0, line=7, feed=100.0)
+    assert refusal.value.message == f"G12.1 line 7: {message}"
 
 
-@pytest.mark.parametrize("words", [dict(i=-7.0), dict(radius=3.0)])
-def test_no_reading_is_named_that_does_not_close_the_arc(words):
-    """From (20, 5) to (12, 13), or to half of either X: neither a radius of 7 nor one of 3."""
-    contour = raised()
-    with pytest.raises(Refusal, match=r"(end|at least 5\.\d+)$"):
-        contour.arc(1, 12.0, 13.0, line=2, feed=100.0, **words)
+def under_compensation(code="G12.1"):
+    contour = started(code=code)
+    contour.compensation(41, 2.0, line=1)
+    contour.line(c=5.0, line=1, feed=100.0)
+    return contour
 
 
-def test_where_the_section_began_x_is_known_whatever_its_words_mean():
-    """From the machine's X10 to a word of 8: a diameter, then the quarter has the radius 6."""
-    message = refused([("arc", dict(turn=1, x=8.0, c=6.0, i=-6.0, **CUT))])
-    assert message.endswith("it would close with X read as a diameter (POLAR_X = diameter)")
+def test_what_compensation_in_force_refuses():
+    contour = under_compensation()
+    with pytest.raises(Refusal, match=r"^G12\.1 line 2: G42: cancel G41 of line 1 with G40 first$"):
+        contour.compensation(42, 2.0, line=2)
+    contour = under_compensation()
+    contour.compensation(40, 0.0, line=3)
+    with pytest.raises(Refusal, match=r"^G12\.1 line 3: the G1 with G40 is 1 long: .* radius 2$"):
+        contour.line(c=6.0, line=3, feed=100.0)
+    contour = under_compensation("G12.3")
+    with pytest.raises(
+        Refusal, match=r"^G12\.3 line 9: G41 of line 1 is still on: G40 is missing$"
+    ):
+        contour.close(line=9)
 
 
-def test_no_reading_is_named_where_no_word_is_a_diameter():
-    quarter = dict(turn=1, x=0.0, c=5.0, i=-5.0, **CUT)  # it would close from X5 on
-    assert refused([("arc", quarter)], diameter=None).endswith("from the end")
+# X words that may be radii or diameters.
+
+
+@pytest.mark.parametrize(
+    ("blocks", "start", "diameter", "reading"),
+    [
+        (["arc turn=1 x=0 c=20 i=-20"], 10.0, True, "radius"),  # a quarter about the spindle
+        (["arc turn=1 x=0 c=5 i=-5"], 10.0, False, "diameter"),
+        (["arc turn=1 x=0 c=5 i=-5"], 10.0, None, None),  # no word is a diameter
+        # where the section began X is known: from the machine's X10 to a word of 8
+        (["arc turn=1 x=8 c=6 i=-6"], 10.0, False, "diameter"),
+        # from (20, 5) to (12, 13): with half of each X an arc about (0, 5), or about (10, 10)
+        ([RAMP, "arc turn=1 x=12 c=13 i=-10"], 20.0, False, "diameter"),
+        ([RAMP, "arc turn=1 x=12 c=13 j=5"], 20.0, False, "diameter"),
+        ([RAMP, "arc turn=1 x=12 c=13 radius=4.7"], 20.0, False, "diameter"),
+        ([RAMP, "arc turn=1 x=12 c=13 i=-7"], 20.0, False, None),
+        ([RAMP, "arc turn=1 x=12 c=13 radius=3"], 20.0, False, None),
+    ],
+)
+def test_the_reading_of_x_that_closes_the_arc_is_named(blocks, start, diameter, reading):
+    message = refused(*blocks, start=(start, 0.0), diameter=diameter)
+    named = f"it would close with X read as a {reading} (POLAR_X = {reading})"
+    assert message.endswith(named) if reading else "it would close" not in message
 
 
 # What LinuxCNC forgives any arc: a thousandth of its radius, or what rounded words need.
@@ -310,21 +327,6 @@ def test_the_radius_of_a_half_circle_may_be_too_small_by_what_is_forgiven(half, 
             contour.arc(1, -half, 0.0, **words)
 
 
-@pytest.mark.parametrize(
-    ("length", "side", "message"),
-    [
-        (1.9, 41, "the G1 with G41 is 1.9 long: it must be at least the tool radius 2"),
-        (0.0, 42, "G42 needs a G1 with X or C in its own block"),
-    ],
-)
-def test_a_ramp_is_at_least_as_long_as_the_tool_radius(length, side, message):
-    contour = started()
-    contour.compensation(side, 2.0, line=7)
-    with pytest.raises(Refusal) as refusal:
-        contour.line(c=length, z=-1.0, line=7, feed=100.0)
-    assert refusal.value.message == f"G12.1 line 7: {message}"
-
-
 @pytest.mark.parametrize(("rounding", "taken"), [(0.9e-6, True), (1.1e-6, False)])
 def test_rounding_counts_neither_for_ramps_nor_for_ends(rounding, taken):
     """Ends so near to each other are one place."""
@@ -339,77 +341,6 @@ def test_rounding_counts_neither_for_ramps_nor_for_ends(rounding, taken):
     with pytest.raises(Refusal, match="must be at least the tool radius"):
         contour.line(c=2.0 - rounding, line=1, feed=100.0)
     started().arc(1, **arc)
-
-
-def test_the_ramp_off_is_as_long_too():
-    contour = started()
-    ramp_on(contour)
-    contour.line(c=20.0, line=2, feed=100.0)
-    contour.compensation(40, 0.0, line=3)
-    with pytest.raises(Refusal, match=r"^G12\.1 line 3: the G1 with G40 is 1 long: .* radius 2$"):
-        contour.line(c=21.0, line=3, feed=100.0)
-
-
-def test_the_side_cannot_change_without_g40():
-    contour = started()
-    ramp_on(contour)
-    with pytest.raises(Refusal, match=r"^G12\.1 line 2: G42: cancel G41 of line 1 with G40 first$"):
-        contour.compensation(42, 2.0, line=2)
-
-
-def test_compensation_must_be_off_at_the_end():
-    contour = started(code="G12.3")
-    ramp_on(contour)
-    with pytest.raises(
-        Refusal, match=r"^G12\.3 line 9: G41 of line 1 is still on: G40 is missing$"
-    ):
-        contour.close(line=9)
-
-
-@pytest.mark.parametrize("word", ["x", "c", "z"])
-def test_a_line_beyond_any_machine(word):
-    contour = started()
-    with pytest.raises(Refusal) as refused:
-        contour.line(**{word: -2e6}, line=7, feed=100.0)
-    assert refused.value.message == (
-        f"G12.1 line 7: {word.upper()}-2000000 is no length: at most 1000000"
-    )
-    contour.line(**{word: 1e6}, line=7, feed=100.0)
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (dict(x=2e6, i=1.0), "X2000000 is no length: at most 1000000"),
-        (dict(c=-2e6, i=1.0), "C-2000000 is no length: at most 1000000"),
-        (dict(z=2e6, i=1.0), "Z2000000 is no length: at most 1000000"),
-        (dict(i=2e6), "I2000000 is no length: at most 1000000"),
-        (dict(j=-2e6), "J-2000000 is no length: at most 1000000"),
-        (dict(x=1.0, radius=2e6), "R2000000 is no length: at most 1000000"),
-    ],
-)
-def test_an_arc_beyond_any_machine(words, message):
-    with pytest.raises(Refusal) as refused:
-        started().arc(1, line=7, feed=100.0, **words)
-    assert refused.value.message == f"G12.1 line 7: {message}"
-
-
-@pytest.mark.parametrize("words", [dict(i=-10.0), dict(j=5.0), dict(radius=4.7)])
-def test_the_other_reading_of_x_counts_for_start_and_end(words):
-    """From (20, 5) to (12, 13): with half of each X an arc about (0, 5), or about (10, 10)."""
-    contour = raised()
-    with pytest.raises(Refusal) as refused:
-        contour.arc(1, 12.0, 13.0, line=2, feed=100.0, **words)
-    assert refused.value.message.endswith(
-        "it would close with X read as a diameter (POLAR_X = diameter)"
-    )
-
-
-def raised():
-    """Return a contour that has come to (20, 5)."""
-    contour = Contour(20.0, 0.0)
-    contour.line(c=5.0, line=1, feed=100.0)
-    return contour
 
 
 # A tool that stands beside the programmed place until a G1 takes it there.

@@ -205,40 +205,28 @@ def setup_of(settings=Settings(), **found):  # noqa: B008 - it is frozen
 
 def test_the_settings_of_a_section_are_in_program_units():
     made = setup_of(machine_unit=1 / 25.4, millimetre=1 / 25.4)
-    assert made.tolerance == pytest.approx(0.005 / 25.4)
-    assert made.plan == CylinderSettings(
-        RADIUS,
-        pytest.approx(0.005 / 25.4),
-        pytest.approx(0.001 / 25.4),
-        pytest.approx(900 / 25.4),
-        pytest.approx(1100 / 25.4),
-        3600.0,
-        360.0,
-    )
-    assert made.words.closing == pytest.approx(0.0127 / 25.4)
+    lengths = [made.tolerance, *made.plan[1:5], made.words.closing]
+    in_mm = [0.005, 0.005, 0.001, 900, 1100, 0.0127]
+    assert lengths == pytest.approx([length / 25.4 for length in in_mm])
+    assert (made.plan.radius, *made.plan[5:]) == (RADIUS, 3600.0, 360.0)
 
 
-def test_the_word_is_a_radius_or_a_diameter():
-    for word, radius in (("radius", 20.0), ("diameter", 10.0)):
-        made = setup_of(Settings(cylinder_word=word))
-        assert made.plan.radius == radius
-        assert made.words.c_scale == pytest.approx(radius * math.pi / 180)
-
-
-def test_polar_x_means_nothing_here_and_g0_what_it_means_there():
-    assert setup_of(Settings(polar_x="diameter")).words.x_scale == 1.0
-    assert setup_of(diameter=True).words.diameter
-    assert setup_of().words.rapid_feed is None
-    assert setup_of(Settings(polar_g0="feed", polar_g0_feed=500.0)).words.rapid_feed == 500.0
-
-
-def test_a_tool_beside_the_x_line_is_a_matter_of_the_face():
-    assert setup_of().words.beside == 0.0
-
-
-def test_x_together_only_where_it_is_allowed():
-    assert not setup_of().words.third_with_others
-    assert setup_of(Settings(cylinder_x="allow")).words.third_with_others
+@pytest.mark.parametrize(
+    ("settings", "found", "word", "value"),
+    [
+        ({}, {}, "c_scale", pytest.approx(20 * math.pi / 180)),
+        ({"cylinder_word": "diameter"}, {}, "c_scale", pytest.approx(10 * math.pi / 180)),
+        ({"polar_x": "diameter"}, {}, "x_scale", 1.0),
+        ({}, {"diameter": True}, "diameter", True),
+        ({}, {}, "rapid_feed", None),
+        ({"polar_g0": "feed", "polar_g0_feed": 500.0}, {}, "rapid_feed", 500.0),
+        ({"polar_tool_offset": 3.0}, {}, "beside", 0.0),  # a matter of the face
+        ({}, {}, "third_with_others", False),
+        ({"cylinder_x": "allow"}, {}, "third_with_others", True),
+    ],
+)
+def test_what_settings_mean_on_a_cylinder(settings, found, word, value):
+    assert getattr(setup_of(Settings(**settings), **found).words, word) == value
 
 
 @pytest.mark.parametrize(
@@ -246,8 +234,6 @@ def test_x_together_only_where_it_is_allowed():
     [
         ({"alone": False}, "stands alone in its block"),
         ({"compensated": True}, "needs G40: compensation is switched on inside"),
-        ({"inverse_time": True}, "needs G94 or G95, not G93"),
-        ({"surface_speed": True}, "needs G97: with G96 the speed would change with X"),
         ({"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
         ({"words": {}}, "needs C, the cylinder's radius; C0 ends a section"),
         ({"words": {"C": 0.0}}, "C0, the cylinder's radius, must be above 0 and at most 1000000"),
@@ -292,18 +278,9 @@ def test_increments_are_rewritten(raw, text, relative):
     assert (line.text, line.relative, line.rewritten) == (text, relative, bool(relative))
 
 
-@pytest.mark.parametrize(
-    ("raw", "plain"),
-    [
-        ("G3 Z1 C2 R3", True),
-        ("x-1.5 F200", True),
-        ("K1", False),
-        ("Z1 W1", False),
-        ("G2 J5", False),
-    ],
-)
-def test_which_lines_are_plain(raw, plain):
-    assert bool(CYLINDER_WORDS.plain(raw)) is plain
+def test_which_lines_are_plain():
+    lines = ("G3 Z1 C2 R3", "x-1.5 F200", "K1", "Z1 W1", "G2 J5")
+    assert [bool(CYLINDER_WORDS.plain(raw)) for raw in lines] == [True] * 2 + [False] * 3
 
 
 WORDS = "the section's words are Z, C, X, W, H and U"
@@ -313,9 +290,6 @@ WORDS = "the section's words are Z, C, X, W, H and U"
     ("text", "why"),
     [
         *((f"{letter}1", f"{letter} is refused: {WORDS}") for letter in "ABVY@^"),
-        ("T1", "T is refused: the tool cannot change inside the section"),
-        ("D1", "D is refused: the radius is that of the loaded tool"),
-        ("X1 U1", "X and U both move X: only one of them"),
         ("Z1 W1", "Z and W both move Z: only one of them"),
         ("C1 H1", "C and H both move C: only one of them"),
         ("I1 J1", "I and J both move the centre along C: only one of them"),

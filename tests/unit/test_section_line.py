@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One line of a section: splitting and rewriting of raw lines, meaning of parsed blocks."""
 
-import re
-
 import pytest
 
 from g12.errors import LONGEST_BLOCK, Refusal
 from g12.polar.words import POLAR_WORDS
-from g12.section.block_rules import SectionBlock, alone, check_block, check_letters, m_code_alone
+from g12.section.block_rules import SectionBlock, alone, m_code_alone
 from g12.section.line import BlockLocation, line_named, split_line, split_words
 from g12.section.modes import (
     SectionModes,
@@ -95,34 +93,23 @@ def test_parts_of_a_line():
     assert line.letters == ("#", "G", "M", "S", "$", "#", "X")
 
 
-@pytest.mark.parametrize(
-    ("raw", "kind"),
-    [
-        ("o100 if [#1 EQ 2]", "if"),
-        ("O<a b> Call [1] [2]", "call"),
-        ("N5 o1 endwhile", "endwhile"),
-        ("/o1 else", "else"),
-        ("o#1 repeat [3]", "repeat"),
-        ("o[#1+2] sub", "sub"),
-        ("M98 P100", "call"),
-        ("m 9 9", "return"),
-        ("M099", "return"),
-        ("O200", "program"),
-        ("o<x> return [1]", "return"),
-        ("o#<n> call", "call"),
-        ("o#<_global n> call [#<n>] [1]", "call"),
-        ("o[#<n>+1] if [1]", "if"),
-        ("o abs[#1] call", "call"),
-        ("o##1 call", "call"),
-        ("o[atan[1]/[2]] repeat [2]", "repeat"),
-        ("M980", ""),
-        ("M3", ""),
-        ("G1 X1", ""),
-        ("M9 M98", ""),
-    ],
-)
-def test_o_words(raw, kind):
-    assert split_line(raw, POLAR_WORDS).control == kind
+O_WORDS = {
+    "if": ["o100 if [#1 EQ 2]", "o[#<n>+1] if [1]"],
+    "call": ["O<a b> Call [1] [2]", "M98 P100", "o#<_global n> call [#<n>] [1]", "o##1 call",
+             "o abs[#1] call"],
+    "endwhile": ["N5 o1 endwhile"],
+    "else": ["/o1 else"],
+    "repeat": ["o#1 repeat [3]", "o[atan[1]/[2]] repeat [2]"],
+    "sub": ["o[#1+2] sub"],
+    "return": ["m 9 9", "M099", "o<x> return [1]"],
+    "program": ["O200"],
+    "": ["M980", "M3", "G1 X1", "M9 M98"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "lines"), O_WORDS.items())
+def test_o_words(kind, lines):
+    assert [split_line(raw, POLAR_WORDS).control for raw in lines] == [kind] * len(lines)
 
 
 def test_an_o_word_keeps_its_text_and_its_comments():
@@ -136,6 +123,7 @@ def test_words_are_split_at_their_values():
         ("g", "1"), ("x", "-[1+[2*3]]"), ("c", "#<_x>"), ("i", "##1"), ("j", "-sin[30]"),
         ("k", "atan[1]/[2]"), ("$", "0"), ("@", "5"), ("#", "1=[2]"),
     ]  # fmt: skip
+    assert list(split_words("gx1")) == [("g", ""), ("x", "1")]  # no value hides nothing
 
 
 @pytest.mark.parametrize(
@@ -143,62 +131,6 @@ def test_words_are_split_at_their_values():
 )
 def test_broken_lines_are_left_to_the_parser(raw):
     assert split_line(raw, POLAR_WORDS).text == raw.replace(" ", "").lower()
-
-
-@pytest.mark.parametrize("letter", "ABDKTVW@^")
-def test_letters_a_section_does_not_know(letter):
-    with pytest.raises(Refusal, match=re.escape(f"G12.1 line 7: {letter} is refused: ")):
-        check_letters(split_line(f"G1 {letter}5", POLAR_WORDS), POLAR_WORDS, HERE)
-
-
-@pytest.mark.parametrize("raw", ["X1 U2", "C1 H2", "Y1 C2", "Y1 H2"])
-def test_two_words_for_one_axis(raw):
-    with pytest.raises(Refusal, match="only one of them"):
-        check_letters(split_line(raw, POLAR_WORDS), POLAR_WORDS, HERE)
-
-
-def test_accepted_codes():
-    for codes in ({0: 40}, {1: 10, 2: 180, 3: 910, 7: 410}, {5: 950, 10: 990}, {13: 611, 14: 970}):
-        check_block(block(g=codes, m={7: 3, 8: 8}), POLAR_WORDS, False, HERE)
-
-
-def test_g0_is_accepted_where_it_is_a_feed():
-    check_block(block(g={1: 0}), POLAR_WORDS, True, HERE)
-    with pytest.raises(Refusal, match="G0 is refused"):
-        check_block(block(g={1: 0}), POLAR_WORDS, False, HERE)
-
-
-@pytest.mark.parametrize(
-    ("code", "words", "reason"),
-    [
-        (62, {}, "M62 needs P, the number of the output"),
-        (65, {"P": -1.0}, "M65 needs P, the number of the output"),
-        (67, {"Q": 1.0}, "M67 needs E, the number of the output"),
-        (68, {"E": -1.0, "Q": 1.0}, "M68 needs E, the number of the output"),
-        (66, {}, "M66 needs either P or E, the number of the input"),
-        (66, {"P": 0.0, "E": 0.0}, "M66 needs either P or E, the number of the input"),
-        (66, {"E": 0.0, "L": 3.0, "Q": 1.0}, "M66 needs L0 with E: only a digital input"),
-        (66, {"P": 0.0, "L": 3.0}, "M66 needs Q above zero, the longest wait in seconds"),
-        (66, {"P": 0.0, "L": 5.0, "Q": 1.0}, "M66 needs L from 0 to 4"),
-    ],
-)
-def test_arguments_are_checked_before_anything_moves(code, words, reason):
-    with pytest.raises(Refusal, match=re.escape(f"G12.1 line 7: {reason}")):
-        check_block(block(m={5: code}, **words), POLAR_WORDS, False, HERE)
-
-
-@pytest.mark.parametrize(
-    ("code", "words"),
-    [
-        (62, {"P": 0.0}),
-        (67, {"E": 0.0, "Q": -1.0}),
-        (66, {"P": 1.0}),
-        (66, {"E": 0.0, "L": 0.0}),
-        (66, {"P": 0.0, "L": 3.0, "Q": 0.5}),
-    ],
-)
-def test_arguments_that_linuxcnc_takes(code, words):
-    check_block(block(m={5: code}, **words), POLAR_WORDS, False, HERE)
 
 
 def test_modes_act_as_they_are_read():
@@ -231,7 +163,6 @@ def test_feed_modes(codes, words, expected):
         ({"m": {7: 19}, "R": 90.0, "Q": 1.0}, "M19Q1R90"),
         ({"g": {1: 20}, "m": {8: 8}, "R": 9.0, "X": 1.0}, "M8"),
         ({"m": {4: 0}}, ""),
-        ({"m": {7: 70}}, ""),
         ({"m": {5: 66}, "P": 1.0, "L": 3.0, "Q": 1e-5}, "M66P1Q0.00001L3"),
         ({"m": {5: 67}, "E": 2.0, "Q": 0.5}, "M67Q0.5E2"),
         ({"g": {14: 970, 2: 180, 3: 900, 7: 400, 10: 980}}, "G97"),
@@ -241,13 +172,11 @@ def test_what_is_no_motion(given, text):
     assert action_text(block(**given), split_line("", POLAR_WORDS)) == text
 
 
-def test_the_spindle_word_goes_along():
+def test_the_spindle_word_goes_along_with_a_code():
     assert action_text(block(m={7: 3}, S=5.0), split_line("M3 S5 $-1", POLAR_WORDS)) == "M3S5$-1"
-
-
-def test_a_spindle_word_without_a_code_is_nothing_to_do():
-    moving = block(g={1: 10}, X=1.0)
-    assert action_text(moving, split_line("G1 X1 $0", POLAR_WORDS)) == ""
+    assert action_text(block(g={1: 10}, X=1.0), split_line("G1 X1 $0", POLAR_WORDS)) == ""
+    for code in (70, 71, 72, 73):  # saved modes are the section's own
+        assert action_text(block(m={7: code, 8: 8}), split_line(f"m{code}m8", POLAR_WORDS)) == "M8"
 
 
 @pytest.mark.parametrize(
@@ -316,11 +245,6 @@ def test_only_a_g_is_an_exact_stop(text):
     assert (line.text, line.exact_stop, line.rewritten) == (text, False, False)
 
 
-def test_a_letter_without_a_value_hides_nothing():
-    assert list(split_words("gx1")) == [("g", ""), ("x", "1")]
-    assert list(split_words("#x1")) == [("#", ""), ("x", "1")]
-
-
 def test_codes_are_g_and_m_with_a_plain_number():
     assert split_line("g1x2m3f4", POLAR_WORDS).codes == (("G", 10), ("M", 30))
     assert split_line("g#1m[2]g91.1", POLAR_WORDS).codes == (("G", 911),)
@@ -331,8 +255,3 @@ def test_a_line_that_is_not_split_says_nothing_of_its_words(text):
     line = split_line(text, POLAR_WORDS)
     assert (line.letters, line.codes, line.assignments, line.spindle) == ((), (), "", "")
     assert (line.rewritten, line.relative, line.exact_stop) == (False, "", False)
-
-
-@pytest.mark.parametrize("code", [70, 71, 72, 73])
-def test_saved_modes_are_the_section_s_own(code):
-    assert action_text(block(m={7: code, 8: 8}), split_line(f"m{code}m8", POLAR_WORDS)) == "M8"

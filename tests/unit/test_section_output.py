@@ -84,16 +84,8 @@ def is_move(what):
 
 
 def emission_of(interp, x_factor=1.0):
-    return SectionOutput(
-        interp,
-        "G12.1",
-        x_factor=x_factor,
-        blending=0.0025,
-        initial=0.0254,
-        machine_unit=1.0,
-        absolute="G90",
-        canon=Canon(interp),
-    )
+    lengths = dict(blending=0.0025, initial=0.0254, machine_unit=1.0, x_factor=x_factor)
+    return SectionOutput(interp, "G12.1", absolute="G90", canon=Canon(interp), **lengths)
 
 
 def handed_over(steps, interp=None, modes=MODES, exact=(), x_factor=1.0):
@@ -170,21 +162,8 @@ def test_a_stop_ends_in_exact_path():
 def test_programmed_exact_paths_hold_at_the_end_of_a_block(path):
     interp = Interpreter(path=round(float(path[1:]) * 10), tolerance=0.05)
     done = handed_over([run(), run(), run(line=8)], interp).done
-    assert done == [
-        SMOOTH,
-        FIRST,
-        LAST,
-        FIRST,
-        path,
-        LAST,
-        SMOOTH,
-        FIRST,
-        path,
-        LAST,
-        "G64P0.05Q0",
-        path,
-        *RELEASED,
-    ]
+    last = [SMOOTH, FIRST, path, LAST]
+    assert done == [SMOOTH, FIRST, LAST, FIRST, path, LAST, *last, "G64P0.05Q0", path, *RELEASED]
 
 
 def test_g9_is_an_exact_stop_at_the_end_of_its_block():
@@ -234,14 +213,8 @@ def test_comments_need_no_modes():
 
 
 def test_path_control_commanded_inside_stays():
-    steps = [
-        run(),
-        Action(8, "G64P0.1", MODES),
-        run(line=9),
-        Action(10, "G61", MODES),
-        run(line=11),
-    ]
-    done = handed_over(steps).done
+    g64, g61 = Action(8, "G64P0.1", MODES), Action(10, "G61", MODES)
+    done = handed_over([run(), g64, run(line=9), g61, run(line=11)]).done
     second, third = done.index("G64P0.1"), done.index("G61")
     assert done[second:third] == ["G64P0.1", FIRST, *NEXT, *RELEASED]
     assert done[third:] == ["G61", SMOOTH, FIRST, "G61", LAST, "G64P0.1Q0.1", "G61", *RELEASED]
@@ -260,30 +233,18 @@ def test_a_block_ends_where_it_is_marked():
     assert done.index("G61.1") < done.index(FIRST)
 
 
-def test_an_action_that_moves_is_refused():
+@pytest.mark.parametrize(
+    ("fact", "value", "why"),
+    [
+        ("moving", "M411", "M411 moves the machine: not inside a sect"),
+        ("status", 2, "M411 waits for the machine"),
+    ],
+)
+def test_an_action_that_moves_or_waits_is_refused(fact, value, why):
     interp = Interpreter()
-    interp.moving = "M411"
-    with pytest.raises(Refusal, match=r"G12\.1 line 8: M411 moves the machine: not inside a sect"):
+    setattr(interp, fact, value)
+    with pytest.raises(Refusal, match=rf"G12\.1 line 8: {why}"):
         handed_over([Action(8, "M411", MODES)], interp)
-
-
-def test_an_action_that_waits_is_refused():
-    interp = Interpreter()
-    interp.status = 2
-    with pytest.raises(Refusal, match=r"G12\.1 line 8: M411 waits for the machine"):
-        handed_over([Action(8, "M411", MODES)], interp)
-
-
-def test_an_action_that_fails_names_its_line():
-    class Failing(Interpreter):
-        def read(self, text):
-            raise SystemError
-
-        def get_errormsg(self):
-            return "No valid P word with M62"
-
-    with pytest.raises(Refusal, match=r"G12\.1 line 8: No valid P word with M62"):
-        handed_over([Action(8, "M62", MODES)], Failing())
 
 
 class Failing(Interpreter):

@@ -46,34 +46,3 @@ def test_a_whole_number_keeps_its_limits():
 def test_a_number_beyond_any_machine_is_refused_at_once(value):
     assert refusal(words, X=value).endswith("is beyond 1000000")
     assert words(X=LARGEST, Y=-LARGEST).take("Y") == -LARGEST
-
-
-@pytest.mark.parametrize("value", [0.0, -0.5])
-def test_a_positive_word_is_above_zero(value):
-    message = f"G12: R{value:g} must be greater than 0"
-    assert refusal(words(R=value).take_positive, "R") == message
-    assert refusal(words(R=value).require_positive, "R", "the radius") == message
-
-
-def test_a_missing_word_is_named_with_its_meaning():
-    for function in (words().require, words().require_positive):
-        assert refusal(function, "R", "the radius") == "G12: R is missing: the radius"
-
-
-def test_two_words_that_need_each_other():
-    assert words().take_pair("K", "Q") is None
-    assert words(K=2.0, Q=0.5).take_pair("K", "Q") == (2.0, 0.5)
-    assert refusal(words(K=2.0).take_pair, "K", "Q") == "G12: K2 needs Q as well"
-    assert refusal(words(Q=2.0).take_pair, "K", "Q") == "G12: Q2 needs K as well"
-
-
-def test_a_word_is_taken_once():
-    block = words(I=1.0)
-    assert (block.take("I"), block.take("I")) == (1.0, None)
-
-
-def test_a_word_that_the_cycle_does_not_have_is_refused():
-    block = words(I=1.0, E=2.0)
-    message = "G12: E2 is not a word of this cycle, which knows I R (or J)"
-    assert refusal(block.check_known, "I R (or J)") == message
-    block.check_known("E I")

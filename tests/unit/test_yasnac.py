@@ -7,14 +7,14 @@ from hypothesis import strategies as st
 
 from g12.cycles.yasnac import plan_circle
 from g12.errors import Refusal
-from g12.request.common import SMALLEST_RING_MM
 from g12.request.context import Tool
 from g12.request.words import Words
-from support.planner_context import BAD_MODES, MM
+from support.planner_context import BAD_MODES, MM, told, words_of
 
 
-def plan(found=MM, **values):
-    return plan_circle(Words("G12", values), found)
+def plan(words, **found):
+    values = words_of(words) if isinstance(words, str) else words
+    return plan_circle(Words("G12", values), MM._replace(**found))
 
 
 def spiral_radii(circle):
@@ -29,182 +29,122 @@ def spiral_radii(circle):
 @pytest.mark.parametrize(
     ("words", "approach", "radius"),
     [
-        (dict(I=50.0, R=40.0, D=2), 30.0, 40.0),
-        (dict(I=-50.0, R=-40.0, D=2), -30.0, -40.0),
-        (dict(I=50.0, J=40.0, D=2), 30.0, 40.0),
-        (dict(I=50.0, D=2), 0.0, 40.0),
-        (dict(I=50.0), 0.0, 50.0),
-        (dict(I=50.0, D=0), 0.0, 50.0),
-        (dict(I=50.0, R=10.0, D=2), 0.0, 40.0),
-        (dict(I=50.0, R=0.0), 0.0, 50.0),
-        (dict(I=50.0, R=49.0, D=2), 39.0, 40.0),
-        (dict(I=10.5, D=2), 0.0, 0.5),
-        (dict(I=0.00508), 0.0, 0.00508),
+        ("I50 R40 D2", 30, 40),
+        ("I-50 R-40 D2", -30, -40),
+        ("I50 J40 D2", 30, 40),
+        ("I50", 0, 50),
+        ("I50 D0", 0, 50),
+        ("I50 R10 D2", 0, 40),
+        ("I50 R49 D2", 39, 40),
+        ("I10.5 D2", 0, 0.5),
+        ("I.00508", 0, 0.00508),  # the smallest
+        ("I30 R29.99238", 29.99238, 30),  # nearer than two of the smallest arcs
     ],
 )
 def test_the_circle_on_the_side_of_i(words, approach, radius):
-    circle = plan(**words)
+    circle = plan(words, x=3.0, y=-4.0)
     assert (circle.approach, circle.first, circle.radius) == (approach, radius, radius)
-    assert (circle.half_turns, circle.circles) == (0, 1)
-
-
-@pytest.mark.parametrize("side", [1, -1])
-def test_r_may_be_nearer_to_i_than_two_of_the_smallest_arcs(side):
-    traverse = side * (30 - 1.5 * SMALLEST_RING_MM)
-    assert plan(I=30.0 * side, R=traverse).approach == traverse
-
-
-def test_right_after_g40_no_circle_begins():
-    with pytest.raises(Refusal) as refused:
-        plan(found=MM._replace(offset_pending=True), I=50.0, R=20.0, D=2)
-    message = "G12: the tool still stands offset: after G40 move in X or Y first"
-    assert refused.value.message == message
-
-
-def test_arcs_as_small_as_a_refusal_says_that_they_may_be():
-    circle = plan(I=50.0, R=20.0, K=20.0 + SMALLEST_RING_MM, Q=1.0, D=2)
-    assert circle.first - circle.approach == pytest.approx(SMALLEST_RING_MM)
+    assert (circle.half_turns, circle.circles, circle.x, circle.y) == (0, 1, 3.0, -4.0)
 
 
 @pytest.mark.parametrize("rounding", [1e-11, -1e-11])
 def test_an_approach_that_only_misses_the_centre_by_rounding_is_no_fast_move(rounding):
-    found = MM._replace(tool_in_table={2: Tool(2, 10 + rounding)}.get)
-    assert plan(found=found, I=50.0, R=10.0, D=2).approach == 0
-
-
-def test_the_centre_is_where_the_tool_stands():
-    circle = plan(found=MM._replace(x=3.0, y=-4.0), I=50.0, D=2)
-    assert (circle.x, circle.y) == (3.0, -4.0)
+    assert plan("I50 R10 D2", tool_in_table={2: Tool(2, 10 + rounding)}.get).approach == 0
 
 
 def test_l_repeats_the_finished_circle():
-    assert plan(I=50.0, L=3).circles == 3
+    assert plan("I50 L3").circles == 3
 
 
 @pytest.mark.parametrize(
     ("words", "positions"),
     [
-        (dict(I=50.0, K=46.0, Q=2.0), [46, -47, 48, -49, 50]),
-        (dict(I=-50.0, K=-46.0, Q=2.0), [-46, 47, -48, 49, -50]),
-        (dict(I=50.0, R=20.0, K=46.0, Q=2.0, D=2), [36, -37, 38, -39, 40]),
-        (dict(I=50.0, K=45.0, Q=2.0), [45, -46, 47, -48, 49, -49.5, 50]),
-        (dict(I=50.0, K=49.0, Q=2.0), [49, -49.5, 50]),
-        (dict(I=50.0, K=48.0, Q=2.0), [48, -49, 50]),
+        ("I50 K46 Q2", [46, -47, 48, -49, 50]),
+        ("I-50 K-46 Q2", [-46, 47, -48, 49, -50]),
+        ("I50 R20 K46 Q2 D2", [36, -37, 38, -39, 40]),
+        ("I50 K45 Q2", [45, -46, 47, -48, 49, -49.5, 50]),
+        ("I50 K49 Q2", [49, -49.5, 50]),
+        ("I.3 K.1 Q.1", [0.1, -0.15, 0.2, -0.25, 0.3]),  # rounding makes no turn of its own
+        ("I50 R20 K20.00508 Q60 D2", [10.00508, -25.00254, 40]),  # the smallest arc
     ],
 )
 def test_the_spiral_grows_to_the_finished_circle_in_whole_turns(words, positions):
-    assert spiral_radii(plan(**words)) == pytest.approx(positions, abs=1e-12)
+    assert spiral_radii(plan(words)) == pytest.approx(positions, abs=1e-12)
 
 
-def test_rounding_of_the_increment_makes_no_turn_of_its_own():
-    assert plan(I=0.7, K=0.1, Q=0.1).half_turns == 12
-    assert plan(I=1.0, K=1 / 3, Q=1 / 3).half_turns == 4
+WITH_D, NO_D = "tool radius 10, D2", "no D"
+
+
+def beyond(word, at, tool, rule, to):
+    return f"{word} puts the tool centre at X{at} from the circle's centre ({tool}): {rule} {to}"
+
+
+FROM_0 = "it must be from 0 to less than"
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
+    ("words", "rule"),
     [
-        (dict(R=40.0), "G12: I is missing: the radius of the finished circle"),
-        (dict(I=0.0), "G12: I0 must not be 0"),
-        (dict(I=10.0, D=2), "G12: I10 must exceed the tool radius 10 (D2) in size"),
-        (dict(I=-5.0, R=-6.0, D=2), "G12: I-5 must exceed the tool radius 10 (D2) in size"),
+        ("R40", "I is missing: the radius of the finished circle"),
+        ("I0", "I0 must not be 0"),
+        ("I-5 R-6 D2", "I-5 must exceed the tool radius 10 (D2) in size"),
+        ("I10 D2", "I10 must exceed the tool radius 10 (D2) in size"),
+        ("I50 R50 D2", beyond("R50", 40, WITH_D, FROM_0, "X40, where I50 puts it")),
+        ("I50 R5 D2", beyond("R5", -5, WITH_D, FROM_0, "X40, where I50 puts it")),
+        ("I-50 R40 D2", beyond("R40", 50, WITH_D, FROM_0, "X-40, where I-50 puts it")),
+        ("I50 J55", beyond("J55", 55, NO_D, FROM_0, "X50, where I50 puts it")),
         (
-            dict(I=50.0, R=50.0, D=2),
-            "G12: R50 puts the tool centre at X40 from the circle's centre (tool radius 10, D2):"
-            " it must be from 0 to less than X40, where I50 puts it",
+            "I30 R29.99746",
+            beyond("R29.99746", 29.99746, NO_D, "only 0.00254 from", "X30, where I30 puts it")
+            + "; the smallest arc needs 0.00508",
         ),
         (
-            dict(I=50.0, R=60.0, D=2),
-            "G12: R60 puts the tool centre at X50 from the circle's centre (tool radius 10, D2):"
-            " it must be from 0 to less than X40, where I50 puts it",
+            "I50 R20 K20.004 Q1 D2",
+            beyond("K20.004", 10.004, WITH_D, "only 0.004 from", "X10, where the cut begins")
+            + "; the smallest arc needs 0.00508",
         ),
         (
-            dict(I=50.0, R=5.0, D=2),
-            "G12: R5 puts the tool centre at X-5 from the circle's centre (tool radius 10, D2):"
-            " it must be from 0 to less than X40, where I50 puts it",
+            "I-50 R-20 K-49.999 Q1",
+            beyond("K-49.999", -49.999, NO_D, "only 0.001 from", "X-50, where I-50 puts it")
+            + "; the smallest arc needs 0.00508",
+        ),
+        ("I50 R20 J20", "R and J are the same word: give one of them"),
+        ("I50 K20", "K20 needs Q as well"),
+        ("I50 K20 Q0", "Q0 must be greater than 0"),
+        (
+            "I50 K50 Q1",
+            beyond("K50", 50, NO_D, "it must be between", "X0 and X50, where I50 puts it"),
         ),
         (
-            dict(I=-50.0, R=40.0, D=2),
-            "G12: R40 puts the tool centre at X50 from the circle's centre (tool radius 10, D2):"
-            " it must be from 0 to less than X-40, where I-50 puts it",
+            "I50 R30 K30 Q1 D2",
+            beyond("K30", 20, WITH_D, "it must be between", "X20 and X40, where I50 puts it"),
         ),
         (
-            dict(I=50.0, J=55.0),
-            "G12: J55 puts the tool centre at X55 from the circle's centre (no D):"
-            " it must be from 0 to less than X50, where I50 puts it",
+            "I-50 K20 Q1",
+            beyond("K20", 20, NO_D, "it must be between", "X0 and X-50, where I-50 puts it"),
         ),
-        (
-            dict(I=30.0, R=30.0 - 0.5 * SMALLEST_RING_MM),
-            "G12: R29.99746 puts the tool centre at X29.99746 from the circle's centre (no D):"
-            " only 0.00254 from X30, where I30 puts it; the smallest arc needs 0.00508",
-        ),
-        (
-            dict(I=50.0, R=20.0, K=20.004, Q=1.0, D=2),
-            "G12: K20.004 puts the tool centre at X10.004 from the circle's centre (tool radius 10,"
-            " D2): only 0.004 from X10, where the cut begins; the smallest arc needs 0.00508",
-        ),
-        (
-            dict(I=-50.0, R=-20.0, K=-49.999, Q=1.0),
-            "G12: K-49.999 puts the tool centre at X-49.999 from the circle's centre (no D):"
-            " only 0.001 from X-50, where I-50 puts it; the smallest arc needs 0.00508",
-        ),
-        (
-            dict(R=0.5, Z=-1.0),
-            "G12: Z-1 is not a word of this cycle, which knows I R (or J) K Q L D F",
-        ),
-        (dict(I=50.0, R=20.0, J=20.0), "G12: R and J are the same word: give one of them"),
-        (dict(I=50.0, K=20.0), "G12: K20 needs Q as well"),
-        (dict(I=50.0, Q=2.0), "G12: Q2 needs K as well"),
-        (dict(I=50.0, K=20.0, Q=0.0), "G12: Q0 must be greater than 0"),
-        (dict(I=50.0, K=20.0, Q=-1.0), "G12: Q-1 must be greater than 0"),
-        (
-            dict(I=50.0, K=50.0, Q=1.0),
-            "G12: K50 puts the tool centre at X50 from the circle's centre (no D):"
-            " it must be between X0 and X50, where I50 puts it",
-        ),
-        (
-            dict(I=50.0, R=30.0, K=30.0, Q=1.0, D=2),
-            "G12: K30 puts the tool centre at X20 from the circle's centre (tool radius 10, D2):"
-            " it must be between X20 and X40, where I50 puts it",
-        ),
-        (
-            dict(I=-50.0, K=20.0, Q=1.0),
-            "G12: K20 puts the tool centre at X20 from the circle's centre (no D):"
-            " it must be between X0 and X-50, where I-50 puts it",
-        ),
-        (dict(I=50.0, L=0), "G12: L0 must be at least 1"),
-        (dict(I=50.0, D=-1), "G12: D-1 must be at least 0"),
-        (dict(I=50.0, D=1.5), "G12: D1.5 must be a whole number"),
-        (dict(I=50.0, D=77), "G12: D77 is not in the tool table"),
-        (dict(I=50.0, D=3), "G12: D3 has the negative diameter -4 in the tool table"),
-        (
-            dict(I=50.0, Z=-1.0),
-            "G12: Z-1 is not a word of this cycle, which knows I R (or J) K Q L D F",
-        ),
-        (
-            dict(I=50.0, X=1.0),
-            "G12: X1 is not a word of this cycle, which knows I R (or J) K Q L D F",
-        ),
-        (
-            dict(I=50.0, K=10.0, Q=0.0001),
-            "G12: K, Q and L make 800001 circles, the most is 100000",
-        ),
+        ("I50 L0", "L0 must be at least 1"),
+        ("I50 D-1", "D-1 must be at least 0"),
+        ("I50 D77", "D77 is not in the tool table"),
+        ("I50 D3", "D3 has the negative diameter -4 in the tool table"),
+        ("I50 Z-1", "Z-1 is not a word of this cycle, which knows I R (or J) K Q L D F"),
+        ("I50 K10 Q.0001", "K, Q and L make 800001 circles, the most is 100000"),
     ],
 )
-def test_a_bad_block_is_refused_by_name(words, message):
-    with pytest.raises(Refusal) as refused:
-        plan(**words)
-    assert refused.value.message == message
+def test_a_bad_block_is_refused_by_name(words, rule):
+    assert told(plan, words) == f"G12: {rule}"
 
 
 @pytest.mark.parametrize(
     ("modes", "rule"),
-    [*BAD_MODES, (dict(plane="G18"), "needs the XY plane G17, but G18 is active")],
+    [
+        *BAD_MODES,
+        (dict(plane="G18"), "needs the XY plane G17, but G18 is active"),
+        (dict(offset_pending=True), "the tool still stands offset: after G40 move in X or Y first"),
+    ],
 )
 def test_a_mode_that_cannot_work_is_refused(modes, rule):
-    with pytest.raises(Refusal) as refused:
-        plan(found=MM._replace(**modes), I=50.0)
-    assert refused.value.message == f"G12: {rule}"
+    assert told(plan, "I50", **modes) == f"G12: {rule}"
 
 
 LENGTHS = st.floats(0.01, 60.0)
@@ -228,7 +168,7 @@ def test_a_block_is_refused_or_keeps_the_rules(finished, traverse, first, pitch,
     sound = 0 <= inner < finished - offset
     sound = sound and (first is None or inner < first - offset < finished - offset)
     try:
-        circle = plan(**words)
+        circle = plan(words)
     except Refusal:
         near = [inner, finished - offset] + ([] if first is None else [first - offset])
         close = min(abs(a - b) for a in near for b in [*near, 0.0] if a is not b)
