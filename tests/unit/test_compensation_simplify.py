@@ -132,7 +132,7 @@ def test_many_points_in_a_row_are_looked_at_once():
     line = [planned_moves.line(k, 0.0, k + 1.0, 0.0, offset=5.0) for k in range(1000)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Line, "distance", lambda *_: looked.append(1) or 0.0)
-        kept, moved = simplify.with_points_left_out(line, 0.001)
+        kept, moved = simplify.without_rounding_points(line, 0.001)
     assert len(kept) < 50 and moved == 0.0
     assert len(looked) < 100 * len(line)
 
@@ -230,5 +230,5 @@ def test_of_a_short_move_its_z_is_kept():
 def test_points_there_and_back_are_no_line(end):
     """Behind the ramp one line would stand for both: none, or one that is only rounding."""
     moves = [line_to(0, 0, (0, 9), 1), line_to(5, 0, (0, 0), 2), line_to(0, end, (5, 0), 3)]
-    assert simplify.with_points_left_out(moves, 10.0) == (moves, 0.0)
-    assert len(simplify.with_points_left_out(moves, 8.0)[0]) == (2 if end else 3)
+    assert simplify.without_rounding_points(moves, 10.0) == (moves, 0.0)
+    assert len(simplify.without_rounding_points(moves, 8.0)[0]) == (2 if end else 3)

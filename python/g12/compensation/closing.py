@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where a contour closes: what sticks out beyond leads in or out, and is no contour.
+"""Where a contour closes: its moves beyond that point are lead-in and lead-out.
 
 A contour closes where one of its first moves meets one of its last: the one ends on the other, or
-both are long enough to cross, as leads that overrun a corner do. Program units.
+both are long enough to cross, as leads do that overrun a corner. Program units.
 """
 
 from __future__ import annotations
@@ -11,23 +11,23 @@ from collections.abc import Iterator, Sequence
 from itertools import accumulate, product
 from typing import NamedTuple
 
-from g12.compensation.contour import SAME_PLACE
+from g12.compensation.contour import SAME_POINT
 from g12.geometry.crossing import common_points
 from g12.geometry.curve import Curve
 
-LEADS = 3  # moves at either end of a contour among which it may close
-CROSSING = 2  # of these: so far from the end may be the moves that cross
-LEAST_SHARE = 0.5  # of a lead's length: so long is a contour at least, or
+LEADS = 3  # moves at either end of a contour that are searched for the point where it closes
+CROSSING = 2  # moves at either end that may cross each other
+LEAST_SHARE = 0.5  # of a lead's length: a contour is at least this long, or
 LEAST_TURN = 4.0  # tool radii
-LEAST_SINE = 0.05  # of the angle at which moves cross
-LEAST_CONTOUR = 5  # moves of a contour with more than one move for a lead that crosses
+LEAST_SINE = 0.05  # of the angle between moves: below this they touch, they do not cross
+LEAST_CONTOUR = 5  # least moves of a contour in which a crossing lead may have more than one move
 
 
 class Closing(NamedTuple):
     """The contour from a length along its move ``first`` to one along its move ``last``.
 
-    ``closed`` is False for an open contour, which is all there is. ``crossing``: leads stick out
-    on both sides.
+    ``closed`` is False for an open contour, which has no leads. ``crossing``: the leads cross, and
+    end on both sides of the contour.
     """
 
     first: int
@@ -44,13 +44,13 @@ class Closing(NamedTuple):
         length = curve.length
         start = self.start if index == self.first else 0.0
         end = self.end if index == self.last else length
-        return (start / length, end / length) if end - start > SAME_PLACE else (0.0, 0.0)
+        return (start / length, end / length) if end - start > SAME_POINT else (0.0, 0.0)
 
 
 def closing_of(curves: Sequence[Curve], radius: float, near: float) -> Closing:
     """Return where a contour closes; points up to ``near`` apart meet.
 
-    What is much shorter than the leads and the tool is a spur of an open contour.
+    A loop much shorter than the leads and the tool is a spur of an open contour.
     """
     count, ends = len(curves), [0.0, *accumulate(curve.length for curve in curves)]
     for i, j in product(range(min(count, LEADS)), range(count - 1, count - 1 - LEADS, -1)):
@@ -75,7 +75,7 @@ class _Meeting(NamedTuple):
 
 
 def _meetings(curves: Sequence[Curve], i: int, j: int, near: float) -> Iterator[_Meeting]:
-    """Yield how the moves with two indices meet; neighbours do so in the second's later half."""
+    """Yield the meetings of moves ``i`` and ``j``; of neighbours in the later half of ``j``."""
     one, other, count = curves[i], curves[j], len(curves)
     skipped = 0.5 if j == i + 1 else 0.0
     if skipped:
@@ -106,7 +106,7 @@ def _joint(curves: Sequence[Curve], k: int, along: float) -> tuple[complex, ...]
 
 
 def _goes_through(joint: tuple[complex, ...], curve: Curve, point: complex) -> bool:
-    """Return whether what is joined at a point of another move is on both sides of that."""
+    """Return whether two moves joined at a point of a third lie on both sides of it."""
     along = curve.direction(curve.share_of(point)).conjugate()
     sines = [(along * direction).imag for direction in joint]
     return min(sines) > LEAST_SINE or max(sines) < -LEAST_SINE

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A contour from its G41 or G42 to its G40: its walls, and the passes of the tool along it.
 
-A wall is what a move leaves beside it on the side away from the tool. Leads are no walls, nor what
-is made in the air between two plunges. Program units.
+A wall is the finished surface that a move leaves on the side away from the tool. Leads leave no
+wall, nor do moves in the air between two plunges. Program units.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from math import ceil, copysign, inf, sqrt
 from typing import NamedTuple
 
 from g12.compensation.closing import closing_of
-from g12.compensation.contour import SAME_PLACE, Contour, Element, PlaneMove
+from g12.compensation.contour import SAME_POINT, Contour, Element, PlaneMove
 from g12.geometry.boxes import BoxTree
 from g12.geometry.curve import Arc
 
-MEETING = 4.0  # tolerances: points so near to each other close a contour
-RAMP = -1  # in place of a move's index
+MEETING = 4.0  # tolerances: ends within this distance close a contour
+RAMP = -1  # stands for a move's index
 
 
 class Cut(NamedTuple):
     """A move of the contour and the tool centre's ``path`` for it.
 
-    ``cut`` tells that it is under compensation at both ends: it is no ramp.
+    ``cut``: compensation is on at both its ends, so it is no ramp.
     """
 
     move: PlaneMove
@@ -35,7 +35,7 @@ class Cut(NamedTuple):
 
 
 class Pass(NamedTuple):
-    """A move of the tool's centre for the contour's move ``index``, and all its Z levels."""
+    """A move of the tool's centre for the contour's move ``move_index``, and all its Z levels."""
 
     move_index: int
     move: PlaneMove
@@ -47,7 +47,7 @@ class Pass(NamedTuple):
 
 
 class WallPoint(NamedTuple):
-    """A point of the move ``index``, so far along the contour, and the contour's direction."""
+    """A point of a move, its length ``along`` the contour, and the contour's direction there."""
 
     move_index: int
     along: float
@@ -79,13 +79,13 @@ class CompensatedContour:
                 wall = self.moves[index].portion(first, last)
                 self.walls[index] = wall._replace(z0=level, z1=level)
         self.levels = frozenset(_level(self.moves[index].z1) for index in self.walls)
-        made = [(index, move) for index, cut in enumerate(cuts) for move in cut.path]
-        self.passes = passes_of(made)
+        passes = [(index, move) for index, cut in enumerate(cuts) for move in cut.path]
+        self.passes = passes_of(passes)
         self.ramps = passes_of((RAMP, move) for ramp in ramps for move in ramp.path)
 
     @property
-    def reach(self) -> float:
-        """How near to a wall the tool's centre has to come to gouge it."""
+    def gouge_distance(self) -> float:
+        """Distance from a wall below which the tool's centre gouges it."""
         return self.radius - self.tolerance
 
     @property
@@ -95,12 +95,12 @@ class CompensatedContour:
 
     @cached_property
     def tree(self) -> BoxTree:
-        """The passes, found by where they are."""
+        """The passes, for a search by position."""
         return BoxTree([each.move.curve for each in self.passes])
 
     @cached_property
     def wall_tree(self) -> BoxTree:
-        """The walls, found by where they are."""
+        """The walls, for a search by position."""
         return BoxTree([wall.curve for wall in self.walls.values()])
 
     @cached_property
@@ -110,8 +110,8 @@ class CompensatedContour:
     def points(self) -> Iterator[WallPoint]:
         """Yield points of the walls, so close that no gouge falls between two of them.
 
-        A tool that is a tolerance deep in a wall is so on a chord of its radius. Short moves in
-        line have their points together.
+        A tool that is one tolerance deep in a wall cuts a chord of its radius there. Short
+        collinear moves share their points.
         """
         spacing = self.spacing
         straight, last = 4.0 * self.tolerance / spacing, None
@@ -137,7 +137,7 @@ class CompensatedContour:
         return self.ends[index] + self.moves[index].curve.length_to(point)
 
     def point_at(self, along: float) -> complex:
-        """Return the point at a length along the contour, from where it closes at most."""
+        """Return the point at a length along the contour, no farther than where it closes."""
         closing = self.closing
         first = self.ends[closing.first] + closing.start
         last = self.ends[closing.last] + closing.end
@@ -147,23 +147,26 @@ class CompensatedContour:
         return move.curve.point(min((along - self.ends[index]) / move.length, 1.0))
 
     def height(self, point: complex) -> tuple[float, bool]:
-        """Return how far a point is from the walls, below zero in the material.
+        """Return the distance of a point from the walls, negative in the material, and ``at_end``.
 
-        And whether it is beyond an end of an open contour: nobody knows what is there.
+        ``at_end``: the point is beyond an end of an open contour, where the material is not known.
         """
         near, across, foot = _nearest(self.wall_tree, point)
         ends = () if self.closing.closed else (self.moves[0].start, self.moves[-1].end)
-        at_end = any(abs(foot - end) <= SAME_PLACE for end in ends)
+        at_end = any(abs(foot - end) <= SAME_POINT for end in ends)
         return copysign(near, across * self.offset), at_end
 
-    def side(self, point: complex, along: float, reach: float) -> float:
-        """Return how far a point is to the left of the contour within a length of a point of it."""
-        first = bisect_right(self.ends, along - reach) - 1
-        last = bisect_right(self.ends, along + reach)
+    def side(self, point: complex, along: float, span: float) -> float:
+        """Return a point's distance to the left of the contour, near a length along it.
+
+        Only the contour within ``span`` of that length is searched.
+        """
+        first = bisect_right(self.ends, along - span) - 1
+        last = bisect_right(self.ends, along + span)
         return _nearest(self._contour_tree, point, lambda k: first <= k < last)[1]
 
     def is_lead(self, index: int, centre: complex) -> bool:
-        """Return whether a pass for a move leads in or out where the tool's centre is."""
+        """Return whether a move is lead-in or lead-out at a position of the tool's centre."""
         closing, curve = self.closing, self.moves[index].curve
         if not closing.closed or closing.crossing:
             return not closing.first < index < closing.last
@@ -186,29 +189,29 @@ def compensated_contours(
 
 
 def is_low(move: PlaneMove, level: float) -> bool:
-    """Return whether a move of the tool is not above a level all along."""
-    return move.lowest <= level + SAME_PLACE
+    """Return whether a move of the tool is at or below a Z level somewhere."""
+    return move.lowest <= level + SAME_POINT
 
 
 def passes_of(path: Iterable[tuple[int, object]]) -> list[Pass]:
-    """Return passes along moves, by their indices; repeated ones once, at the lowest of levels."""
+    """Return the passes of moves with their indices; repeated ones once, with all Z levels."""
     kept: dict[tuple[int, ...], Pass] = {}
     for index, move in path:
         if not isinstance(move, PlaneMove):
             continue
-        place, level = in_plane(move), frozenset([_level(move.z1)])
-        before = kept.get(place)
+        key, level = in_plane(move), frozenset([_level(move.z1)])
+        before = kept.get(key)
         if before:
             index, level = before.move_index, level | before.levels
             move = min(before.move, move, key=lambda each: each.lowest)
-        kept[place] = Pass(index, move, level)
+        kept[key] = Pass(index, move, level)
     return list(kept.values())
 
 
 def greatest_levels(moves: Sequence[PlaneMove]) -> dict[int, float]:
     """Return the greatest Z of each move, by its index; of repeated ones only the first's index.
 
-    Moves in the air, between a plunge up and a plunge down, are not there.
+    Moves in the air, between a plunge up and a plunge down, are left out.
     """
     levels: dict[int, float] = {}
     first: dict[tuple[int, ...], int] = {}
@@ -220,10 +223,10 @@ def greatest_levels(moves: Sequence[PlaneMove]) -> dict[int, float]:
 
 
 def _in_material(moves: Sequence[PlaneMove]) -> Iterator[int]:
-    """Yield the indices of the moves that are not made in the air."""
+    """Yield the indices of the moves that are not in the air."""
     runs: list[list[int]] = [[0]]
     for index in range(1, len(moves)):
-        if abs(moves[index].z0 - moves[index - 1].z1) > SAME_PLACE:
+        if abs(moves[index].z0 - moves[index - 1].z1) > SAME_POINT:
             runs.append([])
         runs[-1].append(index)
     for k, run in enumerate(runs):
@@ -234,24 +237,24 @@ def _in_material(moves: Sequence[PlaneMove]) -> Iterator[int]:
 
 
 def in_plane(move: PlaneMove) -> tuple[int, ...]:
-    """Return what tells one move in the plane from another, rounding aside."""
+    """Return a key that is equal for moves that are equal in the plane within ``SAME_POINT``."""
     curve = move.curve
     points, sweep = [curve.start, curve.end], 0.0
     if isinstance(curve, Arc):
         points, sweep = [*points, curve.centre], curve.sweep
-    places = [axis for point in points for axis in (point.real, point.imag)]
-    return tuple(round(place / SAME_PLACE) for place in (*places, sweep))
+    values = [axis for point in points for axis in (point.real, point.imag)]
+    return tuple(round(value / SAME_POINT) for value in (*values, sweep))
 
 
 def _nearest(
     tree: BoxTree, point: complex, counts: Callable[[int], bool] = lambda _: True
 ) -> tuple[float, float, complex]:
-    """Return how far a point is from the nearest curve that counts, how far to its left, and where.
+    """Return the distance to the nearest curve that counts, the distance to its left, and the foot.
 
-    Of curves that are equally near the one counts that it is farthest beside.
+    Of curves that are equally near, the one is chosen from which the point lies farthest to a side.
     """
     near, _ = tree.nearest(point, inf, counts)
-    reach = near + SAME_PLACE
+    reach = near + SAME_POINT
     found = []
     for index in filter(counts, tree.near((point.real, point.imag) * 2, reach)):
         curve = tree.curves[index]
@@ -264,5 +267,5 @@ def _nearest(
 
 
 def _level(z: float) -> int:
-    """Return a Z level that is the same but for rounding."""
-    return round(z / SAME_PLACE)
+    """Return a Z level in whole steps of ``SAME_POINT``, so that rounding makes no difference."""
+    return round(z / SAME_POINT)

@@ -19,7 +19,7 @@ from g12.errors import Refusal, number
 from g12.geometry.curve import FULL_TURN, Arc, Curve, Line, recentred, sweep_between
 from g12.lengths import LARGEST
 
-SAME_PLACE = 1e-6  # program units: closer points are one point, a shorter move is rounding
+SAME_POINT = 1e-6  # program units: points within it coincide, a shorter move is rounding
 CLOSING_RATIO = 0.001  # of the radius: the mismatch LinuxCNC allows any arc
 
 
@@ -82,7 +82,7 @@ class Plunge(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """A block without motion; the plan gives the caller's ``action`` back in its place."""
+    """A block without motion; the plan keeps the caller's ``action`` at this point of the order."""
 
     line: int
     action: object
@@ -101,7 +101,7 @@ FACE = PlaneNames("X", "C", "Z", "I and J")
 
 
 class Start(NamedTuple):
-    """Where the machine stands: X radius value, angle of C in radians, Z."""
+    """The machine's position: X radius value, angle of C in radians, Z."""
 
     x: float
     angle: float
@@ -115,15 +115,14 @@ class Contour:
     """Collects the blocks of one section, in order, and refuses those that cannot be a contour.
 
     ``x``, ``c`` and ``z`` are the programmed position in the plane, readable at any time.
-    ``code`` and ``names`` are for messages. ``diameter`` tells whether the program's words for x
-    are diameters, None where they cannot be: the values passed in never are, but a message has to
-    say which reading was meant. ``closing`` is the radius mismatch of an arc that is forgiven, in
-    program units. ``beside``: the tool itself stands so far from there along the second axis, until
-    the first G1 takes it to its programmed end.
+    ``code`` and ``names`` are for messages. ``diameter``: the program's words for x are diameters,
+    None where they cannot be. The values passed in are radii; messages use it to name the reading.
+    ``closing`` is the radius mismatch that an arc may have, in program units. ``beside`` is the
+    tool's distance from the programmed start along the second axis; the first G1 removes it.
 
-    ``side`` is the compensation in force: 40, 41 or 42. ``start`` is where the machine stands: by
-    default on a face, at its zero line. ``notes`` are what the operator is told of it, though it is
-    cut.
+    ``side`` is the compensation in force: 40, 41 or 42. ``start`` is the machine's position: by
+    default on a face, at its zero line. ``notes`` are warnings for the operator about a contour
+    that is cut.
     """
 
     def __init__(
@@ -142,7 +141,7 @@ class Contour:
         self.x, self.c, self.z = x, c, z
         self.code, self.names, self.diameter, self.closing = code, names, diameter, closing
         self.elements: list[Element] = []
-        self._end, self._level = complex(x, c + beside), z  # of the elements, within SAME_PLACE
+        self._end, self._level = complex(x, c + beside), z  # of the elements, within SAME_POINT
         self.side = 40
         self.start = start or Start(x, 0.0, z)
         self._offset = self._radius = 0.0
@@ -163,22 +162,22 @@ class Contour:
         line: int,
         feed: float,
     ) -> None:
-        """Add a G1 to the absolute point given; a coordinate left out stays."""
+        """Add a G1 to an absolute point; a coordinate that is None stays."""
         x1 = self.x if x is None else x
         c1 = self.c if c is None else c
         z1 = self.z if z is None else z
         if max(abs(x1), abs(c1), abs(z1)) > LARGEST:
-            self._check_place(line, x1, c1, z1)
+            self._check_point(line, x1, c1, z1)
         across = x is not None or c is not None
         end, z0 = complex(x1, c1), self._level
         length = abs(end - self._end) if across else 0.0
         self._check_feed(feed, line)
         self._check_switch(line, length)
-        if length > SAME_PLACE:
+        if length > SAME_POINT:
             curve = Line(self._end, end)
             self.elements.append(PlaneMove(line, feed, self._offset, curve, z0, z1))
             self._end, self._level = end, z1
-        elif abs(z1 - z0) > SAME_PLACE:
+        elif abs(z1 - z0) > SAME_POINT:
             self.elements.append(Plunge(line, feed, z0, z1))
             self._level = z1
         self.x, self.c, self.z = x1, c1, z1
@@ -206,7 +205,7 @@ class Contour:
         x1 = self.x if x is None else x
         c1 = self.c if c is None else c
         z1 = self.z if z is None else z
-        self._check_place(line, x1, c1, z1)
+        self._check_point(line, x1, c1, z1)
         centre = dict(zip(self.names.centre.split(" and "), (i, j)))
         self._check_lengths(line, **centre, R=radius)
         end = complex(x1, c1)
@@ -237,7 +236,7 @@ class Contour:
         self.side = side
 
     def continued(self, start: Start) -> Contour:
-        """Return an empty contour that goes on where this one ended and the machine stands.
+        """Return an empty contour that continues this one from the machine's position.
 
         For a section that is cut in two by a block that waits for the machine.
         """
@@ -261,8 +260,8 @@ class Contour:
     def wait(self, *, line: int) -> None:
         """Check that M66 may wait for the machine here: compensation is off.
 
-        Where the tool has to stop under compensation is told by the block behind, which is not
-        known yet. LinuxCNC has the same rule.
+        Under compensation the next block decides where the tool stops, and that block is not read
+        yet. LinuxCNC has the same rule.
         """
         if self.side != 40:
             self.refuse(
@@ -271,7 +270,7 @@ class Contour:
                 f"G{self.side} of line {self._switched_on} is on",
             )
 
-    def _check_place(self, line: int, x: float, c: float, z: float) -> None:
+    def _check_point(self, line: int, x: float, c: float, z: float) -> None:
         self._check_lengths(line, **{self.names.x: x, self.names.c: c, self.names.z: z})
 
     def _check_lengths(self, line: int, **words: float | None) -> None:
@@ -293,9 +292,9 @@ class Contour:
         """Check the G1 that switches compensation on or off."""
         if self._switch is None:
             return
-        if self._switch != line or length <= SAME_PLACE:
+        if self._switch != line or length <= SAME_POINT:
             self._check_waiting()
-        if length < self._radius - SAME_PLACE:
+        if length < self._radius - SAME_POINT:
             self.refuse(
                 line,
                 f"the G1 with G{self.side} is {number(length)} long: it must be at least "
@@ -314,7 +313,7 @@ class Contour:
     ) -> None:
         name, beside = _name(turn), abs(self._end.imag - self.c)
         self._check_feed(feed, line)
-        if beside > SAME_PLACE:
+        if beside > SAME_POINT:
             self.refuse(
                 line,
                 f"{name} needs a G1 with X or C before it: the tool stands {number(beside)} "
@@ -328,9 +327,9 @@ class Contour:
             self.refuse(line, f"{name} needs R, or the centre in {self.names.centre}")
 
     def _about_centre(self, turn: int, end: complex, arm: complex, line: int) -> Arc:
-        """Return an arc about a centre, which is made equally far from both ends."""
+        """Return an arc about a centre, which is moved to be equally far from both ends."""
         start, centre = self._end, complex(self.x, self.c) + arm
-        if abs(end - start) <= SAME_PLACE:
+        if abs(end - start) <= SAME_POINT:
             return Arc(start, centre, turn * FULL_TURN)
         from_start, from_end = abs(arm), abs(end - centre)
         if not self._closes(from_start, from_end):
@@ -348,7 +347,7 @@ class Contour:
         start = self._end
         apart = abs(end - start)
         half, name = 0.5 * apart, f"{_name(turn)} R{number(radius)}"
-        if apart <= SAME_PLACE:
+        if apart <= SAME_POINT:
             self.refuse(line, f"{name}: a full circle needs {self.names.centre}, not R")
         if not self._spans(half, radius):
             self.refuse(

@@ -2,15 +2,16 @@
 """Gouges: points of a contour's walls that the tool cuts on its way along that same contour.
 
 A point is cut where the tool's centre comes nearer than the radius, less the tolerance, at its Z
-level or below. That is right
+level or below. That is valid
 
 - beyond the point where the contour closes: leads are no walls (`closing`);
-- where the contour itself runs on behind the point, the same way: a spiral, a finishing pass;
+- where a later portion of the contour runs deeper in the material, in the same direction: a spiral,
+  a finishing pass;
 - where the contour runs through the air between two plunges.
 
-Everything else is refused, and so is a contour that crosses itself. Only reported are leads that
-cross each other, and an open contour's first or last move that a later pass cuts from its far side.
-Other contours of the section are looked at by `neighbours`.
+Everything else is refused, and so is a contour that crosses itself. Two cases are only reported:
+leads that cross each other, and an open contour's first or last move that a later pass cuts from
+its far side. `neighbours` checks the other contours of the section.
 """
 
 from __future__ import annotations
@@ -36,22 +37,28 @@ from g12.errors import Refusal, number
 from g12.geometry.boxes import BoxTree
 from g12.geometry.crossing import common_points
 
-SAME_WAY = 0.9  # cosine of the angle between passes behind each other, at least
-CROSSED = 0.02  # of the tool's radius: so far a contour goes to both sides where it crosses itself
-BESIDE_CROSSING = (0.125, 0.25, 0.5, 1.0)  # of the tool's radius: there that is looked at
-# How a pass cuts a point: it touches the contour on the point's own side, or behind the point, or
-# there and goes the same way.
+SAME_WAY = 0.9  # cosine: passes in the same direction differ by less than this angle
+CROSSED = 0.02  # of the tool's radius: a contour that goes farther to both sides crosses itself
+BESIDE_CROSSING = (
+    0.125,
+    0.25,
+    0.5,
+    1.0,
+)  # of the tool's radius: distances from the crossing at which that is checked
+# How a pass cuts a point of a wall. FACING: the pass machines a wall on the tool's side of the
+# point. BEHIND: it machines one deeper in the material. PASSED: that one, too, in the same
+# direction.
 FACING, BEHIND, PASSED = "facing", "behind", "passed"
 
 
 class LeadRefusal(Refusal):
-    """The tool cuts into a closed contour where it leads to or from it."""
+    """The tool gouges a closed contour on its lead-in or lead-out."""
 
 
 class _Hit(NamedTuple):
-    """A pass on the way for the move of ``line`` that cuts into the contour.
+    """A pass, for the move of ``line``, that cuts into the contour.
 
-    ``lead``: that move, or the one it cuts, may be one to lead in or out. ``ramp``: that move is
+    ``lead``: that move, or the one it cuts, may be a lead-in or lead-out. ``ramp``: that move is
     the one with G40, G41 or G42.
     """
 
@@ -61,9 +68,9 @@ class _Hit(NamedTuple):
 
 
 def check_gouges(contour: Contour, cuts: Sequence[Cut], tolerance: float) -> None:
-    """Refuse contours along which the tool cuts deeper into them than the tolerance.
+    """Refuse contours that the tool gouges by more than the tolerance.
 
-    What is only reported goes to the contour's ``notes``. Program units.
+    Reports that are no refusal go to the contour's ``notes``. Program units.
     """
     found = compensated_contours(contour, cuts, tolerance)
     cut = [each for each in found if each.radius > tolerance]
@@ -83,7 +90,7 @@ class _Sweep:
         self._of_move: dict[int, list[int]] = {}
         for by, each in enumerate(self._passes):
             self._of_move.setdefault(each.move_index, []).append(by)
-        self._ahead = 0  # by so many moves another pass ran behind the last point, if one did
+        self._ahead = 0  # moves from the last point to the pass that ran behind it
         self._is_repeated = False  # a pass runs behind a wall, or may be a lead
 
     def check(self) -> None:
@@ -125,17 +132,17 @@ class _Sweep:
             self._contour.notes.append(text)
 
     def _hits(self, point: WallPoint) -> list[_Hit]:
-        """Return the passes that cut a point of a wall, none where one runs behind it."""
-        own, reach, place = self._own, self._own.reach, point.point
+        """Return the hits of a wall's point, none where a pass is PASSED there."""
+        own, distance, at = self._own, self._own.gouge_distance, point.point
         low = partial(self._is_low, own.walls[point.move_index].z0)
         guess = self._of_move.get(point.move_index + self._ahead, ()) if self._is_repeated else ()
         if any(low(by) and self._kind(point, by) == PASSED for by in guess):
             return []
-        _, nearest = self._tree.nearest(place, reach, low)
+        _, nearest = self._tree.nearest(at, distance, low)
         if nearest is None:
             return []
         hits = []
-        for by in filter(low, (nearest, *self._tree.near((place.real, place.imag) * 2, reach))):
+        for by in filter(low, (nearest, *self._tree.near((at.real, at.imag) * 2, distance))):
             kind = self._kind(point, by)
             if kind == PASSED:
                 self._ahead = self._passes[by].move_index - point.move_index
@@ -149,10 +156,10 @@ class _Sweep:
         return is_low(self._passes[by].move, level)
 
     def _kind(self, point: WallPoint, by: int) -> str | None:
-        """Return how a pass cuts a point, None where it does not."""
+        """Return how a pass cuts a point: FACING, BEHIND or PASSED; None where it does not."""
         own, (index, move, _) = self._own, self._passes[by]
         share = move.curve.share_of(point.point)
-        if abs(move.curve.point(share) - point.point) >= own.reach:
+        if abs(move.curve.point(share) - point.point) >= own.gouge_distance:
             return None
         if index == RAMP:
             return FACING
@@ -190,7 +197,7 @@ class _Sweep:
                         self._refuse(own.moves[index].line, own.moves[other].line)
 
     def _goes_through(self, index: int, other: int, point: complex) -> bool:
-        """Return whether two moves that meet at a point are on both sides of each other there."""
+        """Return whether two moves that meet at a point cross each other there."""
         own = self._own
         here, there = (own.length_to(k, point) for k in (index, other))
         deep = max(MEETING * own.tolerance, CROSSED * own.radius)
@@ -205,7 +212,7 @@ class _Sweep:
 
 
 def signature(contour: CompensatedContour) -> tuple[float | tuple[int, ...], ...]:
-    """Return what tells a contour from others, wherever it is along Z."""
+    """Return a key that is equal for contours that differ only by a shift along Z."""
     moves = [*contour.moves, *(each.move for each in contour.ramps)]
     z = moves[0].z0
     levels = [round(level - z, 6) for move in moves for level in (move.z0, move.z1)]

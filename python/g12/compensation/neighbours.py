@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Gouges between contours: the tool, on its way along one, cuts deep into the wall of another.
 
-That is refused where nothing else can be meant:
+That is refused only where it must be a mistake:
 
 - the contour that is cut closes, and is not cut all round;
-- what cuts it is no lead and no ramp, and at a Z level at which it is cut itself;
+- the pass that cuts it is no lead and no ramp, and lies at one of its own Z levels;
 - neither contour enters the other one's material anywhere, as a finishing pass does, a slot across
   a boss or a step; nor does a third contour where it cuts the same point;
-- the cut is deeper than an allowance for finishing can be: an offset that is too large on purpose
-  makes a way between two contours narrower by twice the allowance.
+- the cut is deeper than an allowance for finishing can be: a deliberately larger offset makes the
+  channel between two contours narrower by twice the allowance.
 
 Everything else is left to ``g12 verify``. Program units.
 """
@@ -24,14 +24,14 @@ from g12.compensation.contour import Contour, PlaneMove
 from g12.errors import number
 from g12.geometry.boxes import BoxTree, apart
 
-ALLOWANCE = 0.5  # of the tool's radius: what is cut deeper is none that a finishing pass takes off
-ENTERED = 2.0  # tolerances: so deep is what enters the material
-STEP = 16.0  # tolerances: in such steps a contour is followed into the material
-FIRST_LOOK = 2  # passes of another contour: most that may enter do so there
+ALLOWANCE = 0.5  # of the tool's radius: no finishing pass cuts deeper
+ENTERED = 2.0  # tolerances: a contour deeper in a wall's material enters it
+STEP = 16.0  # tolerances: distance between the points at which a contour is checked
+SAMPLED = 2  # passes of another contour: one of these mostly enters, if any does
 
 
 def check_neighbours(contour: Contour, contours: Sequence[CompensatedContour]) -> None:
-    """Refuse a contour on whose way the tool cuts deep into another one that closes."""
+    """Refuse a contour along which the tool cuts deep into another, closed one."""
     walled = [each for each in contours if each.walls]
     section = _SectionPasses(walled)
     for wall in walled:
@@ -48,15 +48,15 @@ def check_neighbours(contour: Contour, contours: Sequence[CompensatedContour]) -
 
 
 def _may_cut(other: CompensatedContour, wall: CompensatedContour) -> bool:
-    """Return whether two contours have a Z level in common, and neither is seen to enter at once.
+    """Return whether contours share a Z level, and a sample of ``other`` does not enter ``wall``.
 
-    Without that look a hundred roughing passes about each other would take minutes.
+    Without the sample a hundred concentric roughing passes would take minutes.
     """
     if other is wall or wall.levels.isdisjoint(other.levels):
         return False
     if apart(wall.wall_tree.box, other.tree.box, other.radius):
         return False
-    some = other.passes[:: len(other.passes) // FIRST_LOOK + 1]
+    some = other.passes[:: len(other.passes) // SAMPLED + 1]
     return not enters(some, other, wall, inf)
 
 
@@ -89,19 +89,19 @@ class _Neighbourhood:
         self._wall, self._others = wall, others
         self._passes, self._tree = section.passes, section.tree
         self._ids = {id(other) for other in others}
-        self._meant: dict[int, bool] = {}
+        self._intended: dict[int, bool] = {}
 
     def deepest(self) -> tuple[WallPoint, Pass] | None:
-        """Return the wall's point that is cut deepest without being meant, and by which pass.
+        """Return the wall's point with the deepest unintended cut, and the pass that cuts it.
 
-        Of points that are cut as deep it is the last.
+        Of points that are cut equally deep it is the last.
         """
         found, reach = None, ALLOWANCE * max(other.radius for other in self._others)
         points = list(self._wall.points())
         every = 1 + int(reach / self._wall.spacing)
         around = reach + every * self._wall.spacing
-        looks = (self._tree.nearest(p.point, around, self._is_other) for p in points[::every])
-        if all(by is None for _, by in looks):
+        sampled = (self._tree.nearest(p.point, around, self._is_other) for p in points[::every])
+        if all(by is None for _, by in sampled):
             return None
         for point in reversed(points):
             away, by = self._tree.nearest(point.point, reach, partial(self._cuts, point))
@@ -113,11 +113,11 @@ class _Neighbourhood:
         return id(self._passes[by][0]) in self._ids
 
     def _cuts(self, point: WallPoint, by: int) -> bool:
-        """Return whether a pass that is near enough cuts a point and is not meant to."""
+        """Return whether a pass in range cuts a point and is not intended to."""
         other, (index, move, levels) = self._passes[by]
         if (
             not self._is_other(by)
-            or self._meant.get(id(other))
+            or self._intended.get(id(other))
             or self._wall.levels.isdisjoint(levels)
         ):
             return False
@@ -127,58 +127,58 @@ class _Neighbourhood:
         centre = move.curve.point(share)
         if abs(centre - point.point) >= ALLOWANCE * other.radius or other.is_lead(index, centre):
             return False
-        return not self._is_meant(other) and not self._is_gone(point)
+        return not self._is_intended(other) and not self._is_removed(point)
 
     def _level(self, point: WallPoint) -> float:
         return self._wall.walls[point.move_index].z0
 
-    def _is_meant(self, other: CompensatedContour) -> bool:
-        """Return whether a contour may cut into the wall: one enters the other, or cuts it all."""
-        if id(other) not in self._meant:
+    def _is_intended(self, other: CompensatedContour) -> bool:
+        """Return whether the cut is on purpose: one contour enters the other, or cuts all of it."""
+        if id(other) not in self._intended:
             wall = self._wall
-            self._meant[id(other)] = (
+            self._intended[id(other)] = (
                 enters(other.passes, other, wall, STEP)
                 or enters(wall.passes, wall, other, STEP)
                 or all(self._is_cut(point, other) for point in wall.points())
             )
-        return self._meant[id(other)]
+        return self._intended[id(other)]
 
     def _is_cut(self, point: WallPoint, other: CompensatedContour) -> bool:
         level = self._level(point)
         passes = other.passes
         found = other.tree.nearest(
-            point.point, other.reach, lambda by: is_low(passes[by].move, level)
+            point.point, other.gouge_distance, lambda by: is_low(passes[by].move, level)
         )
         return found[1] is not None
 
-    def _is_gone(self, point: WallPoint) -> bool:
-        """Return whether a contour that cuts a point enters the material on the way there."""
+    def _is_removed(self, point: WallPoint) -> bool:
+        """Return whether a contour that enters the material cuts the point, too."""
         level = self._level(point)
         return any(
             enters([each], other, self._wall, STEP)
             for other, each in self._passes
             if id(other) in self._ids
             and is_low(each.move, level)
-            and each.move.curve.distance(point.point) < other.reach
+            and each.move.curve.distance(point.point) < other.gouge_distance
         )
 
 
 def enters(
     passes: Iterable[Pass], other: CompensatedContour, wall: CompensatedContour, step: float
 ) -> bool:
-    """Return whether the tool touches its contour in a wall's material, where it cuts that wall.
+    """Return whether passes of ``other`` that cut a wall machine ``other`` in its material.
 
-    Looked at is the contour ``other`` at the ends of steps of so many tolerances.
+    They are checked at points ``step`` tolerances apart.
     """
     levels = [each.z0 for each in wall.walls.values()]
     for each in passes:
         curve = each.move.curve
-        if apart(curve.box, wall.wall_tree.box, other.reach):
+        if apart(curve.box, wall.wall_tree.box, other.gouge_distance):
             continue
         low = partial(_is_as_low, each.move, levels)
         count = max(1, ceil(curve.length / (step * wall.tolerance)))
         for share in (k / count for k in range(count + 1)):
-            if wall.wall_tree.nearest(curve.point(share), other.reach, low)[1] is None:
+            if wall.wall_tree.nearest(curve.point(share), other.gouge_distance, low)[1] is None:
                 continue
             height, at_end = wall.height(each.touched(share, other.offset))
             if at_end or height < -ENTERED * wall.tolerance:

@@ -7,9 +7,9 @@ neighbours:
 - outside corner: an arc about the corner, part of the block that follows;
 - inside corner: both parallels end where they cross;
 - ramp on: ends square to the start of the next element of the contour; ramp off: starts square to
-  the end of the last one. Blocks without motion in the plane are looked through.
+  the end of the last one. Blocks without motion in the plane are skipped.
 
-What the tool cannot reach is refused, and so is a path on which the tool gouges (`gouge`).
+Corners that the tool cannot reach are refused, and so is a path on which it gouges (`gouge`).
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from copy import copy
 from math import copysign
 from typing import NamedTuple, NoReturn
 
-from g12.compensation.contour import SAME_PLACE, Contour, Element, PlaneMove, Plunge
+from g12.compensation.contour import SAME_POINT, Contour, Element, PlaneMove, Plunge
 from g12.compensation.gouge import Cut, LeadRefusal, check_gouges
 from g12.errors import Refusal, number
 from g12.geometry.crossing import PARALLEL, crossings
 from g12.geometry.curve import Arc, Curve, Line, sweep_between
 
-JOINED = 0.04  # tolerances: moved by no more, parallels are joined without an arc
-BESIDE = 2.0  # tolerances: places so near to each other are one corner
+JOINED = 0.04  # tolerances: parallels whose ends move by less are joined without an arc
+ONE_CORNER = 2.0  # tolerances: ends within this distance are one corner
 
 
 class _Step(NamedTuple):
@@ -46,9 +46,9 @@ class _Joint(NamedTuple):
 
 
 def tool_path(contour: Contour, elements: list[Element], tolerance: float) -> list[Element]:
-    """Return a contour's elements as the tool's centre makes them, all in their places.
+    """Return the path of the tool's centre for a contour's elements, in the same order.
 
-    ``tolerance`` in program units: a small part of it is what the path may be off.
+    ``tolerance`` in program units: the path deviates by a small share of it.
     """
     moves = [e for e in elements if isinstance(e, PlaneMove)]
     if not any(e.offset for e in moves):
@@ -66,7 +66,7 @@ def tool_path(contour: Contour, elements: list[Element], tolerance: float) -> li
 def _with_other_side(
     refusal: Refusal, contour: Contour, moves: list[PlaneMove], tolerance: float
 ) -> Refusal:
-    """Return a refusal that asks whether the other of G41 and G42 is meant, where that is cut."""
+    """Return a refusal that suggests the other of G41 and G42, where that one can be cut."""
     others = [move._replace(offset=-move.offset) for move in moves]
     trial = copy(contour)
     trial.elements, trial.notes = list(others), []
@@ -84,7 +84,7 @@ def _centred(
     """Return for each move the moves of the tool's centre."""
     steps = _steps(contour, moves)
     joints = [_joint(contour, a, b, tolerance) for a, b in zip([None, *steps], steps)]
-    joints.append(_Joint(_last_place(contour, steps), 0j))
+    joints.append(_Joint(_path_end(contour, steps), 0j))
     cuts = []
     for k, step in enumerate(steps):
         joint, end = joints[k], joints[k + 1].leave
@@ -110,8 +110,8 @@ def _steps(contour: Contour, moves: list[PlaneMove]) -> list[_Step]:
     return steps
 
 
-def _last_place(contour: Contour, steps: list[_Step]) -> complex:
-    """Return where the tool's centre ends."""
+def _path_end(contour: Contour, steps: list[_Step]) -> complex:
+    """Return the end of the tool centre's path."""
     step = steps[-1]
     if step.ramp:
         contour.refuse(
@@ -128,11 +128,11 @@ def _joint(contour: Contour, a: _Step | None, b: _Step, tolerance: float) -> _Jo
             f"G40 follows {_code(a.move)} of line {a.move.line} with nothing between them to cut",
         )
     if a is None or not a.cut:
-        place = b.parallel.start
-        return _Joint(place, place)
+        point = b.parallel.start
+        return _Joint(point, point)
     if not b.cut:
-        place = a.parallel.end
-        return _Joint(place, place)
+        point = a.parallel.end
+        return _Joint(point, point)
     return _corner(contour, a, b, tolerance)
 
 
@@ -142,8 +142,8 @@ def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:
     sine, cosine = turned.imag, turned.real
     leave, meet, offset = a.parallel.end, b.parallel.start, b.move.offset
     if cosine > 0.0 and _is_joined(a, b, abs(meet - leave), abs(sine), tolerance):
-        place = (leave + meet) / 2
-        return _Joint(place, place)
+        point = (leave + meet) / 2
+        return _Joint(point, point)
     if sine * offset <= PARALLEL * abs(offset):
         return _Joint(leave, meet, b.move.start)
     crossing = _crossing(a.parallel, b.parallel)
@@ -153,13 +153,13 @@ def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:
 
 
 def _crossing(one: Curve, other: Curve) -> complex | None:
-    """Return where ``one`` is left for ``other``: their crossing nearest to the corner, if any."""
+    """Return the crossing of two parallels nearest to the corner, None without one."""
     length, best, nearest = one.length, None, 0.0
     for point in crossings(one, other):
         leave, meet = one.length_to(point, late=True), other.length_to(point)
         on_both = (
-            -SAME_PLACE <= leave <= length + SAME_PLACE
-            and -SAME_PLACE <= meet <= other.length + SAME_PLACE
+            -SAME_POINT <= leave <= length + SAME_POINT
+            and -SAME_POINT <= meet <= other.length + SAME_POINT
         )
         if on_both and (best is None or length - leave + meet < nearest):
             best, nearest = point, length - leave + meet
@@ -167,10 +167,10 @@ def _crossing(one: Curve, other: Curve) -> complex | None:
 
 
 def _is_joined(a: _Step, b: _Step, gap: float, sine: float, tolerance: float) -> bool:
-    """Return whether two parallels need no arc between them: it would be a very short segment."""
+    """Return whether two parallels need no arc between them: it would be very short."""
     straight = isinstance(a.parallel, Line) and isinstance(b.parallel, Line)
     moved = gap * sine / 8.0
-    return moved <= JOINED * tolerance and (straight or gap <= BESIDE * tolerance)
+    return moved <= JOINED * tolerance and (straight or gap <= ONE_CORNER * tolerance)
 
 
 def _refuse_tight(contour: Contour, a: _Step, b: _Step) -> NoReturn:
@@ -197,7 +197,7 @@ def _parallel(contour: Contour, move: PlaneMove) -> Curve:
     curve = move.curve
     if isinstance(curve, Arc):
         inward = move.offset if curve.sweep > 0.0 else -move.offset
-        if inward - curve.radius > SAME_PLACE:
+        if inward - curve.radius > SAME_POINT:
             contour.refuse(
                 move.line,
                 f"the arc of radius {number(curve.radius)} is smaller than the tool radius "
@@ -216,17 +216,17 @@ def _neighbours(contour: Contour, move: PlaneMove) -> str:
 def _trimmed(
     contour: Contour, steps: list[_Step], k: int, start: complex, end: complex
 ) -> tuple[Element, ...]:
-    """Return the parallel of a step from one point on it to another, which must come after it."""
+    """Return the parallel of a step between two points of it; refuse points in reverse order."""
     move, parallel = steps[k].move, steps[k].parallel
     length = parallel.length_to(end, late=True) - parallel.length_to(start)
-    if length < -SAME_PLACE:
+    if length < -SAME_POINT:
         contour.refuse(
             move.line,
             f"too short for the tool radius {number(abs(move.offset))} between its inside corners "
             f"with lines {steps[k - 1].move.line} and {steps[k + 1].move.line}",
         )
-    if length <= SAME_PLACE:
-        return _in_place(move)
+    if length <= SAME_POINT:
+        return _move_of_z(move)
     if isinstance(parallel, Line):
         return (move._replace(curve=Line(start, end)),)
     sweep = copysign(length / parallel.radius, parallel.sweep)
@@ -236,15 +236,15 @@ def _trimmed(
 def _uncut(move: PlaneMove, start: complex, end: complex) -> tuple[Element, ...]:
     """Return a ramp, or a move without compensation, between the joints at its ends.
 
-    A ramp square to the contour and as long as the tool's radius has no length.
+    A ramp that is square to the contour and as long as the tool's radius shrinks to a point.
     """
     if isinstance(move.curve, Arc):
         return (move,)
-    if abs(end - start) <= SAME_PLACE:
-        return _in_place(move)
+    if abs(end - start) <= SAME_POINT:
+        return _move_of_z(move)
     return (move._replace(curve=Line(start, end)),)
 
 
-def _in_place(move: PlaneMove) -> tuple[Element, ...]:
-    """Return what remains of a move without a length in the plane: its Z."""
+def _move_of_z(move: PlaneMove) -> tuple[Element, ...]:
+    """Return the move of Z that remains of a move without length in the plane, if any."""
     return () if move.z0 == move.z1 else (Plunge(move.line, move.feed, move.z0, move.z1),)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Moves under compensation that are too short to be meant: the rounding of a program's points.
+"""Moves under compensation that are only rounding of the program's points, not geometry.
 
-A CAM system's last decimal makes a chamfer of a corner, or sends the contour back by a step. Beside
-such a move the tool's centre would turn by any angle. What is shorter than a small part of the
-tolerance is left out and its neighbours meet instead; its Z is kept.
+A CAM system's last decimal makes a chamfer of a corner, or sends the contour back by a step. The
+tool's centre would turn by any angle about such a move. A move shorter than a small share of the
+tolerance is left out, its neighbours are joined, and its Z is kept.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypeGuard
 
-from g12.compensation.contour import SAME_PLACE, Element, PlaneMove, Plunge
+from g12.compensation.contour import SAME_POINT, Element, PlaneMove, Plunge
 from g12.geometry.curve import Line
 
-MOST_POINTS = 100  # that one line stands for: all of them are looked at for each one more
+MOST_POINTS = 100  # replaced by one line: each further point is checked against all of them
 
 
 def without_short_moves(elements: Sequence[Element], limit: float) -> tuple[list[Element], float]:
     """Return a contour's elements without the moves under compensation up to ``limit`` long.
 
-    Also returns by how much that has moved the contour at most, up to ``limit``. Program units.
+    Also returns the greatest shift of the contour by that, at most ``limit``. Program units.
     """
     kept: list[Element] = []
     last, moved = None, 0.0  # the index of the move kept last
@@ -35,7 +35,7 @@ def without_short_moves(elements: Sequence[Element], limit: float) -> tuple[list
             if element.z0 != element.z1:
                 kept.append(Plunge(element.line, element.feed, element.z0, element.z1))
             continue
-        if before and abs(element.start - before.end) > SAME_PLACE:
+        if before and abs(element.start - before.end) > SAME_POINT:
             kept[last], *between, element = _meeting(before, element)
             kept.extend(between)
         last = len(kept)
@@ -44,7 +44,7 @@ def without_short_moves(elements: Sequence[Element], limit: float) -> tuple[list
 
 
 def _meeting(before: PlaneMove, move: PlaneMove) -> list[PlaneMove]:
-    """Return two moves and what is between them, each beginning where the one before ends."""
+    """Return two moves made to meet, with a line between them where both are arcs."""
     if isinstance(move.curve, Line):
         return [before, move._replace(curve=Line(before.end, move.end))]
     if isinstance(before.curve, Line):
@@ -52,20 +52,22 @@ def _meeting(before: PlaneMove, move: PlaneMove) -> list[PlaneMove]:
     return [before, move._replace(curve=Line(before.end, move.start), z1=move.z0), move]
 
 
-def with_points_left_out(elements: Sequence[Element], limit: float) -> tuple[list[Element], float]:
+def without_rounding_points(
+    elements: Sequence[Element], limit: float
+) -> tuple[list[Element], float]:
     """Return a contour's elements without the points of polylines that are only rounding.
 
     Lines under compensation that follow each other at one feed and Z become one line, as long as
-    all points between stay within ``limit`` of it. Also returns by how much that has moved the
-    contour at most. Program units.
+    all points between stay within ``limit`` of it. Also returns the greatest shift of the contour
+    by that. Program units.
     """
     kept: list[Element] = []
     moved = offset = 0.0
     at = 0
     while at < len(elements):
         element = elements[at]
-        beside = offset != 0.0  # else this is the ramp: it ends where the contour begins
-        last, away = _reach(elements, at, limit) if beside else (at, 0.0)
+        beside = offset != 0.0  # a ramp keeps its end: the contour begins there
+        last, away = _line_through(elements, at, limit) if beside else (at, 0.0)
         offset = element.offset if isinstance(element, PlaneMove) else offset
         end = elements[last]
         if last > at and isinstance(element, PlaneMove) and isinstance(end, PlaneMove):
@@ -76,8 +78,8 @@ def with_points_left_out(elements: Sequence[Element], limit: float) -> tuple[lis
     return kept, moved
 
 
-def _reach(elements: Sequence[Element], first: int, limit: float) -> tuple[int, float]:
-    """Return the last of the elements that one line can stand for, and how far it is off them."""
+def _line_through(elements: Sequence[Element], first: int, limit: float) -> tuple[int, float]:
+    """Return the last of the elements that one line can replace, and its deviation from them."""
     one, most = elements[first], 0.0
     if not _is_line(one):
         return first, most
@@ -98,7 +100,7 @@ def _reach(elements: Sequence[Element], first: int, limit: float) -> tuple[int, 
 
 
 def _is_like(one: PlaneMove, other: PlaneMove) -> bool:
-    """Return whether two lines are under compensation and may be one."""
+    """Return whether two lines under compensation share level, feed and offset."""
     level = one.z0 == one.z1 == other.z1
     alike = one.feed == other.feed and one.offset == other.offset
     return one.offset != 0.0 and level and alike

@@ -8,7 +8,7 @@ from math import inf, sqrt
 
 from g12.geometry.curve import Box, Curve
 
-LEAF = 4  # curves in a box that is not divided
+LEAF = 4  # most curves in a box that is not divided
 NOWHERE = (inf, inf, -inf, -inf)  # the box around no curves
 
 
@@ -24,27 +24,29 @@ class BoxTree:
         """The box around all curves."""
         return self._root.box
 
-    def near(self, box: Box, reach: float) -> Iterator[int]:
-        """Yield the indices of the curves whose boxes are within ``reach`` of a box."""
+    def near(self, box: Box, distance: float) -> Iterator[int]:
+        """Yield the indices of the curves whose boxes are within a distance of a box."""
         waiting = [self._root]
         while waiting:
             node = waiting.pop()
-            if not apart(node.box, box, reach):
+            if not apart(node.box, box, distance):
                 waiting.extend(node.halves)
-                yield from (index for index, around in node.items if not apart(around, box, reach))
+                yield from (
+                    index for index, around in node.items if not apart(around, box, distance)
+                )
 
     def nearest(
-        self, point: complex, reach: float, counts: Callable[[int], bool] = lambda _: True
+        self, point: complex, distance: float, counts: Callable[[int], bool] = lambda _: True
     ) -> tuple[float, int | None]:
-        """Return how far the nearest curve that counts is from a point, and its index.
+        """Return the distance from a point to the nearest curve that counts, and the curve's index.
 
-        The ``reach`` and None where none is nearer than that.
+        Only curves nearer than ``distance`` are searched: that and None where there is none.
         """
         found, x, y = None, point.real, point.imag
         waiting = [(0.0, self._root)]
         while waiting:
             away, node = waiting.pop()
-            if away >= reach:
+            if away >= distance:
                 continue
             if node.halves:
                 one, other = node.halves
@@ -52,11 +54,11 @@ class BoxTree:
                 pairs = (to_other, other), (to_one, one)
                 waiting.extend(pairs if to_one < to_other else pairs[::-1])
             for index, around in node.items:
-                if _away(x, y, around) < reach:
+                if _away(x, y, around) < distance:
                     away = self.curves[index].distance(point)
-                    if away < reach and counts(index):
-                        reach, found = away, index
-        return reach, found
+                    if away < distance and counts(index):
+                        distance, found = away, index
+        return distance, found
 
 
 class _Node:
@@ -69,25 +71,25 @@ class _Node:
         low_x, low_y, high_x, high_y = zip(*[box for _, box in items] or [NOWHERE])
         self.box: Box = (min(low_x), min(low_y), max(high_x), max(high_y))
         if len(items) > LEAF:
-            # Across the longer side: rings about each other are in one another's boxes.
+            # Divided across the longer side: the boxes of concentric rings contain each other.
             low = 0 if self.box[2] - self.box[0] > self.box[3] - self.box[1] else 1
             items.sort(key=lambda item: item[1][low] + item[1][low + 2])
             middle = len(items) // 2
             self.items, self.halves = [], [_Node(items[:middle]), _Node(items[middle:])]
 
 
-def apart(one: Box, other: Box, reach: float) -> bool:
-    """Tell whether two boxes are farther than ``reach`` from each other."""
+def apart(one: Box, other: Box, distance: float) -> bool:
+    """Tell whether two boxes are farther than ``distance`` from each other."""
     return (
-        one[0] - other[2] > reach
-        or other[0] - one[2] > reach
-        or one[1] - other[3] > reach
-        or other[1] - one[3] > reach
+        one[0] - other[2] > distance
+        or other[0] - one[2] > distance
+        or one[1] - other[3] > distance
+        or other[1] - one[3] > distance
     )
 
 
 def _away(x: float, y: float, box: Box) -> float:
-    """Return how far a point is from a box, 0 in it."""
+    """Return the distance of a point from a box, 0 inside it."""
     low_x, low_y, high_x, high_y = box
     dx = low_x - x if x < low_x else x - high_x if x > high_x else 0.0
     dy = low_y - y if y < low_y else y - high_y if y > high_y else 0.0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where curves meet, and where the straight lines and circles do on which they lie.
+"""The common points of curves, and of the straight lines and circles on which they lie.
 
-A circle that just misses by less than ``TOUCHES`` touches: rounding makes it so.
+A circle that misses another curve by less than ``TOUCHES`` counts as tangent: the gap is rounding.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def crossings(one: Curve, other: Curve) -> list[complex]:
 
 
 def common_points(one: Curve, other: Curve) -> list[complex]:
-    """Return the points at which two curves cross or touch; none where they run on each other."""
+    """Return the points at which two curves cross or touch; none along a common portion."""
     return [
         point
         for point in crossings(one, other)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 COINCIDENT = 1e-12  # a shorter line is a point: it has a length of 0 and no direction
 FULL_TURN = 2 * math.pi
-LEAST_MARGIN = 0.5  # radians beside the ends of a nearly full circle
+LEAST_MARGIN = 0.5  # radians beyond an end that still count as the end of a nearly full circle
 
 Box = tuple[float, float, float, float]  # least x and y, greatest x and y
 
@@ -147,9 +147,9 @@ class Arc(NamedTuple):
     def length_to(self, point: complex, late: bool = False) -> float:
         """Return the length to a point's foot: below 0 before the start, more beyond the end.
 
-        What is beside both ends of an arc counts as before its start up to the middle of the gap.
-        That may be narrow or none: there it counts so for half a radian, with ``late`` as beyond
-        the end.
+        A foot in an arc's gap counts as before the start in the nearer half of the gap. The gap of
+        a nearly full circle is narrow or none: half a radian counts as before the start, with
+        ``late`` as beyond the end.
         """
         sweep = abs(self.sweep)
         margin = max(math.pi - sweep / 2, LEAST_MARGIN)
@@ -165,7 +165,7 @@ class Arc(NamedTuple):
 
     @property
     def box(self) -> Box:
-        """A box around the arc, not always the least."""
+        """A box around the arc, not always the smallest."""
         (x0, y0), (x1, y1) = _pair(self.start), _pair(self.end)
         if abs(self.sweep) > math.pi:
             (x, y), radius = _pair(self.centre), self.radius

@@ -27,7 +27,7 @@ from collections.abc import Sequence
 from math import ceil, copysign, inf, pi, sqrt
 from typing import NamedTuple
 
-from g12.compensation.contour import SAME_PLACE, PlaneMove
+from g12.compensation.contour import SAME_POINT, PlaneMove
 from g12.geometry.curve import Arc, Curve, sweep_between
 from g12.polar.beside import along_and_around, stand
 from g12.polar.pole import POLE
@@ -114,8 +114,8 @@ def _demand(move: PlaneMove, at: float, limits: FaceLimits) -> Demand:
     point = curve.point(at)
     slide, way = stand(point, beside)
     along, around = along_and_around(curve.direction(at), way)
-    slowness = _slowness(min(MOST_TURNING, abs(around) / max(slide, SAME_PLACE)), move.feed, limits)
-    if abs(point) <= abs(beside) + SAME_PLACE:
+    slowness = _slowness(min(MOST_TURNING, abs(around) / max(slide, SAME_POINT)), move.feed, limits)
+    if abs(point) <= abs(beside) + SAME_POINT:
         return Demand(at, 0.0, (), slowness)
     bent = copysign(1.0 / curve.radius, curve.sweep) if isinstance(curve, Arc) else 0.0
     turning = around / slide

@@ -46,7 +46,7 @@ G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
-SAME_PLACE = 1e-3  # program units or degrees
+SWITCH_TOLERANCE = 1e-3  # program units or degrees
 SAME_TOLERANCE = 1e-9  # program units
 ELSEWHERE = (
     "the tool is not where the section begins: "
@@ -304,7 +304,7 @@ class SectionOutput:
         "" if it is.
         """
         off = (abs(there - planned) for there, planned in zip(self._stands(), position))
-        return ELSEWHERE if max(off) > SAME_PLACE else other_module(self.interp, self.beside)
+        return ELSEWHERE if max(off) > SWITCH_TOLERANCE else other_module(self.interp, self.beside)
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
         """Hand over a line, an arc or a move of Z on the face."""
