@@ -74,12 +74,6 @@ def test_the_higher_feed_counts(feed, stop):
     assert first_stops(bend, 1.01 * ROUNDING) is stop
 
 
-def test_a_plunge_is_at_right_angles_to_the_plane():
-    plunge = [line(20, 0, 30, 0), Plunge(2, FEED, 0.0, -5.0), line(30, 0, 40, 0)]
-    assert stops(plunge, 0.99 * ROUNDING, 1000.0, C) == [True, True, True]
-    assert stops(plunge, 2.01 * ROUNDING, 1000.0, C) == [False, False, True]
-
-
 def test_a_move_that_gathers_speed_more_slowly_is_rounded_as_one_that_is_as_quick():
     gathering = [line(20, 0, 10, 0), line(10, 0, 10, -5)]
     assert first_stops(gathering, 0.99 * ROUNDING, c=20.0)
@@ -138,12 +132,6 @@ def test_straight_on_is_no_corner_however_fast():
 def test_directions_that_differ_by_less_than_a_fifth_of_a_milliradian_are_one(bend, stop):
     fast = [line(20, 0, 30, 0, feed=1e5), line(30, 0, 40, 10 * bend, feed=1e5)]
     assert stops(fast, 1e-6, 1000.0, C) == [stop, True]
-
-
-def test_a_slope_counts_in_space():
-    level_then_down = [line(20, 0, 30, 0), line(30, 0, 40, 0, 0.0, -10.0)]
-    assert first_stops(level_then_down, 0.5 * ROUNDING)
-    assert not first_stops(level_then_down, ROUNDING)
 
 
 def test_at_the_pole_the_tool_always_stops():

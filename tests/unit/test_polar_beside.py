@@ -10,17 +10,12 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.moves.steps import BlockMoves
-from g12.polar.face import passed
-from g12.polar.follow import FaceLimits, can_follow
 from g12.polar.plan import PolarSettings, plan
-from support import planned_moves
 from support.contour_geometry import Round, Straight, distance, distance_from_path
 from support.planned_cuts import add, programmed
 
 TOLERANCE = 0.005
 LATHE = PolarSettings(TOLERANCE, 1e-9, 1000.0, 3600.0, 21600.0)
-LIMITS = FaceLimits(1000.0, 707.0, 1000.0, math.radians(3600.0), math.radians(360.0), 1.0, 0.0)
 
 offsets = st.sampled_from([0.02, -0.5, 3.0, -10.0]) | st.floats(-15.0, 15.0).filter(bool)
 coordinate = st.floats(-30.0, 30.0)
@@ -111,19 +106,6 @@ def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
     )
 
 
-def test_z_goes_down_and_up_beside_x_s_line_as_on_it():
-    contour = Contour(30.0, 0.0, beside=8.0)
-    contour.line(20.0, 5.0, line=1, feed=100.0)
-    for line, z in enumerate((-1.0, -2.0, 5.0), 2):
-        contour.line(z=z, line=line, feed=60.0)
-    _, *plunges = plan(contour, LATHE._replace(beside=8.0), c=0.0).steps
-    assert [(run.axes, run.segments[0][2], run.stop) for run in plunges] == [
-        ("Z", -1.0, False),
-        ("Z", -2.0, False),
-        ("Z", 5.0, True),
-    ]
-
-
 @pytest.mark.parametrize(("feed", "quick"), [(60.0, 1.0), (250.0, 1e-6)])
 @pytest.mark.parametrize(
     "shape",
@@ -149,44 +131,3 @@ def test_a_tool_hardly_beside_its_line_needs_the_same_segments_as_one_on_it(shap
     assert len(beside) == len(on_line)
     for one, other in zip(on_line, beside):
         assert other[:2] == pytest.approx(one[:2], rel=0.01, abs=0.05)
-
-
-places = st.tuples(st.floats(-60, 60), st.floats(-60, 60))
-
-
-@settings(max_examples=200, deadline=None)
-@given(places, places, st.floats(100, 6000), offsets)
-def test_on_the_face_an_able_line_keeps_c_and_the_slide_within_their_limits(a, b, feed, beside):
-    move = planned_moves.line(*a, *b, feed=feed)
-    assume(math.dist(a, b) > 0.1)
-    limits = LIMITS._replace(beside=beside, slide_speed=120.0)
-    if not can_follow(move, limits):
-        return
-    points = np.linspace(complex(*a), complex(*b), 2000)
-    step = abs(points[1] - points[0]) / (feed / 60)
-    slide, angle = axes_of(points, beside)
-    assert np.abs(np.diff(angle)).max() / step <= LIMITS.c_speed * 1.02
-    assert np.abs(np.diff(slide)).max() / step <= 120.0 * 1.02
-    assert np.abs(np.diff(angle, 2)).max() / step**2 <= LIMITS.c_acceleration * 1.02 + 1e-3
-    assert np.abs(np.diff(slide, 2)).max() / step**2 <= LIMITS.slide_acceleration * 1.02 + 1e-3
-    end = passed(move, angle[0], beside)[-1]
-    assert end[:2] == pytest.approx((slide[-1], angle[-1]), abs=1e-6)
-
-
-def axes_of(points, beside):
-    """Return where slide and C have to be for the tool to be at points."""
-    slide = np.sqrt(abs(points) ** 2 - beside**2)
-    return slide, np.unwrap(np.angle(points) - np.arctan2(beside, slide))
-
-
-def test_kinds_of_steps():
-    contour = Contour(30.0, 0.0, beside=8.0)
-    for line, (x, c) in enumerate([(30, 20), (-30, 20), (-30, 0)], 7):
-        contour.line(x, c, line=line, feed=2000.0)
-    face = plan(contour, LATHE._replace(beside=8.0, face=LIMITS._replace(beside=8.0)), c=10.0)
-    segments = plan(contour, LATHE._replace(beside=8.0), c=10.0)
-    assert {type(step) for step in segments.steps} == {BlockMoves}
-    assert not {type(step) for step in face.steps} & {BlockMoves}
-    assert face.position == pytest.approx(segments.position)
-    slide = math.sqrt(30**2 - 8**2)
-    assert face.position[:2] == pytest.approx((slide, 190 - math.degrees(math.atan2(8, slide))))

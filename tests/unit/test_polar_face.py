@@ -17,7 +17,6 @@ from support import planned_moves
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
 
 SETTINGS = PolarSettings(0.005, 0.001, 707.0, 3600.0, 21600.0, face=LIMITS)
-ROUNDING = 1e-6
 
 
 @pytest.mark.parametrize(
@@ -105,11 +104,6 @@ def test_the_part_beside_the_pole_is_made_of_segments_and_the_face_begins_anew()
     assert (again.line, again.move.start.imag) == (9, pytest.approx(0.0, abs=0.002))
     assert again.move.start.real == pytest.approx(switch.position[0])
     assert 0.2 < again.move.start.real < hypot(3, 30)
-
-
-def test_without_kinematics_all_is_segments():
-    made = plan(contour((30, 20), (-30, 20)), SETTINGS._replace(face=None), c=0.0)
-    assert {type(step) for step in made.steps} == {BlockMoves}
 
 
 def test_a_plunge_on_the_face_keeps_x_and_c():

@@ -63,20 +63,6 @@ def test_an_arc_is_looked_at_where_it_is_nearest_to_the_pole(sweep, part, share,
     assert can_follow(arc((20, 0), 10, pi - part * sweep, sweep), free) is able
 
 
-@settings(max_examples=400, deadline=None)
-@given(st.one_of(lines, arcs))
-def test_an_able_move_at_its_feed_keeps_c_and_the_slide_within_their_limits(move):
-    if not can_follow(move, LIMITS):
-        return
-    points, speed = motion(move)
-    radius, angle = abs(points), np.unwrap(np.angle(points))
-    step = abs(np.diff(points)).mean() / speed
-    turning = np.abs(np.diff(angle)) / step
-    assert turning.max() <= LIMITS.c_speed * 1.02
-    assert np.abs(np.diff(angle, 2)).max() / step**2 <= LIMITS.c_acceleration * 1.02
-    assert np.abs(np.diff(radius, 2)).max() / step**2 <= LIMITS.slide_acceleration * 1.02
-
-
 def share_of_limits(move, limits):
     """Return how much of the limits a move takes, in numbers, wherever it goes on, stops or starts.
 

@@ -118,13 +118,6 @@ def test_of_a_small_circle_a_sixth_on_either_side_is_replaced_at_most(radius):
     assert [part.curve.sweep for part in (first, last)] == pytest.approx([2 / 3 * math.pi] * 2)
 
 
-@pytest.mark.parametrize("radius", [0.003, 0.0009])
-def test_the_smallest_circles_through_the_pole(radius):
-    first, *between, last = led(arc(radius, 0, 2 * radius, 0, 2 * math.pi))
-    assert max(map(abs, (first.start.real, last.end.real))) <= 2 * radius + 1e-12
-    assert between == [] or all(part.line == 3 for part in between)
-
-
 def at_pole(plunge):
     """Return a plunge in the pole as a line of no length in the plane."""
     return plunge if not isinstance(plunge, Plunge) else line(0, 0, 0, 0, plunge.z0, plunge.z1)

@@ -10,7 +10,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from g12.geometry.curve import Arc, Line
-from g12.polar.beside import _curvature, _density, split_beside
+from g12.polar.beside import _density, split_beside
 from g12.polar.segments import Law, _arc_density, _line_density, split_move
 from support.axes_of_places import along, axes_of, bend, change_of_bend, places_of, rates
 from support.contour_geometry import Round, Straight
@@ -88,20 +88,6 @@ def test_beside_x_s_line_segments_are_as_long_as_the_first_limit_allows(shape, p
     segments, share = _density(curve_of(shape), law, beside)(at)
     assert segments == pytest.approx(wanted, rel=0.01)
     assert share == pytest.approx(share_of(difference, segments, law), abs=0.02)
-
-
-@settings(max_examples=100, deadline=None)
-@given(st.floats(1, 30), offsets, st.floats(-3.1, 3.1), st.sampled_from([-2.0, 1e-6, 0.7]))
-def test_how_a_move_of_x_and_c_curves_and_how_that_changes(slide, beside, heading, bent):
-    """C is 0 where the slide stands."""
-    unit, own = np.exp(1j * heading), bent / slide
-
-    def path(at):
-        return slide + 1j * beside + unit * (np.exp(1j * own * np.asarray(at)) - 1) / (1j * own)
-
-    curved, change = _curvature(slide, unit.real, unit.imag, beside, own)
-    assert curved - own == pytest.approx(bend(path, 0.0, beside), rel=1e-4, abs=1e-4 / slide)
-    assert change == pytest.approx(change_of_bend(path, 0.0, beside), rel=1e-2, abs=1e-2 / slide**2)
 
 
 @settings(max_examples=100, deadline=None)

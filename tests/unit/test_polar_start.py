@@ -57,12 +57,8 @@ def test_ends_that_rounded_words_leave_open_are_closed_in_any_unit(millimetre):
     )
 
 
-def test_a_section_may_begin_near_the_centre():
-    check_section_start(START._replace(x=1e-3), "XZC")
-
-
-def test_a_machine_needs_x_and_c():
-    check_section_start(START, "XC")
+def test_a_section_may_begin_near_the_centre_on_a_machine_with_x_and_c():
+    check_section_start(START._replace(x=1e-3), "XC")
     for axes in ("XYZ", "ZC"):
         with pytest.raises(Refusal) as refused:
             check_section_start(START, axes)
@@ -88,29 +84,24 @@ def test_lengths_are_in_program_units(machine_unit, millimetre, tolerance):
 
 
 @pytest.mark.parametrize(
-    ("g7", "meant", "diameter", "scale"),
+    ("settings", "found", "words"),
     [
-        (True, "inherit", True, 1.0),
-        (False, "inherit", False, 1.0),
-        (False, "diameter", True, 0.5),
-        (True, "radius", False, 2.0),
+        ({}, {"diameter": True}, {"diameter": True, "x_scale": 1.0}),
+        ({}, {"diameter": False}, {"diameter": False, "x_scale": 1.0}),
+        ({"polar_x": "diameter"}, {"diameter": False}, {"diameter": True, "x_scale": 0.5}),
+        ({"polar_x": "radius"}, {"diameter": True}, {"diameter": False, "x_scale": 2.0}),
+        ({}, {}, {"third_with_others": False, "c_scale": 1.0, "rapid_feed": None}),
+        ({"polar_z": "allow"}, {}, {"third_with_others": True}),
+        (
+            {"polar_g0": "feed", "polar_g0_feed": 500.0},
+            {"machine_unit": INCH},
+            {"rapid_feed": pytest.approx(12700.0)},
+        ),
     ],
 )
-def test_x_words_are_diameters_or_radii(g7, meant, diameter, scale):
-    words = setup_of(Settings(polar_x=meant), diameter=g7).words
-    assert (words.diameter, words.x_scale) == (diameter, scale)
-
-
-def test_z_goes_with_x_and_c_only_where_it_may():
-    assert not setup_of().words.third_with_others
-    assert setup_of(Settings(polar_z="allow")).words.third_with_others
-    assert setup_of().words.c_scale == 1.0  # a length in the plane's own unit
-
-
-def test_rapids_have_a_feed_only_where_they_may():
-    assert setup_of().words.rapid_feed is None
-    allowed = Settings(polar_g0="feed", polar_g0_feed=500.0)
-    assert setup_of(allowed, machine_unit=INCH).words.rapid_feed == pytest.approx(12700.0)
+def test_what_settings_make_of_words(settings, found, words):
+    made = setup_of(Settings(**settings), **found).words
+    assert {name: getattr(made, name) for name in words} == words
 
 
 def test_kinematics_are_refused_on_a_machine_without_them():
@@ -147,6 +138,8 @@ def test_a_tool_beside_x_s_line_is_so_everywhere_and_the_slide_has_its_own_speed
     assert made.words.beside == made.plan.beside == made.plan.face.beside == -2.0 * INCH
     assert made.plan.face.slide_speed == pytest.approx(9.0 * INCH)
     assert setup_of().words.beside == setup_of().plan.beside == 0.0
+    assert setup_of(Settings(polar_pole="refuse")).plan.pole_refused
+    assert not setup_of().plan.pole_refused
 
 
 @pytest.mark.parametrize(
@@ -174,8 +167,3 @@ def test_the_travel_is_told_in_the_machines_unit(machine_unit, millimetre, unit)
         beyond = limits.beyond([BlockMoves(3, "XCZ", [(*place, 1.0)], False)])
         assert (beyond.axis, beyond.unit) == (axis, unit)
         assert beyond.position == pytest.approx(200.0 + off[axis] / machine_unit)
-
-
-def test_a_path_through_the_pole_may_be_refused():
-    assert setup_of(Settings(polar_pole="refuse")).plan.pole_refused
-    assert not setup_of().plan.pole_refused
