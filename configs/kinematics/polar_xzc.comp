@@ -63,7 +63,7 @@ setp polar-xzc.c-acceleration [AXIS_C]MAX_ACCELERATION
 so that M68 E3 Q1 asks for the face and M68 E3 Q0 for X, Z and C. \\fBcentre\\fR is the position
 of the X joint at which the tool is on the spindle's axis; it counts when the face is switched on,
 as \\fBtool-offset\\fR does.
-The guard switches only when the machine has stood for ten cycles. It goes back to type 0 by itself when the
+The guard switches only when the machine has stood for six cycles. It goes back to type 0 by itself when the
 machine is switched off, stopped in an emergency or jogged; then the request has to be taken back
 before a new one counts. While the face is on and no program or MDI moves the machine, jogs are
 inhibited.
@@ -136,7 +136,7 @@ author "the g12 package";
 
 #define LAG (0.1 * DEGREE) /* of C by hand, where the planner's acceleration is more than C's */
 #define NEARER 1.2 /* that begins so much outside of where the two are equal */
-#define SETTLED 10 /* cycles of standing: LinuxCNC smooths the joints' way over the last few */
+#define SETTLED 6 /* cycles of standing: LinuxCNC smooths the joints' way over the last four */
 #define LEAST_FEED 0.01 /* by program: no override is so high that it needs less */
 #define ASIDE 0.4  /* of the acceleration: the rest is for what the slide has to do beside it */
 

@@ -293,7 +293,7 @@ def test_guard_waits_until_the_joints_are_where_they_go(kinematics):
     for _ in range(10):
         kinematics.library.run_guard()
         types.append(kinematics.pins.type)
-    assert types == [0] * 9 + [1]
+    assert types == [0] * 5 + [1] * 5
 
 
 @pytest.mark.parametrize("pin", ["enabled", "program"])
