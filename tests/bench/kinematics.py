@@ -35,6 +35,8 @@ OF_LEAST = {1000: 1.05, 2000: 1.12, 3000: 1.20}  # the circle's time on the face
 OF_LEAST_SLOW = {500: 1.05, 1000: 1.12, 2000: 1.20}
 HEXAGON_SLOW = {500: 1.05, 2000: 1.15}
 SLOT_BLOCK, SLOT_LENGTH = (7,), 36.0  # of slot.ngc: through the pole
+SLOT_SLOW = {500: 1.10, 2000: 1.10}
+SWITCH_MS, STANDING = 20, 8  # servo cycles: a plain stop is shorter than the second
 
 
 def figures():
@@ -49,6 +51,7 @@ def figures():
             yield circle(face, segments, feed)
             yield slot(face, segments, feed)
         yield deviation_on_face(face)
+        yield switch(face)
         for name in ("slot", "circles"):
             yield from spindle_limits(face, name)
     with Machine(SIM / "lathe_slow_c_mm_kinematics.ini") as slow:
@@ -117,16 +120,47 @@ def slow_spindle(lathe):
         ours = seconds_in(lathe.run_text(program), HEXAGON_BLOCKS)
         shortest = sum(least([segment], feed, *axes) for segment in around)
         yield Figure(f"{title} hexagon, F{feed}", ours / shortest, most, "", "side by side")
+    half = np.linspace(SLOT_LENGTH / 2, 0.001, 1000) + 0j
+    turn = math.pi / SLOW_SPINDLE[0] + SLOW_SPINDLE[0] / SLOW_SPINDLE[1]
+    for feed, most in SLOT_SLOW.items():
+        ours = seconds_in(lathe.run_text(slot_at(feed)), SLOT_BLOCK)
+        shortest = 2 * least_seconds(half, feed / 60, *axes)
+        yield Figure(
+            f"{title} slot through the centre besides C turning in place, F{feed}",
+            (ours - turn) / shortest,
+            most,
+            "",
+            f"{ours:.3f} s, of which C turns {turn:.3f} s",
+        )
 
 
 def slot(face, segments, feed):
     """Compare the times of a slot through the pole, where C has to turn."""
-    program = at_feed((SAMPLES / "slot.ngc").read_text(), f"F{feed}", SLOT_BLOCK)
     return beside(
         f"slot through the pole, F{feed}",
-        [seconds_in(lathe.run_text(program), SLOT_BLOCK) for lathe in (face, segments)],
+        [seconds_in(lathe.run_text(slot_at(feed)), SLOT_BLOCK) for lathe in (face, segments)],
         SLOT_LENGTH / feed * 60,
         "C turns in place for 0.6 s",
+    )
+
+
+def slot_at(feed):
+    """Return the program of the slot."""
+    return at_feed((SAMPLES / "slot.ngc").read_text(), f"F{feed}", SLOT_BLOCK)
+
+
+def switch(face):
+    """Return how long the machine stands to go to the face, or back from it."""
+    head, up, *section, end = circle_at(3000)
+    run = face.run_text([head, *([up, *section, "G0 Z3"] * 6), end])
+    stops = np.diff(np.flatnonzero(run.samples.velocity))
+    stops = stops[stops > STANDING]
+    return Figure(
+        "polar with kinematics: the machine stands at a switch",
+        float(np.median(stops)),
+        SWITCH_MS,
+        " ms",
+        f"median of {len(stops)}, {stops.min()} to {stops.max()} ms; more on a busy computer",
     )
 
 
