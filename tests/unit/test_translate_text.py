@@ -214,6 +214,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "H1", "H without G43"),
         (HAAS, "G43 Z1.", "G43 without H"),
         (HAAS, "G41 X1.", "G41 or G42 without D"),
+        (HAAS, "G19 G41 D1 Y1. F5.", "G41 or G42 in G19: LinuxCNC compensates in G17 and G18"),
         (HAAS, "G4", "G4 needs its time as P, once"),
         (HAAS, "G4 P-1", "P-1: a time below 0"),
         (FANUC, "G4 P1.5", "P1.5: milliseconds have no decimal point"),
@@ -383,6 +384,41 @@ def test_the_orientation_of_the_spindle():
 def test_a_number_whose_unit_is_not_said():
     refused = sentence(FANUC, "G0 X0\nG1 X1. F60\n")
     assert refused.sentence.endswith("hangs on G20 or G21, and neither is said before (--units)")
+
+
+ROUGH = "G0 X2. Z.1\nG71 P1 Q2 U.02 W0 D.05 F.01\nN1 G0 X1.\nG1 Z-1.\nN2 X2.\nM30\n"
+
+
+def test_a_setting_of_the_control_whose_unit_is_not_said():
+    refused = sentence(HAAS_LATHE, f"G99 S99 M3\n{ROUGH}")
+    assert refused.line == 3
+    assert refused.sentence.startswith("the control's setting for the retract hangs on G20 or G21")
+    assert "G0 X2. Z-0.95 (line 3)" in lines(HAAS_LATHE, f"G20 G99 S99 M3\n{ROUGH}")
+
+
+@pytest.mark.parametrize(
+    ("before", "change"),
+    [
+        ("M3 S99", "T2 M6 G43 H2 M3"),
+        ("M4 S99", "T2 M6 G43 H2 M4"),
+        ("M3 S99\nM5", "T2 M6 G43 H2"),
+        ("M3 S99\nM19", "T2 M6 G43 H2"),
+        ("M3 S99\nM35", "T2 M6 G43 H2"),  # the spindle is C
+        ("M3 S99\nM35\nM34\nM4", "T2 M6 G43 H2 M4"),
+    ],
+)
+def test_a_spindle_that_turns_is_started_again_behind_a_tool_change(before, change):
+    assert change in lines(read_control("doosan-lathe"), f"G0 X50. Z5.\n{before}\nT0202\nM30\n")
+
+
+@pytest.mark.parametrize(("stop", "change"), [("M5", "T2 M6 G43 H2 M5"), ("", "")])
+def test_the_spindle_of_a_bar_that_is_fed_in_a_loop(stop, change):
+    bar = f"G0 X50. Z5.\nT0202 {stop}\nM3 S99\nG1 X1. F.1\nM99\n"
+    if stop:
+        assert change in lines(LATHE, bar)
+    else:
+        refused = sentence(LATHE, bar).sentence
+        assert "(say M3, M4 or M5 in the block of T)" in refused
 
 
 def test_subprograms_with_names():
@@ -883,6 +919,11 @@ def test_a_place_of_g28_that_was_never_set_is_said(tmp_path, value, said):
 )
 def test_drawing_that_goes_nowhere_is_refused(block):
     assert sentence(LATHE, f"G21 G98 G1 F9.\nX10. Z5.\n{block}\nM30\n")
+
+
+def test_an_arc_without_a_centre_in_a_contour_is_named():
+    text = "G21 G99 S9\nG0 X50. Z2.\nG71 U2. R1.\nG71 P1 Q2\nN1 G0 X9.\nG3 X19. Z-5. R5.\nN2 Z-9.\n"
+    assert sentence(LATHE, text).sentence == "line 7: G3 needs R, or I and K; a line is G1"
 
 
 def test_a_program_that_begins_again_may_rough(tmp_path):

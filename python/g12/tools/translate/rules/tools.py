@@ -160,6 +160,11 @@ def takes_last(draft: Draft) -> bool:
 
 def compensation(draft: Draft, word: ForeignWord | None) -> None:
     """Give G41 and G42 the D in force; D0 is a radius of 0, whatever tool is loaded."""
+    if draft.state.plane == "G19":
+        raise NotTranslated(
+            "G41 or G42 in G19: LinuxCNC compensates in G17 and G18 only: let CAM write the path "
+            "of the tool's centre"
+        )
     value = draft.sure("radius", "G41 and G42 need D")
     if value == UNKNOWN:
         raise NotTranslated("G41 or G42 without D, and no D before it")

@@ -130,6 +130,8 @@ def _segment(block: ContourBlock, start: complex, end: complex) -> ContourMove:
     values = block.values
     if "R" in values:
         centre = centre_by_radius(start, end, values["R"] * sense, block.line)
+    elif not {"I", "K"} & values.keys():
+        raise NotTranslated(f"line {block.line}: {block.motion} needs R, or I and K; a line is G1")
     else:
         centre = start + complex(values.get("K", 0.0), values.get("I", 0.0))
         if abs(abs(start - centre) - abs(end - centre)) > ROUNDED or centre == start:

@@ -56,8 +56,19 @@ def take_whole(draft: Draft, letter: str) -> int | None:
 
 def stored_setting(draft: Draft, name: str) -> float:
     """Return a setting of the control for its turning cycles in the program's units, 0 if none."""
-    unit = {"G20": "inch", "G21": "mm"}.get(draft.state.units, "")
-    return float(draft.control.value("turning", f"{name}_{unit}", 0.0))
+    values = {
+        code: float(draft.control.value("turning", f"{name}_{unit}", 0.0))
+        for code, unit in decimals.UNIT.items()
+    }
+    if not any(values.values()):
+        return 0.0
+    units = draft.sure("units", f"the control's {name.replace('_', ' ')} is a length")
+    if units not in values:
+        raise NotTranslated(
+            f"the control's setting for the {name.replace('_', ' ')} hangs on G20 or G21, and "
+            "neither is said before (--units)"
+        )
+    return values[units]
 
 
 def start_point(draft: Draft) -> complex:
