@@ -315,7 +315,7 @@ def test_a_cutter_of_next_to_nothing_hangs_nothing():
 def test_a_slot_is_longer_than_wide():
     rule = "length 20 must be greater than width 20 (polar_pocket makes a round one)"
     assert refusal("polar_slot", width=20, length=20) == f"polar_slot: {rule}"
-    assert planned("polar_slot", width=20, length=20.01).reach == pytest.approx(0.005)
+    assert planned("polar_slot", width=20, length=20.01).end_distance == pytest.approx(0.005)
 
 
 REFUSING = LATHE._replace(pole_refused=True)

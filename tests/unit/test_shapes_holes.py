@@ -11,7 +11,7 @@ from g12.errors import Refusal
 from g12.request.context import Tool
 from g12.shapes import holes
 from g12.shapes.entries import LEFT_OUT, ShapeEntries
-from g12.shapes.holes import HoleMachine, shorter_way
+from g12.shapes.holes import HoleMachine, shorter_turn
 from support.planner_context import MM
 
 STANDING = MM._replace(spindle_tool=Tool(1, 3.0), x=30.0, z=10.0, speed=500.0)
@@ -37,7 +37,7 @@ def plan(name, found=STANDING, machine=MACHINE, **values):
 
 @given(st.floats(-2000, 2000))
 def test_c_turns_the_shorter_way(angle):
-    turn = shorter_way(angle)
+    turn = shorter_turn(angle)
     assert abs(turn) <= 180
     assert abs((turn - angle + 180) % 360 - 180) < 1e-9
 
@@ -56,21 +56,21 @@ def test_c_turns_the_shorter_way(angle):
 def test_first_and_further_turns(c, first, step, first_turn, turn):
     found = plan("face_holes", machine=MACHINE._replace(c=c), first_angle=first, step_angle=step)
     assert (found.first_turn, found.turn) == pytest.approx((first_turn, turn))
-    assert found.holes == 6 and found.place.x == 15
+    assert found.holes == 6 and found.position.x == 15
 
 
 def test_a_hole_by_x_and_c():
     found = plan("face_hole_at")
-    assert found.place.x == pytest.approx(sqrt(125))
+    assert found.position.x == pytest.approx(sqrt(125))
     assert found.first_turn == pytest.approx(26.565051)
-    assert plan("face_hole_at", x=LEFT_OUT, c=LEFT_OUT).place.x == 0
+    assert plan("face_hole_at", x=LEFT_OUT, c=LEFT_OUT).position.x == 0
     radii = MACHINE._replace(diameters=False)
-    assert plan("face_hole_at", machine=radii, c=0.0).place.x == 20
+    assert plan("face_hole_at", machine=radii, c=0.0).position.x == 20
 
 
 def test_a_tool_beside_the_x_line_stands_nearer():
     found = plan("face_holes", machine=MACHINE._replace(beside=9.0))
-    assert found.place.x == pytest.approx(12)
+    assert found.position.x == pytest.approx(12)
     assert found.first_turn == pytest.approx(-36.869898)
 
 

@@ -2,16 +2,16 @@
 """The rules and numbers of ``o<face_holes>``, ``o<side_holes>`` and ``o<face_hole_at> call``.
 
 Holes on a lathe's face lie along Z, those on its side along X. C turns from hole to hole, the
-shorter way, while the tool stands at the retract height or above. The motion is
-`ngc/g12_holes.ngc`. LinuxCNC's own drilling cycles take no C; in G7 and G19 2.9.0 does not halve
-their R (its issue 2948), so they are not used.
+shorter way, while the tool is at the retract height or above. The motion is `ngc/g12_holes.ngc`.
+LinuxCNC's own drilling cycles take no C; in G7 and G19 2.9.0 does not halve their R (its issue
+2948), so they are not used.
 
 Rules, in the order of the checks: a tool in the spindle; where the holes are; depth and retract
 above 0; kind 0 to 3; feed above 0; no peck but in drilling; dwell from 0; a tap's spindle on, the
 right way; the tool above the face, or outside the surface; not too many moves.
 
-Lengths are in program units, X is a radius, angles are in degrees. A height is that above the face
-or the surface.
+Lengths are in program units, X is a radius, angles are in degrees. Heights are above the face or
+the surface.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ MOST_HOLES = 360
 DRILL, TAP_RIGHT, TAP_LEFT, BORE = range(4)  # kind
 SPINDLE_CODES = {TAP_RIGHT: 3, TAP_LEFT: 4}  # M codes
 TURN = 360.0
-CHIP_MM = 0.254  # how far a drill goes back to break a chip, or stays off when it comes again
+CHIP_MM = 0.254  # chip break: retract; full retract: clearance of the rapid back to the bottom
 
 
 class HoleMachine(NamedTuple):
-    """What holes have to know of the machine and its state.
+    """The machine's state that holes depend on.
 
-    ``c`` is where C stands, ``spindle`` the number of the one that drives the tool,
-    ``spindle_code`` its M code, 3, 4 or 5, ``speed`` its S. The tool stands ``beside`` the X line,
-    towards C+. ``diameters``: an X entry is a diameter.
+    ``c`` is the position of C, ``spindle`` the number of the tool's spindle, ``spindle_code`` its M
+    code, 3, 4 or 5, ``speed`` its S. ``beside`` is the tool's distance from the X line, towards C+.
+    ``diameters``: an X entry is a diameter.
     """
 
     c: float
@@ -55,11 +55,11 @@ class HoleMachine(NamedTuple):
     diameters: bool
 
 
-class HolePlace(NamedTuple):
+class HolePosition(NamedTuple):
     """The first hole: its X and Z at the face or surface, C there, and the tool's axis.
 
-    ``x_axis`` and ``z_axis`` are by how much X and Z grow with the height: 0 or 1. ``stands`` is
-    the height at which the tool stands.
+    ``x_axis`` and ``z_axis``: X and Z change by this times a height, 0 or 1. ``height`` is the
+    tool's at the start.
     """
 
     x: float
@@ -67,13 +67,13 @@ class HolePlace(NamedTuple):
     angle: float
     x_axis: int
     z_axis: int
-    stands: float
+    height: float
 
 
 class Hole(NamedTuple):
-    """One hole, as the sub makes it.
+    """The values of one hole for the sub.
 
-    ``pecks`` passes, each by ``step`` deeper; ``full`` 1: out to the retract height after each,
+    ``pecks`` passes, each deeper by ``step``. ``full`` 1: retract to the retract height after each,
     else by ``clear``. ``feed`` is a tap's pitch.
     """
 
@@ -89,10 +89,10 @@ class Hole(NamedTuple):
 
 
 class HolesPlan(NamedTuple):
-    """Holes that are fit to make: ``holes`` of them, C turning by ``turn`` from one to the next.
+    """Checked holes: ``holes`` of them, with a turn of C by ``turn`` from one to the next.
 
-    ``first_turn`` is how far C turns to the first one, from ``c``; ``travel`` the height at which
-    the tool goes there.
+    ``first_turn`` is the turn of C from ``c`` to the first one, ``travel`` the tool's height during
+    it.
     """
 
     holes: int
@@ -100,22 +100,23 @@ class HolesPlan(NamedTuple):
     first_turn: float
     turn: float
     travel: float
-    place: HolePlace
+    position: HolePosition
     hole: Hole
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of the subs beside their entries; X is a radius."""
         own = {name: getattr(self, name) for name in ("first_turn", "turn", "travel")}
-        place = {f"at_{name}": value for name, value in self.place._asdict().items()}
-        return {"count": self.holes, **own, **place, **self.hole._asdict()}
+        position = {f"at_{name}": value for name, value in self.position._asdict().items()}
+        return {"count": self.holes, **own, **position, **self.hole._asdict()}
 
     def extent(self) -> Extent:
-        """Return how far the axes go, from where the tool travels."""
-        place, heights = self.place, (-self.hole.depth, self.travel)
+        """Return the extent of the axes' motion, from the travel height."""
+        position, heights = self.position, (-self.hole.depth, self.travel)
         first = self.c + self.first_turn
         angles = (self.c, first, first + self.turn * (self.holes - 1))
         ends = [
-            (place.x + place.x_axis * height, place.z + place.z_axis * height) for height in heights
+            (position.x + position.x_axis * height, position.z + position.z_axis * height)
+            for height in heights
         ]
         x, z = zip(*ends)
         return Extent((min(x), max(x)), (min(z), max(z)), (min(angles), max(angles)))
@@ -136,8 +137,8 @@ def plan_face_hole_at(entries: ShapeEntries, context: Context, machine: HoleMach
     check_tool(entries, context)
     x = (entries.take("x") or 0.0) / (2 if machine.diameters else 1)
     c = entries.take("c") or 0.0
-    place = on_face(entries, context, machine, hypot(x, c), degrees(atan2(c, x)))
-    return plan_holes(entries, context, machine, place, 1, 0.0)
+    position = on_face(entries, context, machine, hypot(x, c), degrees(atan2(c, x)))
+    return plan_holes(entries, context, machine, position, 1, 0.0)
 
 
 def plan_side_holes(entries: ShapeEntries, context: Context, machine: HoleMachine) -> HolesPlan:
@@ -154,34 +155,34 @@ def plan_side_holes(entries: ShapeEntries, context: Context, machine: HoleMachin
             f"X{number(context.x)} (radius): the tool must stand outside the surface, beyond"
             f" {number(radius)}"
         )
-    place = HolePlace(radius, z, angle, 1, 0, context.x - radius)
-    return plan_holes(entries, context, machine, place, count, turn)
+    position = HolePosition(radius, z, angle, 1, 0, context.x - radius)
+    return plan_holes(entries, context, machine, position, count, turn)
 
 
 def plan_holes(
     entries: ShapeEntries,
     context: Context,
     machine: HoleMachine,
-    place: HolePlace,
+    position: HolePosition,
     count: int,
     turn: float,
 ) -> HolesPlan:
-    """Return the holes that begin at a place."""
+    """Return the holes that begin at a position."""
     hole = hole_of(entries, context, machine)
     check_moves(entries, count * (3 * hole.pecks + 3), "count and peck make")
     return HolesPlan(
         holes=count,
         c=machine.c,
-        first_turn=shorter_way(place.angle - machine.c),
-        turn=shorter_way(turn),
-        travel=max(place.stands, hole.retract),
-        place=place,
+        first_turn=shorter_turn(position.angle - machine.c),
+        turn=shorter_turn(turn),
+        travel=max(position.height, hole.retract),
+        position=position,
         hole=hole,
     )
 
 
 def check_tool(entries: ShapeEntries, context: Context) -> None:
-    """Refuse to drill without a tool."""
+    """Refuse to drill without a loaded tool."""
     if context.spindle_tool is None:
         raise entries.refuse("no tool is loaded")
 
@@ -192,22 +193,22 @@ def count_of(entries: ShapeEntries) -> int:
 
 
 def hole_turn(entries: ShapeEntries, count: int) -> float:
-    """Return the angle from hole to hole: step_angle, or a full circle of holes."""
+    """Return the angle from hole to hole: step_angle, or a full circle by the number of holes."""
     if "step_angle" not in entries:
         return TURN / count
     return entries.angle("step_angle")
 
 
-def shorter_way(angle: float) -> float:
-    """Return an angle as the shorter way to turn, from -180 to 180; 180 keeps its sign."""
+def shorter_turn(angle: float) -> float:
+    """Return an angle as the shorter turn, from -180 to 180; 180 keeps its sign."""
     short = angle - TURN * ceil((angle - TURN / 2) / TURN)
     return -short if short == TURN / 2 and angle < 0 else short
 
 
 def on_face(
     entries: ShapeEntries, context: Context, machine: HoleMachine, radius: float, angle: float
-) -> HolePlace:
-    """Return the place of a hole on the face; a tool beside the X line stands nearer in X."""
+) -> HolePosition:
+    """Return the position of a hole on the face; with a tool beside the X line X is smaller."""
     if not context.z > 0:
         raise entries.refuse(f"Z{number(context.z)}: the tool must stand above the face at Z0")
     beside = machine.beside
@@ -217,11 +218,11 @@ def on_face(
             f" lets the tool no nearer than {number(abs(beside))}"
         )
     x = sqrt(radius**2 - beside**2)
-    return HolePlace(x, 0.0, angle - degrees(atan2(beside, x)), 0, 1, context.z)
+    return HolePosition(x, 0.0, angle - degrees(atan2(beside, x)), 0, 1, context.z)
 
 
 def hole_of(entries: ShapeEntries, context: Context, machine: HoleMachine) -> Hole:
-    """Return what each hole is."""
+    """Return the values of each hole."""
     depth = entries.require_positive("depth", "how deep, from the face or surface")
     retract = entries.require_positive("retract", "the height at which the tool is clear")
     kind = entries.take_whole("kind", least=DRILL, most=BORE, default=DRILL)
@@ -243,7 +244,7 @@ def hole_of(entries: ShapeEntries, context: Context, machine: HoleMachine) -> Ho
 
 
 def hole_feed(entries: ShapeEntries, context: Context, tap: bool) -> float:
-    """Return the feed, the active F if it is left out; of a tap its pitch, which is no F."""
+    """Return the feed, by default the active F; for a tap the pitch, which has no default."""
     if tap:
         return entries.require_positive("feed", "a tap's pitch")
     feed = entries.positive("feed", context.feed)
@@ -255,7 +256,7 @@ def hole_feed(entries: ShapeEntries, context: Context, tap: bool) -> float:
 
 
 def check_tapping(entries: ShapeEntries, machine: HoleMachine, kind: int) -> None:
-    """Refuse a tap whose spindle stands, or turns the other way: it would wait, or break."""
+    """Refuse a tap with its spindle off or reversed: the machine would wait, or the tap break."""
     code = SPINDLE_CODES[kind]
     if machine.spindle_code != code or not machine.speed:
         hand = "right" if kind == TAP_RIGHT else "left"

@@ -2,12 +2,12 @@
 """The rules and numbers of ``o<polar_slot> call``: a slot with round ends about the centre.
 
 The motion is that of `g12.shapes.rings`, along a line through the spindle's centre. A cutter as
-wide as the slot, or as what the allowance leaves of it, has a first ring of 0: it goes down to and
-fro along the line, through the centre.
+wide as the slot less its allowance has a first ring of 0: it ramps down to and fro along the line,
+through the centre.
 
 Rules, in the order of the checks: a tool with a diameter in the spindle; width, length above 0, the
 slot longer than wide; depth and depth_per_pass above 0; allowance from 0; room for the cutter;
-feeds above 0; angle; the tool above the face; not too long a way down, not too many moves; no way
+feeds above 0; angle; the tool above the face; not too long a descent, not too many moves; no path
 through the centre where [G12] POLAR_POLE refuses it.
 """
 
@@ -45,12 +45,12 @@ ENTRIES = (
 
 
 class SlotPlan(NamedTuple):
-    """A slot that is fit to cut; ``reach`` is how far the centre of each end is from the middle.
+    """A checked slot; ``end_distance`` is that of each end's centre from the middle.
 
     Lengths and feeds are in program units, ``start_angle`` in degrees.
     """
 
-    reach: float
+    end_distance: float
     rings: ClearingRings
     ramp: RampDown
     levels: Levels
@@ -60,15 +60,15 @@ class SlotPlan(NamedTuple):
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/polar_slot.ngc` beside its entries."""
-        parts = locals_of(self.rings, self.ramp, self.levels, self.feeds, self.heights)
-        return parts | {"reach": self.reach, "start_angle": self.start_angle}
+        numbers = locals_of(self.rings, self.ramp, self.levels, self.feeds, self.heights)
+        return numbers | {"end_distance": self.end_distance, "start_angle": self.start_angle}
 
     def extent(self) -> Extent:
-        """Return how far the tool's centre goes; every half turn turns C half round, onward."""
+        """Return the extent of the tool's centre; every half turn is half a turn of C, onward."""
         turned = 180.0 * (half_turns_in_all(self.rings, self.levels, self.ramp) + 1)
         to_and_fro = not self.rings.first_ring
         return Extent(
-            (min(self.rings.first_ring, self.reach), self.reach + self.rings.largest),
+            (min(self.rings.first_ring, self.end_distance), self.end_distance + self.rings.largest),
             (-self.levels.levels * self.levels.step_down, self.heights.start_z),
             (self.start_angle - 180.0 * to_and_fro, self.start_angle + turned),
         )
@@ -87,12 +87,12 @@ def plan_slot(entries: ShapeEntries, context: Context, machine: ShapeMachine) ->
     feeds = feeds_of(entries, context, machine)
     angle = entries.angle("angle")
     heights = heights_of(entries, context)
-    reach = (length - width) / 2
-    ramp = ramp_of(entries, machine, rings, levels, heights, 2 * reach)
-    if machine.pole_refused and min(rings.first_ring, reach) <= machine.pole:
+    end_distance = (length - width) / 2
+    ramp = ramp_of(entries, machine, rings, levels, heights, 2 * end_distance)
+    if machine.pole_refused and min(rings.first_ring, end_distance) <= machine.pole:
         size = context.tool_size(2 * cutter)
         raise entries.refuse(
             f"{entries.written('width', width)}: the cutter of {size} would pass"
             " through the spindle's centre, which [G12] POLAR_POLE = refuse forbids"
         )
-    return SlotPlan(reach, rings, ramp, levels, feeds, heights, angle)
+    return SlotPlan(end_distance, rings, ramp, levels, feeds, heights, angle)
