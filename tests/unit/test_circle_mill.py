@@ -161,14 +161,14 @@ def test_a_pair_is_a_perimeter_and_one_that_puts_the_tool_inside_a_pocket(d, h):
 
 def test_g91_counts_xy_from_the_tool_and_z_from_w():
     event = code("Z-.6 E.5", INCH._replace(incremental=True, x=5.0, y=-1.0, z=0.7))
-    assert (event.place.x, event.place.y) == (6.0, 1.0)
-    assert (event.place.first_plane, event.place.second_plane) == (0.1, 0.5)
+    assert (event.position.x, event.position.y) == (6.0, 1.0)
+    assert (event.position.first_plane, event.position.second_plane) == (0.1, 0.5)
     assert event.depths.final_z == pytest.approx(-0.5)
 
 
 def test_w_is_modal_and_o_is_w_unless_given():
     for words, without, planes in (("", "I", (0.2, 0.2)), ("E.4", "", (0.1, 0.4))):
-        place = code(words, plane=0.2, without=without).place
+        place = code(words, plane=0.2, without=without).position
         assert (place.first_plane, place.second_plane) == planes
 
 
@@ -207,7 +207,7 @@ def test_a_perimeter_is_the_default_of_the_call():
 
 
 def test_the_tool_below_w_is_raised_first():
-    assert [code(found=INCH._replace(z=z)).place.below for z in (0.05, 0.1)] == [True, False]
+    assert [code(found=INCH._replace(z=z)).position.below for z in (0.05, 0.1)] == [True, False]
 
 
 def test_a_roughing_width_above_the_tool_diameter_is_a_message():

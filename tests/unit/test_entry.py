@@ -14,7 +14,7 @@ from g12.cycles.entry import (
     Helix,
     PocketEntry,
     helix_of,
-    way_down,
+    pocket_descent,
 )
 from g12.errors import Refusal
 from g12.request.words import Words
@@ -67,7 +67,7 @@ def test_the_last_half_turns_bend_by_less_than_a_degree_each():
 
 
 def down(first, heights, entry=HELIX):
-    return way_down(Words("G13", {}), MM._replace(feed=600.0), entry, first, 5.0, heights)
+    return pocket_descent(Words("G13", {}), MM._replace(feed=600.0), entry, first, 5.0, heights)
 
 
 @pytest.mark.parametrize(("first", "side"), [(3.0, 1), (8.0, -1)])
@@ -106,7 +106,7 @@ def test_the_advice_of_a_refused_helix_holds(cutter, height, advice):
     """With D0 no size of the cutter limits the helix."""
 
     def narrow(first, deep):
-        way_down(Words("G13", {}), MM, HELIX, first, cutter, (deep, 1.0))
+        pocket_descent(Words("G13", {}), MM, HELIX, first, cutter, (deep, 1.0))
 
     with pytest.raises(Refusal) as refused:
         narrow(0.01, height)

@@ -36,7 +36,7 @@ ROLES = {
     "check_at_start",
     "plan",
     "plan_circle",
-    "left_material",
+    "uncut_material",
 }  # one meaning, many files
 MOST_FILES = 16  # of a room, its __init__ among them
 SHARED = [path.stem for path in PACKAGE.glob("*.py") if path.stem[:2] != "__"]

@@ -13,7 +13,7 @@ The motions of `ngc/g12_circle_mill.ngc`:
 3. perimeter: one circle at F. Pocket: feed in -Y by the roughing width, circle at F, and so on
    outward
 4. for each further level: a pocket retracts 0.1 in, not above W, and rapids back to the centre
-   first; a perimeter plunges on where it stands
+   first; a perimeter plunges on the spot
 5. L with bottom finish: one more level, at Z
 6. L: half circle of diameter L onto the finished side, circle, half circle off it, at V
 7. rapid to O, rapid in XY to where the event started
@@ -27,7 +27,7 @@ tool inside; no finish with C0; W known from here or an earlier event, O not bel
 K, J, P above 0; a tool with a diameter in the spindle; R with room for it; J in pockets only, and
 not too small; the deepest rough level below W; not too many circles; L not too small.
 
-`check_start` is not asked: the first move goes to the plunge point, which X and Y name.
+`check_start` is not needed: the first move goes to the plunge point, which X and Y name.
 """
 
 from typing import NamedTuple
@@ -66,7 +66,7 @@ SIDES = {  # by rough direction, then C: the tool centre, left, right of the pro
 
 
 class Spelling(NamedTuple):
-    """The letters of the entries that the two front ends write differently."""
+    """The letters of the entries that differ between the two front ends."""
 
     first_plane: str
     second_plane: str
@@ -80,7 +80,7 @@ CALL = Spelling("W", "O", "C", "L")
 
 
 class EventEntries(NamedTuple):
-    """An event as its front end read it, entries that both share still among the words.
+    """An event as its front end read it; entries that both share are still among the words.
 
     ``plane`` is the first reference plane last commanded (None: none was), ``finish`` the
     finish dimension L (0: no finish), ``bottom`` whether it is for the bottom as well.
@@ -105,7 +105,7 @@ class EventEntries(NamedTuple):
 
 
 class EventCircle(NamedTuple):
-    """The circle as programmed, and on which side of it the tool's centre runs."""
+    """The circle as programmed, and the side of it on which the tool's centre runs."""
 
     x: float
     y: float
@@ -116,7 +116,7 @@ class EventCircle(NamedTuple):
 
 
 class EventPosition(NamedTuple):
-    """Where the event goes in XY, its reference planes; ``below``: the tool starts below W."""
+    """The event's XY positions and reference planes; ``below``: the tool starts below W."""
 
     x: float
     y: float
@@ -154,7 +154,7 @@ class Depths(NamedTuple):
 
 
 class SideFinish(NamedTuple):
-    """The pass along the side, ``side_finish`` False for none, and its tangent entry."""
+    """The finish pass along the side, ``side_finish`` False for none, and its tangent entry."""
 
     side_finish: bool
     finish_radius: float
@@ -176,9 +176,9 @@ class EventFeeds(NamedTuple):
 
 
 class MillEvent(NamedTuple):
-    """An event that is fit to cut. Lengths and feeds are in program units."""
+    """A checked event. Lengths and feeds are in program units."""
 
-    place: EventPosition
+    position: EventPosition
     roughing: Roughing
     depths: Depths
     side_finish: SideFinish
@@ -186,16 +186,16 @@ class MillEvent(NamedTuple):
     message: str | None  # for the operator, never a refusal
 
     def extent(self) -> CycleExtent:
-        """Return how far the cycle goes."""
-        place, final = self.place, self.depths.final_z
+        """Return the extent of the cycle."""
+        position, final = self.position, self.depths.final_z
         radius = max(self.roughing.rough_radius, self.side_finish.radius)
-        heights = (place.first_plane, place.second_plane, final)
-        return CycleExtent(XY, (place.x, place.y, final), radius, heights)
+        heights = (position.first_plane, position.second_plane, final)
+        return CycleExtent(XY, (position.x, position.y, final), radius, heights)
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/g12_circle_mill.ngc`."""
-        parts = (self.place, self.roughing, self.depths, self.side_finish, self.feeds)
-        return {name: value for part in parts for name, value in part._asdict().items()}
+        groups = (self.position, self.roughing, self.depths, self.side_finish, self.feeds)
+        return {name: value for group in groups for name, value in group._asdict().items()}
 
 
 def plan_code(words: Words, context: Context, plane: float | None, pocket: bool) -> MillEvent:
@@ -280,7 +280,7 @@ def plan_event(entries: EventEntries) -> MillEvent:
         depths,
         side_finish_of(entries, circle, tool),
         EventFeeds(plunge_feed, context.feed, entries.finish_feed),
-        left_material(entries, roughing, tool),
+        uncut_material(entries, roughing, tool),
     )
 
 
@@ -365,7 +365,7 @@ def check_room(entries: EventEntries, circle: EventCircle, tool: Tool, radius: f
 
 
 def rings_of(entries: EventEntries, outermost: float, tool: Tool, width: float | None) -> int:
-    """Return how many equal steps outward, none wider than ``width``, lead to the last ring."""
+    """Return the number of equal steps outward to the last ring, none wider than ``width``."""
     length = entries.context.length
     widest = 2 * tool.radius - length(NARROWER_MM) if width is None else width
     least = length(SMALLEST_RING_MM)
@@ -407,7 +407,7 @@ def depths_of(
 def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> SideFinish:
     """Return the side finish; refuse a finish dimension too small for its entry arcs.
 
-    Inside, the entry arc turns the way of the cut; outside, the other way.
+    Inside, the entry arc has the direction of the cut; outside, the opposite one.
     """
     smallest = entries.context.length(SMALLEST_RING_MM)
     if 0 < entries.finish < smallest:
@@ -423,8 +423,8 @@ def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> Si
     )
 
 
-def left_material(entries: EventEntries, roughing: Roughing, tool: Tool) -> str | None:
-    """Return the operator message of a pocket that leaves material standing, or None."""
+def uncut_material(entries: EventEntries, roughing: Roughing, tool: Tool) -> str | None:
+    """Return the operator message of a pocket that leaves material uncut, or None."""
     rounding = entries.context.length(ROUNDING_MM)
     if roughing.roughing_width <= 2 * tool.radius + rounding:
         return None

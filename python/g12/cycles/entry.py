@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How a cycle goes down into the material: straight, or along a helix about its centre.
+"""The plunge of a cycle: straight down, or along a helix about its centre.
 
-The helix is made of half turns. All fall alike, but for the last few, whose slope is less and less
-so that the tool turns no corner where it comes to the level; there it goes once round. It ends
-where it began. Lengths are in program units.
+The helix is made of half turns with the same fall each. The slope of the last few decreases, so
+that the tool path has no corner where it reaches the level. One full circle at that level follows.
+The helix ends at the angle where it began. Lengths are in program units.
 """
 
 from math import atan, ceil, pi, radians, tan
@@ -13,13 +13,13 @@ from g12.errors import number
 from g12.request.context import Context
 from g12.request.words import Words
 
-CLEARED = 0.9  # of the cutter's radius: a helix as large leaves no core
-LEAST_CORNER = radians(0.99)  # between half turns
+CLEARED = 0.9  # of the cutter's radius: a helix up to this radius leaves no core
+LEAST_CORNER = radians(0.99)  # greatest change of slope from one half turn to the next
 MOST_HALF_TURNS = 2000
 
 
 class PocketEntry(NamedTuple):
-    """The machine's choice: [G12] ENTRY, ENTRY_ANGLE in degrees, PLUNGE_FEED in per cent of F."""
+    """The machine's settings [G12] ENTRY, ENTRY_ANGLE in degrees, PLUNGE_FEED in per cent of F."""
 
     helix: bool = False
     angle: float = 3.0
@@ -30,7 +30,7 @@ STRAIGHT_DOWN = PocketEntry()
 
 
 class Descent(NamedTuple):
-    """A way down by some height: ``turns`` half turns that fall by ``fall`` each, then the last.
+    """A descent: ``turns`` half turns that fall by ``fall`` each, then the last ones of the helix.
 
     No turns: straight down.
     """
@@ -40,14 +40,14 @@ class Descent(NamedTuple):
 
 
 class Helix(NamedTuple):
-    """Helices of one radius: ``last`` half turns at their end are less and less steep."""
+    """Helices of one radius, whose ``last`` half turns have a decreasing slope."""
 
     radius: float = 0.0
     slope: float = 0.0
     last: int = 0
 
     def descent(self, height: float) -> Descent:
-        """Return the descent by a height, no steeper than the slope and a whole turn long."""
+        """Return the descent by a height, at most as steep as the slope, in whole turns."""
         if not self.radius or height <= 0.0:
             return Descent()
         rest = 0.5 * self.last
@@ -56,8 +56,8 @@ class Helix(NamedTuple):
         return Descent(turns, height / (turns + rest))
 
 
-class WayDown(NamedTuple):
-    """How a pocket's levels are reached: the first, each further one; F in the plane and down."""
+class PocketDescent(NamedTuple):
+    """The descent to a pocket's first level and to each further one; F in the plane and down."""
 
     helix: Helix
     first: Descent
@@ -66,7 +66,7 @@ class WayDown(NamedTuple):
     plunge_feed: float
 
     def locals(self, first_radius: float) -> dict[str, float]:
-        """Return the named locals of `ngc/g12_haas.ngc` that are about it."""
+        """Return the named locals of `ngc/g12_haas.ngc` for the descent."""
         common = {
             "turns": self.first.turns,
             "feed": self.feed,
@@ -93,15 +93,15 @@ def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
     return Helix(radius, slope, ceil(atan(slope) / LEAST_CORNER) - 1)
 
 
-def way_down(
+def pocket_descent(
     words: Words,
     context: Context,
     entry: PocketEntry,
     first: float,
     cutter: float,
     heights: tuple[float, float],
-) -> WayDown:
-    """Return the descent in a pocket, or refuse a helix that hardly comes down.
+) -> PocketDescent:
+    """Return the descent in a pocket, or refuse a helix of too many turns.
 
     ``first`` is the radius of the first ring of the tool's centre, ``cutter`` the cutter's, and
     ``heights`` are those of the first level and of each further one.
@@ -109,11 +109,13 @@ def way_down(
     helix = helix_of(entry, first, cutter)
     check_helix(words, helix, heights[0], cutter)
     to_first, further = map(helix.descent, heights)
-    return WayDown(helix, to_first, further, context.feed, context.feed * (entry.feed / 100.0))
+    return PocketDescent(
+        helix, to_first, further, context.feed, context.feed * (entry.feed / 100.0)
+    )
 
 
 def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> None:
-    """Refuse a helix so narrow that it would hardly come down; ``cutter`` is its radius."""
+    """Refuse a helix so narrow that it needs too many turns; ``cutter`` is the cutter's radius."""
     turns = helix.descent(height).turns
     if turns <= MOST_HALF_TURNS:
         return

@@ -7,9 +7,9 @@ The motions of `ngc/g12_haas.ngc`, per level:
 
 1. with X or Y in the block: rapid to the centre at the present Z (before the first level)
 2. feed to the level's Z in the centre; without Z in the block it is the present one. Or, with a
-   helix (`ngc/g12_helix.ngc`): a half circle onto it, down along it (`entry`), once round, and as
-   a half turn onto the first ring, if that is larger; 3 is done then, and 4 too
-3. half circle from the centre to (+b, 0), turning the way of the cut, tangent to the ring
+   helix (`ngc/g12_helix.ngc`): a half circle onto it, down along it (`entry`), one full circle, and
+   a half turn onto the first ring, if that is larger; 3 and 4 are done then
+3. half circle from the centre to (+b, 0), in the direction of the cut, tangent to the ring
 4. full circle of radius b
 5. for each further ring: a tangent link outward, then its full circle; the last is K exactly
 6. tangent half circle back to the centre; Z stays at depth after the last level
@@ -19,12 +19,12 @@ A tool-centre radius b is the programmed radius less the tool radius.
 Rules, in the order of the checks: G17 and the modes of `check_modes`; every word known; I
 required; K and Q together, both above 0; L whole, from 1; without X and Y `check_start`; D whole,
 from 0, in the tool table, or a cutter known without it; I above 0, greater than the tool radius by
-a ring that can be cut, less than K; not too many circles; a helix that comes down.
+a ring that can be cut, less than K; not too many circles; a helix of not too many turns.
 """
 
 from typing import NamedTuple
 
-from g12.cycles.entry import CLEARED, STRAIGHT_DOWN, PocketEntry, WayDown, way_down
+from g12.cycles.entry import CLEARED, STRAIGHT_DOWN, PocketDescent, PocketEntry, pocket_descent
 from g12.errors import number
 from g12.request.common import (
     ROUNDING_MM,
@@ -45,7 +45,7 @@ KNOWN_WORDS = "X Y Z I K Q L D F"
 
 
 class Pocket(NamedTuple):
-    """A pocket that is fit to cut. Lengths in program units, radii of the tool centre."""
+    """A checked pocket. Lengths in program units, radii of the tool centre."""
 
     x: float
     y: float
@@ -55,16 +55,16 @@ class Pocket(NamedTuple):
     levels: int
     first_radius: float
     last_radius: float
-    links: int  # from ring to ring, or half turns of the spiral; the last ends at last_radius
-    first_grow: float  # by how much the first link grows
-    shrink: float  # by which share of that the last of several is shorter
+    links: int  # stepovers, or half turns of the spiral; the last ends at last_radius
+    first_grow: float  # growth of the radius by the first link
+    shrink: float  # the share of that by which the last of several is shorter
     spiral: bool
-    down: WayDown
+    down: PocketDescent
     commanded_radius: float | None  # of the cutter that D names, None without D
     message: str | None  # for the operator, never a refusal
 
     def extent(self) -> CycleExtent:
-        """Return how far the cycle goes."""
+        """Return the extent of the cycle."""
         deepest = self.z + self.z_step * (self.levels - 1)
         return CycleExtent(XY, (self.x, self.y, self.z), self.last_radius, (self.z, deepest))
 
@@ -113,7 +113,7 @@ def plan_pocket(
     z = coordinate(depth, context.z, context)
     z_step = depth or 0.0 if context.incremental else 0.0
     heights = context.z - z, -z_step
-    down = way_down(words, context, entry, first - cutter.radius, cutter.radius, heights)
+    down = pocket_descent(words, context, entry, first - cutter.radius, cutter.radius, heights)
     return Pocket(
         x=x,
         y=y,
@@ -130,7 +130,7 @@ def plan_pocket(
         down=down,
         commanded_radius=cutter.radius if with_d else None,
         message=upward(words, depth, context)
-        or left_material(words, outward, first, cutter, context, CLEARED * entry.helix),
+        or uncut_material(words, outward, first, cutter, context, CLEARED * entry.helix),
     )
 
 
@@ -152,9 +152,9 @@ def links_outward(
 
 
 def choose_cutter(words: Words, context: Context) -> tuple[Tool, str]:
-    """Return the cutter of the block and where it comes from, for messages.
+    """Return the cutter of the block and its source, for messages.
 
-    D in the block, else the D last commanded, else the tool in the spindle.
+    The source is D in the block, else the D last commanded, else the tool in the spindle.
     """
     tool = commanded_tool(words, context)
     if tool is not None:
@@ -197,7 +197,7 @@ def check_radii(
 def upward(words: Words, depth: float | None, context: Context) -> str | None:
     """Return the operator message of a pocket that begins above the tool, or None.
 
-    A lost minus sign looks like this; the control would go up and cut there, too.
+    It looks like a lost minus sign. The control would go up and cut there, too.
     """
     first = coordinate(depth, context.z, context)
     if depth is None or first <= context.z + context.length(ROUNDING_MM):
@@ -208,7 +208,7 @@ def upward(words: Words, depth: float | None, context: Context) -> str | None:
     )
 
 
-def left_material(
+def uncut_material(
     words: Words,
     outward: tuple[float, float] | None,
     first: float,
@@ -216,9 +216,9 @@ def left_material(
     context: Context,
     helix: float,
 ) -> str | None:
-    """Return the operator message of a pocket that leaves material standing, or None.
+    """Return the operator message of a pocket that leaves material uncut, or None.
 
-    ``helix`` is the greatest radius of one in tool radii, 0 without.
+    ``helix`` is the greatest radius of a helix in tool radii, 0 without.
 
     The control's own sample programs do this, so it is no error. With D0 the cutter's size
     is not known, and a single circle may well finish a bored hole: no message then.
@@ -231,7 +231,8 @@ def left_material(
             f"{words.code}: Q{number(stepover)} is greater than the tool diameter"
             f" {context.tool_size(2 * cutter.radius)}: material is left between the rings"
         )
-    # the entry clears the tool radius and the helix, the first ring begins at I - 2 tool radii
+    # the entry cuts up to the tool radius plus the helix; the first ring's inner edge is at I - 2
+    # tool radii
     most = 3 + helix
     if first > most * cutter.radius + rounding:
         remains = "a ring is left about the centre" if helix else "a core is left in the centre"

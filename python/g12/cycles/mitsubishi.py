@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G12/G13 circular cutting, dialect mitsubishi: words and modes in, one checked circle out.
 
-The motions of `ngc/g12_mitsubishi.ngc`, in the plane of G17, G18 or G19, from the centre where the
-tool stands:
+The motions of `ngc/g12_mitsubishi.ngc`, in the plane of G17, G18 or G19, from the tool's position,
+which is the centre:
 
-1. half circle out along the plane's first axis (X, Z, Y), turning the way of the cut
+1. half circle out along the plane's first axis (X, Z, Y), in the direction of the cut
 2. full circle
 3. half circle back to the centre
 
@@ -32,7 +32,7 @@ FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}
 
 
 class MitsubishiCircle(NamedTuple):
-    """A circle that is fit to cut: the named locals of `ngc/g12_mitsubishi.ngc`.
+    """A checked circle: the named locals of `ngc/g12_mitsubishi.ngc`.
 
     ``plane`` is 17, 18 or 19, ``centre`` a coordinate of the plane's first axis, ``radius`` the
     tool centre's, in program units.
@@ -43,7 +43,7 @@ class MitsubishiCircle(NamedTuple):
     radius: float
 
     def extent(self, context: Context) -> CycleExtent:
-        """Return how far the cycle goes, from where the tool stands in ``context``."""
+        """Return the extent of the cycle, from the tool's position in ``context``."""
         centre = (context.x, context.y, context.z)
         return CycleExtent(context.plane, centre, self.radius)
 
@@ -53,23 +53,23 @@ def plan_circle(words: Words, context: Context) -> MitsubishiCircle:
     check_modes(words, context, planes=tuple(FIRST_AXIS))
     words.check_known(KNOWN_WORDS)
     check_start(words, context)
-    wanted = words.require("I", "the radius of the circle")
+    radius = words.require("I", "the radius of the circle")
     tool = commanded_tool(words, context)
     if tool is None:
         raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")
-    check_radius(words, context, wanted, tool)
+    check_radius(words, context, radius, tool)
     return MitsubishiCircle(
         plane=int(context.plane[1:]),
         centre=getattr(context, FIRST_AXIS[context.plane]),
-        radius=abs(wanted) - tool.radius,
+        radius=abs(radius) - tool.radius,
     )
 
 
-def check_radius(words: Words, context: Context, wanted: float, tool: Tool) -> None:
-    """Refuse a circle that the cutter fills."""
+def check_radius(words: Words, context: Context, radius: float, tool: Tool) -> None:
+    """Refuse a circle too small for the cutter."""
     smallest = context.length(SMALLEST_RING_MM)
-    if abs(wanted) - tool.radius < smallest - context.length(ROUNDING_MM):
+    if abs(radius) - tool.radius < smallest - context.length(ROUNDING_MM):
         raise words.refuse(
-            f"I{number(wanted)} must be greater than the tool radius"
+            f"I{number(radius)} must be greater than the tool radius"
             f" {context.tool_size(tool.radius)} (D{tool.number}) by at least {number(smallest)}"
         )

@@ -4,10 +4,11 @@
 Source: Yasnac instructions, 2.9.9 "Circle Cutting (G12, G13)". Its page states I, R, D, F and
 their rules; K and Q (a spiral), L (repeats) and J (another letter for R) are our reading.
 
-The motions of `ngc/g12_yasnac.ngc`, at the present Z, from the centre where the tool stands:
+The motions of `ngc/g12_yasnac.ngc`, at the present Z, from the tool's position, which is the
+centre:
 
 1. fast along X to ``approach`` (R; without R the tool stays in the centre)
-2. half circle to ``first``, turning the way of the cut
+2. half circle to ``first``, in the direction of the cut
 3. with K and Q: half circles outward that grow to the finished circle in whole turns
 4. the finished circle, L times
 5. half circle back to ``approach``
@@ -45,7 +46,7 @@ KNOWN_WORDS = "I R (or J) K Q L D F"
 
 
 class YasnacCircle(NamedTuple):
-    """A circle that is fit to cut: the named locals of `ngc/g12_yasnac.ngc`.
+    """A checked circle: the named locals of `ngc/g12_yasnac.ngc`.
 
     Lengths in program units; ``approach``, ``first``, ``growth`` and ``radius`` are those of the
     tool centre along X, with the sign of I.
@@ -57,12 +58,12 @@ class YasnacCircle(NamedTuple):
     first: float
     half_turns: int
     growth: float  # of the first half turn
-    shrink: float  # share by which a half turn of the last turn grows less than the others
+    shrink: float  # relative reduction of that in the half turns of the last turn
     radius: float
     circles: int
 
     def extent(self, z: float) -> CycleExtent:
-        """Return how far the cycle goes, at the height ``z``."""
+        """Return the extent of the cycle at the level ``z``."""
         return CycleExtent(XY, (self.x, self.y, z), abs(self.radius))
 
 
@@ -76,7 +77,7 @@ class OffsetRadii(NamedTuple):
     smallest: float
 
     def position(self, word: float) -> float:
-        """Return the tool-centre position; exactly 0 if it only misses the centre by rounding."""
+        """Return the tool-centre position; exactly 0 if it differs from the centre by rounding."""
         position = word - self.offset
         return position if abs(position) > self.rounding else 0.0
 
@@ -122,7 +123,7 @@ def plan_circle(words: Words, context: Context) -> YasnacCircle:
 
 
 def take_traverse(words: Words) -> tuple[str, float] | None:
-    """Return letter and value of R, or of J in its place."""
+    """Return letter and value of R, or of J instead."""
     if "R" in words and "J" in words:
         raise words.refuse("R and J are the same word: give one of them")
     letter = "R" if "R" in words else "J"
@@ -154,7 +155,7 @@ def offset_radii(words: Words, context: Context, finished: float, tool: Tool) ->
 
 
 def approach_of(radii: OffsetRadii, traverse: tuple[str, float] | None, finished: float) -> float:
-    """Return where the fast move ends, 0 without R."""
+    """Return the end of the fast move, 0 without R."""
     if traverse is None:
         return 0.0
     last, approach = radii.position(finished), radii.position(traverse[1])
@@ -170,8 +171,8 @@ def half_turns_of(
 ) -> tuple[float, int, float, float]:
     """Return first radius, number, growth and shrink of the spiral's half turns.
 
-    Whole turns only, so that the finished circle begins on the side of I. The last turn grows
-    by what is left.
+    Whole turns only, so that the finished circle begins on the side of I. The last turn grows by
+    the remainder.
     """
     last = radii.position(finished)
     if spiral is None:

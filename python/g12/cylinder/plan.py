@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The plan of a section on a cylinder: moves of Z and C, with their feeds.
 
-With the radius r of the surface an angle of C is as long as r times the angle in radians. Z and
-that length are proportional to what the axes do: a line is one segment, exactly. The segments of an
-arc bulge alike everywhere; spacing shares the deviation between them.
+On a surface of radius r an angle of C is r times the angle in radians long. Z and that length are
+proportional to the axes' positions: a line is exactly one segment. The segments of an arc bulge
+equally everywhere; spacing shares the deviation between them.
 """
 
 import cmath
@@ -26,15 +26,15 @@ from g12.moves.steps import (
     StepMaker,
 )
 
-FEWEST = 2.0  # segments per radian of an arc: fewer would not be like it any more
+FEWEST = 2.0  # least segments per radian of an arc: fewer do not resemble it
 
 
 class CylinderSettings(NamedTuple):
-    """What the machine and its owner want of a section; lengths in program units."""
+    """The machine's limits and the owner's settings for a section; lengths in program units."""
 
     radius: float  # of the surface
     tolerance: float
-    least_z: float  # 0.001 mm: no segment with a turn of C changes Z by less, other than not at all
+    least_z: float  # 0.001 mm: a segment that turns C changes Z by this at least, or not at all
     x_acceleration: float  # per second squared
     z_acceleration: float
     c_acceleration: float  # degrees per second squared

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""From what a section finds and the machine's settings to the values it is read and planned by."""
+"""From the state at a section's start and the machine's settings to the values of its plan."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from g12.polar.words import POLAR_WORDS
 from g12.section.start import SectionStart, WordRules
 from g12.settings import Settings
 
-SEGMENTS_SHARE = 0.7  # of what a chord's length and the acceleration allow: measured
+SEGMENTS_SHARE = 0.7  # of the speed that a chord's length and the acceleration allow: measured
 
 
 def check_section_start(start: SectionStart, axes: Collection[str]) -> None:
@@ -36,7 +36,7 @@ def check_section_start(start: SectionStart, axes: Collection[str]) -> None:
 def polar_setup(
     start: SectionStart, settings: Settings, axes: dict[str, Axis], face: FaceAxes | None
 ) -> SectionSetup[PolarSettings]:
-    """Return what a section goes by; ``settings`` and ``axes`` are in machine units.
+    """Return the setup of a section; ``settings`` and ``axes`` are in machine units.
 
     ``face`` are the axes of the part's face, if the machine has its kinematics.
     """
@@ -89,7 +89,7 @@ def _face_limits(start: SectionStart, settings: Settings, face: FaceAxes, c: Axi
     tolerance = tolerance_of(start, settings)
     slide = face.slide.acceleration * start.machine_unit
     beside = settings.polar_tool_offset * start.machine_unit
-    nearest = slide / radians(c.acceleration)  # to the pole that the face is good for
+    nearest = slide / radians(c.acceleration)  # least distance from the pole on the face
     chord = sqrt(8.0 * tolerance * nearest)
     x, y = (axis.acceleration * start.machine_unit for axis in (face.x, face.y))
     return FaceLimits(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The words of a polar section: lengths in the flat X-C plane, with Z at right angles to it."""
+"""The words of a polar section: lengths in the flat X-C plane, and Z at right angles to it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the cycles of every dialect share: modes, coordinates, the tool that D names, counts.
+"""Rules that the cycles of every dialect share: modes, coordinates, the tool of D, counts.
 
 Counts of rings, levels and turns are decided here once, never rounded again in NGC.
 
@@ -27,8 +27,8 @@ def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,))
     """
     if context.plane not in planes:
         *others, last = planes
-        wanted = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"
-        raise words.refuse(f"needs {wanted}, but {context.plane} is active")
+        needed = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"
+        raise words.refuse(f"needs {needed}, but {context.plane} is active")
     if context.inverse_time:
         raise words.refuse("needs feed per minute or revolution (G94, G95), but G93 is active")
     if context.per_revolution and context.speed == 0:
@@ -40,7 +40,7 @@ def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,))
 
 
 def check_start(words: Words, context: Context) -> None:
-    """Refuse to begin where the tool stands if G40 has left it beside the programmed point."""
+    """Refuse to begin while the tool is still offset from the programmed point after a G40."""
     if context.offset_pending:
         raise words.refuse("the tool still stands offset: after G40 move in X or Y first")
 
@@ -92,8 +92,8 @@ def other_cutter(
 ) -> str | None:
     """Return the operator message where D is not the loaded tool by more than wear, or None.
 
-    D is believed: the loaded tool may be what is wrong. Without D ``last_radius`` counts. A tool
-    without a diameter, or none, is compared with nothing.
+    The cycle uses D: the loaded tool may be the mistake. Without D ``last_radius`` counts. There is
+    no comparison without a tool, or with one without a diameter.
     """
     named = context.tool_in_table(round(d_word)) if d_word else None
     radius = named.radius if named else last_radius if d_word is None else None
@@ -117,6 +117,6 @@ def check_count(words: Words, circles: int, cause: str) -> None:
 def steps_between(first: float, last: float, step: float, tolerance: float) -> int:
     """Return how many steps, none longer than ``step``, lead from ``first`` to ``last``.
 
-    A rest shorter than ``tolerance`` is rounding, not a step of its own.
+    A remainder shorter than ``tolerance`` is rounding, not a step of its own.
     """
     return max(0, math.ceil(min((last - first - tolerance) / step, COUNTLESS)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a block finds when it starts: modes, units, position, tools. Plain data, no LinuxCNC."""
+"""The state before a block: modes, units, position, tools. Plain data, no LinuxCNC."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -11,21 +11,21 @@ XY, YZ, XZ = "G17", "G19", "G18"
 
 
 class Tool(NamedTuple):
-    """A cutter as the block sees it: its number and its radius in program units."""
+    """A cutter: its number in the tool table and its radius in program units."""
 
     number: int
     radius: float
 
 
 class Context(NamedTuple):
-    """The interpreter's state in front of a block. Lengths are in program units.
+    """The interpreter's state before a block. Lengths are in program units.
 
     Position is in the active work coordinate system, tool offset applied, X as a radius.
-    ``speed`` is the commanded spindle speed in rpm. ``offset_pending`` tells that G40 came after
-    the last move: the tool is still beside the programmed point by its radius.
-    ``last_radius`` is the cutter radius of the last D commanded (None: none ever was),
-    ``tool_in_table(n)`` gives tool n or None. ``unit`` is the program's where the machine has
-    another, "mm" or "in": for sizes of the tool table in messages.
+    ``speed`` is the commanded spindle speed in rpm. ``offset_pending``: G40 came after the last
+    move, and the tool is still offset from the programmed point by its radius. ``last_radius`` is
+    the cutter radius of the last D commanded (None: none ever was), ``tool_in_table(n)`` gives tool
+    n or None. ``unit`` is the program's where the machine has another, "mm" or "in": for sizes of
+    the tool table in messages.
     """
 
     inch: bool

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Whether a cycle stays within the travel of the machine's axes, before anything of it moves."""
+"""Check of a cycle against the travel of the machine's axes, before its first motion."""
 
 from collections.abc import Mapping
 from math import cos, hypot, radians, sin
@@ -20,7 +20,7 @@ DIRECTIONS = {XY: (X, Y), XZ: (Z, X), YZ: (Y, Z)}
 class CycleExtent(NamedTuple):
     """The largest circle that a cycle's tool centre follows, in program coordinates and units.
 
-    ``heights`` are where else along Z than in the centre it goes.
+    ``heights`` are the other Z levels of the cycle.
     """
 
     plane: str
@@ -35,10 +35,10 @@ class CycleExtent(NamedTuple):
 
 
 class MachineFrame(NamedTuple):
-    """How program coordinates become the machine's.
+    """The transformation from program to machine coordinates.
 
-    Plus ``shift`` (G92), turned about Z by ``rotation`` degrees, plus ``offset`` (work and tool
-    offset), all in program units, which are ``unit`` machine units of ``millimetres`` each.
+    Add ``shift`` (G92), rotate about Z by ``rotation`` degrees, add ``offset`` (work and tool
+    offset). All are in program units, which are ``unit`` machine units of ``millimetres`` each.
     """
 
     shift: Point
@@ -54,7 +54,7 @@ class MachineFrame(NamedTuple):
         return x, y, z
 
     def half_widths(self, extent: CycleExtent) -> list[float]:
-        """Return how far the circle goes from its centre along each axis, in machine units."""
+        """Return the circle's extent from its centre along each axis, in machine units."""
         first, second = (self._turned(*along) for along in DIRECTIONS[extent.plane])
         return [self.unit * extent.radius * hypot(*pair) for pair in zip(first, second)]
 
@@ -72,11 +72,11 @@ def check_travel(
     """Refuse a cycle that leaves the limits of an axis, its lowest and highest machine position."""
     centres = [frame.position(point) for point in extent.points()]
     rounding = ROUNDING_MM / frame.millimetres
-    for letter, places, width in zip(LETTERS, zip(*centres), frame.half_widths(extent)):
+    for letter, centre_positions, width in zip(LETTERS, zip(*centres), frame.half_widths(extent)):
         low, high = limits[letter]
         for position, limit, side in (
-            (min(places) - width, low, -1),
-            (max(places) + width, high, 1),
+            (min(centre_positions) - width, low, -1),
+            (max(centre_positions) + width, high, 1),
         ):
             if side * (position - limit) > rounding:
                 raise words.refuse(_beyond(letter, position, limit, frame))

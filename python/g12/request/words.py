@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The words of one block: a dialect takes those it knows, any other is refused.
+"""The words of one block: a dialect takes the words it knows, and any other is refused.
 
 Every rule about a single word lives here, so that each refusal names the code, the word,
 the rule and the value in the same way.
@@ -23,14 +23,14 @@ class Words:
 
     def __init__(self, code: str, values: dict[str, float]) -> None:
         self.code = code
-        self._left = dict(values)
+        self._remaining = dict(values)
         for letter, value in values.items():
             if not abs(value) <= LARGEST:
                 raise self.refuse(f"{self.written(letter, value)} is beyond {number(LARGEST)}")
 
     def __contains__(self, letter: str) -> bool:
         """Return whether the word is in the block and not yet taken."""
-        return letter in self._left
+        return letter in self._remaining
 
     def refuse(self, rule: str) -> BlockRefusal:
         """Return the refusal of this block for breaking ``rule`` (the caller raises it)."""
@@ -38,29 +38,29 @@ class Words:
 
     @staticmethod
     def written(letter: str, value: float) -> str:
-        """Return a word as a program has it: ``I0.125``."""
+        """Return a word as it is written in a program: ``I0.125``."""
         return f"{letter}{number(value)}"
 
     def value(self, letter: str) -> float | None:
-        """Return the word's value and leave it to be taken, None if it is not there."""
-        return self._left.get(letter)
+        """Return the word's value without taking it, None if it is absent."""
+        return self._remaining.get(letter)
 
     def take(self, letter: str) -> float | None:
         """Return the word's value, or None if the block does not have it."""
-        return self._left.pop(letter, None)
+        return self._remaining.pop(letter, None)
 
     def require(self, letter: str, meaning: str) -> float:
         """Return the word's value; refuse a block without it."""
-        self._check_there(letter, meaning)
-        return self._left.pop(letter)
+        self._check_present(letter, meaning)
+        return self._remaining.pop(letter)
 
     def take_positive(self, letter: str) -> float | None:
         """Return the word's value, which must be above zero, or None."""
-        return self._positive(letter) if letter in self._left else None
+        return self._positive(letter) if letter in self._remaining else None
 
     def require_positive(self, letter: str, meaning: str) -> float:
         """Return the word's value, above zero; refuse a block without it."""
-        self._check_there(letter, meaning)
+        self._check_present(letter, meaning)
         return self._positive(letter)
 
     @overload
@@ -75,25 +75,25 @@ class Words:
         self, letter: str, least: int, default: int | None = None, most: int | None = None
     ) -> int | None:
         """Return the word's value, a whole number from ``least`` (to ``most``), or the default."""
-        return self._whole(letter, least, most) if letter in self._left else default
+        return self._whole(letter, least, most) if letter in self._remaining else default
 
     def require_whole(self, letter: str, meaning: str, least: int, most: int) -> int:
         """Return the word's value, a whole number; refuse a block without it."""
-        self._check_there(letter, meaning)
+        self._check_present(letter, meaning)
         return self._whole(letter, least, most)
 
-    def _check_there(self, letter: str, meaning: str) -> None:
-        if letter not in self._left:
+    def _check_present(self, letter: str, meaning: str) -> None:
+        if letter not in self._remaining:
             raise self.refuse(f"{letter} is missing: {meaning}")
 
     def _positive(self, letter: str) -> float:
-        value = self._left.pop(letter)
+        value = self._remaining.pop(letter)
         if not value > 0:
             raise self.refuse(f"{self.written(letter, value)} must be greater than 0")
         return value
 
     def _whole(self, letter: str, least: int, most: int | None) -> int:
-        value = self._left.pop(letter)
+        value = self._remaining.pop(letter)
         if abs(value - round(value)) > WHOLE:
             raise self.refuse(f"{self.written(letter, value)} must be a whole number")
         if round(value) < least:
@@ -106,7 +106,7 @@ class Words:
         """Return whether two words are in the block; refuse one without the other."""
         if (first in self) != (second in self):
             present, absent = (first, second) if first in self else (second, first)
-            given = self.written(present, self._left[present])
+            given = self.written(present, self._remaining[present])
             raise self.refuse(f"{given} needs {absent} as well")
         return first in self
 
@@ -118,7 +118,7 @@ class Words:
 
     def check_known(self, known: str) -> None:
         """Refuse a word that the dialect does not have; ``known`` lists its letters."""
-        for letter, value in self._left.items():
+        for letter, value in self._remaining.items():
             if letter not in known:
                 word = self.written(letter, value)
                 raise self.refuse(f"{word} is not a word of this cycle, which knows {known}")

@@ -83,7 +83,7 @@ MADE_OUTSIDE = re.compile(r"o<(face_holes?(?:_at)?|side_holes|polar_(?:polygon|s
 
 
 class SectionBlock(NamedTuple):
-    """What the parser made of a line: codes by modal group, -1 is none, and word values."""
+    """A parsed line: codes by modal group, -1 for none, and word values."""
 
     g: tuple[int, ...]
     m: tuple[int, ...]
@@ -102,9 +102,9 @@ def check_codes(
     rapid_allowed: bool,
     location: BlockLocation,
 ) -> None:
-    """Refuse codes as they are written: what is wrong is the code, whatever words stand with it.
+    """Refuse codes as they are written, before the parser complains about the words beside them.
 
-    ``codes`` are letters, with numbers times ten. The parser would find fault with words first.
+    ``codes`` are letters, with numbers times ten.
     """
     for letter, code in codes:
         if letter == "G" and code in GROUP_OF_G:
@@ -116,7 +116,7 @@ def check_codes(
 def check_call(text: str, off_code: str, location: BlockLocation) -> None:
     """Refuse a call of holes or a shape by its name; ``text`` has no blanks, in lower case.
 
-    Its sub turns C and moves by itself, while a section is planned whole before any of it moves.
+    Such a sub turns C and moves at once, but a section is planned as a whole before it moves.
     """
     called = MADE_OUTSIDE.search(text)
     if called:
@@ -127,7 +127,7 @@ def check_call(text: str, off_code: str, location: BlockLocation) -> None:
 
 
 def check_letters(line: TextLine, known: SectionWords, location: BlockLocation) -> None:
-    """Refuse words that a section does not know, and two words for one axis."""
+    """Refuse words that a section does not have, and two words for one axis."""
     for letter in line.letters:
         if letter in known.refused:
             raise location.refuse(f"{letter} is refused: {known.refused[letter]}")
@@ -140,7 +140,7 @@ def check_letters(line: TextLine, known: SectionWords, location: BlockLocation) 
 def check_block(
     block: SectionBlock, known: SectionWords, rapid_allowed: bool, location: BlockLocation
 ) -> None:
-    """Refuse codes that have no place in a section, each with its reason."""
+    """Refuse codes that no section may have, each with its reason."""
     for group, code in enumerate(block.g):
         if code != NO_CODE:
             _check_g(group, code, known, rapid_allowed, location)
@@ -180,7 +180,7 @@ def _check_m(code: int, location: BlockLocation) -> None:
 
 
 def _check_arguments(block: SectionBlock, location: BlockLocation) -> None:
-    """Refuse what LinuxCNC would find wrong with the words of an M code only between the moves."""
+    """Refuse words of an M code that LinuxCNC itself would refuse only later, between the moves."""
     words = block.words
     for code in block.m:
         needed = NEEDED_WORD.get(code)

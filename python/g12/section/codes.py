@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Which codes switch a section on and off: the user's choice, by the REMAP lines."""
+"""The codes that switch a section on and off, as the user's REMAP lines define them."""
 
 from collections.abc import Collection
 from typing import NamedTuple
@@ -11,9 +11,9 @@ from g12.section.block_rules import MOTION, SectionBlock
 class SectionCodes(NamedTuple):
     """The codes of sections, as the parser numbers them: G12.1 is 121.
 
-    ``off_code`` is the one that messages name. ``remapped`` tells of an M code whether it is
-    remapped to a sub (True) or to Python (False). ``word`` is the letter of a code that switches
-    both on and off: off where it is 0.
+    ``off_code`` is the one that messages name. ``remapped`` has the remapped M codes: True for a
+    sub, False for Python. ``word`` is the letter of a code that switches both on and off: off where
+    it is 0.
     """
 
     on: frozenset[int]

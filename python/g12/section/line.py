@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One line of a section: what the interpreter may parse of it, and what its words mean there.
+"""One line of a section: the text for the interpreter's parser, and the meaning of its words.
 
-The interpreter's parser reads every value, expression and parameter. It does not know G9, U, nor H
+The parser reads every value, expression and parameter. It does not know G9, U, nor H
 with a sign, nor Y or W on a lathe: `split_line` rewrites those (in polar mode U to X, H and Y to C)
-and says what they meant. A line of plain words, as most lines of a program are, is told by
+and returns their meaning. A line of plain words, as most lines of a program are, matches
 `SectionWords.plain` and needs none of it.
 """
 
@@ -31,7 +31,7 @@ PYTHON_LINE = ";py,"  # Interp::read_semicolon (interp_read.cc): at the very sta
 
 
 def plain_line_of(letters: str) -> Callable[[str], object]:
-    """Return what tells a line of nothing but G1 to G3, and numbers after some letters."""
+    """Return a pattern for lines of nothing but G1 to G3, and numbers after some letters."""
     either = letters + letters.lower()
     return re.compile(
         rf"(?:[Nn]\d+)?[ \t]*(?:(?:[{either}]{_NUMBER}|[Gg]0?[123](?![\d.]))[ \t]*)+\r?", re.ASCII
@@ -39,13 +39,13 @@ def plain_line_of(letters: str) -> Callable[[str], object]:
 
 
 class BlockLocation(NamedTuple):
-    """Where something is refused: the section's code, and the line (0 in MDI)."""
+    """The source location of a refused block: the section's code, and the line (0 in MDI)."""
 
     code: str
     line: int
 
     def refuse(self, reason: str) -> Refusal:
-        """Return the refusal of this line."""
+        """Return the refusal of this line, for the caller to raise."""
         line = f" line {self.line}" if self.line else ""
         return Refusal(f"{self.code}{line}: {reason}")
 
@@ -57,7 +57,7 @@ def line_named(error: Exception) -> int | None:
 
 
 def with_line(refusal: Refusal, line: int) -> Refusal:
-    """Return a refusal with another text of the line that it names, which may tell its file."""
+    """Return a refusal with another text for the line that it names, which may name its file."""
     return Refusal(_LINE_NAMED.sub(lambda _: f" line {line}:", refusal.message, count=1))
 
 
@@ -92,7 +92,7 @@ class TextLine(NamedTuple):
 
     @property
     def deletable(self) -> bool:
-        """Return whether the line goes out with block delete."""
+        """Return whether the line is skipped with block delete."""
         return self.text[:1] == "/"
 
 
@@ -105,7 +105,7 @@ def split_line(raw: str, known: SectionWords) -> TextLine:
     control = _CONTROL.match(bare)
     if control:
         return TextLine(bare, comments, _kind(bare, control))
-    if "(" in bare:  # an unclosed or nested comment: the parser says so
+    if "(" in bare:  # an unclosed or nested comment: the parser refuses it
         return TextLine(bare)
     words = list(split_words(bare.lstrip("/")))
     letters = tuple(letter.upper() for letter, _ in words)
@@ -125,7 +125,7 @@ def split_line(raw: str, known: SectionWords) -> TextLine:
 
 
 def _kind(bare: str, control: re.Match[str]) -> str:
-    """Return the kind of an O-word: its keyword stands after a name, a number or an expression."""
+    """Return the kind of an O-word, the keyword after a name, a number or an expression."""
     if control[1]:
         return {"98": "call", "99": "return"}[control[1]]
     name = _NAME.match(bare, control.end())
@@ -134,8 +134,8 @@ def _kind(bare: str, control: re.Match[str]) -> str:
     return (keyword and keyword[0]) or "program"
 
 
-def _words_of(wanted: str, words: list[tuple[str, str]]) -> str:
-    return "".join(letter + value for letter, value in words if letter == wanted)
+def _words_of(own: str, words: list[tuple[str, str]]) -> str:
+    return "".join(letter + value for letter, value in words if letter == own)
 
 
 def _codes_of(words: list[tuple[str, str]]) -> Iterator[tuple[str, int]]:
@@ -160,9 +160,9 @@ def split_words(text: str) -> Iterator[tuple[str, str]]:
 
 
 def value_end(text: str, start: int) -> int:
-    """Return where the value that begins at ``start`` ends: number, parameter or expression.
+    """Return the end of the value that begins at ``start``: number, parameter or expression.
 
-    The proof of a section reads values with a function of its own, so that it finds a slip here.
+    `verify` reads values with a function of its own, so that it detects a fault in this one.
     """
     at = _end(_SIGNS, text, start)
     if text[at : at + 2] == "#<":
@@ -182,7 +182,7 @@ def _end(pattern: re.Pattern[str], text: str, start: int) -> int:
 
 
 def _bracket_end(text: str, start: int) -> int:
-    """Where the bracket that opens at ``start`` closes, or the number there ends."""
+    """Return the end of the bracket that opens at ``start``, or of the number there."""
     if text[start : start + 1] != "[":
         return _end(_DIGITS, text, start)
     depth = 0

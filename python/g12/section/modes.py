@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the blocks of a section do besides motion: modes, actions of the machine, comments."""
+"""The effects of a section's blocks besides motion: modes, actions of the machine, comments."""
 
 import re
 from collections.abc import Callable
@@ -22,14 +22,14 @@ from g12.section.block_rules import (
 )
 from g12.section.line import TextLine
 
-PASSED_ON = (NON_MODAL, CENTRE, PATH, SPINDLE)  # groups that the machine acts on
-ARGUMENTS = ("S", "P", "Q", "L", "E")  # of the codes that are no motion
+PASSED_ON = (NON_MODAL, CENTRE, PATH, SPINDLE)  # modal groups of actions of the machine
+ARGUMENTS = ("S", "P", "Q", "L", "E")  # words of the codes without motion
 _IN_REPORT = re.compile(r"%(d|f|\.\df)|#(\d+|<[^>]*>)")
 _REPORTS = ("debug,", "print,", "log,", "abort,")
 
 
 class SectionModes(NamedTuple):
-    """The modes of a section: they act as they are read, not when the tool gets there.
+    """The modes of a section, which change as the lines are read, not as the tool moves.
 
     ``feed`` is F in program units per minute, or per revolution; ``speed`` that of the spindle
     which turns the latter into the former; ``motion`` the code that bare words repeat.
@@ -43,7 +43,7 @@ class SectionModes(NamedTuple):
 
 
 def modes_after(modes: SectionModes, block: SectionBlock, speed: float) -> SectionModes:
-    """Return the modes once the codes and F of ``block`` have acted, and S has made the speed."""
+    """Return the modes after the codes and F of ``block``, with ``speed`` by its S."""
     words = block.words
     distance, commanded = block.g[DISTANCE], feed_modes(block)
     per_revolution = commanded.pop() if commanded else modes.per_revolution
@@ -58,7 +58,7 @@ def modes_after(modes: SectionModes, block: SectionBlock, speed: float) -> Secti
 
 
 def action_text(block: SectionBlock, line: TextLine) -> str:
-    """Return the block without its motion, every value read; "" if nothing is left."""
+    """Return the block without its motion, with values for expressions; "" if nothing remains."""
     codes = [f"G{block.g[group] / 10:g}" for group in PASSED_ON if block.g[group] != NO_CODE]
     codes += [
         f"M{code}"
@@ -71,12 +71,12 @@ def action_text(block: SectionBlock, line: TextLine) -> str:
 
 
 def stop_text(block: SectionBlock) -> str:
-    """Return the block's M0, M1 or M60, which acts after its motion; "" if there is none."""
+    """Return the block's M0, M1 or M60, which acts after its motion; "" without one."""
     return "" if block.m[M_STOP] == NO_CODE else f"M{block.m[M_STOP]}"
 
 
 def decimal(value: float) -> str:
-    """Return a value the way the parser reads one: the language has no exponents."""
+    """Return a value in a form that the parser reads: without an exponent."""
     return f"{value:.10f}".rstrip("0").rstrip(".")
 
 
@@ -88,8 +88,8 @@ def may_fail(comment: str) -> bool:
 def comment_text(comment: str, value_of: Callable[[str], float | None]) -> str:
     """Return a comment with the parameters of (DEBUG,), (PRINT,), (LOG,) and (ABORT,) filled in.
 
-    It is cut to a line that LinuxCNC can read. ``value_of`` gives a parameter by number or name
-    ("12", "_x"), None if it does not exist.
+    It is truncated to a line that LinuxCNC can read. ``value_of`` gives a parameter by number or
+    name ("12", "_x"), None if it does not exist.
     """
     if not comment.lstrip().lower().startswith(_REPORTS):
         return f"({comment})"

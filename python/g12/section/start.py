@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a section finds where it begins, and how the words after it are read. Plain data."""
+"""The state at the start of a section, and the reading of the words after it. Plain data."""
 
 from typing import NamedTuple
 
@@ -9,16 +9,15 @@ from g12.section.words import SectionWords
 
 
 class SectionStart(NamedTuple):
-    """What a section takes of the interpreter, once: all that its parts know of the machine.
+    """The interpreter's state at the start of a section, read once.
 
     Lengths are in program units. ``location`` is that of the block that switches on, ``words`` are
-    those of the section in it, ``alone`` tells whether it holds nothing else, ``level`` is its call
-    level. X is a radius value; C, where the
-    axis stands, is in degrees. ``machine_unit`` is the length of a machine unit, ``millimetre``
-    that of 1 mm; ``offsets`` lead from program to machine coordinates (X, Z, and C in degrees),
-    ``x_shift`` is what G52 or G92 adds to X, a radius value.
-    ``speeds`` are the commanded ones of all spindles in rpm, ``spindle`` is the number of the one
-    that feeds per revolution refer to. ``tool_radius`` is None if no tool is loaded.
+    the section's words in it, ``alone``: it holds nothing else, ``level`` is its call level. X is a
+    radius value; C, the axis's position, is in degrees. ``machine_unit`` is the length of a machine
+    unit, ``millimetre`` that of 1 mm; ``offsets`` convert from program to machine coordinates (X,
+    Z, and C in degrees), ``x_shift`` is what G52 or G92 adds to X, a radius value. ``speeds`` are
+    the commanded ones of all spindles in rpm, ``spindle`` is the number of the one that feeds per
+    revolution refer to. ``tool_radius`` is None if no tool is loaded.
     """
 
     location: BlockLocation
@@ -43,17 +42,16 @@ class SectionStart(NamedTuple):
     inverse_time: bool  # G93
     surface_speed: bool  # G96
     rotated: bool  # the work offset, by G10 L2 R
-    missing_code: str = ""  # makes the spindle C, where it is not
+    missing_code: str = ""  # the code that makes the spindle C, where it is not
 
 
 class WordRules(NamedTuple):
-    """How the words of a section are read; lengths and feeds in program units.
+    """Rules for reading the words of a section; lengths and feeds in program units.
 
-    ``diameter`` tells whether X words are diameters, ``x_scale`` turns a parsed one into a radius
-    value, ``c_scale`` a C word into a length.
-    ``third_with_others`` tells whether the axis at right angles to the plane may move together with
-    those in it. ``rapid_feed`` is None where G0 is refused, ``closing`` the radius mismatch of an
-    arc that is forgiven, ``beside`` how far the tool stands from the X line towards C+.
+    ``diameter``: X words are diameters. ``x_scale`` converts a parsed X word into a radius value,
+    ``c_scale`` a C word into a length. ``third_with_others``: the axis at right angles to the plane
+    may move together with those in it. ``rapid_feed`` is None where G0 is refused, ``closing`` the
+    radius mismatch that an arc may have, ``beside`` the tool's distance from the X line towards C+.
     """
 
     words: SectionWords

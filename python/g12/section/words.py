@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The words that one kind of section has: which letters move what, and which mean nothing there."""
+"""The words of one kind of section: which letters move which axis, and which are refused."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -10,12 +10,10 @@ class SectionWords(NamedTuple):
 
     ``plane`` are the axes of its contour: first, second and, at right angles to the plane, the
     third. ``c_is_length``: C is a length in a plane that is laid through the axis where it stands;
-    else it is the axis's angle in degrees. ``letters`` are those that move one axis, of which a
-    block has one.
-
-    ``foreign`` are letters that the parser is not given as they are, and what it is given instead;
-    ``relative`` those that are increments of an axis. ``plain`` tells a line that has nothing but
-    numbers after a move's letters.
+    else it is the axis's angle in degrees. ``letters`` are groups that move one axis; a block has
+    one of each. ``foreign`` maps letters that the parser does not know to those it is given
+    instead; ``relative`` are the letters for increments of an axis. ``plain`` matches a line that
+    has nothing but numbers after a move's letters.
 
     ``planes`` are the G codes of planes that may stand inside. ``plane_name`` and ``centre_name``
     are for messages; ``refused`` are reasons by letter, ``own_block`` is that of a third axis which

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The entries of a shape's call, by name, and what every shape makes of those that all have.
+"""The entries of a shape's call, by name, and the values of those that all shapes share.
 
 Lengths are in program units.
 """
@@ -15,10 +15,10 @@ from g12.request.context import Context
 from g12.request.words import Words
 
 LEFT_OUT = -9999.0
-CLEAR_MM = 1.0  # between the tool and the face, or the stock, where it comes down
-WIDEST = 0.75  # of the cutter's diameter: how far apart its rounds are at most
+CLEAR_MM = 1.0  # clearance of the tool from the face, or the stock, at the end of its rapid
+WIDEST = 0.75  # of the cutter's diameter: greatest stepover
 MOST_LEVELS = 10_000
-MOST_MOVES = 100_000  # some minutes to read, in which LinuxCNC hears of no abort
+MOST_MOVES = 100_000  # takes minutes to read, during which LinuxCNC handles no abort
 MOST_ANGLE = 360.0  # LinuxCNC's limit of a position on a wrapped rotary axis
 
 
@@ -31,7 +31,7 @@ class ShapeEntries(Words):
 
     @staticmethod
     def written(letter: str, value: float) -> str:
-        """Return an entry with its name: ``width 8``."""
+        """Return an entry as messages name it: ``width 8``."""
         return f"{letter} {number(value)}"
 
     def require_positive(self, letter: str, meaning: str) -> float:
@@ -67,12 +67,12 @@ class ShapeEntries(Words):
 
 
 class ShapeMachine(NamedTuple):
-    """What a shape has to know of its machine.
+    """The machine's settings that a shape depends on.
 
     ``diameters``: X words are diameters in a section. ``entry_angle`` in degrees is that of a ramp
-    or helix, ``plunge_share`` the part of F that the way down has unless the call says. A path
-    within ``pole`` of the spindle's centre runs through it; ``pole_refused`` says that none may.
-    A tool beside the X line comes no nearer to that centre than ``nearest``.
+    or helix, ``plunge_share`` the share of F for the descent unless the call has a plunge feed. A
+    path within ``pole`` of the spindle's centre runs through it; ``pole_refused``: none may. A tool
+    beside the X line comes no nearer to that centre than ``nearest``.
     """
 
     diameters: bool
@@ -84,7 +84,7 @@ class ShapeMachine(NamedTuple):
 
 
 class Levels(NamedTuple):
-    """How deep a shape is cut: all levels are alike."""
+    """The Z levels of a shape, at equal steps."""
 
     levels: int
     step_down: float
@@ -98,7 +98,7 @@ class Feeds(NamedTuple):
 
 
 class Heights(NamedTuple):
-    """Where the tool starts and ends, and where it goes on at a feed."""
+    """Z of the tool at the start and the end, and Z where its rapid down ends."""
 
     start_z: float
     near_z: float
@@ -134,7 +134,7 @@ def heights_of(entries: ShapeEntries, context: Context) -> Heights:
 
 
 class Extent(NamedTuple):
-    """How far the tool's centre goes: X as a radius, Z, and C in degrees; lowest and highest."""
+    """The extent of the tool centre's path: X as a radius, Z, C in degrees; lowest and highest."""
 
     x: tuple[float, float]
     z: tuple[float, float]
@@ -151,7 +151,7 @@ def check_nearest(entries: ShapeEntries, extent: Extent, machine: ShapeMachine) 
 
 
 def check_finish(entries: ShapeEntries, context: Context, allowance: float, cutter: float) -> None:
-    """Refuse an allowance that one round of the cutter would not take away; it would stand."""
+    """Refuse an allowance that one round of the cutter cannot remove."""
     most = WIDEST * 2 * cutter
     if allowance > most:
         rule = f"must be at most {number(most)}, what one round of the cutter of"
@@ -160,16 +160,16 @@ def check_finish(entries: ShapeEntries, context: Context, allowance: float, cutt
 
 
 def check_moves(entries: ShapeEntries, moves: int, cause: str) -> None:
-    """Refuse a shape of more moves than anyone means; ``cause`` names their entries."""
+    """Refuse a shape of too many moves; ``cause`` names their entries."""
     if moves > MOST_MOVES:
         raise entries.refuse(f"{cause} {moves} moves, the most is {MOST_MOVES}")
 
 
 def rounds_between(first: float, last: float, cutter: float, rounding: float) -> int:
-    """Return how many rounds, none wider than the cutter can, lead from one radius to another."""
+    """Return the number of rounds from one radius to another, none wider than the cutter can."""
     return steps_between(first, last, WIDEST * 2 * cutter, rounding)
 
 
-def locals_of(*parts: NamedTuple) -> dict[str, float]:
-    """Return the named locals of a shape's sub that parts of its plan hold, by their names."""
-    return {name: value for part in parts for name, value in part._asdict().items()}
+def locals_of(*groups: NamedTuple) -> dict[str, float]:
+    """Return the fields of a plan's records as named locals of its sub."""
+    return {name: value for group in groups for name, value in group._asdict().items()}

@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The rules and numbers of ``o<polar_polygon> call``: a polygon, or two flats, on a bar's end.
 
-The tool's centre goes round clockwise, outside the polygon. In a frame whose zero line runs
+The tool's centre runs clockwise, outside the polygon. In a frame whose zero line runs
 through the middle of a corner, each round begins and ends at (``outside``, 0), clear of the stock:
 
 1. an arc about the spindle's centre, away from the zero line
-2. a straight way in that touches the corner's arc in its middle
+2. a straight lead-in, tangent to the corner's arc in its middle
 3. flat after flat, with an arc about each corner; where the flats reach out of the stock, an arc
-   about the spindle's centre takes the corner's place
+   about the spindle's centre replaces the corner
 4. straight out where the last arc is on the zero line again, and back
 
-Rounds are the final one moved outward by equal steps, so that all of them are as far apart at a
-corner as at a flat. The way between them and the way down are clear of the stock.
+Rounds are the final one moved outward by equal steps, so that the stepover is the same at corners
+and flats. The moves between them and the plunges are clear of the stock.
 
 Rules, in the order of the checks: a tool with a diameter in the spindle; sides from 2;
 across_flats, stock_diameter above 0, the stock larger than the flats; corner_radius from 0, none
 with two flats, less than half of across_flats; depth, depth_per_pass above 0; allowance from 0,
-less than what there is to cut, and no more than one round takes; not too many moves; feeds above 0;
-angle; the tool above the face.
+less than the material to cut, and no more than one round removes; not too many moves; feeds above
+0; angle; the tool above the face.
 """
 
 from __future__ import annotations
@@ -57,17 +57,17 @@ ENTRIES = (
     "plunge_feed",
     "angle",
 )
-FLATS = 2  # sides that meet nowhere
+FLATS = 2  # corner distance of two flats, which do not meet
 MOST_SIDES = 100
-FLUSH = 1e-6  # what the sub's sums and those here differ by at most
-FAR = 1e9  # half the length of a flat that no corner ends
+FLUSH = 1e-6  # greatest rounding difference between the sub's arithmetic and this one
+FAR = 1e9  # half the length of an unlimited flat
 
 
 class PolygonForm(NamedTuple):
     """A polygon: its flats are ``apothem`` from the centre, its corners rounded by ``radius``.
 
     ``inner`` is the apothem of the polygon that the centres of the corners' arcs make, ``side``
-    half the length of its sides, ``corner`` how far its corners are from the centre.
+    half the length of its sides, ``corner`` the distance of its corners from the centre.
     """
 
     sides: int
@@ -86,7 +86,7 @@ class PolygonForm(NamedTuple):
 
     @property
     def moves(self) -> int:
-        """Return how many moves a round is made of, those in and out included."""
+        """Return the number of moves of a round, lead-in and lead-out included."""
         return 2 * self.sides + 6
 
     @property
@@ -106,8 +106,8 @@ class PolygonRounds(NamedTuple):
     """The rounds of the tool's centre by the distance of their flats from the spindle's centre.
 
     ``rounds`` at every level, from ``apothem`` on inward by ``step``, and a ``finish`` round (1 or
-    0) at ``finish_apothem``. ``clip`` is how far a flat goes at most, ``outside`` where the rounds
-    begin.
+    0) at ``finish_apothem``. ``clip`` is a flat's greatest distance from the centre, ``outside``
+    that of the rounds' start.
     """
 
     rounds: int
@@ -120,7 +120,7 @@ class PolygonRounds(NamedTuple):
 
 
 class PolygonPlan(NamedTuple):
-    """A polygon that is fit to cut. Lengths and feeds are in program units, angles in degrees."""
+    """A checked polygon. Lengths and feeds are in program units, angles in degrees."""
 
     form: PolygonForm
     rounds: PolygonRounds
@@ -132,11 +132,11 @@ class PolygonPlan(NamedTuple):
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/polar_polygon.ngc` beside its entries."""
         form = {name: getattr(self.form, name) for name in ("inner", "side", "corner", "half_turn")}
-        parts = locals_of(self.rounds, self.levels, self.feeds, self.heights)
-        return form | parts | {"start_angle": self.start_angle, "flush": FLUSH}
+        numbers = locals_of(self.rounds, self.levels, self.feeds, self.heights)
+        return form | numbers | {"start_angle": self.start_angle, "flush": FLUSH}
 
     def extent(self) -> Extent:
-        """Return how far the tool's centre goes; every round turns C once round, backwards."""
+        """Return the extent of the tool's centre; every round is one turn of C, backwards."""
         rounds, levels = self.rounds, self.levels
         turns = levels.levels * rounds.rounds + rounds.finish
         return Extent(
@@ -149,7 +149,7 @@ class PolygonPlan(NamedTuple):
         )
 
     def _lead(self, apothem: float) -> float:
-        """Return by what angle a round leads in beside the zero line, and out, in degrees."""
+        """Return the angle of a round's lead-in and lead-out from the zero line, in degrees."""
         top = corner_distance(self.form, apothem, self.rounds.clip)
         return degrees(acos(top / self.rounds.outside))
 
@@ -219,7 +219,7 @@ def rounds_of(
 
 
 def corner_distance(form: PolygonForm, apothem: float, clip: float) -> float:
-    """Return how far a round of the tool's centre is from the spindle's where it turns a corner."""
+    """Return the distance of a round's corner, on the tool's centre, from the spindle's centre."""
     if sqrt(clip * clip - apothem * apothem) + FLUSH < form.side:
         return clip
     return form.corner + apothem - form.inner

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How a slot or a round pocket is cleared: down along its first ring, and outward.
+"""Clearing of a slot or a round pocket: down along its first ring, then outward.
 
 A ring of the tool's centre is two half turns counterclockwise, each a line of ``length`` (0 in a
-round pocket) and a half circle of the ring's radius. The first ring is so small that no core is
-left in it; the way down goes round it with a slope of [G12] ENTRY_ANGLE at most, and once more
-flat. A half circle of the mean radius leads from ring to ring and back, tangent to both.
+round pocket) and a half circle of the ring's radius. The first ring is so small that it leaves no
+core. The descent follows it with a slope of [G12] ENTRY_ANGLE at most, and once more at the level.
+The stepover from ring to ring, and the way back, is a half circle of the mean radius, tangent to
+both.
 
 Lengths are in program units.
 """
@@ -27,15 +28,15 @@ from g12.shapes.entries import (
     rounds_between,
 )
 
-CLEARED = 0.9  # of the cutter's radius: a first ring as large leaves no core
+CLEARED = 0.9  # of the cutter's radius: a first ring up to this radius leaves no core
 MOST_HALF_TURNS = 20_000
 
 
 class ClearingRings(NamedTuple):
     """The rings of a level: ``further`` ones beyond the first, each larger by ``ring_step``.
 
-    Radii are those of the tool's centre. A ``finish`` ring (1 or 0) of ``finish_ring`` comes in
-    the end. A first ring of 0 is the line itself.
+    Radii are those of the tool's centre. A ``finish`` ring (1 or 0) of ``finish_ring`` comes last.
+    A first ring of 0 is the line itself.
     """
 
     first_ring: float
@@ -57,14 +58,14 @@ class ClearingRings(NamedTuple):
 
     @property
     def half_turns(self) -> int:
-        """Return how many half turns one level has beside its way down, the flat one included."""
+        """Return the number of half turns of a level after its descent, the flat ones included."""
         return 2 + 3 * self.further + (1 if self.further else 0)
 
 
 class RampDown(NamedTuple):
-    """The way down to the first level, and to each further one: half turns, the fall of each.
+    """The descent to the first level and to each further one: half turns, the fall of each.
 
-    ``line_share`` is the share of a half turn's fall that its line has.
+    ``line_share`` is the line's share of a half turn's fall.
     """
 
     first_turns: int
@@ -107,7 +108,7 @@ def ramp_of(
     heights: Heights,
     length: float,
 ) -> RampDown:
-    """Return the way down; ``length`` is that of a ring's straight side."""
+    """Return the descent; ``length`` is that of a ring's straight side."""
     round_ = pi * rings.first_ring
     fall = (length + round_) * tan(radians(machine.entry_angle))
     first, following = (
@@ -130,7 +131,7 @@ def ramp_of(
 
 
 def half_turns_in_all(rings: ClearingRings, levels: Levels, ramp: RampDown) -> int:
-    """Return how many half turns a shape has in all; one leads back from any further rings."""
+    """Return the number of half turns of a shape, with one back from any further rings."""
     down = ramp.first_turns + (levels.levels - 1) * ramp.next_turns
     finish = rings.finish * (3 if rings.further else 4)
     return down + levels.levels * rings.half_turns + finish

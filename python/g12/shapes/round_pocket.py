@@ -6,8 +6,8 @@ through that centre.
 
 Rules, in the order of the checks: a tool with a diameter in the spindle; diameter above 0; depth
 and depth_per_pass above 0; allowance from 0; room for a helix; feeds above 0; the tool above the
-face; not too long a way down, not too many moves; no ring through the spindle's centre where
-[G12] POLAR_POLE refuses it.
+face; not too long a descent, not too many moves; no ring through the spindle's centre where [G12]
+POLAR_POLE refuses it.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ ENTRIES = ("x", "c", "diameter", "depth", "depth_per_pass", "allowance", "feed",
 
 
 class RoundPocketPlan(NamedTuple):
-    """A pocket that is fit to cut; its centre lies ``away`` from the spindle's, at ``start_angle``.
+    """A checked pocket; its centre is ``away`` from the spindle's, at ``start_angle``.
 
     Lengths and feeds are in program units, the angle in degrees.
     """
@@ -51,13 +51,14 @@ class RoundPocketPlan(NamedTuple):
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/polar_pocket.ngc` beside its entries."""
-        parts = locals_of(self.rings, self.ramp, self.levels, self.feeds, self.heights)
-        return parts | {"away": self.away, "start_angle": self.start_angle}
+        numbers = locals_of(self.rings, self.ramp, self.levels, self.feeds, self.heights)
+        return numbers | {"away": self.away, "start_angle": self.start_angle}
 
     def extent(self) -> Extent:
-        """Return how far the tool's centre goes.
+        """Return the extent of the tool's centre.
 
-        C turns with each ring that goes round the spindle's centre, to and fro with the others.
+        C makes a turn with each ring about the spindle's centre, and swings to and fro with the
+        others.
         """
         largest, end = self.rings.largest, self.away + self.rings.first_ring / 2
         round_centre = largest >= self.away
@@ -98,7 +99,7 @@ def plan_round_pocket(
 def check_centre(
     entries: ShapeEntries, machine: ShapeMachine, rings: ClearingRings, away: float
 ) -> None:
-    """Refuse a ring through the spindle's centre where the machine has none."""
+    """Refuse a ring through the spindle's centre where POLAR_POLE refuses it."""
     through = any(abs(radius - away) <= machine.pole for radius in rings.radii)
     if machine.pole_refused and through:
         raise entries.refuse(

@@ -18,7 +18,7 @@ CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
 
 
 def check_at_start() -> None:
-    """Read what the cycles need of the INI; a Refusal tells why it cannot be used."""
+    """Read the INI values that the cycles use; raise Refusal for one that cannot be used."""
     MACHINE.read("settings", "travel")
 
 
@@ -123,7 +123,7 @@ def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
     """Check a circle mill event and hand it to `ngc/g12_circle_mill.ngc`."""
     event = planned_event(interp, pocket)
     cycle_state.hand_over(interp, **event.locals())
-    cycle_state.remember_first_plane(interp, event.place.first_plane)
+    cycle_state.remember_first_plane(interp, event.position.first_plane)
     if event.message:
         messages.message(event.message)
     return INTERP_OK
@@ -143,6 +143,6 @@ def circle_mill_pocket(self, **words):
 
 @messages.handler
 def cycle_done(self, **words):
-    """Epilog of every cycle: the modes are again what the block found."""
+    """Epilog of every cycle: restores the modes before the block."""
     cycle_state.restore_modes(self)
     return INTERP_OK
