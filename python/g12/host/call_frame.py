@@ -3,7 +3,7 @@
 
 To the interpreter such a handler is a sub: the caller's local parameters and loop labels are
 hidden from the lines it reads, the line number starts at 0, and both are lost when it returns.
-Here they are handed over and back, and the handler can wait for the machine.
+This module passes them in and back out, and lets the handler wait for the machine.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ MOTION = 1  # modal group
 
 
 def kept(interp: Interp, text: str) -> str:
-    """Return a text that lives as long as the interpreter, which keeps no copies of names."""
+    """Return a text that is never freed: the interpreter keeps no copies of names."""
     texts = getattr(interp, "g12_texts", None)
     if texts is None:
         texts = interp.g12_texts = {}
@@ -80,11 +80,11 @@ class CallFrame:
         self.interp.mdi_interrupt = self._interrupted
 
     def give_up(self, line: int, *, called: bool, goes_on: int | None) -> None:
-        """Let an error be that of ``line``, and the program go on at byte ``goes_on``.
+        """Set the line that LinuxCNC reports, and the byte at which the program continues.
 
         `Interp::unwind_call` (rs274ngc_pre.cc) takes both from the frames. What counts is the main
-        program's line. In a file that the section calls (``called``), or for a section that is
-        itself in another file, it is the line that calls.
+        program's line. In a file that the section calls (``called``), or for a section in another
+        file, it is the calling line.
         """
         interp, frames = self.interp, self.interp.sub_context
         position = frames[self.level].position if goes_on is None else goes_on
@@ -97,24 +97,24 @@ class CallFrame:
             frames[level].sequence_number = line
         interp.sequence_number = line
         interp.blocks[self.remap_level].executing_remap = None
-        interp.call_level = self.level  # a failed read has unwound already, to the place before
+        interp.call_level = self.level  # a failed read has already unwound to the caller
 
     def execute_and_wait(self, text: str) -> Iterator[int]:
         """Execute a block, and yield until the machine has done what it waits for.
 
-        The block may stand in a sub of the section. Between it and the yield nothing may be read:
+        The block may stand in a sub of the section. No line may be read between it and the yield:
         the interpreter would take the input at once (`read_inputs`).
 
         What goes on after the wait is block 0: `Interp::_read` (rs274ngc_pre.cc) reads no new line,
         and `Interp::execute_call` (interp_o_word.cc) resumes the handler, only if it is the call of
         a remap, at the level where the handler was called. Else milltask crashes. After the wait
-        the mark must go, or the next line would not be read either.
-        (Without it: `test_waiting_for_an_input` in tests/sim/test_polar.py.)
+        the mark has to be removed, or the next line would not be read either. (Without it:
+        `test_waiting_for_an_input` in tests/sim/test_polar.py.)
 
         In a sub that MDI has called, `Interp::_execute` marks the wait with ``mdi_interrupt``, to
-        read on in the sub after it. It would as well after each block executed here, so the mark
-        is put aside until the handler waits again or is done.
-        (Without it: `test_in_mdi` in tests/sim/test_shapes.py, with kinematics.)
+        read on in the sub after it. It would do so after each block executed here, so the mark is
+        saved until the handler waits again or ends. (Without it: `test_in_mdi` in
+        tests/sim/test_shapes.py, with kinematics.)
         """
         interp = self.interp
         level, remap_level = interp.call_level, interp.remap_level
@@ -135,8 +135,8 @@ class CallFrame:
         `Interp::leave_remap` (rs274ngc_pre.cc) goes back to it. Only `Interp::enter_remap` writes
         it, and for Python only execute with a line number calls that (`wrap_interp_execute_2` in
         interpmodule.cc), here from one level lower and with nothing to execute. It makes the
-        remapped block of block 0, so the code is read again before. Then the block is told where
-        it was, and that its motion code is done with, or `Interp::remap_finished` would begin it.
+        remapped block of block 0, so the code is read again before. Then the block gets its line
+        back, and its motion code is marked as done, or `Interp::remap_finished` would begin it.
         (Without it: `test_line_numbers_inside_and_behind`; without the last two lines:
         `test_expressions_and_functions_are_values`, as any section.)
         """

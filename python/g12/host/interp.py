@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Names for what LinuxCNC's interpreter hands to Python; its modules have no types."""
+"""Type names for objects of LinuxCNC's interpreter, whose modules have no types."""
 
 from __future__ import annotations
 
 from typing import Any, TypeAlias
 
-Interp: TypeAlias = Any  # interpreter.Interp, with what the package keeps on it
+Interp: TypeAlias = Any  # interpreter.Interp, with the package's state on it
 Block: TypeAlias = Any  # interpreter.block, as it was parsed
-Canon: TypeAlias = Any  # the module emccanon, or what takes its place in a test
+Canon: TypeAlias = Any  # the module emccanon, or a test's substitute
 ToolEntry: TypeAlias = Any  # of the tool table

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The change between X, Z and C and the part's face (`configs/kinematics`), and back.
+"""The switch of kinematics from X, Z and C to the part's face (`configs/kinematics`), and back.
 
-The machine has to stand for it, and the interpreter to wait. What it is asked by, and what it
-answers with, is wired in polar_kinematics.hal.
+The machine has to stop for it, and the interpreter to wait. polar_kinematics.hal connects the
+request and the answer.
 
 The acceleration of X and Y on the face is that of the section. LinuxCNC takes it from HAL pins each
 time before it goes on with the interpreter (`check_ini_hal_items` in emctaskmain.cc), and canon
-asks for it at each move. How far the operator may turn the feed up there is told to polar_xzc,
-which keeps to it by adaptive feed, M52 P1.
+asks for it at each move. polar_xzc gets the highest feed override and enforces it by adaptive feed,
+M52 P1.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ACCELERATIONS = ("ini.x.max_acceleration", "ini.y.max_acceleration")  # HAL pins
 OVERRIDE, UNIT = "polar-xzc.most-override", "polar-xzc.unit"
 ADAPTIVE = 52  # active_m_codes
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
-OFF, BY_PROGRAM, BY_HAND, NO_MOVES = 0, 1, 2, 3  # what is asked for
+OFF, BY_PROGRAM, BY_HAND, NO_MOVES = 0, 1, 2, 3  # requests
 INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
 SAME_OFFSET = 1e-4  # program units
 PLANES = {1: "G17", 2: "G19", 3: "G18"}  # interp.plane
@@ -44,19 +44,19 @@ def face_in_force() -> bool:
 
 
 def modes_found(interp: Interp) -> str:
-    """Return the block that gives back what `ON_THE_FACE` changes."""
+    """Return the block that restores the modes that `ON_THE_FACE` changes."""
     active = without_line(interp.active_g_codes)
     centres = next(CENTRES[code] for code in active if code in CENTRES)
     return f"{PLANES[interp.plane]}{centres}{adaptive_feed(interp)}"
 
 
 def adaptive_feed(interp: Interp) -> str:
-    """Return the block that gives back M52 as it is."""
+    """Return the block that restores M52."""
     return f"M52P{int(ADAPTIVE in without_line(interp.active_m_codes))}"
 
 
 def accelerate(interp: Interp, share: float) -> None:
-    """Have X and Y accelerate with a share of the INI, from the next wait on."""
+    """Set X's and Y's acceleration to a share of the INI's, from the next wait on."""
     if not interp.task:
         return
     of_ini = getattr(interp, "g12_accelerations", None)
@@ -67,7 +67,7 @@ def accelerate(interp: Interp, share: float) -> None:
 
 
 def limit_override(interp: Interp, machine_unit: float, most: float) -> None:
-    """Tell polar_xzc how far the feed may be turned up on the face."""
+    """Pass the highest feed override on the face to polar_xzc."""
     if interp.task and not is_older():
         hal.set_p(OVERRIDE, repr(most))
         hal.set_p(UNIT, repr(1.0 / machine_unit))
@@ -85,10 +85,10 @@ def is_older() -> bool:
 def to_face(
     interp: Interp, machine_unit: float, asked: int, share: float = 1.0, override: float = 1.0
 ) -> Iterator[str]:
-    """Go to the face; yield the block to wait for.
+    """Switch to the face; yield the block to wait for.
 
-    ``machine_unit`` is one in program units, ``share`` is of the INI's accelerations, and so far
-    may the feed ``override`` go.
+    ``machine_unit`` is one in program units, ``share`` that of the INI's accelerations,
+    ``override`` the highest feed override.
     """
     accelerate(interp, share)
     limit_override(interp, machine_unit, override)
@@ -100,19 +100,19 @@ def to_face(
 
 
 def to_axes(interp: Interp) -> Iterator[str]:
-    """Go back to X, Z and C; yield the block to wait for."""
+    """Switch back to X, Z and C; yield the block to wait for."""
     interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")
     yield f"M66P{FACE_INPUT}L4Q{decimal(MACHINE.settings.polar_switch_time)}"
-    accelerate(interp, 1.0)  # not before the machine has been there: LinuxCNC reads ahead
+    accelerate(interp, 1.0)  # only now, after the wait: LinuxCNC reads ahead
 
 
 def has_switched(interp: Interp) -> bool:
-    """Return, after the wait, whether the machine has done it."""
+    """Return, after the wait, whether the machine has switched."""
     return not interp.task or interp.params[INPUT_FOUND] != TIMED_OUT
 
 
 def not_switched() -> str:
-    """Return the sentence for a switch that has not come in time."""
+    """Return the rule for a switch that was not answered in time."""
     return (
         "the machine did not change its kinematics within "
         f"{number(MACHINE.settings.polar_switch_time)} s ([G12] POLAR_SWITCH_TIME): "
@@ -121,15 +121,15 @@ def not_switched() -> str:
 
 
 def y_offset(interp: Interp) -> float:
-    """Return what a program's Y lacks of the machine's, which is the face's: its centre is 0."""
+    """Return the offset from a program's Y to the machine's, whose 0 is the face's centre."""
     return interp.origin_offset_y + interp.axis_offset_y + interp.tool_offset.y
 
 
 def other_module(interp: Interp, beside: float) -> str:
-    """Return what is wrong with the module polar_xzc, else "".
+    """Return the fault of the module polar_xzc, "" without one.
 
-    It is an older one, or has the tool elsewhere beside the X line: the machine stands on the face
-    at its beginning, ``beside`` is what the settings say, both in program units.
+    It may be an older one, or have another distance of the tool from the X line than ``beside``,
+    that of the settings in program units. The machine is on the face, at the start of its motion.
     """
     if is_older():
         return OLDER

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The two halves of the package, loaded each on its own: one that is broken leaves the other."""
+"""Loads the two halves of the package separately: a broken one does not affect the other."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from g12.host import messages
 def loaded_handlers(module: str, names: Iterable[str]) -> dict[str, Callable]:
     """Return the handlers of a module by name.
 
-    If it does not load, the operator reads why when LinuxCNC comes up, and each refuses with that.
+    If it does not load, the operator gets the reason when LinuxCNC starts, and each handler refuses
+    with it.
     (An exception here would stop LinuxCNC with an empty message on the screen.)
     """
     try:
@@ -28,7 +29,7 @@ def loaded_handlers(module: str, names: Iterable[str]) -> dict[str, Callable]:
 
 
 def nothing_to_check() -> None:
-    """Take the place of a module's ``check_at_start`` where it has none."""
+    """Stand in for ``check_at_start`` in a module that has none."""
 
 
 def _why(error: Exception) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the INI says of the machine, each part read when it is first used."""
+"""The machine's values in the INI, each read at its first use."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ class RunningMachine:
     """The machine of the INI file that LinuxCNC runs."""
 
     def read(self, *parts: str) -> None:
-        """Read parts of the INI now: what cannot be used raises its Refusal here."""
+        """Read properties now, so that a value that cannot be used raises its Refusal here."""
         for part in parts:
             getattr(self, part)
 
     @functools.cached_property
     def settings(self) -> Settings:
-        """Section [G12]; a Refusal tells why it cannot be used."""
+        """Section [G12]; raises Refusal if it cannot be used."""
         return settings_from_ini(ini_file())
 
     @property
@@ -69,7 +69,7 @@ class RunningMachine:
 
     @functools.cached_property
     def axes(self) -> dict[str, Axis]:
-        """The limits of X, Z and C; a Refusal names a value that no axis can have."""
+        """The limits of X, Z and C; raises Refusal for a value that no axis can have."""
         return axes_of(self._ini.find, "XZC")
 
     @functools.cached_property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the operator reads: refusals of a block, faults, messages, what is wrong at the start.
+"""Messages to the operator: refusals of a block, faults, notes, errors at the start.
 
 Facts about the interpreter that the code relies on stand beside the line that does.
 """
@@ -21,18 +21,18 @@ from g12.host.program_lines import line_of_block, line_of_call
 NO_FILE = ""  # the interpreter keeps no copy of it: a constant lives as long as the module
 
 
-@functools.cache  # both halves may have the same to say
+@functools.cache  # both halves may report the same
 def say_at_start(text: str) -> None:
-    """Report to the operator, when LinuxCNC comes up, what cannot work."""
+    """Report to the operator, when LinuxCNC starts, an error of the configuration."""
     print(f"g12: {text}", file=sys.stderr)
     emccanon.CANON_ERROR(f"g12: {text}")
 
 
 def refuse_block(interp: Interp, error: Exception) -> int:
-    """Report to the operator why the block being remapped is not executed; return the error status.
+    """Report to the operator why the remapped block is not executed; return the error status.
 
-    Raising or returning a string would not do: LinuxCNC shows "pycall(...) failed" instead. It
-    hands a failed execute over as a SystemError, whose own text stands already.
+    A raised exception or a returned string would be shown as "pycall(...) failed". After a failed
+    execute, which is a SystemError, LinuxCNC's own text is set already.
     """
     if isinstance(error, BlockRefusal):
         error = error.at(line_of_refusal(interp, error))
@@ -47,7 +47,7 @@ def refuse_block(interp: Interp, error: Exception) -> int:
 def line_of_refusal(interp: Interp, refusal: BlockRefusal) -> int | None:
     """Return the line of a refused block, None where it is typed in MDI.
 
-    A code that stands for a sub refuses in the sub's name: the line is the one that calls.
+    A code that refuses in the name of its sub has the line of the call.
     """
     level = interp.call_level - (refusal.code != code_of_block(interp))
     mdi = in_mdi(interp)
@@ -67,7 +67,7 @@ def in_mdi(interp: Interp) -> bool:
 
 
 def fault_text(error: Exception) -> str:
-    """Return what the operator reads of an exception that is no refusal."""
+    """Return the message for an exception that is no refusal."""
     return f"g12: a fault of the package, please report it: {type(error).__name__}: {error}"
 
 
@@ -87,10 +87,10 @@ def handler(function):
 
 
 def forget_return(interp: Interp) -> None:
-    """Let the caller of the remap at work go on with its next line, should this one fail.
+    """Let the remap's caller continue with its next line if this one fails.
 
-    `Interp::unwind_call` (rs274ngc_pre.cc) goes back to where each frame was to return to. The
-    caller's would still say where an earlier call returned; without a file it says nothing.
+    `Interp::unwind_call` (rs274ngc_pre.cc) goes back to the return position of each frame. The
+    caller's is still that of an earlier call; without a file name it is ignored.
     """
     interp.sub_context[interp.call_level - 1].filename = NO_FILE
 
@@ -101,7 +101,7 @@ def code_of_block(interp: Interp) -> str:
 
 
 def message(text: str) -> None:
-    """Show the operator a message that is no error."""
+    """Show the operator a message without an error."""
     emccanon.MESSAGE(text)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Units, spindle and diameter mode as the interpreter has them; a code run to its end."""
+"""Units, spindle and diameter mode of the interpreter; execution of a code to its end."""
 
 from __future__ import annotations
 

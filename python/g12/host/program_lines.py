@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The program from the block being remapped on: its lines, read here and parsed by the interpreter.
+"""The program after the remapped block: its lines, read here and parsed by the interpreter.
 
-Lines are handed to the interpreter's parser as strings, since it would choke on some of them.
-O-words too: they are told their place in the file, so that loops come back to it. Where they
-lead, the interpreter moves on in its file; it is moved past the lines read here when it has to
-come back to them, from a sub or after the section.
+Lines go to the interpreter's parser as strings, since it cannot read some of them as they are.
+O-words go there with their offset in the file, so that loops return to it. After a jump the
+interpreter continues in its file. It is moved past the lines read here before it has to read on
+itself: after a return from a sub, or after the section.
 """
 
 from __future__ import annotations
@@ -20,7 +20,11 @@ from g12.host.interp import Interp
 INTERP_OK = 0
 NO_MOTION = -1
 NO_REPEATS = 0  # L of an M98
-MOVING = ("call", "endsub", "return")  # O-words that always move the interpreter in its file
+MOVING = (
+    "call",
+    "endsub",
+    "return",
+)  # O-words that always change the interpreter's position in its file
 SHORT = 200  # characters: every LinuxCNC reads longer lines than that
 SKIPPED_OVER = "g12_skipped_over"  # ngc/g12_skipped_over.ngc
 
@@ -35,7 +39,7 @@ class ProgramFile(NamedTuple):
 
 
 def read_source(filename: str, known: ProgramFile | None = None) -> ProgramFile:
-    """Return the lines of a program file; ``known`` again if that is the file, unchanged."""
+    """Return the lines of a program file; ``known`` itself if that is the file, unchanged."""
     status = os.stat(filename)
     version = (status.st_mtime_ns, status.st_size)
     if known and (known.filename, known.version) == (filename, version):
@@ -59,7 +63,7 @@ class LineOfFile(int):
         return number
 
     def __format__(self, spec: str) -> str:
-        """Return the number and the file, which leaves room for the rule after it."""
+        """Return the number and the file's name, shortened to leave room for the rule."""
         return f"{int(self)} of {self.file:.80}"
 
 
@@ -70,13 +74,13 @@ def line_of_block(interp: Interp, *, in_program: bool) -> int | None:
 
 
 def line_of_call(interp: Interp, *, in_program: bool) -> int | None:
-    """Return the line that calls the sub in which the block being remapped stands."""
+    """Return the line that calls the sub of the remapped block."""
     frame = interp.sub_context[interp.call_level - 2]
     return _line_at(interp, frame.filename, frame.position - 1, in_program)
 
 
 def _line_at(interp: Interp, filename: str, offset: int, in_program: bool) -> int | None:
-    """Return the line at a byte, which tells its file if that is not the program's own."""
+    """Return the line at a byte; it names its file if that is not the program's own."""
     try:
         with open(filename, "rb") as file:
             line = file.read(max(0, offset)).count(b"\n") + 1
@@ -112,7 +116,7 @@ class ProgramLines:
         self.home = self.source = read_source(interp.filename, known)
         offset = interp.blocks[interp.remap_level].offset
         self.line = bisect_right(self.source.starts, offset, hi=len(self.source.lines))
-        self._in_file = self.line  # how far the interpreter has read its file
+        self._in_file = self.line  # the last line that the interpreter itself has read
         interp.sequence_number = self.line
 
     @property
@@ -124,7 +128,7 @@ class ProgramLines:
 
     @property
     def next_at_home(self) -> int | None:
-        """Where the next line begins, in bytes; None in another file than the section's."""
+        """The byte at which the next line begins; None in another file than the section's."""
         return self.home.starts[self.line] if self.source is self.home else None
 
     def take(self) -> str | None:
@@ -141,7 +145,7 @@ class ProgramLines:
         return own and not set(letters).isdisjoint(self.home.lines[line - 1].upper())
 
     def parse(self, text: str | None = None) -> None:
-        """Let the interpreter parse the line taken, or ``text`` in its place."""
+        """Let the interpreter parse the line taken, or ``text`` instead."""
         self.interp.sequence_number = self.line
         self.interp.read(self.source.lines[self.line - 1] if text is None else text)
 
@@ -153,7 +157,7 @@ class ProgramLines:
         self.parse(text)
 
     def control(self, kind: str) -> int:
-        """Let the interpreter obey the line taken, an O-word, and go on where it leads.
+        """Let the interpreter execute the line taken, an O-word, and follow its jump.
 
         ``kind`` is the O-word's keyword. Returns the interpreter's status.
         """
@@ -180,12 +184,11 @@ class ProgramLines:
     def catch_up(self) -> None:
         """Make the interpreter read on after the line taken.
 
-        Nothing but the return from a sub moves its place in a file: so call an empty one, and
-        change where it returns to. `Interp::execute_call` (interp_o_word.cc) notes the place in
-        the caller's frame, `Interp::execute_return` seeks it. A called sub is skipped to until its
-        ``sub`` line is read (`Interp::control_back_to`), which here comes from a string.
-        (Without it: `test_line_numbers_behind_two_sections`; `test_subs_of_the_same_file` does not
-        end.)
+        Only the return from a sub changes its position in a file: call an empty one, and change its
+        return position. `Interp::execute_call` (interp_o_word.cc) notes the position in the
+        caller's frame, `Interp::execute_return` seeks it. A called sub is skipped to until its
+        ``sub`` line is read (`Interp::control_back_to`), which here comes from a string. (Without
+        it: `test_line_numbers_behind_two_sections`; `test_subs_of_the_same_file` does not end.)
         """
         interp, line = self.interp, self.line
         if self._in_file != line:
@@ -203,7 +206,7 @@ class ProgramLines:
         return self.interp.blocks[0].motion_to_be == NO_MOTION
 
     def _locate(self) -> None:
-        """Go on where the interpreter stands in its file."""
+        """Continue at the interpreter's position in its file."""
         interp = self.interp
         if interp.filename != self.source.filename:
             at_home = interp.filename == self.home.filename

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The spindle that becomes C (configs/include/spindle_c.hal), and what waits for it.
+"""The handlers for a spindle that becomes C (configs/include/spindle_c.hal).
 
-HAL has the state: whether the spindle is C is read from the input by which it answers. The
-interpreter is never ahead of it, as both changes end with a wait.
+HAL has the state: an input of motion shows whether the spindle is C. Both changes end with a wait,
+so the interpreter is never ahead of that state.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def spindle_c_on(self, **words):
 
 @messages.handler
 def spindle_c_is_on(self, **words):
-    """Refuse to go on with a spindle that did not become C: epilog of M254."""
+    """Refuse to continue if the spindle did not become C: epilog of M254."""
     if self.task and not is_c():
         seconds = number(MACHINE.spindle_c_timeout)
         rule = (
@@ -41,14 +41,14 @@ def spindle_c_is_on(self, **words):
 
 @messages.handler
 def spindle_c_off(self, **words):
-    """Refuse to take C from a section that is being read: prolog of M255."""
+    """Refuse to end C inside a section: prolog of M255."""
     if in_section(self):
         raise BlockRefusal(messages.code_of_block(self), "the section needs C to its end")
     return INTERP_OK
 
 
 def in_section(interp: Interp) -> bool:
-    """Return whether the block being remapped stands in a section."""
+    """Return whether the remapped block is in a section."""
     remaps = (interp.blocks[level].executing_remap for level in range(1, interp.remap_level))
     return any(remap and remap.remap_py in SECTIONS for remap in remaps)
 
@@ -61,6 +61,6 @@ def is_c() -> bool:
 
 
 def missing_code(interp: Interp) -> str:
-    """Return the code that has to make the spindle C first, "" where nothing has to."""
+    """Return the code that is needed first to make the spindle C, "" where none is."""
     code = MACHINE.spindle_c_code
     return code if code and interp.task and not is_c() else ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a cycle finds in the interpreter, its hand-over to NGC, and what is remembered of it.
+"""The interpreter's state before a cycle, the hand-over to NGC, and the state kept between cycles.
 
 Facts about the interpreter that the code relies on stand beside the line that does.
 """
@@ -56,14 +56,13 @@ NO_L = -1  # a block's l_number without an L word
 
 
 class CycleState:
-    """What the package remembers of one interpreter; it lives on the interpreter object.
+    """The package's state of one interpreter, stored on the interpreter object.
 
-    ``modes`` are those a cycle found and has to restore, ``feed`` the F that a shape found,
-    ``path`` the path control and ``spindle`` the number of the one in use that holes found;
-    ``radius_commanded`` tells a D of radius 0 from no D at all, which the interpreter's own last
-    compensation radius cannot.
-    ``first_plane`` is the circle mill's modal reference plane in mm and the program that
-    commanded it, as it was then.
+    ``modes`` are those that a cycle has to restore, ``feed`` the F before a shape, ``path`` the
+    path control and ``spindle`` the number of the spindle in use before holes. ``radius_commanded``
+    distinguishes a D of radius 0 from no D at all, which the interpreter's own last compensation
+    radius does not. ``first_plane`` is the circle mill's modal reference plane in mm, with the
+    program that commanded it and its time of change.
     """
 
     def __init__(self) -> None:
@@ -143,8 +142,8 @@ def tool_in_spindle(interp: Interp) -> Tool | None:
 def tool_in_table(interp: Interp, tool_number: int) -> Tool | None:
     """Return the tool of that number from the tool table, None if it is not there.
 
-    The table is in the order of the tool file; `find_tool_pocket` would give the pocket, which
-    is another number. Place 0 is the spindle, with a random tool changer the tool's only place.
+    The table is in the order of the tool file; `find_tool_pocket` would return the pocket, which is
+    another number. Entry 0 is the spindle, with a random tool changer the tool's only entry.
     """
     table = interp.tool_table
     for place in itertools.chain(range(1, len(table)), (0,)):
@@ -180,8 +179,8 @@ def report_other_cutter(interp: Interp, context: Context, text: str | None) -> N
 def first_plane(interp: Interp) -> float | None:
     """Return the circle mill's first reference plane as last commanded by this program.
 
-    Another program's, or that of a text since edited, would send the tool to a height that this
-    one never mentions.
+    A plane of another program, or of the text before an edit, would send the tool to a height that
+    this program does not contain.
     """
     plane = state_of(interp).first_plane
     if plane is None or plane[1] != main_program(interp):
@@ -196,7 +195,7 @@ def remember_first_plane(interp: Interp, height: float) -> None:
 
 
 def snapshot(interp: Interp) -> Context:
-    """Return what the block finds: modes, units, position, tools."""
+    """Return the state before the block: modes, units, position, tools."""
     return Context(
         inch=interp.length_units == INCH,
         x=interp.current_x,
@@ -227,14 +226,14 @@ def other_unit(interp: Interp) -> str:
 def stay_within_limits(interp: Interp, words: Words, extent: CycleExtent) -> None:
     """Refuse a cycle that leaves the machine's travel.
 
-    Not in a preview: it shows a program also before the work offset is set.
+    Not in a preview, which also shows programs before the work offset is set.
     """
     if interp.task:
         check_travel(words, extent, machine_frame(interp), MACHINE.travel)
 
 
 def machine_frame(interp: Interp) -> MachineFrame:
-    """Return where program coordinates lie on the machine: work offset, G92, rotation, tool."""
+    """Return the transformation to machine coordinates: work offset, G92, rotation, tool."""
     tool = interp.tool_offset
     return MachineFrame(
         shift=(interp.axis_offset_x, interp.axis_offset_y, interp.axis_offset_z),
@@ -255,7 +254,7 @@ def per_revolution(interp: Interp) -> bool:
 
 
 def pocket_entry() -> PocketEntry:
-    """Return how a Haas pocket's tool goes down, by [G12]."""
+    """Return the entry of a Haas pocket by [G12]."""
     settings = MACHINE.settings
     return PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
 
@@ -266,7 +265,7 @@ def traverse_feed(interp: Interp) -> float:
 
 
 def hand_over(interp: Interp, **locals_: float) -> None:
-    """Set the named locals of the NGC sub that is about to run, and note the modes it finds."""
+    """Set the named locals of the NGC sub that runs next, and note the modes to restore."""
     params = interp.params
     for name, value in locals_.items():
         params[name] = value
@@ -274,7 +273,7 @@ def hand_over(interp: Interp, **locals_: float) -> None:
 
 
 def note_modes(interp: Interp) -> None:
-    """Note the modes that a cycle or a shape finds, and its F."""
+    """Note the modes and F before a cycle or a shape."""
     state = state_of(interp)
     state.feed = interp.feed_rate
     state.modes = (
@@ -286,8 +285,8 @@ def note_modes(interp: Interp) -> None:
 
 
 def restore_modes(interp: Interp) -> None:
-    """Restore the modes the block found: motion, G90/G91, G90.1/G91.1, G7/G8."""
+    """Restore the modes before the block: motion, G90/G91, G90.1/G91.1, G7/G8."""
     motion, distance, centre, diameter = state_of(interp).modes
     interp.motion_mode = motion
-    # a block after the assignment, or the active codes shown would still be the cycle's
+    # a block after the assignment makes LinuxCNC show the restored active codes
     interp.execute(f"G{90 + distance} G{90 + centre}.1 G{7 if diameter else 8}")

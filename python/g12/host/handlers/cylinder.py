@@ -25,12 +25,12 @@ DROPPED_WORDS = "abdhijkruvwxyz"  # nothing else in a block with G7.1 could read
 
 
 def check_at_start() -> None:
-    """Read what sections need of the INI; a Refusal tells why it cannot be used."""
+    """Read the INI values that sections use; raise Refusal for one that cannot be used."""
     check_ini()
 
 
 def cylinder_mode(self, **words) -> Iterator[int]:
-    """Read, plan and move a section; outside one C0 is a safety line and does nothing."""
+    """Read, plan and execute a section; outside one C0 is a safety line and does nothing."""
     try:
         messages.forget_return(self)
         block = self.blocks[self.remap_level]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G12.1 typed in MDI, with kinematics: X and Y move on the face until G13.1.
 
-Nothing is planned ahead here. The lines in between are LinuxCNC's own; `polar_xzc` slows them
-where C could not follow (M52 P1), and lets no program move. When the face ends in another way than
-by G13.1, it lets nothing move until G13.1 or the next G12.1: the lines that an operator types then
-were meant for the face.
+Nothing is planned ahead here. LinuxCNC executes the lines in between itself. `polar_xzc` slows them
+where C could not follow (M52 P1), and blocks programs. When the face ends in another way than by
+G13.1, it blocks all motion until G13.1 or the next G12.1: lines that an operator types then still
+use X and Y of the face.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from g12.host.kinematics_switch import (
 from g12.host.program_lines import ProgramLines, read_source
 from g12.section.start import SectionStart
 
-MDI_LINE = 0  # of the moves that follow, by which polar_xzc knows them
+MDI_LINE = 0  # line number of the following moves, by which polar_xzc identifies them
 
 
 ONLY_MOVES = 3  # cutter_comp_side, neither left nor right: see `_lock`
@@ -45,9 +45,9 @@ COMPENSATION_OFF, COMPENSATED = 0, (1, 2)  # cutter_comp_side
 
 
 class ByHand(NamedTuple):
-    """What G12.1 in MDI leaves on the interpreter (``g12_by_hand``) until G13.1.
+    """The state of G12.1 in MDI, stored on the interpreter (``g12_by_hand``) until G13.1.
 
-    ``code`` is G12.1 as it was typed, ``radius`` the compensation's that was commanded last.
+    ``code`` is G12.1 as typed, ``radius`` the last commanded compensation radius.
     """
 
     code: str
@@ -56,7 +56,7 @@ class ByHand(NamedTuple):
 
 
 def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[int]:
-    """Go to the face where a section could begin, with the tool ``beside`` the X line."""
+    """Switch to the face if a section may begin, with the tool ``beside`` the X line."""
     code = start.location.code
     if y_offset(interp):
         raise BlockRefusal(code, "needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis")
@@ -73,7 +73,7 @@ def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[in
 
 
 def switch_off(interp: Interp) -> Iterator[int]:
-    """Come back from the face, if that is where the machine is, to the modes that were found."""
+    """Switch back from the face, if it is active, and restore the modes before it."""
     code = messages.code_of_block(interp)
     if getattr(interp, "g12_by_hand", None) and interp.cutter_comp_side in COMPENSATED:
         raise BlockRefusal(code, "needs G40 before it")
@@ -88,11 +88,11 @@ def switch_off(interp: Interp) -> Iterator[int]:
 
 
 def abort(interp: Interp) -> None:
-    """Come back after an abort: nothing can be waited for, so ask and go on.
+    """Switch back after an abort, when no wait is possible: request it and go on.
 
-    `Interp::read_inputs` (rs274ngc_pre.cc) takes the position that the machine has then when it
-    reads the next line, as after a tool change: the one that LinuxCNC took is the face's. The
-    canonical function asks where M68 could not, with compensation on.
+    The position that LinuxCNC took at the abort is the face's. `Interp::read_inputs`
+    (rs274ngc_pre.cc) takes the machine's new position when it reads the next line, as after a tool
+    change. The canonical function makes the request: M68 is refused while compensation is on.
     """
     by_hand = _unlock(interp)
     accelerate(interp, 1.0)
@@ -109,7 +109,7 @@ def abort(interp: Interp) -> None:
 
 
 def _lock(interp: Interp) -> None:
-    """Have LinuxCNC refuse on the face what it refuses where compensation is on.
+    """Make LinuxCNC refuse on the face the codes that it refuses under compensation.
 
     G41 and G42 are among it, and planes, offsets, tools and M52. With a radius of 0, and no move
     made with it, everything else is as without (`Interp::find_ends`, `Interp::convert_straight`).
@@ -119,7 +119,7 @@ def _lock(interp: Interp) -> None:
 
 
 def _unlock(interp: Interp) -> ByHand | None:
-    """Undo `_lock`, and a compensation that began after a G40; return what was locked."""
+    """Undo `_lock`, and a compensation that began after a G40; return the locked state."""
     by_hand, interp.g12_by_hand = getattr(interp, "g12_by_hand", None), None
     if by_hand and not by_hand.ended:
         interp.cutter_comp_side, interp.cutter_comp_radius = COMPENSATION_OFF, by_hand.radius
@@ -128,7 +128,7 @@ def _unlock(interp: Interp) -> ByHand | None:
 
 
 def give_back_modes(interp: Interp) -> None:
-    """Give back the modes that `switch_on`, or a section, found."""
+    """Restore the modes before `switch_on` or a section."""
     found, interp.g12_found = getattr(interp, "g12_found", None), None
     if found:
         interp.execute(found)

@@ -35,7 +35,7 @@ DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could re
 
 
 def check_at_start() -> None:
-    """Read what sections need of the INI; say so if LinuxCNC takes G12.1 for itself."""
+    """Read the INI values that sections use; raise Refusal if G12.1 is LinuxCNC's own code."""
     check_ini()
     try:
         refuse_owned_codes(MACHINE.remaps, owns_g12_1(Path("/proc/self/maps").read_text()))
@@ -44,7 +44,7 @@ def check_at_start() -> None:
 
 
 def polar_on(self, **words) -> Iterator[int]:
-    """Read, plan and move a section: the handler of G12.1, which may have to wait."""
+    """Read, plan and execute a section: the handler of G12.1, which yields to wait."""
     try:
         messages.forget_return(self)
         if is_typed(self):

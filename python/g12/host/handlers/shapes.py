@@ -2,7 +2,7 @@
 """G12.4 and G13.4, the first and the last block of the subs of shapes and holes.
 
 G12.4 takes the entries of the call from the sub's named locals, checks the shape as a whole, and
-gives the sub the numbers of its motion; G13.4 restores the modes that G12.4 found.
+passes the values of its motion to the sub. G13.4 restores the modes before G12.4.
 """
 
 from __future__ import annotations
@@ -37,20 +37,20 @@ from g12.shapes.holes import HoleMachine
 
 
 class Plan(Protocol):
-    """What a planner of shapes or holes returns."""
+    """The result of a planner of shapes or holes."""
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of the sub."""
 
     def extent(self) -> Extent:
-        """Return how far the axes go."""
+        """Return the extent of the axes' motion."""
 
 
 Machine = TypeVar("Machine")
 
 
 class Shape(NamedTuple, Generic[Machine]):
-    """A shape: the names of its entries, and what plans it for a machine."""
+    """A shape: the names of its entries, and its planner for a machine."""
 
     entries: tuple[str, ...]
     plan: Callable[[ShapeEntries, Context, Machine], Plan]
@@ -69,13 +69,13 @@ HOLES: dict[str, Shape[HoleMachine]] = {
 
 
 def check_at_start() -> None:
-    """Read what sections need of the INI; a Refusal tells why it cannot be used."""
+    """Read the INI values that sections use; raise Refusal for one that cannot be used."""
     check_ini()
 
 
 @messages.handler
 def polar_shape(self, **words):
-    """Check the shape in whose sub it stands, and set the locals of its motion: G12.4."""
+    """Check the shape of the calling sub, and set the locals of its motion: G12.4."""
     level = self.call_level - 1  # the sub's
     name = shape_at_work(self)
     if MACHINE.switches_kinematics and self.task and face_in_force():
@@ -90,8 +90,10 @@ def polar_shape(self, **words):
     check_nearest(entries, plan.extent(), machine)
     stay_in_travel(entries, plan.extent(), setup)
     numbers = plan.locals()
-    if self.c_axis_wrapped:  # a sign would be the way to turn, 360 is refused
-        numbers["start_angle"] = numbers["start_angle"] % 360.0 % 360.0  # of -1e-20 it is 360
+    if (
+        self.c_axis_wrapped
+    ):  # on a wrapped axis a sign is the direction of the turn, and 360 is refused
+        numbers["start_angle"] = numbers["start_angle"] % 360.0 % 360.0  # -1e-20 % 360 is 360
     x_words = {"x_word": 1 + setup.words.diameter, "x_rapid": 1 + start.diameter}
     set_locals_at(self, level, {**numbers, **x_words, **section_codes(entries)})
     cycle_state.note_modes(self)
@@ -102,10 +104,10 @@ def polar_shape(self, **words):
 def prepare_holes(
     interp: Interp, level: int, name: str, start: SectionStart, setup: SectionSetup[PolarSettings]
 ) -> int:
-    """Check holes and set the locals of their motion, which is made in G61 as drilling cycles are.
+    """Check holes and set the locals of their motion, which runs in G61 as drilling cycles do.
 
-    Rapids that LinuxCNC blends would let C turn before the tool is out of its hole, or before the
-    move in front of the call is at its end.
+    With blended rapids C would turn before the tool is out of its hole, or before the move ahead of
+    the call has ended.
     """
     entries = ShapeEntries(name, HOLES[name].entries, locals_at(interp, level))
     close, opens = clamp_codes(entries.refuse, MACHINE.settings.c_clamp) or (0, 0)
@@ -127,7 +129,7 @@ def prepare_holes(
 def hole_machine(
     interp: Interp, start: SectionStart, setup: SectionSetup[PolarSettings]
 ) -> HoleMachine:
-    """Return what holes have to know of the machine."""
+    """Return the machine's state that holes depend on."""
     spindle = tool_spindle(interp)
     turning = type(interp).spindle_turning.fget(interp, spindle)  # a property with an argument
     return HoleMachine(
@@ -142,30 +144,30 @@ def hole_machine(
 
 @messages.handler
 def polar_shape_done(self, **words):
-    """Restore the modes that the shape found, F among them: G13.4."""
+    """Restore the modes before the shape, F among them: G13.4."""
     shape_at_work(self)
     cycle_state.restore_modes(self)
     state = cycle_state.state_of(self)
     path, state.path = state.path, ""
-    if path:  # of holes: a tap has named its spindle, and feeds per revolution would refer to it
+    if path:  # after a tap, feeds per revolution would refer to the spindle of its $ word
         self.active_spindle = state.spindle
     self.execute(f"{path}F{decimal(state.feed)}")
     return INTERP_OK
 
 
-SPINDLE_CODES = {2: 3, 3: 4}  # M codes by CANON_DIRECTION; 1 stands
+SPINDLE_CODES = {2: 3, 3: 4}  # M codes by CANON_DIRECTION; 1: stopped
 LIVE_SPINDLE = 1  # where the main spindle is C
 
 
 def tool_spindle(interp: Interp) -> int:
-    """Return the number of the spindle that drives the tool: never one that is C."""
+    """Return the number of the tool's spindle, never that of a spindle that is C."""
     if MACHINE.spindle_c_code and interp.num_spindles > LIVE_SPINDLE:
         return LIVE_SPINDLE
     return modes.feed_spindle(interp)
 
 
 def shape_at_work(interp: Interp) -> str:
-    """Return the name of the shape in whose sub the code stands; refuse it anywhere else."""
+    """Return the name of the shape that calls the code; refuse the code outside a shape's sub."""
     name, code = interp.sub_context[interp.call_level - 1].subname, messages.code_of_block(interp)
     if name not in SHAPES and name not in HOLES:
         *names, last = *SHAPES, *HOLES
@@ -177,7 +179,7 @@ def shape_at_work(interp: Interp) -> str:
 
 
 def start_of_shape(interp: Interp, name: str) -> SectionStart:
-    """Return what the shape finds; refuse modes in which no section can begin."""
+    """Return the state before the shape; refuse modes in which no section can begin."""
     start = start_of_section(interp, 0)
     line = messages.line_of_refusal(interp, BlockRefusal(name, ""))
     # x: the sub itself moves the tool to its start
@@ -187,7 +189,7 @@ def start_of_shape(interp: Interp, name: str) -> SectionStart:
 
 
 def shape_machine(setup: SectionSetup[PolarSettings]) -> ShapeMachine:
-    """Return what a shape has to know of the machine."""
+    """Return the machine's settings that a shape depends on."""
     beside = setup.words.beside
     return ShapeMachine(
         diameters=setup.words.diameter,
@@ -200,7 +202,7 @@ def shape_machine(setup: SectionSetup[PolarSettings]) -> ShapeMachine:
 
 
 def section_codes(entries: ShapeEntries) -> dict[str, float]:
-    """Return the locals by which the sub begins and ends its section: the G codes."""
+    """Return the locals with the G codes that begin and end the sub's section."""
     remaps = MACHINE.remaps.values()
     numbers = {}
     for name in ("polar_on", "polar_off"):

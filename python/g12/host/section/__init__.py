@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A section of interpolation in the interpreter: read ahead, planned, put out as motion."""
+"""A section of interpolation in the interpreter: read ahead, planned, executed as motion."""

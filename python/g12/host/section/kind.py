@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the handlers of all kinds of sections share: the machine, and the way through a section."""
+"""Shared by the handlers of all kinds of sections: the machine, and the run of a section."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ from g12.section.start import SectionStart
 
 OWN_CODES, USER_CODES = range(3, 10), range(100, 200)  # M codes without a REMAP line
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
-TYPED = 1  # call level of a block that stands in no sub
+TYPED = 1  # call level of a block outside any sub
 TURN, REPORTED_TURN = 360.0, 540.0  # a contour that closes and its leads take more than one
 NOT_IN_MDI = "is not possible in MDI: it needs the lines after it"
 
 
 class SectionKind(NamedTuple, Generic[Planning]):
-    """What one kind of section does its own way.
+    """The differences of one kind of section.
 
     ``letters`` are those of the block that switches on. ``check`` refuses to begin a section,
-    ``setup`` tells what it goes by, ``codes`` which codes (begun by the one named) are its own.
-    ``plan`` makes moves of what was read.
+    ``setup`` returns its settings, ``codes`` its codes, by the one that began it. ``plan`` turns
+    the contour into moves.
     """
 
     letters: str
@@ -51,7 +51,7 @@ class SectionKind(NamedTuple, Generic[Planning]):
 
 
 def check_ini() -> None:
-    """Read what sections need of the INI; a Refusal tells why it cannot be used."""
+    """Read the INI values that sections use; raise Refusal for one that cannot be used."""
     MACHINE.read("settings", "remaps", "coordinates", "axes", "face")
 
 
@@ -61,7 +61,7 @@ def is_typed(interp: Interp) -> bool:
 
 
 def rest_of_program(interp: Interp) -> ProgramLines:
-    """Return the program that goes on after the block; refuse one whose file is gone."""
+    """Return the lines after the block; refuse a program whose file is missing."""
     try:
         program = ProgramLines(interp, getattr(interp, "g12_source", None))
     except OSError as problem:
@@ -79,7 +79,7 @@ def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
         yield from _section(interp, kind, frame, program).run()
         if MACHINE.settings.c_clamp_shapes:
             modes.run_code(interp, f"M{MACHINE.settings.c_clamp[1]}")
-        if not kind.letters:  # on a cylinder the turns are the program's words
+        if not kind.letters:  # on a cylinder the program itself commands the turns
             report_turns(interp, interp.CC_current - c)
     except Exception as error:
         line = line_named(error)

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The moves and actions of a planned section, handed to the machine in order.
+"""Execution of a planned section: its moves and actions, in order.
 
 While segments go out the interpreter is in G90 G94 with C unwrapped, and blends them in G64.
-`SectionOutput.release` puts everything back to what the program commanded; so it is wherever the
-program can see it, or the machine waits.
+`SectionOutput.release` restores the modes that the program commanded. That happens wherever the
+program can read them, or the machine waits. The move before the section would be blended into its
+first segment: a G4 P0 stops it. (Also under G61: the path control in force at a move decides how it
+ends.)
 
-A move in front of the section would be blended into its first segment: a dwell of no time stops it.
-(Also under G61: what a move ends in is told by what was in force at it.)
-
-On the face (`configs/kinematics`) lines and arcs go out as they are, in X and Y. To go there and
-back the machine has to stand, and the interpreter to wait for it.
+On the face (`configs/kinematics`) lines and arcs go out as they are, in X and Y. For the switch
+there and back the machine has to stop, and the interpreter to wait for it.
 """
 
 from __future__ import annotations
@@ -57,11 +56,11 @@ BLOCK_END = ""
 
 
 class Action(NamedTuple):
-    """A block that is no motion, in its place between the moves.
+    """A block without motion, in order between the moves.
 
-    ``modes`` are those in force when the tool gets there, None for a comment that needs none.
-    The text may be `BLOCK_END`: that is all the action tells then.
-    ``level`` is the call level whose saved state an M70 to M72 means, None for other blocks.
+    ``modes`` are those in force at that point of the path, None for a comment that needs none. The
+    text may be `BLOCK_END`, which only marks the end of a block. ``level`` is the call level whose
+    saved state an M70 to M72 refers to, None for other blocks.
     """
 
     line: int
@@ -85,13 +84,13 @@ def path_control(interp: Interp) -> str:
 
 
 class PathControl:
-    """G61, G61.1 or G64 as the program commanded it, and as the segments of a section need it.
+    """Path control: G61, G61.1 or G64 as commanded by the program, and as a section needs it.
 
-    Between the segments of one block the path is blended, with ``smooth`` if the program gave no
-    tolerance; at the end of a block it is what the program commanded. Where C stands, LinuxCNC
-    rounds a corner of X and Z by all of P at any speed, and merges lines by all of Q (measured:
-    0.100 mm under P0.1 at F60, 0.082 mm under Q0.1). There both are ``blending`` at most.
-    ``initial`` is the tolerance that LinuxCNC starts with: on the face it counts for none. Both in
+    The segments of one block are blended, with ``smooth`` if the program gave no tolerance. The
+    path control at the end of a block is the commanded one. In blocks without C, LinuxCNC rounds a
+    corner of X and Z by all of P at any speed, and merges lines by all of Q (measured: 0.100 mm
+    under P0.1 at F60, 0.082 mm under Q0.1). There both are at most ``blending``. ``initial`` is the
+    tolerance that LinuxCNC starts with, which does not count as commanded on the face. Both are in
     program units.
     """
 
@@ -101,7 +100,7 @@ class PathControl:
         self.find()
 
     def find(self) -> None:
-        """Take what is in force for what the program commanded."""
+        """Take the path control in force as the commanded one."""
         settings, code = self.interp.active_settings, self.interp.active_g_codes[PATH_ACTIVE]
         self._tolerances, self._commanded = tolerances(settings), path_control(self.interp)
         own_tolerance = code == G64 and settings[TOLERANCE] > 0
@@ -114,15 +113,15 @@ class PathControl:
         self._in_force, self._blending = self._commanded, self._tolerances
 
     def renew(self) -> None:
-        """Have the next one commanded in any case: Run from line passes over what set it."""
+        """Command the next one even if unchanged: Run from line skips the block that set it."""
         self._in_force = ""
 
     def inside(self, turning: bool) -> None:
-        """Set what blends the segments of one block, which turn C or not."""
+        """Set the path control within one block, for segments with or without a turn of C."""
         self.set(self._within if turning else self._where_c_stands)
 
     def on_face(self) -> None:
-        """Set what blends the blocks on the face: nothing else holds at their corners."""
+        """Set the path control for blocks on the face, which also applies at their corners."""
         self.set(self._on_face)
 
     @property
@@ -131,9 +130,9 @@ class PathControl:
         return self._commanded in EXACT_PATHS
 
     def at_end(self, stop: bool, exact_stop: bool, block_ends: bool) -> bool:
-        """Set what the last segment of a run must end in; return whether it must.
+        """Set the path control for the last segment of a run; return whether it has to stop.
 
-        ``stop`` is asked for by the planner, ``exact_stop`` by G9.
+        The planner sets ``stop``, a G9 ``exact_stop``.
         """
         ending = EXACT_PATH if stop else ""
         if block_ends and exact_stop:
@@ -145,7 +144,7 @@ class PathControl:
         return bool(ending)
 
     def give_back(self) -> None:
-        """Set what the program commanded."""
+        """Restore the commanded path control."""
         if self._blending != self._tolerances:
             self.set(self._tolerances)
         self.set(self._commanded)
@@ -161,8 +160,8 @@ class PathControl:
 class SectionOutput:
     """Hands steps to the interpreter.
 
-    ``code`` names the section in refusals. ``x_factor`` turns a radius value into an X word (2
-    under G7); ``blending``, ``initial`` (of G64 when LinuxCNC starts), ``machine_unit`` and
+    ``code`` names the section in refusals. ``x_factor`` converts a radius value into an X word (2
+    under G7). ``blending``, ``initial`` (of G64 when LinuxCNC starts), ``machine_unit`` and
     ``beside`` (of the tool from the X line) are in program units. ``absolute`` is the interpreter's
     name of G90, ``canon`` its canonical functions.
     """
@@ -191,7 +190,7 @@ class SectionOutput:
     def run(
         self, steps: Sequence[Step], modes: SectionModes, exact_lines: Container[int]
     ) -> Iterator[str]:
-        """Hand over all steps, and release the interpreter in ``modes``.
+        """Execute all steps, and release the interpreter in ``modes``.
 
         ``exact_lines`` are those of blocks with G9. Yields blocks to execute and to wait for.
         """
@@ -211,7 +210,7 @@ class SectionOutput:
         self.release(modes)
 
     def release(self, modes: SectionModes) -> None:
-        """Put the interpreter into the modes that the program commanded."""
+        """Restore the modes that the program commanded."""
         interp = self.interp
         interp.c_axis_wrapped = self._wrapped
         self.path.give_back()
@@ -232,11 +231,11 @@ class SectionOutput:
         interp.distance_mode = self.absolute
         if self._per_revolution:
             interp.execute("G94")
-        interp.feed_mode = PER_MINUTE  # reading may have left what the section ends in
+        interp.feed_mode = PER_MINUTE  # reading ahead may have left the modes of the section's end
         interp.motion_mode = G1
 
     def _moves_to_an_end(self, run: BlockMoves, following: object, exact_stop: bool) -> None:
-        """Hand over moves of which the last ends in another path control."""
+        """Execute moves, the last of them under another path control."""
         block_ends = not isinstance(following, BlockMoves) or following.line != run.line
         if len(run.segments) > 1:
             self._moves(run.line, run.axes, run.segments[:-1])
@@ -249,10 +248,10 @@ class SectionOutput:
             self.interp.execute(STOP_HERE)
 
     def _moves(self, line: int, axes: str, segments: Sequence[Segment]) -> None:
-        """Hand over moves of one block.
+        """Execute the moves of one block.
 
-        The first is a block to the interpreter, which tells the machine the line and the modes.
-        The others are what it would make of their blocks, at a third of the time.
+        The first goes through the interpreter, which sets the line and the modes. The others are
+        canonical calls, the same as for blocks, in a third of the time.
         """
         interp = self.interp
         interp.sequence_number = line
@@ -267,12 +266,12 @@ class SectionOutput:
         interp.current_x, interp.CC_current, interp.current_z, _ = segments[-1]
 
     def _block(self, axes: str, x: float, c: float, z: float, feed: float) -> None:
-        # every digit: X must come back as the number that the moves after this one have
+        # every digit: X must parse to exactly the number in the following moves
         values = {"X": x * self.x_factor, "C": c, "Z": z, "F": feed}
         self.interp.execute("".join(f"{word}{values[word]:.17f}" for word in (*axes, "F")))
 
     def _switch(self, step: FaceSwitch) -> Iterator[str]:
-        """Go to the face or back; the interpreter loses the answer of the program's last M66."""
+        """Switch to the face or back; the answer of the program's last M66 is lost."""
         interp = self.interp
         interp.sequence_number = step.line
         found = interp.params[INPUT_FOUND]
@@ -285,7 +284,7 @@ class SectionOutput:
         else:
             interp.execute(interp.g12_found)
             yield from to_axes(interp)
-            interp.g12_found = None  # not before: an abort in the wait drops what was executed
+            interp.g12_found = None  # only now: an abort during the wait drops what was executed
         if not has_switched(interp):
             raise BlockLocation(self.code, step.line).refuse(not_switched())
         wrong = self._wrong_position(step.position) if step.on and interp.task else ""
@@ -299,22 +298,21 @@ class SectionOutput:
             self.canon.COMMENT(f"{MEANINGS_CHANGED}{step.share}")
 
     def _wrong_position(self, position: tuple[float, float, float]) -> str:
-        """Return why the machine, which the interpreter has just asked, is not where it was meant.
-
-        "" if it is.
-        """
+        """Return why the machine's actual position is not the planned one, "" if it is."""
         off = (abs(there - planned) for there, planned in zip(self._stands(), position))
         return ELSEWHERE if max(off) > SWITCH_TOLERANCE else other_module(self.interp, self.beside)
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
-        """Hand over a line, an arc or a move of Z on the face."""
+        """Execute a line, an arc or a move of Z on the face."""
         interp, move = self.interp, step.move
         block_ends = not isinstance(following, FaceMove) or following.line != step.line
         interp.sequence_number = step.line
         self.path.on_face()
         ends = isinstance(following, FaceSwitch)
         if ends or (isinstance(following, FaceMove) and flows_into(move, following.move)):
-            self.path.set(EXACT_PATH)  # nothing to blend: LinuxCNC halves its acceleration for it
+            self.path.set(
+                EXACT_PATH
+            )  # a tangent arc needs no blending, for which LinuxCNC halves the acceleration
         self.path.at_end(False, exact_stop, block_ends)
         curve = move.curve if isinstance(move, PlaneMove) else None
         words = "G1" if not isinstance(curve, Arc) else "G3" if curve.sweep > 0.0 else "G2"
@@ -331,7 +329,7 @@ class SectionOutput:
         interp.motion_mode = G1
 
     def _act(self, action: Action) -> None:
-        """Execute a block in its place."""
+        """Execute an action."""
         if action.text == BLOCK_END:
             return
         self.interp.sequence_number = action.line
@@ -344,14 +342,14 @@ class SectionOutput:
         self._take_over()
 
     def _execute(self, action: Action) -> None:
-        """Execute the block as one of the program, which a remapped code must be."""
+        """Execute the action's block as one of the program, which a remapped code requires."""
         interp, location = self.interp, BlockLocation(self.code, action.line)
         level, stands = interp.call_level, self._stands()
         interp.call_level = level if action.level is None else action.level
         try:
             interp.read(action.text)
             status = interp.execute(None)
-        except SystemError:  # how LinuxCNC hands a failed read or execute to Python
+        except SystemError:  # a failed read or execute of LinuxCNC's
             raise location.refuse(error_text(interp)) from None
         finally:
             interp.call_level = level

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the blocks of a section do: contour motion is collected, modes act, the rest is kept.
+"""The blocks of a section: motion is collected as a contour, modes act, actions are kept.
 
-A block that is no motion is kept for its place between the moves; assignments act at once. While
-a section is read the interpreter is shown the programmed position in the plane, and the modes of
-the section, so that a program reads them from #5420, #<_x> or #<_feed>.
+A block without motion is kept in order between the moves; assignments act at once. While a section
+is read, the interpreter's position and modes are set to the programmed ones, so that a program
+reads them from #5420, #<_x> or #<_feed>.
 """
 
 from __future__ import annotations
@@ -61,9 +61,9 @@ plain_words = attrgetter(
 
 
 class MoveWords(NamedTuple):
-    """The numbers of a move's words as the program has them, None where there is none.
+    """The values of a move's words as programmed, None for a word that is absent.
 
-    ``relative`` are the axes whose number is an increment whatever the mode: of U, W, H.
+    ``relative`` are the axes whose value is an increment in any mode: of U, W, H.
     """
 
     x: float | None
@@ -106,7 +106,7 @@ class SectionReader:
         self.remember_machine()
 
     def _contour(self, start: SectionStart, rules: WordRules) -> Contour:
-        """Return the empty contour that begins where the machine stands."""
+        """Return the empty contour that begins at the machine's position."""
         known = rules.words
         angle = start.c if self._own_c else 0.0
         x, c, z = self._to_plane((start.x, angle * rules.c_scale, start.z))
@@ -125,14 +125,14 @@ class SectionReader:
 
     @property
     def programmed(self) -> tuple[float, float, float]:
-        """The programmed position as words would tell it: X (radius value), C, Z."""
+        """The programmed position in words: X (radius value), C, Z."""
         contour = self.contour
         x, c, z = self._to_axes((contour.x, contour.c, contour.z))
         return x, c / self.rules.c_scale, z
 
     @property
     def location(self) -> BlockLocation:
-        """The line taken last, for the operator."""
+        """The source location of the line taken last, for messages."""
         return BlockLocation(self.start.location.code, self.program.shown_line)
 
     def refuse_failed(self) -> Exception:
@@ -140,27 +140,27 @@ class SectionReader:
         return self.location.refuse(error_text(self.interp))
 
     def remember_machine(self) -> None:
-        """Note where the machine stands, as the interpreter knows it now, and in which modes."""
+        """Note the machine's position and modes from the interpreter's state."""
         interp = self.interp
         self._machine = interp.current_x, interp.current_z, interp.CC_current
         self._modes_found = self.modes
 
     def show_machine(self) -> None:
-        """Show the interpreter where the machine stands."""
+        """Set the interpreter's position to the machine's."""
         interp = self.interp
         interp.current_x, interp.current_z, interp.CC_current = self._machine
 
     def put_back(self) -> None:
-        """Leave the interpreter as it was when the machine moved last."""
+        """Restore the interpreter's state as of the machine's last motion."""
         self.show_machine()
         self.set_modes(self._modes_found)
 
     def deletes(self, line: TextLine) -> bool:
-        """Return whether a line goes out with block delete."""
+        """Return whether a line is skipped with block delete."""
         return line.deletable and emccanon.GET_BLOCK_DELETE()
 
     def set_modes(self, modes: SectionModes) -> None:
-        """Let modes act on the blocks that follow, and be what the program reads of them."""
+        """Set the modes for the following blocks, also as the program reads them."""
         interp, self.modes = self.interp, modes
         interp.distance_mode = MODE_INCREMENTAL if modes.incremental else MODE_ABSOLUTE
         interp.feed_mode = PER_REVOLUTION if modes.per_revolution else PER_MINUTE
@@ -168,12 +168,12 @@ class SectionReader:
         interp.motion_mode = modes.motion
 
     def show_plane(self) -> None:
-        """Show the interpreter the programmed position."""
+        """Set the interpreter's position to the programmed one."""
         interp = self.interp
         interp.current_x, interp.CC_current, interp.current_z = self.programmed
 
     def has_moved(self) -> bool:
-        """Return whether the interpreter has left the position that it was shown."""
+        """Return whether the interpreter's position has changed since it was set."""
         interp = self.interp
         return (interp.current_x, interp.CC_current, interp.current_z) != self.programmed
 
@@ -200,20 +200,20 @@ class SectionReader:
             self._move(motion, words)
 
     def with_spindle(self, line: TextLine) -> TextLine:
-        """Return a line with its $ word as a number: of the parsed block it cannot be asked."""
+        """Return a line with its $ word as a number: a parsed block does not show it."""
         if not line.spindle:
             return line
         self.interp.read(f"C{line.spindle[1:]}")
         return line._replace(spindle=f"${round(self.parsed.c_number)}")
 
     def set_parameters(self, line: TextLine) -> None:
-        """Let the assignments of a line act; their values are those before it."""
+        """Execute the assignments of a line; all values are computed before the first of them."""
         if line.assignments:
             self.interp.read(line.assignments)
             self.interp.execute(None)
 
     def set_state(self, line: TextLine, block: SectionBlock) -> None:
-        """Let the modes of a block act, and those it saves or restores."""
+        """Set the modes of a block, and save or restore those it names."""
         code = block.m[M_STATE]
         if code in STATE_CODES:
             self._state_code(code)
@@ -234,11 +234,11 @@ class SectionReader:
         return self._speeds[self._spindle]
 
     def action(self, line: TextLine, block: SectionBlock) -> None:
-        """Keep what the block does besides motion."""
+        """Keep the block's actions besides motion."""
         self._mark(self.action_text(line, block))
 
     def action_text(self, line: TextLine, block: SectionBlock) -> str:
-        """Return the block without its motion, once the interpreter has shown that it reads it.
+        """Return the block without its motion, after a trial parse by the interpreter.
 
         Between the moves a refusal would come too late.
         """
@@ -264,10 +264,12 @@ class SectionReader:
         """Keep a comment, message or report, with its parameters as they are now."""
         if line.python:
             self._keep(Action(self.program.shown_line, line.python, self.modes))
-        for comment in line.comments[-1:]:  # the interpreter knows only the last one of a line
+        for comment in line.comments[
+            -1:
+        ]:  # the interpreter's parsed block has only the last comment of a line
             if "#" in comment:
                 self.show_plane()
-                self.interp.read("")  # which renews #5420
+                self.interp.read("")  # updates #5420
             text = comment_text(comment, self._parameter)
             modes = self.modes if may_fail(comment) else None
             self._keep(Action(self.program.shown_line, text, modes))
@@ -322,7 +324,7 @@ class SectionReader:
             contour.line(x, c, z, line=line, feed=self._feed() if motion else self._rapid_feed())
 
     def _absolute(self, x: float | None, c: float | None, z: float | None, relative: str) -> tuple:
-        """Return coordinates of the plane, those of the ``relative`` axes as increments."""
+        """Return absolute coordinates of the plane; values of ``relative`` axes are increments."""
         contour, plane = self.contour, self.rules.words.plane
         return tuple(
             value + here if value is not None and axis in relative else value
@@ -341,7 +343,7 @@ class SectionReader:
             raise self.location.refuse(self.rules.words.own_block)
 
     def _feed(self) -> float:
-        """Return the feed along the part in program units per minute."""
+        """Return the feed along the path in program units per minute."""
         modes = self.modes
         if modes.feed > MOST_FEED:
             raise self.location.refuse(
@@ -373,7 +375,7 @@ class SectionReader:
         self.contour.compensation(side, radius, line=self.program.shown_line)
 
     def _state_code(self, code: int) -> None:
-        """Obey M70 to M73: here for the section's modes, between the moves for the machine's."""
+        """Execute M70 to M73: here for the section's modes, between the moves for the machine's."""
         level = self.interp.call_level
         if code == RESTORE:
             self._restore(level)

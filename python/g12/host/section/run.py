@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A section of interpolation: read to its end, planned as a whole, then moved.
 
-The handler of G12.1 or G7.1 goes on reading the program itself (`ProgramLines`). The interpreter
-parses every line and obeys O-words at once; what the other blocks do is collected
-(`SectionReader`). After the code that switches off the contour is planned (`g12.polar.plan`,
-`g12.cylinder.plan`) and handed over (`SectionOutput`).
+The handler of G12.1 or G7.1 reads the program on by itself (`ProgramLines`). The interpreter parses
+every line and executes O-words at once; the other blocks are collected (`SectionReader`). After the
+code that switches off, the contour is planned (`g12.polar.plan`, `g12.cylinder.plan`) and executed
+(`SectionOutput`).
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ from g12.section.codes import SectionCodes
 from g12.section.line import TextLine, split_line
 
 WAITING_GROUP = 5
-MOST_LINES = 1_000_000  # LinuxCNC is deaf to an abort while a section is read
+MOST_LINES = 1_000_000  # LinuxCNC handles no abort while a section is read
 
 
 class Phase(Enum):
-    """What a section is at.
+    """The phase of a section.
 
-    While it skips, only O-words count: a false if, or the way to a sub. While it moves, the
-    interpreter is where the machine is, in the modes that the program commanded so far.
+    While it skips, after a false if or on the way to a sub, only O-words count. While it moves, the
+    interpreter's position is the machine's, in the modes commanded so far.
     """
 
     READING = "reading"
@@ -69,7 +69,7 @@ class Section:
         output: SectionOutput,
         first: str = "",
     ) -> None:
-        """``first`` is a code that is obeyed as if the section's first line had it."""
+        """``first`` is a code that acts as if it were in the section's first line."""
         self.codes, self.setup, self.plan = codes, setup, plan
         self.frame, self.program = frame, program
         self.reader, self.output = reader, output
@@ -97,7 +97,7 @@ class Section:
             raise self._refuse("the file has been changed while the program runs")
 
     def _put_back(self) -> None:
-        """Undo what reading showed the interpreter; what moved, and its modes, stays."""
+        """Undo the changes of reading ahead in the interpreter; executed motion stays."""
         if self._phase is not Phase.MOVING:
             self.reader.put_back()
 
@@ -156,7 +156,7 @@ class Section:
             yield from self._obey(line, block)
 
     def _obey(self, line: TextLine, block: SectionBlock) -> Iterator[int]:
-        """Let a block act, in the order in which the interpreter executes one."""
+        """Process a block in the order in which the interpreter executes one."""
         reader = self.reader
         line = reader.with_spindle(line)
         reader.set_parameters(line)
@@ -189,7 +189,7 @@ class Section:
     # O-words.
 
     def _control(self, line: TextLine) -> None:
-        """Let the interpreter obey an O-word; it may go on elsewhere."""
+        """Let the interpreter execute an O-word, which may jump."""
         if self._phase is Phase.SKIPPING and line.control in MOVING:
             return
         if self._phase is Phase.READING and self.frame.is_current:
@@ -218,7 +218,7 @@ class Section:
             raise self._refuse("what is called here moves or waits by itself")
 
     def _see_skipping(self, line: TextLine) -> None:
-        """Note whether the lines that follow are skipped, and what that began with."""
+        """Note whether the following lines are skipped, and the O-word that started it."""
         skipping = self.program.skipping()
         if skipping and self._phase is Phase.READING:
             self._skipped_for = line.text
@@ -236,7 +236,7 @@ class Section:
     # Motion.
 
     def _wait_for_input(self, text: str) -> Iterator[int]:
-        """Obey M66: all before it has to happen before the lines after it can be read."""
+        """Execute M66: everything before it has to be done before the lines after it are read."""
         self.reader.contour.wait(line=self.program.shown_line)
         planned = yield from self._emit()
         yield from self.frame.execute_and_wait(text)
@@ -257,7 +257,7 @@ class Section:
         self._phase = Phase.DONE
 
     def _emit(self) -> Generator[int, None, SectionPlan]:
-        """Plan what was read, and hand it over; return the plan."""
+        """Plan the lines read so far, and execute the plan; return it."""
         reader = self.reader
         plan = self.plan(reader.contour)
         self._check_limits(plan)
@@ -265,7 +265,7 @@ class Section:
             messages.message(note)
         reader.show_machine()
         self._phase = Phase.MOVING
-        steps = cast(list[Step], plan.steps)  # the actions of its marks are the reader's
+        steps = cast(list[Step], plan.steps)  # the reader set the marks' actions
         for waiting in self.output.run(steps, reader.modes, reader.exact_lines):
             yield from self.frame.execute_and_wait(waiting)
         self._phase = Phase.READING

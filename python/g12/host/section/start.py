@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The one look at the interpreter that a section takes where it begins."""
+"""The interpreter's state at the start of a section, read once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ G96 = 960
 
 
 def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart:
-    """Return what a section finds that begins with the block being remapped, on ``line``.
+    """Return the state at the start of a section, whose code is the remapped block on ``line``.
 
     ``words`` are the letters that the block may have.
     """
@@ -57,7 +57,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
 
 
 def stands_alone(block: Block, words: str = "") -> bool:
-    """Return whether a block holds only its code, and those words."""
+    """Return whether a block holds only its code and these words."""
     others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
     return alone(block_of(block), words) and not others
 
@@ -78,7 +78,7 @@ def _tool_radius(interp: Interp, machine_unit: float) -> float | None:
 
 
 def _offsets(interp: Interp) -> dict[str, float]:
-    """Return what the work offset, G92 and the tool offset add to a program's X, Z and C."""
+    """Return the sum of work offset, G92 and tool offset for X, Z and C."""
     tool = interp.tool_offset
     return {
         "X": interp.origin_offset_x + interp.axis_offset_x + tool.x,
