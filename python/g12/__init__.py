@@ -6,14 +6,14 @@ Data flow of one block, one way only::
     words and modes -> request -> named locals -> motion
     (host)             (cycles)   (host)          (ngc/)
 
-and of one section, whose lines the host reads on itself::
+and of one section, whose lines the host reads by itself::
 
     start -> setup -> lines ->  contour ->    path of the tool -> moves of X and C
     (host)   (polar)  (section) (compensation) (compensation)     (polar; handed over by host)
 
 The planners (`cycles`, `section`, `compensation`, `polar`) are pure: numbers in, values out, no
 LinuxCNC.
-README.md beside this file has the rooms, and the walk of a block and of a section.
+README.md beside this file describes the rooms, and the path of a block and a section through them.
 Lengths are in program units unless a docstring says otherwise, angles in radians.
 """
 

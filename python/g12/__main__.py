@@ -20,12 +20,12 @@ from g12.tools.commands.main import main  # noqa: E402 - the path has to be set 
 
 
 def end(number: int, _frame: object) -> None:
-    """Leave by way of everything that cleans up after itself."""
+    """Exit so that every context manager and atexit handler cleans up."""
     sys.exit(128 + number)
 
 
 if __name__ == "__main__":
     for number in (signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) != signal.SIG_IGN:  # which nohup asks for
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores SIGHUP
             signal.signal(number, end)
     sys.exit(main(sys.argv[1:]))

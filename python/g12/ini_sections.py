@@ -15,13 +15,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 INCLUDE = re.compile(r"\s*#INCLUDE\s+(\S.*)")
-EXPANDED = ".expanded"  # how the file ends that the linuxcnc script of 2.9 makes of an INI
+EXPANDED = ".expanded"  # suffix of the expanded file that the linuxcnc script of 2.9 writes
 DEEPEST = 16  # files that include each other, as LinuxCNC 2.10 allows
 NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf)", re.IGNORECASE)
 
 
 class Entry(NamedTuple):
-    """What one line says: ``row`` counts lines from 0, of a continued one it is the first's."""
+    """An entry; ``row`` is its line, counted from 0, the first of a continued one."""
 
     row: int
     key: str
@@ -37,10 +37,10 @@ def included_file(line: str, directory: Path) -> Path | None:
 
 
 def with_included(path: Path, depth: int = 1) -> Iterator[str]:
-    """Yield the lines of the INI file that LinuxCNC runs with, of included files in their place.
+    """Yield the lines of the INI file that LinuxCNC runs with, included files expanded.
 
-    2.10 reads the INI itself, and what an included file includes, beside that. 2.9 runs with a
-    file in which all is expanded: an ``#INCLUDE`` that is left in it is a comment.
+    2.10 reads the INI itself, and follows the includes of included files. 2.9 runs with an expanded
+    file, in which a remaining ``#INCLUDE`` is a comment.
     """
     for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
         included = None if path.suffix == EXPANDED else included_file(line, path.parent)
@@ -51,7 +51,7 @@ def with_included(path: Path, depth: int = 1) -> Iterator[str]:
 
 
 def section_extent(lines: Sequence[str], section: str) -> range:
-    """Return the indices of a section's lines, its header not among them."""
+    """Return the indices of a section's lines, without its header."""
     first = 0
     for index, line in enumerate(map(str.lstrip, lines), start=1):
         if first and line.startswith("["):
@@ -62,7 +62,7 @@ def section_extent(lines: Sequence[str], section: str) -> range:
 
 
 def continued(lines: Sequence[str]) -> Iterator[list[str]]:
-    """Yield lines together with those that a backslash continues them on."""
+    """Yield lines joined with their continuation lines after a backslash."""
     group: list[str] = []
     for line in lines:
         group.append(line)
@@ -83,7 +83,7 @@ def entries_of(lines: Sequence[str], section: str) -> Iterator[Entry]:
 
 
 def key_and_value(line: str) -> tuple[str, str]:
-    """Return what a line inside a section says; two empty texts for a comment."""
+    """Return key and value of a line inside a section; two empty texts for a comment."""
     key, _, value = line.strip().partition("=")
     return ("", "") if key[:1] in "#;" else (key.rstrip(), value.lstrip())
 

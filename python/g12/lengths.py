@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Units of length, and what is no length any more."""
+"""Units of length, and the largest length."""
 
 from __future__ import annotations
 
 MM_PER_INCH = 25.4
-INCH_SLACK = 1e-3  # units per mm by which LinuxCNC tells an inch machine
-LARGEST = 1e6  # inches or mm: more than any machine has; sums and squares stay exact enough
+INCH_SLACK = 1e-3  # units per mm that LinuxCNC takes for an inch machine
+LARGEST = 1e6  # inches or mm: beyond any machine; sums and squares stay exact enough
 
 
 def converts(factor: float) -> bool:
-    """Tell whether lengths times a factor are in another unit; an INI's inch may be rounded."""
+    """Return whether a factor converts to another unit; an INI's inch may be rounded."""
     return abs(factor - 1.0) > INCH_SLACK
 
 
 def is_inch(millimetres: float) -> bool:
-    """Tell whether LinuxCNC takes a machine for an inch machine, by its unit's length in mm."""
+    """Return whether LinuxCNC takes a machine for an inch machine, by its unit's length in mm."""
     return abs(1 / millimetres - 1 / MM_PER_INCH) < INCH_SLACK

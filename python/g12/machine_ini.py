@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a machine's INI file says of its units, its axes and its remapped codes.
+"""A machine's units, axes and remapped codes, from its INI file.
 
-Every question is put to a ``find`` (section, key: the first value or None) or ``find_all`` (every
-value).  Inside LinuxCNC these are its own reader's, in the tools those of `tools.machine.ini`,
-which reads texts that are in no file.
+The functions take a ``find`` (section, key: the first value or None) or a ``find_all`` (every
+value). Inside LinuxCNC these are its own reader's, in the tools those of `tools.machine.ini`, which
+also reads texts that are in no file.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ FindAll = Callable[[str, str], Sequence[str]]
 
 AXES = "XYZABCUVW"
 NO_LIMIT = 1e99
-KINEMATICS_PARAMETER = b"_kins_type"  # an interpreter that has it has a G12.1 of its own
-AXIS_KEYS = (  # with what LinuxCNC takes where there is none
+KINEMATICS_PARAMETER = b"_kins_type"  # a library symbol of interpreters that have G12.1 themselves
+AXIS_KEYS = (  # with LinuxCNC's defaults
     ("MIN_LIMIT", -NO_LIMIT),
     ("MAX_LIMIT", NO_LIMIT),
     ("MAX_VELOCITY", 1.0),
@@ -46,7 +46,7 @@ FACE_KINEMATICS = "polar_xzc"  # configs/kinematics
 
 
 class Axis(NamedTuple):
-    """One axis in machine units (degrees for A, B, C) and seconds: its travel, and how fast."""
+    """An axis's travel, speed and acceleration, machine units (degrees for A, B, C) and seconds."""
 
     low: float
     high: float
@@ -65,7 +65,7 @@ class FaceAxes(NamedTuple):
 
 @dataclass(frozen=True)
 class Remap:
-    """A REMAP line: the code it gives a meaning to, and its keywords."""
+    """A REMAP line: its code and its keywords."""
 
     text: str
     code: str
@@ -82,7 +82,7 @@ class Remap:
         return [self.keywords[word] for word in HANDLERS if word in self.keywords]
 
     def like(self, model: Remap) -> str:
-        """Return the line as another one is written, with this line's own code."""
+        """Return the line with another one's keywords and this one's code."""
         return f"REMAP = {' '.join([self.code, *model.text.split()[1:]])}"
 
 
@@ -156,7 +156,7 @@ def ranges_of(find: Find, letters: Iterable[str]) -> dict[str, tuple[float, floa
 
 
 def number_in(find: Find, section: str, key: str, default: float) -> float:
-    """Return a value as a number, read as far as it is one: ``20 # mm`` is 20."""
+    """Return the number at the start of a value: ``20 # mm`` is 20."""
     text = find(section, key)
     value = default if text is None else leading_number(text)
     if value is None:
@@ -188,7 +188,7 @@ def remap_from_value(value: str) -> Remap:
 def code_number(code: str) -> tuple[str, int]:
     """Return a code's letter and ten times its number, ("", 0) if it is none.
 
-    LinuxCNC adds what stands after the point as a whole number: G12.10 is 130, which is G13.
+    LinuxCNC adds the digits after the point as a whole number: G12.10 is 130, which is G13.
     """
     match = CODE.match(code)
     if not match:
@@ -197,7 +197,7 @@ def code_number(code: str) -> tuple[str, int]:
 
 
 def refuse_owned_codes(codes: Container[str], owned: bool) -> None:
-    """Refuse a REMAP of G12.1 where the interpreter has that code itself, and ignores the line."""
+    """Refuse a REMAP of G12.1 where the interpreter has that code itself and ignores the line."""
     remapped = [code for code in ("G12.1", "G13.1") if code in codes]
     if owned and remapped:
         raise Refusal(
@@ -207,10 +207,10 @@ def refuse_owned_codes(codes: Container[str], owned: bool) -> None:
 
 
 def owns_g12_1(maps: str) -> bool:
-    """Tell whether the interpreter that a process has loaded selects kinematics by G12.1.
+    """Return whether the interpreter loaded in a process has a G12.1 that selects kinematics.
 
-    ``maps`` is the text of the process's /proc/self/maps.  The version tells nothing: 2.10 was
-    developed for years without it.
+    ``maps`` is the text of the process's /proc/self/maps. The version number does not decide it:
+    2.10 was developed for years without that code.
     """
     libraries = {line.split(maxsplit=5)[5] for line in maps.splitlines() if "/librs274" in line}
     return any(KINEMATICS_PARAMETER in Path(library).read_bytes() for library in libraries)

@@ -20,7 +20,7 @@ POLAR = ("polar_off", "polar_on")
 CYLINDER = ("cylinder_mode",)
 SHAPES = ("polar_shape", "polar_shape_done")
 SPINDLE_C = ("spindle_c_is_on", "spindle_c_off", "spindle_c_on")
-# what `from g12.remap import *` brings into a user's own remap
+# for `from g12.remap import *` in a user's own remap
 __all__ = [*CYCLES, *POLAR, *CYLINDER, *SHAPES, *SPINDLE_C]
 
 globals().update(loaded_handlers("g12.host.handlers.cycles", CYCLES))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Section ``[G12]`` of the INI file: one table of key, default and legal values.
 
-Read once, when the handlers load. A key that is not in the table, or a value that is not
-legal, is a start-up error: a misspelt setting never runs a machine with the default.
+Read once, when the handlers load. An unknown key or an illegal value is a start-up error, so that
+no machine runs with the default of a misspelt setting.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ TABLE: dict[str, Choice | Number | MachineCodes] = {
     "POLAR_Z": Choice(("refuse", "allow")),
     "POLAR_G0": Choice(("refuse", "feed")),
     "POLAR_G0_FEED": Number(),
-    "POLAR_TOLERANCE": Number(least=0.00001),  # less than any machine's step
+    "POLAR_TOLERANCE": Number(least=0.00001),  # below the resolution of any machine
     "POLAR_POLE": Choice(("rotate", "refuse")),
     "POLAR_KINEMATICS": Choice(("0", "1")),
     "POLAR_SWITCH_TIME": Number(most=3600.0),
@@ -176,7 +176,7 @@ def settings_from_ini(path: str | os.PathLike[str] | None) -> Settings:
 
 
 def check_section(lines: Sequence[str]) -> None:
-    """Refuse a section that LinuxCNC would not read: named otherwise, or a second one."""
+    """Refuse a section that LinuxCNC would not read: one in other letters, or a second one."""
     headers = [line for line in map(str.strip, lines) if line.startswith("[")]
     names = [line.split("]")[0][1:] for line in headers]
     found = [name for name in names if name.strip().upper() == SECTION]

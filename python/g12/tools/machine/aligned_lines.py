@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Which line of a file each line that a filter has written comes from, told from both texts.
+"""Maps each line of a filter's output to its line in the source, by comparing both texts.
 
-Lines with the same block number, or the same text but for blanks and case, that stand once in each
-text are taken for one (the longest run of them in order). Between them as many lines as before are
-taken one by one; what is put in belongs to the line before it, what one line has become to that.
-Where a stretch of lines has become another number of lines, it is not known.
+Anchors are lines that occur once in each text with the same block number, or the same text apart
+from blanks and case; the longest run of them in order counts. An equal number of lines between two
+anchors is mapped one to one. Inserted lines belong to the line before them, and the lines that
+replace one line belong to it. Where a stretch has another number of lines, the mapping is unknown.
 """
 
 import re
@@ -16,7 +16,7 @@ BLOCK_NUMBER = re.compile(rb"/?N[0-9]+")
 
 
 def aligned_lines(source: Sequence[bytes], written: Sequence[bytes]) -> tuple[int, ...] | None:
-    """Return the line (from 1) of a file for each written line, None if that is not known."""
+    """Return the source line (from 1) of each line of the output, None where it is unknown."""
     before, after = [_key(row) for row in source], [_key(row) for row in written]
     found: list[int] = []
     last = (-1, -1)
@@ -37,7 +37,7 @@ def _key(row: bytes) -> bytes:
 
 
 def _anchors(before: Sequence[bytes], after: Sequence[bytes]) -> list[tuple[int, int]]:
-    """Return the indices of lines that stand once in both texts, in the order of both."""
+    """Return the indices of lines that occur once in both texts, in the order of both."""
     once = _once(before), _once(after)
     pairs = [(at, once[1][key]) for key, at in once[0].items() if key in once[1]]
     return [pairs[index] for index in _longest_rising([there for _, there in pairs])]
@@ -50,7 +50,7 @@ def _once(keys: Sequence[bytes]) -> dict[bytes, int]:
 
 def _longest_rising(values: Sequence[int]) -> list[int]:
     """Return the indices of the longest rising run of values."""
-    ends: list[int] = []  # the least value that a run of each length ends with
+    ends: list[int] = []  # the least last value of a run, by its length
     at: list[int] = []
     previous: list[int] = []
     for index, value in enumerate(values):
@@ -88,7 +88,7 @@ def _lines_of_stretch(
 def _same(
     stretch: range, written: range, before: Sequence[bytes], after: Sequence[bytes]
 ) -> Iterator[int]:
-    """Yield the lines that are the same from the start on."""
+    """Yield the equal lines at the start."""
     for at, there in zip(stretch, written):
         if before[at] != after[there]:
             return

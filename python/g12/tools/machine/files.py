@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Changing a user's files: the difference shown, the old file kept, the new one there at once."""
+"""Changes of a user's files: diffs, backups, atomic writes."""
 
 import contextlib
 import difflib
@@ -15,7 +15,7 @@ BACKUP = ".before-g12"
 
 
 def existing(path: Path) -> Path:
-    """Return a file's path if it is there."""
+    """Return a file's path if it exists."""
     if path.is_dir():
         raise UsageError(f"{path}: is a folder")
     if not path.is_file():
@@ -29,7 +29,7 @@ def lines_to_show(content: bytes) -> list[str]:
 
 
 def difference(path: Path, content: bytes) -> Iterator[str]:
-    """Yield the lines of a unified diff from the file as it is to its new content."""
+    """Yield the lines of a unified diff from the present file to its new content."""
     old = path.read_bytes() if path.exists() else b""
     return difflib.unified_diff(
         lines_to_show(old), lines_to_show(content), str(path), f"{path} (new)", lineterm="", n=2
@@ -37,8 +37,8 @@ def difference(path: Path, content: bytes) -> Iterator[str]:
 
 
 def write(path: Path, content: bytes) -> None:
-    """Write a file so that there is never half of it; mode and owner stay."""
-    path = path.resolve()  # a link stays a link
+    """Write a file atomically; mode and owner stay."""
+    path = path.resolve()  # keeps a symbolic link
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(handle, "wb") as file:
@@ -70,14 +70,14 @@ def take_after(new: Path, path: Path) -> None:
 
 
 def take_owner(new: Path, model: Path | None = None) -> None:
-    """Give a new file the owner of another, or of the folder it is in: root may be at work."""
+    """Give a new file the owner of another, or of its folder: the user may be root."""
     owner = (model or new.parent).stat()
     with contextlib.suppress(PermissionError):
         os.chown(new, owner.st_uid, owner.st_gid)
 
 
 def write_all(changes: Mapping[Path, bytes]) -> None:
-    """Write several files; if one cannot be written, the others are again what they were."""
+    """Write several files; if one cannot be written, restore the others."""
     written: dict[Path, bytes] = {}
     try:
         for path, content in changes.items():
@@ -96,7 +96,7 @@ def backups_of(path: Path) -> list[Path]:
 
 
 def back_up(path: Path) -> Path:
-    """Keep the file as it is now under another name, and return that."""
+    """Copy the file to a backup, and return the backup's path."""
     content = path.read_bytes()
     for kept in backups_of(path):
         if kept.read_bytes() == content:
@@ -109,7 +109,7 @@ def back_up(path: Path) -> Path:
 
 
 def drop_backup(path: Path) -> list[Path]:
-    """Delete the kept version that the file is equal to again; return those still kept."""
+    """Delete the backup that equals the file again; return the remaining ones."""
     content = path.read_bytes()
     for kept in backups_of(path):
         if kept.read_bytes() == content:

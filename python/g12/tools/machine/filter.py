@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A program as LinuxCNC's screens open it: through the [FILTER] that the INI has for its suffix.
 
-Lines are those of the user's file: what `translate` adds it marks, ``(line 12)``; any other
-filter's lines are found in both texts. Where they cannot be, lines are those that the filter wrote,
-and it is said so.
+Line numbers are those of the user's file. `translate` marks its lines, ``(line 12)``; the lines of
+any other filter are found by comparing both texts. Where that fails, the numbers are those of the
+filter's output, with a note.
 """
 
 import os
@@ -27,9 +27,9 @@ OWN_ERROR = re.compile(r"g12 \w+: ")
 
 @dataclass(frozen=True)
 class OpenedProgram:
-    """A program: the user's file, what LinuxCNC reads of it, and for each line of that the user's.
+    """A program: the user's file, the text that LinuxCNC reads, and the user's line numbers.
 
-    Without a filter ``path`` is the user's file; then, and where the user's lines are not known,
+    Without a filter ``path`` is the user's file. Then, and where the user's lines are unknown,
     ``lines`` is empty.
     """
 
@@ -44,28 +44,28 @@ class OpenedProgram:
 
     @property
     def listed(self) -> Path:
-        """The file whose lines are told."""
+        """The file to which line numbers refer."""
         return self.source if self.lines else self.path
 
     @property
     def name(self) -> str:
-        """The user's file as it is named before a line."""
+        """The user's file as named before a line number."""
         known = self.lines or not self.is_filtered
         return f"{self.source}{'' if known else ' (filtered)'}"
 
     @property
     def note(self) -> str:
-        """What to say of the lines, "" if they are the user's."""
+        """A note on the line numbers, "" if they are the user's."""
         if self.lines or not self.is_filtered:
             return ""
         return f"{self.source}: lines are those of the program that the INI's [FILTER] makes of it"
 
     def source_line(self, line: int) -> int:
-        """Return the line of the user's file that a line LinuxCNC reads belongs to."""
+        """Return the line of the user's file for a line that LinuxCNC reads."""
         return self.lines[line - 1] if 0 < line <= len(self.lines) else line
 
     def in_source(self, text: str) -> str:
-        """Return a text about the program with the user's file and its lines in it."""
+        """Return a text about the program with the user's file name and line numbers."""
         if not self.is_filtered:
             return text
         place = re.compile(rf"{re.escape(str(self.path))}(?::([0-9]+):)?")
@@ -100,7 +100,7 @@ def opened_program(program: Path, ini: Ini) -> Iterator[OpenedProgram]:
 
 
 def filtered(program: Path, command: str, ini: Ini) -> bytes:
-    """Return what a filter prints for a program; it runs as LinuxCNC's screens run it."""
+    """Return a filter's output for a program; it runs as LinuxCNC's screens run it."""
     done = subprocess.run(
         ["sh", "-c", f'{command} "$0"', str(program.absolute())],
         cwd=ini.directory,
@@ -115,7 +115,7 @@ def filtered(program: Path, command: str, ini: Ini) -> bytes:
 
 
 def filter_error(text: str, command: str, program: Path) -> str:
-    """Return the last line that a filter said."""
+    """Return the last line of a filter's error output."""
     said = [line for line in text.splitlines() if line.strip() and not line.startswith(PROGRESS)]
     last = OWN_ERROR.sub("", said[-1].strip()) if said else f"the filter failed: {command}"
     return last.replace(str(program.absolute()), str(program))

@@ -42,7 +42,7 @@ class IniError(ValueError):
 
 @dataclass(frozen=True)
 class Ini:
-    """An expanded INI: ``directory`` is where LinuxCNC runs, ``lines`` are without newlines."""
+    """An expanded INI; ``lines`` are without newlines."""
 
     path: Path
     lines: tuple[str, ...]
@@ -69,7 +69,7 @@ class Ini:
 
     @property
     def axis_limits(self) -> dict[str, Axis]:
-        """What each of the machine's axes can do, in machine units (degrees for A, B, C)."""
+        """The limits of each of the machine's axes, in machine units (degrees for A, B, C)."""
         return self._asked(lambda: axes_of(self.get, self.axes))
 
     @property
@@ -79,7 +79,7 @@ class Ini:
 
     @property
     def tool_beside(self) -> float:
-        """How far the tool stands from the X line, mm; 0 where the settings are wrong."""
+        """The tool's distance from the X line, mm; 0 where the settings are wrong."""
         try:
             return self.settings.polar_tool_offset * self.mm
         except IniError:
@@ -100,7 +100,7 @@ class Ini:
         return next(iter(self.all(section, key)), default)
 
     def number(self, section: str, key: str, default: float) -> float:
-        """Return a value as a number, read as far as it is one (``20 # mm`` is 20)."""
+        """Return the number at the start of a value (``20 # mm`` is 20)."""
         return self._asked(lambda: number_in(self.get, section, key, default))
 
     def file(self, section: str, key: str) -> Path | None:
@@ -111,8 +111,8 @@ class Ini:
     def replaced(self, overrides: Overrides) -> Self:
         """Return an INI with values replaced or added.
 
-        ``overrides`` maps section to key to value; a list or tuple gives one line of the key
-        per item, None takes the key out.
+        ``overrides`` maps section to key to value; a list or tuple gives one line of the key per
+        item, None removes the key.
         """
         ini = self
         for section, values in overrides.items():
@@ -152,8 +152,8 @@ def read_machine_ini(path: Path) -> Ini:
 def _expanded(lines: list[str], directory: Path):
     """As the script does, a file that cannot be read is left out.
 
-    An included file's own #INCLUDE is made the comment that it is to 2.9, so that 2.10, which
-    would look for that file beside a copy, reads the same.
+    An included file's own #INCLUDE becomes a comment, as it is for 2.9, so that 2.10 reads the
+    same: it would look for that file beside a copy.
     """
     for line in lines:
         included = included_file(line, directory)
@@ -179,7 +179,7 @@ def _entries(key: str, value: Value) -> list[str]:
 
 
 def _parts(line: str) -> list[str]:
-    """Return a line broken where it is longer than LinuxCNC reads."""
+    """Return a line, broken where it is longer than LinuxCNC reads."""
     starts = range(0, len(line), LONGEST_PART)
     *parts, last = (line[start : start + LONGEST_PART] for start in starts)
     return [*(f"{part}\\" for part in parts), last]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The places of G28 and G30 in the var file: machine zero until G28.1 or G30.1 is used."""
+"""The positions of G28 and G30 in the var file: machine zero until G28.1 or G30.1 is used."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ AXES = 9
 
 
 def unset_places(ini: Ini) -> tuple[str, ...]:
-    """Return which of G28 and G30 lead to machine zero: G28.1 or G30.1 was never used."""
+    """Return those of G28 and G30 whose position is machine zero: G28.1 or G30.1 was never used."""
     path = ini.file("RS274NGC", "PARAMETER_FILE")
     text = path.read_text(errors="replace") if path and path.is_file() else ""
     values = dict(PARAMETER.findall(text))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Tool tables and var files that are named on a command line: whether they are such files.
+"""Checks of the tool tables and var files that a command line names.
 
-LinuxCNC, which alone reads them, takes any file, and says little of what it cannot read.
+LinuxCNC reads them itself. It takes any file, and hardly reports what it cannot read.
 """
 
 import re
@@ -15,7 +15,7 @@ PARAMETER = re.compile(r"\s*(\d+)\s+[-+]?[\d.]")
 
 
 def tool_table(path: Path) -> Path:
-    """Return the path of a tool table if it is one; an empty one is."""
+    """Return the path of a tool table, which may be empty; refuse another file."""
     lines = existing(path).read_text(encoding="utf-8", errors="replace").splitlines()
     entries = list(filter(None, (line.partition(";")[0].upper().split() for line in lines)))
     if entries and not any(map(_is_tool, entries)):
@@ -28,7 +28,7 @@ def _is_tool(words: list[str]) -> bool:
 
 
 def var_file(path: Path) -> Path:
-    """Return the path of a var file if LinuxCNC, which says nothing of one, reads it as one."""
+    """Return the path of a var file; refuse a file that LinuxCNC would silently not read as one."""
     lines = existing(path).read_text(encoding="utf-8", errors="replace").splitlines()
     found = [PARAMETER.match(line) for line in lines if line.strip()]
     numbers = [int(parameter[1]) if parameter else 0 for parameter in found]

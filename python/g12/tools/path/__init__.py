@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Moves as paths in time, and how a run followed them."""
+"""Moves as paths in time, and the deviation of a run from them."""

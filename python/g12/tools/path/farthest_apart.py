@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How far two paths on the part are apart at most, and where. Lengths are millimetres."""
+"""The greatest distance between two paths on the part, and its position.
+
+Lengths are millimetres.
+"""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -11,7 +14,7 @@ from g12.tools.path.nearest import on_segments
 from g12.tools.path.part import CHORD_ERROR, Part, paths
 from g12.tools.preview.moves import Move
 
-ROUGH = 0.005  # chord error where the finer one makes too many points
+ROUGH = 0.005  # coarser chord error, where the finer one gives too many points
 MOST_DISTANCES = 3_000_000
 BATCH = 200_000
 
@@ -25,9 +28,10 @@ class Gap(NamedTuple):
 
 
 def gap_between(part: Part, moves: Sequence[Move], others: Sequence[Move]) -> Gap | None:
-    """Return where two paths are farthest apart.
+    """Return the point where two paths are farthest apart.
 
-    None where that says nothing, as of axes that the part does not know, or takes too long.
+    None where the distance has no meaning, as for axes that the part does not know, or takes too
+    long.
     """
     few = len(moves) * len(others) <= MOST_DISTANCES
     if not few or any(_is_beyond(part, move) for move in [*moves, *others]):

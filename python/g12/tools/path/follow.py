@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The real motion of a run, laid on the path that was programmed.
+"""The actual motion of a run, mapped onto the programmed path.
 
 Lengths are millimetres, angles of rotary axes degrees, times seconds.
 """
@@ -19,15 +19,15 @@ from g12.tools.path.samples import Samples
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import LINEAR, Move
 
-SLACK = 0.25  # mm that a run may be ahead of the path, where it cuts a corner
+SLACK = 0.25  # mm: a run may be this far ahead on the path, where it cuts a corner
 
 
 @dataclass(frozen=True)
 class Followed:
-    """Samples of a run laid on the programmed path, arrays of one entry per sample.
+    """Samples of a run mapped onto the programmed path, arrays of one entry per sample.
 
     ``positions`` (n, 9) are those of the controlled point, ``points`` (n, 3) the part's;
-    ``move`` is the index of the move being made, ``nearest`` (n, 3) the programmed point next
+    ``move`` is the index of the move in motion, ``nearest`` (n, 3) the programmed point next
     to the sample and ``deviation`` the distance to it, ``time`` in seconds.
     """
 
@@ -39,7 +39,7 @@ class Followed:
     deviation: np.ndarray
 
     def during(self, move: int) -> slice:
-        """Return the samples of a move, and the one before, so that stretches join."""
+        """Return the samples of a move, and the one before, so that the lines of two moves join."""
         first, last = np.searchsorted(self.move, (move, move + 1))
         return slice(max(0, first - 1) if last > first else first, last)
 
@@ -67,7 +67,7 @@ class Worst(NamedTuple):
 
 
 def worst_of(real: Followed, moves: Sequence[Move]) -> Worst | None:
-    """Return where a run is farthest from its moves at feed; None without such motion."""
+    """Return the largest deviation of a run from its moves at feed; None without such motion."""
     at_feed = np.array([move.kind != "rapid" for move in moves], bool)[real.move]
     if not at_feed.any():
         return None
@@ -82,14 +82,14 @@ def worst_of(real: Followed, moves: Sequence[Move]) -> Worst | None:
 
 
 def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) -> Followed:
-    """Lay the samples in motion on the path of moves; ``unit`` is one machine unit in mm.
+    """Map the samples in motion onto the path of moves; ``unit`` is one machine unit in mm.
 
-    Where a corner is rounded, the tool is off the line that LinuxCNC names: the distance is that
-    to this line or to those before and after it, whichever is nearer.
+    In a blended corner the tool has left the move of the line that LinuxCNC names. The distance is
+    the one to that move or to its neighbours, whichever is nearest.
     """
     moving = samples.moving()
     axes = _positions(samples, unit)[moving]
-    axes[:, Y] += path.part.beside  # where the joints stand the tool is beside them
+    axes[:, Y] += path.part.beside  # the tool is beside the joints' position
     there = path.part.points(axes)
     windows = windows_of(path, moves, samples.line[moving])
     segment = _segments(path.axis_points, there, windows.on_its_line)
@@ -168,10 +168,10 @@ def _offsets(path: Track, there: np.ndarray, segment: np.ndarray, following: np.
 
 
 class Windows(NamedTuple):
-    """The first and the last segment (n, 2) of the path that each sample of a run can be on.
+    """The first and the last possible segment (n, 2) of the path for each sample of a run.
 
-    ``on_its_line``: on the moves of the line that LinuxCNC names; ``with_neighbours``: on those,
-    or in a corner with the moves before and after.
+    ``on_its_line``: among the moves of the line that LinuxCNC names. ``with_neighbours``: also the
+    moves before and after, for corners.
     """
 
     on_its_line: np.ndarray
@@ -179,9 +179,9 @@ class Windows(NamedTuple):
 
 
 def windows_of(path: Track, moves: Sequence[Move], lines: np.ndarray) -> Windows:
-    """Return where on the path samples can be that name the line in motion.
+    """Return the windows of samples by their lines in motion.
 
-    Where those lines do not come in the same order as the moves', a sample may be anywhere.
+    Where those lines do not come in the order of the moves, a window is the whole path.
     """
     going = [i for i, move in enumerate(moves) if move.start != move.end or move.kind == "arc"]
     groups = [list(group) for _, group in groupby(going, key=lambda index: moves[index].line)]
@@ -200,10 +200,10 @@ def windows_of(path: Track, moves: Sequence[Move], lines: np.ndarray) -> Windows
 
 
 def _segments(path: np.ndarray, points: np.ndarray, within: np.ndarray) -> np.ndarray:
-    """Return the index of the segment of the path that each point is on, never going back.
+    """Return the index of each point's segment of the path, in ascending order.
 
-    The nearest place is looked for only as far ahead as the tool can have come, and not back
-    where it was: a path may cross, repeat or retrace itself, but the tool cannot jump along it.
+    The search for the nearest point goes only as far ahead as the tool can have moved, and never
+    back: a path may cross, repeat or retrace itself, but the tool cannot jump along it.
     """
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
     found = np.zeros(len(points), int)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The least time in which a slide and a C axis can make a path: what no planner goes below.
+"""The least time of a path for a slide and a C axis, a lower bound for any planner.
 
 Time-optimal path parametrisation: with z the square of the speed along the path and u half its
-change, an axis q(s) has the acceleration q' u + q'' z. Backwards along the path the greatest z is
-found from which the rest can still be made; forwards the greatest of these that can be reached.
+change, an axis q(s) has the acceleration q' u + q'' z. Backwards along the path, the greatest z is
+found from which the rest can still be followed; forwards, the greatest of these that can be
+reached.
 
 An axis of acceleration A allows |u + w z| <= A / |q'|, with w = q'' / q'. That is a pair of
 straight lines in the plane of u and z, so the greatest z is where two of them meet.
@@ -11,17 +12,17 @@ straight lines in the plane of u and z, so the greatest z is where two of them m
 
 import numpy as np
 
-LEAST_SLOPE = 1e-9  # of an axis along the path: less is taken for it
+LEAST_SLOPE = 1e-9  # of an axis along the path: a smaller share counts as this
 Rates = tuple[float, float]  # of an axis: speed and acceleration
 
 
 def least_seconds(
     points: np.ndarray, speed: float | np.ndarray, slide: Rates, spindle: Rates
 ) -> float:
-    """Return the least time of a path of points (complex), from standing to standing.
+    """Return the least time of a path of points (complex), from stop to stop.
 
     ``speed`` is the programmed one, perhaps one for each point; ``spindle`` is in radians. The
-    points lie evenly along the path, and not in the centre.
+    points are evenly spaced along the path, none of them in the centre.
     """
     step = float(abs(np.diff(points)).mean())
     most = np.square(np.broadcast_to(np.asarray(speed, float), points.shape))
@@ -44,13 +45,13 @@ def least_seconds(
 
 
 def seconds_at(squares: list[float], step: float) -> float:
-    """Return the time of a path by the squares of the speed at places that lie a step apart."""
+    """Return the time of a path from the squares of the speed at points one step apart."""
     speeds = np.sqrt(np.maximum(squares, 0.0))
     return float((2.0 * step / np.maximum(speeds[1:] + speeds[:-1], 1e-9)).sum())
 
 
 def _reachable(most: list[float], limits: list) -> list[float]:
-    """Return the greatest squares of the speed from which the rest can be made."""
+    """Return the greatest squares of the speed from which the rest can be followed."""
     reach = [0.0] * len(most)
     for at in range(len(most) - 2, -1, -1):
         greatest = most[at]
@@ -62,9 +63,10 @@ def _reachable(most: list[float], limits: list) -> list[float]:
 
 
 def _gained(reach: list[float], limits: list) -> list[float]:
-    """Return the greatest squares of the speed from standing on, of those that can be reached.
+    """Return the greatest of these squares of the speed that can be reached from rest.
 
-    What brakes more the faster it goes is taken at a step's end: a step never brakes below zero.
+    An axis that brakes more at a higher speed is evaluated at the step's end: no step brakes below
+    zero.
     """
     squares = [0.0]
     for axes, greatest in zip(limits, reach[1:]):

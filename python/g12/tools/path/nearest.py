@@ -3,18 +3,19 @@
 
 import numpy as np
 
-NO_LENGTH = 1e-30  # a square: a segment so short is a point
+NO_LENGTH = 1e-30  # squared length: a shorter segment is a point
 
 
 def on_segments(points: np.ndarray, starts: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Return the points of segments next to points.
 
-    Arrays (..., d) of points, of where segments start and of their vectors; they are broadcast.
+    The arguments are arrays (..., d) of points, segment starts and segment vectors; they are
+    broadcast.
     """
     return starts + shares_along(points, starts, along)[..., None] * along
 
 
 def shares_along(points: np.ndarray, starts: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Return how far along segments the nearest points are, from 0 to 1; see ``on_segments``."""
+    """Return the shares of segments, 0 to 1, at their nearest points; see ``on_segments``."""
     squares = np.maximum(np.einsum("...i,...i->...", along, along), NO_LENGTH)
     return np.clip(np.einsum("...i,...i->...", points - starts, along) / squares, 0.0, 1.0)

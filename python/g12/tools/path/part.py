@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The workpiece's view of a path: where the tool goes on the part, and what the cutter sweeps.
+"""Paths in the workpiece's coordinates: the tool's position on the part, the area swept by it.
 
 A ``Part`` turns machine positions into part positions. On a mill they are the same. On a lathe
 whose work spindle turns as C the part plane is the face as one looks at it: with C at 0, machine
-X points right; angles grow counterclockwise, so a tool at X, C stands at (X cos C, X sin C).
+X points right; angles grow counterclockwise, so a tool at X, C is at (X cos C, X sin C).
 
 Lengths are millimetres, angles radians unless a name says degrees.
 """
@@ -25,7 +25,7 @@ from g12.tools.machine.ini import Ini
 from g12.tools.preview.moves import THIRD_AXIS, Move, Trace
 from g12.tools.units import Unit
 
-CHORD_ERROR = 2e-4  # of the polylines that stand for curves
+CHORD_ERROR = 2e-4  # of the polylines of curves
 LONGEST_ARC_CHORD = math.radians(10)
 DISC_SEGMENTS = 64  # per quarter of a swept disc
 X, Y, Z, C = 0, 1, 2, 5
@@ -34,10 +34,10 @@ INCHES = 1  # length_units of the interpreter
 
 @dataclass(frozen=True)
 class Part:
-    """How machine positions relate to the part; ``turning`` if a work spindle turns it as C.
+    """The transformation from machine to part; ``turning`` if a work spindle turns the part as C.
 
-    A lathe has a Y only on the face of its kinematics, which C, standing, has turned; elsewhere Y
-    is how far the tool stands ``beside`` the X line, mm. The spindle's axis is at machine X
+    A lathe has a Y only on the face of its kinematics, rotated by C's angle at the switch.
+    Elsewhere Y is the tool's distance ``beside`` the X line, mm. The spindle's axis is at machine X
     ``centre``.
     """
 
@@ -47,7 +47,7 @@ class Part:
 
     @property
     def letters(self) -> str:
-        """The axes that its points tell of."""
+        """The axes that its points depend on."""
         return "XCZ" if self.turning else "XYZ"
 
     def points(self, positions: np.ndarray) -> np.ndarray:
@@ -62,7 +62,7 @@ class Part:
     def machine_points(self, move: Move, chord_error: float = CHORD_ERROR) -> np.ndarray:
         """Return machine positions (n, 9) along a move, its ends included.
 
-        They are so close together that chords between them follow the part's own curves.
+        They are dense enough for chords to follow the curves on the part.
         """
         count = self._segments(move, chord_error)
         if move.kind == "arc":
@@ -76,7 +76,7 @@ class Part:
         return self.points(self.machine_points(move, chord_error))
 
     def _segments(self, move: Move, chord_error: float) -> int:
-        """Into how many chords a move is cut."""
+        """Return the number of chords of a move."""
         if move.kind == "arc":
             return arc_segments(move.radius, move.sweep, chord_error)
         if self.turning:
@@ -86,20 +86,20 @@ class Part:
         return 1
 
     def _face_turn(self, move: Move) -> float:
-        """Return the angle, radians, that a straight move on the face goes about the spindle."""
+        """Return the angle, radians, of a straight move on the face about the spindle."""
         places = (move.start, move.end)
         start, end = (complex(place[X] - self.centre, place[Y]) for place in places)
         return cmath.phase(end * start.conjugate()) if start.imag or end.imag else 0.0
 
 
 def part_of(ini: Ini) -> Part:
-    """Return how the machine of an INI holds its part: X and C without a joint of Y is a lathe."""
+    """Return the part of an INI's machine; one with X and C, and no joint of Y, is a lathe."""
     turning = "C" in ini.axes and ("Y" not in ini.axes or bool(face_joints(ini.get)))
     return Part(turning, ini.tool_beside)
 
 
 def part_of_program(ini: Ini, trace: Trace) -> Part:
-    """Return how a program sees its part: on a lathe, C turns it, about X0, if it moves at all."""
+    """Return the part of a program; on a lathe C turns it about X0, if C moves at all."""
     turned = any(move.start[axis] != move.end[axis] for move in trace.moves for axis in (Y, C))
     part = part_of(ini)
     turning = part.turning and turned
@@ -107,22 +107,23 @@ def part_of_program(ini: Ini, trace: Trace) -> Part:
 
 
 def last_x0(trace: Trace) -> float:
-    """Return where the program's X0 is at its end, in machine coordinates, mm."""
+    """Return the machine coordinate of the program's X0 at its end, mm."""
     state = trace.state
     unit = MM_PER_INCH if state.get("length_units") == INCHES else 1.0
     return trace.position[X] - state["current_x"] * unit if "current_x" in state else 0.0
 
 
 def x0_text(part: Part, unit: Unit) -> str:
-    """Return where a turning part's X0, the spindle's axis, lies; "" where it is machine X0."""
+    """Return a text with the position of a turning part's X0; "" where it is machine X0."""
     place = unit.text(part.centre)
     return f"X0, the spindle's axis, is at machine X{place}" if place != "0" else ""
 
 
 def _spiral_segments(move: Move, chord_error: float) -> int:
-    """Return the segments of a move across the part while C turns, the turn's own bow left out.
+    """Return the number of segments of a move across the part while C turns.
 
-    The second derivative of w exp(ic) is 2i w' c' exp(ic) besides: a bow of way times turn / 4.
+    The turn's own sagitta is left out. The second derivative of w exp(ic) has the further term
+    2i w' c' exp(ic): a sagitta of distance times turn / 4.
     """
     way = math.hypot(move.end[X] - move.start[X], move.end[Y] - move.start[Y])
     turn = math.radians(abs(move.end[C] - move.start[C]))
@@ -130,9 +131,9 @@ def _spiral_segments(move: Move, chord_error: float) -> int:
 
 
 def slide_places(points: np.ndarray, beside: float) -> np.ndarray:
-    """Return where the X slide is, as points (complex) of the plane that C turns, for the tool's.
+    """Return the X slide's positions for the tool's, as points (complex) of the plane that C turns.
 
-    Off the face, where the tool is ``beside`` the X line, that is on the real axis.
+    Off the face, where the tool is ``beside`` the X line, they are on the real axis.
     """
     radius = np.maximum(np.abs(points), 1e-12)
     slide = np.sqrt(np.maximum(radius**2 - beside**2, 0.0))
@@ -141,25 +142,27 @@ def slide_places(points: np.ndarray, beside: float) -> np.ndarray:
 
 
 def spindle_angles(points: np.ndarray, c: np.ndarray, beside: float = 0.0) -> np.ndarray:
-    """Return where the C axis stands, degrees, for points (complex) that the face turned by ``c``.
+    """Return the C axis's angles, degrees, for points (complex) on a face turned by ``c``.
 
-    On the face C follows their angle. Where ``c`` changes between a point on the face and another,
-    the axes only take on another meaning, and C stands. ``beside`` is how far the tool stands from
-    the X line.
+    On the face C follows the angle of the points. A change of ``c`` between a point on the face and
+    another is a switch of kinematics, during which C does not move. ``beside`` is the tool's
+    distance from the X line.
     """
     on_face = slide_places(points, beside)
     turned = np.degrees(np.angle(on_face[1:] * np.conj(on_face[:-1])))
     off_line = (on_face.imag[1:] != 0.0) | (on_face.imag[:-1] != 0.0)
     changed = np.diff(c)
-    changed = changed - 360.0 * np.round(changed / 360.0)  # whole turns: counted on the face
-    beyond = on_face.real[1:] * on_face.real[:-1] < 0.0  # the spindle: a point on the face
+    changed = changed - 360.0 * np.round(changed / 360.0)  # counts whole turns on the face
+    beyond = (
+        on_face.real[1:] * on_face.real[:-1] < 0.0
+    )  # the spindle's angle for a point on the face
     off_line |= beyond & (changed != 0.0)
     steps = np.where(off_line, np.where(changed != 0.0, 0.0, turned), changed)
     return c[0] + np.append(0.0, np.cumsum(steps))
 
 
 def arc_segments(radius: float, sweep: float, chord_error: float) -> int:
-    """Return into how many chords an arc is cut that stay within ``chord_error``."""
+    """Return the number of chords of an arc within ``chord_error``."""
     if abs(sweep) < 1e-12:
         return 1
     fitting = 2 * math.acos(max(0.0, 1 - chord_error / max(radius, chord_error)))
@@ -184,7 +187,7 @@ def arc_points(move: Move, fractions: np.ndarray) -> np.ndarray:
 
 
 def paths(part: Part, moves: Iterable[Move], chord_error: float = CHORD_ERROR) -> list[np.ndarray]:
-    """Return the moves as polylines (n, 3) in the part, one for each stretch without a gap."""
+    """Return the moves as polylines (n, 3) on the part, one for each run without a gap."""
     found: list[list[np.ndarray]] = []
     for move in moves:
         points = part.polyline(move, chord_error)
@@ -201,7 +204,7 @@ def swept(lines: Iterable[np.ndarray], radius: float) -> BaseGeometry:
 
 
 def _swept_line(line: np.ndarray, radius: float) -> BaseGeometry:
-    """Return the area along one line; cut in two, for of a ring GEOS 3.11 leaves out the middle."""
+    """Return the area along one line; a ring in two halves: GEOS 3.11 loses its middle."""
     changed = np.any(np.abs(np.diff(line, axis=0)) > 1e-9, axis=1)
     line = line[np.concatenate([[True], changed])]
     half = len(line) // 2
@@ -219,7 +222,7 @@ def disc(centre: Sequence[float], radius: float, chord_error: float = CHORD_ERRO
 
 
 def is_sideways(move: Move) -> bool:
-    """Return whether a move goes anywhere but along the tool's axis Z."""
+    """Return whether a move has a component across the tool's axis Z."""
     if move.kind == "arc":
         return True
     return any(abs(move.end[axis] - move.start[axis]) > 1e-6 for axis in (X, Y, C))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The real motion of a machine, as recorded at the servo rate."""
+"""The actual motion of a machine, recorded at the servo rate."""
 
 from dataclasses import dataclass
 
@@ -11,8 +11,8 @@ class Samples:
     """The motion recorded at the servo rate, numpy arrays of equal length.
 
     ``time`` in seconds from the first sample; ``axes`` maps ``"X"`` … to commanded positions;
-    ``velocity`` is the speed along the path and ``requested`` the one asked for, machine units
-    per second; ``line`` the program line in motion; ``kind`` 0 for standstill, 1 rapid, 2 feed,
+    ``velocity`` is the speed along the path and ``requested`` the commanded one, machine units per
+    second; ``line`` the program line in motion; ``kind`` 0 for standstill, 1 rapid, 2 feed,
     3 arc, 4 tool change, 5 probe, 6 rotary unlock.  ``lost`` counts samples that overran.
     """
 
@@ -25,5 +25,5 @@ class Samples:
     lost: int
 
     def moving(self) -> np.ndarray:
-        """Return a mask of the samples during which a move was being made."""
+        """Return a mask of the samples in motion."""
         return self.kind != 0

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a polar section gains from kinematics: about its time both ways, and the least one.
+"""The gain of a polar section from kinematics: its estimated time with and without, and the least.
 
-Lengths are mm, times seconds, angles radians. The tool's path is taken as even steps from one
-corner to the next, where it stands, and in place while C turns at the pole.
+Lengths are mm, times seconds, angles radians. The tool's path is divided into even steps from one
+corner to the next, where the tool stops; C also turns at rest at the pole.
 
-In segments LinuxCNC is no faster in one than it can stop in it. A segment of X and C is a spiral.
-Where the path makes the angle p with the radius r, the spiral has the curvature
-sin p (1 + cos(p)**2) / r, and what the path's own differs from that gives its length.
+In segments, LinuxCNC is no faster within a segment than it can brake in it. A segment of X and C is
+a spiral. Where the path makes the angle p with the radius r, the spiral has the curvature sin p (1
++ cos(p)**2) / r, and its difference from the path's own curvature gives the segment's length.
 
 On the face the planner may brake anywhere with all of its acceleration A, and C and the slide have
-to follow. Of an axis the path asks for the share p v**2 and braking for q times its acceleration:
-p v**2 + q sqrt(A**2 - v**4 / R**2) is at most 1. A is chosen once a section, as it is soonest made.
+to follow. The path takes the share p v**2 of an axis's acceleration, braking q times the planner's:
+p v**2 + q sqrt(A**2 - v**4 / R**2) is at most 1. A is chosen once a section, for the least time.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from g12.machine_ini import face_of
 from g12.tools.machine.ini import Ini
 from g12.tools.path.least_time import Rates, least_seconds, seconds_at
 
-STEP, FEWEST, MOST = 0.1, 40, 4000  # mm, and how many from one corner to the next
-STRAIGHT_ON = math.radians(5.0)  # a corner of more is a stop
+STEP, FEWEST, MOST = 0.1, 40, 4000  # mm; greatest number from one corner to the next
+STRAIGHT_ON = math.radians(5.0)  # a sharper corner is a stop
 SEGMENT_BULGE = 1.44  # of the tolerance
-STOPPED_IN = 0.4  # of a segment's length times its acceleration is its speed's square: measured
-SHARES = 0.8 ** np.arange(10)  # of the face's acceleration: those that are tried
-PLANNED, SWITCHING = 0.7, 0.05  # of it along the path; seconds, there and back
+STOPPED_IN = 0.4  # measured: the square of the speed by length times acceleration of a segment
+SHARES = 0.8 ** np.arange(10)  # of the face's acceleration: the tried values
+PLANNED, SWITCHING = 0.7, 0.05  # of it along the path; seconds for both switches
 OF_SLIDE = 0.7  # acceleration of X and Y on a machine without kinematics
 TINY = 1e-9
 
@@ -44,7 +44,7 @@ class Leg(NamedTuple):
 
 
 class TurningMachine(NamedTuple):
-    """What slide and C can do, the face's acceleration in X and in Y, and POLAR_TOLERANCE."""
+    """The limits of slide and C, the face's acceleration in X and in Y, and POLAR_TOLERANCE."""
 
     slide: Rates
     spindle: Rates
@@ -61,10 +61,10 @@ class SectionTimes(NamedTuple):
 
 
 class _Stretch(NamedTuple):
-    """Places (complex) a step apart from one stop to the next, with their feeds.
+    """Points (complex) one step apart from one stop to the next, with their feeds.
 
-    ``bend`` is the path's signed curvature there, ``along`` and ``around`` its direction seen
-    from the pole.
+    ``bend`` is the path's signed curvature there; ``along`` and ``around`` are its direction's
+    components along the radius and around the pole.
     """
 
     places: np.ndarray
@@ -79,7 +79,7 @@ class _Stretch(NamedTuple):
 
 
 def turning_machine(ini: Ini) -> TurningMachine:
-    """Return what the X slide and C of a lathe can do."""
+    """Return the limits of a lathe's X slide and C."""
     axes, face = ini.axis_limits, face_of(ini.get)
     slide, spindle = (face.slide if face else axes["X"]), axes["C"]
     usual = OF_SLIDE * slide.acceleration
@@ -93,7 +93,7 @@ def turning_machine(ini: Ini) -> TurningMachine:
 
 
 def section_times(legs: Sequence[Leg], machine: TurningMachine) -> SectionTimes:
-    """Return about how long moves of the tool in a row take."""
+    """Return the estimated times of consecutive moves of the tool."""
     stretches = [stretch for run in _smooth(legs) for stretch in _off_pole(_drawn(run))]
     turns = sum(
         _turn(one.places[-1], other.places[0], machine)
@@ -124,7 +124,7 @@ def _smooth(legs: Iterable[Leg]) -> Iterator[list[Leg]]:
 
 
 def _drawn(run: Sequence[Leg]) -> _Stretch:
-    """Return moves without a corner as places that lie evenly."""
+    """Return moves without a corner as evenly spaced points."""
     ends = np.cumsum([0.0, *(leg.curve.length for leg in run)])
     count = int(min(MOST, max(FEWEST, ends[-1] / STEP)))
     lengths = np.linspace(0.0, ends[-1], count + 1)
@@ -144,7 +144,7 @@ def _bend(curve: Curve) -> float:
 
 
 def _off_pole(stretch: _Stretch) -> Iterator[_Stretch]:
-    """Yield the parts of a stretch that are off the pole, by more than a step."""
+    """Yield the portions of a stretch that are off the pole, by more than a step."""
     off = np.abs(stretch.places) > max(STEP, stretch.step)
     edges = np.flatnonzero(np.diff([0, *off.astype(int), 0]))
     for first, last in zip(edges[::2], edges[1::2]):
@@ -153,7 +153,7 @@ def _off_pole(stretch: _Stretch) -> Iterator[_Stretch]:
 
 
 def _turn(end: complex, start: complex, machine: TurningMachine) -> float:
-    """Return how long C turns in place between two places, 0 where they are the same."""
+    """Return the time of C's turn at the pole between two points, 0 where they coincide."""
     turn = abs(np.angle(start * np.conj(end)))
     speed, acceleration = machine.spindle
     top = min(speed, math.sqrt(turn * acceleration))
@@ -161,7 +161,7 @@ def _turn(end: complex, start: complex, machine: TurningMachine) -> float:
 
 
 def _in_segments(stretch: _Stretch, machine: TurningMachine) -> tuple[np.ndarray, np.ndarray]:
-    """Return the speeds that segments have, and the acceleration along the path."""
+    """Return the speeds in segments, and the acceleration along the path."""
     radius, along, around = np.abs(stretch.places), np.abs(stretch.along), np.abs(stretch.around)
     (speed, slide), (c_speed, spindle) = machine.slide, machine.spindle
     spiral = stretch.around * (1.0 + along**2) / radius
@@ -191,7 +191,7 @@ def _on_face(
 
 
 def _followed(stretch: _Stretch, machine: TurningMachine, most: np.ndarray) -> np.ndarray:
-    """Return the most speed that C and the slide can follow, whatever the planner does."""
+    """Return the highest speed that C and the slide can follow, wherever the planner brakes."""
     radius, along, around = np.abs(stretch.places), stretch.along, stretch.around
     (speed, slide), (c_speed, spindle) = machine.slide, machine.spindle
     turning = np.maximum(np.abs(around), TINY) / radius
@@ -209,7 +209,7 @@ def _followed(stretch: _Stretch, machine: TurningMachine, most: np.ndarray) -> n
 
 
 def _seconds(stretch: _Stretch, speeds: np.ndarray, braking: np.ndarray) -> float:
-    """Return the time of a stretch from standing to standing, at most with these speeds."""
+    """Return the time of a stretch from stop to stop, at most at these speeds."""
     gains = (2.0 * stretch.step * braking).tolist()
     squares = np.square(speeds).tolist()
     for order in (range(len(squares)), range(len(squares) - 1, -1, -1)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How fast it goes: the lowest feed of a stretch of moves, where, and the time they take.
+"""The pace of moves: their lowest feed, its position, and their time.
 
 Feeds are along the part in mm/min, times in seconds.
 """
@@ -13,12 +13,12 @@ from g12.tools.path.follow import Followed
 from g12.tools.path.track import Limits, Track, duration
 from g12.tools.preview.moves import Move
 
-AT_SPEED = 0.98  # of the feed: a run has come up to speed
-LEAST_LENGTH = 1e-3  # mm, shorter moves have no feed worth telling
+AT_SPEED = 0.98  # of the feed: a faster run counts as up to speed
+LEAST_LENGTH = 1e-3  # mm: the feed of shorter moves is not reported
 
 
 class Pace(NamedTuple):
-    """The lowest feed of some moves, the part point (mm) and move where, and their time.
+    """The lowest feed of some moves, its move and point on the part (mm), and their time.
 
     ``expected`` is the time at the programmed feeds; without a run ``seconds`` is the same.
     """
@@ -45,7 +45,7 @@ def programmed_pace(
     every: Sequence[int],
     cutting: Sequence[int],
 ) -> Pace:
-    """Return the pace of moves on a part that stands, as far as the axes' speeds allow."""
+    """Return the pace of moves on a part at rest, as far as the axes' speeds allow."""
     times = {index: duration(moves[index], limits, spindle_speed) for index in every}
     going = [index for index in cutting if moves[index].length > LEAST_LENGTH]
     feeds = [(60.0 * moves[index].length / times[index], index) for index in going]
@@ -68,8 +68,8 @@ def real_pace(
 ) -> Pace:
     """Return the pace of a run.
 
-    A stretch of cutting counts from when it first is up to speed to when it last is: to come
-    up to speed and to stop is no slowing down.
+    A stretch of cutting counts from the first sample at speed to the last: acceleration and braking
+    do not count as slow.
     """
     times = real.time[np.isin(real.move, every)]
     seconds = float(times[-1] - times[0]) if len(times) else 0.0
@@ -86,7 +86,7 @@ def real_pace(
 
 
 def up_to_speed(cutting: np.ndarray, speed: np.ndarray, path: Track, real: Followed) -> list:
-    """Return the indices of the samples of each stretch of cutting, its ends taken off."""
+    """Return the indices of the samples of each stretch of cutting, without its ramps."""
     used, back = np.unique(real.move, return_inverse=True)
     wanted = np.array([path.part_feed(index) for index in used])[back]
     edges = np.flatnonzero(np.diff(np.concatenate([[0], cutting.astype(int), [0]])))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The part as its unrolled surface: what a tool that points at a turning part's axis cuts.
+"""The part as its unrolled surface, for a tool that points at a turning part's axis.
 
-Its points are the way round, which grows with C, along Z, and X as the height above the axis. So
-seen from outside: with Z upwards C grows to the right.
+The coordinates are the length around it, which grows with C, Z, and X as the height above the axis.
+Seen from outside, with Z upwards, C grows to the right.
 """
 
 import math
@@ -20,14 +20,14 @@ LONGEST_SEGMENT, LEAST_SEGMENTS, MOST_SEGMENTS = 0.5, 4, 5000  # mm, of a move
 class Surface(Part):
     """The unrolled surface of a cylinder of ``radius``, mm.
 
-    What a move draws there is straight; it has points in between to measure by.
+    A move is straight there; points between its ends are for measuring.
     """
 
     radius: float = 0.0
 
     @property
     def letters(self) -> str:
-        """The axes that its points tell of."""
+        """The axes that its points depend on."""
         return "CZX"
 
     def points(self, positions: np.ndarray) -> np.ndarray:

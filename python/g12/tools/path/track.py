@@ -18,8 +18,8 @@ from g12.tools.path.part import CHORD_ERROR, Part
 from g12.tools.preview.moves import LINEAR, Move, Trace
 
 UNLIMITED = math.inf
-STILL = 1e-8  # mm or degrees: of less LinuxCNC makes nothing (CART_FUZZ)
-DWELL = "dwell "  # an event, and the seconds after it
+STILL = 1e-8  # mm or degrees: LinuxCNC ignores shorter moves (CART_FUZZ)
+DWELL = "dwell "  # prefix of an event; the seconds follow it
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,10 @@ class Vertices(NamedTuple):
 
 @dataclass(frozen=True)
 class Track:
-    """Moves as one polyline in time, drawn where somebody asks for its vertices; see ``track``.
+    """Moves as one polyline in time, computed when its vertices are first used; see ``track``.
 
-    ``seconds`` gives the time of a move by its index. It supposes that every move runs at its feed,
-    as far as the axes' speeds allow.
+    ``seconds`` returns the time of a move by its index, with every move at its feed, as far as the
+    axes' speeds allow.
     """
 
     part: Part
@@ -87,7 +87,7 @@ class Track:
 
     @cached_property
     def axis_points(self) -> np.ndarray:
-        """Part points (n, 3) as the axes stand, tool length offset included."""
+        """Part points (n, 3) of the axes' positions, tool length offset included."""
         return self.part.points(self.positions + self.offsets)
 
     def vertices(self, index: int) -> slice:
@@ -96,7 +96,7 @@ class Track:
         return slice(max(0, first - (1 if index else 0)), last)
 
     def end(self, index: int) -> tuple[float, ...]:
-        """Return where a move ends on the part."""
+        """Return the end of a move on the part."""
         return tuple(self.part.points(np.array(self.moves[index].end))[0])
 
     def part_length(self, index: int) -> float:
@@ -125,7 +125,7 @@ def limits_of(ini: Ini) -> Limits:
 
 
 def program_seconds(trace: Trace, ini: Ini, override: float = 100.0) -> float:
-    """Return about how long a program takes, at a feed override in per cent, with its dwells."""
+    """Return a program's estimated time, with its dwells, at a feed override in per cent."""
     limits, share = limits_of(ini), override / 100.0
     moves = (move._replace(feed=move.feed * share) for move in trace.moves)
     dwells = (event.text for event in trace.events if event.text.startswith(DWELL))
@@ -148,13 +148,13 @@ def duration(move: Move, limits: Limits, spindle_speed: float = 0.0) -> float:
 
 
 def rate(move: Move, spindle_speed: float) -> float:
-    """Return the programmed speed of a move in mm/s or degrees/s; 0 is as fast as it may."""
+    """Return the programmed speed of a move in mm/s or degrees/s; 0 is unlimited."""
     per_minute = move.feed * spindle_speed if move.feed_mode == "G95" else move.feed
     return per_minute / 60.0
 
 
 def feed_length(move: Move) -> float:
-    """Return the length that a move's feed is for: of X Y Z, else of U V W, else degrees."""
+    """Return the length to which a move's feed refers: of X Y Z, else of U V W, else degrees."""
     change = np.subtract(move.end, move.start)
     lengths = (math.hypot(*change[:3]), math.hypot(*change[6:]), math.hypot(*change[3:6]))
     return next((length for length in lengths if length >= STILL), 0.0)
@@ -169,7 +169,7 @@ def track(
     *,
     own: range | None = None,
 ) -> Track:
-    """Return the polyline of moves; of those ``own`` alone it says nothing of the others."""
+    """Return the polyline of moves, only of those in ``own`` if given."""
     own = range(len(moves)) if own is None else own
 
     def seconds(index: int) -> float:

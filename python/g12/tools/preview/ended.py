@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Traces that come to their end, and what a machine says of a program that does not."""
+"""Traces of programs that run to their end, and the error of one that does not."""
 
 import re
 from dataclasses import replace
@@ -15,30 +15,30 @@ from g12.tools.system import CALL
 UNKNOWN_CODE = "Unknown g code used"
 OUR_CODE = re.compile(r"G(?:1[23](?!\d)|7\.1$)")
 POLAR = ("G12.1", "G13.1")
-SAID = re.compile(r"^g12: (.*)$", re.MULTILINE)  # by the package, when LinuxCNC comes up
+SAID = re.compile(r"^g12: (.*)$", re.MULTILINE)  # the package's message when LinuxCNC starts
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
 
 def traced(program: Path, ini: Path, tools: Tools = None, parameters: Parameters = None) -> Trace:
-    """Return the trace of a program that comes to its end, or raise ProgramError."""
+    """Return the trace of a program that runs to its end, or raise ProgramError."""
     found = trace(program, ini, tools=tools, parameters=parameters)
     return ended(program, explained(found, ini))
 
 
 def ended(program: Path | str, result: Trace) -> Trace:
-    """Return a trace that came to its end, or raise ProgramError."""
+    """Return a trace that ran to its end, or raise ProgramError."""
     if result.error:
         raise ProgramError(ended_text(program, result.error))
     return result
 
 
 def ended_text(program: Path | str, error: Error) -> str:
-    """Return the text of an error with the program and the line in front."""
+    """Return the text of an error after the program's name and the line."""
     return f"{program}:{error.line}: {error.rule}"
 
 
 def explained(result: Trace, ini: Path) -> Trace:
-    """Return a trace whose error tells what LinuxCNC leaves out; see ``explained_text``."""
+    """Return a trace whose error has what LinuxCNC leaves out; see ``explained_text``."""
     error = result.error
     if not error:
         return result
@@ -46,7 +46,7 @@ def explained(result: Trace, ini: Path) -> Trace:
 
 
 def explained_text(text: str, ini: Path) -> str:
-    """Return the interpreter's error with what the machine has in place of what was asked for."""
+    """Return the interpreter's error, with what the machine has instead of the unknown code."""
     machine = read_ini(ini)
     codes = [remap.code for remap in remap_lines(machine.all) if OUR_CODE.match(remap.code)]
     wanted = NO_AXIS.match(text)
@@ -60,6 +60,6 @@ def explained_text(text: str, ini: Path) -> str:
 
 
 def said_at_start(ini: Path) -> str:
-    """Return what the package says when LinuxCNC comes up with an INI: what cannot work there."""
+    """Return the package's errors when LinuxCNC starts with an INI."""
     with Tracer(ini) as tracer:
         return "; ".join(SAID.findall(tracer.printed))

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Which blocks a program executes, and what their words say, with expressions worked out.
+"""The blocks that a program executes, with their words and the values of expressions.
 
-The text of the program is read here; LinuxCNC's own interpreter only says which blocks are
-executed in which order, what an expression in a word comes to, and where the tool stands
-then: ``(DEBUG, …)`` lines around the blocks tell, in a copy of the program that is traced.
-
-Nothing is shared with the planners: this is how ``verify`` knows what was programmed.
+This module reads the program's text. LinuxCNC's own interpreter supplies the order of execution,
+the values of expressions and the tool's position: ``(DEBUG, …)`` lines around the blocks report
+them, in a copy of the program that is traced. No code is shared with the planners, so that
+``verify`` reads the program independently.
 """
 
 import re
@@ -19,10 +18,10 @@ from g12.tools.preview.moves import Event, Trace
 from g12.tools.preview.tracer import Parameters, Tracer
 
 TAG = "g12-verify"
-CLAMP = "clamp"  # what the sub of a code of C's clamp tells, and its event's first word
+CLAMP = "clamp"  # printed by the sub of a clamp code; the first word of its event
 VALUE = "#<@>"  # short: a line that LinuxCNC reads has 252 characters at most
 LONGEST_LINE = 252
-ENLARGED = 1_000_000  # times: of less than 0.0001 LinuxCNC 2.9 tells that it is 0
+ENLARGED = 1_000_000  # factor: LinuxCNC 2.9 prints values below 0.0001 as 0
 PLACES = ("_x", "_y", "_z", "_c")
 STATE = (
     *(*PLACES, "_metric", "_absolute", "_lathe_diameter_mode", "_feed"),
@@ -44,12 +43,12 @@ CALL = re.compile(r"/?(?:n[0-9.]+)?o(?:<([^>]+)>|([^<]+?))call")
 
 
 class Text(NamedTuple):
-    """One line as it is written: its words in order (letter, value text), its assignments."""
+    """One line as written: its words in order (letter, value text), its assignments."""
 
     number: int
     words: tuple[tuple[str, str], ...]
     assignments: tuple[str, ...] = ()
-    deleted: bool = False  # begins with /
+    deleted: bool = False  # block delete: begins with /
     control: bool = False  # an O-word line
     call: str = ""  # the sub that it calls; arguments of an O-word are words with the letter ""
     file: str = ""  # the name of a sub's own file, "" in the program
@@ -61,7 +60,7 @@ class Text(NamedTuple):
 
     @property
     def too_long(self) -> bool:
-        """Whether the line that asks for one of its values is longer than LinuxCNC reads."""
+        """Whether the line that evaluates one of its values is longer than LinuxCNC reads."""
         asked = (value for _, value in self.words if not is_number(value))
         return any(len(assignment(self, value)) > LONGEST_LINE for value in asked)
 
@@ -76,10 +75,10 @@ class Block:
     """One execution of a block.
 
     ``words`` maps letters to values in program units (G and M words aside, which are ``codes``
-    and ``m_codes``; the arguments of a call are ``arguments``), ``state`` is what the block
-    found: ``_x`` …, ``left`` what it left, empty where the program ended in it.
-    ``at`` is the index of its first move and ``end`` that of the first move after it. ``events``
-    are those since the block before it was done, its own included, which are ``own_events``.
+    and ``m_codes``; the arguments of a call are ``arguments``), ``state`` is the state before the
+    block: ``_x`` …, ``left`` the state after it, empty where the program ended in it. ``at`` is the
+    index of its first move and ``end`` that of the first move after it. ``events`` are those since
+    the end of the block before, its own included, which are ``own_events``.
     """
 
     text: Text
@@ -104,7 +103,7 @@ def is_number(text: str) -> bool:
 
 
 def read_line(number: int, line: str) -> Text:
-    """Return a line of G code as text; what cannot be read is left to LinuxCNC to refuse."""
+    """Return a line of G code as text; LinuxCNC refuses what cannot be read."""
     code = re.sub(r"\s", "", COMMENT.sub("", line)).lower()
     deleted = code.startswith("/")
     if LETTER_O.match(code):
@@ -135,10 +134,10 @@ def _control(number: int, code: str, deleted: bool) -> Text:
 
 
 def _value_end(code: str, at: int) -> int:
-    """Return where the value that starts at ``at`` ends, as LinuxCNC reads values.
+    """Return the end of the value that starts at ``at``, as LinuxCNC reads values.
 
-    The section's `value_end` does the same, and is not shared: a slip in it would else be made by
-    planner and proof alike, and stay unseen.
+    The section's `value_end` does the same and is not shared: `verify` would not detect a fault in
+    it.
     """
     if at >= len(code):
         return at
@@ -191,7 +190,7 @@ def executed(
 
 
 def moves_otherwise(program: Path) -> ProgramError:
-    """Return the error of a program whose copies do not do what it does itself."""
+    """Return the error for a program whose copy behaves differently."""
     return ProgramError(
         f"{program}: moves otherwise where lines are put between its own:"
         " its blocks cannot be followed"
@@ -199,7 +198,7 @@ def moves_otherwise(program: Path) -> ProgramError:
 
 
 def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) -> list[str]:
-    """Return the lines of a file and those that tell of the blocks wanted; see ``before``."""
+    """Return the lines of a file with the report lines of the blocks wanted; see ``before``."""
     groups = (
         (*before(text, skip), line, *after(text, skip))
         if wanted(text) and not text.too_long
@@ -210,9 +209,9 @@ def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) ->
 
 
 def before(text: Text, skip: int = 0) -> Iterator[str]:
-    """Return the lines that tell a block's beginning, the state it finds and its words.
+    """Return the lines that report a block's start, the state before it and its words.
 
-    ``skip`` is how many lines of other files come first where texts are counted.
+    ``skip`` is the number of lines of other files that precede it in the count of texts.
     """
     slash = "/" if text.deleted else ""
     yield f"{slash}{PLACES_ENLARGED}"
@@ -225,23 +224,23 @@ def before(text: Text, skip: int = 0) -> Iterator[str]:
 
 
 def assignment(text: Text, value: str) -> str:
-    """Return the line that works out a value of a block."""
+    """Return the line that evaluates a value of a block."""
     return f"{'/' if text.deleted else ''}{VALUE}={value}"
 
 
 def after(text: Text, skip: int = 0) -> Iterator[str]:
-    """Return the lines that tell that a block is done, and the state it leaves."""
+    """Return the lines that report a block's end, and the state after it."""
     slash = "/" if text.deleted else ""
     yield f"{slash}{PLACES_ENLARGED}"
     yield f"{slash}(DEBUG,{TAG} end {skip + text.number} {STATE_TEXT})"
 
 
 def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
-    """Return the blocks that a trace tells of, each after those executed inside it."""
+    """Return the blocks that a trace reports, each after those executed inside it."""
     found: list[Block] = []
     opened: list[_Opened] = []
     told: list[Event] = []
-    done = 0  # how many events had come when the last block was
+    done = 0  # number of events at the end of the last block
     for event in trace.events:
         if TAG not in event.text:
             told.append(event)
@@ -267,13 +266,13 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
 
 
 def state_told(values: Sequence[float]) -> dict[str, float]:
-    """Return the state by name of the values that ``STATE_TEXT`` tells."""
+    """Return the state by names, from the values that ``STATE_TEXT`` prints."""
     places, others = values[: len(PLACES)], values[len(PLACES) :]
     return dict(zip(STATE, (*(value / ENLARGED for value in places), *others)))
 
 
 class _Opened(NamedTuple):
-    """A block that has begun: where in the moves, with which state, after how many events."""
+    """A begun block: the index of its first move, its state, the number of events so far."""
 
     text: Text
     at: int
@@ -283,7 +282,7 @@ class _Opened(NamedTuple):
 
 
 def _taken(opened: list[_Opened], text: Text) -> _Opened | None:
-    """Return the block of a text that began last, and forget it and what began inside it."""
+    """Remove and return the last begun block of a text; also remove those begun inside it."""
     for index in range(len(opened) - 1, -1, -1):
         if opened[index].text is text:
             block = opened[index]
@@ -295,7 +294,7 @@ def _taken(opened: list[_Opened], text: Text) -> _Opened | None:
 def _block(
     opened: _Opened, end: int, left: dict[str, float], told: Sequence[Event], done: int
 ) -> Block:
-    """Return a block that is done; the first ``done`` events came before the last block's end."""
+    """Return an executed block; the first ``done`` events came before the last block's end."""
     text, values = opened.text, opened.values
     words = [
         (letter, values.get(index, float(value) if is_number(value) else 0.0))

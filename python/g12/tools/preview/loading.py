@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Which LinuxCNC is here, and whether it loads a machine config."""
+"""The installed LinuxCNC's version, and whether it loads a machine config."""
 
 import re
 import subprocess
@@ -23,7 +23,7 @@ def linuxcnc_version() -> str:
 
 
 def load_failure(ini: Ini) -> str | None:
-    """Return the interpreter's own text if it does not load the INI as it stands."""
+    """Return the interpreter's own text if it does not load the INI as it is."""
     try:
         with Tracer(ini):
             return None
@@ -32,7 +32,7 @@ def load_failure(ini: Ini) -> str | None:
 
 
 def python_error(printed: str) -> str | None:
-    """Return the exception in what loading printed, with its place; None if Python loaded."""
+    """Return the exception that loading printed, with file and line; None if Python loaded."""
     before, failed, _ = printed.partition(FAILED)
     if not failed:
         return None

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a program does, as values: moves, events, modal state and the trace that holds them.
+"""The values of a trace: moves, events, modal state.
 
 Lengths are millimetres and angles degrees, whatever the program and the machine use.
 Positions are those of the controlled point in machine coordinates: work offsets, G92 and the
 rotation of the work coordinate system are resolved.  The tool length offset is not added, so
-with no work offset they are the program's positions.  (A real machine's axes stand at the
-position plus ``Move.tool_offset``.)
+with no work offset they are the program's positions.  (A real machine's axes are at the position
+plus ``Move.tool_offset``.)
 """
 
 import math
@@ -17,7 +17,7 @@ from typing import NamedTuple
 from g12.machine_ini import AXES
 
 NO_G92 = 922  # 2.9 lists G92.2 where no G92 offset is active, 2.10 nothing
-LINEAR = tuple(letter in "XYZUVW" for letter in AXES)  # which of AXES are lengths
+LINEAR = tuple(letter in "XYZUVW" for letter in AXES)  # for each of AXES: whether it is a length
 SAME_POINT = 1e-6  # mm; an arc whose ends are nearer is a full circle, as in motion
 THIRD_AXIS = {17: 2, 18: 1, 19: 0}
 
@@ -25,23 +25,23 @@ Position = tuple  # nine floats in the order of AXES: mm, degrees for A, B, C
 
 
 class Message(NamedTuple):
-    """A text for the operator that is no error: ``(MSG, …)`` or a handler's MESSAGE."""
+    """A message to the operator without an error: ``(MSG, …)`` or a handler's MESSAGE."""
 
     line: int
     text: str
 
 
 def message_lines(messages: Iterable[Message]) -> list[str]:
-    """Return messages as lines to be shown, each once."""
+    """Return messages as lines, each once."""
     lines = (f"message, line {line}: {text.strip()}" for line, text in messages)
     return list(dict.fromkeys(lines))
 
 
 class Event(NamedTuple):
-    """What the program does between two moves, as text: ``tool 1``, ``S1000``, ``M8 on``.
+    """An action between two moves, as text: ``tool 1``, ``S1000``, ``M8 on``.
 
-    ``at`` is the index of the move that follows, ``line`` the program's line.  LinuxCNC tells
-    of spindle, coolant, work offset and path mode when the next line starts.
+    ``at`` is the index of the next move, ``line`` the program's line. LinuxCNC reports spindle,
+    coolant, work offset and path mode when the next line starts.
     """
 
     at: int
@@ -57,7 +57,7 @@ class Error(NamedTuple):
 
     @property
     def rule(self) -> str:
-        """The text without ``line``, for where that stands in front: ``G12: I is missing …``."""
+        """The text without ``line``, for output that has it in front: ``G12: I is missing …``."""
         return re.sub(rf"^(\S+) line {self.line}: ", r"\1: ", self.text)
 
 
@@ -80,10 +80,10 @@ class Modes:
 class Move(NamedTuple):
     """One canonical move.
 
-    ``kind`` is ``rapid``, ``feed``, ``arc`` or ``probe``.  ``line`` is what the interpreter says
-    and a GUI highlights: in a subroutine that subroutine's line, in a Python remap 0 unless the
-    remap sets it, as a G12.1 section does: there it is the contour's block.  ``block`` is the line
-    of the program itself whose block makes the move, of a sub the line that calls it.
+    ``kind`` is ``rapid``, ``feed``, ``arc`` or ``probe``.  ``line`` is the interpreter's, which a
+    GUI highlights: in a subroutine that subroutine's line; in a Python remap 0, unless the remap
+    sets it, as a G12.1 section does, to the contour's block.  ``block`` is the line of the program
+    itself whose block makes the move, of a sub the line that calls it.
 
     ``feed`` is mm/min under ``feed_mode`` G94 and G93 (the interpreter resolves inverse time),
     mm/rev under G95; degrees for a straight move of rotary axes alone; 0 for a rapid.
@@ -95,11 +95,10 @@ class Move(NamedTuple):
     1 or -1 for anything up to a full circle) and ``rotation`` the angle of the work coordinate
     system about Z in degrees, which turns G18 and G19 planes.
 
-    ``remap`` is the remapped code that makes the move, ``G12``, "" without one. ``exact`` says that
-    it ends in an exact path or stop (G61, G61.1, before a dwell), not blended into the next.
-    ``by_machine`` says that its block names a place of the machine (G53, G28, G30), which no work
-    offset moves.
-    ``acceleration`` is a share of the INI's for X and Y, with which the face's kinematics make it.
+    ``remap`` is the remapped code that makes the move, ``G12``, "" without one. ``exact``: it ends
+    in an exact path or stop (G61, G61.1, before a dwell), not blended into the next.
+    ``by_machine``: its block names a machine position (G53, G28, G30), which no work offset shifts.
+    ``acceleration`` is the share of the INI's for X and Y at which the face's kinematics run it.
     """
 
     kind: str
@@ -158,7 +157,7 @@ class Move(NamedTuple):
         return (*self._out_of_plane((*turned, level)), *straight[3:])
 
     def tangent(self, fraction: float) -> tuple[float, float, float]:
-        """Return the unit direction in X, Y, Z after ``fraction``; zeros if they stand still."""
+        """Return the unit direction in X, Y, Z after ``fraction``; zeros without motion in them."""
         if self.kind == "arc":
             direction = self._arc_direction(fraction)
         else:
@@ -196,14 +195,14 @@ class Move(NamedTuple):
 
 @dataclass(frozen=True)
 class Trace:
-    """What one program did.
+    """The trace of one program.
 
-    ``error`` is None for a program that ran to its end.  ``modes`` is the state after the last
-    block that succeeded, M2 included; ``state`` the interpreter's variables themselves, after
-    the refused block if there was one (motion_mode, plane, feed_rate …, program units).
-    ``printed`` is the text of ``(print, …)`` and of Python, ``position`` where the last move
-    ended, ``globals`` the global named parameters that the program left, ``numbered`` the
-    parameters asked for, ``seconds`` the interpreter's time.  ``events`` holds the messages too.
+    ``error`` is None for a program that ran to its end. ``modes`` is
+    the state after the last block that succeeded, M2 included; ``state`` the interpreter's
+    variables themselves, after the refused block if there was one (motion_mode, plane, feed_rate …,
+    program units). ``printed`` is the text of ``(print, …)`` and of Python, ``position`` the end of
+    the last move, ``globals`` the global named parameters after the program, ``numbered`` the
+    requested parameters, ``seconds`` the interpreter's time.  ``events`` holds the messages too.
     ``files`` are those of subs outside the program that execute a remapped code which moves,
     ``diameters`` and ``lengths`` (along Z) what the tool table holds: tool number to mm.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A trace of a filtered program with the lines of the file that the user wrote."""
+"""A trace of a filtered program, with the line numbers of the user's file."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ from g12.tools.preview.moves import Trace
 
 
 def trace_in_source(found: Trace, opened: OpenedProgram) -> Trace:
-    """Return a trace whose blocks, messages, events and error have the user's lines."""
+    """Return a trace whose blocks, messages, events and error have the user's line numbers."""
     if not opened.is_filtered:
         return found
     line, error = opened.source_line, found.error

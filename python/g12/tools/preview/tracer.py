@@ -4,9 +4,9 @@
 LinuxCNC's own preview module interprets the program in a process of its own
 (``worker.py``), so nothing here needs a running LinuxCNC or a screen.
 
-The preview differs from a real machine in one thing that programs can see: when the units
-change, it forgets G64's tolerances (it takes 0.1) where the machine converts them. (It forgets F
-too; the worker restores F at the next line that asks the machine for anything.)
+The preview differs from a real machine in one respect that programs can read: when the units
+change, it resets G64's tolerances (to 0.1), which the machine converts. (It resets F, too; the
+worker restores F at the next line with a canonical call.)
 """
 
 import contextlib
@@ -40,7 +40,7 @@ Parameters = str | os.PathLike | Mapping[int, float] | None
 
 
 class TraceFailure(RuntimeError):
-    """The interpreter died, ran out of time or did not start: no word about the program."""
+    """The interpreter died, timed out or did not start: there is no result for the program."""
 
 
 class Tracer:
@@ -51,8 +51,8 @@ class Tracer:
     ``{tool number: diameter in machine units}`` in place of the INI's table.  Settings are read
     when LinuxCNC's Python modules load, so other overrides or tools need another Tracer.
     ``folder`` is its scratch directory.
-    ``printed`` is what the interpreter and the machine's modules said while loading,
-    ``diameters`` and ``lengths`` what LinuxCNC reads in the tool table: tool number to mm.
+    ``printed`` is the output of the interpreter and the machine's modules while loading.
+    ``diameters`` and ``lengths`` are LinuxCNC's values of the tool table: tool number to mm.
     """
 
     def __init__(
@@ -87,10 +87,9 @@ class Tracer:
         ``setup`` holds blocks executed before it whose moves are not reported.  ``parameters``
         are numbered parameters as the var file holds them (``{5221: 10.0}`` is G54 X10 in
         machine units) or a var file; without them all are 0.  ``ask`` names numbered parameters
-        to report back.  ``timeout`` is in seconds.  ``alone`` makes sure that nothing is left
-        of the program in Python modules of the machine that keep state between programs.
-        ``watch_offsets`` has an event tell, in front of each message, which work offsets are others
-        than at the message before, of G54 to G59.3 and G92.
+        to report back.  ``timeout`` is in seconds.  ``alone`` discards the state that the program
+        leaves in the machine's Python modules. With ``watch_offsets`` an event before each message
+        lists the work offsets, of G54 to G59.3 and G92, that have changed since the message before.
         """
         request = {
             "program": str(Path(program).absolute()),
@@ -102,7 +101,7 @@ class Tracer:
         }
         if not self._process:
             self._start()
-        with contextlib.suppress(BrokenPipeError):  # it died: there will be no answer
+        with contextlib.suppress(BrokenPipeError):  # it has died and cannot answer
             self._connection.send(request)
         answer = self._answer(timeout)
         return _trace(answer, self.ini.mm)
@@ -122,7 +121,7 @@ class Tracer:
         process = self._process
         if process:
             process.kill()
-            process.wait()  # on a busy machine it may answer once more
+            process.wait()  # it may still send an answer
 
     def close(self) -> None:
         """End the interpreter."""
@@ -229,12 +228,12 @@ def write_parameters(parameters: Parameters, path: Path) -> Path:
 
 
 def start_block(mm: float) -> str:
-    """Return what task executes first on a machine whose unit is ``mm`` long."""
+    """Return the block that task executes first, for a machine unit of ``mm``."""
     return "G20 G64 P0.001 Q0" if is_inch(mm) else "G21 G64 P0.0254 Q0"
 
 
 def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
-    """Return what the worker needs to know of the machine; its files go to ``folder``."""
+    """Return the worker's data of the machine; its files go to ``folder``."""
     expanded = folder / "machine.ini"
     expanded.write_text(ini.text, encoding="utf-8", errors="surrogateescape")
     unit, startup = ini.mm, ini.get("RS274NGC", "RS274NGC_STARTUP_CODE")
@@ -253,7 +252,7 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
 def sizes_in_mm(
     sizes: Mapping[int, Sequence[float]], mm: float
 ) -> tuple[dict[int, float], dict[int, float]]:
-    """Return diameters and lengths in mm of sizes in the machine's units."""
+    """Convert tool sizes in machine units to diameters and lengths in mm."""
     diameters, lengths = ({tool: size[at] * mm for tool, size in sizes.items()} for at in (0, 1))
     return diameters, lengths
 

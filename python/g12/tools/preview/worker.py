@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The process of ``trace.Tracer``: LinuxCNC's preview interpreter on a pipe.
 
-It stands alone, outside the package, because the machine's INI decides which copy of ``g12``
-the interpreter imports.  A request is a dict with ``program``, ``setup``, ``parameter_file`` and
-``ask``; the answer is a dict that ``trace`` makes a Trace of.  Every program gets a new
+It imports nothing of the package, because the machine's INI decides which copy of ``g12`` the
+interpreter imports. A request is a dict with ``program``, ``setup``, ``parameter_file`` and
+``ask``; the answer is a dict that ``trace`` converts to a Trace.  Every program gets a new
 interpreter object, as in a GUI that opens a program again.
 """
 
@@ -28,7 +28,7 @@ UNLOADED = (0, *[0.0] * 12, 0)  # after T0 M6
 Position = tuple[float, float, float, float, float, float, float, float, float]  # XYZABCUVW
 NO_OFFSET = (0.0,) * 9
 LINEAR = (0, 1, 2, 6, 7, 8)
-STILL = 1e-8  # mm: of less LinuxCNC makes nothing (CART_FUZZ)
+STILL = 1e-8  # mm: LinuxCNC ignores shorter moves (CART_FUZZ)
 INCHES, METRIC = 1, 2
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
 PLANES = {1: 17, 2: 19, 3: 18}
@@ -43,13 +43,13 @@ STATE = (
     "rotation_xy", "current_x", "current_y", "current_z", "AA_current", "BB_current",
     "CC_current", "current_tool", "call_level", "remap_level",
 )  # fmt: skip
-LENGTH_CODE, SPINDLE_MODE = 9, 13  # places of G43, G49 and of G96, G97 in the active G codes
+LENGTH_CODE, SPINDLE_MODE = 9, 13  # indices of G43, G49 and of G96, G97 in the active G codes
 OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)}  # from where on
 OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number after them is always the same
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 BY_MACHINE = (280, 300, 530)
 FEED_DECIMALS = 12
-INVERSE_TIME = 1  # place in FEED_MODES: each block has an F of its own
+INVERSE_TIME = 1  # index in FEED_MODES: each block has an F of its own
 FEED_MODES = ("G94", "G93", "G95")
 CONTINUOUS = 3  # CANON_CONTINUOUS: G64
 TOOL_FUNCTIONS = {  # with their types as C++ names them
@@ -63,9 +63,9 @@ TOOL_FUNCTIONS = {  # with their types as C++ names them
 
 
 def tool_library() -> dict:
-    """Return LinuxCNC's functions for tool tables by their names in C, which 2.9 has not.
+    """Return LinuxCNC's functions for tool tables by their names in C, which 2.9 lacks.
 
-    The interpreter has loaded the library: of several on a computer it is that one.
+    Of several libraries on a computer it is the one that the interpreter has loaded.
     """
     import gcode  # noqa: F401
 
@@ -77,7 +77,7 @@ def tool_library() -> dict:
 
 
 class ToolEntry(ctypes.Structure):
-    """LinuxCNC's record of one tool, with room for what later versions append to it."""
+    """LinuxCNC's record of one tool, with room for fields of later versions."""
 
     _fields_ = (
         ("number", ctypes.c_int),
@@ -90,7 +90,7 @@ class ToolEntry(ctypes.Structure):
     )
 
     def for_canon(self) -> tuple:
-        """Return the record as the preview asks for it."""
+        """Return the record in the preview's form."""
         return (self.number, *self.offset, self.diameter, *self.angles, self.orientation)
 
 
@@ -117,7 +117,7 @@ class Tools:
 
 
 class Lines:
-    """Finds the line of the program itself that is being executed, however deep in calls."""
+    """Finds the line of the program itself that is being executed, at any call level."""
 
     def __init__(self, program: str) -> None:
         self._program = program
@@ -137,10 +137,10 @@ class Lines:
         return self._of_call(this)
 
     def of_error(self) -> int:
-        """Return the program's line after the interpreter gave up and left all calls.
+        """Return the program's line after an error, when the interpreter has unwound all calls.
 
-        A remap in progress leaves its mark in block 1; the interpreter loses the line of a
-        remap, but not the place in the file where it was read.
+        A remap in progress is still marked in block 1. The interpreter loses the line of a remap,
+        but not its offset in the file.
         """
         this = interpreter_object()
         in_remap = this.blocks[1].executing_remap is not None
@@ -149,13 +149,13 @@ class Lines:
         return this.sequence_number
 
     def remap(self) -> str:
-        """Return the remapped code whose motion is being made, in upper case, "" without one."""
+        """Return the remapped code that makes the present motion, in upper case, "" without one."""
         this = interpreter_object()
         level = this.remap_level
         return this.blocks[level].executing_remap.name.upper() if level else ""
 
     def files(self) -> set[str]:
-        """Return the files of subs that wait for the remap at work, the program's own aside."""
+        """Return the files of the subs that called the active remap, without the program itself."""
         this = interpreter_object()
         found = set()
         for level in range(1, this.call_level):
@@ -183,7 +183,7 @@ class Lines:
 
 
 class Canon:
-    """Records what the interpreter asks the machine to do, in mm and machine coordinates."""
+    """Records the interpreter's canonical calls, in mm and machine coordinates."""
 
     def __init__(self, machine: dict, tools: Tools, request: dict) -> None:
         self.machine, self.tools = machine, list(tools)
@@ -199,16 +199,18 @@ class Canon:
         self.offsets: dict = {}
         self.pitch = ""
         self.line = 0
-        self.on_face = False  # of the kinematics, where Y tells where the tool is
+        self.on_face = False  # on the face, where Y is the tool's
         self.share = 1.0  # of the INI's accelerations of X and Y there
         self.tip = NO_OFFSET  # in program coordinates
         self.position = self._beside_x(NO_OFFSET)  # in machine coordinates
         self.work = self.g92 = self.length = NO_OFFSET
-        self.shift: tuple[float, ...] = NO_OFFSET  # of the tip since the last move, by G43 and G49
+        self.shift: tuple[float, ...] = (
+            NO_OFFSET  # shift of the tip since the last move, by G43 and G49
+        )
         self.rotation, self.cos, self.sin = 0.0, 1.0, 0.0
         self.plane = 17
         self.feed = self.program_feed = 0.0
-        self.modal_feed, self.units = 0.0, INCHES  # F, and the units that it is in
+        self.modal_feed, self.units = 0.0, INCHES  # F and its units
         self.spindle = EMPTY
 
     # Questions of the interpreter.
@@ -230,7 +232,7 @@ class Canon:
         return True
 
     def check_abort(self) -> bool:
-        """Return False: nobody stops the parse from within."""
+        """Return False: no abort during interpretation."""
         return False
 
     def get_tool(self, index: int) -> tuple:
@@ -242,14 +244,14 @@ class Canon:
     # State it reports.
 
     def next_line(self, state) -> None:
-        """Note the line that the following calls belong to."""
+        """Note the line of the following calls."""
         self.line = state.sequence_number
         self._convert_feed()
         if self.started:
             self._note_conditions(state)
 
     def comment(self, text: str) -> None:
-        """Begin without a feed, and forget the set-up when the program itself starts."""
+        """Begin without a feed, and discard the set-up's records when the program itself starts."""
         this = interpreter_object()
         if text == FRESH:
             this.feed_rate = 0.0  # not by F0: a machine may have remapped F
@@ -310,7 +312,7 @@ class Canon:
     def change_tool(self, _which: int) -> None:
         """Note the tool in the spindle; LinuxCNC 2.9 hands over its index, 2.10 its number.
 
-        LinuxCNC then reads the whole table again, in which a machine keeps what G10 L1 has set.
+        LinuxCNC then reads the whole table again; values of G10 L1 have to stay, as on a machine.
         """
         index, table = interpreter_object().selected_pocket, interpreter_object().tool_table
         self.tools[1:] = [for_canon(table[place]) for place in range(1, len(self.tools))]
@@ -318,7 +320,7 @@ class Canon:
         self._note(f"tool {self.spindle[0]}")
 
     def dwell(self, seconds: float) -> None:
-        """Note a pause; the move in front of it is not blended into the next."""
+        """Note a pause; the move before it is not blended into the next."""
         self._note(f"dwell {seconds:.10g}")
         if self.moves:
             *move, _, by_machine, share = self.moves[-1]
@@ -351,7 +353,7 @@ class Canon:
                 self._note(pitch)
 
     def _note_offsets(self) -> None:
-        """Note which work offsets are not those of the message before."""
+        """Note the work offsets that have changed since the message before."""
         known, self.offsets = self.offsets, work_offsets()
         for name, values in self.offsets.items():
             if known and values != known[name]:
@@ -361,7 +363,7 @@ class Canon:
         self.events.append((len(self.moves), self.lines.now(), text))
 
     def _note_conditions(self, state) -> None:
-        """Note what the moves from here on run under, as far as it is new."""
+        """Note changes in the conditions of the following moves."""
         known, self.in_force = self.in_force, conditions(state, self.length)
         for word in self.in_force:
             if word not in known:
@@ -379,11 +381,11 @@ class Canon:
         self._move("feed", in_mm(target), self._rate(target))
 
     def straight_probe(self, *target: float) -> None:
-        """Record a probing move, as if nothing was touched."""
+        """Record a probing move without contact."""
         self._move("probe", in_mm(target), self._rate(target))
 
     def rigid_tap(self, x: float, y: float, z: float) -> None:
-        """Record the way down and back up, and its pitch: no other event tells it from a cut."""
+        """Record both strokes and the pitch, the only event that distinguishes them from a cut."""
         self.pitch = ""
         self._note_pitch()
         back = self.tip
@@ -419,10 +421,10 @@ class Canon:
             self.files |= self.lines.files()
 
     def _start(self, tip: tuple) -> tuple:
-        """Return where a move to ``tip`` starts: G43 in front of it moves the tip, not the axes.
+        """Return the start of a move to ``tip``: a G43 before it moves the tip, not the axes.
 
-        An axis that the move leaves alone starts where it ends. Any other starts where the last
-        move ended, as do all after M6 and G43 in one block, which the preview takes for none.
+        An axis that the move does not command starts where it ends. Any other starts where the last
+        move ended, as do all after M6 and G43 in one block, which the preview treats as no G43.
         """
         shift, self.shift = self.shift, NO_OFFSET
         places = zip(self.position, shift, self._resolved(tip))
@@ -431,7 +433,7 @@ class Canon:
         )
 
     def _stand_where_the_interpreter_does(self) -> None:
-        """Go on from there: the axes mean something else, the tool stands where it stood."""
+        """Take over the interpreter's position after a switch of kinematics, without a move."""
         this = interpreter_object()
         linear = (this.current_x, this.current_y, this.current_z)
         scale = 1.0 if this.length_units == METRIC else MM
@@ -446,13 +448,13 @@ class Canon:
         return self._beside_x(tuple(map(float.__add__, turned, self.work)))
 
     def _beside_x(self, position: tuple) -> tuple:
-        """Return where the tool is, on a lathe whose tool stands beside the X line."""
+        """Return the tool's position on a lathe whose tool is beside the X line."""
         x, y, *rest = position
         return (x, y if self.on_face else y + self.machine["beside"], *rest)
 
 
 def work_offsets() -> dict[str, tuple]:
-    """Return all work offsets by what changes them."""
+    """Return all work offsets by the code that sets them."""
     params = interpreter_object().params
     return {
         name: tuple(params[number] for number in range(first, first + OFFSET_LENGTH))
@@ -461,7 +463,7 @@ def work_offsets() -> dict[str, tuple]:
 
 
 def conditions(state, length: tuple) -> tuple:
-    """Return what has no part in the path, as words; ``state`` is the modal state of a line.
+    """Return the conditions besides the path, as words; ``state`` is the modal state of a line.
 
     LinuxCNC brings that state up to date at the end of a block.
     """
@@ -482,12 +484,12 @@ def conditions(state, length: tuple) -> tuple:
 
 
 def length_code(code: int, length: tuple) -> int:
-    """Return ten times the G code of the tool length: a length of nothing is G49, also on 2.10."""
+    """Return ten times the G code of the tool length: a length of zero is G49, also on 2.10."""
     return code if any(length) else 490
 
 
 def goes_by_machine() -> bool:
-    """Return whether a block that moves names a place of the machine: G53, G28, G30."""
+    """Return whether a move's block names a machine position: G53, G28, G30."""
     this = interpreter_object()
     return this.blocks[this.remap_level].g_modes[0] in BY_MACHINE
 
@@ -506,7 +508,7 @@ def in_mm(position: Sequence[float]) -> Position:
 
 
 def for_canon(entry) -> tuple:
-    """Return a record of the interpreter's tool table as the preview asks for it."""
+    """Return a record of the interpreter's tool table in the preview's form."""
     tip, offset = entry.offset.tran, entry.offset
     axes = (tip.x, tip.y, tip.z, *(getattr(offset, letter) for letter in "abcuvw"))
     angles = (entry.frontangle, entry.backangle, entry.orientation)
@@ -516,7 +518,7 @@ def for_canon(entry) -> tuple:
 def tool_sizes(count: int) -> dict[int, tuple[float, float]]:
     """Return tool number to diameter and length, machine units, of the first ``count`` entries.
 
-    The interpreter's table holds what G10 has set. The first entry of a tool counts.
+    The interpreter's table has the values of G10. The first entry of a tool counts.
     """
     table = interpreter_object().tool_table
     entries = [table[index] for index in reversed(range(count))]
@@ -524,7 +526,7 @@ def tool_sizes(count: int) -> dict[int, tuple[float, float]]:
 
 
 def interpreter_object():
-    """Return the interpreter at work, as Python remaps see it."""
+    """Return the running interpreter, the object that Python remaps get."""
     import interpreter
 
     return interpreter.this
@@ -581,7 +583,7 @@ def state_after(request: dict, length: tuple) -> dict:
 
 
 def printed(path: str) -> str:
-    """Return and forget what was printed."""
+    """Return the printed text so far, and clear it."""
     with open(path, "r+", encoding="utf-8", errors="replace") as file:
         text = file.read()
         file.truncate(0)
@@ -611,7 +613,7 @@ def answered(machine: dict, tools: Tools, request: dict) -> dict:
 
 
 def ini_refused(machine: dict) -> str | None:
-    """Return why this LinuxCNC reads nothing of the INI; the interpreter would go on without it.
+    """Return why this LinuxCNC cannot read the INI; the interpreter would continue without it.
 
     2.9 reads any file, 2.10 none with a line that it does not understand.
     """
@@ -627,10 +629,10 @@ def ini_refused(machine: dict) -> str | None:
 def start(machine: dict, tools: Tools) -> dict:
     """Load the machine's Python modules and return its answer to a blank program.
 
-    ``no_end`` is what this LinuxCNC says of a program without an end.
+    ``no_end`` is this LinuxCNC's error for a program without an end.
 
-    The interpreter's own modules exist from the first parse on, with an INI that says nothing,
-    and so can be adjusted before the machine's modules import them.
+    The interpreter's own modules exist after a first parse with an empty INI, and so can be
+    adjusted before the machine's modules import them.
     """
     request = blank(os.path.dirname(machine["output"]))
     os.environ["INI_FILE_NAME"] = request["parameter_file"]
@@ -647,12 +649,12 @@ def start(machine: dict, tools: Tools) -> dict:
 
 
 def reply(connection: Connection, machine: dict, answer: dict) -> None:
-    """Send an answer with what was printed meanwhile."""
+    """Send an answer with the text printed meanwhile."""
     connection.send({**answer, "printed": printed(machine["output"])})
 
 
 def reply_alone(connection: Connection, machine: dict, tools: Tools, request: dict) -> None:
-    """Answer from a copy of this process, so that what the machine's modules keep is forgotten."""
+    """Answer from a fork of this process, which discards the state of the machine's modules."""
     copy = os.fork()
     if copy:
         _, status = os.waitpid(copy, 0)
@@ -665,12 +667,12 @@ def reply_alone(connection: Connection, machine: dict, tools: Tools, request: di
 
 
 def end_with_parent() -> None:
-    """Let this process be killed when the one that it is a copy of ends."""
+    """Let this process be killed when its parent ends."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def serve(descriptor: int) -> None:
-    """Answer requests until the other end closes, in a copy that may be far from an answer."""
+    """Answer requests until the other end closes, in a fork, which may be busy then."""
     connection = Connection(descriptor)
     machine = connection.recv()
     copy = os.fork()
@@ -679,10 +681,12 @@ def serve(descriptor: int) -> None:
         answer_requests(connection, machine)
         return
     watched = select.poll()
-    watched.register(connection, 0)  # tells of the other end's death in any case
+    watched.register(connection, 0)  # also notices the death of the other end
     with open(os.pidfd_open(copy), "rb") as ended:
         watched.register(ended, select.POLLIN)
-        if connection.fileno() in dict(watched.poll()):  # died, or it would have ended this one
+        if connection.fileno() in dict(
+            watched.poll()
+        ):  # the fork has died: on its normal end it ends this process, too
             os.kill(copy, signal.SIGKILL)
             os.waitpid(copy, 0)
             shutil.rmtree(os.path.dirname(machine["output"]), ignore_errors=True)
