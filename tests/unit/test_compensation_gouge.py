@@ -8,7 +8,6 @@ import cmath
 import math
 import random
 
-import numpy as np
 import pytest
 
 from g12.compensation.contour import Contour
@@ -326,23 +325,6 @@ def test_a_pass_behind_another_goes_the_same_way_within_26_degrees(degrees, foun
     assert ("cuts into the other" in text) is found
 
 
-@pytest.mark.parametrize(("count", "found"), [(18, True), (21, False)])
-def test_round_passes_may_not_go_to_both_sides_of_each_other(count, found):
-    """Round ends of sides of half a radius, one half a side on: an eighth from where they cross."""
-    radius, turn = 6.0, 2 * math.pi / count
-    size = 0.25 * radius / math.sin(0.5 * turn)
-    one, other = (
-        [cmath.rect(size, 0.5 * math.pi - k * turn) for k in np.arange(first, 0.5 * count, 1.0)]
-        for first in (0.0, 0.5)
-    )
-    assert (size * (1.0 - math.cos(0.5 * turn)) > 0.02 * radius) is found
-    far = [complex(-3 * radius, -size), complex(-3 * radius, size)]
-    laps = [closed([far[1], *round_end, far[0]]) for round_end in (one, other)]
-    for heights in ((-1.0, -1.0), (-1.0, -2.0), (-2.0, -1.0)):
-        text = refusal(stacked(radius, *zip(heights, laps)))
-        assert ("cuts into the other" in text) is found
-
-
 def test_a_pass_may_touch_the_tip_of_another():
     """It comes from beyond one flank of a sharp corner, or of the other, and crosses neither."""
     spike = lines((-20, 0), (-20, 8), (0, 8), (30, 0), (0, -8), (-20, -8), (-20, 0))
@@ -534,5 +516,5 @@ def test_elements_are_not_compared_each_with_each(made, side):
         contour = contour_of(Drawn(made(count), side, 3.0, made(count)))
         return lambda: refusal(contour)
 
-    assert planned(10_000)() == ""
-    assert growth(planned, 2500) < 10
+    assert planned(2000)() == ""
+    assert growth(planned, 500) < 10

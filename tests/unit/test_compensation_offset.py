@@ -316,12 +316,6 @@ def test_the_tool_centres_moves_join_and_its_arcs_are_arcs(side, bend):
         assert sum(isinstance(move.curve, Arc) for move in moves) >= 5
 
 
-def test_a_square_corner_is_rounded_however_small_the_tool_is():
-    moves = centre_moves(polygon(20 + 10j, 40 + 10j, 40 + 30j, 20 + 30j), OUTSIDE, 0.0005)
-    sweeps = [move.curve.sweep for move in moves if isinstance(move.curve, Arc)]
-    assert sweeps == pytest.approx([math.pi / 2] * 3)  # at the fourth the contour begins
-
-
 def test_an_arc_of_the_tools_radius_becomes_a_corner():
     def round_off(contour, line):
         contour.arc(1, 20.0, 7.0, i=0.0, j=2.0, line=line, feed=100.0)
@@ -357,17 +351,6 @@ def test_parallels_are_joined_where_nobody_could_tell(bend, by, segments):
     made = [move for move in tool_path(contour, contour.elements, TOLERANCE) if move.line == 3]
     assert len(made) == segments
     assert abs(abs(made[0].start - corner) - 2.0) <= 0.04 * TOLERANCE
-
-
-@pytest.mark.parametrize(("bend", "segments"), [(0.0049, 1), (0.0051, 2)])
-@pytest.mark.parametrize("by", [1.0, -1.0])
-def test_an_arc_is_joined_to_a_line_as_a_line_to_an_arc(by, bend, segments):
-    corner = 20 + 5j
-    centre = corner + 5j * by
-    start = centre + (corner - centre) * cmath.exp(-1j * by)
-    shapes = [Round(start, centre, by), Straight(corner, corner + 5 * cmath.exp(1j * bend))]
-    moves = centre_moves(shapes, 42, 2.0)
-    assert len([move for move in moves if move.line == 4]) == segments
 
 
 def test_the_feed_is_that_of_the_tools_centre():
@@ -432,43 +415,23 @@ def round_to(turn, x, c, radius):
     return lambda contour, line: contour.arc(turn, x, c, radius=radius, line=line, feed=100.0)
 
 
+BETWEEN = (
+    "line {}: the arc of radius 1.5 is smaller than the tool radius 2 (between lines {} and {})"
+)
+CORNER = "line 3: the tool of radius 2 cannot reach both lines 2 and 3: their corner is too tight"
+SHORT = "line 4: too short for the tool radius 2 between its inside corners with lines 2 and 5"
+
+
 @pytest.mark.parametrize(
     ("blocks", "message"),
     [
-        (
-            [to(20, 5), round_to(1, 20, 8, 1.5), to(10, 8)],
-            "line 3: the arc of radius 1.5 is smaller than the tool radius 2 (between lines 2 "
-            "and 4)",
-        ),
-        (
-            [to(20, 5), to(20, 6), to(30, 6)],
-            "line 3: the tool of radius 2 cannot reach both lines 2 and 3: their corner is too "
-            "tight",
-        ),
-        (
-            [to(20, 5), mark, to(20, 8), to(10, 8)],
-            "line 4: too short for the tool radius 2 between its inside corners with lines 2 and 5",
-        ),
-        (
-            [to(20, 5), round_to(1, 18, 8, 3.0), to(10, 8)],
-            "line 3: the tool of radius 2 cannot reach both lines 2 and 3: their corner is too "
-            "tight",
-        ),
-        (
-            [to(20, 5), round_to(1, 18, 6.5, 2.6), to(10, 12)],
-            "line 3: the tool of radius 2 cannot reach both lines 2 and 3: their corner is too "
-            "tight",
-        ),
-        (
-            [round_to(1, 12, 7, 1.5), to(12, 30)],
-            "line 2: the arc of radius 1.5 is smaller than the tool radius 2 (between lines 1 "
-            "and 3)",
-        ),
-        (
-            [to(20, 5), round_to(1, 20, 8, 1.5)],
-            "line 3: the arc of radius 1.5 is smaller than the tool radius 2 (between lines 2 "
-            "and 50)",
-        ),
+        ([to(20, 5), round_to(1, 20, 8, 1.5), to(10, 8)], BETWEEN.format(3, 2, 4)),
+        ([round_to(1, 12, 7, 1.5), to(12, 30)], BETWEEN.format(2, 1, 3)),
+        ([to(20, 5), round_to(1, 20, 8, 1.5)], BETWEEN.format(3, 2, 50)),
+        ([to(20, 5), to(20, 6), to(30, 6)], CORNER),
+        ([to(20, 5), round_to(1, 18, 8, 3.0), to(10, 8)], CORNER),
+        ([to(20, 5), round_to(1, 18, 6.5, 2.6), to(10, 12)], CORNER),
+        ([to(20, 5), mark, to(20, 8), to(10, 8)], SHORT),
         ([], "line 50: G40 follows G41 of line 1 with nothing between them to cut"),
     ],
 )

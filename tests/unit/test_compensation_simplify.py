@@ -144,25 +144,6 @@ def test_a_ramp_does_not_become_one_line_with_a_contour_that_goes_on_straight():
     assert refused(contour)
 
 
-def test_the_z_of_a_move_left_out_is_kept():
-    contour = Contour(30.0, 0.0)
-    contour.compensation(41, 5.0, line=1)
-    contour.line(20.0, 0.0, line=1, feed=600.0)
-    contour.line(20.0, 5.0, line=2, feed=600.0)
-    contour.line(20.0002, 5.0, -1.0, line=3, feed=600.0)
-    contour.line(20.0, -9.0 + 20.0, line=4, feed=600.0)
-    contour.compensation(40, 0.0, line=5)
-    contour.line(40.0, 11.0, line=5, feed=600.0)
-    steps = plan(contour, MACHINE, c=0.0).steps
-    assert [(step.line, step.axes) for step in steps] == [
-        (1, "XC"),
-        (2, "XC"),
-        (3, "Z"),
-        (4, "XC"),
-        (5, "XC"),
-    ]
-
-
 size = st.floats(0.0001, 1.6).map(lambda value: round(value, 4))
 angle = st.floats(0.0, 2 * math.pi)
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What of a compensated contour is a wall, at which points it is looked at, which passes count."""
 
-import cmath
 import math
 
 import pytest
@@ -56,45 +55,6 @@ def test_moves_are_one_in_the_plane_if_ends_centre_and_sweep_are_the_same():
         near = move.curve._replace(start=move.start + 1e-9)
         again = move._replace(line=7, feed=1.0, offset=-2.0, z0=3.0, z1=5.0, curve=near)
         assert in_plane(again) == in_plane(move)
-
-
-def polyline(count, bend):
-    """Return lines of a 20th each that turn by a share of a radian from one to the next."""
-    ends = [0j]
-    for k in range(count):
-        ends.append(ends[-1] + 0.05 * cmath.rect(1.0, bend * k))
-    return [
-        line(one.real, one.imag, other.real, other.imag, offset=RADIUS)
-        for one, other in zip(ends, ends[1:])
-    ]
-
-
-@pytest.mark.parametrize("tolerance", [0.005, 0.1])
-@pytest.mark.parametrize(
-    "moves",
-    [[line(1.0, 2.0, 40.0, -7.0, offset=RADIUS)], [line(1.0, 2.0, 1.0, 2.3, offset=-RADIUS)],
-     [line(0.0, 0.0, 0.01, 0.0, offset=RADIUS)], [arc(-5 + 3j, 0j, 5.0, offset=RADIUS)],
-     [arc(0.1 + 0j, 0j, -3.0, offset=RADIUS)], polyline(300, 0.0), polyline(300, 0.01),
-     polyline(3, 1.5)],
-)  # fmt: skip
-def test_no_gouge_falls_between_two_points_of_a_wall(moves, tolerance):
-    """A tool that is a tolerance deep in a line is so on a chord of its radius."""
-    contour = walls_of(*moves, tolerance=tolerance)
-    points, half_chord = list(contour.points()), math.sqrt(2.0 * RADIUS * tolerance)
-    along = [each.along for each in points]
-    assert along == sorted(along) and along[0] <= 1.001 * tolerance
-    assert max(b - a for a, b in zip(along, along[1:])) <= half_chord + 2 * tolerance
-    for each in points:
-        curve = contour.moves[each.move_index].curve
-        assert curve.distance(each.point) < 1e-9
-        assert each.point == pytest.approx(contour.point_at(each.along))
-        assert each.direction == pytest.approx(curve.direction(curve.share_of(each.point)))
-    gaps = [(a.point + b.point) / 2 for a, b in zip(points, points[1:])]
-    middles = [contour.point_at((a + b) / 2) for a, b in zip(along, along[1:])]
-    assert max(abs(gap - middle) for gap, middle in zip(gaps, middles)) <= tolerance
-    assert len(points) <= 3 + 2 * contour.ends[-1] / half_chord or len(moves) == 3 or (
-        getattr(moves[0].curve, "radius", 9.0) < 1.0
-    )  # fmt: skip
 
 
 def test_of_repeated_passes_the_deepest_is_kept_for_the_first_of_its_moves():
