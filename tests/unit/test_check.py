@@ -87,42 +87,106 @@ def test_a_broken_header_of_the_interpreters_section_is_named(tmp_path, capsys, 
     )
 
 
-def test_a_config_without_the_package(found):
-    assert kinds(found(MILL)) == ["no-codes"]
+FIRST, SECOND = HAAS.splitlines()
+OWN_G13 = "REMAP = g13 modalgroup=1 ngc=mine"
+POLAR = "".join(
+    f"REMAP = G1{n}.1 modalgroup=1 python=polar_{x}\n" for n, x in ((2, "on"), (3, "off"))
+)
+ON_LATHE = with_lines(LATHE, "RS274NGC", SUBS + POLAR) + PYTHON
+MINE = {**HANDLERS, "mine": "remap"}
+BLANK = {"my subs__g12_haas_ngc": "", "my subs__g12_helix_ngc": ""}
+SHADOW = {"circle_mill": "oword", "g12_haas": "oword"}
+LOST = "prolog=g12_mine ngc=g12_mine", "python=haas", "ngc=pocket12"
+NO_TABLE = "TOOL_TABLE = mill.tbl\n"
+
+ONE_FINDING = [  # an INI, what else is there, what is found and a part of what is said
+    (MILL, {}, "no-codes", ""),
+    (with_lines(GOOD, "RS274NGC", f"{OWN_G13}\n"), {}, "taken",
+     f"mill.ini:5: G13 is remapped here already: {OWN_G13}"),
+    (with_lines(GOOD, "RS274NGC", f"{FIRST}\n"), {}, "taken", ""),
+    (ON_LATHE, {"owned": {"G12.1"}}, "owned", "polar-g12.3"),
+    (with_lines(LATHE, "RS274NGC", lines_of("polar")) + PYTHON, {}, "no-sub",
+     "g12_skipped_over.ngc is in none of the folders"),
+    (GOOD.replace(f"{SECOND}\n", ""), {}, "half",
+     "haas: G13 is missing, though its other code is there"),
+    (GOOD.replace(f"{SECOND}\n", ""), {}, "half", SECOND),
+    (GOOD.replace(SECOND, "REMAP = G13 modalgroup=1 python=mine"), {"remap": MINE}, "half",
+     "G13 means something else here (REMAP = G13 modalgroup=1 python=mine)"),
+    *((GOOD.replace(FIRST, f"REMAP = G12 modalgroup=1 {names}"),
+       {"remap": {**HANDLERS, "haas": "remap"}}, "half", "") for names in LOST),  # no misspelt line
+    (GOOD.replace(SUBS, ""), {}, "no-sub",
+     "g12_haas.ngc and g12_helix.ngc are in none of the folders"),
+    (GOOD.replace("= ngc\n", "= my subs\n"), {"files": BLANK}, "blank-in-path", "' '"),
+    *((GOOD + "[DISPLAY]\nPROGRAM_PREFIX = programs\n", {"files": {f"{place}g12_haas_ngc": ""}},
+       "shadowed", "before the package's g12_haas.ngc") for place in ("", "programs__")),
+    (with_lines(GOOD, "RS274NGC", lines_of("circle-mill")), {"oword": SHADOW}, "shadowed",
+     "o<circle_mill>"),
+    (GOOD.replace(PYTHON, ""), {"remap": {}, "remap_file": None}, "no-python", ""),
+    (GOOD.replace("= toplevel.py", "= typo.py"), {"error": "can't resolve path"}, "no-python",
+     "typo.py: there is no such file"),
+    (GOOD, {"error": "No module named 'g12' (remap.py:1)"}, "python-fails", "remap.py:1"),
+    (GOOD, {"error": "No module named 'g12' (remap.py:1)"}, "python-fails", "PATH_APPEND"),
+    (GOOD, {"remap": {}, "remap_file": None}, "no-remap-module", "import remap"),
+    (GOOD, {"remap": {"mine": "remap"}, "remap_file": "/machine/remap.py"}, "no-import",
+     "/machine/remap.py has no cycle_done, g12_haas, g13_haas"),
+    (GOOD, {"remap": {"mine": "remap"}, "remap_file": "/machine/remap.py"}, "no-import",
+     "from g12.remap import *"),
+    (GOOD, {"remap": {**HANDLERS, "cycle_done": "remap"}}, "hidden", "cycle_done"),
+    (GOOD.replace(HAAS, f"{HAAS}REMAP = M400 modalgroup=10 python=mine\n"), {}, "does-not-load",
+     "mill.ini:8: 'mine' is not a Python callable function"),
+    (GOOD + "[G12]\nCLEARING = squares\n", {}, "setting",
+     "[G12] CLEARING = squares: must be rings or spiral"),
+    (GOOD.replace("X Y Z", "X Z"), {}, "no-axis", "haas needs axis Y; [TRAJ] COORDINATES has X Z"),
+    (with_lines(MILL, "RS274NGC", SUBS + lines_of("polar")) + PYTHON, {}, "no-axis",
+     "polar needs axis C; [TRAJ] COORDINATES has X Y Z"),
+    (GOOD, {"diameters": {}}, "no-diameters", ""),
+    (GOOD, {"diameters": {1: 0.0, 2: 0.0}}, "no-diameters", ""),
+    (GOOD + "[TASK]\nINTERPRETER = libcanterp.so\n", {}, "interpreter", ""),
+    (GOOD, {"version": "2.8.4"}, "too-old", ""),
+    (GOOD, {"version": ""}, "no-linuxcnc", ""),
+    (GOOD + "#INCLUDE more.inc\n", {"files": {"more_inc": "\n[G12\n"}}, "header",
+     "more.inc:2: [G12: "),
+    (GOOD.replace("= ngc\n", f"= ngc:{'x' * 250}\n"), {}, "long-line", ""),
+    (GOOD + "#INCLUDE nowhere.inc\n", {}, "include",
+     "nowhere.inc: there is no such file to read"),
+    (GOOD + "#INCLUDE more.inc\n", {"files": {"more_inc": "#INCLUDE deeper.inc\n"}}, "include",
+     "more.inc:1"),
+    *((GOOD.replace(NO_TABLE, line), {"files": {"empty_tbl": ""}}, kind, says)
+      for line, kind, says in (
+          ("TOOL_TABLE = no.tbl\n", "no-tool-table", "TOOL_TABLE = no.tbl: there is no such file"),
+          ("TOOL_TABLE = ngc\n", "no-tool-table", "TOOL_TABLE = ngc: there is no such file"),
+          ("", "no-tool-table", "TOOL_TABLE is missing"),
+          ("DB_PROGRAM = ./tools\n", "tool-database", "DB_PROGRAM = ./tools: the tools of that"),
+          ("DB_PROGRAM = x\nTOOL_TABLE = empty.tbl\n", "tool-database", "were not looked at"),
+      )),
+]  # fmt: skip
 
 
-def test_the_same_code_twice(found):
-    (taken,) = found(with_lines(GOOD, "RS274NGC", "REMAP = g13 modalgroup=1 ngc=mine\n"))
-    assert taken.kind == "taken"
-    assert "mill.ini:5: G13 is remapped here already: REMAP = g13 modalgroup=1 ngc=mine" in (
-        taken.text
-    )
-    assert "mill.ini:8" in taken.cure
+@pytest.mark.parametrize(
+    ("text", "facts", "kind", "says"), ONE_FINDING, ids=[kind for _, _, kind, _ in ONE_FINDING]
+)
+def test_one_thing_that_is_wrong_is_one_finding(found, text, facts, kind, says):
+    (finding,) = found(text, **facts)
+    assert finding.kind == kind
+    assert says in f"{finding.text}\n{finding.cure}"
 
 
-def test_the_same_line_twice_is_one_finding(found):
-    assert kinds(found(with_lines(GOOD, "RS274NGC", HAAS.splitlines()[0] + "\n"))) == ["taken"]
-
-
-def test_a_code_that_linuxcnc_owns(found):
-    polar = (
-        "REMAP = G12.1 modalgroup=1 python=polar_on\nREMAP = G13.1 modalgroup=1 python=polar_off\n"
-    )
-    text = with_lines(LATHE, "RS274NGC", SUBS + polar) + PYTHON
-    (owned,) = found(text, owned={"G12.1"})
-    assert owned.kind == "owned"
-    assert "polar-g12.3" in owned.cure
+@pytest.mark.parametrize(
+    "facts",
+    [
+        {"version": "2.9.0~pre1+git"},
+        {"version": "2.10.0"},
+        {"diameters": {1: 0.0, 2: 0.25}},
+        {"diameters": None},
+    ],
+)
+def test_what_is_in_order_is_no_finding(found, facts):
+    assert found(GOOD, **facts) == []
 
 
 def test_any_code_pair_may_be_given_to_polar_interpolation(found):
     polar = "REMAP = G7.1 modalgroup=1 python=polar_on\nREMAP = G7.2 modalgroup=1 py=polar_off\n"
     assert found(with_lines(LATHE, "RS274NGC", SUBS + polar) + PYTHON) == []
-
-
-def test_the_sub_of_polar_interpolation(found):
-    (missing,) = found(with_lines(LATHE, "RS274NGC", lines_of("polar")) + PYTHON)
-    assert missing.kind == "no-sub"
-    assert missing.text.startswith("g12_skipped_over.ngc is in none of the folders")
 
 
 def test_shapes_need_their_subs_and_polar_interpolation(found):
@@ -166,32 +230,6 @@ def test_a_line_that_is_nearly_right(found, change, says):
     assert wrong.cure == first
 
 
-@pytest.mark.parametrize("names", ["prolog=g12_mine ngc=g12_mine", "python=haas", "ngc=pocket12"])
-def test_a_line_of_the_users_is_not_taken_for_a_misspelt_one(found, names):
-    first = HAAS.splitlines()[0]
-    text = GOOD.replace(first, f"REMAP = G12 modalgroup=1 {names}")
-    assert kinds(found(text, remap={**HANDLERS, "haas": "remap"})) == ["half"]
-
-
-def test_half_a_pair(found):
-    (half,) = found(GOOD.replace(HAAS.splitlines()[1] + "\n", ""))
-    assert half.kind == "half"
-    assert half.text == "haas: G13 is missing, though its other code is there"
-    assert HAAS.splitlines()[1] in half.cure
-
-
-def test_half_a_pair_whose_other_code_is_the_users(found):
-    text = GOOD.replace(HAAS.splitlines()[1], "REMAP = G13 modalgroup=1 python=mine")
-    (half,) = found(text, remap={**HANDLERS, "mine": "remap"})
-    assert "G13 means something else here (REMAP = G13 modalgroup=1 python=mine)" in half.text
-
-
-def test_a_sub_that_is_nowhere(found):
-    (missing,) = found(GOOD.replace("SUBROUTINE_PATH = ngc\n", ""))
-    assert missing.kind == "no-sub"
-    assert missing.text.startswith("g12_haas.ngc and g12_helix.ngc are in none of the folders")
-
-
 def test_only_the_first_ten_folders_count(found, tmp_path):
     for number in range(10):
         (tmp_path / f"f{number}").mkdir()
@@ -199,98 +237,6 @@ def test_only_the_first_ten_folders_count(found, tmp_path):
     assert kinds(found(GOOD.replace("= ngc\n", f"= {ten}:ngc\n"))) == ["no-sub"]
     nine = f"nowhere:{ten[3:]}"
     assert kinds(found(GOOD.replace("= ngc\n", f"= {nine}:ngc\n"))) == []
-
-
-@pytest.mark.parametrize("place", ["g12_haas_ngc", "programs__g12_haas_ngc"])
-def test_another_file_of_a_subs_name_in_front_of_it(found, place):
-    text = GOOD + "[DISPLAY]\nPROGRAM_PREFIX = programs\n"
-    (shadowed,) = found(text, files={place: "o<g12_haas> sub\n"})
-    assert shadowed.kind == "shadowed"
-    assert "before the package's g12_haas.ngc" in shadowed.text
-
-
-def test_a_blank_in_the_path_of_the_subs(found):
-    text = GOOD.replace("= ngc\n", "= my subs\n")
-    subs = {"my subs__g12_haas_ngc": "", "my subs__g12_helix_ngc": ""}
-    (blank,) = found(text, files=subs)
-    assert blank.kind == "blank-in-path"
-    assert "' '" in blank.text
-
-
-def test_a_python_oword_shadows_what_programs_call(found):
-    text = with_lines(GOOD, "RS274NGC", lines_of("circle-mill"))
-    (shadowed,) = found(text, oword={"circle_mill": "oword", "g12_haas": "oword"})
-    assert shadowed.kind == "shadowed"
-    assert "o<circle_mill>" in shadowed.text
-
-
-def test_no_python(found):
-    (missing,) = found(GOOD.replace(PYTHON, ""), remap={}, remap_file=None)
-    assert missing.kind == "no-python"
-    (wrong,) = found(GOOD.replace("= toplevel.py", "= typo.py"), error="can't resolve path")
-    assert wrong.kind == "no-python"
-    assert "typo.py: there is no such file" in wrong.text
-
-
-def test_python_that_stops(found):
-    (stops,) = found(GOOD, error="ModuleNotFoundError: No module named 'g12' (remap.py:1)")
-    assert stops.kind == "python-fails"
-    assert "remap.py:1" in stops.text
-    assert "PATH_APPEND" in stops.cure
-
-
-def test_a_toplevel_without_remap(found):
-    (missing,) = found(GOOD, remap={}, remap_file=None)
-    assert missing.kind == "no-remap-module"
-    assert "import remap" in missing.cure
-
-
-def test_a_users_remap_without_our_import(found):
-    (missing,) = found(GOOD, remap={"mine": "remap"}, remap_file="/machine/remap.py")
-    assert missing.kind == "no-import"
-    assert missing.text == "/machine/remap.py has no cycle_done, g12_haas, g13_haas"
-    assert "from g12.remap import *" in missing.cure
-
-
-def test_a_users_function_of_a_handlers_name(found):
-    (hidden,) = found(GOOD, remap={**HANDLERS, "cycle_done": "remap"})
-    assert hidden.kind == "hidden"
-    assert "cycle_done" in hidden.text
-
-
-def test_a_wrong_setting(found):
-    (setting,) = found(GOOD + "[G12]\nCLEARING = squares\n")
-    assert setting.text == "[G12] CLEARING = squares: must be rings or spiral"
-
-
-def test_a_lathe_without_c_and_a_mill_without_y(found):
-    (axis,) = found(GOOD.replace("X Y Z", "X Z"))
-    assert axis.text == "haas needs axis Y; [TRAJ] COORDINATES has X Z"
-    (axis,) = found(with_lines(MILL, "RS274NGC", SUBS + lines_of("polar")) + PYTHON)
-    assert axis.text == "polar needs axis C; [TRAJ] COORDINATES has X Y Z"
-
-
-@pytest.mark.parametrize("diameters", [{}, {1: 0.0, 2: 0.0}])
-def test_tools_without_diameters(found, diameters):
-    (tools,) = found(GOOD, diameters=diameters)
-    assert (tools.level, tools.kind) == (WARNING, "no-diameters")
-
-
-@pytest.mark.parametrize("diameters", [{1: 0.0, 2: 0.25}, None])
-def test_tools_with_diameters_or_nobody_to_ask(found, diameters):
-    assert found(GOOD, diameters=diameters) == []
-
-
-def test_another_interpreter(found):
-    assert kinds(found(GOOD + "[TASK]\nINTERPRETER = libcanterp.so\n")) == ["interpreter"]
-
-
-@pytest.mark.parametrize(
-    ("version", "expected"),
-    [("2.8.4", ["too-old"]), ("2.9.0~pre1+git", []), ("2.10.0", []), ("", ["no-linuxcnc"])],
-)
-def test_versions(found, version, expected):
-    assert kinds(found(GOOD, version=version)) == expected
 
 
 def test_lines_that_linuxcnc_does_not_read(found):
@@ -313,23 +259,6 @@ def test_a_header_that_begins_no_section(found, header):
 )
 def test_lines_that_are_no_broken_headers(found, line):
     assert found(GOOD + f"[HAL]\n{line}\n") == []
-
-
-def test_a_broken_header_of_an_included_file(found):
-    (broken,) = found(GOOD + "#INCLUDE more.inc\n", files={"more_inc": "\n[G12\n"})
-    assert broken.text.startswith("more.inc:2: [G12: ")
-
-
-def test_a_line_too_long_to_be_read(found):
-    (long_line,) = found(GOOD.replace("= ngc\n", f"= ngc:{'x' * 250}\n"))
-    assert long_line.kind == "long-line"
-
-
-def test_includes(found):
-    text = GOOD + "#INCLUDE nowhere.inc\n#INCLUDE more.inc\n"
-    unreadable, nested = found(text, files={"more_inc": "#INCLUDE deeper.inc\n"})
-    assert "nowhere.inc: there is no such file to read" in unreadable.text
-    assert nested.text.startswith("more.inc:1")
 
 
 def test_linuxcncs_own_word_only_where_nothing_else_explains_it(found):
@@ -393,23 +322,6 @@ def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
     assert error.count("\n") == 1
 
 
-@pytest.mark.parametrize(
-    ("line", "kind", "says"),
-    [
-        ("TOOL_TABLE = no.tbl\n", "no-tool-table", "TOOL_TABLE = no.tbl: there is no such file"),
-        ("TOOL_TABLE = ngc\n", "no-tool-table", "TOOL_TABLE = ngc: there is no such file"),
-        ("", "no-tool-table", "TOOL_TABLE is missing"),
-        ("DB_PROGRAM = ./tools\n", "tool-database", "DB_PROGRAM = ./tools: the tools of that"),
-        ("DB_PROGRAM = x\nTOOL_TABLE = empty.tbl\n", "tool-database", "were not looked at"),
-    ],
-)
-def test_a_machine_whose_tools_are_not_there(found, line, kind, says):
-    text = GOOD.replace("TOOL_TABLE = mill.tbl\n", line)
-    (finding,) = found(text, files={"empty_tbl": ""})
-    assert finding.kind == kind
-    assert says in finding.text
-
-
 def test_a_note_is_no_reason_to_fail_and_every_finding_shows_its_name(
     tmp_path, capsys, monkeypatch
 ):
@@ -436,11 +348,3 @@ def test_the_report_for_programs_says_what_the_one_for_people_says(tmp_path):
     assert all(
         finding["text"] in lines and finding["cure"] in lines for finding in said["findings"]
     )
-
-
-def test_a_remap_of_the_users_without_its_function_is_found_where_the_preview_tells_nothing(found):
-    text = GOOD.replace(HAAS, HAAS + "REMAP = M400 modalgroup=10 python=mine\n")
-    assert found(text, remap={**HANDLERS, "mine": "remap"}) == []
-    (lost,) = found(text)
-    assert lost.kind == "does-not-load"
-    assert lost.text.endswith("mill.ini:8: 'mine' is not a Python callable function")

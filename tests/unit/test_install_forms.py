@@ -16,7 +16,7 @@ GMOCCAPY = AXIS.replace("axis", "gmoccapy")
 TOUCHY, TK = AXIS.replace("axis", "touchy"), AXIS.replace("axis", "tklinuxcnc")
 QTAXIS = AXIS.replace("axis", "qtvcp -d qtaxis")
 QTVCP = AXIS.replace("axis", "qtvcp qtdragon")
-OWN_PATH = "NGCGUI_SUBFILE_PATH = ../nc_files\n"
+OWN_PATH, CWD = "NGCGUI_SUBFILE_PATH = ../nc_files\n", "/proc/self/cwd/g12/ngc/"
 WINDOW = "HALCMD = loadusr gladevcp -c forms g12/configs/include/forms.ui\n"
 PAGES = "NGCGUI_SUBFILE = form_haas_mm.ngc\nNGCGUI_SUBFILE = form_circle_mill_mm.ngc\n"
 SUBS = {
@@ -44,32 +44,22 @@ def told(ini):
     return [finding.text for finding in findings_of(config_of(ini)) if finding.kind == "form"]
 
 
+GLADE = "EMBED_TAB_COMMAND = gladevcp -x {XID} "
+TAB = f"{GLADE}g12/configs/include/forms.ui\n{PAGES}"
+OWN_TAB = with_lines(GMOCCAPY, "DISPLAY", "EMBED_TAB_NAME = Mine\nEMBED_TAB_COMMAND = mine\n")
+
+
 @pytest.mark.parametrize(
     ("screen", "lines"),
     [
         (AXIS, f"TKPKG = Ngcgui 1.0\n{PAGES}"),
         (QTVCP, f"NGCGUI_SUBFILE_PATH = g12/ngc\n{PAGES}"),
-        (
-            GMOCCAPY,
-            "EMBED_TAB_NAME = Forms\nEMBED_TAB_LOCATION = ntb_user_tabs\n"
-            f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} g12/configs/include/forms.ui\n{PAGES}",
-        ),
-        (
-            with_lines(GMOCCAPY, "DISPLAY", "EMBED_TAB_NAME = Mine\nEMBED_TAB_COMMAND = mine\n"),
-            "EMBED_TAB_NAME = Forms\n"
-            f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} g12/configs/include/forms.ui\n{PAGES}",
-        ),
-        (
-            TOUCHY,
-            "EMBED_TAB_NAME = Forms\n"
-            f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} g12/configs/include/forms.ui\n{PAGES}",
-        ),
+        (GMOCCAPY, f"EMBED_TAB_NAME = Forms\nEMBED_TAB_LOCATION = ntb_user_tabs\n{TAB}"),
+        (OWN_TAB, f"EMBED_TAB_NAME = Forms\n{TAB}"),
+        (TOUCHY, f"EMBED_TAB_NAME = Forms\n{TAB}"),
         (TK, PAGES),
         (QTAXIS, PAGES),
-        (
-            with_lines(QTVCP, "DISPLAY", OWN_PATH),
-            PAGES.replace("form_", "/proc/self/cwd/g12/ngc/form_"),
-        ),
+        (with_lines(QTVCP, "DISPLAY", OWN_PATH), PAGES.replace("form_", f"{CWD}form_")),
     ],
 )
 def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, lines):
@@ -141,50 +131,28 @@ TKPKG = "TKPKG = Ngcgui 1.0\n"
 @pytest.mark.parametrize(
     ("screen", "lines", "remaps", "finding"),
     [
-        (AXIS, HAAS_PAGE, HAAS, "TKPKG = nothing: AXIS shows no forms"),
-        (AXIS, f"TKPKG = ngcgui 1.0\n{HAAS_PAGE}", HAAS, "TKPKG = ngcgui: AXIS shows no"),
-        (
-            AXIS,
-            f"{TKPKG}NGCGUI_SUBFILE = form_hass_mm.ngc\n",
-            HAAS,
-            "form_hass_mm.ngc is in none of",
-        ),
-        (AXIS, f"{TKPKG}{HAAS_PAGE}", "", "form_haas_mm.ngc: the codes of haas are not set up"),
-        (GMOCCAPY, HAAS_PAGE, HAAS, "gmoccapy shows no forms"),
-        (
-            GMOCCAPY,
-            f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} nowhere.ui\n{HAAS_PAGE}",
-            HAAS,
-            "gmoccapy shows no forms",
-        ),
-        (TK, HAAS_PAGE, HAAS, "tklinuxcnc shows no forms"),
-        (
-            QTVCP,
-            HAAS_PAGE,
-            HAAS,
-            "NGCGUI_SUBFILE_PATH = nothing, NGCGUI_SUBFILE = form_haas_mm.ngc",
-        ),
-        (
-            QTVCP,
-            f"NGCGUI_SUBFILE_PATH = .\n{HAAS_PAGE}",
-            HAAS,
-            "_PATH = ., NGCGUI_SUBFILE = form_h",
-        ),
-        (
-            TK,
-            f"PROGRAM_PREFIX = nowhere\n{HAAS_PAGE}",
-            HAAS,
-            "PROGRAM_PREFIX = nowhere: there is no",
-        ),
+        (AXIS, "", HAAS, "TKPKG = nothing: AXIS shows no forms"),
+        (AXIS, "TKPKG = ngcgui 1.0\n", HAAS, "TKPKG = ngcgui: AXIS shows no"),
+        (AXIS, TKPKG, "", "form_haas_mm.ngc: the codes of haas are not set up"),
+        (GMOCCAPY, "", HAAS, "gmoccapy shows no forms"),
+        (GMOCCAPY, f"{GLADE}nowhere.ui\n", HAAS, "gmoccapy shows no forms"),
+        (TK, "", HAAS, "tklinuxcnc shows no forms"),
+        (QTVCP, "", HAAS, "NGCGUI_SUBFILE_PATH = nothing, NGCGUI_SUBFILE = form_haas_mm.ngc"),
+        (QTVCP, "NGCGUI_SUBFILE_PATH = .\n", HAAS, "_PATH = ., NGCGUI_SUBFILE = form_h"),
+        (TK, "PROGRAM_PREFIX = nowhere\n", HAAS, "PROGRAM_PREFIX = nowhere: there is no"),
     ],
 )
 def test_what_keeps_forms_from_being_shown_is_found(tmp_path, screen, lines, remaps, finding):
     if "PROGRAM_PREFIX" in lines:
         screen = with_lines(f"[HAL]\n\n{screen}", "HAL", f"HALCMD = {forms.WINDOW}forms.ui\n")
         (tmp_path / "forms.ui").write_text("PyNgcGui")
-    found = shown_in(tmp_path, screen, lines, remaps)
-    assert len(found) == 1
-    assert finding in found[0]
+    (found,) = shown_in(tmp_path, screen, lines + HAAS_PAGE, remaps)
+    assert finding in found
+
+
+def test_a_form_that_is_nowhere_is_found(tmp_path):
+    (found,) = shown_in(tmp_path, AXIS, f"{TKPKG}NGCGUI_SUBFILE = form_hass_mm.ngc\n")
+    assert "form_hass_mm.ngc is in none of" in found
 
 
 def test_a_form_in_order_is_told_and_no_finding(tmp_path):

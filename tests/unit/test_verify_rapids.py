@@ -56,8 +56,40 @@ def start(z=2.0):
     return Pockets().rapid(x=50, z=z)
 
 
-def test_a_retract_before_the_next_pocket_is_good():
-    assert start().mill().rapid(z=2).rapid(x=150).mill().rapid(z=2).found() == []
+FOUND = {
+    "a retract before the next pocket": (
+        start().mill().rapid(z=2).rapid(x=150).mill().rapid(z=2), []),
+    "a slanting retract through the wall": (start().mill().rapid(x=150, z=2), [3]),
+    "inside the pocket": (start().mill().rapid(x=60, y=8).rapid(x=50, y=0).rapid(z=2), []),
+    "air from the pocket's top to Z0": (start(z=10).mill().rapid(z=1).rapid(x=150), []),
+    "material below it": (start(z=10).mill().rapid(z=-1).rapid(x=150), [3]),
+    # a pocket that is not below Z0 has its top where it began to feed, the lowest of several
+    "below such a top": (start(z=10).mill(depth=5.0).rapid(z=7).rapid(x=150), [3]),
+    "at such a top": (start(z=10).mill(depth=5.0).rapid(z=10).rapid(x=150), []),
+    "at the feed behind own rapids": (
+        start(z=30).mill([17], depth=5.0, down=7).rapid(z=7).rapid(x=150), []),
+    "below the feed behind own rapids": (
+        start(z=30).mill([17], depth=5.0, down=7).rapid(z=6).rapid(x=150), [3]),
+    "at the lowest of two": (
+        start(z=30).mill(depth=5.0).rapid(z=10).rapid(x=150).mill(depth=5.0).rapid(z=10)
+        .rapid(x=50), []),
+    "deeper in the same place": (
+        start().mill(depth=-2.0).mill(depth=-4.0).rapid(z=2).rapid(x=150), []),
+    "a channel that was cut before": (
+        start().mill().line(x=150).mill().rapid(x=50).rapid(z=2), []),
+    "in a bored hole": (
+        Pockets().rapid(x=50, z=2).rapid(z=-3).mill([17], bore=16.0).rapid(x=60, y=2), []),
+    "where no hole is": (
+        Pockets().rapid(x=50, z=2).rapid(z=-3).mill([17]).rapid(x=60, y=2), [3]),
+    "down to the floor": (
+        start().mill(depth=-2.0).rapid(z=2).rapid(z=-2).mill(depth=-2.0), []),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", FOUND)
+def test_a_rapid_through_material_is_found_and_no_other(what):
+    program, lines = FOUND[what]
+    assert [hit.line for hit in program.found()] == lines
 
 
 def test_a_forgotten_retract_goes_through_the_wall():
@@ -68,56 +100,10 @@ def test_a_forgotten_retract_goes_through_the_wall():
     assert hit.place == pytest.approx((67.3, 0, -3), abs=0.6)
 
 
-def test_a_slanting_retract_through_the_wall_is_found():
-    assert [hit.line for hit in start().mill().rapid(x=150, z=2).found()] == [3]
-
-
-def test_a_rapid_inside_the_pocket_is_good():
-    assert start().mill().rapid(x=60, y=8).rapid(x=50, y=0).rapid(z=2).found() == []
-
-
 def test_a_rapid_through_the_core_is_found():
     program = start().mill([17]).rapid(x=33).rapid(z=2)
     (hit,) = program.found()
     assert 6 * 8 < hit.values["area"] < 6 * 14.5  # the leads have cut some of the core
-
-
-def test_between_the_pockets_top_and_z0_there_is_air():
-    assert start(z=10).mill().rapid(z=1).rapid(x=150).found() == []
-    assert len(start(z=10).mill().rapid(z=-1).rapid(x=150).found()) == 1
-
-
-def test_a_pocket_that_is_not_below_z0_has_its_top_where_it_began():
-    program = start(z=10).mill(depth=5.0).rapid(z=7).rapid(x=150)
-    assert [hit.line for hit in program.found()] == [3]
-    assert start(z=10).mill(depth=5.0).rapid(z=10).rapid(x=150).found() == []
-
-
-@pytest.mark.parametrize(("height", "count"), [(7, 0), (6, 1)])
-def test_the_top_is_where_a_cycle_begins_to_feed_behind_its_own_rapids(height, count):
-    program = start(z=30).mill([17], depth=5.0, down=7).rapid(z=height).rapid(x=150)
-    assert len(program.found()) == count
-
-
-def test_the_lowest_height_that_a_pocket_began_at_is_the_top():
-    program = start(z=30).mill(depth=5.0).rapid(z=10).rapid(x=150).mill(depth=5.0).rapid(z=10)
-    assert program.rapid(x=50).found() == []
-
-
-def test_going_deeper_in_the_same_place_is_good():
-    program = start().mill(depth=-2.0).mill(depth=-4.0).rapid(z=2).rapid(x=150)
-    assert program.found() == []
-
-
-def test_a_channel_that_was_cut_before_lets_a_rapid_through():
-    program = start().mill().line(x=150).mill().rapid(x=50).rapid(z=2)
-    assert program.found() == []
-
-
-@pytest.mark.parametrize(("bore", "count"), [(16.0, 0), (0.0, 1)])
-def test_a_bored_hole_is_no_material(bore, count):
-    program = Pockets().rapid(x=50, z=2).rapid(z=-3).mill([17], bore=bore)
-    assert len(program.rapid(x=60, y=2).found()) == count
 
 
 @pytest.mark.parametrize("shift", [{"inside": False}, {"axes": np.eye(3)[[2, 0, 1]]}])
@@ -159,10 +145,6 @@ def test_a_rapid_down_into_the_floor_is_found():
     program = start().mill(depth=-2.0).rapid(z=2).rapid(z=-4.0).mill(depth=-1.0)
     (hit,) = program.found()
     assert hit.values["area"] == pytest.approx(np.pi * 9, rel=0.05) and hit.place[2] == -4
-
-
-def test_a_rapid_down_to_the_floor_is_good():
-    assert start().mill(depth=-2.0).rapid(z=2).rapid(z=-2).mill(depth=-2.0).found() == []
 
 
 def bored(first):
