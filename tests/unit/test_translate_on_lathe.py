@@ -59,8 +59,22 @@ def test_holes_are_calls_outside_of_sections():
         "o<face_hole_at> call [20.] [-5.] [6.] [3.] [80.] [0] [0] [0]",
         "o<face_hole_at> call [0.] [-5.] [8.] [2] [60.] [-2.] [0] [0]",
         "o<face_hole_at> call [2.] [-5.] [2.] [1.] [60.] [0] [.5] [0]",
-        "(G80)", "G0 Z20. F60. G94",
+        "(G80)", "G0 Z20.",
     ]  # fmt: skip
+
+
+def test_a_motion_ends_a_drilling_cycle_as_g80_does():
+    assert lines(f"{HEAD}{DRILL}G0 Z20.\nX3.\nM30\n")[-3:-1] == [
+        "G0 Z20.",
+        "(X3. with the next cut)",
+    ]
+
+
+def test_a_rapid_needs_no_feed_that_a_loop_leaves_open():
+    loop = "#1=0\nWHILE [#1 LT 2] DO1\nG1 Z-1. F9.\nX[9.+#1] F99.\n#1=#1+1\nEND1\n"
+    assert lines(f"{HEAD}{CUT}{loop}G0 Z20.\nG91 G28 Z0.\nM30\n")[-2] == "G91 G28 Z0."
+    found = refused(f"{HEAD}{CUT}{loop}G0 Z20.\nG1 Z-1.\n")
+    assert "the feed here is not the same on every way" in found.sentence
 
 
 def test_a_hole_round_the_part():
@@ -82,7 +96,7 @@ def test_what_a_mill_has_and_a_lathe_has_not():
     home = "G0 Z20.\nG91 G28 Z0. Y0.\nG53 G0 X0 Y0\nG53 Z0\nM30\n"
     translated = lines(f"G21 G17 G90\n{HEAD}{CUT}{home}")
     assert translated[-6:] == [
-        "G13.1 (Y0.: no Y here)", "G7", "G91 G28 Z0. F100. G94", "(G53)(X0)(Y0)",
+        "G13.1 (Y0.: no Y here)", "G7", "G91 G28 Z0.", "(G53)(X0)(Y0)",
         "G91 G28 Z0 (G53)(Z0)", "M30",
     ]  # fmt: skip
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import UNKNOWN, ModalState
+from g12.tools.translate.blocks.modal import MOTIONS, UNKNOWN, ModalState
 
 FIELDS = {axis: f"at_{axis.lower()}" for axis in AXIS_NUMBERS}
 LOST = dict.fromkeys(FIELDS.values(), UNKNOWN)
@@ -60,9 +60,16 @@ def end_of_word(state: ModalState, word: ForeignWord) -> float | str:
     return UNKNOWN if start is None or state.distance not in ("G90", "G91") else start + word.number
 
 
+def is_drilling(draft: Draft) -> bool:
+    """Tell whether a mill's drilling cycle holds in a block; a motion code ends it."""
+    begins = bool(set(draft.meanings) & DRILLING)
+    goes_on = bool(draft.state.cycle) and MOTIONS.isdisjoint(draft.codes())
+    return (begins or goes_on) and not draft.control.is_lathe
+
+
 def follow_drilling(draft: Draft) -> bool:
     """Carry X and Y on to the hole of a block that drills; tell whether it does."""
-    if not (draft.state.cycle or set(draft.meanings) & DRILLING) or draft.control.is_lathe:
+    if not is_drilling(draft):
         return False
     again = draft.control.value("subprograms", "cycle_repeat", "L") in draft.letters()
     words = [w for w in draft.axis_words() if w.letter in "XY"]
@@ -78,8 +85,7 @@ def follow_places(draft: Draft) -> None:
     shifted = codes & SHIFTING or draft.start.units != draft.state.units
     turret = draft.control.is_lathe and "T" in draft.letters()
     changes = any(w.letter == "M" and w.kind == "number" and w.code == "M6" for w in draft.words)
-    drilling = draft.state.cycle and not draft.control.is_lathe
-    other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or drilling
+    other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or is_drilling(draft)
     drills = follow_drilling(draft) if not codes - FOLLOWED else False
     if drills:
         return

@@ -12,9 +12,8 @@ from __future__ import annotations
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
 from g12.tools.translate.rules.dwell import time_in_seconds
-from g12.tools.translate.rules.motion import MOTIONS
 
 KEPT = "ZRQP"
 CYCLE = ("cycle", "cycle_words", "own_motion")

@@ -5,9 +5,14 @@ from __future__ import annotations
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, GROUPS, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import (
+    AS_PROGRAMMED,
+    CONSUMERS,
+    MOTIONS,
+    UNKNOWN,
+    UNSURE,
+)
 
-MOTIONS = frozenset((*GROUPS["motion"], "G33"))
 INDIFFERENT = frozenset("NMSTFHD$")
 
 

@@ -18,6 +18,7 @@ from g12.tools.translate.blocks.places import IN_POLAR, axis_of, known_place, va
 
 IN_PLANE = frozenset("XCUH")
 MOVING = frozenset("XYZABCUVWHF")
+REFERENCE = frozenset(("G28", "G30"))
 PLANES = frozenset(("G17", "G18", "G19"))
 SECTIONS = {
     "on": "in polar mode",
@@ -202,7 +203,7 @@ def rapid(draft: Draft) -> None:
 def is_rapid(draft: Draft) -> bool:
     """Tell whether the block moves by rapid."""
     codes = {"G0", "G1", "G2", "G3"}.intersection(draft.codes())
-    moves = draft.letters() & set("XCZUWH")
+    moves = draft.letters() & set("XYZCUWH")
     return "G0" in codes or (bool(moves) and not codes and draft.state.motion == "G0")
 
 
@@ -234,6 +235,8 @@ def feed_again(draft: Draft) -> None:
     """Write the feed that holds on the control where LinuxCNC has another: G93, a polar rapid's."""
     if draft.has_feed or draft.state.own_feed == AS_PROGRAMMED or not draft.letters() & MOVING:
         return
+    if goes_by_rapid(draft):
+        return
     if draft.state.held:
         draft.before += own_feed_ended(draft)
         draft.change(own_motion="G1")
@@ -245,6 +248,13 @@ def feed_again(draft: Draft) -> None:
             if text not in codes and not (text[0] == "F" and "F" in letters)
         ]
     draft.change(own_feed=AS_PROGRAMMED, held=())
+
+
+def goes_by_rapid(draft: Draft) -> bool:
+    """Tell whether a block needs no feed: that of the next cut may not be the same on every way."""
+    if draft.state.own_feed == "G93" or draft.state.held or "F" in draft.letters():
+        return False
+    return is_rapid(draft) or not REFERENCE.isdisjoint(draft.codes())
 
 
 def own_feed_ended(draft: Draft) -> list[str]:
