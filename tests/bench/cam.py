@@ -1,43 +1,47 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""10,000 lines of CAM output: translated, and read as a section before it moves."""
+"""10,000 lines of CAM output: translated, read as a section before it moves, verified."""
 
 import math
-import resource
 import statistics
 import tempfile
+import time
 from pathlib import Path
 
 from bench import Figure
 from bench.haas import cpu_seconds
+from bench.verify import against, used
 from g12.tools.machine.ini import read_ini
 from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.program import translate_program
-from support.sim_machines import SIM
+from support.sim_machines import SIM, copy_of_machines
 
 LINES, RUNS = 10000, 3
 LONGEST_TRANSLATION, LONGEST_READING = 5.0, 2.0  # s of CPU time
+MOST_OF_A_TENTH = 12.0  # times the CPU time of a tenth of the lines
 
 
 def figures():
     """Yield the rows of CAM output."""
-    text = spiral()
     control = read_control("mill-on-face")
-    before = used()
-    translated = translate_program(text, control).text
+    before = time.process_time()
+    translated = translate_program(spiral(LINES), control).text
     yield Figure(
         "translate: 10,000 lines of a mill's program onto the face, CPU time",
-        used() - before,
+        time.process_time() - before,
         LONGEST_TRANSLATION,
         " s",
         f"lines of {mean_length():.2f} mm with Z",
     )
-    yield reading(translated.replace(" $1", ""))
+    program = translated.replace(" $1", "")
+    yield reading(program)
+    tenth = translate_program(spiral(LINES // 10), control).text.replace(" $1", "")
+    yield verifying(program, tenth)
 
 
-def spiral():
-    """Return a surface's path in short lines, as a post for mills writes it."""
+def spiral(count):
+    """Return the first lines of a surface's path, as a post for mills writes it."""
     rows = ["G21 G90 G17", "T1 M6", "G43 H1", "G0 X15 Y0", "G0 Z3", "G1 Z-1 F500"]
-    rows += [f"G1 X{x:.4f} Y{y:.4f} Z{z:.4f}" for x, y, z in map(point, range(1, LINES + 1))]
+    rows += [f"G1 X{x:.4f} Y{y:.4f} Z{z:.4f}" for x, y, z in map(point, range(1, count + 1))]
     return "\n".join([*rows, "G0 Z5", "M2", ""])
 
 
@@ -77,7 +81,11 @@ def reading(program):
     )
 
 
-def used():
-    """Return the CPU time of this process, s."""
-    usage = resource.getrusage(resource.RUSAGE_SELF)
-    return usage.ru_utime + usage.ru_stime
+def verifying(program, tenth):
+    """Compare the time that ``verify`` takes for a section with that for a tenth of it."""
+    with tempfile.TemporaryDirectory() as folder:
+        ini = copy_of_machines(Path(folder)) / "lathe_mm_headless.ini"
+        ini.write_text(f"{ini.read_text()}\n[G12]\nPOLAR_Z = allow\n")
+        many, few = (used(folder, ini, text.splitlines()[:-1]) for text in (program, tenth))
+    what = "verify: CPU time of 10,000 lines of CAM output, against 1,000"
+    return against(what, many, few, MOST_OF_A_TENTH)
