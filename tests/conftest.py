@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from itertools import chain
 
 import pytest
 from hypothesis import settings
@@ -28,12 +29,34 @@ def missing(folder):
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     """Skip what cannot run here; a file's tests stay on one core unless they say otherwise."""
+    groups = {}
     for item in items:
         if not item.get_closest_marker("xdist_group"):
             item.add_marker(pytest.mark.xdist_group(f"{item.path.parent.name}/{item.path.stem}"))
         why = missing(item.path.parent.name)
         if why:
             item.add_marker(pytest.mark.skip(reason=why))
+        groups.setdefault(item.get_closest_marker("xdist_group").args, []).append(item)
+    items[:] = chain.from_iterable(mixed(list(groups.values())))
+
+
+def mixed(groups):
+    """Return groups of tests with those of `sim` spread among the others, the largest first.
+
+    They wait for real motion; meanwhile the cores are free for tests that compute.
+    """
+    waiting = sorted((group for group in groups if is_of_sim(group)), key=len, reverse=True)
+    computing = [group for group in groups if not is_of_sim(group)]
+    shares = [
+        (number / len(kind), group) for kind in (waiting, computing)
+        for number, group in enumerate(kind)
+    ]  # fmt: skip
+    return [group for _, group in sorted(shares, key=lambda share: share[0])]
+
+
+def is_of_sim(group):
+    """Tell whether a group of tests runs LinuxCNC's motion."""
+    return group[0].path.parent.name == "sim"
 
 
 @pytest.hookimpl(hookwrapper=True)

@@ -11,8 +11,9 @@ from support.sim_machines import ROOT, SIM
 
 CONTAINER = ["unshare", "--pid", "--fork", "--kill-child", "--mount-proc", "--ipc", "--net"]
 PLAIN = ["setpriv", "--bounding-set", "-sys_admin", "--inh-caps", "-sys_admin", "sh", "-c"]
-RUN = f"{PYTHON} {ROOT}/python/g12 run {SIM}/samples/mill_mm.ngc --ini {SIM}/mill_mm.ini"
+RUN = f"{PYTHON} {ROOT}/python/g12 run {{}} --ini {SIM}/mill_mm.ini"
 LEFT = "cat /proc/sysvipc/shm; ps -eo comm=; ls /tmp/linuxcnc.lock"
+GONE = "for n in $(seq 70); do ps -eo comm= | grep -qE 'milltask|rtapi' || break; sleep 0.5; done"
 
 
 @pytest.fixture
@@ -28,16 +29,23 @@ def contained():
     return run
 
 
-def test_a_run_is_told_to_be_without_namespaces_and_leaves_nothing(contained):
-    done = contained(f"{RUN} || exit; {LEFT}")
+def run_of(folder, block):
+    """Return the command that runs a program of one block."""
+    program = folder / "program.ngc"
+    program.write_text(f"G21 G90 F3000\n{block}\nM2\n")
+    return RUN.format(program)
+
+
+def test_a_run_is_told_to_be_without_namespaces_and_leaves_nothing(contained, tmp_path):
+    done = contained(f"{run_of(tmp_path, 'G1 X1')} || exit; {LEFT}")
     assert "s in motion" in done.stdout
     assert done.stderr.count("g12: without namespaces (") == 1
     assert "milltask" not in done.stdout and "rtapi" not in done.stdout
     assert len([line for line in done.stdout.splitlines() if line.split()[0].isdigit()]) == 0
 
 
-def test_one_that_is_killed_leaves_nothing(contained):
-    killed = f"timeout -s KILL 6 {RUN}; sleep 35; {LEFT}"
+def test_one_that_is_killed_leaves_nothing(contained, tmp_path):
+    killed = f"timeout -s KILL 6 {run_of(tmp_path, 'G4 P60')}; {GONE}; {LEFT}"
     done = contained(killed)
     assert "milltask" not in done.stdout and "rtapi" not in done.stdout
     assert "/tmp/linuxcnc.lock" not in done.stdout
@@ -46,7 +54,7 @@ def test_one_that_is_killed_leaves_nothing(contained):
 def test_another_linuxcnc_is_left_alone(contained, tmp_path):
     other = tmp_path / "milltask"
     other.symlink_to("/usr/bin/sleep")
-    done = contained(f"{other} 100 & {RUN}; ps -eo comm=; kill $!")
+    done = contained(f"{other} 100 & {run_of(tmp_path, 'G1 X1')}; ps -eo comm=; kill $!")
     assert "a LinuxCNC runs here already, milltask (" in done.stderr
     assert done.stderr.count("Traceback") == 0
     assert "milltask" in done.stdout

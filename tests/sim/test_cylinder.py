@@ -13,7 +13,7 @@ from support.polar_programs import C_ACCELERATION, accelerations, exceeds_limits
 from support.sim_machines import PROGRAMS, SIM, machine_scope
 
 LIMIT = 0.005 + 0.001  # POLAR_TOLERANCE, and what sampling may add
-FEED = 1000.0  # the samples cut at 250 mm a minute
+FEED = {"helix": 2500, "textbook": 1500, "slot": 1000, "cam_groove": 1000}  # not 250 mm/min
 C_SPEED = 360
 
 
@@ -29,7 +29,7 @@ def cuts(request):
         if name not in done:
             machine = request.getfixturevalue("lathe")
             text = (PROGRAMS / "cylinder" / f"{name}.ngc").read_text()
-            run = machine.run_text(text.replace("F250", f"F{FEED:g}").splitlines())
+            run = machine.run_text(text.replace("F250", f"F{FEED[name]}").splitlines())
             assert run.error is None
             assert run.samples.lost == 0
             done[name] = Surface(run, DRAWINGS[name].radius)
@@ -64,14 +64,16 @@ def test_feed_is_the_speed_on_the_surface(cuts, name):
     lengths = {line: sum(segment.length for segment in segments) for line, segments in
                DRAWINGS[name].contour.items()}  # fmt: skip
     long = [line for line, length in lengths.items() if length > 8.0]
-    assert [cuts(name).speed(line) for line in long] == pytest.approx([FEED] * len(long), rel=0.01)
+    assert [cuts(name).speed(line) for line in long] == pytest.approx(
+        [FEED[name]] * len(long), rel=0.01
+    )
 
 
 @pytest.mark.parametrize("name", DRAWINGS)
 def test_a_section_takes_hardly_longer_than_its_length_at_f(cuts, name):
     blocks = DRAWINGS[name].contour
     length = sum(segment.length for segment in DRAWINGS[name].segments)
-    assert cuts(name).seconds(blocks) <= 1.05 * length / FEED * 60
+    assert cuts(name).seconds(blocks) <= 1.05 * length / FEED[name] * 60
 
 
 @pytest.mark.parametrize("name", DRAWINGS)
