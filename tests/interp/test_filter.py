@@ -117,10 +117,9 @@ def test_a_recording_has_the_users_file_and_its_lines(ini, tmp_path, capsys):
         ("lathe_mm", "fanuc-lathe/hexagon"),
     ],
 )
-@pytest.mark.parametrize("twin", ["", "_headless"])
-def test_each_machine_opens_programs_of_its_control(capsys, machine, program, twin):
+def test_each_machine_opens_programs_of_its_control(capsys, machine, program):
     path = FOREIGN / f"{program}.nc"
-    ini = SIM / f"{machine}{twin}.ini"
+    ini = SIM / f"{machine}.ini"
     assert ".nc" in "".join(read_ini(ini).all("FILTER", "PROGRAM_EXTENSION"))
     assert main.main(["trace", str(path), "--ini", str(ini)]) == 0, capsys.readouterr().err
 

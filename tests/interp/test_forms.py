@@ -14,6 +14,7 @@ from support.sim_machines import SIM
 FORMS = sorted(path.stem for path in NGC.glob("form_*_mm.ngc"))
 UNITS = {"mm": ("G21", 1.0), "inch": ("G20", 25.4)}
 BOTH = pytest.mark.parametrize("unit", UNITS)
+ONE = pytest.mark.parametrize("unit", ["inch"])  # the forms of both units are one text
 WIDEST, HIGHEST = 319, 239  # dots of a picture that ngcgui does not halve
 LONGEST = 18  # letters beside an entry, for two columns on a screen 1024 dots wide
 TOOLS = {1: 10.0, 2: 4.0}  # mm; on inch machines the same in inches
@@ -101,7 +102,7 @@ def rapids_stay_up(found, retract):
     assert all(move.start[:2] == move.end[:2] for move in below)
 
 
-@BOTH
+@ONE
 def test_a_haas_pocket_comes_out_as_filled_in(cut, unit):
     found = cut("haas", unit, counts=["levels"], x=12, y=-7, retract=20, top=3, z=-6, levels=3,
                 i=8, k=25, q=6, feed=500, code=12)  # fmt: skip
@@ -117,14 +118,14 @@ def test_a_haas_pocket_comes_out_as_filled_in(cut, unit):
     assert is_disc(there, 5, 12, -7, 25)
 
 
-@BOTH
+@ONE
 def test_a_haas_pocket_without_k_is_one_circle(cut, unit):
     found = cut("haas", unit, counts=["levels"], z=-2, levels=1, i=9, k=0)
     ended_well(found, UNITS[unit][1] * float(fields(f"form_haas_{unit}")[6].default))
     assert cut_geometry.radii(found.moves) == pytest.approx([4])
 
 
-@BOTH
+@ONE
 @pytest.mark.parametrize("r", [0, 30])
 def test_a_yasnac_circle_comes_out_as_filled_in(cut, unit, r):
     found = cut("yasnac", unit, counts=["circles"], x=4, y=5, retract=15, top=1, z=-8, code=12,
@@ -138,7 +139,7 @@ def test_a_yasnac_circle_comes_out_as_filled_in(cut, unit, r):
     assert [move.end[0] for move in fast][:-1] == pytest.approx([4 + 25, 4] if r else [])
 
 
-@BOTH
+@ONE
 def test_a_spiral_of_yasnac_comes_out_as_filled_in(cut, unit):
     found = cut("yasnac", unit, counts=["circles"], z=-3, i=-40, r=0, k=-9, q=6, circles=1)
     assert found.error is None
@@ -148,7 +149,7 @@ def test_a_spiral_of_yasnac_comes_out_as_filled_in(cut, unit):
     assert in_plane[0].end[0] < 0  # begins on the -X side
 
 
-@BOTH
+@ONE
 def test_a_mitsubishi_circle_comes_out_as_filled_in(cut, unit):
     found = cut("mitsubishi", unit, x=-3, y=2, retract=15, top=1, z=-8, code=13, i=30)
     ended_well(found, 15)
@@ -157,7 +158,7 @@ def test_a_mitsubishi_circle_comes_out_as_filled_in(cut, unit):
     assert circles == [pytest.approx((-3, 2, -8, 25, 1), abs=1e-6)]
 
 
-@BOTH
+@ONE
 def test_a_circle_mill_pocket_comes_out_as_filled_in(cut, unit):
     found = cut("circle_mill", unit, counts=["d", "c"], event=7, x=5, y=6, z=-4, w=2, o=12, r=30,
                 d=1, c=1, k=3, j=7, l=0.5, p=100, f=400, v=200)  # fmt: skip
@@ -170,7 +171,7 @@ def test_a_circle_mill_pocket_comes_out_as_filled_in(cut, unit):
     assert {round(move.feed, 6) for move in last} == {400, 200}
 
 
-@BOTH
+@ONE
 def test_a_perimeter_without_its_optional_entries(cut, unit):
     found = cut("circle_mill", unit, counts=["d", "c"], event=0, z=-2, w=1, o=9, r=20, d=0, c=1,
                 k=0, j=0, l=0, p=0, v=0, f=300)  # fmt: skip

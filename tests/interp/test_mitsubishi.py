@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry, mode_matrix
-from support.refusals import at_line
 from support.sim_machines import PROGRAMS, ROOT, SIM
 
 TOOLS = {1: 6.0, 3: -4.0, 10: 20.0}
@@ -82,7 +81,7 @@ def test_the_sample_of_every_plane(metric):
     assert [move.radius for move in circles] == pytest.approx([20, 40, 20] * 3)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(
     plane=st.sampled_from(sorted(AXES)),
     code=st.sampled_from([("G12", -1), ("G13", 1)]),
@@ -112,7 +111,7 @@ def test_any_valid_block_cuts_its_circle(metric, plane, code, offset, room, sign
 
 @pytest.mark.parametrize("plane", AXES)
 @mode_matrix.any_coordinates
-def test_every_combination_of_modes_makes_the_same_machine_path(inch, metric, coordinates, plane):
+def test_all_modes_make_the_same_machine_path(inch, metric, coordinates, plane):
     def block(scale, incremental):
         return f"{plane}\nG13 {mode_matrix.words(scale, I=1.9, F=12.0)} D10\nG17"
 
@@ -128,49 +127,17 @@ def test_the_motion_mode_is_what_it_was(metric, motion):
 
 # ---------------------------------------------------------------- refusals on the interpreter
 
-REFUSED = [
-    ("G12 D10", "G12: I is missing: the radius of the circle"),
+REFUSED = [  # the sentences are those of unit/test_mitsubishi.py
     ("G12 I50", "G12: D is missing: the tool whose radius reduces the circle, D0 for none"),
-    (
-        "G13 I10 D10",
-        "G13: I10 must be greater than the tool radius 10 (D10) by at least 0.00508",
-    ),
-    (
-        "G13 I-9.5 D10",
-        "G13: I-9.5 must be greater than the tool radius 10 (D10) by at least 0.00508",
-    ),
+    ("G13 I10 D10", "G13: I10 must be greater than the tool radius 10 (D10) by at least 0.00508"),
     ("G12 I50 D77", "G12: D77 is not in the tool table"),
-    *(
-        (
-            f"G12 I50 D10 {letter}1",
-            f"G12: {letter}1 is not a word of this cycle, which knows I D F",
-        )
-        for letter in "XYZEHJKLPQR"
-    ),
+    ("G12 I50 D10 X1", "G12: X1 is not a word of this cycle, which knows I D F"),
 ]
 
 
 @pytest.mark.parametrize(("block", "message"), REFUSED)
 def test_a_bad_block_moves_nothing_and_changes_nothing(metric, block, message):
     mode_matrix.check_refused(metric, [FIRST, "G91 G0 X3 Z5 G18"], block, message)
-
-
-@pytest.mark.parametrize(
-    ("mode", "message"),
-    [
-        (
-            "G93",
-            "G12: needs feed per minute or revolution (G94, G95), but G93 is active",
-        ),
-        ("G41 D1", "G12: brings its own cutter compensation: program G40 first"),
-        ("F0", "G12: F0 must be greater than 0 (no feed commanded?)"),
-    ],
-)
-def test_a_mode_that_cannot_work_is_refused(metric, mode, message):
-    block = "G12 I50 D10 F100" if mode == "G93" else "G12 I50 D10"
-    traced = metric.trace_text([FIRST, "G0 X3", mode, block])
-    assert traced.error.text == at_line(message, 4)
-    assert len(traced.moves) == 1
 
 
 @settings(max_examples=60, deadline=None)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G12.1 on the stock interpreter: whatever may stand in a program may stand in a section."""
 
+from itertools import chain
+
 import pytest
 
 from g12.tools.preview.tracer import Tracer
@@ -45,17 +47,6 @@ def cut(lathe, *body, **around):
 # ---------------------------------------------------------------- words, values, parameters
 
 
-def test_expressions_and_functions_are_values(lathe):
-    traced = cut(
-        lathe, "G1 X[10 + 2] C[sin[30] * 4]", "X-[3]C-#1", "Xatan[1]/[1] C+1", before=["#1=7"]
-    )
-    assert ends(traced) == [(12, 2), (-3, -7), (45, 1)]
-
-
-def test_lower_case_and_no_blanks(lathe):
-    assert ends(cut(lathe, "g01x14c3", "n7x 1 0 c-2.", "G1X+8C.5")) == [(14, 3), (10, -2), (8, 0.5)]
-
-
 def test_numbered_and_global_parameters_go_in_and_out(lathe):
     body = ["G1 X#1", "#1=9", "X#1", "#<_deep>=3", "C#<_deep>", "#2=[#1 + #<_deep>]"]
     traced = lathe.trace_text(section(*body, before=["#1=12"], after=["X#2"]), ask=[1, 2])
@@ -82,16 +73,6 @@ def test_local_parameters_of_a_sub_that_holds_a_section(lathe):
     traced = lathe.trace_text(program)
     assert ends(traced) == [(9, 0)]
     assert texts(traced) == ["10.000000 9.000000", "5.000000"]
-
-
-def test_assignments_on_a_motion_line_act_behind_it(lathe):
-    traced = cut(lathe, "#1=8 G1 X#1 #<a>=2", "X#1 C#<a>", before=["#1=12", "#<a>=0"])
-    assert ends(traced) == [(12, 0), (8, 2)]
-
-
-def test_assignments_on_a_line_that_has_to_be_rewritten(lathe):
-    traced = cut(lathe, "#1=8 G1 U[#1-16]", "X#1 Y[2*#1]", before=["#1=12"])
-    assert ends(traced) == [(16, 0), (8, 16)]
 
 
 @pytest.mark.parametrize("name", ["#5420", "#<_x>"])
@@ -121,44 +102,28 @@ def test_a_parameter_that_does_not_exist_is_refused_on_its_line(lathe):
     assert not [move for move in traced.moves if move.kind == "feed"]
 
 
-# ---------------------------------------------------------------- letters the parser does not know
-
-
-def test_u_and_h_are_incremental(lathe):
-    assert ends(cut(lathe, "G1 U-8 H3", "U2", "H-1.5")) == [(12, 3), (14, 3), (14, 1.5)]
-
-
-def test_u_and_h_stay_incremental_in_g91(lathe):
-    assert ends(cut(lathe, "G91 G1 U-8 H3", "X2 C1")) == [(12, 3), (14, 4)]
-
-
-def test_u_and_absolute_c_in_one_block(lathe):
-    assert ends(cut(lathe, "G1 X12 C5", "U-2 C1", "X4 H2")) == [(12, 5), (10, 1), (4, 3)]
-
-
-def test_y_is_c(lathe):
-    assert ends(cut(lathe, "G1 X12 Y5", "G3 X8 Y1 R4")) == [(12, 5), (8, 1)]
-
-
-def test_letters_inside_expressions_and_names_are_left_alone(lathe):
-    before = ["#<yh u>=3", "#<_hy>=2"]
-    traced = cut(lathe, "G1 Ufup[#<yhu>-12.5]Y[#<_hy>+round[1.2]]", "H#<yh u>", before=before)
-    assert ends(traced) == [(11, 3), (11, 6)]
-
-
-def test_g9_is_taken(lathe):
-    assert ends(cut(lathe, "G9 G1 X12", "G1 G09 X10", "G9", "G90 X8")) == [(12, 0), (10, 0), (8, 0)]
-
-
-def test_rewritten_lines_between_o_words(lathe):
-    body = ["G1 X10", "U1", "o1 repeat [3]", "U1", "H1 (one)", "/U9", "", "o1 endrepeat", "U-1"]
-    assert ends(cut(lathe, *body))[-1] == (13, 3)
-
-
 # ---------------------------------------------------------------- control flow
 
 
-CONTROL = {
+CUT = {  # what stands in a section, and where its blocks end; #1 is 1, and what the last sets
+    "expressions": (["G1 X[10 + 2] C[sin[30] * 4]", "X-[3]C-#7", "Xatan[1]/[1] C+1"],
+                    [(12, 2), (-3, -7), (45, 1)], ["#7=7"]),
+    "no blanks": (["g01x14c3", "n7x 1 0 c-2.", "G1X+8C.5"], [(14, 3), (10, -2), (8, 0.5)]),
+    "assignments act behind": (["#1=8 G1 X#1 #<a>=2", "X#1 C#<a>"], [(12, 0), (8, 2)],
+                               ["#1=12", "#<a>=0"]),
+    "assignments beside U": (["#1=8 G1 U[#1-16]", "X#1 Y[2*#1]"], [(16, 0), (8, 16)], ["#1=12"]),
+    "U and H": (["G1 U-8 H3", "U2", "H-1.5"], [(12, 3), (14, 3), (14, 1.5)]),
+    "U and H in G91": (["G91 G1 U-8 H3", "X2 C1"], [(12, 3), (14, 4)]),
+    "U and C": (["G1 X12 C5", "U-2 C1", "X4 H2"], [(12, 5), (10, 1), (4, 3)]),
+    "Y is C": (["G1 X12 Y5", "G3 X8 Y1 R4"], [(12, 5), (8, 1)]),
+    "letters of names": (["G1 Ufup[#<yhu>-12.5]Y[#<_hy>+round[1.2]]", "H#<yh u>"],
+                         [(11, 3), (11, 6)], ["#<yh u>=3", "#<_hy>=2"]),
+    "G9": (["G9 G1 X12", "G1 G09 X10", "G9", "G90 X8"], [(12, 0), (10, 0), (8, 0)]),
+    "U between o words": (["G1 X10", "o1 repeat [2]", "U1", "H1 (one)", "/U9", "", "o1 endrepeat"],
+                          [(10, 0), (11, 0), (11, 1), (12, 1), (12, 2)]),
+    "block delete": (["G1 X12", "/G1 X99", "/ U3", "/o1 if [1]", "/M30", " / H1", "C3", "/",
+                      "/(MSG, no)"], [(12, 0), (12, 3)]),
+    "stops": (["G1 X12 M0", "M1", "X9", "M60"], [(12, 0), (9, 0)]),
     "if": (
         ["o1 if [#1 EQ 1]", "G1 X12", "o1 else", "G1 X99", "H-3", "o1 endif", "C1"],
         [(12, 0), (12, 1)],
@@ -202,10 +167,37 @@ CONTROL = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CONTROL)
-def test_o_words(lathe, name):
-    body, expected = CONTROL[name]
-    assert ends(cut(lathe, *body, before=["#1=1"])) == expected
+@pytest.mark.parametrize("name", CUT)
+def test_a_section_is_cut_as_it_is_written(lathe, name):
+    body, expected, *before = CUT[name]
+    assert ends(cut(lathe, *body, before=["#1=1", *chain(*before)])) == expected
+
+
+SUBS = {  # lines of a sub in front, of a section that calls it, and where the blocks end
+    "recursion": (
+        ["o<down> sub", "G1 U-1", "o1 if [#1 LE 1]", "o<down> return", "o1 endif",
+         "o<down> call [#1 - 1]", "H1", "o<down> endsub"],
+        ["o<down> call [3]", "X5"],
+        [(17, 0), (17, 2), (5, 2)],  # moves of one line in a row count as one
+    ),
+    "called no times": (
+        ["o100 sub", "G1 U-2", "o100 endsub"], ["G1 X12", "M98 P100 L0", "C5"], [(12, 0), (12, 5)],
+    ),
+    "modes restored at its end": (
+        ["o<s> sub", "M73", "G91 G1 U1 F50", "X1", "o<s> endsub"], ["G1 X12", "o<s> call", "X9"],
+        [(12, 0), (13, 0), (14, 0), (9, 0)],
+    ),
+    "parameters of its own": (
+        ["o<flat> sub", "G1 X#1", "o<flat> endsub"], ["#1=15", "o<flat> call [12]", "X#1"],
+        [(12, 0), (15, 0)],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SUBS)
+def test_a_sub_is_cut_where_it_is_called(lathe, name):
+    sub, body, expected = SUBS[name]
+    assert ends(lathe.trace_text([*sub, *section(*body)])) == expected
 
 
 def test_a_section_inside_a_loop_and_a_loop_inside_it(lathe):
@@ -275,31 +267,9 @@ def test_subs_of_other_files(subs):
     assert ends(traced) == [(12, 0), (12, 2), (13, 2), (13, 0), (9, 0), (9, 6)]
 
 
-def test_return_and_recursion(lathe):
-    sub = [
-        "o<down> sub",
-        "G1 U-1",
-        "o1 if [#1 LE 1]",
-        "o<down> return",
-        "o1 endif",
-        "o<down> call [#1 - 1]",
-        "H1",
-        "o<down> endsub",
-    ]
-    traced = lathe.trace_text([*sub, *section("o<down> call [3]", "X5")])
-    assert ends(traced) == [(17, 0), (17, 1), (17, 2), (5, 2)] or ends(traced)[-1] == (5, 2)
-
-
-def test_parameters_of_a_sub_do_not_touch_the_sections(lathe):
-    traced = lathe.trace_text([*SUB, *section("#1=15", "o<flat> call [12] [3]", "X#1")])
-    assert ends(traced)[-1] == (15, 3)
-
-
 def test_fanuc_subs_with_repeats(lathe):
-    traced = lathe.trace_text(
-        [*section("M98 P100 L2", "U1"), "O100", "G1 U-2", "G91 C1", "G90", "M99"]
-    )
-    assert ends(traced) == [(18, 0), (18, 1), (16, 1), (16, 2), (17, 2)]
+    program = [*section("M98 P100 L2", "U1"), "O100", "G1 U-2", "G91 C1", "G90", "M99"]
+    assert ends(lathe.trace_text(program)) == [(18, 0), (18, 1), (16, 1), (16, 2), (17, 2)]
 
 
 def test_fanuc_subs_of_other_files(subs):
@@ -363,11 +333,6 @@ def test_python_comments_act_in_their_place(lathe, line, found):
 def test_python_comments_that_are_skipped_do_not_act(lathe):
     body = ["o1 if [0]", f";{PYTHON}", f"({PYTHON})", "o1 endif", "G1 X9"]
     assert texts(cut(lathe, *body, before=["#7=1"], after=["(DEBUG,#7)"])) == ["1.000000"]
-
-
-def test_block_delete(lathe):
-    body = ["G1 X12", "/G1 X99", "/ U3", "/o1 if [1]", "/M30", " / H1", "C3", "/", "/(MSG, no)"]
-    assert ends(cut(lathe, *body)) == [(12, 0), (12, 3)]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\n\n", " \t\n"])
@@ -443,13 +408,6 @@ def test_subs_called_by_a_computed_name(lathe, name):
     assert ends(traced) == [(12, 0), (10, 0), (10, 5)]
 
 
-def test_a_sub_called_no_times(lathe):
-    sub = ["o100 sub", "G1 U-2", "o100 endsub"]
-    traced = lathe.trace_text([*sub, *section("G1 X12", "M98 P100 L0", "C5", after=["G0 Z9"])])
-    assert ends(traced) == [(12, 0), (12, 5)]
-    assert traced.moves[-1].end[2] == 9
-
-
 def test_an_assignment_beside_the_code_that_ends_the_section(lathe):
     program = ["#1=3", *section("G1 X[#1+12]", after=["G0 X[#1]"])]
     program[program.index("G13.1")] = "G13.1 #1=4"
@@ -486,12 +444,6 @@ def test_modes_saved_and_restored(lathe):
     assert [round(move.feed) for move in feed_moves(traced)] == [100, 50, 100]
 
 
-def test_modes_restored_when_a_sub_returns(lathe):
-    sub = ["o<s> sub", "M73", "G91 G1 U1 F50", "X1", "o<s> endsub"]
-    traced = lathe.trace_text([*sub, *section("G1 X12", "o<s> call", "X9")])
-    assert ends(traced) == [(12, 0), (13, 0), (14, 0), (9, 0)]
-
-
 # ---------------------------------------------------------------- waiting for the machine
 
 
@@ -512,7 +464,3 @@ def test_waiting_for_an_input_before_and_behind_compensation(lathe):
     body = ["G1 C9", "G41 X12", "C-9", "G40 X20", "X15"]
     waited = cut(lathe, body[0], "M66 P0 L0", *body[1:4], "M66 P0 L0", body[4])
     assert ends(waited) == ends(cut(lathe, *body))
-
-
-def test_stops_act_behind_their_motion(lathe):
-    assert ends(cut(lathe, "G1 X12 M0", "M1", "X9", "M60")) == [(12, 0), (9, 0)]

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from g12.tools.preview.tracer import Tracer
+from support.mode_matrix import remaps
 from support.polar_programs import FIRST, ends, feed_moves, in_plane, section, texts, tracer
 from support.sim_machines import ROOT, SIM
 
@@ -333,10 +334,11 @@ def test_a_wrapped_axis_winds_the_same_way():
     assert [round(move.end[5]) for move in traced.moves[len(plain) :]] == [710, 730, 380]
 
 
-def test_the_other_pair_of_codes():
-    remaps = ("G12.3 modalgroup=1 python=polar_on", "G13.3 modalgroup=1 python=polar_off")
-    overrides = {"RS274NGC": {"REMAP": (*remaps, "M33 modalgroup=10 ngc=m33")}}
-    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
+@pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
+def test_the_other_pair_of_codes(machine):
+    pair = remaps(ROOT / "configs" / "include" / "polar_g12_3.inc")
+    overrides = {"RS274NGC": {"REMAP": (*pair, "M33 modalgroup=10 ngc=m33")}}
+    with Tracer(SIM / f"{machine}.ini", overrides=overrides) as lathe:
         traced = lathe.trace_text([line.replace(".1", ".3") if line in ("G12.1", "G13.1") else line
                                    for line in section("G1 X12", "U-2")])  # fmt: skip
         assert ends(traced) == [(12, 0), (10, 0)]
@@ -349,8 +351,8 @@ def test_the_other_pair_of_codes():
 def test_both_pairs_of_codes_on_one_machine():
     pairs = [f"G{on}.{pair} modalgroup=1 python=polar_{name}"
              for pair in (1, 3) for on, name in ((12, "on"), (13, "off"))]  # fmt: skip
-    remaps = [*pairs, "M33 modalgroup=10 ngc=m33"]
-    with Tracer(SIM / "lathe_mm.ini", overrides={"RS274NGC": {"REMAP": remaps}}) as lathe:
+    lines = [*pairs, "M33 modalgroup=10 ngc=m33"]
+    with Tracer(SIM / "lathe_mm.ini", overrides={"RS274NGC": {"REMAP": lines}}) as lathe:
 
         def with_codes(on, off, *body):
             program = section(*body)
@@ -401,12 +403,12 @@ def test_the_first_of_repeated_limits_counts():
 
 def test_keywords_of_remap_lines_may_be_shortened(tmp_path):
     (tmp_path / "m33.ngc").write_text("o<m33> sub\nG1 X9\no<m33> endsub\n")
-    remaps = [
+    lines = [
         "G12.4 modal=1 py=polar_on",
         "G13.5 MODALGROUP=1 Py=polar_off # another pair",
         "M33 modalgroup=10 n=m33",
     ]
-    overrides = {"RS274NGC": {"REMAP": remaps, "SUBROUTINE_PATH": f"{tmp_path}:../../ngc:subs"}}
+    overrides = {"RS274NGC": {"REMAP": lines, "SUBROUTINE_PATH": f"{tmp_path}:../../ngc:subs"}}
     with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
         codes = {"G12.1": "G12.4", "G13.1": "G13.5"}
         program = [codes.get(line, line) for line in section("G1 X12", "M33", "U-2")]

@@ -18,6 +18,8 @@ POSTS = sorted(folder.name for folder in CAM.iterdir())
 CUTTERS = {"mm": {1: 12.0, 2: 10.0, 3: 6.0}, "inch": {1: 12 / 25.4, 2: 10 / 25.4, 3: 6 / 25.4}}
 TOLERANCE = 0.008  # mm: POLAR_TOLERANCE, and the last digit of the posts
 DEEPEST_RAPID = 0.9  # mm: what is below is cut
+TOP = 10.0  # mm: no part has anything above
+SOME = 3  # one of so many points, 0.1 to 0.2 mm apart, is looked at
 HOME = {
     "mm": ["G21 G7 G90", "G0 Z400", "G0 X300", "G0 C0"],
     "inch": ["G20 G7 G90", "G0 Z10", "G0 X10", "G0 C0"],
@@ -57,8 +59,8 @@ def test_a_posted_program_cuts_its_drawing(lathe, post, part):
     traced = tracer.trace_text(text, setup=home, alone=True)
     assert traced.error is None, traced.error
     made, wanted = on_the_part(traced.moves), wanted_path(PARTS[part])
-    assert distances(made[made[:, 2] < DEEPEST_RAPID], wanted).max() < TOLERANCE
-    assert distances(wanted, made).max() < TOLERANCE
+    assert distances(made[made[:, 2] < DEEPEST_RAPID][::SOME], wanted).max() < TOLERANCE
+    assert distances(wanted[::SOME], made[made[:, 2] < TOP]).max() < TOLERANCE
     assert rapids_turn_above_the_part(traced.moves)
 
 

@@ -7,9 +7,8 @@ Behind both stands a bare word, so that the motion and distance modes show, and 
 
 import pytest
 
-from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.program import translate_program
-from support.foreign_programs import assert_same_part, tracer_of
+from support.foreign_programs import assert_same_part, control_of, tracer_of
 
 MILL = "G20 G17 G90 G94 G98 G54 G0 X1. Y1. Z1. S100 F9.\n"
 TURN = "G21 G18 G54 G0 X50. Z5. C0 F.2 S100 M3\n"
@@ -162,11 +161,11 @@ def tracers():
 
 def translated_part(control, blocks):
     """Return the translation of blocks without what the control holds at the start, and no end."""
-    kind = read_control(control).machine
+    kind = control_of(control).machine
     (head, _), tail = HEADS[kind], TAILS[kind]
     main, _, subs = blocks.partition("\nM30\n")
     text = f"(HEAD)\n{head}{main}\n{tail}"
-    result = translate_program(f"{text}M30\n{subs}\n" if subs else text, read_control(control))
+    result = translate_program(f"{text}M30\n{subs}\n" if subs else text, control_of(control))
     assert result.refused == []
     start, *lines = result.text.splitlines()
     return [start, *(line for line in lines if not (line.startswith("M2 (") and not subs))]
@@ -176,7 +175,7 @@ def translated_part(control, blocks):
 def test_a_construct_moves_the_same_and_leaves_the_same_modes(tracers, control, foreign, own):
     tracer = tracers(control)
     traced = tracer.trace_text(translated_part(control, foreign), alone=True)
-    kind = read_control(control).machine
+    kind = control_of(control).machine
     (_, head), tail = HEADS[kind], TAILS[kind]
     end = "M30\n" if "\nM30\n" in foreign else ""
     wanted = tracer.trace_text(f"{head}{own}\n{tail}{end}", alone=True)

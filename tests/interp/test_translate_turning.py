@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from g12.tools.path.part import arc_points
-from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.program import translate_program
-from support.foreign_programs import assert_same_part, near, tracer_of
+from support.foreign_programs import assert_same_part, control_of, near, tracer_of
 
 HEAD = {"fanuc-lathe": "G21 G99 G97 S500 M3 F.2\n", "haas-lathe": "G20 G99 G97 S500 M3 F.01\n"}
 GRID = 0.02  # mm
@@ -26,7 +25,7 @@ def tracer():
 
 def moves_of(tracer, text, control="fanuc-lathe"):
     """Return the moves of a foreign program, which must be translated and read to its end."""
-    result = translate_program(f"{text}\nM30\n", read_control(control))
+    result = translate_program(f"{text}\nM30\n", control_of(control))
     assert result.refused == []
     return traced_moves(tracer, result.text)
 
@@ -236,7 +235,7 @@ SAME = [  # a control's blocks, and those of LinuxCNC that make the same moves
 def test_a_cycle_is_these_moves(tracer, control, foreign, own):
     unit = HEAD["haas-lathe" if control == "haas-lathe" else "fanuc-lathe"]
     head = unit if control in HEAD else unit.replace("G99", "G95").replace("G21 ", "")
-    result = translate_program(f"{head}{foreign}\nM30\n", read_control(control))
+    result = translate_program(f"{head}{foreign}\nM30\n", control_of(control))
     assert result.refused == []
     wanted = f"G7 G18 G90 {unit.replace('G99', 'G95')}{own}\nM30\n"
     assert_same_part(
@@ -341,7 +340,7 @@ HARMLESS = [
 @pytest.mark.parametrize(("blocks", "lines"), HARMLESS)
 def test_a_code_that_changes_nothing_is_a_comment(blocks, lines):
     text = f"G21 G99 S500 M3\nG0 X50. Z2.\n{blocks}\nM30\n"
-    result = translate_program(text, read_control("fanuc-lathe"))
+    result = translate_program(text, control_of("fanuc-lathe"))
     assert not result.refused
     assert lines in result.text
 
@@ -349,6 +348,6 @@ def test_a_code_that_changes_nothing_is_a_comment(blocks, lines):
 @pytest.mark.parametrize(("blocks", "sentence"), REFUSED)
 def test_a_cycle_that_cannot_be_is_refused(blocks, sentence):
     text = f"G21 G99 S500 M3\nG0 X50. Z2.\n{blocks}\nM30\n"
-    result = translate_program(text, read_control("fanuc-lathe"))
+    result = translate_program(text, control_of("fanuc-lathe"))
     assert result.text == ""
     assert any(refused.sentence.startswith(sentence) for refused in result.refused), result.refused

@@ -239,8 +239,7 @@ def test_missing_files_are_named(command, missing, written, tmp_path, capsys):
     assert capsys.readouterr().err == f"g12 {command}: {names[missing]}: no such file\n"
 
 
-@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
-@pytest.mark.parametrize("extra", [[], ["--feeds"]])
+@pytest.mark.parametrize(("suffix", "extra"), [("png", []), ("svg", ["--feeds"]), ("pdf", [])])
 def test_plot_writes_the_picture_asked_for(suffix, extra, written, tmp_path, capsys):
     path = tmp_path / f"picture.{suffix}"
     assert main(["plot", written(GOOD), "--ini", MILL, "-o", str(path), *extra]) == 0

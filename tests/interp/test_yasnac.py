@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry, mode_matrix
-from support.refusals import at_line
 from support.sim_machines import PROGRAMS, ROOT, SIM
 
 TOOLS = {1: 6.0, 3: -4.0, 10: 20.0}
@@ -155,7 +154,7 @@ def circles(draw):
     }
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(circle=circles())
 def test_any_valid_block_cuts_its_circle(metric, circle):
     traced = cut(metric, "G0 X7 Y-3 Z-2", circle["block"])
@@ -252,7 +251,7 @@ def spiral_block(scale, incremental):
 
 
 @mode_matrix.any_coordinates
-def test_every_combination_of_modes_makes_the_same_machine_path(inch, metric, coordinates):
+def test_all_modes_make_the_same_machine_path(inch, metric, coordinates):
     mode_matrix.check_same_path(
         inch, metric, coordinates, mode_matrix.Case(spiral_block, feed=12.0)
     )
@@ -273,41 +272,10 @@ def test_the_last_d_commanded_is_left_alone(metric):
 
 # ---------------------------------------------------------------- refusals on the interpreter
 
-REFUSED = [
+REFUSED = [  # the sentences are those of unit/test_yasnac.py
     ("G12 R40 D10", "G12: I is missing: the radius of the finished circle"),
-    (
-        "G12 I50 R50 D10",
-        "G12: R50 puts the tool centre at X40 from the circle's centre (tool radius 10, D10):"
-        " it must be from 0 to less than X40, where I50 puts it",
-    ),
-    (
-        "G13 I50 R60 D10",
-        "G13: R60 puts the tool centre at X50 from the circle's centre (tool radius 10, D10):"
-        " it must be from 0 to less than X40, where I50 puts it",
-    ),
-    (
-        "G12 I50 R5 D10",
-        "G12: R5 puts the tool centre at X-5 from the circle's centre (tool radius 10, D10):"
-        " it must be from 0 to less than X40, where I50 puts it",
-    ),
-    (
-        "G12 I-50 R40 D10",
-        "G12: R40 puts the tool centre at X50 from the circle's centre (tool radius 10, D10):"
-        " it must be from 0 to less than X-40, where I-50 puts it",
-    ),
-    ("G12 I10 D10", "G12: I10 must exceed the tool radius 10 (D10) in size"),
-    ("G12 I50 R40 J40 D10", "G12: R and J are the same word: give one of them"),
-    ("G12 I50 K40 D10", "G12: K40 needs Q as well"),
-    ("G12 I50 Q4 D10", "G12: Q4 needs K as well"),
     ("G12 I50 D77", "G12: D77 is not in the tool table"),
-    ("G12 I50 D3", "G12: D3 has the negative diameter -4 in the tool table"),
-    *(
-        (
-            f"G12 I50 D10 {letter}1",
-            f"G12: {letter}1 is not a word of this cycle, which knows I R (or J) K Q L D F",
-        )
-        for letter in "XYZEHP"
-    ),
+    ("G13 I50 D10 X1", "G13: X1 is not a word of this cycle, which knows I R (or J) K Q L D F"),
 ]
 
 
@@ -316,33 +284,13 @@ def test_a_bad_block_moves_nothing_and_changes_nothing(metric, block, message):
     mode_matrix.check_refused(metric, [FIRST, "G91 G0 X3 Z5"], block, message)
 
 
-@pytest.mark.parametrize(
-    ("mode", "message"),
-    [
-        (
-            "G93",
-            "G12: needs feed per minute or revolution (G94, G95), but G93 is active",
-        ),
-        ("G41 D1", "G12: brings its own cutter compensation: program G40 first"),
-        ("F0", "G12: F0 must be greater than 0 (no feed commanded?)"),
-        ("G18", "G12: needs the XY plane G17, but G18 is active"),
-        ("G19", "G12: needs the XY plane G17, but G19 is active"),
-    ],
-)
-def test_a_mode_that_cannot_work_is_refused(metric, mode, message):
-    block = "G12 I50 D10 F100" if mode == "G93" else "G12 I50 D10"
-    traced = metric.trace_text([FIRST, "G0 X3", mode, block])
-    assert traced.error.text == at_line(message, 4)
-    assert len(traced.moves) == 1
-
-
 def test_right_after_g40_nothing_moves(metric):
     message = "G12: the tool still stands offset: after G40 move in X or Y first"
     before = [FIRST, "T1 M6", "G41", "G1 X30", "Y30", "G40"]
     mode_matrix.check_refused(metric, before, "G12 I30 R20 D10", message)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(block=mode_matrix.blocks("G13", "IRJKQLDX"))
 def test_any_block_cuts_or_is_refused_in_words(metric, block):
     mode_matrix.check_cut_or_refused(metric, [FIRST, "G91 G0 X3"], block, "G13")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G7.1 in a headless LinuxCNC: the samples' real motion, and what an operator does."""
+"""G7.1 in a headless LinuxCNC: the samples' real motion, MDI; test_polar.py has the operator."""
 
 import math
 
@@ -127,57 +127,6 @@ def test_auto(ready):
     assert set(Surface(run, R).lines.tolist()) == {6, 7, 8, 9, 10}
 
 
-def test_pause_and_resume(ready):
-    ready.open_text(section(*PART))
-    ready.sample()
-    ready.start()
-    ready.wait_for(lambda status: status.motion_line == 8)
-    ready.pause()
-    held = ready.wait_for(lambda status: status.paused)
-    ready.resume()
-    ready.wait_idle()
-    samples = ready.samples()
-    assert held.motion_line == 8
-    assert on_the_part(samples)
-    assert Surface(samples, R).points[-1] == pytest.approx((0, -10), abs=1e-6)
-
-
-def test_abort_inside_and_running_again(ready):
-    ready.open_text(section(*PART))
-    ready.start()
-    ready.wait_for(lambda status: status.motion_line == 9)
-    ready.abort()
-    ready.wait_idle()
-    assert {"G90", "G94", "G64", "G40"} <= set(ready.stat().modes.gcodes)
-    ready.mdi("G0 X25")
-    assert ready.stat().position[0] == pytest.approx(25)
-    ready.mdi("G0 X22 Z0 C0")
-    assert ready.errors() == []
-    again = ready.run_text(section(*PART))
-    assert again.error is None
-    assert on_the_part(again.samples)
-
-
-def test_nothing_of_a_refused_section_moves(ready):
-    for body, line in (
-        (["G1 Z-5", "C12", "G28 H0"], 8),
-        (["G1 Z-5", "C90 X10"], 7),
-        (["G1 Z-5", "G1 Z-600"], 7),
-    ):
-        run = ready.run_text(section(*body))
-        assert run.error.text.startswith(f"G7.1 line {line}: ")
-        assert not (run.samples.kind == 2).any()
-    assert ready.run_text(section(*PART)).error is None
-
-
-def test_a_refused_section_leaves_the_modes_alone(ready):
-    run = ready.run_text(section("G91 G95 F.1 S100", "G1 Z-1", "G28", feed="F1500"))
-    assert run.error.text.startswith("G7.1 line 8: G28 is refused")
-    ready.mdi("G1 Z-1.5")
-    assert ready.stat().position[2] == pytest.approx(-1.5)
-    assert ready.errors() == []
-
-
 def test_mdi_is_refused(ready):
     ready.run_text(section("G1 Z-1"))
     ready.mdi("G07.1 C20")
@@ -204,27 +153,6 @@ def test_a_sub_that_mdi_calls_has_the_lines_behind(tmp_path):
         assert lathe.stat().position[0] == pytest.approx(30)
     assert on_the_part(samples)
     assert samples.axes["C"].max() > 60 and samples.axes["Z"].min() == pytest.approx(-10)
-
-
-def test_waiting_for_an_input_inside(ready):
-    ready.set("motion.digital-in-00", False)
-    ready.open_text(section("G1 Z-5 C30", "M66 P0 L3 Q5", "G1 C[30 + 15 * #5399]", "Z0"))
-    ready.sample()
-    ready.start()
-    ready.wait_for(lambda status: status.in_position and abs(status.position[2] + 5) < 1e-4)
-    ready.set("motion.digital-in-00", True)
-    ready.wait_idle()
-    assert ready.errors() == []
-    assert ready.stat().position[5] == pytest.approx(45)
-
-
-def test_run_from_a_line_behind_a_section(ready):
-    ready.open_text(section("G1 Z-5", after=["G1 Z-7", "C3"]))
-    ready.sample()
-    ready.start(8)
-    ready.wait_idle()
-    assert ready.errors() == []
-    assert set(Surface(ready.samples(), R).lines.tolist()) == {8, 9}
 
 
 def test_c_keeps_its_speed_on_the_way_into_an_exact_stop(ready):

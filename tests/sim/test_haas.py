@@ -11,15 +11,15 @@ from g12.tools.preview.tracer import Tracer
 from support import cut_geometry
 from support.operated_machine import Machine, kept_machine
 from support.refusals import at_line
-from support.sim_machines import BRISK, SIM
+from support.sim_machines import BRISK, SIM, machine_scope
 
 TOOLS = {1: 6.0, 2: 10.0}
-FIRST = "G21 G17 G40 G49 G54 G61 G80 G90 G91.1 G94 F4000"
+FIRST = "G21 G17 G40 G49 G54 G61 G80 G90 G91.1 G94 F8000"
 POCKET = "G13 X10 Y5 I5 K12 Q3 Z-1 D1"
 DEVIATION = 0.002  # mm, of the real motion in exact path mode at this feed
 
 
-machine = kept_machine("mill_mm", tools=TOOLS)
+machine = kept_machine("mill_mm", tools=TOOLS, overrides=BRISK)
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +34,12 @@ def at_start(machine):
     machine.mdi("G21 G90 G94 G61 G0 Z2")
     machine.mdi("G0 X0 Y0")
     machine.errors(), machine.messages()
+
+
+@pytest.fixture(scope=machine_scope)
+def auto(machine):
+    """Return the run of a program with the pocket."""
+    return machine.run_text([FIRST, POCKET, "G0 Z2", "M2"])
 
 
 def programmed_path(tracer, *blocks):
@@ -57,17 +63,16 @@ def longest_reach(samples, centre=(10, 5)):
     ].max()
 
 
-def test_auto_cuts_the_traced_path(machine, tracer):
+def test_auto_cuts_the_traced_path(auto, tracer):
     path, traced = programmed_path(tracer, POCKET)
-    run = machine.run_text([FIRST, POCKET, "G0 Z2", "M2"])
-    assert run.error is None
-    assert run.messages == []
-    assert largest_deviation(run.samples, path) < DEVIATION
-    assert longest_reach(run.samples) == pytest.approx(9, abs=DEVIATION)
-    assert run.samples.axes["Z"].min() == pytest.approx(-1, abs=1e-6)
+    assert auto.error is None
+    assert auto.messages == []
+    assert largest_deviation(auto.samples, path) < DEVIATION
+    assert longest_reach(auto.samples) == pytest.approx(9, abs=DEVIATION)
+    assert auto.samples.axes["Z"].min() == pytest.approx(-1, abs=1e-6)
     length = cut_geometry.path_length(cut_geometry.cutting(traced.moves))
-    feeding = np.isin(run.samples.kind, (2, 3))
-    travelled = run.samples.velocity[feeding].sum() * 0.001
+    feeding = np.isin(auto.samples.kind, (2, 3))
+    travelled = auto.samples.velocity[feeding].sum() * 0.001
     assert travelled == pytest.approx(length, rel=0.02)
 
 
@@ -82,12 +87,12 @@ def test_mdi_cuts_the_same_path(machine, tracer):
     assert longest_reach(samples) == pytest.approx(9, abs=DEVIATION)
 
 
-def test_every_ring_is_round_in_real_motion(machine):
-    run = machine.run_text([FIRST, POCKET, "M2"])
-    radius = np.hypot(run.samples.axes["X"] - 10, run.samples.axes["Y"] - 5)
+def test_every_ring_is_round_in_real_motion(auto):
+    x, y = (auto.samples.axes[axis] - centre for axis, centre in (("X", 10), ("Y", 5)))
+    radius = np.hypot(x, y)
     for ring in (2, 5, 8, 9):
         on_ring = np.abs(radius - ring) < DEVIATION
-        angles = np.arctan2(run.samples.axes["Y"] - 5, run.samples.axes["X"] - 10)[on_ring]
+        angles = np.arctan2(y, x)[on_ring]
         covered = np.histogram(angles, bins=72, range=(-math.pi, math.pi))[0]
         assert (covered > 0).all(), f"ring {ring} is not a whole circle"
 
@@ -126,13 +131,13 @@ def test_single_steps_reach_the_end(machine, tracer):
 
 
 def test_feed_override_slows_the_cut_only(machine, tracer):
-    path, _ = programmed_path(tracer, "G12 X10 Y5 I12 Z-1 D1 F2000")
-    blocks = [FIRST, "G12 X10 Y5 I12 Z-1 D1 F2000", "M2"]
+    path, _ = programmed_path(tracer, "G12 X10 Y5 I12 Z-1 D1 F6000")
+    blocks = [FIRST, "G12 X10 Y5 I12 Z-1 D1 F6000", "M2"]
     full = machine.run_text(blocks)
     machine.feed_override(0.5)
     half = machine.run_text(blocks)
-    assert np.median(full.samples.velocity[full.samples.kind == 3]) == pytest.approx(2000 / 60)
-    assert np.median(half.samples.velocity[half.samples.kind == 3]) == pytest.approx(1000 / 60)
+    assert np.median(full.samples.velocity[full.samples.kind == 3]) == pytest.approx(6000 / 60)
+    assert np.median(half.samples.velocity[half.samples.kind == 3]) == pytest.approx(3000 / 60)
     assert largest_deviation(half.samples, path) < DEVIATION
 
 
@@ -161,7 +166,7 @@ def test_abort_inside_a_ring_then_mdi_then_the_program_again(machine, tracer):
 
 @pytest.mark.parametrize("way", ["auto", "mdi"])
 def test_without_z_the_real_motion_stays_at_its_height(machine, way):
-    machine.mdi("F4000 G1 Z-1.5")
+    machine.mdi("F8000 G1 Z-1.5")
     machine.sample()
     block = "G13 I5 K12 Q3 L2 D1"
     if way == "mdi":

@@ -9,7 +9,7 @@ import pytest
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry
 from support.operated_machine import kept_machine
-from support.sim_machines import SIM
+from support.sim_machines import SIM, machine_scope
 
 TOOLS = {1: 10.0}
 FEED, SHARE = 2400.0, 0.6  # mm/min; [G12] PLUNGE_FEED of the machine is 60
@@ -29,11 +29,24 @@ def tracer():
         yield running
 
 
-@pytest.fixture(autouse=True)
-def at_start(machine):
+def go_to_start(machine):
     machine.reset()
     machine.mdi(FIRST)
     machine.mdi(START)
+
+
+@pytest.fixture(autouse=True)
+def at_start(machine):
+    go_to_start(machine)
+
+
+@pytest.fixture(scope=machine_scope)
+def cut(machine):
+    """Return the samples of the pocket, cut by a program."""
+    go_to_start(machine)
+    run = machine.run_text([FIRST, START, POCKET, "M2"])
+    assert run.error is None
+    return run.samples
 
 
 def points_of(samples):
@@ -96,23 +109,13 @@ def check_smooth(samples):
     assert turn.max() < math.degrees(length.max() / (HELIX / 2)) + 0.5
 
 
-@pytest.mark.parametrize("way", ["auto", "mdi"])
-def test_the_tool_goes_down_along_the_helix(machine, tracer, way):
-    if way == "mdi":
-        machine.sample()
-        machine.mdi(POCKET)
-        samples = machine.samples()
-        assert machine.errors() == []
-    else:
-        run = machine.run_text([FIRST, START, POCKET, "M2"])
-        assert run.error is None
-        samples = run.samples
-    check_cut(samples, tracer)
-    check_smooth(samples)
+def test_the_tool_goes_down_along_the_helix(cut, tracer):
+    check_cut(cut, tracer)
+    check_smooth(cut)
 
 
-def test_the_wall_and_the_floor_are_those_of_the_pocket(machine):
-    points = points_of(machine.run_text([FIRST, START, POCKET, "M2"]).samples)
+def test_the_wall_and_the_floor_are_those_of_the_pocket(cut):
+    points = points_of(cut)
     cutting = points[points[:, 2] < 0.5]
     radius = np.hypot(cutting[:, 0] - CENTRE[0], cutting[:, 1] - CENTRE[1])
     assert radius.max() == pytest.approx(14 - 5, abs=DEVIATION)
@@ -123,23 +126,22 @@ def test_the_wall_and_the_floor_are_those_of_the_pocket(machine):
     assert (np.histogram(angles[on_the_helix], bins=72, range=(-math.pi, math.pi))[0] > 0).all()
 
 
-@pytest.mark.parametrize("way", ["auto", "mdi"])
-def test_abort_in_the_helix_then_up_and_the_pocket_again(machine, tracer, way):
-    blocks = [FIRST, START, POCKET, "M2"]
-    if way == "mdi":
-        machine.mdi(POCKET, wait=False)
-    else:
-        machine.open_text(blocks)
-        machine.start()
+def test_abort_in_the_helix_then_up_and_the_pocket_again_in_mdi(machine, tracer):
+    machine.mdi(POCKET, wait=False)
     machine.wait_for(lambda status: status.position[2] < -1)
     machine.abort()
     held = machine.stat()
     assert DEPTH < held.position[2] < -0.9
     assert {"G17", "G21", "G90", "G91.1", "G94"} <= set(held.modes.gcodes)
-    assert held.modes.feed == pytest.approx(FEED) if way == "mdi" else True
+    assert held.modes.feed == pytest.approx(FEED)
     machine.errors()
     machine.mdi("G0 Z1")
-    check_cut(machine.run_text(blocks).samples, tracer)
+    machine.mdi(START)
+    machine.sample()
+    machine.mdi(POCKET)
+    samples = machine.samples()
+    assert machine.errors() == []
+    check_cut(samples, tracer)
 
 
 @pytest.mark.parametrize("lines", [1, 200], ids=["read to its end", "being read"])

@@ -14,11 +14,8 @@ from g12.tools.install.config.ini_edit import IniText
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
 from support.sample_configs import SAMPLES, copy_samples, tree
-from support.small_configs import with_lines
 
 MILLS = [
-    "axis/axis.ini",
-    "gmoccapy/gmoccapy.ini",
     "qtdragon/qtdragon_xyz/qtdragon_metric.ini",
     "axis/remap/extend-builtins/extend-builtins.ini",  # own TOPLEVEL and remaps
     "axis/corexy/corexy_by_hal.ini",  # [RS274NGC] in an included file that two machines share
@@ -112,28 +109,3 @@ def test_the_kinematics_of_the_face_on_a_sample_lathe(lathe, capsys):
     assert np.degrees(angle).max() == pytest.approx(90, abs=0.1)
     assert uninstall.main([str(lathe)]) == 0
     assert tree(lathe.parent) == before
-
-
-def test_a_sample_that_remaps_g13_is_refused_and_left_alone(sim, capsys):
-    ini = sim / "axis" / "axis_mm.ini"
-    own = "SUBROUTINE_PATH = mine\nREMAP = G13 modalgroup=1 ngc=mine\n"
-    ini.write_text(with_lines(ini.read_text(), "RS274NGC", own))
-    (ini.parent / "mine").mkdir()
-    (ini.parent / "mine" / "mine.ngc").write_text("o<mine> sub\nG4 P0\no<mine> endsub\n")
-    before = tree(ini.parent)
-    assert install.main([str(ini), "--with", "haas"]) == 1
-    assert "G13 is remapped here already: REMAP = G13 modalgroup=1 ngc=mine" in (
-        capsys.readouterr().err
-    )
-    assert tree(ini.parent) == before
-    assert install.main([str(ini), "--with", "circle-mill"]) == 0
-    assert uninstall.main([str(ini)]) == 0
-    assert tree(ini.parent) == before
-
-
-@pytest.mark.parametrize("name", ["axis/lathe.ini", "axis/lathe-fanucy/lathe-fanucy.ini"])
-def test_a_lathe_without_c_is_refused(sim, capsys, name):
-    before = tree((sim / name).parent)
-    assert install.main([str(sim / name), "--with", "polar"]) == 1
-    assert "polar needs axis C; [TRAJ] COORDINATES has X Z" in capsys.readouterr().err
-    assert tree((sim / name).parent) == before

@@ -4,6 +4,7 @@
 import cmath
 import json
 import random
+import re
 import time
 
 import numpy as np
@@ -40,15 +41,15 @@ ON = ("M68 E2 Q0", "M68 E3 Q0", "M68 E3 Q1", "M66 P3 L3 Q10", "G17")
 OFF = ("M68 E3 Q0", "M66 P3 L4 Q10", "G18")
 START = ("G21 G18 G8 G90 G94 G64 P0.002 Q0", "G0 X25 Z2 C0")
 CIRCLE_AND_SQUARE = (
-    *START, "F3000", *ON, "G1 X20 Y0", "G2 X-20 I-20", "X20 I20", "G1 X20 Y20", "X-20", "Y-20",
+    *START, "F6000", *ON, "G1 X20 Y0", "G2 X-20 I-20", "X20 I20", "G1 X20 Y20", "X-20", "Y-20",
     "X20", "Y0", "X25", *OFF, "G0 Z5", "M2",
 )  # fmt: skip
 SECTION = (
-    *START, "G12.1", "G1 X25 C20 F3000", "X-25", "C-20", "G3 X25 C-20 R25", "X25 C0 R15", "G1 X20",
+    *START, "G12.1", "G1 X25 C20 F6000", "X-25", "C-20", "G3 X25 C-20 R25", "X25 C0 R15", "G1 X20",
     "X-20", "C25", "X25", "C0", "G13.1", "G0 Z5", "M2",
 )  # fmt: skip
 IN_INCHES = (
-    "G20 G7 G18 G90 G94 G64 P0.0002 F100", "G0 X2 Z0 C0", "G12.1", "G1 X2 C1", "G3 X0 C1.5 R2",
+    "G20 G7 G18 G90 G94 G64 P0.0002", "F100", "G0 X2 Z0 C0", "G12.1", "G1 X2 C1", "G3 X0 C1.5 R2",
     "G1 X-2 C0", "G13.1", "M2",
 )  # fmt: skip
 SOON = 2.0  # s until the machine is back from the face; a busy computer is told late
@@ -131,17 +132,16 @@ def xy(point):
     return point.real, point.imag
 
 
-@pytest.mark.parametrize(("feed", "most"), [(1000, 1.02), (3000, 1.05)])
-def test_hexagon_at_its_feed_and_on_its_path(lathe, feed, most):
-    program, path = hexagon(feed)
+def test_hexagon_at_its_feed_and_on_its_path(lathe):
+    program, path = hexagon(3000)
     first = len(START) + len(ON) + 3
     run = lathe.run_text(program)
     assert run.error is None
     timed = np.isin(run.samples.line, range(first + 1, first + len(path) - 1))
     points = Cut(run).all_points[timed] @ FROM_COLUMNS
     assert distance(points, path).max() <= TOLERANCE
-    ideal = sum(segment.length for segment in path[1:-1]) / feed * 60
-    assert 0.99 <= timed.sum() * 0.001 / ideal <= most
+    ideal = sum(segment.length for segment in path[1:-1]) / 3000 * 60
+    assert 0.99 <= timed.sum() * 0.001 / ideal <= 1.05
 
 
 # ---------------------------------------------------------------- G12.1
@@ -149,7 +149,8 @@ def test_hexagon_at_its_feed_and_on_its_path(lathe, feed, most):
 
 @pytest.mark.parametrize("name", MILLIMETRES)
 def test_g12_1_is_on_the_contour_and_within_the_limits(lathe, name):
-    run = lathe.run(PROGRAMS / "polar" / f"{name}.ngc")
+    text = (PROGRAMS / "polar" / f"{name}.ngc").read_text()
+    run = lathe.run_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{3 * float(word[1]):g}", text))
     assert run.error is None
     there, back = deviation(MILLIMETRES[name].segments, Cut(run).points, step=0.1)
     assert max(there, back) <= 0.006
@@ -172,8 +173,8 @@ def test_a_long_move_beside_the_pole_is_segments_only_near_it(lathe):
         assert np.abs(np.diff(c, 2)).max() * 1e6 <= np.radians(3600) * 1.01
 
 
-@pytest.mark.parametrize(("feed", "most"), [(1000, 1.02), (3000, 1.05)])
-def test_g12_1_keeps_the_feed(lathe, feed, most):
+def test_g12_1_keeps_the_feed(lathe):
+    feed = 3000
     in_arcs = min(feed, 60 * speed_in_an_arc(lathe, 6, feed))
     blocks = range(10, 16)
     lines = (PROGRAMS / "polar" / "hexagon.ngc").read_text().splitlines()
@@ -183,7 +184,7 @@ def test_g12_1_keeps_the_feed(lathe, feed, most):
     seconds = np.isin(run.samples.line, blocks).sum() * 0.001
     feeds = [in_arcs if isinstance(segment, Round) else feed for segment in segments]
     ideal = sum(segment.length / feed * 60 for segment, feed in zip(segments, feeds))
-    assert 0.97 <= seconds / ideal <= most
+    assert 0.97 <= seconds / ideal <= 1.05
 
 
 def speed_in_an_arc(lathe, radius, feed):
@@ -233,7 +234,7 @@ def test_modes_behind_g13_1_are_those_of_a_section_in_segments(plane, modes):
 
 
 CORNERS = np.array([40 + 30j, -40 + 30j, -40 - 30j, 40 - 30j])
-SQUARE = ["G1 X40 C30 F3000", "X-40", "C-30", "X40", "C0"]
+SQUARE = ["G1 X40 C30 F6000", "X-40", "C-30", "X40", "C0"]
 ROUGHLY = ["G21 G18 G8 G90 G94 G64 P0.05 Q0", "G0 X45 Z2 C0", "G12.1"]
 
 
@@ -265,7 +266,7 @@ def test_the_tolerance_that_linuxcnc_starts_with_rounds_no_corner(lathe):
 
 def test_verify_finds_nothing_wrong_in_a_corner_with_a_lead(tmp_path, capsys):
     program = tmp_path / "corners.ngc"
-    square = ["G1 Z-1 F3000", *SQUARE[:-1], "C30", "X45 C32", "Z2"]
+    square = ["G1 Z-1 F6000", *SQUARE[:-1], "C30", "X45 C32", "Z2"]
     blocks = ["G21 G18 G8 G90 G94", *ROUGHLY[1:], *square, "G13.1", "M2"]
     program.write_text("\n".join(blocks) + "\n")
     ini = str(SIM / "lathe_mm_kinematics_headless.ini")
@@ -332,7 +333,7 @@ def test_single_steps_on_the_face(lathe):
 RUN_FROM = [*ROUGHLY, *SQUARE, "G13.1", "G0 Z5", "M2"]
 
 
-@pytest.mark.parametrize("line", [4, 6, 10])
+@pytest.mark.parametrize("line", [6, 10])
 def test_run_from_line_runs_the_section_where_it_begins(lathe, line):
     lathe.mdi("G0 X45 Z2 C0")
     lathe.open_text(RUN_FROM)
@@ -361,13 +362,6 @@ def test_run_from_line_is_refused_elsewhere(lathe, away):
     assert not on_the_face(lathe)
 
 
-def test_program_ends_off_the_face(lathe):
-    run = lathe.run_text(CIRCLE_AND_SQUARE)
-    assert run.error is None
-    assert not on_the_face(lathe)
-    assert place(lathe) == (25, 0, 0)
-
-
 def abort(machine):
     machine.abort()
 
@@ -387,12 +381,12 @@ def jog_mode(machine):
 @pytest.mark.parametrize("interrupt", [abort, emergency_stop, jog_mode])
 def test_an_interrupted_program_leaves_the_face(lathe, interrupt, program):
     chance = random.Random(interrupt.__name__)
-    for _ in range(6):
+    for _ in range(2):
         lathe.open_text(program)
         lathe.sample()
         lathe.start()
         lathe.wait_for(lambda _: on_the_face(lathe))
-        time.sleep(chance.uniform(0, 4))
+        time.sleep(chance.uniform(0, 2))
         interrupt(lathe)
         lathe.wait_for(lambda _: not on_the_face(lathe), timeout=SOON)
         lathe.mdi("G0 X22 C10")
@@ -400,6 +394,7 @@ def test_an_interrupted_program_leaves_the_face(lathe, interrupt, program):
         keeps_its_limits(lathe.samples())
         assert lathe.errors() == []
     assert lathe.run_text(program).error is None
+    assert not on_the_face(lathe)
 
 
 def test_an_error_on_the_face_leaves_it(lathe):

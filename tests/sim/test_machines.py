@@ -11,12 +11,17 @@ from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import read_ini
 from support.kinematics import marked
 from support.operated_machine import Machine, smoke
-from support.sim_machines import SIM
+from support.sim_machines import SIM, copy_of_machines
 
 INIS = sorted(SIM.glob("*.ini"))
 HEADLESS = [ini for ini in INIS if ini.stem.endswith("_headless")]
 GMOCCAPY = [ini for ini in INIS if ini.stem.endswith("_gmoccapy")]
 DESKTOP = [ini for ini in INIS if ini not in (*HEADLESS, *GMOCCAPY)]
+OF_EACH_KIND = [SIM / f"{kind}_headless.ini" for kind in ("mill_mm", "lathe_mm_kinematics")]
+SCREENS = [SIM / f"{kind}.ini" for kind in (
+    "mill_helix_mm", "lathe_inch", "lathe_mm_kinematics", "lathe_spindle_c_mm",
+)]  # fmt: skip
+RUN_HERE = [ini for ini in DESKTOP if ini.stem != "lathe_spindle_c_inch"]  # in test_spindle_c
 QUICK = "G21 G90\n(MSG, hello)\nG1 X2 F3000\nM0\nG0 Z1\nM2\n"
 XVFB_START = 60.0  # s for a screen to come up
 INCOMPLETE = "Namespace GtkSource not available"
@@ -53,6 +58,18 @@ def test_a_machine_on_gmoccapy_is_the_one_on_axis(ini):
     assert ini.read_text().count("NGCGUI_SUBFILE") == other.path.read_text().count("NGCGUI_SUBFILE")
 
 
+def with_screen(ini):
+    """Return the lines of [DISPLAY] that every machine has."""
+    lines = [line for line in ini.lines if line and not line.startswith("#")]
+    shown = lines[lines.index("[DISPLAY]") + 1 :]
+    shown = shown[: next(k for k, line in enumerate(shown) if line.startswith("["))]
+    return [
+        line
+        for line in shown
+        if not line.startswith(("OPEN_FILE", "GEOMETRY", "MAX_FEED_OVERRIDE"))
+    ]
+
+
 def without_screen(ini):
     """Return the INI's lines outside [DISPLAY] that are no comments."""
     lines, section = [], None
@@ -63,7 +80,7 @@ def without_screen(ini):
     return lines
 
 
-@pytest.mark.parametrize("ini", marked(DESKTOP), ids=name)
+@pytest.mark.parametrize("ini", marked(RUN_HERE), ids=name)
 def test_every_machine_runs_its_sample_to_the_end(ini):
     with Machine(ini) as machine:
         machine.feed_override(10.0)
@@ -73,7 +90,13 @@ def test_every_machine_runs_its_sample_to_the_end(ini):
         assert result.seconds > 0.5
 
 
-@pytest.mark.parametrize("ini", marked(HEADLESS), ids=name)
+def test_every_headless_machine_has_the_same_screen():
+    """But for what is the machine's own: its sample, its picture, how far F is turned up."""
+    shown = [with_screen(read_ini(ini)) for ini in HEADLESS]
+    assert shown == [shown[0]] * len(HEADLESS)
+
+
+@pytest.mark.parametrize("ini", marked(OF_EACH_KIND), ids=name)
 def test_linuxcnc_runs_a_program_without_a_screen_and_exits_with_0(ini, tmp_path):
     program = tmp_path / "quick.ngc"
     program.write_text(QUICK)
@@ -92,8 +115,10 @@ def test_linuxcnc_exits_with_1_if_the_program_has_an_error(tmp_path):
     assert f"{program}: FAILED" in log
 
 
-def test_linuxcnc_runs_the_sample_if_no_program_is_named():
-    code, log = smoke(SIM / "mill_mitsubishi_mm_headless.ini", timeout=120)
+def test_linuxcnc_runs_the_sample_if_no_program_is_named(tmp_path):
+    machines = copy_of_machines(tmp_path)
+    (machines / "samples" / "mill_mitsubishi_mm.ngc").write_text(QUICK)
+    code, log = smoke(machines / "mill_mitsubishi_mm_headless.ini", timeout=120)
     assert code == 0, log
     assert "samples/mill_mitsubishi_mm.ngc: done" in log
 
@@ -113,7 +138,7 @@ def screen():
         server.terminate()
 
 
-@pytest.mark.parametrize("ini", [*marked(DESKTOP), *GMOCCAPY], ids=name)
+@pytest.mark.parametrize("ini", [*marked(SCREENS), *GMOCCAPY], ids=name)
 def test_its_screen_comes_up_with_the_sample_previewed(ini, screen):
     component = "gmoccapy" if ini in GMOCCAPY else "axisui"
     started = f"until halcmd -s show comp {component} | grep -q {component}; do sleep 0.2; done"

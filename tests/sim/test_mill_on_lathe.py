@@ -31,7 +31,9 @@ def test_a_mills_program_runs_on_the_face(tmp_path, capsys):
     ini = machines / "lathe_mm.ini"
     assert main.main(["install", str(ini), "--with", *FEATURES]) == 0
     program = tmp_path / "pocket.nc"
-    program.write_text(mill_program(PARTS["pocket"]).replace("Z1.0000", "Z2.0000"))
+    program.write_text(
+        mill_program(PARTS["pocket"]._replace(feed=3000)).replace("Z1.0000", "Z2.0000")
+    )
     assert main.main(["run", str(program), "--ini", str(ini)]) == 0
     assert "ends at X6 Z5 C" in capsys.readouterr().out
 

@@ -14,7 +14,6 @@ HEXAGON = PROGRAMS / "polar" / "hexagon.ngc"
 AROUND = range(10, 16)  # its lines between the ramps
 WAYS = [
     pytest.param("lathe_mm", 8.0),
-    pytest.param("lathe_mm_kinematics", 8.0, marks=needs_kinematics),
     pytest.param("lathe_mm_kinematics", -3.0, marks=needs_kinematics),
 ]
 ARCS = (

@@ -2,6 +2,7 @@
 """Programs of other controls for tests: their machines, their options, and what they cut."""
 
 import json
+from functools import cache
 from itertools import groupby
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from g12.tools.commands import translate
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
+from g12.tools.translate.blocks.control import read_control
 from support.sim_machines import PROGRAMS, SIM
 
 FOREIGN = PROGRAMS / "foreign"
@@ -23,6 +25,7 @@ MACHINES = {
     "okuma-lathe": "lathe_mm",
 }
 BUILDERS_CODES = (135, 154, 155, 200, 202, 203, 205, 110, 109, 146, 13, 12)
+control_of = cache(read_control)
 OPTIONS = json.loads((FOREIGN / "options.json").read_text(encoding="utf-8"))
 
 

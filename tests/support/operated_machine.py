@@ -23,22 +23,18 @@ class Status:
     ``task_mode`` is ``manual``, ``auto`` or ``mdi``; ``interp`` is ``idle``, ``reading``,
     ``paused`` or ``waiting``; ``idle`` says that the interpreter is done and the axes stand.
     ``position`` (commanded) and ``actual`` are nine floats in the order of X Y Z A B C U V W.
-    ``motion_line`` is the line of the move being made, ``read_line`` the one last read,
-    ``current_line`` what a screen highlights.
+    ``motion_line`` is the line of the move being made.
     """
 
     task_mode: str
     interp: str
     enabled: bool
-    homed: bool
     paused: bool
     idle: bool
     in_position: bool
     position: tuple[float, ...]
     actual: tuple[float, ...]
-    current_line: int
     motion_line: int
-    read_line: int
     feed_override: float
     tool: int
     queue: int
@@ -98,10 +94,6 @@ class Machine(machine.Machine):
     def jog(self, axis, speed) -> None:
         """Jog an axis of `manual`, in units per second, until its speed is set to 0."""
         self._ask("jog", axis, speed)
-
-    def optional_stop(self, on) -> None:
-        """Let M1 stop the program."""
-        self._ask("optional_stop", on)
 
     def block_delete(self, on) -> None:
         """Let blocks that begin with / be skipped."""

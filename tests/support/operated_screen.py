@@ -56,9 +56,6 @@ class OperatedPanel(Panel):
         self._do(self._command.abort)
         self.wait_idle(GRACE)
 
-    def optional_stop(self, on):
-        self._do(self._command.set_optional_stop, on)
-
     def block_delete(self, on):
         self._do(self._command.set_block_delete, on)
 
@@ -79,15 +76,12 @@ class OperatedScreen(RecordingScreen):
             "task_mode": TASK_MODES[stat.task_mode],
             "interp": INTERPRETER[stat.interp_state],
             "enabled": bool(stat.enabled),
-            "homed": all(stat.homed[: stat.joints]),
             "paused": bool(stat.paused),
             "idle": self.panel.is_idle(stat),
             "in_position": bool(stat.inpos),
             "position": tuple(stat.position),
             "actual": tuple(stat.actual_position),
-            "current_line": stat.current_line,
             "motion_line": stat.motion_line,
-            "read_line": stat.read_line,
             "feed_override": stat.feedrate,
             "tool": stat.tool_in_spindle,
             "queue": stat.queue,
