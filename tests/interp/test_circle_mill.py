@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry, mode_matrix
-from support.sim_machines import PROGRAMS, SIM
+from support.sim_machines import SIM
 
 INCH = 25.4
 TOOLS = {1: 0.5, 2: 0.0, 3: 12.0 / INCH}
@@ -214,23 +214,6 @@ def test_a_tool_below_w_is_raised_before_it_goes_sideways(inch):
         ("rapid", 1, 2, 0.1),
         ("feed", 1, 2, -0.5),
     ]
-
-
-def test_the_converted_events_run(inch):
-    traced = inch.trace(PROGRAMS / "dynapath" / "flange.ngc", setup=["T1 M6", "G0 X-3 Y-3 Z1"])
-    assert traced.error is None
-    circles = [
-        [round(value / INCH, 6) for value in c[:4]] for c in cut_geometry.full_circles(traced.moves)
-    ]
-    assert circles[-6:] == [
-        [1.5, 2, -0.5, 0.984],
-        [1.5, 2, -0.5, 1.23],
-        [1.5, 2, -0.5, 1.25],
-        [1.5, 2, -0.25, 2.46],
-        [1.5, 2, -0.25, 2.45],
-        [1, -3, -0.2, 0.75],
-    ]
-    assert [round(value / INCH, 6) for value in traced.position[:3]] == [-3, -3, 0.1]
 
 
 # ---------------------------------------------------------------- any valid event

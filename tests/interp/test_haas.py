@@ -264,14 +264,6 @@ def test_a_stepover_above_the_tool_diameter_leaves_what_the_message_says(inch):
     assert len(traced.messages) == 1
 
 
-def test_rings_cost_at_most_a_quarter_more_than_their_circles(inch):
-    traced = cut(inch, "G0 Z.1", "G13 I.3 K1.5 Q.3 Z-.5 D1")
-    sideways = cut_geometry.in_plane(cut_geometry.cutting(traced.moves))
-    circles = sum(2 * math.pi * radius for radius in cut_geometry.radii(traced.moves))
-    leads = math.pi / 2 * (0.175 + 1.375) * INCH
-    assert cut_geometry.path_length(sideways) / (circles + leads) <= 1.25
-
-
 def test_links_stay_inside_the_larger_ring(inch):
     traced = cut(inch, "G0 Z.1", "G13 I.3 K1.5 Q1. Z-.5 D1")
     reached = 0.0

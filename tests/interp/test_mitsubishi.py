@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry, mode_matrix
-from support.sim_machines import PROGRAMS, ROOT, SIM
+from support.sim_machines import ROOT, SIM
 
 TOOLS = {1: 6.0, 3: -4.0, 10: 20.0}
 FIRST = "G21 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F300"
@@ -53,32 +53,6 @@ def test_golden_circle_in_every_plane(metric, plane, code, side):
     assert [in_its_plane(move.end, plane) for move in traced.moves] == [(40, 0), (40, 0), (0, 0)]
     assert {(move.plane, move.turns) for move in traced.moves} == {(int(plane[1:]), -side)}
     assert plane in traced.modes.gcodes
-
-
-def test_the_sign_of_i_does_not_matter(metric):
-    plus, minus = cut(metric, "G12 I50 D10"), cut(metric, "G12 I-50 D10")
-    assert plus.moves == minus.moves
-
-
-@pytest.mark.parametrize(("offset", "radius"), [("D0", 50), ("D10", 40), ("D1", 47), ("D3", 52)])
-def test_the_offset_s_sign_reduces_or_enlarges(metric, offset, radius):
-    assert cut_geometry.radii(cut(metric, f"G13 I50 {offset}").moves) == pytest.approx([radius])
-
-
-def test_the_sample_circle(metric):
-    traced = metric.trace(PROGRAMS / "mitsubishi" / "circle.ngc")
-    assert traced.error is None
-    assert cut_geometry.full_circles(traced.moves) == [pytest.approx((0, 0, -5, 40, -1))]
-
-
-def test_the_sample_of_every_plane(metric):
-    traced = metric.trace(PROGRAMS / "mitsubishi" / "planes.ngc")
-    assert traced.error is None
-    circles = [move for move in traced.moves if move.kind == "arc"]
-    assert [(move.plane, move.turns) for move in circles] == (
-        [(17, -1)] * 3 + [(18, 1)] * 3 + [(19, -1)] * 3
-    )
-    assert [move.radius for move in circles] == pytest.approx([20, 40, 20] * 3)
 
 
 @settings(max_examples=60, deadline=None)

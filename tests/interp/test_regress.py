@@ -20,7 +20,6 @@ from support.processes import living, until
 from support.sim_machines import PROGRAMS, ROOT, SIM, with_package
 
 INI = SIM / "mill_inch.ini"
-TABLE = SIM / "mill_inch.tbl"
 PROGRESS = re.compile(r"\d+ of \d+: ")
 POCKET = """\
 G20 G17 G40 G49 G54 G80 G90 G94

@@ -44,10 +44,6 @@ def cut(tracer, *blocks):
     return traced
 
 
-def path(traced):
-    return cut_geometry.dense_points(cut_geometry.moving(traced.moves), step=1.0)[:, :2]
-
-
 def described(traced):
     """Return kind, end, and for an arc turns and its half-way point of each move, in XY."""
     return [
@@ -81,23 +77,6 @@ def test_the_manual_s_example(metric):
     assert described(traced)[down + 1 : -1] == GOLDEN
     assert {move.end[2] for move in traced.moves[down:-1]} == {-10.0}
     assert traced.position[:3] == (0, 0, 30)
-
-
-def test_golden_circle_on_the_other_side_is_turned_by_half(metric):
-    plus, minus = cut(metric, "G12 I50 R40 D10"), cut(metric, "G12 I-50 R-40 D10")
-    assert path(minus) == pytest.approx(-path(plus), abs=1e-9)
-
-
-@pytest.mark.parametrize("words", ["I50 R40 D10", "I-50 R-40 D10", "I50 D10", "I-50"])
-def test_g13_of_a_plain_circle_is_g12_in_reverse_order(metric, words):
-    forward, back = cut(metric, f"G12 {words}"), cut(metric, f"G13 {words}")
-    assert path(back) == pytest.approx(path(forward)[::-1], abs=1e-9)
-
-
-@pytest.mark.parametrize("words", ["I50 R40 D10", "I50 R20 K35 Q4 D10 L2", "I-50 K-30 Q7"])
-def test_g13_is_g12_mirrored_in_the_x_axis(metric, words):
-    forward, mirrored = cut(metric, f"G12 {words}"), cut(metric, f"G13 {words}")
-    assert path(mirrored) == pytest.approx(path(forward) * [1, -1], abs=1e-9)
 
 
 def test_golden_spiral(metric):

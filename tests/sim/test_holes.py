@@ -15,7 +15,6 @@ from support.operated_machine import Machine
 from support.polar_programs import FIRST
 from support.sim_machines import SIM, machine_scope
 
-RAPID = 1  # kind of a sampled move
 X, Z, C = 0, 2, 5
 START = [FIRST, "T3 M6", "G0 X40 Z8 C100", "F900"]
 CLOSED, DRAG = "motion.digital-out-00", "motion.digital-out-01"

@@ -10,7 +10,6 @@ from support.contour_geometry import (
     FROM_COLUMNS,
     deviation,
     distance,
-    fitted_circle,
     fitted_line,
     lines,
 )
@@ -100,41 +99,6 @@ def test_hexagon_across_flats_and_angles(cuts):
     across = [one[1] + other[1] - 12 for one, other in zip(flats[:3], flats[3:])]
     assert across == pytest.approx([27, 27, 27], abs=0.01)
     assert [angle for angle, _ in flats] == pytest.approx([90, 30, 150] * 2, abs=0.05)
-
-
-def test_square_across_flats_and_corner_radii(cuts):
-    cut = cuts("square")
-    flats = [fitted_line(cut.of(line)) for line in (9, 11, 13, 15)]
-    assert [2 * (distance - 5) for _, distance in flats] == pytest.approx([30] * 4, abs=0.01)
-    corners = [fitted_circle(cut.of(line)) for line in (10, 12, 14, 16)]
-    assert [radius - 5 for _, radius in corners] == pytest.approx([5] * 4, abs=0.006)
-    centres = [value for centre, _ in corners for value in centre]
-    assert centres == pytest.approx([10, -10, -10, -10, -10, 10, 10, 10], abs=0.006)
-
-
-def test_slots_are_straight_and_where_they_belong(cuts):
-    through, beside = (fitted_line(cuts("slot").of(line)) for line in (7, 9))
-    assert [through[1], beside[1]] == pytest.approx([0, 1], abs=0.006)
-    assert [(angle + 90) % 180 for angle, _ in (through, beside)] == pytest.approx(
-        [90, 90], abs=0.02
-    )
-
-
-def test_circles_around_and_beside_the_centre(cuts):
-    around, beside = (fitted_circle(cuts("circles").of(line, ends=0)) for line in (7, 9))
-    assert (*around[0], around[1]) == pytest.approx((4, 0, 10), abs=0.003)
-    assert (*beside[0], beside[1]) == pytest.approx((19, -5, 5), abs=0.003)
-
-
-def test_cam_radii(cuts):
-    cut = cuts("cam")
-    nose = np.concatenate([cut.of(10, ends=0), cut.of(14, ends=0)])
-    arcs = [(nose, (16, 0), 5), (cut.of(11), (-1.40625, 17.94499), 30), (cut.of(12), (0, 0), 12),
-            (cut.of(13), (-1.40625, -17.94499), 30)]  # fmt: skip
-    for points, centre, radius in arcs:
-        reach = np.hypot(*(points - centre).T) - 6
-        assert (reach.min(), reach.max()) == pytest.approx((radius, radius), abs=0.006)
-    assert fitted_circle(nose)[1] - 6 == pytest.approx(5, abs=0.006)
 
 
 def test_the_manuals_flats_are_an_inch_apart(cuts):

@@ -177,10 +177,3 @@ def fitted_line(samples):
     middle = samples.mean(axis=0)
     _, _, (along, normal) = np.linalg.svd(samples - middle, full_matrices=False)
     return math.degrees(math.atan2(along[1], along[0])) % 180, abs(middle @ normal)
-
-
-def fitted_circle(samples):
-    """Return centre and radius of the best circle."""
-    system = np.column_stack([2 * samples, np.ones(len(samples))])
-    x, c, rest = np.linalg.lstsq(system, (samples**2).sum(axis=1), rcond=None)[0]
-    return (x, c), math.sqrt(rest + x * x + c * c)
