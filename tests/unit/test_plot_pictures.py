@@ -113,13 +113,6 @@ def test_levels_go_down_and_each_has_the_area_swept():
     assert levels[0].shade != levels[1].shade
 
 
-def test_many_moves_at_one_depth_are_one_level():
-    hand = Hand().rapid(x=50).pocket([4, 8, 12, 16, 20, 24], depth=-2.5)
-    (level,) = plan_view.milled_levels(scene(hand))
-    assert level.z == pytest.approx(-2.5)
-    assert level.shade == style.shades(1)[0]
-
-
 def test_half_turns_of_a_helix_belong_to_the_floor_that_they_lead_to():
     hand = Hand().rapid(x=50).line(z=-2).arc(1, 53, 0, x=56)
     shallow = hand.arc(1, 50, 0, x=44, z=-3).arc(1, 50, 0, x=56, z=-4).arc(1, 50, 0)
@@ -179,9 +172,6 @@ def test_the_view_holds_all_that_is_cut_but_not_far_rapids():
     low, high = plan_view.bounds_of(*both(pocket().rapid(x=900)))
     assert low[0] < 37 and high[0] > 63 and high[0] < 100
     assert low[2] < -4 and high[2] > 5
-
-
-def test_the_view_holds_rapids_that_are_near():
     low, high = plan_view.bounds_of(*both(pocket().rapid(x=70)))
     assert high[0] > 70 and low[0] < 37
 
@@ -301,11 +291,8 @@ def test_the_top_of_the_part_is_z0_if_the_tool_goes_through_it():
     assert plan_view.top_of(scene(Hand().rapid(z=-1).line(z=-3).line(x=5))) == -1.0
 
 
-def test_plunges_are_found_once():
+def test_plunges_are_found_once_and_on_the_face_where_the_part_is():
     assert plan_view.plunges_of(scene(pocket())) == [((50.0, 0.0), 1)]
-
-
-def test_plunges_on_the_face_are_where_the_part_is():
     hand = Hand().rapid(z=2).rapid(x=20, c=90).line(z=-3)
     (((x, y), tool),) = plan_view.plunges_of(scene(hand, LATHE))
     assert (x, y, tool) == (pytest.approx(0, abs=1e-6), pytest.approx(20), 1)
@@ -473,26 +460,22 @@ def test_every_kind_of_picture_is_drawn(name, tmp_path):
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_pdf_is_one(tmp_path):
-    path = tmp_path / "picture.pdf"
-    style.save(picture_of(scene(pocket())), path)
-    assert path.read_bytes().startswith(b"%PDF")
-
-
-def test_an_svg_is_the_same_file_every_time(tmp_path):
-    one, other = tmp_path / "one.svg", tmp_path / "other.SVG"
-    for path in (one, other):
+def test_a_pdf_is_one_and_an_svg_the_same_file_every_time(tmp_path):
+    pdf, one, other = (tmp_path / name for name in ("one.pdf", "one.svg", "other.SVG"))
+    for path in (pdf, one, other):
         style.save(picture_of(scene(pocket())), path)
+    assert pdf.read_bytes().startswith(b"%PDF")
     assert ET.parse(one).getroot().tag.endswith("svg")
     assert one.read_bytes() == other.read_bytes()
 
 
-@pytest.mark.parametrize("name", ["picture", "picture.bmp", "picture.jpeg"])
-def test_other_suffixes_are_refused_by_name(name, tmp_path):
-    with pytest.raises(style.PictureError, match=r"\.png, \.svg, \.pdf"):
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        *((name, r"\.png, \.svg, \.pdf") for name in ("picture", "picture.bmp", "picture.jpeg")),
+        ("nowhere/picture.png", "no such directory"),
+    ],
+)
+def test_other_suffixes_and_folders_are_refused_by_name(name, why, tmp_path):
+    with pytest.raises(style.PictureError, match=why):
         style.check_format(tmp_path / name)
-
-
-def test_a_folder_that_is_not_there_is_refused(tmp_path):
-    with pytest.raises(style.PictureError, match="no such directory"):
-        style.check_format(tmp_path / "nowhere" / "picture.png")
