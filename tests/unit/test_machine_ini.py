@@ -63,17 +63,9 @@ def test_axes():
 
 @pytest.mark.parametrize(
     ("units", "length"),
-    [
-        ("mm", 1),
-        ("metric", 1),
-        ("inch", 25.4),
-        ("in", 25.4),
-        ("IMPERIAL", 25.4),
-        ("1", 1),
-        ("0.1 # cm", 10),
-        ("0.03937007874015748", 25.4),
-    ],
-)
+    [("mm", 1), ("metric", 1), ("inch", 25.4), ("in", 25.4), ("IMPERIAL", 25.4), ("1", 1),
+     ("0.1 # cm", 10), ("0.03937007874015748", 25.4)],
+)  # fmt: skip
 def test_units(units, length):
     assert millimetres_of(ini_of(INI.format(units=units)).get) == pytest.approx(length)
     assert millimetres_of(ini_of("").get) == 1
@@ -100,10 +92,8 @@ def test_units_that_linuxcnc_refuses(units):
 
 
 def test_an_inch_machine_is_told_as_linuxcnc_tells_it():
-    assert is_inch(25.4)
-    assert is_inch(1 / 0.03937)
-    assert not is_inch(1)
-    assert not is_inch(10)
+    lengths = (25.4, 1 / 0.03937, 1, 10)
+    assert [is_inch(length) for length in lengths] == [True, True, False, False]
 
 
 def test_the_first_of_repeated_keys_counts_and_a_backslash_continues_a_line():

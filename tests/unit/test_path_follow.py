@@ -41,13 +41,9 @@ def test_feed_per_revolution_needs_the_spindle():
 def test_a_track_tells_length_time_and_feed_of_each_move():
     path = track(MILL, Hand(feed=600).rapid(x=10).arc(1, 0, 0).moves, LIMITS)
     assert path.part_length(1) == pytest.approx(20 * math.pi, rel=1e-4)
-    assert path.seconds(1) == pytest.approx(2 * math.pi)
-    assert path.part_feed(1) == pytest.approx(600, rel=1e-4)
-
-
-def test_feed_on_the_face_is_that_along_the_part():
-    path = track(FACE, Hand(feed=3600).rapid(x=10).line(c=90).moves, LIMITS)
-    assert path.part_feed(1) == pytest.approx(math.radians(60) * 10 * 60, rel=1e-3)
+    assert (path.seconds(1), path.part_feed(1)) == pytest.approx((2 * math.pi, 600), rel=1e-4)
+    on_face = track(FACE, Hand(feed=3600).rapid(x=10).line(c=90).moves, LIMITS)
+    assert on_face.part_feed(1) == pytest.approx(math.radians(60) * 10 * 60, rel=1e-3)
 
 
 def test_motion_beside_the_path_is_measured():

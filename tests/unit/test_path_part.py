@@ -81,43 +81,29 @@ def test_a_turn_of_c_is_an_arc_on_the_face():
 def test_paths_join_moves_and_break_at_gaps():
     hand = Hand().line(x=10).line(x=10, y=10).rapid(x=50).line(x=60)
     cutting = [move for move in hand.moves if move.kind != "rapid"]
-    found = part.paths(MILL, cutting)
-    assert [len(line) for line in found] == [3, 2]
+    assert [len(line) for line in part.paths(MILL, cutting)] == [3, 2]
 
 
-def test_a_straight_cut_sweeps_a_slot():
-    area = part.swept([np.array([[0, 0, 0], [100, 0, 0]])], 5).area
-    assert area == pytest.approx(100 * 10 + math.pi * 25, rel=1e-4)
+def ring(radius):
+    return MILL.polyline(Hand().rapid(x=radius).arc(1, 0, 0).moves[1])
 
 
-def test_a_ring_sweeps_an_annulus():
-    ring = Hand().rapid(x=20).arc(1, 0, 0).moves[1]
-    area = part.swept([MILL.polyline(ring)], 3).area
-    assert area == pytest.approx(math.pi * (23**2 - 17**2), rel=1e-4)
-
-
-@pytest.mark.parametrize("radius", [0.1, 2.4, 4.9])
-def test_a_ring_smaller_than_the_cutter_sweeps_all_of_its_disc(radius):
-    angles = np.linspace(0, 2 * math.pi, 400)
-    ring = np.stack([radius * np.cos(angles), radius * np.sin(angles), 0 * angles], axis=1)
-    ring[-1] = ring[0]
-    area = part.swept([ring], 5.0).area
-    assert area == pytest.approx(math.pi * (radius + 5) ** 2, rel=1e-3)
-
-
-def test_a_still_tool_sweeps_its_own_disc():
-    area = part.swept([np.array([[7, 7, 0], [7, 7, -5.0]])], 2).area
-    assert area == pytest.approx(math.pi * 4, rel=1e-3)
+@pytest.mark.parametrize(
+    ("line", "radius", "area"),
+    [
+        ([[0, 0, 0], [100, 0, 0]], 5, 100 * 10 + math.pi * 25),
+        ([[7, 7, 0], [7, 7, -5.0]], 2, math.pi * 4),  # a plunge
+        (ring(20), 3, math.pi * (23**2 - 17**2)),
+        *((ring(radius), 5, math.pi * (radius + 5) ** 2) for radius in (0.1, 2.4, 4.9)),  # no core
+    ],
+)
+def test_what_a_cutter_sweeps(line, radius, area):
+    assert part.swept([np.array(line, float)], radius).area == pytest.approx(area, rel=1e-3)
 
 
 @pytest.mark.parametrize(
     ("hand", "sideways"),
-    [
-        (Hand().line(z=-5), False),
-        (Hand().line(x=1), True),
-        (Hand().line(c=1), True),
-        (Hand().rapid(x=3).arc(1, 0, 0), True),
-    ],
+    [(Hand().line(z=-5), False), (Hand().line(x=1), True), (Hand().line(c=1), True)],
 )
 def test_only_motion_across_the_tool_is_sideways(hand, sideways):
     assert part.is_sideways(hand.moves[-1]) is sideways

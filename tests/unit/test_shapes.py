@@ -307,9 +307,25 @@ def test_passes_of_a_polygon_may_be_ten_thousand():
     assert planned("polar_polygon", **flats).levels.levels == 10_000
 
 
-def test_a_cutter_of_next_to_nothing_hangs_nothing():
-    none = FOUND._replace(spindle_tool=Tool(3, 1e-7))
-    assert "moves, the most is" in refusal("polar_polygon", LATHE, none, stock_diameter=1e6)
+@pytest.mark.parametrize(
+    ("shape", "entries", "x", "back", "on"),
+    [
+        ("polar_slot", dict(angle=30, depth_per_pass=2), (2.7, 12.5 + 7), 0, None),
+        ("polar_slot", dict(angle=0, width=6, length=30), (0, 12), 180, None),  # to and fro
+        ("polar_slot", dict(angle=0, width=20, length=21), (0.5, 7.5), 0, None),
+        ("polar_pocket", dict(x=10, c=0), (5, 15), 90, 90),  # C swings
+        ("polar_pocket", dict(x=0, c=20), (15, 25), 90, 90),
+        ("polar_pocket", dict(x=5, c=0), (0, 10), 180, None),  # round the centre
+    ],
+)
+def test_how_far_the_axes_go(shape, entries, x, back, on):
+    """From where a shape begins C goes back and on; with each half turn on by half a turn."""
+    made = planned(shape, **entries)
+    turned = 180 * (half_turns_in_all(made.rings, made.levels, made.ramp) + 1)
+    extent = made.extent()
+    assert (extent.x, extent.z) == (pytest.approx(x), (-4.0, 5.0))
+    start = made.start_angle
+    assert extent.c == pytest.approx((start - back, start + (turned if on is None else on)))
 
 
 def test_a_slot_is_longer_than_wide():
