@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What runs outside LinuxCNC: commands, and the trades they are made of.
+"""Everything that runs outside LinuxCNC: the commands and the rooms that do their work.
 
-Nothing that cuts needs this folder.
+A machine cuts without this folder.
 """

@@ -6,7 +6,7 @@ number, event type, entries, end mark. A ``/`` behind a letter marks an incremen
 becomes one ``o<circle_mill> call``; W and F are modal and carried from event to event. A control
 with auxiliary axes W and C writes I for W and H for C.
 
-Rules: every line is empty or an event of type 4; no entry twice, be it by its two letters; X, Y,
+Rules: every line is empty or an event of type 4; no entry twice, by either of its letters; X, Y,
 Z, R, C in every event, W and F in it or an earlier one; only X, Y, Z, L can be incremental; G 0
 or 7, D from 0 to 3, C from 0 to 2; R, K, J, P, F, V above 0, L not below 0 and L/ not 0; no value
 beyond any machine or that the call would take for an entry left out; no call longer than a block
@@ -52,7 +52,7 @@ UNIT_CODES = {"inch": "G20 ", "mm": "G21 ", None: ""}
 def program_from_events(text: str, units: str | None = None) -> str:
     """Return the LinuxCNC program of an event text, or raise `Refusal` naming the line.
 
-    ``units`` (``inch``, ``mm``) are those of the text; None leaves the machine's active ones.
+    ``units`` (``inch``, ``mm``) are those of the text; None: the machine's active ones.
     """
     calls = list(calls_of_events(text))
     if not calls:
@@ -115,7 +115,7 @@ def entries_of_event(text: str, line: int) -> dict[str, WrittenEntry]:
 
 
 def repeated(first: str, second: str) -> str:
-    """Return the rule that an entry breaks which stands twice, by whichever letters."""
+    """Return the rule for a repeated entry, by either of its letters."""
     if first == second:
         return f"{first} stands twice"
     return f"{first} and {second} are the same entry: give one of them"
@@ -136,7 +136,7 @@ def check_entries(entries: Mapping[str, WrittenEntry], line: int) -> None:
 
 
 def broken_rule(letter: str, entry: WrittenEntry) -> str | None:
-    """Return the rule of its letter that an entry breaks, None if it keeps them."""
+    """Return the rule that an entry breaks, None if it breaks none."""
     written = f"{entry.letter}{number(float(entry.value))}"
     if entry.incremental and letter not in INCREMENTAL:
         return f"{entry.letter}/ cannot be incremental"
@@ -163,7 +163,7 @@ def unfit_for_call(letter: str, entries: Mapping[str, WrittenEntry]) -> str | No
 
 
 def value_in_call(letter: str, entries: Mapping[str, WrittenEntry]) -> Decimal:
-    """Return the number that the call gets: Z/ from W, L/ below zero."""
+    """Return the value for the call: Z/ from W, L/ below zero."""
     entry = entries[letter]
     if entry.incremental and letter == "Z":
         return entries["W"].value + entry.value
@@ -173,7 +173,7 @@ def value_in_call(letter: str, entries: Mapping[str, WrittenEntry]) -> Decimal:
 
 
 def from_the_tool(letter: str, entry: WrittenEntry) -> bool:
-    """Tell whether the call has to add the entry to where the tool stands."""
+    """Return whether the call has to add the entry to the tool's position."""
     return entry.incremental and letter in "XY"
 
 

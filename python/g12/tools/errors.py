@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the tools cannot do: told in one line, with an exit code, by the commands."""
+"""Errors of the tools, which the commands print in one line, with an exit code."""
 
 from __future__ import annotations
 
 
 class UsageError(ValueError):
-    """The command cannot do what was asked: a wrong file, suffix or word."""
+    """A wrong file, suffix or word on the command line."""
 
 
 class ProgramError(RuntimeError):
-    """The program itself does not come to its end; names its line and LinuxCNC's text."""
+    """The program does not run to its end; has its line and LinuxCNC's text."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a command says while long work goes on."""
+"""Progress messages of a command during long work."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TypeVar
 
 TICK = 1.0  # s, on a terminal
-LINE_TICK = 5.0  # s, elsewhere: every line stays
+LINE_TICK = 5.0  # s, not on a terminal, where every line remains
 HIDDEN = "\r\033[K"
 
 Item = TypeVar("Item")
@@ -19,15 +19,15 @@ Tell = Callable[[str], None]
 
 
 def silent(_text: str) -> None:
-    """Say nothing."""
+    """Report nothing."""
 
 
 @contextlib.contextmanager
 def working(text: str, clock: bool = False) -> Iterator[Tell]:
-    """Say what is being done on standard error if it takes long; yields what changes the text.
+    """Report work on standard error if it takes long; yields the function that changes the text.
 
-    An empty text says nothing. ``clock`` is for what takes long for sure: a terminal shows for
-    how many seconds it goes on, elsewhere it is said at once.
+    An empty text is not printed. ``clock`` is for work that is known to take long: a terminal shows
+    the seconds so far, any other output gets the text at once.
     """
     now, done = [text], threading.Event()
     tick = _tick_on_terminal if sys.stderr.isatty() else _tick_in_lines
@@ -41,14 +41,14 @@ def working(text: str, clock: bool = False) -> Iterator[Tell]:
 
 
 def counted(items: Sequence[Item], what: str, tell: Tell) -> Iterator[Item]:
-    """Yield items, telling of each: ``what`` 37 of 300."""
+    """Yield items, reporting each: ``what`` 37 of 300."""
     for number, item in enumerate(items, start=1):
         tell(f"{what} {number} of {len(items)}")
         yield item
 
 
 def print_all(lines: Iterable[str]) -> None:
-    """Print what a work tells as it goes on; it is done even if nobody reads that to its end."""
+    """Print the lines of some work as they come; finish it even if the reader closes the pipe."""
     unread = None
     for line in lines:
         try:

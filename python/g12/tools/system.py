@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The system that LinuxCNC is installed on, and how the commands are called on it."""
+"""LinuxCNC's system, and the call of the commands on it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PROGRAM = Path(__file__).parents[1]  # the folder python/g12
 
 
 def call() -> str:
-    """Return how the commands are called: as it was typed, else as from the package's folder."""
+    """Return the call of the commands as typed, else as from the package's folder."""
     if __file__.startswith(DEBIAN_PACKAGE):
         return "g12"
     typed = Path(sys.argv[0]) if sys.argv[:1] else Path()

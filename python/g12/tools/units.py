@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Units of length as they are shown to people; everything else is in millimetres."""
+"""Units of length for output; everything else is in millimetres."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Unit(NamedTuple):
         return plain(length / self.mm, self.decimals)
 
     def fine(self, length: float) -> str:
-        """Return a small length in mm as text in this unit, with two digits that count, or ∞."""
+        """Return a small length in mm as text in this unit, with two significant digits, or ∞."""
         value = length / self.mm
         if not math.isfinite(value):
             return "∞"
@@ -39,7 +39,7 @@ UNITS = {"mm": MM, "inch": Unit("in", MM_PER_INCH, 4)}
 
 
 def unit_of(gcodes: Container[str], name: str | None = None) -> Unit:
-    """Return the unit of that name, without one that of a program's active G codes."""
+    """Return the unit of a name, by default that of a program's active G codes."""
     return UNITS[name or ("inch" if "G20" in gcodes else "mm")]
 
 
@@ -49,7 +49,7 @@ def name_of_unit(mm: float) -> str:
 
 
 def counted_as(count: int, what: str) -> str:
-    """Return a count with the word for what is counted: 1 move, 2 moves."""
+    """Return a count with its noun: 1 move, 2 moves."""
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 

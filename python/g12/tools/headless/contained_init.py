@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Start a command where no namespaces can be had; run by ``namespaces`` as a program.
+"""Start a command on a system without namespaces; run by ``namespaces`` as a program.
 
-The container, or whoever forbids them, is the isolation: one LinuxCNC runs at a time, others of
-this package wait for their turn, and a LinuxCNC of somebody else's is not disturbed but told.  What
-a private directory is elsewhere is here a copy in a tree of links that looks like the real one.
-
-The job is that of ``namespaces_init``, and ``turn``, the open file whose lock says whose turn it
-is; of the files that ``covers`` names only programs can be had.
+The container that forbids them is the isolation. One LinuxCNC runs at a time: others of this
+package wait for their turn, and a foreign LinuxCNC is an error, not disturbed. A private directory
+is a copy in a tree of links that mirrors the real one. The job is that of ``namespaces_init``, and
+``turn``, the open file whose lock marks the turn. Of the files in ``covers`` only programs are
+supported.
 """
 
 import contextlib
@@ -31,12 +30,12 @@ from namespaces_init import (
 PR_SET_CHILD_SUBREAPER, PR_SET_NO_NEW_PRIVS = 36, 38
 IPC_RMID = 0
 LINUXCNC_LOCK = "/tmp/linuxcnc.lock"
-LINUXCNC = re.compile(r"milltask|linuxcncsvr|rtapi")  # names of its processes
+LINUXCNC = re.compile(r"milltask|linuxcncsvr|rtapi")  # names of LinuxCNC's processes
 PATIENCE = 15.0  # s for LinuxCNC to clean up after itself
 
 
 def running() -> list[str]:
-    """Return the processes of a LinuxCNC that runs here."""
+    """Return the processes of a running LinuxCNC."""
     names = {}
     for entry in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -48,7 +47,7 @@ def running() -> list[str]:
 
 
 def refuse_beside_another() -> None:
-    """Raise if somebody else's LinuxCNC runs here."""
+    """Raise if a foreign LinuxCNC is running."""
     found = running()
     if found:
         raise IsolationError(
@@ -60,7 +59,7 @@ def refuse_beside_another() -> None:
 def mirrored(directory: str, files: dict[str, str], tree: str) -> str:
     """Return a private copy of a directory inside ``tree``, whose other entries are links.
 
-    Its files are copies, ``files`` texts that stand in place of some.
+    Its files are copies, some replaced by the texts in ``files``.
     """
     real, copy = "/", tree
     for part in os.path.realpath(directory).strip("/").split("/"):
@@ -86,7 +85,7 @@ def link_entries(real: str, copy: str, besides: str) -> None:
 
 
 def moved(command: list[str], job: dict) -> list[str]:
-    """Return the command with names in the copied directories as they are in the tree."""
+    """Return the command with paths in the copied directories moved to the tree."""
     tree = os.path.join(job["scratch"], "tree")
     for directory, files in job["copies"].items():
         copy = mirrored(directory, files, tree)
@@ -99,7 +98,7 @@ def moved(command: list[str], job: dict) -> list[str]:
 
 
 def put_in_front(covers: dict[str, str], folder: str) -> None:
-    """Give a config its ``bin``, where LinuxCNC looks for programs first, with these in it."""
+    """Put programs into a config's ``bin``, where LinuxCNC searches first."""
     own = os.path.realpath(folder)
     if os.path.islink(folder):
         os.unlink(folder)
@@ -111,7 +110,7 @@ def put_in_front(covers: dict[str, str], folder: str) -> None:
 
 
 def shared_memory() -> set[int]:
-    """Return the numbers of the shared memory segments there are."""
+    """Return the numbers of the existing shared memory segments."""
     with open("/proc/sysvipc/shm", encoding="ascii") as file:
         return {int(line.split()[1]) for line in file.readlines()[1:]}
 
@@ -135,7 +134,7 @@ def wait_for(child: int) -> int:
 
 
 def end_all(before: set[int]) -> None:
-    """End every process that is left, and free the shared memory that is."""
+    """End every remaining process, and free the remaining shared memory."""
     end = time.monotonic() + PATIENCE
     while (left := children()) and time.monotonic() < end:
         for number in left:
@@ -146,14 +145,14 @@ def end_all(before: set[int]) -> None:
                 time.sleep(0.1)  # LinuxCNC's realtime part may be root's: it ends by itself
     for number in shared_memory() - before:
         libc.shmctl(number, IPC_RMID, None)
-    with contextlib.suppress(OSError):  # there is none, or it is an old one of another user's
+    with contextlib.suppress(OSError):  # none, or an old one of another user
         os.unlink(LINUXCNC_LOCK)
 
 
 def main() -> int:
     """Run the job and return its exit code."""
     job = json.loads(sys.stdin.readline())
-    os.set_inheritable(job["turn"], False)  # it is held until this process ends
+    os.set_inheritable(job["turn"], False)  # the lock is held until this process ends
     refuse_beside_another()
     before = shared_memory()
     raise_if_failed(libc.prctl(PR_SET_CHILD_SUBREAPER, 1), "taking in orphans")
@@ -165,7 +164,7 @@ def main() -> int:
         code = wait_for(child)
     finally:
         end_all(before)
-    if select.select([sys.stdin], [], [], 0)[0]:  # closed: nobody is left to do it
+    if select.select([sys.stdin], [], [], 0)[0]:  # closed: the starting process has ended
         shutil.rmtree(job["scratch"], ignore_errors=True)
     return code & 0xFF
 

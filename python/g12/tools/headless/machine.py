@@ -2,12 +2,12 @@
 """Real runs: a headless LinuxCNC (milltask and motion) on any INI, isolated and measured.
 
 Every machine has its own IPC, PID, mount and network namespace, its own HOME, /tmp and runtime
-directory, so several run side by side and a LinuxCNC already running is never touched.  The
+directory, so several run at once, and a LinuxCNC that is already running is not affected.  The
 INI's directory is replaced by a private copy, so that nothing in it is ever written.
 
 Positions and speeds are in machine units (``Machine.mm`` is one of them in mm), degrees for
 rotary axes; sampled positions are those of the axes, tool length included, or of the joints where
-the kinematics makes the axes mean other things (`polar_xzc`).
+the kinematics changes the meaning of the axes (`polar_xzc`).
 """
 
 import shutil
@@ -34,7 +34,7 @@ from g12.tools.preview.tracer import (
 )
 
 PACKAGE = Path(__file__).resolve().parents[3]  # the directory that holds the package g12
-MARGIN = 10.0  # s that an answer may take beyond the timeout asked for
+MARGIN = 10.0  # s that an answer may take beyond the requested timeout
 NS_PER_S = 1e9
 LOG_LINES = 60
 FAREWELL = "LinuxCNC terminated with an error"  # after it only where to read the same
@@ -45,7 +45,7 @@ SCREEN = {"DISPLAY": SCREEN_NAME}
 ANY_OVERRIDE = {"MAX_FEED_OVERRIDE": 100}
 
 TOOL_CHANGE_DIALOGUE = "hal_manualtoolchange"
-# Stands in for the screen's tool change dialogue: whoever asks for a tool has it.
+# Replaces the screen's tool change dialogue: every requested tool is confirmed.
 TOOL_CHANGE = """\
 import hal, time
 component = hal.component("hal_manualtoolchange")
@@ -67,26 +67,24 @@ serve_runner({address!r}, {pins!r})
 
 
 class StartupError(RuntimeError):
-    """LinuxCNC did not come up; the text ends with LinuxCNC's own log."""
+    """LinuxCNC did not start; the text ends with LinuxCNC's own log."""
 
 
 class MachineError(RuntimeError):
-    """LinuxCNC did not do what it was asked."""
+    """LinuxCNC did not carry out a command."""
 
 
 class Timeout(MachineError):
-    """The machine did not get there in time."""
+    """The machine did not reach a state in time."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """A program run from its start; ``error`` is None if it came to its end.
+    """A program run from its start; ``error`` is None if it ran to its end.
 
-    LinuxCNC does not tell lines with errors and messages: theirs is the line last read, 0 if
-    that was gone.  ``trace`` has the exact ones.
-
-    ``seconds`` is machine time from the first to the last sample in motion, ``position`` where
-    the axes stood at the end.
+    LinuxCNC reports no lines with errors and messages: theirs is the line last read, 0 if that is
+    unknown. ``trace`` has the exact ones. ``seconds`` is machine time from the first to the last
+    sample in motion, ``position`` that of the axes at the end.
     """
 
     samples: Samples
@@ -100,10 +98,10 @@ class Run:
 class Machine:
     """A headless LinuxCNC, running, switched on and homed inside its ``with`` block.
 
-    ``overrides`` and ``tools`` as for ``trace.Tracer``; ``parameters`` is what stands in the
-    var file at the start (``{5221: 10.0}`` is G54 X10 in machine units) or a var file.
-    ``home=False`` leaves the machine in e-stop.  ``timeout`` in seconds is for coming up.
-    ``screen_module`` answers inside LinuxCNC; Python looks for it in ``screen_folders``.
+    ``overrides`` and ``tools`` as for ``trace.Tracer``; ``parameters`` is the content of the var
+    file at the start (``{5221: 10.0}`` is G54 X10 in machine units) or a var file. ``home=False``
+    leaves the machine in e-stop.  ``timeout`` in seconds is for the start. ``screen_module``
+    answers inside LinuxCNC; Python looks for it in ``screen_folders``.
     """
 
     screen_module = "g12.tools.headless.recording_screen"
@@ -144,11 +142,11 @@ class Machine:
         return self._isolated.folder
 
     def feed_override(self, scale: float) -> None:
-        """Set the feed override; 1 is 100 %, and the INI's limit does not hold here."""
+        """Set the feed override; 1 is 100 %, without the INI's limit."""
         self._ask("feed_override", scale)
 
     def run(self, program: Program, timeout: float = 600.0) -> Run:
-        """Run a program file to its end or its error, passing over M0 and M1.
+        """Run a program file to its end or its error, resuming at M0 and M1.
 
         LinuxCNC works on a copy of it.
         """
@@ -194,7 +192,7 @@ class Machine:
 
     def _private_ini(self, ini: Ini, tools: Tools, parameters: Parameters) -> Ini:
         """Return the INI with this machine's own screen and files, which it writes."""
-        any_override = {} if face_joints(ini.get) else ANY_OVERRIDE  # where no feed goes by it
+        any_override = {} if face_joints(ini.get) else ANY_OVERRIDE  # no feed depends on it
         table = write_tools(tools, ini, self.folder / "tool.tbl")
         variables = write_parameters(parameters, self.folder / "machine.var")
         return ini.replaced(
@@ -280,7 +278,7 @@ def position_pins(ini: Ini) -> dict[str, str]:
 
 
 def telling_lines(log: str) -> list[str]:
-    """Return the lines of LinuxCNC's log up to the last that says what went wrong."""
+    """Return the lines of LinuxCNC's log up to the last one that reports an error."""
     lines = log.partition(FAREWELL)[0].splitlines()
     while lines and lines[-1].startswith(SHUTTING_DOWN):
         lines.pop()

@@ -31,13 +31,13 @@ NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "INI_FILE_NAME")
 
 
 class OneAtATime(RuntimeError):
-    """A second process was to be started without namespaces while one's own still runs."""
+    """A second process was started without namespaces while the first still runs."""
 
 
 class Isolated:
     """One isolated process: ``folder`` is its scratch directory."""
 
-    _contained: Isolated | None = None  # the one of this program that has its turn
+    _contained: Isolated | None = None  # the process of this program that is running
 
     def __init__(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="g12-", dir="/tmp"))
@@ -48,7 +48,7 @@ class Isolated:
         self._process: subprocess.Popen | None = None
 
     def install(self, name: str, code: str) -> Path:
-        """Make a program of Python code that the process finds by its name."""
+        """Install Python code as a program that the process finds by its name."""
         script = self.folder / "bin" / f"{name}.py"
         script.write_text(code, encoding="utf-8")
         program = self.folder / "bin" / name
@@ -66,10 +66,10 @@ class Isolated:
     ) -> None:
         """Start ``command``.
 
-        ``copies`` are directories of which it sees a private copy, with texts of files to
-        stand there instead; ``covers`` files to be seen in place of others; ``environment``
-        adds variables, of which a screen's are otherwise not handed on.  Without namespaces it
-        waits until another program's turn ends.
+        ``copies`` are directories that are replaced by private copies, with texts for some of their
+        files. ``covers`` are files that replace others. ``environment`` adds variables; those of a
+        screen are not passed on otherwise. Without namespaces it waits until another program's turn
+        ends.
         """
         job: dict[str, Any] = {
             "command": list(command),
@@ -128,7 +128,7 @@ class Isolated:
 
 
 def lock_file() -> IO:
-    """Open the file whose lock is held by the one whose turn it is; it may be another user's."""
+    """Open the file whose lock marks the turn; it may be another user's."""
     while True:
         with contextlib.suppress(FileNotFoundError):
             return LOCK.open("rb")
@@ -155,7 +155,7 @@ def has_namespaces() -> bool:
 def started(script: Path, job: Mapping[str, object], log: IO, *kept: int) -> subprocess.Popen:
     """Start a script with its job; it ends when its standard input is closed.
 
-    ``kept`` are open files that it has too.
+    ``kept`` are open files that it inherits.
     """
     streams: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": log, "stderr": log}
     command = [PYTHON, str(script)]

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Start a command in namespaces of its own; run by ``headless`` as a program.
 
-The command sees its own processes, shared memory, network and /tmp, so nothing of a LinuxCNC
-outside can reach it or be reached.  Files outside keep their names; directories named in the
-job are replaced by copies that take all writing.  Everything ends with this process, and this
-process ends when its standard input is closed.
+The command sees its own processes, shared memory, network and /tmp, so it and a LinuxCNC outside
+cannot affect each other.  Files outside keep their names; directories named in the job are replaced
+by copies, which get all writes.  Everything ends with this process, and this process ends when its
+standard input is closed.
 
 The job is a line of JSON on standard input: ``command``, ``environment``, ``copies``, a map of
-directory to the files that stand in it in place of the real ones, ``covers``, a map of file to
-the file to be seen in its place, and ``scratch``, a directory to be removed if the other end of
-standard input goes away.
+directory to the files that replace real ones in it, ``covers``, a map of file to the file that
+replaces it, and ``scratch``, a directory to be removed if the other end of standard input goes
+away.
 """
 
 import ctypes
@@ -26,7 +26,7 @@ CLONE_NEWUSER, CLONE_NEWPID, CLONE_NEWNET = 0x10000000, 0x20000000, 0x40000000
 MS_BIND, MS_REC, MS_PRIVATE = 4096, 16384, 1 << 18
 PR_SET_PDEATHSIG = 1
 LARGEST_COPY = 1 << 20  # bytes; larger files are shared with the real directory
-REFUSED = 125  # exit code where a namespace or a mount cannot be had
+REFUSED = 125  # exit code: the kernel refuses a namespace or a mount
 PRIVATE_IN_TMP = "linuxcnc."  # LinuxCNC's lock and log files
 
 libc = ctypes.CDLL(None, use_errno=True)
@@ -37,7 +37,7 @@ class IsolationError(OSError):
 
 
 def raise_if_failed(result: int, action: str) -> None:
-    """Raise with the kernel's reason if a call failed."""
+    """Raise with the kernel's reason for a failed call."""
     if result:
         raise IsolationError(f"{action}: {os.strerror(ctypes.get_errno())}")
 
@@ -88,14 +88,16 @@ def mirror(directory: str, files: dict[str, str], copy: bool) -> None:
         try:
             place(entry, target, copy)
         except OSError:
-            if os.path.lexists(entry.path):  # others may remove theirs from /tmp at any time
+            if os.path.lexists(
+                entry.path
+            ):  # other processes may remove theirs from /tmp at any time
                 raise
     for name, text in files.items():
         write_text(os.path.join(directory, name), text)
 
 
 def place(entry: os.DirEntry, target: str, copy: bool) -> None:
-    """Let an entry of the real directory appear in the private one, unless it cannot be read."""
+    """Make an entry of the real directory appear in the private one, unless it cannot be read."""
     if entry.is_symlink():
         os.symlink(os.readlink(entry.path), target)
     elif entry.is_dir():
@@ -130,7 +132,7 @@ def prepare(job: dict) -> None:
 
 
 def first_process(job: dict) -> int:
-    """Run the command as process 1 of its namespace; the end of it is the end of all."""
+    """Run the command as process 1 of its namespace, whose end ends all others."""
     libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     prepare(job)
     child = os.posix_spawnp(job["command"][0], job["command"], job["environment"])
@@ -153,7 +155,7 @@ def supervise(child: int, scratch: str) -> int:
 
 
 def main() -> int:
-    """Run the job and return its exit code; only the supervising process comes back."""
+    """Run the job and return its exit code; only the supervising process returns."""
     job = json.loads(sys.stdin.readline())
     try:
         unshare()

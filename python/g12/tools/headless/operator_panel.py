@@ -11,9 +11,9 @@ from typing import Any
 import linuxcnc
 
 TICK = 0.01  # s, between looks at the status
-QUIET = 1.0  # s, without a joint homing: there was nothing to home, or it is done
-STANDING = 5.0  # s, that no joint moves while one is homing: no home switch waits so long
-DECIMALS = 6  # of a joint's place
+QUIET = 1.0  # s without a joint homing: nothing to home, or done
+STANDING = 5.0  # s without motion while a joint is homing: longer than any home switch takes
+DECIMALS = 6  # of a joint's position
 GRACE = 5.0  # s, for the machine to react to a command
 ERRORS = (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR)
 NOTICE = "motion.switchkins-type is deprecated"  # once a session, by a LinuxCNC with its own G12.1
@@ -25,11 +25,11 @@ TASK_MODES = {
 
 
 class PanelError(RuntimeError):
-    """LinuxCNC did not do what the operator asked."""
+    """LinuxCNC did not carry out an operator's command."""
 
 
 class PanelTimeout(PanelError):
-    """LinuxCNC did not get there in time."""
+    """LinuxCNC did not reach a state in time."""
 
 
 class Panel:
@@ -46,7 +46,7 @@ class Panel:
     # Looking.
 
     def look(self):
-        """Return LinuxCNC's present status and collect what it says to the operator."""
+        """Return LinuxCNC's present status and collect its messages to the operator."""
         self._stat.poll()
         said = self._channel.poll()
         while said:
@@ -91,7 +91,7 @@ class Panel:
         self.wait(lambda stat: stat.enabled, GRACE, "machine power")
 
     def home(self, timeout: float = 60.0) -> None:
-        """Home all joints: in the INI's sequence, and then those that have none."""
+        """Home all joints: in the INI's sequence, then those without one."""
         self._mode(linuxcnc.MODE_MANUAL)
         self._do(self._command.teleop_enable, 0)
         self._home(-1, timeout)
@@ -101,7 +101,7 @@ class Panel:
         self.wait(self._homed, GRACE, "homing of every joint")
 
     def _home(self, joint: int, timeout: float) -> None:
-        """Home a joint, or all with -1, as far as LinuxCNC does; refuse to wait for a stop."""
+        """Home a joint, or all with -1; raise when homing makes no progress."""
         self._do(self._command.home, joint)
         homing_at = moved_at = time.monotonic()
         last = None
@@ -150,7 +150,7 @@ class Panel:
         self._do(self._command.feedrate, scale)
 
     def finish(self, timeout: float) -> None:
-        """Wait until the program is done, passing over program stops (M0, M1)."""
+        """Wait until the program is done, resuming at program stops (M0, M1)."""
         self.wait(lambda stat: self.is_idle(stat) or self._pass_stop(stat), timeout, "end")
 
     def _pass_stop(self, stat) -> bool:
@@ -160,7 +160,7 @@ class Panel:
 
     @staticmethod
     def is_idle(stat) -> bool:
-        """Return whether the interpreter is done and the axes stand."""
+        """Return whether the interpreter is idle and the axes are at rest."""
         done = stat.interp_state == linuxcnc.INTERP_IDLE and not stat.queue
         return done and stat.inpos and stat.exec_state in (linuxcnc.EXEC_DONE, linuxcnc.EXEC_ERROR)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The screen program of a headless run: takes the runner's requests over a socket.
 
-LinuxCNC starts it in place of the INI's screen.  A request is a tuple of a method's name and
+LinuxCNC starts it instead of the INI's screen.  A request is a tuple of a method's name and
 its arguments, the answer a pair: whether it worked, and the result or the error.
 """
 
@@ -16,7 +16,7 @@ import hal
 from g12.tools.headless.operator_panel import Panel, PanelError, PanelTimeout
 
 DEPTH = 20000  # samples in HAL's buffer: 20 s at 1 kHz
-DRAIN = 0.05  # s between looks into it
+DRAIN = 0.05  # s between reads of it
 THREAD = "servo-thread"
 MOTION = (
     ("f", "motion.current-vel"),
@@ -43,7 +43,7 @@ class Sampler:
         self.rows = array.array("d")
 
     def start(self) -> None:
-        """Forget what was recorded and record from now on."""
+        """Discard the samples so far and record from now on."""
         hal.set_p("sampler.0.enable", "0")
         time.sleep(DRAIN)
         self.drain()
@@ -59,7 +59,7 @@ class Sampler:
         return self.rows.tobytes(), int(hal.get_value("sampler.0.overruns"))
 
     def drain(self) -> None:
-        """Take what HAL has recorded."""
+        """Read the samples from HAL's buffer."""
         row = self._stream.read()
         while row is not None:
             self.rows.extend(row)
@@ -77,17 +77,17 @@ class RecordingScreen:
         self.panel = self.panel_kind(self.tick)
 
     def tick(self) -> None:
-        """Keep HAL's buffer from running over."""
+        """Keep HAL's buffer from overrunning."""
         if time.monotonic() - self._drained > DRAIN:
             self.sampler.drain()
             self._drained = time.monotonic()
 
     def answer(self, name: str, *arguments):
-        """Do what a request asks: a method here, or of the panel."""
+        """Call the method of a request, here or of the panel."""
         return getattr(self if hasattr(self, name) else self.panel, name)(*arguments)
 
     def run(self, program: str, timeout: float) -> dict:
-        """Run a program to its end; return what was recorded and said, and how it ended."""
+        """Run a program to its end; return samples, messages and how it ended."""
         panel = self.panel
         panel.open(program)
         panel.errors(), panel.messages()
@@ -115,7 +115,7 @@ def halcmd(*words: str) -> None:
 
 
 def connect(source: str, target: str, kind: str) -> None:
-    """Let ``target`` read the output pin ``source``, whatever else reads it."""
+    """Connect ``target`` to the output pin ``source``, beside its other readers."""
     signal = signals_by_pin().get(source)
     if signal is None:
         signal = f"g12-{source}"

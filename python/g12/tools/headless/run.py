@@ -19,7 +19,7 @@ def run_program(
     parameters: Parameters = None,
     override: float = 100.0,
 ) -> Run:
-    """Return the run of a program that comes to its end, or raise ProgramError.
+    """Return the run of a program that runs to its end, or raise ProgramError.
 
     ``override`` is the feed override in per cent.
     """
@@ -39,7 +39,7 @@ def run_anyhow(
 ) -> Run:
     """Return the run of a program that may end with an error; ``timeout`` is in seconds.
 
-    LinuxCNC runs a copy of the program; where it names that, the program's own name is put.
+    LinuxCNC runs a copy of the program; the program's own name replaces the copy's in its texts.
     """
     faster = {"DISPLAY": {"MAX_FEED_OVERRIDE": max(1.0, override / 100.0)}}
     with Machine(ini, tools=tools, parameters=parameters, overrides=faster) as machine:

@@ -4,8 +4,8 @@
 
 Switches the machine on, homes it, runs one program to its end and leaves, whereupon LinuxCNC
 shuts down.  The program is the one named after the INI on LinuxCNC's command line, or else
-``[DISPLAY] OPEN_FILE``; with neither it only homes.  A program stop (M0, M1) is passed over.
-The exit code, LinuxCNC's too, is 0 if the program came to its end and 1 if not.
+``[DISPLAY] OPEN_FILE``; with neither it only homes.  It resumes at a program stop (M0, M1).
+The exit code, also LinuxCNC's, is 0 if the program ran to its end, else 1.
 """
 
 import argparse
@@ -32,7 +32,7 @@ def program_to_run(ini: Ini, named: list[str]) -> Path | None:
 
 
 def print_said(panel: Panel, program: OpenedProgram | None) -> bool:
-    """Print what LinuxCNC said; tell whether there was an error among it."""
+    """Print LinuxCNC's messages; return whether one is an error."""
     for text, _ in panel.messages():
         print(f"message: {text}", flush=True)
     errors = panel.errors()
@@ -45,7 +45,7 @@ def print_said(panel: Panel, program: OpenedProgram | None) -> bool:
 
 
 def run_to_end(panel: Panel, program: OpenedProgram | None) -> bool:
-    """Home the machine, run the program and tell whether it came to its end."""
+    """Home the machine, run the program, and return whether it ran to its end."""
     panel.enable()
     panel.home()
     if program is None:
@@ -57,7 +57,7 @@ def run_to_end(panel: Panel, program: OpenedProgram | None) -> bool:
 
 
 def main(arguments: list[str]) -> int:
-    """Run as LinuxCNC calls its screen: ``-ini INI`` and what the user named after the INI."""
+    """Run with the arguments of a screen: ``-ini INI`` and the user's own after it."""
     parser = argparse.ArgumentParser(description="The screen of a machine without one.")
     parser.add_argument("-ini", required=True)
     parser.add_argument("program", nargs="*")

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What of a part stands while a program cuts it, at any of its moves and any Z level."""
+"""The remaining material of a part at any move of a program and any Z level."""

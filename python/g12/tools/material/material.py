@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The material of a part: solid below a top, less what was cut to a level or below it.
+"""The material of a part: solid below a top, less the areas cut to a level or below it.
 
-A part is made of solids, each an area of the plane and the top below which it is material. Cuts
-take away: each an area, the level down to which it is free, and the move that makes it. So what
-stands is known at every move of a program, and the order of questions does not matter. The plane
+A part is made of solids, each an area of the plane and the top below which it is material. Each cut
+removes material: it has an area, the level down to which that is free, and its move. So the
+remaining material is known at every move of a program, and queries may come in any order. The plane
 and the levels are those of the points that come in: X, Y and Z of a mill, the face of a lathe, or
 the unrolled surface of a cylinder, whose level is the radius; that has a ``period``.
 
-Areas are worked out where somebody asks for them, once for equal toolpaths. Lengths are mm.
+Areas are computed at their first use, once for equal toolpaths. Lengths are mm.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from shapely.ops import unary_union
 from g12.tools.path.part import swept
 
 SAME_LEVEL = 1e-3
-ALLOWED = 0.05  # that a rapid may go into material: the rounding of a run's corners
-LEAST_AREA = 0.05  # mm² that a rapid meets
-STEP = 0.5  # between the points of a rapid that are looked at
-BAND, MOST_BANDS = 0.25, 40  # levels into which a move that falls is divided
+ALLOWED = 0.05  # depth of a rapid into material that counts as none: blended corners of a run
+LEAST_AREA = 0.05  # mm²: a smaller area touched by a rapid counts as none
+STEP = 0.5  # between the evaluated points of a rapid
+BAND, MOST_BANDS = 0.25, 40  # levels into which a descending move is divided
 NOTHING = Polygon()
-ALWAYS = -1  # the move that cuts what was open before the program began
+ALWAYS = -1  # move number of openings that exist before the program
 
 Bounds = Sequence[float]  # least and greatest of both coordinates of the plane
 Drawn = Callable[[], np.ndarray]  # points (n, 2) along a path
 
 
 class Portion(NamedTuple):
-    """A portion of a toolpath in the plane (n, 2), and between which levels it lies."""
+    """A portion of a toolpath in the plane (n, 2), with its lowest and highest level."""
 
     line: np.ndarray
     low: float
@@ -46,14 +46,14 @@ class Portion(NamedTuple):
 
 
 class Touch(NamedTuple):
-    """Material that a move goes through: its area, and the tool's points (n, 3) where it does."""
+    """Material that a move goes through: its area, and the tool's points (n, 3) there."""
 
     area: float
     points: np.ndarray
 
 
 class _Cuts:
-    """Areas with their levels and moves, found by their bounds."""
+    """Areas with their levels and moves, for a search by bounds."""
 
     def __init__(self) -> None:
         self.areas: list[_Area | _Given] = []
@@ -69,21 +69,21 @@ class _Cuts:
         return np.array(self._rows).reshape(-1, 6).T
 
     def within(self, bounds: Bounds, level: float, before: float) -> np.ndarray:
-        """Return the indices of what may lie within bounds, down to a level, before a move."""
+        """Return the indices of cuts that may lie within bounds, down to a level, before a move."""
         x0, y0, x1, y1, levels, moves = self._table
         found = (x0 <= bounds[2]) & (x1 >= bounds[0]) & (y0 <= bounds[3]) & (y1 >= bounds[1])
         return np.flatnonzero(found & (levels <= level + SAME_LEVEL) & (moves < before))
 
 
 class _Area:
-    """An area, worked out when it is asked for: swept by a cutter, or as it is."""
+    """An area, computed at its first use: swept by a cutter, or given."""
 
     def __init__(self, bounds: Bounds, draw: Drawn, radius: float, known: dict) -> None:
         self.bounds, self._draw, self._radius, self._known = bounds, draw, radius, known
 
     @cached_property
     def shape(self) -> BaseGeometry:
-        """The area; that of an equal path elsewhere is moved here."""
+        """The area; that of an equal path elsewhere is translated."""
         line = self._draw()
         start = line[0]
         shifted = line - start
@@ -94,7 +94,7 @@ class _Area:
 
 
 class _Given(NamedTuple):
-    """An area that is known as it is, up to a move."""
+    """A given area, valid up to a move."""
 
     shape: BaseGeometry
     until: float = math.inf
@@ -105,7 +105,7 @@ class _Given(NamedTuple):
 
 
 class Material:
-    """What of a part stands; see the head of this file."""
+    """The remaining material of a part; see the head of this file."""
 
     def __init__(self, period: float = 0.0) -> None:
         self._solids, self._cuts = _Cuts(), _Cuts()
@@ -122,12 +122,12 @@ class Material:
             self.top = max(self.top, top)
 
     def open(self, area: BaseGeometry, level: float = -math.inf) -> None:
-        """Take away what was never there: a hole, down to a level."""
+        """Remove material that never existed: a hole, down to a level."""
         if not area.is_empty:
             self._cuts.add(_Given(area), level, ALWAYS)
 
     def cut(self, move: int, points: np.ndarray, radius: float) -> None:
-        """Take away what a cutter of a radius sweeps along points (n, 3)."""
+        """Remove the area swept by a cutter of a radius along points (n, 3)."""
         if points[:, 2].min() >= self.top:
             return
         if goes_along_z(points):
@@ -140,7 +140,7 @@ class Material:
     def cut_level(
         self, move: int, bounds: Bounds, level: float, draw: Drawn, radius: float
     ) -> None:
-        """Take away what a cutter sweeps at a level along a path within bounds, drawn if needed."""
+        """Remove the area swept by a cutter at a level along a path within bounds."""
         if level < self.top:
             x0, y0, x1, y1 = bounds
             within = (x0 - radius, y0 - radius, x1 + radius, y1 + radius)
@@ -149,7 +149,7 @@ class Material:
     def standing(
         self, region: BaseGeometry, level: float, before: float = math.inf
     ) -> BaseGeometry:
-        """Return what of a region is material just below a level, before a move."""
+        """Return the material in a region just below a level, before a move."""
         found = [self._standing(part, level, before) for part in self._turned(region)]
         return unary_union(found) if len(found) > 1 else found[0]
 
@@ -169,14 +169,14 @@ class Material:
         return region.difference(self._shapes(self._cuts, away)) if len(away) else region
 
     def _unrolled(self, line: np.ndarray, radius: float) -> list[np.ndarray]:
-        """Return a path (n, 2) once for each turn of a surface that it cuts, on the first turn."""
+        """Return a path (n, 2) for each turn of a surface that it cuts, moved to the first turn."""
         if not self._period:
             return [line]
         turns = self._turns(line[:, 0].min() - radius, line[:, 0].max() + radius)
         return [line - (turn * self._period, 0.0) for turn in turns]
 
     def _turned(self, region: BaseGeometry) -> list[BaseGeometry]:
-        """Return a region of each turn of a surface on which it lies, moved to the first turn."""
+        """Return a region for each turn of a surface that it covers, moved to the first turn."""
         if not self._period or region.is_empty:
             return [region]
         low, high = region.bounds[1] - 1.0, region.bounds[3] + 1.0
@@ -188,14 +188,14 @@ class Material:
         return [each.intersection(first_turn) for each in moved]
 
     def _turns(self, least: float, most: float) -> range:
-        """Return the turns of a surface between two places round it."""
+        """Return the turns of a surface between two positions around it."""
         return range(math.floor(least / self._period), math.floor(most / self._period) + 1)
 
     def _shapes(self, cuts: _Cuts, indices: Iterable[int]) -> BaseGeometry:
         return unary_union([cuts.areas[index].shape for index in indices])
 
     def is_cut(self, region: BaseGeometry, level: float, before: float) -> bool:
-        """Tell whether something of a region was cut down to a level before a move."""
+        """Return whether a portion of a region was cut down to a level before a move."""
         return any(
             len(self._cuts.within(part.bounds, level, before))
             for part in self._turned(region)
@@ -221,12 +221,12 @@ class Material:
 
 
 def goes_along_z(points: np.ndarray) -> bool:
-    """Tell whether a path (n, 3) goes along the tool's axis."""
+    """Return whether a path (n, 3) is parallel to the tool's axis."""
     return bool(np.ptp(points[:, :2], axis=0).max() < ALLOWED)
 
 
 def going(points: np.ndarray) -> np.ndarray:
-    """Return points (n, 3) without what meets nothing new: a path straight up, all of one down."""
+    """Return the points (n, 3) that can meet new material: of a vertical path the lowest."""
     if not goes_along_z(points):
         return points
     lowest = int(points[:, 2].argmin())
@@ -234,7 +234,7 @@ def going(points: np.ndarray) -> np.ndarray:
 
 
 def portions(points: np.ndarray) -> Iterator[Portion]:
-    """Yield a toolpath (n, 3) in portions that each lie in a narrow band of levels."""
+    """Yield a toolpath (n, 3) in portions, each within a narrow band of levels."""
     if len(points) < 2 or np.ptp(points[:, 2]) < SAME_LEVEL:
         if len(points):
             yield Portion(points[:, :2], points[:, 2].min(), points[:, 2].max())
@@ -249,7 +249,7 @@ def portions(points: np.ndarray) -> Iterator[Portion]:
 
 
 def with_levels(points: np.ndarray, band: float) -> np.ndarray:
-    """Return a toolpath (n, 3) with so many points that none is farther below the one before."""
+    """Return a toolpath (n, 3) with points inserted to limit the fall from one to the next."""
     counts = np.maximum(1, np.ceil(np.abs(np.diff(points[:, 2])) / band - 1e-9)).astype(int)
     places = np.repeat(np.arange(len(counts)), counts)
     share = np.concatenate([np.arange(count) / count for count in counts])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The bar or the block that is cut, as a user says it, and where it is.
+"""The stock, a bar or a block, from the user's text, and its position.
 
 A bar turns about the spindle's centre, its face is the program's Z0. A block's top is the
-program's Z0; the program's X0 Y0 is its middle, or it is said where its corner is. A bore is in the
-middle of every pocket. Lengths are millimetres in machine coordinates but where a text is read.
+program's Z0; the program's X0 Y0 is its middle, unless the text has its corner. A bore is in the
+middle of every pocket. Lengths are millimetres in machine coordinates, except in texts.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ UNITS_MM = {unit.name: unit.mm for unit in UNITS.values()}
 class Stock(NamedTuple):
     """A bar by its ``diameter``, or a block by its ``size`` in X, Y and Z; 0 and None if it is not.
 
-    ``corner`` is where the block's least X and Y are from the program's zero, None for a block in
-    the middle; ``bore`` the diameter of the holes in it.
+    ``corner`` is the block's least X and Y from the program's zero, None for a block in the middle;
+    ``bore`` the diameter of the holes in it.
     """
 
     text: str
@@ -47,7 +47,7 @@ class Stock(NamedTuple):
     def shape(self, zero: np.ndarray, pockets: Sequence[Circle]) -> BaseGeometry:
         """Return its area as seen along Z; ``zero`` is the program's.
 
-        Without a block only the pockets are known to be in something.
+        Without a block, only the material around the pockets is known.
         """
         if self.diameter:
             return disc((0.0, 0.0), self.diameter / 2)
@@ -61,16 +61,16 @@ class Stock(NamedTuple):
 
 
 class StockText(NamedTuple):
-    """A stock as a user says it, and the name of the unit of its numbers; None: the program's."""
+    """A stock from the user's text, and the unit name of its numbers; None: the program's."""
 
     text: str
     units: str | None = None
 
 
 def read_stock(text: str, turning: bool, unit: Unit) -> Stock:
-    """Return the stock that a text says, for a machine that turns its part or a mill.
+    """Return the stock of a text, for a mill or a machine that turns its part.
 
-    A number without a unit is in ``unit``. Raises UsageError with the forms that there are.
+    A number without a unit is in ``unit``. Raises UsageError with the valid forms.
     """
     words = " ".join(text.lower().replace("×", "x").split())
     match = (BAR if turning else BLOCK).fullmatch(words)
