@@ -2,6 +2,7 @@
 """Programs as six stock posts write them: on an installed lathe they cut their drawing."""
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -20,10 +21,22 @@ TOLERANCE = 0.008  # mm: POLAR_TOLERANCE, and the last digit of the posts
 DEEPEST_RAPID = 0.9  # mm: what is below is cut
 TOP = 10.0  # mm: no part has anything above
 SOME = 3  # one of so many points, 0.1 to 0.2 mm apart, is looked at
+BAR = 20.5  # mm, its radius and a little
+FACE_HOLES = [(12, 30, -8), (12, 150, -8), (5, 270, -8), (15, 0, -12), (15, 90, -12)]
+SIDE_HOLES = [(15, 45, -10), (15, 135, -10), (15, 225, -20)]
+FEEDS = {3: 120, 2: 100, 1: 90}  # mm/min, by tool
 HOME = {
     "mm": ["G21 G7 G90", "G0 Z400", "G0 X300", "G0 C0"],
     "inch": ["G20 G7 G90", "G0 Z10", "G0 X10", "G0 C0"],
 }
+
+
+class DrilledWay(NamedTuple):
+    """A move at feed into the part, and where it ends: radius, angle, Z."""
+
+    tool: int
+    feed: float
+    end: tuple
 
 
 @pytest.fixture(scope="module")
@@ -44,24 +57,69 @@ def lathe(tmp_path_factory):
     yield installed
 
 
-def test_there_are_ten_programs_for_each_post():
+def test_there_are_ten_programs_and_one_of_holes_for_each_post():
     assert len(POSTS) == 6
-    assert all({path.stem for path in (CAM / post).glob("*.nc")} == {*PARTS} for post in POSTS)
+    written = {*PARTS, "holes"}
+    assert all({path.stem for path in (CAM / post).glob("*.nc")} == written for post in POSTS)
 
 
 @pytest.mark.parametrize("part", PARTS)
 @pytest.mark.parametrize("post", POSTS)
 def test_a_posted_program_cuts_its_drawing(lathe, post, part):
-    tracer = lathe(post)
-    home = HOME["inch" if post == "haas-lathe" else "mm"]
-    program = CAM / post / f"{part}.nc"
-    text = translation(program, post, "--ini", str(tracer.ini.path))
-    traced = tracer.trace_text(text, setup=home, alone=True)
-    assert traced.error is None, traced.error
-    made, wanted = on_the_part(traced.moves), wanted_path(PARTS[part])
+    moves = moves_of(lathe(post), post, part)
+    made, wanted = on_the_part(moves), wanted_path(PARTS[part])
     assert distances(made[made[:, 2] < DEEPEST_RAPID][::SOME], wanted).max() < TOLERANCE
     assert distances(wanted[::SOME], made[made[:, 2] < TOP]).max() < TOLERANCE
-    assert rapids_turn_above_the_part(traced.moves)
+    assert rapids_turn_above_the_part(moves)
+
+
+def moves_of(tracer, post, part):
+    """Return the moves of a posted program on an installed lathe."""
+    home = HOME["inch" if post == "haas-lathe" else "mm"]
+    text = translation(CAM / post / f"{part}.nc", post, "--ini", str(tracer.ini.path))
+    traced = tracer.trace_text(text, setup=home, alone=True)
+    assert traced.error is None, traced.error
+    return traced.moves
+
+
+@pytest.mark.parametrize("post", POSTS)
+def test_posted_holes_are_those_of_the_drawing(lathe, post):
+    moves = moves_of(lathe(post), post, "holes")
+    drilled = [hole_of(m) for m in moves if m.kind == "feed"]
+    assert ends(hole for hole in drilled if hole.tool > 1) == near_to(FACE_HOLES)
+    assert ends(hole for hole in drilled if hole.tool == 1) == near_to(
+        [] if post == "mazak-integrex" else SIDE_HOLES
+    )
+    assert all(hole.feed == pytest.approx(FEEDS[hole.tool], rel=1e-3) for hole in drilled)
+    assert not [m for m in moves if turns_in_the_bar(m)]
+
+
+def hole_of(move):
+    """Return a feed move as a way into the part; C and the slide across it stand."""
+    across = 0 if move.tool > 1 else 2
+    assert (move.start[across], move.start[5]) == (move.end[across], move.end[5]), move
+    return DrilledWay(move.tool, move.feed, (move.end[0], move.end[5] % 360, move.end[2]))
+
+
+def ends(ways):
+    """Return where the deepest of the ways at each place end: radius, angle, Z."""
+    deepest = {}
+    for tool, _, (x, c, z) in ways:
+        place = (round(x, 2), round(c), tool) if tool > 1 else (round(z, 2), round(c), tool)
+        deepest[place] = min(deepest.get(place, (x, c, z)), (x, c, z))
+    return sorted(deepest.values())
+
+
+def near_to(holes):
+    """Return holes to compare with: posts write inches with four decimals."""
+    return [pytest.approx(hole, abs=0.002) for hole in sorted(holes)]
+
+
+def turns_in_the_bar(move):
+    """Tell whether C or both slides move by rapid where the bar or a hole's wall is."""
+    moved = [a != b for a, b in zip(move.start, move.end)]
+    inside = [end[2] < DEEPEST_RAPID and end[0] < BAR for end in (move.start, move.end)]
+    return move.kind == "rapid" and any(inside) and (moved[5] or (moved[0] and moved[2]))
 
 
 def rapids_turn_above_the_part(moves):
