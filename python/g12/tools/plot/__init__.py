@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of what a program cuts."""
+"""Pictures of a program's toolpath and cut."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The window on the largest deviation of a run: programmed path, real motion, the gap between."""
+"""The detail view of a run's largest deviation: programmed path, actual motion, the gap."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from g12.tools.plot import style
 from g12.tools.plot.scene import Scene
 from g12.tools.units import Unit
 
-SIZE = 1.9  # inches, the window's sides
-NEIGHBOURS = 3  # moves before and after that are drawn
-WINDOW = 6.0  # half the window's side, in deviations
+SIZE = 1.9  # inches: the detail view's sides
+NEIGHBOURS = 3  # number of moves drawn before and after
+WINDOW = 6.0  # half the view's side, in deviations
 LEAST_WINDOW = 1e-4  # mm
 
 
 def size_of(worst: Worst, unit: Unit) -> str:
-    """Return the size of the largest deviation in words."""
+    """Return a text for the largest deviation."""
     least = "below " if worst.deviation < LEAST_WINDOW else ""
     return f"{least}{unit.fine(max(worst.deviation, LEAST_WINDOW))} {unit.name}"
 
 
 def draw_window(figure: Figure, corner: tuple[float, float], scene: Scene) -> None:
-    """Draw the window with its lower left corner (inches) there."""
+    """Draw the detail view with its lower left corner at a point (inches)."""
     worst = worst_of(scene.real, scene.moves)
     if worst is not None:
         _draw(style.add_axes(figure, *corner, SIZE, SIZE), scene, worst)
@@ -55,7 +55,7 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
 
 
 def window_lines(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
-    """Yield the lines below the window: size, place, feed; and what is off the contour itself."""
+    """Yield the lines below the view: size, position, feed, and the deviation from the contour."""
     fast = f" at {scene.override:g} % feed" if scene.override != 100.0 else ""
     letters = " and ".join(scene.path.part.letters[axis] for axis in pair)
     yield f"{size_of(worst, scene.unit)}{fast},"
@@ -65,13 +65,13 @@ def window_lines(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
 
 
 def most_telling(away: np.ndarray, way: np.ndarray) -> list[int]:
-    """Return the two axes of the part, in order, that show a deviation and the way there best."""
+    """Return the two axes of the part, in order, that show a deviation and its path best."""
     score = sum(vector**2 / max(vector @ vector, 1e-30) for vector in (away, way))
     return sorted(np.argsort(-score, kind="stable")[:2].tolist())
 
 
 def _stretch(points: np.ndarray, worst: Worst, half: float) -> np.ndarray:
-    """Return the samples in sequence about the worst one, as far as the window shows them."""
+    """Return the consecutive samples about the worst one within the view."""
     away = np.max(np.abs(points - worst.point), axis=1) > 3 * half
     before = np.flatnonzero(away[: worst.sample])
     after = np.flatnonzero(away[worst.sample :])

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The picture of a lathe program with C: the part's face as one looks at it, and what the axes do.
+"""The picture of a lathe program with C: the part's face, and the axes over time.
 
-Lengths are millimetres until they are drawn; those of the layout are inches on the page.
+The face is shown as one looks at it. Lengths are millimetres until they are drawn; those of the
+layout are inches on the page.
 """
 
 from __future__ import annotations
@@ -33,19 +34,19 @@ from g12.tools.units import plain
 
 WIDTH, HEIGHT = 11.9, 8.0
 LETTERS_APART = 0.11  # of the panel of Z
-HIGHER = 1.25  # with the window on the largest deviation
+HIGHER = 1.25  # with the detail view of the largest deviation
 LEFT, TOP = style.MARGIN, 1.05
-FACE = 5.0  # the side of the face's view
+FACE = 5.0  # side of the face's view
 ROOM, ROOM_BESIDE_WINDOW = 14, 14  # entries of the legend: in two columns, in one
 PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
-ROWS, PANEL, GAP = 5, 0.996, 0.3  # panels: how many, how high, between
+ROWS, PANEL, GAP = 5, 0.996, 0.3  # panels: number, height, gap
 
 
 class History(NamedTuple):
-    """What the machine does over time, arrays of one value per moment: X (radius), Z, C, speeds.
+    """The axes over time, arrays of one value per moment: X (radius), Z, C, speeds.
 
-    Seconds, mm, degrees, degrees/s, mm/min; ``wanted`` is the feed programmed along the part,
-    not a number in rapids.
+    Seconds, mm, degrees, degrees/s, mm/min; ``programmed`` is the programmed feed along the part,
+    NaN in rapids.
     """
 
     time: np.ndarray
@@ -54,7 +55,7 @@ class History(NamedTuple):
     c: np.ndarray
     c_speed: np.ndarray
     feed: np.ndarray
-    wanted: np.ndarray
+    programmed: np.ndarray
     rapid: np.ndarray
 
 
@@ -81,7 +82,7 @@ def draw_face(scene: Scene) -> Figure:
 
 
 def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
-    """Show what is cut and the spindle's centre, in a square."""
+    """Frame the cut and the spindle's centre in a square."""
     low, high = bounds_of(scene, levels)
     low, high = np.minimum(low[:2], 0), np.maximum(high[:2], 0)
     middle, half = (low + high) / 2, max(high - low) / 2
@@ -99,9 +100,9 @@ def draw_panels(figure: Figure, scene: Scene) -> None:
 
 
 def draw_history(panels: Sequence[Axes], scene: Scene, levels: Sequence[Level], along: str) -> None:
-    """Draw over time what the axes do, and the feed ``along`` the part or its surface.
+    """Draw the axes over time, and the feed ``along`` the part or its surface.
 
-    The depths of ``levels`` are told beside Z.
+    The depths of ``levels`` are labels beside Z.
     """
     history = real_history(scene) if scene.real is not None else programmed_history(scene)
     x, z, c, c_speed, feed = panels
@@ -144,13 +145,13 @@ def programmed_history(scene: Scene) -> History:
     feed = np.linalg.norm(np.diff(path.points, axis=0), axis=1) / seconds
     rapid = np.array([move.kind == "rapid" for move in scene.moves])[path.move]
     step = np.insert(feed, 0, feed[0]) * 60
-    wanted = np.where(rapid, np.nan, step)
+    programmed = np.where(rapid, np.nan, step)
     c_step = np.insert(c_speed, 0, c_speed[0])
     slide = slide_places(on_face, path.part.beside)
     x = np.where(slide.imag, np.abs(slide), slide.real)
     z = path.positions[:, Z]
     first = path.vertices(len(scene.moves) - len(shown_moves(scene))).start
-    columns = (path.time - path.time[first], x, z, c, c_step, step, wanted, rapid)
+    columns = (path.time - path.time[first], x, z, c, c_step, step, programmed, rapid)
     return History(*(column[first:] for column in columns))
 
 
@@ -161,15 +162,15 @@ def real_history(scene: Scene) -> History:
     c_speed = np.abs(np.gradient(real.positions[:, C], time))
     rapid = np.array([move.kind == "rapid" for move in scene.moves])[real.move]
     feeds = np.array([scene.path.part_feed(index) for index in range(len(scene.moves))])
-    wanted = np.where(rapid, np.nan, feeds[real.move]) * scene.override / 100.0
+    programmed = np.where(rapid, np.nan, feeds[real.move]) * scene.override / 100.0
     x, z, c = (real.positions[:, axis] for axis in (X, Z, C))
-    return History(time, x, z, c, c_speed, real.part_speed() * 60, wanted, rapid)
+    return History(time, x, z, c, c_speed, real.part_speed() * 60, programmed, rapid)
 
 
 def draw_depths(
     axes: Axes, history: History, scene: Scene, levels: Sequence[Level], drawn: dict
 ) -> None:
-    """Draw Z, with the depths at which something is cut."""
+    """Draw Z, with the depths of the cuts."""
     unit = scene.unit
     axes.plot(history.time, history.z / unit.mm, **drawn)
     style.caption(axes, f"Z, {unit.name}")
@@ -187,15 +188,15 @@ def draw_feed(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:
     """Draw the feed along the part, of moves at feed only."""
     unit = scene.unit.mm
     if scene.real is not None:
-        wanted = {"color": style.PATH, "linewidth": 2.2, "drawstyle": "steps-pre"}
-        axes.plot(history.time, history.wanted / unit, **wanted)
+        programmed = {"color": style.PATH, "linewidth": 2.2, "drawstyle": "steps-pre"}
+        axes.plot(history.time, history.programmed / unit, **programmed)
     feed = np.where(history.rapid, np.nan, history.feed)
     axes.plot(history.time, feed / unit, drawstyle="steps-pre", **drawn)
     axes.set_ylim(0, 1.15 * axes.get_ylim()[1])
 
 
 def draw_limit(axes: Axes, limit: float, text: str) -> None:
-    """Draw a limit that the values must stay below."""
+    """Draw the upper limit of the values."""
     if np.isfinite(limit):
         axes.axhline(limit, color=style.LIMIT, linewidth=0.9, linestyle=(0, (4, 2)))
         place = {"xy": (1, limit), "xycoords": ("axes fraction", "data"), "ha": "right"}

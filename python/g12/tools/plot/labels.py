@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Texts beside each other that must not cover each other."""
+"""Labels side by side without overlap."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 
 
 def spread_out(places: Sequence[float], apart: float) -> list[float]:
-    """Return ascending places moved as little as it takes to be so far apart.
+    """Return ascending positions, moved as little as possible to be ``apart`` from each other.
 
-    Less as many steps as come before them they must not fall: neighbours that do share their mean.
+    Less the steps before them, they must not descend: neighbours that would share their mean.
     """
     groups: list[list[float]] = []
     for index, place in enumerate(places):

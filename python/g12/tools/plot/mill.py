@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The picture of a mill program: plan view over side view, with the area the cutter sweeps.
+"""The picture of a mill program: plan view over side view, with the cutter's swept area.
 
 Lengths are millimetres until they are drawn; those of the layout are inches on the page.
 """
@@ -38,22 +38,22 @@ from g12.tools.units import plain
 from g12.tools.verify.result.finding import Finding
 
 PAGE = 11.0  # wide
-WIDE = 2.0  # plans wider than this times their height have the legend below
+WIDE = 2.0  # a plan wider than this times its height has the legend below
 LEFT, RIGHT, TOP, BETWEEN, BOTTOM = style.MARGIN, 0.5, 1.05, 0.5, 0.55
-LEGEND = 2.75  # wide, the heights beside the side view included
+LEGEND = 2.75  # width, with the Z levels beside the side view
 MOST_PLAN, LEAST_PLAN = 5.6, 1.2  # high
 MOST_SIDE, LEAST_SIDE = 3.2, 0.8
 ROW = 0.22  # a line of the legend
 COLUMNS = 4
 PLAN, SIDE = [0, 1], [0, 2]  # axes
-HEIGHTS = 0.8  # wide: the texts of the heights at the floors, and the lines to them
+HEIGHTS = 0.8  # width: the labels of the floors' levels, with their lines
 LETTER_HEIGHT = 0.11
 LEADER = 0.2  # the lines to the texts
-WINDOW = SIZE + 0.75  # the window on the largest deviation, with its texts
+WINDOW = SIZE + 0.75  # the detail view of the largest deviation, with its texts
 
 
 class Layout:
-    """Where on the page everything is; ``size`` is width, height and depth of the view."""
+    """The layout of the page; ``size`` is width, height and depth of the view."""
 
     def __init__(self, size: np.ndarray, rows: int, with_window: bool) -> None:
         width, height, depth = size
@@ -86,7 +86,7 @@ class Layout:
         style.draw_legend(figure, shown, *at)
 
     def window_corner(self) -> tuple[float, float]:
-        """Return the lower left corner of the window on the largest deviation."""
+        """Return the lower left corner of the detail view of the largest deviation."""
         beside = (LEFT + self.plan[0] + HEIGHTS, BOTTOM)
         return (self.width - RIGHT - SIZE, 0.4) if self.below else beside
 
@@ -115,7 +115,7 @@ def draw_mill(scene: Scene) -> Figure:
 
 
 def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float) -> None:
-    """Draw the view along Y: what is removed at each level, seen through the part."""
+    """Draw the view along Y: the material removed at each level, seen through the part."""
     unit, top = scene.unit.mm, top_of(scene)
     draw_stock(axes, scene, block_from_the_side(scene))
     for order, level in enumerate(reversed(levels)):
@@ -130,7 +130,7 @@ def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float)
 
 
 def cut_through(uncut: Finding, top: float) -> BaseGeometry:
-    """Return what stands in a pocket as a cut along X through the pocket's middle shows it."""
+    """Return the uncut material in a pocket, in a section along X through its middle."""
     shape, low_z = uncut.values["shape"], uncut.values["floor"]
     low, high = shape.bounds[::2]
     middle = uncut.place[1]
@@ -140,7 +140,7 @@ def cut_through(uncut: Finding, top: float) -> BaseGeometry:
 
 
 def block_from_the_side(scene: Scene) -> BaseGeometry | None:
-    """Return a block as seen along Y, if it is known how deep it is."""
+    """Return a block as seen along Y, if its depth is known."""
     facts = scene.seen.stock
     if facts is None or facts.bottom is None:
         return None
@@ -148,7 +148,7 @@ def block_from_the_side(scene: Scene) -> BaseGeometry | None:
 
 
 def removed_at(level: Level, top: float) -> BaseGeometry:
-    """Return what a level removes as seen along Y: X and Z, up to the top."""
+    """Return the material removed at a level as seen along Y: X and Z, up to the top."""
     if all(np.ptp(line[:, 2]) < SAME_DEPTH for line in level.lines):
         areas = getattr(level.area, "geoms", [level.area])
         return unary_union([box(area.bounds[0], level.z, area.bounds[2], top) for area in areas])
@@ -160,7 +160,7 @@ def removed_at(level: Level, top: float) -> BaseGeometry:
 
 
 def draw_heights(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
-    """Write the height of each floor beside it, apart from each other, with lines to the floors."""
+    """Label each floor with its level, without overlap, with lines to the floors."""
     page, place = axes.get_figure().get_size_inches(), axes.get_position()
     apart = LETTER_HEIGHT / page[1] / place.height
     inch = 1 / page[0] / place.width

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The picture that fits a machine and its program."""
+"""The choice of the picture for a machine and its program."""
 
 from __future__ import annotations
 

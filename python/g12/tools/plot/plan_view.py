@@ -27,13 +27,13 @@ from g12.tools.units import plain
 
 PICTURE_CHORD = 0.01
 SAME_DEPTH = 1e-3
-LEAST_LEVELS = 2  # in a legend that has no room for more
-MOST_LEVELS = 10  # with more, depths and feeds are shown in bands
+LEAST_LEVELS = 2  # entries in a short legend
+MOST_LEVELS = 10  # more depths or feeds than this are shown in bands
 BANDS = 24
 MOST_ARROWS = 80
 C = 5  # of a position
-FLAT, ROUND = 17, 181  # the plane whose arcs keep their height, points of other arcs
-NEAR = 0.5  # of the view: rapids that end no farther outside are shown whole
+FLAT, ROUND = 17, 181  # the plane whose arcs stay at one level; points of other arcs
+NEAR = 0.5  # of the view: rapids that end within this distance are shown whole
 MANY = 20_000  # moves
 LONG = 0.12  # of the view's smaller side: shorter moves get no arrow
 MARGIN = 0.05  # of the view's greater side
@@ -41,7 +41,7 @@ PLUNGE, CUTTER = 3.5, 8.0  # points
 
 
 class Level(NamedTuple):
-    """What is milled at one depth: colours, paths (n, 3), area swept, largest cutter's radius."""
+    """The milling at one depth: colours, paths (n, 3), swept area, largest cutter's radius."""
 
     z: float
     shade: Shade
@@ -70,7 +70,7 @@ def milled_levels(scene: Scene) -> list[Level]:
 
 
 def floors(moves: Sequence[Move]) -> np.ndarray:
-    """Return the depth that each move mills; turns of a helix mill the floor that they lead to."""
+    """Return the depth of each move; turns of a helix count for the floor below them."""
     found: list[float] = []
     for move in reversed(moves):
         own = lowest(move)
@@ -80,20 +80,20 @@ def floors(moves: Sequence[Move]) -> np.ndarray:
 
 
 def is_helical(move: Move) -> bool:
-    """Tell whether a move goes down about the tool's axis, or about the spindle's, on a face."""
+    """Return whether a move is helical about the tool's axis, or about the spindle's on a face."""
     about = (move.kind == "arc" and move.plane == FLAT) or move.end[C] != move.start[C]
     return about and move.end[2] < move.start[2] - SAME_DEPTH
 
 
 def lowest(move: Move) -> float:
-    """Return the lowest height of a move; an arc may go below its ends."""
+    """Return the lowest level of a move; an arc may go below its ends."""
     bulge = move.kind == "arc" and move.plane != FLAT
     shares = np.linspace(0, 1, ROUND) if bulge else (0.0, 1.0)
     return min(move.point(share)[2] for share in shares)
 
 
 def removes(move: Move) -> bool:
-    """Tell whether a move at feed goes sideways or down."""
+    """Return whether a move at feed goes sideways or down."""
     return is_sideways(move) or move.end[2] < move.start[2]
 
 
@@ -105,7 +105,7 @@ def milled(part: Part, moves: Sequence[Move]) -> list[np.ndarray]:
 def swept_by(
     part: Part, moves: Sequence[Move], diameters: Mapping[int, float]
 ) -> tuple[BaseGeometry, float]:
-    """Return the area that the cutters of moves sweep, and the radius of the largest."""
+    """Return the swept area of moves, and the radius of the largest cutter."""
     areas, radii = [], []
     for tool in {move.tool for move in moves}:
         lines = paths(part, [move for move in moves if move.tool == tool], PICTURE_CHORD)
@@ -115,7 +115,7 @@ def swept_by(
 
 
 def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.ndarray]:
-    """Return least and greatest X, Y, Z of what is cut, with a margin; far rapids don't count."""
+    """Return least and greatest X, Y, Z of the cut, with a margin; far rapids do not count."""
     shown = at_feed(scene) or range(len(scene.moves))
     points = np.concatenate([scene.path.points[scene.path.vertices(index)] for index in shown])
     low, high = points.min(axis=0), points.max(axis=0)
@@ -141,7 +141,7 @@ def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.nda
 def with_near_rapids(
     scene: Scene, low: np.ndarray, high: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return a view's corners moved out to the ends of rapids that are not far away."""
+    """Return a view's corners, extended to the ends of near rapids."""
     ends = np.array([point for move in shown_moves(scene) for point in (move.start, move.end)])
     points = scene.path.part.points(ends)[:, :2]
     away = NEAR * max(high - low)
@@ -150,7 +150,7 @@ def with_near_rapids(
 
 
 def top_of(scene: Scene) -> float:
-    """Return the top of the part: Z0 if the tool goes down through it, else where it feeds from."""
+    """Return the top of the part: Z0 if the tool passes it downward, else where the feed begins."""
     z0 = scene.seen.z0
     cutting = [move for move in scene.moves if move.kind != "rapid"] or scene.moves
     lowest = min(min(move.start[2], move.end[2]) for move in cutting)
@@ -174,7 +174,7 @@ def draw_plan(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
 
 
 def draw_warnings(axes: Axes, scene: Scene) -> None:
-    """Hatch what stands in pockets, put signs at the other findings."""
+    """Hatch uncut material in pockets, draw signs at the other findings."""
     unit = scene.unit.mm
     for each in scene.seen.uncut:
         style.hatch(axes, scaled(each.values["shape"], 1 / unit, 1 / unit, origin=(0, 0)))
@@ -183,7 +183,7 @@ def draw_warnings(axes: Axes, scene: Scene) -> None:
 
 
 def draw_stock(axes: Axes, scene: Scene, shape: BaseGeometry | None) -> None:
-    """Draw what is cut as it is seen in a view."""
+    """Draw the stock in a view."""
     if shape is not None:
         area = scaled(shape, 1 / scene.unit.mm, 1 / scene.unit.mm, origin=(0, 0))
         style.fill(axes, area, style.STOCK, order=0.7)
@@ -191,16 +191,16 @@ def draw_stock(axes: Axes, scene: Scene, shape: BaseGeometry | None) -> None:
 
 
 def floor(scene: Scene, level: Level) -> tuple[object, object]:
-    """Return the fill and the outline of a level's area; grey where colours tell feeds."""
+    """Return the fill and the outline of a level's area; grey where colours show feeds."""
     if scene.feed_colours:
         return style.grey(level.shade.floor), style.RAPID
     return level.shade.floor, style.tint(level.shade.line, 0.35)
 
 
 def shown_moves(scene: Scene) -> Sequence[Move]:
-    """Return the moves without the first rapids, of which no trace knows where they begin.
+    """Return the moves without the first rapids, whose start no trace knows.
 
-    These are the first one, and those up to where Z is commanded.
+    These are the first one, and those up to the first command of Z.
     """
     moves = scene.moves
     rapids = list(takewhile(lambda move: move.kind == "rapid", moves))
@@ -211,7 +211,7 @@ def shown_moves(scene: Scene) -> Sequence[Move]:
 
 
 def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int]) -> None:
-    """Draw rapids, programmed path and real motion in two of the part's axes."""
+    """Draw rapids, programmed path and actual motion in two of the part's axes."""
     unit = scene.unit.mm
     rapids = (move for move in shown_moves(scene) if move.kind == "rapid")
     lines = (scene.path.part.polyline(move, PICTURE_CHORD) for move in rapids)
@@ -228,7 +228,7 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
 
 
 def draw_real(axes: Axes, scene: Scene, pair: list[int]) -> None:
-    """Draw the real motion in two of the part's axes, rapids dashed."""
+    """Draw the actual motion in two of the part's axes, rapids dashed."""
     real = scene.real
     cuts: list[np.ndarray] = []
     rapids: list[np.ndarray] = []
@@ -242,7 +242,7 @@ def draw_real(axes: Axes, scene: Scene, pair: list[int]) -> None:
 
 
 def once(lines: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Return polylines without those that go there and back again: two dashed lines look solid."""
+    """Return polylines without repeated and reversed ones: two dashed lines look solid."""
     found: dict[frozenset[tuple[float, ...]], np.ndarray] = {}
     for line in lines:
         ends = np.round(line[[0, len(line) // 2, -1]] / max(np.ptp(line, axis=0).max(), 1e-6), 2)
@@ -284,7 +284,7 @@ def at_feed(scene: Scene) -> list[int]:
 
 
 def plunges_of(scene: Scene) -> list[tuple[tuple[float, float], int]]:
-    """Return the points where a tool feeds straight down, each with the tool's number."""
+    """Return the points of plunges straight down at feed, each with the tool's number."""
     down = [m for m in scene.moves if m.kind != "rapid" and not is_sideways(m)]
     down = [move for move in down if move.end[2] < move.start[2]]
     points = scene.path.part.points(np.array([m.end for m in down]).reshape(-1, 9))
@@ -323,7 +323,7 @@ def elements(scene: Scene) -> list[np.ndarray]:
 
 
 def legend_entries(scene: Scene, levels: Sequence[Level], room: int | None = None) -> list:
-    """Return the legend; where there is ``room`` for so many entries only, with fewer depths."""
+    """Return the legend, with fewer depths where ``room`` limits its entries."""
     feeds = feed_entries(scene) if scene.feed_colours else []
     listed = []
     for tool in sorted({scene.moves[index].tool for index in at_feed(scene)}):
@@ -336,7 +336,7 @@ def legend_entries(scene: Scene, levels: Sequence[Level], room: int | None = Non
 
 
 def cutter_text(scene: Scene, tool: int) -> str:
-    """Return a cutter in words."""
+    """Return a text for a cutter."""
     diameter = scene.subject.trace.diameters.get(tool, 0.0)
     if tool <= 0 or not diameter:
         return f"{f'T{tool} has no diameter' if tool > 0 else 'no tool'}: tool centre only"
@@ -344,7 +344,7 @@ def cutter_text(scene: Scene, tool: int) -> str:
 
 
 def motion_entries(scene: Scene) -> list:
-    """Return the legend's entries of the stock, of rapids and of the real motion."""
+    """Return the legend's entries of the stock, of rapids and of the actual motion."""
     listed = []
     if scene.seen.stock:
         said = scene.seen.stock.stock
@@ -360,7 +360,7 @@ def motion_entries(scene: Scene) -> list:
 
 
 def warning_entries(scene: Scene) -> list:
-    """Return the legend's entries of what there is to warn of."""
+    """Return the legend's entries of the warnings."""
     listed = []
     if scene.seen.rapids:
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))

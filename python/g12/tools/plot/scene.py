@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a picture shows: a program, the machine, the moves, and perhaps the real motion."""
+"""The content of a picture: a program, the machine, the moves, and the actual motion if run."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ NOTHING = Seen()
 
 @dataclass(frozen=True)
 class Scene:
-    """A traced program on its machine; ``unit`` is shown.
+    """A traced program on its machine.
 
-    ``override`` is the feed override of the run in per cent. ``seen`` is what there is
-    to warn of and the stock, ``contour`` the largest deviation (mm) from the programmed contours
-    of polar sections, where these are known.
+    ``unit`` is that of the labels. ``override`` is the feed
+    override of the run in per cent. ``seen`` has the findings and the stock, ``contour`` the
+    largest deviation (mm) from the programmed contours of polar sections, where these are known.
     """
 
     subject: Subject
@@ -55,17 +55,17 @@ class Scene:
 
     @property
     def real(self) -> Followed | None:
-        """Return the real motion of the run, if there was one."""
+        """Return the actual motion of the run, if there was one."""
         return self.subject.real
 
     @property
     def x0_text(self) -> str:
-        """Return where a lathe program's X0 lies, "" where it is the machine's."""
+        """Return a text with the position of a lathe program's X0, "" where it is the machine's."""
         return x0_text(self.path.part, self.unit)
 
     @property
     def refusal(self) -> str:
-        """Return what LinuxCNC says of a program that it refuses, "" of any other."""
+        """Return LinuxCNC's error for a refused program, "" for any other."""
         error = self.subject.trace.error
         return f"refused in line {error.line}: {error.rule}" if error else ""
 
@@ -92,19 +92,19 @@ class Scene:
 
 
 def scene_of(subject: Subject, units: str | None = None, feed_colours: bool = False) -> Scene:
-    """Return what to show of a traced program; without ``units`` lengths as the program's."""
+    """Return the scene of a traced program; without ``units`` in the program's."""
     return Scene(subject, unit_of(subject.trace.modes.gcodes, units), feed_colours)
 
 
 def scene_of_proof(proof: Proof, override: float = 100.0) -> Scene:
-    """Return what to show of a program that was measured, its real motion included."""
+    """Return the scene of a verified program, its actual motion included."""
     contour = max((facts.deviation for facts in proof.sections), default=None)
     seen = seen_of_proof(proof)
     return replace(scene_of(proof.subject), seen=seen, contour=contour, override=override)
 
 
 def heading(program: Path) -> str:
-    """Return the first comment that has a line to itself before anything moves, no licence."""
+    """Return the first comment on a line of its own before any motion, other than a licence."""
     lines = program.read_text(encoding="utf-8", errors="replace").splitlines()[:MOST_LINES]
     still = takewhile(lambda line: not MOTION.search(COMMENT.sub("", line)), lines)
     found = (match[1] or match[2] for line in still if (match := HEAD_COMMENT.fullmatch(line)))

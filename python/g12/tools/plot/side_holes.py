@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The surface that `o<side_holes> call` drills: its picture is that of a cylinder, unrolled."""
+"""The surface drilled by `o<side_holes> call`, drawn as an unrolled cylinder."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SUB, DIAMETER = "side_holes", 4  # the entry of the call
 
 
 def drilled_surface(subject: Subject, tools: Tools = None, parameters: Parameters = None) -> float:
-    """Return the radius, mm, of the surface of a program that drills nothing but its side, or 0."""
+    """Return the radius, mm, of the surface of a program that drills only its side, else 0."""
     if not only_radial(subject.trace.moves):
         return 0.0
     with Tracer(subject.ini, tools=tools) as tracer:
@@ -31,7 +31,7 @@ def drilled_surface(subject: Subject, tools: Tools = None, parameters: Parameter
 
 
 def only_radial(moves: Sequence[Move]) -> bool:
-    """Tell whether every move at a feed goes along X alone."""
+    """Return whether every move at feed is along X alone."""
     feeds = [move for move in moves if move.kind == "feed"]
     still = all(move.start[axis] == move.end[axis] for move in feeds for axis in (Z, C))
     return still and any(move.start[X] != move.end[X] for move in feeds)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The one look of every picture: colours, lines, axes, legends, files; for paper and light pages.
+"""The common style of all pictures: colours, lines, axes, legends, files; for a light page.
 
 Lengths given to the drawing functions are in the units shown; sizes of figures in inches.
 """
@@ -73,14 +73,14 @@ FEEDS = colors.LinearSegmentedColormap.from_list(
 )
 SIGN = {"marker": "^", "color": CRASH}
 DPI = 150
-LETTERS = 14.0  # of the subtitle to an inch
+LETTERS = 14.0  # characters of the subtitle to an inch
 MARGIN = 0.75  # inches left of titles and axes
 CENTRE_LINE = {"color": MUTED, "linewidth": 0.5, "dashes": (12, 3, 2, 3), "zorder": 1.9}
 SAVE = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
 class PictureError(ValueError):
-    """A picture that cannot be written as asked."""
+    """A picture that cannot be written in the requested format."""
 
 
 def check_format(path: Path) -> None:
@@ -124,7 +124,7 @@ def frame(axes: Axes, low: np.ndarray, high: np.ndarray, unit: Unit, names: Sequ
 
 
 def frame_detail(axes: Axes, centre: Sequence[float], half: float, title: str, text: str) -> None:
-    """Make axes the window on a deviation: so far to each side, framed, with a text below."""
+    """Frame axes as the detail view of a deviation, ``half`` to each side, with a text below."""
     x, y = centre
     axes.set(xlim=(x - half, x + half), ylim=(y - half, y + half), xticks=[], yticks=[])
     for spine in axes.spines.values():
@@ -136,7 +136,7 @@ def frame_detail(axes: Axes, centre: Sequence[float], half: float, title: str, t
 def draw_legend(
     figure: Figure, entries: Sequence, left: float, top: float, columns: int = 1, **layout
 ) -> None:
-    """Draw the legend with its upper left corner there, in inches."""
+    """Draw the legend with its upper left corner at a point in inches."""
     across, up = figure.get_size_inches()
     at = {"loc": "upper left", "bbox_to_anchor": (left / across, top / up)}
     figure.legend(handles=entries, ncol=columns, columnspacing=1.6, **at, **layout)
@@ -178,7 +178,7 @@ def draw(axes: Axes, lines: Sequence[np.ndarray], colour, width=1.1, order=3.0, 
 
 
 def draw_rapids(axes: Axes, lines: Sequence[np.ndarray], colour=RAPID, order: float = 2.5) -> None:
-    """Draw polylines (n, 2) the way rapids look."""
+    """Draw polylines (n, 2) in the style of rapids."""
     draw(axes, lines, colour, 0.8, order, linestyle=(0, (4, 3)), capstyle="butt")
 
 
@@ -217,12 +217,12 @@ def feed_colours(count: int) -> list[tuple]:
 
 
 def grey(colour) -> tuple[float, float, float]:
-    """Return the light grey that stands for a floor where colours mean something else."""
+    """Return the light grey of a floor where colours have another meaning."""
     return (0.45 + 0.5 * float(np.mean(colors.to_rgb(colour))),) * 3
 
 
 def hatch(axes: Axes, area: BaseGeometry) -> None:
-    """Draw an area as material that stands though it was to be cut."""
+    """Draw an area as uncut material."""
     fill(axes, area, "none", CRASH, 2.4, hatch="////")
 
 
@@ -233,7 +233,7 @@ def draw_sign(axes: Axes, at: Sequence[float]) -> None:
 
 
 def standing(text: str) -> Patch:
-    """Return the legend's entry of material that stands."""
+    """Return the legend's entry of uncut material."""
     return Patch(facecolor="none", edgecolor=CRASH, linewidth=0.7, hatch="////", label=text)
 
 

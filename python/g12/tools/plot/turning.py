@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The picture of a turning program: the tool's path in Z and X, as one stands at the lathe.
+"""The picture of a turning program: the toolpath in Z and X, as seen from the front of the lathe.
 
 Lengths are millimetres until they are drawn; those of the layout are inches on the page.
 """
@@ -62,7 +62,7 @@ def draw_profile(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray) ->
 
 
 def everything(scene: Scene) -> Level:
-    """Return all that is cut as one level, without an area."""
+    """Return all cuts as one level, without an area."""
     cutting = [scene.moves[index] for index in at_feed(scene)]
     lines = paths(scene.path.part, cutting, PICTURE_CHORD)
     return Level(0.0, style.shades(1)[0], lines, GeometryCollection())

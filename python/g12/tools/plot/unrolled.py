@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The picture of sections on a cylinder: its unrolled surface, and what the axes do.
+"""The picture of sections on a cylinder: its unrolled surface, and the axes over time.
 
-The surface is seen from outside, C to the right and Z upwards: there a lathe is a mill that cuts
-down along X. Lengths are millimetres until they are drawn; those of the layout are inches.
+The surface is seen from outside, C to the right and Z upwards: in this view a lathe is a mill that
+cuts down along X. Lengths are millimetres until they are drawn; those of the layout are inches.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from g12.tools.preview.moves import Move
 
 WIDTH, MOST, LEAST = 11.9, 4.6, 0.9  # of the page; the surface's height
 LEFT, RIGHT, TOP = style.MARGIN, 0.35, 1.3
-UNDER = 0.95  # the surface: its labels, and the captions of the panels
+UNDER = 0.95  # margins: the surface's labels, the panels' captions
 PANEL, GAP, ROWS = 1.0, 0.32, 3
 BETWEEN = 0.75  # the two columns of panels
 BOTTOM = 0.5
 NICE_ANGLES = (1, 1.5, 1.8, 3, 3.6, 4.5, 9, 10)
-HIGHER = 1.2  # with the window on the largest deviation
+HIGHER = 1.2  # with the detail view of the largest deviation
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Flat(Part):
 
     @property
     def letters(self) -> str:
-        """The axes that its points tell of."""
+        """The axes that its points depend on."""
         return "CZX"
 
 
@@ -98,7 +98,7 @@ def panels_of(figure: Figure, top: float) -> list[Axes]:
 
 
 def frame_surface(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray, x0: str) -> None:
-    """Show a part of the surface, with C's angles and ``x0``, the place of X0, above it."""
+    """Frame a portion of the surface, with C's angles and ``x0``, the position of X0, above it."""
     radius = scene.seen.surface / scene.unit.mm
     style.frame(axes, low, high, scene.unit, ("along C", "Z"))
     axes.set_aspect("equal", adjustable="datalim")
