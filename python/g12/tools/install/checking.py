@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A machine config looked at: loaded as LinuxCNC does, what was found, and the report of it."""
+"""The check of a machine config: loaded as LinuxCNC does it, findings, report."""
 
 import re
 from collections.abc import Iterator
@@ -22,7 +22,7 @@ MEANT_AS_INTERPRETER = re.compile(r"\s*\[?\s*RS274NGC\s*\]?\s*$", re.IGNORECASE)
 
 
 def read_config_text(ini: Path) -> IniText:
-    """Return the INI, or refuse what is no INI file."""
+    """Return the INI; refuse a file that is none."""
     existing(ini)
     if ini.suffix == ".expanded":
         raise UsageError(f"{ini}: LinuxCNC makes this file anew at every start; name {ini.stem}")
@@ -39,7 +39,7 @@ def read_config_text(ini: Path) -> IniText:
 def check_config(
     text: IniText, overlay: Overrides | None = None
 ) -> tuple[Config, list[ConfigFinding]]:
-    """Return the config of an INI and what there is to say about it.
+    """Return the config of an INI and the findings about it.
 
     ``overlay`` replaces values for the interpreter, as in `Ini.replaced`.
     """
@@ -55,7 +55,7 @@ def settings_of(config: Config) -> dict[str, str]:
 
 
 def check_report(config: Config, found: list[ConfigFinding]) -> dict:
-    """Return everything `check` says, for a program to read."""
+    """Return the whole report of `check` as data."""
     codes = codes_of(config.remaps)
     mine = {code.line for code in codes}
     others = [remap for line, remap in config.remaps if line not in mine]
@@ -77,7 +77,7 @@ def check_report(config: Config, found: list[ConfigFinding]) -> dict:
 
 
 def lines_of_check(report: dict) -> Iterator[str]:
-    """Yield the report for a person."""
+    """Yield the report as text."""
     loads = "loads" if report["loads"] else "does not load"
     axes = " ".join(report["axes"])
     yield f"{report['ini']}: {loads} in LinuxCNC {report['linuxcnc']}, axes {axes}"

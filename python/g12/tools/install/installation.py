@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The package put into a machine config: tried out, shown, and then written."""
+"""The installation in a machine config: tried out, shown, then written."""
 
 import shutil
 from collections.abc import Iterable, Iterator, Sequence
@@ -18,13 +18,17 @@ from g12.tools.machine.files import back_up, difference, drop_backup, require_wr
 from g12.tools.system import CALL
 
 SOME = 3  # missing files are named
-BEFORE = {"no-linuxcnc", "python-fails", "does-not-load"}  # what keeps a config from being read
+BEFORE = {
+    "no-linuxcnc",
+    "python-fails",
+    "does-not-load",
+}  # findings that prevent a config from being read
 
 
 def install(
     text: IniText, wanted: Sequence[str], dry_run: bool, pins: Pins | None = None
 ) -> Iterator[str]:
-    """Install features in a machine config; yield what is shown."""
+    """Install features in a machine config; yield the lines to show."""
     lost = lost_files(text)
     if lost:
         more = " …" if len(lost) > SOME else ""
@@ -60,13 +64,13 @@ def install(
 
 
 def size_of_package() -> str:
-    """Return in words how large the copy is."""
+    """Return a text for the size of the copy."""
     sizes = [len(content) for content in package_copy.package_files().values()]
     return f"the package, {len(sizes)} files, {sum(sizes) / 1e6:.1f} MB"
 
 
 def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
-    """Yield what to do once the features are there: a first try that moves nothing, and back."""
+    """Yield the next steps: a first test without motion, and the way to uninstall."""
     yield "next: restart LinuxCNC, then try in MDI or with a program:"
     for feature in wanted:
         block = features.harmless(feature)
@@ -89,14 +93,14 @@ def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
 
 
 def readable_config(text: IniText) -> Config:
-    """Return the config as it is; refuse one that LinuxCNC cannot load."""
+    """Return the present config; refuse one that LinuxCNC cannot load."""
     config = load_config(text, set())
     refuse_problems([finding for finding in findings_of(config) if finding.kind in BEFORE])
     return config
 
 
 def excluding(names: Sequence[str]) -> Iterator[str]:
-    """Yield the features that exclude each other, in words."""
+    """Yield texts for features that exclude each other."""
     for group in features.ONE_OF:
         chosen = [name for name in group if name in names]
         if len(chosen) > 1:
@@ -104,7 +108,7 @@ def excluding(names: Sequence[str]) -> Iterator[str]:
 
 
 def lost_files(text: IniText) -> list[str]:
-    """Return what is missing of the copy that the config's lines name."""
+    """Return the missing files of the copy that the config's lines name."""
     copy = text.path.parent / package_copy.NAME
     if copy.exists():
         return package_copy.missing(copy)
@@ -112,7 +116,7 @@ def lost_files(text: IniText) -> list[str]:
 
 
 def write_changes(plan: InstallPlan, folder: Path) -> list[str]:
-    """Write everything; return what was done, a line each."""
+    """Write all changes; return a line for each."""
     changes, copy = plan.changes(), folder / package_copy.NAME
     require_writable(changes)
     fresh, kept = plan.copied and not copy.exists(), {}
@@ -132,7 +136,7 @@ def write_changes(plan: InstallPlan, folder: Path) -> list[str]:
 
 
 def take_back(kept: Iterable[Path], copy: Path | None) -> None:
-    """Take away what an installation that failed has written: old versions, a new copy."""
+    """Remove the files of a failed installation: backups, a new copy."""
     for path in kept:
         drop_backup(path)
     if copy and copy.exists():
@@ -140,7 +144,7 @@ def take_back(kept: Iterable[Path], copy: Path | None) -> None:
 
 
 def bring_copy_up_to_date(copy: Path) -> list[str]:
-    """Write what is new of the package; return what was done, a line each."""
+    """Update the copy of the package; return a line for each change."""
     if not out_of_date(copy):
         return []
     aside = package_copy.write_copy(copy)
@@ -149,7 +153,7 @@ def bring_copy_up_to_date(copy: Path) -> list[str]:
 
 
 def out_of_date(copy: Path) -> bool:
-    """Return whether a copy lacks files of this package; from inside itself it cannot be mended."""
+    """Return whether a copy lacks files of this package; a copy cannot repair itself."""
     if not copy.exists() or not copy.samefile(features.ROOT):
         return bool(package_copy.stale(copy))
     for name in package_copy.missing(copy):
@@ -159,5 +163,5 @@ def out_of_date(copy: Path) -> bool:
 
 
 def is_marked(path: Path) -> bool:
-    """Return whether a file has lines of an earlier installation, and so a kept old version."""
+    """Return whether a file has lines of an earlier installation, and so a backup."""
     return b"by g12 install" in path.read_bytes() or b">>> g12 install" in path.read_bytes()

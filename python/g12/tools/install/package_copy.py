@@ -14,7 +14,7 @@ from g12.tools.machine.files import take_owner, write
 
 NAME = "g12"  # of the folder in the config's folder
 MANIFEST = "MANIFEST"  # as sha256sum writes and checks it
-PAGES = (  # what a machinist reads beside the machine; they link to nothing else
+PAGES = (  # the pages that a machinist reads at the machine; they link only to each other
     "ngc/*.md",
     "ngc/pictures/*.png",
     "configs/README.md",
@@ -52,12 +52,12 @@ def digest(content: bytes) -> str:
 
 
 def digest_of(path: Path) -> str:
-    """Return the SHA-256 of a file in hexadecimal, "" if it is not there."""
+    """Return the SHA-256 of a file in hexadecimal, "" if it is missing."""
     return digest(path.read_bytes()) if path.is_file() else ""
 
 
 def is_package(folder: Path) -> bool:
-    """Return whether a folder holds the package, copied by whomever."""
+    """Return whether a folder holds the package, copied by `install` or by hand."""
     return (folder / "python" / "g12" / "__init__.py").is_file() and (folder / "ngc").is_dir()
 
 
@@ -69,7 +69,7 @@ def is_copy(folder: Path) -> bool:
 def listed(folder: Path) -> dict[str, str]:
     """Return the files of a copy with the digest they were installed with.
 
-    Raises UsageError for a list that names anything but files of the copy.
+    Raises UsageError for a list with names outside the copy.
     """
     manifest = folder / MANIFEST
     content = manifest.read_bytes() if manifest.is_file() else b""
@@ -94,18 +94,18 @@ def folders_inside(folder: Path, names: Iterable[Path]) -> set[Path]:
 
 
 def edited(folder: Path) -> list[str]:
-    """Return the files of a copy that somebody changed since they were installed."""
+    """Return the files of a copy that were changed since their installation."""
     found = ((name, value, digest_of(folder / name)) for name, value in listed(folder).items())
     return [name for name, value, there in found if there not in ("", value)]
 
 
 def missing(folder: Path) -> list[str]:
-    """Return the files of a copy that are gone, or empty though they were not."""
+    """Return the missing files of a copy, and those that have become empty."""
     return [name for name, value in listed(folder).items() if is_lost(folder / name, value)]
 
 
 def is_lost(path: Path, value: str) -> bool:
-    """Return whether a file is gone, or empty though its digest was another's."""
+    """Return whether a file is missing, or empty with another digest in the list."""
     found = digest_of(path)
     return not found or found == digest(b"") != value
 
@@ -121,7 +121,7 @@ def stale(folder: Path) -> list[str]:
 
 
 def leftovers(folder: Path) -> list[str]:
-    """Return the files of a folder if all are such as `uninstall` leaves, else none."""
+    """Return the files of a folder if all are of the kinds that `uninstall` leaves, else none."""
     names = files_below(folder)
     known = package_files()
     return names if all(name.partition(EDITED)[0] in known for name in names) else []
@@ -133,9 +133,9 @@ def files_below(folder: Path) -> list[str]:
 
 
 def write_copy(folder: Path) -> list[str]:
-    """Make a copy of this package or bring it up to date.
+    """Make a copy of this package, or update it.
 
-    Returns under what names edited files were put aside for a newer version.
+    Returns the new names of edited files that a newer version replaces.
     """
     for begun in abandoned(folder):
         shutil.rmtree(begun)
@@ -154,7 +154,7 @@ def write_copy(folder: Path) -> list[str]:
 
 
 def abandoned(folder: Path) -> list[Path]:
-    """Return the copies beside a folder that `install` had begun when it was killed."""
+    """Return the unfinished copies beside a folder, of an `install` that was killed."""
     ours = {*package_files(), MANIFEST}
     return [
         begun
@@ -165,7 +165,7 @@ def abandoned(folder: Path) -> list[Path]:
 
 
 def update_copy(folder: Path) -> list[str]:
-    """Bring a copy up to date; return under what names edited files were put aside."""
+    """Update a copy; return the new names of edited files."""
     files, old, late = package_files(), listed(folder), stale(folder)
     gone = [name for name in old if name not in files]
     digests = {name: digest(files[name]) for name in late}
@@ -184,7 +184,7 @@ def update_copy(folder: Path) -> list[str]:
 
 
 def put_aside(folder: Path, name: str) -> str:
-    """Rename an edited file to a name that is free; return that."""
+    """Rename an edited file to a free name; return that."""
     number, aside = 1, f"{name}{EDITED}"
     while (folder / aside).exists():
         number += 1
@@ -194,14 +194,14 @@ def put_aside(folder: Path, name: str) -> str:
 
 
 def write_files(folder: Path, files: dict[str, bytes]) -> None:
-    """Write files below a folder, each at once."""
+    """Write files below a folder, each atomically."""
     for name, content in files.items():
         make_folder((folder / name).parent, folder.parent)
         write(folder / name, content)
 
 
 def make_folder(folder: Path, above: Path) -> None:
-    """Create a folder and those it is in, with the owner of the config's folder."""
+    """Create a folder and its parents, with the owner of the config's folder."""
     below = [path for path in (folder, *folder.parents) if above in path.parents]
     for path in reversed([path for path in below if not path.exists()]):
         path.mkdir()
@@ -209,7 +209,7 @@ def make_folder(folder: Path, above: Path) -> None:
 
 
 def remove_files(folder: Path, names: Iterable[str]) -> None:
-    """Take files away, and the folders that nothing is left in."""
+    """Remove files, and the folders that become empty."""
     for name in names:
         (folder / name).unlink(missing_ok=True)
     for cache in sorted(folder.rglob("__pycache__")):
@@ -220,9 +220,9 @@ def remove_files(folder: Path, names: Iterable[str]) -> None:
 
 
 def remove_copy(folder: Path) -> list[str]:
-    """Take a copy away; return the names of files in it that somebody edited or added."""
+    """Remove a copy; return the names of edited or added files in it."""
     remove_files(folder, set(listed(folder)) - set(edited(folder)))
-    (folder / MANIFEST).unlink()  # last: until then the copy is known for what it is
+    (folder / MANIFEST).unlink()  # the list last: it identifies the copy until then
     if not any(folder.iterdir()):
         folder.rmdir()
         return []

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What an installation changes in a machine config: the INI's lines, the user's Python modules.
+"""The changes of an installation in a machine config: INI lines and the user's Python modules.
 
-The INI gets blocks between two marker comments.  Whatever is put elsewhere is noted in a comment
-there, so that `uninstall` finds it: an entry of SUBROUTINE_PATH (LinuxCNC 2.9 reads one such line
-only) and import lines in the user's own modules.
+The INI gets blocks between two marker comments. A comment there lists the insertions elsewhere, so
+that `uninstall` finds them: an entry of SUBROUTINE_PATH (LinuxCNC 2.9 reads one such line only) and
+import lines in the user's own modules.
 """
 
 import re
@@ -50,17 +50,17 @@ class Refused(Exception):
 
 
 def refuse(kind: str, text: str, cure: str) -> Refused:
-    """Return the refusal for one reason (the caller raises it)."""
+    """Return the refusal for one reason, for the caller to raise."""
     return Refused(problem(kind, text, cure))
 
 
 @dataclass
 class InstallPlan:
-    """What an installation would change; nothing is written yet.
+    """The changes of an installation, not written yet.
 
-    ``text`` is the INI with its includes, edited; ``modules`` the user's own Python modules with
-    the lines they get.  ``prefix`` is the package's folder as the INI names it, ``copied`` tells
-    whether it is the copy that `install` makes.
+    ``text`` is the edited INI with its includes, ``modules`` are the user's own Python modules with
+    the lines added. ``prefix`` is the package's folder as the INI names it; ``copied``: it is the
+    copy that `install` makes.
     """
 
     text: IniText
@@ -85,14 +85,14 @@ def with_lines(path: Path, new: Sequence[str]) -> bytes:
 
 
 def marked(path: Path, statement: str) -> bool:
-    """Return whether an earlier installation put a statement into a module."""
+    """Return whether an earlier installation added a statement to a module."""
     return any(line.rstrip().endswith(statement + MARK) for line in lines_with_ends(path))
 
 
 def make_plan(
     config: Config, wanted: Sequence[str], pins: spindle_c.Pins | None = None
 ) -> InstallPlan:
-    """Return the plan that gives a config the features wanted."""
+    """Return the plan to install features in a config."""
     prefix, copied = package_folder(config)
     plan = InstallPlan(IniText(config.text.path), prefix, copied)
     mend_remaps(plan.text, config)
@@ -130,7 +130,7 @@ def make_plan(
 
 
 def mend_remaps(text: IniText, config: Config) -> None:
-    """Bring the REMAP lines up to date that an older `install` wrote."""
+    """Update the REMAP lines of an older `install`."""
     ours = {line for block in text.blocks() for line in block}
     for line, remap in config.remaps:
         found = features.model_of(remap) if line in ours else None
@@ -139,7 +139,7 @@ def mend_remaps(text: IniText, config: Config) -> None:
 
 
 def names_copy(text: IniText) -> list[IniLine]:
-    """Return the lines of an INI that need the copy, be they by `install` or by hand."""
+    """Return the lines of an INI that need the copy, by `install` or by hand."""
     here = text.path.parent
     found = [line for line in text.lines() if NAMES_COPY.match(line.text)]
     for line in (line for block in text.blocks() for line in block):
@@ -150,7 +150,7 @@ def names_copy(text: IniText) -> list[IniLine]:
 
 
 def put_block(text: IniText, point: InsertionPoint, lines: Sequence[str]) -> None:
-    """Put lines in between the markers."""
+    """Insert lines between the markers."""
     if lines:
         text.insert(point, [BEGIN_LINE, *lines, END])
 
@@ -158,9 +158,9 @@ def put_block(text: IniText, point: InsertionPoint, lines: Sequence[str]) -> Non
 def put_section(
     text: IniText, section: str, interpreter: InsertionPoint, lines: Sequence[str]
 ) -> None:
-    """Put lines into a section; a new one stands in the file of [RS274NGC].
+    """Insert lines into a section; a new section goes into the file of [RS274NGC].
 
-    In an included file that is in front of a header, where no other section is cut in two.
+    In an included file that is before a header, where it divides no other section.
     """
     point = text.end_of_section(section)
     if point:
@@ -216,7 +216,7 @@ def new_remaps(config: Config, wanted: Sequence[str]) -> list[features.Remap]:
 
 
 def subroutine_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
-    """Return the SUBROUTINE_PATH line to put in; one that is there gets longer instead."""
+    """Return the SUBROUTINE_PATH line to insert; an existing one is extended instead."""
     name = f"{plan.prefix}/ngc"
     if not any(features.names_of(feature) for feature in wanted):
         return []
@@ -259,7 +259,7 @@ def filter_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> li
 
 
 def program_settings(config: Config, wanted: Sequence[str]) -> list[str]:
-    """Return the settings that a lathe's programs need; those of the user's own stay."""
+    """Return the settings that a lathe's programs need; the user's own stay."""
     names = [features.PROGRAMS[name] for name in wanted if name in features.PROGRAMS]
     controls = [control for name in names if (control := read_control(name)).turns_c]
     if not controls:
@@ -271,7 +271,7 @@ def program_settings(config: Config, wanted: Sequence[str]) -> list[str]:
 
 
 def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict[str, list[str]]:
-    """Return the lines, by section, that show the forms of the codes there and wanted."""
+    """Return the lines, by section, that show the forms of present and new codes."""
     if features.FORMS not in wanted:
         return {}
     if not forms.screen_of(config):
@@ -287,7 +287,7 @@ def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict
 
 
 def geometry_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
-    """Return the GEOMETRY by which a lathe's screen turns the part; one of the user's stays."""
+    """Return the GEOMETRY that rotates the part on a lathe's screen; the user's own stays."""
     on_face = features.KINEMATICS in wanted or uses_them(config)
     lathe = set(ON_A_LATHE).intersection(wanted) or on_face
     axes = config.ini.axes
@@ -302,7 +302,7 @@ def geometry_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> 
 
 
 def face_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict[str, list[str]]:
-    """Change the entries that the face's kinematics need otherwise; return the lines to add."""
+    """Change the entries for the face's kinematics; return the lines to add."""
     if features.KINEMATICS not in wanted or uses_them(config):
         return {}
     reasons = list(kinematics_lines.obstacles(config, plan.text, wanted))
@@ -317,7 +317,7 @@ def face_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict
 def spindle_lines(
     plan: InstallPlan, config: Config, wanted: Sequence[str], pins: spindle_c.Pins | None
 ) -> dict[str, list[str]]:
-    """Return the lines of each section that let the spindle become C."""
+    """Return the lines of each section for a spindle that becomes C."""
     if features.SPINDLE_C not in wanted or config.ini.get("SPINDLE_C", "JOINT"):
         return {}
     reasons = list(spindle_c.spindle_obstacles(config, pins))
@@ -343,7 +343,7 @@ def python_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> li
 
 
 def own_modules(config: Config, wanted: Sequence[str]) -> list[tuple[Path, str, bool]]:
-    """Return the user's TOPLEVEL and module remap, the import each needs, and if it lacks it."""
+    """Return the user's TOPLEVEL and module remap, with the imports, and if they are missing."""
     python, toplevel = config.python, config.ini.file("PYTHON", "TOPLEVEL")
     if not toplevel.is_file():
         raise refuse(
@@ -378,7 +378,7 @@ def is_ours(module: str | None) -> bool:
 
 
 def refuse_own_names(config: Config) -> None:
-    """Refuse functions of the user's own that the import would replace."""
+    """Refuse if the import would replace functions of the user's own."""
     handlers = {name for feature in features.FILES for name in features.functions_of(feature)}
     for name in sorted(handlers & set(config.python.remap)):
         if not is_ours(config.python.remap[name]):

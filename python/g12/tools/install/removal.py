@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The package taken out of a machine config: what `install` put in, and nothing else."""
+"""Uninstallation: removes from a machine config exactly what `install` added."""
 
 import re
 from collections.abc import Iterator
@@ -46,9 +46,9 @@ OF_PROGRAMS = re.compile(
 
 
 def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
-    """Take the package out of a machine config; yield what is shown."""
+    """Remove the package from a machine config; yield the lines to show."""
     blocks, copy = text.blocks(), text.path.parent / package_copy.NAME
-    package_copy.listed(copy)  # refuses a damaged list before anything is written
+    package_copy.listed(copy)  # raises for a damaged list before anything is written
     said = take_out_blocks(text, blocks)
     shared = still_installed(text)
     if not blocks and (shared or not package_copy.is_copy(copy)):
@@ -76,10 +76,10 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
 
 
 def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
-    """Take the blocks out; return what is said of the user's lines between the markers.
+    """Remove the blocks; return notes on the user's lines between the markers, which stay.
 
-    They stay. An entry that the user gave another value than `install` stays as a comment, because
-    what was there before comes back.
+    An entry whose value the user changed stays as a comment, because the entry before `install` is
+    restored.
     """
     doomed = [line for block in blocks for line in own_lines(block)]
     was = [line for block in blocks for line in block if line.text.startswith(WAS)]
@@ -107,7 +107,7 @@ def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
 
 
 def own_lines(block: list[IniLine]) -> Iterator[IniLine]:
-    """Yield the lines of a block that `install` put there; they may stand in for another."""
+    """Yield the lines of a block by `install`; they may replace another."""
     edited = edited_lines(block)
     standing_in = keys_standing_in(block)
     for line in block:
@@ -117,7 +117,7 @@ def own_lines(block: list[IniLine]) -> Iterator[IniLine]:
 
 
 def edited_lines(block: list[IniLine]) -> list[IniLine]:
-    """Return the entries of a block to which the user gave another value than `install`."""
+    """Return the entries of a block whose value the user changed."""
     notes = [line.text[len(NOW) :] for line in block if line.text.startswith(NOW)]
     put_in = {text for note in notes for text in note.split(NEXT)}
     standing_in = keys_standing_in(block) if put_in else set()
@@ -129,7 +129,7 @@ def edited_lines(block: list[IniLine]) -> list[IniLine]:
 
 
 def keys_standing_in(block: list[IniLine]) -> set[str]:
-    """Return the keys of a block's entries that `install` put in place of others, or of limits."""
+    """Return the keys of a block's entries that replace others, or limits."""
     texts = [line.text for line in block]
     keys = {key_and_value(text[len(WAS) :])[0] for text in texts if text.startswith(WAS)}
     keys |= set(kinematics_lines.LIMITS) if "[AXIS_Y]" in texts else set()
@@ -137,7 +137,7 @@ def keys_standing_in(block: list[IniLine]) -> set[str]:
 
 
 def is_by_install(line: IniLine) -> bool:
-    """Return whether a line between the markers is one that `install` puts there."""
+    """Return whether a line between the markers is by `install`."""
     key, value = key_and_value(line.text)
     if OF_PROGRAMS.fullmatch(line.text) or forms.OWN_LINE.fullmatch(line.text):
         return True
@@ -152,20 +152,20 @@ def is_by_install(line: IniLine) -> bool:
 
 
 def notes_in(blocks: list[list[IniLine]]) -> list[str]:
-    """Return what the blocks say was put elsewhere."""
+    """Return the blocks' notes on insertions elsewhere."""
     lines = (line.text for block in blocks for line in block)
     return [text[len(NOTE) :] for text in lines if text.startswith(NOTE)]
 
 
 def take_out_path(text: IniText, entry: str, shared: bool) -> None:
-    """Take a folder out of SUBROUTINE_PATH, unless it is alone or an include is still shared."""
+    """Remove a folder from SUBROUTINE_PATH, unless it is alone or an include is still shared."""
     for line, _ in text.entries("RS274NGC", "SUBROUTINE_PATH")[:1]:
         if not shared or line.file == text.path:
             text.remove_from_value(line, entry)
 
 
 def still_installed(text: IniText) -> bool:
-    """Return whether another INI of the folder has the package by `install`."""
+    """Return whether `install` has put the package into another INI of the folder."""
     for other in other_inis(text):
         other.files.update({file: text.files[file] for file in text.files if file in other.files})
         if other.blocks() or any(line.file not in text.files for line in names_copy(other)):
@@ -174,14 +174,14 @@ def still_installed(text: IniText) -> bool:
 
 
 def without_imports(path: Path) -> bytes:
-    """Return a module's content without the lines that `install` put at its end."""
+    """Return a module's content without the lines that `install` added at its end."""
     lines = lines_with_ends(path)
     ours = {index for index, line in enumerate(lines) if line.rstrip().endswith(MARK)}
     return to_bytes(without(lines, ours))
 
 
 def take_out_elsewhere(text: IniText, notes: list[str], shared: bool) -> dict[Path, bytes]:
-    """Take out what the notes say; return the user's modules that change."""
+    """Remove the noted insertions; return the user's modules that change."""
     modules = {}
     for note in notes:
         module = text.path.parent / note.removeprefix(MODULE_NOTE)
@@ -193,18 +193,18 @@ def take_out_elsewhere(text: IniText, notes: list[str], shared: bool) -> dict[Pa
 
 
 def lines_needing_package(text: IniText) -> list[IniLine]:
-    """Return the lines of an INI without its blocks that do nothing without the package."""
+    """Return the lines of an INI, outside its blocks, that need the package."""
     return [*names_copy(text), *(code.line for code in codes_of(remaps_in(text)))]
 
 
 def after_change(path: Path) -> Iterator[str]:
-    """Drop the old version if the file is that again; yield what was done."""
+    """Delete the backup if the file equals it again; yield a line for it."""
     kept = ", ".join(backup.name for backup in drop_backup(path))
     yield f"{path}: changed" + (f"; you changed it since, so {kept} stays" if kept else "")
 
 
 def after_all(copy: Path, shared: bool, needed: bool) -> Iterator[str]:
-    """Take the copy of the package away if nobody uses it; yield what was done."""
+    """Remove the copy of the package if no INI uses it; yield a line for it."""
     if shared:
         yield f"{copy}: stays, another INI of this folder uses it"
     elif copy.is_dir() and not package_copy.is_copy(copy):

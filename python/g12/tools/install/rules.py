@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What can be wrong with the package in a machine config, and the cure for it.
+"""Checks of the package in a machine config, with their remedies.
 
-Each rule is a function that yields what it finds.  A problem keeps a code from working, a
-warning says what will surprise.
+Each rule is a function that yields findings. A problem prevents a code from working, a warning
+reports surprising behaviour.
 """
 
 import re
@@ -30,7 +30,7 @@ from g12.tools.translate.blocks.control import ControlError, read_control
 
 OLDEST = (2, 9)
 TRANSLATE = "translate"  # the command in a [FILTER] line
-LONGEST_LINE = 254  # LinuxCNC 2.9 reads no more of a line
+LONGEST_LINE = 254  # characters: LinuxCNC 2.9 reads no more of a line
 HEADER = re.compile(r"\[[^\s\]]+\]")
 MEANT_AS_HEADER = re.compile(r"\[|\w+\s*\]$")
 OWN_HEADER = f"[{SECTION}]"
@@ -39,8 +39,8 @@ SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 MEND = "if it was there once, run install again: it mends the folder g12"
 FORM = re.compile(r"ngc/form_\w+\.ngc")  # whose M codes a lathe's owner writes into it
 SOME = 8  # files are named in a line
-AFTERMATH = "Bad character 'g'"  # begins what is said of an interpreter that never came up
-STOPPING = {  # kinds that keep LinuxCNC itself from loading the config
+AFTERMATH = "Bad character 'g'"  # prefix of the error of an interpreter that did not start
+STOPPING = {  # kinds that prevent LinuxCNC itself from loading the config
     "taken",
     "wrong-line",
     "no-sub",
@@ -75,7 +75,7 @@ def codes_of(remaps: list[tuple[IniLine, Remap]]) -> list[Code]:
 
 
 def unreadable_includes(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find an #INCLUDE of a file that is not there."""
+    """Find an #INCLUDE of a missing file."""
     for line in config.text.unreadable:
         yield warning(
             "include",
@@ -98,7 +98,7 @@ def nested_includes(config: Config, _codes: list[Code]) -> Iterator[ConfigFindin
 
 
 def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find REMAP lines of the package, or settings, where LinuxCNC does not look."""
+    """Find REMAP lines of the package, or settings, where LinuxCNC does not read them."""
     read = {line for line, _ in config.remaps}
     for line in config.text.lines():
         key, value = key_and_value(line.text)
@@ -119,7 +119,7 @@ def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding
 
 
 def broken_headers(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find a line that was meant to begin a section; LinuxCNC 2.9 says nothing of it."""
+    """Find a broken section header; LinuxCNC 2.9 does not report it."""
     for line in config.text.lines():
         text = line.text.strip()
         other_case = text.upper().startswith(OWN_HEADER) and not text.startswith(OWN_HEADER)
@@ -133,7 +133,7 @@ def broken_headers(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding
 
 
 def long_lines(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find lines LinuxCNC would cut."""
+    """Find lines that LinuxCNC would truncate."""
     for section in ("RS274NGC", "PYTHON", SECTION):
         for line in config.text.section(section):
             if len(line.text) > LONGEST_LINE:
@@ -205,7 +205,7 @@ def taken_codes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
 
 
 def owned_codes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find a code that LinuxCNC keeps for itself: it accepts the REMAP line and ignores it."""
+    """Find a code of LinuxCNC's own: it accepts the REMAP line and ignores it."""
     for code in codes:
         if code.remap.code not in config.owned:
             continue
@@ -270,7 +270,7 @@ def blanks_in_path(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]
 
 
 def odd_folder(folder: Path) -> Iterator[ConfigFinding]:
-    """Find a character in a folder's path at which LinuxCNC, like a shell, gives up."""
+    """Find a character in a folder's path that LinuxCNC, like a shell, cannot expand."""
     odd = SHELL_CHARACTERS.search(str(folder))
     if odd:
         yield problem(
@@ -281,7 +281,7 @@ def odd_folder(folder: Path) -> Iterator[ConfigFinding]:
 
 
 def shadowed_subs(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find another file of a sub's name in a folder LinuxCNC looks in first."""
+    """Find another file of a sub's name in a folder that LinuxCNC searches first."""
     for name in needed_subs(codes):
         first, *others = subs_named(config.ini, name) or [None]
         own = package_sub(config, name)
@@ -295,7 +295,7 @@ def shadowed_subs(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
 
 
 def shadowing_functions(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find a Python O-word of the name of a sub that programs call; REMAP lines go past it."""
+    """Find a Python O-word of the name of a sub that programs call; REMAP lines bypass it."""
     called = {name for code in codes for name in features.SUBS.get(code.feature, ())}
     for name in sorted(called & set(config.python.oword if config.python else ())):
         yield problem(
@@ -374,7 +374,7 @@ def handlers_missing(config: Config, codes: list[Code]) -> Iterator[ConfigFindin
 
 
 def handlers_hidden(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find functions of the user's own under a handler's name."""
+    """Find functions of the user's own with a handler's name."""
     functions = config.python.remap if config.python else {}
     for name in sorted({name for code in codes for name in code.model.handlers}):
         module = functions.get(name)
@@ -413,7 +413,7 @@ def missing_axes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
 
 
 def shapes_without_polar(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find the shapes on a machine without the polar interpolation that they are made of."""
+    """Find the shapes on a machine without the polar interpolation that they need."""
     known = {code.feature for code in codes}
     if features.SHAPES in known and known.isdisjoint(features.POLAR):
         yield problem(
@@ -446,7 +446,7 @@ def no_tool_table(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
 
 
 def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find a tool table that cannot tell any cutter's radius."""
+    """Find a tool table without any diameter."""
     mill = any(code.feature not in features.AXES for code in codes)
     unknown = config.diameters is None or any(no_tool_table(config, codes))
     if mill and not unknown and not any(config.diameters.values()):
@@ -461,7 +461,7 @@ def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[Config
 
 
 def translating_filters(config: Config) -> Iterator[tuple[str, str, list[str]]]:
-    """Yield suffix, control and words of each [FILTER] line that translates."""
+    """Yield suffix, control and arguments of each [FILTER] line that translates."""
     for _, key, value in entries_of(config.ini.lines, "FILTER"):
         words = value.split()
         if TRANSLATE in words and "--control" in words[:-1]:
@@ -474,7 +474,7 @@ def installed_programs(config: Config) -> list[str]:
 
 
 def wrong_filters(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find a filter whose control cannot be read, or whose package is not there."""
+    """Find a filter whose control cannot be read, or whose package is missing."""
     for suffix, control, words in translating_filters(config):
         command = folder_from_ini(config.ini, words[words.index(TRANSLATE) - 1])
         if not command.exists():
@@ -490,7 +490,7 @@ def wrong_filters(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]
 
 
 def changed_copy(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
-    """Find files of the package's copy that are not as they were installed."""
+    """Find files of the package's copy that have changed since their installation."""
     copy = config.folder / package_copy.NAME
     if not (codes or installed_programs(config)) or not package_copy.is_copy(copy):
         return
@@ -513,7 +513,7 @@ def changed_copy(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
 
 
 def shortened(names: list[str]) -> str:
-    """Return some names in one line, and how many more there are."""
+    """Return some names in one line, and the number of the others."""
     more = f" and {len(names) - SOME} more" if len(names) > SOME else ""
     return ", ".join(names[:SOME]) + more
 
@@ -550,7 +550,7 @@ RULES: tuple[Rule, ...] = (
 
 
 def findings_of(config: Config) -> list[ConfigFinding]:
-    """Return everything found; what nothing explains is LinuxCNC's own word."""
+    """Return all findings; a failure without one is reported in LinuxCNC's own words."""
     codes = codes_of(config.remaps)
     found = [finding for rule in RULES for finding in rule(config, codes)]
     found += form_findings(config, {code.feature for code in codes})
@@ -571,9 +571,9 @@ def findings_of(config: Config) -> list[ConfigFinding]:
 
 
 def function_missing(config: Config) -> str:
-    """Return what LinuxCNC says of a REMAP line whose function is missing, empty if none is.
+    """Return LinuxCNC's error for a REMAP line whose function is missing, "" without one.
 
-    The preview of 2.9.9 does not tell: it goes on without that line and all after it.
+    The preview of 2.9.9 does not report it: it continues without that line and all after it.
     """
     python = config.python
     if not python or python.error:
@@ -586,7 +586,7 @@ def function_missing(config: Config) -> str:
 
 
 def last_words(failure: str) -> str:
-    """Return what the interpreter said last before it gave up, in one line."""
+    """Return the interpreter's last error in one line."""
     lines = [line.strip() for line in failure.splitlines() if line.strip()]
     told = [line for line in lines if not line.startswith(AFTERMATH)] or lines
     return "; ".join(told[-2:])

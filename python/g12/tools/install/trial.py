@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""An installation tried out: the config as it would be, loaded from a scratch folder."""
+"""The trial of an installation: the new config, loaded from a scratch folder."""
 
 import re
 import shutil
@@ -17,7 +17,7 @@ from g12.tools.install.plan import InstallPlan, Refused
 from g12.tools.machine.ini import Ini, Overrides
 
 HEADER = re.compile(r"\s*\[([^\s\]]+)\]")
-SHOWN_ONLY = {"form", "no-codes"}  # kinds that leave a machine as it is
+SHOWN_ONLY = {"form", "no-codes"}  # kinds of findings that do not affect a machine's codes
 
 
 def sections_of(lines: Sequence[str]) -> dict[str, None]:
@@ -28,8 +28,8 @@ def sections_of(lines: Sequence[str]) -> dict[str, None]:
 def try_out(plan: InstallPlan) -> list[ConfigFinding]:
     """Return the warnings of `check` for the plan; refuse if it finds a problem.
 
-    Another INI of the folder that includes a changed file has to load; that it shows forms of
-    codes which it has not is a warning.
+    Another INI of the folder that includes a changed file has to load; forms of codes that it does
+    not have are a warning.
     """
     warnings = refuse_problems(trial(plan, plan.text))
     included = [path for path in plan.changes() if path in plan.text.files]
@@ -46,7 +46,7 @@ def try_out(plan: InstallPlan) -> list[ConfigFinding]:
 
 
 def others_including(text: IniText, changed: Sequence[Path]) -> Iterator[IniText]:
-    """Yield the folder's other INIs that include a changed file, changed as it will be."""
+    """Yield the folder's other INIs that include a changed file, with its changes."""
     for other in other_inis(text):
         shared = [file for file in changed if file in other.files]
         other.files.update({file: text.files[file] for file in shared})
@@ -63,7 +63,7 @@ def refuse_problems(findings: Sequence[ConfigFinding]) -> list[ConfigFinding]:
 
 
 def trial(plan: InstallPlan, text: IniText) -> list[ConfigFinding]:
-    """Return what `check` finds in an INI with the plan carried out, before it is."""
+    """Return the findings of `check` in an INI with the plan applied."""
     with tempfile.TemporaryDirectory(prefix="g", dir="/tmp") as scratch:
         if plan.copied:
             link_package(Path(scratch))
@@ -72,9 +72,9 @@ def trial(plan: InstallPlan, text: IniText) -> list[ConfigFinding]:
 
 
 def trial_values(plan: InstallPlan, ini: Ini, scratch: Path) -> Overrides:
-    """Return the INI values that make LinuxCNC load what the plan would write.
+    """Return the INI values that make LinuxCNC load the plan's files.
 
-    What is not written yet, or not up to date, stands in the folder ``scratch``.
+    Files that are not written yet, or not up to date, are in the folder ``scratch``.
     """
     values = relocated_values(plan, ini, scratch)
     python = values.setdefault("PYTHON", {})
@@ -89,7 +89,7 @@ def trial_values(plan: InstallPlan, ini: Ini, scratch: Path) -> Overrides:
 
 
 def relocated_values(plan: InstallPlan, ini: Ini, scratch: Path) -> dict[str, dict[str, list[str]]]:
-    """Return the INI's values that name the copy, with its place for the trial, by section."""
+    """Return the INI's values that name the copy, with the trial's folder, by section."""
     found: dict[str, dict[str, list[str]]] = {}
     for section in sections_of(ini.lines) if plan.copied else ():
         entries = list(entries_of(ini.lines, section))
@@ -102,7 +102,7 @@ def relocated_values(plan: InstallPlan, ini: Ini, scratch: Path) -> dict[str, di
 
 
 def relocated(value: str, prefix: str, scratch: Path) -> str:
-    """Return an INI's value with another folder in place of the copy's."""
+    """Return an INI's value with another folder instead of the copy's."""
     copy = rf"(?<![^\s:=])(\./|{HERE}/)?{re.escape(prefix)}(?=[/\s:]|$)"
     return re.sub(copy, str(scratch), value)
 
@@ -118,7 +118,7 @@ def trial_modules(plan: InstallPlan, scratch: Path) -> Iterator[tuple[Path, byte
 
 
 def link_package(scratch: Path) -> None:
-    """Put the package into a folder; in ``package`` there it stands without other modules."""
+    """Link the package into a folder, and alone into ``package`` there."""
     for part in ("ngc", "python", "configs"):
         (scratch / part).symlink_to(features.ROOT / part)
     (scratch / "package").mkdir()

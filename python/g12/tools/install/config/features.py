@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What of the package a machine can have, and the REMAP lines that make it."""
+"""The features that a machine can have, and their REMAP lines."""
 
 from difflib import get_close_matches
 from functools import cache
@@ -52,8 +52,8 @@ MEANING = {
         name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()
     },
 }
-SHARED = {"cycle_done"}  # the epilog of every cycle does not tell which one it is
-SUBS = {  # what a program, or a handler, calls besides the codes
+SHARED = {"cycle_done"}  # the common epilog does not identify a cycle
+SUBS = {  # subs that a program or a handler calls, besides those of the codes
     "haas": ("g12_helix",),
     "circle-mill": ("circle_mill",),
     **dict.fromkeys(AXES, ("g12_skipped_over",)),
@@ -69,12 +69,12 @@ SUBS = {  # what a program, or a handler, calls besides the codes
     SPINDLE_C: (),
 }
 
-CLOSE = 0.8  # share of letters in common that makes a name a misspelt one
+CLOSE = 0.8  # least similarity of a misspelt name
 SECTION = "RS274NGC"  # which the files of configs/include go into
 
 
 def own_names(remap: Remap) -> set[str]:
-    """Return what tells a REMAP line from those of other cycles: its subs and functions."""
+    """Return the names that identify a REMAP line's cycle: its subs and functions."""
     names = {remap.keywords[word] for word in ("ngc", *HANDLERS) if word in remap.keywords}
     return names - SHARED
 
@@ -88,7 +88,7 @@ def remaps_of(feature: str) -> tuple[Remap, ...]:
 
 
 def model_of(remap: Remap) -> tuple[str, Remap] | None:
-    """Return the feature that a REMAP line of a machine belongs to and the package's own line."""
+    """Return the feature of a machine's REMAP line, and the package's own line."""
     models = [(feature, model) for feature in FILES for model in remaps_of(feature)]
 
     def likeness(candidate: tuple[str, Remap]) -> tuple[int, bool]:
@@ -102,7 +102,7 @@ def model_of(remap: Remap) -> tuple[str, Remap] | None:
 
 
 def is_misspelt(remap: Remap, model: Remap) -> bool:
-    """Return whether a REMAP line of the same code names only what a line names, misspelt."""
+    """Return whether a REMAP line of the same code has the names of a line, misspelt."""
     names = own_names(remap) if remap.number == model.number else ()
     close = [get_close_matches(name, own_names(model), cutoff=CLOSE) for name in names]
     return bool(close) and all(close)
@@ -115,7 +115,7 @@ def names_of(feature: str) -> list[str]:
 
 
 def harmless(feature: str) -> str | None:
-    """Return what does nothing in a program that is in no section, None without sections."""
+    """Return a block without effect outside a section, None without sections."""
     if feature in POLAR:
         return remaps_of(feature)[1].code
     return f"{remaps_of(feature)[0].code} C0" if feature == "cylinder" else None

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What `check` tells of a machine config.
+"""The findings of `check` in a machine config.
 
-A problem keeps a code from working, a warning says what will surprise, a note is as it may be.
+A problem prevents a code from working. A warning reports surprising behaviour. A note needs no
+change.
 """
 
 from dataclasses import dataclass
@@ -11,7 +12,7 @@ PROBLEM, WARNING, NOTE = "problem", "warning", "note"
 
 @dataclass(frozen=True)
 class ConfigFinding:
-    """Something the owner should know: ``kind`` is a short name that stays the same."""
+    """A finding for the owner; ``kind`` is a short, stable name."""
 
     level: str
     kind: str
@@ -20,15 +21,15 @@ class ConfigFinding:
 
 
 def problem(kind: str, text: str, cure: str) -> ConfigFinding:
-    """Return a finding that keeps a code from working."""
+    """Return a finding that prevents a code from working."""
     return ConfigFinding(PROBLEM, kind, text, cure)
 
 
 def warning(kind: str, text: str, cure: str) -> ConfigFinding:
-    """Return a finding that will surprise."""
+    """Return a finding of surprising behaviour."""
     return ConfigFinding(WARNING, kind, text, cure)
 
 
 def note(kind: str, text: str, cure: str) -> ConfigFinding:
-    """Return a finding that is as it may be, but that the owner should know of."""
+    """Return a finding that needs no change, but that the owner should know."""
     return ConfigFinding(NOTE, kind, text, cure)

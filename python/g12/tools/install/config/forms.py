@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The forms in a machine config: the lines that show them on its screen, and what can be wrong.
+"""The forms in a machine config: the lines that show them on its screen, and the checks.
 
-A form is a sub in `ngc` that LinuxCNC's ngcgui makes a page of. There are three ngcgui: AXIS loads
-one as a Tcl package, some screens of QtVCP hold one, and GladeVCP makes one of `forms.ui`, in a tab
-of gmoccapy or Touchy or, with any other screen, in a window of its own.
+A form is a sub in `ngc` that LinuxCNC's ngcgui shows as a page. There are three versions of ngcgui.
+AXIS loads one as a Tcl package. Some screens of QtVCP contain one. GladeVCP makes one from
+`forms.ui`, in a tab of gmoccapy or Touchy or, with any other screen, in a window of its own.
 """
 
 import re
@@ -34,8 +34,8 @@ NGCGUI = "Ngcgui"  # the Tcl package that AXIS loads
 PAGE = "configs/include/forms.ui"
 TAB = "gladevcp -x {XID} "
 WINDOW = "loadusr gladevcp -c forms "  # HAL ends it with LinuxCNC
-TABS = {"gmoccapy": "ntb_user_tabs", "touchy": ""}  # screens with tabs, and where in them
-QTVCP_WITH_NGCGUI = ("qtdragon", "woodpecker")  # how the names of these screens begin
+TABS = {"gmoccapy": "ntb_user_tabs", "touchy": ""}  # screens with tabs, and the tabs' location
+QTVCP_WITH_NGCGUI = ("qtdragon", "woodpecker")  # prefix of these screens' names
 HERE = "/proc/self/cwd"  # LinuxCNC and its screen work in the INI's folder
 OWN_LINE = re.compile(
     r"TKPKG = Ngcgui 1\.0|NGCGUI_SUBFILE = (\S+/ngc/)?form_\w+\.ngc|NGCGUI_SUBFILE_PATH = \S+/ngc"
@@ -43,7 +43,7 @@ OWN_LINE = re.compile(
     r"|EMBED_TAB_COMMAND = gladevcp -x \{XID\} \S+/forms\.ui"
     r"|HALCMD = loadusr gladevcp -c forms \S+/forms\.ui"
 )
-AXIS, QTVCP, GLADEVCP = "axis", "qtvcp", "gladevcp"  # whose ngcgui shows the forms
+AXIS, QTVCP, GLADEVCP = "axis", "qtvcp", "gladevcp"  # the program whose ngcgui shows the forms
 
 
 def screen_of(config: Config) -> str:
@@ -53,7 +53,7 @@ def screen_of(config: Config) -> str:
 
 
 def ngcgui_of(config: Config) -> str:
-    """Return whose ngcgui shows the forms on a config's screen."""
+    """Return the program whose ngcgui shows the forms on a config's screen."""
     screen, *options = (config.ini.get("DISPLAY", "DISPLAY") or "").split() or [""]
     if Path(screen).name == "axis":
         return AXIS
@@ -68,7 +68,7 @@ def files_of(config: Config, features: Iterable[str]) -> list[str]:
 
 
 def lines_for(config: Config, features: Sequence[str], prefix: str) -> dict[str, list[str]]:
-    """Return the lines that show the features' forms, by section, without those that are there.
+    """Return the missing lines that show the features' forms, by section.
 
     ``prefix`` is the package's folder as the INI names it.
     """
@@ -81,7 +81,7 @@ def lines_for(config: Config, features: Sequence[str], prefix: str) -> dict[str,
 
 
 def folder_of_pages(config: Config, prefix: str) -> str:
-    """Return what stands in front of a form's name: QtVCP looks in one folder for plain names."""
+    """Return the path before a form's name: QtVCP searches one folder for plain names."""
     if ngcgui_of(config) != QTVCP or not own_page_folder(config, prefix):
         return ""
     return f"{prefix if Path(prefix).is_absolute() else f'{HERE}/{prefix}'}/ngc/"
@@ -108,7 +108,7 @@ def screen_lines(config: Config, prefix: str) -> dict[str, list[str]]:
     locations, tabs = (
         config.ini.all("DISPLAY", f"EMBED_TAB_{key}") for key in ("LOCATION", "NAME")
     )
-    # Screens count names and locations: where a tab of the user's has none, ours has none either.
+    # Screens pair names and locations by number: if a tab of the user has none, this one has none.
     location = [f"EMBED_TAB_LOCATION = {TABS[screen]}"] if len(locations) == len(tabs) else []
     command = f"EMBED_TAB_COMMAND = {TAB}{prefix}/{PAGE}"
     return {"DISPLAY": ["EMBED_TAB_NAME = Forms", *(location if TABS[screen] else []), command]}
@@ -121,7 +121,7 @@ def packages(config: Config) -> list[str]:
 
 
 def pages_of_gladevcp(config: Config) -> list[Path]:
-    """Return the GladeVCP files that a config shows, of those with ngcgui or not there."""
+    """Return the GladeVCP files of a config that contain ngcgui or are missing."""
     commands = [*config.ini.all("DISPLAY", "EMBED_TAB_COMMAND"), *config.ini.all("HAL", "HALCMD")]
     names = (word for command in commands for word in command.split() if word.endswith(".ui"))
     files = [folder_from_ini(config.ini, name) for name in names]
@@ -135,7 +135,7 @@ def shown(config: Config) -> list[str]:
 
 
 def form_findings(config: Config, features: set[str]) -> Iterator[ConfigFinding]:
-    """Find what keeps forms from being shown or from working; ``features`` are those there."""
+    """Find what prevents forms from being shown or from working, for the config's features."""
     forms = shown(config)
     for form in forms:
         yield from form_finding(config, form, features)
@@ -144,7 +144,7 @@ def form_findings(config: Config, features: set[str]) -> Iterator[ConfigFinding]
 
 
 def form_finding(config: Config, form: str, features: set[str]) -> Iterator[ConfigFinding]:
-    """Find what is wrong with one form."""
+    """Find the fault of one form."""
     own = {feature: names for feature, names in OF.items() if form.rpartition("_")[0] in names}
     parts = FACE_PARTS if "polar-shapes" in own else PARTS
     missing = [name for name in (form, *parts) if not subs_named(config.ini, name)]
@@ -195,7 +195,7 @@ def gladevcp_findings(config: Config) -> Iterator[ConfigFinding]:
 
 
 def qtvcp_findings(config: Config) -> Iterator[ConfigFinding]:
-    """Find forms that are not where a QtVCP screen looks: below one folder, or by a full name."""
+    """Find forms outside QtVCP's search: below one folder, or by a full path."""
     folder = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
     for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE"):
         own = Path(name).name.startswith("form_")
@@ -210,7 +210,7 @@ def qtvcp_findings(config: Config) -> Iterator[ConfigFinding]:
 
 
 def qtvcp_file(config: Config, folder: str, name: str) -> Path:
-    """Return the file that a QtVCP screen makes a page of."""
+    """Return the file that a QtVCP screen shows as a page."""
     name = name.replace(HERE, str(config.folder), 1)
     return folder_from_ini(config.ini, folder) / name
 

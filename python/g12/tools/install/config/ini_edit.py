@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Machine INI files as they stand on disk: where a line is, and edits that touch nothing else.
+"""Machine INI files on disk: the location of lines, and edits that change nothing else.
 
-Bytes that are no UTF-8, line ends and a missing last line end survive. What is put in stands
-between two marker comments, by which it is found and taken out again.
+Bytes that are no UTF-8, line ends and a missing last line end survive. Insertions are enclosed in
+two marker comments, by which they are found and removed again.
 """
 
 import re
@@ -16,7 +16,7 @@ from g12.tools.machine.ini import Ini, IniError
 BEGIN = "# >>> g12 install"
 END = "# <<< g12 install"
 WAS = "# was: "
-NOW = "# now: "  # what was put in, several separated by NEXT: an edit is known by it
+NOW = "# now: "  # the inserted text, several separated by NEXT, to detect later edits
 NEXT = "; "
 LINE = re.compile(r"[^\n]*\n|[^\n]+")
 CONTINUED = re.compile(r"\\\r?\n?\Z")
@@ -25,7 +25,7 @@ CONTINUED = re.compile(r"\\\r?\n?\Z")
 class IniLine(NamedTuple):
     """A line of the expanded INI: ``row`` counts from 0 in ``file``, ``text`` has no line end.
 
-    ``host`` is the index of the INI's own line that brings it: itself or an #INCLUDE.
+    ``host`` is the index of the INI's own line for it: itself or an #INCLUDE.
     """
 
     file: Path
@@ -40,7 +40,7 @@ class IniLine(NamedTuple):
 
 
 class InsertionPoint(NamedTuple):
-    """A gap between lines: in front of line ``row`` of ``file``."""
+    """A gap between lines: before line ``row`` of ``file``."""
 
     file: Path
     row: int
@@ -62,12 +62,12 @@ def line_end(lines: Sequence[str]) -> str:
 
 
 def is_entry(text: str) -> bool:
-    """Return whether a line says anything: neither blank nor a comment."""
+    """Return whether a line is an entry: neither blank nor a comment."""
     return bool(text.strip()) and text.lstrip()[0] not in "#;"
 
 
 def belongs(text: str) -> bool:
-    """Return whether a line belongs to the section in front of it; comments may not."""
+    """Return whether a line belongs to the section before it; comments may not."""
     return is_entry(text) or text.startswith(END)
 
 
@@ -77,14 +77,14 @@ def opens_section(text: str, section: str) -> bool:
 
 
 def without(lines: Sequence[str], doomed: set[int]) -> list[str]:
-    """Return lines without those at the indices; a last line without an end stays one."""
+    """Return lines without those at the indices; a missing last line end stays missing."""
     kept = [line for index, line in enumerate(lines) if index not in doomed]
     unended = lines and not lines[-1].endswith("\n") and len(lines) - 1 in doomed
     return [*kept[:-1], kept[-1].rstrip("\r\n")] if unended and kept else kept
 
 
 class IniText:
-    """An INI file with the files it includes; edits stay in memory until somebody writes them."""
+    """An INI file with the files it includes; edits stay in memory until they are written."""
 
     def __init__(self, path: Path) -> None:
         self.path = path.absolute()
@@ -113,9 +113,9 @@ class IniText:
             yield IniLine(self.path, index, text.rstrip("\r\n"), index)
 
     def lines(self) -> Sequence[IniLine]:
-        """Return every line as LinuxCNC sees it, an #INCLUDE line in front of what it includes.
+        """Return every line as LinuxCNC reads it, an #INCLUDE before the lines that it includes.
 
-        They are kept until an edit: `install` asks for them some hundred times.
+        They are cached until an edit: `install` reads them some hundred times.
         """
         if self._files_of_lines != self.files:
             self._lines = list(self._expanded())
@@ -154,9 +154,9 @@ class IniText:
         return [(lines[entry.row], entry.value) for entry in found if entry.key == key]
 
     def end_of_section(self, section: str) -> InsertionPoint | None:
-        """Return the point after the section's last entry, in the INI itself if that can be.
+        """Return the point after the section's last entry, in the INI itself if possible.
 
-        For RS274NGC that is here in front of the empty line::
+        For RS274NGC that is before the empty line here::
 
             [RS274NGC]
             PARAMETER_FILE = mill.var
@@ -165,11 +165,11 @@ class IniText:
             # Axes.
             [TRAJ]
 
-        unless remaps.inc ends in another section: then it is in front of the #INCLUDE. Where
-        another file brings the header too, it is in that file.
+        unless remaps.inc ends in another section: then it is before the #INCLUDE. Where another
+        file has the header, too, it is in that file.
         """
         found = self.section(section)
-        last_of = {line.host: line for line in self.lines()}  # that each line of the INI brings
+        last_of = {line.host: line for line in self.lines()}  # of each line of the INI
         last_inside = {line.host: line for line in found}
         for host, line in reversed(last_inside.items()):
             included = line.file != self.path
@@ -192,7 +192,7 @@ class IniText:
         return InsertionPoint(self.path, len(self.files[self.path]))
 
     def insert(self, point: InsertionPoint, texts: Sequence[str]) -> None:
-        """Put lines in. At the end of a file without a last line end they have none either."""
+        """Insert lines. At the end of a file without a last line end they have none either."""
         lines = self.files[point.file]
         end = line_end(lines)
         new = [text + end for text in texts]
@@ -202,13 +202,13 @@ class IniText:
         lines[point.row : point.row] = new
 
     def put_in_place(self, line: IniLine, text: str, begin: str) -> None:
-        """Put an entry between markers in place of a line, which stays there as a comment."""
+        """Insert an entry between markers instead of a line, which stays as a comment."""
         self.insert(InsertionPoint(line.file, line.row + 1), [NOW + text, text, END])
         self.replace(line, WAS + line.text)
         self.insert(InsertionPoint(line.file, line.row), [begin])
 
     def replace(self, line: IniLine, text: str) -> None:
-        """Put another text in place of a line; its line end stays."""
+        """Replace the text of a line; its line end stays."""
         lines = self.files[line.file]
         lines[line.row] = text + lines[line.row][len(line.text) :]
 
@@ -220,14 +220,14 @@ class IniText:
         lines[index] = body + text + lines[index][len(body) :]
 
     def remove_from_value(self, line: IniLine, entry: str) -> None:
-        """Take an entry out of the list, separated by colons, that begins at ``line``."""
+        """Remove an entry from the list, separated by colons, that begins at ``line``."""
         lines = self.files[line.file]
         lines[line.row] = re.sub(rf"(=\s*){re.escape(entry)}:", r"\1", lines[line.row], count=1)
         for index in range(line.row, self._after(line.file, line.row)):
             lines[index] = re.sub(rf":{re.escape(entry)}(?=[:\s]|$)", "", lines[index])
 
     def blocks(self) -> list[list[IniLine]]:
-        """Return the marked blocks, markers included, of the INI and of what it includes."""
+        """Return the marked blocks, markers included, of the INI and its included files."""
         blocks: list[list[IniLine]] = []
         open_ = False
         for line in self.lines():
@@ -253,14 +253,14 @@ class IniText:
         return blocks
 
     def remove(self, doomed: Sequence[IniLine]) -> None:
-        """Take lines out."""
+        """Remove lines."""
         for file in {line.file for line in doomed}:
             indices = {line.row for line in doomed if line.file == file}
             self.files[file] = without(self.files[file], indices)
 
 
 def other_inis(text: IniText) -> Iterator[IniText]:
-    """Yield the other INIs of an INI's folder; a link to it is none."""
+    """Yield the other INIs of an INI's folder, without links to it."""
     for path in sorted(text.path.parent.glob("*.ini")):
         if path.is_file() and not path.samefile(text.path):
             yield IniText(path)

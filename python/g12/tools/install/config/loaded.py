@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A machine config as LinuxCNC finds it: read, then loaded in the stock interpreter."""
+"""A machine config as LinuxCNC loads it: read, then loaded in the stock interpreter."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from g12.tools.preview.loading import linuxcnc_version, load_failure, python_err
 from g12.tools.preview.tracer import TraceFailure, Tracer
 
 ANSWER = "G12 CONFIG "
-# What the machine's Python modules brought into the interpreter, asked from inside it.
+# Code executed in the interpreter: it reports what the machine's Python modules defined.
 QUESTION = f"""\
 def g12_config():
     import json, sys
@@ -30,15 +30,15 @@ def g12_config():
     }})
 print(g12_config(), flush=True)
 """
-UNUSED = ("G99.8", "M20", "M999")  # no LinuxCNC has a meaning for them
-HIGH_M = 200  # from here on its text about an unknown M code is another
+UNUSED = ("G99.8", "M20", "M999")  # codes that no LinuxCNC has
+HIGH_M = 200  # from this one on, the error for an unknown M code differs
 NO_REMAPS: Overrides = {"RS274NGC": {"REMAP": None, "RS274NGC_STARTUP_CODE": None}}
 MOST_FOLDERS = 10  # of SUBROUTINE_PATH; LinuxCNC ignores the rest
 
 
 @dataclass(frozen=True)
 class Python:
-    """What the machine's Python modules brought into the interpreter.
+    """The definitions of the machine's Python modules in the interpreter.
 
     ``remap`` and ``oword`` map the functions of these modules to the module that made them, and
     are empty if the config has none. ``package`` is the folder of the package g12 in use.
@@ -54,12 +54,12 @@ class Python:
 
 @dataclass(frozen=True)
 class Config:
-    """A machine config: its lines, values and REMAP lines, and how the interpreter takes it.
+    """A machine config: its lines, values and REMAP lines, and the loaded interpreter's state.
 
-    ``version`` is LinuxCNC's, empty if its Python modules are not there; ``python`` is None if
-    nothing could be asked.  ``owned`` holds those of the codes asked about that LinuxCNC itself
-    has a meaning for.  ``failure`` is the interpreter's own text if it does not load the config,
-    ``diameters`` what it reads in the tool table: tool number to diameter in mm.
+    ``version`` is LinuxCNC's, empty if its Python modules are missing; ``python`` is None if the
+    interpreter did not run. ``owned`` has those of the queried codes that are LinuxCNC's own.
+    ``failure`` is the interpreter's own text if it does not load the config. ``diameters`` are its
+    values of the tool table: tool number to diameter in mm.
     """
 
     text: IniText
@@ -83,7 +83,7 @@ def remaps_in(text: IniText) -> list[tuple[IniLine, Remap]]:
 
 
 def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None) -> Config:
-    """Return the config of an INI, asking LinuxCNC about it and about G ``codes``.
+    """Return the config of an INI, loaded by LinuxCNC; ``codes`` are G codes to query.
 
     ``overlay`` replaces values for the interpreter, as in `Ini.replaced`.
     """
@@ -104,9 +104,9 @@ def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None
 
 
 def is_owned(tracer: Tracer, code: str) -> bool:
-    """Return whether LinuxCNC itself has a meaning for a code; REMAP lines must be out of the way.
+    """Return whether a code is LinuxCNC's own; the INI must have no REMAP line for it.
 
-    Its text about an unknown M code, unlike that about a G code, ends with the code.
+    LinuxCNC's error for an unknown M code, unlike that for a G code, ends with the code.
     """
     letter, number = code[:1].upper(), float(code[1:])
     unused = UNUSED[0] if letter == "G" else UNUSED[1 + (number >= HIGH_M)]
@@ -115,7 +115,7 @@ def is_owned(tracer: Tracer, code: str) -> bool:
 
 
 def ask_python(tracer: Tracer) -> Python:
-    """Return what the machine's Python modules brought into a running interpreter."""
+    """Return the definitions of the machine's Python modules in a running interpreter."""
     error = python_error(tracer.printed)
     if error:
         return Python(error=error)
@@ -138,7 +138,7 @@ def folder_from_ini(ini: Ini, name: str) -> Path:
 
 
 def sub_folders(ini: Ini) -> list[Path]:
-    """Return the folders LinuxCNC looks for NGC subs in, in its order."""
+    """Return the folders that LinuxCNC searches for NGC subs, in its order."""
     prefix = ini.get("DISPLAY", "PROGRAM_PREFIX")
     names = [name for name in ini.get("RS274NGC", "SUBROUTINE_PATH", "").split(":") if name]
     existing = [folder for folder in (folder_from_ini(ini, name) for name in names)

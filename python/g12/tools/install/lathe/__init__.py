@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a lathe's config needs besides: kinematics of the face, a spindle that becomes C."""
+"""Additions to a lathe's config: kinematics of the face, a spindle that becomes C."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The face's kinematics put into a lathe's INI, where it has the usual form.
+"""Installation of the face's kinematics in the INI of a lathe of the usual form.
 
 That is a lathe on trivkins whose HAL files load `[KINS]KINEMATICS` and whose X, Z and C are joints
-of their own. Anything else keeps its files: `configs/kinematics/README.md` has the steps.
+of their own. Any other config is not changed: `configs/kinematics/README.md` has the steps.
 """
 
 import re
@@ -29,12 +29,12 @@ from g12.tools.install.lathe.kinematics_rules import (
 
 SHARE = 0.7  # of the slide's acceleration, for X and Y each
 LIMITS = ("MIN_LIMIT", "MAX_LIMIT", "MAX_VELOCITY", "MAX_ACCELERATION")
-IN_PLACE = (  # entries that get another value
+IN_PLACE = (  # entries whose value changes
     ("KINS", "KINEMATICS"),
     ("TRAJ", "COORDINATES"),
     ("AXIS_X", "MIN_LIMIT"),
     ("AXIS_X", "MAX_ACCELERATION"),
-    ("G12", "POLAR_KINEMATICS"),  # where it is there
+    ("G12", "POLAR_KINEMATICS"),  # if it exists
 )
 LOADS = re.compile(r"loadrt\s+\[KINS\]\(?KINEMATICS\)?(\s|$)")
 CONTROLS = re.compile(r"addf\s+motion-controller\s+servo-thread(\s|$)")
@@ -46,14 +46,14 @@ CURE = f"by hand: the steps in {PAGE}, and check tells what is missing or wrong"
 
 
 def left_alone(text: str) -> ConfigFinding:
-    """Return why `install` leaves a machine's kinematics alone."""
+    """Return why `install` does not change a machine's kinematics."""
     return problem(
         "kinematics", f"{text}: install leaves the kinematics of this machine alone", CURE
     )
 
 
 def obstacles(config: Config, text: IniText, wanted: Sequence[str]) -> Iterator[ConfigFinding]:
-    """Yield what keeps `install` from putting the kinematics in."""
+    """Yield the obstacles to an installation of the kinematics."""
     if not code_off(config, wanted):
         yield problem(
             "kinematics", "there is no G12.1 here", "install --with polar polar-kinematics"
@@ -72,7 +72,7 @@ def code_off(config: Config, wanted: Sequence[str]) -> str:
 
 
 def joints(config: Config) -> str:
-    """Return the letters of a trivkins machine's joints, "" where they are not told."""
+    """Return the letters of a trivkins machine's joints, "" where they are not given."""
     module, *parameters = (config.ini.get("KINS", "KINEMATICS") or "").split() or [""]
     named = dict(parameter.partition("=")[::2] for parameter in parameters)
     known = module == "trivkins" and set(named) <= {"coordinates", "kinstype"}
@@ -80,7 +80,7 @@ def joints(config: Config) -> str:
 
 
 def wrong_joints(config: Config) -> Iterator[str]:
-    """Yield what is unusual of [KINS] and [TRAJ]."""
+    """Yield unusual entries of [KINS] and [TRAJ]."""
     letters, found = joints(config), config.ini.get("KINS", "KINEMATICS", "nothing")
     axes = coordinates_of(config.ini.get)
     if not letters:
@@ -94,7 +94,7 @@ def wrong_joints(config: Config) -> Iterator[str]:
 
 
 def wrong_limits(config: Config) -> Iterator[str]:
-    """Yield what is unusual of the limits of X and C, and of an axis Y."""
+    """Yield unusual limits of X and C, and an axis Y."""
     letters = joints(config)
     if "X" not in letters:
         return
@@ -113,7 +113,7 @@ def wrong_limits(config: Config) -> Iterator[str]:
 
 
 def wrong_entries(config: Config, text: IniText) -> Iterator[str]:
-    """Yield what is unusual of the lines that would change."""
+    """Yield unusual forms of the lines that would change."""
     if config.ini.get("RS274NGC", "ON_ABORT_COMMAND"):
         yield "[RS274NGC] has an ON_ABORT_COMMAND"
     for section, key in IN_PLACE:
@@ -125,7 +125,7 @@ def wrong_entries(config: Config, text: IniText) -> Iterator[str]:
 
 
 def wrong_hal(config: Config) -> Iterator[str]:
-    """Yield what is unusual of the HAL files."""
+    """Yield unusual lines of the HAL files."""
     names = [value.split()[0] for value in config.ini.all("HAL", "HALFILE") if value.strip()]
     for name in names:
         if not name.endswith(".hal") or not folder_from_ini(config.ini, name).is_file():

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What can be wrong with the face's kinematics in a machine config (`configs/kinematics`).
+"""Checks of the face's kinematics in a machine config (`configs/kinematics`).
 
-The rules look where `[G12] POLAR_KINEMATICS = 1` or `[KINS] KINEMATICS` asks for them. All that
-the page says has to be done is a rule here.
+They run where `[G12] POLAR_KINEMATICS = 1` or `[KINS] KINEMATICS` selects these kinematics. Every
+step of the page has a rule here.
 """
 
 import re
@@ -36,13 +36,13 @@ PINS = (
     "motion.feed-upm",
 )
 NEWEST_PIN = ".most-override"  # of the module
-NEEDED = {"num_aio": 4, "num_dio": 4}  # of motmod, which has four if it is not told
+NEEDED = {"num_aio": 4, "num_dio": 4}  # of motmod, whose default is four
 LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
 SLACK = 1.001
 
 
 class HalLine(NamedTuple):
-    """A line of a HAL file without its comment, and where it is."""
+    """A line of a HAL file without its comment, and its location."""
 
     text: str
     location: str
@@ -69,12 +69,12 @@ def module_has(text: str) -> bool:
 
 
 def wanted(config: Config) -> bool:
-    """Return whether a config asks for the face's kinematics."""
+    """Return whether a config selects the face's kinematics."""
     return uses_them(config) or bool(face_joints(config.ini.get))
 
 
 def uses_them(config: Config) -> bool:
-    """Return whether G12.1 is to move X and Y; a wrong setting is another rule's finding."""
+    """Return whether G12.1 moves X and Y; another rule reports a wrong setting."""
     try:
         return settings_from_lines(config.ini.lines).polar_kinematics == "1"
     except Refusal:
@@ -82,7 +82,7 @@ def uses_them(config: Config) -> bool:
 
 
 def not_used(config: Config) -> Iterator[ConfigFinding]:
-    """Find a machine that has them for nothing."""
+    """Find a machine that has them but does not use them."""
     if not uses_them(config):
         yield warning(
             "kinematics-unused",
@@ -193,7 +193,7 @@ def limits_wrong(config: Config) -> Iterator[ConfigFinding]:
 
 
 def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
-    """Find the guard's HAL file missing, too early or in another's way."""
+    """Find a guard's HAL file that is missing, too early or in conflict."""
     files = hal_files(config)
     guards = [number for number, lines in enumerate(files) if names(lines, REQUEST)]
     if not guards:
@@ -217,14 +217,14 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
 def pins_taken(
     line: HalLine, pins: Iterable[str], owner: str, cure: str
 ) -> Iterator[ConfigFinding]:
-    """Find pins in a line that ``owner`` says whose they are."""
+    """Find pins in a line that belong to ``owner``."""
     for pin in pins:
         if pin in line.text.split():
             yield problem("pin-taken", f"{line.location}: {line.text}: {pin} {owner}", cure)
 
 
 def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
-    """Find what other HAL files do that the guard's cannot live with."""
+    """Find lines of other HAL files that conflict with the guard's."""
     for text, location in lines:
         yield from pins_taken(
             HalLine(text, location),
@@ -250,13 +250,13 @@ def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
 
 
 def hal_files(config: Config) -> list[list[HalLine]]:
-    """Return the lines of each HAL file, in LinuxCNC's order; one that is not there has none."""
+    """Return the lines of each HAL file, in LinuxCNC's order; a missing one has none."""
     return [hal_lines(folder_from_ini(config.ini, value.split()[0]))
             for value in config.ini.all("HAL", "HALFILE") if value.strip()]  # fmt: skip
 
 
 def hal_lines(path: Path) -> list[HalLine]:
-    """Return the lines of a HAL file that do something."""
+    """Return the effective lines of a HAL file."""
     try:
         texts = path.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
@@ -271,7 +271,7 @@ def names(lines: list[HalLine], *words: str) -> bool:
 
 
 def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
-    """Find kinematics that have the tool elsewhere beside the X line than G12.1 has it."""
+    """Find kinematics with another distance of the tool from the X line than G12.1's."""
     try:
         wanted_offset = settings_from_lines(config.ini.lines).polar_tool_offset
     except Refusal:
@@ -288,7 +288,7 @@ def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
 
 
 def told_offset(text: str, wanted_offset: float) -> float | None:
-    """Return what a HAL line gives the offset's pin, None if it is another line."""
+    """Return the value that a HAL line sets for the offset's pin, None for another line."""
     match = SETS_OFFSET.fullmatch(text)
     if not match:
         return None
@@ -329,6 +329,6 @@ RULES = (
 
 
 def kinematics_findings(config: Config) -> Iterator[ConfigFinding]:
-    """Yield what is wrong with the face's kinematics, where a config asks for them."""
+    """Yield the findings about the face's kinematics, where a config selects them."""
     for rule in RULES if wanted(config) else ():
         yield from rule(config)

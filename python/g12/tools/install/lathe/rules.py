@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What surprises on a lathe whose spindle is C: the picture on the screen, the turns of C, G28."""
+"""Surprises on a lathe whose spindle is C: the screen's picture, the turns of C, G28."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -18,7 +18,7 @@ ON_A_LATHE = tuple(features.AXES)
 
 
 def geometry_for(axes: str) -> str:
-    """Return the GEOMETRY of a lathe's axes: C turns the part, what moves on it comes after."""
+    """Return the GEOMETRY of a lathe's axes: C, which rotates the part, before the slides."""
     return f"C{''.join(axis for axis in 'XYZ' if axis in axes)}!"
 
 
@@ -42,7 +42,7 @@ def without_geometry(config: Config) -> Iterator[ConfigFinding]:
 
 
 def unwinding_c(config: Config) -> Iterator[ConfigFinding]:
-    """Find a C axis that goes back every turn that it has made."""
+    """Find a C axis that unwinds all its turns."""
     low, high = (config.ini.number("AXIS_C", key, default)
                  for key, default in (("MIN_LIMIT", -1e99), ("MAX_LIMIT", 1e99)))  # fmt: skip
     wrapped = config.ini.number("AXIS_C", "WRAPPED_ROTARY", 0.0)
@@ -68,7 +68,7 @@ def never_set_g28(config: Config) -> Iterator[ConfigFinding]:
 
 
 def lathe_findings(config: Config, there: Iterable[str]) -> Iterator[ConfigFinding]:
-    """Yield what surprises on a lathe with C that has some features."""
+    """Yield the warnings for a lathe with C that has some features."""
     if "C" in config.ini.axes and not set(ON_A_LATHE).isdisjoint(there):
         yield from without_geometry(config)
         yield from unwinding_c(config)

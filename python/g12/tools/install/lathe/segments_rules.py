@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a lathe that makes polar sections in segments would gain from kinematics.
+"""The gain from kinematics for a lathe that runs polar sections in segments.
 
-Two contours stand for others: the cutter of 12 mm around a hexagon of 27 mm across flats, and a
+Two contours are the examples: the cutter of 12 mm around a hexagon of 27 mm across flats, and a
 circle of radius 10 mm, 20 mm off the axis.
 """
 
@@ -39,21 +39,21 @@ CONTOURS: dict[str, list[Curve]] = {
 
 
 def takes(path: list[Curve], machine: TurningMachine) -> str:
-    """Return the times of a contour in words."""
+    """Return a text for the times of a contour."""
     times = (section_times([Leg(curve, feed / 60.0) for curve in path], machine) for feed in FEEDS)
     segments, face, least = (" and ".join(f"{t:.1f}" for t in ways) for ways in zip(*times))
     return f"{segments} s, with kinematics {face} s, at the limits of X and C {least} s"
 
 
 def gained_by_kinematics(config: Config, there: Iterable[str]) -> Iterator[ConfigFinding]:
-    """Tell what polar sections take on a lathe whose INI says what X and C can do."""
+    """Report the times of polar sections on a lathe, from the limits of X and C in its INI."""
     ini = config.ini
     if set(features.POLAR).isdisjoint(there) or wanted(config) or not {"X", "C"} <= set(ini.axes):
         return
     known = all(ini.all(f"AXIS_{letter}", "MAX_ACCELERATION") for letter in "XC")
     try:
         machine = turning_machine(ini) if known and not ini.tool_beside else None
-    except IniError:  # another rule's finding
+    except IniError:  # another rule reports it
         return
     if machine:
         times = "; ".join(f"{what} {takes(path, machine)}" for what, path in CONTOURS.items())

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A spindle that becomes C in a lathe's INI: what `install` writes, what `check` finds.
+"""A spindle that becomes C in a lathe's INI: the lines of `install`, the checks.
 
-`configs/include/spindle_c.hal` joins the signals of the spindle's encoder, which the machine's HAL
-files have already, with the inputs of its drive, which only the owner knows: a TOML file of pins.
+`configs/include/spindle_c.hal` connects the signals of the spindle's encoder, which the machine's
+HAL files have already, with the inputs of its drive. The owner names these in a TOML file of pins.
 """
 
 import re
@@ -23,7 +23,7 @@ OWN_HAL = "configs/include/spindle_c.hal"
 LIMITS = "configs/include/spindle_c_limits.sh"
 CONNECTS = "sc-orient.enable"  # a pin that only a HAL file with these lines names
 PROLOG = "spindle_c_on"
-SIGNALS = {  # by the key of [SPINDLE_C] that names each: its pin, and a name where it has none
+SIGNALS = {  # key of [SPINDLE_C]: its pin, and the signal's name if the pin has none
     "TURNS": ("spindle.0.revs", ""),
     "RPS": ("spindle.0.speed-in", ""),
     "INDEX": ("spindle.0.index-enable", ""),
@@ -82,14 +82,14 @@ clamp_open, brake  outputs, if there are any"""
 
 
 class Pins(NamedTuple):
-    """What the owner says of the drive: pins by their names in `DRIVE`, numbers by their key."""
+    """The owner's data of the drive: pins by their names in `DRIVE`, numbers by their key."""
 
     drive: dict[str, str]
     numbers: dict[str, float]
 
 
 def read_pins(path: Path) -> Pins:
-    """Return what a file of pins says; refuse what it does not know, and what it lacks."""
+    """Return the data of a file of pins; refuse unknown and missing entries."""
     try:
         entries = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -124,7 +124,7 @@ def signals(lines: Iterable[HalLine]) -> dict[str, str]:
 
 
 def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFinding]:
-    """Yield what keeps `install` from putting it in."""
+    """Yield the obstacles to an installation."""
     if pins is None:
         yield problem(
             "pins",
@@ -177,11 +177,11 @@ def spindle_sections(config: Config, pins: Pins, prefix: str) -> dict[str, list[
     }
 
 
-# What check finds.
+# Checks.
 
 
 def spindle_c_findings(config: Config) -> Iterator[ConfigFinding]:
-    """Yield what is wrong with a spindle that becomes C, where a REMAP line asks for it."""
+    """Yield the findings about a spindle that becomes C, where a REMAP line selects it."""
     if any(PROLOG in remap.handlers for _, remap in config.remaps):
         for rule in RULES:
             yield from rule(config)
@@ -256,7 +256,7 @@ def index_shared(config: Config) -> Iterator[ConfigFinding]:
 
 
 def travel_missing(config: Config) -> Iterator[ConfigFinding]:
-    """Find an axis C without the limits that its travel goes back to."""
+    """Find an axis C without the limits for its restored travel."""
     missing = [key for key in ("MIN_LIMIT", "MAX_LIMIT") if not config.ini.get("AXIS_C", key)]
     if missing:
         yield problem(
@@ -267,7 +267,7 @@ def travel_missing(config: Config) -> Iterator[ConfigFinding]:
 
 
 def homing_moves(config: Config) -> Iterator[ConfigFinding]:
-    """Find a joint C that homes by moving: there it is no C yet."""
+    """Find a joint C that homes by moving, while the spindle is not C yet."""
     joint = f"JOINT_{joints(config).find('C')}"
     for key in ("HOME_SEARCH_VEL", "HOME_LATCH_VEL"):
         value = config.ini.get(joint, key)
@@ -294,13 +294,13 @@ def modules_twice(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
 
 
 def components_of(module: str) -> str:
-    """Return what spindle_c.hal calls its components of a module."""
+    """Return the names of spindle_c.hal's components of a module."""
     text = (ROOT / OWN_HAL).read_text(encoding="utf-8")
     return re.search(rf"^loadrt {module} names=(\S+)", text, re.MULTILINE)[1]
 
 
 def others_in_the_way(config: Config) -> Iterator[ConfigFinding]:
-    """Find modules and pins of other HAL files that spindle_c.hal needs for itself."""
+    """Find modules and pins of spindle_c.hal that other HAL files use."""
     lines = other_lines(config)
     yield from modules_twice(lines)
     for line in lines:
