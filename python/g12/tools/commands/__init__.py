@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One file a command: its words, its main function, its exit code."""
+"""One file a command: its arguments, its main function, its exit code."""

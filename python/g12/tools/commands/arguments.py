@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the commands share: words of the command line, and errors told in one line."""
+"""Shared by the commands: command line arguments, and errors in one line."""
 
 import argparse
 import functools
@@ -29,14 +29,15 @@ from g12.tools.units import UNITS, clock
 GOOD, FINDING, USAGE = 0, 1, 2
 VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"
 NAMED = re.compile(r"^( *)g12\b", re.MULTILINE)  # the command, at the beginning of a line
-# How Python names what was raised, and how LinuxCNC names a line of HAL that it cannot load.
+# Python's line of an exception, and LinuxCNC's of a HAL line that it cannot load.
 TELLING = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:|\S+\.(hal|tcl):\d+: ")
 
 
 class Parser(argparse.ArgumentParser):
-    """The words of one command, whose wrong use is told in one line.
+    """The argument parser of a command, which reports wrong use in one line.
 
-    ``prog`` and the examples of ``epilog`` name it ``g12``; shown is what is typed here.
+    ``prog`` and the examples of ``epilog`` name the command ``g12``; the output has its call on
+    this system.
     """
 
     def __init__(self, prog: str, description: str = "", epilog: str = "", **options: Any) -> None:
@@ -45,28 +46,28 @@ class Parser(argparse.ArgumentParser):
         super().__init__(typed(prog), description=text, epilog=typed(epilog), **options)
 
     def error(self, message: str) -> NoReturn:
-        """End the program: ``message`` says what is wrong with its words."""
+        """End the program; ``message`` is the fault of its arguments."""
         name = self.prog.replace(CALL, "g12")
         self.exit(USAGE, f"{name}: {message} (usage: {self.prog} --help)\n")
 
 
 def typed(text: str) -> str:
-    """Return a text with ``g12`` at the beginning of its lines as it is typed on this system."""
+    """Return a text with ``g12`` at the start of its lines as called on this system."""
     return NAMED.sub(lambda name: name[1] + CALL, text)
 
 
 def number_above(least: float) -> Callable[[str], float]:
-    """Return what reads a number above ``least`` from the command line."""
+    """Return a reader of numbers above ``least`` for the command line."""
     return _reader(float, lambda value: least < value < math.inf, f"a number above {least:g}")
 
 
 def number_from(least: float) -> Callable[[str], float]:
-    """Return what reads a number not below ``least`` from the command line."""
+    """Return a reader of numbers from ``least`` for the command line."""
     return _reader(float, lambda value: least <= value < math.inf, f"a number from {least:g}")
 
 
 def count_from(least: int) -> Callable[[str], int]:
-    """Return what reads a whole number not below ``least`` from the command line."""
+    """Return a reader of whole numbers from ``least`` for the command line."""
     return _reader(int, lambda value: value >= least, f"a whole number from {least}")
 
 
@@ -84,7 +85,7 @@ def _reader(kind: type, is_good: Callable[[float], bool], wanted: str) -> Callab
 
 
 def program_parser(name: str, description: str, epilog: str) -> Parser:
-    """Return the parser of a command for a program, with the words that name it and its machine."""
+    """Return the parser of a command, with the arguments for a program and its machine."""
     parser = Parser(f"g12 {name}", description, epilog)
     parser.add_argument("program", type=Path, help="program file")
     parser.add_argument("--ini", type=Path, required=True, help="INI file of the machine")
@@ -94,7 +95,7 @@ def program_parser(name: str, description: str, epilog: str) -> Parser:
 
 
 def cut_parser(name: str, description: str, epilog: str, run: str) -> Parser:
-    """Return the parser of a command for what a program cuts; ``run`` says what --run is for."""
+    """Return the parser of a command for a program's cut; ``run`` is the help of --run."""
     parser = program_parser(name, description, epilog)
     parser.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
     parser.add_argument(
@@ -109,7 +110,7 @@ def cut_parser(name: str, description: str, epilog: str, run: str) -> Parser:
 
 
 def stock_of(options: argparse.Namespace) -> StockText | None:
-    """Return the stock that is said."""
+    """Return the stock of the command line."""
     return StockText(options.stock, options.units) if options.stock else None
 
 
@@ -121,7 +122,7 @@ def add_override(parser: argparse.ArgumentParser, whose: str) -> None:
 
 
 def check_run(options: argparse.Namespace) -> None:
-    """Refuse a feed override where nothing is run."""
+    """Refuse a feed override without a run."""
     if options.override != 100.0 and not options.run:
         raise UsageError("--override is the feed override of --run, which is not there")
 
@@ -129,7 +130,7 @@ def check_run(options: argparse.Namespace) -> None:
 def samples_of_run(
     program: Path, options: argparse.Namespace, trace: Trace | None, ini: Ini
 ) -> Samples | None:
-    """Return the real motion of a program, of which this is the trace, if --run asks for it."""
+    """Return the actual motion of a traced program, if --run is given."""
     if not options.run:
         return None
     files = (options.ini, options.tools, options.var)
@@ -138,13 +139,13 @@ def samples_of_run(
 
 
 def tell_whose_lines(name: str, opened: OpenedProgram) -> None:
-    """Say it, where the lines that a command names are not those of the user's file."""
+    """Report if the lines of a command's output are not those of the user's file."""
     if opened.note:
         print(f"g12 {name}: {opened.note}", file=sys.stderr)
 
 
 def run_text(program: Path, override: float, trace: Trace | None, ini: Ini) -> str:
-    """Return what is said while a program runs: at what feed override, and how long."""
+    """Return the text during a run: its feed override and its time."""
     pace = "in real time" if override == 100.0 else f"at {override:g} % feed"
     if not trace or trace.error:
         return f"running {program.name} {pace}"
@@ -153,9 +154,9 @@ def run_text(program: Path, override: float, trace: Trace | None, ini: Ini) -> s
 
 
 def one_line(name: str, refused: int = FINDING) -> Callable:
-    """Make a command's problems one line on standard error and an exit code.
+    """Turn a command's errors into one line on standard error and an exit code.
 
-    ``refused`` is that of a program that LinuxCNC refuses.
+    ``refused`` is the exit code for a program that LinuxCNC refuses.
     """
 
     def decorate(command: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
@@ -163,7 +164,7 @@ def one_line(name: str, refused: int = FINDING) -> Callable:
         def guarded(arguments: list[str]) -> int:
             try:
                 return command(arguments)
-            except BrokenPipeError:  # whose it is, main() finds out
+            except BrokenPipeError:  # main() handles it
                 raise
             except (UsageError, IniError, OSError) as problem:
                 print(f"g12 {name}: {_text(problem)}", file=sys.stderr)
@@ -178,7 +179,7 @@ def one_line(name: str, refused: int = FINDING) -> Callable:
 
 
 def checked_ini(options: argparse.Namespace) -> Ini:
-    """Return the machine's INI after a look whether all files named are what they should be."""
+    """Return the machine's INI after a check of all files named."""
     for path in filter(None, (options.program, options.ini, options.tools, options.var)):
         existing(path)
     if options.tools:
@@ -189,7 +190,7 @@ def checked_ini(options: argparse.Namespace) -> Ini:
 
 
 def _text(problem: Exception) -> str:
-    """Return the problem in one line: what went wrong, of a long log only what tells most."""
+    """Return the error in one line, of a long log the most specific one."""
     if isinstance(problem, OSError) and problem.filename and problem.strerror:
         return f"{problem.filename}: {problem.strerror}"
     lines = [line.strip() for line in str(problem).splitlines() if line.strip()]

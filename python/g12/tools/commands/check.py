@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``g12 check INI``: is the package in this machine config as it should be, and if not, why not.
+"""``g12 check INI``: check the package's installation in a machine config.
 
 The config is read the way LinuxCNC reads it and loaded in the stock interpreter.
 """
@@ -25,7 +25,7 @@ exit code: 0 good, 1 something found, 2 wrong use"""
 
 
 def command_parser() -> Parser:
-    """Return what reads the command line."""
+    """Return the command's parser."""
     parser = Parser(
         prog="g12 check",
         description="Check whether and how the package is set up in a machine config.",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``g12 demo``: run the manuals' programs in headless LinuxCNC, draw and measure what they cut."""
+"""``g12 demo``: run the manuals' programs in headless LinuxCNC, draw and measure their cuts."""
 
 import os
 from pathlib import Path
@@ -12,7 +12,7 @@ from g12.tools.headless.namespaces import has_namespaces
 
 
 def command_parser() -> Parser:
-    """Return what reads the command line."""
+    """Return the command's parser."""
     parser = Parser(prog="g12 demo", description=__doc__)
     parser.add_argument(
         "--output", type=Path, default=Path("build/demo"), help="folder of pictures"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """``g12 dynapath``: circle mill events as a LinuxCNC program.
 
-Nothing is printed unless every line is good. Made for a [FILTER] of LinuxCNC's INI:
+It prints nothing if any line is refused. For a [FILTER] of LinuxCNC's INI:
 
   [FILTER]
   PROGRAM_EXTENSION = .dyn Dynapath circle mill events
@@ -26,7 +26,7 @@ exit code: 0 the program is printed, 1 a line is wrong, 2 wrong use
 
 
 def command_parser() -> Parser:
-    """Return what reads the command line."""
+    """Return the command's parser."""
     parser = Parser(prog="g12 dynapath", description=__doc__, epilog=EXAMPLES)
     parser.add_argument("file", type=Path, help="event text")
     parser.add_argument("--units", choices=("inch", "mm"), help="of the events: adds G20 or G21")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``g12 install INI --with …``: put the package into a machine config.
+"""``g12 install INI --with …``: install the package in a machine config.
 
-The folder ``g12`` beside the INI gets a copy of the package, the INI the lines that name it. The
-new config is loaded in the stock interpreter before anything of the user's is changed; what
-`check` calls a problem is refused.
+The package is copied to the folder ``g12`` beside the INI, and the INI gets the lines for it. The
+new config is loaded in the stock interpreter before any of the user's files is changed; a problem
+by `check` is refused.
 """
 
 import sys
@@ -33,7 +33,7 @@ exit code: 0 done or nothing to do, 1 refused, 2 wrong use"""
 
 
 def command_parser() -> Parser:
-    """Return what reads the command line."""
+    """Return the command's parser."""
     listed = "\n".join(f"  {name:24} {meaning}" for name, meaning in features.MEANING.items())
     parser = Parser(
         prog="g12 install",
@@ -50,7 +50,7 @@ def command_parser() -> Parser:
 
 
 def ini_and_features(ini: Path | None, words: Sequence[str]) -> tuple[Path | None, list[str]]:
-    """Return the INI, which may stand after the features, and the features, each once."""
+    """Return the INI, which may come after the features, and the features, each once."""
     if not ini and len(words) > 1 and words[-1].lower() not in features.NAMES:
         *words, last = words
         ini = Path(last)
@@ -59,7 +59,7 @@ def ini_and_features(ini: Path | None, words: Sequence[str]) -> tuple[Path | Non
 
 
 def wrong_words(ini: Path | None, wanted: Sequence[str]) -> str:
-    """Return what is missing or unknown of the command line, "" if nothing is."""
+    """Return the fault of the command line's features, "" without one."""
     known = ", ".join(features.NAMES)
     unknown = [f"{name!r} is none of {known}" for name in wanted if name not in features.NAMES]
     given = {"the INI": ini, "--with": wanted}

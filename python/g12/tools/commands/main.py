@@ -13,7 +13,7 @@ from g12 import __version__
 from g12.tools.system import CALL
 
 FAILED = 1
-INTERRUPTED, UNREAD = 130, 141  # as a shell says of a program ended by SIGINT, SIGPIPE
+INTERRUPTED, UNREAD = 130, 141  # a shell's exit codes for SIGINT, SIGPIPE
 
 COMMANDS = {
     "check": ("g12.tools.commands.check", "check how the package is set up in a machine config"),
@@ -84,7 +84,7 @@ def flushed(name: str, arguments: list[str]) -> int:
 
 
 def nobody_reads() -> bool:
-    """Return whether whoever read the standard output has closed it, as ``| head`` does."""
+    """Return whether the reader of the standard output has closed it, as ``| head`` does."""
     output = select.poll()
     output.register(sys.stdout, 0)
     return bool(output.poll(0))

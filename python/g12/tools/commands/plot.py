@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``g12 plot``: a picture of what a program cuts, for any LinuxCNC program and machine.
+"""``g12 plot``: a picture of a program's cut, for any LinuxCNC program and machine.
 
 A mill program is shown from above and from the side, with the area its cutters sweep; a program
 that turns C on the face of the part, one whose sections are all on a cylinder on its unrolled
@@ -83,7 +83,7 @@ def main(arguments: list[str]) -> int:
 
 
 def told_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
-    """Return what the picture shows in red, notes and messages, with the user's lines."""
+    """Return the texts of the picture's red signs, notes and messages, with the user's lines."""
     warnings = (
         f"in red, line {opened.source_line(line)}: {text}"
         for line, text in scene.seen.warnings(scene.unit)
@@ -98,7 +98,7 @@ def told_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
 
 
 def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Scene:
-    """Draw a program as LinuxCNC reads it; return what is drawn."""
+    """Draw a program as LinuxCNC reads it; return its scene."""
     with working(f"interpreting {program.name}"):
         found = explained(
             trace(program, options.ini, tools=options.tools, parameters=options.var), options.ini

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``g12 regress``: keep what programs do, and tell later what changed, where and by how much.
+"""``g12 regress``: record programs' motion, and report later changes with line and amount.
 
 ``record`` writes a trace of each program to a directory to keep under version control; ``check``
 interprets the programs again and compares. For a shop that updates LinuxCNC (same programs) or a
@@ -48,7 +48,7 @@ exit code: 0 as recorded, 1 something changed, 2 wrong use
 
 
 def command_parser() -> Parser:
-    """Return what reads the command line."""
+    """Return the command's parser."""
     parser = Parser(prog="g12 regress", description=DESCRIPTION)
     actions = parser.add_subparsers(dest="action", required=True, metavar="record | check")
     _add_record(actions)
@@ -122,7 +122,7 @@ def _terms(options: argparse.Namespace, tell: Tell) -> Terms:
 def run_record(
     options: argparse.Namespace, terms: Terms, recorders: Recorders
 ) -> tuple[list[Result], list[str], bool]:
-    """Record programs; return what became of them, no notes, and whether all is well."""
+    """Record programs; return results, no notes, and whether all succeeded."""
     what = RecordRequest(options.programs, options.ini, options.tools, options.var)
     found = record(options.directory, what, terms, recorders)
     return found, [], all(result.verdict != FAILED for result in found)
@@ -131,7 +131,7 @@ def run_record(
 def run_check(
     options: argparse.Namespace, terms: Terms, recorders: Recorders
 ) -> tuple[list[Result], list[str], bool]:
-    """Compare programs with their recordings; return results, notes and whether all is well."""
+    """Compare programs with their recordings; return results, notes and whether all are equal."""
     others = {"programs": options.programs, "ini": options.ini, "tools": options.tools}
     found, notes = check(options.directory, options.names, recorders, **others, terms=terms)
     return found, notes, all(result.verdict == SAME for result in found)

@@ -2,7 +2,7 @@
 """``g12 run``: a program to its end on a headless LinuxCNC.
 
 It is isolated from any other LinuxCNC on the computer, and nothing of the machine's own files is
-written. M0 and M1 are passed over.
+written. It resumes at M0 and M1.
 """
 
 import re
@@ -46,12 +46,12 @@ exit code: 0 the program came to its end, 1 it did not, 2 wrong use
 """
 DECIMALS = 6
 NAMED = re.compile(r"\bline \d")
-PATIENCE = 20.0  # s, to find out how long a run will take
+PATIENCE = 20.0  # s for an estimate of the run's time
 USUAL_TIMEOUT = 600.0  # s
 
 
 def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
-    """Yield what the run said, and where the machine stands at its end if anything has moved."""
+    """Yield the run's messages, and the machine's position at its end if anything has moved."""
     for message in result.messages:
         yield f"message: {message.text}"
     if result.error and not result.seconds:
@@ -66,7 +66,7 @@ def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
 
 
 def preview_of(program: Path, ini: Path, tools: Tools, parameters: Parameters) -> Trace | None:
-    """Return what a program will do, None if that takes long to find out."""
+    """Return the trace of a program, None if the preview takes too long."""
     try:
         return trace(program, ini, tools=tools, parameters=parameters, timeout=PATIENCE)
     except TraceFailure:
@@ -74,16 +74,16 @@ def preview_of(program: Path, ini: Path, tools: Tools, parameters: Parameters) -
 
 
 def patience(preview: Trace | None, ini: Ini, override: float) -> float:
-    """Return for how many seconds a run is waited for, where the user does not say."""
+    """Return the default timeout of a run in seconds."""
     if preview is None or preview.error:
         return USUAL_TIMEOUT
     return max(USUAL_TIMEOUT, 2 * program_seconds(preview, ini, override))
 
 
 def line_of_preview(error: Error, preview: Trace | None) -> int:
-    """Return the line of an error that its text does not name, 0 if it does or is not known.
+    """Return the line of an error whose text names none; 0 if it does or is unknown.
 
-    LinuxCNC's task does not tell it, but a preview has met the same error there.
+    LinuxCNC's task does not report the line, but a preview with the same error has it.
     """
     met = preview and preview.error
     return met.line if met and met.text == error.text and not NAMED.search(met.text) else 0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """``g12 trace``: the moves of a program, one a line.
 
-The stock interpreter is asked, as a preview does; nothing moves. Lengths are mm and angles
+The stock interpreter runs as in a preview; nothing moves. Lengths are mm and angles
 degrees, whatever the program and the machine use; positions are those of the controlled point
 in machine coordinates. A line begins with the program's own line number.
 """

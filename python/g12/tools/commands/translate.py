@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """``g12 translate``: programs of other controls as LinuxCNC programs.
 
-Nothing is printed unless every block is understood. Made for a [FILTER] of LinuxCNC's INI:
+It prints nothing if any block is refused. For a [FILTER] of LinuxCNC's INI:
 
   [FILTER]
   PROGRAM_EXTENSION = .nc Haas programs
   nc = python3 /path/to/g12/python/g12 translate --control haas-mill
 
-LinuxCNC names its INI to a filter (INI_FILE_NAME): M codes that this machine knows stay.
+LinuxCNC passes its INI to a filter (INI_FILE_NAME): M codes of this machine are not changed.
 """
 
 import argparse
@@ -62,7 +62,7 @@ def main(arguments: list[str]) -> int:
     except ControlError as problem:
         raise UsageError(str(problem)) from None
     sys.stdout.flush()
-    sys.stdout.buffer.write(translated(asked, control).encode())  # whatever the locale
+    sys.stdout.buffer.write(translated(asked, control).encode())  # independent of the locale
     return GOOD
 
 
@@ -84,7 +84,7 @@ def command_parser() -> Parser:
 
 
 def parsed(arguments: list[str]) -> argparse.Namespace:
-    """Return the words of the command."""
+    """Return the command's arguments."""
     parser = command_parser()
     asked = parser.parse_args(arguments)
     if not asked.list and not (asked.control and asked.program):
@@ -93,7 +93,7 @@ def parsed(arguments: list[str]) -> argparse.Namespace:
 
 
 def contents(asked: argparse.Namespace) -> str:
-    """Return what --list prints: the controls, or what one of them understands."""
+    """Return the output of --list: the controls, or the codes of one of them."""
     if asked.control:
         return listing_of(read_control(asked.control))
     controls = [read_control(name) for name in shipped_controls()]
@@ -101,7 +101,7 @@ def contents(asked: argparse.Namespace) -> str:
 
 
 def changed(control: Control, asked: argparse.Namespace) -> Control:
-    """Return a control with what the command line says in place of its file."""
+    """Return a control with the command line's settings instead of its file's."""
     tables = dict(control.tables)
     if asked.polar_x:
         tables["polar"] = {**tables.get("polar", {}), "x": asked.polar_x}
@@ -114,7 +114,7 @@ def changed(control: Control, asked: argparse.Namespace) -> Control:
 
 
 def translated(asked: argparse.Namespace, control: Control) -> str:
-    """Return the LinuxCNC program, or raise ProgramError with the first block that is refused."""
+    """Return the LinuxCNC program, or raise ProgramError with the first refused block."""
     text = program_text(existing(asked.program).read_bytes())
     path = asked.ini or os.environ.get("INI_FILE_NAME")
     ini = read_ini(path) if path else None
@@ -131,13 +131,13 @@ def translated(asked: argparse.Namespace, control: Control) -> str:
 
 
 def paste_text(lines: Sequence[str], control: str) -> str:
-    """Return what a control of one's own needs for a program, as it is shown."""
+    """Return the lines that a user's own control file needs for a program."""
     head = "what the control's file lacks for this program; a control of your own says it:"
     return "\n    ".join([head, f'based_on = "{control}"', *lines])
 
 
 def with_facts_of(control: Control, ini: Ini) -> Control:
-    """Return a control with the machine's own codes for sections, and the places it lacks."""
+    """Return a control with the machine's own section codes and its unset positions of G28, G30."""
     unset = {"unset": unset_places(ini)}
     reference = {**control.tables.get("reference", {}), **unset}
     control = replace(control, tables={**control.tables, "reference": reference})
@@ -151,13 +151,13 @@ def with_facts_of(control: Control, ini: Ini) -> Control:
 
 
 def units_code(ini: Ini) -> str:
-    """Return the code of the units that a machine begins in."""
+    """Return the code of a machine's initial units."""
     startup = SAYS_UNITS.findall(ini.get("RS274NGC", "RS274NGC_STARTUP_CODE") or "")
     return f"G{startup[-1]}" if startup else "G20" if is_inch(ini.mm) else "G21"
 
 
 def refusal_sentence(refused: list[RefusedBlock]) -> str:
-    """Return the first refusal, and the others with their reasons, as far as there is room."""
+    """Return the first refusal, and the others with their reasons within the length limit."""
     first, *others = refused
     reasons: dict[str, list[str]] = {}
     for block in others:
@@ -171,27 +171,27 @@ def refusal_sentence(refused: list[RefusedBlock]) -> str:
 
 
 def lines_text(lines: list[str]) -> str:
-    """Return lines' numbers as a sentence names them."""
+    """Return line numbers as text."""
     named = ", ".join(lines[:OTHERS_NAMED]) + (" …" if lines[OTHERS_NAMED:] else "")
     return f"line{'s' if len(lines) > 1 else ''} {named}"
 
 
 def machine_codes(ini: Ini) -> frozenset[str]:
-    """Return the M codes that a machine knows besides LinuxCNC's: REMAP lines and M1xx files."""
+    """Return a machine's M codes besides LinuxCNC's: REMAP lines and M1xx files."""
     numbers = (remap.number for remap in remap_lines(ini.all))
     remapped = {f"M{tenths // 10}" for letter, tenths in numbers if letter == "M"}
     return frozenset(remapped | {name for folder in code_folders(ini) for name in codes_in(folder)})
 
 
 def code_folders(ini: Ini) -> list[Path]:
-    """Return where LinuxCNC looks for the files of M100 to M199."""
+    """Return the folders that LinuxCNC searches for M100 to M199."""
     names = [ini.get("DISPLAY", "PROGRAM_PREFIX"), ini.get("RS274NGC", "USER_M_PATH")]
     paths = [path for name in names if name for path in name.split(":")]
     return [ini.directory / os.path.expanduser(path) for path in paths]
 
 
 def codes_in(folder: Path) -> list[str]:
-    """Return the M codes that a folder has an executable file for."""
+    """Return the M codes with an executable file in a folder."""
     files = folder.iterdir() if folder.is_dir() else ()
     return [f.name for f in files if USER_CODE.fullmatch(f.name) and os.access(f, os.X_OK)]
 
@@ -204,7 +204,7 @@ def polar_pair(remaps: list[Remap]) -> tuple[str, str] | None:
 
 
 def progress() -> Callable[[float], None]:
-    """Return what tells LinuxCNC's screen the share that is done, in a filter only."""
+    """Return a function that reports the progress to LinuxCNC's screen, in a filter only."""
     if "INI_FILE_NAME" not in os.environ or sys.stderr.isatty():
         return lambda share: None
     last = time.monotonic()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``g12 uninstall INI``: take out of a machine config what `install` put in, and nothing else.
+"""``g12 uninstall INI``: remove from a machine config exactly what `install` added.
 
-What several INIs of a folder share (the copy of the package, lines in the user's own modules and
-in included files) stays until the last of them is done.
+The copy of the package, and lines in the user's own modules and in included files, stay until the
+last INI of a folder that uses them is uninstalled.
 """
 
 from pathlib import Path
@@ -20,7 +20,7 @@ exit code: 0 done or nothing to do, 2 wrong use"""
 
 
 def command_parser() -> Parser:
-    """Return what reads the command line."""
+    """Return the command's parser."""
     parser = Parser(
         prog="g12 uninstall",
         description="Take out of a machine config what install put in, and nothing else.",

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``g12 verify``: prove that a program's pockets, shapes and sections come out as programmed.
+"""``g12 verify``: check that a program's pockets, shapes and sections are machined as programmed.
 
-Sections are those of polar interpolation and those on a cylinder. What is asked for is read from
-the program's words, what is cut is measured from the motion that LinuxCNC makes of it, or with
---run from the real motion of a headless run.
+Sections are those of polar interpolation and those on a cylinder. The expected toolpath is read
+from the program's words. The actual one is LinuxCNC's motion in a preview, or with --run in a
+headless run.
 """
 
 import argparse
@@ -53,7 +53,7 @@ exit code: 0 good, 1 findings (with --strict notes too), 2 refused by LinuxCNC o
 
 
 def command_parser() -> Parser:
-    """Return the command's words."""
+    """Return the command's parser."""
     parser = cut_parser("verify", __doc__, EXAMPLES, "measure the real motion of a headless run")
     parser.add_argument(
         "--tolerance", type=number_above(0), metavar="MM", help="in place of the usual ones"
@@ -73,7 +73,7 @@ def main(arguments: list[str]) -> int:
     with opened_program(options.program, ini) as opened:
         proof = proof_of(opened.path, ini, options)
         proof = replace(proof, opened=opened) if opened.is_filtered else proof
-        judged = proof.judged  # while the text that a filter wrote is there
+        judged = proof.judged  # while the filter's output exists
     tell_whose_lines("verify", opened)
     if not (proof.pockets or proof.sections or proof.holes or proof.unseen or proof.still):
         raise UsageError(f"{options.program}: has no pocket, no section and no holes to verify")
@@ -87,7 +87,7 @@ def main(arguments: list[str]) -> int:
 def proof_of(program: Path, ini: Ini, options: argparse.Namespace) -> Proof:
     """Return the proof of a program as LinuxCNC reads it."""
     trace = None
-    if options.run:  # an error of the program is told before its time is taken
+    if options.run:  # an error of the program is reported before the run
         trace = traced(program, options.ini, options.tools, options.var)
     samples = samples_of_run(program, options, trace, ini)
     with working(f"interpreting {program.name}") as tell:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The manuals' programs shown: run on a headless LinuxCNC, drawn and measured."""
+"""The manuals' programs: run on a headless LinuxCNC, drawn and measured."""

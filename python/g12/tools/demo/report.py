@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the demo tells of a program: whether it came out right, its picture and its table."""
+"""The demo's report of a program: the verdict, its picture and its table."""
 
 from collections.abc import Sequence
 from concurrent.futures import Future
@@ -24,7 +24,7 @@ SECTION_HEADS = ("lines", "segments", "off contour", "allowed", "lowest feed", "
 
 
 def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
-    """Draw a sample; return its table and whether its circles and contours came out right."""
+    """Draw a sample; return its table and whether its circles and contours are correct."""
     ini = read_ini(sample.ini)
     proof = prove(sample.path, ini, tools=sample.tools, samples=run.samples)
     scene = scene_of_proof(proof, sample.override)
@@ -34,7 +34,7 @@ def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
 
 
 def shown_or_failed(sample: Sample, job: Future, output: Path) -> tuple[str, bool]:
-    """Draw a sample whose run has come to its end; return what is told of it, and whether good."""
+    """Draw a sample whose run has ended; return its report, and whether it is correct."""
     try:
         return show(sample, job.result(), output)
     except FAILURES as problem:
@@ -42,9 +42,9 @@ def shown_or_failed(sample: Sample, job: Future, output: Path) -> tuple[str, boo
 
 
 def is_sound(proof: Proof) -> bool:
-    """Return whether every circle and contour came out right.
+    """Return whether every circle and contour is correct.
 
-    The manuals leave material in some and have rapids through what was left: that is told.
+    Some of the manuals' programs leave material, or have rapids through it: that is only reported.
     """
     off = [facts.laid.difference for facts in proof.pockets]
     off += [facts.path.difference for facts in proof.sections]
@@ -52,7 +52,7 @@ def is_sound(proof: Proof) -> bool:
 
 
 def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
-    """Return what is told of a program: its table, what LinuxCNC said, where the picture is."""
+    """Return the report of a program: its table, LinuxCNC's messages, the picture's path."""
     slow = clock(scene.path.time[-1])
     faster = f" at {sample.override:g} % feed ({slow} at 100 %)" if sample.override != 100 else ""
     title = f"{scene.title}: {clock(run.seconds)} on {sample.machine}{faster}, {picture}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The programs that the demo shows, each with its machine, and their runs."""
+"""The demo's programs, each with its machine, and their runs."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,9 +15,9 @@ MACHINES = ROOT / "configs" / "sim"
 
 
 class Sample(NamedTuple):
-    """A program to show: its file, its machine, and the feed override (%) of its run.
+    """A program of the demo: its file, its machine, and the feed override (%) of its run.
 
-    The manuals' feeds are low: the runs are sped up to save time. ``own_tools`` maps numbers to
+    The manuals' feeds are low: the override saves time. ``own_tools`` maps numbers to
     diameters in machine units where the machine's tool table has others.
     """
 
@@ -62,7 +62,7 @@ SAMPLES = (
 
 
 def runs(samples: Sequence[Sample], workers: int) -> Iterator[tuple[Sample, Future]]:
-    """Yield each sample with what has its run or why there is none, as they come to their end."""
+    """Yield each sample with its run, or the reason why there is none, as the runs end."""
     with ThreadPoolExecutor(workers) as pool:
         jobs: dict[Future, Sample] = {
             pool.submit(

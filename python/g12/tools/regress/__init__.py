@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Recordings of what programs do, and what changed."""
+"""Recordings of programs' motion, and differences from them."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Which items of two long sequences correspond, when some were inserted, removed or changed.
+"""Aligns two long sequences, some of whose items were inserted, removed or changed.
 
 patiencediff pairs items that occur once on each side, so the time grows with the length and not
 with its square. A short stretch between them, of items that occur more than once, is compared item
@@ -13,7 +13,7 @@ from patiencediff import PatienceSequenceMatcher
 
 MOST_COMPARED = 250_000  # product of the lengths of a stretch
 
-Block = tuple[int, int, int]  # where equal items begin in the one and the other, and how many
+Block = tuple[int, int, int]  # a run of equal items: its start in both sequences, its length
 
 
 def pairs(one: Sequence[Hashable], other: Sequence[Hashable]) -> list[tuple[int, int]]:
@@ -25,7 +25,7 @@ def pairs(one: Sequence[Hashable], other: Sequence[Hashable]) -> list[tuple[int,
 def _filled(
     one: Sequence[Hashable], other: Sequence[Hashable], blocks: Sequence[Block]
 ) -> Iterator[Block]:
-    """Yield blocks, and in front of each those of the short stretch that it leaves out."""
+    """Yield blocks, and before each those of the short stretch that it leaves out."""
     i = j = 0
     for block in blocks:
         some, others = one[i : block[0]], other[j : block[1]]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What changed between two recordings of a program, in words: which lines, what moved, how much.
+"""The differences between two recordings of a program as text: lines, moves, amounts.
 
-Moves that follow each other with the same sort of change are one difference, and differences that
-say the same of several places are one too.
+Consecutive moves with the same kind of change are one difference. Equal differences at several
+lines are one, too.
 """
 
 from collections import Counter
@@ -19,15 +19,15 @@ from g12.tools.regress.edits import Change, Edit, Tolerance, edits_of
 from g12.tools.regress.recording_text import Recording, Step, number_text
 from g12.tools.units import UNITS, counted_as
 
-DECIMALS = 6  # shown, where they tell two numbers apart
-LONG_RUN = 10  # edits; fewer are told together however they differ
+DECIMALS = 6  # shown, if the two numbers differ in them
+LONG_RUN = 10  # edits; fewer are reported together even if they differ
 DIGITS = ".4g"
 MOVED = (*AXES, "radius")
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A finding: ``text`` says what changed; ``was`` and ``now`` are the steps it is about.
+    """A difference: ``text`` describes it; ``was`` and ``now`` are its steps.
 
     ``kind`` is moved, changed, added, missing, replaced, refused, accepted or end. ``by`` is the
     largest change in machine units or degrees, along ``axis`` if it is one axis's. ``moves``
@@ -47,7 +47,7 @@ class Difference:
 def differences(
     was: Recording, now: Recording, tolerance: Tolerance, part: Part
 ) -> list[Difference]:
-    """Return the findings about a program, in its order; ``part`` is how the machine holds it."""
+    """Return the differences of a program, in its order; ``part`` is the machine's."""
     edits = edits_of(was.steps, now.steps, tolerance)
     phrases = Phrases(was, now, part)
     lost = _lost(edits, was, now)
@@ -71,7 +71,7 @@ def _lost(edits: list[Edit], was: Recording, now: Recording) -> list[Edit]:
 
 
 def _runs(edits: Sequence[Edit]) -> Iterator[list[Edit]]:
-    """Edits of pairs that follow each other with the same sort of change; others alone."""
+    """Edits of consecutive pairs with the same kind of change; others alone."""
     run: list[Edit] = []
     for edit in edits:
         if run and not (_follows(run[-1], edit) and _kinds_of(run[-1]) & _kinds_of(edit)):
@@ -83,7 +83,7 @@ def _runs(edits: Sequence[Edit]) -> Iterator[list[Edit]]:
 
 
 def _alike(run: list[Edit]) -> list[list[Edit]]:
-    """Return what most edits of a run say and what the others say, if most say the same."""
+    """Return the common edit of most of a run and the edits of the others, if there is one."""
     said = Counter(map(_said, run))
     same, count = said.most_common(1)[0]
     if len(run) < LONG_RUN or 2 * count <= len(run):
@@ -107,14 +107,14 @@ def _kinds_of(edit: Edit) -> set[str]:
 
 
 class Phrases:
-    """Puts edits of two recordings into words, lengths in machine units."""
+    """Describes edits of two recordings, lengths in machine units."""
 
     def __init__(self, was: Recording, now: Recording, part: Part) -> None:
         self._was, self._now, self._part = was.steps, now.steps, part
         self._unit, self._name = now.unit, UNITS[now.facts["units"]].name
 
     def of_run(self, run: list[Edit]) -> Difference:
-        """Return the difference that a run of edits makes."""
+        """Return the difference of a run of edits."""
         was = tuple(index for edit in run for index in edit.was)
         now = tuple(index for edit in run for index in edit.now)
         steps = [self._now[index] for index in now] or [self._was[index] for index in was]
@@ -137,7 +137,7 @@ class Phrases:
         )
 
     def _of_changes(self, group: list[Change]) -> str:
-        """Return what changes of one thing say together."""
+        """Return a text for all changes of one property."""
         what = group[0].what
         if isinstance(group[0].was, str):
             return ", ".join(dict.fromkeys(f"{c.was} → {c.now}" for c in group))
@@ -176,7 +176,7 @@ class Phrases:
         return [f"{count} {there}, {self._extent(before or after)}"]
 
     def _extent(self, moves: list[Move]) -> str:
-        """Return from where to where moves go on each axis that they move."""
+        """Return the extent of moves on each axis that they move."""
         ends = np.array([position for move in moves for position in (move.start, move.end)])
         low, high = ends.min(axis=0), ends.max(axis=0)
         scales = [self._scale(axis) for axis in AXES]
@@ -185,7 +185,7 @@ class Phrases:
         return " ".join(words) or "standing still"
 
     def _apart(self, before: list[Move], after: list[Move]) -> float | None:
-        """Return how far two paths are apart, machine units; None where that says nothing."""
+        """Return the distance between two paths, machine units; None where it has no meaning."""
         gap = gap_between(self._part, before, after)
         return gap.size / self._unit if gap else None
 
@@ -207,13 +207,13 @@ def _of_notes(steps: Sequence[Step], indices: tuple[int, ...], word: str) -> str
 
 
 def told_apart(*values: float) -> tuple[str, ...]:
-    """Return numbers as text, short if that still tells them apart."""
+    """Return numbers as text, with as few digits as distinguish them."""
     short = tuple(number_text(round(value, DECIMALS)) for value in values)
     return short if len(set(short)) == len(values) else tuple(map(number_text, values))
 
 
 def _merged(found: Sequence[Difference]) -> list[Difference]:
-    """Return differences that say the same as one, where the first was."""
+    """Return equal differences merged into the first."""
     groups: dict[tuple, list[Difference]] = {}
     for difference in found:
         groups.setdefault((difference.kind, difference.text), []).append(difference)
@@ -229,7 +229,7 @@ def _merged(found: Sequence[Difference]) -> list[Difference]:
 
 
 def _endings(was: Recording, now: Recording, lost: list[Edit]) -> list[Difference]:
-    """Return what is different in how the programs end."""
+    """Return the difference between the programs' ends."""
     if not was.error and not now.error:
         return _ends(was.end, now.end)
     if was.error and now.error and was.error.rule == now.error.rule:

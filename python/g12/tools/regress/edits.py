@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How the steps of one recording became those of another: what changed, came or went.
+"""The edits from the steps of one recording to those of another.
 
-Moves are paired by where they end and how they bend, within a tolerance, so an inserted block is
-one edit and what follows it is none. A pair is then compared in everything. Between pairs, as many
-moves as before are compared in order. Where their number changed, they are paired by the way they
-go if most of them go it as before, as in a program shifted sideways; else they are one edit.
+Moves are paired by end point and curvature, within a tolerance, so an inserted block is one edit
+and the moves after it are none. All properties of a pair are compared. Between pairs, an equal
+number of moves is compared in order. Where the number has changed, moves are paired by their
+displacement if most of those are unchanged, as in a shifted program; else they are one edit.
 
 Lengths are millimetres, angles degrees.
 """
@@ -38,7 +38,7 @@ class Tolerance(NamedTuple):
 
 
 class Change(NamedTuple):
-    """One thing that a step does otherwise.
+    """One changed property of a step.
 
     ``what`` is an axis (``by`` in mm or degrees), radius (``by`` is how far the arc's middle
     moved, mm), feed or rotary feed (``by`` is a share), or kind, direction, plane, feed mode,
@@ -52,10 +52,9 @@ class Change(NamedTuple):
 
 
 class Edit(NamedTuple):
-    """Steps, by their indices, that became others.
+    """An edit of steps, by their indices.
 
-    Of a pair ``changes`` says what is different; without it steps were added, are missing, or
-    others are in their place.
+    ``changes`` are those of a pair; without them steps were added, are missing, or are replaced.
     """
 
     was: tuple[int, ...]
@@ -64,7 +63,7 @@ class Edit(NamedTuple):
 
 
 def edits_of(was: Sequence[Step], now: Sequence[Step], tolerance: Tolerance) -> list[Edit]:
-    """Return how the steps of a recording became others, in order."""
+    """Return the edits between two recordings' steps, in order."""
     found: list[Edit] = []
     paired = _paired(was, now, _place, tolerance)
     for before, after, pair in _walk(paired, range(len(was)), range(len(now))):
@@ -74,13 +73,13 @@ def edits_of(was: Sequence[Step], now: Sequence[Step], tolerance: Tolerance) -> 
 
 
 def _paired(was, now, numbers, tolerance: Tolerance) -> list[tuple[int, int]]:
-    """Return pairs of steps that are about equal in the numbers of their moves."""
+    """Return pairs of steps whose moves are equal within the tolerance."""
     keys = _keys([*was, *now], numbers, tolerance)
     return pairs(keys[: len(was)], keys[len(was) :])
 
 
 def _keys(steps: Sequence[Step], numbers, tolerance: Tolerance) -> list[tuple[int, int]]:
-    """Return a key for each step; keys of moves are equal if their numbers are about equal."""
+    """Return a key for each step, equal for moves that are equal within the tolerance."""
     rows = [numbers(step) for step in steps if isinstance(step, Move)]
     columns = np.array(rows).reshape(-1, 12).T
     tolerances = (*tolerance.ends, *[tolerance.length] * 3)
@@ -92,18 +91,18 @@ def _keys(steps: Sequence[Step], numbers, tolerance: Tolerance) -> list[tuple[in
 
 
 def _place(move: Move) -> tuple[float, ...]:
-    """Return where a move ends and about what it turns."""
+    """Return the end and the centre of a move."""
     return (*move.end, *(move.centre or NO_CENTRE))
 
 
 def _way(move: Move) -> tuple[float, ...]:
-    """Return what a move does, seen from its start."""
+    """Return a move's displacement."""
     seen = (b - a for a, b in zip(move.start * 2, (*move.end, *(move.centre or move.start[:3]))))
     return tuple(seen)
 
 
 def _walk(paired, before: range, after: range) -> Iterator[tuple[range, range, tuple | None]]:
-    """Go through pairs: the steps on both sides ahead of each, and it; at last no pair."""
+    """Yield the steps on both sides before each pair, and the pair; None as the last pair."""
     i, j = before.start, after.start
     for pair in paired:
         yield range(i, pair[0]), range(j, pair[1]), pair
@@ -112,7 +111,7 @@ def _walk(paired, before: range, after: range) -> Iterator[tuple[range, range, t
 
 
 def _clusters(values: np.ndarray, tolerance: float) -> list[int]:
-    """Return a number for each value so that values nearer than the tolerance have the same."""
+    """Return cluster numbers of values; values nearer than the tolerance share one."""
     order = np.argsort(values)
     numbers = np.empty(len(values), int)
     numbers[order] = np.cumsum(np.diff(values[order], prepend=values[order][:1]) > tolerance)
@@ -132,7 +131,7 @@ def _gap(was, now, before: range, after: range, tolerance: Tolerance) -> Iterato
 
 
 def _same_ways(was, now, paired, before, after, tolerance: Tolerance) -> Iterator[Edit]:
-    """Yield the edits of steps of which most do the same from another place."""
+    """Yield the edits of steps most of which have the same displacement from another position."""
     for some, others, pair in _walk(paired, before, after):
         if _are_as_many(was, now, some, others):
             yield from _as_many(was, now, some, others, tolerance)
@@ -146,7 +145,7 @@ def _are_as_many(was, now, before: range, after: range) -> bool:
 
 
 def _as_many(was, now, before: range, after: range, tolerance: Tolerance) -> Iterator[Edit]:
-    """Yield the edits between two pairs where there are as many moves as there were."""
+    """Yield the edits between two pairs with an equal number of moves."""
     both = list(zip(_only(was, before, Move), _only(now, after, Move)))
     notes, other_notes = _only(was, before, Note), _only(now, after, Note)
     if len(notes) == len(other_notes):
@@ -169,7 +168,7 @@ def _pair(was, now, pair: tuple[int, int], tolerance: Tolerance) -> Iterator[Edi
 
 
 def changes(was: Step, now: Step, tolerance: Tolerance) -> list[Change]:
-    """Return what is different between two steps of the same kind."""
+    """Return the changes between two steps of the same kind."""
     if isinstance(was, Note) and isinstance(now, Note):
         return [Change("note", 0.0, was.text, now.text)] if was.text != now.text else []
     assert isinstance(was, Move) and isinstance(now, Move)
@@ -186,7 +185,7 @@ def changes(was: Step, now: Step, tolerance: Tolerance) -> list[Change]:
 
 
 def _arc_changes(was: Move, now: Move, tolerance: Tolerance, moved: bool) -> list[Change]:
-    """Compare arcs by their middle: of a flat arc the centre alone says little."""
+    """Compare arcs by their middle point: the centre of a flat arc is too sensitive."""
     if was.plane != now.plane:
         return [Change("plane", 0.0, f"G{was.plane}", f"G{now.plane}")]
     if was.turns != now.turns:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The picture of what changed in a program: the recorded path, the present one, where they part.
+"""The picture of a program's differences: the recorded path, the present one, their gap.
 
 Lengths are millimetres until they are drawn; those of the layout are inches on the page.
 """
@@ -27,14 +27,14 @@ PLAN, MOST_HIGH = 7.0, 5.6  # inches of the larger view
 LEAST_WIDE, LEAST_HIGH = 3.0, 1.4
 SIDE = 1.5  # height of the side view
 LEGEND, ROWS = 2.9, 1.6
-WINDOW = 2.0  # sides of the window on the largest gap
-REACH, LEAST_REACH = 4.0, 1e-3  # half the window's side: in gaps, in mm
-VISIBLE = 0.08  # of the picture's size: a larger gap needs no window
+WINDOW = 2.0  # sides of the detail view of the largest gap
+REACH, LEAST_REACH = 4.0, 1e-3  # half the view's side: in gaps, in mm
+VISIBLE = 0.08  # of the picture's size: a larger gap needs no detail view
 MARGIN = 0.05
-FLAT = 1e-6  # an axis that moves less is not shown
+FLAT = 1e-6  # an axis with less motion is not shown
 LONGEST_SUBTITLE = 130
 LEAST_CHORD_ERROR = 1e-6
-STYLES = (  # colour, width, order of what is same, was, now
+STYLES = (  # colour, width, order: same, was, now
     (style.RAPID, 0.8, 2.5),
     (style.PATH, 3.0, 3.0),
     (style.REAL, 1.2, 3.5),
@@ -42,7 +42,7 @@ STYLES = (  # colour, width, order of what is same, was, now
 
 
 class Paths(NamedTuple):
-    """Polylines (n, 3) on the part: as recorded and still so, only recorded, only now."""
+    """Polylines (n, 3) on the part: unchanged, only recorded, only now."""
 
     same: list[np.ndarray]
     was: list[np.ndarray]
@@ -50,9 +50,9 @@ class Paths(NamedTuple):
 
 
 class Drawn(NamedTuple):
-    """What is drawn of two recordings: moves at feed, rapids, and where they part the most.
+    """The paths of two recordings: moves at feed, rapids, the largest gap.
 
-    ``around`` are the moves near there again, fine enough to look at closely.
+    ``around`` are the moves near that gap again, with a finer chord error.
     """
 
     feeds: Paths
@@ -68,7 +68,7 @@ class Drawn(NamedTuple):
 
 
 class View:
-    """Which axes are shown where on the page, and in which unit."""
+    """The layout of the axes on the page, and the unit."""
 
     def __init__(self, points: np.ndarray, unit: Unit, turning: bool) -> None:
         self.unit = unit
@@ -90,7 +90,7 @@ class View:
         self.width = LEFT + self.plan[0] + LEGEND + RIGHT
 
     def _widen(self, axis: int, least: float) -> None:
-        """Show at least so much of an axis."""
+        """Widen an axis's range to a least size."""
         more = max(0.0, least - (self.high[axis] - self.low[axis])) / 2
         self.low[axis], self.high[axis] = self.low[axis] - more, self.high[axis] + more
 
@@ -110,12 +110,12 @@ class View:
 
     @property
     def beside(self) -> tuple[float, float]:
-        """Where the legend is, and below it the window: left and top in inches."""
+        """The corner of the legend, and of the detail view below it: left and top in inches."""
         return LEFT + self.plan[0] + 0.35, self.height - TOP + 0.08
 
 
 def picture_file(folder: Path, program: str) -> Path:
-    """Return where the picture of a program goes."""
+    """Return the path of a program's picture."""
     path = folder / f"{program}.png"
     path.parent.mkdir(parents=True, exist_ok=True)
     return path
@@ -141,7 +141,7 @@ def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], pa
 
 
 def drawn_of(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Drawn:
-    """Return what to draw of two recordings."""
+    """Return the paths to draw of two recordings."""
     old = {index for difference in found for index in difference.was}
     new = {index for difference in found for index in difference.now}
     moves = (_moves(now, new, False), _moves(was, old, True), _moves(now, new, True))
@@ -159,7 +159,7 @@ def _reach(gap: Gap) -> float:
 
 
 def _near(part: Part, moves: Sequence[Move], gap: Gap) -> list[np.ndarray]:
-    """Return moves that come near a gap as polylines that are fine at its size."""
+    """Return moves near a gap as polylines, fine enough for its size."""
     margin = 2 * _reach(gap) + CHORD_ERROR
     lines = (part.polyline(move, CHORD_ERROR) for move in moves)
     near = [move for move, line in zip(moves, lines) if _is_near(line, gap.point, margin)]
@@ -181,7 +181,7 @@ def _rapid(moves: Iterable[Move], fast: bool) -> list[Move]:
 
 
 def gap_of(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Gap | None:
-    """Return where moved or replaced moves are farthest from what they were."""
+    """Return the largest gap between moved or replaced moves and the recorded ones."""
     gaps = []
     for difference in found:
         if difference.kind in ("moved", "replaced"):
@@ -192,7 +192,7 @@ def gap_of(was: Recording, now: Recording, found: Sequence[Difference], part: Pa
 
 
 def subtitle(found: Sequence[Difference]) -> str:
-    """Return the first difference of the path in words, and how many there are."""
+    """Return a text for the first difference of the path, and their number."""
     first = next((one for one in found if one.moves), found[0]).text
     text = first if len(found) == 1 else f"{len(found)} differences, such as {first}"
     return text if len(text) <= LONGEST_SUBTITLE else f"{text[:LONGEST_SUBTITLE]}…"
@@ -211,7 +211,7 @@ def _draw_styled(axes, drawn: Paths, pair: list[int], unit: float, share=1.0, **
 
 
 def draw_change(axes: Axes, drawn: Drawn, view: View) -> None:
-    """Draw the surroundings of the largest gap, in the view that shows most of it."""
+    """Draw the detail view of the largest gap, in the axes that show most of it."""
     gap, unit = drawn.gap, view.unit
     half = _reach(gap)
     pair = max(view.pairs, key=lambda pair: round(math.dist(gap.point[pair], gap.nearest[pair]), 9))

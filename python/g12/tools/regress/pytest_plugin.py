@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A pytest plugin for programs that must do what they did: the fixture ``gcode_regression``.
+"""A pytest plugin for regressions of programs: the fixture ``gcode_regression``.
 
 ::
 
@@ -45,7 +45,7 @@ def gcode_recorders() -> Iterator[Recorders]:
 def gcode_regression(
     request: pytest.FixtureRequest, gcode_recorders: Recorders
 ) -> Callable[..., None]:
-    """Compare programs with their recordings; the test fails with what changed.
+    """Compare programs with their recordings; the test fails with the differences.
 
     ``gcode_regression(directory, *programs, tolerance=, feed_tolerance=, programs_in=)``: the
     directory is relative to the test's file, without programs all are compared; tolerances as of

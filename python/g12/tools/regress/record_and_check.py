@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Recording programs in a directory and checking them against it: what ``g12 regress`` does."""
+"""The work of ``g12 regress``: recording programs in a directory, checking them against it."""
 
 import os
 from collections import Counter
@@ -35,10 +35,10 @@ from g12.tools.regress.recordings import (
 
 @dataclass(frozen=True)
 class Terms:
-    """How to compare and to work.
+    """Tolerances, timeout and output of a check.
 
     ``ends`` is the tolerance of ends in machine units and degrees, ``feeds`` that of feeds in per
-    cent; ``timeout`` is in seconds a program. ``tell`` hears how far it is.
+    cent; ``timeout`` is in seconds a program. ``tell`` is called with the progress.
     """
 
     ends: float = 1e-6
@@ -55,7 +55,7 @@ class Terms:
 
 @dataclass(frozen=True)
 class RecordRequest:
-    """What to record: programs and folders, and the machine's files."""
+    """The programs and folders to record, and the machine's files."""
 
     programs: Sequence[Path] = ()
     ini: Path | None = None
@@ -66,7 +66,7 @@ class RecordRequest:
 def record(
     directory: Path, request: RecordRequest, terms: Terms, recorders: Recorders
 ) -> list[Result]:
-    """Record programs, all recorded ones if none is named; return what became of each."""
+    """Record programs, by default all recorded ones; return their results."""
     named = [_existing(program) for program in request.programs]
     known = (directory / ABOUT).exists()
     start = _known if known else _new
@@ -93,7 +93,7 @@ def check(
     """Compare programs, all recorded ones if ``names`` is empty, with their recordings.
 
     ``programs`` is a folder with other versions of them, ``ini`` and ``tools`` replace those
-    recorded. Returns what became of each program, and notes on what else is different.
+    recorded. Returns the results, and notes on changed files.
     """
     baseline, terms = load(directory.absolute()), terms or Terms()
     folder = _folder(programs) if programs else baseline.programs
@@ -126,7 +126,7 @@ def _done(
 
 
 def _common_notes(found: Sequence[Result]) -> list[str]:
-    """Return what else changed since the recordings, with the number of programs if not all."""
+    """Return the other changes since the recordings, with the number of programs if not all."""
     compared = [result for result in found if result.verdict in (SAME, CHANGED)]
     counts = Counter(note for result in compared for note in result.notes)
     everyone = len(compared)
@@ -159,7 +159,7 @@ def _folder(path: Path) -> Path:
 
 
 def _new(directory: Path, request: RecordRequest, named: list[Path]) -> Baseline:
-    """Return a directory that nothing is recorded in so far."""
+    """Return a directory without recordings."""
     if directory.exists() and not directory.is_dir():
         raise UsageError(f"{directory}: not a directory")
     if not named:
@@ -181,7 +181,7 @@ def _known(directory: Path, request: RecordRequest, named: list[Path]) -> Baseli
 
 
 def _as_requested(baseline: Baseline, request: RecordRequest, named: list[Path]) -> Baseline:
-    """Return a directory with the machine's files and the folders asked for."""
+    """Return a directory with the machine's files and the requested folders."""
     ini = _machine(request.ini or baseline.ini)
     table = read_ini(ini).file("EMCIO", "TOOL_TABLE")
     own = _absolute(table) if table and table.is_file() else None
@@ -242,7 +242,7 @@ def _recorded(baseline: Baseline, name: str) -> str:
 
 
 def _dropped(baseline: Baseline) -> list[Result]:
-    """Remove the recordings of programs that are gone."""
+    """Remove the recordings of missing programs."""
     gone = [name for name in baseline.names() if not (baseline.programs / name).is_file()]
     for name in gone:
         baseline.drop(name)
@@ -250,7 +250,7 @@ def _dropped(baseline: Baseline) -> list[Result]:
 
 
 def _outdated(baseline: Baseline) -> list[str]:
-    """Return which of the machine's files are no longer as they were recorded."""
+    """Return the machine's files that have changed since the recording."""
     copies = (baseline.tool_table, baseline.tools), (baseline.var_file, baseline.parameters)
     return [
         f"{source.name} has changed since the recording, its recorded copy is used"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Recordings made and compared by several interpreters at once, each of them a process."""
+"""Recorders: interpreters, each a process, that record and compare programs in parallel."""
 
 import contextlib
 import hashlib
@@ -40,7 +40,7 @@ TICK = 0.1  # s
 
 @dataclass(frozen=True)
 class TracedMachine:
-    """What programs are traced on; ``timeout`` is in seconds for each program.
+    """The machine of traces; ``timeout`` is in seconds for each program.
 
     ``contents`` is a hash of INI and tool table: changed files need another interpreter.
     """
@@ -71,7 +71,7 @@ class Job:
 
 @dataclass(frozen=True)
 class RegressFinding:
-    """A difference together with the lines of the program that it is about.
+    """A difference with its lines of the program.
 
     ``block`` is the text of the first line; ``by`` is in machine units or degrees.
     """
@@ -88,9 +88,10 @@ class RegressFinding:
 
 @dataclass(frozen=True)
 class Result:
-    """What became of one program.
+    """The result of one program.
 
-    ``summary`` says what it does now; ``notes`` with what else than now it was recorded.
+    ``summary`` describes its present motion, ``notes`` the changed files and versions since the
+    recording.
     """
 
     program: str
@@ -104,13 +105,13 @@ class Result:
 def machine_of(
     ini: Path, tools: Path | None, parameters: Path | None, timeout: float
 ) -> TracedMachine:
-    """Return the machine as its files are now."""
+    """Return the machine of its present files."""
     contents = text_bytes(read_ini(ini)) + (tools.read_bytes() if tools else b"")
     return TracedMachine(ini, tools, parameters, timeout, linuxcnc_version(), hash_of(contents))
 
 
 def text_bytes(ini: Ini) -> bytes:
-    """Return the expanded INI as it is in its files."""
+    """Return the bytes of the expanded INI."""
     return ini.text.encode(errors="surrogateescape")
 
 
@@ -163,7 +164,7 @@ class Recorder:
 
 
 class Recorders:
-    """The running interpreters: as many of a machine as work at the same time.
+    """The running interpreters, as many of a machine as work in parallel.
 
     All of them end with the ``with`` block.
     """
@@ -186,7 +187,7 @@ class Recorders:
 
     @contextlib.contextmanager
     def one_of(self, machine: TracedMachine) -> Iterator[Recorder]:
-        """Yield a recorder that nobody else uses meanwhile."""
+        """Yield a recorder for exclusive use."""
         try:
             recorder = self._idle[machine].pop()
         except IndexError:
@@ -197,12 +198,12 @@ class Recorders:
 
 
 def hash_of(content: bytes) -> str:
-    """Return a short hash to tell two versions of a file apart."""
+    """Return a short hash to distinguish two versions of a file."""
     return f"sha256:{hashlib.sha256(content).hexdigest()[:HASH_DIGITS]}"
 
 
 def trace_and_compare(job: Job, recorders: Recorders) -> Result:
-    """Return what became of a program's trace, which is kept if that is the job."""
+    """Return the result of a program's trace; store it if the job keeps it."""
     with recorders.one_of(job.machine) as recorder:
         try:
             now = recorder.text(job.name, job.program)
@@ -239,7 +240,7 @@ def _compared(job: Job, now: str, recorder: Recorder) -> Result:
 
 
 def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
-    """Yield what else is different since the recording."""
+    """Yield the other changes since the recording."""
     if was["linuxcnc"] != now["linuxcnc"]:
         yield f"LinuxCNC {was['linuxcnc']} when recorded, {now['linuxcnc']} now"
     if was["machine"] != now["machine"]:
@@ -271,7 +272,7 @@ def _summary(recording: Recording) -> str:
 
 
 def _picture(job: Job, was: Recording, now: Recording, found, recorder: Recorder) -> str:
-    """Draw what changed; matplotlib takes a while to load."""
+    """Draw the differences; matplotlib takes a while to load."""
     from g12.tools.plot.style import save
     from g12.tools.regress.overlay import draw_overlay, picture_file
 
@@ -281,7 +282,7 @@ def _picture(job: Job, was: Recording, now: Recording, found, recorder: Recorder
 
 
 def results(jobs: Sequence[Job], workers: int, tell: Tell, recorders: Recorders) -> list[Result]:
-    """Return the results of jobs in their order, made by so many interpreters at once."""
+    """Return the results of jobs in their order, with some interpreters in parallel."""
     largest_first = sorted(jobs, key=lambda job: -job.program.stat().st_size)
     found = {}
     with ThreadPoolExecutor(workers) as pool:
@@ -299,7 +300,7 @@ def results(jobs: Sequence[Job], workers: int, tell: Tell, recorders: Recorders)
 
 
 def _kill_running(futures: Sequence[Future], recorders: Recorders) -> None:
-    """End jobs that may be far from their end; an interpreter may just be starting."""
+    """End unfinished jobs; an interpreter may just be starting."""
     while any(future.running() for future in futures):
         recorders.kill()
         time.sleep(TICK)

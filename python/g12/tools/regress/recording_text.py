@@ -18,11 +18,11 @@
     end: G0 G17 G40 …
 
 Positions are machine coordinates in machine units and degrees, as in ``trace``. A move names only
-the axes that change, an arc's centre only the axes on which it is not where the arc starts, and a
-feed holds until the next one; so a change stays on its own lines in a diff. A line with ``*`` is
-what happens between moves. ``error at LINE: TEXT`` in place of ``end`` is a program that is
-refused. Ten decimals are finer than what an inch conversion leaves of a double; more would show
-rounding that differs from one build of LinuxCNC to the next.
+the axes that change, an arc's centre only the axes on which it differs from the arc's start, and a
+feed holds until the next one; so a change stays on its own lines in a diff. A line with ``*`` is an
+event between moves. A refused program has ``error at LINE: TEXT`` instead of ``end``. Ten decimals
+are within the precision of a double after an inch conversion; more would show rounding that differs
+between builds of LinuxCNC.
 """
 
 import re
@@ -41,7 +41,7 @@ FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/:'\"<>()]+/)+")
 BLOCK = re.compile(r"(\d+):(?: (.*))?")
 NO_G92 = "G92.2"  # recordings of earlier versions list it
 ERROR = re.compile(r"error at (\d+): (.*)")
-NUMBER = r"[-\d.]{1,40}"  # no machine is longer, and no float of it is infinite
+NUMBER = r"[-\d.]{1,40}"  # longest number: above any machine, below infinite floats
 WORDS = rf"((?: [XYZABCUVW]{NUMBER})*)"
 MOVE = re.compile(
     rf"  (rapid|feed|arc|probe){WORDS}"
@@ -51,11 +51,11 @@ MOVE = re.compile(
 
 
 class TraceTextError(ValueError):
-    """A text that is no trace, or one that was edited."""
+    """A text that is no trace, or an edited one."""
 
 
 class Note(NamedTuple):
-    """What happens between two moves; ``block`` is the program's line."""
+    """An event between two moves; ``block`` is the program's line."""
 
     block: int
     text: str
@@ -66,11 +66,11 @@ Step = Move | Note
 
 @dataclass(frozen=True)
 class Recording:
-    """A trace together with what it is a trace of.
+    """A trace with the data of its program and machine.
 
     ``facts`` are the lines of the head by their first word, ``blocks`` the text of the program's
-    lines that do something, ``steps`` moves (mm, degrees) and notes in order. ``error`` is None
-    for a program that came to its end, ``end`` then its modal state there.
+    effective lines, ``steps`` moves (mm, degrees) and notes in order. ``error`` is None for a
+    program that ran to its end, ``end`` then its modal state there.
     """
 
     facts: dict[str, str]
@@ -159,7 +159,7 @@ class RecordingWriter:
         return words
 
     def _texts(self, position: Sequence[float]) -> list[str]:
-        """Return the numbers of a position; most are those of the last one, as text already."""
+        """Return the numbers of a position; most are the last one's, already as text."""
         known = zip(position, self._at, self._texts_at, self._scales)
         return [text if value == at else number_text(value * scale)
                 for value, at, text, scale in known]  # fmt: skip
@@ -256,7 +256,7 @@ class RecordingReader:
 
 
 def split_facts(text: str) -> tuple[dict[str, str], str]:
-    """Return the facts at the head of a text, and the rest of it."""
+    """Split a text into the facts at its head and the rest."""
     head, *lines = text.split("\n", len(FACTS) + 1)
     if head != HEAD:
         raise TraceTextError(f"line 1: not {HEAD!r}")
@@ -267,7 +267,7 @@ def split_facts(text: str) -> tuple[dict[str, str], str]:
 
 
 def read_recording(text: str) -> Recording:
-    """Return the recording that a text holds, or raise TraceTextError with the line."""
+    """Return the recording of a text, or raise TraceTextError with the line."""
     facts, body = split_facts(text)
     steps, blocks = [], {}
     reader, block = RecordingReader(UNITS[facts["units"]].mm), 0

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A recorded directory: one machine, the folder of its programs, a trace for each of them.
 
-``regress.json`` names the INI, the programs' folder and where the tool table and the var file came
-from, all relative to the directory; ``tool.tbl`` and ``parameters.var`` are copies, so a tool that
-wears or a work offset that is touched off changes no trace. Everything in it is text to commit.
+``regress.json`` names the INI, the programs' folder and the sources of tool table and var file, all
+relative to the directory; ``tool.tbl`` and ``parameters.var`` are copies, so a tool that wears or a
+work offset that is touched off changes no trace. Everything in it is text to commit.
 """
 
 import json
@@ -24,9 +24,10 @@ PROGRAM_SUFFIXES = (".ngc", ".nc", ".tap", ".gcode")
 
 @dataclass(frozen=True)
 class Baseline:
-    """Where everything is; ``folders`` are those recorded as a whole, relative to ``programs``.
+    """The paths of a recorded directory.
 
-    ``tool_table`` and ``var_file`` are what the directory's copies were made from.
+    ``folders`` are those recorded as a whole, relative to ``programs``. ``tool_table`` and
+    ``var_file`` are the sources of the directory's copies.
     """
 
     directory: Path
@@ -52,7 +53,7 @@ class Baseline:
         return sorted(path.relative_to(self.directory).as_posix()[: -len(SUFFIX)] for path in found)
 
     def trace_file(self, name: str) -> Path:
-        """Return where the trace of a program is."""
+        """Return the path of a program's trace."""
         return self.directory / f"{name}{SUFFIX}"
 
     def keep(self, name: str, text: str) -> None:
@@ -71,16 +72,16 @@ class Baseline:
             path.rmdir()
 
     def in_folders(self, programs: Path) -> list[str]:
-        """Return the programs that are now in the folders recorded as a whole."""
+        """Return the present programs in the folders recorded as a whole."""
         names = (program_names(programs, programs / folder) for folder in self.folders)
         return sorted({name for found in names for name in found})
 
     def name_of(self, program: Path) -> str:
-        """Return a program's name, which is its place below the programs' folder."""
+        """Return a program's name, its path below the programs' folder."""
         return _below(program, self.programs, self.directory)
 
     def save(self) -> None:
-        """Write what the directory is."""
+        """Write regress.json."""
         self.directory.mkdir(parents=True, exist_ok=True)
         about = {
             "format": FORMAT,
@@ -93,7 +94,7 @@ class Baseline:
         write(self.directory / ABOUT, f"{json.dumps(about, indent=2)}\n".encode())
 
     def take_copies(self, tools: Path | None, parameters: Path | None) -> None:
-        """Make these files the directory's copies."""
+        """Copy the tool table and the var file to the directory."""
         self.directory.mkdir(parents=True, exist_ok=True)
         for source, copy in ((tools, self.tools), (parameters, self.parameters)):
             if source and source != copy:
@@ -127,7 +128,7 @@ def _absolute(directory: Path, name: str | None) -> Path | None:
 
 
 def program_names(root: Path, folder: Path) -> list[str]:
-    """Return the programs in a folder and below, by their places below ``root``."""
+    """Return the programs in a folder and below, by their paths below ``root``."""
     found = (path for path in folder.rglob("*") if path.suffix.lower() in PROGRAM_SUFFIXES)
     return sorted(path.relative_to(root).as_posix() for path in found if path.is_file())
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What ``g12 regress`` says: a line per finding, like a compiler's, or JSON."""
+"""The report of ``g12 regress``: a line per finding, like a compiler's, or JSON."""
 
 import json
 from collections import Counter
@@ -42,7 +42,7 @@ def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str
 
 
 def lines_of_result(result: Result) -> Iterator[str]:
-    """Yield what there is to say about one program."""
+    """Yield the lines about one program."""
     if result.verdict == NEW:
         yield f"{result.program}: new, {result.summary}"
     if result.verdict == ADDED:
@@ -77,7 +77,7 @@ def _where(finding: RegressFinding) -> str:
 
 
 def json_report(results: Sequence[Result], notes: Sequence[str], good: bool) -> str:
-    """Return a report for another program."""
+    """Return the report as JSON."""
     programs = [_as_json(result) for result in results]
     return json.dumps({"good": good, "notes": list(notes), "programs": programs}, indent=2)
 
