@@ -54,7 +54,7 @@ def findings(judged):
 # ---------------------------------------------------------------- rapids through material
 
 
-@pytest.mark.parametrize("level", ["-.01", "-.05", "-.1", "-.2", "-.29", "-.3"])
+@pytest.mark.parametrize("level", ["-.01", "-.1", "-.3"])
 @pytest.mark.parametrize("before", [0, 1])
 def test_a_lost_minus_sign_between_two_pockets(level, before, codes):
     good = "".join(f"G0 X{-2 - 2 * k} Z.1\n{POCKET}G0 Z.1\n" for k in range(before))
@@ -105,74 +105,12 @@ def test_the_first_move_into_the_bar(codes):
 # ---------------------------------------------------------------- valid programs
 
 
-def test_an_arc_whose_end_is_rounded_and_a_corner(codes):
-    text = (
-        FACE
-        + """G8
-G0 X40 Z2 C0
-G12.1
-G1 G42 X20 C0 F600
-Z-1 F200
-G3 X14.142 C14.143 I-20 J0 F600
-G1 X-10
-C-20
-G40 X-40
-Z2
-G13.1
-"""
-    )
-    assert findings(codes(text, "lathe_mm")) == []
-
-
 def test_a_finishing_pass_after_a_helix(codes):
     text = (
         METRIC.replace("T10", "T4")
         + "G0 X0 Y0 Z1\nG13 I9 K18 Q4 Z-3 D4 F500\nG13 I18 F300\nG0 Z5\n"
     )
     assert findings(codes(text, "mill_helix_mm")) == []
-
-
-def test_lines_as_short_as_cam_writes_them(codes):
-    import cmath
-    import math
-
-    points = [cmath.rect(15.0, -math.radians(0.1 * k)) for k in range(900)]
-    lines = [f"X{2 * p.real:.4f} C{p.imag:.4f}\n" for p in points]
-    text = FACE + "G0 X70 Z2 C0\nG12.1\nG1 G41 X30 C0 F1000\nZ-2 F300\nF1000\n" + "".join(lines)
-    assert findings(codes(text + "G40 C-40\nZ2\nG13.1\nG0 Z5\n", "lathe_mm")) == []
-
-
-ROUGH = "G1 G41 X28 F1000\nZ-5 F300\nF1000\n{}G40 X70\nZ2\n"
-SIDES = "C-{a}\nX0 C-{b}\nX-{x} C-{a}\nC{a}\nX0 C{b}\nX{x} C{a}\nC0\n"
-
-
-def sides(across):
-    half = across / 2 / 3**0.5
-    return SIDES.format(a=f"{half:.4f}", b=f"{2 * half:.4f}", x=across)
-
-
-def pass_of(across):
-    return ROUGH.replace("X28", f"X{across}").format(sides(across))
-
-
-@pytest.mark.parametrize(
-    "body",
-    [
-        pass_of(28) + pass_of(27),
-        "#1=28\no1 while [#1 GE 27]\n"
-        + ROUGH.replace("X28", "X#1").format(
-            SIDES.replace("{a}", "[#1/3.4641016]")
-            .replace("{b}", "[#1/1.7320508]")
-            .replace("{x}", "#1")
-            .replace("X-#1", "X[-#1]")
-            .replace("C-[#1/", "C[-#1/")
-        )
-        + "#1=[#1-1]\no1 endwhile\n",
-    ],
-)
-def test_rough_with_an_allowance_and_finish_in_one_section(body, codes):
-    text = FACE + "G0 X70 Z2 C0\nG12.1\n" + body + "G13.1\nG0 Z5\n"
-    assert findings(codes(text, "lathe_mm")) == []
 
 
 def test_two_flats_in_one_section_round_the_outside_of_the_bar(codes):
