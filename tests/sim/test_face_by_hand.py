@@ -66,9 +66,9 @@ def test_offsets_diameters_and_inches(lathe):
     typed(lathe, "G21 G8", "G10 L2 P1 X0 C0")
 
 
-@pytest.mark.parametrize("line", ["G0 X-8 Y-3", "G1 X-8 Y-0.3 F3000"])
+@pytest.mark.parametrize("line", ["G0 X-8 Y-3", "G1 X-2 Y-0.3 F3000"])
 def test_c_can_follow_near_the_centre(lathe, line):
-    typed(lathe, "G12.1", f"G0 X8 {line.split()[2]}")
+    typed(lathe, "G12.1", f"G0 X{line.split()[1][2:]} {line.split()[2]}")
     lathe.sample()
     typed(lathe, line)
     samples = lathe.samples()

@@ -32,7 +32,7 @@ CALLS = {  # the call, the depths of its passes, and what stands or is cut there
         slot(9, 22, -30),
     ),
     "pocket": (
-        "o<polar_pocket> call [4] [-2] [14] [.5] [-9999] [.2] [4000] [2000]",
+        "o<polar_pocket> call [4] [-2] [14] [.5] [-9999] [-9999] [4000] [2000]",
         (-0.5,),
         disc(4, -2, 14),
     ),
