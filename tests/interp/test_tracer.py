@@ -196,6 +196,12 @@ def test_feed_is_in_mm_or_degrees_per_minute(mill, block, feed, mode):
     assert move.feed_mode == mode
 
 
+@pytest.mark.parametrize("offset", ["G92 X1", "G10 L2 P1 X1"])
+def test_a_new_origin_makes_the_same_words_a_move(mill, offset):
+    *_, move = mill.trace_text(f"G20 G94 G54 G0 X0\nF10\n{offset}\nG1 X0").moves
+    assert move.feed == near(254.0)
+
+
 def test_rounding_in_z_is_no_motion(mill):
     *_, turn = mill.trace_text("G20 G94 G1 Z[0.1 + 0.2] F10\nG1 Z0.3 C90 F45").moves
     assert turn.start[2] != turn.end[2] == near(0.3 * 25.4)

@@ -54,6 +54,8 @@ CONSTRUCTS = [
     # patterns of holes, a turned program
     ("haas-mill", "G81 Z.5 R.9 L0\nG70 I1. J0. L4\nG80",
      "G81 X2 Y1 Z.5 R.9\nX1 Y2\nX0 Y1\nX1 Y0\nG80\nG0"),
+    ("haas-mill", "T1 M6\nG0 X1. Y1.\nG43 H1 Z1.\nG81 Z.5 R.9 L0\nG70 I1. J0. L4\nG80",
+     "T1 M6\nG0 X1 Y1\nG43 H1 Z1\nG81 X2 Y1 Z.5 R.9\nX1 Y2\nX0 Y1\nX1 Y0\nG80\nG0"),
     ("haas-mill", "G83 Z.5 R.9 Q.2 L0\nG71 X2. Y2. I1. J0. K90. L3\nX5.\nG80",
      "G83 X3 Y2 Z.5 R.9 Q.2\nX2 Y3\nX1 Y2\nX5\nG80\nG0"),
     ("haas-mill", "G81 X2. Z.5 R.9\nG72 I.5 J90. L3\nG80",

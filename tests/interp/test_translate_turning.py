@@ -204,6 +204,13 @@ SAME = [  # a control's blocks, and those of LinuxCNC that make the same moves
      "G21 G0 X50 Z2\nX46\nG1 Z-20\nX50\nG0 Z2\nZ1\nG1 X40\nZ2\nG0 X50\nX60"),
     ("fanuc-lathe", "G0 X50. Z2.\nG94 X20. Z0\nZ-1. R-.5\nG0 Z5.",
      "G0 X50 Z2\nZ0\nG1 X20\nZ2\nG0 X50\nZ-1.5\nG1 X20 Z-1\nZ2\nG0 X50\nZ5"),
+    ("haas-lathe", "M24\nG0 X2. Z.1\nG90 X1.8 Z-1. I-.1\nG94 X1. Z-.1 K-.05\n"
+     "G92 X1.7 Z-1. I-.2 F.1",
+     "G0 X2 Z.1\nX1.6\nG1 X1.8 Z-1\nX2\nG0 Z.1\nZ-.15\nG1 X1 Z-.1\nZ.1\nG0 X2\nF.1\nX1.3\n"
+     "G33 X1.7 Z-1 K.10163945\nG0 X2\nZ.1"),
+    ("fanuc-lathe-b", "G0 X50. Z2.\nG73 U0 W0 R1\nG73 P10 Q20\nN10 G0 X30.\nG91 G1 Z-5.\nX4.\n"
+     "N20 G90 X50.",
+     "G0 X50 Z2\nX30\nG1 Z-3\nX34\nX50\nG0 Z2"),
     ("fanuc-lathe", "G0 X50. Z2.\nG73 U3. W1. R3\nG73 P10 Q20 U.4 W.1\nN10 G0 X30.\nG1 Z-5.\n"
      "N20 X50.",
      "".join(f"G0 X50 Z2\nG0 X{30.4 + 2 * s * 3} Z{2.1 + s}\nG1 Z{-4.9 + s}\nX{50.4 + 2 * s * 3}\n"
@@ -321,6 +328,10 @@ REFUSED = [
     ),
     ("G75 X40. Z-9. P100", "the cycle has no step to the next place"),
     ("G12.1\nG71 P1 Q2", "a turning cycle in a section"),
+    ("G94 X40. Z-5. C3.", "C3. is not understood in the block of a turning cycle"),
+    ("G71 U2.\nG71 P1 Q2 I1.\nN1 G0 X9.\nN2 G1 Z-5.", "I1. is not understood in the block"),
+    ("G75 R1. H9.", "H9. is not understood in the first block of G75"),
+    ("G32 Z-5. F2. C9.", "C9. is not understood beside a thread"),
 ]
 
 
@@ -343,6 +354,12 @@ def test_a_code_that_changes_nothing_is_a_comment(blocks, lines):
     result = translate_program(text, control_of("fanuc-lathe"))
     assert not result.refused
     assert lines in result.text
+
+
+def test_a_contour_ends_in_the_mode_in_which_it_begins():
+    text = "G21 G95 S500 M3\nG90 G0 X50. Z2.\nG71 U2.\nG71 P1 Q2\nN1 G0 X30.\nN2 G91 G1 Z-5.\nM30\n"
+    (refused,) = translate_program(text, control_of("fanuc-lathe-b")).refused
+    assert refused.sentence.startswith("the contour ends in G91: end it in G90")
 
 
 @pytest.mark.parametrize(("blocks", "sentence"), REFUSED)

@@ -405,8 +405,9 @@ class Canon:
 
     def _rate(self, target: tuple) -> float:
         """Feed of a straight move: degrees per minute if only rotary axes move."""
-        tip = in_mm(target)
-        still = all(abs(tip[axis] - self.tip[axis]) < STILL for axis in LINEAR)
+        places = tuple(zip(self.position, self.shift, self._resolved(in_mm(target))))
+        ways = (before + by - end for before, by, end in (places[axis] for axis in LINEAR))
+        still = all(abs(way) < STILL for way in ways)
         return self.program_feed if still else self.feed
 
     def _move(self, kind: str, tip: tuple, feed: float, centre=None, turns=0) -> None:

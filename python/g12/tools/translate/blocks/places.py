@@ -17,7 +17,8 @@ FOLLOWED = frozenset(  # a block of these codes alone ends at its words
     f"G{n}" for n in (*range(5), 7, 8, *range(17, 22), 33, 40, 41, 42, 61, 64, 80, 90, 91)
 ) | frozenset(f"G{n}" for n in range(93, 100))
 IN_POLAR = {"Y": "C", "V": "H"}
-SHIFTING = frozenset(["G43", "G49", "G54", "G55", "G56", "G57", "G58", "G59"])
+LENGTHS = frozenset(("G43", "G49"))  # of the tool: a mill's is along Z
+SHIFTING = LENGTHS | {f"G{n}" for n in range(54, 60)}
 PATTERNS = frozenset(("circle of holes", "arc of holes", "row of holes"))
 DRILLING = PATTERNS | {"drilling cycle"}
 STAYING = frozenset(  # codes that move nothing and leave the origin, or set it to their words
@@ -82,7 +83,8 @@ def follow_drilling(draft: Draft) -> bool:
 def follow_places(draft: Draft) -> None:
     """Carry the places on to the end of a block; ``start`` has those at its start."""
     codes = set(draft.codes())
-    shifted = codes & SHIFTING or draft.start.units != draft.state.units
+    lengths = frozenset() if draft.control.is_lathe else LENGTHS
+    shifted = codes & (SHIFTING - lengths) or draft.start.units != draft.state.units
     turret = draft.control.is_lathe and "T" in draft.letters()
     changes = any(w.letter == "M" and w.kind == "number" and w.code == "M6" for w in draft.words)
     other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or is_drilling(draft)
@@ -91,6 +93,8 @@ def follow_places(draft: Draft) -> None:
         return
     if other or turret or changes or shifted:
         draft.change(**LOST)
+    elif codes & lengths:
+        draft.change(at_z=UNKNOWN)
     if other:
         return
     words = [*draft.axis_words(), *(draft.increments() if draft.control.is_lathe else ())]

@@ -46,6 +46,8 @@ from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, thre
 
 MOTIONS = frozenset(("G0", "G1", "G2", "G3", "G33"))
 SHORTEST = 1e-5  # of a thread
+TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
+BESIDE = frozenset("NGMSTF$")  # may stand in a cycle's block
 METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True)}  # Haas's P
 
 
@@ -114,6 +116,7 @@ def check_turning_modes(draft: Draft) -> None:
 
 def write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **modes: Any) -> None:
     """Write moves behind the block's other words; they end where the tool stood."""
+    refuse_strange(draft, "in the block of a turning cycle")
     state = draft.state
     draft.before += own_feed_ended(draft)
     lines = list(lines_of_moves(moves, start))
@@ -127,13 +130,17 @@ def write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **mode
     draft.change(**{"own_motion": own, **places, **modes})
 
 
+def refuse_strange(draft: Draft, where: str) -> None:
+    """Refuse a word that a cycle has not taken: LinuxCNC would take it as another thing."""
+    strange = next((word for word in draft.words if word.letter not in BESIDE), None)
+    if strange:
+        raise NotTranslated(f"{strange.text} is not understood {where}")
+
+
 def keep(draft: Draft, meaning: str, **values: float | None) -> None:
     """Keep what the first block of a cycle says for its second."""
     code = draft.meanings[meaning].code
-    if draft.letters() - set("NGMST"):
-        raise NotTranslated(
-            f"{draft.words[-1].text} is not understood in the first block of {code}"
-        )
+    refuse_strange(draft, f"in the first block of {code}")
     kept = dict(draft.state.kept)
     said = {name: value for name, value in values.items() if value is not None}
     kept.update({f"{meaning} {name}": value for name, value in said.items()})
@@ -272,7 +279,8 @@ def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     start = start_point(draft)
     again = draft.start.turn == meaning and meaning not in draft.meanings
     own = take_end(draft, start)
-    taper = take_number(draft, "R")
+    tapers = [take_number(draft, letter) for letter in ("R", TAPERS.get(meaning, "I"))]
+    taper = next((number for number in tapers if number is not None), None)
     said: Any = draft.sure("pass_words", "the cycle takes what was said before") if again else ()
     if again and not said:
         raise NotTranslated(other_meaning("G90", meaning))
@@ -374,6 +382,7 @@ def thread_move(draft: Draft) -> None:
     end = take_end(draft, start)
     there = complex(end.get("Z", start.real), end.get("X", start.imag))
     pitch = pitch_of(draft, there - start)
+    refuse_strange(draft, "beside a thread")
     feed = draft.take("F")
     draft.before += [feed.text] if feed else []  # LinuxCNC has no F beside G33
     (line,) = lines_of_moves([CycleMove("G33", there, None, pitch)], start)

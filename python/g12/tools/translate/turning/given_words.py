@@ -16,6 +16,7 @@ from g12.tools.translate.turning.contour import ContourBlock, ContourMove, conto
 SHAPING = frozenset(("X", "Z", "U", "W", "I", "K", "R", "A", "C", ",A", ",C", ",R"))
 BESIDE = frozenset("FSM")  # what a finishing cut does with its moves
 MOTIONS = ("G0", "G1", "G2", "G3")
+IN_CONTOURS = (*MOTIONS, "G90", "G91")
 READERS = (codes.keep_as_comments, codes.map_codes, modes.follow_modes, decimals.whole_units)
 
 
@@ -123,6 +124,11 @@ def read_contour(
 ) -> tuple[list[ContourMove], ModalState]:
     """Return the contour of some blocks, and the modes behind it."""
     found, state = contour_blocks(draft, indices)
+    if state.distance != draft.state.distance:
+        raise NotTranslated(
+            f"the contour ends in {state.distance}: end it in {draft.state.distance}, in which it "
+            "begins"
+        )
     segments = contour_of(found, start)
     if not segments:
         raise NotTranslated("the contour of the cycle has no moves")
@@ -168,7 +174,7 @@ def contour_block(reader: Draft, motion: str) -> ContourBlock:
             values[word.letter] = word.number
         elif word.letter in BESIDE or is_mode(word):
             others.append(word.text)
-        elif word.letter not in "NG" or (word.letter == "G" and word.code not in MOTIONS):
+        elif word.letter not in "NG" or (word.letter == "G" and word.code not in IN_CONTOURS):
             raise NotTranslated(f"{word.text} cannot stand in a contour")
     own = _motion_of(reader, motion)
     if own not in MOTIONS:
