@@ -100,10 +100,6 @@ def test_a_pocket_that_begins_in_its_corner_is_refused():
     )
 
 
-def test_a_part_may_begin_in_its_corner():
-    assert cut(closed(SQUARE), LEFT, 3.0) == ("", [])
-
-
 def test_a_slot_narrower_than_the_tool_is_refused_with_its_walls():
     slot = [*lines((30, 20), (5, 20), (5, -10)), arc((2.5, -10), 2.5, 0, -180),
             *lines((0, -10), (0, 20), (-30, 20))]  # fmt: skip
@@ -122,9 +118,26 @@ def extended(front, behind):
     return sides
 
 
-@pytest.mark.parametrize(("front", "behind"), [(5.0, 0.0), (0.0, 5.0), (40.0, 0.0)])
-def test_a_lead_that_is_the_extension_of_a_side_is_none_of_the_part(front, behind):
-    assert cut(extended(front, behind), LEFT, 3.0) == ("", [])
+CIRCLE = arc((0, 0), 10, 0, 360)
+FIN = lines((-30, 0), (0, 0), (0, 20), (0.1, 20), (0.1, 0), (30, 0))
+
+
+@pytest.mark.parametrize(
+    ("shapes", "side"),
+    [
+        (closed(SQUARE), LEFT),  # a part may begin in its corner
+        (extended(5.0, 0.0), LEFT),  # the extension of a side as a lead
+        (extended(0.0, 5.0), LEFT),
+        (extended(40.0, 0.0), LEFT),
+        (FIN, LEFT),
+        ([Straight(10 - 20j, 10 + 0j), CIRCLE], RIGHT),
+        ([Straight(10 - 3j, 10 + 0j), CIRCLE], RIGHT),
+        (polygon(SQUARE) * 2, LEFT),  # cut twice
+        (polygon(SQUARE) * 2, RIGHT),
+    ],
+)
+def test_what_shops_make_is_cut(shapes, side):
+    assert cut(shapes, side, 3.0) == ("", [])
 
 
 @pytest.mark.parametrize("turned", [-0.5, 0.0, 0.5])
@@ -152,11 +165,6 @@ def test_a_contour_closes_over_twice_what_arcs_are_forgiven(gap, told, at_start)
     contour.closing = 0.03
     assert refusal(contour) == ""
     assert bool(contour.notes) is told
-
-
-def test_a_thin_fin_is_cut_all_round():
-    fin = lines((-30, 0), (0, 0), (0, 20), (0.1, 20), (0.1, 0), (30, 0))
-    assert cut(fin, LEFT, 3.0) == ("", [])
 
 
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
@@ -224,17 +232,6 @@ def test_a_contour_is_rolled_on_and_off_with_arcs(side, inward, overlap):
     ends = [start, *SQUARE[1:], SQUARE[0], end]
     contour = [on, *(Straight(*pair) for pair in zip(ends, ends[1:])), off]
     assert cut(contour, side, 3.0) == ("", [])
-
-
-def test_a_circle_may_be_led_on_to_by_a_line():
-    assert cut([Straight(10 - 20j, 10 + 0j), arc((0, 0), 10, 0, 360)], RIGHT, 3.0) == ("", [])
-    assert cut([Straight(10 - 3j, 10 + 0j), arc((0, 0), 10, 0, 360)], RIGHT, 3.0) == ("", [])
-
-
-@pytest.mark.parametrize("side", [LEFT, RIGHT])
-def test_a_contour_may_be_cut_twice(side):
-    sides = polygon(SQUARE)
-    assert cut([*sides, *sides], side, 3.0) == ("", [])
 
 
 @pytest.mark.parametrize("radius", [0.3, 6.0])
