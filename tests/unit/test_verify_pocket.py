@@ -103,23 +103,6 @@ def test_a_small_ring_is_round(ring):
     assert facts.left == 0 and facts.judged == ()
 
 
-CHANGES = {
-    "another radius": lambda m: target((3.0, 8.0, 13.0, 17.02)),
-    "another depth": lambda m: target(depths=(-1.1,)),
-    "a level more": lambda m: target(depths=(-1.0, -1.2)),
-    "a spring pass more": lambda m: target(depths=(-1.0, -1.0)),
-    "a ring less": lambda m: target((3.0, 8.0, 17.0)),
-    "another centre": lambda m: target(origin=CENTRE + 0.03),
-}
-
-
-@pytest.mark.parametrize("change", CHANGES)
-def test_another_pocket_than_the_words_ask_for_is_off(change):
-    moves = made(CHANGES[change](None))
-    found = codes(moves, target())
-    assert len(found) == 1 and found[0] in ("path-off", "path-extra")
-
-
 @pytest.mark.parametrize("at", range(1, 14))
 def test_every_move_is_needed_as_it_is(at):
     """Cut short, turned the other way or ending a hundredth lower: none of it passes."""
@@ -133,20 +116,6 @@ def test_every_move_is_needed_as_it_is(at):
     assert codes([*before, move._replace(end=lower), *after], wanted)
     if move.kind == "arc":
         assert codes([*before, move._replace(turns=-move.turns), *after], wanted) == ["path-off"]
-
-
-@pytest.mark.parametrize("feed", [60.0, 6000.0])
-@pytest.mark.parametrize("at", [1, 2, 4])
-def test_feeds_are_those_asked_for(at, feed):
-    wanted = target()
-    moves = made(wanted)
-    moves[at] = moves[at]._replace(feed=feed)
-    assert codes(moves, wanted) == ["feed"]
-    moves[at] = moves[at]._replace(feed_mode="G95")
-    assert codes(moves, wanted) == ["feed-mode"]
-    if moves[at].kind == "feed":
-        moves[at] = moves[at]._replace(kind="rapid")
-        assert codes(moves, wanted) == ["rapid"]
 
 
 def test_a_straight_line_onto_the_finished_wall_is_off():

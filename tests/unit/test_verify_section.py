@@ -98,13 +98,6 @@ def test_a_good_section_has_no_findings():
     assert codes(facts) == []
 
 
-@pytest.mark.parametrize("wrong", [-0.02, 0.02])
-def test_a_wrong_offset_is_off_by_it(wrong):
-    facts = measure(cut(around(TOOL + wrong)), square(-1))
-    assert facts.deviation == pytest.approx(0.02, rel=0.02)
-    assert ("path-off", 1) in codes(facts)  # the lead-in ends there
-
-
 @pytest.mark.parametrize("laps", [1, 3])
 def test_every_lap_is_followed(laps):
     lead, *walls, away = square(-1)
@@ -113,25 +106,6 @@ def test_every_lap_is_followed(laps):
     assert measure(cut(laps * around(TOOL)), elements).deviation < 1e-3
     assert measure(cut((laps + 1) * around(TOOL)), elements).deviation > 1
     assert measure(cut(laps * around(TOOL)), [*elements[:-1], *walls, away]).deviation > 1
-
-
-def test_the_wrong_side_is_found():
-    facts = measure(cut(around(TOOL)), square(+1))
-    assert facts.deviation == pytest.approx(2 * TOOL, rel=0.01)
-
-
-def test_a_wall_that_is_left_out_is_found():
-    ways = around(TOOL)
-    skipped = [*ways[:1], dense([ways[0][-1], ways[2][0]]), *ways[2:]]
-    facts = measure(cut(skipped), square(-1))
-    assert facts.deviation > 5
-    assert ("path-off", 3) in codes(facts)
-
-
-def test_a_cut_into_the_contour_is_off_by_its_depth():
-    ways = around(TOOL)
-    ways[-1] = [*ways[-1], complex(20 + TOOL - 3, 0), complex(20 + TOOL, 0)]
-    assert measure(cut(ways), square(-1)).deviation == pytest.approx(3, rel=0.01)
 
 
 @pytest.mark.parametrize("centre", [0, 24])
@@ -160,15 +134,6 @@ def test_the_tool_centre_on_the_contour():
     assert facts.size.reached[0] == pytest.approx(20, abs=1e-3)
 
 
-def test_coarse_segments_stray_from_the_contour():
-    turn = np.exp(1j * math.pi / 4)  # the plane turns with the part, which begins at C-45
-    hand = Hand().rapid(x=abs(20 - 20j), c=-45.0).next_block().polar([20 + 5j, 20 + 20j])
-    wall = line(2, (20 - 20j) * turn, (20 + 20j) * turn)
-    facts = measure(hand, [wall], x=abs(20 - 20j))
-    assert facts.deviation > 0.5
-    assert facts.segments == 2 and facts.longest > facts.shortest > 10
-
-
 def test_an_unread_contour_is_no_proof():
     facts = measure(cut(around(TOOL)), square(-1), doubt="line 3 calls o<x>")
     (found,) = facts.judged
@@ -189,13 +154,6 @@ def test_the_speed_of_c_is_told_with_its_limit():
     assert facts.turns.speed == pytest.approx(360) and facts.c_limit == 360
 
 
-@pytest.mark.parametrize(("turn", "far"), [(180.0, False), (540.0, True), (-360.0, True)])
-def test_c_turns_in_place_by_half_a_turn_at_the_most(turn, far):
-    hand = Hand().rapid(x=40.0).next_block().line(x=0.0).line(c=turn).next_block().line(x=9.0)
-    elements = [line(2, 40 + 0j, 0j), line(3, 0j, 9 * np.exp(1j * math.radians(turn)))]
-    assert (("c-turned-too-far", 2) in codes(measure(hand, elements))) is far
-
-
 def test_a_place_is_told_as_the_program_writes_it():
     facts = measure(cut(around(TOOL + 0.02)), square(-1), diameters=True)
     (found,) = [each for each in facts.judged if each.code == "path-off"]
@@ -212,46 +170,12 @@ def test_the_lowest_feed_is_placed_in_the_sections_own_plane():
 # ---------------------------------------------------------------- levels and feeds
 
 
-def blockwise(depths, feed=600.0):
-    """Return a plunge and a line, made at those depths and that feed."""
-    hand = Hand().rapid(x=40.0)
-    hand.feed = feed
-    hand.line(z=depths[0])
-    hand.next_block().polar(dense([40, 40 + 20j])[1:], feed=600.0)
-    end = hand.moves[-1].end
-    hand.moves[-1] = hand.moves[-1]._replace(end=(*end[:2], depths[1], *end[3:]))
-    elements = [
-        Element(1, 40 + 0j, 40 + 0j, 0, False, -1.0, feed=600.0),
-        Element(2, 40 + 0j, 40 + 20j, 0, False, -1.0, feed=None),
-    ]
-    return measure(hand, elements)
-
-
-@pytest.mark.parametrize(
-    ("depths", "found"),
-    [((-1.0, -1.0), []), ((-2.0, -2.0), [("path-off", 1)]), ((-1.0, -1.5), [("path-off", 2)])],
-)
-def test_another_depth_is_off_by_it(depths, found):
-    facts = blockwise(depths)
-    assert codes(facts) == found
-    assert facts.deviation == pytest.approx(max(abs(depth + 1.0) for depth in depths), abs=1e-3)
-
-
 @pytest.mark.parametrize(("off", "found"), [(0.005, False), (0.009, True)])
 def test_inside_a_line_that_changes_z_the_tolerance_holds_in_space(off, found):
     hand = Hand().rapid(x=40.0)
     hand.line(x=30.0, z=-1.0 + off).line(x=20.0, z=-2.0)
     facts = measure(hand, [Element(1, 40 + 0j, 20 + 0j, 0, False, -2.0, feed=600.0)])
     assert (("path-off", 1) in codes(facts)) is found
-
-
-@pytest.mark.parametrize(("feed", "off"), [(600.0, False), (594.0, True), (606.0, True)])
-def test_another_feed_is_told_with_its_line(feed, off):
-    facts = blockwise((-1.0, -1.0), feed)
-    assert codes(facts) == [("feed", 1)] * off
-    if off:
-        found = next(each.values for each in facts.judged if each.code == "feed")
-        assert (found["made"], found["expected"]) == pytest.approx((feed, 600.0))
 
 
 @pytest.mark.parametrize(("x", "turn"), [(2.0, 72.0), (3.0, 60.0)])
