@@ -254,13 +254,13 @@ def _nearest(
     Of curves that are equally near, the one is chosen from which the point lies farthest to a side.
     """
     near, _ = tree.nearest(point, inf, counts)
-    reach = near + SAME_POINT
+    within = near + SAME_POINT
     found = []
-    for index in filter(counts, tree.near((point.real, point.imag) * 2, reach)):
+    for index in filter(counts, tree.near((point.real, point.imag) * 2, within)):
         curve = tree.curves[index]
         share = curve.share_of(point)
         foot = curve.point(share)
-        if abs(point - foot) <= reach:
+        if abs(point - foot) <= within:
             across = (curve.direction(share).conjugate() * (point - foot)).imag
             found.append((near, across, foot))
     return max(found, key=lambda each: abs(each[1]))

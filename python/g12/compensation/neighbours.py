@@ -96,17 +96,17 @@ class _Neighbourhood:
 
         Of points that are cut equally deep it is the last.
         """
-        found, reach = None, ALLOWANCE * max(other.radius for other in self._others)
+        found, depth = None, ALLOWANCE * max(other.radius for other in self._others)
         points = list(self._wall.points())
-        every = 1 + int(reach / self._wall.spacing)
-        around = reach + every * self._wall.spacing
+        every = 1 + int(depth / self._wall.spacing)
+        around = depth + every * self._wall.spacing
         sampled = (self._tree.nearest(p.point, around, self._is_other) for p in points[::every])
         if all(by is None for _, by in sampled):
             return None
         for point in reversed(points):
-            away, by = self._tree.nearest(point.point, reach, partial(self._cuts, point))
+            away, by = self._tree.nearest(point.point, depth, partial(self._cuts, point))
             if by is not None:
-                reach, found = away, (point, self._passes[by][1])
+                depth, found = away, (point, self._passes[by][1])
         return found
 
     def _is_other(self, by: int) -> bool:

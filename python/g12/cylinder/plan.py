@@ -85,9 +85,9 @@ class _Surface(StepMaker):
         settings, (x, c, z) = self._settings, self.position
         split_by = partial(split_on_cylinder, move, settings.radius)
         split = self._split(move, split_by, settings.tolerance, stop, settings.least_z)
-        made = segments_with_feed(split, (z, c, x), move, 0.0, settings.least_z)
+        segments = segments_with_feed(split, (z, c, x), move, 0.0, settings.least_z)
         axes = "ZC" if move.z0 == move.z1 else "XZC"
-        self._run(move.line, axes, [(x, c, z, feed) for z, c, x, feed in made], stop)
+        self._run(move.line, axes, [(x, c, z, feed) for z, c, x, feed in segments], stop)
 
     def plunge(self, move: Plunge, stop: bool) -> None:
         """Add a move of X alone."""

@@ -111,8 +111,8 @@ class StepMaker:
 
     def _make_up(self, path: Sequence[Element], x: float, z: float, least: float) -> None:
         """Move the slides to x and z, by what the last segments of a path have left over."""
-        there = {"X": x - self.position.x, "Z": z - self.position.z}
-        axes = "".join(axis for axis, off in there.items() if abs(off) > LEFT_OVER * least)
+        rest = {"X": x - self.position.x, "Z": z - self.position.z}
+        axes = "".join(axis for axis, off in rest.items() if abs(off) > LEFT_OVER * least)
         if axes:
             last = [element for element in path if not isinstance(element, Mark)][-1]
             self._run(last.line, axes, [(x, self.position.c, z, last.feed)], True)
@@ -131,10 +131,10 @@ class StepMaker:
         than ``least``: that segment leaves the slide where it is, and deviates by that much more.
         """
         try:
-            made = split(chord_deviation(tolerance, stop))
-            if keeps_slide(made, least):
-                made = split(chord_deviation(tolerance, stop, least))
-            return made
+            ends = split(chord_deviation(tolerance, stop))
+            if keeps_slide(ends, least):
+                ends = split(chord_deviation(tolerance, stop, least))
+            return ends
         except TooManySegments:
             self._contour.refuse(
                 move.line,

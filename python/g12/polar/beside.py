@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A tool that stands beside the X line: its slide does not pass the spindle's centre line.
+"""A tool beside the X line: its slide does not pass the spindle's centre line.
 
 The tool is at ``beside`` (POLAR_TOOL_OFFSET, Fanuc's parameter 5464) from the line on which the
 slide moves it, above zero on the side to which C words grow. For the tool to be at the distance r
@@ -36,7 +36,7 @@ from g12.polar.pole import POLE
 from g12.polar.segments import Law
 
 
-def stand(point: complex, beside: float) -> tuple[float, complex]:
+def slide_at(point: complex, beside: float) -> tuple[float, complex]:
     """Return the slide's position for a point of the plane, and its direction in the plane."""
     square = (point * point.conjugate()).real
     if not square:
@@ -74,11 +74,11 @@ def split_beside(curve: Curve, law: Law, beside: float) -> Split:
 
     stretch = Stretch(0.0, length, _apsides(curve, length), radius)
     lengths, shares = spaced(stretch, _density(curve, law, beside))
-    stands = [
-        stand(_moved(curve, at / length, law.deviation * used), beside)
+    slides = [
+        slide_at(_moved(curve, at / length, law.deviation * used), beside)
         for at, used in zip(lengths, shares)
     ]
-    return Split([slide for slide, _ in stands], _angles(stands), lengths)
+    return Split([slide for slide, _ in slides], _angles(slides), lengths)
 
 
 def _moved(curve: Curve, share: float, leftwards: float) -> complex:
@@ -86,11 +86,11 @@ def _moved(curve: Curve, share: float, leftwards: float) -> complex:
     return curve.point(share) + 1j * leftwards * curve.direction(share)
 
 
-def _angles(stands: list[tuple[float, complex]]) -> list[float]:
+def _angles(slides: list[tuple[float, complex]]) -> list[float]:
     """Return the angles of the slide's directions, without a jump."""
-    before = stands[0][1]
+    before = slides[0][1]
     angles = [angle_of(before)]
-    for _, direction in stands[1:]:
+    for _, direction in slides[1:]:
         angles.append(angles[-1] + angle_of(direction * before.conjugate()))
         before = direction
     return angles
@@ -114,7 +114,7 @@ def _density(curve: Curve, law: Law, beside: float) -> Density:
 
     def density(at: float) -> tuple[float, float]:
         share = min(max(at / length, 0.0), 1.0)
-        slide, way = stand(curve.point(share), beside)
+        slide, way = slide_at(curve.point(share), beside)
         along, around = along_and_around(curve.direction(share), way)
         bend, change = _curvature(slide, along, around, beside, own)
         wanted = sqrt(bulging * abs(bend - own))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from g12.compensation.contour import PlaneMove, Plunge
 from g12.geometry.curve import Arc, Line, angle_of
-from g12.polar.beside import stand
+from g12.polar.beside import slide_at
 from g12.polar.follow import shares_to_check
 
 SAME_DIRECTION = 1e-6  # radians
@@ -61,10 +61,10 @@ def passed(move: PlaneMove, angle: float, beside: float = 0.0) -> list[tuple[flo
     The farthest one and the end are among them. ``angle`` is C's at the start; the angles continue
     from it without a jump.
     """
-    curve, (_, before) = move.curve, stand(move.start, beside)
+    curve, (_, before) = move.curve, slide_at(move.start, beside)
     points = []
     for share in shares_to_check(curve) if isinstance(curve, Arc) else (1.0,):
-        slide, direction = stand(curve.point(share), beside)
+        slide, direction = slide_at(curve.point(share), beside)
         angle += angle_of(direction * before.conjugate())
         points.append((slide, angle, move.level(share)))
         before = direction

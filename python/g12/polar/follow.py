@@ -29,7 +29,7 @@ from typing import NamedTuple
 
 from g12.compensation.contour import SAME_POINT, PlaneMove
 from g12.geometry.curve import Arc, Curve, sweep_between
-from g12.polar.beside import along_and_around, stand
+from g12.polar.beside import along_and_around, slide_at
 from g12.polar.pole import POLE
 
 CHECKED = 16  # points evaluated on a line, and on each quarter of an arc
@@ -112,7 +112,7 @@ def can_follow_at(
 def _demand(move: PlaneMove, at: float, limits: FaceLimits) -> Demand:
     curve, beside = move.curve, limits.beside
     point = curve.point(at)
-    slide, way = stand(point, beside)
+    slide, way = slide_at(point, beside)
     along, around = along_and_around(curve.direction(at), way)
     slowness = _slowness(min(MOST_TURNING, abs(around) / max(slide, SAME_POINT)), move.feed, limits)
     if abs(point) <= abs(beside) + SAME_POINT:

@@ -19,7 +19,7 @@ from g12.moves.steps import (
     SectionPlan,
     StepMaker,
 )
-from g12.polar.beside import along_and_around, check_reach, split_beside, stand
+from g12.polar.beside import along_and_around, check_reach, slide_at, split_beside
 from g12.polar.face import FaceMove, FaceSwitch, in_face, passed
 from g12.polar.follow import FaceLimits
 from g12.polar.pole import POLE, through_pole
@@ -100,7 +100,7 @@ def quickness(
     in_plane = complex(*direction[:2])
     if not in_plane:
         return x_acceleration
-    slide, way = stand(point, beside)
+    slide, way = slide_at(point, beside)
     along, around = along_and_around(in_plane, way)
     moved = max(abs(along + beside / slide * around), abs(direction[2]))
     return 1.0 / max(moved / x_acceleration, abs(around) / (slide * radians(c_acceleration)))
@@ -121,13 +121,13 @@ class _SlideAndSpindle(StepMaker):
         """Add the segments of a move in the plane."""
         settings = self._settings
         split = partial(self._split_move, move)
-        parts = self._split(move, split, settings.tolerance, stop, settings.least_x)
+        ends = self._split(move, split, settings.tolerance, stop, settings.least_x)
         if move.start == POLE:
-            self._turn(move, parts.angles[0])
-        turns = round((self.angle - parts.angles[0]) / (2 * pi))
+            self._turn(move, ends.angles[0])
+        turns = round((self.angle - ends.angles[0]) / (2 * pi))
         entry = self._entry + 360.0 * turns
-        segments = segments_with_feed(parts, self.position, move, entry, settings.least_x)
-        self.angle = parts.angles[-1] + 2 * pi * turns
+        segments = segments_with_feed(ends, self.position, move, entry, settings.least_x)
+        self.angle = ends.angles[-1] + 2 * pi * turns
         self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", segments, stop)
 
     def _split_move(self, move: PlaneMove, deviation: float) -> Split:
@@ -166,7 +166,7 @@ class _SlideAndSpindle(StepMaker):
             z = z if isinstance(element, Mark) else element.z1
         moves = [element for element in path if isinstance(element, PlaneMove)]
         if moves:
-            slide, _ = stand(moves[-1].end, self._settings.beside)
+            slide, _ = slide_at(moves[-1].end, self._settings.beside)
         self._make_up(path, slide, z, self._settings.least_x)
 
     def _turn(self, move: PlaneMove, angle: float) -> None:

@@ -24,8 +24,8 @@ def through_pole(
     """Return the path with each move that comes within ``pole_radius`` of the pole led into it."""
     led: list[Element] = []
     for move in path:
-        parts = _led(move, pole_radius) if isinstance(move, PlaneMove) else None
-        if parts is None:
+        portions = _led(move, pole_radius) if isinstance(move, PlaneMove) else None
+        if portions is None:
             led.append(move)
         elif refused:
             contour.refuse(
@@ -34,7 +34,7 @@ def through_pole(
                 "(POLAR_POLE = refuse)",
             )
         else:
-            led.extend(parts)
+            led.extend(portions)
     return led
 
 

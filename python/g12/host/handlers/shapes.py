@@ -21,7 +21,7 @@ from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section.kind import check_ini, clamp_codes
 from g12.host.section.output import STOP_HERE, path_control
-from g12.host.section.start import stands_alone, start_of_section
+from g12.host.section.start import is_alone, start_of_section
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
 from g12.polar.plan import POLE_SHARE, PolarSettings
@@ -173,7 +173,7 @@ def shape_at_work(interp: Interp) -> str:
         *names, last = *SHAPES, *HOLES
         where = f"belongs in the subs {', '.join(names)} and {last}: call one of them"
         raise BlockRefusal(code, where)
-    if not stands_alone(interp.blocks[interp.remap_level]):
+    if not is_alone(interp.blocks[interp.remap_level]):
         raise BlockRefusal(code, "stands alone in its block")
     return name
 

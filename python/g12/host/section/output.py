@@ -106,7 +106,7 @@ class PathControl:
         own_tolerance = code == G64 and settings[TOLERANCE] > 0
         self._within = self._commanded if own_tolerance else self.smooth
         is_coarse = max(settings[TOLERANCE], settings[MERGING]) > self._blending_of_section
-        self._where_c_stands = self.smooth if is_coarse else self._within
+        self._without_c = self.smooth if is_coarse else self._within
         is_initial = abs(settings[TOLERANCE] - self._initial) < SAME_TOLERANCE
         is_initial = is_initial and not settings[MERGING]
         self._on_face = self.smooth if is_initial else self._within
@@ -118,7 +118,7 @@ class PathControl:
 
     def inside(self, turning: bool) -> None:
         """Set the path control within one block, for segments with or without a turn of C."""
-        self.set(self._within if turning else self._where_c_stands)
+        self.set(self._within if turning else self._without_c)
 
     def on_face(self) -> None:
         """Set the path control for blocks on the face, which also applies at their corners."""
@@ -299,7 +299,7 @@ class SectionOutput:
 
     def _wrong_position(self, position: tuple[float, float, float]) -> str:
         """Return why the machine's actual position is not the planned one, "" if it is."""
-        off = (abs(there - planned) for there, planned in zip(self._stands(), position))
+        off = (abs(there - planned) for there, planned in zip(self._machine_position(), position))
         return ELSEWHERE if max(off) > SWITCH_TOLERANCE else other_module(self.interp, self.beside)
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
@@ -344,7 +344,7 @@ class SectionOutput:
     def _execute(self, action: Action) -> None:
         """Execute the action's block as one of the program, which a remapped code requires."""
         interp, location = self.interp, BlockLocation(self.code, action.line)
-        level, stands = interp.call_level, self._stands()
+        level, position = interp.call_level, self._machine_position()
         interp.call_level = level if action.level is None else action.level
         try:
             interp.read(action.text)
@@ -355,8 +355,8 @@ class SectionOutput:
             interp.call_level = level
         if status:
             raise location.refuse(f"{action.text} waits for the machine: not inside a section")
-        if self._stands() != stands:
+        if self._machine_position() != position:
             raise location.refuse(f"{action.text} moves the machine: not inside a section")
 
-    def _stands(self) -> tuple[float, float, float]:
+    def _machine_position(self) -> tuple[float, float, float]:
         return self.interp.current_x, self.interp.CC_current, self.interp.current_z

@@ -150,7 +150,7 @@ class SectionReader:
         interp = self.interp
         interp.current_x, interp.current_z, interp.CC_current = self._machine
 
-    def put_back(self) -> None:
+    def restore(self) -> None:
         """Restore the interpreter's state as of the machine's last motion."""
         self.show_machine()
         self.set_modes(self._modes_found)

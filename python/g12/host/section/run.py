@@ -84,10 +84,10 @@ class Section:
             self._check_file()
             yield from self._read()
         except SystemError:  # how LinuxCNC hands a failed read or execute to Python
-            self._put_back()
+            self._undo_reading()
             raise self.reader.refuse_failed() from None
         except Exception:
-            self._put_back()
+            self._undo_reading()
             raise
 
     def _check_file(self) -> None:
@@ -96,10 +96,10 @@ class Section:
         if not self.codes.begins(block_of(self.reader.parsed)):
             raise self._refuse("the file has been changed while the program runs")
 
-    def _put_back(self) -> None:
+    def _undo_reading(self) -> None:
         """Undo the changes of reading ahead in the interpreter; executed motion stays."""
         if self._phase is not Phase.MOVING:
-            self.reader.put_back()
+            self.reader.restore()
 
     def _read(self) -> Iterator[int]:
         program, plain_line = self.program, self.reader.plain_line

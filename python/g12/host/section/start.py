@@ -32,7 +32,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
     return SectionStart(
         location=BlockLocation(messages.code_of_block(interp), line),
         words=block_of(block).words,
-        alone=stands_alone(block, words),
+        alone=is_alone(block, words),
         level=interp.call_level,
         x=interp.current_x,
         c=interp.CC_current,
@@ -56,7 +56,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
     )
 
 
-def stands_alone(block: Block, words: str = "") -> bool:
+def is_alone(block: Block, words: str = "") -> bool:
     """Return whether a block holds only its code and these words."""
     others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
     return alone(block_of(block), words) and not others

@@ -73,7 +73,7 @@ def main(arguments: list[str]) -> int:
     with opened_program(options.program, ini) as opened:
         scene = write_picture(opened.path, ini, options)
     print(f"{options.output} written")
-    for line in told_beside(scene, opened):
+    for line in texts_beside(scene, opened):
         print(line)
     if scene.refusal:
         text = ended_text(options.program, trace_in_source(scene.subject.trace, opened).error)
@@ -82,7 +82,7 @@ def main(arguments: list[str]) -> int:
     return FINDING if scene.refusal else GOOD
 
 
-def told_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
+def texts_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
     """Return the texts of the picture's red signs, notes and messages, with the user's lines."""
     warnings = (
         f"in red, line {opened.source_line(line)}: {text}"

@@ -152,15 +152,15 @@ class Machine:
         """
         copy = self.folder / "programs" / Path(program).name
         shutil.copyfile(program, copy)
-        told = self._ask("run", str(copy), timeout, timeout=timeout)
-        samples, errors = self._samples(*told["recorded"]), told["errors"]
+        answer = self._ask("run", str(copy), timeout, timeout=timeout)
+        samples, errors = self._samples(*answer["recorded"]), answer["errors"]
         moving = samples.time[samples.moving()]
         return Run(
             samples=samples,
-            messages=[Message(line, text) for text, line in told["messages"]],
+            messages=[Message(line, text) for text, line in answer["messages"]],
             error=Error(*errors[0]) if errors else None,
-            modes=modes(*told["modes"]),
-            position=told["position"],
+            modes=modes(*answer["modes"]),
+            position=answer["position"],
             seconds=float(moving[-1] - moving[0]) if len(moving) else 0.0,
         )
 

@@ -18,7 +18,7 @@ from g12.tools.install.rules import codes_of, findings_of, translating_filters
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Overrides
 
-MEANT_AS_INTERPRETER = re.compile(r"\s*\[?\s*RS274NGC\s*\]?\s*$", re.IGNORECASE)
+INTERPRETER_LIKE = re.compile(r"\s*\[?\s*RS274NGC\s*\]?\s*$", re.IGNORECASE)
 
 
 def read_config_text(ini: Path) -> IniText:
@@ -29,7 +29,7 @@ def read_config_text(ini: Path) -> IniText:
     text = IniText(ini)
     if not text.section("RS274NGC"):
         for line in text.lines():
-            if MEANT_AS_INTERPRETER.match(line.text):
+            if INTERPRETER_LIKE.match(line.text):
                 wrong = f"{line.location}: {line.text.strip()}: begins no section"
                 raise UsageError(f"{wrong}; write it as [RS274NGC]")
         raise UsageError(f"{ini}: no [RS274NGC] section: this is no machine's INI file")

@@ -32,7 +32,7 @@ OLDEST = (2, 9)
 TRANSLATE = "translate"  # the command in a [FILTER] line
 LONGEST_LINE = 254  # characters: LinuxCNC 2.9 reads no more of a line
 HEADER = re.compile(r"\[[^\s\]]+\]")
-MEANT_AS_HEADER = re.compile(r"\[|\w+\s*\]$")
+HEADER_LIKE = re.compile(r"\[|\w+\s*\]$")
 OWN_HEADER = f"[{SECTION}]"
 LINE_FOR_REMAP = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
@@ -123,7 +123,7 @@ def broken_headers(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding
     for line in config.text.lines():
         text = line.text.strip()
         other_case = text.upper().startswith(OWN_HEADER) and not text.startswith(OWN_HEADER)
-        if MEANT_AS_HEADER.match(text) and (other_case or not HEADER.match(text)):
+        if HEADER_LIKE.match(text) and (other_case or not HEADER.match(text)):
             yield problem(
                 "header",
                 f"{line.location}: {text:.40}: begins no section for LinuxCNC 2.9: "
@@ -588,5 +588,5 @@ def function_missing(config: Config) -> str:
 def last_words(failure: str) -> str:
     """Return the interpreter's last error in one line."""
     lines = [line.strip() for line in failure.splitlines() if line.strip()]
-    told = [line for line in lines if not line.startswith(AFTERMATH)] or lines
-    return "; ".join(told[-2:])
+    errors = [line for line in lines if not line.startswith(AFTERMATH)] or lines
+    return "; ".join(errors[-2:])

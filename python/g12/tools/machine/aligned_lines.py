@@ -54,10 +54,10 @@ def _longest_rising(values: Sequence[int]) -> list[int]:
     at: list[int] = []
     previous: list[int] = []
     for index, value in enumerate(values):
-        place = bisect_left(ends, value)
-        previous.append(at[place - 1] if place else -1)
-        ends[place : place + 1] = [value]
-        at[place : place + 1] = [index]
+        length = bisect_left(ends, value)
+        previous.append(at[length - 1] if length else -1)
+        ends[length : length + 1] = [value]
+        at[length : length + 1] = [index]
     run: list[int] = []
     index = at[-1] if at else -1
     while index >= 0:

@@ -251,17 +251,17 @@ def portions(points: np.ndarray) -> Iterator[Portion]:
 def with_levels(points: np.ndarray, band: float) -> np.ndarray:
     """Return a toolpath (n, 3) with points inserted to limit the fall from one to the next."""
     counts = np.maximum(1, np.ceil(np.abs(np.diff(points[:, 2])) / band - 1e-9)).astype(int)
-    places = np.repeat(np.arange(len(counts)), counts)
+    indices = np.repeat(np.arange(len(counts)), counts)
     share = np.concatenate([np.arange(count) / count for count in counts])
-    places = np.append(places + share, len(counts))
-    return np.stack([np.interp(places, np.arange(len(points)), axis) for axis in points.T], axis=1)
+    indices = np.append(indices + share, len(counts))
+    return np.stack([np.interp(indices, np.arange(len(points)), axis) for axis in points.T], axis=1)
 
 
 def points_in(area: BaseGeometry, portion: Portion, radius: float) -> list[np.ndarray]:
     """Return the tool's points (3,) along a portion at which it meets an area."""
     steps = np.append(0.0, np.cumsum(np.hypot(*np.diff(portion.line, axis=0).T)))
-    places = np.linspace(0.0, steps[-1], 2 + int(steps[-1] / STEP))
-    line = np.stack([np.interp(places, steps, axis) for axis in portion.line.T], axis=1)
+    indices = np.linspace(0.0, steps[-1], 2 + int(steps[-1] / STEP))
+    line = np.stack([np.interp(indices, steps, axis) for axis in portion.line.T], axis=1)
     return [
         np.array([*point, portion.high])
         for point in line

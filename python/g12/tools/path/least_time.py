@@ -40,8 +40,8 @@ def least_seconds(
     apart = np.maximum(np.abs(swings[0] - swings[1]), LEAST_SLOPE**2)
     most = np.minimum(most, (reserves[0] + reserves[1]) / apart)
     limits = [*zip(*(zip(*each) for each in zip(reserves, swings)))]
-    reach = _reachable(most.tolist(), limits)
-    return seconds_at(_gained(reach, limits), step)
+    reachable = _reachable(most.tolist(), limits)
+    return seconds_at(_gained(reachable, limits), step)
 
 
 def seconds_at(squares: list[float], step: float) -> float:
@@ -52,24 +52,24 @@ def seconds_at(squares: list[float], step: float) -> float:
 
 def _reachable(most: list[float], limits: list) -> list[float]:
     """Return the greatest squares of the speed from which the rest can be followed."""
-    reach = [0.0] * len(most)
+    reachable = [0.0] * len(most)
     for at in range(len(most) - 2, -1, -1):
         greatest = most[at]
         for reserve, swing in limits[at]:
             if swing < 1.0:
-                greatest = min(greatest, (reach[at + 1] + reserve) / (1.0 - swing))
-        reach[at] = greatest
-    return reach
+                greatest = min(greatest, (reachable[at + 1] + reserve) / (1.0 - swing))
+        reachable[at] = greatest
+    return reachable
 
 
-def _gained(reach: list[float], limits: list) -> list[float]:
+def _gained(reachable: list[float], limits: list) -> list[float]:
     """Return the greatest of these squares of the speed that can be reached from rest.
 
     An axis that brakes more at a higher speed is evaluated at the step's end: no step brakes below
     zero.
     """
     squares = [0.0]
-    for axes, greatest in zip(limits, reach[1:]):
+    for axes, greatest in zip(limits, reachable[1:]):
         square = squares[-1]
         gained = (
             (square + reserve) / (1.0 + swing) if swing > 0.0 else square + reserve - swing * square

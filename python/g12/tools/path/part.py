@@ -81,14 +81,14 @@ class Part:
             return arc_segments(move.radius, move.sweep, chord_error)
         if self.turning:
             turn = math.radians(move.end[C] - move.start[C]) + self._face_turn(move)
-            radius = max(abs(place[X] - self.centre) for place in (move.start, move.end))
+            radius = max(abs(position[X] - self.centre) for position in (move.start, move.end))
             return max(arc_segments(radius, turn, chord_error), _spiral_segments(move, chord_error))
         return 1
 
     def _face_turn(self, move: Move) -> float:
         """Return the angle, radians, of a straight move on the face about the spindle."""
-        places = (move.start, move.end)
-        start, end = (complex(place[X] - self.centre, place[Y]) for place in places)
+        positions = (move.start, move.end)
+        start, end = (complex(position[X] - self.centre, position[Y]) for position in positions)
         return cmath.phase(end * start.conjugate()) if start.imag or end.imag else 0.0
 
 
@@ -115,8 +115,8 @@ def last_x0(trace: Trace) -> float:
 
 def x0_text(part: Part, unit: Unit) -> str:
     """Return a text with the position of a turning part's X0; "" where it is machine X0."""
-    place = unit.text(part.centre)
-    return f"X0, the spindle's axis, is at machine X{place}" if place != "0" else ""
+    position = unit.text(part.centre)
+    return f"X0, the spindle's axis, is at machine X{position}" if position != "0" else ""
 
 
 def _spiral_segments(move: Move, chord_error: float) -> int:

@@ -67,7 +67,7 @@ class _Stretch(NamedTuple):
     components along the radius and around the pole.
     """
 
-    places: np.ndarray
+    points: np.ndarray
     feed: np.ndarray
     bend: np.ndarray
     along: np.ndarray
@@ -75,7 +75,7 @@ class _Stretch(NamedTuple):
 
     @property
     def step(self) -> float:
-        return float(np.abs(np.diff(self.places)).mean())
+        return float(np.abs(np.diff(self.points)).mean())
 
 
 def turning_machine(ini: Ini) -> TurningMachine:
@@ -96,7 +96,7 @@ def section_times(legs: Sequence[Leg], machine: TurningMachine) -> SectionTimes:
     """Return the estimated times of consecutive moves of the tool."""
     stretches = [stretch for run in _smooth(legs) for stretch in _off_pole(_drawn(run))]
     turns = sum(
-        _turn(one.places[-1], other.places[0], machine)
+        _turn(one.points[-1], other.points[0], machine)
         for one, other in zip(stretches, stretches[1:])
     )
     segments = [_in_segments(each, machine) for each in stretches]
@@ -106,7 +106,7 @@ def section_times(legs: Sequence[Leg], machine: TurningMachine) -> SectionTimes:
         for share in SHARES
     )
     least = sum(
-        least_seconds(each.places, each.feed, machine.slide, machine.spindle) for each in stretches
+        least_seconds(each.points, each.feed, machine.slide, machine.spindle) for each in stretches
     )
     return SectionTimes(chorded + turns, min(chorded, face + SWITCHING) + turns, least + turns)
 
@@ -131,12 +131,12 @@ def _drawn(run: Sequence[Leg]) -> _Stretch:
     owners = np.clip(np.searchsorted(ends, lengths, side="right") - 1, 0, len(run) - 1)
     legs = [run[owner] for owner in owners]
     shares = (lengths - ends[owners]) / np.diff(ends)[owners]
-    places = np.array([leg.curve.point(share) for leg, share in zip(legs, shares)])
+    points = np.array([leg.curve.point(share) for leg, share in zip(legs, shares)])
     heading = np.array([leg.curve.direction(share) for leg, share in zip(legs, shares)])
     bends = np.array([_bend(leg.curve) for leg in run])[owners]
     feeds = np.array([leg.feed for leg in run])[owners]
-    seen = heading * places.conjugate() / np.maximum(np.abs(places), TINY)
-    return _Stretch(places, feeds, bends, seen.real, seen.imag)
+    seen = heading * points.conjugate() / np.maximum(np.abs(points), TINY)
+    return _Stretch(points, feeds, bends, seen.real, seen.imag)
 
 
 def _bend(curve: Curve) -> float:
@@ -145,7 +145,7 @@ def _bend(curve: Curve) -> float:
 
 def _off_pole(stretch: _Stretch) -> Iterator[_Stretch]:
     """Yield the portions of a stretch that are off the pole, by more than a step."""
-    off = np.abs(stretch.places) > max(STEP, stretch.step)
+    off = np.abs(stretch.points) > max(STEP, stretch.step)
     edges = np.flatnonzero(np.diff([0, *off.astype(int), 0]))
     for first, last in zip(edges[::2], edges[1::2]):
         if last - first > 2:
@@ -162,7 +162,7 @@ def _turn(end: complex, start: complex, machine: TurningMachine) -> float:
 
 def _in_segments(stretch: _Stretch, machine: TurningMachine) -> tuple[np.ndarray, np.ndarray]:
     """Return the speeds in segments, and the acceleration along the path."""
-    radius, along, around = np.abs(stretch.places), np.abs(stretch.along), np.abs(stretch.around)
+    radius, along, around = np.abs(stretch.points), np.abs(stretch.along), np.abs(stretch.around)
     (speed, slide), (c_speed, spindle) = machine.slide, machine.spindle
     spiral = stretch.around * (1.0 + along**2) / radius
     deviation = np.minimum(machine.tolerance, 0.5 * radius)
@@ -192,7 +192,7 @@ def _on_face(
 
 def _followed(stretch: _Stretch, machine: TurningMachine, most: np.ndarray) -> np.ndarray:
     """Return the highest speed that C and the slide can follow, wherever the planner brakes."""
-    radius, along, around = np.abs(stretch.places), stretch.along, stretch.around
+    radius, along, around = np.abs(stretch.points), stretch.along, stretch.around
     (speed, slide), (c_speed, spindle) = machine.slide, machine.spindle
     turning = np.maximum(np.abs(around), TINY) / radius
     pushed = np.abs(along * (stretch.bend - 2.0 * around / radius)) / radius

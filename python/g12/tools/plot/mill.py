@@ -153,8 +153,8 @@ def removed_at(level: Level, top: float) -> BaseGeometry:
         areas = getattr(level.area, "geoms", [level.area])
         return unary_union([box(area.bounds[0], level.z, area.bounds[2], top) for area in areas])
     ends = (pair for line in level.lines for pair in zip(line[:, [0, 2]], line[1:, [0, 2]]))
-    reach = np.array([[-level.reach, 0.0], [level.reach, 0.0]])
-    corners = (np.concatenate([start + reach, end + reach]) for start, end in ends)
+    ends_of_width = np.array([[-level.radius, 0.0], [level.radius, 0.0]])
+    corners = (np.concatenate([start + ends_of_width, end + ends_of_width]) for start, end in ends)
     above = (np.concatenate([bottom, bottom * (1, 0) + (0, top)]) for bottom in corners)
     return unary_union([MultiPoint(points).convex_hull for points in above])
 

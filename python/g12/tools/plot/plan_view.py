@@ -47,7 +47,7 @@ class Level(NamedTuple):
     shade: Shade
     lines: list[np.ndarray]
     area: BaseGeometry
-    reach: float = 0.0
+    radius: float = 0.0
 
 
 def milled_levels(scene: Scene) -> list[Level]:

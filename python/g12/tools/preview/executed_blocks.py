@@ -239,33 +239,33 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
     """Return the blocks that a trace reports, each after those executed inside it."""
     found: list[Block] = []
     opened: list[_Opened] = []
-    told: list[Event] = []
+    events: list[Event] = []
     done = 0  # number of events at the end of the last block
     for event in trace.events:
         if TAG not in event.text:
-            told.append(event)
+            events.append(event)
             continue
         kind, number, *rest = event.text.split(f"{TAG} ", 1)[1].split()
         if kind == CLAMP:
-            told.append(event._replace(text=f"{CLAMP} {number}"))
+            events.append(event._replace(text=f"{CLAMP} {number}"))
             continue
         values = [float(value) for value in rest]
         if kind == "begin":
-            state = state_told(values)
-            opened.append(_Opened(texts[int(number) - 1], event.at, state, len(told), {}))
+            state = reported_state(values)
+            opened.append(_Opened(texts[int(number) - 1], event.at, state, len(events), {}))
         elif kind == "value":
             opened[-1].values[int(number)] = values[0] / ENLARGED
         else:
             block = _taken(opened, texts[int(number) - 1])
             if block:
-                found.append(_block(block, event.at, state_told(values), told, done))
-                done = len(told)
+                found.append(_block(block, event.at, reported_state(values), events, done))
+                done = len(events)
     if opened:  # the program ended in it, with M2
-        found.append(_block(opened[-1], len(trace.moves), {}, told, done))
+        found.append(_block(opened[-1], len(trace.moves), {}, events, done))
     return found
 
 
-def state_told(values: Sequence[float]) -> dict[str, float]:
+def reported_state(values: Sequence[float]) -> dict[str, float]:
     """Return the state by names, from the values that ``STATE_TEXT`` prints."""
     places, others = values[: len(PLACES)], values[len(PLACES) :]
     return dict(zip(STATE, (*(value / ENLARGED for value in places), *others)))
@@ -277,7 +277,7 @@ class _Opened(NamedTuple):
     text: Text
     at: int
     state: dict[str, float]
-    told: int
+    events: int
     values: dict[int, float]
 
 
@@ -292,7 +292,7 @@ def _taken(opened: list[_Opened], text: Text) -> _Opened | None:
 
 
 def _block(
-    opened: _Opened, end: int, left: dict[str, float], told: Sequence[Event], done: int
+    opened: _Opened, end: int, left: dict[str, float], events: Sequence[Event], done: int
 ) -> Block:
     """Return an executed block; the first ``done`` events came before the last block's end."""
     text, values = opened.text, opened.values
@@ -313,6 +313,6 @@ def _block(
         opened.at,
         end,
         left,
-        tuple(told[min(done, opened.told) :]),
-        tuple(told[opened.told :]),
+        tuple(events[min(done, opened.events) :]),
+        tuple(events[opened.events :]),
     )

@@ -142,7 +142,7 @@ class Phrases:
         if isinstance(group[0].was, str):
             return ", ".join(dict.fromkeys(f"{c.was} → {c.now}" for c in group))
         scale = self._scale(what)
-        values = {told_apart(float(c.was) / scale, float(c.now) / scale) for c in group}
+        values = {distinguished(float(c.was) / scale, float(c.now) / scale) for c in group}
         was, now = next(iter(values))
         most = max((change.by for change in group), key=abs)
         if "feed" in what:
@@ -206,7 +206,7 @@ def _of_notes(steps: Sequence[Step], indices: tuple[int, ...], word: str) -> str
     return f"{word}: {', '.join(texts)}" if texts else ""
 
 
-def told_apart(*values: float) -> tuple[str, ...]:
+def distinguished(*values: float) -> tuple[str, ...]:
     """Return numbers as text, with as few digits as distinguish them."""
     short = tuple(number_text(round(value, DECIMALS)) for value in values)
     return short if len(set(short)) == len(values) else tuple(map(number_text, values))

@@ -240,8 +240,8 @@ def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
                 "loadrt [KINS]KINEMATICS",
             )
         for key, least in NEEDED.items():
-            told = re.search(rf"\b{key}=(\d+)", text)
-            if told and int(told[1]) < least:
+            limit = re.search(rf"\b{key}=(\d+)", text)
+            if limit and int(limit[1]) < least:
                 yield problem(
                     "few-pins",
                     f"{location}: {text}: motion has too few inputs and outputs for the kinematics",
@@ -276,8 +276,8 @@ def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
         wanted_offset = settings_from_lines(config.ini.lines).polar_tool_offset
     except Refusal:
         return
-    told = [told_offset(line.text, wanted_offset) for line in all_hal(config)]
-    found = next((value for value in reversed(told) if value is not None), 0.0)
+    values = [set_offset(line.text, wanted_offset) for line in all_hal(config)]
+    found = next((value for value in reversed(values) if value is not None), 0.0)
     if found != wanted_offset:
         yield problem(
             "tool-offset",
@@ -287,7 +287,7 @@ def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
-def told_offset(text: str, wanted_offset: float) -> float | None:
+def set_offset(text: str, wanted_offset: float) -> float | None:
     """Return the value that a HAL line sets for the offset's pin, None for another line."""
     match = SETS_OFFSET.fullmatch(text)
     if not match:
