@@ -9,6 +9,7 @@ from g12.tools.commands import translate
 from g12.tools.errors import UsageError
 from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.program import translate_program
+from support.sim_machines import ROOT
 
 HEAD = "G21 G90 G54\nT1 M6\nG43 H1\nG0 X10. Y5. S900 M3\nZ20.\nZ3.\n"
 CUT = "G1 Z-1. F100.\nX12.\n"
@@ -107,11 +108,13 @@ REFUSED = [
     (f"{HEAD}G1 Z-1. F9.\nG0 X3. Z5.\n", 8, "G0 at Z-1, below 2"),
     ("G21 G90\nG0 X1. Y1.\nG1 X2. F9.\n", 3, "a cut begins here with the tool at Z not known"),
     ("G21 G90\nG0 Z9.\nG1 X2. F9.\n", 3, "a cut begins here, and where X stands is not known"),
-    (f"{HEAD}G1 A3. F9.\n", 7, "A3.: a program for the face has X, Y and Z alone"),
-    (f"{HEAD}G1 C3. F9.\n", 7, "C3.: a program for the face has X, Y and Z alone"),
+    (f"{HEAD}G1 A3. F9.\n", 7, "A3.: a program for mill-on-face has X, Y and Z"),
+    (f"{HEAD}G1 C3. F9.\n", 7, "C3.: a program for mill-on-face has X, Y and Z"),
     (f"{HEAD}G18 G2 X1. Z1. R9. F9.\n", 7, "G18: arcs lie in X and Y here (G17)"),
     (f"{HEAD}G95 G1 X1. F.1\n", 7, "G95, a feed per revolution: write G94 and F per minute"),
     (f"{HEAD}G41 D7 G1 X1. F9.\n", 7, "D7 in polar mode: G41 and G42 take the loaded"),
+    (f"{HEAD}G0 G41 D1 X1.\n", 7, "G41 before the first cut: write it with the contour's first G1"),
+    (f"{HEAD}G42 D1\n", 7, "G42 before the first cut: write it with the contour's first G1"),
     (f"{HEAD}G1 G41 D1 X1. F9.\nT2 M6\n", 8, "G41 or G42 is on where the section ends"),
     (f"{HEAD}G84 Z-3. R3. F1.\n", 7, "G84: on a lathe G73 and G81 to G83 are translated"),
     (f"{HEAD}G81 Z3. R5. F1.\n", 7, "G81 Z3.: the hole must end below Z0, the part's surface"),
@@ -132,7 +135,28 @@ def test_the_safe_height_and_the_diameter_are_said():
     assert "below 2" in refused(low).sentence
     assert lines(f"{low}M30\n", control_of("mill-on-face", "--safe", "0.5"))
     assert refused(HEAD + CUT, read_control("mill-round-part")).sentence == (
-        "the diameter of the part is not known: say --diameter"
+        "the diameter of the part is not known: say --diameter, or diameter = … under [mill]"
     )
     with pytest.raises(UsageError, match="--diameter is for mill-on-face and mill-round-part"):
         control_of("haas-mill", "--diameter", "40")
+
+
+@pytest.mark.parametrize("option", ["--safe", "--diameter"])
+@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "x"])
+def test_heights_and_diameters_are_above_zero(option, value, capsys):
+    with pytest.raises(SystemExit):
+        control_of("mill-round-part", option, value)
+    assert f"argument {option}: '{value}' is not a number above 0" in capsys.readouterr().err
+
+
+def test_a_rotary_word_asks_for_no_axis_of_the_control():
+    assert translate_program(f"{HEAD}G1 A3. F9.\nM30\n", FACE).missing == []
+
+
+def test_what_the_page_shows_is_what_is_printed():
+    page = (ROOT / "configs" / "from_cam.md").read_text()
+    before, after = page.split("A mill's program for the face:\n")[1].split("\nbecomes\n")
+    program, printed = (
+        re.findall("^    (.*)", text, re.M) for text in (before, after.split("\n#")[0])
+    )
+    assert lines("\n".join([*program, "M30"]))[1:-1] == printed

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from g12.lengths import is_inch
 from g12.machine_ini import Remap, code_number, remap_lines
-from g12.tools.commands.arguments import GOOD, Parser, one_line
+from g12.tools.commands.arguments import GOOD, Parser, number_above, one_line
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, read_ini
@@ -77,8 +77,11 @@ def command_parser() -> Parser:
     parser.add_argument(
         "--decimals", choices=("least", "whole"), help="what numbers without a decimal point are"
     )
-    parser.add_argument("--safe", type=float, help="Z from which on a mill's rapids are clear")
-    parser.add_argument("--diameter", type=float, help="of the part that a mill's program is round")
+    length = number_above(0.0)
+    parser.add_argument("--safe", type=length, help="Z from which on a mill's rapids are clear")
+    parser.add_argument(
+        "--diameter", type=length, help="of the part that a mill's program is round"
+    )
     parser.add_argument("--polar-x", choices=("diameter", "radius"), help="X in polar mode")
     return parser
 

@@ -23,7 +23,7 @@ def missing_lines(
     words = [w for block in blocks for w in block.words if w.kind == "number"]
     letters = {control.value("words", w.letter, w.letter) for w in words}
     axes = "".join(sorted((letters & AXIS_NUMBERS.keys()) - set(control.axes)))
-    if axes:
+    if axes and not control.onto:
         tables[""].append(f'axes = "{control.axes}{axes}"')
     for table, line in settings:
         tables.setdefault(table, []).append(line)

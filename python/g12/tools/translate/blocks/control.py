@@ -20,6 +20,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -299,7 +300,7 @@ class _Checked:
             if value not in kind:
                 self._refuse(key, f"{key} = {value!r} must be one of {', '.join(kind)}")
             return
-        number = kind is float and type(value) in (int, float) and value > 0
+        number = kind is float and type(value) in (int, float) and 0 < value < inf
         listed = kind is not list or (
             isinstance(value, list) and all(isinstance(v, str) for v in value)
         )

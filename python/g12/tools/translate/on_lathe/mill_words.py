@@ -30,9 +30,7 @@ def refuse_foreign(draft: Draft) -> None:
     codes = set(draft.codes())
     for word in draft.words:
         if word.letter in "ABC" and not draft.call:
-            raise NotTranslated(
-                f"{word.text}: a program for the {draft.control.onto} has X, Y and Z alone"
-            )
+            raise NotTranslated(f"{word.text}: a program for {draft.control.name} has X, Y and Z")
     if codes & PLANES:
         raise NotTranslated(f"{min(codes & PLANES)}: arcs lie in X and Y here (G17)")
     for code in codes & OTHER_FEEDS.keys():

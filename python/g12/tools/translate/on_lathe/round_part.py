@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import degrees, fmod
 
 from g12.tools.translate.blocks.draft import Draft
-from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.errors import NotSaid
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.on_lathe.values import DrilledHole, MilledSurface, is_plain_number, times
 
@@ -55,7 +55,11 @@ def diameter(draft: Draft) -> float:
     """Return the surface's diameter in the program's units."""
     value = draft.control.value("mill", "diameter", 0.0)
     if not value:
-        raise NotTranslated("the diameter of the part is not known: say --diameter")
+        raise NotSaid(
+            "the diameter of the part is not known: say --diameter, or diameter = … under [mill]",
+            "mill",
+            "diameter = …",
+        )
     return value
 
 

@@ -55,6 +55,9 @@ def mill_block(draft: Draft) -> None:
         begin_section(draft)
     if draft.state.polar != "off":
         milled_surface(draft).inside(draft)
+    elif draft.state.compensation in ("G41", "G42"):
+        code = draft.state.compensation
+        raise NotTranslated(f"{code} before the first cut: write it with the contour's first G1")
 
 
 def milled_surface(draft: Draft) -> MilledSurface:
