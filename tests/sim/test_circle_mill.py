@@ -168,16 +168,3 @@ def test_pause_resume_and_abort_and_the_program_again(machine, tracer):
     machine.wait_idle()
     assert machine.errors() == []
     check_motion(machine.samples(), path, traced)
-
-
-def test_single_steps_reach_the_end(machine, tracer):
-    path, traced = programmed(tracer, OUTSIDE)
-    machine.open_text([FIRST, OUTSIDE, "M2"])
-    machine.sample()
-    for _ in range(200):
-        machine.step()
-        if machine.wait_for(lambda status: status.idle or status.paused).idle:
-            break
-    assert machine.stat().idle
-    assert machine.errors() == []
-    check_motion(machine.samples(), path, traced)

@@ -157,17 +157,3 @@ def test_what_an_abort_in_a_program_leaves_in_f(machine, lines):
     machine.mdi(f"G91 G1 X1 F{FEED:g}")
     assert machine.errors() == []
     assert machine.stat().modes.feed == pytest.approx(FEED)
-
-
-def test_pause_in_the_helix(machine, tracer):
-    machine.open_text([FIRST, START, POCKET, "M2"])
-    machine.sample()
-    machine.start()
-    machine.wait_for(lambda status: status.position[2] < -1)
-    machine.pause()
-    held = machine.wait_for(lambda status: status.paused)
-    machine.resume()
-    machine.wait_idle()
-    assert DEPTH < held.position[2] < 0
-    check_path(machine.samples(), tracer)
-    assert machine.errors() == []
