@@ -138,8 +138,7 @@ def _section(
         setup,
         lambda contour: kind.plan(contour, setup, start),
         frame,
-        program,
         SectionReader(interp, start, setup.words, program),
         output,
-        "".join(f"M{code}" for code in drag),
+        first="".join(f"M{code}" for code in drag),
     )

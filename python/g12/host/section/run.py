@@ -17,7 +17,7 @@ from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.host import messages
 from g12.host.call_frame import CallFrame
-from g12.host.program_lines import MOVING, ProgramLines
+from g12.host.program_lines import MOVING
 from g12.host.section.output import SectionOutput, Step
 from g12.host.section.reader import SectionReader, block_of
 from g12.moves.setup import SectionSetup
@@ -64,14 +64,14 @@ class Section:
         setup: SectionSetup[Any],
         plan: Callable[[Contour], SectionPlan],
         frame: CallFrame,
-        program: ProgramLines,
         reader: SectionReader,
         output: SectionOutput,
+        *,
         first: str = "",
     ) -> None:
         """``first`` is a code that acts as if it were in the section's first line."""
         self.codes, self.setup, self.plan = codes, setup, plan
-        self.frame, self.program = frame, program
+        self.frame, self.program = frame, reader.program
         self.reader, self.output = reader, output
         self._first = first
         self._phase = Phase.READING

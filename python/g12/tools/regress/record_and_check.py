@@ -20,6 +20,7 @@ from g12.tools.regress.recorder import (
     Job,
     Recorders,
     Result,
+    TracedMachine,
     machine_of,
     results,
 )
@@ -74,7 +75,8 @@ def record(
     names = _names(baseline, named)
     tools, parameters = _tools_and_parameters(baseline, request, everything=not (known and named))
     machine = machine_of(baseline.ini, tools, parameters, terms.timeout)
-    found = _done(baseline, names, baseline.programs, machine, terms, recorders, keep=True)
+    jobs = _jobs(baseline, names, baseline.programs, machine, terms, keep=True)
+    found = results(jobs, terms.jobs, terms.tell, recorders)
     baseline.take_copies(tools, parameters)
     baseline.save()
     return _sorted([*found, *([] if named else _dropped(baseline))])
@@ -103,9 +105,10 @@ def check(
     table = _absolute(tool_table(tools)) if tools else baseline.tools
     ini = _machine(ini or baseline.ini)
     machine = machine_of(ini, table, baseline.parameters, terms.timeout)
-    there = [name for name in recorded if (folder / name).is_file()]
-    found = _done(baseline, there, folder, machine, terms, recorders)
-    found += [Result(name, MISSING) for name in recorded if name not in there]
+    present = [name for name in recorded if (folder / name).is_file()]
+    jobs = _jobs(baseline, present, folder, machine, terms)
+    found = results(jobs, terms.jobs, terms.tell, recorders)
+    found += [Result(name, MISSING) for name in recorded if name not in present]
     new = [] if names else {*baseline.in_folders(folder)} - {*recorded}
     found += [Result(name, ADDED) for name in new]
     notes = _common_notes(found) + ([] if tools else _outdated(baseline))
@@ -116,13 +119,21 @@ def _sorted(found: Sequence[Result]) -> list[Result]:
     return sorted(found, key=lambda result: result.program)
 
 
-def _done(
-    baseline, names, folder: Path, machine, terms: Terms, recorders: Recorders, keep=False
-) -> list[Result]:
-    """Trace programs and compare them with their recordings."""
-    shared = {"tolerance": terms.tolerance(machine.ini), "keep": keep, "pictures": terms.pictures}
-    jobs = [Job(baseline, machine, name, folder / name, **shared) for name in names]
-    return results(jobs, terms.jobs, terms.tell, recorders)
+def _jobs(
+    baseline: Baseline,
+    names: Sequence[str],
+    folder: Path,
+    machine: TracedMachine,
+    terms: Terms,
+    *,
+    keep: bool = False,
+) -> list[Job]:
+    """Return a job for each program of a folder: trace it and compare it with its recording."""
+    tolerance, pictures = terms.tolerance(machine.ini), terms.pictures
+    return [
+        Job(baseline, machine, name, folder / name, tolerance, keep=keep, pictures=pictures)
+        for name in names
+    ]
 
 
 def _common_notes(found: Sequence[Result]) -> list[str]:
