@@ -54,8 +54,9 @@ class ModalState(NamedTuple):
     and ``tap_top`` the height that it goes back to, ``waiting`` is where a mill's program goes on a
     lathe before its next cut, ``section`` the program in which that began. ``sizes`` are the
     diameters that G10 L12 has set, by tool.
-    ``x_words`` tells whether X words are diameters, ``live`` is the ``$`` word of a spindle that
-    drives the tool and turns; ``spindle`` is the M3 or M4 that turns the first one.
+    ``corner`` tells that the program's point is a corner which LinuxCNC has cut: increments would
+    start elsewhere. ``x_words`` tells whether X words are diameters, ``live`` is the ``$`` word of
+    a spindle that drives the tool and turns; ``spindle`` is the M3 or M4 that turns the first one.
     """
 
     motion: str = UNKNOWN
@@ -99,6 +100,7 @@ class ModalState(NamedTuple):
     rigid: str = UNKNOWN
     tap_top: float | str = UNKNOWN
     sizes: tuple = ()
+    corner: bool | str = False
     at_x: float | str = UNKNOWN
     at_y: float | str = UNKNOWN
     at_z: float | str = UNKNOWN

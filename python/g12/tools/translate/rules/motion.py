@@ -82,6 +82,14 @@ def distance_mode(draft: Draft) -> None:
     draft.change(own_distance=AS_PROGRAMMED)
 
 
+def in_absolute_words(draft: Draft) -> None:
+    """Write G90 where the block's words have become absolute, G91 in front of the next ones."""
+    if draft.state.distance == "G91":
+        draft.take_codes({"G91"})
+        draft.put_first("G90")
+        draft.change(own_distance="G90")
+
+
 def exact_stop(draft: Draft) -> None:
     """Keep G9 in polar mode and on a cylinder; elsewhere a dwell of no time makes the stop."""
     code = draft.meanings.pop("exact stop", None)

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED
+from g12.tools.translate.rules.motion import in_absolute_words
 from g12.tools.translate.turning.contour import contour_of, ends_of
 from g12.tools.translate.turning.given_words import contour_blocks, start_point
 from g12.tools.translate.turning.moves import lines_of_moves, moves_along
@@ -18,7 +19,7 @@ REPLACED = frozenset("XZUW") | DRAWN
 
 def direct_drawing(draft: Draft) -> None:
     """Write a line with a corner or an angle as the moves that it is."""
-    if not is_drawn(draft):
+    if not is_drawn(draft) and not goes_on_from_a_corner(draft):
         return
     if not draft.control.is_lathe or draft.state.polar != "off":
         word = next(w for w in draft.words if w.letter in DRAWN)
@@ -39,11 +40,13 @@ def direct_drawing(draft: Draft) -> None:
     draft.words = [w for w in draft.words if w.letter not in REPLACED]
     draft.words.append(line_as_word(words if code in draft.codes() else first))
     draft.after += others
+    in_absolute_words(draft)
     last = next((line[:2] for line in reversed(others) if line[0] == "G"), "G1")
-    corner = ends_of(blocks, start)[0]
+    sharp = ends_of(blocks, start)[0]
     draft.has_motion = True
     own_motion = AS_PROGRAMMED if last == "G1" else last
-    draft.change(motion="G1", own_motion=own_motion, at_x=2 * corner.imag, at_z=corner.real)
+    places = {"at_x": 2 * sharp.imag, "at_z": sharp.real}
+    draft.change(motion="G1", own_motion=own_motion, corner=len(own) > 1, **places)
 
 
 def is_drawn(draft: Draft) -> bool:
@@ -55,6 +58,15 @@ def is_drawn(draft: Draft) -> bool:
     free = not draft.meanings and not draft.state.turn and draft.state.polar == "off"
     plain = draft.control.is_lathe and free and motion == "G1" and not codes - {"G1", "G94", "G95"}
     return plain and bool(letters & DRAWN) and bool(letters & set("XZUW"))
+
+
+def goes_on_from_a_corner(draft: Draft) -> bool:
+    """Tell whether increments of a block start in a corner that LinuxCNC has cut."""
+    behind, increments = draft.state.corner, draft.increments()
+    if not behind or not (draft.axis_words() or increments):
+        return False
+    draft.change(corner=False)
+    return bool(increments) or draft.state.distance == "G91"
 
 
 def chain_of(draft: Draft) -> Iterator[int]:

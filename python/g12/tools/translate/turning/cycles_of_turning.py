@@ -19,6 +19,7 @@ from g12.tools.translate.blocks.modal import (
     UNSURE,
 )
 from g12.tools.translate.blocks.places import FIELDS
+from g12.tools.translate.rules.motion import in_absolute_words
 from g12.tools.translate.rules.polar import own_feed_ended
 from g12.tools.translate.turning.feed_of_c import number_of_feed
 from g12.tools.translate.turning.given_words import (
@@ -387,6 +388,7 @@ def thread_move(draft: Draft) -> None:
     draft.before += [feed.text] if feed else []  # LinuxCNC has no F beside G33
     (line,) = lines_of_moves([CycleMove("G33", there, None, pitch)], start)
     draft.words += [word_of(text) for text in line.split()]
+    in_absolute_words(draft)
     draft.has_motion = True
     draft.change(
         turn="thread", motion="G33", own_motion=AS_PROGRAMMED, at_x=2 * there.imag, at_z=there.real

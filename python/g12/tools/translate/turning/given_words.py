@@ -91,7 +91,7 @@ def take_end(draft: Draft, start: complex) -> dict[str, float]:
         if own is not None and step is not None:
             raise NotTranslated(f"{absolute} and {increment} in one block")
         if own is not None:
-            relative = draft.state.distance == "G91"
+            relative = draft.sure("distance", f"{absolute} is a place or an increment") == "G91"
             found[absolute] = own / scale + (at if relative else 0.0)
         elif step is not None:
             found[absolute] = at + step / scale
@@ -179,7 +179,7 @@ def contour_block(reader: Draft, motion: str) -> ContourBlock:
     own = _motion_of(reader, motion)
     if own not in MOTIONS:
         raise NotTranslated("G0 or G1 is missing")
-    relative = reader.state.distance == "G91"
+    relative = reader.sure("distance", "X and Z are places or increments") == "G91"
     return ContourBlock(own, values, reader.block.line, relative, tuple(others))
 
 
