@@ -9,7 +9,7 @@ from g12.tools.commands import translate
 from g12.tools.errors import UsageError
 from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.program import translate_program
-from support.sim_machines import ROOT
+from support.sim_machines import PROGRAMS, ROOT
 
 HEAD = "G21 G90 G54\nT1 M6\nG43 H1\nG0 X10. Y5. S900 M3\nZ20.\nZ3.\n"
 CUT = "G1 Z-1. F100.\nX12.\n"
@@ -153,10 +153,19 @@ def test_a_rotary_word_asks_for_no_axis_of_the_control():
     assert translate_program(f"{HEAD}G1 A3. F9.\nM30\n", FACE).missing == []
 
 
+def shown(page, heading):
+    """Return the lines of an example on a page, before and after."""
+    before, after = page.split(f"{heading}:\n")[1].split("\nbecomes")[:2]
+    behind = after.split("\n\n")[1]
+    return [re.findall("^    (.*)", text, re.MULTILINE) for text in (before, behind)]
+
+
 def test_what_the_page_shows_is_what_is_printed():
     page = (ROOT / "configs" / "from_cam.md").read_text()
-    before, after = page.split("A mill's program for the face:\n")[1].split("\nbecomes\n")
-    program, printed = (
-        re.findall("^    (.*)", text, re.M) for text in (before, after.split("\n#")[0])
-    )
+    program, printed = shown(page, "A mill's program for the face")
     assert lines("\n".join([*program, "M30"]))[1:-1] == printed
+    posted = (PROGRAMS / "foreign" / "cam" / "doosan-lathe" / "ramp.nc").read_text()
+    part, becomes = shown(page, "A ramp on a Doosan post, in part")
+    assert set(part) <= set(posted.splitlines())
+    assert set(becomes) <= set(lines(posted, read_control("doosan-lathe")))
+    assert len(part) == len(becomes)
