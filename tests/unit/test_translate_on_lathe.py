@@ -119,6 +119,9 @@ REFUSED = [
     (f"{HEAD}G84 Z-3. R3. F1.\n", 7, "G84: on a lathe G73 and G81 to G83 are translated"),
     (f"{HEAD}G81 Z3. R5. F1.\n", 7, "G81 Z3.: the hole must end below Z0, the part's surface"),
     (f"{HEAD}G91 G81 Z-3. R-1. F1.\n", 7, "a drilling cycle under G91"),
+    (f"{HEAD}G55 G1 Z-1. F9.\n", 7, "a cut begins here beside a tool, an offset or units"),
+    (f"{HEAD}G43 H1 G1 Z-1. F9.\n", 7, "a cut begins here beside a tool, an offset or units"),
+    (f"{HEAD}G20 G1 Z-1. F9.\n", 7, "a cut begins here beside a tool, an offset or units"),
     (f"{HEAD}G52 X1.\n", 7, "G52: another origin by program"),
     ("G90\nG0 X1. Y1. Z9.\n", 2, "how high a rapid must be hangs on the units: say G20 or G21"),
 ]

@@ -9,12 +9,11 @@ from __future__ import annotations
 from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
-from g12.tools.translate.blocks.places import known_place, value_text
 from g12.tools.translate.on_lathe.mill_words import (
     is_on_lathe,
+    point_value,
     safe_height,
     start_height,
-    waiting_point,
 )
 from g12.tools.translate.on_lathe.sections import milled_surface
 from g12.tools.translate.on_lathe.values import DrilledHole, is_plain_number, times
@@ -65,15 +64,8 @@ def hole_from_cycle(draft: Draft, cycle: str, given: dict[str, str]) -> DrilledH
         retract = f"{safe_height(draft):g}"
     peck = {"G83": given.get("Q", "0"), "G73": times(given.get("Q", "0"), -1)}.get(cycle, "0")
     dwell = given.get("P", "0") if cycle == "G82" else "0"
-    x, y = (hole_place(draft, axis, given) for axis in "XY")
+    why = "where the hole is along {} is not known: write X and Y"
+    x, y = (
+        given.get(axis) or point_value(draft, axis, draft.state, why.format(axis)) for axis in "XY"
+    )
     return DrilledHole(x, y, times(depth, -1), retract, feed, peck, dwell)
-
-
-def hole_place(draft: Draft, axis: str, given: dict[str, str]) -> str:
-    """Return where a hole is along X or Y."""
-    waiting = waiting_point(draft)
-    place = known_place(draft.state, axis)
-    value = given.get(axis) or waiting.get(axis)
-    if value is None and place is None:
-        raise NotTranslated(f"where the hole is along {axis} is not known: write X and Y")
-    return value or value_text(place)

@@ -11,8 +11,8 @@ from typing import Any
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.modal import UNKNOWN
-from g12.tools.translate.blocks.places import known_place
+from g12.tools.translate.blocks.modal import UNKNOWN, ModalState
+from g12.tools.translate.blocks.places import known_place, value_text
 
 SAFE = {"G20": ("safe_inch", 0.1), "G21": ("safe_mm", 2.0)}
 PLANES = frozenset(("G18", "G19"))
@@ -53,6 +53,15 @@ def waiting_point(draft: Draft) -> dict[str, str]:
     """Return the values of X and Y to which rapids lead that are not written yet."""
     waiting: Any = draft.sure("waiting", "where X and Y go hangs on the way to this block")
     return dict(waiting)
+
+
+def point_value(draft: Draft, axis: str, state: ModalState, why: str) -> str:
+    """Return where the program is along X or Y; ``why`` is said if that is not known."""
+    waiting = waiting_point(draft).get(axis)
+    place = known_place(state, axis)
+    if waiting is None and place is None:
+        raise NotTranslated(why)
+    return waiting or value_text(place)
 
 
 def start_height(draft: Draft) -> float | None:

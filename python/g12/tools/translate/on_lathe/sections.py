@@ -13,12 +13,13 @@ from __future__ import annotations
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
-from g12.tools.translate.blocks.places import known_place, value_text
+from g12.tools.translate.blocks.places import known_place
 from g12.tools.translate.on_lathe.face import FACE
 from g12.tools.translate.on_lathe.mill_words import (
     check_rapid,
     is_on_lathe,
     moves_by_rapid,
+    point_value,
     refuse_foreign,
     safe_height,
     start_height,
@@ -131,6 +132,10 @@ def rapid_outside(draft: Draft, across: bool) -> None:
 
 def begin_section(draft: Draft) -> None:
     """Go to where the section begins, and begin it, on lines before the block."""
+    if ends_here(draft):
+        raise NotTranslated(
+            "a cut begins here beside a tool, an offset or units: write them in a block before it"
+        )
     height, safe = start_height(draft), safe_height(draft)
     if height is None or height < safe:
         where = "not known" if height is None else f"{height:g}"
@@ -139,32 +144,20 @@ def begin_section(draft: Draft) -> None:
             "with X and Y"
         )
     feed = feed_of_rapids(draft)
-    lines = milled_surface(draft).begin(draft, section_start(draft), feed)
+    why = "a cut begins here, and where {} stands is not known: G0 X Y before it"
+    x, y = (point_value(draft, axis, draft.start, why.format(axis)) for axis in "XY")
+    lines = milled_surface(draft).begin(draft, (x, y), feed)
     absolute = draft.start.distance == "G90"
     draft.before += lines if absolute else [f"G90 {lines[0]}", *lines[1:], "G91"]
-    y = known_place(draft.state, "Y")
+    at_y = known_place(draft.state, "Y")
     draft.change(
         polar=milled_surface(draft).section,
         section=program_begun_in(draft),
         waiting=(),
         own_motion="G1",
         own_feed="other",
-        at_c=UNKNOWN if y is None else y,
+        at_c=UNKNOWN if at_y is None else at_y,
     )
-
-
-def section_start(draft: Draft) -> tuple[str, str]:
-    """Return the values of X and Y at which the section begins."""
-    waiting = waiting_point(draft)
-    values = []
-    for axis in "XY":
-        place = known_place(draft.start, axis)
-        if axis not in waiting and place is None:
-            raise NotTranslated(
-                f"a cut begins here, and where {axis} stands is not known: G0 X Y before it"
-            )
-        values.append(waiting.get(axis) or value_text(place))
-    return values[0], values[1]
 
 
 def end_section(draft: Draft) -> None:
