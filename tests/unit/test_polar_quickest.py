@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Mark, Plunge
 from g12.polar.follow import FaceLimits, can_follow
-from g12.polar.quickest import SHARES, FaceStretch, quickest
+from g12.polar.quickest import ACCELERATION_SHARES, FaceStretch, quickest
 from support import planned_moves
 from support.growth import growth
 
@@ -51,7 +51,7 @@ def test_a_circle_nearer_to_the_pole_is_whole_on_a_softer_face(feed):
     assert made.path == [whole]
     (share,) = shares_of(made)
     assert can_follow(whole, QUICK, share)
-    assert not any(can_follow(whole, QUICK, one) for one in SHARES if one > share)
+    assert not any(can_follow(whole, QUICK, one) for one in ACCELERATION_SHARES if one > share)
 
 
 def test_where_c_is_too_slow_the_feed_is_what_it_can_follow():

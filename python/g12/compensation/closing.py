@@ -17,8 +17,8 @@ from g12.geometry.curve import Curve
 
 LEADS = 3  # moves at either end of a contour that are searched for the point where it closes
 CROSSING = 2  # moves at either end that may cross each other
-LEAST_SHARE = 0.5  # of a lead's length: a contour is at least this long, or
-LEAST_TURN = 4.0  # tool radii
+LEAST_LEAD_SHARE = 0.5  # of a lead's length: a contour is at least this long, or
+LEAST_RADII = 4.0  # tool radii
 LEAST_SINE = 0.05  # of the angle between moves: below this they touch, they do not cross
 LEAST_CONTOUR = 5  # least moves of a contour in which a crossing lead may have more than one move
 
@@ -58,7 +58,7 @@ def closing_of(curves: Sequence[Curve], radius: float, near: float) -> Closing:
         if found:
             start, end, crossing, _ = max(found, key=lambda each: each.start - each.end)
             lead = max(ends[i] + start, ends[-1] - ends[j] - end)
-            least = min(LEAST_SHARE * lead, LEAST_TURN * radius)
+            least = min(LEAST_LEAD_SHARE * lead, LEAST_RADII * radius)
             if ends[j] + end - ends[i] - start >= least:
                 return Closing(i, start, j, end, True, crossing)
     is_round = abs(curves[0].start - curves[-1].end) <= near

@@ -97,7 +97,7 @@ class PlaneNames(NamedTuple):
     centre: str
 
 
-FACE = PlaneNames("X", "C", "Z", "I and J")
+FACE_NAMES = PlaneNames("X", "C", "Z", "I and J")
 
 
 class Start(NamedTuple):
@@ -132,7 +132,7 @@ class Contour:
         c: float = 0.0,
         *,
         code: str = "G12.1",
-        names: PlaneNames = FACE,
+        names: PlaneNames = FACE_NAMES,
         diameter: bool | None = False,
         closing: float = 0.0,
         start: Start | None = None,

@@ -26,7 +26,7 @@ from g12.geometry.boxes import BoxTree, apart
 
 ALLOWANCE = 0.5  # of the tool's radius: no finishing pass cuts deeper
 ENTERED = 2.0  # tolerances: a contour deeper in a wall's material enters it
-STEP = 16.0  # tolerances: distance between the points at which a contour is checked
+CHECK_STEP = 16.0  # tolerances: distance between the points at which a contour is checked
 SAMPLED = 2  # passes of another contour: one of these mostly enters, if any does
 
 
@@ -137,8 +137,8 @@ class _Neighbourhood:
         if id(other) not in self._intended:
             wall = self._wall
             self._intended[id(other)] = (
-                enters(other.passes, other, wall, STEP)
-                or enters(wall.passes, wall, other, STEP)
+                enters(other.passes, other, wall, CHECK_STEP)
+                or enters(wall.passes, wall, other, CHECK_STEP)
                 or all(self._is_cut(point, other) for point in wall.points())
             )
         return self._intended[id(other)]
@@ -155,7 +155,7 @@ class _Neighbourhood:
         """Return whether a contour that enters the material cuts the point, too."""
         level = self._level(point)
         return any(
-            enters([each], other, self._wall, STEP)
+            enters([each], other, self._wall, CHECK_STEP)
             for other, each in self._passes
             if id(other) in self._ids
             and is_low(each.move, level)

@@ -15,7 +15,7 @@ from g12.request.words import Words
 
 CLEARED = 0.9  # of the cutter's radius: a helix up to this radius leaves no core
 LEAST_CORNER = radians(0.99)  # greatest change of slope from one half turn to the next
-MOST_HALF_TURNS = 2000
+MOST_HELIX_HALF_TURNS = 2000
 
 
 class PocketEntry(NamedTuple):
@@ -117,14 +117,14 @@ def pocket_descent(
 def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> None:
     """Refuse a helix so narrow that it needs too many turns; ``cutter`` is the cutter's radius."""
     turns = helix.descent(height).turns
-    if turns <= MOST_HALF_TURNS:
+    if turns <= MOST_HELIX_HALF_TURNS:
         return
-    least = height / (pi * helix.slope * (MOST_HALF_TURNS - 2))
+    least = height / (pi * helix.slope * (MOST_HELIX_HALF_TURNS - 2))
     if cutter and least > CLEARED * cutter:
         fits = f"{number(height * CLEARED * cutter / least)} down fits at most"
     else:
         fits = f"I from {number(cutter + least)} fits"
     raise words.refuse(
         f"a helix of radius {number(helix.radius)} needs {turns // 2} turns for {number(height)}, "
-        f"the most is {MOST_HALF_TURNS // 2}: {fits}, or [G12] ENTRY = plunge"
+        f"the most is {MOST_HELIX_HALF_TURNS // 2}: {fits}, or [G12] ENTRY = plunge"
     )

@@ -12,11 +12,10 @@ from collections.abc import Iterator
 
 from interpreter import INTERP_EXECUTE_FINISH
 
-from g12.host.interp import Interp
+from g12.host.interp import NO_CODE, Interp
 
 NO_O_WORD = 0  # o_type
 NOT_CALLED, CALLED_AS_REMAP = 0, 4  # call_type
-NO_CODE = -1
 MOTION = 1  # modal group
 
 

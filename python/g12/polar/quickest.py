@@ -22,9 +22,20 @@ from typing import NamedTuple
 from g12.compensation.contour import Element, PlaneMove
 from g12.polar.follow import Demand, FaceLimits, can_follow, can_follow_at, demands_of, followed
 
-SHARES = (*(0.96**k for k in range(14)), 0.5, 0.4, 0.28, 0.18, 0.1, 0.05)  # of the INI's
+ACCELERATION_SHARES = (
+    *(0.96**k for k in range(14)),
+    0.5,
+    0.4,
+    0.28,
+    0.18,
+    0.1,
+    0.05,
+)  # of the INI's
 PLANNED = 0.7  # of the acceleration: the planner's along the path, measured
-STEP, LEAST_FEED = 0.85, 0.08  # tried feeds are F times powers of STEP, down to LEAST_FEED
+FEED_STEP, LEAST_FEED = (
+    0.85,
+    0.08,
+)  # tried feeds are F times powers of FEED_STEP, down to LEAST_FEED
 CAREFUL = 0.98  # of the limits, where only some points are checked
 GAIN = 0.02  # seconds: a lower acceleration has to save this at least
 LEAST_GAIN = 0.9  # of the time in segments: the face has to be quicker by this at least
@@ -85,7 +96,7 @@ def quickest(path: Sequence[Element], stopping: list[bool], limits: FaceLimits) 
     """
     elements = [_element(*each, limits) for each in zip(path, stopping, [*path[1:], None])]
     best, least, chosen = list[_Span](), 0.0, 0.0
-    for share in SHARES:
+    for share in ACCELERATION_SHARES:
         spans = _worth_it([span for one in elements for span in _spans(one, limits, share)])
         seconds = _seconds(spans, share * limits.round_acceleration)
         if not best or seconds < least - GAIN:
@@ -142,7 +153,7 @@ def _level(share: float) -> float:
     """Return the greatest tried share of the feed that is at most ``share``, 0.0 for too little."""
     if share >= 1.0:
         return 1.0
-    return STEP ** ceil(log(share) / log(STEP)) if share > LEAST_FEED else 0.0
+    return FEED_STEP ** ceil(log(share) / log(FEED_STEP)) if share > LEAST_FEED else 0.0
 
 
 def _worth(feed: float, ends: Sequence[Demand]) -> float:
@@ -193,7 +204,7 @@ def _on_face(spans: list[_Span], limits: FaceLimits, share: float) -> list[FaceS
     stretches: list[FaceStretch | None] = []
     for on_face, run in _stretches(spans):
         moves = [move for move in map(_move_of, run) if isinstance(move, PlaneMove)]
-        more = (one for one in SHARES if one > share)
+        more = (one for one in ACCELERATION_SHARES if one > share)
         able = (one for one in more if all(can_follow(move, limits, one) for move in moves))
         stretch = _most(moves, limits, next(able, share)) if on_face else None
         stretches += [stretch] * len(run)

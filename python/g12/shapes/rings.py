@@ -29,7 +29,7 @@ from g12.shapes.entries import (
 )
 
 CLEARED = 0.9  # of the cutter's radius: a first ring up to this radius leaves no core
-MOST_HALF_TURNS = 20_000
+MOST_RAMP_HALF_TURNS = 20_000
 
 
 class ClearingRings(NamedTuple):
@@ -112,11 +112,12 @@ def ramp_of(
     round_ = pi * rings.first_ring
     fall = (length + round_) * tan(radians(machine.entry_angle))
     first, following = (
-        ceil(height / fall) if height < MOST_HALF_TURNS * fall else MOST_HALF_TURNS + 1
+        ceil(height / fall) if height < MOST_RAMP_HALF_TURNS * fall else MOST_RAMP_HALF_TURNS + 1
         for height in (heights.near_z + levels.step_down, levels.step_down)
     )
-    if first > MOST_HALF_TURNS:
-        rule = f"a ramp of {number(machine.entry_angle)} degrees needs more than {MOST_HALF_TURNS}"
+    if first > MOST_RAMP_HALF_TURNS:
+        angle = number(machine.entry_angle)
+        rule = f"a ramp of {angle} degrees needs more than {MOST_RAMP_HALF_TURNS}"
         raise entries.refuse(f"{rule} half turns of {number(length + round_)} for a pass")
     ramp = RampDown(
         first,

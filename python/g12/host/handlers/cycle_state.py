@@ -10,7 +10,7 @@ import functools
 import itertools
 
 from g12.cycles.entry import PocketEntry
-from g12.host.interp import Block, Interp, ToolEntry
+from g12.host.interp import NO_CODE, Block, Interp, ToolEntry
 from g12.host.machine import MACHINE
 from g12.host.messages import code_of_block, main_program, message_once
 from g12.host.modes import (
@@ -28,7 +28,6 @@ from g12.request.words import Words
 
 # indices into a block's g_modes
 MODAL_0, TOOL_LENGTH, PATH_CONTROL, SPINDLE = 0, 8, 13, 14
-NO_CODE = -1
 READING_WORDS = (
     (TOOL_LENGTH, 430, "H"),
     (TOOL_LENGTH, 431, "XYZABCUVW"),

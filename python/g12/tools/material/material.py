@@ -28,7 +28,7 @@ from g12.tools.path.part import swept
 SAME_LEVEL = 1e-3
 ALLOWED = 0.05  # depth of a rapid into material that counts as none: blended corners of a run
 LEAST_AREA = 0.05  # mm²: a smaller area touched by a rapid counts as none
-STEP = 0.5  # between the evaluated points of a rapid
+RAPID_STEP = 0.5  # between the evaluated points of a rapid
 BAND, MOST_BANDS = 0.25, 40  # levels into which a descending move is divided
 NOTHING = Polygon()
 ALWAYS = -1  # move number of openings that exist before the program
@@ -260,7 +260,7 @@ def with_levels(points: np.ndarray, band: float) -> np.ndarray:
 def points_in(area: BaseGeometry, portion: Portion, radius: float) -> list[np.ndarray]:
     """Return the tool's points (3,) along a portion at which it meets an area."""
     steps = np.append(0.0, np.cumsum(np.hypot(*np.diff(portion.line, axis=0).T)))
-    indices = np.linspace(0.0, steps[-1], 2 + int(steps[-1] / STEP))
+    indices = np.linspace(0.0, steps[-1], 2 + int(steps[-1] / RAPID_STEP))
     line = np.stack([np.interp(indices, steps, axis) for axis in portion.line.T], axis=1)
     return [
         np.array([*point, portion.high])

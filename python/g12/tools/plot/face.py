@@ -36,7 +36,7 @@ WIDTH, HEIGHT = 11.9, 8.0
 LETTERS_APART = 0.11  # of the panel of Z
 HIGHER = 1.25  # with the detail view of the largest deviation
 LEFT, TOP = style.MARGIN, 1.05
-FACE = 5.0  # side of the face's view
+FACE_SIZE = 5.0  # side of the face's view
 ROOM, ROOM_BESIDE_WINDOW = 14, 14  # entries of the legend: in two columns, in one
 PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
 ROWS, PANEL, GAP = 5, 0.996, 0.3  # panels: number, height, gap
@@ -64,7 +64,7 @@ def draw_face(scene: Scene) -> Figure:
     levels = milled_levels(scene)
     height = HEIGHT if scene.real is None else HEIGHT + HIGHER
     figure = style.new_figure(WIDTH, height, scene.title, scene.subtitle)
-    face = style.add_axes(figure, LEFT, height - TOP - FACE, FACE, FACE)
+    face = style.add_axes(figure, LEFT, height - TOP - FACE_SIZE, FACE_SIZE, FACE_SIZE)
     frame_face(face, scene, levels)
     draw_plan(face, scene, levels)
     room = ROOM if scene.real is None else ROOM_BESIDE_WINDOW
@@ -73,11 +73,11 @@ def draw_face(scene: Scene) -> Figure:
         style.swatch(style.FAINT, None, "time spent in rapids"),
     ]
     columns = 2 if scene.real is None else 1
-    style.draw_legend(figure, entries, LEFT - 0.1, height - TOP - FACE - 0.5, columns)
+    style.draw_legend(figure, entries, LEFT - 0.1, height - TOP - FACE_SIZE - 0.5, columns)
     draw_panels(figure, scene)
     if scene.real is not None:
         mark_worst(face, scene, [0, 1])
-        draw_window(figure, (LEFT + FACE - SIZE, 0.55), scene)
+        draw_window(figure, (LEFT + FACE_SIZE - SIZE, 0.55), scene)
     return figure
 
 
