@@ -173,14 +173,6 @@ def test_a_finding_for_other_programs_is_json(pocket):
     assert finding["block"] == "X5.25"
 
 
-def test_an_inserted_block_is_one_finding(pocket):
-    pocket.change("sub/plain.ngc", "G1 Y10\n", "G1 Y10\nG1 X5\n")
-    code, lines = pocket.check()
-    assert code == 1
-    assert lines[:2] == ["sub/plain.ngc:5: 1 move added, X0.19685 to 0.393701", "    G1 X5"]
-    assert len(lines) == 3
-
-
 @pytest.mark.parametrize(
     ("old", "new", "finding"),
     [

@@ -228,17 +228,6 @@ def test_plot_shows_where_x0_lies(cut, written, tmp_path, capsys):
     assert says in path.read_text()
 
 
-@pytest.mark.parametrize("command", ["verify", "plot"])
-@pytest.mark.parametrize("missing", ["program", "ini", "tools"])
-def test_missing_files_are_named(command, missing, written, tmp_path, capsys):
-    names = {"program": written(GOOD), "ini": MILL, "tools": str(SIM / "mill_mm.tbl")}
-    names[missing] = str(tmp_path / "nothing")
-    arguments = [command, names["program"], "--ini", names["ini"], "--tools", names["tools"]]
-    arguments += ["-o", str(tmp_path / "x.png")] if command == "plot" else []
-    assert main(arguments) == 2
-    assert capsys.readouterr().err == f"g12 {command}: {names[missing]}: no such file\n"
-
-
 @pytest.mark.parametrize(("suffix", "extra"), [("png", []), ("svg", ["--feeds"]), ("pdf", [])])
 def test_plot_writes_the_picture_asked_for(suffix, extra, written, tmp_path, capsys):
     path = tmp_path / f"picture.{suffix}"
@@ -309,12 +298,3 @@ def test_wrong_words_end_with_2(arguments, capsys):
         main(arguments)
     assert end.value.code == 2
     assert f"usage: python3 python/g12 {arguments[0]} --help" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("command", ["verify", "plot", "demo"])
-def test_help_tells_of_the_command(command, capsys):
-    with pytest.raises(SystemExit) as end:
-        main([command, "--help"])
-    assert end.value.code == 0
-    out = capsys.readouterr().out
-    assert command == "demo" or ("examples:" in out and "exit code" in out)
