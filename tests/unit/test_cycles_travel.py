@@ -52,19 +52,6 @@ def test_every_height_is_looked_at(height, limit):
     assert said == f"G12: the Z axis would go to {height} mm, beyond its limit {limit} mm"
 
 
-@pytest.mark.parametrize(
-    ("plane", "axis"), [("G17", "X"), ("G18", "Z"), ("G19", "Z"), ("G18", "X"), ("G19", "Y")]
-)
-def test_the_circle_lies_in_its_plane(plane, axis):
-    wide = dict.fromkeys("XYZ", (-1000000000.0, 1000000000.0))
-    wide[axis] = (-69.0, 69.0)
-    said = refusal(CycleExtent(plane, (0, 0, 0), 70), axes=wide)
-    assert said == f"G12: the {axis} axis would go to -70 mm, beyond its limit -69 mm"
-    (square,) = set("XYZ") - {"G17": set("XY"), "G18": set("XZ"), "G19": set("YZ")}[plane]
-    wide[axis], wide[square] = (-71.0, 71.0), (-1e-3, 1e-3)
-    assert refusal(CycleExtent(plane, (0, 0, 0), 70), axes=wide) is None
-
-
 def test_an_inch_that_the_ini_rounds_is_an_inch():
     """As with LINEAR_UNITS = 0.0393700787."""
     frame = PLAIN._replace(unit=1 - 2e-9, millimetres=25.4)

@@ -39,11 +39,6 @@ def test_whole_turns_no_steeper_than_the_slope_make_the_height(radius, slope, la
         assert height / (turns - 2 + last / 2) > math.pi * radius * slope * (1 - 1e-9)
 
 
-@pytest.mark.parametrize(("last", "turns"), [(0, 2), (1, 1), (2, 2), (3, 1)])
-def test_a_little_height_takes_as_few_half_turns_as_make_whole_ones(last, turns):
-    assert Helix(10.0, 0.1, last).descent(0.01).turns == turns
-
-
 def test_no_helix_goes_straight_down_and_nothing_up():
     assert Helix().descent(5.0) == Descent(0, 0.0)
     assert Helix(10.0, 0.1, 2).descent(0.0) == Helix(10.0, 0.1, 2).descent(-1.0) == Descent(0, 0.0)

@@ -74,12 +74,6 @@ def test_the_higher_feed_counts(feed, stop):
     assert first_stops(bend, 1.01 * ROUNDING) is stop
 
 
-def test_a_move_that_gathers_speed_more_slowly_is_rounded_as_one_that_is_as_quick():
-    gathering = [line(20, 0, 10, 0), line(10, 0, 10, -5)]
-    assert first_stops(gathering, 0.99 * ROUNDING, c=20.0)
-    assert not first_stops(gathering, 1.01 * ROUNDING, c=20.0)
-
-
 @pytest.mark.parametrize("depth", [-5.0, 5.0])
 @pytest.mark.parametrize(("share", "stop"), [(0.99, True), (1.01, False)])
 def test_a_plunge_is_a_right_angle_up_and_down(depth, share, stop):
@@ -121,11 +115,6 @@ def turned_back(move):
 def test_down_and_up_again_is_a_turn_back():
     pecks = [Plunge(1, FEED, 0.0, -5.0), Plunge(2, FEED, -5.0, -1.0), Plunge(3, FEED, -1.0, 0.0)]
     assert stops(pecks, ROUNDING, 1000.0, C) == [True, False, True]
-
-
-def test_straight_on_is_no_corner_however_fast():
-    fast = [line(20, 0, 30, 0, feed=1e5), line(30, 0, 40, 0, feed=1e5)]
-    assert stops(fast, 1e-6, 1000.0, C) == [False, True]
 
 
 @pytest.mark.parametrize(("bend", "stop"), [(1.9e-4, False), (2.1e-4, True)])

@@ -45,33 +45,12 @@ def test_f_is_for_x_and_z_on_a_helix():
     assert feed == pytest.approx(5.0 * 120.0 / math.hypot(12.0, 4.0))
 
 
-def test_what_x_would_move_too_little_goes_to_the_next_segment():
-    made = segments((10.0006, 5.0, 1.0), (10.0012, 10.0, 2.0))
-    assert [segment[0] for segment in made] == [10.0, 10.0012]
-    assert made[0][3] == pytest.approx(5.0 * 120.0)
-    assert made[1][3] == pytest.approx(0.0012 * 120.0)
-
-
 def test_what_the_other_slide_would_move_too_little_goes_to_a_later_segment():
     """Debian's 2.9.0~pre1 would run the first segment three times too fast."""
     made = segments((10.0, 5.0, 1.0), (10.0, 20.0, 4.0), z1=-0.0016)
     assert [segment[2] for segment in made] == [0.0, pytest.approx(-0.0016)]
     assert made[0][3] == pytest.approx(5.0 * 120.0, rel=1e-6)
     assert made[1][3] == pytest.approx(0.0016 * 120.0 / 3.0, rel=1e-6)
-
-
-def test_x_alone_may_move_as_little_as_it_likes():
-    assert segments((10.0002, 0.0, 0.0002)) == [(10.0002, 0.0, 0.0, pytest.approx(120.0))]
-    made = segments((10.0003, 0.0, 0.0003), z1=-0.0004)
-    assert made == [(10.0003, 0.0, pytest.approx(-0.0004), pytest.approx(120.0))]
-
-
-def test_a_turn_by_rounding_is_none():
-    assert segments((10.0002, 1e-12, 0.0002)) == [(10.0002, 0.0, 0.0, pytest.approx(120.0))]
-
-
-def test_a_segment_to_nowhere_leaves_its_time_to_the_next():
-    assert segments((10.0, 0.0, 1.0), (12.0, 0.0, 2.0)) == [(12.0, 0.0, 0.0, pytest.approx(120.0))]
 
 
 def test_c_counts_from_where_it_stood_at_entry():

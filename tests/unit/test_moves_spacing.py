@@ -9,7 +9,6 @@ import pytest
 from g12.errors import Refusal
 from g12.moves.spacing import MOST_SEGMENTS, Stretch, TooManySegments, spaced
 from g12.polar.plan import PolarSettings, plan
-from g12.polar.segments import Law, _arc_density, _line_density
 from support.contour_geometry import Round
 from support.planned_cuts import programmed
 
@@ -58,19 +57,6 @@ def test_an_apsis_is_an_end_of_segments_and_off_the_path_by_its_share():
     assert shares[1:-1] == pytest.approx([0.5 * length**2] * (len(shares) - 2))
 
 
-@pytest.mark.parametrize(
-    "density",
-    [lambda law: _line_density(3.0, 0.005, law), lambda law: _arc_density(9, 0.4, 0.005, law)],
-)
-def test_segments_made_shorter_for_an_even_feed_use_a_share_of_the_deviation(density):
-    """What a segment bulges by goes with the square of its length."""
-    longest, even = (density(Law(0.005, ripple, 1e9, 1e9)) for ripple in (1e9, 1e-4))
-    for place in (0.3, 0.8, 1.2, 2.0):
-        (segments, share), (more, less) = longest(place), even(place)
-        assert more > 2 * segments
-        assert less == pytest.approx(share * (segments / more) ** 2)
-
-
 @pytest.mark.parametrize(("start", "end"), [(0.5, 4.0), (-4.0, -0.5), (-3.0, 4.0)])
 @pytest.mark.parametrize("fine", [2.9, 7.3, 40.0])
 def test_segments_are_equal_parts_of_the_density_but_for_what_the_ends_lose(start, end, fine):
@@ -109,14 +95,3 @@ def test_an_apsis_nearer_to_an_end_than_half_a_segment_is_left_alone(near, cut):
     for start, end, apsis in ((3.0 - near, 9.0, 3.0), (-9.0, -3.0 + near, -3.0)):
         places, _ = spaced(stretch(start, end, apsis), lambda _: (1.0, 0.5))
         assert (apsis in places) is cut
-
-
-def test_what_is_whole_but_for_rounding_takes_no_segment_more():
-    for count in range(2, 40):
-        places, _ = spaced(stretch(0.0, count - 0.36), lambda _: (1.0, 1.0))
-        assert len(places) == count + 1
-
-
-def test_the_parts_of_an_element_count_together():
-    with pytest.raises(TooManySegments):
-        spaced(stretch(-1.0, 1.0, 0.0), lambda _: (0.6 * MOST_SEGMENTS, 1.0))

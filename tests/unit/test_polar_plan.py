@@ -289,41 +289,6 @@ def test_segments_use_the_tolerance_but_for_what_a_stop_takes():
         assert least < distance(path(made), [side]).max() / TOLERANCE <= most
 
 
-@pytest.mark.parametrize(("feed", "most"), [(1000.0, 168), (250.0, 168)])
-def test_hexagon_needs_fewer_segments_than_the_longest_segment_that_fits(feed, most):
-    """27 mm across flats, 12 mm cutter: the longest segments of half the deviation are 246."""
-    planned = plan(hexagon(feed), LATHE, c=0.0)
-    cut = [run for run in runs(planned) if 4 <= run.line <= 10]
-    assert sum(len(run.segments) for run in cut) <= most
-
-
-def hexagon(feed, flat=13.5, tool=6.0):
-    """From the middle of a flat once round, clockwise, tool on the left."""
-    contour = Contour(40.0, 5.0)
-    corners = [
-        cmath.rect(flat / math.cos(math.pi / 6), math.pi / 6 - k * math.pi / 3) for k in range(7)
-    ]
-    contour.line(30.0, 12.0, line=1, feed=feed)
-    contour.compensation(41, tool, line=2)
-    contour.line(flat, 0.0, line=2, feed=feed)
-    contour.line(z=-1.0, line=3, feed=feed)
-    for line, corner in enumerate(corners[1:], 4):
-        contour.line(corner.real, corner.imag, line=line, feed=feed)
-    contour.line(flat, 0.0, line=10, feed=feed)
-    contour.compensation(40, 0.0, line=11)
-    contour.line(30.0, -12.0, line=11, feed=feed)
-    contour.close(line=12)
-    return contour
-
-
-@pytest.mark.parametrize(("away", "segments"), [(2.0, 36), (5.0, 56), (9.0, 72)])
-def test_a_circle_beside_the_spindle_needs_no_more_segments_where_it_curves_like_a_spiral(
-    away, segments
-):
-    circle = Round(complex(away + 10), complex(away), 2 * math.pi)
-    assert len(runs(plan(programmed([circle]), DRIVEN, c=0.0))[0].segments) <= segments
-
-
 def test_a_circle_about_the_spindle_is_one_segment():
     contour = programmed([Round(10 + 0j, 0j, -2 * math.pi)], feed=300.0)
     (run,) = runs(plan(contour, LATHE, c=15.0))

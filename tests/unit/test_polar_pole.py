@@ -81,30 +81,6 @@ def test_a_circle_through_the_pole(sweep, beside, passes):
         assert abs(fro.end) == pytest.approx(length)
 
 
-@pytest.mark.parametrize("turn", [1, -1])
-def test_an_arc_from_the_pole_back_to_it(turn):
-    made = led(arc(5, 0, 0, 0, turn * 2 * math.pi, 0.0, -4.0))
-    assert [type(part.curve) for part in made] == [Line, Arc, Line]
-    places = ends(made)
-    assert places[0][:2] == places[-1][:2] == (0.0, 0.0)
-    assert (places[0][2], places[-1][2]) == pytest.approx((0.0, -4.0))
-
-
-@pytest.mark.parametrize("sweep", [1.0, -1.0])
-def test_an_arc_that_ends_or_begins_at_the_pole_passes_it_once(sweep):
-    inwards = led(arc(5, 0, 5 - 5 * math.cos(sweep), 5 * math.sin(sweep), sweep))
-    assert [type(part.curve) for part in inwards] == [Arc, Line]
-    assert ends(inwards)[-1][:2] == (0.0, 0.0)
-    outwards = led(arc(5, 0, 0, 0, sweep))
-    assert [type(part.curve) for part in outwards] == [Line, Arc]
-    assert ends(outwards)[0][:2] == (0.0, 0.0)
-
-
-def test_an_arc_whose_circle_passes_the_pole_elsewhere_stays():
-    far = arc(5, 0, 10, 0, 2.0)
-    assert led(far) == [far]
-
-
 def test_a_small_circle_about_the_pole_is_not_led_through_it():
     around = arc(0, 0, 2 * REACH, 0, 2 * math.pi)
     assert led(around) == [around]
