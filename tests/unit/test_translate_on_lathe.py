@@ -45,6 +45,12 @@ def test_a_section_begins_with_the_first_cut_and_ends_before_the_tool():
     ]  # fmt: skip
 
 
+def test_the_first_line_of_the_stock_linuxcnc_post_is_understood():
+    posted = f"N10 G90 G94 G17 G91.1\nN15 G21\nN20 G53 G0 Z0.\n{HEAD}{CUT}M30\n"
+    first = ["N10 G90 G94 G91.1 (G17)", "N15 G21", "N20 (G53)(Z0.)", "G91 G28 Z0", "G90"]
+    assert lines(posted)[1:6] == first
+
+
 def test_round_the_part_y_is_c_the_other_way():
     assert lines(f"{HEAD}{CUT}G0 Z20.\nM30\n", ROUND)[5:] == [
         "X80.", "X46.", "G0 Z10. C-14.323945", "G7.1 C20", "G1 X38. F100. G94", "Z12.",

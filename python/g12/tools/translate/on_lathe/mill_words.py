@@ -32,7 +32,8 @@ def refuse_foreign(draft: Draft) -> None:
         if word.letter in "ABC" and not draft.call:
             raise NotTranslated(f"{word.text}: a program for {draft.control.name} has X, Y and Z")
     if codes & PLANES:
-        raise NotTranslated(f"{min(codes & PLANES)}: arcs lie in X and Y here (G17)")
+        code = min(codes & PLANES)
+        raise NotTranslated(f"{code}: arcs lie in X and Y here (G17): no vertical leads in CAM")
     for code in codes & OTHER_FEEDS.keys():
         raise NotTranslated(f"{code}, {OTHER_FEEDS[code]}: write G94 and F per minute")
     draft.comments += draft.take_codes(NEEDLESS)
