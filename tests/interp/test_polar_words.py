@@ -342,6 +342,7 @@ def test_the_other_pair_of_codes(machine):
         traced = lathe.trace_text([line.replace(".1", ".3") if line in ("G12.1", "G13.1") else line
                                    for line in section("G1 X12", "U-2")])  # fmt: skip
         assert ends(traced) == [(12, 0), (10, 0)]
+        assert ends(lathe.trace_text([FIRST, "G13.3", "F100", "G1 X15", "M2"])) == [(15, 0)]
         refused = lathe.trace_text(
             ["G12.3" if line == "G12.1" else line for line in section("G1 X12")[:-2]]
         )
