@@ -184,6 +184,19 @@ def test_single_step_goes_block_by_block(lathe):
     assert len(stops) < 400
 
 
+@pytest.mark.parametrize("feed", [1000, 2000])
+def test_the_way_into_a_stop_keeps_the_feed_and_the_acceleration(lathe, feed):
+    """LinuxCNC itself goes there at 1.5 times both, if the last segment ends in G61."""
+    circle = ["G3 X30 I-10", "G1 Z-1"]
+    run = lathe.run_text(section(*circle, start="G0 X30 C0", feed=f"F{feed}"))
+    assert run.error is None
+    there = run.samples.line == 6
+    speeds = np.linalg.norm(np.diff(Cut(run).all_points, axis=0), axis=1)[there[1:]] * 60e3
+    assert speeds.max() <= feed * 1.15
+    if not exceeds_limits_itself(lathe):
+        assert accelerations(run.samples.axes["C"][there]).max() <= C_ACCELERATION * 1.01
+
+
 @pytest.mark.parametrize("standing", ["(no)", "G0", "G0 C0"])
 def test_a_feed_move_in_front_of_the_section_does_not_cut_its_first_corner(lathe, standing):
     run = lathe.run_text(section("G1 C10", before=["G64", "G1 X14 F3000", standing]))

@@ -23,7 +23,7 @@ from support import planned_moves
 from support.section_starts import START as POLAR_START
 
 RADIUS = 20.0
-MACHINE = CylinderSettings(RADIUS, 0.005, 0.001, 1000.0, 1000.0, 3600.0, 360.0)
+MACHINE = CylinderSettings(RADIUS, 0.005, 0.001, 1000.0, 1000.0, 3600.0)
 AXES = {
     "X": Axis(-10.0, 100.0, 50.0, 900.0),
     "Z": Axis(-100.0, 100.0, 50.0, 1100.0),
@@ -126,25 +126,6 @@ def test_the_slower_axis_decides_where_the_tool_stops(direction, slow):
     assert [run.stop for run in runs(corner, **{**even, **slower})] == [True, True]
 
 
-@pytest.mark.parametrize(
-    ("turns", "feed", "surges"),
-    [
-        ((180, 360), 9000.0, True),  # C's limit is 7540 here
-        ((180, 360), 4900.0, False),  # 234 and half of it again are within it
-        ((180, 360), 5100.0, True),
-        ((180, 181), 6000.0, False),  # within one degree C gets no faster than 60
-        ((180, 0), 9000.0, False),  # the other way round they do not add up
-        ((360,), 9000.0, False),
-    ],
-)
-def test_c_surges_where_a_turn_goes_on_into_a_stop(turns, feed, surges):
-    contour = empty()
-    for line, c in enumerate(turns, 1):
-        contour.line(math.radians(c) * RADIUS, line=line, feed=feed)
-    contour.line(z=-5.0, line=len(turns) + 1, feed=feed)
-    assert [run.surges for run in runs(contour)] == [False] * (len(turns) - 1) + [surges, False]
-
-
 def test_a_section_cut_in_two_goes_on_where_the_machine_stands():
     first = empty(c=350.0)
     first.line(math.radians(400) * RADIUS, 7.0, line=1, feed=100.0)
@@ -208,7 +189,7 @@ def test_the_settings_of_a_section_are_in_program_units():
     lengths = [made.tolerance, *made.plan[1:5], made.words.closing]
     in_mm = [0.005, 0.005, 0.001, 900, 1100, 0.0127]
     assert lengths == pytest.approx([length / 25.4 for length in in_mm])
-    assert (made.plan.radius, *made.plan[5:]) == (RADIUS, 3600.0, 360.0)
+    assert (made.plan.radius, *made.plan[5:]) == (RADIUS, 3600.0)
 
 
 @pytest.mark.parametrize(

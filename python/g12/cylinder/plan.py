@@ -20,7 +20,6 @@ from g12.moves.feed import Split, segments_with_feed
 from g12.moves.spacing import BULGE, Stretch, spaced
 from g12.moves.steps import (
     ROUNDING_SHARE,
-    CAxis,
     Position,
     SectionPlan,
     StepMaker,
@@ -38,7 +37,6 @@ class CylinderSettings(NamedTuple):
     x_acceleration: float  # per second squared
     z_acceleration: float
     c_acceleration: float  # degrees per second squared
-    c_speed: float  # degrees per second
 
 
 def plan(contour: Contour, settings: CylinderSettings) -> SectionPlan:
@@ -76,8 +74,7 @@ class _Surface(StepMaker):
 
     def __init__(self, contour: Contour, settings: CylinderSettings) -> None:
         x, angle, z = contour.start
-        c_axis = CAxis(settings.c_speed, settings.c_acceleration)
-        super().__init__(contour, Position(x, degrees(angle), z), c_axis)
+        super().__init__(contour, Position(x, degrees(angle), z))
         self._settings = settings
 
     def cut(self, move: PlaneMove, stop: bool) -> None:

@@ -59,7 +59,6 @@ def cylinder_setup(
             x_acceleration=axes["X"].acceleration * start.machine_unit,
             z_acceleration=axes["Z"].acceleration * start.machine_unit,
             c_acceleration=axes["C"].acceleration,
-            c_speed=axes["C"].velocity,
         ),
         travel(start, axes),
         tolerance,

@@ -2,7 +2,6 @@
 """The moves of a planned section, in the order of the program. Lengths in program units."""
 
 from collections.abc import Callable, Sequence
-from math import copysign, hypot, sqrt
 from typing import NamedTuple
 
 from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Start
@@ -14,7 +13,6 @@ STOP_SHARE = (
     0.7  # of the tolerance: before a stop the move accelerates harder and cuts the corner deeper
 )
 ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, on top of the segments' own deviation
-SAME_RATE = 1e-6  # of C's speed: rounding
 LEFT_OVER = 1e-3  # of the least step of a slide: less than that is rounding
 
 
@@ -26,25 +24,6 @@ class Position(NamedTuple):
     z: float
 
 
-class CAxis(NamedTuple):
-    """The limits of the C axis, in degrees and seconds."""
-
-    speed: float
-    acceleration: float
-
-    def rate(self, start: Position, end: Position, feed: float) -> float:
-        """Return C's speed within a move by G94's F, in degrees per second, negative backwards.
-
-        It is limited by what C can brake from within the move.
-        """
-        turn = end.c - start.c
-        length = hypot(end.x - start.x, end.z - start.z) or abs(turn)
-        if not turn:
-            return 0.0
-        asked = feed / 60.0 * abs(turn) / length
-        return copysign(min(asked, self.speed, sqrt(self.acceleration * abs(turn))), turn)
-
-
 class BlockMoves(NamedTuple):
     """G1 moves of one block, one after the other, all in G90 and G94.
 
@@ -52,16 +31,14 @@ class BlockMoves(NamedTuple):
     radius value, C in degrees, continuous over the section (it may leave 0..360), and F as G94
     takes it: for the X and Z portion of the move, or in degrees per minute where neither changes. F
     may be small: write it with six significant digits. A segment that leaves a slide where it is
-    repeats the same number. With ``stop`` the last segment must end in an exact stop (G61), because
-    LinuxCNC would round the corner by more than the tolerance. With ``surges`` C would exceed its
-    speed while braking into that G61: a G4 P0 makes the stop instead.
+    repeats the same number. With ``stop`` the last segment must end in an exact stop, because
+    LinuxCNC would round the corner by more than the tolerance.
     """
 
     line: int
     axes: str
     segments: list[Segment]
     stop: bool
-    surges: bool = False
 
 
 class SectionPlan(NamedTuple):
@@ -86,28 +63,15 @@ class SectionPlan(NamedTuple):
 class StepMaker:
     """Makes the steps of a plan, one element of the tool centre's path after the other."""
 
-    def __init__(self, contour: Contour, position: Position, c_axis: CAxis) -> None:
+    def __init__(self, contour: Contour, position: Position) -> None:
         self.steps: list[object] = []
         self.position = position
-        self._contour, self._c_axis = contour, c_axis
-        self._c_rate = 0.0  # at which C goes into the next segment, degrees per second
+        self._contour = contour
 
     def _run(self, line: int, axes: str, segments: list[Segment], stop: bool) -> None:
-        """Add the moves of a block.
-
-        LinuxCNC 2.9 and 2.10 slow a segment down at half the acceleration while the next one of a
-        turn begins, at half of it too, unless it ends in G61: then at all of it, and the two add up
-        to the first one's speed and half of the second one's.
-        """
-        if not segments:
-            return
-        positions = [Position(*at[:3]) for at in [self.position, *segments][-3:]]
-        feeds = [segment[3] for segment in segments[-2:]]
-        rates = map(self._c_axis.rate, positions, positions[1:], feeds)
-        *_, before, rate = [self._c_rate, *rates]
-        surges = abs(before + 0.5 * rate) > self._c_axis.speed * (1.0 + SAME_RATE)
-        self.steps.append(BlockMoves(line, axes, segments, stop, surges))
-        self.position, self._c_rate = positions[-1], 0.0 if stop else rate
+        if segments:
+            self.steps.append(BlockMoves(line, axes, segments, stop))
+            self.position = Position(*segments[-1][:3])
 
     def _make_up(self, path: Sequence[Element], x: float, z: float, least: float) -> None:
         """Move the slides to x and z, by what the last segments of a path have left over."""

@@ -14,7 +14,6 @@ from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, segments_with_feed
 from g12.moves.steps import (
     ROUNDING_SHARE,
-    CAxis,
     Position,
     SectionPlan,
     StepMaker,
@@ -111,8 +110,7 @@ class _SlideAndSpindle(StepMaker):
 
     def __init__(self, contour: Contour, settings: PolarSettings, c: float) -> None:
         x, self.angle, z = contour.start
-        c_axis = CAxis(settings.c_speed / 60.0, settings.c_acceleration)
-        super().__init__(contour, Position(x, c + degrees(self.angle), z), c_axis)
+        super().__init__(contour, Position(x, c + degrees(self.angle), z))
         self._settings, self._entry = settings, c
         self._on_face, self._face_angle = False, 0.0  # the angle is that of the face's X axis
         self._laws: dict[tuple[float, float], Law] = {}

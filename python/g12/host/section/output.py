@@ -7,6 +7,11 @@ program can read them, or the machine waits. The move before the section would b
 first segment: a G4 P0 stops it. (Also under G61: the path control in force at a move decides how it
 ends.)
 
+A G4 P0 also stops a segment that another one is blended into. While two segments that turn C are
+blended, LinuxCNC (2.9.0~pre1, 2.9.4, 2.10) brakes the first with half of the acceleration and
+starts the second with half of it, but with all of it if that ends in G61. Together they would reach
+1.5 times the feed and the acceleration.
+
 On the face (`configs/kinematics`) lines and arcs go out as they are, in X and Y. For the switch
 there and back the machine has to stop, and the interpreter to wait for it.
 """
@@ -124,24 +129,16 @@ class PathControl:
         """Set the path control for blocks on the face, which also applies at their corners."""
         self.set(self._on_face)
 
-    @property
-    def exact(self) -> bool:
-        """Return whether blocks end in an exact path or stop."""
-        return self._commanded in EXACT_PATHS
-
-    def at_end(self, stop: bool, exact_stop: bool, block_ends: bool) -> bool:
-        """Set the path control for the last segment of a run; return whether it has to stop.
+    def ending(self, stop: bool, exact_stop: bool, block_ends: bool) -> str:
+        """Return the path control that a run has to end in, "" where it is blended.
 
         The planner sets ``stop``, a G9 ``exact_stop``.
         """
-        ending = EXACT_PATH if stop else ""
         if block_ends and exact_stop:
-            ending = EXACT_STOP
-        elif block_ends and self.exact:
-            ending = self._commanded
-        if ending:
-            self.set(ending)
-        return bool(ending)
+            return EXACT_STOP
+        if block_ends and self._commanded in EXACT_PATHS:
+            return self._commanded
+        return EXACT_PATH if stop else ""
 
     def give_back(self) -> None:
         """Restore the commanded path control."""
@@ -186,6 +183,7 @@ class SectionOutput:
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
         self._begun = False
+        self._flows = False  # the last segment is blended into the next
 
     def run(
         self, steps: Sequence[Step], modes: SectionModes, exact_lines: Container[int]
@@ -203,10 +201,8 @@ class SectionOutput:
                 yield from self._switch(step)
             elif isinstance(step, FaceMove):
                 self._move_on_face(step, following, step.line in exact_lines)
-            elif step.stop or exact_lines or self.path.exact:
-                self._moves_to_an_end(step, following, step.line in exact_lines)
             else:
-                self._moves(step.line, step.axes, step.segments)
+                self._segments(step, following, step.line in exact_lines)
         self.release(modes)
 
     def release(self, modes: SectionModes) -> None:
@@ -234,17 +230,19 @@ class SectionOutput:
         interp.feed_mode = PER_MINUTE  # reading ahead may have left the modes of the section's end
         interp.motion_mode = G1
 
-    def _moves_to_an_end(self, run: BlockMoves, following: object, exact_stop: bool) -> None:
-        """Execute moves, the last of them under another path control."""
+    def _segments(self, run: BlockMoves, following: object, exact_stop: bool) -> None:
+        """Execute the moves of a block, and the stop at their end."""
         block_ends = not isinstance(following, BlockMoves) or following.line != run.line
-        if len(run.segments) > 1:
-            self._moves(run.line, run.axes, run.segments[:-1])
-        self.interp.sequence_number = run.line
-        ends = self.path.at_end(run.stop, exact_stop, block_ends)
-        if run.surges or not ends:
-            self.path.inside(run.segments[-1][1] != self.interp.CC_current)
-        self._block(run.axes, *run.segments[-1])
-        if run.surges and ends:
+        ending = self.path.ending(run.stop, exact_stop, block_ends)
+        blended = self._flows or len(run.segments) > 1
+        self._flows = not ending
+        if ending and not blended:
+            self.path.set(ending)
+            self.interp.sequence_number = run.line
+            self._block(run.axes, *run.segments[0])
+            return
+        self._moves(run.line, run.axes, run.segments)
+        if ending:
             self.interp.execute(STOP_HERE)
 
     def _moves(self, line: int, axes: str, segments: Sequence[Segment]) -> None:
@@ -313,7 +311,9 @@ class SectionOutput:
             self.path.set(
                 EXACT_PATH
             )  # a tangent arc needs no blending, for which LinuxCNC halves the acceleration
-        self.path.at_end(False, exact_stop, block_ends)
+        ending = self.path.ending(False, exact_stop, block_ends)
+        if ending:
+            self.path.set(ending)
         curve = move.curve if isinstance(move, PlaneMove) else None
         words = "G1" if not isinstance(curve, Arc) else "G3" if curve.sweep > 0.0 else "G2"
         values = {"F": move.feed}
