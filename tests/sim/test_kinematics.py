@@ -452,6 +452,26 @@ def test_adaptive_feed_is_in_force_on_the_face_and_as_it_was_behind(lathe, own):
     lathe.mdi("M52 P0")
 
 
+@pytest.mark.parametrize("own", ["M52 P0", "M52 P1"])
+@pytest.mark.parametrize(("inside", "free"), [("M52 P0", True), ("M52 P1", False)])
+def test_m52_between_moves_on_the_face_acts_until_the_next_change(lathe, own, inside, free):
+    section = [*CIRCLE_NEAR[:2], own, "G12.1", "G3 I-10 F2000", inside, "G3 I-10", "G13.1", "M2"]
+    lathe.open_text(section)
+    lathe.feed_override(2.0)
+    lathe.sample()
+    lathe.start()
+    lathe.wait_for(lambda _: on_the_face(lathe))
+    lathe.wait_idle()
+    lathe.feed_override(1.0)
+    samples = lathe.samples()
+    speeds, lines = samples.velocity, samples.line
+    most = lathe.get("polar-xzc.most-override") * 2000 / 60
+    assert speeds[lines == 5].max() == pytest.approx(most, rel=0.01)
+    assert (speeds[lines == 7].max() > 1.5 * most) == free
+    assert ("M52" in lathe.stat().modes.mcodes) is (own == "M52 P1")
+    lathe.mdi("M52 P0")
+
+
 def test_the_feed_is_turned_up_as_far_as_c_follows(lathe):
     lathe.open_text([*CIRCLE_NEAR[:-2], *["G3 I-10"] * 4, *CIRCLE_NEAR[-2:]])
     lathe.start()
