@@ -95,12 +95,6 @@ def test_of_a_contour_that_does_not_close_all_is_contour():
     assert [found.shares(k, curves_of(zigzag)[0]) for k in (-1, 3)] == [(0.0, 0.0)] * 2
 
 
-def test_of_two_places_the_one_with_more_of_the_leads_beyond_it():
-    """The last side, an arc, goes through the first one twice."""
-    sides = [*lines((10, 40), (10, -10), (-10, -10), (-10, 10)), Round(-10 + 10j, 5 + 15j, 5.0)]
-    assert ends_of(sides) == (True, 10 + 0j, 10 + 0j)
-
-
 def test_a_contour_that_ends_where_it_began_closes_though_it_crosses_itself_beside_its_end():
     """What is beyond that is shorter than four radii of the tool."""
     sides = lines((0, 0), (0, 50), (3, 50))
@@ -149,13 +143,6 @@ def test_leads_may_cross_with_one_move_beyond_them(on, off, corners, closes):
     for _ in range(off):
         sides = [*sides, Straight(sides[-1].end, 1.1 * sides[-1].end)]
     assert crossing(sides) is closes
-
-
-def test_two_sides_with_leads_are_no_contour():
-    bow = [Straight(-20 + 0j, 20 + 0j), Round(20 + 0j, 5 + 0j, -1.1 * math.pi)]
-    assert crossing(bow)
-    led = [Straight(-20 + 20j, -20 + 0j), *bow, Straight(bow[-1].end, 2 * bow[-1].end)]
-    assert not crossing(led)
 
 
 @pytest.mark.parametrize(("share", "closes"), [(0.48, False), (0.55, True)])

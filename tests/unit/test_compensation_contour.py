@@ -9,19 +9,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Contour, Mark, Plunge
+from g12.compensation.contour import Contour, Plunge
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.geometry.curve import Arc
 from support import planned_moves
 
 
 def started(**options):
     return Contour(10.0, 5.0, **options)
-
-
-def test_a_section_starts_at_c_zero():
-    contour = started()
-    assert (contour.x, contour.c, contour.z, contour.side) == (10.0, 0.0, 5.0, 40)
 
 
 def test_a_coordinate_left_out_stays():
@@ -41,13 +35,6 @@ def test_a_move_to_nowhere_is_none():
     contour = started()
     contour.line(10.0, 0.0, 5.0, line=1, feed=100.0)
     assert contour.elements == []
-
-
-def test_a_feed_below_one_is_a_feed():
-    contour = started()
-    contour.line(c=3.0, line=1, feed=0.5)
-    contour.arc(1, i=-10.0, line=2, feed=1e-6)
-    assert [element.feed for element in contour.elements] == [0.5, 1e-6]
 
 
 def arc_of(turn, *end, **words):
@@ -115,14 +102,6 @@ def test_a_half_circle_with_a_rounded_radius_closes():
     assert contour.elements[0].curve.sweep == pytest.approx(math.pi)
 
 
-def test_a_helix_keeps_its_heights():
-    contour = started()
-    contour.arc(1, z=-3.0, i=-10.0, line=1, feed=100.0)
-    (arc,) = contour.elements
-    assert isinstance(arc.curve, Arc)
-    assert (arc.z0, arc.z1, contour.z) == (5.0, -3.0, -3.0)
-
-
 def test_compensation_is_left_above_zero_and_right_below():
     contour = started()
     for line, side in enumerate((41, 40, 42, 40), 1):
@@ -142,19 +121,6 @@ def test_compensation_that_is_in_force_already_changes_nothing(side):
     contour.compensation(side, 2.0, line=3)
     contour.arc(1, i=-1.0, line=3, feed=100.0)
     assert contour.side == side
-
-
-def test_compensation_of_a_tool_without_radius_is_legal():
-    contour = started()
-    contour.compensation(41, 0.0, line=1)
-    contour.line(c=0.001, line=1, feed=100.0)
-    assert contour.side == 41
-
-
-def test_marks_stand_between_the_moves():
-    contour = started()
-    contour.mark("M8", line=1)
-    assert contour.elements == [Mark(1, "M8")]
 
 
 def block(contour, text, line):

@@ -70,11 +70,6 @@ def test_what_the_parser_does_not_know_is_rewritten(raw, text):
     assert line.rewritten
 
 
-def test_what_the_parser_knows_stays():
-    line = split_line("G1 X1 (U) #1=2", POLAR_WORDS)
-    assert (line.rewritten, line.text) == (False, "g1x1#1=2")
-
-
 def test_u_and_h_are_relative_and_y_is_not():
     relative = [
         split_line(raw, POLAR_WORDS).relative for raw in ("U1 C2", "X1 H2", "U1 H2", "X1 Y2")
@@ -239,12 +234,6 @@ def test_the_line_that_a_refusal_names():
     assert line_named(Refusal("G12.1 line 3 of flat.ngc: x")) is None
 
 
-@pytest.mark.parametrize("text", ["g1x9", "x9c9.0", "g1c09", "m9", "g1x9z9f9"])
-def test_only_a_g_is_an_exact_stop(text):
-    line = split_line(text, POLAR_WORDS)
-    assert (line.text, line.exact_stop, line.rewritten) == (text, False, False)
-
-
 def test_codes_are_g_and_m_with_a_plain_number():
     assert split_line("g1x2m3f4", POLAR_WORDS).codes == (("G", 10), ("M", 30))
     assert split_line("g#1m[2]g91.1", POLAR_WORDS).codes == (("G", 911),)
@@ -255,3 +244,9 @@ def test_a_line_that_is_not_split_says_nothing_of_its_words(text):
     line = split_line(text, POLAR_WORDS)
     assert (line.letters, line.codes, line.assignments, line.spindle) == ((), (), "", "")
     assert (line.rewritten, line.relative, line.exact_stop) == (False, "", False)
+
+
+@pytest.mark.parametrize("text", ["g1x9", "x9c9.0", "g1c09", "m9", "g1x9z9f9"])
+def test_only_a_g_is_an_exact_stop(text):
+    line = split_line(text, POLAR_WORDS)
+    assert (line.text, line.exact_stop, line.rewritten) == (text, False, False)
