@@ -82,12 +82,19 @@ def distance_mode(draft: Draft) -> None:
     draft.change(own_distance=AS_PROGRAMMED)
 
 
+def needs_g90(draft: Draft) -> bool:
+    """Tell whether LinuxCNC is not in G90 where words are written as places; it is from here on."""
+    state = draft.state
+    own = state.distance if state.own_distance == AS_PROGRAMMED else state.own_distance
+    draft.change(own_distance=AS_PROGRAMMED if state.distance == "G90" else "G90")
+    return own != "G90"
+
+
 def in_absolute_words(draft: Draft) -> None:
-    """Write G90 where the block's words have become absolute, G91 in front of the next ones."""
-    if draft.state.distance == "G91":
+    """Write G90 in a block whose words have become places, G91 in front of the next ones."""
+    if needs_g90(draft) or draft.state.distance == "G91":
         draft.take_codes({"G91"})
         draft.put_first("G90")
-        draft.change(own_distance="G90")
 
 
 def exact_stop(draft: Draft) -> None:

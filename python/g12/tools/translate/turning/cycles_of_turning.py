@@ -19,7 +19,7 @@ from g12.tools.translate.blocks.modal import (
     UNSURE,
 )
 from g12.tools.translate.blocks.places import FIELDS
-from g12.tools.translate.rules.motion import in_absolute_words
+from g12.tools.translate.rules.motion import in_absolute_words, needs_g90
 from g12.tools.translate.rules.polar import own_feed_ended
 from g12.tools.translate.turning.feed_of_c import number_of_feed
 from g12.tools.translate.turning.given_words import (
@@ -121,9 +121,7 @@ def write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **mode
     state = draft.state
     draft.before += own_feed_ended(draft)
     lines = list(lines_of_moves(moves, start))
-    if "G91" in (state.distance, state.own_distance):
-        lines.insert(0, "G90")
-        draft.change(own_distance=AS_PROGRAMMED if state.distance == "G90" else "G90")
+    lines[:0] = ["G90"] if needs_g90(draft) else []
     draft.after += lines
     draft.comments += [word.text for word in draft.meanings.values()]
     own = AS_PROGRAMMED if state.motion == "G0" else "G0"
