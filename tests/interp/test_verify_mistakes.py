@@ -8,7 +8,7 @@ from g12.tools.machine.ini import read_ini
 from g12.tools.plot.scene import scene_of_proof
 from g12.tools.units import MM
 from g12.tools.verify.proof import prove
-from g12.tools.verify.report import as_text, pocket_text, section_text
+from g12.tools.verify.report import as_text, paragraph_of
 from support.sim_machines import SIM
 
 MILL = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6", "G0 X0 Y0 Z1"]  # a 10 mm cutter
@@ -153,19 +153,19 @@ def rows(text):
 def test_the_size_of_a_contour_is_its_own_without_its_leads(proof_of):
     lead = ["G12.1", "G1 C12 F2000", "G41 X27 F1000", "Z-5"]
     proof = proof_of(*LATHE, "G0 X60 Z2 C0", *lead, *HEXAGON, *LEAD_OUT, machine="lathe_mm")
-    told = section_text(proof.sections[0], proof, MM)
+    told = paragraph_of("sections", proof.sections[0], proof, MM)
     assert "  from centre     programmed 13.5 to 15.58" in told
     assert "  across flats    programmed 27, reached 27" in told
 
 
 def test_a_flat_alone_has_no_width(proof_of):
     proof = proof_of(*LATHE, "G0 X60 Z2 C0", *FLAT, machine="lathe_mm")
-    assert "across flats" not in section_text(proof.sections[0], proof, MM)
+    assert "across flats" not in paragraph_of("sections", proof.sections[0], proof, MM)
 
 
 def test_a_single_ring_tells_of_its_core(proof_of):
     proof = proof_of(*MILL, "G13 I20 Z-3 D4", "G13 I9 Z-3 D4", "G13 I6 K20 Q4 Z-3 D4")
-    first, second, third = (pocket_text(facts, proof, MM) for facts in proof.pockets)
+    first, second, third = (paragraph_of("pockets", facts, proof, MM) for facts in proof.pockets)
     assert "  core            radius 10 mm, by design of a single ring" in first
     assert "  core  " not in second and "  left inside     0 mm²" in third
 
@@ -205,7 +205,7 @@ def test_a_section_at_the_depth_it_begins_at_is_good(proof_of):
 def test_a_section_in_a_sub_names_the_line_that_calls_it(proof_of):
     lines = ["o100 sub", *FLAT, "o100 endsub", *LATHE, "G0 X60 Z2 C0", "o100 call"]
     proof = proof_of(*lines, machine="lathe_mm")
-    title = section_text(proof.sections[0], proof, MM).splitlines()[0]
+    title = paragraph_of("sections", proof.sections[0], proof, MM).splitlines()[0]
     assert title == "lines 2 to 8, called in line 14: G12.1"
 
 

@@ -43,4 +43,4 @@ def test_a_shape_of_a_form_is_judged_in_the_form_s_file(form, tmp_path):
     )
     proof = prove(program, read_ini(LATHES[unit]))
     assert proof.findings == []
-    assert [facts.call.file for facts in proof.shapes] == [f"{form}.ngc"]
+    assert [facts.file for facts in proof.cuts.shapes] == [f"{form}.ngc"]

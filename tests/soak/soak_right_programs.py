@@ -36,7 +36,7 @@ def test_programs_as_they_are_read(kind, tmp_path):
         seed = f"{SEED} {number}"
         proof = prove(written(tmp_path, kind, seed, SEGMENTS), ini)
         assert len(proof.pockets) + len(proof.sections) >= SEGMENTS, seed
-        assert len(proof.shapes) >= SEGMENTS * kind.startswith("shapes"), seed
+        assert len(proof.cuts.shapes) >= SEGMENTS * kind.startswith("shapes"), seed
         assert proof.findings == [], seed
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from g12.tools.verify.expected.compensated import contour_path
 from g12.tools.verify.expected.contour import Element
-from g12.tools.verify.sections.neighbour_cuts import neighbour_cuts
+from g12.tools.verify.sections.outline import neighbour_cuts
 
 TOOL, TOLERANCE, UP = 3.0, 0.005, 5.0
 SQUARE = [10 + 0j, 10 - 10j, -10 - 10j, -10 + 10j, 10 + 10j, 10 + 0j]
@@ -41,7 +41,10 @@ def found(*contours):
     """Return line, other line and depth of what is cut, the deepest first."""
     elements = [element for each in contours for element in each]
     cuts = neighbour_cuts(contour_path(elements, UP, TOOL, TOLERANCE), TOOL, TOLERANCE)
-    return sorted(((each.line, each.other, each.size) for each in cuts), key=lambda cut: -cut[2])
+    return sorted(
+        ((each.line, each.values["line"], each.values["size"]) for each in cuts),
+        key=lambda cut: -cut[2],
+    )
 
 
 @pytest.mark.parametrize(("gap", "depth"), [(6.0, None), (5.99, 0.01), (5.0, 1.0), (3.2, 2.8)])

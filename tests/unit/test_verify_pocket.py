@@ -81,8 +81,15 @@ def test_a_good_pocket_has_no_findings():
     wanted = target()
     facts = measure(made(wanted), wanted)
     assert facts.judged == ()
-    assert facts.reached == pytest.approx(20) and facts.deviation < 1e-9 and facts.left == 0
-    assert facts.rings == pytest.approx((3, 8, 13, 17)) and facts.turns == (-1,)
+    assert (
+        facts.values["reached"] == pytest.approx(20)
+        and facts.deviation < 1e-9
+        and facts.values["left"] == 0
+    )
+    assert (
+        facts.values["rings"] == pytest.approx((3, 8, 13, 17))
+        and facts.values["turns"] == "clockwise"
+    )
 
 
 @pytest.mark.parametrize("entries", [{"G": 7.0}, {"G": 7.0, "K": 0.7, "O": 6.0}, {"D": 2.0}])
@@ -100,7 +107,7 @@ def test_another_plane_is_measured_the_same():
 def test_a_small_ring_is_round(ring):
     wanted = target((ring,))
     facts = measure(made(wanted), wanted)
-    assert facts.left == 0 and facts.judged == ()
+    assert facts.values["left"] == 0 and facts.judged == ()
 
 
 @pytest.mark.parametrize("at", range(1, 14))
@@ -135,15 +142,15 @@ def test_too_wide_a_stepover_leaves_the_area_between_the_rings(step):
     wanted = target((inner, outer), cleared=inner)
     facts = measure(made(wanted), wanted)
     between = math.pi * ((outer - 3 - 2 * TOLERANCE) ** 2 - (inner + 3) ** 2)
-    assert 0.6 * between < facts.left < between  # links and leads cut some of it
+    assert 0.6 * between < facts.values["left"] < between  # links and leads cut some of it
     assert [found.code for found in facts.judged] == ["uncut"]
 
 
 def test_real_motion_beside_the_path_is_found():
     wanted = target()
     facts = measure(made(wanted), wanted, real_shift=0.03)
-    assert facts.off_rings == pytest.approx(0.03, rel=0.01)
-    assert facts.too_far == pytest.approx(0.03, rel=0.02) and facts.left > 0.5
+    assert facts.values["off_circles"] == pytest.approx(0.03, rel=0.01)
+    assert facts.values["too_far"] == pytest.approx(0.03, rel=0.02) and facts.values["left"] > 0.5
     found = [finding.code for finding in facts.judged]
     assert found == ["uncut", "wall-run"]
     assert codes(made(wanted), wanted, real_shift=0.0) == []

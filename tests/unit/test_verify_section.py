@@ -10,8 +10,7 @@ import pytest
 from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
 from g12.tools.path.track import track
-from g12.tools.verify.compare.section import feed_off, lay_section
-from g12.tools.verify.compare.section_plane import plane_of
+from g12.tools.verify.compare.section import feed_off, lay_section, plane_of
 from g12.tools.verify.expected.compensated import contour_path
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.sections.section import measure_section
@@ -91,10 +90,10 @@ def codes(facts):
 def test_a_good_section_has_no_findings():
     facts = measure(cut(around(TOOL)), square(-1))
     assert facts.deviation < 1e-3
-    assert facts.size.wanted == pytest.approx((20, 20 * math.sqrt(2)), abs=1e-3)
-    assert facts.size.reached == pytest.approx(facts.size.wanted, abs=1e-3)
-    assert np.array(facts.size.flats) == pytest.approx(np.array([[40, 40], [40, 40]]))
-    assert facts.sides == (-1,)
+    assert facts.values["radii"] == pytest.approx((20, 20 * math.sqrt(2)), abs=1e-3)
+    assert facts.values["reached"] == pytest.approx(facts.values["radii"], abs=1e-3)
+    assert np.array(facts.values["across_flats"]) == pytest.approx(np.array([[40, 40], [40, 40]]))
+    assert facts.asked.sides == [-1]
     assert codes(facts) == []
 
 
@@ -122,7 +121,7 @@ def test_a_contour_of_two_elements_that_closes_on_its_lead_in(centre):
     ways = [dense([40 + 30j, 18 + 30j]), dense([18 + 30j, 18 - 16j]), [*about, *round_]]
     facts = measure(cut(ways, 40 + 0j, 40 + 16j), [*walls, line(9, top, 40 + 16j, 0, True)])
     assert facts.deviation < 1e-3
-    assert facts.size.wanted == pytest.approx((12, 20) if not centre else (4, 20), abs=0.01)
+    assert facts.values["radii"] == pytest.approx((12, 20) if not centre else (4, 20), abs=0.01)
 
 
 def test_the_tool_centre_on_the_contour():
@@ -131,7 +130,7 @@ def test_the_tool_centre_on_the_contour():
     hand.next_block().polar(dense([40 + 20j, 20j])[1:])
     facts = measure(hand, elements)
     assert facts.deviation < 1e-3 and codes(facts) == []
-    assert facts.size.reached[0] == pytest.approx(20, abs=1e-3)
+    assert facts.values["reached"][0] == pytest.approx(20, abs=1e-3)
 
 
 def test_an_unread_contour_is_no_proof():
@@ -151,7 +150,7 @@ def test_real_motion_is_measured():
 def test_the_speed_of_c_is_told_with_its_limit():
     hand = Hand(feed=1e6).rapid(x=1.0).next_block().line(c=90.0)
     facts = measure(hand, [line(2, 1 + 0j, 1j)], x=1.0)
-    assert facts.turns.speed == pytest.approx(360) and facts.c_limit == 360
+    assert facts.values["c_speed"] == pytest.approx(360) and facts.values["c_limit"] == 360
 
 
 def test_a_place_is_told_as_the_program_writes_it():
@@ -164,7 +163,8 @@ def test_a_place_is_told_as_the_program_writes_it():
 def test_the_lowest_feed_is_placed_in_the_sections_own_plane():
     hand = Hand().rapid(x=40.0, c=90.0).next_block().line(c=120.0)
     facts = measure(hand, [line(2, 40 + 0j, 40 * np.exp(1j * math.radians(30)))])
-    assert facts.slowest_at == pytest.approx((40 * math.cos(math.pi / 6), 20.0, 0.0), abs=0.1)
+    place = [value for _, value in facts.values["lowest_feed_words"]]
+    assert place == pytest.approx([40 * math.cos(math.pi / 6), 20.0, 0.0], abs=0.1)
 
 
 # ---------------------------------------------------------------- levels and feeds

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from g12.tools.preview.moves import Event
+from g12.tools.verify.compare.state import judge_acts, judge_section_state
 from g12.tools.verify.expected.contour import Act, Element, SectionContour
-from g12.tools.verify.sections.section_state import judge_acts, judge_section_state
 
 ELEMENTS = tuple(Element(line, 0j, 1 + 0j, 0, False, 0.0) for line in (7, 9))
 MOVES = [SimpleNamespace(line=line) for line in (4, 7, 7, 9)]

@@ -12,8 +12,8 @@ from g12.geometry.curve import Arc
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.executed_blocks import STATE, Block, read_line
 from g12.tools.preview.moves import Move
-from g12.tools.verify.expected.calls import SubCall, equal_steps
 from g12.tools.verify.expected.shapes import shape_path
+from g12.tools.verify.expected.words import SubCall, equal_steps
 from g12.tools.verify.reading.codes import Codes
 from support.shape_geometry import area_off, disc, polygon, slot, swept_by
 from support.sim_machines import SIM

@@ -94,10 +94,10 @@ ASKED = drawn(30 + 0j, RISE)
 def test_a_groove_of_lines_is_exact():
     facts = facts_of(groove(), ASKED)
     assert findings(groove(), ASKED) == ""
-    assert facts.deviation < 1e-9 and facts.segments == 2
-    assert facts.size.wanted == pytest.approx((0, 12))
-    assert facts.size.reached == pytest.approx((0, 12))
-    assert (facts.lowest, facts.start_height) == (DEPTH, AIR)
+    assert facts.deviation < 1e-9 and facts.values["segments"] == 2
+    assert facts.values["along_z"] == pytest.approx((0, 12))
+    assert facts.values["reached"] == pytest.approx((0, 12))
+    assert facts.values["lowest"] == DEPTH
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_the_segments_of_an_arc(count, off):
     facts = facts_of(hand, [*line[:2], QUARTER, up])
     assert facts.deviation == pytest.approx(10 * (1 - math.cos(math.pi / 4 / count)), rel=0.05)
     assert (facts.deviation > TOLERANCE) == (off > TOLERANCE)
-    assert facts.jump == pytest.approx(90 / count)
+    assert facts.values["direction_jump"] == pytest.approx(90 / count)
 
 
 def wall(side):
@@ -176,4 +176,4 @@ def test_a_run_is_measured_on_the_surface():
     runs = [run_beside(0.0), run_beside(0.03)]
     right, beside = (facts_of(groove(), ASKED, run) for run in runs)
     assert right.deviation < 0.001 and beside.deviation == pytest.approx(0.03)
-    assert right.pace.seconds > 5.0
+    assert right.values["seconds"] > 5.0

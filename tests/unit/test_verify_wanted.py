@@ -26,7 +26,7 @@ from g12.tools.verify.expected.polar import Pen
 from g12.tools.verify.reading import sections as section_reading
 from g12.tools.verify.reading.circles import CircleReader
 from g12.tools.verify.reading.codes import SHAPES, Codes
-from g12.tools.verify.reading.inside import followed_subs, section_lines
+from g12.tools.verify.reading.sections import followed_subs, section_lines
 from support.made_moves import Hand
 
 REMAPS = (

@@ -30,9 +30,8 @@ from g12.tools.machine.ini import Ini
 from g12.tools.preview.ended import traced
 from g12.tools.progress import working
 from g12.tools.units import unit_of
-from g12.tools.verify.measures import as_json
 from g12.tools.verify.proof import Proof, prove
-from g12.tools.verify.report import as_text
+from g12.tools.verify.report import as_json, as_text
 
 EXAMPLES = """\
 examples:
@@ -75,7 +74,7 @@ def main(arguments: list[str]) -> int:
         proof = replace(proof, opened=opened) if opened.is_filtered else proof
         judged = proof.judged  # while the filter's output exists
     tell_whose_lines("verify", opened)
-    if not (proof.pockets or proof.sections or proof.holes or proof.unseen or proof.still):
+    if not (any(proof.cuts) or proof.unseen or proof.still):
         raise UsageError(f"{options.program}: has no pocket, no section and no holes to verify")
     unit = unit_of(proof.subject.trace.modes.gcodes, options.units)
     text = as_text(proof, unit, full=options.full, strict=options.strict)

@@ -14,9 +14,8 @@ from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import Scene, scene_of_proof
 from g12.tools.preview.tracer import TraceFailure
 from g12.tools.units import Unit, clock, plain
-from g12.tools.verify.pocket import PocketFacts
 from g12.tools.verify.proof import Proof, prove
-from g12.tools.verify.sections.section import SectionFacts
+from g12.tools.verify.result.cut import MeasuredCut
 
 FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
 POCKET_HEADS = ("line", "code", "centre", "radius", "tool-centre rings", "Z", "off circles", "time")
@@ -46,9 +45,7 @@ def is_sound(proof: Proof) -> bool:
 
     Some of the manuals' programs leave material, or have rapids through it: that is only reported.
     """
-    off = [facts.laid.difference for facts in proof.pockets]
-    off += [facts.path.difference for facts in proof.sections]
-    return not any(off)
+    return all(cut.sound for cut in (*proof.pockets, *proof.sections))
 
 
 def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
@@ -59,41 +56,43 @@ def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path
     unit = scene.unit
     lines = [title, *(f"  LinuxCNC said: {message.text}" for message in run.messages)]
     if proof.pockets:
-        lines += table(POCKET_HEADS, [pocket_row(facts, unit) for facts in proof.pockets])
+        lines += table(POCKET_HEADS, [pocket_row(cut, unit) for cut in proof.pockets])
     if proof.sections:
         allowed = proof.tolerances.polar
-        rows = [section_row(facts, allowed, unit) for facts in proof.sections]
+        rows = [section_row(cut, allowed, unit) for cut in proof.sections]
         lines += table(SECTION_HEADS, rows)
     found = (each for each in proof.judged if each.is_finding)
     lines += [f"  line {each.line}: {proof.text(each, unit)}" for each in found]
     return "\n".join(lines)
 
 
-def pocket_row(facts: PocketFacts, unit: Unit) -> tuple[str, ...]:
+def pocket_row(cut: MeasuredCut, unit: Unit) -> tuple[str, ...]:
     """Return a pocket's row of the table; its time is that at the programmed feed."""
-    x, y, _ = facts.target.wall.origin
+    values = cut.values
+    x, y = values["centre"]
     return (
-        str(facts.target.source.line),
-        facts.target.source.code,
+        str(cut.line),
+        cut.code,
         f"X{unit.text(x)} Y{unit.text(y)}",
-        unit.text(facts.target.wall.radius),
-        " ".join(unit.text(ring) for ring in facts.rings),
-        unit.text(facts.target.wall.height(facts.target.deepest)),
-        f"{unit.fine(facts.off_rings)} {unit.name}",
-        f"{plain(facts.pace.expected, 1)} s",
+        unit.text(values["radius"]),
+        " ".join(unit.text(ring) for ring in values["rings"]),
+        unit.text(values["lowest"]),
+        f"{unit.fine(values['off_circles'])} {unit.name}",
+        f"{plain(values['seconds_programmed'], 1)} s",
     )
 
 
-def section_row(facts: SectionFacts, allowed: float, unit: Unit) -> tuple[str, ...]:
+def section_row(cut: MeasuredCut, allowed: float, unit: Unit) -> tuple[str, ...]:
     """Return a polar section's row of the table."""
+    values = cut.values
     return (
-        f"{facts.section.line}-{facts.section.last}",
-        str(facts.segments),
-        f"{unit.fine(facts.deviation)} {unit.name}",
+        f"{cut.line}-{cut.last}",
+        str(values["segments"]),
+        f"{unit.fine(cut.deviation)} {unit.name}",
         f"{unit.fine(allowed)} {unit.name}",
-        f"{plain(facts.pace.lowest / unit.mm, 1)} {unit.name}/min",
-        f"{plain(facts.turns.speed, 1)} of {plain(facts.c_limit, 1)} °/s",
-        f"{plain(facts.pace.expected, 1)} s",
+        f"{plain(values['lowest_feed'] / unit.mm, 1)} {unit.name}/min",
+        f"{plain(values['c_speed'], 1)} of {plain(values['c_limit'], 1)} °/s",
+        f"{plain(values['seconds_programmed'], 1)} s",
     )
 
 

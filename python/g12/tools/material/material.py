@@ -10,8 +10,6 @@ the unrolled surface of a cylinder, whose level is the radius; that has a ``peri
 Areas are computed at their first use, once for equal toolpaths. Lengths are mm.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, partial
@@ -52,29 +50,6 @@ class Touch(NamedTuple):
     points: np.ndarray
 
 
-class _Cuts:
-    """Areas with their levels and moves, for a search by bounds."""
-
-    def __init__(self) -> None:
-        self.areas: list[_Area | _Given] = []
-        self._rows: list[tuple[float, ...]] = []
-
-    def add(self, area: _Area | _Given, level: float, move: int) -> None:
-        self.areas.append(area)
-        self._rows.append((*area.bounds, level, move))
-        self.__dict__.pop("_table", None)
-
-    @cached_property
-    def _table(self) -> np.ndarray:
-        return np.array(self._rows).reshape(-1, 6).T
-
-    def within(self, bounds: Bounds, level: float, before: float) -> np.ndarray:
-        """Return the indices of cuts that may lie within bounds, down to a level, before a move."""
-        x0, y0, x1, y1, levels, moves = self._table
-        found = (x0 <= bounds[2]) & (x1 >= bounds[0]) & (y0 <= bounds[3]) & (y1 >= bounds[1])
-        return np.flatnonzero(found & (levels <= level + SAME_LEVEL) & (moves < before))
-
-
 class _Area:
     """An area, computed at its first use: swept by a cutter, or given."""
 
@@ -102,6 +77,29 @@ class _Given(NamedTuple):
     @property
     def bounds(self) -> Bounds:
         return self.shape.bounds
+
+
+class _Cuts:
+    """Areas with their levels and moves, for a search by bounds."""
+
+    def __init__(self) -> None:
+        self.areas: list[_Area | _Given] = []
+        self._rows: list[tuple[float, ...]] = []
+
+    def add(self, area: _Area | _Given, level: float, move: int) -> None:
+        self.areas.append(area)
+        self._rows.append((*area.bounds, level, move))
+        self.__dict__.pop("_table", None)
+
+    @cached_property
+    def _table(self) -> np.ndarray:
+        return np.array(self._rows).reshape(-1, 6).T
+
+    def within(self, bounds: Bounds, level: float, before: float) -> np.ndarray:
+        """Return the indices of cuts that may lie within bounds, down to a level, before a move."""
+        x0, y0, x1, y1, levels, moves = self._table
+        found = (x0 <= bounds[2]) & (x1 >= bounds[0]) & (y0 <= bounds[3]) & (y1 >= bounds[1])
+        return np.flatnonzero(found & (levels <= level + SAME_LEVEL) & (moves < before))
 
 
 class Material:

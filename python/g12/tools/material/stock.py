@@ -6,8 +6,6 @@ program's Z0; the program's X0 Y0 is its middle, unless the text has its corner.
 middle of every pocket. Lengths are millimetres in machine coordinates, except in texts.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -6,10 +6,8 @@ cylinder they are those of its unrolled surface. Only cutters with a diameter co
 those that cut sections.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from shapely.geometry import LineString, Point
@@ -17,12 +15,11 @@ from shapely.ops import unary_union
 
 from g12.tools.material.material import ALLOWED, LEAST_AREA, SAME_LEVEL
 from g12.tools.path.part import X, Z, is_sideways
-from g12.tools.preview.moves import Move
-from g12.tools.verify.compare.section_plane import Plane, plane_of
+from g12.tools.verify.compare.section import Plane, plane_of
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.section_walls import beyond
 from g12.tools.verify.sections.outline import outlines_of
+from g12.tools.verify.walls import beyond
 from g12.tools.verify.workpiece import PartView, Program, Workpiece
 
 LEAST_SHARE = 0.01  # of a cutter that plunges into the stock
@@ -48,14 +45,12 @@ def once_a_line(found: Iterator[Finding]) -> list[Finding]:
 
 def rapids_through(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield the rapids that go through material."""
-    program = workpiece.program
-    unknown, first = unknown_places(program), first_known(program)
-    moves = range(first, len(program.moves))
-    rapids = [i for i in moves if program.moves[i].kind == "rapid" and i not in unknown]
+    program, known = workpiece.program, workpiece.known
+    rapids = [i for i in known if program.moves[i].kind == "rapid"]
     for view in workpiece.views:
         for index in (each for each in rapids if view.judges(program.moves[each])):
             points = program.points(index, view.part)
-            if index == first or index - 1 in unknown:
+            if index - 1 not in known:
                 points = points[-1:]
             touch = view.material.touched(points, program.radius(index), index)
             if touch:
@@ -87,53 +82,17 @@ def words_of(program: Program, view: PartView, point: Place) -> tuple[tuple[str,
 def first_way(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield that the way of a first rapid that ends in a part is not judged."""
     program, view = workpiece.program, workpiece.views[0]
-    first = first_known(program)
-    if program.moves and program.moves[first].kind == "rapid":
-        place = place_after(program, first)
-        if place[2] < view.material.top - SAME_LEVEL:
+    for first in list(workpiece.known)[:1]:
+        place = program.end(first)
+        if program.moves[first].kind == "rapid" and place[Z] < view.material.top - SAME_LEVEL:
             values = {"at": words_of(program, view, place)}
             yield Finding("first-rapid", program.line(first), values, place)
-
-
-def place_after(program: Program, index: int) -> Place:
-    """Return where a move ends on the part."""
-    return place_at(program.part.points(np.array(program.moves[index].end))[0])
 
 
 def place_at(point: np.ndarray) -> Place:
     """Return a point (3,) as a place."""
     x, y, z = map(float, point)
     return x, y, z
-
-
-def axes_known(program: Program) -> tuple[int, ...]:
-    """Return the axes that must have been commanded before it is known where the tool is."""
-    return (X, Z) if program.part.turning else (Z,)
-
-
-def unknown_places(program: Program) -> set[int]:
-    """Return the moves at a place that only a work offset would tell: by G53, G28, G30."""
-    if any(abs(target.wall.face) > SAME_LEVEL for _, target in program.circles):
-        return set()
-    found, unknown = set(), dict.fromkeys(axes_known(program), False)
-    for index, move in enumerate(program.moves):
-        for axis in unknown:
-            if move.start[axis] != move.end[axis]:
-                unknown[axis] = move.by_machine
-        if any(unknown.values()):
-            found.add(index)
-    return found
-
-
-def first_known(program: Program) -> int:
-    """Return the move from which on it is known where the tool is; a trace begins anywhere."""
-    changes = (first_change(program.moves, axis) for axis in axes_known(program))
-    return max(changes, default=0)
-
-
-def first_change(moves: Sequence[Move], axis: int) -> int:
-    """Return the first move that changes an axis, 0 if none does."""
-    return next((i for i, move in enumerate(moves) if move.start[axis] != move.end[axis]), 0)
 
 
 # ---------------------------------------------------------------- what is assumed
@@ -178,7 +137,7 @@ def judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
     moves = program.moves
     fed = [
         index
-        for index in range(first_known(program), len(moves))
+        for index in workpiece.known
         if moves[index].kind != "rapid" and program.radius(index) and view.judges(moves[index])
     ]
     yield from once_a_line(filter(None, (plunge(workpiece, index) for index in fed)))
@@ -191,8 +150,8 @@ def judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
         lowest = min(fed, key=lambda index: moves[index].end[Z])
         below = workpiece.bottom - moves[lowest].end[Z]
         if below > SAME_LEVEL:
-            line, place = program.line(lowest), place_after(program, lowest)
-            yield Finding("below-block", line, {"size": below}, place)
+            place = program.end(lowest)
+            yield Finding("below-block", program.line(lowest), {"size": below}, place)
     if workpiece.stock.diameter:
         yield from filter(None, (remaining(workpiece, section) for section in program.on_face))
     for call in (each for each in program.holes if each.is_side):
@@ -210,7 +169,7 @@ def plunge(workpiece: Workpiece, index: int) -> Finding | None:
     program, move = workpiece.program, workpiece.program.moves[index]
     if is_sideways(move) or move.end[Z] >= move.start[Z]:
         return None
-    place = place_after(program, index)
+    place = program.end(index)
     cutter = Point(place[:2]).buffer(program.radius(index))
     share = workpiece.material.standing(cutter, place[Z], index).area / cutter.area
     if share <= LEAST_SHARE:

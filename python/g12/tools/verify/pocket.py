@@ -4,98 +4,36 @@
 Lengths are millimetres, areas square millimetres, angles degrees, feeds mm/min, times seconds.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from shapely.affinity import translate
+from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.material.material import Material
 from g12.tools.path.follow import Followed
-from g12.tools.path.part import arc_points, plane_axes
+from g12.tools.path.part import Z, arc_points, disc, plane_axes
 from g12.tools.path.slowest import Pace
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.compare.path import FEED, OFF, Laid, Made, lay
-from g12.tools.verify.compare.path_judge import judge_path
+from g12.tools.verify.compare.path import FEED, OFF, Laid, Made, judge_path, lay
 from g12.tools.verify.compare.state import extra_events, judge_state, state_differences
-from g12.tools.verify.pocket_area import is_wrong_tool, uncut
-from g12.tools.verify.reading.circles import Target, Wall
+from g12.tools.verify.reading.circles import Cutter, Target, Wall
 from g12.tools.verify.reading.codes import EVENT
+from g12.tools.verify.result.cut import MeasuredCut, finite, in_file, pace_values
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.result.tolerances import AREA, RUN, SIZE
+from g12.tools.verify.result.tolerances import AREA, RUN, SIZE, WEAR
 
 STILL = 1e-8  # mm: a shorter move is none
 SAME_AXIS = 1e-9
 SHARES = np.linspace(0.0, 1.0, 25)  # of an arc that stands across the pocket's plane
-
-
-@dataclass(frozen=True)
-class HelixFacts:
-    """The helices of a pocket: how many, the radius of the tool's centre, the greatest angle."""
-
-    count: int
-    radius: float
-    angle: float
-
-
-@dataclass(frozen=True)
-class PocketFacts:
-    """What was measured of one pocket.
-
-    ``laid`` is what was made along the expected toolpath; ``uncut`` what remains at the deepest
-    level. ``reached`` is the wall's radius as cut. ``off_path``, ``off_rings`` and ``too_far`` are
-    those of a run, None without one: its largest deviations, and how far it went beyond the wall.
-    ``judged`` are the pocket's findings and notes.
-    """
-
-    target: Target
-    laid: Laid
-    reached: float
-    uncut: BaseGeometry
-    pace: Pace
-    lengths: tuple[float, float]
-    off_path: float | None = None
-    off_rings: float | None = None
-    too_far: float | None = None
-    judged: tuple[Finding, ...] = ()
-
-    @property
-    def left(self) -> float:
-        """Return the area that remains at the deepest level."""
-        return self.uncut.area
-
-    @property
-    def deviation(self) -> float:
-        """Return the greatest distance from the expected toolpath."""
-        sizes = (each.size for each in self.laid.differences if each.kind == OFF)
-        return max([self.laid.deviation, self.too_far or 0.0, *sizes])
-
-    @property
-    def rings(self) -> tuple[float, ...]:
-        """Return the radii of the tool centre's circles, each once."""
-        return tuple(dict.fromkeys(round(arc.radius, 6) for arc in self.target.arcs))
-
-    @property
-    def turns(self) -> tuple[int, ...]:
-        """Return the turns of the circles, each once."""
-        return tuple(sorted({round(math.copysign(1, arc.sweep)) for arc in self.target.arcs}))
-
-    @property
-    def helix(self) -> HelixFacts | None:
-        """Return what the helices of the pocket are like, None without one."""
-        falls = [move.name == "helix" for move in self.target.path]
-        falling = [move for move in self.target.path if move.name == "helix"]
-        curve = falling[0].curve if falling else None
-        if not isinstance(curve, Arc):
-            return None
-        fall = max(move.start_level - move.end_level for move in falling)
-        count = sum(now > before for before, now in zip(falls, falls[1:]))
-        return HelixFacts(count, curve.radius, math.degrees(math.atan2(fall, curve.length)))
+FINE = 1e-5  # chord error of the circles about a pocket's centre
+LEAST_CORE = 0.01  # a smaller circle about the centre is none
+TURNS = {-1: "clockwise", 1: "counterclockwise"}
 
 
 def measure_pocket(
@@ -106,33 +44,91 @@ def measure_pocket(
     tolerance: float,
     pace: Callable[[Sequence[int], Sequence[int]], Pace],
     real: Followed | None = None,
-) -> PocketFacts:
-    """Return the facts of the pocket of a block, in its ``material``.
+) -> MeasuredCut:
+    """Return what was measured of the pocket of a block, in its ``material``.
 
     ``pace`` is a function of all its moves and of those that cut.
     """
-    own = range(block.at, block.end)
-    laid = lay(target.path, made_in(target.wall, moves, own), tolerance)
-    cutting = [i for i in own if is_cutting(moves[i], target.wall)]
-    lengths = [moves[index].length for index in cutting] or [0.0]
-    facts = PocketFacts(
-        target,
-        laid,
-        reached(target, laid, moves),
-        uncut(block, target, material, tolerance, real is None),
-        pace(own, cutting),
-        (min(lengths), max(lengths)),
-        *(facts_of_run(target, laid, cutting, real) if real else (None, None, None)),
-    )
+    own, source, wall = range(block.at, block.end), target.source, target.wall
+    laid = lay(target.path, made_in(wall, moves, own), tolerance)
+    cutting = [i for i in own if is_cutting(moves[i], wall)]
+    left = uncut(block, target, material, tolerance, real is None)
+    run = run_values(target, laid, cutting, real) if real else {}
+    too_far = run.get("too_far", 0.0)
     judged = [
         *judge_cutter(target),
         *judge_depth(target, tolerance),
-        *judge_path(laid, target.source.line, "", target.wall.machine),
-        *judge_cut(facts, tolerance),
-        *judge_left(block, facts),
+        *judge_path(laid, source.line, wall.machine),
+        *judge_cut(target, left, too_far, tolerance),
+        *judge_left(block, target, laid),
     ]
-    file = target.source.file
-    return replace(facts, judged=tuple(replace(each, file=file) for each in judged))
+    sizes = (each.size for each in laid.differences if each.kind == OFF)
+    deviation = max([laid.deviation, too_far, *sizes])
+    lengths = [moves[index].length for index in cutting] or [0.0]
+    took = pace(own, cutting)
+    values = {
+        **pocket_values(target),
+        "reached": reached(target, laid, moves),
+        "deviation": finite(deviation),
+        "left": left.area,
+        "shortest": min(lengths),
+        "longest": max(lengths),
+        "off_circles": None,
+        "off_path": None,
+        **run,
+        **pace_values(took),
+        "lowest_feed_line": moves[took.move].block,
+    }
+    return MeasuredCut(
+        target,
+        source.line,
+        source.file,
+        source.code,
+        own,
+        wall.face,
+        deviation,
+        values,
+        in_file(judged, source.file),
+        turning=False,
+        sound=not laid.differences,
+    )
+
+
+def pocket_values(target: Target) -> dict[str, Any]:
+    """Return what the words of a pocket ask for as plain values; ``z`` is that of other planes."""
+    wall, cutter = target.wall, target.cutter
+    rings = list(dict.fromkeys(round(arc.radius, 6) for arc in target.arcs))
+    turns = sorted({round(math.copysign(1, arc.sweep)) for arc in target.arcs})
+    reach, level = max(rings, default=0.0), float(wall.origin[Z])
+    return {
+        "dialect": target.source.dialect,
+        "centre": [float(value) for value in wall.origin[:2]],
+        "cutter": 2 * cutter.radius,
+        "circle": {"word": cutter.word, "radius": cutter.circle} if cutter.word else None,
+        "radius": wall.radius,
+        "core": wall.core or None,
+        "rings": rings,
+        "turns": " and ".join(TURNS[turn] for turn in turns),
+        "square_to": "XYZ"[wall.plane],
+        "depths": [wall.height(depth) for depth in target.depths],
+        "lowest": wall.height(target.deepest),
+        "z": None if wall.plane == Z else [level - reach, level + reach],
+        "entry": entry_values(target),
+        "stepover": target.asked.stepover,
+    }
+
+
+def entry_values(target: Target) -> dict[str, Any]:
+    """Return how the tool goes down: the helices' count, radius and greatest angle, or straight."""
+    falls = [move.name == "helix" for move in target.path]
+    falling = [move for move in target.path if move.name == "helix"]
+    curve = falling[0].curve if falling else None
+    if not isinstance(curve, Arc):
+        return {"way": "straight"}
+    fall = max(move.start_level - move.end_level for move in falling)
+    count = sum(now > before for before, now in zip(falls, falls[1:]))
+    angle = math.degrees(math.atan2(fall, curve.length))
+    return {"way": "helix", "count": count, "radius": curve.radius, "angle": angle}
 
 
 def made_in(wall: Wall, moves: Sequence[Move], own: range) -> Iterator[Made]:
@@ -146,7 +142,9 @@ def made_in(wall: Wall, moves: Sequence[Move], own: range) -> Iterator[Made]:
         points = [(complex(*start[:2]), start[2]), (complex(*end[:2]), end[2])]
         if move.length <= STILL:
             continue
-        if move.kind == "arc" and is_in_plane(move, wall):
+        across = plane_axes(move)
+        in_plane = across is wall.axes or np.abs(across[2] - wall.axes[2]).max() < SAME_AXIS
+        if move.kind == "arc" and in_plane:
             centre = complex(*wall.local(np.array(move.centre))[0, :2])
             curve: Curve | None = Arc(points[0][0], centre, move.sweep)
         elif move.kind == "arc":
@@ -157,12 +155,6 @@ def made_in(wall: Wall, moves: Sequence[Move], own: range) -> Iterator[Made]:
         rapid = move.kind == "rapid"
         feed = None if rapid else move.feed
         yield Made(index, points, curve, feed, rapid, move.feed_mode == "G95")
-
-
-def is_in_plane(move: Move, wall: Wall) -> bool:
-    """Tell whether an arc lies in a wall's plane."""
-    axes = plane_axes(move)
-    return axes is wall.axes or bool(np.abs(axes[2] - wall.axes[2]).max() < SAME_AXIS)
 
 
 def is_cutting(move: Move, wall: Wall) -> bool:
@@ -188,10 +180,10 @@ def reached(target: Target, laid: Laid, moves: Sequence[Move]) -> float:
     return max(made) + cutter if target.wall.inside else min(made) - cutter
 
 
-def facts_of_run(
+def run_values(
     target: Target, laid: Laid, cutting: Sequence[int], real: Followed
-) -> tuple[float, float, float]:
-    """Return ``off_path``, ``off_rings`` and ``too_far`` of ``PocketFacts``."""
+) -> Mapping[str, float]:
+    """Return a run's largest deviations, and how far it went beyond the wall."""
     wall, cutter = target.wall, target.cutter.radius
     full = {id(move) for move in target.circles}
     circles = [i for move, made in zip(target.path, laid.moves) if id(move) in full for i in made]
@@ -200,7 +192,8 @@ def facts_of_run(
     far = radii.max(initial=0.0) + cutter - wall.radius
     if not wall.inside:
         far = wall.radius - (radii.min(initial=math.inf) - cutter)
-    return real.largest(cutting), real.largest(circles), max(0.0, float(far))
+    off = {"off_circles": real.largest(circles), "off_path": real.largest(cutting)}
+    return {**off, "too_far": max(0.0, float(far))}
 
 
 def judge_cutter(target: Target) -> Iterator[Finding]:
@@ -224,6 +217,12 @@ def judge_cutter(target: Target) -> Iterator[Finding]:
         yield Finding("worn-cutter", line, values)
 
 
+def is_wrong_tool(cutter: Cutter) -> bool:
+    """Tell whether D names another cutter than the loaded one, by more than wear."""
+    known = cutter.named is not None and cutter.loaded > 0.0
+    return known and abs(cutter.radius - cutter.loaded) > WEAR * cutter.loaded
+
+
 def judge_depth(target: Target, tolerance: float) -> Iterator[Finding]:
     """Yield that a circle lies above where the tool comes from; an event begins at its W."""
     if target.source.dialect != EVENT and target.deepest > tolerance:
@@ -231,20 +230,69 @@ def judge_depth(target: Target, tolerance: float) -> Iterator[Finding]:
         yield Finding("cuts-air", target.source.line, values)
 
 
-def judge_cut(facts: PocketFacts, tolerance: float) -> Iterator[Finding]:
+def judge_cut(
+    target: Target, left: BaseGeometry, too_far: float, tolerance: float
+) -> Iterator[Finding]:
     """Yield material that remains, and a wall that a run cut too far."""
-    wall, deepest, line = facts.target.wall, facts.target.deepest, facts.target.source.line
-    if facts.left > AREA:
-        values = {"area": facts.left, "shape": facts.uncut, "floor": wall.height(deepest)}
+    wall, deepest, line = target.wall, target.deepest, target.source.line
+    if left.area > AREA:
+        values = {"area": left.area, "shape": left, "floor": wall.height(deepest)}
         yield Finding("uncut", line, values, wall.machine((0j, deepest)))
-    if (facts.too_far or 0.0) > tolerance + RUN:
+    if too_far > tolerance + RUN:
         place = wall.machine((complex(wall.radius), deepest))
-        yield Finding("wall-run", line, {"size": facts.too_far, "at": place}, place)
+        yield Finding("wall-run", line, {"size": too_far, "at": place}, place)
 
 
-def judge_left(block: Block, facts: PocketFacts) -> Iterator[Finding]:
+def judge_left(block: Block, target: Target, laid: Laid) -> Iterator[Finding]:
     """Yield the state that a pocket leaves otherwise; of another feed no more is said."""
-    other_feed = any(each.kind == FEED for each in facts.laid.differences)
-    state = state_differences(block.left, facts.target.leaves)
+    other_feed = any(each.kind == FEED for each in laid.differences)
+    state = state_differences(block.left, target.leaves)
     told = [each for each in state if not (other_feed and each.name == "_feed")]
-    yield from judge_state(told, extra_events(block), facts.target.source.line)
+    yield from judge_state(told, extra_events(block), target.source.line)
+
+
+def uncut(
+    block: Block, target: Target, material: Material, tolerance: float, as_emitted: bool
+) -> BaseGeometry:
+    """Return what remains of a pocket after its block, in machine coordinates of the plane XY.
+
+    ``as_emitted``: its circles are those of its moves, not what a run made of them.
+    """
+    wall, (inner, outer) = target.wall, reach(target, tolerance)
+    known = as_emitted and clears(target, inner, outer)
+    if wall.plane != Z or not target.cutter.radius or known:
+        return Polygon()
+    wanted = disc((0, 0), outer, FINE)
+    if inner > LEAST_CORE:
+        wanted = wanted.difference(disc((0, 0), inner, FINE))
+    there = translate(wanted, *wall.origin[:2])
+    return material.standing(there, wall.height(target.deepest), block.end)
+
+
+def reach(target: Target, tolerance: float) -> tuple[float, float]:
+    """Return between which distances from the centre nothing may remain.
+
+    D may be larger than the cutter by an allowance for wear.
+    """
+    wall, cutter = target.wall, target.cutter
+    if not wall.inside:
+        return wall.radius + tolerance, wall.radius + 2 * cutter.radius - tolerance
+    worn = 0.0 if is_wrong_tool(cutter) else max(0.0, cutter.radius - cutter.loaded)
+    return wall.cleared + tolerance, wall.radius - tolerance - worn * bool(cutter.loaded)
+
+
+def clears(target: Target, inner: float, outer: float) -> bool:
+    """Tell whether the circles of the deepest level surely leave nothing between two distances.
+
+    To ask the material takes five times as long.
+    """
+    cutter, floor = target.cutter, target.deepest
+    edge = cutter.loaded if is_wrong_tool(cutter) else cutter.radius
+    there = [m for m in target.path if m.start_level == m.end_level == floor and not m.rapid]
+    spans = [(0.0, edge)] if any(abs(move.curve.start) < FINE for move in there) else []
+    arcs = (m.curve for m in target.circles if m.end_level == floor)
+    rings = (arc.radius for arc in arcs if isinstance(arc, Arc))
+    spans += [(max(0.0, radius - edge), radius + edge) for radius in rings]
+    for first, last in sorted(spans):
+        inner = max(inner, last) if first <= inner else inner
+    return inner >= outer

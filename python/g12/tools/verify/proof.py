@@ -5,9 +5,7 @@ What is asked for is read from the program's words, what is cut is measured from
 LinuxCNC makes of it; the cycles' own planning has no part in it.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -15,32 +13,39 @@ from typing import NamedTuple
 
 from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini
-from g12.tools.material.material import Material
 from g12.tools.material.stock import StockText
+from g12.tools.path.part import part_of
 from g12.tools.path.samples import Samples
-from g12.tools.path.slowest import Pace, pace_of, programmed_pace
+from g12.tools.path.slowest import pace_of, programmed_pace
 from g12.tools.path.track import limits_of
 from g12.tools.preview.ended import ended, explained
+from g12.tools.preview.executed_blocks import read_lines
+from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import Unit
 from g12.tools.verify.asked import Asked, asked_of, moves_there
-from g12.tools.verify.compare.clamp import Clamp
-from g12.tools.verify.compare.drilled import HolesFacts, measure_holes
-from g12.tools.verify.compare.section_plane import x0_of
+from g12.tools.verify.called import Clamp, measure_holes, measure_shape
+from g12.tools.verify.compare.section import x0_of
 from g12.tools.verify.in_material import judge_material
-from g12.tools.verify.judgement import judged
-from g12.tools.verify.pocket import PocketFacts, measure_pocket
+from g12.tools.verify.mistakes.tool import (
+    judge_feeds,
+    judge_levels,
+    judge_native_c,
+    judge_spindle,
+    judge_tool_length,
+)
+from g12.tools.verify.mistakes.travel import judge_travel
+from g12.tools.verify.mistakes.words import judge_home, judge_return_levels, judge_reversals
+from g12.tools.verify.pocket import measure_pocket
 from g12.tools.verify.reading.codes import Codes
+from g12.tools.verify.result.cut import MeasuredCut
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import RUN, WALL
-from g12.tools.verify.sections.section import SectionFacts, measure_section
+from g12.tools.verify.sections.section import measure_section
 from g12.tools.verify.sections.section_motion import axes_of_section
-from g12.tools.verify.shape import ShapeFacts, measure_shape
 from g12.tools.verify.subject import Subject, subject_of
 from g12.tools.verify.workpiece import Workpiece, workpiece_of
-
-Facts = PocketFacts | SectionFacts | ShapeFacts | HolesFacts
 
 
 class Tolerances(NamedTuple):
@@ -50,31 +55,42 @@ class Tolerances(NamedTuple):
     polar: float
 
 
+class Cuts(NamedTuple):
+    """What was measured of a program's cuts, by kind."""
+
+    pockets: Sequence[MeasuredCut] = ()
+    sections: Sequence[MeasuredCut] = ()
+    shapes: Sequence[MeasuredCut] = ()
+    holes: Sequence[MeasuredCut] = ()
+
+
 @dataclass(frozen=True)
 class Proof:
     """What was measured, and ``judged`` of it: findings, notes, what was not, in order of lines.
 
-    ``asked`` is what the words ask for, ``workpiece`` what is cut. ``unseen`` are lines whose
-    blocks make a cycle cut that belongs to nothing measured, and the cycle's code. ``opened`` is
-    the user's file, None where that is what was read.
+    ``workpiece`` is what is cut. ``still`` are the lines and codes of cycles that move nothing,
+    ``unseen`` those of blocks that make a cycle cut which belongs to nothing measured. ``opened``
+    is the user's file, None where that is what was read.
     """
 
     subject: Subject
-    asked: Asked
     workpiece: Workpiece
     tolerances: Tolerances
-    pockets: Sequence[PocketFacts] = ()
-    sections: Sequence[SectionFacts] = ()
-    shapes: Sequence[ShapeFacts] = ()
-    holes: Sequence[HolesFacts] = ()
-    unseen: Sequence[tuple[int, str]] = ()
-    judged: Sequence[Finding] = ()
+    cuts: Cuts
+    still: Sequence[tuple[int, str]]
+    unseen: Sequence[tuple[int, str]]
+    judged: Sequence[Finding]
     opened: OpenedProgram | None = None
 
     @property
-    def still(self) -> list[tuple[int, str]]:
-        """The lines and the codes of cycles that move nothing."""
-        return self.asked.still
+    def pockets(self) -> Sequence[MeasuredCut]:
+        """The pockets and bosses."""
+        return self.cuts.pockets
+
+    @property
+    def sections(self) -> Sequence[MeasuredCut]:
+        """The sections of polar interpolation and those on a cylinder."""
+        return self.cuts.sections
 
     @property
     def given(self) -> Workpiece | None:
@@ -135,18 +151,20 @@ def prove_traced(
         subject = subject.about(x0_of(first, subject.trace.moves[first.at]))
     allowed = tolerances_of(subject, tolerance)
     workpiece = workpiece_of(subject, asked, stock)
-    pockets = measured_pockets(subject, asked, workpiece.material, allowed.pocket, tell)
-    sections = measured_sections(subject, asked, allowed.polar, tell)
-    shapes = measured_shapes(subject, asked, allowed.polar, tell)
-    holes = measured_holes(subject, asked, allowed.polar)
+    cuts = measured(subject, asked, workpiece, allowed, tell)
     tell("looking for rapids through material")
-    unseen = unseen_in(subject, asked)
-    cuts: list[Facts] = [*pockets, *sections, *shapes, *holes]
-    said = [each for facts in cuts for each in facts.judged]
-    said += judge_material(workpiece)
-    found = judged(subject, asked, there, unseen, said)
-    cut = pockets, sections, shapes, holes
-    return Proof(subject, asked, workpiece, allowed, *cut, unseen=unseen, judged=found)
+    known = {index for cut in (*cuts.pockets, *cuts.sections, *cuts.holes) for index in cut.own}
+    unseen = unseen_in(subject, known)
+    found = [
+        *(each for kind in cuts for cut in kind for each in cut.judged),
+        *judge_material(workpiece),
+        *(Finding("not-measured", line, {"code": code}) for line, code in unseen),
+        *(Finding("not-cut", line, {"code": code}) for line, code in asked.still),
+        *judge_travel(asked.circles, there, subject.trace.events, subject.ini),
+        *mistakes(subject, cuts, known),
+    ]
+    judged = sorted(found, key=lambda finding: finding.line)
+    return Proof(subject, workpiece, allowed, cuts, asked.still, unseen, judged)
 
 
 def tolerances_of(subject: Subject, tolerance: float | None) -> Tolerances:
@@ -157,68 +175,67 @@ def tolerances_of(subject: Subject, tolerance: float | None) -> Tolerances:
     return Tolerances(WALL, ini.settings.tolerance(ini.mm) * ini.mm + RUN * bool(subject.samples))
 
 
-def measured_pockets(
-    subject: Subject, asked: Asked, material: Material, tolerance: float, tell: Tell
-) -> list[PocketFacts]:
-    """Return what is measured of a program's pockets."""
-    moves, real, pace = subject.trace.moves, subject.real, pace_in(subject)
-    return [
-        measure_pocket(block, target, moves, material, tolerance, pace, real)
-        for block, target in counted(asked.circles, "measuring pocket", tell)
-    ]
+def measured(
+    subject: Subject, asked: Asked, workpiece: Workpiece, allowed: Tolerances, tell: Tell
+) -> Cuts:
+    """Return what is measured of a program's cuts."""
+    moves, real, ini, polar = subject.trace.moves, subject.real, subject.ini, allowed.polar
+    pace = partial(programmed_pace, moves, limits_of(ini), subject.trace.modes.speed)
+    if real:
+        pace = partial(pace_of, path=subject.path, real=real)
+    axes = axes_of_section(ini) if asked.sections or asked.shapes else None
+    clamp = Clamp([f"M{code}" for code in ini.settings.c_clamp], asked.clamp_is_seen)
+    return Cuts(
+        [
+            measure_pocket(*circle, moves, workpiece.material, allowed.pocket, pace, real)
+            for circle in counted(asked.circles, "measuring pocket", tell)
+        ],
+        [
+            measure_section(each, view.path, moves, subject.trace.diameters, axes, polar, view.real)
+            for each in counted(asked.sections, "measuring section", tell)
+            for view in [subject.of_section(each)]
+        ],
+        [
+            measure_shape(
+                each, subject.about(each[1].zero[0], each[1].moves).path, moves, axes, polar
+            )
+            for each in counted(asked.shapes, "measuring shape", tell)
+        ],
+        [measure_holes(each, moves, polar, clamp, real) for each in asked.holes],
+    )
 
 
-def pace_in(subject: Subject) -> Callable[[Sequence[int], Sequence[int]], Pace]:
-    """Return what gives the pace of some moves on a part that stands."""
-    if subject.real:
-        return partial(pace_of, path=subject.path, real=subject.real)
-    trace = subject.trace
-    return partial(programmed_pace, trace.moves, limits_of(subject.ini), trace.modes.speed)
-
-
-def measured_sections(
-    subject: Subject, asked: Asked, tolerance: float, tell: Tell
-) -> list[SectionFacts]:
-    """Return what is measured of a program's sections, those on a cylinder on its surface."""
-    axes = axes_of_section(subject.ini) if asked.sections else None
-    moves, diameters = subject.trace.moves, subject.trace.diameters
-    found: list[SectionFacts] = []
-    surfaces: dict[float, Subject] = {}
-    for each in counted(asked.sections, "measuring section", tell):
-        view = surfaces.get(each.surface) or subject.of_section(each)
-        if each.surface and subject.samples:  # of a run: all of it, to be used again
-            surfaces[each.surface] = view
-        facts = measure_section(each, view.path, moves, diameters, axes, tolerance, view.real)
-        found.append(facts)
-    return found
-
-
-def measured_shapes(
-    subject: Subject, asked: Asked, tolerance: float, tell: Tell
-) -> list[ShapeFacts]:
-    """Return what is measured of a program's shapes on a face."""
-    axes, moves = axes_of_section(subject.ini) if asked.shapes else None, subject.trace.moves
-    return [
-        measure_shape(
-            each, subject.about(each[1].zero[0], each[1].moves).path, moves, axes, tolerance
-        )
-        for each in counted(asked.shapes, "measuring shape", tell)
-    ]
-
-
-def measured_holes(subject: Subject, asked: Asked, tolerance: float) -> list[HolesFacts]:
-    """Return what is measured of a program's holes with C."""
-    moves, codes = subject.trace.moves, [f"M{code}" for code in subject.ini.settings.c_clamp]
-    clamp = Clamp(codes, asked.clamp_is_seen)
-    return [measure_holes(each, moves, tolerance, clamp, subject.real) for each in asked.holes]
-
-
-def unseen_in(subject: Subject, asked: Asked) -> list[tuple[int, str]]:
+def unseen_in(subject: Subject, known: set[int]) -> list[tuple[int, str]]:
     """Return each line and code that makes moves of a cycle which is not measured."""
-    codes, known = Codes(subject.ini), asked.moves
+    codes = Codes(subject.ini)
     found = (
         (move.block, move.remap)
         for index, move in enumerate(subject.trace.moves)
         if index not in known and codes.knows(move.remap)
     )
     return list(dict.fromkeys(found))
+
+
+def mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Finding]:
+    """Yield what the rules about words find; ``known`` are the moves of cuts."""
+    trace, ini, moves = subject.trace, subject.ini, subject.trace.moves
+    cuts = [*found.pockets, *found.sections, *found.holes]
+    yield from judge_tool_length(cuts, moves, trace.lengths, trace.events)
+    yield from judge_feeds(cuts, moves, limits_of(ini))
+    yield from judge_spindle(cuts, trace.events, ini)
+    yield from judge_levels(cuts, moves)
+    yield from judge_reversals([each.asked for each in found.sections])
+    yield from not_judged(moves, known)
+    if part_of(ini).turning:
+        texts = read_lines(subject.program)
+        yield from judge_native_c(moves, known, subject.path)
+        yield from judge_return_levels(texts, Codes(ini))
+        yield from judge_home(texts, ini)
+
+
+def not_judged(moves: Sequence[Move], known: set[int]) -> Iterator[Finding]:
+    """Yield the lines of feed moves that belong to no cut."""
+    others = (move.block for i, move in enumerate(moves) if i not in known and move.kind != "rapid")
+    lines = list(dict.fromkeys(others))
+    if lines:
+        yield Finding("plain-moves", lines[0], {"count": len(lines), "last": lines[-1]})

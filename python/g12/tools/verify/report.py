@@ -1,33 +1,27 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A proof for people: a line for each cut, then findings, notes, and what was not judged."""
+"""A proof for people: a line for each cut, then findings, notes, and what was not judged.
 
-from __future__ import annotations
+``--full`` puts the measures of each cut into rows; ``--json`` prints them all as plain values.
+"""
 
+import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
+from g12.tools.machine.ini import Ini
 from g12.tools.path.part import Z, x0_text
 from g12.tools.preview.moves import message_lines
-from g12.tools.units import Unit, counted_as, plain
-from g12.tools.verify.compare.drilled import HolesFacts
-from g12.tools.verify.expected.calls import SubCall
-from g12.tools.verify.measures import (
-    AXES,
-    holes_values,
-    pocket_values,
-    section_values,
-    shape_values,
-    stock_values,
-)
-from g12.tools.verify.pocket import PocketFacts
+from g12.tools.units import MM, Unit, counted_as, plain
 from g12.tools.verify.proof import Proof
+from g12.tools.verify.result.cut import MeasuredCut
 from g12.tools.verify.result.finding import Finding, in_words, is_known
 from g12.tools.verify.result.tolerances import SIZE
-from g12.tools.verify.sections.section import SectionFacts
-from g12.tools.verify.shape import ShapeFacts
+from g12.tools.verify.sections.section import times_of_section
+from g12.tools.verify.workpiece import Workpiece
 
 GAP = "  "
 SIDES = {1: "left of", -1: "right of", 0: "on"}
+KINDS = {"findings": "is_finding", "notes": "is_note", "not_judged": "is_not_judged"}
 NAMES = 14  # columns of a row's name
 Row = tuple[str, str]  # a name, and its text with measures in braces
 
@@ -83,13 +77,13 @@ SECTION: tuple[Row, ...] = (
 )
 SHAPE: tuple[Row, ...] = (
     ("cutter", "⌀ {cutter:mm}"),
-    ("entries", "{entries}"),
+    ("entries", "{entries:words}"),
     *DEVIATION,
     ("depth", "{lowest:mm}"),
 )
 HOLES: tuple[Row, ...] = (
-    ("entries", "{entries}"),
-    ("holes", "{count} on ⌀ {circle:mm}, C {c}"),
+    ("entries", "{entries:words}"),
+    ("holes", "{count} on ⌀ {circle:mm}, C {angles:turns}"),
     *DEVIATION,
     ("depth", "{depth:mm}"),
 )
@@ -101,14 +95,13 @@ STOCK: tuple[Row, ...] = (
 )
 
 
-class CutLine(NamedTuple):
-    """The columns of a cut: where, which code, what, how far off the toolpath, how long."""
-
-    where: str
-    code: str
-    what: str
-    off: str = ""
-    time: str = ""
+ROWS = {"pockets": POCKET, "sections": SECTION, "holes": HOLES, "shapes": SHAPE}
+WHAT = {  # of the line of a cut; a shape's section, which has the time, has a line of its own
+    "pockets": "⌀ {radius:twice} to {square_to}{lowest:mm}",
+    "sections": "cutter ⌀ {cutter:mm} {side} the contour, to {third}{lowest:mm}",
+    "holes": "{holes} {depth:mm} deep, {side} ⌀ {circle:mm}",
+    "shapes": "cutter ⌀ {cutter:mm}, to Z{lowest:mm}",
+}
 
 
 def as_text(proof: Proof, unit: Unit, *, full: bool = False, strict: bool = False) -> str:
@@ -118,16 +111,80 @@ def as_text(proof: Proof, unit: Unit, *, full: bool = False, strict: bool = Fals
     notes = [each for each in judged if each.is_note and not strict]
     others = [each for each in judged if each.is_not_judged]
     cuts = paragraphs_of(proof, unit) if full else ["\n".join(_in_columns(cut_lines(proof, unit)))]
+    messages = (m._replace(line=proof.user_line(m.line)) for m in proof.subject.trace.messages)
     parts = [
         zero_text(proof, unit),
         *cuts,
         _listed("findings", findings, proof, unit),
         _listed("notes", notes, proof, unit),
         _listed("not judged", others, proof, unit),
-        "\n".join(message_lines(messages_of(proof))),
+        "\n".join(message_lines(messages)),
         verdict(len(findings), len(notes)),
     ]
     return "\n\n".join(filter(None, parts))
+
+
+def as_json(proof: Proof) -> str:
+    """Return the proof for a program to read."""
+    judged = {
+        name: [judged_values(each, proof) for each in proof.judged if getattr(each, kind)]
+        for name, kind in KINDS.items()
+    }
+    cuts, line = proof.cuts._asdict(), proof.user_line
+    values = {
+        "program": str(proof.opened.source if proof.opened else proof.subject.program),
+        "ini": str(proof.subject.ini.path),
+        "real": proof.subject.real is not None,
+        **{kind: [values_of(kind, cut, proof) for cut in cuts[kind]] for kind in ROWS},
+        "rapids": [judged_values(each, proof) for each in proof.judged if "path" in each.values],
+        "stock": proof.given and stock_values(proof.given),
+        "unseen": [{"line": line(at), "code": code} for at, code in proof.unseen],
+        "messages": [
+            {"line": line(message.line), "text": message.text}
+            for message in proof.subject.trace.messages
+        ],
+        "still": [{"line": line(at), "code": code} for at, code in proof.still],
+        **judged,
+        "good": not judged["findings"],
+    }
+    return json.dumps(values, indent=2)
+
+
+def judged_values(found: Finding, proof: Proof) -> dict:
+    """Return a finding or a note as plain values, its sentence in mm."""
+    return {
+        "code": found.code,
+        "line": proof.user_line(found.line, found.file),
+        "file": found.file or None,
+        "text": proof.text(found, MM),
+        "place": None if found.place is None else [float(value) for value in found.place],
+    }
+
+
+def values_of(kind: str, cut: MeasuredCut, proof: Proof) -> dict[str, Any]:
+    """Return the measures of a cut with the user's lines; entries are in program units."""
+    first, last = (proof.user_line(line, cut.file) for line in (cut.line, cut.last))
+    lines = {"lines": [first, last]} if cut.last else {"line": first}
+    values = {**lines, "file": cut.file or None, "code": cut.code, **cut.values}
+    if "lowest_feed_line" in values:
+        values["lowest_feed_line"] = proof.user_line(values["lowest_feed_line"], cut.file)
+    return values | section_values(cut, proof.subject.ini) if kind == "sections" else values
+
+
+def section_values(cut: MeasuredCut, ini: Ini) -> dict[str, Any]:
+    """Return why X words of a section are read so, and about how long kinematics would take."""
+    section, reading = cut.asked, ini.settings.polar_x
+    by_mode = section.surface or reading == "inherit"
+    modal = "G7" if section.diameters else "G8"
+    times = times_of_section(section, cut.path, ini)
+    by = {"x_words_by": modal if by_mode else f"POLAR_X = {reading}"}
+    return {**by, "seconds_planned": times and times._asdict()}
+
+
+def stock_values(workpiece: Workpiece) -> dict[str, Any]:
+    """Return the stock as plain values."""
+    bounds = list(workpiece.shape.bounds)
+    return {"text": workpiece.stock.text, "bounds": bounds, "top": workpiece.top}
 
 
 def zero_text(proof: Proof, unit: Unit) -> str:
@@ -136,68 +193,48 @@ def zero_text(proof: Proof, unit: Unit) -> str:
     Places of a section are as far from the spindle as the program's; those on a cylinder are the
     program's. Where X0 lies must be the spindle's axis.
     """
-    contours = [facts.section for facts in proof.sections]
     zero = proof.workpiece.program.zero()
-    words = [*zip(AXES, zero)][Z if contours else 0 :]
+    words = [*zip("XYZ", zero)][Z if proof.sections else 0 :]
     said = "places are those of the machine: the program's zero is {zero:xyz}"
     moved = in_words(said, {"zero": words}, unit) if max(abs(zero)) >= SIZE else ""
-    return "; ".join(filter(None, [moved, x0_text(proof.subject.part, unit) if contours else ""]))
+    x0 = x0_text(proof.subject.part, unit) if proof.sections else ""
+    return "; ".join(filter(None, [moved, x0]))
 
 
 def paragraphs_of(proof: Proof, unit: Unit) -> Iterator[str]:
     """Yield every measure of each pocket, shape and section, and of the stock."""
-    for pocket in proof.pockets:
-        yield pocket_text(pocket, proof, unit)
-    for shape in proof.shapes:
-        yield call_text(shape.call, SHAPE, shape_values(shape, proof), proof, unit)
-    for drilled in proof.holes:
-        angles = ", ".join(plain(angle, 3) for angle in drilled.holes.angles)
-        values = {**holes_values(drilled, proof), "count": drilled.holes.count, "c": angles}
-        yield call_text(drilled.holes.call, HOLES, values, proof, unit)
-    for section in proof.sections:
-        yield section_text(section, proof, unit)
+    for kind in ("pockets", "shapes", "holes", "sections"):
+        for cut in proof.cuts._asdict()[kind]:
+            yield paragraph_of(kind, cut, proof, unit)
     if proof.given:
         values = stock_values(proof.given)
         yield paragraph(f"stock: {values['text']}", rows_of(STOCK, values, unit))
 
 
-def pocket_text(facts: PocketFacts, proof: Proof, unit: Unit) -> str:
-    """Return the paragraph of one pocket."""
-    source, values = facts.target.source, pocket_values(facts, proof)
-    values |= {"allowed": proof.tolerances.pocket, "real_seconds": real_seconds(values)}
-    title = f"{line_text(proof, source.line, source.file)}: {source.code} ({source.dialect})"
-    return paragraph(title, rows_of(POCKET, values, unit))
+def paragraph_of(kind: str, cut: MeasuredCut, proof: Proof, unit: Unit) -> str:
+    """Return the paragraph of a cut."""
+    values = {"seconds": None, "across_flats": (), **values_of(kind, cut, proof)}
+    reckoned = values["seconds"] == values.get("seconds_programmed")  # knows no acceleration
+    values |= {"allowed": allowed_of(kind, proof)}
+    values |= {"real_seconds": None if reckoned else values["seconds"]}
+    flats = dict.fromkeys(tuple(round(size, 3) for size in each) for each in values["across_flats"])
+    values |= dict(zip(("flats", "flats_reached"), zip(*flats)))
+    call = proof.subject.trace.moves[cut.own.start].block
+    inside = not cut.last or (not cut.file and cut.line <= call <= cut.last)
+    called = "" if inside else f", called in line {proof.user_line(call)}"
+    title = f"{where_text(cut, proof)}{called}: {code_text(cut)}"
+    return paragraph(title, rows_of(ROWS[kind], values, unit))
 
 
-def section_text(facts: SectionFacts, proof: Proof, unit: Unit) -> str:
-    """Return the paragraph of one section."""
-    section, values = facts.section, section_values(facts, proof)
-    values |= {"allowed": proof.tolerances.polar, "real_seconds": real_seconds(values)}
-    flats = list(
-        zip(*dict.fromkeys(tuple(round(size, 3) for size in each) for each in facts.size.flats))
-    )
-    values |= {"flats": flats[0], "flats_reached": flats[1]} if flats else {}
-    call = proof.subject.trace.moves[section.at].block
-    called = f", called in line {proof.user_line(call)}"
-    own = not section.file and section.line <= call <= section.last
-    title = f"{section_lines_text(facts, proof)}{'' if own else called}: {section.code}"
-    return paragraph(title, rows_of(SECTION, values, unit))
+def allowed_of(kind: str, proof: Proof) -> float:
+    """Return how far off a cut of a kind may be, mm."""
+    return proof.tolerances.pocket if kind == "pockets" else proof.tolerances.polar
 
 
-def call_text(
-    call: SubCall, rows: Sequence[Row], values: Mapping[str, Any], proof: Proof, unit: Unit
-) -> str:
-    """Return the paragraph of a call of a sub; its entries are in program units."""
-    entries = ", ".join(f"{name} {plain(value, 4)}" for name, value in call.given.items())
-    values = {**values, "allowed": proof.tolerances.polar, "entries": entries}
-    title = f"{line_text(proof, call.line, call.file)}: {call.name}"
-    return paragraph(title, rows_of(rows, values, unit))
-
-
-def real_seconds(values: Mapping[str, Any]) -> float | None:
-    """Return the time of a run, None without one: what is only reckoned knows no acceleration."""
-    seconds = values["seconds"]
-    return None if seconds == values["seconds_programmed"] else seconds
+def code_text(cut: MeasuredCut) -> str:
+    """Return the code of a cut and its dialect, if it has one."""
+    dialect = cut.values.get("dialect")
+    return f"{cut.code} ({dialect})" if dialect else cut.code
 
 
 def rows_of(rows: Sequence[Row], values: Mapping[str, Any], unit: Unit) -> Iterator[Row]:
@@ -213,22 +250,17 @@ def paragraph(title: str, rows: Iterable[Row]) -> str:
     return "\n".join([title, *(f"  {name:{NAMES}}  {text}".rstrip() for name, text in rows)])
 
 
+def where_text(cut: MeasuredCut, proof: Proof) -> str:
+    """Return the user's lines of a cut in words."""
+    if not cut.last:
+        return line_text(proof, cut.line, cut.file)
+    first, last = (proof.user_line(line, cut.file) for line in (cut.line, cut.last))
+    return f"lines {first} to {last}{f' of {cut.file}' if cut.file else ''}"
+
+
 def line_text(proof: Proof, line: int, file: str) -> str:
     """Return the user's line in words, with the file of the sub in which it is."""
     return f"line {proof.user_line(line, file)}{f' of {file}' if file else ''}"
-
-
-def section_lines_text(facts: SectionFacts, proof: Proof) -> str:
-    """Return the user's lines of a section in words."""
-    section = facts.section
-    first, last = (proof.user_line(line, section.file) for line in (section.line, section.last))
-    return f"lines {first} to {last}{f' of {section.file}' if section.file else ''}"
-
-
-def messages_of(proof: Proof) -> Iterator:
-    """Yield the program's messages with the user's lines."""
-    for message in proof.subject.trace.messages:
-        yield message._replace(line=proof.user_line(message.line))
 
 
 def _listed(title: str, found: Sequence[Finding], proof: Proof, unit: Unit) -> str:
@@ -237,11 +269,11 @@ def _listed(title: str, found: Sequence[Finding], proof: Proof, unit: Unit) -> s
     for each in found:
         where = line_text(proof, each.line, each.file) if each.line else ""
         lines.setdefault(proof.text(each, unit), []).append(where)
-    rows = [f"{GAP}{where_text(where)}{text}" for text, where in lines.items()]
+    rows = [f"{GAP}{first_of_lines(where)}{text}" for text, where in lines.items()]
     return "\n".join([title, *rows]) if rows else ""
 
 
-def where_text(where: Sequence[str]) -> str:
+def first_of_lines(where: Sequence[str]) -> str:
     """Return the lines of a sentence: the first of them, and how many more."""
     named = [each for each in dict.fromkeys(where) if each]
     more = f" (and {counted_as(len(named) - 1, 'line')} more)" if len(named) > 1 else ""
@@ -254,7 +286,7 @@ def verdict(findings: int, notes: int) -> str:
     return f"verdict: {', '.join([first, *([counted_as(notes, 'note')] if notes else [])])}"
 
 
-def _in_columns(rows: Iterable[CutLine]) -> Iterator[str]:
+def _in_columns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
     """Yield rows with their columns below each other."""
     rows = list(rows)
     widths = [max(map(len, column)) for column in zip(*rows)]
@@ -263,59 +295,23 @@ def _in_columns(rows: Iterable[CutLine]) -> Iterator[str]:
         yield GAP.join(cells).rstrip()
 
 
-def cut_lines(proof: Proof, unit: Unit) -> list[CutLine]:
-    """Return a line for each cut."""
-    pockets = [pocket_line(facts, proof, unit) for facts in proof.pockets]
-    shapes = [shape_line(facts, proof, unit) for facts in proof.shapes]
-    shapes += [holes_line(facts, proof, unit) for facts in proof.holes]
-    return [*pockets, *shapes, *(section_line(facts, proof, unit) for facts in proof.sections)]
+def cut_lines(proof: Proof, unit: Unit) -> Iterator[tuple[str, ...]]:
+    """Yield the columns of each cut: where, which code, what, how far off, how long."""
+    for kind in ("pockets", "shapes", "holes", "sections"):
+        allowed = unit.fine(allowed_of(kind, proof))
+        for cut in proof.cuts._asdict()[kind]:
+            what = in_words(WHAT[kind], {**cut.values, **what_words(kind, cut)}, unit)
+            off = f"{unit.fine(cut.deviation)} {unit.name} off ({allowed} allowed)"
+            time = f"{plain(cut.values['seconds'], 1)} s" if "seconds" in cut.values else ""
+            yield where_text(cut, proof), code_text(cut), what, off, time
 
 
-def pocket_line(facts: PocketFacts, proof: Proof, unit: Unit) -> CutLine:
-    """Return the line of a pocket."""
-    source, wall = facts.target.source, facts.target.wall
-    depth = unit.text(wall.height(facts.target.deepest))
-    what = f"⌀ {unit.text(2 * wall.radius)} to {AXES[wall.plane]}{depth}"
-    off = off_text(facts.deviation, proof.tolerances.pocket, unit)
-    where = line_text(proof, source.line, source.file)
-    return CutLine(where, f"{source.code} ({source.dialect})", what, off, time_of(facts.pace))
-
-
-def section_line(facts: SectionFacts, proof: Proof, unit: Unit) -> CutLine:
-    """Return the line of a section."""
-    section = facts.section
-    sides = " and ".join(SIDES[side] for side in facts.sides) or "on"
-    depth = f"{AXES[section.third]}{unit.text(facts.lowest)}"
-    what = f"cutter ⌀ {unit.text(2 * facts.tool)} {sides} the contour, to {depth}"
-    off = off_text(facts.deviation, proof.tolerances.polar, unit)
-    return CutLine(section_lines_text(facts, proof), section.code, what, off, time_of(facts.pace))
-
-
-def shape_line(facts: ShapeFacts, proof: Proof, unit: Unit) -> CutLine:
-    """Return the line of a shape; its section, which has the time, has a line of its own."""
-    call = facts.call
-    what = f"cutter ⌀ {unit.text(2 * call.cutter)}, to Z{unit.text(facts.lowest)}"
-    off = off_text(facts.deviation, proof.tolerances.polar, unit)
-    return CutLine(line_text(proof, call.line, call.file), call.name, what, off)
-
-
-def holes_line(facts: HolesFacts, proof: Proof, unit: Unit) -> CutLine:
-    """Return the line of a call of holes."""
-    holes, call = facts.holes, facts.holes.call
-    where = "round" if holes.side else "on"
-    what = (
-        f"{counted_as(holes.count, 'hole')} {unit.text(holes.depth)} deep, {where}"
-        f" ⌀ {unit.text(2 * holes.circle)}"
-    )
-    off = off_text(facts.deviation, proof.tolerances.polar, unit)
-    return CutLine(line_text(proof, call.line, call.file), call.name, what, off)
-
-
-def off_text(size: float, tolerance: float, unit: Unit) -> str:
-    """Return a deviation and what it may be in words."""
-    return f"{unit.fine(size)} {unit.name} off ({unit.fine(tolerance)} allowed)"
-
-
-def time_of(pace) -> str:
-    """Return the time that a cut takes."""
-    return f"{plain(pace.seconds, 1)} s"
+def what_words(kind: str, cut: MeasuredCut) -> Mapping[str, str]:
+    """Return what the line of a cut has in words."""
+    if kind == "sections":
+        sides = " and ".join(SIDES[side] for side in cut.asked.sides) or "on"
+        return {"side": sides, "third": "XYZ"[cut.asked.third]}
+    if kind == "holes":
+        side = "round" if cut.face is None else "on"
+        return {"holes": counted_as(cut.values["count"], "hole"), "side": side}
+    return {}

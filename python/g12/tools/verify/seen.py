@@ -4,8 +4,6 @@
 Lengths are millimetres in machine coordinates.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -70,8 +68,7 @@ def seen_of_proof(proof: Proof) -> Seen:
 
     It is that of a cylinder's surface where all sections are cut on one.
     """
-    sections = [facts.section for facts in proof.sections]
-    radii = [section.surface for section in sections]
+    radii = [cut.asked.surface for cut in proof.sections]
     return Seen(
         tuple(each for each in proof.judged if each.is_finding),
         proof.given,

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A program on a machine, as it was traced and perhaps as it ran, and as its parts see it."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Self
 
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
@@ -14,7 +13,7 @@ from g12.tools.path.samples import Samples
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.moves import Trace
-from g12.tools.verify.compare.section_plane import x0_of
+from g12.tools.verify.compare.section import x0_of
 from g12.tools.verify.expected.contour import SectionContour
 
 SAME_X0 = 1e-6  # mm
@@ -35,6 +34,7 @@ class Subject:
     samples: Samples | None = None
     own: range | None = None
     drawn: Track | None = None
+    _surfaces: dict[float, Self] = field(default_factory=dict)  # of a run: all of it is looked at
 
     @cached_property
     def path(self) -> Track:
@@ -49,23 +49,24 @@ class Subject:
             return None
         return follow(self.path, self.trace.moves, self.samples, self.ini.mm)
 
-    def about(self, centre: float, own: range | None = None) -> Subject:
+    def about(self, centre: float, own: range | None = None) -> Self:
         """Return the same with the spindle's axis at another machine X; of its ``own`` moves."""
         same = abs(self.part.centre - centre) < SAME_X0
         return self if same else self._seen_as(replace(self.part, centre=centre), own)
 
-    def on_surface(self, radius: float, own: range | None = None) -> Subject:
+    def on_surface(self, radius: float, own: range | None = None) -> Self:
         """Return the same on a cylinder's unrolled surface."""
         return self._seen_as(Surface(turning=True, radius=radius), own)
 
-    def of_section(self, section: SectionContour) -> Subject:
+    def of_section(self, section: SectionContour) -> Self:
         """Return the same as the part of a section sees it."""
-        own = range(section.at, section.end)
-        if section.surface:
-            return self.on_surface(section.surface, own)
-        return self.about(x0_of(section, self.trace.moves[section.at]), own)
+        own, radius = range(section.at, section.end), section.surface
+        if not radius:
+            return self.about(x0_of(section, self.trace.moves[section.at]), own)
+        view = self.on_surface(radius, own)
+        return self._surfaces.setdefault(radius, view) if self.samples else view
 
-    def _seen_as(self, part: Part, own: range | None) -> Subject:
+    def _seen_as(self, part: Part, own: range | None) -> Self:
         return replace(self, part=part, own=None if self.samples else own)
 
 

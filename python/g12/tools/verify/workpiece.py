@@ -5,8 +5,6 @@ Each view of the part has a material of its own: the plane XY of a mill or the f
 every cylinder whose unrolled surface is cut. Lengths are mm in machine coordinates.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,27 +16,27 @@ import numpy as np
 from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
-from g12.tools.material.material import Material
+from g12.tools.material.material import SAME_LEVEL, Material
 from g12.tools.material.stock import Stock, StockText, read_stock
 from g12.tools.path.follow import Followed
-from g12.tools.path.part import Part, Z, disc, is_sideways, part_of
+from g12.tools.path.part import Part, X, Z, disc, is_sideways, part_of
 from g12.tools.path.surface import Surface
 from g12.tools.preview.moves import Move
 from g12.tools.units import unit_of
 from g12.tools.verify.asked import Asked
-from g12.tools.verify.expected.block_words import BlockInMm
-from g12.tools.verify.expected.calls import SubCall
 from g12.tools.verify.expected.contour import SectionContour
-from g12.tools.verify.pocket_walls import (
+from g12.tools.verify.expected.words import BlockInMm, SubCall
+from g12.tools.verify.subject import Subject
+from g12.tools.verify.walls import (
     AssumedHole,
     Circles,
     add_circles,
+    add_sections,
     approach_to,
     holes_entered,
     holes_of_words,
+    surface_key,
 )
-from g12.tools.verify.section_walls import add_sections, surface_key
-from g12.tools.verify.subject import Subject
 
 FLAT = 17  # the plane whose arcs keep their level
 CHUNK = 32  # moves of a lathe whose area is worked out at once
@@ -75,6 +73,11 @@ class Program:
         """Return the radius of a move's cutter: the loaded one's, else D's; 0 if none is known."""
         loaded = self.diameters.get(self.moves[index].tool, 0.0) / 2
         return loaded or self._named.get(index, 0.0)
+
+    def end(self, index: int) -> tuple[float, float, float]:
+        """Return where a move ends on the part."""
+        x, y, z = map(float, self.part.points(np.array(self.moves[index].end))[0])
+        return x, y, z
 
     @cached_property
     def _named(self) -> dict[int, float]:
@@ -142,6 +145,24 @@ class Workpiece:
     def material(self) -> Material:
         """The material in the plane XY, or of a lathe's face."""
         return self.views[0].material
+
+    @cached_property
+    def known(self) -> dict[int, None]:
+        """The moves, in order, that end where the program says: a trace begins anywhere.
+
+        Where the program's zero is that of the machine, only a work offset would tell where G53,
+        G28 and G30 lead.
+        """
+        moves, axes = self.program.moves, (X, Z) if self.program.part.turning else (Z,)
+        offset = any(abs(target.wall.face) > SAME_LEVEL for _, target in self.program.circles)
+        lost = {a: any(move.start[a] != move.end[a] for move in moves) for a in axes}
+        found: dict[int, None] = {}
+        for index, move in enumerate(moves):
+            moved = [axis for axis in axes if move.start[axis] != move.end[axis]]
+            lost |= dict.fromkeys(moved, move.by_machine and not offset)
+            if not any(lost.values()):
+                found[index] = None
+        return found
 
     @property
     def bottom(self) -> float | None:

@@ -11,15 +11,15 @@ samples of a run are laid alike. Where the path is left, nothing more is known o
 Lengths are mm, in the frame of the expected moves.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import accumulate, chain
+from typing import Any
 
 from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.verify.expected.toolpath import Expected
+from g12.tools.verify.result.finding import Finding
 
 Point = tuple[complex, float]  # in the plane, and the level
 AHEAD = 100  # moves after a difference that are looked at to tell its size
@@ -30,6 +30,9 @@ ARC_STEP = math.radians(30)  # an arc that was made is followed in steps of this
 COINCIDENT = 1e-4  # mm: a move that is no farther off as a whole is the expected one
 SAME_FEED = 1e-5  # relative; a trace tells feeds with nine decimals
 OFF, MISSING, EXTRA, RAPID, FEED, FEED_MODE = "off", "missing", "extra", "rapid", "feed", "mode"
+ToMachine = Callable[[Point], Sequence[float]]
+InWords = Callable[[Point], Sequence[tuple[str, Any]]]
+PER = {False: "per minute", True: "per revolution"}
 
 
 @dataclass(frozen=True)
@@ -139,98 +142,6 @@ class Laid:
         """Add a difference if it is the first of its kind."""
         if difference and all(known.kind != difference.kind for known in self.differences):
             self.differences.append(difference)
-
-
-def lay(
-    path: Sequence[Expected], made: Iterable[Made], tolerance: float, slack: float = SLACK
-) -> Laid:
-    """Lay what was made along a toolpath; farther off than ``tolerance`` (mm) is a difference."""
-    laid = Laid([[] for _ in path])
-    cursor, moves = _Cursor(path, slack), iter(made)
-    for move in moves:
-        left = _lay_move(cursor, move, tolerance, laid)
-        if left:
-            is_segment = left.kind == OFF and move.curve is None
-            rest = chain([move], moves)
-            laid.add(_at_its_worst(path, left, rest, tolerance) if is_segment else left)
-            return laid
-    if cursor.remaining > tolerance:
-        missing = cursor.next_move()
-        laid.add(PathDifference(MISSING, missing, missing.point(1.0)))
-    return laid
-
-
-def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> PathDifference | None:
-    """Take the cursor along a move; return how the move leaves the toolpath."""
-    if not cursor.path or cursor.remaining <= tolerance:
-        return _beyond_the_end(cursor, move, tolerance)
-    before, due = (cursor.index, cursor.share), cursor.next_move()
-    farthest, where = cursor.follow(move)
-    if farthest > tolerance:
-        return PathDifference(OFF, due, where, farthest, move.index)
-    laid.moves[cursor.index].append(move.index)
-    laid.spans[move.index] = Span(*before, cursor.index, cursor.share)
-    laid.deviation = max(laid.deviation, farthest)
-    laid.add(_otherwise(cursor.path[cursor.index], move))
-    return None
-
-
-def _at_its_worst(
-    path: Sequence[Expected], off: PathDifference, moves: Iterable[Made], tolerance: float
-) -> PathDifference:
-    """Return how far what was made comes off the toolpath before it comes back.
-
-    ``moves`` are the one that is off and those after it. Where that one lies on the toolpath
-    farther ahead, what is between is missing.
-    """
-    at = next(index for index, move in enumerate(path) if move is off.expected)
-    ahead, found = path[at : at + AHEAD], replace(off, size=0.0)
-    for move in moves:
-        if move.index == off.index and _farthest(move, ahead[1:])[0] <= tolerance:
-            return PathDifference(MISSING, off.expected, off.expected.point(1.0), index=off.index)
-        size, where = _farthest(move, ahead)
-        if size <= found.size + TIE:
-            break
-        found = replace(off, size=size, at=where, index=move.index)
-    return found if found.size > tolerance else off
-
-
-def _farthest(move: Made, path: Sequence[Expected]) -> tuple[float, Point]:
-    """Return the greatest distance of a move from the nearest of some others, and where it is."""
-    return max(((_least(point, path), point) for point in move.points), key=_size)
-
-
-def _least(point: Point, path: Sequence[Expected]) -> float:
-    """Return the distance of a point from the nearest of some moves."""
-    away = (move.distance(*point, move.share_of(*point)) for move in path)
-    return min(away, default=math.inf)
-
-
-def _beyond_the_end(cursor: _Cursor, move: Made, tolerance: float) -> PathDifference | None:
-    """Return what a move does after the whole toolpath is made: nothing, if it stays there."""
-    end = cursor.path[-1].point(1.0) if cursor.path else move.points[0]
-    at = max(move.points, key=lambda point: _apart(point, end))
-    return (
-        PathDifference(EXTRA, None, at, index=move.index) if _apart(at, end) > tolerance else None
-    )
-
-
-def _otherwise(expected: Expected, move: Made) -> PathDifference | None:
-    """Return how a move differs in rapid or feed from the expected one that it is made along."""
-    at, index = move.points[-1], move.index
-    if expected.rapid != move.rapid:
-        return PathDifference(RAPID, expected, at, index=index)
-    if expected.rapid or None in (expected.feed, move.feed):
-        return None
-    if expected.per_rev != move.per_rev:
-        return PathDifference(FEED_MODE, expected, at, index=index)
-    if abs(move.feed - expected.feed) > SAME_FEED * expected.feed:
-        return PathDifference(FEED, expected, at, move.feed, index)
-    return None
-
-
-def _apart(one: Point, other: Point) -> float:
-    return abs(complex(abs(one[0] - other[0]), one[1] - other[1]))
 
 
 @dataclass
@@ -349,3 +260,132 @@ class _Cursor:
 
 def _size(found: tuple[float, Point]) -> float:
     return found[0]
+
+
+def lay(
+    path: Sequence[Expected], made: Iterable[Made], tolerance: float, slack: float = SLACK
+) -> Laid:
+    """Lay what was made along a toolpath; farther off than ``tolerance`` (mm) is a difference."""
+    laid = Laid([[] for _ in path])
+    cursor, moves = _Cursor(path, slack), iter(made)
+    for move in moves:
+        left = _lay_move(cursor, move, tolerance, laid)
+        if left:
+            is_segment = left.kind == OFF and move.curve is None
+            rest = chain([move], moves)
+            laid.add(_at_its_worst(path, left, rest, tolerance) if is_segment else left)
+            return laid
+    if cursor.remaining > tolerance:
+        missing = cursor.next_move()
+        laid.add(PathDifference(MISSING, missing, missing.point(1.0)))
+    return laid
+
+
+def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> PathDifference | None:
+    """Take the cursor along a move; return how the move leaves the toolpath."""
+    if not cursor.path or cursor.remaining <= tolerance:
+        return _beyond_the_end(cursor, move, tolerance)
+    before, due = (cursor.index, cursor.share), cursor.next_move()
+    farthest, where = cursor.follow(move)
+    if farthest > tolerance:
+        return PathDifference(OFF, due, where, farthest, move.index)
+    laid.moves[cursor.index].append(move.index)
+    laid.spans[move.index] = Span(*before, cursor.index, cursor.share)
+    laid.deviation = max(laid.deviation, farthest)
+    laid.add(_otherwise(cursor.path[cursor.index], move))
+    return None
+
+
+def _at_its_worst(
+    path: Sequence[Expected], off: PathDifference, moves: Iterable[Made], tolerance: float
+) -> PathDifference:
+    """Return how far what was made comes off the toolpath before it comes back.
+
+    ``moves`` are the one that is off and those after it. Where that one lies on the toolpath
+    farther ahead, what is between is missing.
+    """
+    at = next(index for index, move in enumerate(path) if move is off.expected)
+    ahead, found = path[at : at + AHEAD], replace(off, size=0.0)
+    for move in moves:
+        if move.index == off.index and _farthest(move, ahead[1:])[0] <= tolerance:
+            return PathDifference(MISSING, off.expected, off.expected.point(1.0), index=off.index)
+        size, where = _farthest(move, ahead)
+        if size <= found.size + TIE:
+            break
+        found = replace(off, size=size, at=where, index=move.index)
+    return found if found.size > tolerance else off
+
+
+def _farthest(move: Made, path: Sequence[Expected]) -> tuple[float, Point]:
+    """Return the greatest distance of a move from the nearest of some others, and where it is."""
+    away = (
+        (min((it.distance(*at, it.share_of(*at)) for it in path), default=math.inf), at)
+        for at in move.points
+    )
+    return max(away, key=_size)
+
+
+def _beyond_the_end(cursor: _Cursor, move: Made, tolerance: float) -> PathDifference | None:
+    """Return what a move does after the whole toolpath is made: nothing, if it stays there."""
+    end = cursor.path[-1].point(1.0) if cursor.path else move.points[0]
+    at = max(move.points, key=lambda point: _apart(point, end))
+    return (
+        PathDifference(EXTRA, None, at, index=move.index) if _apart(at, end) > tolerance else None
+    )
+
+
+def _otherwise(expected: Expected, move: Made) -> PathDifference | None:
+    """Return how a move differs in rapid or feed from the expected one that it is made along."""
+    at, index = move.points[-1], move.index
+    if expected.rapid != move.rapid:
+        return PathDifference(RAPID, expected, at, index=index)
+    if expected.rapid or None in (expected.feed, move.feed):
+        return None
+    if expected.per_rev != move.per_rev:
+        return PathDifference(FEED_MODE, expected, at, index=index)
+    if abs(move.feed - expected.feed) > SAME_FEED * expected.feed:
+        return PathDifference(FEED, expected, at, move.feed, index)
+    return None
+
+
+def _apart(one: Point, other: Point) -> float:
+    return abs(complex(abs(one[0] - other[0]), one[1] - other[1]))
+
+
+def judge_path(
+    laid: Laid, line: int, to_machine: ToMachine, words: InWords | None = None
+) -> Iterator[Finding]:
+    """Yield the differences of a toolpath.
+
+    ``to_machine`` makes machine coordinates of a point, ``words`` the letters and values by which
+    a sentence names it, if those are others.
+    """
+    for difference in laid.differences:
+        at = tuple(to_machine(difference.at))
+        expected = difference.expected
+        own = expected.line if expected and expected.line else line
+        values = {"at": words(difference.at) if words else at, **_values(difference)}
+        yield Finding(_code(difference), own, values, at)
+
+
+def _code(difference: PathDifference) -> str:
+    kind, expected = difference.kind, difference.expected
+    if kind in (OFF, MISSING, EXTRA):
+        return f"path-{kind}"
+    if kind == FEED:
+        return "feed-rev" if expected.per_rev else "feed"
+    if kind == FEED_MODE:
+        return "feed-mode"
+    return "not-rapid" if expected.rapid else "rapid"
+
+
+def _values(difference: PathDifference) -> Mapping[str, Any]:
+    expected = difference.expected
+    if expected is None:
+        return {}
+    values = {"what": expected.name, "size": difference.size}
+    if difference.kind == FEED:
+        values |= {"made": difference.size, "expected": expected.feed}
+    if difference.kind == FEED_MODE:
+        values |= {"made": PER[not expected.per_rev], "expected": PER[expected.per_rev]}
+    return values

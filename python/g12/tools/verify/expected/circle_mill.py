@@ -4,16 +4,13 @@
 Radii are those of the tool's centre in mm, levels are measured from where the tool stands.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from g12.tools.verify.expected.block_words import BlockInMm
-from g12.tools.verify.expected.calls import LEFT_OUT
 from g12.tools.verify.expected.toolpath import CircleWords, Expected, Writer
+from g12.tools.verify.expected.words import LEFT_OUT, BlockInMm
 
 RETRACT = 2.54  # mm, of a pocket between its levels
 NARROWER = 0.254  # mm: the roughing width without J is the cutter's diameter less this

@@ -17,8 +17,6 @@ By polar.md and cylinder.md:
 The words are taken for what they are: whether the tool gouges on this path is another question.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Iterator, Sequence
@@ -82,27 +80,23 @@ def step_of(
 ) -> ContourStep:
     """Return the step along an element, or an arc about the corner before it."""
     name = "ramp" if element.ramp else name if element.length > LENGTHLESS else "plunge"
-    exact, line = element.exact, element.line
-    move = Expected(name, curve, start, end, element.feed, exact=exact, line=line)
-    return ContourStep(move, element)
+    return ContourStep(Expected(name, curve, start, end, element.feed, line=element.line), element)
 
 
 def without_short(elements: Sequence[Element], limit: float) -> Iterator[Element]:
-    """Yield elements without those under compensation that are no longer than a limit."""
+    """Yield elements without those under compensation that only round the end of the one before.
+
+    They are no longer than a limit.
+    """
     kept: Element | None = None
     for element in elements:
-        if kept and is_short(kept, element, limit):
+        short = LENGTHLESS < element.length <= limit and is_cut(element)
+        if short and kept and is_cut(kept) and abs(element.end - kept.end) <= limit:
             continue
         if kept and element.start != kept.end and element.length > LENGTHLESS:
             element = begun_at(element, kept.end)
         kept = element if element.length > LENGTHLESS else kept
         yield element
-
-
-def is_short(kept: Element, element: Element, limit: float) -> bool:
-    """Tell whether an element only rounds the end of the one before."""
-    short = LENGTHLESS < element.length <= limit and abs(element.end - kept.end) <= limit
-    return short and is_cut(kept) and is_cut(element)
 
 
 def begun_at(element: Element, start: complex) -> Element:
@@ -189,14 +183,13 @@ def joint_of(moves: tuple[Element, Element], curves: tuple[Curve, Curve]) -> Cor
     if outside or (gap < COINCIDENT and abs(turned) < math.pi / 2):
         middle = (before.end + after.start) / 2
         return Corner(middle, middle)
-    shared = [place for place in crossings(before, after) if is_on(before, after, place)]
+    shared = [
+        place
+        for place in crossings(before, after)
+        if max(before.distance(place), after.distance(place)) < ON_CURVE
+    ]
     nearest = min(shared, key=lambda place: trimmed_by(before, after, place), default=None)
     return TIGHT if nearest is None else Corner(nearest, nearest)
-
-
-def is_on(before: Curve, after: Curve, place: complex) -> bool:
-    """Tell whether a crossing is on both curves."""
-    return max(before.distance(place), after.distance(place)) < ON_CURVE
 
 
 def trimmed_by(before: Curve, after: Curve, place: complex) -> float:

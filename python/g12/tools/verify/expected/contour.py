@@ -5,8 +5,6 @@ Lengths are millimetres, X a radius value. A polar contour's plane turns with th
 axis is X where the section begins; on a cylinder it is the unrolled surface.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -17,6 +15,7 @@ from g12.lengths import MM_PER_INCH
 from g12.tools.path.part import X, Z
 from g12.tools.preview.moves import Event
 
+NO_LENGTH = 1e-6  # mm
 ACTS = re.compile(
     r"(M\d|S|G10|G4[39]|G5\d|G92|dwell (?!0$)|message (?!G[0-9.]+: ))"
 )  # of what a trace tells: what a section does
@@ -126,9 +125,10 @@ class SectionContour:
     file: str = ""
 
     @property
-    def is_still(self) -> bool:
-        """Tell whether it moves nothing, though its words draw something."""
-        return bool(self.elements) and self.at == self.end
+    def sides(self) -> list[int]:
+        """Return the sides that the tool is on, ramps aside."""
+        cut = (each for each in self.elements if each.length > NO_LENGTH and not each.ramp)
+        return sorted({each.side for each in cut})
 
     @property
     def exact(self) -> bool:

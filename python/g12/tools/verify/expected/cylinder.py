@@ -7,8 +7,6 @@ G41 has the tool on the left. X is at right angles to it; X and U are diameters 
 arc's centre is I or J along C and K along Z, both lengths.
 """
 
-from __future__ import annotations
-
 import math
 
 from g12.tools.machine.ini import Ini

@@ -4,15 +4,14 @@
 Radii are those of the tool's centre in mm, depths are measured from where the tool stands.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 from g12.settings import Settings
-from g12.tools.verify.expected.block_words import BlockInMm
 from g12.tools.verify.expected.toolpath import CircleWords, Expected, Writer, core_within
+from g12.tools.verify.expected.words import BlockInMm
 
 CLEARED = 0.9  # of the cutter's radius: the helix is not larger
 LEAST_CORNER = math.radians(0.99)  # between two half turns of the helix
@@ -42,7 +41,7 @@ class HaasWords(CircleWords):
     word: str = ""
 
     @classmethod
-    def of(cls, view: BlockInMm, turn: int, offset: float, settings: Settings) -> HaasWords:
+    def of(cls, view: BlockInMm, turn: int, offset: float, settings: Settings) -> Self:
         """Return the words of a block; ``offset`` is the radius in force."""
         word, step, feed = "K" if "K" in view.words else "I", view.length("Q"), view.feed()
         first, last = view.length("I") - offset, view.length(word) - offset

@@ -6,8 +6,6 @@ face, Z of the side), upwards C as millimetres round the circle of holes. The le
 above the face or the surface. Lengths are mm, angles degrees unless a name says otherwise.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Sequence
@@ -15,8 +13,8 @@ from dataclasses import dataclass
 
 from g12.tools.path.part import C, X, Z
 from g12.tools.units import plain
-from g12.tools.verify.expected.calls import SubCall
 from g12.tools.verify.expected.toolpath import Expected, Writer
+from g12.tools.verify.expected.words import SubCall
 
 CHIP = 0.254  # back to break a chip, and short of where the drill was, but half a peck at most
 ROUNDING = 1e-6  # so small a rest is no peck of its own

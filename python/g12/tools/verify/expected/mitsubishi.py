@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The toolpath of a Mitsubishi G12 or G13 block, by ngc/mitsubishi.md, in any plane. Lengths mm."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
+from typing import Self
 
-from g12.tools.verify.expected.block_words import BlockInMm
 from g12.tools.verify.expected.toolpath import CircleWords, Expected, Writer, core_within
+from g12.tools.verify.expected.words import BlockInMm
 
 
 @dataclass(frozen=True)
@@ -22,7 +21,7 @@ class MitsubishiWords(CircleWords):
     word: str = ""
 
     @classmethod
-    def of(cls, view: BlockInMm, turn: int, offset: float) -> MitsubishiWords:
+    def of(cls, view: BlockInMm, turn: int, offset: float) -> Self:
         """Return the words of a block; ``offset`` is the radius of D."""
         final, word = abs(view.length("I")) - offset, "" if offset else "I"
         return cls(final, turn, view.feed(), view.line, view.rev, word)

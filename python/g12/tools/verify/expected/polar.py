@@ -5,8 +5,6 @@ Lengths are millimetres, X a radius value. The plane turns with the part, its fi
 the section begins.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Iterator, Mapping

@@ -5,13 +5,11 @@ Points are those of the tool's centre on the face, which turns with C: the real 
 of the program's C0, the level is Z. Lengths are mm, angles radians unless a name says degrees.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 
-from g12.tools.verify.expected.calls import SubCall, equal_steps
 from g12.tools.verify.expected.toolpath import Expected, Writer
+from g12.tools.verify.expected.words import SubCall, equal_steps
 
 CLEAR = 1.0  # above the face, and between the tool and the stock beside it
 WIDEST = 0.75  # of the cutter's diameter: rounds and rings are no farther apart

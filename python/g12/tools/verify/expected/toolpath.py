@@ -6,8 +6,6 @@ its plane; of a polar section, the part's face; on a cylinder, its unrolled surf
 measured at right angles to it.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from g12.geometry.curve import Arc, Curve, Line
@@ -21,8 +19,7 @@ class Expected(NamedTuple):
 
     ``name`` is what the move is for, as the page calls it: plunge, lead-in, ring, stepover.
     ``feed`` is in mm per minute, or per revolution if ``per_rev``; None where the words do not say.
-    ``exact`` says that it ends in an exact stop, None where the words do not say. ``line`` is that
-    of its block.
+    ``line`` is that of its block.
     """
 
     name: str
@@ -32,7 +29,6 @@ class Expected(NamedTuple):
     feed: float | None = None
     rapid: bool = False
     per_rev: bool = False
-    exact: bool | None = None
     line: int = 0
 
     @property

@@ -4,15 +4,14 @@
 Places are those of the tool's centre along X from the circle's centre, mm, signed like I.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Self
 
 from g12.tools.machine.ini import Ini
-from g12.tools.verify.expected.block_words import BlockInMm
 from g12.tools.verify.expected.toolpath import CircleWords, Expected, Writer, core_within
+from g12.tools.verify.expected.words import BlockInMm
 
 ROUNDING = 1e-6  # mm
 
@@ -41,7 +40,7 @@ class YasnacWords(CircleWords):
     hole: float = 0.0
 
     @classmethod
-    def of(cls, view: BlockInMm, turn: int, offset: float, ini: Ini) -> YasnacWords:
+    def of(cls, view: BlockInMm, turn: int, offset: float, ini: Ini) -> Self:
         """Return the words of a block; ``offset`` is the radius of D, 0 without it."""
         words, hole = view.words, view.length("R") or view.length("J")
         inward = math.copysign(offset, words["I"])

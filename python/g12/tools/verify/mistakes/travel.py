@@ -5,8 +5,6 @@ LinuxCNC itself adds the work offsets, those that the program sets and those of 
 file. Where there are none, a pocket is not known to be where it is traced, but how wide it is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
@@ -17,7 +15,7 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.part import axes_of_plane
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Event, Move
-from g12.tools.verify.expected.block_words import BlockInMm
+from g12.tools.verify.expected.words import BlockInMm
 from g12.tools.verify.reading.circles import Target
 from g12.tools.verify.result.finding import Finding
 

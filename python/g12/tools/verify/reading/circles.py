@@ -5,8 +5,6 @@ One reader per dialect. Lengths are millimetres in machine coordinates; a wall h
 own, so that a pocket in any plane of a turned work coordinate system looks the same.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,7 +16,6 @@ from g12.geometry.curve import Arc
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.expected.block_words import BlockInMm
 from g12.tools.verify.expected.circle_mill import (
     EventWords,
     called_event,
@@ -28,10 +25,12 @@ from g12.tools.verify.expected.circle_mill import (
 from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.expected.mitsubishi import MitsubishiWords
 from g12.tools.verify.expected.toolpath import TOUCHING, Expected
+from g12.tools.verify.expected.words import BlockInMm
 from g12.tools.verify.expected.yasnac import YasnacWords
 from g12.tools.verify.reading.codes import EVENT, Codes, Cycle, compensates
 
 POCKET_HANDLER = "circle_mill_pocket"
+FULL = 2 * math.pi - 1e-9
 DYNAMIC = (41.1, 42.1)  # compensation whose D is a diameter
 
 Asked = HaasWords | YasnacWords | MitsubishiWords | EventWords
@@ -127,7 +126,7 @@ class Target:
     @cached_property
     def circles(self) -> list[Expected]:
         """The full circles of the toolpath about the centre."""
-        return [move for move in self.path if is_full_circle(move)]
+        return [m for m in self.path if abs(getattr(m.curve, "sweep", 0.0)) > FULL]
 
     @property
     def arcs(self) -> list[Arc]:
@@ -152,11 +151,6 @@ class Target:
             for move in self.circles
             if isinstance(move.curve, Arc) and abs(move.curve.radius - self.asked.final) < TOUCHING
         ]
-
-
-def is_full_circle(move: Expected) -> bool:
-    """Tell whether an expected move is a full circle."""
-    return abs(getattr(move.curve, "sweep", 0.0)) > 2 * math.pi - 1e-9
 
 
 @dataclass
@@ -189,7 +183,9 @@ class CircleReader:
             asked: Asked = self._event(view, cycle, offset)
         else:
             offset, number = self._offset(view, cycle.dialect)
-            asked = self._circle(view, cycle, cycle.turn or self._turn_of(block), offset)
+            own = self.moves[block.at : block.end]  # of a handler of the machine's own
+            turn = next((move.turns for move in own if move.kind == "arc"), 1)
+            asked = self._circle(view, cycle, cycle.turn or turn, offset)
         loaded, circle = self._radius(view.tool), asked.final if asked.word else 0.0
         named = number if offset else None
         cutter = Cutter(offset or loaded, view.tool, loaded, named, asked.word, circle)
@@ -220,11 +216,6 @@ class CircleReader:
         entries = coded_event(view, pocket) if cycle.handler else called_event(view)
         self.plane = entries.get("W", self.plane)
         return event_of(entries, self.plane, view, cutter)
-
-    def _turn_of(self, block: Block) -> int:
-        """Return the turn of the first arc: the machine has a handler of its own."""
-        own = self.moves[block.at : block.end]
-        return 1 if next((move.turns for move in own if move.kind == "arc"), 1) > 0 else -1
 
     def _remember(self, block: Block) -> None:
         """Note the D of a block that switches cutter compensation on."""

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Which codes of a machine are cycles, and of which dialect: by what its REMAP lines call."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
@@ -121,16 +119,13 @@ class Codes:
         return {
             text
             for text, switch, inside in self.with_switches(texts)
-            if switch or self._is_wanted(text) or (compensates(text.codes) and not inside)
+            if switch
+            or self.cycle_of(text.call, text.codes)
+            or self.shape_of(text)
+            or self.holes_of(text)
+            or text.hides_code
+            or (compensates(text.codes) and not inside)
         }
-
-    def sections_in(self, texts: Iterable[Text]) -> bool:
-        """Tell whether a file has a line that switches a section."""
-        return any(map(self.section, texts))
-
-    def _is_wanted(self, text: Text) -> bool:
-        cycle = self.cycle_of(text.call, text.codes)
-        return bool(cycle or self.shape_of(text) or self.holes_of(text) or text.hides_code)
 
 
 def compensates(codes: Sequence[float]) -> bool:

@@ -5,8 +5,6 @@ LinuxCNC is made to find copies of those files that tell of their blocks, as the
 program does; see `executed_blocks`.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import tempfile
@@ -113,13 +111,11 @@ def called_files(texts: Sequence[Text], ini: Ini) -> set[Path]:
 
     They may command a D and move nothing, which no trace shows.
     """
-    folders = [ini.directory / os.path.expanduser(folder) for folder in folders_of_subs(ini)]
     found: set[Path] = set()
     waiting = [texts]
     while waiting:
         for name in {text.call for text in waiting.pop() if text.call}:
-            files = (folder / f"{name}.ngc" for folder in folders)
-            file = next(filter(Path.is_file, files), None)
+            file = file_of_sub(name, ini)
             if file and file not in found:
                 found.add(file)
                 waiting.append(read_lines(file))
@@ -132,14 +128,15 @@ def clamp_files(ini: Ini) -> dict[Path, str]:
     None where one of them is no sub: what it does is not seen.
     """
     subs = {remap.code: remap.keywords.get("ngc", "") for remap in remap_lines(ini.all)}
-    folders = [ini.directory / os.path.expanduser(folder) for folder in folders_of_subs(ini)]
-    found = {}
-    for code in (f"M{number}" for number in ini.settings.c_clamp):
-        files = (folder / f"{subs.get(code)}.ngc" for folder in folders)
-        file = next(filter(Path.is_file, files), None)
-        if file:
-            found[file] = code
-    return found if len(found) == len(ini.settings.c_clamp) else {}
+    codes = [f"M{number}" for number in ini.settings.c_clamp]
+    found = {file_of_sub(subs.get(code, ""), ini): code for code in codes}
+    return found if all(found) and len(found) == len(codes) else {}
+
+
+def file_of_sub(name: str, ini: Ini) -> Path | None:
+    """Return the file that LinuxCNC takes for a sub."""
+    folders = (ini.directory / os.path.expanduser(folder) for folder in folders_of_subs(ini))
+    return next(filter(Path.is_file, (folder / f"{name}.ngc" for folder in folders)), None)
 
 
 def folders_of_subs(ini: Ini) -> list[str]:

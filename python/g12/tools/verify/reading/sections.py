@@ -3,19 +3,24 @@
 
 A copy of the program is traced in which the section's motion is left out and every block tells
 its words instead; expressions, loops, calls and conditions are LinuxCNC's own doing.
-"""
 
-from __future__ import annotations
+C stays turned behind a polar section. The next one is turned on the part with it, unless the
+program commands C in between, or gives it another zero.
+"""
 
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+from g12.tools.machine.ini import Ini
+from g12.tools.path.part import C
 from g12.tools.preview.executed_blocks import (
+    COMMENT,
     Block,
     Text,
     after,
@@ -26,12 +31,12 @@ from g12.tools.preview.executed_blocks import (
     moves_otherwise,
     read_lines,
 )
+from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
-from g12.tools.verify.expected.block_words import kept_state
-from g12.tools.verify.expected.contour import ACTS, Act, Element, SectionContour
+from g12.tools.verify.expected.contour import ACTS, BEGUN, Act, Element, SectionContour, ZeroLine
+from g12.tools.verify.expected.words import kept_state
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.reading.executed_subs import Copies, called_files, files_with
-from g12.tools.verify.reading.inside import SectionLine, followed_subs, section_lines, with_flags
 
 ACTING_M = {*map(float, (3, 4, 5, 7, 8, 9, 48, 49, 50, 51, 52, 53)), *map(float, range(100, 200))}
 DWELL = 4.0
@@ -40,6 +45,56 @@ SPINDLE = re.compile(r"\$\s*(#?-?[\d.]+|#<[^>]*>)")
 RESTORE, SAVE_FOR_SUB = 72.0, 73.0
 Place = tuple[str, int]
 Pens = Mapping[str, Callable[[Block], Any]]
+BODY = re.compile(r"/?(?:n[0-9.]+)?o(?:<([^>]+)>|([0-9.]+))(sub|endsub)")
+POSITION = "#<_", "#54"  # position parameters, which a copy without motion cannot follow
+SAME_ANGLE = 1e-3  # degree
+
+
+class SectionLine(NamedTuple):
+    """A line of a file: what it says, as it is written, and the sub whose body it is in."""
+
+    text: Text
+    written: str
+    sub: str
+
+    @property
+    def asks_position(self) -> bool:
+        """Tell whether it asks where the tool is."""
+        return any(name in self.written.replace(" ", "") for name in POSITION)
+
+
+def section_lines(texts: Sequence[Text], written: Sequence[str]) -> list[SectionLine]:
+    """Return the lines of a file."""
+    found, sub = [], ""
+    for text, line in zip(texts, written):
+        body = BODY.match(re.sub(r"\s", "", COMMENT.sub("", line)).lower())
+        sub = (body[1] or body[2]) if body and body[3] == "sub" else sub
+        found.append(SectionLine(text, line, sub))
+        sub = "" if body and body[3] == "endsub" else sub
+    return found
+
+
+def followed_subs(files: Sequence[Sequence[SectionLine]], codes: Codes) -> set[str]:
+    """Return the subs that are called in sections and nowhere else, and ask for no position."""
+    subs = {line.text.call for lines in files for line in lines if line.text.control} - {""}
+    subs -= {line.sub for lines in files for line in lines if line.asks_position}
+    while True:
+        flagged = [each for lines in files for each in with_flags(lines, codes, subs)]
+        elsewhere = {line.text.call for line, within in flagged if not within}
+        if not subs & elsewhere:
+            return subs
+        subs -= elsewhere
+
+
+def with_flags(
+    lines: Sequence[SectionLine], codes: Codes, subs: set[str]
+) -> Iterator[tuple[SectionLine, bool]]:
+    """Yield lines, each with whether it is in a section: its first one is, its last is not."""
+    inside = False
+    for line in lines:
+        switch = codes.switch(line.text, inside)
+        inside = inside if not switch else switch == "on"
+        yield line, inside or line.sub in subs
 
 
 def sections(
@@ -64,12 +119,11 @@ def sections(
         file: section_lines(read_lines(file), lines_as_written(file)) for file in (program, *every)
     }
     subs = followed_subs(list(read.values()), codes)
-    files = files_with(codes.sections_in, every)
+    files = files_with(lambda texts: any(map(codes.section, texts)), every)
     files += [file for file in every if file.stem in subs and file not in files]
     copies = Copies(program, sorted(files), partial(flattened_file, codes=codes, subs=subs))
-    copy = copies.trace(tracer, tools, parameters)
     texts = copies.texts
-    copied = blocks_in(copy, texts)
+    copied = blocks_in(copies.trace(tracer, tools, parameters), texts)
     groups = list(grouped(copied, codes))
     if [own[0].text for own in found] != [group[0].text for group in groups]:
         raise moves_otherwise(program)
@@ -77,7 +131,9 @@ def sections(
     paths = zip(*(paths_of(some, codes) for some in (blocks, copied)))
     return [
         replace(
-            section_of(own, group, codes, pens, doubts.get(place_of(own[0].text), "")),
+            section_of(
+                own, group, codes, pens, doubts.get((own[0].text.file, own[0].text.number), "")
+            ),
             paths=() if restores(group) else (left, asked),
             path=begun,
             asked_paths=(begun, *paths_told(group)),
@@ -152,13 +208,13 @@ def switched(block: Block, codes: Codes, inside: bool) -> str:
 
 
 def doubts_of(lines: Sequence[SectionLine], codes: Codes, subs: set[str]) -> dict[Place, str]:
-    """Return what the copy of the program cannot follow, by the place of a section's start."""
+    """Return what the copy of the program cannot follow, by file and line of a section's start."""
     doubts: dict[Place, str] = {}
     first: Place | None = None
     for line in lines:
         text = line.text
         switch = codes.switch(text, bool(first))
-        first = {"on": place_of(text), "off": None}.get(switch, first)
+        first = {"on": (text.file, text.number), "off": None}.get(switch, first)
         if first and text.call and text.call not in subs:
             doubts[first] = f"line {text.number} calls o<{text.call}>"
         elif first and text.too_long:
@@ -166,11 +222,6 @@ def doubts_of(lines: Sequence[SectionLine], codes: Codes, subs: set[str]) -> dic
         elif first and line.asks_position:
             doubts[first] = f"line {text.number} asks for a position"
     return doubts
-
-
-def place_of(text: Text) -> Place:
-    """Return the file of a sub, "" for the program, and the number of a line."""
-    return text.file, text.number
 
 
 def paths_of(blocks: Sequence[Block], codes: Codes) -> list[list[str]]:
@@ -216,6 +267,7 @@ def section_of(
         acts += [Act(block.text.number, text, len(elements)) for text in texts]
         if block is not group[-1]:  # whose words are those of the code that switches off
             elements += pen.draw(block)
+    kept = kept_state(group[0].state, [code for block in group for code in block.codes])
     return SectionContour(
         first.text.number,
         last.text.number,
@@ -231,15 +283,46 @@ def section_of(
         last.left.get("_c", math.nan),
         acts=tuple(acts),
         told=told,
-        leaves={**pen.leaves(first.state), **kept_behind(group)},
+        leaves={**pen.leaves(first.state), **({} if restores(group) else kept)},
         left=last.left,
         surface=pen.surface,
         file=first.text.file,
     )
 
 
-def kept_behind(group: Sequence[Block]) -> dict[str, float]:
-    """Return the modes that the blocks of a section leave as they are."""
-    if restores(group):
-        return {}
-    return kept_state(group[0].state, [code for block in group for code in block.codes])
+def with_zero_lines(
+    sections: Sequence[SectionContour],
+    moves: Sequence[Move],
+    program: Path,
+    codes: Codes,
+    ini: Ini,
+) -> list[SectionContour]:
+    """Return the sections of a program, each polar one with what has become of C before it."""
+    if not sections:
+        return []
+    texts = read_lines(program)
+    flagged = codes.with_switches(texts)
+    outside = [text for text, switch, inside in flagged if not (inside or switch)]
+    subs = chain.from_iterable(map(read_lines, called_files(texts, ini)))
+    lines = {text.number for text in (*outside, *subs) if "C" in dict(text.words)}
+    polar = [each for each in sections if not each.surface]
+    found = {
+        each.at: zero_line(before, each, moves, lines)
+        for before, each in zip([None, *polar], polar)
+    }
+    return [replace(each, zero_line=found.get(each.at, BEGUN)) for each in sections]
+
+
+def zero_line(
+    before: SectionContour | None, section: SectionContour, moves: Sequence[Move], lines: set[int]
+) -> ZeroLine:
+    """Return what has become of C since the section before, or the program's beginning."""
+    between = moves[before.end if before else 0 : section.at]
+    commanded = any(move.end[C] != move.start[C] or move.line in lines for move in between)
+    if before is None:
+        return ZeroLine(commanded)
+    angle, other = (moves[each.at].start[C] for each in (section, before))
+    turned = (angle - other + 180.0) % 360.0 - 180.0
+    offsets = angle - section.c, moves[before.end - 1].end[C] - before.left_c
+    commanded = commanded or abs(offsets[0] - offsets[1]) > SAME_ANGLE
+    return ZeroLine(commanded, turned if abs(turned) > SAME_ANGLE else 0.0, before.last)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A finding or a note of verify: a code of the table of sentences, a line, values and a place."""
 
-from __future__ import annotations
-
 import string
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -71,7 +69,8 @@ class _Writer(string.Formatter):
     ``mm`` and ``length`` a length, ``fine`` a small one, ``mm2`` an area, ``feed`` a feed, ``xyz``
     a place (of X, Y and Z, or of other letters, each with its length or with a text), ``place``
     one with its letters, ``list`` several lengths, ``span`` a least and a greatest, ``pace`` a feed
-    that was measured; each with its unit but ``mm`` and ``list``. A number stands for decimals.
+    that was measured, ``turns`` angles, ``words`` entries by name, ``twice`` a radius as
+    a diameter; lengths with their unit but ``mm``, ``twice``, ``list``. A number is of decimals.
     """
 
     def __init__(self, unit: Unit) -> None:
@@ -85,6 +84,11 @@ class _Writer(string.Formatter):
             ),
             "feed": lambda value: f"{unit.text(value)} {unit.name}/min",
             "xyz": lambda value: words_of_place(value, unit),
+            "twice": lambda value: unit.text(2 * value),
+            "turns": lambda angles: ", ".join(plain(angle, 3) for angle in angles),
+            "words": lambda words: ", ".join(
+                f"{name} {plain(at, 4)}" for name, at in words.items()
+            ),
             "list": lambda value: ", ".join(map(unit.text, value)),
             "span": lambda ends: f"{unit.text(ends[0])} to {unit.text(ends[1])} {unit.name}",
             "pace": lambda value: f"{plain(value / unit.mm, 1)} {unit.name}/min",

@@ -11,8 +11,6 @@ arc LinuxCNC is no faster than X and Y let it be.
 Lengths are millimetres, angles radians, times seconds.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -123,14 +121,9 @@ def looked_at(move: Move, centre: float) -> np.ndarray:
 
 def places(move: Move, parts: np.ndarray, centre: float) -> np.ndarray:
     """Return the places (complex) after parts of a move, seen from the spindle's centre."""
-    found = way_of(move, parts, centre)
-    return np.where(abs(found) < AT_CENTRE, 0.0, found)
-
-
-def way_of(move: Move, parts: np.ndarray, centre: float) -> np.ndarray:
-    """Return the same, rounding and all."""
     start, end = (complex(place[X] - centre, place[Y]) for place in (move.start, move.end))
-    if move.kind != "arc":
-        return start + (end - start) * parts
-    middle = complex(move.centre[X] - centre, move.centre[Y])
-    return middle + (start - middle) * np.exp(1j * move.sweep * parts)
+    found = start + (end - start) * parts
+    if move.kind == "arc":
+        middle = complex(move.centre[X] - centre, move.centre[Y])
+        found = middle + (start - middle) * np.exp(1j * move.sweep * parts)
+    return np.where(abs(found) < AT_CENTRE, 0.0, found)

@@ -16,28 +16,28 @@ too: so it must be one of the words between two lines, or C that turns in place.
 Lengths are millimetres along the part.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, islice
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from g12.machine_ini import face_of
 from g12.tools.machine.ini import Ini
+from g12.tools.path.follow import Followed
 from g12.tools.path.part import C
-from g12.tools.path.track import Track
+from g12.tools.path.track import Track, rate
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.path import Span
-from g12.tools.verify.compare.section import SectionPath
+from g12.tools.verify.compare.section import Plane, SectionPath
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.toolpath import Expected
 from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.tolerances import LEVEL
 from g12.tools.verify.sections.face_follow import FollowLimits, follow_off, is_slow_enough
 
 G64_P = re.compile(r"G64 P(\S+)")
@@ -46,6 +46,9 @@ NO_LENGTH = 1e-4  # mm, of what is left of a move
 SMOOTH = math.radians(1.0)
 CORNER = math.radians(15.0)  # chords of an arc make smaller ones
 LESS_ON_FACE, LEAST_ON_FACE = 0.86, 0.05  # of the feed: what C cannot follow is made at between
+TURN = 1e-6  # mm along the part: C turns in place
+HALF_TURN = 180.01  # the shorter way is no longer
+WINDOW = 0.01  # s of a run, over which C's speed is taken: samples lie a servo period apart
 
 
 class SectionAxes(NamedTuple):
@@ -66,7 +69,7 @@ class SectionAxes(NamedTuple):
     surface: float = 0.0
     slide: float = 0.0
 
-    def of(self, section: SectionContour) -> SectionAxes:
+    def of(self, section: SectionContour) -> Self:
         """Return the same for a section: nothing but polar interpolation uses the kinematics."""
         on_face = self.face and not section.surface
         return self._replace(face=on_face, surface=section.surface)
@@ -152,7 +155,9 @@ def joints_along(
     points, owner = path.points, path.move
     spans = found.emitted.spans
     begin, end = path.vertices(section.at).start, path.vertices(section.end - 1).stop
-    directions = directions_of(points[begin:end])
+    steps = np.diff(points[begin:end], axis=0)
+    lengths = np.linalg.norm(steps, axis=1)[:, None]
+    directions = np.where(lengths > STILL, steps / np.maximum(lengths, STILL), 0.0)
     for each in np.flatnonzero(np.diff(owner[begin + 1 : end])) + 1:
         index = int(owner[begin + each])
         if index in spans and index + 1 in spans:
@@ -161,8 +166,8 @@ def joints_along(
             within = within and moves[index].line == moves[index + 1].line
             into, out = directions[each - 1], directions[each]
             one, other = found.expected[before], found.expected[after]
-            corner, lengths = before != after and is_corner(one, other), (one.length, other.length)
-            yield Joint(index, points[begin + each], into, out, within, corner, lengths)
+            corner, both = before != after and is_corner(one, other), (one.length, other.length)
+            yield Joint(index, points[begin + each], into, out, within, corner, both)
 
 
 def first_made(found: SectionPath, span: Span) -> int:
@@ -198,7 +203,8 @@ def rounded(
         if one.exact or joint.half_sine < math.sin(SMOOTH / 2):
             continue
         if axes.face and (
-            is_switch(one, other)
+            turns(one) != turns(other)
+            or one.end != other.start
             or (not turns(one) and is_limited(section, joint.index, tolerance))
         ):
             continue
@@ -208,11 +214,6 @@ def rounded(
             off = rounding(joint, path, axes)
             if off > tolerance:
                 yield Finding("blended-corner", one.line, {"off": off})
-
-
-def is_switch(one: Move, other: Move) -> bool:
-    """Tell whether the machine goes to the face or back between two moves, and so stands."""
-    return turns(one) != turns(other) or one.end != other.start
 
 
 def is_limited(section: SectionContour, index: int, tolerance: float) -> bool:
@@ -298,8 +299,67 @@ def follow_limits(move: Move, axes: SectionAxes) -> FollowLimits:
     return FollowLimits(plane, axes.slide, axes.c, speed)
 
 
-def directions_of(points: np.ndarray) -> np.ndarray:
-    """Return the directions (n - 1, 3) between points (n, 3), zero between equal ones."""
-    steps = np.diff(points, axis=0)
-    lengths = np.linalg.norm(steps, axis=1)[:, None]
-    return np.where(lengths > STILL, steps / np.maximum(lengths, STILL), 0.0)
+class InPlace(NamedTuple):
+    """Turns of C where the tool stays on its place on the part: degrees and seconds in all."""
+
+    degrees: float
+    seconds: float
+
+
+class Turns(NamedTuple):
+    """The highest speed of C, that asked of it where it turns in place, and how far it does.
+
+    ``too_far`` is the first that is more than half a turn: its line and its degrees.
+    """
+
+    speed: float
+    asked: float
+    in_place: InPlace
+    too_far: tuple[int, float] | None
+
+
+def turns_of(
+    section: SectionContour,
+    plane: Plane,
+    moves: Sequence[Move],
+    path: Track,
+    real: Followed | None,
+) -> Turns:
+    """Return how C turns in a section."""
+    own = range(section.at, section.end)
+    turned = {i: abs(moves[i].end[C] - moves[i].start[C]) for i in own if moves[i].kind != "rapid"}
+    still = {i: turn for i, turn in turned.items() if turn and path.part_length(i) < TURN}
+    speed = run_speed(own, real) if real else emitted_speed(own, path, plane)
+    asked = max((rate(moves[index], 0.0) for index in still), default=0.0)
+    far = ((moves[index].line, turn) for index, turn in still.items() if turn > HALF_TURN)
+    return Turns(speed, asked, below_face(section, still, moves, path), next(far, None))
+
+
+def below_face(
+    section: SectionContour, still: Mapping[int, float], moves: Sequence[Move], path: Track
+) -> InPlace:
+    """Return how far and how long C turns in place where the tool is below the part's face."""
+    face = moves[section.at].start[section.third] - section.height
+    lowest = min(moves[index].end[section.third] for index in range(section.at, section.end))
+    top = face - LEVEL if lowest < face - LEVEL else math.inf
+    low = [index for index in still if moves[index].end[section.third] < top]
+    return InPlace(sum(still[i] for i in low), sum(path.seconds(i) for i in low))
+
+
+def run_speed(own: range, real: Followed) -> float:
+    """Return the highest speed of C in a run."""
+    mask = np.isin(real.move, own)
+    angle, time = real.positions[mask, C], real.time[mask]
+    later = np.searchsorted(time, time + WINDOW)
+    fitting = later < len(time)
+    later = later[fitting]
+    turned, seconds = angle[later] - angle[fitting], time[later] - time[fitting]
+    return float((np.abs(turned) / seconds).max(initial=0.0))
+
+
+def emitted_speed(own: range, path: Track, plane: Plane) -> float:
+    """Return the highest speed of C at the programmed feeds, as far as the axes allow."""
+    vertices = slice(path.vertices(own[0]).start, path.vertices(own[-1]).stop)
+    positions, seconds = path.positions[vertices], np.maximum(np.diff(path.time[vertices]), 1e-12)
+    turned = np.diff(plane.angles(positions, path.part.beside))
+    return float((np.abs(turned) / seconds).max(initial=0.0))

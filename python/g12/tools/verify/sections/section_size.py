@@ -5,8 +5,6 @@ Points are complex, lengths mm. The wall is where the cutter's edge goes, a tool
 centre; leads that stick out of a closed contour are no part of it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -50,11 +48,8 @@ def contour_size(
     """
     sides = {each.side for each in section.elements if not each.ramp} - {0} or {0}
     leads = [lead for outline in outlines_of(section) for lead in outline.leads]
-    walls = [
-        on_shape(wall, leads)
-        for wall in walls_along(found, points, radius)
-        if wall.element.side in sides
-    ]
+    walls = [each for each in walls_along(found, points, radius) if each.element.side in sides]
+    walls = [on_shape(wall, leads) for wall in walls]
     wanted, reached = ([sizes(wall[at]) for wall in walls] for at in (1, 2))
     flats = across_flats([wall for wall in walls if wall.element.side])
     return SectionSize(span(wanted), span(reached), tuple(sorted(flats, reverse=True)))

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The material that a program's sections assume, on a lathe's face and on a cylinder.
+"""The material that a program assumes where no stock is given, and the holes in it.
 
-On the face a compensated contour has its part on the side away from the tool: all within a closed
-contour that is cut from outside, else a wall beside it. A section without compensation is cut into
-a face as large as its toolpath, the cutter's own width aside. A cylinder is solid where grooves are
-cut, and a wall farther along Z, but not in front of the program's Z0 where they run out there. All
-of it is solid below the program's Z0 (the surface), or below the level from which a section is fed
-down to where that is lower.
+A wall stands round a pocket, a boss inside a perimeter. They are solid below the program's Z0, or,
+where the program first goes below that by rapid and feeds down from there, below that level; with a
+Z0 that lies lower, below the lowest level from which a circle is fed down to. Where it is not known
+how the tool comes down, nothing is.
 
-Lengths are mm, places those of the part's face or of the unrolled surface.
+On a lathe's face a compensated contour has its part on the side away from the tool: all within a
+closed contour that is cut from outside, else a wall beside it. A section without compensation is
+cut into a face as large as its toolpath, the cutter's own width aside. A cylinder is solid where
+grooves are cut, and a wall farther along Z, but not in front of the program's Z0 where they run out
+there. All of it is solid below the program's Z0 (the surface), or below the level from which a
+section is fed down to where that is lower.
+
+Lengths are mm in machine coordinates; of sections places are those of the face or of the unrolled
+surface.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -23,19 +27,117 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import split, unary_union
 
 from g12.tools.material.material import SAME_LEVEL, Material
-from g12.tools.path.part import X, Z, disc
+from g12.tools.path.part import X, Z, disc, is_sideways
+from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.compare.section_plane import Plane, plane_of
+from g12.tools.verify.compare.section import Plane, plane_of
 from g12.tools.verify.expected.contour import SectionContour
-from g12.tools.verify.pocket_walls import WALL
+from g12.tools.verify.reading.circles import Target
 from g12.tools.verify.sections.outline import LENGTHLESS, Outline, outlines_of, vectors
 
+WALL = 2.0  # how thick the wall of a pocket is, at least
+SAME_PLACE = 0.05
 BEYOND = 10.0  # bars: how far an open contour's ends are drawn on
 PROBE = 1e-3  # mm beside a contour
 FAR = 1e6  # round a cylinder
 
+Circles = Sequence[tuple[Block, Target]]
 Radius = Callable[[int], float]  # of the cutter of a move
 Solids = Iterator[tuple[BaseGeometry, float]]
+
+
+class AssumedHole(NamedTuple):
+    """A hole that is assumed: the line that does, where it is entered to, its radius."""
+
+    line: int
+    place: tuple[float, float, float]
+    radius: float
+
+
+class Approach(NamedTuple):
+    """How the tool comes down to a circle: where from, where it begins to feed, to which floor.
+
+    ``move`` is its last rapid straight down, None without one. A level is None where nothing is
+    fed down.
+    """
+
+    came: float
+    fed: float | None
+    floor: float
+    move: int | None
+
+
+def add_circles(material: Material, circles: Circles, approaches: Sequence[Approach]) -> None:
+    """Make solid what circles are cut in."""
+    faces: dict[float, float] = {}
+    for (_, target), approach in zip(circles, approaches):
+        face = target.wall.face
+        known = approach.came > approach.floor + SAME_LEVEL
+        if known and face not in faces and approach.floor < face - SAME_LEVEL:
+            below = approach.fed is not None and approach.floor < approach.fed - SAME_LEVEL
+            faces[face] = min(face, approach.fed) if below else face
+    starts = sorted(each.came if each.fed is None else each.fed for each in approaches)
+    for (_, target), approach in zip(circles, approaches):
+        wall, floor = target.wall, approach.floor + SAME_LEVEL
+        top = faces.get(wall.face, -math.inf)
+        top = top if floor < top else next((start for start in starts if start > floor), None)
+        if top is not None:
+            material.add(disc(wall.origin, wall.radius + (WALL if wall.inside else 0.0)), top)
+
+
+def approach_to(block: Block, moves: Sequence[Move]) -> Approach:
+    """Return how the tool comes down to a circle, in its block or before it."""
+    sideways = [
+        i for i in range(block.at, block.end) if moves[i].kind != "rapid" and is_sideways(moves[i])
+    ]
+    first = next(iter(sideways), block.end)
+    floor = min((moves[index].end[Z] for index in sideways), default=math.inf)
+    floor = floor if floor < moves[block.at].start[Z] + SAME_LEVEL else math.inf  # it is fed up to
+    begin = first
+    while begin and not is_sideways(moves[begin - 1]):
+        begin -= 1
+    down = [i for i in range(begin, block.end) if moves[i].end[Z] < moves[i].start[Z] - SAME_LEVEL]
+    fed = next((moves[i].start[Z] for i in down if moves[i].kind != "rapid"), None)
+    rapid = next((i for i in reversed(down) if i < first and moves[i].kind == "rapid"), None)
+    came = max(moves[i].start[Z] for i in range(begin, min(first, len(moves) - 1) + 1))
+    return Approach(came, fed, floor, rapid)
+
+
+def holes_of_words(circles: Circles) -> Iterator[AssumedHole]:
+    """Yield the holes that words say there are: R of Yasnac."""
+    for _, target in circles:
+        if target.wall.bore:
+            x, y, z = map(float, target.wall.origin)
+            yield AssumedHole(target.source.line, (x, y, z), target.wall.bore)
+
+
+def holes_entered(
+    circles: Circles,
+    approaches: Sequence[Approach],
+    moves: Sequence[Move],
+    material: Material,
+    radius: Callable[[int], float],
+) -> list[AssumedHole]:
+    """Return the holes that a program comes down into by rapid, if it does so at its first circle.
+
+    ``radius`` gives that of a move's cutter.
+    """
+    found: list[AssumedHole] = []
+    seen: list[complex] = []
+    for (_, target), approach in zip(circles, approaches):
+        place, index = complex(*target.wall.origin[:2]), approach.move
+        if any(abs(place - other) < SAME_PLACE for other in seen):
+            continue
+        seen.append(place)
+        if index is not None:
+            end = np.array([moves[index].end[:3]])
+            below = not found and end[0, Z] < min(target.wall.face, approach.came) - SAME_LEVEL
+            if below or material.touched(end, radius(index), 0):
+                x, y, z = map(float, end[0])
+                found.append(AssumedHole(moves[index].block, (x, y, z), radius(index)))
+        if not found:
+            break
+    return found
 
 
 class SurfaceKey(NamedTuple):

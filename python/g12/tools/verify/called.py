@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How well a called shape or its holes were cut: their moves, laid along the expected toolpath.
+
+What a run makes of a shape is judged with the section in its sub. Lengths are mm.
+"""
+
+from bisect import bisect
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
+from typing import Any, NamedTuple
+
+from g12.geometry.curve import Line
+from g12.tools.path.follow import Followed
+from g12.tools.path.part import C
+from g12.tools.path.track import STILL, Track
+from g12.tools.preview.executed_blocks import CLAMP, Block
+from g12.tools.preview.moves import Event, Move
+from g12.tools.verify.compare.path import Laid, Made, judge_path, lay
+from g12.tools.verify.compare.section import FacePlane, SectionPath, judge_toolpath, made_of
+from g12.tools.verify.compare.state import judge_state, state_differences
+from g12.tools.verify.expected.contour import ACTS
+from g12.tools.verify.expected.holes import Holes, HolesPath, holes_of
+from g12.tools.verify.expected.shapes import shape_path
+from g12.tools.verify.expected.toolpath import Expected
+from g12.tools.verify.expected.words import SubCall
+from g12.tools.verify.result.cut import MeasuredCut, finite, in_file
+from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.tolerances import LAST_DECIMAL, LEVEL
+from g12.tools.verify.sections.section_motion import SectionAxes, slower_on_face
+
+
+def measure_shape(
+    called: tuple[Block, SubCall],
+    path: Track,
+    moves: Sequence[Move],
+    axes: SectionAxes,
+    tolerance: float,
+) -> MeasuredCut:
+    """Return what was measured of a shape; ``path`` is that of the face about its X0."""
+    block, call = called
+    plane, expected = FacePlane(*call.zero), shape_path(call)
+    segments = ((index, path.positions[path.vertices(index)]) for index in call.moves)
+    laid = lay(expected, made_of(segments, moves, plane), tolerance + LAST_DECIMAL)
+    found = SectionPath(expected, [], laid)
+    slower = slower_on_face(found, moves, path, axes)
+    state = state_differences(block.left, call.leaves())
+    events = dict.fromkeys(each.text for each in block.own_events if ACTS.match(each.text))
+    judged = [
+        *judge_toolpath(found, plane, call.diameters, moves, slower, call.line),
+        *judge_state(state, events, call.line),
+    ]
+    values = {
+        "cutter": 2 * call.cutter,
+        "entries": call.given,
+        "lowest": min(move.end_level for move in expected),
+    }
+    return called_cut(call, call.zero[1], found, values, judged)
+
+
+def called_cut(
+    call: SubCall,
+    face: float | None,
+    found: SectionPath,
+    values: Mapping[str, Any],
+    judged: Iterable[Finding],
+) -> MeasuredCut:
+    """Return the cut of a call."""
+    told, off = in_file(judged, call.file), {"deviation": finite(found.off)}
+    where = call.line, call.file, call.name, call.moves
+    return MeasuredCut(call, *where, face, found.off, {**values, **off}, told)
+
+
+class Clamp(NamedTuple):
+    """The M codes that close and open the clamp, if any; ``seen``: events tell of them."""
+
+    codes: Sequence[str]
+    seen: bool
+
+
+def measure_holes(
+    called: tuple[Block, SubCall],
+    moves: Sequence[Move],
+    tolerance: float,
+    clamp: Clamp,
+    real: Followed | None = None,
+) -> MeasuredCut:
+    """Return what was measured of a call."""
+    block, call = called
+    holes, own = holes_of(call), range(block.at, block.end)
+    turns = (moves[i].end[C] - moves[i].start[C] for i in own)
+    expected = HolesPath(holes, next((turn for turn in turns if abs(turn) > STILL), 0.0)).toolpath()
+    laid, run = lay(expected, made_of_holes(holes, moves, own), tolerance), None
+    if real and not laid.difference and not holes.pitch:
+        run = laid_run(holes, expected, real, own, tolerance)
+    found = SectionPath(expected, [], laid, run)
+    events = [each for each in block.own_events if ACTS.match(each.text) and not clamp.codes]
+    texts = dict.fromkeys(each.text for each in events if not each.text.startswith("dwell"))
+    state = state_differences(block.left, call.leaves())
+    blended = [i for i in own if moves[i].kind == "rapid" and not moves[i].exact][:1]
+    judged = [
+        *judge_path(found.laid, call.line, holes.place, holes.words),
+        *passed_over(holes, expected, laid),
+        *(Finding("blended-hole", call.line) for _ in blended),
+        *judge_dwells(holes, block.own_events, moves),
+        *judge_clamp(holes, expected, laid, block, clamp),
+        *judge_state(state, texts, call.line),
+    ]
+    values = {
+        "circle": 2 * holes.circle,
+        "angles": holes.angles,
+        "along_z": holes.z if holes.side else None,
+        "depth": holes.depth,
+        "count": holes.count,
+        "entries": call.given,
+    }
+    return called_cut(call, None if call.is_side else call.zero[1], found, values, judged)
+
+
+def laid_run(
+    holes: Holes, expected: Sequence[Expected], real: Followed, own: range, tolerance: float
+) -> Laid:
+    """Return the motion of a run laid along the moves, from where they begin.
+
+    Which of its samples are rapids is not known: at the ends of moves they are not told apart.
+    """
+    points = [holes.point(at) for index in own for at in real.positions[real.during(index)]]
+    begin, level = expected[0].point(0.0)
+    near = (n for n, at in enumerate(points) if abs(at[0] - begin) + abs(at[1] - level) < tolerance)
+    path = [move._replace(rapid=False, feed=None) for move in expected]
+    made = Made(own.start, points[next(near, 0) :], sampled=True)
+    return lay(path, [made] if len(made.points) > 1 else [], tolerance)
+
+
+def made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[Made]:
+    """Yield the moves of a call that go anywhere."""
+    for index in own:
+        move = moves[index]
+        ends = [holes.point(move.start), holes.point(move.end)]
+        if max(abs(ends[0][0] - ends[1][0]), abs(ends[0][1] - ends[1][1])) > STILL:
+            rapid = move.kind == "rapid"
+            feed = None if rapid else move.feed
+            curve = Line(ends[0][0], ends[1][0])
+            yield Made(index, ends, curve, feed, rapid, move.feed_mode == "G95")
+
+
+def judge_dwells(holes: Holes, events: Sequence[Event], moves: Sequence[Move]) -> Iterator[Finding]:
+    """Yield what is wrong with the dwells at the bottoms, and with the pitches of taps."""
+    call = holes.call
+    asked = f"dwell {holes.dwell:g}" if holes.dwell else f"pitch {holes.pitch:.10g} mm"
+    found = [e for e in events if e.text.startswith(("dwell", "pitch")) and e.text != "dwell 0"]
+    others = dict.fromkeys(each.text for each in found if each.text != asked)
+    for text in others:
+        yield Finding("extra-event", call.line, {"event": text})
+    same = [each for each in found if each.text == asked]
+    if len(same) < holes.count and (holes.dwell or holes.pitch):
+        yield Finding("act-missing", call.line, {"act": asked})
+    bottom = -holes.depth if holes.dwell else call.length("retract")
+    levels = [holes.point(moves[each.at].start)[1] for each in same]
+    if any(abs(level - bottom) > LEVEL for level in levels):
+        yield Finding("act-off-bottom", call.line, {"act": asked})
+
+
+def passed_over(holes: Holes, expected: Sequence[Expected], laid: Laid) -> Iterator[Finding]:
+    """Yield the first move that is not made: a way back and again lies on the way down."""
+    missing = [move for move, made in zip(expected, laid.moves) if not made]
+    for move in missing[:1] if not laid.difference else ():
+        at = move.point(1.0)
+        values = {"what": move.name, "at": holes.words(at)}
+        yield Finding("path-missing", move.line, values, holes.place(at))
+
+
+def judge_clamp(
+    holes: Holes, expected: Sequence[Expected], laid: Laid, block: Block, clamp: Clamp
+) -> Iterator[Finding]:
+    """Yield the first move of each kind in which the clamp is otherwise, or that it stays so.
+
+    Also that it was not judged, where there are codes of which no event tells.
+    """
+    if not clamp.codes:
+        return
+    (close, opens), call = clamp.codes, holes.call
+    if not clamp.seen:
+        yield Finding("clamp-unseen", call.line, {"codes": f"{close} and {opens}"})
+        return
+    events = [each for each in block.own_events if each.text.startswith(f"{CLAMP} ")]
+    at, told = [each.at for each in events], ["", *(each.text.split()[1] for each in events)]
+    for closed, name, code in ((True, "clamp-open", close), (False, "clamp-closed", opens)):
+        wrong = (
+            move.name
+            for move, made in zip(expected, laid.moves)
+            if holes.clamped(move) is closed
+            and any(told[bisect(at, index)] != code for index in made)
+        )
+        for what in islice(wrong, 1):
+            yield Finding(name, call.line, {"what": what, "code": code})
+    if told[-1] != opens:
+        yield Finding("clamp-left", call.line, {"code": opens})

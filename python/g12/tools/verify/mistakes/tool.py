@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How the spindle turns where the program cuts, and the tool length in force there.
+
+LinuxCNC believes G43's H as the cycles believe D. A program that never commands G43 may have
+touched off Z with its tool, and so may one that cancels it by G49 after the tool change; any other
+works with the lengths of the table.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
+
+from g12.tools.machine.ini import Ini
+from g12.tools.path.part import C, X, Z
+from g12.tools.path.track import Limits, Track
+from g12.tools.preview.moves import Event, Move
+from g12.tools.verify.result.cut import MeasuredCut
+from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.tolerances import LEVEL, SIZE
+
+USER_CODE = re.compile(r"M1\d\d P.*")  # may turn a spindle of its own
+SPEED = re.compile(r"S[\d.]+")
+MOST_PER_TURN = 3.0  # mm per revolution: above it the number was meant per minute
+LEAST_PER_MINUTE = 1.0  # mm/min: below it the number was meant per revolution
+CUT_DOWN = 0.98  # of the feed
+TURNS = 1e-6  # degrees or mm
+
+
+def judge_spindle(
+    cuts: Sequence[MeasuredCut], events: Sequence[Event], ini: Ini
+) -> Iterator[Finding]:
+    """Yield the first cut of each kind with a spindle that stands, or turns as it should not."""
+    reported: set[str] = set()
+    several = ini.number("TRAJ", "SPINDLES", 1) > 1
+    for cut in cuts:
+        told = [event.text for event in events if event.at < cut.own.stop]
+        code = _unusual_spindle(cut.turning, told, several)
+        if code and code not in reported:
+            reported.add(code)
+            yield Finding(code, cut.line, {"code": cut.code}, file=cut.file)
+
+
+def _unusual_spindle(turning: bool, told: Sequence[str], several: bool) -> str:
+    """Return the code of what is unusual about the spindle in front of a cut, "" if nothing.
+
+    ``told`` are the events before it. A trace tells of the first spindle alone: of a machine with
+    ``several`` that is the main one, and nothing is known of the tool's.
+    """
+    if any(USER_CODE.fullmatch(text) for text in told):
+        return ""
+    spindle = next((text for text in reversed(told) if text in ("M3", "M4", "M5")), "")
+    speed = next((text for text in reversed(told) if SPEED.fullmatch(text)), "")
+    runs = spindle in ("M3", "M4") and speed != "S0"
+    if several:
+        return "main-spindle-turns" if turning and runs else ""
+    if not turning and (spindle == "M5" or speed == "S0"):
+        return "spindle-stands"
+    return "spindle-m4" if spindle == "M4" and runs else ""
+
+
+def judge_tool_length(
+    cuts: Sequence[MeasuredCut],
+    moves: Sequence[Move],
+    lengths: Mapping[int, float],
+    events: Sequence[Event],
+) -> Iterator[Finding]:
+    """Yield where a cut is made with another length than the loaded tool's; ``lengths`` in mm."""
+    compensated = any(abs(move.tool_offset[Z]) > SIZE for move in moves)
+    reported: set[tuple[int, float]] = set()
+    for cut in cuts:
+        at, first = cut.own.start, moves[cut.own.start]
+        deeper = lengths.get(first.tool, 0.0) - first.tool_offset[Z]
+        if abs(deeper) < SIZE or (first.tool, deeper) in reported:
+            continue
+        reported.add((first.tool, deeper))
+        told = (event.text for event in reversed(events) if event.at <= at)
+        last = next((text for text in told if text.startswith(("tool ", "G43", "G49"))), "")
+        code = "length-deeper" if deeper > 0.0 else "length-higher"
+        code = code if compensated and last != "G49" else "length-not-used"
+        values = {"tool": first.tool, "length": first.tool_offset[Z], "off": abs(deeper)}
+        yield Finding(code, cut.line, values, file=cut.file)
+
+
+def judge_levels(cuts: Sequence[MeasuredCut], moves: Sequence[Move]) -> Iterator[Finding]:
+    """Yield the cuts of which nothing goes below Z0, the top of the part as a rule."""
+    for cut in cuts:
+        lowest = cut.lowest(moves)
+        if cut.face is not None and lowest > cut.face - LEVEL:
+            values = {"level": lowest - cut.face}
+            yield Finding("above-zero", cut.line, values, moves[cut.own.start].end[:3], cut.file)
+
+
+def judge_feeds(
+    cuts: Sequence[MeasuredCut], moves: Sequence[Move], limits: Limits
+) -> Iterator[Finding]:
+    """Yield what to know of the feeds of cuts."""
+    for cut in cuts:
+        fed = [move for move in cut.fed(moves) if move.feed]
+        per_turn = [] if cut.turning else [m.feed for m in fed if m.feed_mode == "G95"]
+        asked = cut.feeds if cut.turning else [m.feed for m in fed if m.feed_mode != "G95"]
+        most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])
+        if max(per_turn, default=0.0) > MOST_PER_TURN:
+            values = {"feed": max(per_turn)}
+            yield Finding("feed-per-revolution", cut.line, values, file=cut.file)
+        if min(asked, default=LEAST_PER_MINUTE) < LEAST_PER_MINUTE:
+            yield Finding("feed-per-minute", cut.line, {"feed": min(asked)}, file=cut.file)
+        if most < CUT_DOWN * max(asked, default=0.0):
+            values = {"feed": max(asked), "most": most}
+            yield Finding("feed-cut-down", cut.line, values, file=cut.file)
+
+
+def judge_native_c(moves: Sequence[Move], known: set[int], path: Track) -> Iterator[Finding]:
+    """Yield feed moves of X or Z together with C outside of cuts; ``known`` are the cuts' moves."""
+    found = [
+        index
+        for index, move in enumerate(moves)
+        if index not in known and move.kind == "feed" and turns_and_goes(move)
+    ]
+    for _, group in groupby(enumerate(found), lambda pair: pair[1] - pair[0]):
+        indices = [index for _, index in group]
+        speeds = [path.part_feed(index) for index in indices]
+        values = {"least": min(speeds), "most": max(speeds)}
+        yield Finding("native-c", moves[indices[0]].block, values, moves[indices[0]].end[:3])
+
+
+def turns_and_goes(move: Move) -> bool:
+    """Tell whether C turns together with X or Z."""
+    change = [abs(end - start) > TURNS for start, end in zip(move.start, move.end)]
+    return change[C] and (change[X] or change[Z]) and move.feed_mode != "G93"

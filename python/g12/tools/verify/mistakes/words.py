@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Codes and lines that most likely mean something else than they do."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from g12.tools.machine.ini import Ini
+from g12.tools.machine.stored_places import unset_places
+from g12.tools.preview.executed_blocks import Text
+from g12.tools.verify.expected.contour import Element, SectionContour
+from g12.tools.verify.reading.codes import Codes
+from g12.tools.verify.result.finding import Finding
+
+STORED = {28.0: "G28", 30.0: "G30"}
+SETTING = {28.1: "G28", 30.1: "G30"}
+RETURN_LEVELS = {98.0: "G94", 99.0: "G95"}  # what a lathe of the Fanuc kind means by them
+DRILLING = (73.0, 74.0, *map(float, range(81, 90)))  # cycles that have return levels
+STRAIGHT_BACK = -0.999999  # cosine of the angle between the two directions, at most
+
+
+def judge_home(texts: Sequence[Text], ini: Ini) -> Iterator[Finding]:
+    """Yield the first G28 and the first G30 of a lathe of which the var file has no place.
+
+    It is a rapid to machine zero, not to a tool change.
+    """
+    waiting = set(unset_places(ini))
+    for text in texts:
+        waiting -= {SETTING.get(number, "") for number in text.codes}
+        for code in waiting.intersection(STORED.get(number, "") for number in text.codes):
+            waiting.discard(code)
+            yield Finding("place-not-set", text.number, {"code": code})
+
+
+def judge_return_levels(texts: Sequence[Text], codes: Codes) -> Iterator[Finding]:
+    """Yield the first G98 and G99 outside of a lathe's sections, where no drilling cycle is."""
+    if any(code in DRILLING for text in texts for code in text.codes):
+        return
+    waiting = dict(RETURN_LEVELS)
+    for text, _, inside in codes.with_switches(texts):
+        for code in () if inside else text.codes:
+            if code in waiting:
+                values = {"code": f"G{code:g}", "meant": waiting.pop(code)}
+                yield Finding("return-level", text.number, values)
+
+
+def judge_reversals(sections: Sequence[SectionContour]) -> Iterator[Finding]:
+    """Yield the lines under G41 or G42 that go straight back: a lost minus sign does that."""
+    for section in sections:
+        drawn = [element for element in section.elements if element.length]
+        for before, after in pairwise(drawn):
+            if goes_back(before, after):
+                values = {"line": before.line, "code": "G41" if after.side > 0 else "G42"}
+                yield Finding("goes-back", after.line, values, file=section.file)
+
+
+def goes_back(before: Element, after: Element) -> bool:
+    """Return whether both are lines of a compensated contour, the second back along the first."""
+    if not before.side or before.side != after.side or before.ramp or after.ramp:
+        return False
+    if before.centre is not None or after.centre is not None:
+        return False
+    ways = (before.end - before.start) * (after.end - after.start).conjugate()
+    return ways.real < STRAIGHT_BACK * abs(ways)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A cut as it was measured: one record for pockets, sections, shapes and calls of holes."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from g12.tools.path.part import Z
+from g12.tools.path.slowest import Pace
+from g12.tools.preview.moves import Move
+from g12.tools.verify.expected.toolpath import Expected
+from g12.tools.verify.result.finding import Finding
+
+
+@dataclass(frozen=True)
+class MeasuredCut:
+    """What was ``asked``, how far the tool's centre was off (mm, inf if part is missing), and more.
+
+    ``last`` is the last line of a section, ``file`` the name of a sub's own file. ``own`` are its
+    moves, ``face`` is the machine Z of the program's Z0, None where Z goes along a surface. Where
+    C turns the part (``turning``) its words ask for ``feeds`` along the part, mm/min, which its
+    moves do not show. ``path`` is the expected toolpath, ``sound`` says that it was followed.
+    ``values`` are its measures by the names of ``--json`` and the report: mm, mm², mm/min, degrees,
+    seconds; None is not known.
+    """
+
+    asked: Any
+    line: int
+    file: str
+    code: str
+    own: range
+    face: float | None
+    deviation: float
+    values: Mapping[str, Any]
+    judged: tuple[Finding, ...]
+    last: int = 0
+    turning: bool = True
+    feeds: tuple[float, ...] = ()
+    path: Sequence[Expected] = ()
+    sound: bool = True
+
+    def fed(self, moves: Sequence[Move]) -> list[Move]:
+        """Return its moves at a feed."""
+        return [moves[i] for i in self.own if moves[i].kind != "rapid"]
+
+    def lowest(self, moves: Sequence[Move]) -> float:
+        """Return the lowest machine Z of its moves at a feed."""
+        return min((move.end[Z] for move in self.fed(moves)), default=float("inf"))
+
+
+def in_file(found: Iterable[Finding], file: str) -> tuple[Finding, ...]:
+    """Return what was found in a sub's own file, or "" in the program."""
+    return tuple(replace(each, file=file) for each in found)
+
+
+def pace_values(pace: Pace) -> dict[str, Any]:
+    """Return feed and time as plain values."""
+    return {
+        "lowest_feed": pace.lowest,
+        "lowest_feed_at": [float(value) for value in pace.point],
+        "seconds": pace.seconds,
+        "seconds_programmed": pace.expected,
+    }
+
+
+def finite(value: float) -> float | None:
+    """Return a number that JSON has."""
+    return value if abs(value) < float("inf") else None
