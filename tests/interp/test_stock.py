@@ -10,6 +10,7 @@ from g12.tools.commands.main import main
 from g12.tools.errors import UsageError
 from g12.tools.material.stock import read_stock
 from g12.tools.units import MM, UNITS
+from g12.tools.verify.report import STOCK, rows_of
 from support.sim_machines import PROGRAMS, SIM
 
 MILL, LATHE = (str(SIM / f"{name}_headless.ini") for name in ("mill_mm", "lathe_mm"))
@@ -94,6 +95,10 @@ def test_a_rapid_into_a_hole_that_is_bored_is_good(told):
     assert told("100x80x20 bore 12", *HEAD, *lines) == (0, [], [])
     code, _, found = told("100x80x20", *HEAD, *lines)
     assert code == 1 and "line 4: a rapid goes down into 76.969 mm² of material" in found[0]
+
+
+def test_a_bore_alone_where_no_pocket_is_has_no_bounds_to_show():
+    assert list(rows_of(STOCK, {"bounds": [], "top": 0.0}, MM)) == []
 
 
 # ---------------------------------------------------------------- the bar

@@ -59,7 +59,7 @@ def is_known(sentence: str, values: Mapping[str, Any]) -> bool:
     names = [name for _, name, _, _ in writer.parse(sentence) if name]
     try:
         return all(writer.get_field(name, (), values)[0] is not None for name in names)
-    except (KeyError, TypeError):  # no such measure, or None in its place
+    except (LookupError, TypeError):  # no such measure, or None in its place
         return False
 
 
