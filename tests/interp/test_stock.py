@@ -53,6 +53,12 @@ def test_what_is_no_stock_is_refused_with_the_forms(text, turning):
         read_stock(text, turning, MM)
 
 
+def test_an_empty_stock_is_refused(tmp_path, capsys):
+    (tmp_path / "program.ngc").write_text("\n".join([*HEAD, "G13 I9 Z-1 D4", "M2", ""]))
+    assert main(["verify", str(tmp_path / "program.ngc"), "--ini", MILL, "--stock", ""]) == 2
+    assert "--stock ''" in capsys.readouterr().err
+
+
 @pytest.fixture
 def told(tmp_path, capsys):
     """Return the exit code, and notes and findings about the stock."""

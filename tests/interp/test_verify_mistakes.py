@@ -337,7 +337,7 @@ def codes(proof):
     ("lines", "found"),
     [
         ([*WITH_LENGTH, POCKET], []),
-        ([*WITH_LENGTH, POCKET, "G0 Z50", "T4 M6", "G43", "G0 X0 Z1", POCKET], []),
+        ([*WITH_LENGTH, POCKET, "G0 Z50", "T4 M6", "G43", "G0 X60 Z1", POCKET], []),
         (["T4 M6", "G43 H1", "G0 X0 Y0 Z1", POCKET], ["length-deeper"]),
         (["T4 M6", "G43 H6", "G0 X0 Y0 Z1", POCKET], ["length-higher"]),
         (["T4 M6", "G0 X0 Y0 Z1", POCKET], ["length-not-used"]),
@@ -413,3 +413,75 @@ def test_a_g28_1_in_the_program_sets_the_place(tmp_path):
     (tmp_path / "own.var").write_text("")
     judged = prove(tmp_path / "a.ngc", ini).judged
     assert [each.line for each in judged if each.code == "place-not-set"] == [4]
+
+
+# ---------------------------------------------------------------- what is cut, and where
+
+RING, CLEARED = "G13 I20 Z-4 D4", "G13 I7 K20 Q6 Z-4 D4"
+SHALLOW = CLEARED.replace("Z-4", "Z-2")
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ([CLEARED, "G0 Z1", RING.replace("I20", "I20.2")], []),
+        ([RING], ["core-stands"]),
+        ([SHALLOW, "G0 Z1", RING.replace("I20", "I20.2")], ["core-stands"]),
+        ([CLEARED, "G0 Z1", "X50", CLEARED], []),
+        ([CLEARED, "G0 Z1", "X20", CLEARED], ["cuts-wall"]),
+        ([CLEARED, "G0 Z1", "X2", SHALLOW.replace("K20", "K8")], ["cut-before"]),
+        ([CLEARED, "G0 Z1", CLEARED], ["cut-before"]),
+        ([SHALLOW, "G0 Z1", CLEARED], []),
+        ([CLEARED, "G0 Z1", "o1 if [0]", CLEARED, "o1 endif"], ["never-run"]),
+        ([CLEARED, "M2", CLEARED], ["never-run"]),
+    ],
+)
+def test_pockets_that_meet_leave_a_core_or_are_not_run_are_noted(lines, found, proof_of):
+    assert codes(proof_of(*AT_ONE, *WITH_LENGTH, *lines)) == found
+
+
+def unjudged(proof):
+    return [(each.code, each.line) for each in proof.judged if each.is_not_judged]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (["G0 Z1", "X40", "Z-2", "Z1"], [("rapid-beside", 9)]),
+        (["G0 Z-2", "Z1"], []),
+        (["G0 Z-2", "G53 G0 X90 Z0"], [("rapid-by-machine", 8)]),
+        (["G0 Z1", "G53 G0 X90 Z0"], []),
+    ],
+)
+def test_rapids_within_the_part_that_cannot_be_judged_are_named(lines, found, proof_of):
+    proof = proof_of(*AT_ONE, *WITH_LENGTH, CLEARED, *lines)
+    assert unjudged(proof) == found and told(proof) == []
+
+
+@pytest.mark.parametrize("start", ["", "S900 M3"])
+def test_a_driven_tool_that_no_code_starts_is_not_judged(start, proof_of):
+    proof = proof_of(*LATHE, start, "G0 X60 Z2 C0", *FLAT, machine="lathe_mm")
+    assert unjudged(proof) == [("tool-spindle", 5)] * (not start)
+
+
+def test_a_section_that_stays_outside_of_its_surface_is_noted(proof_of):
+    lines = ["S900 M3", "G0 X46 Z-30 C0", "G7.1 C{}", "G1 X36 F200", "C90", "X46", "G7.1 C0"]
+    for radius, found in ((20, []), (10, ["above-surface"])):
+        text = "\n".join([*LATHE, *lines]).format(radius)
+        assert codes(proof_of(text, machine="lathe_mm")) == found
+
+
+FACE_HOLE = "o<face_hole_at> call [20] [0] [8] [2] [{}] [0] [0] [0]"
+
+
+@pytest.mark.parametrize(
+    ("feed", "after", "found"),
+    [
+        (120, "G0 Z10", []),
+        (12000, "G0 Z10", ["feed-cut-down"]),
+        (120, "G0 X20 Z-3\nX30", ["rapid-through"]),
+    ],
+)
+def test_holes_on_the_face_stand_in_material(feed, after, found, proof_of):
+    lines = ["S900 M3", "G0 X60 Z10 C0", FACE_HOLE.format(feed), after]
+    assert codes(proof_of(*LATHE, *lines, machine="lathe_mm")) == found

@@ -111,7 +111,7 @@ def cut_parser(name: str, description: str, epilog: str, run: str) -> Parser:
 
 def stock_of(options: argparse.Namespace) -> StockText | None:
     """Return the stock of the command line."""
-    return StockText(options.stock, options.units) if options.stock else None
+    return None if options.stock is None else StockText(options.stock, options.units)
 
 
 def add_override(parser: argparse.ArgumentParser, whose: str) -> None:

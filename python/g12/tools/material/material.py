@@ -200,6 +200,17 @@ class Material:
             if not part.is_empty
         )
 
+    def covers(self, region: BaseGeometry) -> bool:
+        """Tell whether all of a region is solid at some level or cut at some move."""
+        left = self._turned(region)
+        for known in (self._solids, self._cuts):
+            left = [self._without(known, part) for part in left if not part.is_empty]
+        return sum(part.area for part in left) <= LEAST_AREA
+
+    def _without(self, known: _Cuts, region: BaseGeometry) -> BaseGeometry:
+        near = known.within(region.bounds, math.inf, math.inf)
+        return region.difference(self._shapes(known, near)) if len(near) else region
+
     def touched(self, points: np.ndarray, radius: float, before: float) -> Touch | None:
         """Return the material that a cutter goes through along points (n, 3), None if none."""
         if radius <= ALLOWED or points[:, 2].min() > self.top - SAME_LEVEL:

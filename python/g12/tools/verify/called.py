@@ -113,7 +113,9 @@ def measure_holes(
         "count": holes.count,
         "entries": call.given,
     }
-    return called_cut(call, None if call.is_side else call.zero[1], found, values, judged)
+    cut = called_cut(call, None if call.is_side else call.zero[1], found, values, judged)
+    feed = None if holes.pitch else call.feed()
+    return replace(cut, feeds=(feed,) if feed else ())
 
 
 def laid_run(

@@ -17,8 +17,10 @@ from g12.tools.material.material import ALLOWED, LEAST_AREA, SAME_LEVEL
 from g12.tools.path.part import X, Z, is_sideways
 from g12.tools.verify.compare.section import Plane, plane_of
 from g12.tools.verify.expected.contour import SectionContour
-from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.mistakes.neighbours import judge_circles
+from g12.tools.verify.result.finding import Finding, also_in
 from g12.tools.verify.sections.outline import outlines_of
+from g12.tools.verify.unjudged_rapids import unjudged_rapids
 from g12.tools.verify.walls import beyond
 from g12.tools.verify.workpiece import PartView, Program, Workpiece
 
@@ -31,6 +33,9 @@ def judge_material(workpiece: Workpiece) -> Iterator[Finding]:
     yield from once_a_line(rapids_through(workpiece))
     yield from first_way(workpiece)
     yield from inside_surfaces(workpiece)
+    yield from above_surfaces(workpiece)
+    yield from judge_circles(workpiece.program.circles, workpiece.material)
+    yield from unjudged_rapids(workpiece)
     yield from judged_in_stock(workpiece) if workpiece.stock else ()
     yield from assumptions(workpiece)
 
@@ -110,6 +115,25 @@ def inside_surfaces(workpiece: Workpiece) -> Iterator[Finding]:
             yield Finding("inside-surface", section.line, values, first.start[:3])
 
 
+def above_surfaces(workpiece: Workpiece) -> Iterator[Finding]:
+    """Yield the sections on a cylinder that cut nothing of it, or nothing of a bar."""
+    bar = workpiece.stock.diameter / 2 if workpiece.stock else 0.0
+    for section in workpiece.program.sections:
+        outside = lowest_over_axis(workpiece.program, section) + SAME_LEVEL
+        if section.surface and outside > section.surface:
+            values = {"radius": section.surface, "size": outside - SAME_LEVEL - section.surface}
+            yield Finding("above-surface", section.line, values)
+        elif section.surface and bar and outside > bar:
+            yield Finding("no-stock-met", section.line)
+
+
+def lowest_over_axis(program: Program, section: SectionContour) -> float:
+    """Return how far a section on a cylinder stays from the spindle's axis."""
+    own = program.moves[section.at : section.end]
+    base = plane_of(section, own[0]).base
+    return min((move.end[X] for move in own if move.kind != "rapid"), default=math.inf) - base
+
+
 def is_cut_before(section: SectionContour, workpiece: Workpiece) -> bool:
     """Tell whether something is cut where a section begins."""
     view = next(view for view in workpiece.views if view.surface == round(section.surface, 6))
@@ -122,8 +146,7 @@ def assumptions(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield one note of the holes that are assumed."""
     if workpiece.holes:
         line, place, _ = workpiece.holes[0]
-        others = sorted({hole.line for hole in workpiece.holes} - {line})
-        more = f" (also in line {', '.join(map(str, others))})" if others else ""
+        more = also_in({hole.line for hole in workpiece.holes} - {line})
         values = {"at": tuple(zip("XYZ", place)), "more": more}
         yield Finding("bored-assumed", line, values, place)
 
@@ -143,6 +166,8 @@ def judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
     yield from once_a_line(filter(None, (plunge(workpiece, index) for index in fed)))
     cuts = [(each.line, each.at, each.end) for each in program.on_face]
     cuts += [(target.source.line, block.at, block.end) for block, target in program.circles]
+    drilled = (call for call in program.holes if not call.is_side)
+    cuts += [(call.line, call.moves.start, call.moves.stop) for call in drilled]
     for line, at, end in cuts:
         if not any(meets_stock(workpiece, index) for index in range(at, end)):
             yield Finding("no-stock-met", line)

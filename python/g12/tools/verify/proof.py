@@ -36,7 +36,12 @@ from g12.tools.verify.mistakes.tool import (
     judge_tool_length,
 )
 from g12.tools.verify.mistakes.travel import judge_travel
-from g12.tools.verify.mistakes.words import judge_home, judge_return_levels, judge_reversals
+from g12.tools.verify.mistakes.words import (
+    judge_home,
+    judge_return_levels,
+    judge_reversals,
+    judge_unrun,
+)
 from g12.tools.verify.pocket import measure_pocket
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.result.cut import MeasuredCut
@@ -155,6 +160,8 @@ def prove_traced(
     tell("looking for rapids through material")
     known = {index for cut in (*cuts.pockets, *cuts.sections, *cuts.holes) for index in cut.own}
     unseen = unseen_in(subject, known)
+    run = {cut.line for kind in cuts for cut in kind if not cut.file}
+    run |= {line for line, _ in (*unseen, *asked.still)}
     found = [
         *(each for kind in cuts for cut in kind for each in cut.judged),
         *judge_material(workpiece),
@@ -162,6 +169,7 @@ def prove_traced(
         *(Finding("not-cut", line, {"code": code}) for line, code in asked.still),
         *judge_travel(asked.circles, there, subject.trace.events, subject.ini),
         *mistakes(subject, cuts, known),
+        *judge_unrun(read_lines(subject.program), Codes(subject.ini), run),
     ]
     judged = sorted(found, key=lambda finding: finding.line)
     return Proof(subject, workpiece, allowed, cuts, asked.still, unseen, judged)

@@ -28,6 +28,7 @@ from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.words import BlockInMm, SubCall
 from g12.tools.verify.subject import Subject
 from g12.tools.verify.walls import (
+    WALL,
     AssumedHole,
     Circles,
     add_circles,
@@ -192,6 +193,7 @@ def assumed_workpiece(program: Program) -> Workpiece:
     approaches = [approach_to(block, moves) for block, _ in walls]
     add_circles(material, walls, approaches)
     add_sections(material, program.on_face, moves, program.radius)
+    add_drilled(material, program)
     bores = list(holes_of_words(walls))
     entered = holes_entered(walls, approaches, moves, material, program.radius)
     for hole in bores:
@@ -200,6 +202,17 @@ def assumed_workpiece(program: Program) -> Workpiece:
         material.open(disc(hole.place, hole.radius))
     views = views_of(program, material, face_tools(program))
     return Workpiece(program, views, [*bores, *entered])
+
+
+def add_drilled(material: Material, program: Program) -> None:
+    """Make solid what holes are drilled in: the face round them."""
+    for call in (each for each in program.holes if not each.is_side):
+        face = call.zero[1]
+        for index in call.moves:
+            move = program.moves[index]
+            if move.kind != "rapid" and move.end[Z] < min(face, move.start[Z]):
+                place = program.part.points(np.array(move.end))[0]
+                material.add(disc(place, program.radius(index) + WALL), face)
 
 
 def given_workpiece(program: Program, stock: Stock) -> Workpiece:

@@ -53,7 +53,9 @@ def _unusual_spindle(turning: bool, told: Sequence[str], several: bool) -> str:
     runs = spindle in ("M3", "M4") and speed != "S0"
     if several:
         return "main-spindle-turns" if turning and runs else ""
-    if not turning and (spindle == "M5" or speed == "S0"):
+    if turning and not runs:
+        return "tool-spindle"  # another code of the machine may start it
+    if spindle == "M5" or speed == "S0":
         return "spindle-stands"
     return "spindle-m4" if spindle == "M4" and runs else ""
 

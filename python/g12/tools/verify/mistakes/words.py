@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Codes and lines that most likely mean something else than they do."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 
 from g12.tools.machine.ini import Ini
@@ -9,7 +9,7 @@ from g12.tools.machine.stored_places import unset_places
 from g12.tools.preview.executed_blocks import Text
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.finding import Finding, also_in
 
 STORED = {28.0: "G28", 30.0: "G30"}
 SETTING = {28.1: "G28", 30.1: "G30"}
@@ -41,6 +41,20 @@ def judge_return_levels(texts: Sequence[Text], codes: Codes) -> Iterator[Finding
             if code in waiting:
                 values = {"code": f"G{code:g}", "meant": waiting.pop(code)}
                 yield Finding("return-level", text.number, values)
+
+
+def judge_unrun(texts: Sequence[Text], codes: Codes, run: Collection[int]) -> Iterator[Finding]:
+    """Yield one note of the cycles, sections and calls that are not in a program's ``run`` lines.
+
+    It ends before them, goes another way, or deletes their blocks.
+    """
+    unrun = {
+        text.number: name
+        for text, switch, _ in codes.with_switches(texts)
+        if (name := codes.commanded(text, switch)) and text.number not in run
+    }
+    for line, name in list(unrun.items())[:1]:
+        yield Finding("never-run", line, {"code": name, "more": also_in(set(unrun) - {line})})
 
 
 def judge_reversals(sections: Sequence[SectionContour]) -> Iterator[Finding]:

@@ -111,6 +111,12 @@ class Codes:
             inside = switch == "on" if switch else inside
             yield text, switch, inside
 
+    def commanded(self, text: Text, switch: str) -> str:
+        """Return the cycle, section or sub that a line is to make, "" if there is none."""
+        if switch == "on" or self.cycle_of(text.call, text.codes):
+            return self.name_of(text.codes)
+        return self.shape_of(text) or self.holes_of(text)
+
     def wanted_in(self, texts: Iterable[Text]) -> set[Text]:
         """Return the lines of a file whose words matter for what is programmed, or may: G[12], G#1.
 

@@ -2,7 +2,7 @@
 """A finding or a note of verify: a code of the table of sentences, a line, values and a place."""
 
 import string
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -46,6 +46,11 @@ class Finding:
     def text(self, unit: Unit = MM) -> str:
         """Return the sentence with sizes in a unit."""
         return in_words(SENTENCES[self.code], self.values, unit)
+
+
+def also_in(lines: Collection[int]) -> str:
+    """Return further lines in brackets."""
+    return f" (also in line {', '.join(map(str, sorted(lines)))})" if lines else ""
 
 
 def in_words(sentence: str, values: Mapping[str, Any], unit: Unit) -> str:

@@ -82,6 +82,16 @@ NOTES = {
         "a bored hole is assumed down to {at:place}, for a rapid or R goes there{more}: "
         "--stock gives what there is"
     ),
+    "core-stands": (
+        "{area:mm2} stand in its middle when it is cut{more}: right only where that is bored "
+        "before, or is to stay: --stock gives what there is"
+    ),
+    "cuts-wall": "it and line {line} cut into each other's walls",
+    "cut-before": "all of it was cut before{more}: a spring pass, or the wrong place?",
+    "never-run": "{code} is never run{more}: the program ends before it, or goes another way",
+    "above-surface": (
+        "nothing of it goes below its surface of radius {radius:mm}: it stays {size:fine} above"
+    ),
     "plunge-into-stock": (
         "it plunges with {share:0} % of the cutter into the stock, at {at:place}{of}"
     ),
@@ -159,6 +169,16 @@ NOT_JUDGED = {
     "first-rapid": (
         "what the first rapid goes through on its way to {at:place}: "
         "where the tool comes from is not known"
+    ),
+    "rapid-beside": (
+        "rapids below the part's top, beside what is cut: line {lines}; "
+        "--stock gives what stands there"
+    ),
+    "rapid-by-machine": (
+        "what rapids by G53, G28 or G30 go through that start within the part: line {lines}"
+    ),
+    "tool-spindle": (
+        "whether the driven tool turns: the program does not start it by M3 or M4 with an S"
     ),
     "plain-moves": (
         "feed moves outside of cycles and sections: {count} lines, the last of them line {last}"
