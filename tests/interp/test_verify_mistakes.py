@@ -117,6 +117,8 @@ def test_compensation_on_the_wrong_side_of_a_flat_is_named(proof_of):
     lead = [line.replace("G41", "G42") for line in FLAT]
     proof = proof_of(*LATHE, "G0 X60 Z2 C0", *lead, machine="lathe_mm")
     assert told(proof)[0] == "the tool crosses the contour on its way in: G41?"
+    (sign,) = (each for each in scene_of_proof(proof).seen.signs if each.code == "side-crossed")
+    assert sign.place == pytest.approx((30, 0, 2))
 
 
 OVER = ["Z2", "G40 X-70", "G13.1"]
@@ -183,7 +185,9 @@ def test_a_single_ring_tells_of_its_core(proof_of):
 )
 def test_a_lost_minus_sign_is_found(head, block, found, proof_of):
     text = f"its depth Z{found}, where the tool comes from: it cuts air (a lost minus sign?)"
-    assert told(proof_of(*MILL, *head, block)) == [text]
+    proof = proof_of(*MILL, *head, block)
+    assert told(proof) == [text]
+    assert [each.code for each in scene_of_proof(proof).seen.signs] == ["cuts-air"]
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ What a run makes of a shape is judged with the section in its sub. Lengths are m
 
 from bisect import bisect
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import islice
 from typing import Any, NamedTuple
 

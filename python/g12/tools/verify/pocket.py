@@ -88,7 +88,7 @@ def measure_pocket(
         wall.face,
         deviation,
         values,
-        in_file(judged, source.file),
+        in_file(judged, source.file, wall.machine((0j, 0.0))),
         turning=False,
         sound=not laid.differences,
     )

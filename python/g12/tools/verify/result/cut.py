@@ -48,9 +48,14 @@ class MeasuredCut:
         return min((move.end[Z] for move in self.fed(moves)), default=float("inf"))
 
 
-def in_file(found: Iterable[Finding], file: str) -> tuple[Finding, ...]:
-    """Return what was found in a sub's own file, or "" in the program."""
-    return tuple(replace(each, file=file) for each in found)
+def in_file(
+    found: Iterable[Finding], file: str, start: Sequence[float] | None = None
+) -> tuple[Finding, ...]:
+    """Return what was found in a sub's own file, or "" in the program.
+
+    Its place is where the cut starts if it has none of its own.
+    """
+    return tuple(replace(each, file=file, place=each.place or start) for each in found)
 
 
 def pace_values(pace: Pace) -> dict[str, Any]:

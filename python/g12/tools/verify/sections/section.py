@@ -94,7 +94,7 @@ def measure_section(
             "c_limit": finite(axes.c_speed),
             "turned_in_place": turns.in_place._asdict(),
         },
-        in_file(judged, section.file),
+        in_file(judged, section.file, plane.place((section.start, section.height))),
         section.last,
         feeds=tuple(element.feed for element in section.elements if element.feed),
         path=found.expected,
