@@ -52,6 +52,8 @@ def test_a_finding_ends_with_1_and_is_told(written, capsys):
 def test_notes_are_findings_on_demand(written, capsys):
     code, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--strict")
     assert code == 1 and out.endswith("verdict: 1 finding\n")
+    code, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--strict", "--json")
+    assert code == 1 and not json.loads(out)["good"]
 
 
 def test_a_cycle_out_of_sight_is_no_good(capsys, written, tmp_path):

@@ -78,7 +78,7 @@ def main(arguments: list[str]) -> int:
         raise UsageError(f"{options.program}: has no pocket, no section and no holes to verify")
     unit = unit_of(proof.subject.trace.modes.gcodes, options.units)
     text = as_text(proof, unit, full=options.full, strict=options.strict)
-    print(as_json(proof) if options.json else text)
+    print(as_json(proof, options.strict) if options.json else text)
     counts = (each.is_finding or (options.strict and each.is_note) for each in judged)
     return FINDING if any(counts) else GOOD
 

@@ -124,8 +124,8 @@ def as_text(proof: Proof, unit: Unit, *, full: bool = False, strict: bool = Fals
     return "\n\n".join(filter(None, parts))
 
 
-def as_json(proof: Proof) -> str:
-    """Return the proof for a program to read."""
+def as_json(proof: Proof, strict: bool = False) -> str:
+    """Return the proof for a program to read; with ``strict`` it is not good with a note."""
     judged = {
         name: [judged_values(each, proof) for each in proof.judged if getattr(each, kind)]
         for name, kind in KINDS.items()
@@ -145,7 +145,7 @@ def as_json(proof: Proof) -> str:
         ],
         "still": [{"line": line(at), "code": code} for at, code in proof.still],
         **judged,
-        "good": not judged["findings"],
+        "good": not (judged["findings"] or (strict and judged["notes"])),
     }
     return json.dumps(values, indent=2)
 
