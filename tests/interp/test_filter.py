@@ -6,7 +6,7 @@ import json
 import pytest
 
 from g12.tools.commands import main
-from g12.tools.machine.filter import filter_for, lines_of_source, opened_program
+from g12.tools.machine.filter import OpenedProgram, filter_for, lines_of_source, opened_program
 from g12.tools.machine.ini import read_ini
 from support.foreign_programs import FOREIGN
 from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
@@ -177,6 +177,20 @@ def test_lines_behind_any_filter_are_the_users(filtered, command, line):
     _, errors = filtered("trace", POCKETS, command)
     assert errors.startswith(f"g12 trace: PROGRAM:{line}: G12: I0.1 must be greater than"), errors
     assert "[FILTER]" not in errors
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "both lines {} and {}:",
+        "(also in line {}, {}) 3 in",
+        "lines {} to {}",
+        "line {}, 2 mm, line {}",
+    ],
+)
+def test_each_of_several_lines_in_a_text_is_the_users(text, tmp_path):
+    opened = OpenedProgram(tmp_path / "own", tmp_path / "made", (7, 8, 9))
+    assert opened.in_source(text.format(1, 3)) == text.format(7, 9)
 
 
 WRITTEN = "G20 G90 G0 X0\n(A)\nG1 X1 F9\nG1 X2\nT2 M6\nG12 I.1 Z-.2 D2 F20\nM2\n"

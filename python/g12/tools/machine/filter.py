@@ -20,7 +20,8 @@ from g12.tools.machine.aligned_lines import aligned_lines
 from g12.tools.machine.ini import Ini
 
 MARK = re.compile(rb" \(line ([0-9]+)\)\s*$|^\(line ([0-9]+)\) ")
-NAMED_LINE = re.compile(r"\b(line|lines) ([0-9]+)\b")
+NUMBER = re.compile(r"[0-9]+")
+NAMED_LINES = re.compile(r"\blines? [0-9]+\b(?:(?:, | and | to )[0-9]+\b(?![.°]?[0-9]| mm| in\b))*")
 PROGRESS = "FILTER_PROGRESS="
 OWN_ERROR = re.compile(r"g12 \w+: ")
 
@@ -70,7 +71,8 @@ class OpenedProgram:
             return text
         place = re.compile(rf"{re.escape(str(self.path))}(?::([0-9]+):)?")
         line = lambda match: f":{self.source_line(int(match[1]))}:" if match[1] else ""  # noqa: E731
-        text = NAMED_LINE.sub(lambda m: f"{m[1]} {self.source_line(int(m[2]))}", text)
+        number = lambda match: str(self.source_line(int(match[0])))  # noqa: E731
+        text = NAMED_LINES.sub(lambda match: NUMBER.sub(number, match[0]), text)
         return place.sub(lambda match: f"{self.name}{line(match)}", text)
 
 
