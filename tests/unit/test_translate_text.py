@@ -567,6 +567,23 @@ def test_the_feed_comes_back_behind_a_rapid_of_polar_mode():
     ]
 
 
+@pytest.mark.parametrize(
+    ("cut", "written"),
+    [
+        ("G81 Z-.5 R.2", "G1 Z-0.5 (line 9)"),
+        ("G83 Z-.5 R.2 Q9.", "G1 Z-0.5 (line 9)"),
+        ("G90 X.3 Z-.5", "G1 Z-0.5 (line 9)"),
+        ("G1 Z-.5", "G1 Z-.5 F9. G94"),
+    ],
+)
+def test_a_cut_behind_a_rapid_of_polar_mode_has_the_programs_feed(cut, written):
+    text = f"G1 X5. F9.\nG112\nG1 X4.\nG0 X5.\nG113\nG0 X1. Z1.\n{cut}\nM30\n"
+    found = behind(HAAS_LATHE, text, "(HEAD)\nG20 G98 G0 X6. Z6.\n")
+    outside = found[found.index("G13.1") : found.index(written) + 1]
+    assert "G0 X1. Z1." in outside
+    assert any("F9. G94" in line for line in outside)
+
+
 def test_cylinder():
     translated = behind(LATHE, "G107 C25.\nG1 Z-5. C30.\nU1. W2. H3.\nG41 D1 Z0\nG7.1 C0\nM30\n",
                         "(HEAD)\nT101\nG0 X50. Z5.\n")  # fmt: skip

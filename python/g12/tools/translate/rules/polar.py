@@ -13,12 +13,18 @@ from typing import Any
 from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, UNKNOWN, UNSURE
-from g12.tools.translate.blocks.places import IN_POLAR, axis_of, known_place, value_text
+from g12.tools.translate.blocks.modal import (
+    AS_PROGRAMMED,
+    CONSUMERS,
+    MOTIONS,
+    UNKNOWN,
+    UNSURE,
+)
+from g12.tools.translate.blocks.places import IN_POLAR, STAYING, axis_of, known_place, value_text
 
 IN_PLANE = frozenset("XCUH")
 MOVING = frozenset("XYZABCUVWHF")
-REFERENCE = frozenset(("G28", "G30"))
+REFERENCE = ("G28", "G30")
 PLANES = frozenset(("G17", "G18", "G19"))
 SECTIONS = {
     "on": "in polar mode",
@@ -251,10 +257,18 @@ def feed_again(draft: Draft) -> None:
 
 
 def goes_by_rapid(draft: Draft) -> bool:
-    """Tell whether a block needs no feed: that of the next cut may not be the same on every way."""
+    """Tell whether a block needs no feed: that of the next cut may not be the same on every way.
+
+    A drilling cycle cuts, and a block that repeats one, also where G0 is the mode.
+    """
     if draft.state.own_feed == "G93" or draft.state.held or "F" in draft.letters():
         return False
-    return is_rapid(draft) or not REFERENCE.isdisjoint(draft.codes())
+    codes = set(draft.codes())
+    if set(draft.meanings) - STAYING:
+        return False
+    if draft.state.cycle or codes & (MOTIONS | CONSUMERS):
+        return not codes.isdisjoint(("G0", *REFERENCE))
+    return is_rapid(draft)
 
 
 def own_feed_ended(draft: Draft) -> list[str]:
