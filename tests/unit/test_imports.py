@@ -81,6 +81,17 @@ def test_no_file_of_a_room_imports_what_it_must_not(room):
     assert not broken
 
 
+def test_few_files_import_what_linuxcnc_brings():
+    rooms = ("g12.host", "g12.tools.headless", "g12.tools.preview.worker")
+    assert all(inside(name, rooms) for name in IMPORTS if any_of_linuxcnc(name))
+    assert any_of_linuxcnc("g12.tools.preview.worker")
+
+
+def any_of_linuxcnc(name):
+    """Return whether a file imports a module of LinuxCNC's."""
+    return any(inside(imported, LINUXCNC) for imported in IMPORTS[name])
+
+
 def test_the_files_that_both_wings_share_know_neither():
     shared = [f"g12.{stem}" for stem in SHARED if stem != "remap"]
     for name in shared:
