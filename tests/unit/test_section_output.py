@@ -22,7 +22,10 @@ NEXT = [("F", 260.0), (11.0, 1.0, 0.0)]  # the last as it goes to the canonical 
 
 
 class Interpreter:
-    """Records what is executed; knows of modes what an emission asks for."""
+    """Records what is executed; knows of modes what an emission asks for.
+
+    ``begins`` is the line of the stop in front of the section, which is not among ``done``.
+    """
 
     def __init__(self, path=640, tolerance=0.0, merging=0.0, feed_mode=0, wrapped=True):
         self.active_g_codes = [-1] * 11 + [path]
@@ -31,7 +34,7 @@ class Interpreter:
         self.call_level, self.motion_mode, self.distance_mode = 1, 0, "G91"
         self.current_y = self.AA_current = self.BB_current = 0.0
         self.u_current = self.v_current = self.w_current = 0.0
-        self.done, self.lines, self.wrapped, self.levels, self.stops = [], [], [], [], []
+        self.done, self.lines, self.wrapped, self.levels, self.begins = [], [], [], [], None
         self.current_x = self.CC_current = self.current_z = self.status = 0
         self.moving = None
 
@@ -39,8 +42,8 @@ class Interpreter:
         self._read = text
 
     def execute(self, text):
-        if text == STOP_HERE:
-            self.stops.append(self.sequence_number)
+        if text == STOP_HERE and self.begins is None:
+            self.begins = self.sequence_number
             return 0
         self.done.append(self._read if text is None else text)
         self.current_x += self.done[-1] == self.moving
@@ -109,7 +112,7 @@ def test_segments_run_under_g64_with_a_tolerance_and_the_old_one_comes_back():
 @pytest.mark.parametrize("path", [640, 610, 611])
 def test_a_move_in_front_of_the_section_is_not_blended_into_it(path):
     interp = handed_over([run()], Interpreter(path=path))
-    assert interp.stops == [7]
+    assert interp.begins == 7
 
 
 def test_the_second_part_of_a_section_begins_without_a_stop():
@@ -117,7 +120,7 @@ def test_the_second_part_of_a_section_begins_without_a_stop():
     emission = emission_of(interp)
     for _ in range(2):
         assert list(emission.run([run()], MODES, ())) == []
-    assert interp.stops == [7]
+    assert interp.begins == 7 and STOP_HERE not in interp.done
 
 
 def test_a_programmed_tolerance_is_kept():
@@ -153,22 +156,34 @@ def test_on_the_face_the_tolerance_that_linuxcnc_starts_with_is_none(tolerance, 
     assert interp.active_settings[3:] == [tolerance, merging]
 
 
-def test_a_stop_ends_in_exact_path():
-    interp = handed_over([run(stop=True), run()])
-    assert interp.done == [SMOOTH, FIRST, "G61", LAST, SMOOTH, FIRST, *NEXT, OLD, *RELEASED]
+def test_a_segment_that_another_is_blended_into_is_stopped_by_a_dwell():
+    one = [run(segments=LINE[:1]), run(segments=LINE[1:], stop=True)]
+    for steps in ([run(stop=True), run()], [*one, run()]):
+        done = handed_over(steps).done
+        end = done.index(STOP_HERE)
+        assert done[0] == SMOOTH and done[end + 1 :] == [FIRST, *NEXT, OLD, *RELEASED]
+    assert done[1:end] == [FIRST, LAST]
+
+
+def test_a_segment_between_two_stops_ends_in_exact_path():
+    alone = run(segments=LINE[:1], stop=True)
+    assert handed_over([alone, alone]).done == ["G61", FIRST, FIRST, OLD, *RELEASED]
 
 
 @pytest.mark.parametrize("path", ["G61", "G61.1"])
 def test_programmed_exact_paths_hold_at_the_end_of_a_block(path):
     interp = Interpreter(path=round(float(path[1:]) * 10), tolerance=0.05)
     done = handed_over([run(), run(), run(line=8)], interp).done
-    last = [SMOOTH, FIRST, path, LAST]
-    assert done == [SMOOTH, FIRST, LAST, FIRST, path, LAST, *last, "G64P0.05Q0", path, *RELEASED]
+    block = [FIRST, *NEXT]
+    ends = [*block, STOP_HERE, "G64P0.05Q0", path, *RELEASED]
+    assert done == [SMOOTH, *block, *block, STOP_HERE, *ends]
 
 
 def test_g9_is_an_exact_stop_at_the_end_of_its_block():
     done = handed_over([run(), run(line=8)], exact={8}).done
-    assert done == [SMOOTH, FIRST, LAST, FIRST, "G61.1", LAST, OLD, *RELEASED]
+    assert done == [SMOOTH, FIRST, *NEXT, FIRST, *NEXT, STOP_HERE, OLD, *RELEASED]
+    alone = handed_over([run(segments=LINE[:1], line=8)], exact={8}).done
+    assert alone == ["G61.1", FIRST, OLD, *RELEASED]
 
 
 def test_every_move_has_the_line_of_its_block():
@@ -217,7 +232,8 @@ def test_path_control_commanded_inside_stays():
     done = handed_over([run(), g64, run(line=9), g61, run(line=11)]).done
     second, third = done.index("G64P0.1"), done.index("G61")
     assert done[second:third] == ["G64P0.1", FIRST, *NEXT, *RELEASED]
-    assert done[third:] == ["G61", SMOOTH, FIRST, "G61", LAST, "G64P0.1Q0.1", "G61", *RELEASED]
+    back = ["G64P0.1Q0.1", "G61", *RELEASED]
+    assert done[third:] == ["G61", SMOOTH, FIRST, *NEXT, STOP_HERE, *back]
 
 
 def test_saved_state_is_that_of_its_call_level():
