@@ -57,7 +57,8 @@ def _corner(
 ) -> float:
     """Return the distance at which blending would pass the corner between two elements.
 
-    ``stopping``: at the end of ``b``; such a move is not blended, and has all the acceleration.
+    ``stopping``: at the end of ``b``, which counts with all the acceleration, as it has into a G61.
+    Where a G4 P0 makes the stop it has half: the rounding is that of other corners, less than this.
     """
     point = _corner_point(a, b)
     leave, meet = _direction(a, 1.0), _direction(b, 0.0)

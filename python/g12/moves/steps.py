@@ -9,9 +9,7 @@ from g12.moves.feed import Segment, Split, keeps_slide
 from g12.moves.spacing import MOST_SEGMENTS, TooManySegments
 
 CHORD_SHARE = 0.96  # of the tolerance: the estimate of the deviation may be too low by the rest
-STOP_SHARE = (
-    0.7  # of the tolerance: before a stop the move accelerates harder and cuts the corner deeper
-)
+STOP_SHARE = 0.7  # of the tolerance, before a stop: into a G61 a segment cuts a corner deeper
 ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, on top of the segments' own deviation
 LEFT_OVER = 1e-3  # of the least step of a slide: less than that is rounding
 
