@@ -99,6 +99,15 @@ def test_modes_and_f_are_afterwards_as_before(lathe, modes):
     assert path[0] == path[1] and ends[0].modes.blending == ends[1].modes.blending
 
 
+@pytest.mark.parametrize("name", HOLES)
+def test_entries_are_absolute_under_g91_too(lathe, name):
+    absolute, incremental = (
+        lathe.trace_text(program(modes, call(name))) for modes in ("G90", "G91")
+    )
+    ends = [[(move.kind, move.end) for move in each.moves] for each in (absolute, incremental)]
+    assert len(ends[0]) >= 8 and ends[0] == ends[1]
+
+
 def test_on_a_wrapped_axis_too_c_turns_the_shorter_way():
     overrides = {"AXIS_C": {"WRAPPED_ROTARY": 1}}
     with Tracer(SIM / "lathe_mm.ini", overrides=overrides, tools={1: 6.0}) as lathe:
