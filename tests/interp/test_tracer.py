@@ -171,6 +171,15 @@ def test_tool_length_is_told_beside_the_position(mill):
     assert move.tool == 2
 
 
+@pytest.mark.parametrize("change", ["T2 M6\nG43", "T2 M6 G43", "G43 H2\nT2 M6", "T2 M6"])
+@pytest.mark.parametrize("system", ["", "G55\n", "G92 Y7\n", "G10 L2 P1 Z-3\n"])
+def test_an_axis_that_is_not_commanded_starts_where_it_ends(mill, system, change):
+    offsets = {5221: 100.1, 5222: 50.7, 5223: -99.9, 5242: 1.3, 5243: 7.7}
+    first, second, _ = mill.trace_text(f"{system}{change}\nG0 X1\nX2\nY3", parameters=offsets).moves
+    assert first.start[1:3] == first.end[1:3] == second.start[1:3] == second.end[1:3]
+    assert second.start == first.end
+
+
 def test_tools_can_be_given_by_diameter(ini):
     blocks = "T7 M6\nG41.1 D#5410\nG1 X10 Y0 F100\nX20\nM2"
     traced = trace_text(blocks, ini, tools={7: 4.0})
@@ -203,8 +212,8 @@ def test_a_new_origin_makes_the_same_words_a_move(mill, offset):
 
 
 def test_rounding_in_z_is_no_motion(mill):
-    *_, turn = mill.trace_text("G20 G94 G1 Z[0.1 + 0.2] F10\nG1 Z0.3 C90 F45").moves
-    assert turn.start[2] != turn.end[2] == near(0.3 * 25.4)
+    lift, turn = mill.trace_text("G20 G94 G1 Z[0.1 + 0.2] F10\nG1 Z0.3 C90 F45").moves
+    assert lift.end[2] != turn.end[2] == near(0.3 * 25.4)
     assert turn.feed == near(45.0)
 
 

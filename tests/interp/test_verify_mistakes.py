@@ -23,13 +23,14 @@ SLOT = ["G12.1", "G1 Z-1 F800", "X-18", "X18", "Z2", "G13.1"]
 def proof_of(tmp_path):
     """Return the proof of a program on a machine that knows o<turn>, which turns C to 0."""
 
-    def proof(*lines, machine="mill_mm"):
+    def proof(*lines, machine="mill_mm", parameters=None):
         (tmp_path / "turn.ngc").write_text("o<turn> sub\nG0 C0\no<turn> endsub\nM2\n")
         program = tmp_path / "program.ngc"
         program.write_text("\n".join([*lines, "M2", ""]))
         ini = read_ini(SIM / f"{machine}_headless.ini")
         path = f"{ini.get('RS274NGC', 'SUBROUTINE_PATH')}:{tmp_path}"
-        return prove(program, ini.replaced({"RS274NGC": {"SUBROUTINE_PATH": path}}))
+        ini = ini.replaced({"RS274NGC": {"SUBROUTINE_PATH": path}})
+        return prove(program, ini, parameters=parameters)
 
     return proof
 
@@ -372,6 +373,15 @@ def test_g43_in_a_block_of_its_own_is_no_rapid_into_the_part(proof_of):
     begin = [*AT_ONE, "T4 M6", "S900 M3", "G43", "G0 X0 Y0", "Z1"]
     change = ["G53 G0 Z0", "T3 M6", "G43", "S900 M3", "G0 X60", "Z1"]
     assert codes(proof_of(*begin, POCKET, *change, POCKET.replace("D4", "D3"))) == []
+
+
+@pytest.mark.parametrize("change", [["T4 M6", "G43"], ["T4 M6 G43"], ["G43 H4", "T4 M6"]])
+@pytest.mark.parametrize("system", ["G54", "G55"])
+def test_with_a_work_offset_no_z_is_known_before_the_first_one(system, change, proof_of):
+    offsets = {5220: 1} | {first + axis: -99.7 for first in (5221, 5241) for axis in range(3)}
+    lines = [system, *change, "S900 M3", "G0 X0 Y0", "X5", "Z1", "X0"]
+    proof = proof_of("G21 G17 G90 G94 F600", *lines, POCKET, parameters=offsets)
+    assert codes(proof) == []
 
 
 @pytest.mark.parametrize(

@@ -204,9 +204,8 @@ class Canon:
         self.tip = NO_OFFSET  # in program coordinates
         self.position = self._beside_x(NO_OFFSET)  # in machine coordinates
         self.work = self.g92 = self.length = NO_OFFSET
-        self.shift: tuple[float, ...] = (
-            NO_OFFSET  # shift of the tip since the last move, by G43 and G49
-        )
+        self.shift: tuple[float, ...] = NO_OFFSET  # of the tip since the last move, no axis moving
+        self.changed_tool = False  # in this block
         self.rotation, self.cos, self.sin = 0.0, 1.0, 0.0
         self.plane = 17
         self.feed = self.program_feed = 0.0
@@ -246,6 +245,7 @@ class Canon:
     def next_line(self, state) -> None:
         """Note the line of the following calls."""
         self.line = state.sequence_number
+        self._stand_where_the_last_move_ended()
         self._convert_feed()
         if self.started:
             self._note_conditions(state)
@@ -257,6 +257,7 @@ class Canon:
             this.feed_rate = 0.0  # not by F0: a machine may have remapped F
             this.active_spindle = 0  # LinuxCNC leaves it unset, and reads it in G33 without $
             self.modal_feed, self.units = 0.0, this.length_units
+            self.position = self._resolved(self.tip)
         self._convert_feed()
         meant, changed, share = text.partition(MEANINGS_CHANGED)
         if changed and not meant:
@@ -317,6 +318,7 @@ class Canon:
         index, table = interpreter_object().selected_pocket, interpreter_object().tool_table
         self.tools[1:] = [for_canon(table[place]) for place in range(1, len(self.tools))]
         self.spindle = self.tools[index] if index else UNLOADED
+        self.changed_tool = True
         self._note(f"tool {self.spindle[0]}")
 
     def dwell(self, seconds: float) -> None:
@@ -425,13 +427,22 @@ class Canon:
         """Return the start of a move to ``tip``: a G43 before it moves the tip, not the axes.
 
         An axis that the move does not command starts where it ends. Any other starts where the last
-        move ended, as do all after M6 and G43 in one block, which the preview treats as no G43.
+        move ended.
         """
         shift, self.shift = self.shift, NO_OFFSET
         places = zip(self.position, shift, self._resolved(tip))
         return tuple(
-            end if by and abs(before + by - end) < STILL else before for before, by, end in places
+            end if abs(before + by - end) < STILL else before for before, by, end in places
         )
+
+    def _stand_where_the_last_move_ended(self) -> None:
+        """Shift the tip after a block with M6: the interpreter reads its position again.
+
+        The preview has that of the last move, in program coordinates, whatever offsets came since.
+        """
+        if self.changed_tool:
+            self.shift = tuple(map(float.__sub__, self._resolved(self.tip), self.position))
+            self.changed_tool = False
 
     def _stand_where_the_interpreter_does(self) -> None:
         """Take over the interpreter's position after a switch of kinematics, without a move."""
