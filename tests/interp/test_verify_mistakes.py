@@ -343,6 +343,7 @@ def codes(proof):
     [
         ([*WITH_LENGTH, POCKET], []),
         ([*WITH_LENGTH, POCKET, "G0 Z50", "T4 M6", "G43", "G0 X60 Z1", POCKET], []),
+        (["T4 M6", "G43 H0", "G0 X0 Y0 Z1", POCKET], []),  # the loaded tool's, in LinuxCNC
         (["T4 M6", "G43 H1", "G0 X0 Y0 Z1", POCKET], ["length-deeper"]),
         (["T4 M6", "G43 H6", "G0 X0 Y0 Z1", POCKET], ["length-higher"]),
         (["T4 M6", "G0 X0 Y0 Z1", POCKET], ["length-not-used"]),
