@@ -23,14 +23,14 @@ SLOT = ["G12.1", "G1 Z-1 F800", "X-18", "X18", "Z2", "G13.1"]
 def proof_of(tmp_path):
     """Return the proof of a program on a machine that knows o<turn>, which turns C to 0."""
 
-    def proof(*lines, machine="mill_mm", parameters=None):
+    def proof(*lines, machine="mill_mm", **more):
         (tmp_path / "turn.ngc").write_text("o<turn> sub\nG0 C0\no<turn> endsub\nM2\n")
         program = tmp_path / "program.ngc"
         program.write_text("\n".join([*lines, "M2", ""]))
         ini = read_ini(SIM / f"{machine}_headless.ini")
         path = f"{ini.get('RS274NGC', 'SUBROUTINE_PATH')}:{tmp_path}"
         ini = ini.replaced({"RS274NGC": {"SUBROUTINE_PATH": path}})
-        return prove(program, ini, parameters=parameters)
+        return prove(program, ini, **more)
 
     return proof
 
@@ -500,3 +500,12 @@ FACE_HOLE = "o<face_hole_at> call [20] [0] [8] [2] [{}] [0] [0] [0]"
 def test_holes_on_the_face_stand_in_material(feed, after, found, proof_of):
     lines = ["S900 M3", "G0 X60 Z10 C0", FACE_HOLE.format(feed), after]
     assert codes(proof_of(*LATHE, *lines, machine="lathe_mm")) == found
+
+
+def test_what_two_calls_of_a_sub_do_on_one_line_is_listed_as_often_as_counted(proof_of):
+    section = ["G12.1", "G1 C25 F2000", "G42 X27 F1000", "Z-5", "C-25", *LEAD_OUT]
+    sub = ["o7 sub", "G0 C#1", *section, "G0 Z2", "o7 endsub"]
+    calls = ["S900 M3", "G0 X60 Z2", "o7 call [0]", "o7 call [180]"]
+    text = as_text(proof_of(*LATHE, *sub, *calls, machine="lathe_mm"), MM)
+    assert "line 5 (2 times): the tool crosses the contour on its way in: G41?" in text
+    assert f"verdict: {2 * text.count('(2 times)')} findings" in text

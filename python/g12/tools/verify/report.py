@@ -274,10 +274,12 @@ def _listed(title: str, found: Sequence[Finding], proof: Proof, unit: Unit) -> s
 
 
 def first_of_lines(where: Sequence[str]) -> str:
-    """Return the lines of a sentence: the first of them, and how many more."""
+    """Return the lines of a sentence: the first, how many more, how often if not once in each."""
     named = [each for each in dict.fromkeys(where) if each]
-    more = f" (and {counted_as(len(named) - 1, 'line')} more)" if len(named) > 1 else ""
-    return f"{named[0]}{more}: " if named else ""
+    more = [f"and {counted_as(len(named) - 1, 'line')} more"] if len(named) > 1 else []
+    often = [f"{len(where)} times"] if len(where) > len(named) else []
+    added = f" ({', '.join([*more, *often])})" if more or often else ""
+    return f"{named[0]}{added}: " if named else ""
 
 
 def verdict(findings: int, notes: int) -> str:
