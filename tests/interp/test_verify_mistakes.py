@@ -5,6 +5,7 @@ import pytest
 
 from g12.tools.commands.main import main
 from g12.tools.machine.ini import read_ini
+from g12.tools.material.stock import StockText
 from g12.tools.plot.scene import scene_of_proof
 from g12.tools.units import MM
 from g12.tools.verify.proof import prove
@@ -509,3 +510,10 @@ def test_what_two_calls_of_a_sub_do_on_one_line_is_listed_as_often_as_counted(pr
     text = as_text(proof_of(*LATHE, *sub, *calls, machine="lathe_mm"), MM)
     assert "line 5 (2 times): the tool crosses the contour on its way in: G41?" in text
     assert f"verdict: {2 * text.count('(2 times)')} findings" in text
+
+
+def test_a_note_of_a_move_in_a_sub_of_a_file_names_the_line_that_calls_it(proof_of):
+    polygon = "o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]"
+    lines = [*LATHE, "S900 M3", "G0 X60 Z5 C0", polygon]
+    found = proof_of(*lines, machine="lathe_mm", stock=StockText("40")).judged
+    assert [each.line for each in found if each.code == "plunge-into-stock"] == [5]

@@ -65,10 +65,13 @@ class Program:
         return part.points(sampled) if len(sampled) else part.polyline(self.moves[index])
 
     def line(self, index: int) -> int:
-        """Return the program's line of a move; a cycle's own lines are in its subroutine."""
+        """Return the program's line of a move, of one in another file the line that calls it.
+
+        A cycle's own lines are in its subroutine, those of a section may be in a sub's own file.
+        """
         move = self.moves[index]
-        in_section = move.remap and any(move.remap == each.code for each in self.sections)
-        return move.line if in_section else move.block
+        own = (each for each in self.sections if each.at <= index < each.end and not each.file)
+        return move.line if any(move.remap == each.code for each in own) else move.block
 
     def radius(self, index: int) -> float:
         """Return the radius of a move's cutter: the loaded one's, else D's; 0 if none is known."""
