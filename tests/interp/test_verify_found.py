@@ -97,6 +97,14 @@ def test_a_cylinder_without_a_retract(end, codes):
     assert findings(codes(right, "lathe_mm")) == []
 
 
+@pytest.mark.parametrize("c", [-660, -300, 60, 200, 361, 400, 540, 660, 720, 1100])
+def test_a_wall_of_a_groove_at_any_turn_of_c(c, codes):
+    groove = FACE + GROOVE.replace("C60", f"C{c}") + "G7.1 C0\n"
+    assert findings(codes(groove + "G0 Z5\n", "lathe_mm")) == ["rapid-through"]
+    assert findings(codes(groove + f"G0 X60\nZ5\nC{c - 720}\n", "lathe_mm")) == []
+    assert findings(codes(groove + f"G0 C{c}\nX60\n", "lathe_mm")) == []
+
+
 def test_the_first_move_into_the_bar(codes):
     text = FACE + "G0 X10 Z-3 C0\nG12.1\nG1 X20 F600\nZ2\nG13.1\n"
     assert findings(codes(text, "lathe_mm", "30"))

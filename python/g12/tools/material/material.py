@@ -148,7 +148,12 @@ class Material:
         self, region: BaseGeometry, level: float, before: float = math.inf
     ) -> BaseGeometry:
         """Return the material in a region just below a level, before a move."""
-        found = [self._standing(part, level, before) for part in self._turned(region)]
+        if not self._period:
+            return self._standing(region, level, before)
+        found = [
+            translate(self._standing(part, level, before), away)
+            for part, away in self._turned(region)
+        ]
         return unary_union(found) if len(found) > 1 else found[0]
 
     def _standing(self, region: BaseGeometry, level: float, before: float) -> BaseGeometry:
@@ -173,17 +178,17 @@ class Material:
         turns = self._turns(line[:, 0].min() - radius, line[:, 0].max() + radius)
         return [line - (turn * self._period, 0.0) for turn in turns]
 
-    def _turned(self, region: BaseGeometry) -> list[BaseGeometry]:
-        """Return a region for each turn of a surface that it covers, moved to the first turn."""
+    def _turned(self, region: BaseGeometry) -> list[tuple[BaseGeometry, float]]:
+        """Return a region for each turn of a surface that it covers, moved to the first turn.
+
+        With each comes how far away from there it is.
+        """
         if not self._period or region.is_empty:
-            return [region]
+            return [(region, 0.0)]
         low, high = region.bounds[1] - 1.0, region.bounds[3] + 1.0
         first_turn = box(0.0, low, self._period, high)
-        moved = (
-            translate(region, -turn * self._period)
-            for turn in self._turns(region.bounds[0], region.bounds[2])
-        )
-        return [each.intersection(first_turn) for each in moved]
+        ways = [turn * self._period for turn in self._turns(region.bounds[0], region.bounds[2])]
+        return [(translate(region, -away).intersection(first_turn), away) for away in ways]
 
     def _turns(self, least: float, most: float) -> range:
         """Return the turns of a surface between two positions around it."""
@@ -196,13 +201,13 @@ class Material:
         """Return whether a portion of a region was cut down to a level before a move."""
         return any(
             len(self._cuts.within(part.bounds, level, before))
-            for part in self._turned(region)
+            for part, _ in self._turned(region)
             if not part.is_empty
         )
 
     def covers(self, region: BaseGeometry) -> bool:
         """Tell whether all of a region is solid at some level or cut at some move."""
-        left = self._turned(region)
+        left = [part for part, _ in self._turned(region)]
         for known in (self._solids, self._cuts):
             left = [self._without(known, part) for part in left if not part.is_empty]
         return sum(part.area for part in left) <= LEAST_AREA
