@@ -110,6 +110,30 @@ def test_the_first_move_into_the_bar(codes):
     assert findings(codes(text, "lathe_mm", "30"))
 
 
+HOLES = "o<side_holes> call [4] [-15] [0] [90] [{surface}] [6] [2] [100] [0] [.1] [0]\n"
+SIDE = FACE + "G0 X60 Z10 C0\nZ-15\n"
+
+
+@pytest.mark.parametrize(
+    "text", [HOLES.format(surface=30), "X10\nX60\n" + HOLES.format(surface=40)]
+)
+def test_a_rapid_into_the_bar_from_the_side(text, codes):
+    assert findings(codes(SIDE + text + "G0 X80\n", "lathe_mm", "40")) == ["rapid-into"]
+    assert findings(codes(SIDE + text + "G0 X80\n", "lathe_mm", "9")) == []
+
+
+def test_a_rapid_into_the_bar_before_a_groove(codes):
+    into = FACE + GROOVE.replace("C0\n", "C0\nX44\n", 1) + "G1 X60\nG7.1 C0\n"
+    assert findings(codes(into, "lathe_mm", "50")) == ["rapid-into"]
+    assert findings(codes(into.replace("X44", "X52"), "lathe_mm", "50")) == []
+
+
+def test_what_another_tool_cuts_of_a_bar_is_not_known_from_the_side(codes):
+    holes = "T2 M6\nG0 X70 Z-3 C0\n" + HOLES.format(surface=30).replace("-15", "-3") + "G0 X80\n"
+    judged = codes(FACE + HEXAGON + "G0 X70 Z5\n" + holes, "lathe_mm", "40")
+    assert findings(judged) == [] and ("rapid-after-cuts", False) in judged
+
+
 # ---------------------------------------------------------------- valid programs
 
 

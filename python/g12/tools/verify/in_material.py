@@ -54,10 +54,7 @@ def rapids_through(workpiece: Workpiece) -> Iterator[Finding]:
     rapids = [i for i in known if program.moves[i].kind == "rapid"]
     for view in workpiece.views:
         for index in (each for each in rapids if view.judges(program.moves[each])):
-            points = program.points(index, view.part)
-            if index - 1 not in known:
-                points = points[-1:]
-            touch = view.material.touched(points, program.radius(index), index)
+            touch = workpiece.touched(view, index) if index <= view.until else None
             if touch:
                 at, to = (place_at(point) for point in touch.points[[0, -1]])
                 values = {
@@ -75,7 +72,9 @@ def words_of(program: Program, view: PartView, point: Place) -> tuple[tuple[str,
     """Return a place of the part as words: X Y Z of a mill, X C Z of a lathe."""
     if not view.part.turning:
         return tuple(zip("XYZ", point))
-    double = 2 if any(section.diameters for section in program.sections) else 1
+    diameters = [section.diameters for section in program.sections]
+    diameters += [call.diameters for call in program.holes]
+    double = 2 if any(diameters) else 1
     if view.surface:
         around, along, level = point
         x, c, z = level - view.part.centre, math.degrees(around / view.surface), along
@@ -180,6 +179,9 @@ def judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
     if workpiece.stock.diameter:
         yield from filter(None, (remaining(workpiece, section) for section in program.on_face))
     for call in (each for each in program.holes if each.is_side):
+        first, sides = call.moves.start, (each for each in workpiece.views if each.surface)
+        if program.radius(first) and any(side.judges(moves[first]) for side in sides):
+            continue  # its rapids are held to the bar
         level, bar = (
             call.length("surface_diameter") + 2 * call.length("retract"),
             workpiece.stock.diameter,

@@ -20,7 +20,10 @@ def unjudged_rapids(workpiece: Workpiece) -> Iterator[Finding]:
     rapids = [i for i, move in enumerate(program.moves) if move.kind == "rapid" and i - 1 in known]
     leaving = [index for index in rapids if index not in known]
     for view in workpiece.views:
-        if view.surface or not (stock and (stock.diameter or stock.size)):
+        cut = (i for i in rapids if i in known and i > view.until and view.judges(program.moves[i]))
+        within = (i for i in cut if workpiece.touched(view, i))
+        yield from told("rapid-after-cuts", program, within)
+        if not (stock and (stock.diameter or stock.size)):
             beside = (i for i in rapids if i in known and goes_beside(program, view, i))
             yield from told("rapid-beside", program, beside)
         yield from told(

@@ -13,10 +13,10 @@ from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
-from shapely.geometry import LineString
+from shapely.geometry import LineString, box
 from shapely.geometry.base import BaseGeometry
 
-from g12.tools.material.material import SAME_LEVEL, Material
+from g12.tools.material.material import SAME_LEVEL, Material, Touch
 from g12.tools.material.stock import Stock, StockText, read_stock
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import Part, X, Z, disc, is_sideways, part_of
@@ -28,6 +28,7 @@ from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.words import BlockInMm, SubCall
 from g12.tools.verify.subject import Subject
 from g12.tools.verify.walls import (
+    FAR,
     WALL,
     AssumedHole,
     Circles,
@@ -114,17 +115,26 @@ class Program:
             return np.array([0.0, 0.0, call.zero[1]])
         return np.zeros(3)
 
+    def face(self) -> float:
+        """Return the program's Z0 where it first cuts, on a cylinder where it cuts nothing else."""
+        if self.sections and not (self.on_face or self.circles or self.holes):
+            first = self.sections[0]
+            return self.moves[first.at].start[Z] - first.start.imag
+        return float(self.zero()[Z])
+
 
 class PartView(NamedTuple):
     """The part as it is seen by some tools, all without ``tools``, and its material there.
 
-    ``surface`` is the radius of a cylinder, 0 of a plane.
+    ``surface`` is the radius of a cylinder, 0 of a plane. The material is known for the moves up to
+    ``until``.
     """
 
     part: Part
     material: Material
     tools: frozenset[int] | None = None
     surface: float = 0.0
+    until: float = math.inf
 
     def judges(self, move: Move) -> bool:
         """Tell whether a move is one of its tools'."""
@@ -167,6 +177,13 @@ class Workpiece:
             if not any(lost.values()):
                 found[index] = None
         return found
+
+    def touched(self, view: PartView, index: int) -> Touch | None:
+        """Return the material that a rapid goes through; of the first known one, at its end."""
+        points = self.program.points(index, view.part)
+        if index - 1 not in self.known:
+            points = points[-1:]
+        return view.material.touched(points, self.program.radius(index), index)
 
     @property
     def bottom(self) -> float | None:
@@ -231,6 +248,8 @@ def given_workpiece(program: Program, stock: Stock) -> Workpiece:
         for _, target in flat:
             material.open(disc(target.wall.origin, stock.bore / 2))
     views = views_of(program, material, face_tools(program) if stock.diameter else None)
+    if stock.diameter:
+        views.append(bar_from_side(program, stock.diameter / 2, program.face()))
     return Workpiece(program, views, (), stock, shape, float(zero[Z]))
 
 
@@ -249,12 +268,32 @@ def face_tools(program: Program) -> frozenset[int] | None:
     """
     if not program.sections and not program.part.turning:
         return None
-    drilled = [(call.moves.start, call.is_side) for call in program.holes]
-    cuts = [(section.at, False) for section in program.on_face] + drilled
-    face, side = (
-        {program.moves[at].tool for at, its in cuts if its is way} for way in (False, True)
+    drilled = frozenset(program.moves[c.moves.start].tool for c in program.holes if c.is_side)
+    return tools_of(program, side=False) - drilled
+
+
+def tools_of(program: Program, side: bool) -> frozenset[int]:
+    """Return the tools that cut sections and holes on the face, or round the side."""
+    cuts = [(section.at, section.surface > 0.0) for section in program.sections]
+    cuts += [(call.moves.start, call.is_side) for call in program.holes]
+    return frozenset(program.moves[at].tool for at, its in cuts if its is side)
+
+
+def bar_from_side(program: Program, radius: float, face: float) -> PartView:
+    """Return a bar as the tools see it that point at its axis alone, up to the first other cut."""
+    material, centre = Material(period=2 * math.pi * radius), program.part.centre
+    material.add(box(-FAR, -FAR, FAR, face), centre + radius)
+    tools = tools_of(program, side=True) - tools_of(program, side=False)
+    others = (
+        index
+        for index, move in enumerate(program.moves)
+        if move.kind != "rapid" and move.tool not in tools and move.end[Z] < face - SAME_LEVEL
+        if math.hypot(*program.end(index)[:2]) - program.radius(index) < radius - SAME_LEVEL
     )
-    return frozenset(face - side)
+    part = Surface(turning=True, centre=centre, radius=radius)
+    view = PartView(part, material, tools, radius, next(others, math.inf))
+    add_cuts(view, program)
+    return view
 
 
 def cylinders(program: Program) -> Iterator[PartView]:

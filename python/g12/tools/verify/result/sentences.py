@@ -174,6 +174,9 @@ NOT_JUDGED = {
         "rapids below the part's top, beside what is cut: line {lines}; "
         "--stock gives what stands there"
     ),
+    "rapid-after-cuts": (
+        "rapids from the side to where the bar was, which another tool cut before: line {lines}"
+    ),
     "rapid-by-machine": (
         "what rapids by G53, G28 or G30 go through that start within the part: line {lines}"
     ),
