@@ -94,12 +94,12 @@ def test_x_and_y_move_the_slide_and_c(lathe):
 def test_c_off_the_zero_line_is_refused_on_the_face(lathe):
     switch_on(lathe)
     lathe.mdi("G0 C0")
-    assert "C does not move by itself on the face" in lathe.errors()[0].text
+    lathe.wait_for_error("C does not move by itself on the face")
 
 
 def test_y_is_refused_off_the_face(lathe):
     lathe.mdi("G0 Y1")
-    assert "Y moves only on the face" in lathe.errors()[0].text
+    lathe.wait_for_error("Y moves only on the face")
     assert place(lathe) == (20, 0, 30)
 
 
@@ -357,7 +357,7 @@ def test_run_from_line_is_refused_elsewhere(lathe, away):
     lathe.start(10)
     lathe.wait_for(lambda status: status.interp == "idle" and lathe.stat().idle)
     time.sleep(0.5)
-    assert "the tool is not where the section begins" in lathe.errors()[0].text
+    lathe.wait_for_error("the tool is not where the section begins")
     assert not lathe.samples().moving().any()
     assert not on_the_face(lathe)
 

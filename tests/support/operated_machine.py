@@ -112,6 +112,13 @@ class Machine(machine.Machine):
             time.sleep(0.005)
         return status
 
+    def wait_for_error(self, text, timeout=5.0) -> None:
+        """Wait for an operator error that contains ``text``.
+
+        Those of motion and of the kinematics may arrive when the block has already ended.
+        """
+        self.wait_for(lambda _: any(text in error.text for error in self.errors()), timeout)
+
     # Looking.
 
     def stat(self) -> Status:
