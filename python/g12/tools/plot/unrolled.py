@@ -119,7 +119,7 @@ def unrolled(scene: Scene) -> Scene:
     trace = replace(subject.trace, moves=moves)
     radius = scene.seen.surface
     own = (each for each in scene.seen.findings if each.values.get("surface", radius) == radius)
-    shown = scene.seen._replace(findings=tuple(own))
+    shown = scene.seen._replace(findings=tuple(own), stock=None)  # a bar is round on the face alone
     return replace(scene, subject=replace(subject, trace=trace, drawn=flat), seen=shown)
 
 
