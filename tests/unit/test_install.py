@@ -311,11 +311,14 @@ def refused_kind(ini, *wanted, **python):
     [
         ({"remap": {"cycle_done": "remap"}}, "hidden"),
         ({"remap_file": None}, "remap-module"),
-        ({"remap_file": os.__file__}, "outside"),
+        ({"remap_file": "../remap.py"}, "outside"),
     ],
 )
 def test_what_cannot_be_done_to_a_users_modules_is_refused(tmp_path, python, kind):
-    ini, own = own_config(tmp_path)
+    folder = tmp_path / "mill"
+    folder.mkdir()
+    (tmp_path / "remap.py").write_text("def mine(self): pass\n")
+    ini, own = own_config(folder)
     assert refused_kind(ini, **{**own, **python}) == kind
 
 
