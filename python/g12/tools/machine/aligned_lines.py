@@ -8,9 +8,9 @@ replace one line belong to it. Where a stretch has another number of lines, the 
 """
 
 import re
-from bisect import bisect_left
-from collections import Counter
 from collections.abc import Iterator, Sequence
+
+from patiencediff import unique_lcs
 
 BLOCK_NUMBER = re.compile(rb"/?N[0-9]+")
 
@@ -38,32 +38,7 @@ def _key(row: bytes) -> bytes:
 
 def _anchors(before: Sequence[bytes], after: Sequence[bytes]) -> list[tuple[int, int]]:
     """Return the indices of lines that occur once in both texts, in the order of both."""
-    once = _once(before), _once(after)
-    pairs = [(at, once[1][key]) for key, at in once[0].items() if key in once[1]]
-    return [pairs[index] for index in _longest_rising([there for _, there in pairs])]
-
-
-def _once(keys: Sequence[bytes]) -> dict[bytes, int]:
-    counted = Counter(keys)
-    return {key: at for at, key in enumerate(keys) if key and counted[key] == 1}
-
-
-def _longest_rising(values: Sequence[int]) -> list[int]:
-    """Return the indices of the longest rising run of values."""
-    ends: list[int] = []  # the least last value of a run, by its length
-    at: list[int] = []
-    previous: list[int] = []
-    for index, value in enumerate(values):
-        length = bisect_left(ends, value)
-        previous.append(at[length - 1] if length else -1)
-        ends[length : length + 1] = [value]
-        at[length : length + 1] = [index]
-    run: list[int] = []
-    index = at[-1] if at else -1
-    while index >= 0:
-        run.append(index)
-        index = previous[index]
-    return run[::-1]
+    return unique_lcs([key or at for at, key in enumerate(before)], after)  # not empty lines
 
 
 def _lines_of_stretch(
