@@ -5,6 +5,7 @@ import random
 
 import pytest
 
+from g12.tools.commands.main import main
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from g12.tools.verify.proof import StockText, prove
@@ -24,6 +25,15 @@ def written(folder, *calls, units="G21", mode="G7", f=77):
     path = folder / "holes.ngc"
     path.write_text("\n".join([*head, *calls, "M2", ""]))
     return path
+
+
+def test_the_line_of_a_call_has_its_time_but_for_taps(tmp_path, capsys):
+    program = written(tmp_path, FACE, TAP)
+    assert main(["verify", str(program), "--ini", str(SIM / "lathe_mm_headless.ini")]) == 0
+    holes, tap = capsys.readouterr().out.splitlines()[:2]
+    fed = 3 * (10 / (120 / 60) + 0.5)  # from the retract to the depth, and the dwell
+    assert holes.endswith(" s") and fed < float(holes.split()[-2]) < fed + 3
+    assert tap.endswith("allowed)")
 
 
 def findings(path, ini, **options):

@@ -243,7 +243,8 @@ def test_no_rapid_goes_through_a_pocket_that_cuts_air(proof_of):
 # ---------------------------------------------------------------- work offsets
 
 X0 = "X0, the spindle's axis, is at machine X10\n"
-MOVED = "places are those of the machine: the program's zero is X2 Y0 Z−30"
+AT = "positions below are the machine's; the program's zero is at machine"
+MOVED = f"{AT} X2 Y0 Z−30"
 
 
 @pytest.mark.parametrize(
@@ -261,7 +262,7 @@ def test_where_the_programs_zero_is_is_said(lines, first, proof_of):
 @pytest.mark.parametrize(
     ("lines", "first"),
     [
-        (SLOT, f"places are those of the machine: the program's zero is Z−90; {X0}"),
+        (SLOT, f"{AT} Z−90; {X0}"),
         (["G7.1 C20", "G1 Z-40 C60 F250", "G7.1 C0"], X0),
     ],
 )
@@ -282,7 +283,7 @@ def test_the_picture_of_a_proof_shows_what_stands_and_another_cutter(proof_of):
 
 # ---------------------------------------------------------------- the spindle
 
-STANDS = "the spindle stands still"
+STANDS = "the spindle does not turn here"
 POCKET = "G13 I9 Z-2 D4 "
 
 

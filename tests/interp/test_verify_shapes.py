@@ -22,7 +22,10 @@ FORMS = {  # the entries of a form behind its first six
 def test_a_report_has_each_shape_and_how_far_off_its_toolpath_is(capsys):
     ini = str(LATHES["mm"])
     assert main(["verify", PROGRAM, "--ini", ini]) == 0
-    assert "  polar_polygon  cutter ⌀ 6, to Z−4  " in capsys.readouterr().out
+    cuts = capsys.readouterr().out.split("\n\n")[0].splitlines()
+    assert "  polar_polygon  cutter ⌀ 6, to Z−4  " in cuts[0]
+    assert [line.split()[1] for line in cuts] == ["9", "10", "11"]  # once, not its section too
+    assert cuts[0].endswith("(0.005 allowed)  53.2 s")
     assert main(["verify", PROGRAM, "--ini", ini, "--full"]) == 0
     text = capsys.readouterr().out
     assert "line 9: polar_polygon\n  cutter          ⌀ 6\n  entries         sides 6, across" in text

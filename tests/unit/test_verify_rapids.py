@@ -157,7 +157,7 @@ def test_holes_are_assumed_where_the_program_comes_down_to_its_first_cycle_by_ra
     program = bored(first=-3.0)
     (note,) = program.assumed()
     assert program.found() == [] and "(also in line 3)" in note
-    assert note.startswith("a bored hole is assumed down to X150 Y0 Z−3, for a rapid")
+    assert note.startswith("verify assumes a bored hole down to X150 Y0 Z−3, because a rapid")
 
 
 def test_no_hole_is_assumed_where_the_first_cycle_is_fed_down_to():

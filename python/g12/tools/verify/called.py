@@ -5,7 +5,7 @@ What a run makes of a shape is judged with the section in its sub. Lengths are m
 """
 
 from bisect import bisect
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 from typing import Any, NamedTuple
@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from g12.geometry.curve import Line
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import C
+from g12.tools.path.slowest import Pace
 from g12.tools.path.track import STILL, Track
 from g12.tools.preview.executed_blocks import CLAMP, Block
 from g12.tools.preview.moves import Event, Move
@@ -83,9 +84,13 @@ def measure_holes(
     moves: Sequence[Move],
     tolerance: float,
     clamp: Clamp,
+    pace: Callable[[Sequence[int], Sequence[int]], Pace],
     real: Followed | None = None,
 ) -> MeasuredCut:
-    """Return what was measured of a call."""
+    """Return what was measured of a call.
+
+    ``pace`` is a function of all its moves and of those that cut.
+    """
     block, call = called
     holes, own = holes_of(call), range(block.at, block.end)
     turns = (moves[i].end[C] - moves[i].start[C] for i in own)
@@ -113,10 +118,17 @@ def measure_holes(
         "depth": holes.depth,
         "count": holes.count,
         "entries": call.given,
+        **times_of_holes(holes, pace(own, []), real),
     }
     cut = called_cut(call, None if call.is_side else call.zero[1], found, values, judged)
     feed = None if holes.pitch else call.feed()
     return replace(cut, feeds=(feed,) if feed else ())
+
+
+def times_of_holes(holes: Holes, pace: Pace, real: Followed | None) -> dict[str, float | None]:
+    """Return the seconds of a call; without a run those of taps, by the spindle, are not known."""
+    programmed = None if holes.pitch else pace.expected + holes.count * (holes.dwell or 0.0)
+    return {"seconds": pace.seconds if real else programmed, "seconds_programmed": programmed}
 
 
 def laid_run(

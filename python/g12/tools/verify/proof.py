@@ -209,7 +209,7 @@ def measured(
             )
             for each in counted(asked.shapes, "measuring shape", tell)
         ],
-        [measure_holes(each, moves, polar, clamp, real) for each in asked.holes],
+        [measure_holes(each, moves, polar, clamp, pace, real) for each in asked.holes],
     )
 
 

@@ -20,7 +20,6 @@ from g12.tools.verify.sections.section import times_of_section
 from g12.tools.verify.workpiece import Workpiece
 
 GAP = "  "
-SIDES = {1: "left of", -1: "right of", 0: "on"}
 KINDS = {"findings": "is_finding", "notes": "is_note", "not_judged": "is_not_judged"}
 NAMES = 14  # columns of a row's name
 Row = tuple[str, str]  # a name, and its text with measures in braces
@@ -86,6 +85,7 @@ HOLES: tuple[Row, ...] = (
     ("holes", "{count} on ⌀ {circle:mm}, C {angles:turns}"),
     *DEVIATION,
     ("depth", "{depth:mm}"),
+    *PACE,
 )
 STOCK: tuple[Row, ...] = (
     (
@@ -96,9 +96,9 @@ STOCK: tuple[Row, ...] = (
 
 
 ROWS = {"pockets": POCKET, "sections": SECTION, "holes": HOLES, "shapes": SHAPE}
-WHAT = {  # of the line of a cut; a shape's section, which has the time, has a line of its own
+WHAT = {  # of the line of a cut
     "pockets": "⌀ {radius:twice} to {square_to}{lowest:mm}",
-    "sections": "cutter ⌀ {cutter:mm} {side} the contour, to {third}{lowest:mm}",
+    "sections": "cutter ⌀ {cutter:mm}, {sides}, to {third}{lowest:mm}",
     "holes": "{holes} {depth:mm} deep, {side} ⌀ {circle:mm}",
     "shapes": "cutter ⌀ {cutter:mm}, to Z{lowest:mm}",
 }
@@ -195,7 +195,7 @@ def zero_text(proof: Proof, unit: Unit) -> str:
     """
     zero = proof.workpiece.program.zero()
     words = [*zip("XYZ", zero)][Z if proof.sections else 0 :]
-    said = "places are those of the machine: the program's zero is {zero:xyz}"
+    said = "positions below are the machine's; the program's zero is at machine {zero:xyz}"
     moved = in_words(said, {"zero": words}, unit) if max(abs(zero)) >= SIZE else ""
     x0 = x0_text(proof.subject.part, unit) if proof.sections else ""
     return "; ".join(filter(None, [moved, x0]))
@@ -298,21 +298,34 @@ def _in_columns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
 
 
 def cut_lines(proof: Proof, unit: Unit) -> Iterator[tuple[str, ...]]:
-    """Yield the columns of each cut: where, which code, what, how far off, how long."""
+    """Yield the columns of each cut: where, which code, what, how far off, how long.
+
+    The section in a shape's sub is measured with its shape.
+    """
+    of_shapes = {each.own for shape in proof.cuts.shapes for each in sections_of(shape, proof)}
     for kind in ("pockets", "shapes", "holes", "sections"):
         allowed = unit.fine(allowed_of(kind, proof))
         for cut in proof.cuts._asdict()[kind]:
+            if kind == "sections" and cut.own in of_shapes:
+                continue
             what = in_words(WHAT[kind], {**cut.values, **what_words(kind, cut)}, unit)
-            off = f"{unit.fine(cut.deviation)} {unit.name} off ({allowed} allowed)"
-            time = f"{plain(cut.values['seconds'], 1)} s" if "seconds" in cut.values else ""
+            inside = sections_of(cut, proof) if kind == "shapes" else []
+            worst = max(each.deviation for each in (cut, *inside))
+            off = f"{unit.fine(worst)} {unit.name} off ({allowed} allowed)"
+            seconds = [each.values.get("seconds") for each in inside or [cut]]
+            time = "" if None in seconds else f"{plain(sum(seconds), 1)} s"
             yield where_text(cut, proof), code_text(cut), what, off, time
+
+
+def sections_of(shape: MeasuredCut, proof: Proof) -> list[MeasuredCut]:
+    """Return the sections that a shape's sub cuts."""
+    return [section for section in proof.sections if section.own.start in shape.own]
 
 
 def what_words(kind: str, cut: MeasuredCut) -> Mapping[str, str]:
     """Return what the line of a cut has in words."""
     if kind == "sections":
-        sides = " and ".join(SIDES[side] for side in cut.asked.sides) or "on"
-        return {"side": sides, "third": "XYZ"[cut.asked.third]}
+        return {"third": "XYZ"[cut.asked.third]}
     if kind == "holes":
         side = "round" if cut.face is None else "on"
         return {"holes": counted_as(cut.values["count"], "hole"), "side": side}

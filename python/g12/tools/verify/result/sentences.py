@@ -79,8 +79,8 @@ FINDINGS = {
 }
 NOTES = {
     "bored-assumed": (
-        "a bored hole is assumed down to {at:place}, for a rapid or R goes there{more}: "
-        "--stock gives what there is"
+        "verify assumes a bored hole down to {at:place}, because a rapid goes into it or the "
+        "word R names it{more}; give the real stock with --stock"
     ),
     "core-stands": (
         "{area:mm2} stand in its middle when it is cut{more}: right only where that is bored "
@@ -136,8 +136,8 @@ NOTES = {
         "no feed mode: write {meant}"
     ),
     "spindle-stands": (
-        "the spindle stands still: no M3 or M4 with an S comes before it, "
-        "or M5 or M6 comes after them"
+        "the spindle does not turn here: write S and M3 before this line, "
+        "and M3 again after an M5 or M6"
     ),
     "spindle-m4": "the spindle turns counterclockwise (M4): right-hand tools cut with M3",
     "main-spindle-turns": "the main spindle turns at {code}: C cannot hold a part that turns",
@@ -181,7 +181,8 @@ NOT_JUDGED = {
         "what rapids by G53, G28 or G30 go through that start within the part: line {lines}"
     ),
     "tool-spindle": (
-        "whether the driven tool turns: the program does not start it by M3 or M4 with an S"
+        "whether the driven tool turns: the program has no M3 or M4 with an S; "
+        "look for the code that starts it on your machine"
     ),
     "plain-moves": (
         "feed moves outside of cycles and sections: {count} lines, the last of them line {last}"
