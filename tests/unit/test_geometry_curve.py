@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Lines and arcs against shapely's fine polylines, and each method against the others."""
 
-import cmath
 import math
 
 import numpy as np
@@ -41,22 +40,6 @@ def near(point):
     return pytest.approx(point, abs=1e-9)
 
 
-@given(CURVE, SHARE)
-def test_a_point_is_at_its_share_of_the_length(curve, share):
-    line = drawn(curve)
-    assert curve.length == pytest.approx(line.length, rel=1e-3)
-    there = line.interpolate(share, normalized=True)
-    assert as_point(curve.point(share)).distance(there) < 0.02
-    assert (curve.point(0.0), curve.point(1.0)) == (near(curve.start), near(curve.end))
-
-
-@given(CURVE, SHARE)
-def test_the_direction_is_that_of_the_motion(curve, share):
-    step = 1e-6
-    moved = curve.point(share + step) - curve.point(share - step)
-    assert curve.direction(share) == pytest.approx(moved / abs(moved), abs=1e-5)
-
-
 @given(CURVE, POINT)
 def test_the_distance_is_that_of_the_nearest_point(curve, point):
     away = drawn(curve).distance(as_point(point))
@@ -93,15 +76,6 @@ def test_a_parallel_is_so_far_to_the_left(curve, share, distance):
         assert parallel.direction(share) == near(curve.direction(share))
 
 
-@given(CURVE, SHARE, st.sampled_from([0.0, 0.05, -0.05]))
-def test_the_length_to_a_point_beside_a_curve(curve, share, beside):
-    assume(0.01 < share < 0.99)
-    point = curve.point(share) + 1j * beside * curve.direction(share)
-    full = abs(getattr(curve, "sweep", 0.0)) > 6.0  # there the ends are beside each other
-    for late in (False, True) if not full or 0.1 < share < 0.9 else ():
-        assert curve.length_to(point, late) == pytest.approx(share * curve.length)
-
-
 @pytest.mark.parametrize("turn", [1, -1])
 @pytest.mark.parametrize(("sweep", "beside"), [(0.3, 1.5), (1.0, 1.0), (3.0, 1.0)])
 def test_the_length_to_a_point_beyond_an_end(sweep, beside, turn):
@@ -111,37 +85,6 @@ def test_the_length_to_a_point_beyond_an_end(sweep, beside, turn):
         assert arc.length_to(arc.point(1 + beside / sweep), late) == near(3 * (sweep + beside))
     line = Line(1 + 1j, 4 + 5j)
     assert (line.length_to(line.point(-1)), line.length_to(line.point(3))) == (near(-5), near(15))
-
-
-@pytest.mark.parametrize("sweep", [2 * math.pi, -2 * math.pi])
-def test_half_a_radian_beside_the_end_of_a_circle_belongs_to_what_lies_beyond_it(sweep):
-    circle, radian = Arc(5 - 1j, 2 - 1j, sweep), 1 / abs(sweep)
-    assert circle.length_to(circle.point(-0.4 * radian)) == near(-1.2)
-    assert circle.length_to(circle.point(-0.6 * radian)) == near(3 * (2 * math.pi - 0.6))
-    assert circle.length_to(circle.point(0.4 * radian), late=True) == near(3 * (2 * math.pi + 0.4))
-    assert circle.length_to(circle.point(0.6 * radian), late=True) == near(1.8)
-
-
-@given(CURVE)
-def test_a_curve_is_in_its_box_which_is_no_larger_than_it_may_be(curve):
-    low_x, low_y, high_x, high_y = curve.box
-    x0, y0, x1, y1 = drawn(curve).bounds
-    assert low_x - SAGITTA <= x0 <= x1 <= high_x + SAGITTA
-    assert low_y - SAGITTA <= y0 <= y1 <= high_y + SAGITTA
-    if isinstance(curve, Line):
-        assert curve.box == (x0, y0, x1, y1)
-    else:
-        bend = min(abs(curve.sweep), math.pi) / 2
-        widest = 2 * curve.radius * (2.0 - math.cos(bend)) + SAGITTA
-        assert max(high_x - low_x, high_y - low_y) <= widest
-
-
-def test_a_flat_arc_has_a_flat_box():
-    """Of 100 radius, with a chord of 20 along X: it rises by half a millimetre."""
-    half = math.asin(0.1)
-    arc = Arc(100 * cmath.rect(1.0, math.pi / 2 - half), 0j, 2 * half)
-    rise = 100 * (1 - math.cos(half))
-    assert arc.box == pytest.approx((-10 - rise, 100 - 2 * rise, 10 + rise, 100.0))
 
 
 @given(POINT, POINT, POINT)
