@@ -60,29 +60,15 @@ def test_the_textbooks_groove_is_cut_beside_its_contour(cuts):
 
 
 @pytest.mark.parametrize("name", DRAWINGS)
-def test_feed_is_the_speed_on_the_surface(cuts, name):
-    lengths = {line: sum(segment.length for segment in segments) for line, segments in
-               DRAWINGS[name].contour.items()}  # fmt: skip
-    long = [line for line, length in lengths.items() if length > 8.0]
-    assert [cuts(name).speed(line) for line in long] == pytest.approx(
-        [FEED[name]] * len(long), rel=0.01
-    )
-
-
-@pytest.mark.parametrize("name", DRAWINGS)
-def test_a_section_takes_hardly_longer_than_its_length_at_f(cuts, name):
-    blocks = DRAWINGS[name].contour
-    length = sum(segment.length for segment in DRAWINGS[name].segments)
-    assert cuts(name).seconds(blocks) <= 1.05 * length / FEED[name] * 60
-
-
-@pytest.mark.parametrize("name", DRAWINGS)
-def test_c_keeps_its_limits(cuts, request, name):
-    c = cuts(name).c
-    assert np.abs(np.diff(c)).max() * 1000 <= C_SPEED * 1.001
-    if exceeds_limits_itself(request.getfixturevalue("lathe")):
-        pytest.xfail("this LinuxCNC exceeds C's acceleration in plain G1 moves (its issue 4539)")
-    assert accelerations(c).max() <= C_ACCELERATION * 1.01
+def test_feed_and_time_are_those_of_the_surface_and_c_keeps_its_limits(cuts, request, name):
+    blocks, cut = DRAWINGS[name].contour, cuts(name)
+    lengths = {line: sum(part.length for part in parts) for line, parts in blocks.items()}
+    speeds = [cut.speed(line) for line, length in lengths.items() if length > 8.0]
+    assert speeds == pytest.approx([FEED[name]] * len(speeds), rel=0.01)
+    assert cut.seconds(blocks) <= 1.05 * sum(lengths.values()) / FEED[name] * 60
+    assert np.abs(np.diff(cut.c)).max() * 1000 <= C_SPEED * 1.001
+    if not exceeds_limits_itself(request.getfixturevalue("lathe")):
+        assert accelerations(cut.c).max() <= C_ACCELERATION * 1.01
 
 
 # ---------------------------------------------------------------- what an operator does
@@ -118,23 +104,6 @@ def on_the_part(samples):
     """Tell whether every sample lies on the straight blocks or the arc of the part."""
     points = Surface(samples, R).points @ FROM_COLUMNS
     return distance(points, [*OUTLINE, BEND]).max() < LIMIT
-
-
-def test_auto(ready):
-    run = ready.run_text(section(*PART))
-    assert run.error is None
-    assert on_the_part(run.samples)
-    assert set(Surface(run, R).lines.tolist()) == {6, 7, 8, 9, 10}
-
-
-def test_mdi_is_refused(ready):
-    ready.run_text(section("G1 Z-1"))
-    ready.mdi("G07.1 C20")
-    assert [error.text for error in ready.errors()] == [
-        "G7.1: is not possible in MDI: it needs the lines after it"
-    ]
-    ready.mdi("G07.1 C0")
-    assert ready.errors() == []
 
 
 def test_a_sub_that_mdi_calls_has_the_lines_behind(tmp_path):

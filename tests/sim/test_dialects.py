@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The Yasnac and Mitsubishi mills without a screen: their sample programs, refusals, abort."""
+"""The other cycles in a headless LinuxCNC: real motion, refusals, abort; Haas: test_haas.py."""
 
 import numpy as np
 import pytest
@@ -9,46 +9,72 @@ from support import cut_geometry
 from support.operated_machine import Machine
 from support.sim_machines import BRISK, PROGRAMS, SIM, machine_scope
 
-MILLS = {
-    "mill_yasnac_mm": ("yasnac/example.ngc", "G12 I50 R55 D10", "G12: R55 puts the tool centre"),
-    "mill_mitsubishi_mm": ("mitsubishi/planes.ngc", "G12 I50", "G12: D is missing: the tool"),
+EVENT = "G21 G17 G40 G49 G54 G61 G80 G90 G91.1 G94 F8000\nT1 M6\nG0 X0 Y0 Z5\n"
+POCKET = "G13.2 X10 Y5 Z-2 I1 E3 R9 H2 K2 Q.2 P4000"
+CALL = (
+    "o<circle_mill> call [7] [10] [5] [-2] [1] [3] [9] [-9999] [2] [2] [-9999] [0.2]"
+    " [4000] [8000] [6000]"
+)
+OUTSIDE = "G12.2 X10 Y5 Z-1 I1 R5 H1 Q.2 L0"
+
+
+def sample(name):
+    """Return a sample program at forty times its feed."""
+    return (PROGRAMS / name).read_text().replace("F300", "F12000")
+
+
+MILLS = {  # its programs, a block that is refused and why, one to abort
+    "mill_yasnac_mm": (
+        [sample("yasnac/example.ngc")],
+        ("G12 I50 R55 D10", "G12: R55 puts the tool centre"),
+        "G12 I50 D10",
+    ),
+    "mill_mitsubishi_mm": (
+        [sample("mitsubishi/planes.ngc")],
+        ("G12 I50", "G12: D is missing: the tool"),
+        "G12 I50 D10",
+    ),
+    "mill_mm": (
+        [f"{EVENT}{block}\nM2\n" for block in (POCKET, CALL, OUTSIDE)],
+        (CALL.replace("[9]", "[2]"), "circle_mill: R2 must be greater than the tool radius 3 (T1)"),
+        OUTSIDE.replace("R5", "R50"),
+    ),
 }
 DEVIATION = 0.015  # mm, of the real motion: the programs blend with P0.01
 
 
 @pytest.fixture(scope=machine_scope, params=MILLS)
 def mill(request):
-    with Machine(SIM / f"{request.param}_headless.ini", overrides=BRISK) as machine:
-        yield request.param, machine
+    tools = {1: 6.0} if request.param == "mill_mm" else None
+    ini = SIM / f"{request.param}_headless.ini"
+    with Machine(ini, tools=tools, overrides=BRISK) as machine:
+        if tools:
+            machine.mdi("T1 M6")
+        yield request.param, tools, machine
 
 
-def quicker(program):
-    """Return a program's text at forty times its feed."""
-    return program.read_text().replace("F300", "F12000")
-
-
-def test_the_sample_program_s_real_motion_is_the_traced_one(mill):
-    name, machine = mill
-    text = quicker(PROGRAMS / MILLS[name][0])
-    with Tracer(SIM / f"{name}.ini") as tracer:
-        traced = tracer.trace_text(text)
-    assert traced.error is None
-    run = machine.run_text(text)
-    assert (run.error, run.messages) == (None, [])
-    cutting = cut_geometry.cutting(traced.moves)
-    programmed = cut_geometry.dense_points(cutting, step=0.1) + cutting[0].tool_offset[:3]
-    circles = run.samples.kind == 3
-    real = np.column_stack([run.samples.axes[axis][circles] for axis in "XYZ"])[::10]
-    distances = [np.linalg.norm(programmed - point, axis=1).min() for point in real]
-    assert max(distances) < DEVIATION + 0.05  # half the spacing of the programmed points
-    end = np.add(traced.position[:3], cutting[0].tool_offset[:3])
-    assert run.position[:3] == pytest.approx(end, abs=1e-6)
+def test_the_real_motion_is_the_traced_one(mill):
+    name, tools, machine = mill
+    for text in MILLS[name][0]:
+        with Tracer(SIM / f"{name}.ini", tools=tools) as tracer:
+            traced = tracer.trace_text(text)
+        assert traced.error is None
+        run = machine.run_text(text)
+        assert (run.error, run.messages) == (None, [])
+        cutting = cut_geometry.cutting(traced.moves)
+        programmed = cut_geometry.dense_points(cutting, step=0.1) + cutting[0].tool_offset[:3]
+        circles = run.samples.kind == 3
+        real = np.column_stack([run.samples.axes[axis][circles] for axis in "XYZ"])[::10]
+        distances = [np.linalg.norm(programmed - point, axis=1).min() for point in real]
+        assert max(distances) < DEVIATION + 0.05  # half the spacing of the programmed points
+        end = np.add(traced.position[:3], cutting[0].tool_offset[:3])
+        assert run.position[:3] == pytest.approx(end, abs=1e-4)
 
 
 def test_a_refused_block_moves_nothing_and_says_why(mill):
-    name, machine = mill
-    _, block, message = MILLS[name]
-    machine.mdi("G21 G90 G94 F1000")
+    name, _, machine = mill
+    block, message = MILLS[name][1]
+    machine.mdi("G21 G91 G90.1 G94 F1000")
     before = machine.stat()
     machine.sample()
     machine.mdi(block)
@@ -62,14 +88,29 @@ def test_a_refused_block_moves_nothing_and_says_why(mill):
 
 
 def test_mdi_then_abort_then_mdi_again(mill):
-    _, machine = mill
-    machine.mdi("G21 G17 G90 G94 G49 G64 P0.01 F12000 G0 X0 Y0 Z0")
+    name, _, machine = mill
+    machine.mdi("G21 G17 G90 G91.1 G94 G49 G64 P0.01 F12000 G0 X0 Y0 Z5")
     before = machine.stat()
-    machine.mdi("G12 I50 D10", wait=False)
+    block = MILLS[name][2]
+    machine.mdi(block, wait=False)
     machine.wait_for(lambda status: status.position[0] > 20)
     machine.abort()
     machine.errors()
-    machine.mdi("G90 G0 X0 Y0")
-    machine.mdi("G13 I30 D10")
+    machine.mdi("G90 G0 X0 Y0 Z5")
+    machine.mdi(block)
     assert machine.errors() == []
-    assert machine.stat().position == pytest.approx(before.position, abs=1e-6)
+    assert machine.stat().position[:2] == pytest.approx(before.position[:2], abs=1e-4)
+
+
+def test_w_lasts_from_one_mdi_block_to_the_next_but_not_into_another_program(tmp_path):
+    with Machine(SIM / "mill_mm.ini", tools={1: 6.0}, overrides=BRISK) as machine:
+        for block in (*EVENT.splitlines(), OUTSIDE, "G12.2 X10 Y5 Z-1 R5 H1"):
+            machine.mdi(block)
+        assert machine.errors() == []
+        assert machine.stat().position[2] == pytest.approx(1)
+        for name, block in (("first", OUTSIDE), ("second", OUTSIDE.replace("I1", ""))):
+            file = tmp_path / f"{name}.ngc"
+            file.write_text(f"{EVENT}{block}\nM2\n")
+            run = machine.run(file)
+    rule = "I is missing: the first reference plane, which no earlier event has commanded"
+    assert run.error.text == f"G12.2 line 4: {rule}"

@@ -170,10 +170,3 @@ def _to_track(track, target):
     squared = np.maximum(abs(along) ** 2, 1e-18)
     part = np.clip(((target - start) * np.conj(along)).real / squared, 0.0, 1.0)
     return abs(start + part * along - target).min()
-
-
-def fitted_line(samples):
-    """Return direction in degrees (0 to 180) and distance from the origin of the best line."""
-    middle = samples.mean(axis=0)
-    _, _, (along, normal) = np.linalg.svd(samples - middle, full_matrices=False)
-    return math.degrees(math.atan2(along[1], along[0])) % 180, abs(middle @ normal)
