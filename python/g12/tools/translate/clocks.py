@@ -5,8 +5,6 @@ Many programs note how long a cycle took. A variable that a clock gives a value,
 variable, may stand in assignments of its kind alone; where it decides or moves, it is refused.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from g12.tools.translate.blocks.expressions import CLOCK

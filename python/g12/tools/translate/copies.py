@@ -4,8 +4,6 @@
 The holes that two drilling cycles share are the usual case: a subprogram of X and Y words alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 from g12.tools.translate.blocks.control import Control

@@ -21,8 +21,6 @@ loop runs the parts in order; a jump notes the part that is next and begins the 
 The body of a loop (WHILE DO END) has parts of its own: a jump can leave it, none leads into it.
 """
 
-from __future__ import annotations
-
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Mapping, Sequence

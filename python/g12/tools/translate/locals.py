@@ -6,8 +6,6 @@ it has asked before, with #0, whether the variable is empty. All programs that n
 their local variables: a word of one that nothing can have set before is refused.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator
 from functools import partial

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """All that a control's file lacks for a program, as lines for one of your own."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from g12.tools.translate.blocks.control import Control

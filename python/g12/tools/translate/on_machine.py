@@ -5,8 +5,6 @@ A control says ``clamp C``, ``C axis on`` and ``M3 $live``; the machine's INI sa
 codes these are. A machine without a clamp, or whose C is always an axis, needs none.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

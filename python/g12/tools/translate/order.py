@@ -5,8 +5,6 @@ LinuxCNC looks for a subprogram from the call on downwards; other controls do no
 main program is first and whose subprograms stand below their calls stays in its order.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping
 from heapq import heapify, heappop, heappush
 from itertools import groupby

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Macro statements: assignments, WHILE and IF as LinuxCNC's O-words."""
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.expressions import NUMBER

@@ -4,8 +4,6 @@
 A rule takes a `Draft`, rewrites its words or lines, carries its state on, or refuses.
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks import places
 from g12.tools.translate.milling import hole_patterns, rigid_tapping, rotation
 from g12.tools.translate.on_lathe import holes, sections

@@ -14,8 +14,6 @@ refused with its line. What a code does is one of
   spindle that drives the tool, ``M5 $all`` stops each
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Mapping

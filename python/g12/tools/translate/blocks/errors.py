@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the translation refuses: a rule about a block, with the block's line added outside."""
 
-from __future__ import annotations
-
 LONGEST_EXCERPT = 24
 
 

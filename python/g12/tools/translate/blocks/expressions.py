@@ -9,8 +9,6 @@ What differs from LinuxCNC and is written anew or refused:
 - #0, the empty variable, has no counterpart: a macro can ask whether one of its own is EMPTY.
 """
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 

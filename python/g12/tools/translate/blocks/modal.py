@@ -6,8 +6,6 @@ behind a skipped one). Where the ways differ in a mode, that mode is UNSURE, and
 it refuses the block.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 UNSURE = "?"  # different on different ways

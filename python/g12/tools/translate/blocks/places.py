@@ -5,8 +5,6 @@ A place is a number, or a text: UNKNOWN, or UNSURE where the ways to a block dif
 from absolute numbers on; an expression, a reference point, a tool or another offset end that.
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import MOTIONS, UNKNOWN, ModalState

@@ -6,8 +6,6 @@
 - G72: L holes in a row from the tool on, I from hole to hole, at the angle J
 """
 
-from __future__ import annotations
-
 from cmath import rect
 from math import radians
 

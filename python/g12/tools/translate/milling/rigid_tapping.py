@@ -8,8 +8,6 @@ LinuxCNC's own G84 is for a floating holder: it does not. For each hole:
 3. under G98 rapid to where Z stood when the cycle began
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE

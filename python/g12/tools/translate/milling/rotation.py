@@ -8,8 +8,6 @@ A local offset, G52 or G92, is turned with the rest on LinuxCNC, on the control 
 the centre, g the local offset and R the turn, the origin goes on by (1 - R)(c + g).
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.expressions import NUMBER

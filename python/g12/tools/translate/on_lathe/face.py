@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A mill's words on the face of a bar: X and Y in G12.1, Z along the spindle, holes beside it."""
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.on_lathe.values import DrilledHole, MilledSurface, is_plain_number, times
 

@@ -4,8 +4,6 @@
 The tool goes back to where it stood before each hole, as after G98: G99 costs a little time.
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE

@@ -5,8 +5,6 @@ The mill's X and Y lie on the bar's face, its Z is along the spindle (``onto`` f
 the bar, Y round it and Z out of it (``onto`` round). Points are in the mill's own axes here.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from g12.tools.translate.blocks.draft import Draft

@@ -5,8 +5,6 @@ Y is C the other way round: seen from outside with X upwards, the mill's Y point
 the right. Arcs and compensation keep their sense.
 """
 
-from __future__ import annotations
-
 from math import degrees, fmod
 
 from g12.tools.translate.blocks.draft import Draft

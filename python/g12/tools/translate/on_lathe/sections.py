@@ -8,8 +8,6 @@
 4. A tool, an offset, G28, a drilling cycle, the end, a return: the section ends before it.
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G and M codes: what the control's file says that each of them is."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -7,8 +7,6 @@ keeps what an earlier one was given; dwell is in the control's unit; G80 beside 
 motion.
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord

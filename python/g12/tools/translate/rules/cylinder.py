@@ -5,8 +5,6 @@ Most controls give the cylinder's radius as C (or H) and angles as C. Haas maps 
 onto the cylinder instead, ``G107 Y0 C0 R25.``: Y is then the way along its surface.
 """
 
-from __future__ import annotations
-
 from math import degrees
 
 from g12.tools.translate.blocks.draft import Draft

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers without a decimal point: least increments or whole units, as the control's file says."""
 
-from __future__ import annotations
-
 from decimal import Decimal
 
 from g12.tools.translate.blocks.control import HOLES

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G04: the time in seconds, whatever letter and unit the control has for it."""
 
-from __future__ import annotations
-
 from decimal import Decimal
 
 from g12.tools.translate.blocks.draft import Draft

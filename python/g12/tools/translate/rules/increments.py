@@ -6,8 +6,6 @@ words an increment is written from where the tool stands. Between polar on and o
 words of LinuxCNC's polar mode and stay, on a cylinder W is, too.
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import PARTNERS, Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Motion and distance mode: written where LinuxCNC would be in another than the program is."""
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.modal import (

@@ -10,8 +10,6 @@ tool's length and its wear, L12 and L13 its diameter and its wear. LinuxCNC's to
 value for length and wear: wear is kept in parameters and the sum is in the table.
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord

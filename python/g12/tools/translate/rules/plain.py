@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Most blocks of a long program: lines and arcs that are the same on LinuxCNC, told at a glance."""
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUPS, UNKNOWN
 from g12.tools.translate.blocks.places import FIELDS, end_of_word

@@ -6,8 +6,6 @@ or G8 before the section says so, and the other behind it. Y is C and V is H. A 
 is what the control's file says.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of

@@ -5,8 +5,6 @@ LinuxCNC's G28 and G30 mean the same (the places are those of G28.1 and G30.1); 
 given what a lathe writes with U, V, W and H, and lose the motion code beside them.
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord

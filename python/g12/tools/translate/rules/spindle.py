@@ -4,8 +4,6 @@
 G50 S and G92 S are the limit, which LinuxCNC takes as D beside G96; with axes the origin.
 """
 
-from __future__ import annotations
-
 from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN

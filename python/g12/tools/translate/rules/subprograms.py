@@ -6,8 +6,6 @@ caller. M98 Q calls a block of its own program, as M97 does. G65 starts with its
 #26 and gives the caller its own back: an O-word sub.
 """
 
-from __future__ import annotations
-
 from collections.abc import Container
 
 from g12.tools.translate.blocks.control import Control

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """T, H and D: a lathe's T0303 is tool and offset; on a mill G43 has H, and D is modal."""
 
-from __future__ import annotations
-
 import re
 
 from g12.tools.translate.blocks.draft import Draft, word_of

@@ -5,8 +5,6 @@ A point is a complex number in the program's unit: Z is its real part, X as a ra
 one. Counter-clockwise is G3, as LinuxCNC has it in G18.
 """
 
-from __future__ import annotations
-
 from cmath import phase, rect
 from collections.abc import Mapping, Sequence
 from math import pi, radians, sqrt, tan

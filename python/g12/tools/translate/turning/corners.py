@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Direct drawing on a lathe outside of cycles: angles, corners that a word breaks or rounds."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from g12.tools.translate.blocks.draft import Draft, line_as_word

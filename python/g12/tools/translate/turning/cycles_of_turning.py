@@ -5,8 +5,6 @@ Two-block forms keep what their first block says; a one-block form has it all. S
 modal: blocks of X, Z, U and W alone repeat them from the same start.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 

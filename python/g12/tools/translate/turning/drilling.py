@@ -13,8 +13,6 @@ would blend the moves. Where a control's R is not understood as a level nearer t
 where the tool stands: that is right for every reading. A level is a word's number: of X a diameter.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import ceil
 from typing import Any, NamedTuple

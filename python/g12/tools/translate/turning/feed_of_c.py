@@ -7,8 +7,6 @@ or ``mm`` (as LinuxCNC). A slide that moves next to nothing is held back for a l
 2.9.0~pre1 runs too fast then.
 """
 
-from __future__ import annotations
-
 from math import hypot
 
 from g12.tools.translate.blocks.draft import Draft, word_of

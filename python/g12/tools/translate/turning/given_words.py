@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The words of a turning cycle's block as numbers, and the blocks of the contour that it names."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from g12.tools.translate.blocks.draft import Draft

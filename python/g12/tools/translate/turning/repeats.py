@@ -7,8 +7,6 @@
 - pecking (G74 along Z, G75 along X): cuts of one peck, each with a retract, place after place
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import copysign
 from typing import NamedTuple

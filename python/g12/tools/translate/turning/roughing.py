@@ -10,8 +10,6 @@ The contour may go up and down across the cuts (type II), but never back along t
 as (along, depth): cuts run to smaller ``along``, levels go down.
 """
 
-from __future__ import annotations
-
 from cmath import phase, rect
 from collections.abc import Callable, Sequence
 from math import floor, pi, sqrt

@@ -5,8 +5,6 @@ LinuxCNC's own G76 has another rule for the depth of its passes; G33 is exact. I
 along the path for each revolution, the lead of these controls that along Z (or X, if steeper).
 """
 
-from __future__ import annotations
-
 from itertools import count
 from math import radians, sqrt, tan
 from typing import NamedTuple
