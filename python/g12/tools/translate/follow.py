@@ -105,13 +105,13 @@ class FollowedProgram:
             state,
             self.control,
             self._machine_codes,
-            self.structure.entries,
-            index,
-            self.structure.called_as.get(index, 0),
+            index=index,
+            programs=self.structure.entries,
+            program=self._blocks_of[self._inside[index]],
+            called_as=self.structure.called_as.get(index, 0),
+            compared=self.structure.compared,
+            jumps=index in self.structure.jumps.targets,
         )
-        draft.jumps = index in self.structure.jumps.targets
-        draft.asked = self.structure.asked
-        draft.program = self._blocks_of[self._inside[index]]
         try:
             problem = block.problem or self.structure.problems.get(index)
             if problem:

@@ -16,7 +16,7 @@ from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.jumps import OPENING
 from g12.tools.translate.rules.subprograms import ARGUMENTS
-from g12.tools.translate.structure import MAIN, asked_by, ways_from
+from g12.tools.translate.structure import MAIN, compared_by, ways_from
 
 LETTERS = {number: letter for letter, number in ARGUMENTS.items()}
 
@@ -32,9 +32,9 @@ def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
         if index in given:
             for variable in sorted(read_by(block) - given[index]):
                 yield block.line, unset_sentence(number, variable)
-            for variable in sorted(asked_by(block) - LETTERS.keys()):
+            for variable in sorted(compared_by(block) - LETTERS.keys()):
                 yield block.line, f"#{variable} EQ #0: no letter of G65 gives #{variable} a value"
-        elif number not in macros and followed.drafts[index] and asked_by(block):
+        elif number not in macros and followed.drafts[index] and compared_by(block):
             yield block.line, "#0, the empty variable, is translated in a program of G65 only"
     yield from never_set(followed, macros)
     yield from shared_locals(followed)
@@ -146,4 +146,4 @@ def shared_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
 
 def used_by(block: ForeignBlock) -> Iterable[int]:
     """Return the local variables that a block reads, asks for or sets."""
-    return {*read_by(block), *asked_by(block), block.variable}
+    return {*read_by(block), *compared_by(block), block.variable}

@@ -49,9 +49,9 @@ def end_of_condition(draft: Draft, index: int, structure: Structure) -> None:
 def goto(draft: Draft, index: int, structure: Structure) -> None:
     """Write a jump, with its condition if it has one."""
     lines = structure.jumps.at[index]
-    asked = draft.block.expression
-    if asked:
-        lines = [f"o<if_{index}> if {asked.text}", *lines, f"o<if_{index}> endif"]
+    if draft.block.expression:
+        head = f"o<if_{index}> if {draft.block.expression.text}"
+        lines = [head, *lines, f"o<if_{index}> endif"]
     labelled(draft, lines[0])
     draft.after += lines[1:]
 

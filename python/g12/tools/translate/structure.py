@@ -27,7 +27,7 @@ class Structure:
     before. ``doubled`` are numbers that several programs have. ``partners`` joins each WHILE and
     its END, each condition and its end, ``problems`` has what is wrong with a block,
     ``last_returns`` the block in which each program returns for the last time, ``jumps`` where GOTO
-    and M99 P lead, ``asked`` the variables that each program compares with #0.
+    and M99 P lead, ``compared`` the variables that each program compares with #0.
 
     Behind the file's ``own`` blocks stand those of copies: programs that are called in modes that
     differ, once for each. ``copies`` has the number that each is a copy of, ``called_as`` the
@@ -44,7 +44,7 @@ class Structure:
     problems: dict[int, str] = field(default_factory=dict)
     last_returns: dict[int, int] = field(default_factory=dict)
     jumps: Jumps = field(default_factory=Jumps)
-    asked: dict[int, frozenset[int]] = field(default_factory=dict)
+    compared: dict[int, frozenset[int]] = field(default_factory=dict)
     copies: dict[int, int] = field(default_factory=dict)
     called_as: dict[int, int] = field(default_factory=dict)
 
@@ -118,14 +118,13 @@ def find_ends(structure: Structure, control: Control) -> None:
     )
     structure.problems.update(structure.jumps.problems)
     for number, block in zip(programs, structure.blocks):
-        asked = asked_by(block)
-        if asked:
-            structure.asked[number] = structure.asked.get(number, frozenset()) | asked
+        if compared := compared_by(block):
+            structure.compared[number] = structure.compared.get(number, frozenset()) | compared
 
 
-def asked_by(block: ForeignBlock) -> frozenset[int]:
+def compared_by(block: ForeignBlock) -> frozenset[int]:
     """Return the variables that a block compares with #0."""
-    return block.expression.asked if block.expression else frozenset()
+    return block.expression.compared if block.expression else frozenset()
 
 
 def programs_of_blocks(structure: Structure) -> list[int]:

@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The rules in the order in which a block goes through them.
 
-A rule takes a `Draft`, rewrites its words or lines, carries its state on, or refuses.
+A rule takes a `Draft`, rewrites its words or lines, carries its state on, or refuses. A rule of one
+meaning runs where a code of the block has that meaning, and takes the code, too.
 """
 
+from collections.abc import Callable
+
 from g12.tools.translate.blocks import places
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.milling import hole_patterns, rigid_tapping, rotation
 from g12.tools.translate.on_lathe import holes, sections
 from g12.tools.translate.rules import (
@@ -25,35 +30,50 @@ from g12.tools.translate.rules import (
 )
 from g12.tools.translate.turning import corners, cycles_of_turning, drilling, feed_of_c
 
+
+def of_meaning(meaning: str, rule: Callable[[Draft, ForeignWord], None]) -> Callable[[Draft], None]:
+    """Return a rule that runs where a code has a meaning; the code is then dealt with."""
+
+    def run(draft: Draft) -> None:
+        code = draft.meanings.pop(meaning, None)
+        if code:
+            rule(draft, code)
+
+    return run
+
+
 WORD_RULES = (
     codes.keep_as_comments,
     codes.map_codes,
     cycles_of_turning.no_pass_yet,
-    spindle.orientation,
+    of_meaning("orientation", spindle.orientation),
     modes.follow_modes,
     polar.plane_letters,
     modes.axes_at_zero,
-    modes.radius_or_diameter,
+    of_meaning("radius or diameter", modes.radius_or_diameter),
     subprograms.call_macro,
     modes.zero_of_missing_axis,
-    dwell.dwell,
+    of_meaning("dwell", dwell.dwell),
     decimals.whole_units,
     places.follow_places,
     tools.tool_and_offsets,
     spindle.speed_limit,
     spindle.live_tool,
-    rotation.rotation,
+    rotation.follow_rotation,
+    of_meaning("turned back", rotation.end_of_rotation),
+    of_meaning("turned", rotation.rotation),
     offsets.numbered_offset,
-    offsets.offset_by_program,
+    of_meaning("offset by program", offsets.offset_by_program),
     reference.reference_point,
     sections.mill_block,
-    polar.switch_polar,
-    cylinder.switch_cylinder,
+    of_meaning("polar on", polar.turn_on),
+    of_meaning("polar off", polar.turn_off),
+    of_meaning("cylinder", cylinder.switch_cylinder),
     cylinder.on_the_surface,
     polar.inside_polar,
     feed_of_c.feed_of_c,
     polar.feed_again,
-    motion.exact_stop,
+    of_meaning("exact stop", motion.exact_stop),
     drilling.drilling_of_lathe,
     cycles_of_turning.turning_cycle,
     corners.direct_drawing,

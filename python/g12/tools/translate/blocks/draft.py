@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One block on its way through the rules: what is left of its words, and the lines it becomes."""
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, NamedTuple
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
-from g12.tools.translate.blocks.modal import UNSURE, ModalState
+from g12.tools.translate.blocks.modal import MOVES, UNSURE, ModalState
 
 AXIS_NUMBERS = {"X": 1, "Y": 2, "Z": 3, "A": 4, "B": 5, "C": 6}
 ENDS = frozenset(("M2", "M30"))
@@ -26,62 +27,42 @@ class SubprogramCall(NamedTuple):
     arguments: tuple[tuple[int, str], ...] = ()
 
 
+@dataclass(eq=False)
 class Draft:
-    """A block that the rules rewrite.
+    """A block on its way through the rules: words that are its own line, further lines, modes."""
 
-    ``words`` are those that will be its own line; ``meanings`` the codes that a rule of the
-    translation owns, by their meaning; ``before`` and ``after`` further lines; ``comments`` what is
-    kept as text; ``state`` the modes before the block, which the rules carry on; ``call`` what it
-    calls, ``returns`` whether a subprogram ends here, by ``return_text``, and ``jumps`` whether
-    another block than the next one follows; ``head`` begins a program;
-    ``around`` are lines before and behind its own; ``is_settled`` means that the block is written
-    for the distance mode that LinuxCNC is in, ``has_motion`` that its motion code is written,
-    ``has_feed`` that its feed is;
-    ``start`` are the modes before the block, as it was read;
-    ``programs`` are the numbers of the programs in the file, ``called_as`` that of the copy that a
-    call is for, 0 if it is for none; ``asked`` has what each program compares with #0; ``index``
-    tells the block from all others; ``program`` are the blocks of its program with their indices,
-    ``follows`` is the index of the next one where a cycle has others go by; ``lines`` are those
-    that it becomes; ``refusal`` is why it is not translated, None if it is; if that is why,
-    ``unsure`` are the modes that are not the same on every way, ``setting`` the table and the line
-    that the control's file lacks.
-    """
+    block: ForeignBlock
+    state: ModalState  # the modes, carried on by the rules
+    control: Control
+    machine_codes: frozenset[str] | None = None  # M codes of the machine itself, None: not known
+    _: KW_ONLY
+    index: int = 0  # of the block, unique in the file
+    programs: Container[int] = ()  # numbers of the file's programs
+    program: Sequence[tuple[int, ForeignBlock]] = ()  # the blocks of its program, with indices
+    called_as: int = 0  # the copy that its call is for, 0: none
+    compared: Mapping[int, frozenset[int]] = field(default_factory=dict)  # with #0, by program
+    jumps: bool = False  # another block than the next one follows
+    return_text: str = "M99"
+    head: str = ""  # the line that begins a program
+    before: list[str] = field(default_factory=list)  # further lines
+    after: list[str] = field(default_factory=list)
+    around: tuple[str, str] | None = None  # lines before and behind all others
+    meanings: dict[str, ForeignWord] = field(default_factory=dict)  # codes that rules still own
+    call: SubprogramCall | None = None
+    returns: bool = False  # a subprogram ends here, by ``return_text``
+    follows: int | None = None  # index of the next block where a cycle skips its contour
+    is_settled: bool = False  # written for the distance mode that LinuxCNC is in
+    has_motion: bool = False  # its motion code is written
+    has_feed: bool = False  # its feed is written
+    lines: list[str] = field(default_factory=list)  # the result
+    refusal: str | None = None
+    unsure: tuple[str, ...] = ()  # modes that cause the refusal: they differ between ways here
+    setting: tuple[str, str] | None = None  # table and line that the control's file lacks
 
-    def __init__(
-        self,
-        block: ForeignBlock,
-        state: ModalState,
-        control: Control,
-        machine_codes: frozenset[str] | None = None,
-        programs: Container[int] = (),
-        index: int = 0,
-        called_as: int = 0,
-    ) -> None:
-        self.index, self.called_as = index, called_as
-        self.block, self.state, self.control = block, state, control
-        self.machine_codes = machine_codes
-        self.words: list[ForeignWord] = list(block.words)
-        self.meanings: dict[str, ForeignWord] = {}
-        self.before: list[str] = []
-        self.after: list[str] = []
-        self.comments: list[str] = list(block.comments)
-        self.call: SubprogramCall | None = None
-        self.returns = False
-        self.jumps = False
-        self.return_text = "M99"
-        self.head = ""
-        self.around: tuple[str, str] | None = None
-        self.is_settled = False
-        self.has_motion = self.has_feed = False
-        self.start = state
-        self.programs = programs
-        self.asked: Mapping[int, frozenset[int]] = {}
-        self.lines: list[str] = []
-        self.program: Sequence[tuple[int, ForeignBlock]] = ()
-        self.follows: int | None = None
-        self.refusal: str | None = None
-        self.unsure: tuple[str, ...] = ()
-        self.setting: tuple[str, str] | None = None
+    def __post_init__(self) -> None:
+        self.start = self.state
+        self.words: list[ForeignWord] = list(self.block.words)
+        self.comments: list[str] = list(self.block.comments)
 
     def change(self, **modes: Any) -> None:
         """Carry the state on."""
@@ -109,6 +90,26 @@ class Draft:
     def axis_words(self) -> list[ForeignWord]:
         """Return the words that name an axis."""
         return [word for word in self.words if word.letter in AXIS_NUMBERS]
+
+    def word(self, letter: str) -> ForeignWord | None:
+        """Return the first word of a letter; it stays."""
+        return next((word for word in self.words if word.letter == letter), None)
+
+    def motion(self) -> str:
+        """Return the motion mode of the block: its own code, or the one before it."""
+        codes = (code for code in self.codes() if code in MOVES)
+        return next(codes, self.state.motion)
+
+    def drop(self, words: Container[ForeignWord]) -> None:
+        """Take words out that need not be written."""
+        self.words = [word for word in self.words if word not in words]
+
+    def write(self, lines: Iterable[str]) -> None:
+        """Write lines behind the block's words; the first is its own where no words are left."""
+        lines = [*lines]
+        if lines and self.is_empty():
+            self.words.append(line_as_word(lines.pop(0)))
+        self.after += lines
 
     def take(self, letter: str) -> ForeignWord | None:
         """Return the word of a letter and take it out, None if there is none; two are refused."""
@@ -156,9 +157,14 @@ class Draft:
         """Tell whether the block begins with the number of a program."""
         return bool(self.words) and self.words[0].letter == "O"
 
-    def alone(self) -> bool:
+    def is_empty(self) -> bool:
         """Tell whether nothing but a block number is left of the words."""
         return all(word.letter == "N" and word.kind == "number" for word in self.words)
+
+
+def position(axis: str) -> str:
+    """Return LinuxCNC's parameter of the tool's position, in the program's units."""
+    return f"#{5419 + AXIS_NUMBERS[axis]}"
 
 
 def word_of(text: str) -> ForeignWord:

@@ -39,7 +39,7 @@ class Expression(NamedTuple):
     """An expression as LinuxCNC reads it.
 
     ``read`` are the numbers of the variables in it, ``is_condition`` tells whether its
-    value is true or false, ``end`` is the index behind it in the text. ``asked`` are the local
+    value is true or false, ``end`` is the index behind it in the text. ``compared`` are the local
     variables that it compares with #0; those of ``set_if_true`` and ``set_if_false`` have a value
     if the condition is true, and if it is false.
     """
@@ -48,7 +48,7 @@ class Expression(NamedTuple):
     read: frozenset[int]
     is_condition: bool
     end: int
-    asked: frozenset[int] = frozenset()
+    compared: frozenset[int] = frozenset()
     set_if_true: frozenset[int] = frozenset()
     set_if_false: frozenset[int] = frozenset()
 
@@ -86,7 +86,7 @@ def _operand(text: str, start: int, depth: int) -> Expression:
     found = _unsigned(text, at, depth)
     if not sign:
         return found
-    return Expression(sign + found.text, found.read, False, found.end, found.asked)
+    return Expression(sign + found.text, found.read, False, found.end, found.compared)
 
 
 def _unsigned(text: str, at: int, depth: int) -> Expression:
@@ -110,7 +110,7 @@ def _variable(text: str, at: int, depth: int) -> Expression:
             if float(number) > MOST_PLACES and not _is_kept(float(number)):
                 rule = f"{number} {OTHER_MEANING}; write the value in its place"
                 raise NotTranslated(f"#{excerpt(index.text)}: #{rule}")
-        return Expression(f"#{index.text}", index.read, False, index.end, index.asked)
+        return Expression(f"#{index.text}", index.read, False, index.end, index.compared)
     digits = re.compile(f"{OWN}?[0-9]+").match(text, at + 1)
     if not digits:
         raise NotTranslated(f"{excerpt(text[at:])} is no variable: # and a number")
@@ -151,7 +151,7 @@ def _brackets(text: str, start: int, depth: int) -> Expression:
 
 def _function(name: str, text: str, at: int, depth: int) -> Expression:
     inner = _brackets(text, at, depth)
-    argument = Expression(inner.text, inner.read, False, inner.end, inner.asked)
+    argument = Expression(inner.text, inner.read, False, inner.end, inner.compared)
     if name == "ATAN":
         return _arc_tangent(argument, text, depth)
     if name in ("FIX", "FUP"):
@@ -164,8 +164,8 @@ def _arc_tangent(argument: Expression, text: str, depth: int) -> Expression:
     if not text.startswith("/[", argument.end):
         return argument._replace(text=f"ATAN{argument.text}/[1]")
     below = _brackets(text, argument.end + 1, depth)
-    read, asked = argument.read | below.read, argument.asked | below.asked
-    return Expression(f"ATAN{argument.text}/{below.text}", read, False, below.end, asked)
+    read, compared = argument.read | below.read, argument.compared | below.compared
+    return Expression(f"ATAN{argument.text}/{below.text}", read, False, below.end, compared)
 
 
 def _chain(text: str, start: int, depth: int) -> Expression:
@@ -190,15 +190,15 @@ def _empty_question(first: Expression, text: str) -> Expression | None:
     empty = operator and EMPTY_VARIABLE.match(text, operator.end())
     if not empty or first.text not in {f"#{n}" for n in first.read.intersection(LOCAL)}:
         return None
-    asked, is_equal = first.read, operator[0] == "EQ"
+    variable, is_equal = first.read, operator[0] == "EQ"
     return Expression(
         f"{first.text} {operator[0]} {EMPTY}",
         frozenset(),
         True,
         empty.end(),
-        asked,
-        frozenset() if is_equal else asked,
-        asked if is_equal else frozenset(),
+        variable,
+        frozenset() if is_equal else variable,
+        variable if is_equal else frozenset(),
     )
 
 
@@ -217,7 +217,7 @@ def _joined(parts: list[Expression], operators: list[str]) -> Expression:
         none.union(*(part.read for part in parts)),
         any(o in COMPARING or o in JOINING for o in operators),
         parts[-1].end,
-        none.union(*(part.asked for part in parts)),
+        none.union(*(part.compared for part in parts)),
         none.union(*(part.set_if_true for part in parts)) if is_all else none,
         none.union(*(part.set_if_false for part in parts)) if is_any else none,
     )

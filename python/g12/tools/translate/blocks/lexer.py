@@ -402,7 +402,7 @@ def _word(text: str, at: int) -> tuple[ForeignWord, int]:
             f"{letter}: ROUND in a word rounds to the least increment there, to whole numbers on "
             "LinuxCNC: take it out, nothing needs it"
         )
-    if value.asked:
+    if value.compared:
         raise NotTranslated(f"{letter}: #0, the empty variable, is translated in conditions only")
     kind = "number" if re.fullmatch(r"-?[0-9.]+", value.text) else "expression"
     return ForeignWord(letter, value.text, kind, value.read), value.end

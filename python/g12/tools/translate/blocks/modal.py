@@ -24,7 +24,8 @@ GROUPS = {
     "retract": ("G98", "G99"),
     "x_words": ("G7", "G8"),
 }
-MOTIONS = frozenset((*GROUPS["motion"], "G33"))
+MOVES = frozenset(GROUPS["motion"])
+MOTIONS = MOVES | {"G33"}
 CONSUMERS = frozenset(
     ("G10", "G28", "G30", "G52", "G92", "G12", "G13", "G12.2", "G13.2", "G7.1")
 )  # what takes the axis words of its block for itself

@@ -10,10 +10,9 @@ LinuxCNC's own G84 is for a floating holder: it does not. For each hole:
 
 from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import MOVES, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.places import value_text
 
-MOTIONS = frozenset(("G0", "G1", "G2", "G3"))
 SPINDLE = {"G84": "M3", "G74": "M4"}
 
 
@@ -26,7 +25,7 @@ def rigid_tap(draft: Draft) -> None:
             raise NotTranslated(f"{code.code} needs S, the speed of the tap")
         draft.comments.append(code.code)
         draft.change(rigid=speed)
-    elif "cancel cycle" in draft.meanings or (draft.state.cycle and MOTIONS & set(draft.codes())):
+    elif "cancel cycle" in draft.meanings or (draft.state.cycle and MOVES & set(draft.codes())):
         draft.change(rigid=UNKNOWN, tap_top=UNKNOWN)
     if draft.state.rigid:
         tap(draft)
@@ -66,7 +65,7 @@ def write_hole(draft: Draft, values: dict[str, str], pitch: str) -> None:
     place = [word.text for word in draft.words if word.letter in "XY"]
     dwell = draft.take("P")
     draft.comments += [f"{dwell.text}: no dwell in a rigid tap"] if dwell else []
-    draft.take_codes(MOTIONS)
+    draft.take_codes(MOVES)
     draft.words = [word for word in draft.words if word.letter not in "XYZR"]
     lines = [" ".join(["G0", *place])] if place else []
     lines += [f"G0 Z{values['R']}", f"G33.1 Z{values['Z']} K{pitch}"]
@@ -75,7 +74,7 @@ def write_hole(draft: Draft, values: dict[str, str], pitch: str) -> None:
         if not isinstance(top, float):
             raise NotTranslated("a tap under G98 needs Z as a number before its cycle: G0 Z…")
         lines.append(f"G0 Z{value_text(top)}")
-    if draft.alone() and not draft.before:
+    if draft.is_empty() and not draft.before:
         draft.words.append(line_as_word(lines.pop(0)))
     draft.after += lines
     draft.change(own_motion=UNSURE, at_z=UNKNOWN)

@@ -8,7 +8,7 @@ A local offset, G52 or G92, is turned with the rest on LinuxCNC, on the control 
 the centre, g the local offset and R the turn, the origin goes on by (1 - R)(c + g).
 """
 
-from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, position
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.expressions import NUMBER
 from g12.tools.translate.blocks.lexer import ForeignWord
@@ -21,29 +21,26 @@ from g12.tools.translate.rules.offsets import (
     SET_SCALE,
     SLOT,
     SLOT_PARAMETER,
-    settle,
 )
 
-HERE = {"X": "#5420", "Y": "#5421"}
 CENTRES = {"X": "#<turn_x>", "Y": "#<turn_y>"}
 LOCAL_OFFSETS = {"X": "#5210 * #5211", "Y": "#5210 * #5212"}  # 0 where none is active
 
 
-def rotation(draft: Draft) -> None:
-    """Turn the program, or turn it back."""
+def follow_rotation(draft: Draft) -> None:
+    """Refuse other offsets while the program is rotated; follow G52."""
     turned = draft.state.turned
     if turned and (OWN_SYSTEMS.intersection(draft.codes()) or "numbered offset" in draft.meanings):
         raise NotTranslated("another work offset within G68: write G69 before it")
     follow_local_offset(draft)
-    if "turned back" in draft.meanings:
-        draft.comments.append(draft.meanings.pop("turned back").code)
-        if turned:
-            draft.after.insert(0, draft.sure("turned", "G69 selects the work offset again"))
-            draft.change(turned=UNKNOWN, **LOST)
-    if "turned" in draft.meanings:
-        turn(draft, draft.meanings.pop("turned").code)
-    if draft.after and draft.alone():
-        settle(draft)
+
+
+def end_of_rotation(draft: Draft, code: ForeignWord) -> None:
+    """Write G69: the work offset itself again."""
+    draft.comments.append(code.code)
+    if draft.state.turned:
+        draft.write([draft.sure("turned", "G69 selects the work offset again")])
+        draft.change(turned=UNKNOWN, **LOST)
 
 
 def follow_local_offset(draft: Draft) -> None:
@@ -52,7 +49,7 @@ def follow_local_offset(draft: Draft) -> None:
         return
     state = draft.state
     known: dict[str, float | str] = {} if isinstance(state.local, str) else dict(state.local)
-    known |= {w.letter: number_of(w) for w in draft.words if w.letter in HERE}
+    known |= {w.letter: number_of(w) for w in draft.words if w.letter in CENTRES}
     local = tuple(sorted(known.items()))
     changed = local != state.local or UNSURE in known.values() or "G92" in draft.codes()
     if state.turned and changed:
@@ -66,8 +63,9 @@ def number_of(word: ForeignWord) -> float | str:
     return float(value) if NUMBER.fullmatch(value.removeprefix("-")) else UNSURE
 
 
-def turn(draft: Draft, code: str) -> None:
-    """Write the turned copy of the work offset."""
+def rotation(draft: Draft, word: ForeignWord) -> None:
+    """Write the rotated copy of the work offset."""
+    code = word.code
     system = draft.sure("offset", f"{code} turns the work offset")
     if draft.state.turned or system not in OWN_SYSTEMS or draft.state.distance != "G90":
         raise NotTranslated(f"{code} needs G54 to G59 by name before it, G90, and no {code} before")
@@ -77,7 +75,7 @@ def turn(draft: Draft, code: str) -> None:
     if not words["R"]:
         raise NotTranslated(f"{code} needs R, the angle")
     centres = [
-        f"{name}=[[{words[a].value if words[a] else HERE[a]}] * {SCALE} + {LOCAL_OFFSETS[a]}]"
+        f"{name}=[[{words[a].value if words[a] else position(a)}] * {SCALE} + {LOCAL_OFFSETS[a]}]"
         for a, name in CENTRES.items()
     ]
     x, y = CENTRES.values()
@@ -94,5 +92,5 @@ def turn(draft: Draft, code: str) -> None:
         if axis in draft.control.axes
     ]
     draft.comments.append(f"{code} overwrites {SLOT}")
-    draft.after += [SET_SCALE, *centres, *values, f"G10 L2 P9 R{angle}", SLOT]
+    draft.write([SET_SCALE, *centres, *values, f"G10 L2 P9 R{angle}", SLOT])
     draft.change(turned=system, **LOST)

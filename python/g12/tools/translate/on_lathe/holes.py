@@ -4,7 +4,7 @@
 The tool goes back to where it stood before each hole, as after G98: G99 costs a little time.
 """
 
-from g12.tools.translate.blocks.draft import Draft, line_as_word
+from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
 from g12.tools.translate.on_lathe.mill_words import (
@@ -40,11 +40,8 @@ def hole_call(draft: Draft) -> None:
     if "L" in draft.letters():
         raise NotTranslated(f"{cycle} with L: write each hole with its X and Y")
     draft.take_codes({cycle, "G90", "G94"})
-    line = milled_surface(draft).call(draft, hole_from_cycle(draft, cycle, given))
-    if draft.alone():
-        draft.words.append(line_as_word(line))
-    else:
-        draft.after.insert(0, line)
+    behind, draft.after = draft.after, []
+    draft.write([milled_surface(draft).call(draft, hole_from_cycle(draft, cycle, given)), *behind])
     stands = start_height(draft)
     at_z = UNKNOWN if stands is None else stands
     draft.change(waiting=(), own_motion=UNSURE, own_feed="other", at_z=at_z)

@@ -7,7 +7,7 @@ keeps what an earlier one was given; dwell is in the control's unit; G80 beside 
 motion.
 """
 
-from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
+from g12.tools.translate.blocks.draft import Draft, position, word_of
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
@@ -96,7 +96,7 @@ def absolute(draft: Draft, code: str, given: dict[str, str], under: str) -> None
     if under != "G90" or given.keys() & {"Z", "R"}:
         raise NotTranslated(f"G90 or G91 changed within {code}: write Z and R again")
     for word in draft.axis_words():
-        here = f"#{5419 + AXIS_NUMBERS[word.letter]}"
+        here = position(word.letter)
         draft.replace(word, word._replace(value=f"[{here} + {word.value}]", kind="expression"))
     draft.take_codes({"G91"})
     draft.change(own_distance="G90")
@@ -114,7 +114,7 @@ def repeat(draft: Draft, times: str) -> None:
 
 def seconds_of_dwell(draft: Draft) -> None:
     """Write the P of a cycle in seconds."""
-    word = next((word for word in draft.words if word.letter == "P"), None)
+    word = draft.word("P")
     if not word:
         return
     unit = draft.control.value("dwell", "cycle", "refuse")

@@ -17,11 +17,8 @@ ANGLES = {"Y": "C", "V": "H"}
 SIZES = {"R": 1, "Q": 2}  # radius and diameter
 
 
-def switch_cylinder(draft: Draft) -> None:
-    """Write the cylinder's beginning and end as LinuxCNC's code."""
-    code = draft.meanings.pop("cylinder", None)
-    if not code:
-        return
+def switch_cylinder(draft: Draft, code: ForeignWord) -> None:
+    """Write the beginning and the end of a section on a cylinder."""
     if draft.control.value("cylinder", "word") == "mapped":
         radius = mapped_radius(draft, code.code)
         draft.change(mapped=radius)

@@ -8,16 +8,10 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 
 
-def dwell(draft: Draft) -> None:
+def dwell(draft: Draft, code: ForeignWord) -> None:
     """Write a dwell as ``G4 P`` with seconds."""
-    code = draft.meanings.pop("dwell", None)
-    if not code:
-        return
-    control = draft.control
-    seconds, milliseconds = (
-        control.value("dwell", "seconds"),
-        control.value("dwell", "milliseconds"),
-    )
+    seconds = draft.control.value("dwell", "seconds")
+    milliseconds = draft.control.value("dwell", "milliseconds")
     times = [word for letter in seconds + milliseconds if (word := draft.take(letter))]
     if len(times) != 1:
         known = " or ".join(seconds + milliseconds)

@@ -33,10 +33,8 @@ def _is_zero(word: ForeignWord) -> bool:
 
 
 def _only_positions(draft: Draft) -> bool:
-    codes, state = draft.codes(), draft.state
-    motion = next((code for code in codes if GROUP_OF.get(code) == "motion"), state.motion)
-    goes = motion in ("G0", "G1") and not state.cycle
-    return goes and all(code in GROUP_OF for code in codes)
+    straight = draft.motion() in ("G0", "G1") and not draft.state.cycle
+    return straight and all(code in GROUP_OF for code in draft.codes())
 
 
 def follow_modes(draft: Draft) -> None:
@@ -62,7 +60,7 @@ def follow_modes(draft: Draft) -> None:
 
 def follow_surface_speed(draft: Draft) -> None:
     """Take note of the S of G96."""
-    word = next((word for word in draft.words if word.letter == "S"), None)
+    word = draft.word("S")
     if word and draft.state.spindle_mode == "G96" and not draft.meanings:
         draft.change(surface=word.value)
 
@@ -80,11 +78,8 @@ def axes_at_zero(draft: Draft) -> None:
     draft.comments += [word.text for word in gone]
 
 
-def radius_or_diameter(draft: Draft) -> None:
+def radius_or_diameter(draft: Draft, code: ForeignWord) -> None:
     """Write G10.9 X0 and X1, X words as radii or diameters, as G8 and G7."""
-    code = draft.meanings.pop("radius or diameter", None)
-    if not code:
-        return
     word = draft.take("X")
     modes = {"0": "G8", "1": "G7"}
     if not word or word.value.rstrip(".") not in modes or draft.axis_words():

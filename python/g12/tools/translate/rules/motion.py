@@ -3,6 +3,7 @@
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import (
     AS_PROGRAMMED,
     CONSUMERS,
@@ -95,11 +96,10 @@ def in_absolute_words(draft: Draft) -> None:
         draft.put_first("G90")
 
 
-def exact_stop(draft: Draft) -> None:
-    """Keep G9 in polar mode and on a cylinder; elsewhere a dwell of no time makes the stop."""
-    code = draft.meanings.pop("exact stop", None)
-    if code and draft.state.polar != "off":
+def exact_stop(draft: Draft, code: ForeignWord) -> None:
+    """Keep G9 in a section; elsewhere a dwell of no time makes the exact stop."""
+    if draft.state.polar != "off":
         draft.put_first("G9")
-    elif code:
+    else:
         draft.comments.append(code.code)
         draft.after.append("G4 P0")

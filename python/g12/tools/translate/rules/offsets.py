@@ -94,11 +94,8 @@ def load_system(draft: Draft, number: int) -> str:
     return f"G10 L2 P9 R0 {SLOT} {' '.join(copies)}"
 
 
-def offset_by_program(draft: Draft) -> None:
-    """Set an offset from the program."""
-    code = draft.meanings.pop("offset by program", None)
-    if not code:
-        return
+def offset_by_program(draft: Draft, code: ForeignWord) -> None:
+    """Write G10, which sets an offset from the program."""
     kind = draft.take("L")
     number = int(kind.number) if kind and kind.kind == "number" else 0
     incremental = draft.sure("distance", "G10 sets or adds") == "G91"
@@ -113,7 +110,7 @@ def offset_by_program(draft: Draft) -> None:
     else:
         raise NotTranslated("G10 needs L2, L10, L11, L12, L13 or L20")
     draft.after += draft.take_codes({"G90", "G91"})
-    if not draft.alone():
+    if not draft.is_empty():
         raise NotTranslated(f"{draft.words[-1].text} cannot stand beside G10")
     settle(draft)
 

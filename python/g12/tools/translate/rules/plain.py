@@ -2,10 +2,9 @@
 """Most blocks of a long program: lines and arcs that are the same on LinuxCNC, told at a glance."""
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUPS, UNKNOWN
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, MOVES, UNKNOWN
 from g12.tools.translate.blocks.places import FIELDS, end_of_word
 
-MOTIONS = frozenset(GROUPS["motion"])
 LETTERS = frozenset("NXYZABCIJKRF")
 SETTLED = (UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
 TURNING = frozenset("ABC")  # beside a slide they can need another feed
@@ -40,7 +39,7 @@ def is_plain(draft: Draft) -> bool:
             modes["feed"] = value
     motion = modes.get("motion", state.motion)
     arc = motion in ("G2", "G3") or seen.isdisjoint("IKR" if control.is_lathe else "R")
-    if not arc or motion not in MOTIONS or control.meanings.get(motion) != "same":
+    if not arc or motion not in MOVES or control.meanings.get(motion) != "same":
         return False
     if motion != "G0" and not TURNING.isdisjoint(seen):
         return False

@@ -8,7 +8,7 @@ is what the control's file says.
 
 from typing import Any
 
-from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
+from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import (
@@ -34,13 +34,6 @@ MODES_OF_X = {"diameter": "G7", "radius": "G8"}
 X_OF = {"G7": 2.0, "G8": 1.0}  # the word of a point whose radius is 1
 
 
-def switch_polar(draft: Draft) -> None:
-    """Write polar on and polar off as LinuxCNC's codes, in blocks of their own."""
-    for meaning, write in (("polar on", turn_on), ("polar off", turn_off)):
-        if meaning in draft.meanings:
-            write(draft, draft.meanings.pop(meaning).code)
-
-
 def plane_letters(draft: Draft) -> None:
     """Drop what a plane code has beside it to name its axes: ``G17 XC``, ``G17 U0 H0``."""
     if not PLANES.intersection(draft.codes()):
@@ -57,12 +50,12 @@ def is_zero(word: ForeignWord) -> bool:
     return word.kind == "number" and word.number == 0
 
 
-def turn_on(draft: Draft, code: str) -> None:
+def turn_on(draft: Draft, code: ForeignWord) -> None:
     """Write G12.1; X a radius if it is one on the control."""
     x = draft.control.value("polar", "x", "")
     if x in ("", "say"):
         raise NotSaid(
-            f'{code}: is X a diameter or a radius in it? say x = "diameter" or "radius" under '
+            f'{code.code}: is X a diameter or a radius in it? say x = "diameter" or "radius" under '
             "[polar] of your control (--polar-x)",
             "polar",
             'x = "diameter" # or "radius"',
@@ -71,7 +64,7 @@ def turn_on(draft: Draft, code: str) -> None:
         draft.take("C")
     outside, inside = x_modes(draft)
     lines = [*own_feed_ended(draft), *([inside] if inside != outside else [])]
-    own_block(draft, code, [*lines, draft.control.polar_codes[0]])
+    own_block(draft, code.code, [*lines, draft.control.polar_codes[0]])
     kept = slides_kept(draft, X_OF[inside] / X_OF[outside])
     draft.change(polar="on", own_motion=UNSURE, at_c=0.0, **kept)
 
@@ -82,16 +75,16 @@ def x_modes(draft: Draft) -> tuple[str, str]:
     return outside, MODES_OF_X.get(draft.control.value("polar", "x"), outside)
 
 
-def turn_off(draft: Draft, code: str) -> None:
+def turn_off(draft: Draft, code: ForeignWord) -> None:
     """Write G13.1, which means nothing outside of polar mode."""
     outside, inside = x_modes(draft)
     back = draft.state.polar != "off" and outside != inside
-    own_block(draft, code, [draft.control.polar_codes[1], *([outside] if back else [])])
+    own_block(draft, code.code, [draft.control.polar_codes[1], *([outside] if back else [])])
     if draft.state.polar != "off":
         if draft.state.delayed:
             raise NotTranslated(
                 f"G40 stands behind the last move of the section: write a move in X or C with it "
-                f"before {code}"
+                f"before {code.code}"
             )
         kept = slides_kept(draft, X_OF[outside] / X_OF[inside])
         draft.change(polar="off", own_motion=UNSURE, **kept)
@@ -108,11 +101,7 @@ def own_block(draft: Draft, code: str, lines: list[str]) -> None:
     """Write lines behind the block's other words, which must move nothing."""
     if draft.axis_words() or draft.letters() & set("UVWHIJKR"):
         raise NotTranslated(f"{code} moves nothing: its block has {draft.words[-1].text}")
-    if draft.alone():
-        first, *draft.after = lines
-        draft.words.append(line_as_word(first))
-    else:
-        draft.after += lines
+    draft.write(lines)
 
 
 def inside_polar(draft: Draft) -> None:
@@ -290,5 +279,13 @@ def programs_feed(draft: Draft) -> list[str]:
 
 def slides_again(draft: Draft) -> list[str]:
     """Return the words of slides that LinuxCNC has not moved yet (`turning/feed_of_c`)."""
-    held: Any = draft.sure("held", "a slide of LinuxCNC's is behind the program's")
-    return [f"{axis}{value_text(known_place(draft.start, axis))}" for axis, _ in held]
+    why = "a slide of LinuxCNC's is behind the program's"
+    held: Any = draft.sure("held", why)
+    points = {axis: known_place(draft.start, axis) for axis, _ in held}
+    for axis, point in points.items():
+        if point is None:
+            raise NotTranslated(
+                f"{why}, and where {axis} stands is not known here: beside C let it move by at "
+                "least 0.001 mm, or not at all"
+            )
+    return [f"{axis}{value_text(point)}" for axis, point in points.items()]

@@ -5,13 +5,12 @@ LinuxCNC's G28 and G30 mean the same (the places are those of G28.1 and G30.1); 
 given what a lathe writes with U, V, W and H, and lose the motion code beside them.
 """
 
-from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft, word_of
+from g12.tools.translate.blocks.draft import PARTNERS, Draft, position, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, MOVES
 
 POINTS = frozenset(("G28", "G30"))
-MOTIONS = frozenset(("G0", "G1", "G2", "G3"))
 
 
 def reference_point(draft: Draft) -> None:
@@ -47,7 +46,7 @@ def place_of_increment(draft: Draft, word: ForeignWord) -> ForeignWord:
     if draft.sure("compensation", f"{word.text} is an increment") != "G40":
         raise NotTranslated(f"{word.text} beside an absolute word, with G41 or G42 on")
     axis = PARTNERS[word.letter]
-    here = f"#{5419 + AXIS_NUMBERS[axis]}"
+    here = position(axis)
     if axis == "X" and draft.sure("x_words", f"{word.text} is an increment") == "G7":
         here = f"2 * {here}"
     moved = word.kind == "expression" or word.number
@@ -74,7 +73,7 @@ def machine_position(draft: Draft) -> None:
         raise NotTranslated("G53 under G91: its words are absolute, write G90 with it")
     if draft.state.cycle:
         raise NotTranslated("G53 within a drilling cycle: write G80 before it")
-    motions = draft.take_codes(MOTIONS)
+    motions = draft.take_codes(MOVES)
     motion = motions[0] if motions else draft.state.motion
     draft.put_first("G0")
     draft.change(motion=motion, own_motion=AS_PROGRAMMED if motion == "G0" else "G0")

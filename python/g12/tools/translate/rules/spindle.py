@@ -6,6 +6,7 @@ G50 S and G92 S are the limit, which LinuxCNC takes as D beside G96; with axes t
 
 from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN
 
 LONGEST_WAIT = "Q30"  # s, then LinuxCNC says that the spindle is not oriented
@@ -48,7 +49,7 @@ def limit_now(draft: Draft, code: str, limit: str) -> None:
     surface = draft.sure("surface", f"{code} S within G96")
     if surface == UNKNOWN:
         raise NotTranslated(f"{code} S within G96, and the S of G96 is not known: write it before")
-    draft.after.append(f"G96 S{surface} D{limit}")
+    draft.write([f"G96 S{surface} D{limit}"])
 
 
 def live_tool(draft: Draft) -> None:
@@ -84,17 +85,14 @@ def named_spindle(draft: Draft, turns: bool) -> str:
     return next((w.text for w in draft.words if w.letter == "$"), UNKNOWN)
 
 
-def orientation(draft: Draft) -> None:
-    """Write M19 so that LinuxCNC waits for it: at the machine's own place, or at R or P degrees."""
-    code = draft.meanings.pop("orientation", None)
-    if not code:
-        return
+def orientation(draft: Draft, code: ForeignWord) -> None:
+    """Write M19 so that LinuxCNC waits for it: at the machine's own angle, or at R or P degrees."""
     angles = [word for letter in "RP" if (word := draft.take(letter))]
     if len(angles) > 1:
         raise NotTranslated(f"{code.code} with R and P: one of them is its angle")
     draft.change(spindle=UNKNOWN)  # M19 stops it
     line = " ".join(["M19", *(f"R{word.value}" for word in angles), LONGEST_WAIT])
-    if draft.alone():
+    if draft.is_empty():
         draft.words.append(line_as_word(line))
     else:
         draft.before.append(line)

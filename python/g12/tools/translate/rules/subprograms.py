@@ -27,15 +27,13 @@ def called_number(draft: Draft, code: str, word: ForeignWord | None) -> int:
 
 def call_macro(draft: Draft) -> None:
     """Take the words of G65, M98, M97 and M99 out; the lines are written when the block is done."""
-    code = draft.meanings.pop("macro call", None)
-    if code:
+    if draft.meanings.pop("macro call", None):
         draft.call = macro_call(draft)
     for meaning in ("subprogram", "local subprogram"):
         code = draft.meanings.pop(meaning, None)
         if code:
             draft.call = subprogram_call(draft, code.code, meaning)
-    code = draft.meanings.pop("return", None)
-    if code:
+    if draft.meanings.pop("return", None):
         draft.returns = not (draft.take("P") and draft.jumps)
 
 
@@ -101,7 +99,7 @@ def finish_call(draft: Draft) -> None:
         lines.append(draft.return_text)
     if not lines:
         return
-    if draft.alone():
+    if draft.is_empty():
         number = draft.written()
         first, *rest = lines
         keeps = number and not first.startswith("o")
@@ -117,7 +115,7 @@ def call_lines(draft: Draft) -> list[str]:
     call = draft.call
     if call.kind == "sub":
         return [f"M98 P{call.number}{f' L{call.repeats}' if call.repeats else ''}"]
-    empty = dict.fromkeys(draft.asked.get(call.number, ()), EMPTY)
+    empty = dict.fromkeys(draft.compared.get(call.number, ()), EMPTY)
     given = {**empty, **dict(call.arguments)}
     values = "".join(f" [{given.get(n, '0')}]" for n in range(1, max(given, default=0) + 1))
     line = f"o<macro_{call.number}> call{values}"

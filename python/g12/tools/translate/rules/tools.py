@@ -28,7 +28,7 @@ def tool_and_offsets(draft: Draft) -> None:
 
 def follow_tool(draft: Draft) -> None:
     """Take note of the tool: T is the next one until M6."""
-    word = next((word for word in draft.words if word.letter == "T"), None)
+    word = draft.word("T")
     if word:
         draft.change(next_tool=word.value.lstrip("0") or "0")
     if "M6" in draft.m_codes():
@@ -37,7 +37,7 @@ def follow_tool(draft: Draft) -> None:
 
 def turret_word(draft: Draft) -> None:
     """Write a lathe's T word as tool change and offset."""
-    word = next((word for word in draft.words if word.letter == "T"), None)
+    word = draft.word("T")
     change = draft.meanings.pop("tool change", None)
     if change and not word:
         raise NotTranslated(f"{change.code} without T: the turret turns by T alone, take it out")
@@ -103,7 +103,7 @@ def length_offset(draft: Draft) -> None:
         if "H" in draft.letters():
             raise NotTranslated("H without G43 in its block: write G43 before it")
         return
-    word = next((word for word in draft.words if word.letter == "H"), None)
+    word = draft.word("H")
     if not word:
         raise NotTranslated("G43 without H: LinuxCNC would take the loaded tool's length")
     if word.kind == "number" and word.number == 0:
@@ -116,7 +116,7 @@ def length_offset(draft: Draft) -> None:
 def radius_offset(draft: Draft) -> None:
     """Keep D for the codes that have one, remember it for those that come without."""
     codes = draft.codes()
-    word = next((word for word in draft.words if word.letter == "D"), None)
+    word = draft.word("D")
     if word:
         draft.change(radius=word.value)
         if not USES_D.intersection(codes):

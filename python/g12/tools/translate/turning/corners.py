@@ -52,9 +52,9 @@ def is_drawn(draft: Draft) -> bool:
     letters, codes = draft.letters(), set(draft.codes())
     if any(letter[0] == "," for letter in letters):
         return True
-    motion = next((c for c in codes if c in ("G0", "G1", "G2", "G3", "G33")), draft.state.motion)
     free = not draft.meanings and not draft.state.turn and draft.state.polar == "off"
-    plain = draft.control.is_lathe and free and motion == "G1" and not codes - {"G1", "G94", "G95"}
+    line = draft.motion() == "G1" and not codes - {"G1", "G94", "G95"}
+    plain = draft.control.is_lathe and free and line
     return plain and bool(letters & DRAWN) and bool(letters & set("XZUW"))
 
 

@@ -13,6 +13,7 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import (
     AS_PROGRAMMED,
     CONSUMERS,
+    MOTIONS,
     UNKNOWN,
     UNSURE,
 )
@@ -43,7 +44,6 @@ from g12.tools.translate.turning.repeats import (
 from g12.tools.translate.turning.roughing import RoughCuts, rough
 from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, thread_pass
 
-MOTIONS = frozenset(("G0", "G1", "G2", "G3", "G33"))
 SHORTEST = 1e-5  # of a thread
 TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
 BESIDE = frozenset("NGMSTF$")  # may stand in a cycle's block

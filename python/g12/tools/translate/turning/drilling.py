@@ -173,7 +173,7 @@ def put_lines(draft: Draft, lines: list[str]) -> None:
     if draft.state.own_distance == "G91":
         lines = ["G90", *lines]
         draft.change(own_distance=AS_PROGRAMMED)
-    if draft.alone() and lines and not draft.before:
+    if draft.is_empty() and lines and not draft.before:
         draft.words.append(line_as_word(lines[0]))
         lines = lines[1:]
     draft.after += lines
@@ -239,7 +239,7 @@ def tap_spindle(draft: Draft, cycle: LatheCycle) -> list[str]:
 def peck_of(draft: Draft) -> float | None:
     """Take the depth of a peck out, None if the block has none."""
     letter = str(draft.control.value("holes", "peck_word", "Q"))
-    word = next((w for w in draft.words if w.letter == letter), None)
+    word = draft.word(letter)
     if word is None:
         return None
     lengths = draft.control.value("holes", "q") != "increments"

@@ -9,7 +9,7 @@ or ``mm`` (as LinuxCNC). A slide that moves next to nothing is held back for a l
 
 from math import hypot
 
-from g12.tools.translate.blocks.draft import Draft, word_of
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.modal import CONSUMERS, UNSURE
 from g12.tools.translate.blocks.places import axis_of, known_place, value_text
@@ -37,16 +37,15 @@ def feed_of_c(draft: Draft) -> None:
 
 def is_feed(draft: Draft) -> bool:
     """Tell whether the block moves at a feed, outside a section."""
-    codes = set(draft.codes())
-    motion = next((code for code in codes if code in ("G0", "G1", "G2", "G3")), draft.state.motion)
     other = draft.state.polar != "off" or draft.meanings or draft.state.cycle
-    return motion != "G0" and not other and not codes & {*CONSUMERS, "G53", "G33"}
+    codes = {*CONSUMERS, "G53", "G33"}.intersection(draft.codes())
+    return draft.motion() != "G0" and not other and not codes
 
 
 def distances(draft: Draft, axes: set[str]) -> dict[str, float]:
     """Return how far each axis goes, in mm, inches or degrees; X as a radius."""
     moved = {}
-    for axis in axes:
+    for axis in (axis for axis in AXIS_NUMBERS if axis in axes):
         start, end = known_place(draft.start, axis), known_place(draft.state, axis)
         if start is None or end is None:
             raise NotTranslated(

@@ -6,15 +6,14 @@ from collections.abc import Iterable
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
-from g12.tools.translate.blocks.modal import ModalState
+from g12.tools.translate.blocks.modal import MOVES, ModalState
 from g12.tools.translate.blocks.places import known_place
 from g12.tools.translate.rules import codes, decimals, modes
 from g12.tools.translate.turning.contour import ContourBlock, ContourMove, contour_of
 
 SHAPING = frozenset(("X", "Z", "U", "W", "I", "K", "R", "A", "C", ",A", ",C", ",R"))
 BESIDE = frozenset("FSM")  # what a finishing cut does with its moves
-MOTIONS = ("G0", "G1", "G2", "G3")
-IN_CONTOURS = (*MOTIONS, "G90", "G91")
+IN_CONTOURS = MOVES | {"G90", "G91"}
 READERS = (codes.keep_as_comments, codes.map_codes, modes.follow_modes, decimals.whole_units)
 
 
@@ -28,7 +27,7 @@ def take_number(draft: Draft, letter: str) -> float | None:
 
 def take_increments(draft: Draft, letter: str) -> float | None:
     """Take a length out that is in least increments where it has no decimal point."""
-    word = next((w for w in draft.words if w.letter == letter), None)
+    word = draft.word(letter)
     number = take_number(draft, letter)
     if not number or "." in word.value:
         return number
@@ -40,7 +39,7 @@ def take_increments(draft: Draft, letter: str) -> float | None:
 
 def take_turn(draft: Draft) -> float:
     """Take Q out, the angle at which a thread starts: thousandths of a degree without a point."""
-    word = next((w for w in draft.words if w.letter == "Q"), None)
+    word = draft.word("Q")
     turn = take_number(draft, "Q") or 0.0
     return turn if word and "." in word.value else turn / 1000
 
@@ -175,7 +174,7 @@ def contour_block(reader: Draft, motion: str) -> ContourBlock:
         elif word.letter not in "NG" or (word.letter == "G" and word.code not in IN_CONTOURS):
             raise NotTranslated(f"{word.text} cannot stand in a contour")
     own = _motion_of(reader, motion)
-    if own not in MOTIONS:
+    if own not in MOVES:
         raise NotTranslated("G0 or G1 is missing")
     relative = reader.sure("distance", "X and Z are places or increments") == "G91"
     return ContourBlock(own, values, reader.block.line, relative, tuple(others))
@@ -188,4 +187,4 @@ def is_mode(word: ForeignWord) -> bool:
 
 
 def _motion_of(reader: Draft, motion: str) -> str:
-    return next((code for code in reader.codes() if code in MOTIONS), motion)
+    return next((code for code in reader.codes() if code in MOVES), motion)
