@@ -66,9 +66,23 @@ def test_rough_with_an_allowance_and_finish_in_one_section(form, found):
     assert found(*rough_and_finish(form)) == []
 
 
-def test_a_sub_that_is_called_outside_too_is_no_proof(found):
-    lines = ["o100 sub", "F900", "o100 endsub", *HEAD, "G1 X30 F800", "o100 call", "X20", *OUT[:2]]
-    assert found(*lines, "o100 call", "M2", "") == [("contour-unread", 8)]
+@pytest.mark.parametrize(
+    ("begin", "end", "call"),
+    [("o100 sub", "o100 endsub", "o100 call"), ("O100", "M99", "M98 P100")],
+)
+def test_a_sub_that_is_called_outside_too_is_read(begin, end, call, found):
+    """What follows goes on where it ends; outside of the section it makes moves of its own."""
+    lines = [*HEAD[:4], call, *HEAD[3:], "G1 X30 F800", call, "C8", *OUT[:2], call, "M2"]
+    assert found(*lines, begin, "G1 X24 F900", "C3", end, "") == []
+
+
+def test_a_section_that_asks_for_a_position_is_not_judged(tmp_path):
+    program = tmp_path / "program.ngc"
+    program.write_text("\n".join([*HEAD, "G1 X30 F800", "X[#<_x>-5]", *OUT]))
+    proof = prove(program, read_ini(SIM / "lathe_mm_headless.ini"))
+    (each,) = [each for each in proof.judged if each.code == "contour-unread"]
+    assert (each.line, each.is_not_judged) == (5, True)
+    assert proof.findings == [] and proof.sections[0].sound
 
 
 @pytest.mark.parametrize(("pin", "notes"), [(31, 0), (29, 2)])

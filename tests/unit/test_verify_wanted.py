@@ -26,7 +26,7 @@ from g12.tools.verify.expected.polar import Pen
 from g12.tools.verify.reading import sections as section_reading
 from g12.tools.verify.reading.circles import CircleReader
 from g12.tools.verify.reading.codes import SHAPES, Codes
-from g12.tools.verify.reading.sections import followed_subs, section_lines
+from g12.tools.verify.reading.sections import bodies_of, drawn_subs, section_lines
 from support.made_moves import Hand
 
 REMAPS = (
@@ -266,7 +266,6 @@ def test_a_radius_that_is_found_to_be_0_begins_no_section():
     empty, full = (replace(block(f"G7.1 C{radius}"), text=text) for radius in (0, 20))
     run = [empty, block("G1 Z-5"), block("G7.1 C0"), full, block("G7.1 C0")]
     assert [group[0] for group in section_reading.grouped(run, CODES)] == [full]
-    assert len(section_reading.paths_of(run, CODES)) == 1
 
 
 @pytest.mark.parametrize(("handler", "turn"), [("g12", -1), ("g13", 1)])
@@ -400,30 +399,46 @@ def test_modes_are_saved_before_the_blocks_own_codes_act():
     ],
 )
 def test_what_cannot_be_followed_is_a_doubt(line, why):
-    lines = ["G12.1", "G1 C5", line, "G13.1"]
-    texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
-    assert why in section_reading.doubts_of(section_lines(texts, lines), CODES, set())["", 1]
+    lines = lines_of("G12.1", "G1 C5", line, "G13.1", "o77 sub", "X#<_x>", "o77 endsub")
+    doubts = section_reading.doubts_of(lines, CODES, bodies_of(lines))
+    assert why in doubts[lines[0].text]
 
 
-@pytest.mark.parametrize(
-    ("after", "followed"),
-    [("G0 X9", {"flat", "77"}), ("o77 call", {"flat"}), ("o<flat> call", set())],
-)
-def test_a_sub_that_sections_alone_call_is_followed(after, followed):
-    lines = ["o77 sub", "G1 X5", "o77 endsub", "o<flat> sub", "o77 call", "o<flat> endsub"]
-    lines += ["G12.1", "o<flat> call [1]", "G13.1", after]
+def test_a_sub_that_calls_itself_cannot_be_followed():
+    lines = lines_of("o7 sub", "o7 call", "o7 endsub", "G12.1", "o7 call", "G13.1")
+    (doubt,) = section_reading.doubts_of(lines, CODES, bodies_of(lines)).values()
+    assert doubt == "line 5 calls o<7>"
+
+
+def lines_of(*lines):
     texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
-    assert followed_subs([section_lines(texts, lines)], CODES) == followed
+    return section_lines(texts, lines)
+
+
+def flattened(lines, drawn=(), sub=""):
+    """Return the copy's lines, without those that tell of blocks."""
+    flat = [line for some in section_reading.flattened(lines, CODES, drawn, sub) for line in some]
+    return [line for line in flat if "DEBUG" not in line and "#<@" not in line]
 
 
 def test_motion_is_taken_out_of_the_copy_and_control_stays():
     loop = ["#1=2", "o1 while [#1]", "X#1 #1=[#1-1]", "o1 endwhile"]
-    lines = ["G0 X5", "G12.1", *loop, "G13.1", "G0 X9"]
-    texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
-    groups = section_reading.flattened(section_lines(texts, lines), CODES, set())
-    flat = [line for some in groups for line in some]
-    kept = [line for line in flat if "DEBUG" not in line and "#<@" not in line]
-    assert kept == ["G0 X5", "#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile", "G0 X9"]
+    lines = lines_of("G0 X5", "G12.1", *loop, "G13.1", "G0 X9")
+    kept = ["G0 X5", "#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile", "G0 X9"]
+    assert flattened(lines) == kept
+
+
+def test_sections_call_copies_of_subs_without_motion():
+    flat = ["o<flat> sub", "M8 X1", "M98 P1000", "o<flat> return", "o<flat> endsub"]
+    calls = ["G12.1", "o<flat> call [1]", "G13.1", "o<flat> call [2]"]
+    lines = lines_of(*flat, "O1000", "G1 X5", "M99", *calls)
+    bodies = bodies_of(lines)
+    drawn = drawn_subs(lines, CODES, bodies)
+    assert drawn == {"flat", "1000"}
+    assert flattened(lines, drawn)[len(flat) + 3 :] == ["o<99flat>call[1]", "o<flat> call [2]"]
+    own = ["o<99flat>sub", "M8", "m98p991000", "o<99flat>return", "o<99flat>endsub"]
+    assert flattened(bodies["flat"], drawn, "flat") == own
+    assert flattened(bodies["1000"], drawn, "1000") == ["o991000", "M99"]
 
 
 # ---------------------------------------------------------------- contours on a cylinder

@@ -5,6 +5,7 @@
 """
 
 import json
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -312,6 +313,7 @@ def cut_lines(proof: Proof, unit: Unit) -> Iterator[tuple[str, ...]]:
             inside = sections_of(cut, proof) if kind == "shapes" else []
             worst = max(each.deviation for each in (cut, *inside))
             off = f"{unit.fine(worst)} {unit.name} off ({allowed} allowed)"
+            off = "not judged" if math.isnan(worst) else off
             seconds = [each.values.get("seconds") for each in inside or [cut]]
             time = "" if None in seconds else f"{plain(sum(seconds), 1)} s"
             yield where_text(cut, proof), code_text(cut), what, off, time

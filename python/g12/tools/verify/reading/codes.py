@@ -103,11 +103,17 @@ class Codes:
             return "off" if inside or (is_number(radius) and not float(radius)) else "on"
         return found.handler.rpartition("_")[2] if found else ""
 
-    def with_switches(self, texts: Iterable[Text]) -> Iterator[tuple[Text, str, bool]]:
-        """Yield lines, each with how it switches a section, and whether one is on after it."""
-        inside = False
+    def with_switches(
+        self, texts: Iterable[Text], inside: bool = False
+    ) -> Iterator[tuple[Text, str, bool]]:
+        """Yield lines, each with how it switches a section, and whether one is on after it.
+
+        No section goes on from one file to the next. ``inside``: the first line is in one.
+        """
+        file = None
         for text in texts:
-            switch = self.switch(text, inside)
+            inside = inside and file in (None, text.file)
+            file, switch = text.file, self.switch(text, inside)
             inside = switch == "on" if switch else inside
             yield text, switch, inside
 

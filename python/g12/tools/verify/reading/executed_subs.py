@@ -8,8 +8,8 @@ program does; see `executed_blocks`.
 import os
 import re
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 
 from g12.machine_ini import remap_lines
@@ -19,11 +19,12 @@ from g12.tools.preview.executed_blocks import (
     TAG,
     Block,
     Text,
+    after,
+    before,
     blocks_in,
     executed,
     lines_as_written,
     read_lines,
-    watched,
 )
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer, write_program
@@ -46,64 +47,78 @@ def executed_everywhere(
     are all, with what the subs of C's clamp tell, if it takes those.
     """
     named, clamps = called_files(read_lines(program), tracer.ini), clamp_files(tracer.ini)
-    files = files_with(codes.wanted_in, {*map(Path, trace.files), *named}.difference(clamps))
+    subs = sorted({*map(Path, trace.files), *named}.difference(clamps))
+    files = [
+        each
+        for each in subs
+        if each.stem != CALL and codes.wanted_in(read_lines(each))  # the event's own is a cycle
+    ]
     for some in filter(None, dict.fromkeys(((*files, *clamps), tuple(clamps)))):
-        copies = Copies(program, some, partial(watched_file, codes=codes, clamps=clamps))
-        copy = copies.trace(tracer, tools, parameters, watch_offsets=True)
+        copies = Copies(program, some)
+        lines = watched_lines(copies, codes, {file.name: code for file, code in clamps.items()})
+        copy = copies.trace(tracer, lines, {}, tools, parameters, watch_offsets=True)
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
             return blocks_in(copy, copies.texts), bool(clamps)
     wanted = codes.wanted_in(read_lines(program))
     return executed(tracer, program, trace, wanted.__contains__, parameters), False
 
 
-def watched_file(
-    path: Path, texts: Sequence[Text], codes: Codes, clamps: Mapping[Path, str], skip: int
-) -> list[str]:
-    """Return the lines of a file and those that tell of its blocks that matter.
-
-    The sub of a clamp's code tells that it is called.
-    """
-    if path in clamps:
-        told = f"(DEBUG,{TAG} {CLAMP} {clamps[path]})"
-        lines = lines_as_written(path)
-        return [f"{line}\n{told}" if BEGIN.match(line) else line for line in lines]
-    return watched(path, texts, codes.wanted_in(texts).__contains__, skip)
-
-
 class Copies:
-    """A program and files of subs, all of whose lines are replaced by others that tell of them.
+    """A program and files of subs whose lines are to be replaced by others that tell of them.
 
-    ``copied`` makes a file's new lines of its path, its lines as text and the number of lines in
-    the files before it. ``texts`` are the lines of all, ``lines`` as they are
-    written.
+    ``texts`` are the lines of all, those of the program first, ``lines`` as they are written.
     """
 
-    def __init__(
-        self, program: Path, files: Sequence[Path], copied: Callable[..., Sequence[str]]
-    ) -> None:
+    def __init__(self, program: Path, files: Iterable[Path]) -> None:
         self.texts, self.lines = read_lines(program), lines_as_written(program)
-        self._program = copied(program, self.texts, skip=0)
-        self._subs: dict[str, Sequence[str]] = {}
-        for file in files:
-            texts = [text._replace(file=file.name) for text in read_lines(file)]
-            self._subs[file.name] = copied(file, texts, skip=len(self.texts))
-            self.texts += texts
+        for file in sorted(files):
+            self.texts += [text._replace(file=file.name) for text in read_lines(file)]
             self.lines += lines_as_written(file)
 
-    def trace(self, tracer: Tracer, tools: Tools, parameters: Parameters, **options: bool) -> Trace:
-        """Return the trace of the copies; where subs are, by another tracer that finds them."""
-        if not self._subs:
-            return tracer.trace_text(self._program, parameters=parameters, **options)
+    def trace(
+        self,
+        tracer: Tracer,
+        lines: Iterable[Sequence[str]],
+        more: Mapping[str, Iterable[Sequence[str]]],
+        tools: Tools,
+        parameters: Parameters,
+        **options: bool,
+    ) -> Trace:
+        """Return the trace of copies in which ``lines`` stand for each line.
+
+        ``more`` are further files. Where there are subs, another tracer finds them.
+        """
+        made: dict[str, list[str]] = {"": []}
+        for text, some in zip(self.texts, lines):
+            made.setdefault(text.file, []).extend(some)
+        made |= {name: list(chain.from_iterable(own)) for name, own in more.items()}
+        program = made.pop("")
+        if not made:
+            return tracer.trace_text(program, parameters=parameters, **options)
         with tempfile.TemporaryDirectory(prefix="g12-verify-") as folder:
-            for name, lines in self._subs.items():
-                write_program(lines, Path(folder) / name)
+            for name, own in made.items():
+                write_program(own, Path(folder) / name)
             with Tracer(shadowed(tracer.ini, folder), tools=tools) as other:
-                return other.trace_text(self._program, parameters=parameters, **options)
+                return other.trace_text(program, parameters=parameters, **options)
 
 
-def files_with(lines: Callable[[list[Text]], object], files: Iterable[Path]) -> list[Path]:
-    """Return those files of subs that have ``lines`` that matter; the event's own is a cycle."""
-    return [file for file in sorted(files) if file.stem != CALL and lines(read_lines(file))]
+def watched_lines(
+    copies: Copies, codes: Codes, clamps: Mapping[str, str]
+) -> Iterator[tuple[str, ...]]:
+    """Yield the lines that stand for each line: those that matter tell of their blocks.
+
+    The sub of a clamp's code, by its file's name, tells that it is called.
+    """
+    wanted = codes.wanted_in(copies.texts)
+    for index, (text, line) in enumerate(zip(copies.texts, copies.lines)):
+        skip = index + 1 - text.number
+        if text.file in clamps:
+            told = f"(DEBUG,{TAG} {CLAMP} {clamps[text.file]})"
+            yield (line, told) if BEGIN.match(line) else (line,)
+        elif text in wanted and not text.too_long:
+            yield (*before(text, skip), line, *after(text, skip))
+        else:
+            yield (line,)
 
 
 def called_files(texts: Sequence[Text], ini: Ini) -> set[Path]:

@@ -10,10 +10,9 @@ program commands C in between, or gives it another zero.
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
-from itertools import chain
+from itertools import accumulate, chain, islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -27,7 +26,6 @@ from g12.tools.preview.executed_blocks import (
     before,
     blocks_in,
     is_number,
-    lines_as_written,
     moves_otherwise,
     read_lines,
 )
@@ -36,65 +34,121 @@ from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.verify.expected.contour import ACTS, BEGUN, Act, Element, SectionContour, ZeroLine
 from g12.tools.verify.expected.words import kept_state
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.reading.executed_subs import Copies, called_files, files_with
+from g12.tools.verify.reading.executed_subs import Copies, called_files
 
 ACTING_M = {*map(float, (3, 4, 5, 7, 8, 9, 48, 49, 50, 51, 52, 53)), *map(float, range(100, 200))}
 DWELL = 4.0
 PATH_CODES = (61.0, 61.1, 64.0)
 SPINDLE = re.compile(r"\$\s*(#?-?[\d.]+|#<[^>]*>)")
 RESTORE, SAVE_FOR_SUB = 72.0, 73.0
-Place = tuple[str, int]
 Pens = Mapping[str, Callable[[Block], Any]]
-BODY = re.compile(r"/?(?:n[0-9.]+)?o(?:<([^>]+)>|([0-9.]+))(sub|endsub)")
+SUB_LINE = re.compile(
+    r"(/?(?:n[0-9.]+)?o<?)((?<=<)[^>]+|[0-9.]+)>?(sub|endsub|return|call|$).*"
+)  # and the O1000 of a body that M98 calls
+NUMBER_OF_M98 = re.compile(r"(?<=p)(?=[0-9])")
+DRAWN = "99"  # what the names of subs that sections call begin with in the copy
 POSITION = "#<_", "#54"  # position parameters, which a copy without motion cannot follow
 SAME_ANGLE = 1e-3  # degree
 
 
 class SectionLine(NamedTuple):
-    """A line of a file: what it says, as it is written, and the sub whose body it is in."""
+    """A line: what it says, as written, the sub in whose body it is, the lines of files before."""
 
     text: Text
     written: str
-    sub: str
+    sub: str = ""
+    skip: int = 0
 
     @property
-    def asks_position(self) -> bool:
-        """Tell whether it asks where the tool is."""
-        return any(name in self.written.replace(" ", "") for name in POSITION)
+    def is_control(self) -> bool:
+        """Whether it decides which line is next."""
+        return self.text.control or bool(self.text.call) or returns(self.text)
+
+    def with_drawn(self, subs: Collection[str]) -> str:
+        """Return it with the copy's name for one of ``subs``."""
+        code = bare(self.written)
+        named = SUB_LINE.fullmatch(code)
+        if named and named[2] in subs:
+            return code[: named.end(1)] + DRAWN + code[named.end(1) :]
+        by_m98 = not self.text.control and self.text.call in subs
+        return NUMBER_OF_M98.sub(DRAWN, code) if by_m98 else self.written
+
+
+Bodies = Mapping[str, Sequence[SectionLine]]
+
+
+def bare(line: str) -> str:
+    """Return a line without spaces and comments, in lower case."""
+    return re.sub(r"\s", "", COMMENT.sub("", line)).lower()
+
+
+def returns(text: Text) -> bool:
+    """Tell whether a line is the M99 that ends a sub of M98."""
+    return ("M", "99") in text.words
 
 
 def section_lines(texts: Sequence[Text], written: Sequence[str]) -> list[SectionLine]:
-    """Return the lines of a file."""
-    found, sub = [], ""
-    for text, line in zip(texts, written):
-        body = BODY.match(re.sub(r"\s", "", COMMENT.sub("", line)).lower())
-        sub = (body[1] or body[2]) if body and body[3] == "sub" else sub
-        found.append(SectionLine(text, line, sub))
-        sub = "" if body and body[3] == "endsub" else sub
+    """Return the lines of files, one after the other."""
+    found, sub, file = [], "", ""
+    for index, (text, line) in enumerate(zip(texts, written)):
+        named = SUB_LINE.fullmatch(bare(line))
+        begins = bool(named) and named[3] in ("sub", "")
+        sub = named[2] if named and begins else sub if text.file == file else ""
+        file = text.file
+        found.append(SectionLine(text, line, sub, index + 1 - text.number))
+        sub = "" if returns(text) or (named and named[3] == "endsub") else sub
     return found
 
 
-def followed_subs(files: Sequence[Sequence[SectionLine]], codes: Codes) -> set[str]:
-    """Return the subs that are called in sections and nowhere else, and ask for no position."""
-    subs = {line.text.call for lines in files for line in lines if line.text.control} - {""}
-    subs -= {line.sub for lines in files for line in lines if line.asks_position}
-    while True:
-        flagged = [each for lines in files for each in with_flags(lines, codes, subs)]
-        elsewhere = {line.text.call for line, within in flagged if not within}
-        if not subs & elsewhere:
-            return subs
-        subs -= elsewhere
-
-
-def with_flags(
-    lines: Sequence[SectionLine], codes: Codes, subs: set[str]
-) -> Iterator[tuple[SectionLine, bool]]:
-    """Yield lines, each with whether it is in a section: its first one is, its last is not."""
-    inside = False
+def bodies_of(lines: Sequence[SectionLine]) -> dict[str, list[SectionLine]]:
+    """Return the lines of each sub by its name."""
+    found: dict[str, list[SectionLine]] = {}
     for line in lines:
-        switch = codes.switch(line.text, inside)
-        inside = inside if not switch else switch == "on"
-        yield line, inside or line.sub in subs
+        found.setdefault(line.sub, []).append(line)
+    return {sub: body for sub, body in found.items() if sub}
+
+
+def drawn_subs(lines: Sequence[SectionLine], codes: Codes, bodies: Bodies) -> set[str]:
+    """Return the subs that sections call, directly or not."""
+    flagged = zip(lines, codes.with_switches(line.text for line in lines))
+    called = [line.text.call for line, (_, _, inside) in flagged if inside]
+    found: set[str] = set()
+    while called:
+        sub = called.pop()
+        if sub in bodies and sub not in found:
+            found.add(sub)
+            called += [line.text.call for line in bodies[sub]]
+    return found
+
+
+def doubt_of(line: SectionLine, bodies: Bodies) -> str:
+    """Return why the copy cannot follow a line of a section, "" if it can.
+
+    Nor can it follow a sub that calls itself.
+    """
+    text, number = line.text, line.text.number
+    others = {sub: body for sub, body in bodies.items() if sub != text.call}
+    if text.call and (
+        text.call not in bodies or any(doubt_of(each, others) for each in bodies[text.call])
+    ):
+        return f"line {number} calls o<{text.call}>"
+    if text.too_long:
+        return f"line {number} is too long"
+    asks = any(name in line.written.replace(" ", "") for name in POSITION)
+    return f"line {number} asks for a position" if asks else ""
+
+
+def doubts_of(lines: Sequence[SectionLine], codes: Codes, bodies: Bodies) -> dict[Text, str]:
+    """Return what the copy of the program cannot follow, by the line that begins a section."""
+    doubts: dict[Text, str] = {}
+    first: Text | None = None
+    flagged = codes.with_switches(line.text for line in lines)
+    for line, (text, switch, inside) in zip(lines, flagged):
+        first = text if switch == "on" else first
+        why = doubt_of(line, bodies) if inside else ""
+        if first and why:
+            doubts[first] = why
+    return doubts
 
 
 def sections(
@@ -114,61 +168,49 @@ def sections(
     found = list(grouped(blocks, codes))
     if not found:
         return []
-    every = sorted(called_files(read_lines(program), tracer.ini))
-    read = {
-        file: section_lines(read_lines(file), lines_as_written(file)) for file in (program, *every)
-    }
-    subs = followed_subs(list(read.values()), codes)
-    files = files_with(lambda texts: any(map(codes.section, texts)), every)
-    files += [file for file in every if file.stem in subs and file not in files]
-    copies = Copies(program, sorted(files), partial(flattened_file, codes=codes, subs=subs))
-    texts = copies.texts
-    copied = blocks_in(copies.trace(tracer, tools, parameters), texts)
+    copies = Copies(program, called_files(read_lines(program), tracer.ini))
+    lines = section_lines(copies.texts, copies.lines)
+    bodies = bodies_of(lines)
+    drawn = drawn_subs(lines, codes, bodies)
+    more = {f"{DRAWN}{sub}.ngc": flattened(bodies[sub], codes, drawn, sub) for sub in drawn}
+    copy = copies.trace(tracer, flattened(lines, codes, drawn), more, tools, parameters)
+    copied = blocks_in(copy, copies.texts)
     groups = list(grouped(copied, codes))
     if [own[0].text for own in found] != [group[0].text for group in groups]:
         raise moves_otherwise(program)
-    doubts = doubts_of(section_lines(texts, copies.lines), codes, subs)
-    paths = zip(*(paths_of(some, codes) for some in (blocks, copied)))
+    doubts = doubts_of(lines, codes, bodies)
+    left, asked = paths_in_force(blocks), paths_in_force(copied)
     return [
         replace(
-            section_of(
-                own, group, codes, pens, doubts.get((own[0].text.file, own[0].text.number), "")
-            ),
-            paths=() if restores(group) else (left, asked),
-            path=begun,
-            asked_paths=(begun, *paths_told(group)),
+            section_of(own, group, codes, pens),
+            doubt=doubts.get(own[0].text, ""),
+            paths=() if restores(group) else (left[id(own[-1])], asked[id(group[-1])]),
+            path=asked[id(group[0])],
+            asked_paths=(asked[id(group[0])], *paths_told(group)),
         )
-        for own, group, ((_, left), (begun, asked)) in zip(found, groups, paths)
+        for own, group in zip(found, groups)
     ]
 
 
-def flattened_file(
-    path: Path, texts: Sequence[Text], codes: Codes, skip: int, subs: set[str]
-) -> list[str]:
-    """Return the lines of a file without the sections' motion; see ``flattened``."""
-    groups = flattened(section_lines(texts, lines_as_written(path)), codes, subs, skip)
-    return [line for group in groups for line in group]
-
-
 def flattened(
-    lines: Sequence[SectionLine], codes: Codes, subs: set[str], skip: int = 0
-) -> Iterator[tuple[str, ...]]:
-    """Yield the lines that stand for each line in the copy without the sections' motion.
+    lines: Sequence[SectionLine], codes: Codes, drawn: Collection[str], sub: str = ""
+) -> list[list[str]]:
+    """Return the lines that stand for each line in the copy without the sections' motion.
 
-    What a line does besides moving stays: LinuxCNC itself tells of it. ``subs`` are those that
-    only sections call.
+    What a line does besides moving stays: LinuxCNC itself tells of it. ``drawn`` are the subs that
+    sections call: their copies, of which ``sub`` is one, are in a section from the first line on.
     """
-    before_it = False
-    for line, inside in with_flags(lines, codes, subs):
-        text, switch = line.text, codes.switch(line.text, before_it)
-        if switch or (inside and text.words and not text.control and not text.too_long):
+    found = []
+    flagged = codes.with_switches((line.text for line in lines), bool(sub))
+    for line, (text, switch, inside) in zip(lines, flagged):
+        if switch or (inside and text.words and not line.is_control and not text.too_long):
             slash = "/" if text.deleted else ""
             acting = "" if switch else acting_words(text, line.written, codes)
-            kept = tuple(slash + words for words in (acting, *text.assignments) if words)
-            yield (*before(text, skip), *kept, *after(text, skip))
+            kept = [slash + words for words in (acting, *text.assignments) if words]
+            found.append([*before(text, line.skip), *kept, *after(text, line.skip)])
         else:
-            yield (line.written,)
-        before_it = inside
+            found.append([line.with_drawn(drawn if inside else {sub} - {line.text.call})])
+    return found
 
 
 def acting_words(text: Text, line: str, codes: Codes) -> str:
@@ -207,38 +249,13 @@ def switched(block: Block, codes: Codes, inside: bool) -> str:
     return "off" if switch == "on" and block.words.get("C") == 0.0 else switch
 
 
-def doubts_of(lines: Sequence[SectionLine], codes: Codes, subs: set[str]) -> dict[Place, str]:
-    """Return what the copy of the program cannot follow, by file and line of a section's start."""
-    doubts: dict[Place, str] = {}
-    first: Place | None = None
-    for line in lines:
-        text = line.text
-        switch = codes.switch(text, bool(first))
-        first = {"on": (text.file, text.number), "off": None}.get(switch, first)
-        if first and text.call and text.call not in subs:
-            doubts[first] = f"line {text.number} calls o<{text.call}>"
-        elif first and text.too_long:
-            doubts[first] = f"line {text.number} is too long"
-        elif first and line.asks_position:
-            doubts[first] = f"line {text.number} asks for a position"
-    return doubts
-
-
-def paths_of(blocks: Sequence[Block], codes: Codes) -> list[list[str]]:
-    """Return G61 or G64 as in force where each section begins and where it ends.
+def paths_in_force(blocks: Sequence[Block]) -> dict[int, str]:
+    """Return G61 or G64 as in force after each block, by its id, "" where that is not known.
 
     In the copy a section's events come behind its first block.
     """
-    path, found, inside = "", [], False
-    for block in blocks:
-        path = next(iter(paths_told([block])[::-1]), path)
-        switch = switched(block, codes, inside)
-        if switch == "on" and not inside:
-            found.append([path, path])
-        elif switch == "off" and inside:
-            found[-1][1] = path
-        inside = switch == "on" if switch else inside
-    return found
+    paths = accumulate(blocks, lambda path, block: (path, *paths_told([block]))[-1], initial="")
+    return dict(zip(map(id, blocks), islice(paths, 1, None)))
 
 
 def paths_told(blocks: Sequence[Block]) -> list[str]:
@@ -252,7 +269,7 @@ def restores(group: Sequence[Block]) -> bool:
 
 
 def section_of(
-    own: Sequence[Block], group: Sequence[Block], codes: Codes, pens: Pens, doubt: str
+    own: Sequence[Block], group: Sequence[Block], codes: Codes, pens: Pens
 ) -> SectionContour:
     """Return the section that executed blocks describe; ``own`` are the program's own of it."""
     first, last = own[0], own[-1]
@@ -276,11 +293,10 @@ def section_of(
         f"G{first.codes[0]:g}",
         start,
         tuple(elements),
-        doubt,
-        height,
-        diameters,
-        first.state["_c"],
-        last.left.get("_c", math.nan),
+        height=height,
+        diameters=diameters,
+        c=first.state["_c"],
+        left_c=last.left.get("_c", math.nan),
         acts=tuple(acts),
         told=told,
         leaves={**pen.leaves(first.state), **({} if restores(group) else kept)},

@@ -14,7 +14,9 @@ from g12.tools.verify.result.finding import Finding
 
 @dataclass(frozen=True)
 class MeasuredCut:
-    """What was ``asked``, how far the tool's centre was off (mm, inf if part is missing), and more.
+    """What was ``asked``, how far the tool's centre was off (mm), and more.
+
+    It is infinite if part is missing, nan if the words could not be read.
 
     ``last`` is the last line of a section, ``file`` the name of a sub's own file. ``own`` are its
     moves, ``face`` is the machine Z of the program's Z0, None where Z goes along a surface. Where
@@ -69,5 +71,5 @@ def pace_values(pace: Pace) -> dict[str, Any]:
 
 
 def finite(value: float) -> float | None:
-    """Return a number that JSON has."""
+    """Return a number that JSON has, None for infinity and for what is not known."""
     return value if abs(value) < float("inf") else None

@@ -48,7 +48,6 @@ FINDINGS = {
     "rapid-into": "a rapid goes down into {area:mm2} of material, at {at:place}",
     "bar-remains": "{area:mm2} of the bar remain beyond the contour at Z{level:mm}",
     # sections
-    "contour-unread": "the contour cannot be read from the words: {why}",
     "side-crossed": "the tool crosses the contour on its way in: {instead}?",
     "side-other": (
         "the tool is {here} the closed contour, it comes from {there}: {instead}? "
@@ -163,6 +162,7 @@ NOTES = {
     ),
 }
 NOT_JUDGED = {
+    "contour-unread": "the contour, which cannot be read from the words: {why}",
     "clamp-unseen": (
         "the clamp of C: no trace shows {codes}; both have to be remapped to a sub (ngc=)"
     ),

@@ -6,6 +6,7 @@ real axis is X where the section begins; on a cylinder it is the unrolled surfac
 millimetres, angles degrees, C's speed degrees/s.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -68,6 +69,7 @@ def measure_section(
     blended = max(allowed, blending_asked(section)) if axes.face else allowed
     found = lay_section(section, steps, plane, moves, path, (allowed, blended), real)
     turns = turns_of(section, plane, moves, path, real)
+    off = math.nan if section.doubt else found.off
     judged = [Finding("contour-unread", section.line, {"why": section.doubt})]
     if not section.doubt:
         slower = slower_on_face(found, moves, path, axes)
@@ -86,10 +88,11 @@ def measure_section(
         section.code,
         own,
         None if section.surface else first.start[Z] - section.height,
-        found.off,
+        off,
         {
             **section_words(section, first, tool, min(moves[i].end[section.third] for i in own)),
             **motion_values(section, found, plane, moves, path, tool, real),
+            "deviation": finite(off),
             "c_speed": turns.speed,
             "c_limit": finite(axes.c_speed),
             "turned_in_place": turns.in_place._asdict(),
@@ -98,7 +101,7 @@ def measure_section(
         section.last,
         feeds=tuple(element.feed for element in section.elements if element.feed),
         path=found.expected,
-        sound=found.difference is None,
+        sound=bool(section.doubt) or found.difference is None,
     )
 
 
@@ -145,7 +148,6 @@ def motion_values(
         "along_z" if section.surface else "radii": list(size.wanted),
         "reached": list(size.reached),
         "across_flats": [list(flat) for flat in size.flats],
-        "deviation": finite(found.off),
         "direction_jump": jump_between(across, moves, points_of(plane, across, path)),
         "segments": len(across),
         "shortest": min(lengths),
