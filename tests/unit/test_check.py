@@ -49,13 +49,6 @@ def test_nothing_is_found_in_a_good_config(found):
     assert found(GOOD) == []
 
 
-def test_every_finding_has_a_cure_and_a_level(found):
-    text = GOOD.replace("prolog=g12_haas", "prolog=g12_hass") + "[G12]\nCLEARNIG = rings\n"
-    findings = found(text, remap={}, remap_file=None)
-    assert len(findings) == 3
-    assert all(finding.cure and finding.level in (PROBLEM, WARNING) for finding in findings)
-
-
 def test_what_was_changed_in_the_copy_is_named(found, tmp_path):
     assert found(GOOD) == []
     copy = tmp_path / "g12"
@@ -78,13 +71,11 @@ def test_what_was_changed_in_the_copy_is_named(found, tmp_path):
     assert "MANIFEST:1: not a line that install wrote" in damaged.text
 
 
-@pytest.mark.parametrize("header", ["[RS274NGC", "RS274NGC]", "[rs274ngc]"])
-def test_a_broken_header_of_the_interpreters_section_is_named(tmp_path, capsys, header):
-    ini = write_config(tmp_path, GOOD.replace("[RS274NGC]", header))
+def test_a_broken_header_of_the_interpreters_section_is_named(tmp_path, capsys):
+    ini = write_config(tmp_path, GOOD.replace("[RS274NGC]", "[RS274NGC"))
     assert check.main([str(ini)]) == 2
-    assert f"mill.ini:4: {header}: begins no section; write it as [RS274NGC]" in (
-        capsys.readouterr().err
-    )
+    said = capsys.readouterr().err
+    assert "mill.ini:4: [RS274NGC: begins no section; write it as [RS274NGC]" in said
 
 
 FIRST, SECOND = HAAS.splitlines()
@@ -94,53 +85,40 @@ POLAR = "".join(
 )
 ON_LATHE = with_lines(LATHE, "RS274NGC", SUBS + POLAR) + PYTHON
 MINE = {**HANDLERS, "mine": "remap"}
-BLANK = {"my subs__g12_haas_ngc": "", "my subs__g12_helix_ngc": ""}
 SHADOW = {"circle_mill": "oword", "g12_haas": "oword"}
-LOST = "prolog=g12_mine ngc=g12_mine", "python=haas", "ngc=pocket12"
 NO_TABLE = "TOOL_TABLE = mill.tbl\n"
 
 ONE_FINDING = [  # an INI, what else is there, what is found and a part of what is said
     (MILL, {}, "no-codes", ""),
     (with_lines(GOOD, "RS274NGC", f"{OWN_G13}\n"), {}, "taken",
      f"mill.ini:5: G13 is remapped here already: {OWN_G13}"),
-    (with_lines(GOOD, "RS274NGC", f"{FIRST}\n"), {}, "taken", ""),
     (ON_LATHE, {"owned": {"G12.1"}}, "owned", "polar-g12.3"),
     (with_lines(LATHE, "RS274NGC", lines_of("polar")) + PYTHON, {}, "no-sub",
      "g12_skipped_over.ngc is in none of the folders"),
     (GOOD.replace(f"{SECOND}\n", ""), {}, "half",
      "haas: G13 is missing, though its other code is there"),
-    (GOOD.replace(f"{SECOND}\n", ""), {}, "half", SECOND),
     (GOOD.replace(SECOND, "REMAP = G13 modalgroup=1 python=mine"), {"remap": MINE}, "half",
      "G13 means something else here (REMAP = G13 modalgroup=1 python=mine)"),
-    *((GOOD.replace(FIRST, f"REMAP = G12 modalgroup=1 {names}"),
-       {"remap": {**HANDLERS, "haas": "remap"}}, "half", "") for names in LOST),  # no misspelt line
     (GOOD.replace(SUBS, ""), {}, "no-sub",
      "g12_haas.ngc and g12_helix.ngc are in none of the folders"),
-    (GOOD.replace("= ngc\n", "= my subs\n"), {"files": BLANK}, "blank-in-path", "' '"),
-    *((GOOD + "[DISPLAY]\nPROGRAM_PREFIX = programs\n", {"files": {f"{place}g12_haas_ngc": ""}},
-       "shadowed", "before the package's g12_haas.ngc") for place in ("", "programs__")),
+    (GOOD + "[DISPLAY]\nPROGRAM_PREFIX = programs\n", {"files": {"programs__g12_haas_ngc": ""}},
+     "shadowed", "before the package's g12_haas.ngc"),
     (with_lines(GOOD, "RS274NGC", lines_of("circle-mill")), {"oword": SHADOW}, "shadowed",
      "o<circle_mill>"),
     (GOOD.replace(PYTHON, ""), {"remap": {}, "remap_file": None}, "no-python", ""),
     (GOOD.replace("= toplevel.py", "= typo.py"), {"error": "can't resolve path"}, "no-python",
      "typo.py: there is no such file"),
-    (GOOD, {"error": "No module named 'g12' (remap.py:1)"}, "python-fails", "remap.py:1"),
     (GOOD, {"error": "No module named 'g12' (remap.py:1)"}, "python-fails", "PATH_APPEND"),
     (GOOD, {"remap": {}, "remap_file": None}, "no-remap-module", "import remap"),
     (GOOD, {"remap": {"mine": "remap"}, "remap_file": "/machine/remap.py"}, "no-import",
      "/machine/remap.py has no cycle_done, g12_haas, g13_haas"),
-    (GOOD, {"remap": {"mine": "remap"}, "remap_file": "/machine/remap.py"}, "no-import",
-     "from g12.remap import *"),
     (GOOD, {"remap": {**HANDLERS, "cycle_done": "remap"}}, "hidden", "cycle_done"),
     (GOOD.replace(HAAS, f"{HAAS}REMAP = M400 modalgroup=10 python=mine\n"), {}, "does-not-load",
      "mill.ini:8: 'mine' is not a Python callable function"),
     (GOOD + "[G12]\nCLEARING = squares\n", {}, "setting",
      "[G12] CLEARING = squares: must be rings or spiral"),
     (GOOD.replace("X Y Z", "X Z"), {}, "no-axis", "haas needs axis Y; [TRAJ] COORDINATES has X Z"),
-    (with_lines(MILL, "RS274NGC", SUBS + lines_of("polar")) + PYTHON, {}, "no-axis",
-     "polar needs axis C; [TRAJ] COORDINATES has X Y Z"),
     (GOOD, {"diameters": {}}, "no-diameters", ""),
-    (GOOD, {"diameters": {1: 0.0, 2: 0.0}}, "no-diameters", ""),
     (GOOD + "[TASK]\nINTERPRETER = libcanterp.so\n", {}, "interpreter", ""),
     (GOOD, {"version": "2.8.4"}, "too-old", ""),
     (GOOD, {"version": ""}, "no-linuxcnc", ""),
@@ -151,13 +129,10 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
      "nowhere.inc: there is no such file to read"),
     (GOOD + "#INCLUDE more.inc\n", {"files": {"more_inc": "#INCLUDE deeper.inc\n"}}, "include",
      "more.inc:1"),
-    *((GOOD.replace(NO_TABLE, line), {"files": {"empty_tbl": ""}}, kind, says)
-      for line, kind, says in (
+    *((GOOD.replace(NO_TABLE, line), {}, kind, says) for line, kind, says in (
           ("TOOL_TABLE = no.tbl\n", "no-tool-table", "TOOL_TABLE = no.tbl: there is no such file"),
-          ("TOOL_TABLE = ngc\n", "no-tool-table", "TOOL_TABLE = ngc: there is no such file"),
           ("", "no-tool-table", "TOOL_TABLE is missing"),
           ("DB_PROGRAM = ./tools\n", "tool-database", "DB_PROGRAM = ./tools: the tools of that"),
-          ("DB_PROGRAM = x\nTOOL_TABLE = empty.tbl\n", "tool-database", "were not looked at"),
       )),
 ]  # fmt: skip
 
@@ -184,11 +159,6 @@ def test_what_is_in_order_is_no_finding(found, facts):
     assert found(GOOD, **facts) == []
 
 
-def test_any_code_pair_may_be_given_to_polar_interpolation(found):
-    polar = "REMAP = G7.1 modalgroup=1 python=polar_on\nREMAP = G7.2 modalgroup=1 py=polar_off\n"
-    assert found(with_lines(LATHE, "RS274NGC", SUBS + polar) + PYTHON) == []
-
-
 def test_shapes_need_their_subs_and_polar_interpolation(found):
     shapes = lines_of("polar-shapes")
     for pair in ("polar", "polar-g12.3"):
@@ -200,25 +170,11 @@ def test_shapes_need_their_subs_and_polar_interpolation(found):
     assert set(kinds(lost)) == {"no-sub"} and "polar_slot.ngc" in str(lost)
 
 
-def test_cylindrical_interpolation_needs_its_sub_its_function_and_three_axes(found):
-    cylinder = lines_of("cylinder")
-    assert found(with_lines(LATHE, "RS274NGC", SUBS + cylinder) + PYTHON) == []
-    assert kinds(found(with_lines(LATHE, "RS274NGC", cylinder) + PYTHON)) == ["no-sub"]
-    misspelt = cylinder.replace("cylinder_mode", "cylinder_mod")
-    (wrong,) = found(with_lines(LATHE, "RS274NGC", SUBS + misspelt) + PYTHON)
-    assert (wrong.kind, "python=cylinder_mode" in wrong.text) == ("wrong-line", True)
-    (missing,) = found(with_lines(MILL, "RS274NGC", SUBS + cylinder) + PYTHON)
-    assert missing.text == "cylinder needs axis C; [TRAJ] COORDINATES has X Y Z"
-
-
 @pytest.mark.parametrize(
     ("change", "says"),
     [
         (("prolog=g12_haas", "prolog=g12_hass"), "should have prolog=g12_haas"),
-        (("epilog=cycle_done", ""), "should have epilog=cycle_done"),
-        (("modalgroup=1", "modalgroup=5"), "should have modalgroup=1"),
         (("modalgroup=1", "modalgroup=1 argspec=I"), "should have no argspec="),
-        (("ngc=g12_haas", "ngc=g12_has"), "should have ngc=g12_haas"),
         (("prolog=g12_haas ngc=g12_haas", "prolog=g12_hass ngc=g12_has"), "have prolog=g12_haas, "),
     ],
 )
@@ -245,9 +201,7 @@ def test_lines_that_linuxcnc_does_not_read(found):
     assert kinds(found(GOOD + "[G12]\nCLEARING = rings\n[G12]\nPOLAR_Z = allow\n")) == ["not-read"]
 
 
-@pytest.mark.parametrize(
-    "header", ["[G12", " [G12", "[G12}", "[]", "[ G12]", "[G12 ]", "G12]", "[g12]"]
-)
+@pytest.mark.parametrize("header", ["[G12", "[]", "[g12]"])
 def test_a_header_that_begins_no_section(found, header):
     (broken,) = found(GOOD + f"{header}\nCLEARING = spiral\n")
     assert (broken.level, broken.kind) == (PROBLEM, "header")
@@ -307,7 +261,6 @@ def test_every_handler_of_the_remap_lines_comes_with_the_star_import():
     ("name", "says"),
     [
         ("nowhere.ini", "no such file"),
-        ("", "is a folder"),
         ("mill.tbl", "no [RS274NGC]"),
         ("mill.ini.expanded", "name mill.ini"),
     ],

@@ -80,60 +80,32 @@ def test_the_lines_stand_at_the_end_of_their_section(tmp_path):
 
 
 PATH = "SUBROUTINE_PATH = "
-OWN = "REMAP = M400 modalgroup=10 ngc=m400\n"
 
 
-@pytest.mark.parametrize(
-    ("lines", "longer"),
-    [
-        (f"{PATH}a:~/b  \n", f"{PATH}a:~/b:g12/ngc  \n"),
-        (f"{PATH}a:\\\nb\nX = 1\n", f"{PATH}a:\\\nb:g12/ngc\nX = 1\n"),
-    ],
-)
-def test_an_existing_path_gets_longer(tmp_path, lines, longer):
-    ini = write_config(tmp_path, with_lines(MILL, "RS274NGC", lines))
+def test_an_existing_path_gets_longer(tmp_path):
+    ini = write_config(tmp_path, with_lines(MILL, "RS274NGC", f"{PATH}a:\\\nb\nX = 1\n"))
     before = ini.read_bytes()
     put_in(ini)
-    assert longer in ini.read_text()
+    assert f"{PATH}a:\\\nb:g12/ngc\nX = 1\n" in ini.read_text()
     assert IniText(ini).ini().get("RS274NGC", "SUBROUTINE_PATH").endswith("b:g12/ngc")
     take_out(ini)
     assert ini.read_bytes() == before
 
 
-@pytest.mark.parametrize(
-    ("text", "edits", "rest", "said"),
-    [
-        (  # elsewhere
-            with_lines(MILL, "RS274NGC", f"{PATH}a\n"),
-            [("mill.var", "other.var"), ("a:g12/ngc", "a:g12/ngc:b"), (END, f"{END}\n{OWN}")],
-            with_lines(
-                MILL.replace("mill.var\n", f"other.var\n{OWN}\n"), "RS274NGC", f"{PATH}a:b\n"
-            ),
-            "mill.ini.before-g12 stays",
-        ),
-        (  # between the markers
-            MILL,
-            [(END, f"{OWN}{END}")],
-            MILL.replace("mill.var\n", f"mill.var\n{OWN}"),
-            f"{OWN.strip()}",
-        ),
-        (MILL, [("g12/ngc\n", "g12/ngc:mine\n")],
-         MILL.replace("mill.var\n", f"mill.var\n{PATH}mine\n"), ""),
-        (MILL, [(f"python\n{END}\n", f"python\n{END}\nLOG_LEVEL = 8\n")],
-         f"{MILL}[PYTHON]\nLOG_LEVEL = 8\n", ""),
-    ],
-)  # fmt: skip
-def test_what_the_user_changed_since_survives_uninstall(tmp_path, text, edits, rest, said):
-    ini = write_config(tmp_path, text)
+def test_what_the_user_changed_since_survives_uninstall(tmp_path):
+    own = "REMAP = M400 modalgroup=10 ngc=m400\n"
+    ini = write_config(tmp_path, with_lines(MILL, "RS274NGC", f"{PATH}a\n"))
     put_in(ini)
     changed = ini.read_text()
+    edits = ("mill.var", "other.var"), ("a:g12/ngc", "a:g12/ngc:b"), (END, f"{own}{END}")
     for old, new in edits:
         assert old in changed
         changed = changed.replace(old, new, 1)
     ini.write_text(changed)
     told = take_out(ini)
-    assert ini.read_text() == rest
-    assert any(said in line and "stays" in line for line in told) or not said
+    text = MILL.replace("mill.var\n", f"other.var\n{own}")
+    assert ini.read_text() == with_lines(text, "RS274NGC", f"{PATH}a:b\n")
+    assert any(own.strip() in line and "stays" in line for line in told)
     assert not (tmp_path / "g12").exists()
 
 
@@ -200,9 +172,7 @@ def test_whatever_the_ini_uninstall_is_the_reverse_of_install(
     ("marker", "count", "missed"),
     [
         (END, 2, f'mill.ini:6: the line "{END}"'),
-        (END, 1, f'mill.ini:6: the line "{END}"'),
         (BEGIN, 2, f'the line "{BEGIN}"'),
-        (BEGIN, 1, f'the line "{BEGIN}"'),
     ],
 )
 def test_a_marker_without_its_other_one_is_refused(tmp_path, capsys, marker, count, missed):
@@ -218,18 +188,6 @@ def test_a_marker_without_its_other_one_is_refused(tmp_path, capsys, marker, cou
 
 
 # Included files.
-
-
-def test_lines_go_behind_the_include_if_its_section_goes_on(tmp_path):
-    text = MILL.replace("[RS274NGC]\nPARAMETER_FILE = mill.var\n", "#INCLUDE rs.inc\n")
-    ini = write_config(tmp_path, text, rs_inc="[RS274NGC]\nPARAMETER_FILE = mill.var\n")
-    before = content_of(tmp_path)
-    put_in(ini)
-    assert f"#INCLUDE rs.inc\n{BEGIN}" in ini.read_text()
-    assert (tmp_path / "rs.inc").read_bytes() == before["rs.inc"]
-    assert len(IniText(ini).ini().all("RS274NGC", "REMAP")) == 2
-    take_out(ini)
-    assert content_of(tmp_path) == before
 
 
 def test_lines_go_into_the_include_if_its_section_ends_there(tmp_path):
@@ -256,9 +214,8 @@ def own_config(folder, toplevel="import remap\n", remap="def mine(self): pass\n"
     return ini, {**own_python(folder), **python}
 
 
-@pytest.mark.parametrize("remap", ["def mine(self): pass\n", "x = 1", "", "x = 1\r\n", "# \xe9"])
-def test_a_users_remap_gets_one_line_and_loses_it_again(tmp_path, remap):
-    ini, python = own_config(tmp_path, remap=remap)
+def test_a_users_remap_gets_one_line_and_loses_it_again(tmp_path):
+    ini, python = own_config(tmp_path, remap="# \xe9\r\nx = 1")
     before = content_of(tmp_path)
     said = put_in(ini, **python)
     after = content_of(tmp_path)
@@ -447,34 +404,20 @@ def test_the_real_package_has_what_a_machine_needs(monkeypatch):
 # Installations that were interrupted, damaged or edited.
 
 
-@pytest.mark.parametrize("stage", ["back_up", "write_all"])
-def test_an_interrupted_installation_leaves_everything_as_it_was(tmp_path, monkeypatch, stage):
-    ini = write_config(tmp_path)
-    before = content_of(tmp_path)
-
-    def interrupted(*_arguments):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(installation, stage, interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        put_in(ini)
-    assert content_of(tmp_path) == before
-    assert not list(tmp_path.glob(".g12*"))
-
-
 def test_of_several_old_versions_none_is_left_behind(tmp_path, monkeypatch):
     ini, python = own_config(tmp_path)
     before = content_of(tmp_path)
 
     def fails_on_the_ini(path):
         if path.suffix == ".ini":
-            raise OSError("disk full")
+            raise KeyboardInterrupt
         return files.back_up(path)
 
     monkeypatch.setattr(installation, "back_up", fails_on_the_ini)
-    with pytest.raises(OSError, match="disk full"):
+    with pytest.raises(KeyboardInterrupt):
         put_in(ini, **python)
     assert content_of(tmp_path) == before
+    assert not list(tmp_path.glob(".g12*"))
 
 
 def test_a_copy_that_is_killed_half_way_is_no_folder_g12(tmp_path, monkeypatch):
@@ -505,15 +448,6 @@ def newer(monkeypatch, files):
     monkeypatch.setattr(package_copy, "package_files", lambda: dict(files))
 
 
-def test_an_update_that_was_interrupted_takes_no_new_file_for_an_edited_one(tmp_path, monkeypatch):
-    put_in(write_config(tmp_path))
-    newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": b"(two)\n"})
-    (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_bytes(b"(two)\n")
-    installation.bring_copy_up_to_date(tmp_path / "g12")
-    assert not list((tmp_path / "g12").rglob("*.edited*"))
-    assert package_copy.edited(tmp_path / "g12") == []
-
-
 def test_no_edit_is_ever_lost(tmp_path, monkeypatch):
     put_in(write_config(tmp_path))
     copy = tmp_path / "g12"
@@ -538,18 +472,12 @@ def test_no_edit_is_ever_lost(tmp_path, monkeypatch):
     assert sum("your version" in line for line in said) == 2
 
 
-@pytest.mark.parametrize("damage", ["gone", "empty", "all"])
-def test_a_damaged_copy_is_mended(tmp_path, damage):
+def test_a_damaged_copy_is_mended(tmp_path):
     ini = write_config(tmp_path)
     put_in(ini)
     whole = content_of(tmp_path)
-    haas = tmp_path / "g12" / "ngc" / "g12_haas.ngc"
-    if damage == "gone":
-        haas.unlink()
-    elif damage == "empty":
-        haas.write_bytes(b"")
-    else:
-        shutil.rmtree(tmp_path / "g12")
+    (tmp_path / "g12" / "ngc" / "g12_haas.ngc").unlink()
+    (tmp_path / "g12" / "python" / "remap.py").write_bytes(b"")
     assert installation.lost_files(IniText(ini))
     installation.bring_copy_up_to_date(tmp_path / "g12")
     assert content_of(tmp_path) == whole
@@ -743,11 +671,6 @@ def test_every_feature_has_a_next_step():
     ]  # fmt: skip
 
 
-def test_two_dialects_at_once(tmp_path, capsys):
-    assert install.main([str(write_config(tmp_path)), "--with", "haas", "yasnac"]) == 2
-    assert "haas and yasnac exclude each other" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     "words",
     [
@@ -761,27 +684,6 @@ def test_the_ways_to_name_features(words):
     options = install.command_parser().parse_args(words)
     found = install.ini_and_features(options.ini, options.wanted)
     assert found == (Path("mill.ini"), ["haas", "circle-mill"])
-
-
-@pytest.mark.parametrize("command", [install, uninstall])
-@pytest.mark.parametrize(
-    ("name", "says"), [("nowhere.ini", "no such file"), ("mill.tbl", "no [RS274NGC]")]
-)
-def test_wrong_files(command, name, says, tmp_path, capsys):
-    write_config(tmp_path)
-    rest = ["--with", "haas"] if command is install else []
-    assert command.main([str(tmp_path / name), *rest]) == 2
-    error = capsys.readouterr().err
-    assert says in error
-    assert error.count("\n") == 1
-
-
-def test_uninstall_where_nothing_is_installed(tmp_path, capsys):
-    ini = write_config(tmp_path)
-    before = content_of(tmp_path)
-    assert uninstall.main([str(ini)]) == 0
-    assert "nothing that install put in" in capsys.readouterr().out
-    assert content_of(tmp_path) == before
 
 
 def test_what_nobody_reads_is_done_to_its_end(tmp_path, monkeypatch):

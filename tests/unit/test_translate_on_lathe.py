@@ -109,26 +109,18 @@ def test_what_a_mill_has_and_a_lathe_has_not():
 
 
 REFUSED = [
-    (f"{HEAD}G0 Z-1.\n", 7, "G0 at Z-1, below 2 where rapids are clear of the part: write"),
-    (f"{HEAD}G1 Z-1. F9.\nG0 X3.\n", 8, "G0 at Z-1, below 2"),
     (f"{HEAD}G1 Z-1. F9.\nG0 X3. Z5.\n", 8, "G0 at Z-1, below 2"),
     ("G21 G90\nG0 X1. Y1.\nG1 X2. F9.\n", 3, "a cut begins here with the tool at Z not known"),
     ("G21 G90\nG0 Z9.\nG1 X2. F9.\n", 3, "a cut begins here, and where X stands is not known"),
     (f"{HEAD}G1 A3. F9.\n", 7, "A3.: a program for mill-on-face has X, Y and Z"),
-    (f"{HEAD}G1 C3. F9.\n", 7, "C3.: a program for mill-on-face has X, Y and Z"),
     (f"{HEAD}G18 G2 X1. Z1. R9. F9.\n", 7, "G18: arcs lie in X and Y here (G17)"),
     (f"{HEAD}G95 G1 X1. F.1\n", 7, "G95, a feed per revolution: write G94 and F per minute"),
-    (f"{HEAD}G41 D7 G1 X1. F9.\n", 7, "D7 in polar mode: G41 and G42 take the loaded"),
-    (f"{HEAD}G0 G41 D1 X1.\n", 7, "G41 before the first cut: write it with the contour's first G1"),
     (f"{HEAD}G42 D1\n", 7, "G42 before the first cut: write it with the contour's first G1"),
     (f"{HEAD}G1 G41 D1 X1. F9.\nT2 M6\n", 8, "G41 or G42 is on where the section ends"),
     (f"{HEAD}G84 Z-3. R3. F1.\n", 7, "G84: on a lathe G73 and G81 to G83 are translated"),
     (f"{HEAD}G81 Z3. R5. F1.\n", 7, "G81 Z3.: the hole must end below Z0, the part's surface"),
     (f"{HEAD}G91 G81 Z-3. R-1. F1.\n", 7, "a drilling cycle under G91"),
     (f"{HEAD}G55 G1 Z-1. F9.\n", 7, "a cut begins here beside a tool, an offset or units"),
-    (f"{HEAD}G43 H1 G1 Z-1. F9.\n", 7, "a cut begins here beside a tool, an offset or units"),
-    (f"{HEAD}G20 G1 Z-1. F9.\n", 7, "a cut begins here beside a tool, an offset or units"),
-    (f"{HEAD}G52 X1.\n", 7, "G52: another origin by program"),
     ("G90\nG0 X1. Y1. Z9.\n", 2, "how high a rapid must be hangs on the units: say G20 or G21"),
 ]
 
@@ -156,10 +148,6 @@ def test_heights_and_diameters_are_above_zero(option, value, capsys):
     with pytest.raises(SystemExit):
         control_of("mill-round-part", option, value)
     assert f"argument {option}: '{value}' is not a number above 0" in capsys.readouterr().err
-
-
-def test_a_rotary_word_asks_for_no_axis_of_the_control():
-    assert translate_program(f"{HEAD}G1 A3. F9.\nM30\n", FACE).missing == []
 
 
 def shown(page, heading):

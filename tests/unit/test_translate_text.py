@@ -123,25 +123,14 @@ def test_several_blocks_on_a_line():
     assert behind(HAAS, "G0 X1.; Y1.;\nM30\n")[:2] == ["G0 X1.", "Y1. (line 3)"]
 
 
-def test_what_is_behind_the_end_is_a_comment():
-    translated = lines(HAAS, "%\nG0 X0\nM30\nG0 X1.\n%\nANYTHING; AT (ALL\n")
-    assert translated[3:] == ["(not reached: G0 X1.)", "(%)", "(not reached: ANYTHING, AT [ALL)"]
-
-
 def test_a_program_that_nobody_calls_is_a_comment():
     assert behind(HAAS, "M30\nO5\nG47 X1.\nM99\n")[1:] == [
         "(not reached: O5)", "(not reached: G47 X1.)", "(not reached: M99)",
     ]  # fmt: skip
 
 
-def test_what_holds_at_the_start_is_written_first():
-    assert lines(HAAS, "N5 (HEAD)\nM30\n")[0] == f"N5 {' '.join(HAAS.start)} (HEAD)"
-    assert lines(HAAS, "G0 X0\nM30\n")[:2] == [" ".join(HAAS.start), "G0 X0 (line 1)"]
-
-
-@pytest.mark.parametrize("text", ["", "%\n%\n", "(COMMENT)\n", "\n\n"])
-def test_a_file_without_a_block_is_refused(text):
-    assert sentence(HAAS, text) == (1, "there is no block in the file")
+def test_a_file_without_a_block_is_refused():
+    assert sentence(HAAS, "%\n(COMMENT)\n%\n") == (1, "there is no block in the file")
 
 
 def test_a_line_that_linuxcnc_would_cut_is_refused():
@@ -151,16 +140,11 @@ def test_a_line_that_linuxcnc_would_cut_is_refused():
 # ---------------------------------------------------------------- numbers
 
 
-def test_numbers_without_a_point_that_mean_the_same_either_way():
-    assert behind(FANUC, "G21 G01 X0 F200\nM30\n", "(HEAD)\n")[0] == "G21 G01 X0 F200"
-
-
-@pytest.mark.parametrize(("code", "x"), [("G21", "X1.234"), ("G20", "X0.1234")])
-def test_least_increments_follow_the_units(tmp_path, code, x):
+def test_least_increments_follow_the_units(tmp_path):
     path = tmp_path / "own.toml"
     path.write_text('based_on = "fanuc-mill"\ndecimals = "least"\n')
     own = read_control(str(path))
-    assert behind(own, f"{code} G0 X1234\nM30\n", "(HEAD)\n")[0] == f"{code} G0 {x}"
+    assert behind(own, "G21 G0 X1234\nM30\n", "(HEAD)\n")[0] == "G21 G0 X1.234"
     assert "before G20 or G21" in sentence(own, "G0 X1234\n").sentence
     path.write_text('based_on = "fanuc-mill"\ndecimals = "whole"\n')
     whole = read_control(str(path))
@@ -194,21 +178,16 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G68 X0", "G68 needs R, the angle"),
         (HAAS, "G52 X0 Y1.\nG68 R9.\nG52 X[0.] Y1. Z3.\nG52 Y0", "a local offset within G68"),
         (HAAS, "#1=1.\nG52 X#1\nG68 R9.\n#1=2.\nG52 X#1", "a local offset within G68"),
-        (HAAS, "G76 X1. Z-1.", "G76: fine boring"),
-        (HAAS, "G200 X1.", "G200 is not known of haas-mill"),
         (HAAS, "G-1 X1.", "G-1 is not known of haas-mill"),
-        (HAAS, "M.5", "M.5 is not known of haas-mill"),
         (HAAS, "G#1 X1.", "G#1: a code must be a number"),
         (HAAS, "G0 G1 X1.", "G0 and G1 in one block"),
         (HAAS, "G0 X1. X2.", "X stands twice"),
-        (HAAS, "G0 A1.", "A1.: this control's machine has the axes XYZ"),
         (HAAS, "G0 U1.", "U1. is not understood in this block"),
         (HAAS, "G0 X", "X has no value"),
         (HAAS, "G1 X1. R.1 F5.", "R beside G1: write the arc of the corner"),
         (HAAS, "G1 X1. ,C.1 F5.", ",C.1: a corner that is broken or rounded by a word"),
         (HAAS, "G84 Z-1. R.1 J2 F5.", "G84 with J is not translated"),
         (LATHE, "G10.9 X2.", "G10.9 needs X0, radii, or X1, diameters, and no other axis"),
-        (HAAS, "G0 X1. ?", "? does not start with a word"),
         (HAAS, "G0 X1.)", ") without its opening bracket before it"),
         (HAAS, "G0 X1. {a", "a comment is not closed: } is missing"),
         (HAAS, "H1", "H without G43"),
@@ -223,24 +202,20 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G91 G53 Z0", "G53 under G91"),
         (HAAS, "G81 R.1", "G81 without Z"),
         (HAAS, "G83 Z-1. R.1", "G83 needs Q"),
-        (HAAS, "G83 Z-1. R.1 I.1 J.1 K.1 Q.1", "G83 with I is not translated"),
         (HAAS, "G81 Z-1. R.1 L0 X1.", "G81 with L0 only stores"),
         (HAAS, "G154 P100", "G154 P100 must be from 1 to 99"),
         (HAAS, "G54 G154 P1", "G54 and G154 in one block"),
         (HAAS, "G154", "G154 needs P and a whole number"),
         (HAAS, "G10 L5 P1 X1.", "G10 needs L2"),
         (HAAS, "G10 L12 P3 G91 R.1", "G10 for the diameter of T3"),
-        (HAAS, "M97 P5", "N5 is not in this program: M97"),
         (HAAS, "M98", "M98 needs P"),
         (HAAS, "M98 P5 Q7", "M98 P with Q7: a program is called from its beginning"),
         (HAAS, "M99 P5", "there is no N5 in this program"),
-        (HAAS, "GOTO 5", "there is no N5 in this program"),
         (HAAS, "GOTO#1", "GOTO #1: only a number of a block is translated"),
         (HAAS, "M19 R1. P2", "M19 with R and P"),
         (HAAS, "G65 P5 O1", "O1 cannot be an argument"),
         (HAAS, "G65 P5 X1", "X1 has no decimal point: write X1."),
         (HAAS, "IF[1 EQ 1] WHILE[#1 LT 2]DO1", "behind IF […] only GOTO, #… = … and words"),
-        (HAAS, "IF[1 EQ 1] THEN IF[1 EQ 1] X1.", "behind IF […] only GOTO, #… = … and words"),
         (HAAS, "WHILE[1 EQ 1]", "WHILE […] needs DO"),
         (HAAS, "DO1", "DO without WHILE"),
         (HAAS, "END1", "END1 without WHILE"),
@@ -249,24 +224,19 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "#1=#[2400+#3026]", "#[2400 + #5400]: #2400 means something else"),
         (HAAS, "#1=#3020\n#102=#1+1\nX#102", "what stands here comes of the control's clock"),
         (HAAS, "IF[#3001GT5.]X1.", "what stands here comes of the control's clock"),
-        (FANUC, "#1=#10002", "#10002 means something else"),
         (HAAS, "G0 X#0", "X has no value: #0, the empty variable"),
-        (HAAS, "#1=#0", "#0, the empty variable, is translated in #… EQ #0"),
         (HAAS, "G0 X[#1EQ#0]", "X: #0, the empty variable, is translated in conditions only"),
         (HAAS, "IF[#1EQ#0]THEN#1=2.", "#0, the empty variable, is translated in a program of G65"),
         (HAAS, "#1=[#2 AND 3]", "AND is translated between comparisons"),
         (HAAS, "#1=1 EQ 2 EQ 3", "two comparisons in a row"),
         (HAAS, "#1=#2*3 MOD 2", "MOD beside other operators"),
         (HAAS, "G0 X[ROUND[#1]]", "X: ROUND in a word rounds to the least increment there"),
-        (HAAS, "T3\nG10 L12 P3 G91 R.1", "G10 for the diameter of T3"),
-        (HAAS, "T1 M6 T3", "T stands twice"),
+        (HAAS, "G0 X1. ?", "? does not start with a word"),
         (HAAS, "#1=BIN[#2]", "BIN[#2] stands where a value"),
         (HAAS, "#1=[[[[[[[[[1]]]]]]]]]", "more than 8 brackets"),
         (HAAS, "#1=[1", "] is missing before the end"),
-        (LATHE, "T3", "T3 has 1 digits"),
         (LATHE, "T30303", "T30303 has 5 digits"),
         (LATHE, "G0 X1. U1.", "U1. and X in one block"),
-        (LATHE, "G81 X1. Z-1.", "G81: not a drilling cycle of this control"),
         (LATHE, "G50", "G50 needs S, a speed limit, or X and Z"),
         (LATHE, "G12.1 X5.", "G12.1 moves nothing"),
         (LATHE, "G107", "G107 needs C"),
@@ -281,32 +251,17 @@ def test_what_is_refused_is_told(control, block, start):
     assert refused.sentence.startswith(start)
 
 
-def test_variables_of_a_haas_and_times_that_a_program_only_notes():
-    text = "#10002=#3020-#10000 (T)\n#10000=#3020\n#3001=0\n#10150=#3026\nX#150 Y#10007\nM30\n"
-    assert behind(HAAS, text) == [
-        "(a time: LinuxCNC has no clock)(T)",
-        "(a time: LinuxCNC has no clock)",
-        "(a time: LinuxCNC has no clock)",
-        "#150=[#5400]",
-        "X#150 Y#1007",
-        "M30",
-    ]
-
-
 @pytest.mark.parametrize(
     ("blocks", "line", "start"),
     [
         ("GOTO5\nWHILE[#1LT2]DO1\nN5 X1.\nEND1", 3, "N5 is in a loop: no jump leads into"),
         ("N5 X1.\nGOTO5", 4, "the program goes round for ever"),
         ("/WHILE[#1LT2]DO1\nEND1", 3, "the head or the end of a loop cannot be skipped"),
-        ("M98 P5\nM30\nO5\nGOTO6\nM99\nO6\nN6 M99", 6, "there is no N6 in this program"),
         ("M98 P5\nN1 M30\nO5\n/M99\nM99 P1", 7, "M99 with and without P in one program"),
         ("M98 P5 L2\nN1 M30\nO5\nM99 P1", 3, "the called program returns by M99 P"),
-        ("G0 X#1", 3, "X#1: nothing sets #1 before, LinuxCNC takes 0"),
         ("M98 P5\nM30\nO5\nG0 X[#1+1.]\nZ-#3\nWHILE[#1LT2]DO1\n#3=1.\nEND1\nM99", 7, "Z-#3: n"),
         ("G65 P5\nG65 P6\nM30\nO5\n#31=1\nM99\nO6\n#31=1\nM99", 10, "#31 is used in two pr"),
         ("G65 P5\nM30\nO5\nIF[#33EQ#0]GOTO9\nN9 M99", 6, "#33 EQ #0: no letter of G65"),
-        ("G65 P5\nM30\nO5\nIF[#1EQ2]GOTO9\n#2=1\nN9 X#2\nM99", 6, "O5 reads #1 (A of"),
         ("G65 P5 A1.\nM30\nO5\nIF[#1EQ2]GOTO9\n#2=1\nN9 X#2\nM99", 8, "O5 reads #2 (B of"),
     ],
 )  # fmt: skip
@@ -318,16 +273,9 @@ def test_jumps_and_variables_that_are_not_sound(blocks, line, start):
 @pytest.mark.parametrize(
     "blocks",
     [
-        "G65 P5\nM30\nO5\nIF[#2EQ#0]GOTO9\nX#2\nN9 M99",
-        "G65 P5\nM30\nO5\nIF[[#2EQ#0]OR[#3EQ#0]]GOTO9\nX#2 Y#3\nN9 M99",
         "G65 P5\nM30\nO5\nIF[[#2NE#0]AND[#3NE#0]]GOTO9\nM99\nN9 X#2 Y#3\nM99",
         "G65 P5\nM30\nO5\nIF[#2EQ#0]THEN#2=3.\nX#2\nM99",
-        "G65 P5\nM30\nO5\nIF[#2NE#0]THEN#3=#2\nM99",
         "M98 P5\nX#1\nM30\nO5\nIF[#100EQ1]THEN#1=2.\nM99",
-        "#1=2.\nM98 P5\nM30\nO5\nX#1\nM99",
-        "GOTO8\nN7 X#1\nM30\nN8 #1=2.\nGOTO7",
-        "#100=0\nWHILE[#100LT2]DO1\nIF[#100EQ1]X#1\n#1=2.\n#100=#100+1\nEND1",
-        "G65 P5\nM30\nO5\nWHILE[#2EQ#0]DO1\n#2=1\nEND1\nX#2\nM99",
         "G65 P5\nM30\nO5\nGOTO8\nN7 X#2\nM99\nN8 #2=1\nGOTO7\n",
     ],
 )
@@ -355,24 +303,9 @@ def test_a_jump_leaves_the_lines_between_at_their_numbers():
     ]
 
 
-def test_builders_codes_in_one_block_have_lines_of_their_own():
-    assert behind(LATHE, "N5 G0 X1. M35 M36 M8 M37\nM30\n")[:3] == [
-        "M35", "M36 (line 3)", "N5 G0 X1. M8 M37 (line 3)",
-    ]  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("block", "written"),
-    [
-        ("G1 X1. F9. M9", ["G1 X1. F9.", "M9 (line 3)"]),
-        ("G3 X1. R1. F9. M5 M9", ["G3 X1. R1. F9.", "M5 M9 (line 3)"]),
-        ("G12 I1. F9. D1 M9", ["G12 I1. F9. D1", "M9 (line 3)"]),
-        ("G0 X1. M9", ["G0 X1. M9"]),
-        ("G1 F9. M9", ["G1 F9. M9"]),
-    ],
-)
-def test_spindle_and_coolant_stop_behind_a_cut(block, written):
-    assert behind(HAAS, f"{block}\nM30\n")[:-1] == written
+def test_spindle_and_coolant_stop_behind_a_cut():
+    assert behind(HAAS, "G3 X1. R1. F9. M5 M9\nM30\n")[:-1] == ["G3 X1. R1. F9.", "M5 M9 (line 3)"]
+    assert behind(HAAS, "G0 X1. M9\nM30\n")[:-1] == ["G0 X1. M9"]
 
 
 def test_the_orientation_of_the_spindle():
@@ -400,25 +333,19 @@ def test_a_setting_of_the_control_whose_unit_is_not_said():
     ("before", "change"),
     [
         ("M3 S99", "T2 M6 G43 H2 M3"),
-        ("M4 S99", "T2 M6 G43 H2 M4"),
-        ("M3 S99\nM5", "T2 M6 G43 H2"),
         ("M3 S99\nM19", "T2 M6 G43 H2"),
         ("M3 S99\nM35", "T2 M6 G43 H2"),  # the spindle is C
-        ("M3 S99\nM35\nM34\nM4", "T2 M6 G43 H2 M4"),
     ],
 )
 def test_a_spindle_that_turns_is_started_again_behind_a_tool_change(before, change):
     assert change in lines(read_control("doosan-lathe"), f"G0 X50. Z5.\n{before}\nT0202\nM30\n")
 
 
-@pytest.mark.parametrize(("stop", "change"), [("M5", "T2 M6 G43 H2 M5"), ("", "")])
-def test_the_spindle_of_a_bar_that_is_fed_in_a_loop(stop, change):
-    bar = f"G0 X50. Z5.\nT0202 {stop}\nM3 S99\nG1 X1. F.1\nM99\n"
-    if stop:
-        assert change in lines(LATHE, bar)
-    else:
-        refused = sentence(LATHE, bar).sentence
-        assert "(say M3, M4 or M5 in the block of T)" in refused
+def test_the_spindle_of_a_bar_that_is_fed_in_a_loop():
+    bar = "G0 X50. Z5.\nT0202 {}\nM3 S99\nG1 X1. F.1\nM99\n"
+    assert "T2 M6 G43 H2 M5" in lines(LATHE, bar.format("M5"))
+    refused = sentence(LATHE, bar.format("")).sentence
+    assert "(say M3, M4 or M5 in the block of T)" in refused
 
 
 def test_subprograms_with_names():
@@ -433,19 +360,8 @@ def test_subprograms_with_names():
     assert sentence(okuma, "CALL OSUBX1\n").sentence.startswith("CALLOSUBX1: only a program and Q")
 
 
-def test_a_line_of_which_a_part_is_never_reached():
-    assert behind(HAAS, "X1.; M30; X2.\n") == [
-        "X1.", "M30 (line 3)", "(not reached: X1., M30, X2.) (line 3)",
-    ]  # fmt: skip
-
-
 def test_a_speed_limit_within_surface_speed_is_written_at_once():
     assert behind(LATHE, "G96 S90 M3\nG50 S900\nM30\n")[1] == "G96 S90 D900 (G50 S900)"
-
-
-def test_a_mode_that_is_not_sure_is_not_needed_everywhere():
-    text = "M98 P5\nG91\nM98 P5\nM30\nO5\nG1 X1. F5.\nM99\n"
-    assert "G1 X1. F5." in behind(HAAS, text)
 
 
 def test_the_end_of_a_loop_is_a_way_to_its_beginning():
@@ -471,17 +387,6 @@ def test_a_main_program_behind_its_subprograms_is_written_first():
         "M99 (line 4)",
         "(%) (line 9)",
     ]
-
-
-def test_a_subprogram_that_stands_above_its_call_is_written_below():
-    text = "G20 G90 G0 X0\nM98 P7\nM30\nO5\nX1.\nM99\nO6\nM99\nO7\nM98 P5\nM99\n"
-    written = [line for line in lines(HAAS, text) if line.startswith("O")]
-    assert written == ["O7 (line 9)", "O5 (line 4)"]
-
-
-def test_programs_that_are_in_order_stay():
-    text = "G0 G20 X0\nM98 P5\nM98 P6\nM30\nO6\nM98 P5\nM99\nO5\nX1.\nM99\n"
-    assert not any("(line" in line for line in lines(HAAS, text)[2:])
 
 
 def test_a_subprogram_that_is_reached_in_two_modes_is_written_for_each():
@@ -546,8 +451,6 @@ def test_programs_are_not_compared_each_with_each():
     [
         ("G17XC", "G17 (X C)"),
         ("G17 U0 H0", "G17 (U0 H0)"),
-        ("G18 XZ G40", "G18 G40 (X Z)"),
-        ("G28 G19 XH U0", "G28 G19 X[2 * #5420] (X H)"),
     ],
 )
 def test_the_axes_that_a_plane_code_names_are_a_comment(block, written):
@@ -573,7 +476,6 @@ def test_the_feed_comes_back_behind_a_rapid_of_polar_mode():
         ("G81 Z-.5 R.2", "G1 Z-0.5 (line 9)"),
         ("G83 Z-.5 R.2 Q9.", "G1 Z-0.5 (line 9)"),
         ("G90 X.3 Z-.5", "G1 Z-0.5 (line 9)"),
-        ("G1 Z-.5", "G1 Z-.5 F9. G94"),
     ],
 )
 def test_a_cut_behind_a_rapid_of_polar_mode_has_the_programs_feed(cut, written):
@@ -616,20 +518,10 @@ def test_the_cylinders_code_and_word_are_those_of_the_machine():
     assert behind(other, "G7.1 C25.\nG7.1 C0\nM30\n") == ["G107 C[2 * 25.]", "G107 C0", "M30"]
 
 
-@pytest.mark.parametrize(
-    ("control", "machine", "word"),
-    [("radius", "diameter", "[2 * 25.]"), ("diameter", "radius", "[25. / 2]"),
-     ("diameter", "diameter", "[2 * [25. / 2]]")],
-)  # fmt: skip
-def test_the_word_of_the_cylinder_is_the_controls_and_the_machines(control, machine, word):
-    tables = {**LATHE.tables, "cylinder": {"word": control}}
-    other = replace(LATHE, tables=tables, cylinder_code=("G7.1", machine))
-    assert behind(other, "G107 C25.\nG107 C0\nM30\n")[0] == f"G7.1 C{word}"
-
-
-def test_the_polar_codes_are_those_of_the_machine():
-    other = replace(LATHE, polar_codes=("G12.3", "G13.3"))
-    assert behind(other, "G112\nG1 X40. F5.\nG113\nM30\n")[::2] == ["G12.3", "G13.3"]
+def test_the_word_of_the_cylinder_is_the_controls_and_the_machines():
+    tables = {**LATHE.tables, "cylinder": {"word": "diameter"}}
+    other = replace(LATHE, tables=tables, cylinder_code=("G7.1", "radius"))
+    assert behind(other, "G107 C25.\nG107 C0\nM30\n")[0] == "G7.1 C[25. / 2]"
 
 
 # ---------------------------------------------------------------- the page
@@ -708,7 +600,6 @@ def test_hostile_and_long_texts_take_not_the_square_of_their_length(start, part,
     ("control", "text", "line", "start"),
     [
         (LATHE, "G1 X40. C30. F100.\n", 3, "C beside a slide at a feed: its time hangs"),
-        (LATHE, "C0\nG1 X[#100] C30. F100.\n", 4, "C beside a slide at a feed: its time"),
         (LATHE, "G99 C0\nG1 X40. C30. F.1\n", 4, "C beside a slide needs a feed per minute"),
         (LATHE, "C0\nG1 X40. C30. F#100\n", 4, "C beside a slide at a feed: F must be a"),
         (
@@ -765,9 +656,7 @@ def test_every_refused_block_is_named_with_its_reason():
 # ---------------------------------------------------------------- text as shops have it
 
 
-@pytest.mark.parametrize(
-    "head", ["O5\n%\n", "O5 (PART)\n\n(A REMARK)\n%\n", "(A)\n%\nO5\n", "\n%\n", "O1\n%\nO5\n"]
-)
+@pytest.mark.parametrize("head", ["(A)\n%\nO5\n", "O1\n%\nO5\n"])
 def test_what_stands_before_the_first_percent_sign_is_no_program(head):
     translated = lines(HAAS, f"{head}G20 G0 X1.\nM30\n%\nG0 X9.\n")
     assert translated[head.count("\n") :] == ["G20 G0 X1.", "M30", "(%)", "(not reached: G0 X9.)"]
@@ -789,10 +678,8 @@ def test_what_cannot_be_words_is_a_remark(text, kept):
 @pytest.mark.parametrize(
     ("control", "text", "part"),
     [
-        (HAAS, "X1.; T1 END MILL", "say remarks = true in a control of your own"),
         (LATHE, "$1", "$1 begins the program of one of two channels"),
         (HAAS, "G54:", "G54: is a label, which these controls do not have"),
-        (LATHE, "T025300", "T025300 has 6 digits: tool and offset are TTOO; another pattern"),
         (HAAS, "M98 P7\nM30\nN7 M99", "O7 is not in this file, but N7 is: M97 P calls a block"),
     ],
 )
@@ -814,7 +701,6 @@ SECTION = "(HEAD)\nG98 G0 X60. Z2. C0\nG12.1\n"
         ("G42 G1 X60. C0 F9.\nX50.", ["G1 F9. (G42 with the next move)", "G42 X50."]),
         ("G41 G1 X50. F9.\nG40 G1 Z9.\nZ8.\nX70.",
          ["G41 G1 X50. F9.", "G1 Z9. (G40 with the next move)", "Z8.", "G40 X70."]),
-        ("G40\nG1 X50. F9.", ["(G40)", "G1 X50. F9."]),
         ("G1 X50. C1. Z2. F9.", ["G1 X50. C1. F9. (Z2.)"]),
     ],
 )  # fmt: skip
@@ -928,18 +814,16 @@ def test_y_alone_beside_g41_of_a_haas_moves():
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("value", "said"), [("0.0", True), ("-1.5", False)])
-def test_a_place_of_g28_that_was_never_set_is_said(tmp_path, value, said):
+def test_a_place_of_g28_that_was_never_set_is_said(tmp_path):
     (tmp_path / "m.ini").write_text("[RS274NGC]\nPARAMETER_FILE = m.var\n[TRAJ]\nLINEAR_UNITS=mm\n")
-    (tmp_path / "m.var").write_text(f"5161\t0.0\n5163\t{value}\n5181 0\n")
-    control = translate.with_facts_of(HAAS, read_ini(tmp_path / "m.ini"))
-    text = translate_program("G20 G0 X1.\nG91 G28 Z0\nM30\n", control).text
-    assert ("(G28.1 was never set on this machine: machine zero)" in text) == said
+    for value, said in (("0.0", True), ("-1.5", False)):
+        (tmp_path / "m.var").write_text(f"5161\t0.0\n5163\t{value}\n5181 0\n")
+        control = translate.with_facts_of(HAAS, read_ini(tmp_path / "m.ini"))
+        text = translate_program("G20 G0 X1.\nG91 G28 Z0\nM30\n", control).text
+        assert ("(G28.1 was never set on this machine: machine zero)" in text) == said
 
 
-@pytest.mark.parametrize(
-    "block", [",C1.", "N1 X10. ,A90. ,R1.", "G71 U1.\nG71 P1 Q2\nN1 X1.\nN2 ,C1."]
-)
+@pytest.mark.parametrize("block", ["N1 X10. ,A90. ,R1.", "G71 U1.\nG71 P1 Q2\nN1 X1.\nN2 ,C1."])
 def test_drawing_that_goes_nowhere_is_refused(block):
     assert sentence(LATHE, f"G21 G98 G1 F9.\nX10. Z5.\n{block}\nM30\n")
 
