@@ -106,6 +106,24 @@ def test_a_bar_that_is_in_the_way(tmp_path):
     assert findings(path, ini, stock=StockText("40mm")) == []
 
 
+def notes(path, ini):
+    return [
+        (each.code, each.line) for each in prove(path, ini, tools={1: 6.0}).judged if each.is_note
+    ]
+
+
+def test_holes_in_front_of_the_part_are_noted(tmp_path):
+    ini = read_ini(SIM / "lathe_mm_headless.ini")
+    assert notes(written(tmp_path, SIDE), ini) == []
+    assert notes(written(tmp_path, SIDE.replace("[-10]", "[10]")), ini) == [("above-zero", 6)]
+
+
+def test_a_feed_per_minute_under_g95_is_named(tmp_path):
+    ini = read_ini(SIM / "lathe_mm_headless.ini")
+    assert notes(written(tmp_path, "G95", FACE), ini) == [("feed-per-revolution", 7)]
+    assert notes(written(tmp_path, "G95", FACE.replace("[120]", "[.1]")), ini) == []
+
+
 def test_each_tap_has_its_pitch_in_a_trace():
     with Tracer(SIM / "lathe_mm.ini", tools={1: 6.0}) as lathe:
         traced = lathe.trace_text(["G21 G8", "T1 M6", "S5 M3", "G0 X9 Z5", TAP, TAP, "M2"])

@@ -458,7 +458,8 @@ def test_pockets_that_meet_leave_a_core_or_are_not_run_are_noted(lines, found, p
 
 
 def unjudged(proof):
-    return [(each.code, each.line) for each in proof.judged if each.is_not_judged]
+    others = (each for each in proof.judged if each.is_not_judged)
+    return [(each.code, each.line) for each in others if each.code != "travel-unplaced"]
 
 
 @pytest.mark.parametrize(

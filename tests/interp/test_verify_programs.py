@@ -484,6 +484,11 @@ def test_a_rapid_above_pockets_with_a_helix_is_good(tmp_path):
 # ---------------------------------------------------------------- the machine's travel
 
 
+def lines_of(parameters):
+    """Return the text of a var file."""
+    return "".join(f"{number} {value}\n" for number, value in sorted(parameters.items()))
+
+
 def far(tmp_path, *head, centre=490, stored=None):
     """Return findings and notes of a pocket of radius 20 at X ``centre``, limits -500 to 500.
 
@@ -492,8 +497,7 @@ def far(tmp_path, *head, centre=490, stored=None):
     changed = {}
     if stored is not None:
         stored = stored if isinstance(stored, dict) else {5220: 1, 5221: stored}
-        lines = [f"{number} {value}" for number, value in sorted(stored.items())]
-        (tmp_path / "its.var").write_text("\n".join([*lines, ""]))
+        (tmp_path / "its.var").write_text(lines_of(stored))
         changed = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "its.var")}}
     lines = [*MM, *head, f"G0 X{centre} Y0 Z1", "G12 I20 Z-1 D4"]
     proof = proof_of_text(tmp_path, lines, changed=changed)
@@ -506,6 +510,15 @@ def test_a_pocket_beyond_the_travel_is_noted_without_a_work_offset(tmp_path):
     found, noted = far(tmp_path)
     assert found == []
     assert noted == ["with no work offset the X axis would go to 505, its limit is 500 mm"]
+
+
+@pytest.mark.parametrize(("stored", "judged"), [({}, True), ({5241: 10}, False)])
+def test_the_travel_of_a_system_that_was_never_set_is_not_judged(stored, judged, tmp_path):
+    (tmp_path / "its.var").write_text(lines_of({5220: 1, 5221: 10, **stored}))
+    changed = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "its.var")}}
+    lines = [*MM, "G55", "G0 X0 Y0 Z1", "G12 I20 Z-1 D4"]
+    proof = proof_of_text(tmp_path, lines, changed=changed)
+    assert [each.line for each in proof.judged if each.code == "travel-unplaced"] == [5] * judged
 
 
 @pytest.mark.parametrize(("stored", "text"), [(100, "to 605"), (-100, ""), (-1000, "to −525")])

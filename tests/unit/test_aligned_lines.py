@@ -39,6 +39,13 @@ def test_a_block_number_names_its_line():
     ) == (1, 1, 1, 2, 2)
 
 
+def test_repeated_lines_are_found_around_what_a_filter_adds():
+    source = [b"G13", b"G0 Z5", b"X60", b"Z1"] * 3
+    written = [b"(head)", *source[:5], b"(more)", *source[5:9], b"M8", *source[9:], b"M2"]
+    lines = aligned_lines(source, written)
+    assert lines == (1, 1, 2, 3, 4, 5, 5, 6, 7, 8, 9, 9, 10, 11, 12, 12)
+
+
 def test_a_text_without_lines_has_none():
     assert aligned_lines([], [b"G0"]) is None
 
@@ -71,4 +78,16 @@ def test_lines_are_not_compared_each_with_each(row):
         return lambda: aligned_lines(source, [b"(head)", *source])
 
     assert aligned(9)() == (1, *range(1, 10))
+    assert growth(aligned, 10_000) < 10
+
+
+def test_many_repeated_lines_are_not_compared_each_with_each():
+    def aligned(count):
+        source = [b"G0", b"G1", b"G2", b"G3"] * (count // 4)
+        third = count // 3
+        return lambda: aligned_lines(
+            source,
+            [*source[:third], b"(put in)", b"M8", *source[third:-third], b"M2", *source[-third:]],
+        )
+
     assert growth(aligned, 10_000) < 10

@@ -120,9 +120,8 @@ def measure_holes(
         "entries": call.given,
         **times_of_holes(holes, pace(own, []), real),
     }
-    cut = called_cut(call, None if call.is_side else call.zero[1], found, values, judged)
-    feed = None if holes.pitch else call.feed()
-    return replace(cut, feeds=(feed,) if feed else ())
+    cut = called_cut(call, call.zero[1], found, values, judged)
+    return replace(cut, feeds=() if holes.pitch else None)
 
 
 def times_of_holes(holes: Holes, pace: Pace, real: Followed | None) -> dict[str, float | None]:

@@ -329,6 +329,6 @@ def what_words(kind: str, cut: MeasuredCut) -> Mapping[str, str]:
     if kind == "sections":
         return {"third": "XYZ"[cut.asked.third]}
     if kind == "holes":
-        side = "round" if cut.face is None else "on"
+        side = "round" if cut.asked.is_side else "on"
         return {"holes": counted_as(cut.values["count"], "hole"), "side": side}
     return {}

@@ -97,9 +97,9 @@ def judge_feeds(
 ) -> Iterator[Finding]:
     """Yield what to know of the feeds of cuts."""
     for cut in cuts:
-        fed = [move for move in cut.fed(moves) if move.feed]
-        per_turn = [] if cut.turning else [m.feed for m in fed if m.feed_mode == "G95"]
-        asked = cut.feeds if cut.turning else [m.feed for m in fed if m.feed_mode != "G95"]
+        fed = [move for move in cut.fed(moves) if move.feed and cut.feeds is None]
+        per_turn = [move.feed for move in fed if move.feed_mode == "G95"]
+        asked = cut.feeds or [move.feed for move in fed if move.feed_mode != "G95"]
         most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])
         if max(per_turn, default=0.0) > MOST_PER_TURN:
             values = {"feed": max(per_turn)}

@@ -33,6 +33,11 @@ class BlockExtent(NamedTuple):
     low: np.ndarray
     high: np.ndarray
 
+    @property
+    def is_placed(self) -> bool:
+        """Whether a work offset is set: without one its zero is that of the machine."""
+        return max(map(abs, self.zero)) > SAME_ZERO
+
 
 def judge_travel(
     circles: Sequence[tuple[Block, Target]],
@@ -51,6 +56,9 @@ def judge_travel(
     for extent in extents:
         ends.setdefault(extent.zero, []).extend((extent.low, extent.high))
     widths = {zero: np.ptp(both, axis=0) for zero, both in ends.items()}
+    lines = sorted({t.source.line for (_, t), e in zip(circles, extents) if not e.is_placed})
+    if lines:
+        yield Finding("travel-unplaced", lines[0], {"lines": ", ".join(map(str, lines))})
     for (_, target), extent in zip(circles, extents):
         # Blocks of one zero lie beside each other; those of other work offsets may be anywhere.
         width = widths[extent.zero] if len(offsets) < 2 else extent.high - extent.low
@@ -63,12 +71,12 @@ def overruns(extent: BlockExtent, width: np.ndarray, ini: Ini) -> Iterator[tuple
 
     ``width`` is how wide all blocks of its zero are.
     """
-    limits, known = ini.axis_limits, max(map(abs, extent.zero)) > SAME_ZERO
+    limits = ini.axis_limits
     for axis, letter in enumerate(LETTERS):
         if letter not in limits:
             continue
         least, most = limits[letter].low * ini.mm, limits[letter].high * ini.mm
-        certain = known or width[axis] > most - least
+        certain = extent.is_placed or width[axis] > most - least
         low, high = float(extent.low[axis]), float(extent.high[axis])
         position, limit = (high, most) if high > most + BEYOND else (low, least)
         fits = least - BEYOND <= position <= most + BEYOND

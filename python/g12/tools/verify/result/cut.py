@@ -19,9 +19,9 @@ class MeasuredCut:
     It is infinite if part is missing, nan if the words could not be read.
 
     ``last`` is the last line of a section, ``file`` the name of a sub's own file. ``own`` are its
-    moves, ``face`` is the machine Z of the program's Z0, None where Z goes along a surface. Where
-    C turns the part (``turning``) its words ask for ``feeds`` along the part, mm/min, which its
-    moves do not show. ``path`` is the expected toolpath, ``sound`` says that it was followed.
+    moves, ``face`` is the machine Z of the program's Z0, None on a cylinder. C turns or holds the
+    part (``turning``). ``feeds`` are those of its words along the part, mm/min, None where its
+    moves show them. ``path`` is the expected toolpath, ``sound`` says that it was followed.
     ``values`` are its measures by the names of ``--json`` and the report: mm, mm², mm/min, degrees,
     seconds; None is not known.
     """
@@ -37,7 +37,7 @@ class MeasuredCut:
     judged: tuple[Finding, ...]
     last: int = 0
     turning: bool = True
-    feeds: tuple[float, ...] = ()
+    feeds: tuple[float, ...] | None = None
     path: Sequence[Expected] = ()
     sound: bool = True
 

@@ -180,6 +180,9 @@ NOT_JUDGED = {
     "rapid-by-machine": (
         "what rapids by G53, G28 or G30 go through that start within the part: line {lines}"
     ),
+    "travel-unplaced": (
+        "the travel, as no work offset is set: line {lines}; --var gives those of the machine"
+    ),
     "tool-spindle": (
         "whether the driven tool turns: the program has no M3 or M4 with an S; "
         "look for the code that starts it on your machine"
