@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The shapes on a lathe's face: what they cut, by their emitted motion, and what they refuse."""
+"""The shapes on a lathe's face: the travel that is checked, modes, refusals.
+
+Their geometry is proved in test_valid_programs.py.
+"""
 
 import itertools
 import math
 
 import numpy as np
 import pytest
-from shapely.geometry import box
 
 from g12.request.context import Tool
 from g12.shapes import polygon as planned_polygon
@@ -16,13 +18,10 @@ from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.tools.preview.tracer import Tracer
 from support.planner_context import MM
 from support.polar_programs import FIRST, tracer
-from support.shape_geometry import area_off, disc, distances, path_of, polygon, slot
+from support.shape_geometry import path_of
 from support.sim_machines import SIM
 
-INCH = 25.4
 LEFT = -9999
-TOLERANCE = 0.006  # POLAR_TOLERANCE, and the polygons of the drawing
-NOTHING = 0.002  # mm², of what rounding leaves of areas
 CUTTER = {1: 6.0, 2: 5.0, 3: 3.0}
 POLYGON = dict(
     sides=6, across_flats=27, depth=5, stock_diameter=40, corner_radius=LEFT, depth_per_pass=LEFT,
@@ -74,14 +73,7 @@ def cut(lathe, shape, tool=3, **entries):
     return path_of(trace(lathe, shape, tool, **entries).moves)
 
 
-def roughed(path, standing, radius, allowance):
-    """Return a path up to where it comes nearer to what stays than its allowance."""
-    some = np.flatnonzero(path.z < -1e-6)[::4]
-    away = distances(path.points[some], standing) - radius
-    return path.before(int(some[np.argmax(away < allowance - 0.02)]))
-
-
-# ---------------------------------------------------------------- polygons
+# ---------------------------------------------------------------- travel
 
 
 POLYGONS = [
@@ -97,60 +89,6 @@ POLYGONS = [
 ]
 
 
-@pytest.mark.parametrize(("tool", "entries"), POLYGONS)
-def test_a_polygon_stands_on_the_bar(lathe, tool, entries):
-    asked = {**POLYGON, **entries}
-    path = cut(lathe, "polar_polygon", tool, depth_per_pass=3, **entries)
-    radius = max(asked["corner_radius"], 0)
-    drawn = polygon(asked["sides"], asked["across_flats"], radius, max(asked["angle"], -360))
-    if asked["angle"] == LEFT:
-        drawn = polygon(asked["sides"], asked["across_flats"], radius)
-    bar = disc(0, 0, asked["stock_diameter"])
-    for depth in (-2.5, -5):
-        standing = bar.difference(path.area(depth, CUTTER[tool]))
-        assert area_off(standing, drawn.intersection(bar), TOLERANCE) < NOTHING
-    assert path.z.min() == pytest.approx(-5, abs=1e-9)
-
-
-def test_across_flats_is_what_a_caliper_reads(lathe):
-    """Six sides: from flat to opposite flat; five: twice from the centre to a flat."""
-    for sides, across in ((6, 27), (5, 25)):
-        path = cut(lathe, "polar_polygon", sides=sides, across_flats=across)
-        deep = path.points[path.z <= -5 + 1e-6]
-        for index in range(sides):
-            normal = np.exp(2j * math.pi * index / sides)
-            near = (deep * normal.conjugate()).real[np.abs((deep / normal).imag) < 5]
-            assert near[near > 0].min() - CUTTER[3] == pytest.approx(across / 2, abs=0.005)
-
-
-def test_a_polygon_begins_ends_and_goes_down_outside_the_stock(lathe):
-    path = cut(lathe, "polar_polygon", depth_per_pass=2, allowance=0.3)
-    falls = np.flatnonzero((np.diff(path.z) < -1e-6) & (path.z[1:] < 0))
-    assert len(falls) >= 3
-    assert np.abs(path.points[falls]).min() >= 20 + CUTTER[3] + 0.99
-    begun = falls[0]
-    rises = begun + np.flatnonzero(np.diff(path.z[begun:]) > 1e-6)
-    assert np.abs(path.points[rises]).min() >= 20 + CUTTER[3] + 0.99
-
-
-@pytest.mark.parametrize(("tool", "entries"), POLYGONS[::3])
-def test_a_polygon_keeps_its_allowance_until_one_last_round(lathe, tool, entries):
-    asked = {**POLYGON, **entries}
-    path = cut(lathe, "polar_polygon", tool, allowance=0.5, depth_per_pass=2, **entries)
-    angle = 0 if asked["angle"] == LEFT else asked["angle"]
-    radius = max(asked["corner_radius"], 0)
-    drawn = polygon(asked["sides"], asked["across_flats"], radius, angle)
-    bar = disc(0, 0, asked["stock_diameter"])
-    rough = roughed(path, drawn, CUTTER[tool], 0.5)
-    standing = bar.difference(rough.area(-5, CUTTER[tool]))
-    assert area_off(standing, drawn.buffer(0.5, 180).intersection(bar), 0.03) < 10 * NOTHING
-    assert rough.z.min() == pytest.approx(-5, abs=1e-9)
-    assert area_off(bar.difference(path.area(-5, CUTTER[tool])), drawn & bar, TOLERANCE) < NOTHING
-    finish = path.points[len(rough.points) :]
-    turned = np.unwrap(np.angle(finish[np.abs(finish) > 0]))
-    assert abs(turned[-1] - turned[0]) < 2 * math.pi + 0.3
-
-
 @pytest.mark.parametrize(
     ("tool", "entries"),
     [
@@ -164,14 +102,6 @@ def test_a_polygon_keeps_its_allowance_until_one_last_round(lathe, tool, entries
 def test_a_corner_where_a_round_begins_but_for_rounding(lathe, tool, entries):
     """The sub and the planner add up the same corner; a lead of their difference was no arc."""
     cut(lathe, "polar_polygon", tool, **entries)
-
-
-def test_a_polygon_goes_round_clockwise(lathe):
-    path = cut(lathe, "polar_polygon")
-    assert np.unwrap(np.angle(path.points))[-1] < -2 * math.pi
-
-
-# ---------------------------------------------------------------- slots and pockets
 
 
 SLOTS = [
@@ -191,53 +121,7 @@ POCKETS = [
 ]
 
 
-def drawing_of(shape, entries):
-    asked = {name: 0 if value == LEFT else value for name, value in entries.items()}
-    if shape == "polar_slot":
-        return slot(asked["width"], asked["length"], asked["angle"])
-    return disc(asked["x"], asked["c"], asked["diameter"])
-
-
 HOLES = [("polar_slot", *each) for each in SLOTS] + [("polar_pocket", *each) for each in POCKETS]
-
-
-@pytest.mark.parametrize(("shape", "tool", "entries"), HOLES)
-def test_a_hole_is_cut_to_its_walls_and_nothing_stands_in_it(lathe, shape, tool, entries):
-    drawn = drawing_of(shape, {**SHAPES[shape], **entries})
-    path = cut(lathe, shape, tool, depth_per_pass=2, **entries)
-    for depth in (-2, -4):
-        assert area_off(path.area(depth, CUTTER[tool]), drawn, TOLERANCE) < NOTHING
-    assert area_off(path.area(-1e-3, CUTTER[tool]), drawn, TOLERANCE) < NOTHING
-    assert path.z.min() == pytest.approx(-4, abs=1e-9)
-
-
-@pytest.mark.parametrize(("shape", "tool", "entries"), HOLES)
-def test_the_tool_never_goes_straight_down_into_the_material(lathe, shape, tool, entries):
-    path = cut(lathe, shape, tool, depth_per_pass=1.5, **entries)
-    falling = (np.diff(path.z) < -1e-9) & (path.z[1:] < 0.999)
-    slope = np.diff(path.z)[falling] / np.abs(np.diff(path.points))[falling]
-    assert falling.any()
-    assert slope.min() >= -math.tan(math.radians(3)) * 1.03  # chords
-    rapid = np.flatnonzero(~path.feeding & (path.z < 0))
-    assert len(rapid) == 1 and np.all(np.diff(path.z[rapid[0] :]) >= 0)
-
-
-@pytest.mark.parametrize(("shape", "tool", "entries"), [HOLES[0], HOLES[2], HOLES[5], HOLES[7]])
-def test_a_hole_keeps_its_allowance_until_one_last_ring(lathe, shape, tool, entries):
-    drawn = drawing_of(shape, {**SHAPES[shape], **entries})
-    path = cut(lathe, shape, tool, depth_per_pass=2, allowance=0.4, **entries)
-    standing = box(-100, -100, 100, 100).difference(drawn)
-    rough = roughed(path, standing, CUTTER[tool], 0.4)
-    assert area_off(rough.area(-4, CUTTER[tool]), drawn.buffer(-0.4, 180), 0.03) < 10 * NOTHING
-    assert area_off(path.area(-4, CUTTER[tool]), drawn, TOLERANCE) < NOTHING
-
-
-def test_a_cutter_that_an_allowance_leaves_no_more_room_goes_to_and_fro_first(lathe):
-    path = cut(lathe, "polar_slot", width=6.4, allowance=0.2)
-    assert area_off(path.area(-4, CUTTER[3]), slot(6.4, 30), TOLERANCE) < NOTHING
-
-
-# ---------------------------------------------------------------- travel
 
 
 TO_AND_FRO = (dict(width=6), dict(x=4.5, c=0, diameter=28), dict(x=0, c=2.7, diameter=30))
@@ -313,22 +197,6 @@ def test_lengths_are_the_same_in_g7_and_g8_but_for_x(lathe, shape, mode, setting
     wanted = trace(lathe, shape, **{**entries, "x": 10} if entries else {})
     ours, theirs = (path_of(some.moves).points[-400:] for some in (traced, wanted))
     assert np.abs(ours - theirs).max() < 1e-6
-
-
-@pytest.mark.parametrize("shape", SHAPES)
-def test_inches_and_millimetres_make_the_same_path(lathe, shape):
-    scaled = {
-        name: value if name in ("sides", "angle") or value == LEFT else value / INCH
-        for name, value in SHAPES[shape].items()
-    }
-    first = FIRST.replace("G21", "G20")
-    start = f"G0 X{40 / INCH:.12f} Z{5 / INCH:.12f} C0"
-    traced = lathe.trace_text(program(call(shape, **scaled), first=first, start=start))
-    assert traced.error is None, traced.error
-    ours, theirs = (path_of(some.moves) for some in (traced, trace(lathe, shape)))
-    assert len(ours.points) == len(theirs.points)
-    assert np.abs(ours.points - theirs.points).max() < 1e-6
-    assert np.abs(ours.z - theirs.z).max() < 1e-6
 
 
 # ---------------------------------------------------------------- refusals

@@ -19,7 +19,6 @@ TRIED = {  # by file
     "test_yasnac": "blocks of Yasnac",
     "test_mitsubishi": "blocks of Mitsubishi",
     "test_circle_mill": "circle mill events and calls",
-    "test_cylinder": "sections on a cylinder",
     "test_polar_plan": "polar contours",
     "test_compensation_offset": "polar contours with compensation",
     "test_compensation_simplify": "contours with short moves",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Commands get random programs, right ones with random damage: none ever shows a traceback."""
+"""Commands get random programs, valid ones with random damage: none ever shows a traceback."""
 
 import json
 import random
@@ -10,9 +10,9 @@ import pytest
 from g12.tools.commands import main
 from g12.tools.translate.blocks.control import shipped_controls
 from soak import SEED, often
-from support.right_programs import MACHINES, machine_of, right_program
 from support.sim_machines import copy_of_machines
 from support.small_configs import write_config
+from support.valid_programs import MACHINES, machine_of, valid_program
 
 ON = ["PROGRAM", "--ini", "INI"]
 WORDS = {
@@ -120,7 +120,7 @@ def test_programs(kind, tmp_path, capsys):
     ini.write_text(machine_of(kind).text)
     named = {"INI": str(ini), "FOLDER": str(tmp_path)}
     for number in range(often(8)):
-        program, text = tmp_path / f"{kind} {number}.ngc", right_program(kind, chance, 1)
+        program, text = tmp_path / f"{kind} {number}.ngc", valid_program(kind, chance, 1)
         damage = number % 8 > 0
         program.write_text(damaged(chance, text) if damage else text)
         named.update(PROGRAM=str(program), CONTROL=chance.choice(CONTROLS))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Random programs in which nothing is wrong, many pockets or sections in each.
+"""Random valid programs, many pockets or sections in each.
 
 ``chance`` is a `random.Random`. A program's modes are drawn once more for each pocket; pockets
 stand apart, and the tool goes from one to the next above all of them.
@@ -565,7 +565,7 @@ def machine_of(kind):
     return ini.replaced({"G12": SETTINGS.get(kind, {})})
 
 
-def right_program(kind, chance, count):
+def valid_program(kind, chance, count):
     """Return a program of ``count`` pockets or sections of a kind of `MACHINES`."""
     what, more = kind.split()[0], kind.split()[1:]
     unit = "inch" if MACHINES[kind].endswith("inch") else "mm"

@@ -9,8 +9,8 @@ import pytest
 from g12.tools.commands import main
 from g12.tools.verify.proof import prove
 from soak import SEED, often
-from support.right_programs import MACHINES, machine_of, right_program
 from support.sim_machines import ROOT, copy_of_machines
+from support.valid_programs import MACHINES, machine_of, valid_program
 
 SEGMENTS = 20  # pockets or sections in a program
 KINEMATICS = ROOT / "configs" / "kinematics"
@@ -18,8 +18,8 @@ OFFSET = "beside kinematics"  # in the name of a kind: the component has to know
 
 
 def written(folder, kind, seed, count):
-    program = folder / f"right-{seed}.ngc"
-    program.write_text(right_program(kind, random.Random(seed), count))
+    program = folder / f"valid-{seed}.ngc"
+    program.write_text(valid_program(kind, random.Random(seed), count))
     return program
 
 
