@@ -3,28 +3,17 @@
 
 import math
 
-import numpy as np
 import pytest
 
 from g12.tools.preview.tracer import Tracer
 from support.mode_matrix import remaps
-from support.polar_programs import FIRST, ends, feed_moves, in_plane, section, texts, tracer
+from support.polar_programs import FIRST, ends, feed_moves, section, tracer
 from support.sim_machines import ROOT, SIM
-
-INCH = 25.4
 
 
 @pytest.fixture(scope="module")
 def lathe():
     with tracer() as opened:
-        yield opened
-
-
-@pytest.fixture(scope="module")
-def inch_lathe():
-    tools = {1: 12 / INCH, 2: 10 / INCH, 3: 6 / INCH}
-    overrides = {"G12": {"POLAR_TOLERANCE": 0.005 / INCH}}
-    with Tracer(SIM / "lathe_inch.ini", tools=tools, overrides=overrides) as opened:
         yield opened
 
 
@@ -36,17 +25,6 @@ def test_the_manuals_sample_runs_with_the_machines_own_tools():
     with Tracer(SIM / "lathe_inch.ini") as lathe:
         traced = lathe.trace(ROOT / "tests/programs/polar/manual_sample.ngc")
     assert traced.error is None and traced.diameters[8] == 0.0
-
-
-def part_speeds(traced):
-    """Speed along the part of each segment, in mm/min: its length in the plane over its time."""
-    speeds = []
-    for move in feed_moves(traced):
-        start, end = in_plane(move.start), in_plane(move.end)
-        linear = math.hypot(move.end[0] - move.start[0], move.end[2] - move.start[2])
-        travel = linear if linear > 1e-9 else abs(move.end[5] - move.start[5])
-        speeds.append(math.dist(start, end) / (travel / move.feed))
-    return speeds
 
 
 # ---------------------------------------------------------------- X, C, arcs
@@ -78,16 +56,6 @@ def test_i_and_j_are_radius_values_and_incremental_always(lathe, mode, centre):
     assert ends(traced) == [(20, 0), (0, 20), (0, 20), (-20, 0), (20, 0)]
 
 
-def test_a_negative_radius_is_the_long_arc(lathe):
-    short, long = (cut(lathe, "G1 X12", f"G3 X0 C12 R{radius}") for radius in (12, -12))
-    assert ends(short) == ends(long) == [(12, 0), (0, 12)]
-    turned = [traced.moves[-1].end[5] for traced in (short, long)]
-    assert turned == pytest.approx([90, 90])
-    assert max(move.end[0] for move in long.moves) == pytest.approx(
-        12 * (1 + math.sqrt(2)), abs=0.01
-    )
-
-
 @pytest.mark.parametrize("units", ["G20", "G21"])
 @pytest.mark.parametrize("mode", ["G7", "G8"])
 def test_x_stands_still_on_an_arc_about_the_centre(lathe, units, mode):
@@ -96,25 +64,6 @@ def test_x_stands_still_on_an_arc_about_the_centre(lathe, units, mode):
     arc = [move for move in feed_moves(traced) if move.line == 7]
     assert len(arc) > 0
     assert {move.end[0] for move in arc} == {arc[0].start[0]}
-
-
-def test_negative_x_turns_c(lathe):
-    traced = cut(lathe, "G1 C10", "X-20", "C-10", "X20", "C0")
-    assert ends(traced)[1] == (-20, 10)
-    assert min(move.end[0] for move in traced.moves) > 0
-    assert traced.moves[-1].end[5] == pytest.approx(360)
-
-
-def test_the_zero_angle_is_where_c_stands(lathe):
-    traced = cut(lathe, "G1 X12 C3", "C0", start="G0 X20 Z5 C75")
-    assert ends(traced, zero=75) == [(12, 3), (12, 0)]
-
-
-def test_work_offsets_of_c_and_z_go_along(lathe):
-    before = ["G10 L2 P1 C10 Z-3", "G92 Z1"]
-    traced = cut(lathe, "G1 X12 C3", "Z-2", start="G0 X20 Z5 C75", before=before)
-    assert ends(traced, zero=75)[0] == (12, 3)
-    assert traced.position[2] - traced.moves[0].end[2] == pytest.approx(-3)
 
 
 def test_g91_stays_behind_the_section(lathe):
@@ -128,55 +77,7 @@ def test_bare_words_behind_the_section_move_in_the_mode_commanded_last(lathe):
     assert cut(lathe, after=["X5"]).moves[-1].kind == "rapid"
 
 
-# ---------------------------------------------------------------- Z
-
-
-def test_z_alone(lathe):
-    traced = cut(lathe, "G1 X12 C3", "Z-5 F40", "G91 Z2")
-    assert [move.end[2] for move in traced.moves[-2:]] == [-5, -3]
-    assert [move.feed for move in traced.moves[-2:]] == pytest.approx([40, 40])
-
-
-def test_z_with_x_where_it_is_allowed():
-    with tracer(POLAR_Z="allow") as lathe:
-        traced = cut(lathe, "G1 X12 C3 Z-5", "G3 I-2 Z-8")
-    points = [in_plane(move.end) for move in feed_moves(traced)]
-    assert points[-1] == pytest.approx((12, 3, -8))
-    assert part_speeds(traced)[:-1] == pytest.approx([100] * (len(points) - 1), rel=0.02)
-
-
 # ---------------------------------------------------------------- feed
-
-
-@pytest.mark.parametrize(
-    ("before", "body", "speed"),
-    [
-        ([], "F250", 250),
-        ([], "G94 F250", 250),
-        ([], "G98 F250", 250),
-        (["G95 F.5 S500 M3"], "", 250),
-        (["S500"], "G99 F.5", 250),
-        (["S500"], "G95 F.5", 250),
-        (["G95 F.5 S500"], "G98 F60", 60),
-        (["G95 F.5 S500"], "S1000", 500),
-    ],
-)
-def test_feed_is_the_speed_along_the_part(lathe, before, body, speed):
-    traced = cut(lathe, body, "G1 C15", "G3 X-10 C0 R20", before=before)
-    assert part_speeds(traced) == pytest.approx([speed] * len(feed_moves(traced)), rel=0.02)
-
-
-def test_the_speed_may_come_inside_the_section_and_feed_per_revolution_behind_it(lathe):
-    traced = cut(lathe, "G1 C2", "S100", "G95 F.1 C4")
-    assert part_speeds(traced)[0] == pytest.approx(100, rel=0.02)
-    assert part_speeds(traced)[-1] == pytest.approx(10, rel=0.02)
-
-
-def test_feed_mode_and_f_commanded_inside_stay(lathe):
-    for code, kept in (("G95 F.2", "G95"), ("G99 F.2", "G95"), ("G98 F60", "G94")):
-        traced = cut(lathe, f"{code} G1 X12", before=["S500"], after=["X5 C0"])
-        assert traced.moves[-1].feed_mode == kept
-        assert traced.moves[-1].feed == pytest.approx(float(code.split("F")[1]))
 
 
 def test_f_of_the_other_feed_mode_is_forgotten(lathe):
@@ -184,58 +85,7 @@ def test_f_of_the_other_feed_mode_is_forgotten(lathe):
     assert traced.error.text == "G12.1 line 8: F0 must be above zero (no feed commanded?)"
 
 
-def test_rapids_as_feeds():
-    with tracer(POLAR_G0="feed", POLAR_G0_FEED=1500) as lathe:
-        traced = cut(lathe, "G0 X12 C3", "C-3", "G1 X10", "G0 Z2", after=["X20"])
-        assert ends(traced)[:3] == [(12, 3), (12, -3), (10, -3)]
-        assert part_speeds(traced)[0] == pytest.approx(1500, rel=0.02)
-        assert traced.moves[-1].kind == "rapid"
-        inch = lathe.trace_text(
-            section("G0 X.5 C.1", first=FIRST.replace("G21", "G20"), start="G0 X1 Z0 C0")
-        )
-        assert part_speeds(inch)[0] == pytest.approx(1500, rel=0.02)
-
-
-# ---------------------------------------------------------------- compensation
-
-
-FLAT = ["G1 C9", "G1 {on} X12", "C-9", "G40 X20"]
-
-
-@pytest.mark.parametrize(("on", "x"), [("G41", 18), ("G42", 6)])
-def test_compensation_by_half_the_loaded_tools_diameter(lathe, on, x):
-    traced = cut(lathe, *(block.format(on=on) for block in FLAT))
-    assert ends(traced) == [(20, 9), (x, 9), (x, -9), (20, -9)]
-
-
-def test_compensation_in_inches_on_a_metric_machine(lathe):
-    body = ["G1 C.9", "G1 G41 X1.2", "C-.9", "G40 X2"]
-    traced = cut(lathe, *body, first=FIRST.replace("G21", "G20"), start="G0 X2 Z0 C0", feed="F9")
-    assert ends(traced)[1] == (round(1.2 * INCH + 6, 6), round(0.9 * INCH, 6))
-
-
-def test_offset_zero_is_legal():
-    with Tracer(SIM / "lathe_mm.ini", tools={1: 0.0}) as lathe:
-        traced = cut(lathe, *(block.format(on="G41") for block in FLAT))
-    assert ends(traced) == [(20, 9), (12, 9), (12, -9), (20, -9)]
-
-
-def test_actions_between_the_blocks_of_a_compensated_corner(lathe):
-    plain = ["G1 C9", "G41 X12", "C-9", "G2 X-12 R15", "G1 C9", "G40 X-20"]
-    busy = ["G1 C9", "M8", "(MSG, x)", "G41 X12 (ramp)", "Z-2", "S500", "C-9", "M9"]
-    busy += ["G2 X-12 R15", "#1=2", "G1 C9", "Z5", "G40 X-20"]
-    points = [set(ends(cut(lathe, *body))) for body in (plain, busy)]
-    assert points[0] == points[1]
-
-
 # ---------------------------------------------------------------- actions
-
-
-def test_actions_keep_their_place_among_the_moves(lathe):
-    body = ["G1 X12", "(MSG, one)", "X10 M8 (two)", "G4 P.5", "X8", "S500 M3", "X6 (MSG, three)"]
-    traced = cut(lathe, *body)
-    assert texts(traced) == ["one", "three"]
-    assert ends(traced) == [(12, 0), (10, 0), (8, 0), (6, 0)]
 
 
 def test_coolant_and_speed_commanded_inside_stay(lathe):
@@ -263,28 +113,6 @@ def test_path_control_is_given_back_or_stays_as_commanded(lathe, commanded, insi
         assert traced.modes.blending == pytest.approx(blending)
 
 
-SPY = """\
-import sys
-sys.path.insert(0, "{python}")
-import remap
-from g12.host.section.output import PathControl
-within = PathControl.within = getattr(PathControl, "within", PathControl.inside)  # loaded twice
-def spied(self, turning):
-    within(self, turning)
-    self.interp.params[7] = self.interp.active_settings[3]
-PathControl.inside = spied
-"""
-
-
-@pytest.mark.parametrize(("units", "tolerance"), [("G21", 0.0025), ("G20", 0.0025 / INCH)])
-def test_segments_are_blended_with_half_the_tolerance(tmp_path, units, tolerance):
-    toplevel = tmp_path / "toplevel.py"
-    toplevel.write_text(SPY.format(python=SIM.parents[1] / "python"))
-    program = section("G1 X7 C3", "X2 C5", first=FIRST.replace("G21", units), start="G0 X8 Z0 C0")
-    with Tracer(SIM / "lathe_mm.ini", overrides={"PYTHON": {"TOPLEVEL": str(toplevel)}}) as lathe:
-        assert lathe.trace_text(program, ask=[7]).numbered[7] == pytest.approx(tolerance)
-
-
 @pytest.mark.parametrize(
     "modes", ["G18 G91.1 G8 G98", "G17 G90.1 G8 G99", "G18 G90.1 G7 G61", "G18 G91.1 G7 G98"]
 )
@@ -298,28 +126,6 @@ def test_every_other_mode_is_as_before(lathe, modes):
 
 
 # ---------------------------------------------------------------- machines
-
-
-def test_inches_and_millimetres_make_the_same_machine_path(lathe, inch_lathe):
-    body = ["G1 C{9}", "G41 X{12}", "Z{-2}", "C-{9}", "G2 X-{12} R{15}", "G1 C{9}", "G40 X-{20}"]
-    paths = []
-    for machine in (lathe, inch_lathe):
-        for units, factor in (("G21", 1.0), ("G20", 1 / INCH)):
-            first = FIRST.replace("G21", units)
-            program = section(*body, first=first, start="G0 X{20} Z{5} C0", feed="F{100}")
-            traced = machine.trace_text([_scaled(line, factor) for line in program])
-            paths.append([(*move.end, move.feed) for move in feed_moves(traced)])
-    for path in paths[1:]:
-        assert len(path) == len(paths[0])
-        for one, other in zip(paths[0], path):
-            assert one == pytest.approx(other, rel=1e-6, abs=1e-6)
-
-
-def _scaled(line, factor):
-    parts = line.replace("{", "}").split("}")
-    return "".join(
-        f"{float(part) * factor:.9f}" if at % 2 else part for at, part in enumerate(parts)
-    )
 
 
 def test_a_wrapped_axis_winds_the_same_way():
@@ -373,47 +179,6 @@ def test_both_pairs_of_codes_on_one_machine():
 
 
 # ---------------------------------------------------------------- the machine's INI
-
-
-def on_lathe(name, overrides, *body, tools=None, **around):
-    with Tracer(SIM / name, overrides=overrides, tools=tools) as lathe:
-        return cut(lathe, *body, **around)
-
-
-def test_a_machine_unit_may_be_a_number():
-    body = ["G1 X12 C0", "G3 X-12 C0 I-12 J0", "U-2"]
-    machines = [
-        ("lathe_inch.ini", "inch", {1: 0.5}),
-        ("lathe_inch.ini", f"{1 / INCH:.12f} # units per mm", {1: 0.5}),
-        ("lathe_mm.ini", "mm", {1: 12.7}),
-        ("lathe_mm.ini", "1.0", {1: 12.7}),
-    ]
-    traces = [
-        on_lathe(name, {"TRAJ": {"LINEAR_UNITS": text}}, *body, tools=tools)
-        for name, text, tools in machines
-    ]
-    moves = [[move.end for move in traced.moves] for traced in traces]
-    assert np.allclose(moves[0], moves[1], atol=1e-6)
-    assert np.allclose(moves[2], moves[3], atol=1e-6)
-
-
-def test_the_first_of_repeated_limits_counts():
-    refused = on_lathe("lathe_mm.ini", {"AXIS_X": {"MAX_LIMIT": [100, 300]}}, "G1 X150")
-    assert refused.error.text.endswith("the X axis would go to 150 mm, beyond its limit 100 mm")
-
-
-def test_keywords_of_remap_lines_may_be_shortened(tmp_path):
-    (tmp_path / "m33.ngc").write_text("o<m33> sub\nG1 X9\no<m33> endsub\n")
-    lines = [
-        "G12.4 modal=1 py=polar_on",
-        "G13.5 MODALGROUP=1 Py=polar_off # another pair",
-        "M33 modalgroup=10 n=m33",
-    ]
-    overrides = {"RS274NGC": {"REMAP": lines, "SUBROUTINE_PATH": f"{tmp_path}:../../ngc:subs"}}
-    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
-        codes = {"G12.1": "G12.4", "G13.1": "G13.5"}
-        program = [codes.get(line, line) for line in section("G1 X12", "M33", "U-2")]
-        assert ends(lathe.trace_text(program)) == [(12, 0), (9, 0), (7, 0)]
 
 
 @pytest.mark.parametrize(("turns", "wrapped", "told"), [(1, 0, []), (2, 0, ["2.0"]), (2, 1, [])])

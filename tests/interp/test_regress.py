@@ -149,17 +149,6 @@ def test_recording_again_changes_no_file(pocket):
     assert {path: path.stat().st_mtime_ns for path in times} == times
 
 
-def test_a_change_names_program_line_and_amount(pocket):
-    pocket.change("pocket.ngc", "Z-.5", "Z-.505")
-    code, lines = pocket.check()
-    assert code == 1
-    assert lines == [
-        "pocket.ngc:6: 22 moves: Z-0.5 → Z-0.505 (-0.005 in)",
-        "    G12 I.3 K1.5 Q.2 Z-.505 D1 F10",
-        "2 programs: 1 as recorded, 1 changed",
-    ]
-
-
 def test_a_finding_for_other_programs_is_json(pocket):
     pocket.change("pocket.ngc", "X5", "X5.25")
     code, lines = pocket.check("--json")
@@ -178,13 +167,8 @@ def test_a_finding_for_other_programs_is_json(pocket):
     [
         ("M8\n", "", "pocket.ngc:5 as recorded: missing: M8 on"),
         ("S1000 M3", "S1200 M3", "pocket.ngc:5: S1000 → S1200"),
-        ("S1000 M3", "S1000 M4", "pocket.ngc:5: M3 → M4"),
         ("T1 M6", "T1 M6 G43", "pocket.ngc:5: new: G43"),
-        ("G54", "G55", "pocket.ngc:2: new: G55"),
-        ("M9\n", "M9\nG4 P.5\n", "pocket.ngc:10: new: dwell 0.5"),
         ("F10", "F12", "pocket.ngc:6: 22 moves: F10 → F12"),
-        ("X5", "(MSG, here)\nX5", "pocket.ngc:8: new: message here"),
-        ("G0 X1", "G64 P.01\nG0 X1", "pocket.ngc:6: new: G64 P0.01 Q0.01"),
         ("M2", "M30", "pocket.ngc: modal state at the end: M2 → M30"),
     ],
 )
@@ -193,14 +177,6 @@ def test_what_is_no_move_is_compared_too(pocket, old, new, finding):
     code, lines = pocket.check("pocket.ngc")
     assert code == 1
     assert lines[0].startswith(finding)
-
-
-def test_the_pitch_of_a_thread_is_compared(shop):
-    shop.write("thread.ngc", "G21 G18\nM3 S100\nG0 X10 Z5\nG33 Z-1 K1.5\nG33 Z-2 K1.5\nM2\n")
-    shop.record(ini=SIM / "lathe_mm.ini")
-    shop.change("thread.ngc", "K1.5", "K1.25")
-    code, lines = shop.check()
-    assert (code, lines[0]) == (1, "thread.ngc:4: pitch 1.5 mm → pitch 1.25 mm")
 
 
 def test_comments_and_line_numbers_are_no_change(pocket):
@@ -218,15 +194,6 @@ def test_the_tolerance_is_in_machine_units(pocket):
 
 
 # ---------------------------------------------------------------- refused, added, gone, failed
-
-
-def test_a_program_that_is_refused_now(pocket):
-    pocket.change("pocket.ngc", "I.3", "I-.3")
-    code, lines = pocket.check()
-    assert code == 1
-    assert lines[0].startswith("pocket.ngc:6: refused: G12: I-0.3")
-    assert lines[0].endswith("moves are missing")
-    assert lines[1] == "    G12 I-.3 K1.5 Q.2 Z-.5 D1 F10"
 
 
 def test_a_refusal_can_be_what_is_expected(shop):
@@ -276,9 +243,6 @@ def test_a_program_without_an_end_fails_and_the_others_are_checked(pocket):
 
 
 REMAP = """\
-import os
-import signal
-
 times = []
 
 
@@ -286,10 +250,6 @@ def again(self, **words):
     times.append(1)
     self.execute(f"G0 X{len(times)}")
     return 0
-
-
-def die(self, **words):
-    os.kill(os.getpid(), signal.SIGSEGV)
 """
 REMAPS = """\
 [PYTHON]
@@ -299,11 +259,11 @@ PATH_PREPEND = .
 
 
 def remapping(shop):
-    """Return a machine whose Python keeps state from one program to the next, or dies."""
-    remaps = "REMAP = M400 modalgroup=10 python=again\nREMAP = M401 modalgroup=10 python=die\n"
+    """Return a machine whose Python keeps state from one program to the next."""
+    remap = "REMAP = M400 modalgroup=10 python=again\n"
     shop.write("own.py", "import remap\n", shop.folder)
     shop.write("remap.py", REMAP, shop.folder)
-    text = MACHINE.replace("PARAMETER_FILE", f"{remaps}PARAMETER_FILE")
+    text = MACHINE.replace("PARAMETER_FILE", f"{remap}PARAMETER_FILE")
     return shop.write("own.ini", text + REMAPS, shop.folder)
 
 
@@ -358,19 +318,6 @@ def test_interpreters_that_are_killed_are_told_in_a_line_each(endless):
     assert (endless.returncode, errors_in(errors)) == (1, [])
     died = [f"{name}.ngc: no trace: the interpreter died" for name in "abc"]
     assert out.splitlines() == [*died, "3 programs: 3 failed"]
-
-
-def test_a_program_that_kills_the_interpreter_fails_and_the_others_are_checked(shop):
-    shop.write("a.ngc", "G21\nM401\nM2\n")
-    shop.write("b.ngc", PLAIN)
-    ini = remapping(shop)
-    code, lines, _ = shop.run("record", shop.programs, "--ini", ini)
-    assert code == 1
-    assert lines == [
-        "a.ngc: no trace: the interpreter died",
-        "b.ngc: new, 5 moves",
-        "2 programs: 1 new, 1 failed",
-    ]
 
 
 def test_recording_again_shows_what_changed_and_accepts_it(pocket):
