@@ -17,7 +17,7 @@ def without_clocks(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
     while len(timed) > known:
         known = len(timed)
         timed.update(b.variable for b in blocks if b.kind == "assign" and timed & reads(b))
-    return [without_time(block, timed) for block in blocks]
+    return [_without_time(block, timed) for block in blocks]
 
 
 def reads(block: ForeignBlock) -> set[int]:
@@ -26,7 +26,7 @@ def reads(block: ForeignBlock) -> set[int]:
     return read | block.expression.read if block.expression else read
 
 
-def without_time(block: ForeignBlock, timed: set[int]) -> ForeignBlock:
+def _without_time(block: ForeignBlock, timed: set[int]) -> ForeignBlock:
     """Return a block: a time is a comment, what hangs on one is refused."""
     if block.kind == "assign" and block.variable in timed:
         comments = ("a time: LinuxCNC has no clock", *block.comments)

@@ -28,18 +28,18 @@ def followed_program(
     ).run()
     followed = follow()
     for _ in range(DEEPEST):
-        if not add_copies(followed):
+        if not _add_copies(followed):
             break
         find_ends(structure, control)
         followed = follow()
     return followed
 
 
-def add_copies(followed: FollowedProgram) -> bool:
-    """Copy the programs that are called in modes that differ; tell whether there were any."""
+def _add_copies(followed: FollowedProgram) -> bool:
+    """Copy programs that are called in different modes; return whether there were any."""
     structure = followed.structure
     added = False
-    for number, groups in list(differing_calls(followed)):
+    for number, groups in list(_differing_calls(followed)):
         for calls in groups[1:]:
             if len(structure.copies) >= MOST_COPIES or len(structure.blocks) >= MOST_BLOCKS:
                 return added
@@ -48,8 +48,8 @@ def add_copies(followed: FollowedProgram) -> bool:
     return added
 
 
-def differing_calls(followed: FollowedProgram) -> Iterator[tuple[int, list[list[int]]]]:
-    """Yield programs with an unsure block, and their calls by the modes that they are made in."""
+def _differing_calls(followed: FollowedProgram) -> Iterator[tuple[int, list[list[int]]]]:
+    """Yield programs with an unsure block, and their calls grouped by those modes."""
     wanted = [
         (followed.program_of(draft.index), draft.unsure)
         for draft in followed.drafts

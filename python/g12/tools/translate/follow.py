@@ -59,7 +59,7 @@ class FollowedProgram:
     def run(self) -> FollowedProgram:
         """Follow the main program from its first block until nothing new is found."""
         if self.drafts:
-            self._pending.append((self.structure.main, start_state(self.control)))
+            self._pending.append((self.structure.main, _start_state(self.control)))
         while self._pending:
             self._reach(*self._pending.pop())
         return self
@@ -125,7 +125,7 @@ class FollowedProgram:
                 self._head(draft, index)
             else:
                 self._end(draft, index)
-                apply_rules(draft)
+                _apply_rules(draft)
             if not statement:
                 draft.after += self.structure.jumps.at.get(index, ())
         except NotTranslated as refusal:
@@ -142,7 +142,7 @@ class FollowedProgram:
             raise NotTranslated(f"{word.text}: the number of a program must be a whole number")
         name = f"O{number}" if self.kinds.get(number) != "macro" else f"o<macro_{number}> sub"
         self._end(draft, index)
-        apply_rules(draft)
+        _apply_rules(draft)
         if number == MAIN:
             draft.comments.insert(0, word.text)
         else:
@@ -227,7 +227,6 @@ class FollowedProgram:
         return None
 
     def _has_block(self, number: int) -> bool:
-        """Tell whether a block has a number."""
         firsts = (block.words[0] for block in self.structure.blocks if block.words)
         return any(w.letter == "N" and w.value == str(number) for w in firsts)
 
@@ -244,14 +243,12 @@ class FollowedProgram:
                 self._go_on(index, state)
 
 
-def apply_rules(draft: Draft) -> None:
-    """Send a block of words through the rules."""
+def _apply_rules(draft: Draft) -> None:
     if draft.words and not is_plain(draft):
         for rule in WORD_RULES:
             rule(draft)
 
 
-def start_state(control: Control) -> ModalState:
-    """Return the modes that hold when a program begins."""
+def _start_state(control: Control) -> ModalState:
     known: dict[str, Any] = {GROUP_OF[code]: code for code in control.start if code in GROUP_OF}
     return ModalState(**known)

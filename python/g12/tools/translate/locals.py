@@ -26,21 +26,23 @@ def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
     macros = {number for number, kind in followed.kinds.items() if kind == "macro"}
     given: dict[int, frozenset[int]] = {}
     for number in macros:
-        given.update(given_in(followed, number))
+        given.update(_given_in(followed, number))
     for index, block in enumerate(followed.structure.blocks):
         number = followed.program_of(index)
         if index in given:
-            for variable in sorted(read_by(block) - given[index]):
-                yield block.line, unset_sentence(number, variable)
+            for variable in sorted(_read_by(block) - given[index]):
+                yield block.line, _unset_sentence(number, variable)
             for variable in sorted(compared_by(block) - LETTERS.keys()):
                 yield block.line, f"#{variable} EQ #0: no letter of G65 gives #{variable} a value"
         elif number not in macros and followed.drafts[index] and compared_by(block):
             yield block.line, "#0, the empty variable, is translated in a program of G65 only"
-    yield from never_set(followed, macros)
-    yield from shared_locals(followed)
+    yield from _reads_never_set(followed, macros)
+    yield from _shared_locals(followed)
 
 
-def never_set(followed: FollowedProgram, macros: Collection[int]) -> Iterator[tuple[int, str]]:
+def _reads_never_set(
+    followed: FollowedProgram, macros: Collection[int]
+) -> Iterator[tuple[int, str]]:
     """Yield the blocks outside macros where a word is a local variable that nothing sets before."""
     if not any(word.read for block in followed.structure.blocks for word in block.words):
         return
@@ -49,7 +51,7 @@ def never_set(followed: FollowedProgram, macros: Collection[int]) -> Iterator[tu
         for index, block in enumerate(followed.structure.blocks)
         if followed.program_of(index) not in (MAIN, *macros)
     ]
-    set_by_calls = frozenset().union(*map(set_by, called))
+    set_by_calls = frozenset().union(*map(_set_by, called))
 
     def onward(index: int, known: frozenset[int]) -> Iterator[tuple[int, frozenset[int]]]:
         draft = followed.drafts[index]
@@ -57,9 +59,9 @@ def never_set(followed: FollowedProgram, macros: Collection[int]) -> Iterator[tu
         if entry is not None and draft.call.kind == "sub":
             yield entry, known
             known |= set_by_calls
-        yield from passed_on(followed, index, known)
+        yield from _onward_from(followed, index, known)
 
-    known = spread({followed.structure.main: frozenset()}, onward, frozenset.union)
+    known = _flow({followed.structure.main: frozenset()}, onward, frozenset.union)
     for index, values in known.items():
         block = followed.structure.blocks[index]
         for word in block.words:
@@ -68,18 +70,18 @@ def never_set(followed: FollowedProgram, macros: Collection[int]) -> Iterator[tu
                 yield block.line, f"{word.text}: nothing sets #{number} before, LinuxCNC takes 0"
 
 
-def given_in(followed: FollowedProgram, number: int) -> dict[int, frozenset[int]]:
+def _given_in(followed: FollowedProgram, number: int) -> dict[int, frozenset[int]]:
     """Return the variables that surely have a value before each block of a macro."""
-    start = {followed.structure.entries[number]: given_by_all(followed.calls[number])}
-    return spread(start, partial(passed_on, followed), frozenset.intersection)
+    start = {followed.structure.entries[number]: _given_by_all(followed.calls[number])}
+    return _flow(start, partial(_onward_from, followed), frozenset.intersection)
 
 
-def spread(
+def _flow(
     given: dict[int, frozenset[int]],
     onward: Callable[[int, frozenset[int]], Iterator[tuple[int, frozenset[int]]]],
     merge: Callable[[frozenset[int], frozenset[int]], frozenset[int]],
 ) -> dict[int, frozenset[int]]:
-    """Return variables before each block that is reached; ``merge`` joins two ways to a block."""
+    """Return the variables before each block that is reached; ``merge`` joins two ways to it."""
     pending = [*given]
     while pending:
         index = pending.pop()
@@ -91,16 +93,16 @@ def spread(
     return given
 
 
-def passed_on(
+def _onward_from(
     followed: FollowedProgram, index: int, given: frozenset[int]
 ) -> Iterator[tuple[int, frozenset[int]]]:
-    """Yield the blocks behind one, and the variables that have a value there."""
+    """Yield the blocks after one, and the variables that have a value there."""
     draft, block = followed.drafts[index], followed.structure.blocks[index]
     over = draft is None or draft.returns or draft.ends
     ways = [] if over else [following for _, following in ways_from(followed.structure, index)]
     condition = block.expression
     for following in {*ways, *([index + 1] if block.skipped else [])}:
-        known = given | set_by(block)
+        known = given | _set_by(block)
         if condition and block.kind in ("goto", *OPENING):
             onward = (following == index + 1) == (block.kind in OPENING)
             known |= condition.set_if_true if onward else condition.set_if_false
@@ -108,42 +110,39 @@ def passed_on(
             yield following, known
 
 
-def given_by_all(calls: list[Draft]) -> frozenset[int]:
-    """Return the variables that every call of a macro gives."""
+def _given_by_all(calls: list[Draft]) -> frozenset[int]:
     found = [{variable for variable, _ in draft.call.arguments} for draft in calls]
     return frozenset(set.intersection(*found))
 
 
-def read_by(block: ForeignBlock) -> frozenset[int]:
-    """Return the local variables that a block reads."""
+def _read_by(block: ForeignBlock) -> frozenset[int]:
     read = frozenset().union(*(word.read for word in block.words))
     read |= block.expression.read if block.expression else frozenset()
     return read.intersection(LOCAL)
 
 
-def set_by(block: ForeignBlock) -> frozenset[int]:
+def _set_by(block: ForeignBlock) -> frozenset[int]:
     """Return the variables that surely have a value behind a block because of it."""
     sets = block.kind == "assign" and not block.skipped
     return frozenset((block.variable,)) if sets else frozenset()
 
 
-def unset_sentence(number: int, variable: int) -> str:
-    """Return what is wrong."""
+def _unset_sentence(number: int, variable: int) -> str:
     letter = LETTERS.get(variable)
     name = f"#{variable} ({letter} of the call)" if letter else f"#{variable}"
     return f"O{number} reads {name}, which not every G65 P{number} gives: it would be 0 on LinuxCNC"
 
 
-def shared_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
+def _shared_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
     """Yield the blocks that use #31 to #33, where several programs do: LinuxCNC has them once."""
     users: dict[int, set[int]] = defaultdict(set)
     for index, block in enumerate(followed.structure.blocks):
-        for variable in SHARED.intersection(used_by(block)):
+        for variable in SHARED.intersection(_used_by(block)):
             users[variable].add(followed.program_of(index))
             if len(users[variable]) > 1:
                 yield block.line, f"#{variable} is used in two programs: LinuxCNC has it once"
 
 
-def used_by(block: ForeignBlock) -> Iterable[int]:
-    """Return the local variables that a block reads, asks for or sets."""
-    return {*read_by(block), *compared_by(block), block.variable}
+def _used_by(block: ForeignBlock) -> Iterable[int]:
+    """Return the local variables that a block reads, compares with #0 or sets."""
+    return {*_read_by(block), *compared_by(block), block.variable}

@@ -31,21 +31,20 @@ def on_machine(control: Control, settings: Settings, remaps: Sequence[Remap]) ->
         },
     }
     meanings = {
-        code: meaning_here(meaning, places, settings.live_spindle)
+        code: _meaning_here(meaning, places, settings.live_spindle)
         for code, meaning in control.meanings.items()
     }
-    tables = {**control.tables, "holes": {**control.tables.get("holes", {}), **of_holes(settings)}}
+    tables = {**control.tables, "holes": {**control.tables.get("holes", {}), **_of_holes(settings)}}
     return replace(control, meanings=meanings, tables=tables, live_spindle=settings.live_spindle)
 
 
-def of_holes(settings: Settings) -> dict[str, object]:
-    """Return what drilling cycles of a lathe have to know of the machine."""
+def _of_holes(settings: Settings) -> dict[str, object]:
     clamp = " ".join(f"M{code}" for code in settings.c_clamp)
     found: dict[str, object] = {"clamp": clamp} if clamp else {}
     return {**found, "spindle": int(settings.live_spindle)} if settings.live_spindle else found
 
 
-def meaning_here(meaning: str, places: dict[str, str], live: str) -> str:
+def _meaning_here(meaning: str, places: dict[str, str], live: str) -> str:
     """Return what a code is on the machine; ``live`` is the live tool's spindle, "" unknown."""
     if meaning in ("clamp C", "unclamp C", *SPINDLE_C):
         return places.get(meaning, "comment")

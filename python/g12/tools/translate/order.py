@@ -40,19 +40,19 @@ class WrittenOrder(NamedTuple):
 
 def written_order(followed: FollowedProgram, count: int) -> WrittenOrder:
     """Return the order of the ``count`` lines of a file."""
-    parts = [*file_parts(followed.structure, count), *copied_parts(followed.structure)]
+    parts = [*_file_parts(followed.structure, count), *_copied_parts(followed.structure)]
     place = {number: at for at, part in enumerate(parts) for number in part.numbers}
     below: dict[int, set[int]] = {at: set() for at in range(len(parts))}
     for number, callers in followed.callers.items():
         for caller in callers:
             below[place[caller]].add(place[number])
-    done = sorted_parts(below)
+    done = _sorted_parts(below)
     left = below.keys() - set(done)
-    circular = frozenset(number for at in in_circles(left, below) for number in parts[at].numbers)
+    circular = frozenset(number for at in _in_circles(left, below) for number in parts[at].numbers)
     return WrittenOrder([row for at in done for row in parts[at].rows], circular)
 
 
-def file_parts(structure: Structure, count: int) -> list[FilePart]:
+def _file_parts(structure: Structure, count: int) -> list[FilePart]:
     """Return the parts of a file: one for each program that begins a line, and the text around."""
     rows = [WrittenRow(line, []) for line in range(1, count + 1)]
     for index, block in enumerate(structure.blocks[: structure.own]):
@@ -61,16 +61,15 @@ def file_parts(structure: Structure, count: int) -> list[FilePart]:
     begun, numbers = 1, [] if MAIN in structure.starts.values() else [MAIN]
     for index in sorted(index for index in structure.starts if index < structure.own):
         line = structure.blocks[index].line
-        if line > begun and begins_line(structure, index):
+        if line > begun and _begins_line(structure, index):
             parts.append(FilePart(rows[begun - 1 : line - 1], numbers))
             begun, numbers = line, []
         numbers.append(structure.starts[index])
-    end = end_of_programs(structure, begun, count)
+    end = _end_of_programs(structure, begun, count)
     return [*parts, FilePart(rows[begun - 1 : end - 1], numbers), FilePart(rows[end - 1 :], [])]
 
 
-def copied_parts(structure: Structure) -> Iterator[FilePart]:
-    """Yield the parts that are copies of programs."""
+def _copied_parts(structure: Structure) -> Iterator[FilePart]:
     starts = sorted(index for index in structure.starts if index >= structure.own)
     for start, end in zip(starts, [*starts[1:], len(structure.blocks)]):
         indices = groupby(range(start, end), lambda index: structure.blocks[index].line)
@@ -78,20 +77,19 @@ def copied_parts(structure: Structure) -> Iterator[FilePart]:
         yield FilePart(rows, [structure.starts[start]])
 
 
-def begins_line(structure: Structure, index: int) -> bool:
-    """Tell whether no other block of its line is before a block."""
+def _begins_line(structure: Structure, index: int) -> bool:
     blocks = structure.blocks
     return index == 0 or blocks[index - 1].line != blocks[index].line
 
 
-def end_of_programs(structure: Structure, begun: int, count: int) -> int:
-    """Return the line of the closing ``%``, that behind the last if there is none."""
+def _end_of_programs(structure: Structure, begun: int, count: int) -> int:
+    """Return the line of the closing ``%``, or the line after the last."""
     last = structure.blocks[structure.own - 1] if structure.own else None
     return last.line if last and last.kind == "tape" and last.line > begun else count + 1
 
 
-def sorted_parts(below: Mapping[int, set[int]]) -> list[int]:
-    """Return parts so that each is below those that call it, as early as that allows."""
+def _sorted_parts(below: Mapping[int, set[int]]) -> list[int]:
+    """Return parts so that each is below its callers, and otherwise in their order."""
     above = dict.fromkeys(below, 0)
     for called in below.values():
         for at in called:
@@ -108,8 +106,8 @@ def sorted_parts(below: Mapping[int, set[int]]) -> list[int]:
     return done
 
 
-def in_circles(left: Collection[int], below: Mapping[int, set[int]]) -> Iterator[int]:
-    """Yield what of the parts left over is in a circle, not only below one."""
+def _in_circles(left: Collection[int], below: Mapping[int, set[int]]) -> Iterator[int]:
+    """Yield the unsorted parts that are in a circle, not only below one."""
     inside = set(left)
     above = {at: below[at] & inside for at in inside}
     callers: dict[int, list[int]] = {at: [] for at in inside}

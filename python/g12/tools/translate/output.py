@@ -19,7 +19,7 @@ BLOCK_NUMBER = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments b
 
 
 def lines_of(draft: Draft) -> list[str]:
-    """Return the lines of one block, comments behind the first of them."""
+    """Return the lines of one block, with its comments behind the first."""
     own = draft.written()
     lines = [draft.head] if draft.head else []
     lines += [*draft.before, *([own] if own else []), *draft.after]
@@ -29,11 +29,11 @@ def lines_of(draft: Draft) -> list[str]:
         if size(text) > LONGEST_LINE - LONGEST_MARK:
             raise NotTranslated(f"the block has {size(text)} characters on LinuxCNC, at most 254")
     slash = "/ " if draft.block.skipped else ""
-    return with_comments([f"{slash}{line}" for line in lines], draft.comments)
+    return _with_comments([f"{slash}{line}" for line in lines], draft.comments)
 
 
-def with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
-    """Return lines with comments behind the first; what has no room there has lines of its own."""
+def _with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
+    """Return lines with comments behind the first; those without room get lines of their own."""
     whole = "".join(f"({comment})" for comment in comments)
     first = f"{lines[0]} {whole}".rstrip() if lines else whole
     if size(first) <= LONGEST_LINE - LONGEST_MARK:
@@ -52,16 +52,15 @@ def size(text: str) -> int:
     return len(text.encode())
 
 
-def with_mark(text: str, line: int) -> str:
-    """Return a line with that of the file; LinuxCNC obeys only the last comment of a block."""
+def _with_mark(text: str, line: int) -> str:
+    """Add the file's line number; LinuxCNC obeys only the last comment of a block."""
     if not OBEYED.search(text):
         return f"{text} (line {line})"
     number = NUMBERED.match(text)[0]
     return f"{number}(line {line}) {text[len(number) :]}"
 
 
-def as_comment(text: str) -> str:
-    """Return a line that is never executed."""
+def _as_comment(text: str) -> str:
     return (
         f"(not reached: {printable(text.strip())[: LONGEST_COMMENT // 2]})" if text.strip() else ""
     )
@@ -79,25 +78,25 @@ def output_lines(
     ends = followed.ends_of_macros()
     in_place = True
     for place, (line, indices) in enumerate(order, 1):
-        lines = lines_of_row(rows[line - 1], indices, followed, ends)
+        lines = _lines_of_row(rows[line - 1], indices, followed, ends)
         if place == 1 and start:
-            lines = begun(start, lines)
+            lines = _with_start_codes(start, lines)
         in_place = in_place and place == line
         yield from lines[:in_place]
-        yield from (with_mark(text, line) for text in lines[in_place:])
+        yield from (_with_mark(text, line) for text in lines[in_place:])
 
 
-def lines_of_row(
+def _lines_of_row(
     row: str, indices: Sequence[int], followed: FollowedProgram, ends: Mapping[int, str]
 ) -> list[str]:
-    """Return the lines of one line of the file; ``ends`` are what macros need behind a block."""
+    """Return the output of one line of the file; ``ends`` are the ends of macros, by block."""
     lines: list[str] = []
     told = False
     for index in indices:
         draft, jumps = followed.drafts[index], followed.structure.jumps
-        own = draft.lines if draft else unreached(followed.structure.blocks[index])
+        own = draft.lines if draft else _unreached(followed.structure.blocks[index])
         if own is None:
-            own = [] if told else [as_comment(row)]
+            own = [] if told else [_as_comment(row)]
             told = True
         heads = 1 if draft and draft.head else 0
         lines += [*own[:heads], *jumps.before.get(index, ()), *own[heads:]]
@@ -105,19 +104,19 @@ def lines_of_row(
         lines += [ends[index]] if index in ends else []
         if index in followed.falls_off:
             lines.append("M2")
-    return lines if indices else [as_comment(row)]
+    return lines if indices else [_as_comment(row)]
 
 
-def unreached(block: ForeignBlock) -> list[str] | None:
-    """Return the lines of a block that is never reached, None if there are words in it."""
+def _unreached(block: ForeignBlock) -> list[str] | None:
+    """Return the lines of a block that is never reached, None if it has words."""
     if block.words or block.problem or block.kind not in ("words", "tape"):
         return None
     tape = [f"%{block.label}"] if block.kind == "tape" else []
-    return with_comments([], [*tape, *block.comments])
+    return _with_comments([], [*tape, *block.comments])
 
 
-def begun(start: str, lines: list[str]) -> list[str]:
-    """Return the first line's lines with the codes that hold when a program begins."""
+def _with_start_codes(start: str, lines: list[str]) -> list[str]:
+    """Add the codes that hold at the start to the first line."""
     first = lines[0] if lines else ""
     number = BLOCK_NUMBER.match(first)
     if number:

@@ -56,7 +56,7 @@ def translate_program(
     ``progress`` is told the share that is done, 0 to 1.
     """
     rows = source_lines(text)
-    blocks = read_blocks(rows, control, progress)
+    blocks = _read_blocks(rows, control, progress)
     structure = structure_of(blocks, control)
     followed = followed_program(
         structure,
@@ -64,20 +64,19 @@ def translate_program(
         machine_codes,
         lambda index: progress(READ + FOLLOWED * min(1, index / len(blocks))),
     )
-    refused = sorted(set(refusals(followed)))
+    refused = sorted(set(_refusals(followed)))
     if refused:
         settings = [draft.setting for draft in followed.drafts if draft and draft.setting]
         return Translation("", refused, missing_lines(blocks, control, machine_codes, settings))
     order = written_order(followed, len(rows))
     if order.circular:
-        return Translation("", sorted(circular_calls(followed, order.circular)))
+        return Translation("", sorted(_circular_calls(followed, order.circular)))
     return Translation("\n".join([*output_lines(rows, order.rows, followed), ""]), [])
 
 
-def read_blocks(
+def _read_blocks(
     rows: Sequence[str], control: Control, progress: Callable[[float], None]
 ) -> list[ForeignBlock]:
-    """Return the blocks of a file's lines."""
     blocks: list[ForeignBlock] = []
     variables = control.variables()
     for line, row in enumerate(rows, 1):
@@ -87,8 +86,7 @@ def read_blocks(
     return without_clocks(blocks)
 
 
-def circular_calls(followed: FollowedProgram, circular: frozenset[int]) -> Iterator[RefusedBlock]:
-    """Yield the calls of programs that cannot be put below them."""
+def _circular_calls(followed: FollowedProgram, circular: frozenset[int]) -> Iterator[RefusedBlock]:
     for index, number in followed.calls_of(circular):
         name = followed.structure.name_of(number)
         yield RefusedBlock(
@@ -98,16 +96,15 @@ def circular_calls(followed: FollowedProgram, circular: frozenset[int]) -> Itera
         )
 
 
-def refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
-    """Yield the blocks that are refused."""
+def _refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
     if not any(draft and (draft.words or draft.refusal) for draft in followed.drafts):
         yield RefusedBlock(1, "there is no block in the file")
     for draft in filter(None, followed.drafts):
-        sentence = draft.refusal or unwritable(draft)
+        sentence = draft.refusal or _unwritable(draft)
         if sentence:
             yield RefusedBlock(draft.block.line, sentence)
     for index in followed.falls_off:
-        sentence = missing_end(followed, index)
+        sentence = _missing_end(followed, index)
         if sentence and not followed.drafts[index].refusal:
             yield RefusedBlock(followed.structure.blocks[index].line, sentence)
     if followed.structure.jumps.targets and not followed.has_end:
@@ -117,8 +114,8 @@ def refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
         yield RefusedBlock(line, sentence)
 
 
-def unwritable(draft: Draft) -> str | None:
-    """Write the lines of a block; return why that cannot be, None if it can."""
+def _unwritable(draft: Draft) -> str | None:
+    """Store the lines of a block; return the reason if they cannot be written."""
     try:
         draft.lines = lines_of(draft)
     except NotTranslated as refusal:
@@ -126,8 +123,8 @@ def unwritable(draft: Draft) -> str | None:
     return None
 
 
-def missing_end(followed: FollowedProgram, index: int) -> str | None:
-    """Return what is wrong with a program that ends behind a block without a word."""
+def _missing_end(followed: FollowedProgram, index: int) -> str | None:
+    """Return the sentence for a program that runs past its last block."""
     number = followed.program_of(index)
     following = followed.structure.starts.get(index + 1, 0)
     if LOCAL_BLOCKS <= following < NAMED_PROGRAMS:

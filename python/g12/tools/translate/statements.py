@@ -13,46 +13,40 @@ def tape(draft: Draft, index: int, structure: Structure) -> None:
     draft.comments.insert(0, f"%{draft.block.label}")
 
 
-def assign(draft: Draft, index: int, structure: Structure) -> None:
-    """Write an assignment with brackets about its expression."""
-    draft.words = [*draft.block.words, line_as_word(assignment_text(draft.block))]
+def _assign(draft: Draft, index: int, structure: Structure) -> None:
+    draft.words = [*draft.block.words, line_as_word(_assignment_text(draft.block))]
 
 
-def assignment_text(block: ForeignBlock) -> str:
-    """Return the text of an assignment."""
+def _assignment_text(block: ForeignBlock) -> str:
     text = block.expression.text
     return f"#{block.variable}={text if NUMBER.fullmatch(text) else f'[{text}]'}"
 
 
-def while_loop(draft: Draft, index: int, structure: Structure) -> None:
-    """Write the head of a loop."""
-    refuse_skipped(draft)
-    labelled(draft, f"o<while_{index}> while {draft.block.expression.text}")
+def _while_loop(draft: Draft, index: int, structure: Structure) -> None:
+    _refuse_skipped(draft)
+    _labelled(draft, f"o<while_{index}> while {draft.block.expression.text}")
 
 
-def end_of_loop(draft: Draft, index: int, structure: Structure) -> None:
-    """Write the end of a loop."""
-    refuse_skipped(draft)
-    labelled(draft, f"o<while_{structure.partners[index]}> endwhile")
+def _end_of_loop(draft: Draft, index: int, structure: Structure) -> None:
+    _refuse_skipped(draft)
+    _labelled(draft, f"o<while_{structure.partners[index]}> endwhile")
 
 
 def condition(draft: Draft, index: int, structure: Structure) -> None:
     """Write the head of what a condition rules."""
-    labelled(draft, f"o<if_{index}> if {draft.block.expression.text}")
+    _labelled(draft, f"o<if_{index}> if {draft.block.expression.text}")
 
 
-def end_of_condition(draft: Draft, index: int, structure: Structure) -> None:
-    """Write the end of what a condition rules."""
-    labelled(draft, f"o<if_{structure.partners[index]}> endif")
+def _end_of_condition(draft: Draft, index: int, structure: Structure) -> None:
+    _labelled(draft, f"o<if_{structure.partners[index]}> endif")
 
 
-def goto(draft: Draft, index: int, structure: Structure) -> None:
-    """Write a jump, with its condition if it has one."""
+def _goto(draft: Draft, index: int, structure: Structure) -> None:
     lines = structure.jumps.at[index]
     if draft.block.expression:
         head = f"o<if_{index}> if {draft.block.expression.text}"
         lines = [head, *lines, f"o<if_{index}> endif"]
-    labelled(draft, lines[0])
+    _labelled(draft, lines[0])
     draft.after += lines[1:]
 
 
@@ -64,25 +58,25 @@ def stop(draft: Draft, index: int, structure: Structure) -> None:
     draft.words = [*draft.block.words, line_as_word(text)]
 
 
-def labelled(draft: Draft, text: str) -> None:
+def _labelled(draft: Draft, text: str) -> None:
     """Write an O-word; a block number before it becomes a comment."""
     draft.comments = [*(word.text for word in draft.block.words), *draft.comments]
     draft.words = [line_as_word(text)]
 
 
-def refuse_skipped(draft: Draft) -> None:
-    """Refuse half a loop."""
+def _refuse_skipped(draft: Draft) -> None:
+    """Refuse a loop of which one half is skipped."""
     if draft.block.skipped:
         raise NotTranslated("the head or the end of a loop cannot be skipped with /")
 
 
 STATEMENTS = {
     "tape": tape,
-    "assign": assign,
-    "while": while_loop,
-    "end": end_of_loop,
+    "assign": _assign,
+    "while": _while_loop,
+    "end": _end_of_loop,
     "if": condition,
-    "endif": end_of_condition,
-    "goto": goto,
+    "endif": _end_of_condition,
+    "goto": _goto,
     "stop": stop,
 }

@@ -50,7 +50,7 @@ class Structure:
 
     def __post_init__(self) -> None:
         self.own = len(self.blocks)
-        self.behind_tape = frozenset(program_heads(self.tail).values())
+        self.behind_tape = frozenset(_program_heads(self.tail).values())
 
     def add_entry(self, number: int, index: int) -> None:
         """Note that a program begins at a block."""
@@ -93,28 +93,31 @@ class Structure:
 
 def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
     """Return the structure of a file's blocks."""
-    blocks = without_leader(blocks)
-    end = end_of_tape(blocks)
+    blocks = _without_leader(blocks)
+    end = _end_of_tape(blocks)
     structure = Structure(blocks[:end], blocks[end:])
-    heads = program_heads(structure.blocks)
-    main = start_of_main(structure, heads, control)
+    heads = _program_heads(structure.blocks)
+    main = _start_of_main(structure, heads, control)
     for index, number in heads.items():
         if index != main:
             structure.add_entry(number, index)
         elif structure.entries:
             structure.starts[index], structure.main = MAIN, index
-    add_local_programs(structure, heads, control)
+    _add_local_programs(structure, heads, control)
     find_ends(structure, control)
     return structure
 
 
 def find_ends(structure: Structure, control: Control) -> None:
     """Note where loops and programs end, and where jumps lead."""
-    pair_loops(structure)
-    find_returns(structure, codes_meaning(control, "return"))
+    _pair_loops(structure)
+    _find_returns(structure, _codes_meaning(control, "return"))
     programs = programs_of_blocks(structure)
     structure.jumps = find_jumps(
-        structure.blocks, programs, structure.partners, dict(jumping(structure, programs, control))
+        structure.blocks,
+        programs,
+        structure.partners,
+        dict(_jump_numbers(structure, programs, control)),
     )
     structure.problems.update(structure.jumps.problems)
     for number, block in zip(programs, structure.blocks):
@@ -136,19 +139,19 @@ def programs_of_blocks(structure: Structure) -> list[int]:
     return inside
 
 
-def jumping(
+def _jump_numbers(
     structure: Structure, programs: Sequence[int], control: Control
 ) -> Iterator[tuple[int, int]]:
-    """Yield the blocks that jump, GOTO and the main program's M99 P, and the N that each names."""
-    returns, calls = codes_meaning(control, "return"), codes_meaning(control, *CALLS, LOCAL)
-    places = places_of_returns(structure, programs, returns)
+    """Yield the blocks that jump (GOTO, the main program's M99 P) and their N numbers."""
+    returns, calls = _codes_meaning(control, "return"), _codes_meaning(control, *CALLS, LOCAL)
+    places = _numbers_of_returns(structure, programs, returns)
     for index, block in enumerate(structure.blocks):
         if block.kind == "goto":
             yield index, int(block.label)
-        elif programs[index] == MAIN and has_code(block, returns):
-            yield from ((index, number) for number in numbers_of(block, "P"))
-        elif has_code(block, calls):
-            called = structure.called_as.get(index) or called_by(block, control, structure.entries)
+        elif programs[index] == MAIN and _has_code(block, returns):
+            yield from ((index, number) for number in _numbers_of(block, "P"))
+        elif _has_code(block, calls):
+            called = structure.called_as.get(index) or _called_by(block, control, structure.entries)
             yield from ((index, number) for number in places.get(called, ()))
 
 
@@ -173,38 +176,36 @@ def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
         yield index, partner
 
 
-def places_of_returns(
+def _numbers_of_returns(
     structure: Structure, programs: Sequence[int], returns: frozenset[str]
 ) -> dict[int, set[int]]:
-    """Return the N number to which each program returns by M99 P; it must be one."""
+    """Return the N numbers to which each program returns by M99 P."""
     places: dict[int, set[int]] = {}
     for index, block in enumerate(structure.blocks):
-        if programs[index] != MAIN and has_code(block, returns):
-            named = numbers_of(block, "P")
+        if programs[index] != MAIN and _has_code(block, returns):
+            named = _numbers_of(block, "P")
             if places.setdefault(programs[index], named) != named:
                 structure.problems[index] = "M99 with and without P in one program, or two P"
     return places
 
 
-def called_by(block: ForeignBlock, control: Control, numbers: Collection[int]) -> int:
-    """Return the number of the program that a block calls, as far as it is written plainly."""
-    own = numbers_of(block, "P")
-    if own and not has_code(block, codes_meaning(control, LOCAL)):
+def _called_by(block: ForeignBlock, control: Control, numbers: Collection[int]) -> int:
+    """Return the program that a block calls, as far as its number is plain."""
+    own = _numbers_of(block, "P")
+    if own and not _has_code(block, _codes_meaning(control, LOCAL)):
         return called_program(min(own), control, numbers)[0]
-    return LOCAL_BLOCKS + min(own or numbers_of(block, "Q"), default=0)
+    return LOCAL_BLOCKS + min(own or _numbers_of(block, "Q"), default=0)
 
 
-def has_code(block: ForeignBlock, codes: frozenset[str]) -> bool:
-    """Tell whether a block has one of some codes."""
+def _has_code(block: ForeignBlock, codes: frozenset[str]) -> bool:
     return any(w.letter in "GM" and w.kind == "number" and w.code in codes for w in block.words)
 
 
-def codes_meaning(control: Control, *meanings: str) -> frozenset[str]:
-    """Return the control's codes of some meanings."""
+def _codes_meaning(control: Control, *meanings: str) -> frozenset[str]:
     return frozenset(code for code, meaning in control.meanings.items() if meaning in meanings)
 
 
-def program_heads(blocks: Sequence[ForeignBlock]) -> dict[int, int]:
+def _program_heads(blocks: Sequence[ForeignBlock]) -> dict[int, int]:
     """Return the first block of each program, and its number; the first may have none (MAIN)."""
     heads: dict[int, int] = {}
     for index, block in enumerate(blocks):
@@ -216,7 +217,7 @@ def program_heads(blocks: Sequence[ForeignBlock]) -> dict[int, int]:
     return heads
 
 
-def start_of_main(structure: Structure, heads: dict[int, int], control: Control) -> int:
+def _start_of_main(structure: Structure, heads: dict[int, int], control: Control) -> int:
     """Return the first block of the main program: of the first, unless others call that one.
 
     Then it is the one that nobody calls; of several the one that has an end (M30).
@@ -224,7 +225,7 @@ def start_of_main(structure: Structure, heads: dict[int, int], control: Control)
     first = next(iter(heads), 0)
     if len(heads) < 2:
         return first
-    called, ended = called_and_ended(structure.blocks, heads, control)
+    called, ended = _called_and_ended(structure.blocks, heads, control)
     free = [index for index, number in heads.items() if number not in called]
     if first in free and (first in ended or not ended.intersection(free)):
         return first
@@ -238,11 +239,11 @@ def start_of_main(structure: Structure, heads: dict[int, int], control: Control)
     return found[0] if len(found) == 1 and first not in free else first
 
 
-def called_and_ended(
+def _called_and_ended(
     blocks: Sequence[ForeignBlock], heads: dict[int, int], control: Control
 ) -> tuple[set[int], set[int]]:
     """Return the numbers that are called, and the first blocks of programs with M30 or M2."""
-    codes, numbers = codes_meaning(control, *CALLS), set(heads.values())
+    codes, numbers = _codes_meaning(control, *CALLS), set(heads.values())
     called: set[int] = set()
     ended: set[int] = set()
     head = -1
@@ -252,18 +253,17 @@ def called_and_ended(
         if own & ENDS:
             ended.add(head)
         if own & codes:
-            called |= {called_program(n, control, numbers)[0] for n in numbers_of(block, "P")}
+            called |= {called_program(n, control, numbers)[0] for n in _numbers_of(block, "P")}
     return called, ended
 
 
-def numbers_of(block: ForeignBlock, letter: str) -> set[int]:
-    """Return the whole numbers that a block has behind a letter."""
+def _numbers_of(block: ForeignBlock, letter: str) -> set[int]:
     return {int(w.value) for w in block.words if w.letter == letter and w.value.isdigit()}
 
 
-def add_local_programs(structure: Structure, heads: dict[int, int], control: Control) -> None:
+def _add_local_programs(structure: Structure, heads: dict[int, int], control: Control) -> None:
     """Note the blocks that M97 or M98 Q calls, each in the program that the call stands in."""
-    local, calls = codes_meaning(control, LOCAL), codes_meaning(control, "subprogram")
+    local, calls = _codes_meaning(control, LOCAL), _codes_meaning(control, "subprogram")
     head = -1
     numbered: dict[tuple[int, int], int] = {}
     wanted: set[tuple[int, int]] = set()
@@ -272,17 +272,17 @@ def add_local_programs(structure: Structure, heads: dict[int, int], control: Con
         first = block.words[0] if block.words else None
         if first and first.letter == "N" and first.value.isdigit():
             numbered.setdefault((head, int(first.value)), index)
-        if has_code(block, local):
-            wanted |= {(head, number) for number in numbers_of(block, "P")}
-        elif has_code(block, calls):
-            wanted |= {(head, number) for number in numbers_of(block, "Q")}
+        if _has_code(block, local):
+            wanted |= {(head, number) for number in _numbers_of(block, "P")}
+        elif _has_code(block, calls):
+            wanted |= {(head, number) for number in _numbers_of(block, "Q")}
     for place in sorted(wanted & numbered.keys()):
         structure.add_entry(LOCAL_BLOCKS + place[1], numbered[place])
 
 
-def end_of_tape(blocks: Sequence[ForeignBlock]) -> int:
-    """Return the index behind the ``%`` that ends the program."""
-    start = opening_of_tape(blocks)
+def _end_of_tape(blocks: Sequence[ForeignBlock]) -> int:
+    """Return the index after the closing ``%``."""
+    start = _opening_of_tape(blocks)
     started = start > 0
     for index, block in enumerate(blocks[start:], start):
         if block.kind == "tape" and started:
@@ -291,8 +291,8 @@ def end_of_tape(blocks: Sequence[ForeignBlock]) -> int:
     return len(blocks)
 
 
-def opening_of_tape(blocks: Sequence[ForeignBlock]) -> int:
-    """Return the index behind the first ``%``, 0 where more than a program's name is before it."""
+def _opening_of_tape(blocks: Sequence[ForeignBlock]) -> int:
+    """Return the index after the first ``%``, 0 if more than a program's name is before it."""
     tapes = [index for index, block in enumerate(blocks) if block.kind == "tape"]
     first = tapes[0] if tapes else -1
     plain = all(b.kind == "words" and not b.problem for b in blocks[:first])
@@ -300,9 +300,9 @@ def opening_of_tape(blocks: Sequence[ForeignBlock]) -> int:
     return first + 1 if plain and all(word.letter == "O" for word in words) else 0
 
 
-def without_leader(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
-    """Return the blocks; a program's name before the first ``%`` is a comment there."""
-    start = opening_of_tape(blocks)
+def _without_leader(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
+    """Write a program's name before the first ``%`` as a comment."""
+    start = _opening_of_tape(blocks)
     named = [
         b._replace(words=(), comments=(*(w.text for w in b.words), *b.comments))
         for b in blocks[:start]
@@ -310,30 +310,28 @@ def without_leader(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
     return [*named, *blocks[start:]]
 
 
-def find_returns(structure: Structure, codes: frozenset[str]) -> None:
-    """Note where each program returns for the last time."""
+def _find_returns(structure: Structure, codes: frozenset[str]) -> None:
     number = MAIN
     for index, block in enumerate(structure.blocks):
         number = structure.starts.get(index, number)
-        if has_code(block, codes):
+        if _has_code(block, codes):
             structure.last_returns[number] = index
 
 
-def pair_loops(structure: Structure) -> None:
-    """Join WHILE and END; a loop must end in the program that it begins in."""
+def _pair_loops(structure: Structure) -> None:
+    """Pair WHILE and END; a loop ends in the program where it begins."""
     opened: list[int] = []
     for index, block in enumerate(structure.blocks):
         if index in structure.starts:
-            unclosed(structure, opened)
+            _unclosed(structure, opened)
         if block.kind in OPENING:
             opened.append(index)
         elif block.kind in ("end", "endif"):
-            pair(structure, opened, index)
-    unclosed(structure, opened)
+            _pair(structure, opened, index)
+    _unclosed(structure, opened)
 
 
-def pair(structure: Structure, opened: list[int], index: int) -> None:
-    """Join an END with the WHILE that is open."""
+def _pair(structure: Structure, opened: list[int], index: int) -> None:
     label = structure.blocks[index].label
     if not opened or structure.blocks[opened[-1]].label != label:
         structure.problems[index] = f"END{label} without WHILE […] DO{label} before it"
@@ -342,8 +340,7 @@ def pair(structure: Structure, opened: list[int], index: int) -> None:
     structure.partners[start], structure.partners[index] = index, start
 
 
-def unclosed(structure: Structure, opened: list[int]) -> None:
-    """Note the loops that have no END."""
+def _unclosed(structure: Structure, opened: list[int]) -> None:
     for index in opened:
         label = structure.blocks[index].label
         structure.problems[index] = f"WHILE […] DO{label} has no END{label}"

@@ -225,7 +225,7 @@ def _parsed(line: int, text: str) -> ForeignBlock:
         return ForeignBlock(line, "tape", label=printable(text[1:]))
     if text.startswith(":"):
         text = f"O{text[1:]}"
-    refuse_other_texts(text)
+    _refuse_other_texts(text)
     skip = SKIP.match(text)
     if skip:
         if skip[1] not in ("", "1"):
@@ -237,8 +237,7 @@ def _parsed(line: int, text: str) -> ForeignBlock:
     return _statement(line, text)
 
 
-def refuse_other_texts(text: str) -> None:
-    """Refuse what is no block of these controls, by its name."""
+def _refuse_other_texts(text: str) -> None:
     if text.startswith("$"):
         raise NotTranslated(
             f"{excerpt(text)} begins the program of one of two channels: translate one channel's "

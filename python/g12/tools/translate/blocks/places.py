@@ -33,7 +33,7 @@ STAYING = frozenset(  # codes that move nothing and leave the origin, or set it 
 
 
 def known_place(state: ModalState, axis: str) -> float | None:
-    """Return where an axis stands, None if that is not known."""
+    """Return an axis's position, None if it is not known."""
     at = getattr(state, FIELDS[axis])
     return at if isinstance(at, float) else None
 
@@ -59,16 +59,16 @@ def end_of_word(state: ModalState, word: ForeignWord) -> float | str:
     return UNKNOWN if start is None or state.distance not in ("G90", "G91") else start + word.number
 
 
-def is_drilling(draft: Draft) -> bool:
+def _is_drilling(draft: Draft) -> bool:
     """Tell whether a mill's drilling cycle holds in a block; a motion code ends it."""
     begins = bool(set(draft.meanings) & DRILLING)
     goes_on = bool(draft.state.cycle) and MOTIONS.isdisjoint(draft.codes())
     return (begins or goes_on) and not draft.control.is_lathe
 
 
-def follow_drilling(draft: Draft) -> bool:
+def _follow_drilling(draft: Draft) -> bool:
     """Carry X and Y on to the hole of a block that drills; tell whether it does."""
-    if not is_drilling(draft):
+    if not _is_drilling(draft):
         return False
     again = draft.control.value("subprograms", "cycle_repeat", "L") in draft.letters()
     words = [w for w in draft.axis_words() if w.letter in "XY"]
@@ -79,14 +79,14 @@ def follow_drilling(draft: Draft) -> bool:
 
 
 def follow_places(draft: Draft) -> None:
-    """Carry the places on to the end of a block; ``start`` has those at its start."""
+    """Follow the positions to the end of a block."""
     codes = set(draft.codes())
     lengths = frozenset() if draft.control.is_lathe else LENGTHS
     shifted = codes & (SHIFTING - lengths) or draft.start.units != draft.state.units
     turret = draft.control.is_lathe and "T" in draft.letters()
     changes = any(w.letter == "M" and w.kind == "number" and w.code == "M6" for w in draft.words)
-    other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or is_drilling(draft)
-    drills = follow_drilling(draft) if not codes - FOLLOWED else False
+    other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or _is_drilling(draft)
+    drills = _follow_drilling(draft) if not codes - FOLLOWED else False
     if drills:
         return
     if other or turret or changes or shifted:

@@ -32,8 +32,8 @@ def hole_pattern(draft: Draft) -> None:
             f"{code} is laid about where the tool stands, which is not known here: write X and Y "
             "as numbers, under G90"
         )
-    numbers = {letter: pattern_number(draft, code, letter) for letter in WORDS[meaning]}
-    holes = [complex(x, y) + step for step in steps_of(meaning, numbers)]
+    numbers = {letter: _pattern_number(draft, code, letter) for letter in WORDS[meaning]}
+    holes = [complex(x, y) + step for step in _steps_of(meaning, numbers)]
     first, *others = (f"X{value_text(p.real)} Y{value_text(p.imag)}" for p in holes)
     draft.words = [word for word in draft.words if word.letter not in "XY"]
     draft.words += [word_of(text) for text in first.split()]
@@ -42,8 +42,7 @@ def hole_pattern(draft: Draft) -> None:
     draft.change(at_x=holes[-1].real, at_y=holes[-1].imag, at_z=UNKNOWN)
 
 
-def pattern_number(draft: Draft, code: str, letter: str) -> float:
-    """Take one number of a pattern out."""
+def _pattern_number(draft: Draft, code: str, letter: str) -> float:
     word = draft.take(letter)
     if not word or word.kind != "number":
         raise NotTranslated(f"{code} needs {letter} as a number")
@@ -59,8 +58,8 @@ def pattern_number(draft: Draft, code: str, letter: str) -> float:
     return word.number
 
 
-def steps_of(meaning: str, numbers: dict[str, float]) -> list[complex]:
-    """Return where the holes are, seen from the tool."""
+def _steps_of(meaning: str, numbers: dict[str, float]) -> list[complex]:
+    """Return the holes relative to the tool."""
     count, begin = int(numbers["L"]), radians(numbers["J"])
     if meaning == "row of holes":
         return [rect(numbers["I"] * number, begin) for number in range(count)]

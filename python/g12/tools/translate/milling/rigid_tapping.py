@@ -48,20 +48,18 @@ def tap(draft: Draft) -> None:
         draft.before.append(f"{SPINDLE[name]} S{speed}")
         draft.change(tap_top=draft.start.at_z, cycle=name)
     if code or draft.letters() & set("XYZR"):
-        write_hole(draft, values, pitch_by_speed(draft, speed))
+        _write_hole(draft, values, _pitch_by_speed(draft, speed))
     draft.change(cycle_words=(("R", values["R"]), ("Z", values["Z"])))
 
 
-def pitch_by_speed(draft: Draft, speed: str) -> str:
-    """Return the pitch of a tap."""
+def _pitch_by_speed(draft: Draft, speed: str) -> str:
     feed = draft.sure("feed", "the pitch of a tap hangs on F")
     if feed == UNKNOWN:
         raise NotTranslated("a tap needs F")
     return feed if draft.state.feed_mode == "G95" else f"[{feed} / {speed}]"
 
 
-def write_hole(draft: Draft, values: dict[str, str], pitch: str) -> None:
-    """Write the moves of one hole."""
+def _write_hole(draft: Draft, values: dict[str, str], pitch: str) -> None:
     place = [word.text for word in draft.words if word.letter in "XY"]
     dwell = draft.take("P")
     draft.comments += [f"{dwell.text}: no dwell in a rigid tap"] if dwell else []

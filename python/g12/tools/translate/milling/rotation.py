@@ -32,7 +32,7 @@ def follow_rotation(draft: Draft) -> None:
     turned = draft.state.turned
     if turned and (OWN_SYSTEMS.intersection(draft.codes()) or "numbered offset" in draft.meanings):
         raise NotTranslated("another work offset within G68: write G69 before it")
-    follow_local_offset(draft)
+    _follow_local_offset(draft)
 
 
 def end_of_rotation(draft: Draft, code: ForeignWord) -> None:
@@ -43,13 +43,13 @@ def end_of_rotation(draft: Draft, code: ForeignWord) -> None:
         draft.change(turned=UNKNOWN, **LOST)
 
 
-def follow_local_offset(draft: Draft) -> None:
-    """Take note of G52; within G68 it must not change, since it turns with the rest here."""
+def _follow_local_offset(draft: Draft) -> None:
+    """Follow G52. Within G68 it must not change: LinuxCNC rotates it, the control does not."""
     if {"G52", "G92"}.isdisjoint(draft.codes()):
         return
     state = draft.state
     known: dict[str, float | str] = {} if isinstance(state.local, str) else dict(state.local)
-    known |= {w.letter: number_of(w) for w in draft.words if w.letter in CENTRES}
+    known |= {w.letter: _constant_of(w) for w in draft.words if w.letter in CENTRES}
     local = tuple(sorted(known.items()))
     changed = local != state.local or UNSURE in known.values() or "G92" in draft.codes()
     if state.turned and changed:
@@ -57,7 +57,7 @@ def follow_local_offset(draft: Draft) -> None:
     draft.change(local=local)
 
 
-def number_of(word: ForeignWord) -> float | str:
+def _constant_of(word: ForeignWord) -> float | str:
     """Return the value of a word, UNSURE where only the machine knows it."""
     value = word.value.strip("[]")
     return float(value) if NUMBER.fullmatch(value.removeprefix("-")) else UNSURE

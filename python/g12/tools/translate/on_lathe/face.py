@@ -7,18 +7,16 @@ from g12.tools.translate.on_lathe.values import DrilledHole, MilledSurface, is_p
 LEAST_RADIUS = {"G20": 0.2, "G21": 5.0}  # a section begins off the spindle's axis
 
 
-def without_y(draft: Draft) -> None:
-    """Drop Y: there is no such slide."""
+def _without_y(draft: Draft) -> None:
     word = draft.take("Y")
     draft.comments += [f"{word.text}: no Y here"] if word else []
 
 
-def same_words(draft: Draft) -> None:
-    """Leave the words as they are: Y is C in a section."""
+def _same_words(draft: Draft) -> None:
+    """Y is C in a section: the words stay."""
 
 
-def begin_on_face(draft: Draft, point: tuple[str, str], feed: float) -> list[str]:
-    """Return the lines that begin a section at a point."""
+def _begin_on_face(draft: Draft, point: tuple[str, str], feed: float) -> list[str]:
     x, y = point
     least = LEAST_RADIUS[draft.state.units]
     start = f"[2 * SQRT[[{x}] ** 2 + [{y}] ** 2 + {least:g} ** 2]]"
@@ -28,15 +26,15 @@ def begin_on_face(draft: Draft, point: tuple[str, str], feed: float) -> list[str
     return [f"G0 X{start} C0", "G8", on, f"G1 X{x} C{y} G94 F{feed:g}"]
 
 
-def end_on_face(draft: Draft) -> list[str]:
-    """Return the lines that end a section."""
+def _end_on_face(draft: Draft) -> list[str]:
     return [draft.control.polar_codes[1], "G7"]
 
 
-def face_hole(draft: Draft, hole: DrilledHole) -> str:
-    """Return the call that drills a hole."""
+def _face_hole(draft: Draft, hole: DrilledHole) -> str:
     entries = (times(hole.x, 2), hole.y, hole.depth, hole.retract, hole.feed, hole.peck, hole.dwell)
     return f"o<face_hole_at> call {' '.join(f'[{entry}]' for entry in entries)} [0]"
 
 
-FACE = MilledSurface("Z", "on", "C", same_words, without_y, begin_on_face, end_on_face, face_hole)
+FACE = MilledSurface(
+    "Z", "on", "C", _same_words, _without_y, _begin_on_face, _end_on_face, _face_hole
+)

@@ -41,14 +41,13 @@ def hole_call(draft: Draft) -> None:
         raise NotTranslated(f"{cycle} with L: write each hole with its X and Y")
     draft.take_codes({cycle, "G90", "G94"})
     behind, draft.after = draft.after, []
-    draft.write([milled_surface(draft).call(draft, hole_from_cycle(draft, cycle, given)), *behind])
+    draft.write([milled_surface(draft).call(draft, _hole_from_cycle(draft, cycle, given)), *behind])
     stands = start_height(draft)
     at_z = UNKNOWN if stands is None else stands
     draft.change(waiting=(), own_motion=UNSURE, own_feed="other", at_z=at_z)
 
 
-def hole_from_cycle(draft: Draft, cycle: str, given: dict[str, str]) -> DrilledHole:
-    """Return the hole of a cycle's words."""
+def _hole_from_cycle(draft: Draft, cycle: str, given: dict[str, str]) -> DrilledHole:
     feed = draft.sure("feed", f"{cycle} needs F")
     retract, depth = given["R"], given["Z"]
     if not feed:

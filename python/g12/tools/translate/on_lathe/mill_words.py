@@ -68,8 +68,7 @@ def start_height(draft: Draft) -> float | None:
     return known_place(draft.start, "Z")
 
 
-def end_height(draft: Draft) -> float | None:
-    """Return where Z stands after the block, None if that is not known."""
+def _end_height(draft: Draft) -> float | None:
     if any(word.letter == "Z" for word in draft.words):
         return known_place(draft.state, "Z")
     return start_height(draft)
@@ -86,7 +85,7 @@ def moves_by_rapid(draft: Draft) -> bool:
 
 def check_rapid(draft: Draft, across: bool) -> None:
     """Refuse a rapid below the safe height; ``across``: it moves in X or Y. Up is allowed."""
-    safe, start, end = safe_height(draft), start_height(draft), end_height(draft)
+    safe, start, end = safe_height(draft), start_height(draft), _end_height(draft)
     if end is None or (across and start is None):
         raise NotTranslated("G0, and where Z stands is not known here: write Z as a number first")
     lowest = end if start is None or not across else min(start, end)

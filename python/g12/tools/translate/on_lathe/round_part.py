@@ -15,31 +15,29 @@ from g12.tools.translate.on_lathe.values import DrilledHole, MilledSurface, is_p
 TURN = 360.0
 
 
-def slides_alone(draft: Draft) -> None:
-    """Write Z as the X slide's diameter, X as Z; Y is dropped: there is no such slide."""
-    words_round(draft)
+def _slides_alone(draft: Draft) -> None:
+    """Write Z as the X slide's diameter, X as Z, and drop Y."""
+    _words_round(draft)
     word = draft.take("C")
     draft.comments += ["Y: no such slide here"] if word else []
 
 
-def words_round(draft: Draft) -> None:
-    """Write a block's words in the axes of the lathe."""
+def _words_round(draft: Draft) -> None:
     plus = diameter(draft) if draft.state.distance == "G90" else 0.0
     changed = {
         "X": ("Z", 1.0, 0.0),
-        "Y": ("C", degrees_per_length(draft), 0.0),
+        "Y": ("C", _degrees_per_length(draft), 0.0),
         "Z": ("X", 2.0, plus),
         "I": ("K", 1.0, 0.0),
         "J": ("J", -1.0, 0.0),
     }
     draft.words = [
-        moved_word(word, *changed[word.letter]) if word.letter in changed else word
+        _converted(word, *changed[word.letter]) if word.letter in changed else word
         for word in draft.words
     ]
 
 
-def moved_word(word: ForeignWord, letter: str, factor: float, plus: float) -> ForeignWord:
-    """Return a word in another axis."""
+def _converted(word: ForeignWord, letter: str, factor: float, plus: float) -> ForeignWord:
     value = times(word.value, factor, plus)
     return ForeignWord(letter, value) if is_plain_number(value) else bracketed(letter, value)
 
@@ -61,28 +59,25 @@ def diameter(draft: Draft) -> float:
     return value
 
 
-def degrees_per_length(draft: Draft) -> float:
-    """Return the angle of C that a length of 1 along Y is."""
+def _degrees_per_length(draft: Draft) -> float:
+    """Return degrees of C per length along Y."""
     return -degrees(2 / diameter(draft))
 
 
-def begin_round(draft: Draft, point: tuple[str, str], feed: float) -> list[str]:
-    """Return the lines that begin a section at a point; it is gone to by rapid."""
+def _begin_round(draft: Draft, point: tuple[str, str], feed: float) -> list[str]:
     x, y = point
     code, word = draft.control.cylinder_code
     size = diameter(draft) if word == "diameter" else diameter(draft) / 2
-    c = times(y, degrees_per_length(draft))
+    c = times(y, _degrees_per_length(draft))
     return [f"G0 Z{x} C{c if is_plain_number(c) else f'[{c}]'}", f"{code} C{size:g}"]
 
 
-def end_round(draft: Draft) -> list[str]:
-    """Return the lines that end a section."""
+def _end_round(draft: Draft) -> list[str]:
     return [f"{draft.control.cylinder_code[0]} C0"]
 
 
-def side_hole(draft: Draft, hole: DrilledHole) -> str:
-    """Return the call that drills a hole towards the axis."""
-    angle = times(hole.y, degrees_per_length(draft))
+def _side_hole(draft: Draft, hole: DrilledHole) -> str:
+    angle = times(hole.y, _degrees_per_length(draft))
     if is_plain_number(angle):
         angle = times(str(fmod(float(angle), TURN)), 1.0)
     surface = f"{diameter(draft):g}"
@@ -92,5 +87,5 @@ def side_hole(draft: Draft, hole: DrilledHole) -> str:
 
 
 ROUND = MilledSurface(
-    "X", "cylinder", "Y", words_round, slides_alone, begin_round, end_round, side_hole
+    "X", "cylinder", "Y", _words_round, _slides_alone, _begin_round, _end_round, _side_hole
 )

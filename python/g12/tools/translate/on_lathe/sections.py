@@ -43,15 +43,15 @@ def mill_block(draft: Draft) -> None:
     if "cancel cycle" in draft.meanings:
         draft.comments.append(draft.meanings.pop("cancel cycle").code)
         draft.change(cycle=UNKNOWN, cycle_words=())
-    if draft.state.polar != "off" and ends_here(draft):
-        end_section(draft)
-    go_home(draft)
+    if draft.state.polar != "off" and _ends_here(draft):
+        _end_section(draft)
+    _go_home(draft)
     if drills(draft):
         return
-    if draft.letters() & {"X", "Y", "Z", *ARC} and not machines_own(draft):
-        write_move(draft)
+    if draft.letters() & {"X", "Y", "Z", *ARC} and not _is_reference(draft):
+        _write_move(draft)
     elif draft.call and draft.state.polar == "off" and draft.state.waiting:
-        begin_section(draft)
+        _begin_section(draft)
     if draft.state.polar != "off":
         milled_surface(draft).inside(draft)
     elif draft.state.compensation in ("G41", "G42"):
@@ -67,11 +67,10 @@ def milled_surface(draft: Draft) -> MilledSurface:
 def before_loop(draft: Draft) -> None:
     """Begin a section before a loop, so that each round of it lies in one."""
     if is_on_lathe(draft) and draft.state.polar == "off" and draft.state.waiting:
-        begin_section(draft)
+        _begin_section(draft)
 
 
-def machines_own(draft: Draft) -> bool:
-    """Tell whether the block's axes are not the program's: G28 and G30."""
+def _is_reference(draft: Draft) -> bool:
     return bool({"G28", "G30"}.intersection(draft.codes())) or bool(draft.call)
 
 
@@ -83,36 +82,34 @@ def drills(draft: Draft) -> bool:
     return bool(draft.state.cycle) and not motions and bool(draft.letters() & set("XYZR"))
 
 
-def ends_here(draft: Draft) -> bool:
-    """Tell whether a section cannot go on over a block."""
+def _ends_here(draft: Draft) -> bool:
     codes = set(draft.codes())
     changed = draft.start.units != draft.state.units
     tools = "T" in draft.letters() or draft.ends
     tools = tools or any(w.letter == "M" and w.code in CHANGES for w in draft.words)
-    returns = draft.returns and draft.state.section == program_begun_in(draft)
+    returns = draft.returns and draft.state.section == _program_begun_in(draft)
     other = codes & (ENDING - {"G20", "G21"} | OFFSETS) or changed
     return bool(tools or returns or other or drills(draft))
 
 
-def program_begun_in(draft: Draft) -> int:
-    """Return what tells the block's program from the file's others."""
+def _program_begun_in(draft: Draft) -> int:
+    """Return the first block of the program that the block is in."""
     return draft.program[0][0]
 
 
-def write_move(draft: Draft) -> None:
-    """Write a block that moves; a rapid in X and Y outside a section waits."""
+def _write_move(draft: Draft) -> None:
     across = bool(draft.letters() & {"X", "Y"})
     if not moves_by_rapid(draft):
         if draft.state.polar == "off":
-            begin_section(draft)
+            _begin_section(draft)
     elif draft.state.polar != "off":
         check_rapid(draft, across)
     else:
-        rapid_outside(draft, across)
+        _rapid_outside(draft, across)
 
 
-def rapid_outside(draft: Draft, across: bool) -> None:
-    """Keep X and Y of a rapid for later, write Z."""
+def _rapid_outside(draft: Draft, across: bool) -> None:
+    """Store X and Y of a rapid for the next cut, write Z."""
     has_height = any(word.letter == "Z" for word in draft.words)
     if has_height or start_height(draft) is not None:
         check_rapid(draft, across and start_height(draft) is not None)
@@ -128,9 +125,9 @@ def rapid_outside(draft: Draft, across: bool) -> None:
     milled_surface(draft).outside(draft)
 
 
-def begin_section(draft: Draft) -> None:
-    """Go to where the section begins, and begin it, on lines before the block."""
-    if ends_here(draft):
+def _begin_section(draft: Draft) -> None:
+    """Move to where the section begins, and begin it, before the block."""
+    if _ends_here(draft):
         raise NotTranslated(
             "a cut begins here beside a tool, an offset or units: write them in a block before it"
         )
@@ -150,7 +147,7 @@ def begin_section(draft: Draft) -> None:
     at_y = known_place(draft.state, "Y")
     draft.change(
         polar=milled_surface(draft).section,
-        section=program_begun_in(draft),
+        section=_program_begun_in(draft),
         waiting=(),
         own_motion="G1",
         own_feed="other",
@@ -158,8 +155,7 @@ def begin_section(draft: Draft) -> None:
     )
 
 
-def end_section(draft: Draft) -> None:
-    """End the section on lines before the block."""
+def _end_section(draft: Draft) -> None:
     if draft.start.compensation != "G40" or draft.state.delayed:
         raise NotTranslated("G41 or G42 is on where the section ends: G40 with a move before it")
     draft.before += milled_surface(draft).end(draft)
@@ -174,13 +170,13 @@ def end_section(draft: Draft) -> None:
     )
 
 
-def go_home(draft: Draft) -> None:
-    """Write G28, G30 and G53 in the lathe's axes; the mill's machine zero means nothing there."""
+def _go_home(draft: Draft) -> None:
+    """Write G28, G30 and G53 in the lathe's axes: the mill's machine zero has no meaning there."""
     codes = {"G28", "G30", "G53"}.intersection(draft.codes())
     if not codes:
         return
     if codes == {"G53"}:
-        machine_zero(draft)
+        _machine_zero(draft)
     else:
         milled_surface(draft).outside(draft)
         if not draft.axis_words():
@@ -188,7 +184,7 @@ def go_home(draft: Draft) -> None:
     draft.change(waiting=())
 
 
-def machine_zero(draft: Draft) -> None:
+def _machine_zero(draft: Draft) -> None:
     """Write G53 as G28 away from the part if it has Z, as a comment if not."""
     motions = draft.take_codes({"G0", "G1"})
     gone = [word for word in draft.words if word.letter in "XYZ"]

@@ -27,9 +27,9 @@ def keep_as_comments(draft: Draft) -> None:
 
 def map_codes(draft: Draft) -> None:
     """Replace every code, keep it, hand it to its rule, or refuse it."""
-    part_builders_codes(draft)
+    _part_builders_codes(draft)
     named: Mapping[str, Any] = draft.control.tables.get("words", {})
-    live = speed_by_p(draft)
+    live = _speed_by_p(draft)
     words: list[ForeignWord] = []
     for word in draft.words:
         if word.letter in "GM":
@@ -39,7 +39,7 @@ def map_codes(draft: Draft) -> None:
     draft.words = [*words, *live]
 
 
-def speed_by_p(draft: Draft) -> list[ForeignWord]:
+def _speed_by_p(draft: Draft) -> list[ForeignWord]:
     """Take a code whose P is a speed out, ``M133 P1500``; return LinuxCNC's words for it."""
     meanings = draft.control.meanings
     word = next((w for w in draft.words if "S=P" in meanings.get(w.text, "")), None)
@@ -47,16 +47,15 @@ def speed_by_p(draft: Draft) -> list[ForeignWord]:
         return []
     draft.words = [other for other in draft.words if other is not word]
     speed = draft.take("P")
-    return own_words(meanings[word.text].replace("S=P", f"S{speed.value}" if speed else ""))
+    return _own_words(meanings[word.text].replace("S=P", f"S{speed.value}" if speed else ""))
 
 
-def own_words(meaning: str) -> list[ForeignWord]:
-    """Return the words of LinuxCNC's codes in the place of one."""
+def _own_words(meaning: str) -> list[ForeignWord]:
     texts = (SPINDLES.get(text, text) for text in meaning.split())
     return [ForeignWord(text[0], text[1:]) for text in texts]
 
 
-def part_builders_codes(draft: Draft) -> None:
+def _part_builders_codes(draft: Draft) -> None:
     """Write all builder's codes but the last on lines before: LinuxCNC takes one in a block."""
     found = [w for w in draft.words if w.letter == "M" and w.kind == "number" and is_own(draft, w)]
     for word in found[:-1]:
@@ -81,21 +80,20 @@ def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
     if known or meaning == "same":
         return [word]
     if meaning in RULES:
-        return handed_over(draft, meaning, word)
+        return _owned_by_rule(draft, meaning, word)
     if meaning in BUILDERS:
-        return builders_code(draft, word)
-    return replaced(code, meaning, control.name)
+        return _builders_code(draft, word)
+    return _replaced(code, meaning, control.name)
 
 
-def handed_over(draft: Draft, meaning: str, word: ForeignWord) -> list[ForeignWord]:
-    """Keep a code for the rule of its meaning."""
+def _owned_by_rule(draft: Draft, meaning: str, word: ForeignWord) -> list[ForeignWord]:
     if meaning in draft.meanings:
         raise NotTranslated(f"{word.code} stands beside {draft.meanings[meaning].code}")
     draft.meanings[meaning] = word
     return []
 
 
-def builders_code(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
+def _builders_code(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
     """Keep a machine builder's code; where the machine is known, it must know it."""
     if draft.machine_codes is not None:
         raise NotTranslated(
@@ -105,11 +103,10 @@ def builders_code(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
     return [word]
 
 
-def replaced(code: str, meaning: str, control: str) -> list[ForeignWord]:
-    """Return the codes that the control's file gives for one."""
+def _replaced(code: str, meaning: str, control: str) -> list[ForeignWord]:
     if meaning.startswith("refuse: "):
         raise NotTranslated(f"{code}: {meaning.removeprefix('refuse: ')}")
     if not meaning:
         table = f"[{code[0].lower()}_codes]"
         raise NotTranslated(f"{code} is not known of {control}: say under {table} what it is")
-    return own_words(meaning)
+    return _own_words(meaning)

@@ -33,7 +33,7 @@ def drilling_cycle(draft: Draft) -> None:
     elif draft.state.cycle and draft.letters() & set("XYZR"):
         if draft.state.cycle == UNSURE:
             raise NotSure("a drilling cycle is on, but not on every way to this block", *CYCLE)
-        drill(draft, draft.state.cycle, stored_words(draft))
+        drill(draft, draft.state.cycle, _stored_words(draft))
 
 
 def cancel(draft: Draft) -> None:
@@ -56,14 +56,14 @@ def begin(draft: Draft, code: str) -> None:
         draft.change(motion=motions[0])
     given = {word.letter for word in draft.words}
     is_complete = draft.state.cycle_words == UNSURE and given >= {"Z", "R", *NEEDS.get(code, "")}
-    kept = {} if is_complete else stored_words(draft)
+    kept = {} if is_complete else _stored_words(draft)
     if code != draft.state.cycle:
         draft.change(cycle=code)
     drill(draft, code, kept)
 
 
-def stored_words(draft: Draft) -> dict[str, str]:
-    """Return what the cycle was given, by letter; ``@`` is the distance mode that it was under."""
+def _stored_words(draft: Draft) -> dict[str, str]:
+    """Return the stored words by letter; ``@`` is the distance mode they were given in."""
     words = draft.state.cycle_words
     if words == UNSURE:
         raise NotSure("a drilling cycle is not given the same on every way to this block", *CYCLE)
@@ -77,16 +77,16 @@ def drill(draft: Draft, code: str, kept: dict[str, str]) -> None:
     given = {word.letter: word.value for word in draft.words if word.letter in KEPT}
     under = kept.pop("@", distance)
     values = {**kept, **given}
-    check_words(draft, code, values)
+    _check_words(draft, code, values)
     repeats = repeats_of(draft)
     if under == distance or {"Z", "R"} <= given.keys():
         under = distance
     else:
         absolute(draft, code, given, under)
     if repeats == "0":
-        store(draft, code)
+        _store(draft, code)
     else:
-        write_cycle(draft, code, values, given, under)
+        _write_cycle(draft, code, values, given, under)
         repeat(draft, repeats)
     draft.change(cycle_words=tuple(sorted({"R": UNKNOWN, **values, "@": under}.items())))
 
@@ -123,8 +123,7 @@ def seconds_of_dwell(draft: Draft) -> None:
     draft.replace(word, time_in_seconds(draft, word, unit == "milliseconds"))
 
 
-def check_words(draft: Draft, code: str, values: dict[str, str]) -> None:
-    """Refuse a cycle that lacks its depth or its peck, or has words of another kind."""
+def _check_words(draft: Draft, code: str, values: dict[str, str]) -> None:
     if "Z" not in values:
         raise NotTranslated(f"{code} without Z, and no depth before it")
     if NEEDS.get(code) == "Q" and "Q" not in values:
@@ -144,8 +143,8 @@ def repeats_of(draft: Draft) -> str:
     return str(int(word.value))
 
 
-def store(draft: Draft, code: str) -> None:
-    """Keep the cycle for the blocks behind this one."""
+def _store(draft: Draft, code: str) -> None:
+    """Store the cycle for the following blocks."""
     if draft.letters() & set("XY"):
         raise NotTranslated(
             f"{code} with L0 only stores the cycle: move to X and Y in another block"
@@ -156,7 +155,7 @@ def store(draft: Draft, code: str) -> None:
     draft.change(own_motion=UNSURE)
 
 
-def write_cycle(
+def _write_cycle(
     draft: Draft, code: str, values: dict[str, str], given: dict[str, str], distance: str
 ) -> None:
     """Write a block that drills, complete unless LinuxCNC is in the same cycle already."""
@@ -168,15 +167,15 @@ def write_cycle(
             if letter not in given and values.get(letter):
                 draft.words.append(ForeignWord(letter, values[letter]))
         if not values.get("R"):
-            stand_off(draft, distance)
+            _stand_off(draft, distance)
         if "P" in used and "P" not in values:
             draft.words.append(word_of("P0"))
         draft.put_first(code)
     draft.change(own_motion=code)
 
 
-def stand_off(draft: Draft, distance: str) -> None:
-    """Write R as the height where the tool stands."""
+def _stand_off(draft: Draft, distance: str) -> None:
+    """Write R as the tool's Z level."""
     if draft.sure("plane", "a cycle without R") not in ("G17", UNKNOWN):
         raise NotTranslated("a cycle without R in another plane than G17")
     draft.words.append(ForeignWord("R", "0" if distance == "G91" else "#5422", "expression"))

@@ -20,10 +20,10 @@ SIZES = {"R": 1, "Q": 2}  # radius and diameter
 def switch_cylinder(draft: Draft, code: ForeignWord) -> None:
     """Write the beginning and the end of a section on a cylinder."""
     if draft.control.value("cylinder", "word") == "mapped":
-        radius = mapped_radius(draft, code.code)
+        radius = _mapped_radius(draft, code.code)
         draft.change(mapped=radius)
     else:
-        radius = named_radius(draft, code.code)
+        radius = _named_radius(draft, code.code)
     name, word = draft.control.cylinder_code
     value = f"[2 * {radius}]" if radius and word == "diameter" else radius or "0"
     feed = own_feed_ended(draft) if radius else []
@@ -31,7 +31,7 @@ def switch_cylinder(draft: Draft, code: ForeignWord) -> None:
     draft.change(polar="cylinder" if radius else "off", own_motion=UNSURE)
 
 
-def named_radius(draft: Draft, code: str) -> str:
+def _named_radius(draft: Draft, code: str) -> str:
     """Return the radius that C or H says, "" for the end of the cylinder."""
     word = draft.take("C") or draft.take("H")
     if not word:
@@ -42,7 +42,7 @@ def named_radius(draft: Draft, code: str) -> str:
     return f"[{word.value} / 2]" if half else word.value
 
 
-def mapped_radius(draft: Draft, code: str) -> str:
+def _mapped_radius(draft: Draft, code: str) -> str:
     """Return the radius of a cylinder that Y is mapped onto, "" for its end, the code alone."""
     sizes = [(word, SIZES[letter]) for letter in SIZES if (word := draft.take(letter))]
     axes = [word for letter in "YC" if (word := draft.take(letter))]

@@ -24,15 +24,15 @@ def whole_units(draft: Draft) -> None:
     """Write every length, angle and feed with the value that it has on the control."""
     for at, word in enumerate(draft.words):
         if word.kind == "number" and "." not in word.value:
-            kind = class_of(draft, word)
+            kind = _quantity_of(draft, word)
             if kind:
                 draft.words[at] = in_units(draft, word, kind)
                 if word.letter == "F":
                     draft.change(feed=draft.words[at].value)
 
 
-def class_of(draft: Draft, word: ForeignWord) -> str:
-    """Return what a word's number measures, "" if it counts or names something."""
+def _quantity_of(draft: Draft, word: ForeignWord) -> str:
+    """Return the quantity that a word measures, "" if it counts or names something."""
     letter = word.letter
     if any(letter in COUNTING.get(name, "") for name in (*draft.meanings, draft.state.cycle)):
         return ""
@@ -40,7 +40,7 @@ def class_of(draft: Draft, word: ForeignWord) -> str:
         return ""  # the type of a Haas's contour
     if letter == "F":
         return "feed_rev" if draft.state.feed_mode == "G95" else "feed"
-    if letter in "IJK" and is_cycle(draft) and not is_arc(draft):
+    if letter in "IJK" and _is_cycle(draft) and not _is_arc(draft):
         return ""  # K counts there, the others are refused
     if letter == "H" and "G43" in draft.codes():
         return ""
@@ -51,13 +51,11 @@ def class_of(draft: Draft, word: ForeignWord) -> str:
     return "length" if letter in LENGTHS else ""
 
 
-def is_arc(draft: Draft) -> bool:
-    """Tell whether the block ends a cycle with an arc."""
+def _is_arc(draft: Draft) -> bool:
     return not {"G2", "G3"}.isdisjoint(draft.codes())
 
 
-def is_cycle(draft: Draft) -> bool:
-    """Tell whether the block drills."""
+def _is_cycle(draft: Draft) -> bool:
     return bool({"drilling cycle", *HOLES} & set(draft.meanings)) or bool(draft.state.cycle)
 
 
@@ -68,7 +66,7 @@ def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
     least, rule = least_increment(draft, kind), draft.control.decimals
     if rule == "whole" or least == 1:
         return word
-    if rule == "" and not least and 1 in both_increments(draft, kind):
+    if rule == "" and not least and 1 in _both_increments(draft, kind):
         raise NotTranslated(
             f"{word.text} has no decimal point: what it is then hangs on G20 or G21, and neither "
             "is said before (--units)"
@@ -93,12 +91,11 @@ def least_increment(draft: Draft, kind: str) -> float:
     unit = UNIT.get(draft.sure("units", "a number has no decimal point"))
     if unit:
         return float(draft.control.value("increments", f"{kind}_{unit}", 0))
-    both = both_increments(draft, kind)
+    both = _both_increments(draft, kind)
     if draft.control.decimals == "least" and len(both) > 1:
         raise NotTranslated("a number has no decimal point before G20 or G21 is said")
     return both.pop() if len(both) == 1 else 0.0
 
 
-def both_increments(draft: Draft, kind: str) -> set[float]:
-    """Return the increments of a class in millimetres and in inches."""
+def _both_increments(draft: Draft, kind: str) -> set[float]:
     return {float(draft.control.value("increments", f"{kind}_{u}", 0)) for u in ("mm", "inch")}

@@ -28,9 +28,9 @@ def time_in_seconds(draft: Draft, word: ForeignWord, thousandths: bool) -> Forei
     if thousandths:
         if "." in word.value and word.kind == "number":
             return with_point(draft, word)
-        return divided(word)
+        return _divided(word)
     if word.kind == "number" and "." not in word.value and word.number:
-        return without_point(draft, word)
+        return _without_point(draft, word)
     return word._replace(letter="P")
 
 
@@ -41,17 +41,15 @@ def with_point(draft: Draft, word: ForeignWord) -> ForeignWord:
     return word._replace(letter="P")
 
 
-def without_point(draft: Draft, word: ForeignWord) -> ForeignWord:
-    """Return seconds that are written without a decimal point."""
+def _without_point(draft: Draft, word: ForeignWord) -> ForeignWord:
     if not draft.control.decimals:
         raise NotTranslated(
             f"{word.text} has no decimal point: thousandths or seconds? set decimals (--decimals)"
         )
-    return divided(word) if draft.control.decimals == "least" else word._replace(letter="P")
+    return _divided(word) if draft.control.decimals == "least" else word._replace(letter="P")
 
 
-def divided(word: ForeignWord) -> ForeignWord:
-    """Return milliseconds as seconds."""
+def _divided(word: ForeignWord) -> ForeignWord:
     if word.kind == "expression":
         return word._replace(letter="P", value=f"[[{word.value}] / 1000]")
     return word._replace(letter="P", value=f"{Decimal(word.value) / 1000:f}")

@@ -22,7 +22,7 @@ def incremental_words(draft: Draft) -> None:
         own = "UH" if draft.state.polar == "on" else "UWH"
         found = [word for word in found if word.letter not in own]
         if found and len(draft.axis_words()) + len(draft.increments()) > len(found):
-            depth_beside(draft, found[0])
+            _depth_in_section(draft, found[0])
             return
     if not found:
         return
@@ -31,9 +31,9 @@ def incremental_words(draft: Draft) -> None:
             raise NotTranslated(f"{word.text} and {PARTNERS[word.letter]} in one block")
     alone = len(found) == len(draft.axis_words()) + len(found)
     if draft.sure("distance", f"{found[0].text} is an increment") == "G91":
-        rename(draft)
+        _rename(draft)
     elif alone:
-        rename(draft)
+        _rename(draft)
         draft.change(own_distance="G91")
         draft.put_first("G91")
     else:
@@ -41,8 +41,8 @@ def incremental_words(draft: Draft) -> None:
             draft.replace(word, place_of_increment(draft, word))
 
 
-def depth_beside(draft: Draft, word: ForeignWord) -> None:
-    """Write W beside X and C of a section as Z: in the plane it is neither X nor C."""
+def _depth_in_section(draft: Draft, word: ForeignWord) -> None:
+    """Write W beside X and C of a section as Z, which is not in the section's plane."""
     if word.letter != "W" or {"Z"} & draft.letters():
         raise NotTranslated(f"{word.text} beside other axes in a section")
     depth = known_place(draft.state, "Z")
@@ -55,7 +55,6 @@ def depth_beside(draft: Draft, word: ForeignWord) -> None:
         draft.replace(word, ForeignWord("Z", value_text(depth)))
 
 
-def rename(draft: Draft) -> None:
-    """Write increments by their axes."""
+def _rename(draft: Draft) -> None:
     for word in draft.increments():
         draft.replace(word, word._replace(letter=PARTNERS[word.letter]))

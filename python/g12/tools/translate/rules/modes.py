@@ -55,11 +55,10 @@ def follow_modes(draft: Draft) -> None:
         modes["own_distance"] = AS_PROGRAMMED
     if modes:
         draft.change(**modes)
-    follow_surface_speed(draft)
+    _follow_surface_speed(draft)
 
 
-def follow_surface_speed(draft: Draft) -> None:
-    """Take note of the S of G96."""
+def _follow_surface_speed(draft: Draft) -> None:
     word = draft.word("S")
     if word and draft.state.spindle_mode == "G96" and not draft.meanings:
         draft.change(surface=word.value)

@@ -21,20 +21,20 @@ def motion_mode(draft: Draft) -> None:
     if "G53" in codes or draft.state.cycle or draft.has_motion:
         return
     motion = next((code for code in codes if code in MOTIONS), "")
-    refuse_rounding(draft, motion or draft.state.motion)
+    _refuse_rounding(draft, motion or draft.state.motion)
     if CONSUMERS.intersection(codes):
         if motion and (draft.axis_words() or "G28" in codes or "G30" in codes):
-            keep_for_later(draft, motion)
+            _take_motion(draft, motion)
         elif motion:
             draft.change(motion=motion, own_motion=AS_PROGRAMMED)
     elif motion:
         draft.change(motion=motion, own_motion=AS_PROGRAMMED)
     elif moves(draft):
-        bare_words(draft)
+        _bare_words(draft)
 
 
-def refuse_rounding(draft: Draft, motion: str) -> None:
-    """Refuse the R of a straight line, a corner that some controls round."""
+def _refuse_rounding(draft: Draft, motion: str) -> None:
+    """Refuse the R of a straight line: some controls round the corner by it."""
     straight = motion in ("G0", "G1") and not CONSUMERS.intersection(draft.codes())
     if straight and "R" in draft.letters() and draft.axis_words():
         raise NotTranslated(f"R beside {motion}: write the arc of the corner as a block")
@@ -46,16 +46,15 @@ def moves(draft: Draft) -> bool:
     return bool(draft.letters() & (set("XYZABCUWHIJR") if inside else set("XYZABC")))
 
 
-def keep_for_later(draft: Draft, motion: str) -> None:
-    """Take out a motion code that only says the mode of the blocks behind this one."""
+def _take_motion(draft: Draft, motion: str) -> None:
+    """Take out a motion code that sets the mode of the following blocks only."""
     state = draft.state
     own = state.motion if state.own_motion == AS_PROGRAMMED else state.own_motion
     draft.take_codes(MOTIONS)
     draft.change(motion=motion, own_motion=AS_PROGRAMMED if own == motion else own)
 
 
-def bare_words(draft: Draft) -> None:
-    """Write the motion mode before words without one."""
+def _bare_words(draft: Draft) -> None:
     state = draft.state
     if state.motion == UNKNOWN:
         raise NotTranslated(
@@ -82,7 +81,7 @@ def distance_mode(draft: Draft) -> None:
 
 
 def needs_g90(draft: Draft) -> bool:
-    """Tell whether LinuxCNC is not in G90 where words are written as places; it is from here on."""
+    """Whether absolute words need a G90 here; LinuxCNC is in it afterwards."""
     state = draft.state
     own = state.distance if state.own_distance == AS_PROGRAMMED else state.own_distance
     draft.change(own_distance=AS_PROGRAMMED if state.distance == "G90" else "G90")

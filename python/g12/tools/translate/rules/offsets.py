@@ -37,20 +37,20 @@ def numbered_offset(draft: Draft) -> None:
         draft.change(offset=own)
     if not code:
         return
-    number = system_number(draft, code)
+    number = _system_number(draft, code)
     draft.comments.insert(0, f"G154 P{number} overwrites {SLOT}")
-    draft.before += [*unset_lines(draft, number), load_system(draft, number)]
+    draft.before += [*_unset_lines(draft, number), _load_system(draft, number)]
     draft.change(offset=f"P{number}")
 
 
-def unset_lines(draft: Draft, number: int) -> list[str]:
-    """Return the blocks that say it where a system was never set; LinuxCNC reads 0 then."""
+def _unset_lines(draft: Draft, number: int) -> list[str]:
+    """Return lines that report a system that was never set; LinuxCNC then reads 0."""
     known = draft.state.known_offsets
     known = () if known == UNSURE else known
     if number in known:
         return []
     draft.change(known_offsets=(*known, number))
-    parameters = [f"#{parameter_of(draft, number, axis)}" for axis in draft.control.axes]
+    parameters = [f"#{_parameter_of(draft, number, axis)}" for axis in draft.control.axes]
     label = f"o<unset_{draft.index}>"
     return [
         f"{label} if [{' AND '.join(f'[{name} EQ 0]' for name in parameters)}]",
@@ -59,16 +59,14 @@ def unset_lines(draft: Draft, number: int) -> list[str]:
     ]
 
 
-def system_number(draft: Draft, code: ForeignWord) -> int:
-    """Return the number of G154 P5, or of G114."""
+def _system_number(draft: Draft, code: ForeignWord) -> int:
     whole = int(code.number)
     if 110 <= whole <= 129:
         return whole - 109
-    return whole_number_of(draft, "P", range(1, SYSTEMS + 1), code.code)
+    return _whole_number_of(draft, "P", range(1, SYSTEMS + 1), code.code)
 
 
-def whole_number_of(draft: Draft, letter: str, numbers: range, code: str) -> int:
-    """Return the whole number of a word that must be there."""
+def _whole_number_of(draft: Draft, letter: str, numbers: range, code: str) -> int:
     word = draft.take(letter)
     if not word or word.kind != "number" or not word.number.is_integer():
         raise NotTranslated(f"{code} needs {letter} and a whole number")
@@ -79,16 +77,15 @@ def whole_number_of(draft: Draft, letter: str, numbers: range, code: str) -> int
     return int(word.number)
 
 
-def parameter_of(draft: Draft, number: int, axis: str) -> int:
-    """Return the parameter that keeps one axis of a numbered system."""
+def _parameter_of(draft: Draft, number: int, axis: str) -> int:
     first = draft.control.value("offsets", "first_parameter", FIRST_PARAMETER)
     return first + 10 * (number - 1) + AXIS_NUMBERS[axis] - 1
 
 
-def load_system(draft: Draft, number: int) -> str:
-    """Return the block that copies a numbered system into LinuxCNC's ninth and selects it."""
+def _load_system(draft: Draft, number: int) -> str:
+    """Return the block that copies a numbered system into G59.3 and selects it."""
     copies = (
-        f"#{SLOT_PARAMETER + AXIS_NUMBERS[axis] - 1}=#{parameter_of(draft, number, axis)}"
+        f"#{SLOT_PARAMETER + AXIS_NUMBERS[axis] - 1}=#{_parameter_of(draft, number, axis)}"
         for axis in draft.control.axes
     )
     return f"G10 L2 P9 R0 {SLOT} {' '.join(copies)}"
@@ -102,27 +99,25 @@ def offset_by_program(draft: Draft, code: ForeignWord) -> None:
     if draft.control.is_lathe:
         raise NotTranslated("G10 of a lathe is not translated: set the offset on the machine")
     if number == 2:
-        work_offset(draft, incremental)
+        _work_offset(draft, incremental)
     elif number == 20:
-        kept_offset(draft, incremental)
+        _numbered_offset_values(draft, incremental)
     elif number in TOOL_TABLE:
-        tool_offset(draft, *TOOL_TABLE[number], incremental)
+        _tool_offset(draft, *TOOL_TABLE[number], incremental)
     else:
         raise NotTranslated("G10 needs L2, L10, L11, L12, L13 or L20")
     draft.after += draft.take_codes({"G90", "G91"})
     if not draft.is_empty():
         raise NotTranslated(f"{draft.words[-1].text} cannot stand beside G10")
-    settle(draft)
+    _settle(draft)
 
 
-def settle(draft: Draft) -> None:
-    """Make the first of the further lines the block's own."""
+def _settle(draft: Draft) -> None:
     first, *draft.after = draft.after
     draft.words.append(line_as_word(first))
 
 
-def axis_values(draft: Draft, code: str) -> list[ForeignWord]:
-    """Take the axis words out; there must be one."""
+def _axis_values(draft: Draft, code: str) -> list[ForeignWord]:
     words = draft.axis_words()
     draft.words = [word for word in draft.words if word not in words]
     if not words:
@@ -130,10 +125,10 @@ def axis_values(draft: Draft, code: str) -> list[ForeignWord]:
     return words
 
 
-def work_offset(draft: Draft, incremental: bool) -> None:
+def _work_offset(draft: Draft, incremental: bool) -> None:
     """G10 L2: G54 to G59, or G52."""
-    number = whole_number_of(draft, "P", range(7), "G10 L2")
-    words = axis_values(draft, "G10 L2")
+    number = _whole_number_of(draft, "P", range(7), "G10 L2")
+    words = _axis_values(draft, "G10 L2")
     first = G54_PARAMETER + 20 * (number - 1) if number else G52_PARAMETER
     if incremental:
         draft.after.append(SET_SCALE)
@@ -146,23 +141,23 @@ def work_offset(draft: Draft, incremental: bool) -> None:
     draft.after.append(f"G10 L2 P{number} {values}" if number else f"G52 {values}")
 
 
-def kept_offset(draft: Draft, incremental: bool) -> None:
+def _numbered_offset_values(draft: Draft, incremental: bool) -> None:
     """G10 L20: a system that is kept by number."""
-    number = whole_number_of(draft, "P", range(1, SYSTEMS + 1), "G10 L20")
+    number = _whole_number_of(draft, "P", range(1, SYSTEMS + 1), "G10 L20")
     draft.after.append(SET_SCALE)
     values = []
-    for word in axis_values(draft, "G10 L20"):
-        parameter = f"#{parameter_of(draft, number, word.letter)}"
+    for word in _axis_values(draft, "G10 L20"):
+        parameter = f"#{_parameter_of(draft, number, word.letter)}"
         old = f"{parameter} + " if incremental else ""
         values.append(f"{parameter}=[{old}{word.value} * {SCALE}]")
     draft.after.append(" ".join(values))
     if draft.sure("offset", "G10 L20 changes a work offset") in (f"P{number}", UNKNOWN):
-        draft.after += [load_system(draft, number)] if draft.state.offset else []
+        draft.after += [_load_system(draft, number)] if draft.state.offset else []
 
 
-def tool_offset(draft: Draft, what: str, wear: bool, incremental: bool) -> None:
-    """G10 L10 to L13: the tool table, wear beside it in a parameter."""
-    tool = whole_number_of(draft, "P", range(1, TOOLS + 1), "G10")
+def _tool_offset(draft: Draft, what: str, wear: bool, incremental: bool) -> None:
+    """G10 L10 to L13: write the tool table; wear is also kept in a parameter."""
+    tool = _whole_number_of(draft, "P", range(1, TOOLS + 1), "G10")
     value = draft.take("R")
     if not value:
         raise NotTranslated("G10 needs R, the tool's value")
@@ -170,29 +165,29 @@ def tool_offset(draft: Draft, what: str, wear: bool, incremental: bool) -> None:
     kept = f"#{(LENGTH_WEAR if what == 'length' else DIAMETER_WEAR) + tool}"
     added = f"[{value.value}]"
     if what == "length":
-        set_length(draft, tool, added, kept, wear, incremental)
+        _set_length(draft, tool, added, kept, wear, incremental)
     else:
-        set_size(draft, tool, added, kept, wear, incremental)
+        _set_size(draft, tool, added, kept, wear, incremental)
     if wear:
         old = f"{kept} + " if incremental else ""
         draft.after.append(f"{kept}=[{old}{added} * {SCALE}]")
 
 
-def new_value(now: str, added: str, kept: str, wear: bool, incremental: bool) -> str:
+def _new_value(now: str, added: str, kept: str, wear: bool, incremental: bool) -> str:
     """Return the table's new value: geometry and wear, from its value now if that is needed."""
     if incremental:
         return f"{now} + {added}"
     return f"{now} - {kept} / {SCALE} + {added}" if wear else f"{added} + {kept} / {SCALE}"
 
 
-def set_length(
+def _set_length(
     draft: Draft, tool: int, added: str, kept: str, wear: bool, incremental: bool
 ) -> None:
     """Set a tool's length; its present one is what G43 makes of the height."""
     active = draft.sure("length", "G10 changes a tool's length")
     if wear or incremental:
         draft.after += ["G49", f"{BARE_HEIGHT}=#5422", f"G43 H{tool}"]
-    value = new_value(f"[{BARE_HEIGHT} - #5422]", added, kept, wear, incremental)
+    value = _new_value(f"[{BARE_HEIGHT} - #5422]", added, kept, wear, incremental)
     draft.after.append(f"G10 L1 P{tool} Z[{value}]")
     if active == str(tool):
         draft.after.append(f"G43 H{tool}")
@@ -201,7 +196,9 @@ def set_length(
         draft.after.append(back)
 
 
-def set_size(draft: Draft, tool: int, added: str, kept: str, wear: bool, incremental: bool) -> None:
+def _set_size(
+    draft: Draft, tool: int, added: str, kept: str, wear: bool, incremental: bool
+) -> None:
     """Set a tool's diameter; LinuxCNC tells the present one of the loaded tool only."""
     known = dict(() if draft.state.sizes == UNSURE else draft.state.sizes)
     loaded = draft.state.tool == str(tool)
@@ -220,5 +217,5 @@ def set_size(draft: Draft, tool: int, added: str, kept: str, wear: bool, increme
     elif wear and not loaded and not incremental:
         known[tool] = dict(draft.state.sizes)[tool]
     draft.change(sizes=tuple(sorted(known.items())))
-    value = new_value(now, added, kept, wear, incremental)
+    value = _new_value(now, added, kept, wear, incremental)
     draft.after.append(f"G10 L1 P{tool} R[[{value}]{' / 2' if half else ''}]")

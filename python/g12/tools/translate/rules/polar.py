@@ -62,22 +62,22 @@ def turn_on(draft: Draft, code: ForeignWord) -> None:
         )
     if draft.control.is_lathe and "C" in draft.letters() and is_zero(draft.words[-1]):
         draft.take("C")
-    outside, inside = x_modes(draft)
+    outside, inside = _x_modes(draft)
     lines = [*own_feed_ended(draft), *([inside] if inside != outside else [])]
     own_block(draft, code.code, [*lines, draft.control.polar_codes[0]])
-    kept = slides_kept(draft, X_OF[inside] / X_OF[outside])
+    kept = _slides_kept(draft, X_OF[inside] / X_OF[outside])
     draft.change(polar="on", own_motion=UNSURE, at_c=0.0, **kept)
 
 
-def x_modes(draft: Draft) -> tuple[str, str]:
-    """Return what X words are outside of polar mode and in it: G7, diameters, or G8, radii."""
+def _x_modes(draft: Draft) -> tuple[str, str]:
+    """Return G7 or G8 for X words outside of polar mode, and in it."""
     outside = draft.sure("x_words", "polar mode") or "G8"
     return outside, MODES_OF_X.get(draft.control.value("polar", "x"), outside)
 
 
 def turn_off(draft: Draft, code: ForeignWord) -> None:
     """Write G13.1, which means nothing outside of polar mode."""
-    outside, inside = x_modes(draft)
+    outside, inside = _x_modes(draft)
     back = draft.state.polar != "off" and outside != inside
     own_block(draft, code.code, [draft.control.polar_codes[1], *([outside] if back else [])])
     if draft.state.polar != "off":
@@ -86,12 +86,12 @@ def turn_off(draft: Draft, code: ForeignWord) -> None:
                 f"G40 stands behind the last move of the section: write a move in X or C with it "
                 f"before {code.code}"
             )
-        kept = slides_kept(draft, X_OF[outside] / X_OF[inside])
+        kept = _slides_kept(draft, X_OF[outside] / X_OF[inside])
         draft.change(polar="off", own_motion=UNSURE, **kept)
 
 
-def slides_kept(draft: Draft, scale: float) -> dict[str, float]:
-    """Return where X and Z stand behind a switch; ``scale`` is what X is multiplied by."""
+def _slides_kept(draft: Draft, scale: float) -> dict[str, float]:
+    """Return X and Z after the switch; ``scale`` multiplies X."""
     x, z = known_place(draft.start, "X"), known_place(draft.start, "Z")
     found = {"at_x": None if x is None else x * scale, "at_z": z}
     return {name: value for name, value in found.items() if value is not None}
@@ -117,16 +117,15 @@ def inside_polar(draft: Draft) -> None:
     for letter in "CH":
         if sum(word.letter == letter for word in draft.words) > 1:
             raise NotTranslated(f"{letter} and its other name in one block")
-    offset_number(draft)
+    _offset_number(draft)
     if draft.state.polar == "on":
-        lengths_of_c(draft)
-        standing_depth(draft)
-        delay_compensation(draft)
+        _lengths_of_c(draft)
+        _unmoved_depth(draft)
+        _delay_compensation(draft)
     rapid(draft)
 
 
-def lengths_of_c(draft: Draft) -> None:
-    """Write C and H as lengths from the axis where the control has them as diameters."""
+def _lengths_of_c(draft: Draft) -> None:
     if draft.control.value("polar", "c") == "diameter":
         draft.words = [
             ForeignWord(w.letter, f"[{w.value} / 2]", "expression") if w.letter in "CH" else w
@@ -134,22 +133,22 @@ def lengths_of_c(draft: Draft) -> None:
         ]
 
 
-def standing_depth(draft: Draft) -> None:
-    """Drop a Z beside X or C that goes nowhere."""
+def _unmoved_depth(draft: Draft) -> None:
+    """Drop a Z beside X or C that does not move."""
     start = known_place(draft.start, "Z")
     if start is not None and draft.letters() & IN_PLANE and start == known_place(draft.state, "Z"):
         draft.comments += [word.text for word in (draft.take("Z"),) if word]
 
 
-def delay_compensation(draft: Draft) -> None:
-    """Write G40, G41 and G42 with a move in the plane: that of their block, or the next one."""
+def _delay_compensation(draft: Draft) -> None:
+    """Write G40, G41 and G42 with a move in the plane: their own or the next one."""
     own = [code for code in draft.codes() if code in ("G40", "G41", "G42")]
     code = own[0] if own else draft.state.delayed
     if not code:
         return
     if code == UNSURE:
         draft.sure("delayed", "G40 or G41 stands in front of it")
-    if draft.letters() & IN_PLANE and not stands_in_plane(draft):
+    if draft.letters() & IN_PLANE and not _is_unmoved(draft):
         if code not in own:
             draft.put_first(code)
         draft.change(delayed=UNKNOWN)
@@ -161,8 +160,8 @@ def delay_compensation(draft: Draft) -> None:
     draft.change(delayed=UNKNOWN if needless else code)
 
 
-def stands_in_plane(draft: Draft) -> bool:
-    """Tell whether X and C of a straight block go nowhere."""
+def _is_unmoved(draft: Draft) -> bool:
+    """Whether a straight block moves neither X nor C."""
     if draft.letters() & set("IJKR"):
         return False
     axes = {axis_of(word.letter) for word in draft.words if word.letter in IN_PLANE}
@@ -170,8 +169,8 @@ def stands_in_plane(draft: Draft) -> bool:
     return all(start is not None and start == end for start, end in starts)
 
 
-def offset_number(draft: Draft) -> None:
-    """Drop a D that names the loaded tool: its radius is what G41 and G42 take."""
+def _offset_number(draft: Draft) -> None:
+    """Drop a D that names the loaded tool: G41 and G42 take its radius."""
     word = draft.take("D")
     if word and word.value.lstrip("0") not in (draft.state.length, draft.state.tool):
         raise NotTranslated(
@@ -183,8 +182,8 @@ def rapid(draft: Draft) -> None:
     """Write a rapid in polar mode as the control's file says, and the feed again behind it."""
     rule = draft.control.value("polar", "rapid", "refuse")
     if rule == "feed":
-        rapid_at_feed(draft)
-    elif rule == "refuse" and is_rapid(draft):
+        _rapid_at_feed(draft)
+    elif rule == "refuse" and _is_rapid(draft):
         where = SECTIONS[draft.state.polar]
         raise NotSaid(
             f'G0 {where}: G1 with a high feed, or rapid = "feed" in [polar]',
@@ -193,16 +192,15 @@ def rapid(draft: Draft) -> None:
         )
 
 
-def is_rapid(draft: Draft) -> bool:
-    """Tell whether the block moves by rapid."""
+def _is_rapid(draft: Draft) -> bool:
     codes = {"G0", "G1", "G2", "G3"}.intersection(draft.codes())
     moves = draft.letters() & set("XYZCUWH")
     return "G0" in codes or (bool(moves) and not codes and draft.state.motion == "G0")
 
 
-def rapid_at_feed(draft: Draft) -> None:
-    """Write a rapid as G1 at the control's speed; an F beside it is for the blocks behind."""
-    if is_rapid(draft):
+def _rapid_at_feed(draft: Draft) -> None:
+    """Write a rapid as G1 at the control's rapid feed; its own F is for later blocks."""
+    if _is_rapid(draft):
         feed = feed_of_rapids(draft)
         draft.take_codes({"G0"})
         draft.take("F")
@@ -228,7 +226,7 @@ def feed_again(draft: Draft) -> None:
     """Write the feed that holds on the control where LinuxCNC has another: G93, a polar rapid's."""
     if draft.has_feed or draft.state.own_feed == AS_PROGRAMMED or not draft.letters() & MOVING:
         return
-    if goes_by_rapid(draft):
+    if _goes_by_rapid(draft):
         return
     if draft.state.held:
         draft.before += own_feed_ended(draft)
@@ -237,13 +235,13 @@ def feed_again(draft: Draft) -> None:
         letters, codes = draft.letters(), draft.codes()
         draft.words += [
             word_of(text)
-            for text in programs_feed(draft)
+            for text in _programs_feed(draft)
             if text not in codes and not (text[0] == "F" and "F" in letters)
         ]
     draft.change(own_feed=AS_PROGRAMMED, held=())
 
 
-def goes_by_rapid(draft: Draft) -> bool:
+def _goes_by_rapid(draft: Draft) -> bool:
     """Tell whether a block needs no feed: that of the next cut may not be the same on every way.
 
     A drilling cycle cuts, and a block that repeats one, also where G0 is the mode.
@@ -255,7 +253,7 @@ def goes_by_rapid(draft: Draft) -> bool:
         return False
     if draft.state.cycle or codes & (MOTIONS | CONSUMERS):
         return not codes.isdisjoint(("G0", *REFERENCE))
-    return is_rapid(draft)
+    return _is_rapid(draft)
 
 
 def own_feed_ended(draft: Draft) -> list[str]:
@@ -263,13 +261,12 @@ def own_feed_ended(draft: Draft) -> list[str]:
     if draft.state.own_feed == AS_PROGRAMMED:
         return []
     motion = ["G1"] if draft.state.held else []
-    line = " ".join([*motion, *slides_again(draft), *programs_feed(draft)])
+    line = " ".join([*motion, *_held_slides(draft), *_programs_feed(draft)])
     draft.change(own_feed=AS_PROGRAMMED, held=())
     return [line]
 
 
-def programs_feed(draft: Draft) -> list[str]:
-    """Return the words of the feed that holds on the control."""
+def _programs_feed(draft: Draft) -> list[str]:
     why = "LinuxCNC has another feed before this block"
     feed, mode = draft.sure("feed", why), draft.sure("feed_mode", why)
     if feed == UNKNOWN:
@@ -277,8 +274,8 @@ def programs_feed(draft: Draft) -> list[str]:
     return [f"F{feed}", *([mode] if mode else [])]
 
 
-def slides_again(draft: Draft) -> list[str]:
-    """Return the words of slides that LinuxCNC has not moved yet (`turning/feed_of_c`)."""
+def _held_slides(draft: Draft) -> list[str]:
+    """Return the words of slides that were held back (`turning/feed_of_c`)."""
     why = "a slide of LinuxCNC's is behind the program's"
     held: Any = draft.sure("held", why)
     points = {axis: known_place(draft.start, axis) for axis, _ in held}

@@ -24,13 +24,13 @@ def reference_point(draft: Draft) -> None:
     if code in draft.control.value("reference", "unset", ()):
         draft.comments.append(f"{code}.1 was never set on this machine: machine zero")
     if draft.control.is_lathe:
-        from_here(draft, code)
+        _from_here(draft, code)
     if draft.control.value("reference", "cancels_length", False):
-        cancel_length(draft)
+        _cancel_length(draft)
 
 
-def from_here(draft: Draft, code: str) -> None:
-    """Write U, V, W and H as places: the intermediate point, seen from where the tool stands."""
+def _from_here(draft: Draft, code: str) -> None:
+    """Write U, V, W and H as absolute positions of the intermediate point."""
     for word in draft.increments():
         axis = PARTNERS[word.letter]
         if axis in draft.letters():
@@ -54,8 +54,8 @@ def place_of_increment(draft: Draft, word: ForeignWord) -> ForeignWord:
     return ForeignWord(axis, value, "expression")
 
 
-def cancel_length(draft: Draft) -> None:
-    """G28 cancels the tool length: at once if it passes no point, else behind it."""
+def _cancel_length(draft: Draft) -> None:
+    """Cancel the tool length: at once without an intermediate point, else after the block."""
     draft.change(length="0")
     passes = any(w.kind == "expression" or w.number for w in draft.axis_words())
     if not passes and (draft.state.distance == "G91" or not draft.axis_words()):

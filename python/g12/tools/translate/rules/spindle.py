@@ -23,29 +23,28 @@ def speed_limit(draft: Draft) -> None:
     """Remember a limit, write it where G96 begins; an origin becomes G92."""
     code = draft.meanings.pop("speed limit or origin", None)
     if code:
-        limit_or_origin(draft, code.code)
+        _limit_or_origin(draft, code.code)
     if "G96" in draft.codes() and not code:
         limit = draft.sure("limit", "G96 needs the speed limit")
         if limit != UNKNOWN:
             draft.words.append(word_of(f"D{limit}"))
 
 
-def limit_or_origin(draft: Draft, code: str) -> None:
-    """Take the S of a speed limit; what is left must be axes."""
+def _limit_or_origin(draft: Draft, code: str) -> None:
+    """Take the S of a speed limit; other words must be axes."""
     limit = draft.take("S")
     if limit:
         draft.change(limit=limit.value)
         draft.comments.append(f"{code} {limit.text}")
         if draft.sure("spindle_mode", f"{code} S limits G96") == "G96":
-            limit_now(draft, code, limit.value)
+            _limit_now(draft, code, limit.value)
     if draft.axis_words():
         draft.put_first("G92")
     elif not limit or draft.letters() & set("UVWH"):
         raise NotTranslated(f"{code} needs S, a speed limit, or X and Z, an origin")
 
 
-def limit_now(draft: Draft, code: str, limit: str) -> None:
-    """Write the limit for the surface speed that is on."""
+def _limit_now(draft: Draft, code: str, limit: str) -> None:
     surface = draft.sure("surface", f"{code} S within G96")
     if surface == UNKNOWN:
         raise NotTranslated(f"{code} S within G96, and the S of G96 is not known: write it before")
@@ -57,7 +56,7 @@ def live_tool(draft: Draft) -> None:
     if draft.control.c_axis_on.intersection(word.code for word in draft.block.words):
         draft.change(spindle=UNKNOWN)
     codes = TURNING.intersection(draft.m_codes())
-    named = named_spindle(draft, bool(codes))
+    named = _named_spindle(draft, bool(codes))
     if codes and named in ("", "$0", "$-1"):
         draft.change(spindle=next(iter(codes - {"M5"}), UNKNOWN))
     if codes - {"M5"}:
@@ -69,8 +68,8 @@ def live_tool(draft: Draft) -> None:
         draft.words += [word_of(live)] if live else []
 
 
-def named_spindle(draft: Draft, turns: bool) -> str:
-    """Return the block's ``$`` word, "" for the first spindle; its P word is written as one."""
+def _named_spindle(draft: Draft, turns: bool) -> str:
+    """Return the block's ``$`` word, "" for the first spindle; write a P word as one."""
     spindles = draft.control.tables.get("spindles", {})
     word = next((w for w in draft.words if w.letter == "P" and spindles), None)
     if word and turns and word.text not in spindles:

@@ -18,8 +18,7 @@ ARGUMENTS = dict(zip("ABCIJKDEFHMQRSTUVWXYZ", (*range(1, 10), 11, 13, *range(17,
 LOCAL_BLOCKS = 1_000_000  # a block called by M97 P100 is program O1000100
 
 
-def called_number(draft: Draft, code: str, word: ForeignWord | None) -> int:
-    """Return the number of P."""
+def _called_number(draft: Draft, code: str, word: ForeignWord | None) -> int:
     if not word or word.kind != "number" or not word.value.isdigit():
         raise NotTranslated(f"{code} needs P and the number of a program of this file")
     return int(word.value)
@@ -28,22 +27,21 @@ def called_number(draft: Draft, code: str, word: ForeignWord | None) -> int:
 def call_macro(draft: Draft) -> None:
     """Take the words of G65, M98, M97 and M99 out; the lines are written when the block is done."""
     if draft.meanings.pop("macro call", None):
-        draft.call = macro_call(draft)
+        draft.call = _macro_call(draft)
     for meaning in ("subprogram", "local subprogram"):
         code = draft.meanings.pop(meaning, None)
         if code:
-            draft.call = subprogram_call(draft, code.code, meaning)
+            draft.call = _subprogram_call(draft, code.code, meaning)
     if draft.meanings.pop("return", None):
         draft.returns = not (draft.take("P") and draft.jumps)
 
 
-def subprogram_call(draft: Draft, code: str, meaning: str) -> SubprogramCall:
-    """Return the call of M98 or M97."""
+def _subprogram_call(draft: Draft, code: str, meaning: str) -> SubprogramCall:
     local = meaning == "local subprogram"
     start = None if local else draft.take("Q")
     if start and "P" in draft.letters():
         raise NotTranslated(f"{code} P with {start.text}: a program is called from its beginning")
-    number = called_number(draft, code, start or draft.take("P"))
+    number = _called_number(draft, code, start or draft.take("P"))
     repeats = draft.take("L")
     count = repeats.value if repeats else ""
     if local or start:
@@ -61,9 +59,9 @@ def called_program(number: int, control: Control, programs: Container[int]) -> t
     return number, ""
 
 
-def macro_call(draft: Draft) -> SubprogramCall:
-    """Return the call of G65; all other words of its block are arguments."""
-    number = called_number(draft, "G65", draft.take("P"))
+def _macro_call(draft: Draft) -> SubprogramCall:
+    """Return the call of G65; all other words are arguments."""
+    number = _called_number(draft, "G65", draft.take("P"))
     repeats = draft.take("L")
     arguments: dict[int, str] = {}
     for word in draft.words:
@@ -73,7 +71,7 @@ def macro_call(draft: Draft) -> SubprogramCall:
             raise NotTranslated(f"{word.text} cannot be an argument of G65")
         if ARGUMENTS[word.letter] in arguments:
             raise NotTranslated(f"{word.letter} stands twice: LinuxCNC has one variable for it")
-        check_point(draft, word)
+        _check_point(draft, word)
         arguments[ARGUMENTS[word.letter]] = word.value
     draft.words = [word for word in draft.words if word.letter == "N"]
     return SubprogramCall(
@@ -81,8 +79,7 @@ def macro_call(draft: Draft) -> SubprogramCall:
     )
 
 
-def check_point(draft: Draft, word: ForeignWord) -> None:
-    """Refuse an argument without a decimal point where that could make it another number."""
+def _check_point(draft: Draft, word: ForeignWord) -> None:
     plain = word.kind == "number" and "." not in word.value and word.number
     if plain and word.letter not in "DHMST" and draft.control.decimals != "whole":
         raise NotTranslated(f"{word.text} has no decimal point: write {word.text}. as an argument")
@@ -94,7 +91,7 @@ def finish_call(draft: Draft) -> None:
         draft.call = draft.call._replace(number=draft.called_as)
     if draft.call and draft.call.repeats and draft.jumps:
         raise NotTranslated("the called program returns by M99 P: it can be called once only")
-    lines = call_lines(draft) if draft.call else []
+    lines = _call_lines(draft) if draft.call else []
     if draft.returns:
         lines.append(draft.return_text)
     if not lines:
@@ -110,8 +107,7 @@ def finish_call(draft: Draft) -> None:
         draft.after += lines
 
 
-def call_lines(draft: Draft) -> list[str]:
-    """Return the blocks of a call."""
+def _call_lines(draft: Draft) -> list[str]:
     call = draft.call
     if call.kind == "sub":
         return [f"M98 P{call.number}{f' L{call.repeats}' if call.repeats else ''}"]

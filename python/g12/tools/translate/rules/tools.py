@@ -17,17 +17,17 @@ USES_D = COMPENSATION | POCKETS
 def tool_and_offsets(draft: Draft) -> None:
     """Rewrite tool, length and radius words as LinuxCNC has them."""
     if draft.control.is_lathe:
-        turret_word(draft)
+        _turret_word(draft)
     else:
-        length_offset(draft)
-        radius_offset(draft)
-        follow_tool(draft)
+        _length_offset(draft)
+        _radius_offset(draft)
+        _follow_tool(draft)
     if draft.start.compensation != "G40":
-        compensated_again(draft)
+        _compensated_again(draft)
 
 
-def follow_tool(draft: Draft) -> None:
-    """Take note of the tool: T is the next one until M6."""
+def _follow_tool(draft: Draft) -> None:
+    """T is the next tool until M6."""
     word = draft.word("T")
     if word:
         draft.change(next_tool=word.value.lstrip("0") or "0")
@@ -35,8 +35,7 @@ def follow_tool(draft: Draft) -> None:
         draft.change(tool=draft.state.next_tool)
 
 
-def turret_word(draft: Draft) -> None:
-    """Write a lathe's T word as tool change and offset."""
+def _turret_word(draft: Draft) -> None:
     word = draft.word("T")
     change = draft.meanings.pop("tool change", None)
     if change and not word:
@@ -44,20 +43,20 @@ def turret_word(draft: Draft) -> None:
     if not word:
         return
     draft.comments += [change.text] if change else []
-    tool, offset = parts_of(draft, word)
+    tool, offset = _parts_of(draft, word)
     loaded = not tool or draft.state.tool == str(tool)
     words = [] if loaded else [word_of(f"T{tool}"), word_of("M6")]
     if offset >= 0:
         words += [word_of("G43"), word_of(f"H{offset}")] if offset else [word_of("G49")]
     draft.replace(word, *words)
     if not loaded:
-        spindle_goes_on(draft)
+        _spindle_goes_on(draft)
     draft.comments += [word.text] if loaded else []
     draft.change(tool=str(tool) if tool else draft.state.tool, length=str(max(offset, 0)))
 
 
-def spindle_goes_on(draft: Draft) -> None:
-    """Start the spindle again that turns while the turret does: LinuxCNC's M6 stops it."""
+def _spindle_goes_on(draft: Draft) -> None:
+    """Restart the spindle that turns during the tool change: LinuxCNC's M6 stops it."""
     if TURNING.intersection(draft.m_codes()) or draft.state.live:
         return
     why = "LinuxCNC's tool change stops the spindle (say M3, M4 or M5 in the block of T)"
@@ -66,7 +65,7 @@ def spindle_goes_on(draft: Draft) -> None:
         draft.words.append(word_of(turning))
 
 
-def parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
+def _parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
     """Return tool and offset of ``T0303``; the shortest pattern that has room for it.
 
     The offset is -1 where G43 H says it.
@@ -94,7 +93,7 @@ def parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
     return tool, offset
 
 
-def length_offset(draft: Draft) -> None:
+def _length_offset(draft: Draft) -> None:
     """G43 needs H; H0 is no offset."""
     codes = draft.codes()
     if "G49" in codes:
@@ -113,8 +112,8 @@ def length_offset(draft: Draft) -> None:
     draft.change(length=word.value.lstrip("0") or "0")
 
 
-def radius_offset(draft: Draft) -> None:
-    """Keep D for the codes that have one, remember it for those that come without."""
+def _radius_offset(draft: Draft) -> None:
+    """Keep D for the codes that use it, store it for those without."""
     codes = draft.codes()
     word = draft.word("D")
     if word:
@@ -124,12 +123,12 @@ def radius_offset(draft: Draft) -> None:
             draft.comments.append(word.text)
     if COMPENSATION.intersection(codes):
         compensation(draft, word)
-    elif not word and POCKETS.intersection(codes) and takes_last(draft):
+    elif not word and POCKETS.intersection(codes) and _takes_last(draft):
         value = draft.sure("radius", "a pocket without D takes the last one")
         draft.words += [ForeignWord("D", value)] if value else []
 
 
-def compensated_again(draft: Draft) -> None:
+def _compensated_again(draft: Draft) -> None:
     """Write a G41 that is on already as a comment: LinuxCNC refuses it.
 
     Where it is on in one way to the block only, as in a loop, LinuxCNC asks itself.
@@ -151,8 +150,7 @@ def compensated_again(draft: Draft) -> None:
     draft.before += [f"{name} if [#<_ccomp> NE {code}]", text, f"{name} endif"]
 
 
-def takes_last(draft: Draft) -> bool:
-    """Tell whether a pocket without D has the last one."""
+def _takes_last(draft: Draft) -> bool:
     return draft.control.value("tools", "pocket") == "last"
 
 

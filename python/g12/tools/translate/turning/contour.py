@@ -49,7 +49,7 @@ def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[ContourMo
     """Return the segments of a contour's blocks from where the tool stands."""
     at, sides = start, []
     for block, end in zip(blocks, ends_of(blocks, start)):
-        if end != at or is_circle(block):
+        if end != at or _is_circle(block):
             sides.append(_segment(block, at, end))
         at = end
     segments: list[ContourMove] = []
@@ -60,8 +60,7 @@ def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[ContourMo
     return segments
 
 
-def is_circle(block: ContourBlock) -> bool:
-    """Tell whether a block without an end is a full circle."""
+def _is_circle(block: ContourBlock) -> bool:
     return block.motion in ("G2", "G3") and bool({"I", "K"} & block.values.keys())
 
 
@@ -127,7 +126,7 @@ def _segment(block: ContourBlock, start: complex, end: complex) -> ContourMove:
     sense = 1 if block.motion == "G3" else -1
     values = block.values
     if "R" in values:
-        centre = centre_by_radius(start, end, values["R"] * sense, block.line)
+        centre = _centre_by_radius(start, end, values["R"] * sense, block.line)
     elif not {"I", "K"} & values.keys():
         raise NotTranslated(f"line {block.line}: {block.motion} needs R, or I and K; a line is G1")
     else:
@@ -137,7 +136,7 @@ def _segment(block: ContourBlock, start: complex, end: complex) -> ContourMove:
     return ContourMove(start, end, block, centre, sense)
 
 
-def centre_by_radius(start: complex, end: complex, radius: float, line: int) -> complex:
+def _centre_by_radius(start: complex, end: complex, radius: float, line: int) -> complex:
     """Return the centre of an arc; ``radius`` is below 0 for G2, or for more than half a turn."""
     chord = end - start
     if abs(chord) < SAME or abs(chord) / 2 > abs(radius) + ROUNDED:
@@ -148,7 +147,7 @@ def centre_by_radius(start: complex, end: complex, radius: float, line: int) -> 
 
 def _with_corner(side: ContourMove, behind: ContourMove | None) -> list[ContourMove]:
     """Return a side and the chamfer or the rounding behind it."""
-    size, rounded = corner_of(side)
+    size, rounded = _corner_of(side)
     if not size:
         return [side]
     line = side.block.line
@@ -168,8 +167,8 @@ def _with_corner(side: ContourMove, behind: ContourMove | None) -> list[ContourM
     return [side._replace(end=first), corner]
 
 
-def corner_of(side: ContourMove) -> tuple[float, bool]:
-    """Return the size of the corner behind a line, 0 if it is sharp, and whether it is rounded."""
+def _corner_of(side: ContourMove) -> tuple[float, bool]:
+    """Return the size of the corner after a line, 0 if it is sharp, and whether it is rounded."""
     values = side.block.values
     if side.centre is None and side.block.motion == "G1":
         for letter in (",R", "R", ",C", "C", "I", "K"):

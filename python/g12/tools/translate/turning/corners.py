@@ -17,7 +17,7 @@ REPLACED = frozenset("XZUW") | DRAWN
 
 def direct_drawing(draft: Draft) -> None:
     """Write a line with a corner or an angle as the moves that it is."""
-    if not is_drawn(draft) and not goes_on_from_a_corner(draft):
+    if not _is_drawn(draft) and not _goes_on_from_a_corner(draft):
         return
     if not draft.control.is_lathe or draft.state.polar != "off":
         word = next(w for w in draft.words if w.letter in DRAWN)
@@ -28,7 +28,7 @@ def direct_drawing(draft: Draft) -> None:
     if draft.sure("x_words", "a corner's X is a diameter") != "G7":
         raise NotTranslated("a corner by a word where X words are radii: write it as a block")
     start = start_point(draft)
-    blocks, _ = contour_blocks(draft, chain_of(draft))
+    blocks, _ = contour_blocks(draft, _chain_of(draft))
     own = [s for s in contour_of(blocks, start) if s.block is blocks[0]]
     lines = list(lines_of_moves(moves_along(own), start))
     if not lines:
@@ -47,8 +47,7 @@ def direct_drawing(draft: Draft) -> None:
     draft.change(motion="G1", own_motion=own_motion, corner=len(own) > 1, **places)
 
 
-def is_drawn(draft: Draft) -> bool:
-    """Tell whether a block is a line with a corner or an angle."""
+def _is_drawn(draft: Draft) -> bool:
     letters, codes = draft.letters(), set(draft.codes())
     if any(letter[0] == "," for letter in letters):
         return True
@@ -58,8 +57,8 @@ def is_drawn(draft: Draft) -> bool:
     return plain and bool(letters & DRAWN) and bool(letters & set("XZUW"))
 
 
-def goes_on_from_a_corner(draft: Draft) -> bool:
-    """Tell whether increments of a block start in a corner that LinuxCNC has cut."""
+def _goes_on_from_a_corner(draft: Draft) -> bool:
+    """Whether increments of a block start at a corner that LinuxCNC has cut off."""
     behind, increments = draft.state.corner, draft.increments()
     if not behind or not (draft.axis_words() or increments):
         return False
@@ -67,8 +66,8 @@ def goes_on_from_a_corner(draft: Draft) -> bool:
     return bool(increments) or draft.state.distance == "G91"
 
 
-def chain_of(draft: Draft) -> Iterator[int]:
-    """Yield the block, and those behind it as long as a corner or an angle needs the next one."""
+def _chain_of(draft: Draft) -> Iterator[int]:
+    """Yield the block, and those after it as long as a corner or an angle needs the next one."""
     for index, block in draft.program:
         letters = {word.letter for word in block.words}
         if index < draft.index or not letters - {"N"}:

@@ -61,7 +61,7 @@ def no_pass_yet(draft: Draft) -> None:
     order = [word.code for word in draft.block.words if word.letter == "G"]
     moves = [at for at, one in enumerate(order) if one in MOTIONS]
     ended = moves[-1:] > [order.index(code.code)]
-    if not ended and (moves or (len(draft.meanings) == 1 and has_own_words(draft))):
+    if not ended and (moves or (len(draft.meanings) == 1 and _has_own_words(draft))):
         return
     del draft.meanings["turning pass"]
     draft.change(turn=UNKNOWN if ended else "turning pass", pass_words=())
@@ -70,18 +70,18 @@ def no_pass_yet(draft: Draft) -> None:
 
 def turning_cycle(draft: Draft) -> None:
     """Write the moves of a turning cycle."""
-    follow_chamfers(draft)
+    _follow_chamfers(draft)
     meaning = next((name for name in draft.meanings if name in CYCLES), "")
     modal = draft.state.turn
     if not meaning and modal:
         codes = set(draft.codes())
         if codes & MOTIONS or draft.meanings:
             draft.change(turn=UNKNOWN)
-        elif has_own_words(draft):
+        elif _has_own_words(draft):
             meaning = draft.sure("turn", "X and Z may repeat a turning cycle")
     if not meaning:
         return
-    check_turning_modes(draft)
+    _check_turning_modes(draft)
     if draft.sure("x_words", "X of a turning cycle is a diameter") != "G7":
         raise NotTranslated("a turning cycle where X words are radii: write G10.9 X1 before it")
     if meaning != modal:
@@ -90,14 +90,14 @@ def turning_cycle(draft: Draft) -> None:
     draft.meanings.pop(meaning, None)
 
 
-def has_own_words(draft: Draft) -> bool:
-    """Tell whether X Z U W of a block are there for a cycle, not for a code such as G28."""
+def _has_own_words(draft: Draft) -> bool:
+    """Whether X Z U W are the cycle's, not those of a code such as G28."""
     taken = {*CONSUMERS, "G53"}.intersection(draft.codes())
     return bool(draft.letters() & set("XZUW")) and not taken
 
 
-def follow_chamfers(draft: Draft) -> None:
-    """Note whether threads are to end with a chamfer: M23 and M24 of a Haas."""
+def _follow_chamfers(draft: Draft) -> None:
+    """M23 and M24 of a Haas: whether threads end with a chamfer."""
     for name, value in (("thread chamfer", True), ("no thread chamfer", False)):
         code = draft.meanings.pop(name, None)
         if code:
@@ -105,17 +105,16 @@ def follow_chamfers(draft: Draft) -> None:
             draft.change(chamfers=value)
 
 
-def check_turning_modes(draft: Draft) -> None:
-    """Refuse a cycle where another mode is in its way."""
+def _check_turning_modes(draft: Draft) -> None:
     if draft.state.polar != "off":
         raise NotTranslated("a turning cycle in a section: end the section before it")
     if draft.state.plane not in ("G18", UNKNOWN):
         raise NotTranslated("a turning cycle needs the plane of X and Z: write G18 before it")
 
 
-def write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **modes: Any) -> None:
-    """Write moves behind the block's other words; they end where the tool stood."""
-    refuse_strange(draft, "in the block of a turning cycle")
+def _write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **modes: Any) -> None:
+    """Write moves after the block's other words; they end at the start point."""
+    _refuse_strange(draft, "in the block of a turning cycle")
     state = draft.state
     draft.before += own_feed_ended(draft)
     lines = list(lines_of_moves(moves, start))
@@ -127,8 +126,8 @@ def write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **mode
     draft.change(**{"own_motion": own, **places, **modes})
 
 
-def refuse_strange(draft: Draft, where: str) -> None:
-    """Refuse a word that a cycle has not taken: LinuxCNC would take it as another thing."""
+def _refuse_strange(draft: Draft, where: str) -> None:
+    """Refuse a word that the cycle has not taken: LinuxCNC would give it another meaning."""
     strange = next((word for word in draft.words if word.letter not in BESIDE), None)
     if strange:
         raise NotTranslated(f"{strange.text} is not understood {where}")
@@ -137,7 +136,7 @@ def refuse_strange(draft: Draft, where: str) -> None:
 def keep(draft: Draft, meaning: str, **values: float | None) -> None:
     """Keep what the first block of a cycle says for its second."""
     code = draft.meanings[meaning].code
-    refuse_strange(draft, f"in the first block of {code}")
+    _refuse_strange(draft, f"in the first block of {code}")
     kept = dict(draft.state.kept)
     said = {name: value for name, value in values.items() if value is not None}
     kept.update({f"{meaning} {name}": value for name, value in said.items()})
@@ -146,16 +145,16 @@ def keep(draft: Draft, meaning: str, **values: float | None) -> None:
     draft.comments.append(", ".join([code, *(f"{n} {v:g}" for n, v in said.items())]))
 
 
-def kept_value(draft: Draft, meaning: str, name: str) -> float:
-    """Return what a first block said, or the control's setting."""
+def _kept_value(draft: Draft, meaning: str, name: str) -> float:
+    """Return the stored value of a first block, or the control's setting."""
     kept = dict(draft.state.kept).get(f"{meaning} {name}")
     if kept == UNSURE:
         raise NotTranslated(f"the {name} here is not the same on every way: say it in this cycle")
     return stored_setting(draft, name) if kept is None else kept
 
 
-def is_first(draft: Draft, letters: str) -> bool:
-    """Tell whether a block is the first of a cycle's two: none of some words is in it."""
+def _is_first(draft: Draft, letters: str) -> bool:
+    """Whether a block is the first of a cycle's two: it has none of the letters."""
     return not draft.letters() & set(letters)
 
 
@@ -165,13 +164,15 @@ def is_first(draft: Draft, letters: str) -> bool:
 def roughing(draft: Draft, meaning: str, along_x: bool) -> None:
     """G71 and G72."""
     depth_word = "W" if along_x else "U"
-    if is_first(draft, "PQ"):
+    if _is_first(draft, "PQ"):
         keep(draft, meaning, depth=take_number(draft, depth_word), retract=take_number(draft, "R"))
         return
-    start, (indices, follows) = start_point(draft), contour_named(draft)
-    depth = take_increments(draft, "D") or kept_value(draft, meaning, "depth")
+    start, (indices, follows) = start_point(draft), _contour_named(draft)
+    depth = take_increments(draft, "D") or _kept_value(draft, meaning, "depth")
     take_whole(draft, "R")  # Haas: 1 for type II, which is told by the contour
-    given = RoughCuts(depth, kept_value(draft, meaning, "retract"), take_allowance(draft), along_x)
+    given = RoughCuts(
+        depth, _kept_value(draft, meaning, "retract"), _take_allowance(draft), along_x
+    )
     if given.depth <= 0:
         code = draft.meanings[meaning].code
         raise NotTranslated(
@@ -180,52 +181,52 @@ def roughing(draft: Draft, meaning: str, along_x: bool) -> None:
     segments, _ = read_contour(draft, indices, start)
     given = given._replace(approach=segments[0].motion)
     moves = rough(start, segments, given)
-    write_uncompensated(draft, moves, start)
+    _write_uncompensated(draft, moves, start)
     draft.follows = follows
 
 
-def contour_named(draft: Draft) -> tuple[range, int]:
-    """Take P and Q out; return the blocks of the contour, and that which follows the cycle."""
+def _contour_named(draft: Draft) -> tuple[range, int]:
+    """Take P and Q; return the contour's blocks, and the block after the cycle."""
     first, last = take_whole(draft, "P"), take_whole(draft, "Q")
     if first is None or last is None:
         raise NotTranslated("the cycle needs P and Q, the first and the last block of its contour")
     return named_blocks(draft, first, last)
 
 
-def take_allowance(draft: Draft) -> complex:
-    """Take U and W out, what finishing is to cut: U a diameter."""
+def _take_allowance(draft: Draft) -> complex:
+    """Take U and W, the finishing allowance; U is a diameter."""
     return complex(take_number(draft, "W") or 0.0, (take_number(draft, "U") or 0.0) / 2)
 
 
-def write_uncompensated(draft: Draft, moves: Sequence[CycleMove], start: complex) -> None:
-    """Write moves without nose compensation, which is on again behind them."""
+def _write_uncompensated(draft: Draft, moves: Sequence[CycleMove], start: complex) -> None:
+    """Write moves without nose compensation; it is restored after them."""
     on = draft.sure("compensation", "roughing is not compensated")
-    write_moves(draft, moves, start, motion=UNSURE, own_motion=UNSURE)
+    _write_moves(draft, moves, start, motion=UNSURE, own_motion=UNSURE)
     if on in ("G41", "G42"):
         draft.after = ["G40", *draft.after, on]
 
 
-def pattern_repeating(draft: Draft) -> None:
+def _pattern_repeating(draft: Draft) -> None:
     """G73: two blocks, or one with I, K and D."""
-    if is_first(draft, "PQ"):
+    if _is_first(draft, "PQ"):
         relief = {"x": take_number(draft, "U"), "z": take_number(draft, "W")}
         keep(draft, "pattern repeating", **relief, passes=take_whole(draft, "R"))
         return
-    start, (indices, follows) = start_point(draft), contour_named(draft)
+    start, (indices, follows) = start_point(draft), _contour_named(draft)
     own = (take_number(draft, "I"), take_number(draft, "K"), take_whole(draft, "D"))
     x, z, passes = (
-        kept_value(draft, "pattern repeating", name) if value is None else value
+        _kept_value(draft, "pattern repeating", name) if value is None else value
         for name, value in zip(("x", "z", "passes"), own)
     )
     segments, _ = read_contour(draft, indices, start)
-    moves = repeated_cuts(start, segments, complex(z, x), take_allowance(draft), int(passes))
-    write_uncompensated(draft, moves, start)
+    moves = repeated_cuts(start, segments, complex(z, x), _take_allowance(draft), int(passes))
+    _write_uncompensated(draft, moves, start)
     draft.follows = follows
 
 
 def finishing(draft: Draft) -> None:
     """G70: the contour with its own feeds, speeds and compensation."""
-    start, (indices, follows) = start_point(draft), contour_named(draft)
+    start, (indices, follows) = start_point(draft), _contour_named(draft)
     needless = [word.text for letter in "UWD" if (word := draft.take(letter))]
     draft.comments += [f"{' '.join(needless)}: nothing for a finishing cut"] if needless else []
     before = draft.sure("compensation", "finishing takes over")
@@ -239,7 +240,7 @@ def finishing(draft: Draft) -> None:
         ]
         state = state._replace(compensation="G40")
     kept = {n: getattr(state, n) for n in ("feed", "feed_mode", "compensation", "spindle_mode")}
-    write_moves(draft, moves, start, **kept, motion=UNSURE, own_motion=UNSURE)
+    _write_moves(draft, moves, start, **kept, motion=UNSURE, own_motion=UNSURE)
     draft.follows = follows
 
 
@@ -248,7 +249,7 @@ def finishing(draft: Draft) -> None:
 
 def pecking(draft: Draft, meaning: str, along_x: bool) -> None:
     """G74 and G75: two blocks, or Haas's one with I and K."""
-    if is_first(draft, "XZUW"):
+    if _is_first(draft, "XZUW"):
         keep(draft, meaning, retract=take_number(draft, "R"))
         return
     start = start_point(draft)
@@ -259,20 +260,20 @@ def pecking(draft: Draft, meaning: str, along_x: bool) -> None:
     peck, step = (x_step, z_step) if along_x else (z_step, x_step)
     there = complex(end.get("Z", start.real), end.get("X", start.imag))
     given = Pecking(
-        there, abs(peck), abs(step), kept_value(draft, meaning, "retract"), shift, along_x
+        there, abs(peck), abs(step), _kept_value(draft, meaning, "retract"), shift, along_x
     )
-    write_moves(draft, pecks(start, given), start)
+    _write_moves(draft, pecks(start, given), start)
 
 
-def single_pass(draft: Draft, meaning: str, moves_of_pass: Callable) -> None:
+def _single_pass(draft: Draft, meaning: str, moves_of_pass: Callable) -> None:
     """G90 and G94 of system A."""
     start, end, taper = pass_words(draft, meaning)
-    write_moves(draft, moves_of_pass(start, end, taper), start, turn=meaning)
+    _write_moves(draft, moves_of_pass(start, end, taper), start, turn=meaning)
 
 
 def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     """Return start, end and taper of a modal cycle; what a block leaves out was said before."""
-    refuse_other_meanings(draft, meaning)
+    _refuse_other_meanings(draft, meaning)
     start = start_point(draft)
     again = draft.start.turn == meaning and meaning not in draft.meanings
     own = take_end(draft, start)
@@ -280,7 +281,7 @@ def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     taper = next((number for number in tapers if number is not None), None)
     said: Any = draft.sure("pass_words", "the cycle takes what was said before") if again else ()
     if again and not said:
-        raise NotTranslated(other_meaning("G90", meaning))
+        raise NotTranslated(_other_meaning("G90", meaning))
     words = {**dict(said), **own}
     words.update({} if taper is None else {"R": taper})
     if not {"X", "Z"} <= words.keys():
@@ -289,60 +290,58 @@ def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     return start, complex(words["Z"], words["X"]), words.get("R", 0.0)
 
 
-def refuse_other_meanings(draft: Draft, meaning: str) -> None:
-    """Refuse the code of a single pass that means a mode: that of another G code system."""
+def _refuse_other_meanings(draft: Draft, meaning: str) -> None:
+    """Refuse a single pass whose code was meant as a mode of another G code system."""
     code = draft.meanings.get(meaning)
     if code and (set(draft.codes()) & MOTIONS or not draft.letters() & set("XZUW")):
-        raise NotTranslated(other_meaning(code.code, meaning))
+        raise NotTranslated(_other_meaning(code.code, meaning))
 
 
-def other_meaning(code: str, meaning: str) -> str:
-    """Return what to write where a code is not meant as the cycle that it is."""
+def _other_meaning(code: str, meaning: str) -> str:
     return (
         f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it "
         "is a mode, the control is fanuc-lathe-b or fanuc-lathe-c; else take it out"
     )
 
 
-def one_thread_pass(draft: Draft) -> None:
+def _one_thread_pass(draft: Draft) -> None:
     """G92 of system A."""
     turn = take_turn(draft)
     start, end, taper = pass_words(draft, "thread pass")
-    thread = Thread(end, lead_of(draft), taper, chamfer_of(draft), turn)
-    write_moves(draft, thread_pass(start, thread), start, turn="thread pass")
+    thread = Thread(end, _lead_of(draft), taper, _chamfer_of(draft), turn)
+    _write_moves(draft, thread_pass(start, thread), start, turn="thread pass")
 
 
-def lead_of(draft: Draft) -> float:
-    """Return the lead of a thread, which is the F word."""
+def _lead_of(draft: Draft) -> float:
     missing = "a thread needs F, its lead, as a number"
     return number_of_feed(draft, "a thread takes F as its lead", missing)
 
 
-def chamfer_of(draft: Draft) -> float:
-    """Return over which length the control leaves a thread."""
+def _chamfer_of(draft: Draft) -> float:
+    """Return the length of the chamfer at the end of a thread."""
     if not draft.sure("chamfers", "a thread may end with a chamfer"):
         return 0.0
-    return float(draft.control.value("turning", "thread_chamfer", 0.0)) * lead_of(draft)
+    return float(draft.control.value("turning", "thread_chamfer", 0.0)) * _lead_of(draft)
 
 
 def threading(draft: Draft) -> None:
     """G76: Fanuc's two blocks, or Haas's one with K and D."""
-    if is_first(draft, "XZUW"):
-        keep_thread(draft)
+    if _is_first(draft, "XZUW"):
+        _keep_thread(draft)
         return
     start = start_point(draft)
     end = take_end(draft, start)
     if not {"X", "Z"} <= end.keys():
         raise NotTranslated("G76 needs X and Z, where the thread ends")
     haas = "K" in draft.letters()
-    infeed, chamfer, turn = haas_infeed(draft) if haas else fanuc_infeed(draft)
+    infeed, chamfer, turn = _haas_infeed(draft) if haas else _fanuc_infeed(draft)
     taper = take_number(draft, "I" if haas else "R") or 0.0
-    thread = Thread(complex(end["Z"], end["X"]), lead_of(draft), taper, chamfer, turn)
-    write_moves(draft, all_passes(start, thread, infeed), start)
+    thread = Thread(complex(end["Z"], end["X"]), _lead_of(draft), taper, chamfer, turn)
+    _write_moves(draft, all_passes(start, thread, infeed), start)
 
 
-def keep_thread(draft: Draft) -> None:
-    """Keep what the first block of Fanuc's G76 says: P has three numbers of two digits."""
+def _keep_thread(draft: Draft) -> None:
+    """Store the first block of Fanuc's G76: P is three numbers of two digits."""
     packed = take_whole(draft, "P")
     values = {"least": take_increments(draft, "Q"), "allowance": take_number(draft, "R")}
     if packed is not None:
@@ -352,17 +351,17 @@ def keep_thread(draft: Draft) -> None:
     keep(draft, "threading", **values)
 
 
-def fanuc_infeed(draft: Draft) -> tuple[Infeed, float, float]:
-    """Return how the passes go in, the chamfer, and the angle of the start."""
-    value = lambda name: kept_value(draft, "threading", name)  # noqa: E731
+def _fanuc_infeed(draft: Draft) -> tuple[Infeed, float, float]:
+    """Return the infeed, the chamfer and the start angle."""
+    value = lambda name: _kept_value(draft, "threading", name)  # noqa: E731
     height, first = take_increments(draft, "P") or 0.0, take_increments(draft, "Q") or 0.0
     finishing_passes = int(value("finishing")) or 1
     infeed = Infeed(height, first, value("least"), value("allowance"), finishing_passes)
-    return infeed._replace(angle=value("angle")), value("chamfer") * lead_of(draft), 0.0
+    return infeed._replace(angle=value("angle")), value("chamfer") * _lead_of(draft), 0.0
 
 
-def haas_infeed(draft: Draft) -> tuple[Infeed, float, float]:
-    """Return the same of Haas's one block: K, D, A, P the method, Q the start's angle."""
+def _haas_infeed(draft: Draft) -> tuple[Infeed, float, float]:
+    """Return the same for Haas's K, D, A, P (method) and Q (start angle)."""
     height, first = take_number(draft, "K") or 0.0, take_increments(draft, "D") or 0.0
     angle, method = take_number(draft, "A") or 0.0, take_whole(draft, "P") or 1
     if method not in METHODS:
@@ -370,16 +369,16 @@ def haas_infeed(draft: Draft) -> tuple[Infeed, float, float]:
     turn = take_turn(draft)
     least, allowance = (stored_setting(draft, f"thread_{n}") for n in ("least", "allowance"))
     infeed = Infeed(height, first, least, allowance, 1, angle, *METHODS[method])
-    return infeed, chamfer_of(draft), turn
+    return infeed, _chamfer_of(draft), turn
 
 
-def thread_move(draft: Draft) -> None:
+def _thread_move(draft: Draft) -> None:
     """G32: G33 with the lead as the way along its path."""
     start = start_point(draft)
     end = take_end(draft, start)
     there = complex(end.get("Z", start.real), end.get("X", start.imag))
-    pitch = pitch_of(draft, there - start)
-    refuse_strange(draft, "beside a thread")
+    pitch = _pitch_of(draft, there - start)
+    _refuse_strange(draft, "beside a thread")
     feed = draft.take("F")
     draft.before += [feed.text] if feed else []  # LinuxCNC has no F beside G33
     (line,) = lines_of_moves([CycleMove("G33", there, None, pitch)], start)
@@ -391,23 +390,23 @@ def thread_move(draft: Draft) -> None:
     )
 
 
-def pitch_of(draft: Draft, way: complex) -> float:
+def _pitch_of(draft: Draft, way: complex) -> float:
     """Return the way along the path for each revolution; the lead is that of the longer axis."""
     if abs(way) < SHORTEST:
         raise NotTranslated("the thread has no length")
-    return lead_of(draft) * abs(way) / max(abs(way.real), abs(way.imag))
+    return _lead_of(draft) * abs(way) / max(abs(way.real), abs(way.imag))
 
 
 CYCLES: dict[str, Callable[[Draft], None]] = {
     "roughing along Z": lambda draft: roughing(draft, "roughing along Z", False),
     "roughing along X": lambda draft: roughing(draft, "roughing along X", True),
-    "pattern repeating": pattern_repeating,
+    "pattern repeating": _pattern_repeating,
     "finishing": finishing,
     "pecking along Z": lambda draft: pecking(draft, "pecking along Z", False),
     "pecking along X": lambda draft: pecking(draft, "pecking along X", True),
-    "turning pass": lambda draft: single_pass(draft, "turning pass", turning_pass),
-    "facing pass": lambda draft: single_pass(draft, "facing pass", facing_pass),
-    "thread pass": one_thread_pass,
+    "turning pass": lambda draft: _single_pass(draft, "turning pass", turning_pass),
+    "facing pass": lambda draft: _single_pass(draft, "facing pass", facing_pass),
+    "thread pass": _one_thread_pass,
     "threading": threading,
-    "thread": thread_move,
+    "thread": _thread_move,
 }

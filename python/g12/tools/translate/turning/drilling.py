@@ -105,13 +105,13 @@ def drilling_of_lathe(draft: Draft) -> None:
         draft.change(cycle=UNKNOWN, cycle_words=())
     meaning = next((name for name in draft.meanings if name in HOLES), "")
     if not meaning and draft.state.cycle:
-        meaning = repeated_cycle(draft)
+        meaning = _repeated_cycle(draft)
     if meaning:
-        check_drilling_modes(draft)
-        drill_hole(draft, meaning)
+        _check_drilling_modes(draft)
+        _drill_hole(draft, meaning)
 
 
-def repeated_cycle(draft: Draft) -> str:
+def _repeated_cycle(draft: Draft) -> str:
     """Return the cycle that a block without its code repeats, "" if it drills nothing."""
     codes = set(draft.codes())
     if codes & MOTIONS or draft.meanings:
@@ -123,16 +123,14 @@ def repeated_cycle(draft: Draft) -> str:
     return ""
 
 
-def check_drilling_modes(draft: Draft) -> None:
-    """Refuse to drill in a mode that is in the way."""
+def _check_drilling_modes(draft: Draft) -> None:
     if draft.state.polar != "off":
         raise NotTranslated("a drilling cycle in a section: end the section before it")
     if draft.sure("distance", "a drilling cycle") != "G90":
         raise NotTranslated("a drilling cycle of a lathe is translated under G90, with U W H")
 
 
-def drill_hole(draft: Draft, meaning: str) -> None:
-    """Write the holes of one block."""
+def _drill_hole(draft: Draft, meaning: str) -> None:
     begins = meaning in draft.meanings
     code = draft.meanings.pop(meaning, None)
     kept: dict[str, Any] = {}
@@ -140,19 +138,19 @@ def drill_hole(draft: Draft, meaning: str) -> None:
         said: Any = draft.sure("cycle_words", "a drilling cycle takes what was said before")
         kept = dict(said)
     cycle = lathe_cycle(meaning)
-    side = shift_word(draft, kept) if cycle.side is None else cycle.side
-    times = holes_in_block(draft)
-    clamp, first = clamp_of(draft), [*spindle_on(draft, cycle), STOP] if begins else []
+    side = _is_side_hole(draft, kept) if cycle.side is None else cycle.side
+    times = _holes_in_block(draft)
+    clamp, first = _clamp_of(draft), [*_spindle_on(draft, cycle), STOP] if begins else []
     seconds_of_dwell(draft)
     dwell = draft.take("P")
-    depth = peck_of(draft)
+    depth = _peck_of(draft)
     kept["dwell"] = dwell.value if dwell else kept.get("dwell", "")
     kept["peck"] = kept.get("peck", 0.0) if depth is None else depth
-    levels = hole_levels(draft, "X" if side else "Z", kept)
-    bottom = down_and_out(draft, levels, cycle, kept)
-    other, places = "Z" if side else "X", places_of(draft, times)
-    there, on = ways_to_holes(draft, other)
-    check_nothing_else(draft, code)
+    levels = _hole_levels(draft, "X" if side else "Z", kept)
+    bottom = _down_and_out(draft, levels, cycle, kept)
+    other, places = "Z" if side else "X", _positions_after(draft, times)
+    there, on = _lines_to_holes(draft, other)
+    _check_nothing_else(draft, code)
     stays = draft.sure("retract", "a cycle returns by G98 or G99") == "G99"
     top = levels.r if stays else levels.top
     hole = [STOP, *clamp[:1], *[f"G0 {levels.word(levels.r)}"] * (levels.r != levels.top), *bottom]
@@ -160,7 +158,7 @@ def drill_hole(draft: Draft, meaning: str) -> None:
     if not times and (there or on):
         raise NotTranslated("K0 or L0 only stores the cycle: go to X and C in another block")
     lines = [*first, *there, *on, *hole, *[*on, *hole] * (times - 1)] if times else first
-    put_lines(draft, lines)
+    _put_lines(draft, lines)
     kept |= {"top": levels.top, "r": levels.r, "end": levels.end, "side": side}
     places[FIELDS[levels.axis]] = top if times else getattr(draft.start, FIELDS[levels.axis])
     draft.change(
@@ -168,8 +166,7 @@ def drill_hole(draft: Draft, meaning: str) -> None:
     )
 
 
-def put_lines(draft: Draft, lines: list[str]) -> None:
-    """Write lines behind the block's other words."""
+def _put_lines(draft: Draft, lines: list[str]) -> None:
     if draft.state.own_distance == "G91":
         lines = ["G90", *lines]
         draft.change(own_distance=AS_PROGRAMMED)
@@ -179,8 +176,8 @@ def put_lines(draft: Draft, lines: list[str]) -> None:
     draft.after += lines
 
 
-def shift_word(draft: Draft, kept: dict) -> bool:
-    """Tell whether a hole lies in the side, by I and K: how far the tool goes by rapid first."""
+def _is_side_hole(draft: Draft, kept: dict) -> bool:
+    """Whether a hole is in the side, by I and K: the distance of the first rapid."""
     shifts = [word for letter in "IK" if (word := draft.take(letter))]
     if len(shifts) > 1 or not (shifts or "side" in kept):
         raise NotTranslated(
@@ -190,16 +187,15 @@ def shift_word(draft: Draft, kept: dict) -> bool:
     return shifts[0].letter == "I" if shifts else kept["side"]
 
 
-def holes_in_block(draft: Draft) -> int:
-    """Return how many holes a block drills."""
+def _holes_in_block(draft: Draft) -> int:
     times = int(repeats_of(draft) or 1)
     if times > MOST_REPEATS:
         raise NotTranslated(f"{times} holes in one block: at most {MOST_REPEATS}")
     return times
 
 
-def clamp_of(draft: Draft) -> list[str]:
-    """Take the code of C's clamp out; return the lines that close and open it."""
+def _clamp_of(draft: Draft) -> list[str]:
+    """Take the code of C's clamp; return the lines that close and open it."""
     codes = str(draft.control.value("holes", "clamp")).split()
     for word in [w for w in draft.words if w.letter == "M" and w.kind == "number"]:
         if word.code in codes[:1]:
@@ -216,16 +212,16 @@ def clamp_of(draft: Draft) -> list[str]:
     return []
 
 
-def spindle_on(draft: Draft, cycle: LatheCycle) -> list[str]:
-    """Return the line that starts a tap's spindle, where the control does that by itself."""
+def _spindle_on(draft: Draft, cycle: LatheCycle) -> list[str]:
+    """Return the line that starts a tap's spindle where the control does so itself."""
     if not cycle.start:
         return []
     speed = draft.take("S")
-    return [" ".join([*([speed.text] if speed else []), cycle.start, *tap_spindle(draft, cycle)])]
+    return [" ".join([*([speed.text] if speed else []), cycle.start, *_tap_spindle(draft, cycle)])]
 
 
-def tap_spindle(draft: Draft, cycle: LatheCycle) -> list[str]:
-    """Return the word that names LinuxCNC's spindle of a tap, if it is not the main spindle."""
+def _tap_spindle(draft: Draft, cycle: LatheCycle) -> list[str]:
+    """Return the word of the tap's spindle if it is not the main one."""
     number = draft.control.value("holes", "spindle", None)
     if cycle.live and number is None:
         raise NotSaid(
@@ -236,8 +232,7 @@ def tap_spindle(draft: Draft, cycle: LatheCycle) -> list[str]:
     return [f"${number}"] if number and (cycle.live or not cycle.start) else []
 
 
-def peck_of(draft: Draft) -> float | None:
-    """Take the depth of a peck out, None if the block has none."""
+def _peck_of(draft: Draft) -> float | None:
     letter = str(draft.control.value("holes", "peck_word", "Q"))
     word = draft.word(letter)
     if word is None:
@@ -248,8 +243,7 @@ def peck_of(draft: Draft) -> float | None:
     return abs((take_number if lengths else take_increments)(draft, letter))
 
 
-def hole_levels(draft: Draft, axis: str, kept: dict) -> HoleLevels:
-    """Take the words of the hole's axis and R out; return its levels."""
+def _hole_levels(draft: Draft, axis: str, kept: dict) -> HoleLevels:
     if "top" not in kept or kept.get("side", axis == "X") != (axis == "X"):
         start = start_point(draft)
         kept["top"] = 2 * start.imag if axis == "X" else start.real
@@ -265,7 +259,7 @@ def hole_levels(draft: Draft, axis: str, kept: dict) -> HoleLevels:
         raise NotTranslated(f"a drilling cycle needs {axis}, where the hole ends, not at {top:g}")
     levels = HoleLevels(axis, top, kept.get("r", top), end)
     if r is not None:
-        levels = with_r(draft, levels, r, kind)
+        levels = _with_r(draft, levels, r, kind)
     if step is not None:
         levels = levels._replace(end=levels.r + step)
     if (levels.end - levels.r) * levels.toward <= 0:
@@ -273,8 +267,8 @@ def hole_levels(draft: Draft, axis: str, kept: dict) -> HoleLevels:
     return levels
 
 
-def with_r(draft: Draft, levels: HoleLevels, r: float, kind: str) -> HoleLevels:
-    """Return levels with what R says: a level, or the way from where the tool stands."""
+def _with_r(draft: Draft, levels: HoleLevels, r: float, kind: str) -> HoleLevels:
+    """Apply R: a level, or a distance from the tool's level."""
     if kind == "level":
         outer = levels.top if (r - levels.top) * levels.toward > 0 else r
         return levels._replace(top=outer, r=r)
@@ -286,11 +280,10 @@ def with_r(draft: Draft, levels: HoleLevels, r: float, kind: str) -> HoleLevels:
     return levels._replace(r=levels.top + r * (2 if levels.axis == "X" else 1))
 
 
-def down_and_out(draft: Draft, levels: HoleLevels, cycle: LatheCycle, kept: dict) -> list[str]:
-    """Return the moves from R to the end and back to R."""
+def _down_and_out(draft: Draft, levels: HoleLevels, cycle: LatheCycle, kept: dict) -> list[str]:
     if cycle.way == TAP:
-        pitch = f"K{value_text(tap_pitch(draft))}"
-        return [" ".join(["G33.1", levels.word(levels.end), pitch, *tap_spindle(draft, cycle)])]
+        pitch = f"K{value_text(_tap_pitch(draft))}"
+        return [" ".join(["G33.1", levels.word(levels.end), pitch, *_tap_spindle(draft, cycle)])]
     full = draft.control.value("holes", "out", "full") == "full"
     clear = stored_setting(draft, "retract") or kept["peck"] / 2
     lines = list(levels.pecked(kept["peck"] if cycle.way == DRILL else 0.0, clear, full))
@@ -298,7 +291,7 @@ def down_and_out(draft: Draft, levels: HoleLevels, cycle: LatheCycle, kept: dict
     return [*lines, f"G4 P{kept['dwell'] or 0}", out]
 
 
-def tap_pitch(draft: Draft) -> float:
+def _tap_pitch(draft: Draft) -> float:
     """Return the pitch of a tap: F per revolution, or F over the S of its block."""
     speed = next((w.value for w in draft.words if w.letter == "S"), "")
     per_turn = draft.sure("feed_mode", "the pitch of a tap hangs on F") == "G95"
@@ -311,8 +304,8 @@ def tap_pitch(draft: Draft) -> float:
         ) from None
 
 
-def ways_to_holes(draft: Draft, other: str) -> tuple[list[str], list[str]]:
-    """Take the words of the place out; return the lines to the first hole, and those of a step."""
+def _lines_to_holes(draft: Draft, other: str) -> tuple[list[str], list[str]]:
+    """Return the lines to the first hole, and those from hole to hole."""
     own = (other, "C")
     there = [word.text for axis in own if (word := draft.take(axis))]
     steps = [word._replace(letter=a).text for a in own if (word := draft.take(STEPS[a]))]
@@ -322,8 +315,8 @@ def ways_to_holes(draft: Draft, other: str) -> tuple[list[str], list[str]]:
     return [" ".join(["G0", *there])] if there else [], step_lines
 
 
-def places_of(draft: Draft, times: int) -> dict[str, float | str]:
-    """Return where X, Z and C are after a block, by the names of their modes."""
+def _positions_after(draft: Draft, times: int) -> dict[str, float | str]:
+    """Return X, Z and C after a block, by the names of their modes."""
     found = {field: getattr(draft.start, field) for field in FIELDS.values()}
     for word in draft.words:
         if word.letter in ("X", "Z", "C"):
@@ -335,8 +328,7 @@ def places_of(draft: Draft, times: int) -> dict[str, float | str]:
     return found
 
 
-def check_nothing_else(draft: Draft, code: ForeignWord | None) -> None:
-    """Refuse words that a drilling cycle of a lathe is not known to have."""
+def _check_nothing_else(draft: Draft, code: ForeignWord | None) -> None:
     odd = sorted(draft.letters() - set("NGMSTF"))
     if odd:
         name = code.code if code else "a drilling cycle"

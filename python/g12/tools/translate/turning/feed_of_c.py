@@ -23,20 +23,20 @@ def feed_of_c(draft: Draft) -> None:
     """Write a block in which C turns beside a slide."""
     rule, state = draft.control.feed_of_c, draft.state
     axes = {axis_of(word.letter) for word in (*draft.axis_words(), *draft.increments())}
-    if "C" not in axes or not axes & set(SLIDES) or not is_feed(draft) or rule == "mm":
+    if "C" not in axes or not axes & set(SLIDES) or not _is_feed(draft) or rule == "mm":
         return
     moved = distances(draft, axes)
     turned, along = abs(moved["C"]), hypot(*(moved.get(axis, 0.0) for axis in SLIDES))
     if (turned and along and state.feed_mode != "G93") or state.held:
-        check_rule(draft, rule)
+        _check_rule(draft, rule)
         path = turned if rule == "degrees" else hypot(turned, along)
         missing = "C beside a slide at a feed: F must be a number here: write it"
         feed = number_of_feed(draft, "C beside a slide", missing)
-        write_inverse_time(draft, axes, path / feed)
+        _write_inverse_time(draft, axes, path / feed)
 
 
-def is_feed(draft: Draft) -> bool:
-    """Tell whether the block moves at a feed, outside a section."""
+def _is_feed(draft: Draft) -> bool:
+    """Whether the block moves at a feed, outside a section."""
     other = draft.state.polar != "off" or draft.meanings or draft.state.cycle
     codes = {*CONSUMERS, "G53", "G33"}.intersection(draft.codes())
     return draft.motion() != "G0" and not other and not codes
@@ -52,19 +52,17 @@ def distances(draft: Draft, axes: set[str]) -> dict[str, float]:
                 f"C beside a slide at a feed: its time hangs on where {axis} stands, which is not "
                 f"known here: {INSTEAD}"
             )
-        moved[axis] = (end - start) * scale_of(draft, axis)
+        moved[axis] = (end - start) * _scale_of(draft, axis)
     return moved
 
 
-def scale_of(draft: Draft, axis: str) -> float:
-    """Return the length that 1 of a word's number is."""
+def _scale_of(draft: Draft, axis: str) -> float:
     if axis != "X":
         return 1.0
     return 0.5 if draft.sure("x_words", "C beside a slide") == "G7" else 1.0
 
 
-def check_rule(draft: Draft, rule: str) -> None:
-    """Refuse a block whose time is not known."""
+def _check_rule(draft: Draft, rule: str) -> None:
     if rule == "say":
         raise NotSaid(
             'C beside a slide at a feed: say what F is then, feed_of_c = "mm and degrees", '
@@ -91,13 +89,12 @@ def number_of_feed(draft: Draft, user: str, missing: str) -> float:
     return feed
 
 
-def write_inverse_time(draft: Draft, axes: set[str], minutes: float) -> None:
-    """Write the block with G93 and the number of such moves in a minute."""
+def _write_inverse_time(draft: Draft, axes: set[str], minutes: float) -> None:
     state = draft.state
     if state.distance != "G90" and not state.held:
-        keep_words(draft, axes)
+        _keep_words(draft, axes)
     else:
-        absolute_words(draft, axes)
+        _absolute_words(draft, axes)
     draft.take_codes({"G94"})
     draft.take("F")
     if state.own_feed != "G93":
@@ -107,15 +104,15 @@ def write_inverse_time(draft: Draft, axes: set[str], minutes: float) -> None:
     draft.change(own_feed="G93")
 
 
-def keep_words(draft: Draft, axes: set[str]) -> None:
-    """Leave increments as they are; they cannot be held back."""
+def _keep_words(draft: Draft, axes: set[str]) -> None:
+    """Keep increments; they cannot be held back."""
     moved = distances(draft, axes & set(SLIDES))
-    if 0 < hypot(*moved.values()) < least_of(draft):
+    if 0 < hypot(*moved.values()) < _least_of(draft):
         raise NotTranslated("a slide goes less than 0.001 mm beside C: write the block under G90")
 
 
-def absolute_words(draft: Draft, axes: set[str]) -> None:
-    """Write absolute words, or hold the slides back if they go next to nothing."""
+def _absolute_words(draft: Draft, axes: set[str]) -> None:
+    """Write absolute words, or hold slides back that move less than 0.001 mm."""
     state = draft.state
     if state.held == UNSURE or state.distance != "G90":
         raise NotTranslated(f"C beside a slide, and a slide is held back here: {INSTEAD}")
@@ -124,15 +121,14 @@ def absolute_words(draft: Draft, axes: set[str]) -> None:
         axis: held.get(axis, known_place(draft.start, axis)) for axis in {*axes, *held} - {"C"}
     }
     ends = {axis: known_place(state, axis) for axis in stands}
-    goes = hypot(*((ends[a] - stands[a]) * scale_of(draft, a) for a in stands))
-    holds = 0 < goes < least_of(draft)
+    goes = hypot(*((ends[a] - stands[a]) * _scale_of(draft, a) for a in stands))
+    holds = 0 < goes < _least_of(draft)
     draft.words = [w for w in draft.words if axis_of(w.letter) not in {*stands, "C"}]
     written = "C" if holds else [*sorted(stands), "C"]
     draft.words += [word_of(f"{a}{value_text(known_place(state, a))}") for a in written]
     draft.change(held=tuple(sorted(stands.items())) if holds else ())
 
 
-def least_of(draft: Draft) -> float:
-    """Return how far slides must go, in the program's units."""
+def _least_of(draft: Draft) -> float:
     inches = draft.sure("units", "C beside a slide") == "G20"
     return LEAST_MM / 25.4 if inches else LEAST_MM

@@ -153,13 +153,13 @@ def _contour_block(
         for rule in READERS:
             rule(reader)
         reader.meanings.pop("exact stop", None)
-        return contour_block(reader, motion), reader.state, _motion_of(reader, motion)
+        own = _block_of_words(reader, motion)
+        return own, reader.state, own.motion
     except NotTranslated as refusal:
         raise NotTranslated(f"line {block.line} in the contour: {refusal}") from None
 
 
-def contour_block(reader: Draft, motion: str) -> ContourBlock:
-    """Return the block of a contour from its words, which rules have read."""
+def _block_of_words(reader: Draft, motion: str) -> ContourBlock:
     if reader.meanings:
         code = next(iter(reader.meanings.values())).code
         raise NotTranslated(f"{code} cannot stand in a contour")
@@ -169,22 +169,18 @@ def contour_block(reader: Draft, motion: str) -> ContourBlock:
             if word.kind != "number" or word.letter in values:
                 raise NotTranslated(f"{word.text}: a contour is translated from numbers, each once")
             values[word.letter] = word.number
-        elif word.letter in BESIDE or is_mode(word):
+        elif word.letter in BESIDE or _is_mode(word):
             others.append(word.text)
         elif word.letter not in "NG" or (word.letter == "G" and word.code not in IN_CONTOURS):
             raise NotTranslated(f"{word.text} cannot stand in a contour")
-    own = _motion_of(reader, motion)
+    own = next((code for code in reader.codes() if code in MOVES), motion)
     if own not in MOVES:
         raise NotTranslated("G0 or G1 is missing")
     relative = reader.sure("distance", "X and Z are places or increments") == "G91"
     return ContourBlock(own, values, reader.block.line, relative, tuple(others))
 
 
-def is_mode(word: ForeignWord) -> bool:
-    """Tell whether a word is a mode that a finishing cut takes over."""
+def _is_mode(word: ForeignWord) -> bool:
+    """Whether a finishing cut takes the mode over."""
     modes_kept = ("G40", "G41", "G42", "G94", "G95", "G96", "G97")
     return word.letter == "G" and word.code in modes_kept
-
-
-def _motion_of(reader: Draft, motion: str) -> str:
-    return next((code for code in reader.codes() if code in MOVES), motion)

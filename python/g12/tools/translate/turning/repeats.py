@@ -20,10 +20,10 @@ MOST_PASSES = 5000
 
 def finishing_cut(start: complex, contour: Sequence[ContourMove]) -> list[CycleMove]:
     """Return the moves of a finishing cut."""
-    return [*moves_along(contour, True), *return_by(start, contour[-1].end, tool_side(contour))]
+    return [*moves_along(contour, True), *return_by(start, contour[-1].end, _tool_side(contour))]
 
 
-def tool_side(contour: Sequence[ContourMove]) -> int:
+def _tool_side(contour: Sequence[ContourMove]) -> int:
     """Return on which side of the part the tool is: 1 outside, -1 in a bore."""
     start, ends = contour[0].start.imag, [segment.end.imag for segment in contour]
     return 1 if start - min(ends) >= max(ends) - start else -1
@@ -39,7 +39,7 @@ def repeated_cuts(
     """Return the moves of a repeated pattern; ``relief`` is how far off the first pass is."""
     if not 1 <= passes <= MOST_PASSES:
         raise NotTranslated(f"{passes} passes: there must be from 1 to {MOST_PASSES}")
-    side = tool_side(contour)
+    side = _tool_side(contour)
     if side * allowance.imag < 0 or side * relief.imag < 0:
         raise NotTranslated("U has the sign that would cut into the contour")
     moves: list[CycleMove] = []

@@ -55,12 +55,12 @@ class CutView(NamedTuple):
 
 def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> list[CycleMove]:
     """Return the moves of a roughing cycle; the first segment leads from the start to the part."""
-    contour = without_retreat(contour)
-    view = view_of(start, contour, given)
+    contour = _without_retreat(contour)
+    view = _view_of(start, contour, given)
     allowed = offset_by(contour, given.allowance)
     allowed[0] = allowed[0]._replace(start=start)
     portions = [portion for segment in allowed[1:] for portion in _portions(segment, view)]
-    check_direction(portions, view)
+    _check_direction(portions, view)
     at = view.seen(start)
     top = max(at.imag, *(p.imag for portion in portions for p in portion.ends))
     lowest = min(p.imag for portion in portions for p in portion.ends)
@@ -76,14 +76,13 @@ def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> l
     return [*moves, rapid_to(start), *moves_along(allowed), *map(rapid_to, back)]
 
 
-def without_retreat(contour: Sequence[ContourMove]) -> Sequence[ContourMove]:
-    """Return a contour without the rapids behind its last cut."""
+def _without_retreat(contour: Sequence[ContourMove]) -> Sequence[ContourMove]:
+    """Drop the rapids after the last cut."""
     cuts = [number for number, segment in enumerate(contour) if segment.motion != "G0"]
     return contour[: cuts[-1] + 1] if cuts else contour
 
 
-def view_of(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> CutView:
-    """Return how the cuts see the part; refuse what gives no direction."""
+def _view_of(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> CutView:
     plain = CutView(1, 1, given.along_x)
     first, last = (plain.seen(contour[n].end) - plain.seen(start) for n in (0, -1))
     depth = plain.seen(start).imag - plain.seen(contour[0].end).imag
@@ -110,7 +109,7 @@ class Monotone(NamedTuple):
 
 def _portions(segment: ContourMove, view: CutView) -> list[Monotone]:
     """Return the monotone portions of a segment."""
-    points = [view.seen(p) for p in turning_points(segment)]
+    points = [view.seen(p) for p in _turning_points(segment)]
     line, centre = segment.block.line, segment.centre
     if centre is None:
         return [Monotone((a, b), _on_line(a, b), line) for a, b in zip(points, points[1:])]
@@ -121,8 +120,8 @@ def _portions(segment: ContourMove, view: CutView) -> list[Monotone]:
     ]
 
 
-def turning_points(segment: ContourMove) -> list[complex]:
-    """Return a segment's ends, and where an arc turns back in Z or X."""
+def _turning_points(segment: ContourMove) -> list[complex]:
+    """Return a segment's ends, and where an arc reverses in Z or X."""
     if segment.centre is None:
         return [segment.start, segment.end]
     centre, sense = segment.centre, segment.sense
@@ -149,8 +148,7 @@ def _on_arc(middle: complex, radius: float, near: float) -> Callable[[float], fl
     return lambda depth: middle.real + side * sqrt(max(0.0, radius**2 - (depth - middle.imag) ** 2))
 
 
-def check_direction(portions: Sequence[Monotone], view: CutView) -> None:
-    """Refuse a contour that goes back along the cuts."""
+def _check_direction(portions: Sequence[Monotone], view: CutView) -> None:
     for portion in portions:
         if portion.ends[1].real > portion.ends[0].real + SAME:
             axis = "X" if view.along_x else "Z"
@@ -159,8 +157,8 @@ def check_direction(portions: Sequence[Monotone], view: CutView) -> None:
             )
 
 
-def gaps_at(portions: Sequence[Monotone], level: float, start: float) -> list[tuple[float, float]]:
-    """Return from where to where the contour is below a level, as the cuts go."""
+def _gaps_at(portions: Sequence[Monotone], level: float, start: float) -> list[tuple[float, float]]:
+    """Return the intervals in which the contour is below a level, in cutting direction."""
     gaps = []
     begun = start if portions[0].ends[0].imag < level else None
     for portion in portions:
@@ -185,7 +183,7 @@ def _level(
 ) -> list[CycleMove]:
     """Return the cuts of one level."""
     moves: list[CycleMove] = []
-    for begin, end in gaps_at(portions, level, at.real):
+    for begin, end in _gaps_at(portions, level, at.real):
         is_open = begin == at.real
         off = given.retract if is_open else min(given.retract, (begin - end) / 2)
         lifted = view.real(min(begin, end + off), level + off)

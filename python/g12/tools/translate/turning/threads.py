@@ -57,14 +57,14 @@ def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMo
     way = end - begin
     if abs(way.real) < SAME:
         raise NotTranslated("the thread has no length in Z")
-    pitch = pitch_along(way, thread.lead)
+    pitch = _pitch_along(way, thread.lead)
     chamfer = min(thread.chamfer, abs(way.real))
     moves = [rapid_to(begin)]
     turning = end - way / abs(way.real) * chamfer
     moves.append(CycleMove("G33", turning, None, pitch))
     if chamfer > SAME:
         out = complex(end.real, turning.imag + side * chamfer)
-        moves.append(CycleMove("G33", out, None, pitch_along(out - turning, thread.lead)))
+        moves.append(CycleMove("G33", out, None, _pitch_along(out - turning, thread.lead)))
     last = moves[-1].end
     clear = side * max(side * start.imag, side * last.imag)
     return [
@@ -74,14 +74,14 @@ def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMo
     ]
 
 
-def pitch_along(way: complex, lead: float) -> float:
-    """Return what the tool goes along its path for each revolution."""
+def _pitch_along(way: complex, lead: float) -> float:
+    """Return the travel along the path for each revolution."""
     longer = max(abs(way.real), abs(way.imag))
     return lead * abs(way) / longer
 
 
-def depths(infeed: Infeed) -> list[float]:
-    """Return the depth of each pass: those that rough, then those that finish."""
+def _depths(infeed: Infeed) -> list[float]:
+    """Return the depth of each pass, roughing passes first."""
     full, least = infeed.height - infeed.allowance, infeed.least
     if infeed.first <= 0 or full <= 0:
         raise NotTranslated("the thread's height and the depth of its first pass must be above 0")
@@ -103,7 +103,7 @@ def all_passes(start: complex, thread: Thread, infeed: Infeed) -> list[CycleMove
     """Return the passes of G76; shallower ones are shifted along the flank, away from the end."""
     moves: list[CycleMove] = []
     away = 1 if start.real > thread.end.real else -1
-    for number, depth in enumerate(depths(infeed)):
+    for number, depth in enumerate(_depths(infeed)):
         up = infeed.height - depth
         aside = away * up * tan(radians(infeed.angle / 2))
         if infeed.alternating and number % 2:
