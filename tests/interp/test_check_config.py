@@ -376,8 +376,33 @@ def test_a_shared_include_is_tried_with_every_machine_that_has_it(tmp_path, caps
     other.write_text(text.replace("X Y Z", "X Z"))
     before = content_of(tmp_path)
     assert installed(ini, "haas") == 1
-    assert "haas needs axis Y" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert "other.ini includes base.inc too and gets the same lines: haas needs axis Y" in error
+    assert "; cure: in other.ini: add the axis to the machine" in error
     assert content_of(tmp_path) == before
+
+
+def test_what_is_wrong_in_another_machine_anyway_is_a_warning_that_names_it(tmp_path, capsys):
+    base = "[RS274NGC]\nPARAMETER_FILE = x.var\nSUBROUTINE_PATH = .\n"
+    text = "#INCLUDE base.inc\n[EMCIO]\nTOOL_TABLE = mill.tbl\n[TRAJ]\nCOORDINATES = X Y Z\n"
+    ini = write_config(tmp_path, text, base_inc=base)
+    other = write_config(tmp_path, f"{text}[PYTHON]\nTOPLEVEL = gone.py\n", "other.ini")
+    assert check.main([str(other)]) == 1
+    said = capsys.readouterr().out
+    assert re.search(r"loads in LinuxCNC \S+ without its \[PYTHON\], axes X Y Z", said)
+    assert "cure: correct the name in TOPLEVEL = gone.py" in said
+    for more in (["--dry-run"], []):
+        assert installed(ini, "haas", *more) == 0
+        (warned,) = [line for line in capsys.readouterr().out.splitlines() if "warning" in line]
+        assert "other.ini includes base.inc too" in warned and "gone.py" in warned
+
+
+def test_a_filter_of_the_users_own_does_not_prevent_an_installation(tmp_path, capsys):
+    line = "nc = python3 /gone/python/g12 translate --control haas-mill"
+    ini = write_config(tmp_path, f"{MILL}[FILTER]\n{line}\n")
+    assert installed(ini, "haas") == 0
+    (warned,) = [line for line in capsys.readouterr().out.splitlines() if "warning" in line]
+    assert "/gone/python/g12 is not there" in warned and "run install" not in warned
 
 
 def test_machines_that_share_a_module_remap_still_load(tmp_path, capsys):

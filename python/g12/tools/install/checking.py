@@ -63,6 +63,7 @@ def check_report(config: Config, found: list[ConfigFinding]) -> dict:
         "ini": str(config.text.path),
         "linuxcnc": config.version,
         "loads": config.failure is None,
+        "python_loads": not (config.python and config.python.error),
         "axes": list(config.ini.axes),
         "codes": [
             {"code": code.remap.code, "feature": code.feature, "line": code.line.location}
@@ -79,8 +80,9 @@ def check_report(config: Config, found: list[ConfigFinding]) -> dict:
 def lines_of_check(report: dict) -> Iterator[str]:
     """Yield the report as text."""
     loads = "loads" if report["loads"] else "does not load"
+    python = "" if report["python_loads"] else " without its [PYTHON]"
     axes = " ".join(report["axes"])
-    yield f"{report['ini']}: {loads} in LinuxCNC {report['linuxcnc']}, axes {axes}"
+    yield f"{report['ini']}: {loads} in LinuxCNC {report['linuxcnc']}{python}, axes {axes}"
     for code in report["codes"]:
         meaning = features.MEANING[code["feature"]]
         yield f"  {code['code']:6} {code['feature']:12} {meaning} ({code['line']})"

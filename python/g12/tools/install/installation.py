@@ -52,15 +52,16 @@ def install(
     warnings = try_out(plan)
     for path, content in changes.items():
         yield from difference(path, content)
-    if dry_run:
-        if old_copy:
-            yield f"{config.folder / package_copy.NAME}: would get {size_of_package()}"
-        yield "dry run: nothing was written"
-        return
-    yield from write_changes(plan, config.folder)
+    if dry_run and old_copy:
+        yield f"{config.folder / package_copy.NAME}: would get {size_of_package()}"
+    if not dry_run:
+        yield from write_changes(plan, config.folder)
     for warning in warnings:
         yield f"{warning.level} [{warning.kind}]: {warning.text}; cure: {warning.cure}"
-    yield from next_steps(text.path, wanted)
+    if dry_run:
+        yield "dry run: nothing was written"
+    else:
+        yield from next_steps(text.path, wanted)
 
 
 def size_of_package() -> str:

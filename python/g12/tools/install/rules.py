@@ -25,7 +25,7 @@ from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe.rules import lathe_findings
 from g12.tools.install.lathe.segments_rules import gained_by_kinematics
 from g12.tools.install.lathe.spindle_c import spindle_c_findings
-from g12.tools.system import CALL
+from g12.tools.system import CALL, PROGRAM
 from g12.tools.translate.blocks.control import ControlError, read_control
 
 OLDEST = (2, 9)
@@ -346,6 +346,9 @@ def python_fails(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
     error = config.python.error if config.python else None
     if error and not any(no_toplevel(config, codes_of(config.remaps))):
         cure = "correct the module named"
+        name = config.ini.get("PYTHON", "TOPLEVEL")
+        if name and not folder_from_ini(config.ini, name).is_file():
+            cure = f"correct the name in TOPLEVEL = {name}; it is relative to {config.folder}"
         if "No module named" in error:
             cure = "add the folder of that module to [PYTHON] as PATH_PREPEND or PATH_APPEND"
         yield problem("python-fails", f"[PYTHON] does not load: {error}", cure)
@@ -419,7 +422,7 @@ def shapes_without_polar(config: Config, codes: list[Code]) -> Iterator[ConfigFi
         yield problem(
             "no-polar",
             f"{features.SHAPES} needs polar or polar-g12.3: the subs use its codes",
-            f"run install again, with polar {features.SHAPES}",
+            f"install both: --with polar {features.SHAPES}",
         )
 
 
@@ -478,7 +481,11 @@ def wrong_filters(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]
     for suffix, control, words in translating_filters(config):
         command = folder_from_ini(config.ini, words[words.index(TRANSLATE) - 1])
         if not command.exists():
-            yield problem("filter", f"[FILTER] {suffix}: {command} is not there", MEND)
+            yield problem(
+                "filter",
+                f"[FILTER] {suffix}: {command} is not there: no .{suffix} program opens",
+                f"write {PROGRAM} in its place, or take the line out",
+            )
         try:
             own = control.endswith(".toml")
             read_control(str(folder_from_ini(config.ini, control)) if own else control)

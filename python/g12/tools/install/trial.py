@@ -5,18 +5,20 @@ import re
 import shutil
 import tempfile
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from g12.ini_sections import entries_of
 from g12.tools.install.checking import check_config
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import PROBLEM, ConfigFinding, warning
+from g12.tools.install.config.findings import PROBLEM, WARNING, ConfigFinding
 from g12.tools.install.config.forms import HERE
 from g12.tools.install.config.ini_edit import IniText, other_inis
 from g12.tools.install.plan import InstallPlan, Refused
 from g12.tools.machine.ini import Ini, Overrides
 
 HEADER = re.compile(r"\s*\[([^\s\]]+)\]")
+OWN_FILTER = "filter"  # kind of a finding about a line that the plan does not write
 SHOWN_ONLY = {"form", "no-codes"}  # kinds of findings that do not affect a machine's codes
 
 
@@ -26,32 +28,46 @@ def sections_of(lines: Sequence[str]) -> dict[str, None]:
 
 
 def try_out(plan: InstallPlan) -> list[ConfigFinding]:
-    """Return the warnings of `check` for the plan; refuse if it finds a problem.
+    """Return the warnings of `check` for the plan; refuse if it causes a problem.
 
-    Another INI of the folder that includes a changed file has to load; forms of codes that it does
-    not have are a warning.
+    Another INI of the folder that includes a changed file is tried as well. What is wrong in it
+    without the plan, and forms of codes that it does not have, are warnings.
     """
-    warnings = refuse_problems(trial(plan, plan.text))
+    tried = trial(plan, plan.text)
+    others = [replace(each, level=WARNING) for each in tried if each.kind == OWN_FILTER]
+    warnings = others + refuse_problems([each for each in tried if each.kind != OWN_FILTER])
     included = [path for path in plan.changes() if path in plan.text.files]
-    for other in others_including(plan.text, included):
-        found = trial(plan, other)
-        refuse_problems([finding for finding in found if finding.kind not in SHOWN_ONLY])
-        name = other.path.name
-        warnings += [
-            warning("form", f"{name} shares these lines; {finding.text}", f"install it in {name}")
-            for finding in found
-            if finding.kind == "form"
-        ]
+    for path, shared in others_including(plan.text, included):
+        before = {each.kind for each in check_config(IniText(path))[1] if each.level == PROBLEM}
+        found = [of_other(each, path, shared) for each in trial(plan, with_changes(path, plan))]
+        refuse_problems([each for each in found if each.kind not in before | SHOWN_ONLY])
+        own = (each for each in found if each.kind in before - SHOWN_ONLY | {"form"})
+        warnings += [replace(each, level=WARNING) for each in own]
     return warnings
 
 
-def others_including(text: IniText, changed: Sequence[Path]) -> Iterator[IniText]:
-    """Yield the folder's other INIs that include a changed file, with its changes."""
+def others_including(text: IniText, changed: Sequence[Path]) -> Iterator[tuple[Path, Path]]:
+    """Yield the folder's other INIs that include a changed file, with that file."""
     for other in other_inis(text):
         shared = [file for file in changed if file in other.files]
-        other.files.update({file: text.files[file] for file in shared})
         if shared:
-            yield other
+            yield other.path, shared[0]
+
+
+def with_changes(path: Path, plan: InstallPlan) -> IniText:
+    """Return another INI, with the plan's changes of the files that it includes."""
+    other = IniText(path)
+    other.files.update(
+        {file: plan.text.files[file] for file in other.files & plan.text.files.keys()}
+    )
+    return other
+
+
+def of_other(finding: ConfigFinding, ini: Path, shared: Path) -> ConfigFinding:
+    """Return a finding of another INI that says whose it is, and why that INI matters."""
+    text = f"{ini.name} includes {shared.name} too and gets the same lines: {finding.text}"
+    cure = f"in {ini.name}: {finding.cure}; if no machine uses {ini.name}, rename it to end in .old"
+    return replace(finding, text=text, cure=cure)
 
 
 def refuse_problems(findings: Sequence[ConfigFinding]) -> list[ConfigFinding]:
