@@ -17,9 +17,9 @@ from g12.tools.install.checking import check_config
 from g12.tools.install.config import features, forms
 from g12.tools.install.config.findings import PROBLEM
 from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.config.loaded import Config, Python, load_config, remaps_in
+from g12.tools.install.config.loaded import Config, Python, codes_of, load_config, remaps_in
 from g12.tools.install.plan import Refused, make_plan
-from g12.tools.install.rules import codes_of, findings_of, installed_programs
+from g12.tools.install.rules import findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems
 from g12.tools.machine.ini import read_ini
 from support.sample_configs import SAMPLES, copy_samples, tree
@@ -111,8 +111,7 @@ def in_and_out(path, names):
     assert refusal(path, names) == set()
     config, found = check_config(IniText(path))
     assert [finding for finding in found if finding.level == PROBLEM] == []
-    there = {*(code.feature for code in codes_of(config.remaps))}
-    there |= {f"programs-{control}" for control in installed_programs(config)}
+    there = {*config.features} | {f"programs-{control}" for control in installed_programs(config)}
     assert there == {*names} - {"forms"}
     of_codes = forms.files_of(config, names) if "forms" in names else []
     assert {f"{form}.ngc" for form in forms.shown(config)} == set(of_codes)

@@ -68,6 +68,10 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
     ("MAX_ACCELERATION = 700", "MAX_ACCELERATION = 0", "face-axis", "must be above 0"),
     ("HALFILE = polar.hal", "HALFILE = polar.hal\nHALCMD = setp polar-xzc.tool-offset 0.02",
      "tool-offset", "POLAR_TOOL_OFFSET = 0, but polar-xzc.tool-offset is 0.02"),
+    ("HALFILE = polar.hal", "HALFILE = polar.hal\nHALCMD = net a => motion.adaptive-feed",
+     "pin-taken", "HALCMD: net a => motion.adaptive-feed: motion.adaptive-feed is the"),
+    ("HALFILE = polar.hal", "HALFILE = polar.hal\nPOSTGUI_HALFILE = later.hal",
+     "kins", "loads trivkins"),
 ]  # fmt: skip
 IN_THE_WAY = [
     ("loadrt trivkins coordinates=XZC", "kins"),
@@ -81,7 +85,8 @@ def found(tmp_path, monkeypatch):
 
     def find(text, motion=MOTION, installed=True):
         monkeypatch.setattr(kinematics_rules, "module_installed", lambda _: installed)
-        ini = write_config(tmp_path, text, "lathe.ini", motion_hal=motion, polar_hal=GUARD)
+        files = {"motion_hal": motion, "polar_hal": GUARD, "later_hal": "loadrt trivkins\n"}
+        ini = write_config(tmp_path, text, "lathe.ini", **files)
         return list(kinematics_findings(config_of(ini)))
 
     return find

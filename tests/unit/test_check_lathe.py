@@ -24,10 +24,17 @@ def small_package(monkeypatch):
     monkeypatch.setattr(package_copy, "package_files", lambda: files)
 
 
-def found(folder, text, features=("polar",), var="5161 50.0\n"):
+def found(folder, text, names=("polar",), var="5161 50.0\n"):
     """Return kind and level of what `check` finds on a lathe."""
+    text = with_codes(text, names)
     config = config_of(write_config(folder, text, **({"mill_var": var} if var else {})))
-    return {finding.kind: finding.level for finding in lathe_findings(config, features)}
+    return {finding.kind: finding.level for finding in lathe_findings(config)}
+
+
+def with_codes(text, names):
+    """Return an INI with the REMAP lines of features."""
+    remaps = (remap.text for name in names for remap in features.remaps_of(name))
+    return with_lines(text, "RS274NGC", "".join(f"REMAP = {remap}\n" for remap in remaps))
 
 
 @pytest.mark.parametrize(
@@ -82,10 +89,10 @@ AXES = "".join(
 KINS = "[KINS]\nKINEMATICS = polar_xzc coordinates=XZC\n"
 
 
-def gained(folder, text, features=("polar",)):
+def gained(folder, text, names=("polar",)):
     """Return the texts of what a lathe is said to gain from kinematics."""
-    config = config_of(write_config(folder, text))
-    return [finding.text for finding in gained_by_kinematics(config, features)]
+    config = config_of(write_config(folder, with_codes(text, names)))
+    return [finding.text for finding in gained_by_kinematics(config)]
 
 
 def test_what_a_lathe_in_segments_would_gain(tmp_path):

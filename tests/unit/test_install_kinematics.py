@@ -61,7 +61,6 @@ REFUSED = [  # what is changed of the INI, and what is said
     ("HALFILE = motion.hal", "HALFILE = motion.tcl", "HALFILE = motion.tcl is no HAL file"),
     ("[HAL]", "[HAL]\nTWOPASS = on", "TWOPASS"),
     ("xzc kinstype=B", "xzc \\\n kinstype=B", "goes on in the next line"),
-    ("[HAL]", "[HAL]\nHALCMD = net a => motion.adaptive-feed", "motion.adaptive-feed is the"),
 ]
 HAL_REFUSED = [
     ("[KINS]KINEMATICS", "trivkins coordinates=XZC", "no HAL file has loadrt [KINS]KINEMATICS"),
@@ -181,7 +180,7 @@ def refused_in(folder, text, hal, says):
         put_in(ini, "polar", features.KINEMATICS)
     found = refused.value.args
     assert any(says in finding.text for finding in found), found
-    assert {finding.kind for finding in found} <= {"kinematics", "pin-taken", "kins"}
+    assert {finding.kind for finding in found} == {"kinematics"}
     assert content_of(folder) == before
 
 

@@ -62,7 +62,7 @@ def test_what_is_wrong_with_a_filter(tmp_path, control, text):
     ini.write_text(
         f"{ini.read_text()}\n[FILTER]\nnc = python3 {command} translate --control {control}\n"
     )
-    (finding,) = wrong_filters(config_of(ini), [])
+    (finding,) = wrong_filters(config_of(ini))
     assert text in finding.text
 
 

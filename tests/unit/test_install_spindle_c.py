@@ -53,13 +53,9 @@ brake = "drive.brake"
 """
 REFUSED = [
     ("encoder.position => spindle.0.revs", "a => b", "no HAL file connects spindle.0.revs"),
-    ("loadrt [KINS]", "loadrt lut5 count=1\nloadrt [KINS]", "loads lut5 too"),
-    ("net c joint", "net d => motion.digital-out-02\nnet c joint", "motion.digital-out-02 is what"),
 ]
 INI_REFUSED = [
     ("coordinates=XZC", "coordinates=XZA", "no joint is C alone"),
-    ("MIN_LIMIT = -99999\n", "", "[AXIS_C] lacks MIN_LIMIT"),
-    ("HOME_SEARCH_VEL = 0.0", "HOME_SEARCH_VEL = -5", "[JOINT_2] HOME_SEARCH_VEL = -5"),
 ]
 MISTAKES = [  # what is changed of an installed machine's INI, what is found
     ("JOINT = 2\n", "", "spindle-c"),

@@ -13,8 +13,8 @@ from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding
 from g12.tools.install.config.forms import shown
 from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.config.loaded import Config, load_config, remaps_in
-from g12.tools.install.rules import codes_of, findings_of, translating_filters
+from g12.tools.install.config.loaded import Config, codes_of, load_config, remaps_in
+from g12.tools.install.rules import findings_of, translating_filters
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Overrides
 
@@ -56,8 +56,7 @@ def settings_of(config: Config) -> dict[str, str]:
 
 def check_report(config: Config, found: list[ConfigFinding]) -> dict:
     """Return the whole report of `check` as data."""
-    codes = codes_of(config.remaps)
-    mine = {code.line for code in codes}
+    mine = {code.line for code in config.codes}
     others = [remap for line, remap in config.remaps if line not in mine]
     return {
         "ini": str(config.text.path),
@@ -67,7 +66,7 @@ def check_report(config: Config, found: list[ConfigFinding]) -> dict:
         "axes": list(config.ini.axes),
         "codes": [
             {"code": code.remap.code, "feature": code.feature, "line": code.line.location}
-            for code in codes
+            for code in config.codes
         ],
         "programs": {suffix: control for suffix, control, _ in translating_filters(config)},
         "forms": shown(config),

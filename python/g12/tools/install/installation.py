@@ -12,7 +12,7 @@ from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import Config, load_config
 from g12.tools.install.lathe.spindle_c import Pins
 from g12.tools.install.plan import FILTERED, InstallPlan, make_plan, names_copy, refuse
-from g12.tools.install.rules import codes_of, findings_of, installed_programs
+from g12.tools.install.rules import findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.system import CALL
@@ -39,9 +39,8 @@ def install(
             return
         yield from bring_copy_up_to_date(text.path.parent / package_copy.NAME)
     config = readable_config(text)
-    there = [code.feature for code in codes_of(config.remaps)]
-    there += [f"programs-{control}" for control in installed_programs(config)]
-    for pair in excluding([*there, *wanted]):
+    programs = [f"programs-{control}" for control in installed_programs(config)]
+    for pair in excluding([*config.features, *programs, *wanted]):
         raise refuse("dialects", f"{pair} exclude each other", "uninstall first")
     plan = make_plan(config, wanted, pins)
     changes = plan.changes()

@@ -29,7 +29,7 @@ from g12.tools.install.config.loaded import Config, folder_from_ini
 from g12.tools.install.lathe import kinematics_lines, spindle_c
 from g12.tools.install.lathe.kinematics_rules import uses_them
 from g12.tools.install.lathe.rules import ON_A_LATHE, geometry_for
-from g12.tools.install.rules import codes_of, installed_programs, odd_folder
+from g12.tools.install.rules import installed_programs, odd_folder
 from g12.tools.translate.blocks.control import read_control
 
 BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"
@@ -278,7 +278,7 @@ def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict
         raise refuse(
             "forms", "[DISPLAY] DISPLAY is missing: no screen could show a form", "name the screen"
         )
-    codes = dict.fromkeys([*(code.feature for code in codes_of(config.remaps)), *wanted])
+    codes = dict.fromkeys([*config.features, *wanted])
     if not forms.files_of(config, codes):
         raise refuse(
             "forms", "no code here has a form", "install a code with them: --with haas forms"

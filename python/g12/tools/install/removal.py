@@ -24,11 +24,10 @@ from g12.tools.install.config.ini_edit import (
     to_bytes,
     without,
 )
-from g12.tools.install.config.loaded import remaps_in
+from g12.tools.install.config.loaded import codes_of, remaps_in
 from g12.tools.install.lathe import kinematics_lines, spindle_c
 from g12.tools.install.lathe.rules import GEOMETRY_LINE
 from g12.tools.install.plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE, names_copy
-from g12.tools.install.rules import codes_of
 from g12.tools.machine.files import difference, drop_backup, require_writable, write_all
 
 OWN_ENDS = {

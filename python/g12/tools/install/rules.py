@@ -7,19 +7,17 @@ reports surprising behaviour.
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from g12.errors import Refusal
 from g12.ini_sections import INCLUDE, entries_of, key_and_value
-from g12.machine_ini import Remap, remap_from_value
+from g12.machine_ini import remap_from_value
 from g12.settings import SECTION, settings_from_lines
 from g12.tools.errors import UsageError
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.forms import form_findings
-from g12.tools.install.config.ini_edit import IniLine
 from g12.tools.install.config.loaded import MOST_FOLDERS, Config, folder_from_ini, subs_named
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe.rules import lathe_findings
@@ -52,29 +50,12 @@ STOPPING = {  # kinds that prevent LinuxCNC itself from loading the config
 }
 
 
-@dataclass(frozen=True)
-class Code:
-    """A REMAP line of the package in a config, with the package's own line for it."""
-
-    line: IniLine
-    remap: Remap
-    feature: str
-    model: Remap
-
-
-Rule = Callable[[Config, "list[Code]"], Iterator[ConfigFinding]]
-
-
-def codes_of(remaps: list[tuple[IniLine, Remap]]) -> list[Code]:
-    """Return the REMAP lines that are the package's."""
-    found = ((line, remap, features.model_of(remap)) for line, remap in remaps)
-    return [Code(line, remap, *model) for line, remap, model in found if model]
-
+Rule = Callable[[Config], Iterator[ConfigFinding]]
 
 # The INI's lines.
 
 
-def unreadable_includes(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
+def unreadable_includes(config: Config) -> Iterator[ConfigFinding]:
     """Find an #INCLUDE of a missing file."""
     for line in config.text.unreadable:
         yield warning(
@@ -85,7 +66,7 @@ def unreadable_includes(config: Config, _codes: list[Code]) -> Iterator[ConfigFi
         )
 
 
-def nested_includes(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
+def nested_includes(config: Config) -> Iterator[ConfigFinding]:
     """Find an #INCLUDE inside an included file, which LinuxCNC 2.9 takes for a comment."""
     for line in config.text.lines():
         if line.file != config.text.path and INCLUDE.match(line.text):
@@ -97,7 +78,7 @@ def nested_includes(config: Config, _codes: list[Code]) -> Iterator[ConfigFindin
             )
 
 
-def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
+def lines_not_read(config: Config) -> Iterator[ConfigFinding]:
     """Find REMAP lines of the package, or settings, where LinuxCNC does not read them."""
     read = {line for line, _ in config.remaps}
     for line in config.text.lines():
@@ -118,7 +99,7 @@ def lines_not_read(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding
         )
 
 
-def broken_headers(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
+def broken_headers(config: Config) -> Iterator[ConfigFinding]:
     """Find a broken section header; LinuxCNC 2.9 does not report it."""
     for line in config.text.lines():
         text = line.text.strip()
@@ -132,7 +113,7 @@ def broken_headers(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding
             )
 
 
-def long_lines(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
+def long_lines(config: Config) -> Iterator[ConfigFinding]:
     """Find lines that LinuxCNC would truncate."""
     for section in ("RS274NGC", "PYTHON", SECTION):
         for line in config.text.section(section):
@@ -147,7 +128,7 @@ def long_lines(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
 # LinuxCNC itself.
 
 
-def wrong_version(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
+def wrong_version(config: Config) -> Iterator[ConfigFinding]:
     """Find no LinuxCNC, or one before the first that works."""
     numbers = tuple(map(int, re.findall(r"\d+", config.version)[:2]))
     if not numbers:
@@ -164,7 +145,7 @@ def wrong_version(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]
         )
 
 
-def other_interpreter(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
+def other_interpreter(config: Config) -> Iterator[ConfigFinding]:
     """Find a machine that does not read G-code with LinuxCNC's interpreter."""
     name = config.ini.get("TASK", "INTERPRETER")
     if name:
@@ -178,9 +159,9 @@ def other_interpreter(config: Config, _codes: list[Code]) -> Iterator[ConfigFind
 # The codes.
 
 
-def codes_missing(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def codes_missing(config: Config) -> Iterator[ConfigFinding]:
     """Find a config without the package."""
-    if not codes and not installed_programs(config):
+    if not config.codes and not installed_programs(config):
         yield problem(
             "no-codes",
             "no code of the package is set up here",
@@ -188,10 +169,10 @@ def codes_missing(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
         )
 
 
-def taken_codes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def taken_codes(config: Config) -> Iterator[ConfigFinding]:
     """Find a code with two REMAP lines: LinuxCNC does not start."""
-    mine = [code.line for code in codes]
-    for code in codes:
+    mine = [code.line for code in config.codes]
+    for code in config.codes:
         earlier = mine[: mine.index(code.line)]
         for line, remap in config.remaps:
             if remap.number != code.remap.number or line in (code.line, *earlier):
@@ -204,9 +185,9 @@ def taken_codes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
             )
 
 
-def owned_codes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def owned_codes(config: Config) -> Iterator[ConfigFinding]:
     """Find a code of LinuxCNC's own: it accepts the REMAP line and ignores it."""
-    for code in codes:
+    for code in config.codes:
         if code.remap.code not in config.owned:
             continue
         cure = "give the feature another code in its REMAP line"
@@ -219,9 +200,9 @@ def owned_codes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
         )
 
 
-def wrong_lines(_config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def wrong_lines(config: Config) -> Iterator[ConfigFinding]:
     """Find REMAP lines that are nearly the package's."""
-    for code in codes:
+    for code in config.codes:
         wanted, found = code.model.keywords, code.remap.keywords
         wrong = [f"{key}={value}" for key, value in wanted.items() if found.get(key) != value]
         wrong += [f"no {key}=" for key in found if key not in wanted]
@@ -233,11 +214,11 @@ def wrong_lines(_config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
             )
 
 
-def halves(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def halves(config: Config) -> Iterator[ConfigFinding]:
     """Find one code of a pair without the other."""
     others = {remap.number: remap for _, remap in config.remaps}
-    for feature in dict.fromkeys(code.feature for code in codes):
-        there = {code.model for code in codes if code.feature == feature}
+    for feature in config.features:
+        there = {code.model for code in config.codes if code.feature == feature}
         for model in set(features.remaps_of(feature)) - there:
             other = others.get(model.number)
             now = f"means something else here (REMAP = {other.text})" if other else "is missing"
@@ -248,9 +229,9 @@ def halves(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
             )
 
 
-def missing_subs(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def missing_subs(config: Config) -> Iterator[ConfigFinding]:
     """Find NGC subs that LinuxCNC does not find: it does not start."""
-    missing = [f"{name}.ngc" for name in needed_subs(codes) if not subs_named(config.ini, name)]
+    missing = [f"{name}.ngc" for name in needed_subs(config) if not subs_named(config.ini, name)]
     if missing:
         yield problem(
             "no-sub",
@@ -261,9 +242,9 @@ def missing_subs(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
         )
 
 
-def blanks_in_path(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def blanks_in_path(config: Config) -> Iterator[ConfigFinding]:
     """Find a folder name that a shell would split: LinuxCNC finds no subs there."""
-    first = [subs_named(config.ini, name)[:1] for name in needed_subs(codes)]
+    first = [subs_named(config.ini, name)[:1] for name in needed_subs(config)]
     for folder in sorted({file.parent for files in first for file in files}):
         if folder != config.folder:
             yield from odd_folder(folder)
@@ -280,9 +261,9 @@ def odd_folder(folder: Path) -> Iterator[ConfigFinding]:
         )
 
 
-def shadowed_subs(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def shadowed_subs(config: Config) -> Iterator[ConfigFinding]:
     """Find another file of a sub's name in a folder that LinuxCNC searches first."""
-    for name in needed_subs(codes):
+    for name in needed_subs(config):
         first, *others = subs_named(config.ini, name) or [None]
         own = package_sub(config, name)
         if own in [other.resolve() for other in others]:
@@ -294,9 +275,9 @@ def shadowed_subs(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
             )
 
 
-def shadowing_functions(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def shadowing_functions(config: Config) -> Iterator[ConfigFinding]:
     """Find a Python O-word of the name of a sub that programs call; REMAP lines bypass it."""
-    called = {name for code in codes for name in features.SUBS.get(code.feature, ())}
+    called = {name for feature in config.features for name in features.SUBS.get(feature, ())}
     for name in sorted(called & set(config.python.oword if config.python else ())):
         yield problem(
             "shadowed",
@@ -306,9 +287,9 @@ def shadowing_functions(config: Config, codes: list[Code]) -> Iterator[ConfigFin
         )
 
 
-def needed_subs(codes: list[Code]) -> list[str]:
+def needed_subs(config: Config) -> list[str]:
     """Return the NGC subs that the codes set up here need."""
-    names = (name for code in codes for name in features.names_of(code.feature))
+    names = (name for feature in config.features for name in features.names_of(feature))
     return list(dict.fromkeys(names))
 
 
@@ -321,10 +302,10 @@ def package_sub(config: Config, name: str) -> Path | None:
 # Python.
 
 
-def no_toplevel(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def no_toplevel(config: Config) -> Iterator[ConfigFinding]:
     """Find a config whose Python LinuxCNC never loads."""
     name = config.ini.get("PYTHON", "TOPLEVEL")
-    if not codes:
+    if not config.codes:
         return
     if not name:
         yield problem(
@@ -341,10 +322,10 @@ def no_toplevel(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
         )
 
 
-def python_fails(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
+def python_fails(config: Config) -> Iterator[ConfigFinding]:
     """Find Python modules that stop with an error: LinuxCNC does not start."""
     error = config.python.error if config.python else None
-    if error and not any(no_toplevel(config, codes_of(config.remaps))):
+    if error and not any(no_toplevel(config)):
         cure = "correct the module named"
         name = config.ini.get("PYTHON", "TOPLEVEL")
         if name and not folder_from_ini(config.ini, name).is_file():
@@ -354,12 +335,12 @@ def python_fails(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
         yield problem("python-fails", f"[PYTHON] does not load: {error}", cure)
 
 
-def handlers_missing(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def handlers_missing(config: Config) -> Iterator[ConfigFinding]:
     """Find handlers that are missing: LinuxCNC starts, and the code fails when it is used."""
     python = config.python
-    if not codes or not python or python.error or any(no_toplevel(config, codes)):
+    if not config.codes or not python or python.error or any(no_toplevel(config)):
         return
-    needed = {name for code in codes for name in code.model.handlers}
+    needed = {name for code in config.codes for name in code.model.handlers}
     missing = sorted(needed - set(python.remap))
     if missing and not python.remap and not python.remap_file:
         toplevel = config.ini.get("PYTHON", "TOPLEVEL")
@@ -376,10 +357,10 @@ def handlers_missing(config: Config, codes: list[Code]) -> Iterator[ConfigFindin
         )
 
 
-def handlers_hidden(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def handlers_hidden(config: Config) -> Iterator[ConfigFinding]:
     """Find functions of the user's own with a handler's name."""
     functions = config.python.remap if config.python else {}
-    for name in sorted({name for code in codes for name in code.model.handlers}):
+    for name in sorted({name for code in config.codes for name in code.model.handlers}):
         module = functions.get(name)
         if module and module.split(".")[0] != "g12":
             yield problem(
@@ -392,7 +373,7 @@ def handlers_hidden(config: Config, codes: list[Code]) -> Iterator[ConfigFinding
 # The machine.
 
 
-def bad_settings(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
+def bad_settings(config: Config) -> Iterator[ConfigFinding]:
     """Find a [G12] section that is a start-up error."""
     try:
         settings_from_lines(config.ini.lines)
@@ -400,10 +381,10 @@ def bad_settings(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
         yield problem("setting", refusal.message, f"correct the line in [{SECTION}]")
 
 
-def missing_axes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def missing_axes(config: Config) -> Iterator[ConfigFinding]:
     """Find axes that a code needs."""
     axes = config.ini.axes
-    for feature in dict.fromkeys(code.feature for code in codes):
+    for feature in config.features:
         needed = features.AXES.get(feature, "XYZ")
         missing = [axis for axis in needed if axis not in axes]
         if missing:
@@ -415,10 +396,9 @@ def missing_axes(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
             )
 
 
-def shapes_without_polar(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def shapes_without_polar(config: Config) -> Iterator[ConfigFinding]:
     """Find the shapes on a machine without the polar interpolation that they need."""
-    known = {code.feature for code in codes}
-    if features.SHAPES in known and known.isdisjoint(features.POLAR):
+    if features.SHAPES in config.features and config.features.keys().isdisjoint(features.POLAR):
         yield problem(
             "no-polar",
             f"{features.SHAPES} needs polar or polar-g12.3: the subs use its codes",
@@ -426,11 +406,11 @@ def shapes_without_polar(config: Config, codes: list[Code]) -> Iterator[ConfigFi
         )
 
 
-def no_tool_table(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def no_tool_table(config: Config) -> Iterator[ConfigFinding]:
     """Find a machine without a tool table: it starts, and has no tool."""
     name, database = (config.ini.get("EMCIO", key) for key in ("TOOL_TABLE", "DB_PROGRAM"))
     path = config.ini.file("EMCIO", "TOOL_TABLE")
-    if not codes or (path and path.is_file() and not database):
+    if not config.codes or (path and path.is_file() and not database):
         return
     if database:
         yield note(
@@ -448,10 +428,10 @@ def no_tool_table(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
     )
 
 
-def tools_without_diameter(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def tools_without_diameter(config: Config) -> Iterator[ConfigFinding]:
     """Find a tool table without any diameter."""
-    mill = any(code.feature not in features.AXES for code in codes)
-    unknown = config.diameters is None or any(no_tool_table(config, codes))
+    mill = bool(config.features.keys() - features.AXES)
+    unknown = config.diameters is None or any(no_tool_table(config))
     if mill and not unknown and not any(config.diameters.values()):
         yield warning(
             "no-diameters",
@@ -476,7 +456,7 @@ def installed_programs(config: Config) -> list[str]:
     return [control for _, control, _ in translating_filters(config)]
 
 
-def wrong_filters(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]:
+def wrong_filters(config: Config) -> Iterator[ConfigFinding]:
     """Find a filter whose control cannot be read, or whose package is missing."""
     for suffix, control, words in translating_filters(config):
         command = folder_from_ini(config.ini, words[words.index(TRANSLATE) - 1])
@@ -496,10 +476,10 @@ def wrong_filters(config: Config, _codes: list[Code]) -> Iterator[ConfigFinding]
 # The copy.
 
 
-def changed_copy(config: Config, codes: list[Code]) -> Iterator[ConfigFinding]:
+def changed_copy(config: Config) -> Iterator[ConfigFinding]:
     """Find files of the package's copy that have changed since their installation."""
     copy = config.folder / package_copy.NAME
-    if not (codes or installed_programs(config)) or not package_copy.is_copy(copy):
+    if not (config.codes or installed_programs(config)) or not package_copy.is_copy(copy):
         return
     try:
         missing, edited = package_copy.missing(copy), package_copy.edited(copy)
@@ -553,18 +533,17 @@ RULES: tuple[Rule, ...] = (
     tools_without_diameter,
     wrong_filters,
     changed_copy,
+    form_findings,
+    kinematics_findings,
+    lathe_findings,
+    gained_by_kinematics,
+    spindle_c_findings,
 )
 
 
 def findings_of(config: Config) -> list[ConfigFinding]:
     """Return all findings; a failure without one is reported in LinuxCNC's own words."""
-    codes = codes_of(config.remaps)
-    found = [finding for rule in RULES for finding in rule(config, codes)]
-    found += form_findings(config, {code.feature for code in codes})
-    found += kinematics_findings(config)
-    found += lathe_findings(config, {code.feature for code in codes})
-    found += gained_by_kinematics(config, {code.feature for code in codes})
-    found += spindle_c_findings(config)
+    found = [finding for rule in RULES for finding in rule(config)]
     failure = config.failure or function_missing(config)
     if failure and not any(finding.kind in STOPPING for finding in found):
         found.append(

@@ -134,16 +134,16 @@ def shown(config: Config) -> list[str]:
     return [name.removesuffix(".ngc") for name in names if name.startswith("form_")]
 
 
-def form_findings(config: Config, features: set[str]) -> Iterator[ConfigFinding]:
-    """Find what prevents forms from being shown or from working, for the config's features."""
+def form_findings(config: Config) -> Iterator[ConfigFinding]:
+    """Find what prevents forms from being shown or from working."""
     forms = shown(config)
     for form in forms:
-        yield from form_finding(config, form, features)
+        yield from form_finding(config, form)
     if forms:
         yield from SCREEN_RULES[ngcgui_of(config)](config)
 
 
-def form_finding(config: Config, form: str, features: set[str]) -> Iterator[ConfigFinding]:
+def form_finding(config: Config, form: str) -> Iterator[ConfigFinding]:
     """Find the fault of one form."""
     own = {feature: names for feature, names in OF.items() if form.rpartition("_")[0] in names}
     parts = FACE_PARTS if "polar-shapes" in own else PARTS
@@ -157,7 +157,7 @@ def form_finding(config: Config, form: str, features: set[str]) -> Iterator[Conf
             "of SUBROUTINE_PATH",
             cure if form in known else f"the forms are {', '.join(known)}",
         )
-    elif own and not features & own.keys():
+    elif own and config.features.keys().isdisjoint(own):
         yield problem(
             "form",
             f"[DISPLAY] NGCGUI_SUBFILE = {form}.ngc: the codes of {' or '.join(own)} are not set "

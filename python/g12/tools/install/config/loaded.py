@@ -5,9 +5,11 @@ import json
 import os
 import tempfile
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 from g12.machine_ini import Remap, remap_from_value
+from g12.tools.install.config.features import model_of
 from g12.tools.install.config.ini_edit import IniLine, IniText
 from g12.tools.machine.ini import Ini, Overrides
 from g12.tools.preview.loading import linuxcnc_version, load_failure, python_error
@@ -53,6 +55,16 @@ class Python:
 
 
 @dataclass(frozen=True)
+class Code:
+    """A REMAP line of the package in a config, with the package's own line for it."""
+
+    line: IniLine
+    remap: Remap
+    feature: str
+    model: Remap
+
+
+@dataclass(frozen=True)
 class Config:
     """A machine config: its lines, values and REMAP lines, and the loaded interpreter's state.
 
@@ -76,10 +88,26 @@ class Config:
         """The config's folder, which LinuxCNC works in."""
         return self.ini.directory
 
+    @cached_property
+    def codes(self) -> list[Code]:
+        """The REMAP lines that are the package's."""
+        return codes_of(self.remaps)
+
+    @cached_property
+    def features(self) -> dict[str, None]:
+        """The features with such a line, in their order."""
+        return dict.fromkeys(code.feature for code in self.codes)
+
 
 def remaps_in(text: IniText) -> list[tuple[IniLine, Remap]]:
     """Return the REMAP lines that LinuxCNC reads."""
     return [(line, remap_from_value(value)) for line, value in text.entries("RS274NGC", "REMAP")]
+
+
+def codes_of(remaps: list[tuple[IniLine, Remap]]) -> list[Code]:
+    """Return the REMAP lines that are the package's."""
+    found = ((line, remap, model_of(remap)) for line, remap in remaps)
+    return [Code(line, remap, *model) for line, remap, model in found if model]
 
 
 def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None) -> Config:

@@ -7,6 +7,7 @@ of their own. Any other config is not changed: `configs/kinematics/README.md` ha
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from math import isclose
 
 from g12.errors import Refusal
@@ -21,10 +22,7 @@ from g12.tools.install.lathe.kinematics_rules import (
     OFFSET_HAL,
     OWN_HAL,
     PAGE,
-    HalLine,
     hal_files,
-    hal_in_the_way,
-    hal_lines,
 )
 
 SHARE = 0.7  # of the slide's acceleration, for X and Y each
@@ -58,10 +56,9 @@ def obstacles(config: Config, text: IniText, wanted: Sequence[str]) -> Iterator[
         yield problem(
             "kinematics", "there is no G12.1 here", "install --with polar polar-kinematics"
         )
-    for reason in (*wrong_joints(config), *wrong_limits(config), *wrong_entries(config, text)):
+    rules = (wrong_joints(config), wrong_limits(config), wrong_entries(config, text))
+    for reason in chain(*rules, wrong_hal(config)):
         yield left_alone(reason)
-    yield from (left_alone(reason) for reason in wrong_hal(config))
-    yield from hal_in_the_way(every_hal_line(config))
 
 
 def code_off(config: Config, wanted: Sequence[str]) -> str:
@@ -139,14 +136,6 @@ def wrong_hal(config: Config) -> Iterator[str]:
         yield "no HAL file has loadrt [KINS]KINEMATICS"
     if not any(CONTROLS.match(line.text) for line in lines):
         yield "no HAL file has addf motion-controller servo-thread"
-
-
-def every_hal_line(config: Config) -> list[HalLine]:
-    """Return the lines of all HAL files, those for after the screen's start included."""
-    later = [folder_from_ini(config.ini, name) for name in config.ini.all("HAL", "POSTGUI_HALFILE")]
-    files = [*hal_files(config), *map(hal_lines, later)]
-    commands = (HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD"))
-    return [*(line for lines in files for line in lines), *commands]
 
 
 def in_place(config: Config) -> Iterator[tuple[str, str, str]]:

@@ -8,6 +8,7 @@ step of the page has a rule here.
 import re
 import shutil
 from collections.abc import Iterable, Iterator
+from itertools import product
 from math import hypot
 from pathlib import Path
 from typing import NamedTuple
@@ -211,27 +212,23 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
             "move its HALFILE line after that one",
         )
     others = [line for number, lines in enumerate(files) if number not in guards for line in lines]
-    yield from hal_in_the_way(others)
+    yield from hal_in_the_way([*others, *later_hal(config)])
 
 
 def pins_taken(
-    line: HalLine, pins: Iterable[str], owner: str, cure: str
+    lines: Iterable[HalLine], pins: Iterable[str], owner: str, cure: str
 ) -> Iterator[ConfigFinding]:
-    """Find pins in a line that belong to ``owner``."""
-    for pin in pins:
-        if pin in line.text.split():
-            yield problem("pin-taken", f"{line.location}: {line.text}: {pin} {owner}", cure)
+    """Find pins in HAL lines that belong to ``owner``."""
+    for (text, location), pin in product(lines, pins):
+        if pin in text.split():
+            yield problem("pin-taken", f"{location}: {text}: {pin} {owner}", cure)
 
 
 def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
     """Find lines of other HAL files that conflict with the guard's."""
+    cure = "use another pin here, or change it in a copy of polar_kinematics.hal"
+    yield from pins_taken(lines, PINS, "is the kinematics'", cure)
     for text, location in lines:
-        yield from pins_taken(
-            HalLine(text, location),
-            PINS,
-            "is the kinematics'",
-            "use another pin here, or change it in a copy of polar_kinematics.hal",
-        )
         module = LOADS_KINEMATICS.match(text)
         if module and module[1] != FACE_KINEMATICS:
             yield problem(
@@ -297,10 +294,16 @@ def set_offset(text: str, wanted_offset: float) -> float | None:
     return leading_number(match[1]) or 0.0
 
 
+def later_hal(config: Config) -> list[HalLine]:
+    """Return the lines of HALCMD, and of the HAL files for after the screen's start."""
+    commands = [HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD")]
+    files = (folder_from_ini(config.ini, name) for name in config.ini.all("HAL", "POSTGUI_HALFILE"))
+    return [*commands, *(line for file in files for line in hal_lines(file))]
+
+
 def all_hal(config: Config) -> list[HalLine]:
-    """Return the lines of all HAL files, and those of HALCMD after them."""
-    lines = [line for lines in hal_files(config) for line in lines]
-    return [*lines, *(HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD"))]
+    """Return all HAL lines, in LinuxCNC's order."""
+    return [*(line for lines in hal_files(config) for line in lines), *later_hal(config)]
 
 
 def abort_wrong(config: Config) -> Iterator[ConfigFinding]:

@@ -2,7 +2,7 @@
 """Surprises on a lathe whose spindle is C: the screen's picture, the turns of C, G28."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, note, warning
@@ -67,9 +67,9 @@ def never_set_g28(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
-def lathe_findings(config: Config, there: Iterable[str]) -> Iterator[ConfigFinding]:
-    """Yield the warnings for a lathe with C that has some features."""
-    if "C" in config.ini.axes and not set(ON_A_LATHE).isdisjoint(there):
+def lathe_findings(config: Config) -> Iterator[ConfigFinding]:
+    """Yield the warnings for a lathe with C that has some of its features."""
+    if "C" in config.ini.axes and not config.features.keys().isdisjoint(ON_A_LATHE):
         yield from without_geometry(config)
         yield from unwinding_c(config)
         yield from never_set_g28(config)

@@ -5,7 +5,7 @@ Two contours are the examples: the cutter of 12 mm around a hexagon of 27 mm acr
 circle of radius 10 mm, 20 mm off the axis.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from math import pi, sqrt, tau
 
 from g12.geometry.curve import Arc, Curve, Line
@@ -45,10 +45,11 @@ def takes(path: list[Curve], machine: TurningMachine) -> str:
     return f"{segments} s, with kinematics {face} s, at the limits of X and C {least} s"
 
 
-def gained_by_kinematics(config: Config, there: Iterable[str]) -> Iterator[ConfigFinding]:
+def gained_by_kinematics(config: Config) -> Iterator[ConfigFinding]:
     """Report the times of polar sections on a lathe, from the limits of X and C in its INI."""
     ini = config.ini
-    if set(features.POLAR).isdisjoint(there) or wanted(config) or not {"X", "C"} <= set(ini.axes):
+    is_polar = not config.features.keys().isdisjoint(features.POLAR)
+    if not is_polar or wanted(config) or not {"X", "C"} <= set(ini.axes):
         return
     known = all(ini.all(f"AXIS_{letter}", "MAX_ACCELERATION") for letter in "XC")
     try:

@@ -15,8 +15,14 @@ from g12.tools.errors import UsageError
 from g12.tools.install.config.features import ROOT
 from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.loaded import Config
-from g12.tools.install.lathe.kinematics_lines import every_hal_line, joints
-from g12.tools.install.lathe.kinematics_rules import HalLine, hal_files, names, pins_taken
+from g12.tools.install.lathe.kinematics_lines import joints
+from g12.tools.install.lathe.kinematics_rules import (
+    HalLine,
+    all_hal,
+    hal_files,
+    names,
+    pins_taken,
+)
 
 PAGE = "configs/spindle_c.md"
 OWN_HAL = "configs/include/spindle_c.hal"
@@ -124,7 +130,7 @@ def signals(lines: Iterable[HalLine]) -> dict[str, str]:
 
 
 def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFinding]:
-    """Yield the obstacles to an installation."""
+    """Yield the obstacles to an installation; the trial finds those that are mistakes, too."""
     if pins is None:
         yield problem(
             "pins",
@@ -134,10 +140,7 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
     if joints(config).count("C") != 1:
         yield problem("spindle-c", "no joint is C alone", "[KINS] KINEMATICS = trivkins "
                       f"coordinates=XZC, or by hand: {PAGE}")  # fmt: skip
-    if config.ini.get("SPINDLE_C", "JOINT"):
-        return
-    lines = every_hal_line(config)
-    found = signals(lines)
+    found = signals(all_hal(config))
     for pin, _ in (SIGNALS[key] for key in ENCODER):
         if pin not in found:
             yield problem(
@@ -145,18 +148,11 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
                 f"no HAL file connects {pin}",
                 f"connect the spindle's encoder first: G33 has to work ({PAGE})",
             )
-    yield from modules_twice(lines)
-    for line in lines:
-        yield from pins_taken(
-            line, TAKEN, "is what the spindle becomes C by", "use another pin here"
-        )
-    yield from travel_missing(config)
-    yield from homing_moves(config)
 
 
 def spindle_sections(config: Config, pins: Pins, prefix: str) -> dict[str, list[str]]:
     """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
-    joint, found = joints(config).index("C"), signals(every_hal_line(config))
+    joint, found = joints(config).index("C"), signals(all_hal(config))
     named = {key: found.get(pin.format(joint=joint), own) for key, (pin, own) in SIGNALS.items()}
     drive = [
         line
@@ -214,7 +210,7 @@ def not_connected(config: Config) -> Iterator[ConfigFinding]:
             "no HALFILE of [HAL] lets the spindle become C: its code would wait in vain",
             f"add HALFILE = …/{OWN_HAL} after the files that wire the spindle",
         )
-    lines = every_hal_line(config)
+    lines = all_hal(config)
     text = "\n".join(line.text for line in other_lines(config))
     for signal in (DRIVE[name] for name in NEEDED):
         if signal not in text:
@@ -243,7 +239,7 @@ def feedback_wrong(config: Config) -> Iterator[ConfigFinding]:
 
 def index_shared(config: Config) -> Iterator[ConfigFinding]:
     """Find a joint on the spindle's index."""
-    found = signals(every_hal_line(config))
+    found = signals(all_hal(config))
     index = found.get(SIGNALS["INDEX"][0])
     for pin, signal in found.items():
         if index and signal == index and re.fullmatch(r"joint\.\d+\.index-enable", pin):
@@ -303,22 +299,17 @@ def others_in_the_way(config: Config) -> Iterator[ConfigFinding]:
     """Find modules and pins of spindle_c.hal that other HAL files use."""
     lines = other_lines(config)
     yield from modules_twice(lines)
-    for line in lines:
-        yield from pins_taken(
-            line, TAKEN, "is what the spindle becomes C by", "use another pin here"
-        )
+    yield from pins_taken(lines, TAKEN, "is what the spindle becomes C by", "use another pin here")
 
 
 def other_lines(config: Config) -> list[HalLine]:
     """Return the lines of the HAL files other than spindle_c.hal, and those of HALCMD."""
-    return [
-        line for line in every_hal_line(config) if not line.location.startswith("spindle_c.hal:")
-    ]
+    return [line for line in all_hal(config) if not line.location.startswith("spindle_c.hal:")]
 
 
 def after_own(config: Config) -> list[HalLine]:
     """Return the lines after those of spindle_c.hal."""
-    lines = every_hal_line(config)
+    lines = all_hal(config)
     own = [number for number, line in enumerate(lines) if CONNECTS in line.text]
     last = max((n for n, line in enumerate(lines) if line.location.startswith("spindle_c.hal:")),
                default=own[-1] if own else len(lines))  # fmt: skip
