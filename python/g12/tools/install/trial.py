@@ -22,11 +22,6 @@ OWN_FILTER = "filter"  # kind of a finding about a line that the plan does not w
 SHOWN_ONLY = {"form", "no-codes"}  # kinds of findings that do not affect a machine's codes
 
 
-def sections_of(lines: Sequence[str]) -> dict[str, None]:
-    """Return the names of an INI's sections, each once."""
-    return dict.fromkeys(header[1] for header in map(HEADER.match, lines) if header)
-
-
 def try_out(plan: InstallPlan) -> list[ConfigFinding]:
     """Return the warnings of `check` for the plan; refuse if it causes a problem.
 
@@ -107,7 +102,8 @@ def trial_values(plan: InstallPlan, ini: Ini, scratch: Path) -> Overrides:
 def relocated_values(plan: InstallPlan, ini: Ini, scratch: Path) -> dict[str, dict[str, list[str]]]:
     """Return the INI's values that name the copy, with the trial's folder, by section."""
     found: dict[str, dict[str, list[str]]] = {}
-    for section in sections_of(ini.lines) if plan.copied else ():
+    sections = dict.fromkeys(header[1] for header in map(HEADER.match, ini.lines) if header)
+    for section in sections if plan.copied else ():
         entries = list(entries_of(ini.lines, section))
         values = [relocated(value, plan.prefix, scratch) for _, _, value in entries]
         moved = {entry.key for entry, value in zip(entries, values) if value != entry.value}
