@@ -3,6 +3,9 @@
 
 A block that is reached again in another state is translated again in what both have in common, so
 the last translation of each block holds on every way. A mode can only become unsure: it ends.
+
+A program that is called in different modes is copied for each, where one of its blocks depends on
+the mode. The usual case are the holes that two drilling cycles share: X and Y words alone.
 """
 
 from __future__ import annotations
@@ -14,12 +17,12 @@ from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall
 from g12.tools.translate.blocks.errors import NotSaid, NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock
-from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
+from g12.tools.translate.blocks.modal import GROUP_OF, UNSURE, ModalState, merged
 from g12.tools.translate.jumps import OPENING
 from g12.tools.translate.on_lathe.sections import before_loop
-from g12.tools.translate.rules.plain import is_plain
+from g12.tools.translate.rules.motion import is_plain
 from g12.tools.translate.statements import STATEMENTS
-from g12.tools.translate.structure import MAIN, Structure, programs_of_blocks, ways_from
+from g12.tools.translate.structure import MAIN, Structure, find_ends, ways_from
 from g12.tools.translate.word_rules import WORD_RULES
 
 Progress = Callable[[int], None]
@@ -48,7 +51,7 @@ class FollowedProgram:
         self.kinds: dict[int, str] = {}
         self.calls: dict[int, list[Draft]] = {}
         self._states: list[ModalState | None] = [None] * count
-        self._inside = programs_of_blocks(structure)
+        self._inside = structure.programs
         self._blocks_of: dict[int, list[tuple[int, ForeignBlock]]] = {}
         for at, number in enumerate(self._inside):
             self._blocks_of.setdefault(number, []).append((at, structure.blocks[at]))
@@ -214,7 +217,7 @@ class FollowedProgram:
         name = self.structure.name_of(call.number)
         if entry is None and call.number in self.structure.behind_tape:
             return f"{name} stands behind the % that ends the program: take that % out"
-        if entry is None and self._has_block(call.number):
+        if entry is None and any(block.number == call.number for block in self.structure.blocks):
             return f"{name} is not in this file, but N{call.number} is: M97 P calls a block"
         if entry is None and name.startswith("N"):
             return f"{name} is not in this program: M97 calls a block of it"
@@ -225,10 +228,6 @@ class FollowedProgram:
         if self.kinds.get(call.number, call.kind) != call.kind:
             return f"{name} is called by G65 and by M98: LinuxCNC wants a copy of it for each"
         return None
-
-    def _has_block(self, number: int) -> bool:
-        firsts = (block.words[0] for block in self.structure.blocks if block.words)
-        return any(w.letter == "N" and w.value == str(number) for w in firsts)
 
     def _return(self, number: int, state: ModalState) -> None:
         if number == MAIN:
@@ -252,3 +251,63 @@ def _apply_rules(draft: Draft) -> None:
 def _start_state(control: Control) -> ModalState:
     known: dict[str, Any] = {GROUP_OF[code]: code for code in control.start if code in GROUP_OF}
     return ModalState(**known)
+
+
+DEEPEST = 8  # calls within calls, each of which can need a round
+MOST_COPIES = 100
+MOST_BLOCKS = 200_000  # with the copies
+
+
+def followed_program(
+    structure: Structure,
+    control: Control,
+    machine_codes: frozenset[str] | None,
+    progress: Progress,
+) -> FollowedProgram:
+    """Return the drafts of a program, with as many copies of subprograms as it needs."""
+    follow: Callable[[], FollowedProgram] = lambda: FollowedProgram(  # noqa: E731
+        structure, control, machine_codes, progress
+    ).run()
+    followed = follow()
+    for _ in range(DEEPEST):
+        if not _add_copies(followed):
+            break
+        find_ends(structure, control)
+        followed = follow()
+    return followed
+
+
+def _add_copies(followed: FollowedProgram) -> bool:
+    """Copy programs that are called in different modes; return whether there were any."""
+    structure = followed.structure
+    added = False
+    for number, groups in list(_differing_calls(followed)):
+        for calls in groups[1:]:
+            if len(structure.copies) >= MOST_COPIES or len(structure.blocks) >= MOST_BLOCKS:
+                return added
+            structure.add_copy(number, calls)
+            added = True
+    return added
+
+
+def _differing_calls(followed: FollowedProgram) -> Iterator[tuple[int, list[list[int]]]]:
+    """Yield programs with an unsure block, and their calls grouped by those modes."""
+    wanted = [
+        (followed.program_of(draft.index), draft.unsure)
+        for draft in followed.drafts
+        if draft and draft.unsure
+    ]
+    seen = {(MAIN, modes) for _, modes in wanted}
+    while wanted:
+        number, modes = wanted.pop()
+        if (number, modes) in seen:
+            continue
+        seen.add((number, modes))
+        groups: dict[tuple, list[int]] = {}
+        for index in followed.callers_of(number):
+            values = tuple(getattr(followed.drafts[index].state, mode) for mode in modes)
+            groups.setdefault(values, []).append(index)
+            if UNSURE in values:
+                wanted.append((followed.program_of(index), modes))
+        if len(groups) > 1:
+            yield number, list(groups.values())

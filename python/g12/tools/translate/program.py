@@ -13,15 +13,13 @@ from g12.tools.translate.blocks.lexer import (
     blocks_of,
     source_lines,
 )
-from g12.tools.translate.clocks import without_clocks
-from g12.tools.translate.copies import followed_program
-from g12.tools.translate.follow import FollowedProgram
-from g12.tools.translate.locals import unset_locals
-from g12.tools.translate.missing import missing_lines
+from g12.tools.translate.follow import FollowedProgram, followed_program
+from g12.tools.translate.listing import missing_lines
 from g12.tools.translate.order import written_order
 from g12.tools.translate.output import lines_of, output_lines
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.structure import MAIN, structure_of
+from g12.tools.translate.variables import unset_locals, without_clocks
 
 READ, FOLLOWED = 0.5, 0.35  # shares of the time
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Which blocks of a file are its main program and which its subprograms, and who calls them."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 
@@ -26,6 +26,7 @@ class Structure:
     number, ``starts`` the numbers by the block, with MAIN for a main program that others stand
     before. ``doubled`` are numbers that several programs have. ``partners`` joins each WHILE and
     its END, each condition and its end, ``problems`` has what is wrong with a block,
+    ``programs`` the number of the program that each block is in,
     ``last_returns`` the block in which each program returns for the last time, ``jumps`` where GOTO
     and M99 P lead, ``compared`` the variables that each program compares with #0.
 
@@ -42,6 +43,7 @@ class Structure:
     doubled: set[int] = field(default_factory=set)
     partners: dict[int, int] = field(default_factory=dict)
     problems: dict[int, str] = field(default_factory=dict)
+    programs: list[int] = field(default_factory=list)
     last_returns: dict[int, int] = field(default_factory=dict)
     jumps: Jumps = field(default_factory=Jumps)
     compared: dict[int, frozenset[int]] = field(default_factory=dict)
@@ -111,46 +113,34 @@ def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
 def find_ends(structure: Structure, control: Control) -> None:
     """Note where loops and programs end, and where jumps lead."""
     _pair_loops(structure)
-    _find_returns(structure, _codes_meaning(control, "return"))
-    programs = programs_of_blocks(structure)
-    structure.jumps = find_jumps(
-        structure.blocks,
-        programs,
-        structure.partners,
-        dict(_jump_numbers(structure, programs, control)),
-    )
+    structure.programs = _carried_on(structure.starts, len(structure.blocks), MAIN)
+    returns = _codes_meaning(control, "return")
+    for index, (number, block) in enumerate(zip(structure.programs, structure.blocks)):
+        if block.has_code(returns):
+            structure.last_returns[number] = index
+    numbers = dict(_jump_numbers(structure, control))
+    structure.jumps = find_jumps(structure.blocks, structure.programs, structure.partners, numbers)
     structure.problems.update(structure.jumps.problems)
-    for number, block in zip(programs, structure.blocks):
-        if compared := compared_by(block):
+    for number, block in zip(structure.programs, structure.blocks):
+        if compared := block.compared:
             structure.compared[number] = structure.compared.get(number, frozenset()) | compared
 
 
-def compared_by(block: ForeignBlock) -> frozenset[int]:
-    """Return the variables that a block compares with #0."""
-    return block.expression.compared if block.expression else frozenset()
+def _carried_on(starts: Mapping[int, int], count: int, value: int) -> list[int]:
+    """Return for each block the value of the last start, ``value`` before the first."""
+    return [value := starts.get(index, value) for index in range(count)]
 
 
-def programs_of_blocks(structure: Structure) -> list[int]:
-    """Return the number of the program that each block is in."""
-    inside, number = [], MAIN
-    for index in range(len(structure.blocks)):
-        number = structure.starts.get(index, number)
-        inside.append(number)
-    return inside
-
-
-def _jump_numbers(
-    structure: Structure, programs: Sequence[int], control: Control
-) -> Iterator[tuple[int, int]]:
+def _jump_numbers(structure: Structure, control: Control) -> Iterator[tuple[int, int]]:
     """Yield the blocks that jump (GOTO, the main program's M99 P) and their N numbers."""
     returns, calls = _codes_meaning(control, "return"), _codes_meaning(control, *CALLS, LOCAL)
-    places = _numbers_of_returns(structure, programs, returns)
+    places = _numbers_of_returns(structure, returns)
     for index, block in enumerate(structure.blocks):
         if block.kind == "goto":
             yield index, int(block.label)
-        elif programs[index] == MAIN and _has_code(block, returns):
-            yield from ((index, number) for number in _numbers_of(block, "P"))
-        elif _has_code(block, calls):
+        elif structure.programs[index] == MAIN and block.has_code(returns):
+            yield from ((index, number) for number in block.numbers("P"))
+        elif block.has_code(calls):
             called = structure.called_as.get(index) or _called_by(block, control, structure.entries)
             yield from ((index, number) for number in places.get(called, ()))
 
@@ -176,29 +166,24 @@ def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
         yield index, partner
 
 
-def _numbers_of_returns(
-    structure: Structure, programs: Sequence[int], returns: frozenset[str]
-) -> dict[int, set[int]]:
+def _numbers_of_returns(structure: Structure, returns: frozenset[str]) -> dict[int, set[int]]:
     """Return the N numbers to which each program returns by M99 P."""
     places: dict[int, set[int]] = {}
     for index, block in enumerate(structure.blocks):
-        if programs[index] != MAIN and _has_code(block, returns):
-            named = _numbers_of(block, "P")
-            if places.setdefault(programs[index], named) != named:
+        number = structure.programs[index]
+        if number != MAIN and block.has_code(returns):
+            named = block.numbers("P")
+            if places.setdefault(number, named) != named:
                 structure.problems[index] = "M99 with and without P in one program, or two P"
     return places
 
 
 def _called_by(block: ForeignBlock, control: Control, numbers: Collection[int]) -> int:
     """Return the program that a block calls, as far as its number is plain."""
-    own = _numbers_of(block, "P")
-    if own and not _has_code(block, _codes_meaning(control, LOCAL)):
+    own = block.numbers("P")
+    if own and not block.has_code(_codes_meaning(control, LOCAL)):
         return called_program(min(own), control, numbers)[0]
-    return LOCAL_BLOCKS + min(own or _numbers_of(block, "Q"), default=0)
-
-
-def _has_code(block: ForeignBlock, codes: frozenset[str]) -> bool:
-    return any(w.letter in "GM" and w.kind == "number" and w.code in codes for w in block.words)
+    return LOCAL_BLOCKS + min(own or block.numbers("Q"), default=0)
 
 
 def _codes_meaning(control: Control, *meanings: str) -> frozenset[str]:
@@ -246,37 +231,29 @@ def _called_and_ended(
     codes, numbers = _codes_meaning(control, *CALLS), set(heads.values())
     called: set[int] = set()
     ended: set[int] = set()
-    head = -1
-    for index, block in enumerate(blocks):
-        head = index if index in heads else head
+    for head, block in zip(_carried_on({at: at for at in heads}, len(blocks), -1), blocks):
         own = {word.code for word in block.words if word.letter in "GM" and word.kind == "number"}
         if own & ENDS:
             ended.add(head)
         if own & codes:
-            called |= {called_program(n, control, numbers)[0] for n in _numbers_of(block, "P")}
+            called |= {called_program(n, control, numbers)[0] for n in block.numbers("P")}
     return called, ended
-
-
-def _numbers_of(block: ForeignBlock, letter: str) -> set[int]:
-    return {int(w.value) for w in block.words if w.letter == letter and w.value.isdigit()}
 
 
 def _add_local_programs(structure: Structure, heads: dict[int, int], control: Control) -> None:
     """Note the blocks that M97 or M98 Q calls, each in the program that the call stands in."""
     local, calls = _codes_meaning(control, LOCAL), _codes_meaning(control, "subprogram")
-    head = -1
+    starts = _carried_on({at: at for at in heads}, len(structure.blocks), -1)
     numbered: dict[tuple[int, int], int] = {}
-    wanted: set[tuple[int, int]] = set()
-    for index, block in enumerate(structure.blocks):
-        head = index if index in heads else head
-        first = block.words[0] if block.words else None
-        if first and first.letter == "N" and first.value.isdigit():
-            numbered.setdefault((head, int(first.value)), index)
-        if _has_code(block, local):
-            wanted |= {(head, number) for number in _numbers_of(block, "P")}
-        elif _has_code(block, calls):
-            wanted |= {(head, number) for number in _numbers_of(block, "Q")}
-    for place in sorted(wanted & numbered.keys()):
+    called: set[tuple[int, int]] = set()
+    for index, (head, block) in enumerate(zip(starts, structure.blocks)):
+        if block.number is not None:
+            numbered.setdefault((head, block.number), index)
+        if block.has_code(local):
+            called |= {(head, number) for number in block.numbers("P")}
+        elif block.has_code(calls):
+            called |= {(head, number) for number in block.numbers("Q")}
+    for place in sorted(called & numbered.keys()):
         structure.add_entry(LOCAL_BLOCKS + place[1], numbered[place])
 
 
@@ -308,14 +285,6 @@ def _without_leader(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
         for b in blocks[:start]
     ]
     return [*named, *blocks[start:]]
-
-
-def _find_returns(structure: Structure, codes: frozenset[str]) -> None:
-    number = MAIN
-    for index, block in enumerate(structure.blocks):
-        number = structure.starts.get(index, number)
-        if _has_code(block, codes):
-            structure.last_returns[number] = index
 
 
 def _pair_loops(structure: Structure) -> None:

@@ -115,6 +115,31 @@ class ForeignBlock(NamedTuple):
     ruled: tuple[ForeignBlock, ...] = ()
     problem: str | None = None
 
+    @property
+    def number(self) -> int | None:
+        """The number of a block that begins with N and a whole number."""
+        first = self.words[0] if self.words else None
+        return int(first.value) if first and first.letter == "N" and first.value.isdigit() else None
+
+    @property
+    def compared(self) -> frozenset[int]:
+        """The variables that it compares with #0."""
+        return self.expression.compared if self.expression else frozenset()
+
+    @property
+    def read(self) -> frozenset[int]:
+        """The variables whose values it takes."""
+        own = self.expression.read if self.expression else frozenset()
+        return own.union(*(word.read for word in self.words))
+
+    def has_code(self, codes: frozenset[str]) -> bool:
+        """Whether one of some codes is in it."""
+        return any(w.letter in "GM" and w.kind == "number" and w.code in codes for w in self.words)
+
+    def numbers(self, letter: str) -> set[int]:
+        """Return the whole numbers behind a letter."""
+        return {int(w.value) for w in self.words if w.letter == letter and w.value.isdigit()}
+
 
 def program_text(content: bytes) -> str:
     """Return the characters of a file: UTF-8, or else Latin-1, which takes any bytes."""

@@ -14,7 +14,7 @@ from g12.tools.translate.on_lathe.mill_words import (
     start_height,
 )
 from g12.tools.translate.on_lathe.sections import milled_surface
-from g12.tools.translate.on_lathe.values import DrilledHole, is_plain_number, times
+from g12.tools.translate.on_lathe.surfaces import DrilledHole, is_plain_number, times
 
 DRILLED = frozenset(("G73", "G81", "G82", "G83"))
 LETTERS = "XYZRQPF"

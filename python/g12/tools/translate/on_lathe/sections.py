@@ -12,7 +12,6 @@ from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
 from g12.tools.translate.blocks.places import known_place
-from g12.tools.translate.on_lathe.face import FACE
 from g12.tools.translate.on_lathe.mill_words import (
     check_rapid,
     is_on_lathe,
@@ -23,8 +22,7 @@ from g12.tools.translate.on_lathe.mill_words import (
     start_height,
     waiting_point,
 )
-from g12.tools.translate.on_lathe.round_part import ROUND
-from g12.tools.translate.on_lathe.values import MilledSurface
+from g12.tools.translate.on_lathe.surfaces import FACE, ROUND, MilledSurface
 from g12.tools.translate.rules.polar import feed_of_rapids
 
 SURFACES = {"face": FACE, "round": ROUND}

@@ -11,7 +11,7 @@ from g12.tools.translate.blocks.draft import Draft, position, word_of
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
-from g12.tools.translate.rules.dwell import time_in_seconds
+from g12.tools.translate.rules.decimals import time_in_seconds
 
 KEPT = "ZRQP"
 CYCLE = ("cycle", "cycle_words", "own_motion")

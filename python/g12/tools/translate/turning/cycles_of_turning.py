@@ -32,11 +32,12 @@ from g12.tools.translate.turning.given_words import (
     take_turn,
     take_whole,
 )
-from g12.tools.translate.turning.moves import CycleMove, lines_of_moves
-from g12.tools.translate.turning.repeats import (
+from g12.tools.translate.turning.moves import (
+    CycleMove,
     Pecking,
     facing_pass,
     finishing_cut,
+    lines_of_moves,
     pecks,
     repeated_cuts,
     turning_pass,

@@ -100,11 +100,7 @@ def named_blocks(draft: Draft, first: int, last: int) -> tuple[range, int]:
 
     A contour that stands behind the cycle is not executed again; one before it is read back.
     """
-    numbered = [
-        (index, int(block.words[0].value))
-        for index, block in draft.program
-        if block.words and block.words[0].letter == "N" and block.words[0].value.isdigit()
-    ]
+    numbered = [(index, block.number) for index, block in draft.program if block.words]
     behind = [index for index, number in numbered if number == first and index > draft.index]
     before = [index for index, number in numbered if number == first and index < draft.index]
     recalled = "finishing" in draft.meanings and before

@@ -1,11 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The moves of a turning cycle, and the lines that they are written as."""
+"""The moves of turning cycles that repeat a plain path, and the lines that they are written as.
+
+- finishing (G70): the contour with its own words, then back, first away from the part in X
+- pattern (G73): the whole contour, each time nearer by the same distance, up to the allowance
+- single passes (G90, G94 of system A): in, along, out, back: a rectangle or a trapezium
+- pecking (G74 along Z, G75 along X): cuts of one peck, each with a retract, in several columns
+"""
 
 from collections.abc import Iterator, Sequence
+from math import copysign
 from typing import NamedTuple
 
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.places import value_text
-from g12.tools.translate.turning.contour import SAME, ContourMove
+from g12.tools.translate.turning.contour import SAME, ContourMove, offset_by
 
 DIGITS = 1e-6  # a word is written where its value changes by that
 
@@ -75,3 +83,108 @@ def return_by(start: complex, end: complex, side: int) -> list[CycleMove]:
     clear = side * max(side * start.imag, side * end.imag)
     ways = [complex(end.real, clear), complex(start.real, clear), start]
     return [rapid_to(point) for point in ways if abs(point - end) > SAME]
+
+
+MOST_PASSES = 5000
+
+
+def finishing_cut(start: complex, contour: Sequence[ContourMove]) -> list[CycleMove]:
+    """Return the moves of a finishing cut."""
+    return [*moves_along(contour, True), *return_by(start, contour[-1].end, _tool_side(contour))]
+
+
+def _tool_side(contour: Sequence[ContourMove]) -> int:
+    """Return on which side of the part the tool is: 1 outside, -1 in a bore."""
+    start, ends = contour[0].start.imag, [segment.end.imag for segment in contour]
+    return 1 if start - min(ends) >= max(ends) - start else -1
+
+
+def repeated_cuts(
+    start: complex,
+    contour: Sequence[ContourMove],
+    relief: complex,
+    allowance: complex,
+    passes: int,
+) -> list[CycleMove]:
+    """Return the moves of a repeated pattern; ``relief`` is how far off the first pass is."""
+    if not 1 <= passes <= MOST_PASSES:
+        raise NotTranslated(f"{passes} passes: there must be from 1 to {MOST_PASSES}")
+    side = _tool_side(contour)
+    if side * allowance.imag < 0 or side * relief.imag < 0:
+        raise NotTranslated("U has the sign that would cut into the contour")
+    moves: list[CycleMove] = []
+    for number in range(passes):
+        share = 1 - number / (passes - 1) if passes > 1 else 0.0
+        path = offset_by(contour, relief * share + allowance)
+        moves += [*moves_along(path), *return_by(start, path[-1].end, side)]
+    return moves
+
+
+def turning_pass(start: complex, end: complex, taper: float) -> list[CycleMove]:
+    """Return G90 of system A: along Z; ``taper`` the radius at the start less the end's."""
+    begin = complex(start.real, end.imag + taper)
+    return [rapid_to(begin), feed_to(end), feed_to(complex(end.real, start.imag)), rapid_to(start)]
+
+
+def facing_pass(start: complex, end: complex, taper: float) -> list[CycleMove]:
+    """Return G94 of system A: along X; ``taper`` is Z at the start less that at the end."""
+    begin = complex(end.real + taper, start.imag)
+    return [rapid_to(begin), feed_to(end), feed_to(complex(start.real, end.imag)), rapid_to(start)]
+
+
+class Pecking(NamedTuple):
+    """What G74 or G75 is given: where it ends, a peck, the step to the next place, the retract.
+
+    ``shift`` is by how much the tool goes aside at the bottom; ``along_x`` is G75.
+    """
+
+    end: complex
+    peck: float
+    step: float
+    retract: float
+    shift: float
+    along_x: bool
+
+
+def pecks(start: complex, given: Pecking) -> list[CycleMove]:
+    """Return the moves of a pecking cycle."""
+    depth, places = _places(given.end - start, given)
+    if not depth:
+        raise NotTranslated("the cycle cuts nothing: it ends where the tool stands")
+    peck = given.peck or abs(depth)
+    if abs(depth) / peck > MOST_PASSES:
+        raise NotTranslated(f"{abs(depth) / peck:.0f} pecks: they are too small")
+    point = lambda along, aside: start + _turned(complex(along, aside), given.along_x)  # noqa: E731
+    away, moves = copysign(1.0, -depth), []
+    for number, aside in enumerate(places):
+        moves.append(rapid_to(point(0.0, aside)))
+        done = 0.0
+        while abs(depth) - done > SAME:
+            done = min(done + peck, abs(depth))
+            moves.append(feed_to(point(-away * done, aside)))
+            if abs(depth) - done > SAME:
+                moves.append(rapid_to(point(-away * max(done - given.retract, 0.0), aside)))
+        if given.shift and number:
+            aside -= copysign(given.shift, places[-1])
+            moves.append(rapid_to(point(depth, aside)))
+        moves.append(rapid_to(point(0.0, aside)))
+    return [*moves, rapid_to(start)]
+
+
+def _places(way: complex, given: Pecking) -> tuple[float, list[float]]:
+    """Return the depth, and how far aside of the start each place is."""
+    turned = _turned(way, given.along_x)
+    depth, width = turned.real, turned.imag
+    if abs(width) < SAME:
+        return depth, [0.0]
+    if not given.step:
+        raise NotTranslated("the cycle has no step to the next place")
+    count = int(abs(width) / given.step - SAME)
+    if count > MOST_PASSES:
+        raise NotTranslated(f"{count} places: the step is too small")
+    steps = [copysign(given.step * number, width) for number in range(count + 1)]
+    return depth, [*steps, width]
+
+
+def _turned(point: complex, along_x: bool) -> complex:
+    return complex(point.imag, point.real) if along_x else point

@@ -1,22 +1,27 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Local variables of macros: one that no call gives and no line sets is empty on the control.
+"""Variables that LinuxCNC lacks: empty local ones of macros, and the control's clocks.
 
-There an empty variable makes its word vanish; LinuxCNC takes 0. So such a macro is refused, unless
-it has asked before, with #0, whether the variable is empty. All programs that no G65 calls share
-their local variables: a word of one that nothing can have set before is refused.
+A local variable that no call gives and no line sets is empty on the control, and its word vanishes;
+LinuxCNC takes 0. Such a macro is refused, unless it compares the variable with #0 first. All
+programs that no G65 calls share their local variables: a word of one that nothing sets before it is
+refused.
+
+Many programs measure the time of a cycle. A variable that a clock, or another such variable, gives
+a value may stand in assignments of its kind alone. Those become comments; where such a variable
+decides or moves, it is refused.
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import partial
 
 from g12.tools.translate.blocks.draft import Draft
-from g12.tools.translate.blocks.expressions import LOCAL, SHARED
+from g12.tools.translate.blocks.expressions import CLOCK, LOCAL, SHARED
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.jumps import OPENING
 from g12.tools.translate.rules.subprograms import ARGUMENTS
-from g12.tools.translate.structure import MAIN, compared_by, ways_from
+from g12.tools.translate.structure import MAIN, ways_from
 
 LETTERS = {number: letter for letter, number in ARGUMENTS.items()}
 
@@ -30,11 +35,11 @@ def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
     for index, block in enumerate(followed.structure.blocks):
         number = followed.program_of(index)
         if index in given:
-            for variable in sorted(_read_by(block) - given[index]):
+            for variable in sorted(block.read.intersection(LOCAL) - given[index]):
                 yield block.line, _unset_sentence(number, variable)
-            for variable in sorted(compared_by(block) - LETTERS.keys()):
+            for variable in sorted(block.compared - LETTERS.keys()):
                 yield block.line, f"#{variable} EQ #0: no letter of G65 gives #{variable} a value"
-        elif number not in macros and followed.drafts[index] and compared_by(block):
+        elif number not in macros and followed.drafts[index] and block.compared:
             yield block.line, "#0, the empty variable, is translated in a program of G65 only"
     yield from _reads_never_set(followed, macros)
     yield from _shared_locals(followed)
@@ -115,12 +120,6 @@ def _given_by_all(calls: list[Draft]) -> frozenset[int]:
     return frozenset(set.intersection(*found))
 
 
-def _read_by(block: ForeignBlock) -> frozenset[int]:
-    read = frozenset().union(*(word.read for word in block.words))
-    read |= block.expression.read if block.expression else frozenset()
-    return read.intersection(LOCAL)
-
-
 def _set_by(block: ForeignBlock) -> frozenset[int]:
     """Return the variables that surely have a value behind a block because of it."""
     sets = block.kind == "assign" and not block.skipped
@@ -145,4 +144,24 @@ def _shared_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
 
 def _used_by(block: ForeignBlock) -> Iterable[int]:
     """Return the local variables that a block reads, compares with #0 or sets."""
-    return {*_read_by(block), *compared_by(block), block.variable}
+    return {*block.read.intersection(LOCAL), *block.compared, block.variable}
+
+
+def without_clocks(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
+    """Return the blocks with times as comments."""
+    timed, known = {CLOCK}, 0
+    while len(timed) > known:
+        known = len(timed)
+        timed.update(b.variable for b in blocks if b.kind == "assign" and timed & b.read)
+    return [_without_time(block, timed) for block in blocks]
+
+
+def _without_time(block: ForeignBlock, timed: set[int]) -> ForeignBlock:
+    """Return a block: a time is a comment, what hangs on one is refused."""
+    if block.kind == "assign" and block.variable in timed:
+        comments = ("a time: LinuxCNC has no clock", *block.comments)
+        return block._replace(kind="words", variable=0, expression=None, comments=comments)
+    if timed & block.read:
+        problem = "what stands here comes of the control's clock, which LinuxCNC lacks: take it out"
+        return block._replace(problem=block.problem or problem)
+    return block
