@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, Plunge
 from g12.moves.steps import BlockMoves
-from g12.polar.face import FaceMove, FaceSwitch, flows_into, in_face, passed
+from g12.polar.face import FaceSwitch, flows_into, in_face, passed
 from g12.polar.plan import PolarSettings, plan
 from support import planned_moves
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
@@ -68,16 +68,6 @@ def contour(*points, feed=2000.0):
         drawn.elements.append(planned_moves.line(x, c, to_x, to_c, number=number, feed=feed))
         x, c = to_x, to_c
     return drawn
-
-
-def test_a_section_goes_to_the_face_and_back():
-    made = plan(contour((30, 20), (-30, 20), (-30, 0)), SETTINGS, c=10.0)
-    kinds = [type(step) for step in made.steps]
-    assert kinds == [FaceSwitch, FaceMove, FaceMove, FaceMove, FaceSwitch]
-    assert [step.line for step in made.steps] == [7, 7, 8, 9, 9]
-    assert made.steps[0] == FaceSwitch(7, True, (30.0, 10.0, 0.0))
-    assert made.position == pytest.approx((30.0, 190.0, 0.0))
-    assert made.angle == pytest.approx(pi)
 
 
 def test_arcs_on_the_face_leave_the_machine_at_their_end():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How fast C and the slide can follow moves on the face."""
 
-from math import inf, pi
+from math import inf
 
 import numpy as np
 import pytest
@@ -9,29 +9,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from g12.geometry.curve import Arc
-from g12.polar.follow import OVERSHOOT, FaceLimits, can_follow
-from support.face_moves import LIMITS, arc, arcs, line, lines, motion
-
-
-def test_far_from_the_pole_a_move_is_able():
-    assert can_follow(line((40, -20), (40, 20)), LIMITS)
-
-
-@pytest.mark.parametrize(
-    "move",
-    [
-        line((10, -20), (10, 20)),  # a stop of the feed would ask too much of C
-        line((30, 0), (0, 0)),
-        line((0, 0), (30, 0)),
-        arc((20, 0), 15, 0, 2 * pi),
-    ],
-)
-def test_near_the_pole_it_is_not(move):
-    assert not can_follow(move, LIMITS)
-
-
-def test_along_a_radius_it_is_however_near_it_comes():
-    assert can_follow(line((30, 0), (1, 0)), LIMITS)
+from g12.polar.follow import can_follow
+from support.face_moves import LIMITS, arcs, line, lines, motion
 
 
 @pytest.mark.parametrize(("slide_speed", "able"), [(52.0, True), (51.99, False)])
@@ -46,21 +25,6 @@ def test_a_higher_feed_needs_more_room():
     slow, fast = (line((17, -20), (17, 20), feed=feed) for feed in (500.0, 6000.0))
     assert can_follow(slow, LIMITS)
     assert not can_follow(fast, LIMITS)
-
-
-def test_no_limits_no_segments():
-    free = LIMITS._replace(c_acceleration=inf, c_speed=inf, slide_acceleration=inf)
-    assert can_follow(line((0.001, -20), (0.001, 20)), free)
-
-
-@pytest.mark.parametrize("sweep", [0.9, -0.9, 2 * pi, -2 * pi])
-@pytest.mark.parametrize("part", [2.5 / 16, 7.5 / 16, 13.5 / 16])
-@pytest.mark.parametrize(("share", "able"), [(0.9999, False), (1.0001, True)])
-def test_an_arc_is_looked_at_where_it_is_nearest_to_the_pole(sweep, part, share, able):
-    """A circle of radius 10 about X20 passes the pole at 10, wherever it begins."""
-    c_speed = (share * 1000.0 / 60.0 + OVERSHOOT * 1e5) / 10.0
-    free = FaceLimits(1e5, 1e5, inf, inf, c_speed, 1.0, 0.0)
-    assert can_follow(arc((20, 0), 10, pi - part * sweep, sweep), free) is able
 
 
 def share_of_limits(move, limits):
@@ -105,19 +69,3 @@ def test_a_move_is_able_if_its_place_that_asks_the_most_is(move, beside, slide_s
     assume(abs(motion(move)[0]).min() > abs(beside) + 0.5)
     share = share_of_limits(move, limits)
     assert can_follow(move, limits) == (share < 1.0) or 0.97 < share < 1.1
-
-
-@settings(max_examples=100, deadline=None)
-@given(st.one_of(lines, arcs), st.sampled_from([0.0, 3.0]), st.floats(0.05, 1.0))
-def test_what_is_able_does_not_depend_on_the_unit(move, beside, quick):
-    """In units of ten metres nothing is greater than 1."""
-    limits = LIMITS._replace(
-        beside=beside, slide_speed=60.0, c_acceleration=quick * LIMITS.c_acceleration
-    )
-    small = {name: 1e-4 * getattr(limits, name) for name in LENGTHS}
-    ends = [1e-4 * end for end in move.curve[:2]]
-    scaled = move._replace(feed=1e-4 * move.feed, curve=type(move.curve)(*ends, *move.curve[2:]))
-    assert can_follow(scaled, limits._replace(**small)) == can_follow(move, limits)
-
-
-LENGTHS = ("acceleration", "round_acceleration", "slide_acceleration", "slide_speed", "beside")

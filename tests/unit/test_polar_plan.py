@@ -88,26 +88,6 @@ def deviation(shape, settings=EXACT, feed=250.0):
     return distance(path(made), [shape]).max()
 
 
-BESIDE = [0.0026, 0.003, 0.005, 0.007, 0.01, 0.015, 0.025, 0.05, 0.1, 0.3, 1.0]
-
-
-@pytest.mark.parametrize("beside", BESIDE)
-def test_lines_beside_the_pole(beside):
-    for start in np.geomspace(0.01, 30.0, 25):
-        for end in (-9.0, 0.0, 4.0 * start):
-            assert deviation(Straight(start - 1j * beside, end - 1j * beside)) <= TOLERANCE
-
-
-@pytest.mark.parametrize("beside", [*BESIDE, *(-gap for gap in BESIDE)])
-@pytest.mark.parametrize("radius", [1.3, 6.0, 40.0])
-def test_arcs_beside_the_pole(beside, radius):
-    for sweep in (0.01, 1.0, 5.0, 2 * math.pi):
-        around = Round(radius * cmath.exp(2j), 0j, sweep)
-        centre = radius + beside
-        arc = Round(around.start - centre, complex(-centre), sweep)
-        assert deviation(arc) <= TOLERANCE
-
-
 @pytest.mark.parametrize("beside", [0.0026, 0.003, -0.003, 0.1])
 @pytest.mark.parametrize("radius", [2.5e4, 2.5e5, 9e5])
 def test_arcs_beside_the_pole_that_are_nearly_lines(radius, beside):
@@ -121,52 +101,11 @@ def test_arcs_beside_the_pole_that_are_nearly_lines(radius, beside):
     assert len(run.segments) <= 45
 
 
-@pytest.mark.parametrize("away", [0.0023, 0.003, 0.006, 0.02, 0.05, 0.1, 0.25, 0.6, 1.5])
-@pytest.mark.parametrize("radius", [2.0, 15.0, 60.0])
-@pytest.mark.parametrize("sweep", [2.0, -4.0, 2 * math.pi])
-def test_arcs_nearly_about_the_spindle(away, radius, sweep):
-    for first in (0.0, 0.4, 1.5, 3.0):
-        centre = complex(away)
-        assert deviation(Round(centre + cmath.rect(radius, first), centre, sweep)) <= TOLERANCE
-
-
 @pytest.mark.parametrize(("feed", "segments"), [(60.0, 27), (250.0, 21), (1000.0, 21)])
 def test_an_even_feed_is_held_where_the_machine_is_quick_enough(feed, segments):
     """X has 1000 mm/s²: at F250 it takes 8 ms to speed up, and the segments near X0 are short."""
     run = plan(programmed([Straight(1 + 0j, 20 + 20j)], feed=feed), LATHE, c=0.0).steps[0]
     assert len(run.segments) == segments
-
-
-def test_short_lines():
-    for length in np.arange(0.1, 4.0, 0.1):
-        for way in (1j, 0.7 + 0.7j):
-            assert deviation(Straight(20 + 0j, 20 + way * length), DRIVEN) <= TOLERANCE
-
-
-def test_winds_on_turn_after_turn():
-    circle = Round(12 + 0j, 2 + 0j, 2 * math.pi)
-    contour = programmed([circle] * 50)
-    assert plan(contour, LATHE, c=90.0).position.c == pytest.approx(90.0 + 50 * 360.0, abs=1e-6)
-
-
-def test_inches_make_the_same_moves():
-    metric = [Straight(30 + 0j, 8 + 12j), Round(8 + 12j, 1 + 2j, 3.0)]
-    metric.append(Round(metric[1].end, 1j, -1.0))
-    lengths = ("tolerance", "least_x", "x_acceleration")
-    inch = LATHE._replace(**{name: getattr(LATHE, name) / 25.4 for name in lengths})
-    small = [
-        Straight(shape.start / 25.4, shape.end / 25.4)
-        if isinstance(shape, Straight)
-        else Round(shape.start / 25.4, shape.centre / 25.4, shape.sweep)
-        for shape in metric
-    ]
-    in_mm = runs(plan(programmed(metric, feed=254.0), LATHE, c=0.0))
-    in_inches = runs(plan(programmed(small, feed=10.0), inch, c=0.0))
-    assert len(in_mm) == len(in_inches) >= 3
-    for one, other in zip(in_mm, in_inches):
-        assert len(one.segments) == len(other.segments)
-        for (x, c, _, _), (x_inch, c_inch, _, _) in zip(one.segments, other.segments):
-            assert (x_inch * 25.4, c_inch) == pytest.approx((x, c), abs=1e-7)
 
 
 def test_what_is_left_out_of_a_contour_is_taken_from_the_tolerance():
@@ -207,36 +146,6 @@ def test_the_feed_is_even_inside_a_segment_where_the_machine_can_hold_it(shapes)
     for cut in cuts(contour, plan(contour, EXACT, c=0.0)):
         if min(cut.radius) > 2.0 and not is_small(shapes[cut.line - 1]):
             assert all(speed == pytest.approx(100.0, rel=0.02) for speed in cut.speeds)
-
-
-@pytest.mark.parametrize(
-    ("feed", "segments"), [(600.0, [24, 25]), (1200.0, [16, 17]), (3000.0, [10, 11])]
-)
-def test_for_an_even_feed_segments_are_no_shorter_than_the_machine_can_follow(feed, segments):
-    # twice the square of the feed by the acceleration of X or C: at F3000 the tolerance decides
-    contour = programmed([Straight(20 + 0j, 2 + 8j), Straight(2 + 8j, -20 + 9j)], feed=feed)
-    planned = plan(contour, LATHE._replace(tolerance=0.05), c=0.0)
-    assert [len(run.segments) for run in runs(planned)] == segments
-
-
-def test_what_the_segments_leave_over_of_x_comes_last_and_stops():
-    # a quarter turn about a centre 0.0002 beside the spindle: no segment changes X by 0.001
-    shape = Round(20 + 0j, 0.0002 + 0j, math.pi / 2)
-    *turned, last = runs(plan(programmed([shape]), LATHE, c=0.0))
-    assert {x for run in turned for x, *_ in run.segments} == {20.0}
-    ((x, *_),) = last.segments
-    assert x == pytest.approx(abs(shape.end), abs=1e-9) and last.stop
-
-
-def test_a_helix_has_its_feed_in_space():
-    contour = Contour(10.0, 0.0)
-    contour.arc(1, z=-20.0, i=-10.0, line=1, feed=300.0)
-    contour.line(20.0, 0.0, -22.0, line=2, feed=300.0)
-    planned = plan(contour, LATHE, c=0.0)
-    assert [run.axes for run in runs(planned)] == ["XCZ", "XCZ"]
-    for cut in cuts(contour, planned):
-        assert 60.0 * cut.length / cut.seconds == pytest.approx(300.0, rel=0.01)
-    assert planned.position.z == -22.0
 
 
 # In as few segments as can be.
@@ -281,57 +190,6 @@ def bulge(x):
     return x[len(x) // 2] - (x[0] + x[-1]) / 2
 
 
-def test_segments_use_the_tolerance_but_for_what_a_stop_takes():
-    side, on = Straight(20 + 0j, 20 + 30j), Straight(20 + 30j, 20 + 31j)
-    for shapes, least, most in (([side], 0.55, 0.7), ([side, on], 0.75, 0.96)):
-        contour = programmed(shapes)
-        made = [cut for cut in cuts(contour, plan(contour, DRIVEN, c=0.0)) if cut.line == 1]
-        assert least < distance(path(made), [side]).max() / TOLERANCE <= most
-
-
-def test_a_circle_about_the_spindle_is_one_segment():
-    contour = programmed([Round(10 + 0j, 0j, -2 * math.pi)], feed=300.0)
-    (run,) = runs(plan(contour, LATHE, c=15.0))
-    ((x, c, z, feed),) = run.segments
-    assert (x, z) == (10.0, 0.0)
-    assert c == pytest.approx(-345.0)
-    assert feed == pytest.approx(300.0 / 10.0 * 180.0 / math.pi)
-
-
-def test_a_radius_is_one_segment():
-    contour = programmed([Straight(10 + 0j, 25 + 0j)], feed=300.0)
-    assert runs(plan(contour, LATHE, c=0.0)) == [
-        BlockMoves(1, "XC", [(25.0, 0.0, 0.0, 300.0)], True)
-    ]
-
-
-def test_a_radius_does_not_turn_c_by_rounding():
-    third = cmath.rect(10.0, math.pi / 3)
-    shapes = [Round(10 + 0j, 0j, math.pi / 3), Straight(third, 2 * third)]
-    around, outwards = runs(plan(programmed(shapes), LATHE, c=0.1))
-    assert [segment[1] for segment in outwards.segments] == [around.segments[-1][1]]
-
-
-def test_what_was_left_over_is_made_up_at_the_feed_of_the_last_move():
-    contour = Contour(12.0, 0.0)
-    contour.line(10.0, line=1, feed=100.0)
-    end = Round(10 + 0j, 0.0004 + 0j, math.pi / 2).end
-    contour.arc(1, end.real, end.imag, i=-9.9996, line=2, feed=250.0)
-    rest = runs(plan(contour, LATHE, c=0.0))[-1]
-    assert (rest.line, len(rest.segments), rest.segments[0][3]) == (2, 1, 250.0)
-
-
-@pytest.mark.parametrize(("length", "segments"), [(0.3, 1), (0.35, 2)])
-def test_a_line_beside_the_pole_is_one_segment_up_to_its_deviation(length, segments):
-    """Square to the radius 5: a whole segment bulges by its length squared through 8 radii."""
-    half = 0.5 * length
-    first, last = 5 - 1j * half, 5 + 1j * half
-    corners = [abs(first) + 0j, first, last, 9 + 9j]
-    contour = programmed([Straight(*ends) for ends in zip(corners, corners[1:])])
-    (made,) = (run for run in runs(plan(contour, DRIVEN, c=0.0)) if run.line == 2)
-    assert len(made.segments) == segments
-
-
 # The pole.
 
 
@@ -344,27 +202,11 @@ def test_through_the_pole_c_turns_in_place_as_fast_as_it_may():
     ]
 
 
-def test_a_slot_through_the_pole_does_not_wind_c_up():
-    slot = [Straight(10 + 0j, -10 + 0j), Straight(-10 + 0j, 10 + 0j)]
-    assert plan(programmed(slot * 5), LATHE, c=45.0).position.c == 45.0
-
-
 def test_turns_the_shorter_way_at_the_pole_and_reverses_without_a_turn():
     bent = plan(programmed([Straight(10 + 0j, 0j), Straight(0j, 0 - 5j)]), LATHE, c=0.0)
     assert runs(bent)[1].segments == [(0.0, -90.0, 0.0, 21600.0)]
     back = plan(programmed([Straight(10 + 0j, 0j), Straight(0j, 5 + 0j)]), LATHE, c=0.0)
     assert [run.segments[-1][:2] for run in runs(back)] == [(0.0, 0.0), (5.0, 0.0)]
-
-
-def test_a_circle_through_the_pole_turns_half_a_turn_there():
-    planned = plan(programmed([Round(10 + 0j, 5 + 0j, 2 * math.pi)]), LATHE, c=0.0)
-    (turn,) = [run for run in runs(planned) if run.segments[0][3] == LATHE.c_speed]
-    half, last = runs(planned).index(turn), runs(planned)[-1]
-    assert runs(planned)[half - 1].segments[-1][:2] == pytest.approx((0.0, 90.0), abs=1.0)
-    assert turn.segments[0][1] - runs(planned)[half - 1].segments[-1][1] == pytest.approx(
-        -180.0, abs=2.0
-    )
-    assert last.segments[-1][:2] == pytest.approx((10.0, 0.0))
 
 
 @pytest.mark.parametrize("shape", [Straight(9 + 0j, -9 + 0.003j), Round(9 + 0j, 4.501 + 0j, 5.0)])
@@ -400,15 +242,6 @@ SMOOTH = [Round(20 + 0j, 15 + 0j, math.pi / 2), Straight(15 + 5j, 0 + 5j)]
 )
 def test_stops_where_blending_would_cut_the_corner(shapes, feed, lines):
     assert stopping_lines(shapes, feed) == lines
-
-
-@pytest.mark.parametrize(("feed", "stop"), [(111.0, False), (115.0, True)])
-def test_a_corner_is_rounded_by_half_the_tolerance_at_most(feed, stop):
-    """At right angles, with 1000 mm/s² and twice that where it stops: 0.0025 mm at 1.88 mm/s."""
-    contour = Contour(10.0, 0.0)
-    contour.line(20.0, line=1, feed=feed)
-    contour.line(z=-5.0, line=2, feed=feed)
-    assert [run.stop for run in runs(plan(contour, LATHE, c=0.0))] == [stop, True]
 
 
 def test_marks_keep_their_place_and_segments_their_lines():
@@ -448,14 +281,6 @@ def test_what_the_segments_leave_over_of_both_slides_comes_last():
     contour = Contour(10.0, 0.0)
     contour.arc(1, 0.0, 10.0, 0.0003, i=-10.0, line=2, feed=250.0)
     assert runs(plan(contour, LATHE, c=0.0))[-1].axes == "Z"
-
-
-def test_z_alone_is_a_section_too():
-    contour = Contour(10.0, 0.0)
-    contour.line(z=-3.0, line=1, feed=50.0)
-    planned = plan(contour, LATHE, c=15.0)
-    assert planned.steps == [BlockMoves(1, "Z", [(10.0, 15.0, -3.0, 50.0)], True)]
-    assert planned.position == (10.0, 15.0, -3.0)
 
 
 def test_segments_that_keep_x_stay_within_the_tolerance():
@@ -498,9 +323,3 @@ def test_no_axis_exceeds_its_acceleration_along_any_direction(place, heading, sl
         beside=beside,
     )
     assert quick == pytest.approx(1.0 / max(needs), rel=1e-3)
-
-
-def test_a_plan_without_motion_is_its_marks():
-    contour = Contour(10.0, 0.0)
-    contour.mark("M8", line=1)
-    assert plan(contour, LATHE, c=12.0).steps == ["M8"]

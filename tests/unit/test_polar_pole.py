@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Contour, Mark, Plunge
+from g12.compensation.contour import Contour, Plunge
 from g12.geometry.curve import Arc, Line
 from g12.polar.pole import through_pole
 from support import planned_moves
@@ -37,35 +37,6 @@ def ends(parts):
     return [(first.start.real, first.start.imag, first.z0), *places]
 
 
-def test_marks_plunges_and_what_is_far_from_the_pole_stay():
-    path = [Mark(1, "M8"), line(10, 5, -10, 5), Plunge(2, 50.0, 0.0, -1.0), arc(0, 0, 5, 0, 3.0)]
-    assert led(*path) == path
-
-
-@pytest.mark.parametrize(("beside", "parts"), [(0.99, 2), (1.01, 1)])
-def test_a_line_that_comes_within_reach_is_two_radii(beside, parts):
-    c = beside * REACH
-    made = led(line(8, c, -2, c, 1.0, 2.0))
-    assert len(made) == parts
-    if parts == 2:
-        assert ends(made) == [(8, c, 1.0), pytest.approx((0, 0, 1.8)), (-2, c, 2.0)]
-        assert {(part.line, part.feed, part.offset) for part in made} == {(3, 100.0, 0.0)}
-
-
-@pytest.mark.parametrize(("x", "there"), [(0.99 * REACH, True), (1.01 * REACH, False)])
-def test_a_line_that_begins_or_ends_within_reach_begins_or_ends_there(x, there):
-    outwards, inwards = led(line(x, 0, 8, 6)), led(line(8, 6, x, 0))
-    assert ends(outwards)[0][:2] == ((0.0, 0.0) if there else (x, 0))
-    assert ends(inwards)[-1][:2] == ((0.0, 0.0) if there else (x, 0))
-    assert len(outwards) == len(inwards) == 1
-
-
-def test_a_line_inside_the_reach_is_no_way_but_for_its_z():
-    assert led(line(0, 0, 0.001, 0)) == []
-    assert led(line(0, 0, 0.001, 0, -1.0, -2.0)) == [Plunge(3, 100.0, -1.0, -2.0)]
-    assert led(line(0.001, 0, -0.001, 0, -1.0, -2.0)) == [Plunge(3, 100.0, -1.0, -2.0)]
-
-
 @pytest.mark.parametrize("sweep", [2 * math.pi, -2 * math.pi])
 @pytest.mark.parametrize(("beside", "passes"), [(0.0, 1), (0.9 * REACH, 1), (1.1 * REACH, 0)])
 def test_a_circle_through_the_pole(sweep, beside, passes):
@@ -79,11 +50,6 @@ def test_a_circle_through_the_pole(sweep, beside, passes):
         length = abs(to.start)
         assert length**2 / 8 / 5 == pytest.approx(0.2 * REACH, rel=0.02) if not beside else True
         assert abs(fro.end) == pytest.approx(length)
-
-
-def test_a_small_circle_about_the_pole_is_not_led_through_it():
-    around = arc(0, 0, 2 * REACH, 0, 2 * math.pi)
-    assert led(around) == [around]
 
 
 @pytest.mark.parametrize("radius", [0.003, 0.0039])

@@ -2,7 +2,7 @@
 """What of a section is made on the face, with which acceleration: as it is made soonest."""
 
 from itertools import groupby
-from math import cos, hypot, inf, pi, radians, sin
+from math import cos, hypot, pi, radians, sin
 
 import pytest
 from hypothesis import given, settings
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Mark, Plunge
 from g12.polar.follow import FaceLimits, can_follow
-from g12.polar.quickest import ACCELERATION_SHARES, FaceStretch, quickest
+from g12.polar.quickest import ACCELERATION_SHARES, quickest
 from support import planned_moves
 from support.growth import growth
 
@@ -36,12 +36,6 @@ def made_of(path, limits):
 
 def shares_of(made):
     return [stretch.share if stretch else 0.0 for stretch in made.stretches]
-
-
-def test_far_from_the_pole_nothing_is_softened():
-    path = [line((60, -20), (60, 20), feed=3000.0), Mark(2, "M8")]
-    made = quickest(path, [True, False], QUICK)
-    assert made == (path, [True, False], [FaceStretch(1.0, 1.0)] * 2)
 
 
 @pytest.mark.parametrize("feed", [1000.0, 2000.0])
@@ -98,22 +92,12 @@ def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
     assert [*map(bool, shares)] == [False, worth, worth, False]
 
 
-def test_a_stretch_between_two_switches_has_its_own_acceleration():
-    shares = shares_of(made_of([circle(10, 20, 2000.0), SHORT, FAR], QUICK))
-    assert 0.0 < shares[0] < shares[-1] == 1.0
-
-
 @pytest.mark.parametrize(("feed", "override"), [(2000.0, 1.5), (2900.0, 1.2), (3470.0, 1.0)])
 def test_the_feed_may_be_turned_up_as_far_as_c_follows(feed, override):
     """At 60 mm from the pole and 1 radian a second C is at its speed with F3600, 0.002 s early."""
     slow = QUICK._replace(c_speed=1.0, override=1.5)
     (stretch,) = made_of([line((60, -5), (60, 5), feed=feed)], slow).stretches
     assert stretch.override == pytest.approx(override, abs=0.01)
-
-
-def test_a_machine_that_follows_all_of_it_is_asked_for_nothing():
-    free = QUICK._replace(c_acceleration=inf, c_speed=inf, slide_acceleration=inf)
-    assert shares_of(made_of([line((0.01, -20), (0.01, 20), feed=9000.0)], free)) == [1.0]
 
 
 def test_moves_near_the_pole_are_not_compared_each_with_each():
