@@ -33,33 +33,6 @@ def test_f_is_for_x_where_x_moves():
     assert segments((12.0, 25.0, 5.0)) == [(12.0, pytest.approx(25.0), 0.0, pytest.approx(48.0))]
 
 
-def test_f_is_degrees_per_minute_where_x_stays():
-    """30 degrees in a path of 5 at F120, a 24th of a minute."""
-    assert segments((10.0, 30.0, 5.0)) == [(10.0, pytest.approx(30.0), 0.0, pytest.approx(720.0))]
-
-
-def test_f_is_for_x_and_z_on_a_helix():
-    """3 of X and 4 of Z: 5 in a path of hypot(12, 4) at F120."""
-    ((_, _, z, feed),) = segments((13.0, 60.0, 12.0), z1=-4.0)
-    assert z == -4.0
-    assert feed == pytest.approx(5.0 * 120.0 / math.hypot(12.0, 4.0))
-
-
-def test_what_the_other_slide_would_move_too_little_goes_to_a_later_segment():
-    """Debian's 2.9.0~pre1 would run the first segment three times too fast."""
-    made = segments((10.0, 5.0, 1.0), (10.0, 20.0, 4.0), z1=-0.0016)
-    assert [segment[2] for segment in made] == [0.0, pytest.approx(-0.0016)]
-    assert made[0][3] == pytest.approx(5.0 * 120.0, rel=1e-6)
-    assert made[1][3] == pytest.approx(0.0016 * 120.0 / 3.0, rel=1e-6)
-
-
-def test_c_counts_from_where_it_stood_at_entry():
-    ((_, c, _, _),) = segments_with_feed(
-        Split([10.0, 12.0], [0.0, 1.0], [0.0, 5.0]), (10.0, 90.0, 0.0), move(), 90.0, LEAST
-    )
-    assert c == pytest.approx(90.0 + math.degrees(1.0))
-
-
 step = st.sampled_from([0.0, 0.0004, -0.0007, 0.0015, -0.3, 2.0])
 turn = st.sampled_from([0.0, 1e-12, 0.01, -3.0, 40.0])
 ends = st.lists(st.tuples(step, turn, st.floats(0.01, 5.0)), min_size=1, max_size=8)

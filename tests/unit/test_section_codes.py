@@ -15,11 +15,6 @@ def codes(code, *lines):
     )
 
 
-def test_the_pair_of_the_remap_lines():
-    found = codes("G12.1", *PAIR)
-    assert (found.on, found.off, found.off_code) == ({121}, {131}, "G13.1")
-
-
 def test_every_code_of_the_handler_ends_a_section_and_the_partner_is_named():
     found = codes("G12.3", *PAIR, *OTHER)
     assert (found.on, found.off, found.off_code) == ({121, 123}, {131, 133}, "G13.3")

@@ -70,13 +70,6 @@ def test_what_the_parser_does_not_know_is_rewritten(raw, text):
     assert line.rewritten
 
 
-def test_u_and_h_are_relative_and_y_is_not():
-    relative = [
-        split_line(raw, POLAR_WORDS).relative for raw in ("U1 C2", "X1 H2", "U1 H2", "X1 Y2")
-    ]
-    assert relative == ["X", "C", "XC", ""]
-
-
 def test_parts_of_a_line():
     line = split_line(
         "/#1=2 G9 M3 S[#1] $1 #<ab>=sin[30] (one) X1 (two; three) ; (four)", POLAR_WORDS

@@ -105,10 +105,6 @@ SMOOTH, OLD = "G64P0.0025Q0", "G64P0Q0"
 RELEASED = ["F100", "G90"]
 
 
-def test_segments_run_under_g64_with_a_tolerance_and_the_old_one_comes_back():
-    assert handed_over([run()]).done == [SMOOTH, FIRST, *NEXT, OLD, *RELEASED]
-
-
 @pytest.mark.parametrize("path", [640, 610, 611])
 def test_a_move_in_front_of_the_section_is_not_blended_into_it(path):
     interp = handed_over([run()], Interpreter(path=path))
@@ -137,11 +133,6 @@ def test_where_c_stands_the_tolerance_is_no_coarser_than_the_section_s(tolerance
     assert interp.done == blended
 
 
-def test_a_g9_in_another_block_leaves_no_coarse_tolerance_where_c_stands():
-    still = run(segments=[(10.0, 0.0, 0.0, 250.0)])
-    assert handed_over([still], Interpreter(tolerance=0.1), exact=(9,)).done[0] == SMOOTH
-
-
 @pytest.mark.parametrize(
     ("tolerance", "merging", "blended"),
     [(0.0, 0.0, SMOOTH), (0.0254, 0.0, SMOOTH), (0.0254, 0.0254, None), (0.02, 0.0, None)],
@@ -165,11 +156,6 @@ def test_a_segment_that_another_is_blended_into_is_stopped_by_a_dwell():
     assert done[1:end] == [FIRST, LAST]
 
 
-def test_a_segment_between_two_stops_ends_in_exact_path():
-    alone = run(segments=LINE[:1], stop=True)
-    assert handed_over([alone, alone]).done == ["G61", FIRST, FIRST, OLD, *RELEASED]
-
-
 @pytest.mark.parametrize("path", ["G61", "G61.1"])
 def test_programmed_exact_paths_hold_at_the_end_of_a_block(path):
     interp = Interpreter(path=round(float(path[1:]) * 10), tolerance=0.05)
@@ -184,11 +170,6 @@ def test_g9_is_an_exact_stop_at_the_end_of_its_block():
     assert done == [SMOOTH, FIRST, *NEXT, FIRST, *NEXT, STOP_HERE, OLD, *RELEASED]
     alone = handed_over([run(segments=LINE[:1], line=8)], exact={8}).done
     assert alone == ["G61.1", FIRST, OLD, *RELEASED]
-
-
-def test_every_move_has_the_line_of_its_block():
-    interp = handed_over([run(line=7), run(line=9)])
-    assert [line for text, line in zip(interp.done, interp.lines) if is_move(text)] == [7, 7, 9, 9]
 
 
 def test_c_is_not_wrapped_while_segments_go_out():
