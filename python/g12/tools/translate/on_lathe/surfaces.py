@@ -2,8 +2,9 @@
 """The two surfaces on which a lathe runs a mill's program: words, sections and holes of each.
 
 On the face of a bar X and Y become those of G12.1, and Z is along the spindle. Round a part X is
-along it, Y round it in G07.1, and Z is radial. Seen from outside with X upwards, the Y of a mill points
-to the left, C to the right: Y is C with the other sign. Arcs and compensation keep their sense.
+along it, Y round it in G07.1, and Z is radial. Seen from outside with X upwards, the mill's Y
+points to the left, C to the right: Y is C with the other sign. Arcs and compensation keep their
+sense.
 """
 
 import re
