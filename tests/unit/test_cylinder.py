@@ -51,24 +51,6 @@ def runs(contour, **changed):
     return [step for step in steps if isinstance(step, BlockMoves)]
 
 
-def test_a_line_is_one_move_with_the_feed_of_the_surface():
-    """5 along and 20 pi round at F100; F is for Z, which makes 5 of the whole."""
-    contour = empty(c=30.0)
-    contour.line(math.radians(210) * RADIUS, 5.0, line=1, feed=100.0)
-    (run,) = runs(contour)
-    ((x, c, z, feed),) = run.segments
-    assert (run.axes, x, c, z) == ("ZC", 22.0, pytest.approx(210.0), 5.0)
-    assert feed == pytest.approx(100.0 * 5.0 / math.hypot(5.0, math.pi * RADIUS))
-
-
-def test_round_about_alone_f_is_degrees():
-    contour = empty()
-    contour.line(math.radians(-90) * RADIUS, line=1, feed=100.0)
-    assert runs(contour)[0].segments == [
-        (22.0, pytest.approx(-90.0), 0.0, pytest.approx(100.0 / (RADIUS * math.pi / 180)))
-    ]
-
-
 def test_a_little_z_is_left_to_the_next_move_and_to_the_end():
     contour = empty()
     contour.line(10.0, 0.0004, line=1, feed=100.0)
@@ -169,12 +151,6 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
     assert (np.diff(angles) * turn > 0).all()
     widest = math.sqrt(12 * deviation / size)  # the angle of a chord that bulges by 3/2 of it
     assert len(places) - 1 <= sweep * max(1 / widest, 2.0) + 1.4
-
-
-def test_a_line_is_not_cut():
-    line = planned_moves.line(0.0, 0.0, 1000.0, -50.0)
-    split = split_on_cylinder(line, 10.0, 1e-6)
-    assert split.slides == [0.0, -50.0] and split.angles == [0.0, 100.0]
 
 
 # ---------------------------------------------------------------- how it begins, its words

@@ -79,15 +79,6 @@ def test_a_polygon_turns_c_once_with_every_round():
     assert 30 <= high < 90 and -360 * turns - 60 < low <= 30 - 360 * turns
 
 
-def test_rounds_of_a_polygon_are_no_wider_than_three_quarters_of_the_cutter():
-    for stock in (28, 36.1, 45, 80):
-        made = planned("polar_polygon", stock_diameter=stock)
-        assert 0 < made.rounds.step <= 4.5
-        assert made.rounds.apothem - (made.rounds.rounds - 1) * made.rounds.step == pytest.approx(
-            13.5 + 3
-        )
-
-
 def test_x_of_a_pocket_is_a_diameter_where_x_words_are():
     made = planned("polar_pocket", LATHE._replace(diameters=True), x=20)
     assert made.away == math.hypot(10, 3)
@@ -370,16 +361,6 @@ def test_no_slot_leads_through_the_centre_where_that_is_refused(width, length, t
 
 
 # ---------------------------------------------------------------- polygons
-
-
-@pytest.mark.parametrize("sides", [3, 4, 5, 6, 100])
-def test_flats_and_corners_of_a_polygon(sides):
-    """A corner's centre lies where the ends of two flats lead to, at right angles to each."""
-    form = planned("polar_polygon", sides=sides, corner_radius=2).form
-    half = math.pi / sides
-    assert form.inner == 13.5 - 2
-    assert form.corner * np.exp(1j * half) == pytest.approx(form.inner + 1j * form.side)
-    assert math.radians(form.half_turn) == pytest.approx(half)
 
 
 @pytest.mark.parametrize(
