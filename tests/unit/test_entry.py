@@ -46,21 +46,6 @@ def test_no_helix_goes_straight_down_and_nothing_up():
     assert helix_of(STRAIGHT_DOWN, 3.0, 5.0) == Helix(0.0, 0.0, 0)
 
 
-@pytest.mark.parametrize(
-    ("first", "cutter", "radius"), [(3.0, 5.0, 3.0), (8.0, 5.0, 4.5), (8.0, 0.0, 8.0)]
-)
-def test_the_helix_is_as_large_as_leaves_no_core(first, cutter, radius):
-    assert helix_of(HELIX, first, cutter).radius == pytest.approx(radius)
-
-
-def test_the_last_half_turns_bend_by_less_than_a_degree_each():
-    assert [helix_of(PocketEntry(True, angle), 3.0, 5.0).last for angle in (0.5, 3, 10)] == [
-        0,
-        3,
-        10,
-    ]
-
-
 def down(first, heights, entry=HELIX):
     return pocket_descent(Words("G13", {}), MM._replace(feed=600.0), entry, first, 5.0, heights)
 
@@ -76,7 +61,7 @@ def test_what_the_subroutine_is_told(first, side):
     assert told["last_turns"] == 3
 
 
-@pytest.mark.parametrize("share", [100.0, 40.0])
+@pytest.mark.parametrize("share", [40.0])
 def test_straight_down_is_at_its_share_of_the_feed(share):
     told = down(3.0, (3.0, 2.0), PocketEntry(feed=share)).locals(3.0)
     assert told == {"turns": 0, "feed": 600.0, "plunge_feed": 6.0 * share}
