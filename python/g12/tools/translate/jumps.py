@@ -35,19 +35,14 @@ OPENING = ("while", "if")  # kinds of blocks that a partner closes
 
 @dataclass
 class Jumps:
-    """What jumps add to a program, all by the index of a block.
+    """Additions of jumps to a program, by the index of a block."""
 
-    ``targets`` has the block where each jump arrives, ``problems`` why one cannot be made;
-    ``before`` and ``behind`` are lines around a block, ``at`` those of the jump itself; ``spans``
-    are first and last block of what is parted.
-    """
-
-    targets: dict[int, int] = field(default_factory=dict)
+    targets: dict[int, int] = field(default_factory=dict)  # the block where each jump arrives
     problems: dict[int, str] = field(default_factory=dict)
-    spans: list[tuple[int, int]] = field(default_factory=list)
+    spans: list[tuple[int, int]] = field(default_factory=list)  # first and last divided block
     before: dict[int, list[str]] = field(default_factory=lambda: defaultdict(list))
     behind: dict[int, list[str]] = field(default_factory=lambda: defaultdict(list))
-    at: dict[int, list[str]] = field(default_factory=lambda: defaultdict(list))
+    at: dict[int, list[str]] = field(default_factory=lambda: defaultdict(list))  # of the jump
 
 
 class _Loops:

@@ -19,36 +19,25 @@ COPIES = 10_000_000  # the first copy of O100 is O10000100
 
 @dataclass
 class Structure:
-    """The blocks of a file up to its end, by index.
+    """The blocks of a file up to its end, by index; the blocks of copies are behind its ``own``.
 
-    ``tail`` are the blocks behind the closing ``%``, ``behind_tape`` the programs in them. ``main``
-    is the block that is reached first; ``entries`` has the first block of each other program by its
-    number, ``starts`` the numbers by the block, with MAIN for a main program that others stand
-    before. ``doubled`` are numbers that several programs have. ``partners`` joins each WHILE and
-    its END, each condition and its end, ``problems`` has what is wrong with a block,
-    ``programs`` the number of the program that each block is in,
-    ``last_returns`` the block in which each program returns for the last time, ``jumps`` where GOTO
-    and M99 P lead, ``compared`` the variables that each program compares with #0.
-
-    Behind the file's ``own`` blocks stand those of copies: programs that are called in modes that
-    differ, once for each. ``copies`` has the number that each is a copy of, ``called_as`` the
-    copy's number for the blocks that call one.
+    A copy is a program that is called in different modes, once for each.
     """
 
     blocks: list[ForeignBlock]
-    tail: Sequence[ForeignBlock]
-    main: int = 0
-    entries: dict[int, int] = field(default_factory=dict)
-    starts: dict[int, int] = field(default_factory=dict)
-    doubled: set[int] = field(default_factory=set)
-    partners: dict[int, int] = field(default_factory=dict)
+    tail: Sequence[ForeignBlock]  # the blocks behind the closing ``%``
+    main: int = 0  # the block that is reached first
+    entries: dict[int, int] = field(default_factory=dict)  # first block of each other program
+    starts: dict[int, int] = field(default_factory=dict)  # the numbers of programs, by block
+    doubled: set[int] = field(default_factory=set)  # numbers of several programs
+    programs: list[int] = field(default_factory=list)  # the program of each block
+    partners: dict[int, int] = field(default_factory=dict)  # WHILE and END, condition and end
     problems: dict[int, str] = field(default_factory=dict)
-    programs: list[int] = field(default_factory=list)
-    last_returns: dict[int, int] = field(default_factory=dict)
+    last_returns: dict[int, int] = field(default_factory=dict)  # the last M99 of each program
     jumps: Jumps = field(default_factory=Jumps)
-    compared: dict[int, frozenset[int]] = field(default_factory=dict)
-    copies: dict[int, int] = field(default_factory=dict)
-    called_as: dict[int, int] = field(default_factory=dict)
+    compared: dict[int, frozenset[int]] = field(default_factory=dict)  # with #0, by program
+    copies: dict[int, int] = field(default_factory=dict)  # the original of each copy
+    called_as: dict[int, int] = field(default_factory=dict)  # the copy that a block calls
 
     def __post_init__(self) -> None:
         self.own = len(self.blocks)

@@ -115,35 +115,25 @@ class ControlError(ValueError):
 
 @dataclass(frozen=True)
 class Control:
-    """One control.
-
-    ``axes`` are the machine's axes, ``start`` the codes that hold when a program begins,
-    ``decimals`` what a number without a point is (``least`` increments, ``whole`` units, ``""`` if
-    that is not known), ``feed_of_c`` what F is over where C and a slide move together (``say``: not
-    known), ``at_zero`` are axes that the machine lacks and whose words may be 0. ``meanings`` has
-    the codes, ``tables`` the values of the file; ``live_spindle`` is LinuxCNC's spindle that drives
-    the tool, "" if that is not known, ``polar_codes`` are LinuxCNC's codes on the machine for polar
-    mode on and off, ``cylinder_code`` is that for a cylinder, with what its C is (``radius`` or
-    ``diameter``). ``c_axis_on`` are the codes that make the main spindle C: it stands then.
-    """
+    """One control, on one machine."""
 
     name: str
     title: str
-    machine: str
-    axes: str
-    start: tuple[str, ...]
-    decimals: str
-    feed_of_c: str
-    at_zero: str
-    remarks: bool
+    machine: str  # ``mill`` or ``lathe``
+    axes: str  # of the machine
+    start: tuple[str, ...]  # codes that hold when a program begins
+    decimals: str  # numbers without a point: ``least`` increments, ``whole`` units, "" unknown
+    feed_of_c: str  # the path of F where C and a slide move together, ``say``: unknown
+    at_zero: str  # axes that the machine lacks and whose words may be 0
+    remarks: bool  # text after ``;`` is a remark
     sources: tuple[str, ...]
     readings: tuple[str, ...]
-    meanings: Mapping[str, str]
+    meanings: Mapping[str, str]  # by code
     tables: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
-    live_spindle: str = "1"
-    polar_codes: tuple[str, str] = ("G12.1", "G13.1")
-    cylinder_code: tuple[str, str] = ("G7.1", "radius")
-    c_axis_on: frozenset[str] = frozenset()
+    live_spindle: str = "1"  # LinuxCNC's spindle that drives the tool, "" unknown
+    polar_codes: tuple[str, str] = ("G12.1", "G13.1")  # LinuxCNC's, on and off
+    cylinder_code: tuple[str, str] = ("G7.1", "radius")  # and what its C is: radius or diameter
+    c_axis_on: frozenset[str] = frozenset()  # codes that stop the main spindle and make it C
 
     @property
     def is_lathe(self) -> bool:

@@ -36,20 +36,14 @@ POSITION = {5041: 5420, 5042: 5421, 5043: 5422}  # where the tool stands, X Y Z
 
 
 class Expression(NamedTuple):
-    """An expression as LinuxCNC reads it.
-
-    ``read`` are the numbers of the variables in it, ``is_condition`` tells whether its
-    value is true or false, ``end`` is the index behind it in the text. ``compared`` are the local
-    variables that it compares with #0; those of ``set_if_true`` and ``set_if_false`` have a value
-    if the condition is true, and if it is false.
-    """
+    """An expression as LinuxCNC reads it; variables by their numbers."""
 
     text: str
-    read: frozenset[int]
+    read: frozenset[int]  # variables in it
     is_condition: bool
-    end: int
-    compared: frozenset[int] = frozenset()
-    set_if_true: frozenset[int] = frozenset()
+    end: int  # index behind it in the text
+    compared: frozenset[int] = frozenset()  # local variables that it compares with #0
+    set_if_true: frozenset[int] = frozenset()  # those of them that then have a value
     set_if_false: frozenset[int] = frozenset()
 
 

@@ -95,25 +95,22 @@ class ForeignWord(NamedTuple):
 
 
 class ForeignBlock(NamedTuple):
-    """One block of a program, or what stands in its place.
+    """One block of a program, or a statement in its place.
 
-    ``kind`` is ``words``, ``tape`` (a ``%``), ``assign`` (``variable`` = ``expression``),
-    ``while``, ``do``, ``end``, ``if`` and ``endif`` around the blocks that a condition rules,
-    ``stop`` or ``goto`` (``expression`` if it has a condition). ``line`` counts from 1; ``label``
-    is the number of DO, END and GOTO; ``problem`` is why the block could not be read, None if it
-    could; ``ruled`` are those behind a condition, until `blocks_of` puts them after it.
+    ``kind`` is ``words``, ``tape`` (a ``%``), ``assign``, ``while``, ``do``, ``end``, ``if`` and
+    ``endif`` around the blocks that a condition rules, ``stop`` or ``goto``.
     """
 
-    line: int
+    line: int  # from 1
     kind: str = "words"
     words: tuple[ForeignWord, ...] = ()
     comments: tuple[str, ...] = ()
     skipped: bool = False
-    expression: Expression | None = None
-    variable: int = 0
-    label: str = ""
-    ruled: tuple[ForeignBlock, ...] = ()
-    problem: str | None = None
+    expression: Expression | None = None  # the condition, or the value of ``assign``
+    variable: int = 0  # that ``assign`` sets
+    label: str = ""  # the number of DO, END and GOTO
+    ruled: tuple[ForeignBlock, ...] = ()  # after a condition, until `blocks_of` puts them behind it
+    problem: str | None = None  # why it could not be read
 
     @property
     def number(self) -> int | None:

@@ -33,30 +33,7 @@ GROUP_OF = {code: group for group, codes in GROUPS.items() for code in codes}
 
 
 class ModalState(NamedTuple):
-    """The modes by the names of their groups, each as LinuxCNC's code.
-
-    ``cycle`` is the drilling cycle in force and ``cycle_words`` what it was given, ``length`` the H
-    of G43 (``0``: none), ``tool`` the T word of what is loaded, ``next_tool`` that of the next M6,
-    ``offset`` the work offset, ``limit`` the spindle's speed limit, ``surface`` the S of G96,
-    ``radius`` the D word, ``feed`` the F word.
-    ``own_motion``, ``own_distance`` and ``own_feed`` tell where LinuxCNC is in another mode than
-    the program.
-    ``polar`` is ``on`` between polar on and off, ``cylinder`` on a cylinder; ``mapped`` is the
-    radius of one whose angles are written as lengths, ``delayed`` a code of compensation that is
-    written with the section's next move.
-    ``at_x`` to ``at_c`` are the program's point, as far as it is known (`places`); ``held`` are
-    slides that LinuxCNC has not moved yet, each with where it stands. ``known_offsets`` are the
-    numbered work offsets that are known to be set, or asked about. ``turn`` is the turning cycle
-    that X and Z repeat, ``pass_words`` what it was given, ``kept`` what first blocks of cycles say;
-    ``chamfers`` tells whether threads end with one. ``local`` are X and Y of G52, as far as they
-    are known, ``turned`` is the work offset that G68 has turned, ``rigid`` the speed of a rigid tap
-    and ``tap_top`` the height that it goes back to, ``waiting`` is where a mill's program goes on a
-    lathe before its next cut, ``section`` the program in which that began. ``sizes`` are the
-    diameters that G10 L12 has set, by tool.
-    ``corner`` tells that the program's point is a corner which LinuxCNC has cut: increments would
-    start elsewhere. ``x_words`` tells whether X words are diameters, ``live`` is the ``$`` word of
-    a spindle that drives the tool and turns; ``spindle`` is the M3 or M4 that turns the first one.
-    """
+    """The modes by the names of their groups, each as LinuxCNC's code, and what rules remember."""
 
     motion: str = UNKNOWN
     distance: str = "G90"
@@ -66,41 +43,41 @@ class ModalState(NamedTuple):
     compensation: str = "G40"
     spindle_mode: str = UNKNOWN
     path: str = UNKNOWN
-    cycle: str = UNKNOWN
-    cycle_words: tuple = ()
-    length: str = UNKNOWN
-    tool: str = UNKNOWN
-    next_tool: str = UNKNOWN
-    offset: str = UNKNOWN
-    limit: str = UNKNOWN
-    surface: str = UNKNOWN
-    radius: str = UNKNOWN
-    feed: str = UNKNOWN
-    polar: str = "off"
-    mapped: str = UNKNOWN
-    delayed: str = UNKNOWN
-    own_motion: str = AS_PROGRAMMED
+    cycle: str = UNKNOWN  # the drilling cycle in force
+    cycle_words: tuple = ()  # its words, by letter
+    length: str = UNKNOWN  # the H of G43, "0": none
+    tool: str = UNKNOWN  # the T word of the loaded tool
+    next_tool: str = UNKNOWN  # that of the next M6
+    offset: str = UNKNOWN  # the work offset
+    limit: str = UNKNOWN  # the spindle's speed limit
+    surface: str = UNKNOWN  # the S of G96
+    radius: str = UNKNOWN  # the D word
+    feed: str = UNKNOWN  # the F word
+    polar: str = "off"  # ``on`` in polar mode, ``cylinder`` on a cylinder
+    mapped: str = UNKNOWN  # the radius of a cylinder whose angles are written as lengths
+    delayed: str = UNKNOWN  # a code of compensation that is written with the section's next move
+    own_motion: str = AS_PROGRAMMED  # LinuxCNC's mode where it is not the program's
     own_distance: str = AS_PROGRAMMED
     own_feed: str = AS_PROGRAMMED
-    held: tuple = ()
-    known_offsets: tuple = ()
-    turn: str = UNKNOWN
-    kept: tuple = ()
-    pass_words: tuple = ()
-    chamfers: bool | str = True
-    local: tuple | str = ()
-    turned: str = UNKNOWN
+    held: tuple = ()  # slides that LinuxCNC has not moved yet, each with its position
+    known_offsets: tuple = ()  # numbered work offsets that are set, or checked
+    turn: str = UNKNOWN  # the turning cycle that X and Z repeat
+    kept: tuple = ()  # values of the first blocks of cycles
+    pass_words: tuple = ()  # the words of ``turn``
+    chamfers: bool | str = True  # threads end with one
+    local: tuple | str = ()  # X and Y of G52, as far as they are known
+    turned: str = UNKNOWN  # the work offset that G68 has rotated
     retract: str = UNKNOWN
-    x_words: str = UNKNOWN
-    live: str = UNKNOWN
-    spindle: str = UNKNOWN
-    waiting: tuple | str = ()
-    section: int | str = UNKNOWN
-    rigid: str = UNKNOWN
-    tap_top: float | str = UNKNOWN
-    sizes: tuple = ()
-    corner: bool | str = False
-    at_x: float | str = UNKNOWN
+    x_words: str = UNKNOWN  # G7: diameters, G8: radii
+    live: str = UNKNOWN  # the ``$`` word of a spindle that drives the tool and turns
+    spindle: str = UNKNOWN  # the M3 or M4 of the first spindle
+    waiting: tuple | str = ()  # X and Y of a mill's program on a lathe at its next cut
+    section: int | str = UNKNOWN  # the program in which a section on a lathe has begun
+    rigid: str = UNKNOWN  # the speed of a rigid tap
+    tap_top: float | str = UNKNOWN  # the Z level to which it returns
+    sizes: tuple = ()  # diameters that G10 L12 has set, by tool
+    corner: bool | str = False  # the program's point is a corner that LinuxCNC has cut off
+    at_x: float | str = UNKNOWN  # the program's point (`places`)
     at_y: float | str = UNKNOWN
     at_z: float | str = UNKNOWN
     at_a: float | str = UNKNOWN
