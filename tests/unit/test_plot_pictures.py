@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from shapely.geometry import Point
 
@@ -33,6 +34,7 @@ LATHE = Ini(
     Path("lathe.ini"), ("[TRAJ]", "COORDINATES = XZC", *FAST, "[AXIS_C]", "MAX_VELOCITY = 360")
 )
 PROGRAM = Path(__file__)
+RED = to_rgba(style.CRASH)
 
 
 def scene(hand, ini=MILL, **options):
@@ -222,6 +224,53 @@ def uncut(centre):
     ring = Point(centre).buffer(30).difference(Point(centre).buffer(20))
     values = {"area": ring.area, "shape": ring, "floor": -4.0}
     return Finding("uncut", 1, values, (*centre, -4.0))
+
+
+def drawn_in_red(shown):
+    """Return how many polylines and marks a plan has in red."""
+    axes = Figure().add_subplot()
+    plan_view.draw_paths(axes, shown, plan_view.milled_levels(shown), [0, 1])
+    lines = [one for one in axes.collections if one.get_edgecolor()[0] == pytest.approx(RED)]
+    return len(lines[0].get_paths()), len([one for one in axes.lines if one.get_marker() == "X"])
+
+
+def rapid_through(*points, **values):
+    values |= {"at": (), "to": (), "area": 1.0, "path": np.array(points, dtype=float)}
+    return Finding("rapid-through", 2, values, points[0])
+
+
+def warned(shown):
+    return [entry.get_label() for entry in plan_view.warning_entries(shown)]
+
+
+def test_a_rapid_that_is_seen_end_on_has_a_mark():
+    down, through = "rapid straight down into material", "rapid through material"
+    for hit, said in (
+        (rapid_through([0, 0, 5], [9, 0, 5]), [through]),
+        (rapid_through([9, 0, 5], [9, 0, 2]), [down, through]),  # a line in the side view
+    ):
+        shown = replace(scene(pocket()), seen=Seen((hit,)))
+        assert warned(shown) == said and drawn_in_red(shown) == (True, down in said)
+
+
+@pytest.mark.parametrize(("surface", "shown_at"), [(20.0, 5.5), (22.0, 5.0), (0.0, None)])
+def test_a_plunge_by_rapid_is_marked_on_the_unrolled_surface(surface, shown_at):
+    """The path may be unrolled on a bar's radius; one that is found on the face is not shown."""
+    hit = rapid_through([5.5, 0, 24], [5.5, 0, 18], surface=surface)
+    shown = unrolled(replace(scene(groove(), LATHE), seen=Seen((hit,), surface=20.0)))
+    assert warned(shown) == ["rapid straight down into material"] * (surface > 0)
+    assert drawn_in_red(shown) == (surface > 0, surface > 0)
+    assert [each.values["path"][0][0] for each in shown.seen.rapids] == (
+        [] if shown_at is None else [pytest.approx(shown_at)]
+    )
+
+
+def test_a_boss_stands_in_the_side_view():
+    ring = Point(0, 0).buffer(30).difference(Point(0, 0).buffer(20))
+    level = plan_view.Level(-2.0, style.shades(1)[0], [], ring)
+    left, right = sorted(removed_at(level, 0.0).geoms, key=lambda part: part.bounds[0])
+    assert left.bounds == pytest.approx((-30, -2, -20, 0), abs=0.01)
+    assert right.bounds == pytest.approx((20, -2, 30, 0), abs=0.01)
 
 
 def test_what_stands_is_in_the_legend_and_the_view():

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from shapely.affinity import scale as scaled
-from shapely.geometry import LineString, MultiPoint, box
+from shapely.geometry import LineString, MultiPoint, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
@@ -131,12 +131,8 @@ def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float)
 
 def cut_through(uncut: Finding, top: float) -> BaseGeometry:
     """Return the uncut material in a pocket, in a section along X through its middle."""
-    shape, low_z = uncut.values["shape"], uncut.values["floor"]
-    low, high = shape.bounds[::2]
-    middle = uncut.place[1]
-    across = shape.intersection(LineString([(low, middle), (high, middle)]))
-    lines = [line.bounds for line in getattr(across, "geoms", [across]) if line.length]
-    return unary_union([box(line[0], low_z, line[2], top) for line in lines])
+    spans = spans_at(uncut.values["shape"], uncut.place[1])
+    return unary_union([box(low, uncut.values["floor"], high, top) for low, high in spans])
 
 
 def block_from_the_side(scene: Scene) -> BaseGeometry | None:
@@ -151,12 +147,29 @@ def removed_at(level: Level, top: float) -> BaseGeometry:
     """Return the material removed at a level as seen along Y: X and Z, up to the top."""
     if all(np.ptp(line[:, 2]) < SAME_DEPTH for line in level.lines):
         areas = getattr(level.area, "geoms", [level.area])
-        return unary_union([box(area.bounds[0], level.z, area.bounds[2], top) for area in areas])
+        spans = (span for area in areas for span in spans_of(area))
+        return unary_union([box(low, level.z, high, top) for low, high in spans])
     ends = (pair for line in level.lines for pair in zip(line[:, [0, 2]], line[1:, [0, 2]]))
     ends_of_width = np.array([[-level.radius, 0.0], [level.radius, 0.0]])
     corners = (np.concatenate([start + ends_of_width, end + ends_of_width]) for start, end in ends)
     above = (np.concatenate([bottom, bottom * (1, 0) + (0, top)]) for bottom in corners)
     return unary_union([MultiPoint(points).convex_hull for points in above])
+
+
+def spans_of(area: Polygon) -> list[tuple[float, float]]:
+    """Return from where to where along X an area reaches; round a boss, through its middle."""
+    low, bottom, high, up = area.bounds
+    if not area.interiors:
+        return [(low, high)]
+    return spans_at(area, (bottom + up) / 2)
+
+
+def spans_at(area: BaseGeometry, y: float) -> list[tuple[float, float]]:
+    """Return from where to where an area reaches along a line parallel to X."""
+    low, high = area.bounds[::2]
+    across = area.intersection(LineString([(low, y), (high, y)]))
+    lines = [line.bounds for line in getattr(across, "geoms", [across]) if line.length]
+    return [(line[0], line[2]) for line in lines]
 
 
 def draw_heights(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:

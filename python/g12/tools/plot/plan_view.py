@@ -225,6 +225,14 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
         draw_real(axes, scene, pair)
     hit = [found.values["path"][:, pair] / unit for found in scene.seen.rapids]
     style.draw(axes, hit, style.CRASH, 3.0, 3.8)
+    for line in hit:
+        if is_point(line):
+            style.draw_hit(axes, line[0])
+
+
+def is_point(line: np.ndarray) -> bool:
+    """Return whether a polyline is seen end on."""
+    return bool(np.ptp(line, axis=0).max() < PICTURE_CHORD)
 
 
 def draw_real(axes: Axes, scene: Scene, pair: list[int]) -> None:
@@ -359,10 +367,19 @@ def motion_entries(scene: Scene) -> list:
     return listed + warning_entries(scene)
 
 
+def has_side_view(scene: Scene) -> bool:
+    """Return whether the picture has a view from the side, which only a mill's has."""
+    part = scene.path.part
+    return not part.turning and part.letters[2] == "Z"
+
+
 def warning_entries(scene: Scene) -> list:
     """Return the legend's entries of the warnings."""
     listed = []
-    if scene.seen.rapids:
+    end_on = [is_point(found.values["path"][:, :2]) for found in scene.seen.rapids]
+    if any(end_on):
+        listed.append(style.hit("rapid straight down into material"))
+    if scene.seen.rapids and (has_side_view(scene) or not all(end_on)):
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
     if scene.seen.uncut:
         listed.append(style.standing("material left standing"))

@@ -72,6 +72,7 @@ FEEDS = colors.LinearSegmentedColormap.from_list(
     "feed", ["#2b8a3e", "#94b82c", "#f2b705", "#e8590c", "#a61e4d"]
 )
 SIGN = {"marker": "^", "color": CRASH}
+HIT = {"marker": "X", "color": CRASH, "markeredgecolor": "white"}
 DPI = 150
 LETTERS = 14.0  # characters of the subtitle to an inch
 MARGIN = 0.75  # inches left of titles and axes
@@ -230,6 +231,16 @@ def draw_sign(axes: Axes, at: Sequence[float]) -> None:
     """Draw a warning sign."""
     axes.plot(*at, **SIGN, markersize=15, zorder=6)
     axes.plot(*at, marker="$!$", color="white", markersize=6.5, zorder=6.1)
+
+
+def draw_hit(axes: Axes, at: Sequence[float]) -> None:
+    """Mark a rapid through material that is seen end on."""
+    axes.plot(*at, **HIT, markersize=11, zorder=5.5)
+
+
+def hit(text: str) -> Line2D:
+    """Return the legend's entry of such a rapid."""
+    return Line2D([], [], ls="", **HIT, ms=8, label=text)
 
 
 def standing(text: str) -> Patch:

@@ -28,6 +28,7 @@ from g12.tools.plot.plan_view import (
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.preview.moves import Move
+from g12.tools.verify.result.finding import Finding
 
 WIDTH, MOST, LEAST = 11.9, 4.6, 0.9  # of the page; the surface's height
 LEFT, RIGHT, TOP = style.MARGIN, 0.35, 1.3
@@ -118,9 +119,23 @@ def unrolled(scene: Scene) -> Scene:
     flat = Track(Flat(turning=False), moves, lambda: vertices, path.seconds)
     trace = replace(subject.trace, moves=moves)
     radius = scene.seen.surface
-    own = (each for each in scene.seen.findings if each.values.get("surface", radius) == radius)
+    own = (on_radius(each, radius) for each in scene.seen.findings if seen_unrolled(each))
     shown = scene.seen._replace(findings=tuple(own), stock=None)  # a bar is round on the face alone
     return replace(scene, subject=replace(subject, trace=trace, drawn=flat), seen=shown)
+
+
+def seen_unrolled(finding: Finding) -> bool:
+    """Return whether a finding can be shown on the surface; a rapid on the face cannot."""
+    return finding.values.get("surface") != 0.0
+
+
+def on_radius(finding: Finding, radius: float) -> Finding:
+    """Return a finding with its path, if any, unrolled on another radius."""
+    surface = finding.values.get("surface", radius)
+    if surface == radius:
+        return finding
+    path = finding.values["path"] * (radius / surface, 1.0, 1.0)
+    return replace(finding, values={**finding.values, "path": path})
 
 
 def unrolled_move(move: Move, part: Part) -> Move:
