@@ -32,7 +32,7 @@ class FollowedProgram:
     """The drafts of a program's blocks, None where a block is never reached.
 
     ``falls_off`` are the blocks behind which a program is over without an end of its own,
-    ``has_end`` tells whether any end is reached, ``kinds`` how each program is called.
+    ``has_end``: an end is reached, ``kinds`` how each program is called.
     """
 
     def __init__(
@@ -159,7 +159,7 @@ class FollowedProgram:
             draft.return_text = f"o<macro_{number}> {'endsub' if last else 'return'}"
 
     def _parted(self, index: int) -> bool:
-        """Tell whether a block is in what jumps part or a condition rules: no program ends so."""
+        """Whether a block is in what jumps part or a condition rules: no program ends so."""
         ruled = [at for at in self.structure.partners.items() if at[0] < index < at[1]]
         return bool(ruled) or any(
             first <= index <= last for first, last in self.structure.jumps.spans
@@ -292,14 +292,14 @@ def _add_copies(followed: FollowedProgram) -> bool:
 
 def _differing_calls(followed: FollowedProgram) -> Iterator[tuple[int, list[list[int]]]]:
     """Yield programs with an unsure block, and their calls grouped by those modes."""
-    wanted = [
+    pending = [
         (followed.program_of(draft.index), draft.unsure)
         for draft in followed.drafts
         if draft and draft.unsure
     ]
-    seen = {(MAIN, modes) for _, modes in wanted}
-    while wanted:
-        number, modes = wanted.pop()
+    seen = {(MAIN, modes) for _, modes in pending}
+    while pending:
+        number, modes = pending.pop()
         if (number, modes) in seen:
             continue
         seen.add((number, modes))
@@ -308,6 +308,6 @@ def _differing_calls(followed: FollowedProgram) -> Iterator[tuple[int, list[list
             values = tuple(getattr(followed.drafts[index].state, mode) for mode in modes)
             groups.setdefault(values, []).append(index)
             if UNSURE in values:
-                wanted.append((followed.program_of(index), modes))
+                pending.append((followed.program_of(index), modes))
         if len(groups) > 1:
             yield number, list(groups.values())

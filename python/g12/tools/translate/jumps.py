@@ -76,20 +76,20 @@ def find_jumps(
     blocks: Sequence[ForeignBlock],
     programs: Sequence[int],
     partners: Mapping[int, int],
-    wanted: Mapping[int, int],
+    numbers: Mapping[int, int],
 ) -> Jumps:
     """Return the jumps of a file's blocks.
 
     ``programs`` has the number of the program that each block is in, ``partners`` joins WHILE and
-    END, ``wanted`` has the N number that each block jumps to.
+    END, ``numbers`` has the N number that each block jumps to.
     """
     jumps = Jumps()
-    if not wanted:
+    if not numbers:
         return jumps
     numbered = _numbered(blocks, programs)
     loops = _Loops(blocks, partners)
     bodies: dict[tuple[int, int], list[tuple[int, tuple[int, int]]]] = defaultdict(list)
-    for index, number in wanted.items():
+    for index, number in numbers.items():
         target = _found(numbered.get((programs[index], number), []), index)
         loop = loops.about[target] if target is not None else NO_LOOP
         span = loops.span_within(index, loop)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What each machine has in its own way: the clamp of C, C itself, the spindle that drives the tool.
+"""Codes that differ between machines: the clamp of C, C itself, the spindle that drives the tool.
 
-A control says ``clamp C``, ``C axis on`` and ``M3 $live``; the machine's INI says which of its
-codes these are. A machine without a clamp, or whose C is always an axis, needs none.
+A control says ``clamp C``, ``C axis on`` and ``M3 $live``; the machine's INI defines its codes
+for them. A machine without a clamp, or whose C is always an axis, needs none.
 """
 
 from collections.abc import Sequence

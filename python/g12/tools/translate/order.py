@@ -47,8 +47,10 @@ def written_order(followed: FollowedProgram, count: int) -> WrittenOrder:
         for caller in callers:
             below[place[caller]].add(place[number])
     done = _sorted_parts(below)
-    left = below.keys() - set(done)
-    circular = frozenset(number for at in _in_circles(left, below) for number in parts[at].numbers)
+    unsorted = below.keys() - set(done)
+    circular = frozenset(
+        number for at in _in_circles(unsorted, below) for number in parts[at].numbers
+    )
     return WrittenOrder([row for at in done for row in parts[at].rows], circular)
 
 
@@ -106,9 +108,9 @@ def _sorted_parts(below: Mapping[int, set[int]]) -> list[int]:
     return done
 
 
-def _in_circles(left: Collection[int], below: Mapping[int, set[int]]) -> Iterator[int]:
+def _in_circles(unsorted: Collection[int], below: Mapping[int, set[int]]) -> Iterator[int]:
     """Yield the unsorted parts that are in a circle, not only below one."""
-    inside = set(left)
+    inside = set(unsorted)
     above = {at: below[at] & inside for at in inside}
     callers: dict[int, list[int]] = {at: [] for at in inside}
     for at, called in above.items():

@@ -72,7 +72,7 @@ def output_lines(
     """Yield the lines of a program from the drafts of its blocks; none of them is refused.
 
     ``order`` are the file's lines as they are written. From where they are not in their own order
-    any more every line says its number.
+    any more every line has its number.
     """
     start = " ".join(followed.control.start)
     ends = followed.ends_of_macros()
@@ -91,13 +91,13 @@ def _lines_of_row(
 ) -> list[str]:
     """Return the output of one line of the file; ``ends`` are the ends of macros, by block."""
     lines: list[str] = []
-    told = False
+    is_written = False
     for index in indices:
         draft, jumps = followed.drafts[index], followed.structure.jumps
         own = draft.lines if draft else _unreached(followed.structure.blocks[index])
         if own is None:
-            own = [] if told else [_as_comment(row)]
-            told = True
+            own = [] if is_written else [_as_comment(row)]
+            is_written = True
         heads = 1 if draft and draft.head else 0
         lines += [*own[:heads], *jumps.before.get(index, ()), *own[heads:]]
         lines += jumps.behind.get(index, ())

@@ -51,7 +51,7 @@ def translate_program(
     """Return the translation of a program's text.
 
     ``machine_codes`` are the M codes that the machine knows by itself, None if that is not known;
-    ``progress`` is told the share that is done, 0 to 1.
+    ``progress`` is called with the finished share, 0 to 1.
     """
     rows = source_lines(text)
     blocks = _read_blocks(rows, control, progress)

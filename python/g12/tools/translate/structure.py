@@ -72,7 +72,7 @@ class Structure:
         return end - tape
 
     def is_over(self, index: int) -> bool:
-        """Tell whether a program is over before a block: behind its last one."""
+        """Whether a program is over before a block: behind its last one."""
         return index >= len(self.blocks) or index in self.starts
 
     def name_of(self, number: int) -> str:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One block of a foreign program: its text, the modes around it, what its control says of it."""
+"""One block of a foreign program: its text, the modes around it, the definitions of its control."""

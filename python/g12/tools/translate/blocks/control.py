@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A control as data: what its TOML file says, checked and with what it is based on filled in.
+"""A control as data: its TOML file, checked, over that of the control that it is based on.
 
 Every key is known, every value legal, no code has two meanings: whatever else stands in a file is
 refused with its line. What a code does is one of
 
 - ``same``: LinuxCNC's own code of that number does the same
-- ``comment``: nothing is left to do, it stays as a comment; ``comment P E`` with its P and E words
+- ``comment``: no action, it stays as a comment; ``comment P E`` with its P and E words
 - ``machine``: the builder's; the machine itself must know it (a REMAP line, an M1xx file)
-- ``refuse: sentence``: refused, the sentence says what to do instead
+- ``refuse: sentence``: refused, the sentence names the alternative
 - a name of MEANINGS: a rule of the translation
 - codes of LinuxCNC, ``M7`` or ``M3 $1``: written in its place; in ``M3 $1 S=P`` S is its P word
 - what each machine has in its own way (PLACES): ``clamp C``, ``C axis on``; ``M3 $live`` starts the
@@ -103,8 +103,18 @@ TABLES: dict[str, dict[str, object]] = {
 OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that number is not
     f"M{n}" for n in (*range(10), 19, 30, *range(48, 54), *range(60, 74))
 )
-VALUE = re.compile(r"#[1-9][0-9]{0,3}|[0-9]+\.?[0-9]*|clock|own")  # of a variable
-VALUES = "a parameter of LinuxCNC (#500), a value, clock, or own: refused"
+OPEN_TABLES = {  # keys and values of tables whose keys a control chooses, and their rule
+    "words": ("[A-Z]{2}", "[A-Z]", ": a word of two letters, and one of one"),
+    "variables": (
+        "[0-9]{1,6}(-[0-9]{1,6})?",
+        r"#[1-9][0-9]{0,3}|[0-9]+\.?[0-9]*|clock|own",
+        " must be a number, and a parameter of LinuxCNC (#500), a value, clock, or own: refused",
+    ),
+    "spindles": ("P[0-9]+", "main|live", " must be a P word, and main or live"),
+}
+TYPE_NAMES = {
+    str: "a text", bool: "true or false", int: "a whole number", list: "a list of texts"
+}  # fmt: skip
 COMMENT = re.compile(r"comment( [A-Z])*")
 PATTERN = re.compile(r"R*T+O*")
 
@@ -272,16 +282,11 @@ class _Checked:
         for pattern in table.get("patterns", ()) if name == "tools" else ():
             if not isinstance(pattern, str) or not PATTERN.fullmatch(pattern):
                 self._refuse("patterns", f"{pattern} is no pattern such as TTOO or RRTTOO")
-        if name == "words":
+        if name in OPEN_TABLES:
+            keys, values, rule = OPEN_TABLES[name]
             for key, value in table.items():
-                if not re.fullmatch("[A-Z]{2}", key) or not re.fullmatch("[A-Z]", str(value)):
-                    self._refuse(key, f'{key} = "{value}": a word of two letters, and one of one')
-        for key, value in table.items() if name == "variables" else ():
-            if not re.fullmatch("[0-9]{1,6}(-[0-9]{1,6})?", key) or not VALUE.fullmatch(str(value)):
-                self._refuse(key, f'{key} = "{value}" must be a number, and {VALUES}')
-        for key, value in table.items() if name == "spindles" else ():
-            if not re.fullmatch("P[0-9]+", key) or value not in ("main", "live"):
-                self._refuse(key, f'{key} = "{value}" must be a P word, and main or live')
+                if not re.fullmatch(keys, key) or not re.fullmatch(values, str(value)):
+                    self._refuse(key, f'{key} = "{value}"{rule}')
 
     def _value(self, key: str, value: Any, kind: Any) -> None:
         if isinstance(kind, tuple):
@@ -295,13 +300,7 @@ class _Checked:
         if kind is float and not number:
             self._refuse(key, f"{key} must be a number above 0")
         if kind is not float and (type(value) is not kind or not listed):
-            names = {
-                str: "a text",
-                bool: "true or false",
-                int: "a whole number",
-                list: "a list of texts",
-            }
-            self._refuse(key, f"{key} must be {names[kind]}")
+            self._refuse(key, f"{key} must be {TYPE_NAMES[kind]}")
 
     def _axes(self, data: dict) -> None:
         axes = data.get("axes", "X")
@@ -356,7 +355,7 @@ class _Checked:
 
     def _refuse(self, key: str, rule: str) -> None:
         """Raise the error of a key, with the line that it stands in."""
-        wanted = re.compile(rf'\s*\[?"?{re.escape(key)}"?(\.|\s*(=|\]|$))')
-        rows = [number for number, row in enumerate(self._rows, 1) if wanted.match(row)]
+        pattern = re.compile(rf'\s*\[?"?{re.escape(key)}"?(\.|\s*(=|\]|$))')
+        rows = [number for number, row in enumerate(self._rows, 1) if pattern.match(row)]
         place = f":{rows[0]}" if rows else ""
         raise ControlError(f"{self._path}{place}: {rule}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One block on its way through the rules: what is left of its words, and the lines it becomes."""
+"""One block on its way through the rules: its remaining words, and the lines that it becomes."""
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
@@ -65,7 +65,7 @@ class Draft:
         self.comments: list[str] = list(self.block.comments)
 
     def change(self, **modes: Any) -> None:
-        """Carry the state on."""
+        """Set modes for the blocks behind this one."""
         self.state = self.state._replace(**modes)
 
     def codes(self) -> list[str]:
@@ -84,7 +84,7 @@ class Draft:
         return not ENDS.isdisjoint(self.m_codes())
 
     def letters(self) -> set[str]:
-        """Return the letters of the words that are left."""
+        """Return the letters of the remaining words."""
         return {word.letter for word in self.words if word.kind != "text"}
 
     def axis_words(self) -> list[ForeignWord]:
@@ -150,15 +150,15 @@ class Draft:
         return value
 
     def written(self) -> str:
-        """Return the words that are left as one line."""
+        """Return the remaining words as one line."""
         return " ".join(word.text for word in self.words)
 
     def begins_program(self) -> bool:
-        """Tell whether the block begins with the number of a program."""
+        """Whether the block begins with the number of a program."""
         return bool(self.words) and self.words[0].letter == "O"
 
     def is_empty(self) -> bool:
-        """Tell whether nothing but a block number is left of the words."""
+        """Whether no word but a block number remains."""
         return all(word.letter == "N" and word.kind == "number" for word in self.words)
 
 

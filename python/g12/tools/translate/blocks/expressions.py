@@ -23,7 +23,7 @@ JOINING = frozenset(("AND", "OR", "XOR"))
 DEEPEST = 8  # brackets within brackets
 LOCAL = range(1, 34)  # of one call, as LinuxCNC keeps them up to #30
 SHARED = frozenset((31, 32, 33))  # which LinuxCNC has once for all calls
-EMPTY = "-9999999"  # what a macro is given for an empty variable that it asks for
+EMPTY = "-9999999"  # passed to a macro for an empty variable that it compares with #0
 EMPTY_VARIABLE = re.compile(r"#0+(?![0-9.])")
 MOST_PLACES = 99  # that an index adds to the number of a variable
 COMMON = (range(100, 200), range(500, 1000))
@@ -32,7 +32,7 @@ CLOCK = 0  # the number that a variable of the control's clock has
 OTHER_MEANING = (
     "means something else on LinuxCNC: variables are #1 to #33, #100 to #199 and #500 to #999"
 )
-POSITION = {5041: 5420, 5042: 5421, 5043: 5422}  # where the tool stands, X Y Z
+POSITION = {5041: 5420, 5042: 5421, 5043: 5422}  # of the tool, X Y Z
 
 
 class Expression(NamedTuple):
@@ -130,7 +130,7 @@ def variable_number(digits: str) -> int:
 
 
 def _is_kept(number: float) -> bool:
-    """Tell whether a variable has its number on LinuxCNC, too, and no other meaning there."""
+    """Whether a variable has its number on LinuxCNC, too, and no other meaning there."""
     return any(number in numbers for numbers in (LOCAL, *COMMON))
 
 

@@ -373,9 +373,9 @@ def program_number(name: str) -> str:
 
 def program_name(number: int) -> str:
     """Return a program's number as a sentence says it, with the name that it may stand for."""
-    digits, left = "", number - NAMED_PROGRAMS
-    while left > 0:
-        digits, left = LETTERS[left % 36] + digits, left // 36
+    digits, rest = "", number - NAMED_PROGRAMS
+    while rest > 0:
+        digits, rest = LETTERS[rest % 36] + digits, rest // 36
     named = NAMED_PROGRAM.match(f"O{digits}")
     return f"O{number} (O{digits})" if named else f"O{number}"
 

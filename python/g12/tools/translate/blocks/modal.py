@@ -9,7 +9,7 @@ it refuses the block.
 from typing import NamedTuple
 
 UNSURE = "?"  # different on different ways
-UNKNOWN = ""  # never said
+UNKNOWN = ""  # no value yet
 AS_PROGRAMMED = "="  # LinuxCNC is in the mode that the program is in
 
 GROUPS = {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where the program's point stands, in its own units (X of a lathe a diameter), if it is known.
+"""The position of the program's point, in its units (X of a lathe a diameter), if it is known.
 
-A place is a number, or a text: UNKNOWN, or UNSURE where the ways to a block differ. It is known
+A position is a number, or a text: UNKNOWN, or UNSURE where the ways to a block differ. It is known
 from absolute numbers on; an expression, a reference point, a tool or another offset end that.
 """
 
@@ -60,14 +60,14 @@ def end_of_word(state: ModalState, word: ForeignWord) -> float | str:
 
 
 def _is_drilling(draft: Draft) -> bool:
-    """Tell whether a mill's drilling cycle holds in a block; a motion code ends it."""
+    """Whether a mill's drilling cycle is active in a block; a motion code ends it."""
     begins = bool(set(draft.meanings) & DRILLING)
     goes_on = bool(draft.state.cycle) and MOTIONS.isdisjoint(draft.codes())
     return (begins or goes_on) and not draft.control.is_lathe
 
 
 def _follow_drilling(draft: Draft) -> bool:
-    """Carry X and Y on to the hole of a block that drills; tell whether it does."""
+    """Follow X and Y to the hole of a block that drills; return whether it does."""
     if not _is_drilling(draft):
         return False
     again = draft.control.value("subprograms", "cycle_repeat", "L") in draft.letters()

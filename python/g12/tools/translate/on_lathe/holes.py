@@ -42,8 +42,8 @@ def hole_call(draft: Draft) -> None:
     draft.take_codes({cycle, "G90", "G94"})
     behind, draft.after = draft.after, []
     draft.write([milled_surface(draft).call(draft, _hole_from_cycle(draft, cycle, given)), *behind])
-    stands = start_height(draft)
-    at_z = UNKNOWN if stands is None else stands
+    level = start_height(draft)
+    at_z = UNKNOWN if level is None else level
     draft.change(waiting=(), own_motion=UNSURE, own_feed="other", at_z=at_z)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a mill's program says that a lathe's section cannot have, and where its tool stands.
+"""Words of a mill's program that no lathe's section has, and the position of its tool.
 
 The mill's X and Y lie on the bar's face, its Z is along the spindle (``onto`` face), or X along
 the bar, Y round it and Z out of it (``onto`` round). Points are in the mill's own axes here.
@@ -19,7 +19,7 @@ OTHER_FEEDS = {"G93": "inverse time", "G95": "a feed per revolution"}
 
 
 def is_on_lathe(draft: Draft) -> bool:
-    """Tell whether the control is for a mill's programs on a lathe."""
+    """Whether the control is for a mill's programs on a lathe."""
     return bool(draft.control.onto)
 
 
@@ -39,9 +39,9 @@ def refuse_foreign(draft: Draft) -> None:
 
 def safe_height(draft: Draft) -> float:
     """Return the Z from which on a rapid is clear of the part, in the program's units."""
-    said = draft.control.value("mill", "safe", None)
-    if said is not None:
-        return said
+    safe = draft.control.value("mill", "safe", None)
+    if safe is not None:
+        return safe
     units = draft.sure("units", "how high a rapid must be hangs on the units")
     if units not in SAFE:
         raise NotTranslated("how high a rapid must be hangs on the units: say G20 or G21 (--units)")
@@ -75,7 +75,7 @@ def _end_height(draft: Draft) -> float | None:
 
 
 def moves_by_rapid(draft: Draft) -> bool:
-    """Tell whether the block's moves are rapids."""
+    """Whether the block's moves are rapids."""
     codes = {"G0", "G1", "G2", "G3"}.intersection(draft.codes())
     motion = min(codes) if codes else draft.sure("motion", "X, Y or Z without G0 or G1")
     if motion == UNKNOWN:

@@ -73,7 +73,7 @@ def _is_reference(draft: Draft) -> bool:
 
 
 def drills(draft: Draft) -> bool:
-    """Tell whether the block begins a drilling cycle or repeats one."""
+    """Whether the block begins a drilling cycle or repeats one."""
     if "drilling cycle" in draft.meanings:
         return True
     motions = {"G0", "G1", "G2", "G3", "G28", "G30"}.intersection(draft.codes())
@@ -185,10 +185,10 @@ def _go_home(draft: Draft) -> None:
 def _machine_zero(draft: Draft) -> None:
     """Write G53 as G28 away from the part if it has Z, as a comment if not."""
     motions = draft.take_codes({"G0", "G1"})
-    gone = [word for word in draft.words if word.letter in "XYZ"]
-    draft.words = [word for word in draft.words if word not in gone]
-    draft.comments += [*draft.take_codes({"G53"}), *(word.text for word in gone)]
-    if any(word.letter == "Z" for word in gone):
+    dropped = [word for word in draft.words if word.letter in "XYZ"]
+    draft.words = [word for word in draft.words if word not in dropped]
+    draft.comments += [*draft.take_codes({"G53"}), *(word.text for word in dropped)]
+    if any(word.letter == "Z" for word in dropped):
         absolute = [] if draft.state.distance == "G91" else ["G90"]
         draft.after += [f"G91 G28 {milled_surface(draft).home}0", *absolute]
     if motions:

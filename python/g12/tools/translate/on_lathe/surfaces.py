@@ -51,7 +51,7 @@ class MilledSurface(NamedTuple):
 
 
 def is_plain_number(value: str) -> bool:
-    """Tell whether a value is a plain number."""
+    """Whether a value is a plain number."""
     return bool(NUMBER.fullmatch(value))
 
 

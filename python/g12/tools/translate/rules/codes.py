@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G and M codes: what the control's file says that each of them is."""
+"""G and M codes, by their meanings in the control's file."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -64,7 +64,7 @@ def _part_builders_codes(draft: Draft) -> None:
 
 
 def is_own(draft: Draft, word: ForeignWord) -> bool:
-    """Tell whether a code is one that the machine has besides LinuxCNC's."""
+    """Whether a code is one that the machine has besides LinuxCNC's."""
     meaning = draft.control.meanings.get(word.code, "")
     known = {word.code, meaning} & (draft.machine_codes or frozenset())
     return bool(known and meaning not in RULES) or meaning in BUILDERS

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Drilling cycles of mills, G73 and G81 to G89: what the control remembers, LinuxCNC is told.
+"""Drilling cycles of mills, G73 and G81 to G89: LinuxCNC gets the words that the control stores.
 
-L0 (or K0) only stores the cycle; R left out is the height where the tool stands; levels given
+L0 (or K0) only stores the cycle; without R the tool's Z level is R; levels given
 under G90 hold under G91 as they are; a new cycle code
 keeps what an earlier one was given; dwell is in the control's unit; G80 beside a motion is the
 motion.

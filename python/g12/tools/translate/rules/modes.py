@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Modes that a block sets, and the letters that may be left of it."""
+"""Modes that a block sets, and the words that no rule has read."""
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft
 from g12.tools.translate.blocks.errors import NotTranslated
@@ -70,11 +70,11 @@ def axes_at_zero(draft: Draft) -> None:
         return
     lacking = set(draft.control.at_zero) - set(draft.control.axes)
     letters = [*lacking, *(inc for inc, axis in PARTNERS.items() if axis in lacking)]
-    gone = [w for w in draft.words if w.letter in letters and _is_zero(w)]
-    draft.words = [word for word in draft.words if word not in gone]
-    if gone and not draft.axis_words() and not draft.increments():
+    unmoved = [w for w in draft.words if w.letter in letters and _is_zero(w)]
+    draft.words = [word for word in draft.words if word not in unmoved]
+    if unmoved and not draft.axis_words() and not draft.increments():
         draft.comments += draft.take_codes(MACHINES_OWN)  # without an axis G28 moves each of them
-    draft.comments += [word.text for word in gone]
+    draft.comments += [word.text for word in unmoved]
 
 
 def radius_or_diameter(draft: Draft, code: ForeignWord) -> None:

@@ -47,7 +47,7 @@ def _refuse_rounding(draft: Draft, motion: str) -> None:
 
 
 def moves(draft: Draft) -> bool:
-    """Tell whether words without a motion code move something."""
+    """Whether words without a motion code move something."""
     inside = draft.state.polar != "off"
     return bool(draft.letters() & (set("XYZABCUWHIJR") if inside else set("XYZABC")))
 
@@ -116,7 +116,7 @@ TURNING = frozenset("ABC")  # beside a slide they can need another feed
 
 
 def is_plain(draft: Draft) -> bool:
-    """Tell whether no rule has anything to do; the block's motion, feed and place are then noted.
+    """Whether no rule has anything to do; the block's motion, feed and place are then noted.
 
     So it is for one motion code or none, numbers with points, and no mode that LinuxCNC lacks.
     """

@@ -10,7 +10,9 @@ tool's length and its wear, L12 and L13 its diameter and its wear. LinuxCNC's to
 value for length and wear: wear is kept in parameters and the sum is in the table.
 """
 
-from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, line_as_word
+from typing import NamedTuple
+
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, line_as_word, position
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
@@ -25,7 +27,12 @@ SCALE = "#<machine_units>"
 BARE_HEIGHT = "#<height_without_tool>"
 SET_SCALE = f"{SCALE}=[[25.4 - 24.4 * #<_metric>] / [25.4 - 24.4 * #<_metric_machine>]]"
 OWN_SYSTEMS = frozenset(("G54", "G55", "G56", "G57", "G58", "G59"))
-TOOL_TABLE = {10: ("length", False), 11: ("length", True), 12: ("size", False), 13: ("size", True)}
+TOOL_TABLE = {
+    10: (True, False),
+    11: (True, True),
+    12: (False, False),
+    13: (False, True),
+}  # length, wear
 
 
 def numbered_offset(draft: Draft) -> None:
@@ -155,67 +162,75 @@ def _numbered_offset_values(draft: Draft, incremental: bool) -> None:
         draft.after += [_load_system(draft, number)] if draft.state.offset else []
 
 
-def _tool_offset(draft: Draft, what: str, wear: bool, incremental: bool) -> None:
+class _ToolValue(NamedTuple):
+    """R of G10 L10 to L13: for which tool, and what happens to it."""
+
+    tool: int
+    added: str  # R as an expression
+    kept: str  # the parameter of the tool's wear
+    wear: bool  # R is the wear, else the geometry
+    incremental: bool
+
+    @property
+    def needs_present(self) -> bool:
+        """Whether the new value is worked out from the one in the table."""
+        return self.wear or self.incremental
+
+    def new(self, present: str) -> str:
+        """Return the table's new value: geometry and wear."""
+        if self.incremental:
+            return f"{present} + {self.added}"
+        wear = f"{self.kept} / {SCALE}"
+        return f"{present} - {wear} + {self.added}" if self.wear else f"{self.added} + {wear}"
+
+
+def _tool_offset(draft: Draft, is_length: bool, wear: bool, incremental: bool) -> None:
     """G10 L10 to L13: write the tool table; wear is also kept in a parameter."""
     tool = _whole_number_of(draft, "P", range(1, TOOLS + 1), "G10")
-    value = draft.take("R")
-    if not value:
+    word = draft.take("R")
+    if not word:
         raise NotTranslated("G10 needs R, the tool's value")
     draft.after.append(SET_SCALE)
-    kept = f"#{(LENGTH_WEAR if what == 'length' else DIAMETER_WEAR) + tool}"
-    added = f"[{value.value}]"
-    if what == "length":
-        _set_length(draft, tool, added, kept, wear, incremental)
-    else:
-        _set_size(draft, tool, added, kept, wear, incremental)
+    kept = f"#{(LENGTH_WEAR if is_length else DIAMETER_WEAR) + tool}"
+    value = _ToolValue(tool, f"[{word.value}]", kept, wear, incremental)
+    (_set_length if is_length else _set_size)(draft, value)
     if wear:
         old = f"{kept} + " if incremental else ""
-        draft.after.append(f"{kept}=[{old}{added} * {SCALE}]")
+        draft.after.append(f"{kept}=[{old}{value.added} * {SCALE}]")
 
 
-def _new_value(now: str, added: str, kept: str, wear: bool, incremental: bool) -> str:
-    """Return the table's new value: geometry and wear, from its value now if that is needed."""
-    if incremental:
-        return f"{now} + {added}"
-    return f"{now} - {kept} / {SCALE} + {added}" if wear else f"{added} + {kept} / {SCALE}"
-
-
-def _set_length(
-    draft: Draft, tool: int, added: str, kept: str, wear: bool, incremental: bool
-) -> None:
-    """Set a tool's length; its present one is what G43 makes of the height."""
+def _set_length(draft: Draft, value: _ToolValue) -> None:
+    """Set a tool's length; G43 shows the present one as a change of Z."""
     active = draft.sure("length", "G10 changes a tool's length")
-    if wear or incremental:
-        draft.after += ["G49", f"{BARE_HEIGHT}=#5422", f"G43 H{tool}"]
-    value = _new_value(f"[{BARE_HEIGHT} - #5422]", added, kept, wear, incremental)
-    draft.after.append(f"G10 L1 P{tool} Z[{value}]")
-    if active == str(tool):
-        draft.after.append(f"G43 H{tool}")
-    elif wear or incremental:
-        back = "G49" if active in (UNKNOWN, "0") else f"G43 H{active}"
-        draft.after.append(back)
+    with_tool = f"G43 H{value.tool}"
+    if value.needs_present:
+        draft.after += ["G49", f"{BARE_HEIGHT}={position('Z')}", with_tool]
+    present = f"[{BARE_HEIGHT} - {position('Z')}]"
+    draft.after.append(f"G10 L1 P{value.tool} Z[{value.new(present)}]")
+    if active == str(value.tool):
+        draft.after.append(with_tool)
+    elif value.needs_present:
+        draft.after.append("G49" if active in (UNKNOWN, "0") else f"G43 H{active}")
 
 
-def _set_size(
-    draft: Draft, tool: int, added: str, kept: str, wear: bool, incremental: bool
-) -> None:
-    """Set a tool's diameter; LinuxCNC tells the present one of the loaded tool only."""
+def _set_size(draft: Draft, value: _ToolValue) -> None:
+    """Set a tool's diameter; LinuxCNC has the present one of the loaded tool only."""
+    tool, needs_present = value.tool, value.needs_present
     known = dict(() if draft.state.sizes == UNSURE else draft.state.sizes)
     loaded = draft.state.tool == str(tool)
-    if (wear or incremental) and not loaded and tool not in known:
+    if needs_present and not loaded and tool not in known:
         raise NotTranslated(
             f"G10 for the diameter of T{tool}: its present one is known only while it is in the "
             f"spindle (T{tool} M6 before it)"
         )
-    half = draft.control.value("tools", "size", "diameter") == "diameter"
-    now = f"#5410 / {SCALE}" if half else f"#5410 / {SCALE} / 2"
-    if tool in known and not loaded:
-        now = f"[{known[tool]} + {kept} / {SCALE}]"
-    known.pop(tool, None)
-    if not wear and not incremental and "#" not in added:
-        known[tool] = added
-    elif wear and not loaded and not incremental:
-        known[tool] = dict(draft.state.sizes)[tool]
+    half = " / 2" if draft.control.value("tools", "size", "diameter") == "diameter" else ""
+    present = f"#5410 / {SCALE}" if half else f"#5410 / {SCALE} / 2"
+    geometry = known.pop(tool, None)
+    if geometry is not None and not loaded:
+        present = f"[{geometry} + {value.kept} / {SCALE}]"
+    if not needs_present and "#" not in value.added:
+        known[tool] = value.added
+    elif value.wear and not loaded and not value.incremental:
+        known[tool] = geometry
     draft.change(sizes=tuple(sorted(known.items())))
-    value = _new_value(now, added, kept, wear, incremental)
-    draft.after.append(f"G10 L1 P{tool} R[[{value}]{' / 2' if half else ''}]")
+    draft.after.append(f"G10 L1 P{tool} R[[{value.new(present)}]{half}]")

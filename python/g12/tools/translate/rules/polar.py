@@ -2,8 +2,8 @@
 """Polar interpolation: G112, G137 and their like as G12.1 and G13.1.
 
 X in polar mode is a diameter on most controls and a radius on some: where it is not as outside, G7
-or G8 before the section says so, and the other behind it. Y is C and V is H. A rapid in polar mode
-is what the control's file says.
+or G8 is written before the section, and the other behind it. Y is C and V is H. The control's file
+defines a rapid in polar mode.
 """
 
 from typing import Any
@@ -46,7 +46,7 @@ def plane_letters(draft: Draft) -> None:
 
 
 def is_zero(word: ForeignWord) -> bool:
-    """Tell whether a word is the number 0."""
+    """Whether a word is the number 0."""
     return word.kind == "number" and word.number == 0
 
 
@@ -242,7 +242,7 @@ def feed_again(draft: Draft) -> None:
 
 
 def _goes_by_rapid(draft: Draft) -> bool:
-    """Tell whether a block needs no feed: that of the next cut may not be the same on every way.
+    """Whether a block needs no feed: that of the next cut may not be the same on every way.
 
     A drilling cycle cuts, and a block that repeats one, also where G0 is the mode.
     """

@@ -9,7 +9,7 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN
 
-LONGEST_WAIT = "Q30"  # s, then LinuxCNC says that the spindle is not oriented
+LONGEST_WAIT = "Q30"  # s, then LinuxCNC reports a spindle that is not oriented
 STOPS = frozenset(("M5", "M9"))
 RAPIDS = frozenset(("G0", "G28", "G30", "G53"))
 TURNING = frozenset(("M3", "M4", "M5"))
@@ -107,7 +107,7 @@ def stop_behind_a_cut(draft: Draft) -> None:
 
 
 def cuts(draft: Draft) -> bool:
-    """Tell whether a block moves at a feed."""
+    """Whether a block moves at a feed."""
     codes, state = set(draft.codes()), draft.state
     if codes & RAPIDS or not draft.letters() & set("XYZABCIJKR"):
         return False

@@ -68,7 +68,7 @@ def _spindle_goes_on(draft: Draft) -> None:
 def _parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
     """Return tool and offset of ``T0303``; the shortest pattern that has room for it.
 
-    The offset is -1 where G43 H says it.
+    The offset is -1 where G43 H has it.
     """
     patterns = sorted(draft.control.value("tools", "patterns", ()), key=len)
     if word.kind != "number" or not word.value.isdigit():
@@ -131,7 +131,7 @@ def _radius_offset(draft: Draft) -> None:
 def _compensated_again(draft: Draft) -> None:
     """Write a G41 that is on already as a comment: LinuxCNC refuses it.
 
-    Where it is on in one way to the block only, as in a loop, LinuxCNC asks itself.
+    Where it is on in one way to the block only, as in a loop, the program tests LinuxCNC's mode.
     """
     on = [w for w in draft.words if w.letter == "G" and w.code[:3] in COMPENSATION]
     if not on or draft.start.polar != "off" or draft.control.onto:

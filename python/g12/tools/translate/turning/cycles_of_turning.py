@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Turning cycles written out as moves: exact on every LinuxCNC, which has none or other ones.
 
-Two-block forms keep what their first block says; a one-block form has it all. Single passes are
+Two-block forms store the values of their first block; a one-block form has all. Single passes are
 modal: blocks of X, Z, U and W alone repeat them from the same start.
 """
 
@@ -43,7 +43,7 @@ from g12.tools.translate.turning.moves import (
     turning_pass,
 )
 from g12.tools.translate.turning.roughing import RoughCuts, rough
-from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, thread_pass
+from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, pitch_along, thread_pass
 
 SHORTEST = 1e-5  # of a thread
 TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
@@ -135,15 +135,15 @@ def _refuse_strange(draft: Draft, where: str) -> None:
 
 
 def keep(draft: Draft, meaning: str, **values: float | None) -> None:
-    """Keep what the first block of a cycle says for its second."""
+    """Store the values of a cycle's first block for its second."""
     code = draft.meanings[meaning].code
     _refuse_strange(draft, f"in the first block of {code}")
     kept = dict(draft.state.kept)
-    said = {name: value for name, value in values.items() if value is not None}
-    kept.update({f"{meaning} {name}": value for name, value in said.items()})
+    stored = {name: value for name, value in values.items() if value is not None}
+    kept.update({f"{meaning} {name}": value for name, value in stored.items()})
     places = {name: getattr(draft.start, name) for name in FIELDS.values()}
     draft.change(kept=tuple(sorted(kept.items())), **places)
-    draft.comments.append(", ".join([code, *(f"{n} {v:g}" for n, v in said.items())]))
+    draft.comments.append(", ".join([code, *(f"{n} {v:g}" for n, v in stored.items())]))
 
 
 def _kept_value(draft: Draft, meaning: str, name: str) -> float:
@@ -170,7 +170,7 @@ def roughing(draft: Draft, meaning: str, along_x: bool) -> None:
         return
     start, (indices, follows) = start_point(draft), _contour_named(draft)
     depth = take_increments(draft, "D") or _kept_value(draft, meaning, "depth")
-    take_whole(draft, "R")  # Haas: 1 for type II, which is told by the contour
+    take_whole(draft, "R")  # Haas: 1 for type II, which the contour itself shows
     given = RoughCuts(
         depth, _kept_value(draft, meaning, "retract"), _take_allowance(draft), along_x
     )
@@ -273,17 +273,17 @@ def _single_pass(draft: Draft, meaning: str, moves_of_pass: Callable) -> None:
 
 
 def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
-    """Return start, end and taper of a modal cycle; what a block leaves out was said before."""
+    """Return start, end and taper of a modal cycle; missing words are those of the block before."""
     _refuse_other_meanings(draft, meaning)
     start = start_point(draft)
     again = draft.start.turn == meaning and meaning not in draft.meanings
     own = take_end(draft, start)
     tapers = [take_number(draft, letter) for letter in ("R", TAPERS.get(meaning, "I"))]
     taper = next((number for number in tapers if number is not None), None)
-    said: Any = draft.sure("pass_words", "the cycle takes what was said before") if again else ()
-    if again and not said:
+    stored: Any = draft.sure("pass_words", "the cycle takes what was said before") if again else ()
+    if again and not stored:
         raise NotTranslated(_other_meaning("G90", meaning))
-    words = {**dict(said), **own}
+    words = {**dict(stored), **own}
     words.update({} if taper is None else {"R": taper})
     if not {"X", "Z"} <= words.keys():
         raise NotTranslated("the cycle needs X and Z, where its cut ends")
@@ -378,7 +378,9 @@ def _thread_move(draft: Draft) -> None:
     start = start_point(draft)
     end = take_end(draft, start)
     there = complex(end.get("Z", start.real), end.get("X", start.imag))
-    pitch = _pitch_of(draft, there - start)
+    if abs(there - start) < SHORTEST:
+        raise NotTranslated("the thread has no length")
+    pitch = pitch_along(there - start, _lead_of(draft))
     _refuse_strange(draft, "beside a thread")
     feed = draft.take("F")
     draft.before += [feed.text] if feed else []  # LinuxCNC has no F beside G33
@@ -389,13 +391,6 @@ def _thread_move(draft: Draft) -> None:
     draft.change(
         turn="thread", motion="G33", own_motion=AS_PROGRAMMED, at_x=2 * there.imag, at_z=there.real
     )
-
-
-def _pitch_of(draft: Draft, way: complex) -> float:
-    """Return the way along the path for each revolution; the lead is that of the longer axis."""
-    if abs(way) < SHORTEST:
-        raise NotTranslated("the thread has no length")
-    return _lead_of(draft) * abs(way) / max(abs(way.real), abs(way.imag))
 
 
 CYCLES: dict[str, Callable[[Draft], None]] = {

@@ -10,7 +10,7 @@ LinuxCNC's own cycles take no C. Each block of a cycle becomes
 
 G4 stops the tool where it must be before another axis moves, and at the end of a hole: LinuxCNC
 would blend the moves. Where a control's R is not understood as a level nearer to the part, F begins
-where the tool stands: that is right for every reading. A level is a word's number: of X a diameter.
+at the tool's level: that is right for every reading. A level is a word's number: of X a diameter.
 """
 
 from collections.abc import Iterator
@@ -135,8 +135,8 @@ def _drill_hole(draft: Draft, meaning: str) -> None:
     code = draft.meanings.pop(meaning, None)
     kept: dict[str, Any] = {}
     if draft.state.cycle == meaning:
-        said: Any = draft.sure("cycle_words", "a drilling cycle takes what was said before")
-        kept = dict(said)
+        stored: Any = draft.sure("cycle_words", "a drilling cycle takes what was said before")
+        kept = dict(stored)
     cycle = lathe_cycle(meaning)
     side = _is_side_hole(draft, kept) if cycle.side is None else cycle.side
     times = _holes_in_block(draft)

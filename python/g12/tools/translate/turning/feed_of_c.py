@@ -117,16 +117,16 @@ def _absolute_words(draft: Draft, axes: set[str]) -> None:
     if state.held == UNSURE or state.distance != "G90":
         raise NotTranslated(f"C beside a slide, and a slide is held back here: {INSTEAD}")
     held = dict(state.held)
-    stands = {
+    starts = {
         axis: held.get(axis, known_place(draft.start, axis)) for axis in {*axes, *held} - {"C"}
     }
-    ends = {axis: known_place(state, axis) for axis in stands}
-    goes = hypot(*((ends[a] - stands[a]) * _scale_of(draft, a) for a in stands))
+    ends = {axis: known_place(state, axis) for axis in starts}
+    goes = hypot(*((ends[a] - starts[a]) * _scale_of(draft, a) for a in starts))
     holds = 0 < goes < _least_of(draft)
-    draft.words = [w for w in draft.words if axis_of(w.letter) not in {*stands, "C"}]
-    written = "C" if holds else [*sorted(stands), "C"]
+    draft.words = [w for w in draft.words if axis_of(w.letter) not in {*starts, "C"}]
+    written = "C" if holds else [*sorted(starts), "C"]
     draft.words += [word_of(f"{a}{value_text(known_place(state, a))}") for a in written]
-    draft.change(held=tuple(sorted(stands.items())) if holds else ())
+    draft.change(held=tuple(sorted(starts.items())) if holds else ())
 
 
 def _least_of(draft: Draft) -> float:

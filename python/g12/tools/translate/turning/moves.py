@@ -71,14 +71,14 @@ def lines_of_moves(moves: Sequence[CycleMove], start: complex) -> Iterator[str]:
 
 
 def differs(one: float, other: float) -> bool:
-    """Tell whether a word is needed."""
+    """Whether a word is needed."""
     return abs(one - other) > DIGITS
 
 
 def return_by(start: complex, end: complex, side: int) -> list[CycleMove]:
     """Return the rapids from a contour's end to the start, first away from the part in X.
 
-    ``side`` is 1 where the tool stands outside of the part, -1 in a bore.
+    ``side`` is 1 where the tool is outside of the part, -1 in a bore.
     """
     clear = side * max(side * start.imag, side * end.imag)
     ways = [complex(end.real, clear), complex(start.real, clear), start]

@@ -33,7 +33,7 @@ class Thread(NamedTuple):
 class Infeed(NamedTuple):
     """How the passes of G76 go in: thread's height, first depth, least depth, the last ones.
 
-    ``allowance`` is left for the first of ``finishing`` passes, ``angle`` that of the thread along
+    ``allowance`` remains for the first of ``finishing`` passes, ``angle`` that of the thread along
     whose flank the tool goes in; ``alternating`` takes both flanks, ``constant`` the same depth
     each time instead of the same chip.
     """
@@ -57,14 +57,14 @@ def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMo
     way = end - begin
     if abs(way.real) < SAME:
         raise NotTranslated("the thread has no length in Z")
-    pitch = _pitch_along(way, thread.lead)
+    pitch = pitch_along(way, thread.lead)
     chamfer = min(thread.chamfer, abs(way.real))
     moves = [rapid_to(begin)]
     turning = end - way / abs(way.real) * chamfer
     moves.append(CycleMove("G33", turning, None, pitch))
     if chamfer > SAME:
         out = complex(end.real, turning.imag + side * chamfer)
-        moves.append(CycleMove("G33", out, None, _pitch_along(out - turning, thread.lead)))
+        moves.append(CycleMove("G33", out, None, pitch_along(out - turning, thread.lead)))
     last = moves[-1].end
     clear = side * max(side * start.imag, side * last.imag)
     return [
@@ -74,7 +74,7 @@ def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMo
     ]
 
 
-def _pitch_along(way: complex, lead: float) -> float:
+def pitch_along(way: complex, lead: float) -> float:
     """Return the travel along the path for each revolution."""
     longer = max(abs(way.real), abs(way.imag))
     return lead * abs(way) / longer
