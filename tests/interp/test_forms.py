@@ -1,25 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The forms: what ngcgui makes of them comes out as filled in; geometry from the moves alone."""
+"""The forms: what ngcgui makes of them is cut as filled in, and verify has no finding in it."""
 
 import re
 
 import pytest
 from matplotlib.image import imread
 
+from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
+from g12.tools.verify.proof import prove
 from support import cut_geometry
 from support.ngcgui import NGC, fields, filled_in
 from support.sim_machines import SIM
 
 FORMS = sorted(path.stem for path in NGC.glob("form_*_mm.ngc"))
-UNITS = {"mm": ("G21", 1.0), "inch": ("G20", 25.4)}
+INCH = 25.4
+UNITS = {"mm": ("G21", 1.0), "inch": ("G20", INCH)}
 BOTH = pytest.mark.parametrize("unit", UNITS)
-ONE = pytest.mark.parametrize("unit", ["inch"])  # the forms of both units are one text
 WIDEST, HIGHEST = 319, 239  # dots of a picture that ngcgui does not halve
 LONGEST = 18  # letters beside an entry, for two columns on a screen 1024 dots wide
 TOOLS = {1: 10.0, 2: 4.0}  # mm; on inch machines the same in inches
-MACHINES = {"haas": "mill_mm", "circle_mill": "mill_mm", "yasnac": "mill_yasnac_mm",
-            "mitsubishi": "mill_mitsubishi_mm"}  # fmt: skip
+MILLS = {"haas": "mill_mm", "circle_mill": "mill_mm", "yasnac": "mill_yasnac_mm",
+         "mitsubishi": "mill_mitsubishi_mm"}  # fmt: skip
+NUMBERS = (  # entries that are no lengths
+    *("tool", "speed", "code", "event", "levels", "circles", "d", "c"),
+    *("sides", "angle", "on", "off", "count", "first_angle", "step"),
+)
+BESIDE = "G21 G8 G0 X60 Z20"  # where a lathe's tool comes from
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +35,7 @@ def machine():
     opened = {}
 
     def of(form):
-        name = MACHINES[form]
+        name = MILLS.get(form, "lathe_mm")
         if name not in opened:
             opened[name] = Tracer(SIM / f"{name}.ini", tools=TOOLS)
         return opened[name]
@@ -38,20 +45,24 @@ def machine():
         tracer.close()
 
 
+def program_of(folder, form, unit="mm", before="", **values):
+    """Write a form filled in; lengths are given in mm and entered in its unit."""
+    scale = UNITS[unit][1]
+    entered = {name: value if name in NUMBERS else value / scale for name, value in values.items()}
+    program = filled_in(f"form_{form}_{unit}", folder / "auto.ngc", **{"tool": 1, **entered})
+    program.write_text(f"{before}\n{program.read_text()}")
+    return program
+
+
 @pytest.fixture
 def cut(machine, tmp_path):
-    """Return what a form filled in cuts; lengths are given in mm and entered in the form's unit."""
+    """Return what a form filled in cuts."""
 
-    def moves_of(form, unit, before=(), counts=(), **values):
-        scale = UNITS[unit][1]
-        entered = {
-            name: value if name in ("tool", "speed", "code", "event", *counts) else value / scale
-            for name, value in values.items()
-        }
-        program = filled_in(f"form_{form}_{unit}", tmp_path / "auto.ngc", tool=1, **entered)
-        return machine(form).trace_text([*before, *program.read_text().splitlines()])
+    def traced(form, unit, before="", **values):
+        program = program_of(tmp_path, form, unit, before, **values)
+        return machine(form).trace_text(program.read_text())
 
-    return moves_of
+    return traced
 
 
 def without_numbers(form, unit):
@@ -82,114 +93,88 @@ def test_every_entry_has_words_and_a_default_and_every_form_a_picture(form, unit
     assert width <= WIDEST and height <= HIGHEST
 
 
-def is_disc(moves, cutter, x, y, radius):
-    """Tell whether moves clear exactly a disc (mm)."""
-    area, wanted = cut_geometry.swept(moves, cutter), cut_geometry.disc(x, y, radius)
-    return area.symmetric_difference(wanted).area < 2e-4 * wanted.area
+POCKETS = [  # a form filled in, and its pocket: X, Y, floor, radius; where the tool ends
+    ("haas", dict(x=12, y=-7, retract=20, top=3, z=-6, levels=3, i=8, k=25, q=6, feed=500,
+                  code=12), (12, -7, -6, 25), 20),
+    ("haas", dict(z=-2, levels=1, i=9, k=0, retract=12), (0, 0, -2, 9), 12),
+    ("yasnac", dict(x=4, y=5, retract=15, top=1, z=-8, code=12, i=50, r=30, k=0, q=0, circles=2,
+                    feed=600), (4, 5, -8, 50), 15),
+    ("yasnac", dict(z=-3, i=-40, r=0, k=-9, q=6, circles=1, retract=9), (0, 0, -3, 40), 9),
+    ("mitsubishi", dict(x=-3, y=2, retract=15, top=1, z=-8, code=13, i=30), (-3, 2, -8, 30), 15),
+    ("circle_mill", dict(event=7, x=5, y=6, z=-4, w=2, o=12, r=30, d=1, c=1, k=3, j=7, l=0.5,
+                         p=100, f=400, v=200), (5, 6, -4, 30), 12),
+    ("circle_mill", dict(event=0, z=-2, w=1, o=9, r=20, d=0, c=1, k=0, j=0, l=0, p=0, v=0,
+                         f=300), (0, 0, -2, 20), 9),
+]  # fmt: skip
 
 
-def ended_well(found, retract, unit="G21"):
-    """Check the end: at the retract height, spindle off, units back, no error."""
-    assert found.error is None, found.error
-    assert found.moves[-1].end[2] == pytest.approx(retract, abs=1e-9)
-    assert unit in found.modes.gcodes and "G90" in found.modes.gcodes
-    assert {"M5", "M9"} <= set(found.modes.mcodes)
+@pytest.mark.parametrize(("form", "values", "pocket", "retract"), POCKETS)
+def test_a_pocket_comes_out_as_filled_in(form, values, pocket, retract, tmp_path):
+    program = program_of(tmp_path, form, "inch", **values)  # the forms of both units are one text
+    proof = prove(program, read_ini(SIM / f"{MILLS[form]}_headless.ini"), tools=TOOLS)
+    assert proof.findings == []
+    (facts,) = proof.pockets
+    wall, traced = facts.asked.wall, proof.subject.trace
+    floor = wall.height(facts.asked.deepest)
+    assert (*wall.origin[:2], floor, wall.radius) == pytest.approx(pocket, abs=1e-6)
+    feeds = {round(move.feed) for move in cut_geometry.in_plane(cut_geometry.cutting(traced.moves))}
+    named = {values[name] for name in ("feed", "f", "v") if values.get(name)}
+    assert not named or feeds == named
+    assert traced.moves[-1].end[2] == pytest.approx(retract)
+    assert {"M5", "M9"} <= set(traced.modes.mcodes)
 
 
-def rapids_stay_up(found, retract):
-    """Check that no rapid goes sideways below the retract height."""
-    below = [move for move in found.moves if move.kind == "rapid" and move.end[2] < retract - 1e-9]
-    assert all(move.start[:2] == move.end[:2] for move in below)
+def test_a_spiral_goes_round_as_often_as_filled_in(cut):
+    found = cut("yasnac", "mm", z=-3, i=40, r=0, k=0, q=0, circles=3)
+    assert cut_geometry.radii(found.moves) == pytest.approx([35] * 3)
 
 
-@ONE
-def test_a_haas_pocket_comes_out_as_filled_in(cut, unit):
-    found = cut("haas", unit, counts=["levels"], x=12, y=-7, retract=20, top=3, z=-6, levels=3,
-                i=8, k=25, q=6, feed=500, code=12)  # fmt: skip
-    ended_well(found, 20)
-    rapids_stay_up(found, 20)
-    cuts = [move for move in cut_geometry.cutting(found.moves) if move.end[2] < 3 - 1e-9]
-    assert {round(move.feed, 6) for move in cuts} == {500}
-    assert cut_geometry.levels(found.moves) == pytest.approx([0, -3, -6])
-    for level in (0, -3, -6):
-        there = [move for move in cut_geometry.in_plane(cuts) if abs(move.end[2] - level) < 1e-6]
-        assert cut_geometry.radii(there) == pytest.approx([3, 9, 15, 20])
-        assert {circle.turns for circle in cut_geometry.full_circles(there)} == {-1}
-    assert is_disc(there, 5, 12, -7, 25)
+SHAPES = {  # a form filled in, and what else its call names
+    "polygon": dict(sides=6, across_flats=27, depth=5, stock_diameter=32, corner_radius=2,
+                    per_pass=3, allowance=0.3, feed=500, angle=10),
+    "slot": dict(width=13, length=28, depth=3, per_pass=2, angle=-20),
+    "face_pocket": dict(x=12, c=4, diameter=15, depth=3),
+}  # fmt: skip
 
 
-@ONE
-def test_a_haas_pocket_without_k_is_one_circle(cut, unit):
-    found = cut("haas", unit, counts=["levels"], z=-2, levels=1, i=9, k=0)
-    ended_well(found, UNITS[unit][1] * float(fields(f"form_haas_{unit}")[6].default))
-    assert cut_geometry.radii(found.moves) == pytest.approx([4])
+@pytest.mark.parametrize("form", SHAPES)
+def test_a_shape_comes_out_as_filled_in(form, tmp_path):
+    program = program_of(tmp_path, form, "inch", f"G18 {BESIDE}", retract=4, **SHAPES[form])
+    proof = prove(program, read_ini(SIM / "lathe_mm_headless.ini"), tools=TOOLS)
+    assert proof.findings == []
+    (facts,) = proof.cuts.shapes
+    called = facts.values["entries"]
+    for name, value in SHAPES[form].items():
+        entry = called["depth_per_pass" if name == "per_pass" else name]
+        assert entry == pytest.approx(value if name in NUMBERS else value / INCH)
+    assert proof.subject.trace.moves[-1].end[2] == pytest.approx(4)
+    assert {"M5", "M9"} <= set(proof.subject.trace.modes.mcodes)
 
 
-@ONE
-@pytest.mark.parametrize("r", [0, 30])
-def test_a_yasnac_circle_comes_out_as_filled_in(cut, unit, r):
-    found = cut("yasnac", unit, counts=["circles"], x=4, y=5, retract=15, top=1, z=-8, code=12,
-                i=50, r=r, k=0, q=0, circles=2, feed=600)  # fmt: skip
-    ended_well(found, 15)
-    circles = cut_geometry.full_circles(found.moves)
-    assert [(c.x, c.y, c.z, c.radius, c.turns) for c in circles] == [
-        pytest.approx((4, 5, -8, 45, -1), abs=1e-6)
-    ] * 2
-    fast = [move for move in found.moves if move.kind == "rapid" and move.start[2] < 0]
-    assert [move.end[0] for move in fast][:-1] == pytest.approx([4 + 25, 4] if r else [])
-
-
-@ONE
-def test_a_spiral_of_yasnac_comes_out_as_filled_in(cut, unit):
-    found = cut("yasnac", unit, counts=["circles"], z=-3, i=-40, r=0, k=-9, q=6, circles=1)
-    assert found.error is None
-    assert cut_geometry.radii(found.moves) == pytest.approx([35])
-    in_plane = cut_geometry.in_plane(cut_geometry.cutting(found.moves))
-    assert is_disc(in_plane, 5, 0, 0, 40)
-    assert in_plane[0].end[0] < 0  # begins on the -X side
-
-
-@ONE
-def test_a_mitsubishi_circle_comes_out_as_filled_in(cut, unit):
-    found = cut("mitsubishi", unit, x=-3, y=2, retract=15, top=1, z=-8, code=13, i=30)
-    ended_well(found, 15)
-    rapids_stay_up(found, 15)
-    circles = cut_geometry.full_circles(found.moves)
-    assert circles == [pytest.approx((-3, 2, -8, 25, 1), abs=1e-6)]
-
-
-@ONE
-def test_a_circle_mill_pocket_comes_out_as_filled_in(cut, unit):
-    found = cut("circle_mill", unit, counts=["d", "c"], event=7, x=5, y=6, z=-4, w=2, o=12, r=30,
-                d=1, c=1, k=3, j=7, l=0.5, p=100, f=400, v=200)  # fmt: skip
-    ended_well(found, 12)
-    assert cut_geometry.levels(found.moves) == pytest.approx([-1, -3.5, -4])
-    in_plane = cut_geometry.in_plane(cut_geometry.cutting(found.moves))
-    last = [move for move in in_plane if abs(move.end[2] + 4) < 1e-6]
-    assert is_disc(last, 5, 5, 6, 30)
-    assert cut_geometry.radii(last)[-1] == pytest.approx(25)
-    assert {round(move.feed, 6) for move in last} == {400, 200}
-
-
-@ONE
-def test_a_perimeter_without_its_optional_entries(cut, unit):
-    found = cut("circle_mill", unit, counts=["d", "c"], event=0, z=-2, w=1, o=9, r=20, d=0, c=1,
-                k=0, j=0, l=0, p=0, v=0, f=300)  # fmt: skip
-    ended_well(found, 9)
-    circles = cut_geometry.full_circles(found.moves)
-    assert circles == [pytest.approx((0, 0, -2, 25, -1), abs=1e-6)]
-    assert {round(move.feed, 6) for move in cut_geometry.cutting(found.moves)} == {300}
+def test_holes_come_out_as_filled_in(cut):
+    face = cut("face_holes", "inch", BESIDE, circle_diameter=30, first_angle=20, depth=8, height=2,
+               count=3)  # fmt: skip
+    side = cut("side_holes", "inch", BESIDE, z=-10, first_angle=30, surface_diameter=40, depth=8,
+               height=2, count=2, step=90, clear=60)  # fmt: skip
+    assert face.error is None and side.error is None, (face.error, side.error)
+    for found, bottom in ((face, (15, -8)), (side, (12, -10))):
+        drilled = [move.end for move in found.moves if move.kind == "feed"]
+        assert [(end[0], end[2]) for end in drilled] == [pytest.approx(bottom)] * len(drilled)
+    assert [move.end[5] for move in side.moves if move.kind == "feed"] == pytest.approx([30, 120])
 
 
 @BOTH
-@pytest.mark.parametrize("active", ["G20", "G21"])
-def test_the_units_are_put_back(cut, unit, active):
-    ended_well(cut("mitsubishi", unit, [active], i=30, retract=50), 50, active)
+@pytest.mark.parametrize("active", ["G20 G7", "G20 G8", "G21 G7", "G21 G8"])
+def test_the_modes_of_lengths_are_put_back(cut, unit, active):
+    for form in ("mitsubishi", "slot"):
+        found = cut(form, unit, active, retract=50, tool=2)
+        assert found.error is None, found.error
+        assert {*active.split(), "G90"} <= set(found.modes.gcodes)
 
 
 def test_the_tool_goes_up_before_it_goes_sideways_and_never_first_down(cut):
-    low = cut("mitsubishi", "mm", ["G21 G0 X9 Y9 Z-20"], x=1, y=2, retract=15)
-    high = cut("mitsubishi", "mm", ["G21 G0 X9 Y9 Z40"], x=1, y=2, retract=15)
+    low = cut("mitsubishi", "mm", "G21 G0 X9 Y9 Z-20", x=1, y=2, retract=15)
+    high = cut("mitsubishi", "mm", "G21 G0 X9 Y9 Z40", x=1, y=2, retract=15)
     places = [[pytest.approx(move.end[:3]) for move in found.moves[1:3]] for found in (low, high)]
     assert places == [[(9, 9, 15), (1, 2, 15)], [(1, 2, 40), (1, 2, 15)]]
 
@@ -217,18 +202,26 @@ REFUSED = [
     ("circle_mill", {"o": 1}, "form: the retract height 1.000000 must be above 2.000000"),
     ("circle_mill", {"c": 5}, "form_circle_mill_mm.ngc: C5 must be at most 2"),
     ("circle_mill", {"d": 0, "c": 1}, "D0 with C1 does not put the tool inside the pocket"),
+    ("polygon", {"tool": 0}, "form: the tool number must be 1 or more, not 0"),
+    ("polygon", {"speed": 0}, "form: the tool's speed must be above zero, not 0"),
+    ("polygon", {"coolant": 1}, "form: coolant must be 7, 8 or 9, not 1"),
+    ("polygon", {"retract": 0}, "form: the retract height 0.000000 must be above the face at Z0"),
+    ("polygon", {"on": 34}, "Unknown m code used: M34"),
+    ("polygon", {"sides": 1}, "form_polygon_mm.ngc: sides 1 must be at least 2"),
+    ("polygon", {"across_flats": 60}, "stock_diameter 40 must be greater than across_flats 60"),
+    ("slot", {"width": 5}, "form_slot_mm.ngc: width 5 must not be less than the cutter's 10"),
+    ("slot", {"length": 4}, "form_slot_mm.ngc: length 4 must be greater than width 8"),
+    ("face_pocket", {"diameter": 0}, "form_face_pocket_mm.ngc: diameter 0 must be greater than 0"),
+    ("face_pocket", {"depth": -1}, "form_face_pocket_mm.ngc: depth -1 must be greater than 0"),
 ]
 
 
 @pytest.mark.parametrize(("form", "wrong", "message"), REFUSED)
-def test_a_wrong_entry_is_refused_and_nothing_is_cut(machine, tmp_path, form, wrong, message):
-    values = {"tool": 1, **wrong}
-    program = filled_in(f"form_{form}_mm", tmp_path / "auto.ngc", **values)
-    found = machine(form).trace_text(program.read_text().splitlines())
+def test_a_wrong_entry_is_refused_and_nothing_is_cut(cut, form, wrong, message):
+    found = cut(form, "mm", **wrong)
     assert found.error is not None
     assert message in found.error.text
-    cuts = cut_geometry.in_plane(cut_geometry.cutting(found.moves))
-    assert not cuts
+    assert not cut_geometry.in_plane(cut_geometry.cutting(found.moves))
 
 
 def test_two_features_of_one_program(machine, tmp_path):
@@ -238,6 +231,20 @@ def test_two_features_of_one_program(machine, tmp_path):
     found = machine("haas").trace_text(together)
     assert found.error is None
     assert {circle.x for circle in cut_geometry.full_circles(found.moves)} == {0, 80}
+
+
+@BOTH
+def test_the_live_tool_beside_a_main_spindle_that_is_c(tmp_path, unit):
+    """A tap is refused unless spindle 1 turns; the main spindle never does."""
+    tap = dict(kind=1, feed=1.5 / UNITS[unit][1], on=3, off=5)
+    with Tracer(SIM / f"lathe_spindle_c_{unit}.ini", tools={1: 6.0}) as spindle_lathe:
+        for spindle in (0, 1):
+            path = tmp_path / f"{spindle}.ngc"
+            form = f"form_face_holes_{unit}"
+            program = filled_in(form, path, tool=1, spindle=spindle, **tap).read_text()
+            found = spindle_lathe.trace_text(["G0 X60 Z20", *program.splitlines()])
+            assert (found.error is None) == (spindle == 1)
+            assert ("M3" in [event.text for event in found.events]) == (spindle == 0)
 
 
 SHOWN = {

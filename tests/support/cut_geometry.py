@@ -51,17 +51,6 @@ def radii(moves):
     return [circle.radius for circle in full_circles(moves)]
 
 
-def spans(moves):
-    """Return the moves at feed, one list per stretch between two rapids."""
-    found = [[]]
-    for move in moving(moves):
-        if move.kind == "rapid":
-            found.append([])
-        else:
-            found[-1].append(move)
-    return [span for span in found if span]
-
-
 def in_plane(moves):
     """Return the moves that go sideways (not the plunge)."""
     return [move for move in moves if math.hypot(*move.tangent(0.5)[:2]) > 0.5]

@@ -51,10 +51,6 @@ class FacePath(NamedTuple):
     z: np.ndarray
     feeding: np.ndarray
 
-    def before(self, index):
-        """Return the part of it before a point."""
-        return FacePath(*(column[:index] for column in self))
-
     def area(self, depth, radius):
         """Return the area that a cutter sweeps at a depth or below it."""
         deep = self.z <= depth + 1e-6
@@ -90,8 +86,3 @@ def area_off(area, wanted, tolerance):
     """Return how much of an area lies beyond a drawing, or is missing of it, by more than that."""
     beyond = area.difference(wanted.buffer(tolerance)).area
     return beyond + wanted.buffer(-tolerance).difference(area).area
-
-
-def distances(points, area):
-    """Return how far each point of a path is from an area."""
-    return np.array([Point(point.real, point.imag).distance(area) for point in points])
