@@ -2,15 +2,11 @@
 """G12.1: real deviation, section times, interpreting time."""
 
 import math
-import statistics
-import tempfile
-from pathlib import Path
 
 import numpy as np
 
 from bench import Figure
-from bench.haas import cpu_seconds
-from g12.tools.machine.ini import read_ini
+from bench.haas import against_plain
 from g12.tools.preview.tracer import Tracer
 from support.contour_geometry import deviation, outward, spaced
 from support.operated_machine import Machine
@@ -22,7 +18,7 @@ MM_PER_INCH = 25.4
 SAMPLES = PROGRAMS / "polar"
 MANUAL_TOOLS = {1: 0.5, 8: 0.0}
 TOLERANCE = {"mm": 0.005, "inch": 0.0002 * MM_PER_INCH}
-LINES, PAIRS = 10000, 7
+LINES = 10000
 LONGEST = 600  # s that a trace may take on a busy computer
 HEXAGON_BLOCKS, FLAT_BLOCKS = range(10, 16), (14, 15, 16)
 
@@ -128,39 +124,14 @@ def blocks_of(points, feed):
 
 
 def interpreting():
-    """Compare a section of 10,000 lines with the blocks it becomes, in the stock interpreter."""
-    section = [
-        "G21 G18 G8 G40 G64 G90 G94 F1000",
-        "G0 X30 Z0 C0",
-        "G12.1",
-        *hexagons(),
-        "G13.1",
-        "M2",
-    ]
-    with Tracer(SIM / "lathe_mm.ini") as tracer, tempfile.TemporaryDirectory() as folder:
+    """Compare a section of 10,000 lines with the blocks it becomes."""
+    head, ini = ["G21 G18 G8 G40 G64 G90 G94 F1000", "G0 X30 Z0 C0"], SIM / "lathe_mm.ini"
+    section = [*head, "G12.1", *hexagons(), "G13.1", "M2"]
+    with Tracer(ini) as tracer:
         moves = feed_moves(tracer.trace_text(section, timeout=LONGEST))
-        plain = [f"G1 X{move.end[0]:.6f} C{move.end[5]:.6f} F{move.feed:.4f}" for move in moves]
-        scratch = Path(folder)
-        programs = {"section": section, "plain": [*section[:2], *plain, "M2"], "empty": ["M2"]}
-        for name, lines in programs.items():
-            (scratch / f"{name}.ngc").write_text("\n".join([*lines, ""]))
-        ini = SIM / "lathe_mm.ini"
-        (scratch / "machine.ini").write_text(read_ini(ini).text)
-        (scratch / "tool.tbl").write_text("T1 P1 D12\n")
-        times = [
-            [cpu_seconds(scratch, scratch / f"{name}.ngc") for name in programs]
-            for _ in range(PAIRS)
-        ]
-    start_up = statistics.median(time[2] for time in times)
-    ratios = sorted((time[0] - start_up) / (time[1] - start_up) for time in times)
-    return Figure(
-        "polar: interpreting a 10,000-line section against the same path expanded",
-        statistics.median(ratios),
-        2.0,
-        "",
-        f"{len(plain)} moves; CPU time of rs274 less its start-up, median of {PAIRS} pairs "
-        f"({ratios[0]:.2f} to {ratios[-1]:.2f})",
-    )
+    plain = [f"G1 X{move.end[0]:.6f} C{move.end[5]:.6f} F{move.feed:.4f}" for move in moves]
+    what = "polar: interpreting a 10,000-line section against the same path expanded"
+    return against_plain(what, 2.0, ini, "T1 P1 D12", section, [*head, *plain, "M2"])
 
 
 def hexagons():

@@ -200,27 +200,6 @@ def test_a_sub_is_cut_where_it_is_called(lathe, name):
     assert ends(lathe.trace_text([*sub, *section(*body)])) == expected
 
 
-def test_a_section_inside_a_loop_and_a_loop_inside_it(lathe):
-    body = ["G1 X[10+#1]", "o2 repeat [2]", "U-1", "U-1", "o2 endrepeat"]
-    program = section(
-        *body, before=["#1=0", "o1 while [#1 LT 2]"], after=["#1=[#1+1]", "o1 endwhile", "X30"]
-    )
-    points = [
-        (10, 0),
-        (9, 0),
-        (8, 0),
-        (7, 0),
-        (6, 0),
-        (11, 0),
-        (10, 0),
-        (9, 0),
-        (8, 0),
-        (7, 0),
-        (30, 0),
-    ]
-    assert ends(lathe.trace_text(program)) == points
-
-
 def test_labels_are_those_of_the_program_around(lathe):
     one = ["o1 if [1]", "G1 X11", "o1 endif"]
     program = [
@@ -251,11 +230,6 @@ def test_subs_of_the_same_file(lathe):
     assert lines(traced) == [2, 3, 11, 2, 3]
 
 
-def test_a_sub_that_is_defined_further_down(lathe):
-    traced = lathe.trace_text([*section("G1 X12", "o<flat> call [10] [2]", "C0"), *SUB])
-    assert ends(traced) == [(12, 0), (10, 0), (9, 2), (9, 0)]
-
-
 def test_a_sub_that_is_nowhere_is_named(lathe):
     traced = lathe.trace_text(section("G1 X12", "o<nowhere> call"))
     assert "nowhere" in traced.error.text
@@ -270,10 +244,6 @@ def test_subs_of_other_files(subs):
 def test_fanuc_subs_with_repeats(lathe):
     program = [*section("M98 P100 L2", "U1"), "O100", "G1 U-2", "G91 C1", "G90", "M99"]
     assert ends(lathe.trace_text(program)) == [(18, 0), (18, 1), (16, 1), (16, 2), (17, 2)]
-
-
-def test_fanuc_subs_of_other_files(subs):
-    assert ends(subs.trace_text(section("M98 P200", "C1"))) == [(15, 0), (15, 1)]
 
 
 def test_codes_remapped_to_subs(subs):
@@ -355,13 +325,6 @@ def test_a_file_without_a_last_newline(lathe, tmp_path):
     assert ends(lathe.trace(program)) == [(12, 0), (10, 0)]
 
 
-def test_a_program_that_is_not_utf8(lathe, tmp_path):
-    program = tmp_path / "cut.ngc"
-    text = "\n".join(section("(Fläche \xb0)", f"G1 X12 ({'ä' * 200})", "U-2"))
-    program.write_bytes(text.encode("latin-1"))
-    assert ends(lathe.trace(program)) == [(12, 0), (10, 0)]
-
-
 @pytest.mark.parametrize("word", ["X12", "U-8"])
 def test_lines_as_long_as_the_parser_reads(lathe, word):
     assert ends(cut(lathe, f"G1 {word}".ljust(252), "C1")) == [(12, 0), (12, 1)]
@@ -381,16 +344,6 @@ def test_line_numbers_inside_and_behind(lathe):
 
 def test_line_numbers_behind_a_section_that_ends_on_a_rewritten_line(lathe):
     assert lines(cut(lathe, "G1 X12", "U-1", "", after=["X31"])) == [6, 7, 10]
-
-
-def test_line_numbers_behind_two_sections(lathe):
-    traced = cut(lathe, "G1 X12", "U-1", after=["G0 X20 C0", "G12.1", "G1 X9", "G13.1", "X30"])
-    assert lines(traced) == [6, 7, 11, 13]
-
-
-def test_an_error_behind_a_section_is_on_its_line(lathe):
-    traced = cut(lathe, "G1 X12", "U-1", after=["X31", "X32 R3"])
-    assert traced.error.line == 10
 
 
 def test_off_outside_the_mode_does_nothing(lathe):
@@ -435,13 +388,6 @@ def test_a_sub_whose_line_has_the_number_of_the_line_before_it(tmp_path):
     with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
         program = section("(six)", "(seven)", "G1 X30 C9", "o<far> call", start="G0 X40 Z5 C0")
         assert feed_moves(lathe.trace_text(program))[0].line == 8
-
-
-def test_modes_saved_and_restored(lathe):
-    body = ["G1 X12", "M70", "G91 F50", "X1", "M72", "X9", "M71"]
-    traced = cut(lathe, *body)
-    assert ends(traced) == [(12, 0), (13, 0), (9, 0)]
-    assert [round(move.feed) for move in feed_moves(traced)] == [100, 50, 100]
 
 
 # ---------------------------------------------------------------- waiting for the machine
