@@ -372,12 +372,6 @@ def test_feed_and_path_control_before_in_and_behind_a_section(lines, tmp_path):
     assert proof.findings == []
 
 
-def test_what_cannot_be_followed_is_a_finding(tmp_path):
-    lines = [*FACE, "G12.1", "G1 X[#<_x> - 5] F500", "G13.1"]
-    ((line, text),) = proof_of_text(tmp_path, lines, "lathe_mm").findings
-    assert (line, "line 6 asks for a position" in text) == (5, True)
-
-
 # ---------------------------------------------------------------- rapids
 
 
