@@ -2,12 +2,15 @@
 """Valid sections that are hard to compare with their words, and broken ones beside them."""
 
 import math
+import random
+import re
 
 import pytest
 
 from g12.tools.machine.ini import read_ini
 from g12.tools.verify.proof import prove
 from support.sim_machines import SIM
+from support.valid_programs import machine_of, valid_program
 
 HEAD = ["G21 G18 G8 G40 G90 G94 G64", "T3 M6", "S1000 M3", "G0 X40 Z2 C0", "G12.1"]
 FLATS = ["Z-3", "C-12", "X[-20-#1]", "C12", "X[20+#1]", "C11", "G40 X40", "G1 C12"]
@@ -111,3 +114,13 @@ def test_a_line_that_a_copy_puts_into_a_section_does_not_change_its_plan(tmp_pat
     start = [head, "T1 M6", "S500", "G0 X60 Z5 C0", "G12.1"]
     program.write_text("\n".join([*start, *ramp, *corners, *end]))
     assert prove(program, ini.replaced({"G12": {"POLAR_TOOL_OFFSET": "-0.7"}})).findings == []
+
+
+@pytest.mark.parametrize("kind", ["polar kinematics", "polar beside kinematics"])
+def test_feeds_beyond_what_the_face_can_do_are_cut_down(kind, tmp_path):
+    text = valid_program(kind, random.Random(f"fast {kind}"), 6)
+    program = tmp_path / "program.ngc"
+    program.write_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", text))
+    proof = prove(program, machine_of(kind))
+    assert proof.findings == []
+    assert "feed-cut-down" in [each.code for each in proof.judged]

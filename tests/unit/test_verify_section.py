@@ -154,6 +154,11 @@ def test_the_speed_of_c_is_told_with_its_limit():
     assert facts.values["c_speed"] == pytest.approx(360) and facts.values["c_limit"] == 360
 
 
+def test_c_may_pass_its_limit_by_half_the_acceleration_of_a_period():
+    axes = AXES._replace(c=math.radians(1200.0), c_speed=90.0)
+    assert axes.most_c_speed == pytest.approx(90.6)
+
+
 def test_a_place_is_told_as_the_program_writes_it():
     facts = measure(cut(around(TOOL + 0.02)), square(-1), diameters=True)
     (found,) = [each for each in facts.judged if each.code == "path-off"]

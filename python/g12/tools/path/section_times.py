@@ -13,8 +13,6 @@ to follow. The path takes the share p v**2 of an axis's acceleration, braking q 
 p v**2 + q sqrt(A**2 - v**4 / R**2) is at most 1. A is chosen once a section, for the least time.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -24,6 +22,7 @@ import numpy as np
 from g12.geometry.curve import Arc, Curve
 from g12.machine_ini import face_of
 from g12.tools.machine.ini import Ini
+from g12.tools.path.face_follow import axis_derivatives
 from g12.tools.path.least_time import Rates, least_seconds, seconds_at
 
 STEP, FEWEST, MOST = 0.1, 40, 4000  # mm; greatest number from one corner to the next
@@ -192,20 +191,24 @@ def _on_face(
 
 def _followed(stretch: _Stretch, machine: TurningMachine, most: np.ndarray) -> np.ndarray:
     """Return the highest speed that C and the slide can follow, wherever the planner brakes."""
-    radius, along, around = np.abs(stretch.points), stretch.along, stretch.around
-    (speed, slide), (c_speed, spindle) = machine.slide, machine.spindle
-    turning = np.maximum(np.abs(around), TINY) / radius
-    pushed = np.abs(along * (stretch.bend - 2.0 * around / radius)) / radius
-    lifted = np.abs(around * (around / radius - stretch.bend))
-    square = np.minimum(speed / np.maximum(np.abs(along), TINY), c_speed / turning) ** 2
-    square = np.minimum(square, most / np.maximum(np.abs(stretch.bend), TINY))
-    for p, q in ((pushed / spindle, turning / spindle), (lifted / slide, np.abs(along) / slide)):
+    (speed, acceleration), (c_speed, c_acceleration) = machine.slide, machine.spindle
+    place = np.abs(stretch.points), stretch.along, stretch.around, stretch.bend
+    slide, c = axis_derivatives(*place)
+    square = np.minimum(speed / _size(slide[0]), c_speed / _size(c[0])) ** 2
+    square = np.minimum(square, most / _size(stretch.bend))
+    for (first, second), limit in ((c, c_acceleration), (slide, acceleration)):
+        p, q = np.abs(second) / limit, np.abs(first) / limit
         both = np.maximum(p * p + (q * stretch.bend) ** 2, TINY**2)
         under = p * p - both * (1.0 - (q * most) ** 2)
         bound = (p - np.sqrt(np.maximum(under, 0.0))) / both
         square = np.where(under >= 0.0, np.minimum(square, np.maximum(bound, 0.0)), square)
         square = np.where(q * most > 1.0 + 1e-6, 0.0, square)
     return np.sqrt(square)
+
+
+def _size(values: np.ndarray) -> np.ndarray:
+    """Return absolute values that may be divided by."""
+    return np.maximum(np.abs(values), TINY)
 
 
 def _seconds(stretch: _Stretch, speeds: np.ndarray, braking: np.ndarray) -> float:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.tools.path.follow import Followed
-from g12.tools.path.part import C, X, Y, Z, spindle_angles
+from g12.tools.path.part import C, X, Y, Z
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track, feed_length, rate
 from g12.tools.preview.moves import Move
@@ -60,15 +60,7 @@ class Plane:
     def points(self, positions: np.ndarray) -> np.ndarray:
         """Return the points (complex) of machine positions (n, 9)."""
         angle = np.radians(positions[:, C] - self._angle)
-        return self.on_face(positions) * np.exp(1j * angle)
-
-    def on_face(self, positions: np.ndarray) -> np.ndarray:
-        """Return the points (complex) of machine positions, seen from the face that C turns."""
-        return positions[:, X] - self._centre + 1j * positions[:, Y]
-
-    def angles(self, positions: np.ndarray, beside: float) -> np.ndarray:
-        """Return where the C axis stands, degrees, for a tool ``beside`` the X line."""
-        return spindle_angles(self.on_face(positions), positions[:, C], beside)
+        return (positions[:, X] - self._centre + 1j * positions[:, Y]) * np.exp(1j * angle)
 
     def sizes(self, points: np.ndarray) -> np.ndarray:
         """Return how far points of the plane are from the spindle's centre."""
@@ -123,10 +115,6 @@ class SurfacePlane(Plane):
         """Return the points (complex) of machine positions (n, 9)."""
         points = self._part.points(positions)
         return points[:, 0] + 1j * points[:, 1] - self._shift
-
-    def angles(self, positions: np.ndarray, beside: float) -> np.ndarray:
-        """Return where the C axis stands at machine positions, degrees."""
-        return positions[:, C]
 
     def words(self, at: Point, diameters: bool) -> tuple[tuple[str, float | str], ...]:
         """Return a point and its level as a program writes it; C is an angle."""

@@ -22,7 +22,7 @@ EXACT_HERE = 9.0
 PATHS = {61.0: True, 61.1: True, 64.0: False}  # code: exact
 FEED_MODES = {94.0: False, 98.0: False, 95.0: True, 99.0: True}  # code: per revolution
 SAVE, RESTORE, SAVE_FOR_SUB = 70.0, 72.0, 73.0
-SAME_PLACE = 0.01  # mm
+AT_CENTRE = 0.01  # mm: there the angle of C is not known
 SAME_END = 1e-6  # mm: an arc that ends as near to its start is a full circle
 
 
@@ -113,7 +113,7 @@ class Pen:
         slide = math.sqrt(max(0.0, radius**2 - self.beside**2))
         angle -= math.atan2(self.beside, slide)
         left = {"_x": slide / self.unit, "_z": self.depth / self.unit}
-        return {**left, "_c": c + math.degrees(angle)} if radius > SAME_PLACE else left
+        return {**left, "_c": c + math.degrees(angle)} if radius > AT_CENTRE else left
 
     def _feed(self) -> float | None:
         """Return the feed in mm per minute."""

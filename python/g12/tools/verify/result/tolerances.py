@@ -12,4 +12,3 @@ WEAR = 0.05  # of a cutter's diameter: D may differ from the loaded tool by an a
 SIZE = 1e-4  # of a diameter or a level: less is no difference
 JOINT = 0.001  # of what a segment makes of a toolpath: its ends lie so near to their places
 LAST_DECIMAL = 0.0005  # added for a section: arcs whose words are rounded do not close any better
-TURNING = 1.01  # of C's limit: where LinuxCNC blends it adds half the acceleration of a period

@@ -34,7 +34,7 @@ from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.toolpath import NO_LENGTH, Expected
 from g12.tools.verify.result.cut import MeasuredCut, finite, in_file, pace_values
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.result.tolerances import LAST_DECIMAL, LEVEL, SIZE, TURNING
+from g12.tools.verify.result.tolerances import LAST_DECIMAL, LEVEL, SIZE
 from g12.tools.verify.sections.outline import judge_side, neighbour_cuts
 from g12.tools.verify.sections.section_motion import (
     G64_P,
@@ -68,7 +68,7 @@ def measure_section(
     allowed = tolerance + LAST_DECIMAL
     blended = max(allowed, blending_asked(section)) if axes.face else allowed
     found = lay_section(section, steps, plane, moves, path, (allowed, blended), real)
-    turns = turns_of(section, plane, moves, path, real)
+    turns = turns_of(section, moves, path, axes, real)
     off = math.nan if section.doubt else found.off
     judged = [Finding("contour-unread", section.line, {"why": section.doubt})]
     if not section.doubt:
@@ -76,7 +76,7 @@ def measure_section(
         judged = [
             *judge_words(section, moves, tool),
             *judge_toolpath(found, plane, section.diameters, moves, slower, section.last),
-            *judge_turns(section.line, turns, axes.c_speed),
+            *judge_turns(section.line, turns, axes),
             *(neighbour_cuts(steps, tool, tolerance) if tool else ()),
             *judge_motion(section, found, moves, path, axes, tolerance),
             *judge_section_state(section, moves),
@@ -183,11 +183,11 @@ def judge_words(section: SectionContour, moves: Sequence[Move], tool: float) -> 
         yield Finding("no-diameter", section.line)
 
 
-def judge_turns(line: int, turns: Turns, limit: float) -> Iterator[Finding]:
+def judge_turns(line: int, turns: Turns, axes: SectionAxes) -> Iterator[Finding]:
     """Yield where C is faster than its limit, turns farther than it needs to, or rubs."""
     speed = max(turns.speed, turns.asked)
-    if speed > limit * TURNING:
-        yield Finding("c-speed", line, {"made": speed, "limit": limit})
+    if speed > axes.most_c_speed:
+        yield Finding("c-speed", line, {"made": speed, "limit": axes.c_speed})
     if turns.too_far is not None:
         yield Finding("c-turned-too-far", turns.too_far[0], {"turned": turns.too_far[1]})
     if turns.in_place.degrees > SAME_ANGLE:

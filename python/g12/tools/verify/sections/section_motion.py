@@ -28,17 +28,17 @@ import numpy as np
 
 from g12.machine_ini import face_of
 from g12.tools.machine.ini import Ini
+from g12.tools.path.face_follow import FaceDemand, FollowLimits, crosses_face, demand
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import C
 from g12.tools.path.track import Track, rate
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.path import Span
-from g12.tools.verify.compare.section import Plane, SectionPath
+from g12.tools.verify.compare.section import SectionPath
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.toolpath import Expected
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import LEVEL
-from g12.tools.verify.sections.face_follow import FollowLimits, follow_off, is_slow_enough
 
 G64_P = re.compile(r"G64 P(\S+)")
 STILL = 1e-7  # mm: C turns in place
@@ -46,6 +46,10 @@ NO_LENGTH = 1e-4  # mm, of what is left of a move
 SMOOTH = math.radians(1.0)
 CORNER = math.radians(15.0)  # chords of an arc make smaller ones
 LESS_ON_FACE, LEAST_ON_FACE = 0.86, 0.05  # of the feed: what C cannot follow is made at between
+FEED_STEP = 0.8  # of a feed: a portion of a move may be made at so much less than can be followed
+FOLLOWED = 1.1  # of a limit: the greatest value may lie between places that a planner looks at
+NEARLY = 0.95  # of a limit
+SERVO_PERIOD = 1e-3  # s: LinuxCNC's without one in the INI
 TURN = 1e-6  # mm along the part: C turns in place
 HALF_TURN = 180.01  # the shorter way is no longer
 WINDOW = 0.01  # s of a run, over which C's speed is taken: samples lie a servo period apart
@@ -54,10 +58,10 @@ WINDOW = 0.01  # s of a run, over which C's speed is taken: samples lie a servo 
 class SectionAxes(NamedTuple):
     """What a machine's axes can do: accelerations of X and Z in mm, of C in radians, per second².
 
-    ``c_speed`` is C's greatest speed, degrees/s; ``face`` tells of the kinematics of the face,
-    ``slide`` is the acceleration of the X slide there, ``beside`` how far the tool stands from the
-    X line, mm. ``surface`` is the radius of the cylinder whose unrolled surface the part is, mm, 0
-    of its face.
+    ``c_speed`` is C's greatest speed, degrees/s; ``period`` is the servo's. ``face`` tells of the
+    kinematics of the face, ``slide`` and ``slide_speed`` are what the X slide can do there, per
+    second² and per second, ``beside`` how far the tool stands from the X line, mm. ``surface`` is
+    the radius of the cylinder whose unrolled surface the part is, mm, 0 of its face.
     """
 
     x: float
@@ -68,6 +72,16 @@ class SectionAxes(NamedTuple):
     beside: float = 0.0
     surface: float = 0.0
     slide: float = 0.0
+    slide_speed: float = math.inf
+    period: float = SERVO_PERIOD
+
+    @property
+    def most_c_speed(self) -> float:
+        """C's greatest speed in motion, degrees/s.
+
+        Where LinuxCNC blends it adds half the acceleration of a servo period.
+        """
+        return self.c_speed + math.degrees(self.c) * self.period / 2
 
     def of(self, section: SectionContour) -> Self:
         """Return the same for a section: nothing but polar interpolation uses the kinematics."""
@@ -120,10 +134,12 @@ def axes_of_section(ini: Ini) -> SectionAxes:
     """Return what the axes of an INI can do."""
     x, z, c = (ini.axis_limits[letter].acceleration for letter in "XZC")
     speed, face = ini.axis_limits["C"].velocity, face_of(ini.get)
-    lengths, beside = (x * ini.mm, z * ini.mm, math.radians(c)), ini.tool_beside
+    own = SectionAxes(x * ini.mm, z * ini.mm, math.radians(c), speed, beside=ini.tool_beside)
+    own = own._replace(period=1e-9 * ini.number("EMCMOT", "SERVO_PERIOD", 1e9 * SERVO_PERIOD))
     if not face:
-        return SectionAxes(*lengths, speed, beside=beside)
-    return SectionAxes(*lengths, speed, True, beside, slide=face.slide.acceleration * ini.mm)
+        return own
+    slide, most = face.slide.acceleration * ini.mm, face.slide.velocity * ini.mm
+    return own._replace(face=True, slide=slide, slide_speed=most)
 
 
 def judge_motion(
@@ -263,10 +279,29 @@ def not_followed(
 ) -> Iterator[Finding]:
     """Yield the moves on the face that ask more of C or the slide than they can do."""
     for index in range(section.at, section.end):
-        move, speed = moves[index], path.part_feed(index) / 60.0
-        off = follow_off(move, speed, path.part.centre, axes.beside, follow_limits(move, axes))
-        if off:
-            yield Finding("face-acceleration", moves[index].line, off._asdict())
+        found = demand_on_face(index, moves, path, axes)
+        for name, times in (("C", found.c), ("the slide", found.slide)) if found else ():
+            if times > FOLLOWED:
+                yield Finding(
+                    "face-acceleration", moves[index].line, {"axis": name, "times": times}
+                )
+
+
+def demand_on_face(
+    index: int, moves: Sequence[Move], path: Track, axes: SectionAxes, faster: float = 1.0
+) -> FaceDemand | None:
+    """Return what a move asks of the axes at its feed times a factor; None of one off the face.
+
+    X and Y together have more acceleration than each along a line: ``faster`` is of that.
+    """
+    move = moves[index]
+    if not (axes.face and crosses_face(move)):
+        return None
+    plane, c_speed = move.acceleration * axes.x, math.radians(axes.c_speed)
+    plane = plane * math.sqrt(2.0) if faster > 1.0 and move.kind != "arc" else plane
+    limits = FollowLimits(plane, axes.slide, axes.c, c_speed, axes.slide_speed)
+    speed = faster * path.part_feed(index) / 60.0
+    return demand(move, speed, path.part.centre, axes.beside, limits)
 
 
 def turns(move: Move) -> bool:
@@ -279,24 +314,16 @@ def slower_on_face(
 ) -> dict[int, float]:
     """Return the moves (indices) on the face that may be slower, down to which share of the feed.
 
-    Those are as fast as C and the slide can follow with the acceleration in force.
+    Those are nearly as fast as the axes can follow, or as a planner with their limits is.
     """
-    if not axes.face:
-        return {}
     slower = {}
-    for index, span in found.emitted.spans.items():
-        move, feed = moves[index], path.part_feed(index)
-        asked = (found.expected[span.last].feed or 0.0) * LESS_ON_FACE
-        place = path.part.centre, axes.beside, follow_limits(move, axes)
-        if not turns(move) and feed <= asked and is_slow_enough(move, feed / 60.0, *place):
-            slower[index] = LEAST_ON_FACE
+    for index, span in found.emitted.spans.items() if axes.face else ():
+        asked = max(move.feed or 0.0 for move in found.expected[span.index : span.last + 1])
+        if not turns(moves[index]) and path.part_feed(index) <= LESS_ON_FACE * asked:
+            quicker = demand_on_face(index, moves, path, axes, 1.0 / FEED_STEP)
+            if quicker is None or max(quicker) > NEARLY:
+                slower[index] = LEAST_ON_FACE
     return slower
-
-
-def follow_limits(move: Move, axes: SectionAxes) -> FollowLimits:
-    """Return what X, Y, the slide and C can do while a move is made on the face."""
-    plane, speed = move.acceleration * axes.x, math.radians(axes.c_speed)
-    return FollowLimits(plane, axes.slide, axes.c, speed)
 
 
 class InPlace(NamedTuple):
@@ -320,16 +347,17 @@ class Turns(NamedTuple):
 
 def turns_of(
     section: SectionContour,
-    plane: Plane,
     moves: Sequence[Move],
     path: Track,
+    axes: SectionAxes,
     real: Followed | None,
 ) -> Turns:
-    """Return how C turns in a section."""
+    """Return how C turns in a section; at the programmed feeds, as far as the axes allow."""
     own = range(section.at, section.end)
     turned = {i: abs(moves[i].end[C] - moves[i].start[C]) for i in own if moves[i].kind != "rapid"}
     still = {i: turn for i, turn in turned.items() if turn and path.part_length(i) < TURN}
-    speed = run_speed(own, real) if real else emitted_speed(own, path, plane)
+    speed = max((emitted_speed(index, moves, path, axes) for index in own), default=0.0)
+    speed = run_speed(own, real) if real else speed
     asked = max((rate(moves[index], 0.0) for index in still), default=0.0)
     far = ((moves[index].line, turn) for index, turn in still.items() if turn > HALF_TURN)
     return Turns(speed, asked, below_face(section, still, moves, path), next(far, None))
@@ -357,9 +385,10 @@ def run_speed(own: range, real: Followed) -> float:
     return float((np.abs(turned) / seconds).max(initial=0.0))
 
 
-def emitted_speed(own: range, path: Track, plane: Plane) -> float:
-    """Return the highest speed of C at the programmed feeds, as far as the axes allow."""
-    vertices = slice(path.vertices(own[0]).start, path.vertices(own[-1]).stop)
-    positions, seconds = path.positions[vertices], np.maximum(np.diff(path.time[vertices]), 1e-12)
-    turned = np.diff(plane.angles(positions, path.part.beside))
-    return float((np.abs(turned) / seconds).max(initial=0.0))
+def emitted_speed(index: int, moves: Sequence[Move], path: Track, axes: SectionAxes) -> float:
+    """Return the speed of C in a move as far as the axes allow, degrees/s."""
+    on_face = demand_on_face(index, moves, path, axes)
+    if on_face:
+        return on_face.c_speed * axes.c_speed
+    move, seconds = moves[index], path.seconds(index)
+    return abs(move.end[C] - move.start[C]) / seconds if seconds else 0.0

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a move on the face asks of C and the slide, against what can be worked out by hand."""
+
+import math
+
+import numpy as np
+import pytest
+
+from g12.tools.path.face_follow import FollowLimits, demand, followed_along
+from support.made_moves import Hand
+
+LIMITS = FollowLimits(plane=700.0, slide=1000.0, c=60.0)
+
+
+def line(distance, reach=50.0, centre=0.0):
+    """Return a line that passes the spindle at a distance."""
+    return Hand().rapid(x=centre - reach, y=distance).line(x=centre + reach).moves[-1]
+
+
+@pytest.mark.parametrize("centre", [0.0, 30.0])
+def test_a_line_turns_c_most_where_it_is_nearest_and_pushes_it_most_beside_that(centre):
+    slide, angle = followed_along(line(5.0, centre=centre), 0.0, centre, 0.0)
+    assert max(abs(angle[0])) == pytest.approx(1 / 5.0, rel=1e-3)
+    assert max(abs(angle[1])) == pytest.approx(3 * math.sqrt(3) / 8 / 5.0**2, rel=1e-3)
+    assert max(abs(slide[1])) == pytest.approx(1 / 5.0, rel=1e-3)
+
+
+def test_a_circle_about_the_spindle_turns_c_evenly():
+    arc = Hand().rapid(x=20.0).arc(1, 0.0, 0.0).moves[-1]
+    slide, angle = followed_along(arc, 1 / 20, 0.0, 0.0)
+    assert angle[0] == pytest.approx(1 / 20.0, rel=1e-6)
+    assert max(abs(slide[0])) < 1e-6
+
+
+def test_beside_the_x_line_the_slide_stands_nearer_than_the_tool():
+    slide, _ = followed_along(line(13.0), 0.0, 0.0, 5.0)
+    assert max(abs(slide[1])) == pytest.approx(1 / 12.0, rel=1e-3)  # 13, 12, 5
+
+
+@pytest.mark.parametrize("beside", [0.0, 3.0, -3.0])
+def test_the_derivatives_are_those_of_slide_and_angle(beside):
+    radius, step = 30.0, 1e-4
+    arc = Hand().rapid(x=40.0).arc(1, 10.0, 0.0).moves[-1]
+    (slide, slide_bent), (c, c_bent) = followed_along(arc, 1 / radius, 0.0, beside)
+    angles = np.linspace(0.0, arc.sweep, len(c))
+    points = [10 + radius * np.exp(1j * (angles + turn)) for turn in (-step, 0, step)]
+    slides = [np.sqrt(abs(z) ** 2 - beside**2) for z in points]
+    stands = [np.unwrap(np.angle(z / (r + 1j * beside))) for z, r in zip(points, slides)]
+    for (one, two, three), first, second in ((slides, slide, slide_bent), (stands, c, c_bent)):
+        assert (three - one) / (2 * step * radius) == pytest.approx(first, abs=1e-6)
+        bent = (three - 2 * two + one) / (step * radius) ** 2
+        assert bent == pytest.approx(second, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("distance", "speed", "c", "axis", "times"),
+    [
+        (5.0, 1.0, 60.0, "c", 700 / 5 / 60),
+        (20.0, 200.0, 600.0, "slide", 2.0),  # 200**2 / 20 / 1000
+    ],
+)
+def test_the_accelerations_of_c_and_the_slide(distance, speed, c, axis, times):
+    found = demand(line(distance), speed, 0.0, 0.0, LIMITS._replace(c=c))
+    assert getattr(found, axis) == pytest.approx(times, rel=0.1)
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-15, -1.7e-15])
+def test_a_line_into_the_centre_turns_no_c(rounding):
+    move = Hand().rapid(x=7.0).line(x=rounding).moves[-1]
+    assert demand(move, 5.0, 0.0, 0.0, LIMITS).c == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_speeds_of_c_and_the_slide():
+    """At 10 mm from the spindle C is at its speed with 20 mm/s."""
+    found = demand(line(10.0), 15.0, 0.0, 0.0, LIMITS._replace(c_speed=2.0, slide_speed=30.0))
+    assert found.c_speed == pytest.approx(0.75, rel=1e-3)
+    assert found.slide_speed == pytest.approx(0.5, rel=0.05)
+
+
+def test_an_arc_is_no_faster_than_x_and_y_let_it_be():
+    arc = Hand().rapid(x=7.0).arc(1, 0.0, 0.0).moves[-1]
+    found = demand(arc, 1000.0, 0.0, 0.0, LIMITS._replace(c_speed=10.0))
+    assert found.plane == pytest.approx(1000**2 / 7 / 700)
+    assert found.c_speed == pytest.approx(math.sqrt(700 * 7) / 7 / 10)
