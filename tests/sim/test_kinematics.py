@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The face's kinematics in a headless LinuxCNC: real motion, and no way into the wrong world."""
 
-import cmath
 import json
 import random
 import re
@@ -13,16 +12,12 @@ import pytest
 from g12.tools.commands.main import main
 from g12.tools.preview.tracer import Tracer
 from support.contour_geometry import (
-    FROM_COLUMNS,
     Round,
-    Straight,
     deviation,
-    distance,
-    outward,
 )
 from support.kinematics import needs_kinematics, on_the_face, place
 from support.operated_machine import Machine, kept_machine
-from support.polar_drawings import HEXAGON, MILLIMETRES
+from support.polar_drawings import MILLIMETRES
 from support.polar_programs import (
     C_ACCELERATION,
     FEED,
@@ -101,47 +96,6 @@ def test_y_is_refused_off_the_face(lathe):
     lathe.mdi("G0 Y1")
     lathe.wait_for_error("Y moves only on the face")
     assert place(lathe) == (20, 0, 30)
-
-
-def hexagon(feed):
-    """Return a program of the hexagon's centre path on the face, and the path.
-
-    Its first and last segment are the ways to it and from it, at speed.
-    """
-    around = [segment for group in outward(HEXAGON, 6) for segment in group]
-    ends = [point for segment in (around[0], around[-1]) for point in (segment.start, segment.end)]
-    start, end = (
-        8 * cmath.rect(1, heading)
-        for heading in (around[0].headings()[0], around[-1].headings()[1])
-    )
-    path = [Straight(ends[0] - start, ends[0]), *around, Straight(ends[3], ends[3] + end)]
-    x, y = xy(path[0].start)
-    blocks = [block_of(segment) for segment in path]
-    return [*START, *ON, f"G1 X{x:.6f} Y{y:.6f} F{feed}", "G4 P0.1", *blocks, *OFF, "M2"], path
-
-
-def block_of(segment):
-    x, y = xy(segment.end)
-    if isinstance(segment, Round):
-        i, j = xy(segment.centre - segment.start)
-        return f"{'G3' if segment.sweep > 0 else 'G2'} X{x:.6f} Y{y:.6f} I{i:.6f} J{j:.6f}"
-    return f"G1 X{x:.6f} Y{y:.6f}"
-
-
-def xy(point):
-    return point.real, point.imag
-
-
-def test_hexagon_at_its_feed_and_on_its_path(lathe):
-    program, path = hexagon(3000)
-    first = len(START) + len(ON) + 3
-    run = lathe.run_text(program)
-    assert run.error is None
-    timed = np.isin(run.samples.line, range(first + 1, first + len(path) - 1))
-    points = Cut(run).all_points[timed] @ FROM_COLUMNS
-    assert distance(points, path).max() <= TOLERANCE
-    ideal = sum(segment.length for segment in path[1:-1]) / 3000 * 60
-    assert 0.99 <= timed.sum() * 0.001 / ideal <= 1.05
 
 
 # ---------------------------------------------------------------- G12.1
@@ -362,6 +316,10 @@ def test_run_from_line_is_refused_elsewhere(lathe, away):
     assert not on_the_face(lathe)
 
 
+def face_accelerations(machine):
+    return [machine.get(f"ini.{axis}.max_acceleration") for axis in "xy"]
+
+
 def abort(machine):
     machine.abort()
 
@@ -377,11 +335,11 @@ def jog_mode(machine):
     machine.mdi("G4 P0")
 
 
-@pytest.mark.parametrize("program", [CIRCLE_AND_SQUARE, SECTION], ids=["by hand", "G12.1"])
+@pytest.mark.parametrize("own", ["M52 P0", "M52 P1"])
 @pytest.mark.parametrize("interrupt", [abort, emergency_stop, jog_mode])
-def test_an_interrupted_program_leaves_the_face(lathe, interrupt, program):
+def test_an_interrupted_program_leaves_the_face_and_what_belongs_to_it(lathe, interrupt, own):
     chance = random.Random(interrupt.__name__)
-    for _ in range(2):
+    for program in ((own, *CIRCLE_AND_SQUARE), (own, *SECTION)):
         lathe.open_text(program)
         lathe.sample()
         lathe.start()
@@ -389,12 +347,18 @@ def test_an_interrupted_program_leaves_the_face(lathe, interrupt, program):
         time.sleep(chance.uniform(0, 2))
         interrupt(lathe)
         lathe.wait_for(lambda _: not on_the_face(lathe), timeout=SOON)
+        lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707], timeout=SOON)
+        if interrupt != emergency_stop:
+            adaptive = own == "M52 P1"
+            lathe.wait_for(lambda now: ("M52" in now.modes.mcodes) is adaptive, timeout=SOON)  # noqa: B023
+        lathe.mdi("M52 P0")
         lathe.mdi("G0 X22 C10")
         assert place(lathe) == (22, 0, 10)
         keeps_its_limits(lathe.samples())
         assert lathe.errors() == []
     assert lathe.run_text(program).error is None
     assert not on_the_face(lathe)
+    lathe.mdi("M52 P0")
 
 
 def test_an_error_on_the_face_leaves_it(lathe):
@@ -412,10 +376,6 @@ def keeps_its_limits(samples):
 
 
 CIRCLE_NEAR = ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", "G3 I-10 F3000", "G13.1", "M2"]
-
-
-def face_accelerations(machine):
-    return [machine.get(f"ini.{axis}.max_acceleration") for axis in "xy"]
 
 
 def test_a_section_has_its_own_acceleration(lathe):
@@ -436,20 +396,6 @@ def test_a_section_that_fails_leaves_the_acceleration_of_the_ini(lathe):
         lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707], timeout=SOON)
         assert not on_the_face(lathe)
         lathe.errors()
-
-
-@pytest.mark.parametrize("own", ["M52 P0", "M52 P1"])
-def test_adaptive_feed_is_in_force_on_the_face_and_as_it_was_behind(lathe, own):
-    def adaptive():
-        return "M52" in lathe.stat().modes.mcodes
-
-    lathe.open_text([own, *CIRCLE_NEAR])
-    lathe.start()
-    lathe.wait_for(lambda _: on_the_face(lathe) and not lathe.get("motion.in-position"))
-    assert adaptive()
-    lathe.wait_idle()
-    assert adaptive() is (own == "M52 P1")
-    lathe.mdi("M52 P0")
 
 
 @pytest.mark.parametrize("own", ["M52 P0", "M52 P1"])
@@ -486,32 +432,6 @@ def test_the_feed_is_turned_up_as_far_as_c_follows(lathe):
     lathe.feed_override(1.0)
     lathe.wait_idle()
     assert lathe.errors() == []
-
-
-@pytest.mark.parametrize("interrupt", [abort, emergency_stop, jog_mode])
-def test_an_interrupted_section_leaves_the_acceleration_of_the_ini(lathe, interrupt):
-    lathe.open_text(CIRCLE_NEAR)
-    lathe.start()
-    lathe.wait_for(lambda _: on_the_face(lathe) and not lathe.get("motion.in-position"))
-    assert face_accelerations(lathe) != [707, 707]
-    interrupt(lathe)
-    lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707], timeout=SOON)
-    lathe.errors()
-
-
-@pytest.mark.parametrize("interrupt", [abort, jog_mode])
-@pytest.mark.parametrize("own", ["M52 P0", "M52 P1"])
-def test_an_interrupted_section_leaves_the_adaptive_feed_that_it_found(lathe, own, interrupt):
-    lathe.open_text([own, *CIRCLE_NEAR])
-    lathe.start()
-    lathe.wait_for(lambda _: on_the_face(lathe) and not lathe.get("motion.in-position"))
-    interrupt(lathe)
-    found = own == "M52 P1"
-    lathe.wait_for(lambda now: ("M52" in now.modes.mcodes) is found, timeout=SOON)
-    lathe.mdi("G13.1")
-    assert ("M52" in lathe.stat().modes.mcodes) is found
-    lathe.mdi("M52 P0")
-    lathe.errors()
 
 
 def test_c_and_the_slide_keep_their_limits_at_any_override():

@@ -82,16 +82,22 @@ def test_c_follows_its_command(lathe):
     assert error[-1] == 0
 
 
-def test_threads_are_the_same_after_ten_changes(lathe):
+def test_threads_and_flats_are_the_same_after_ten_changes(lathe):
+    turned = ["S500 M4", "G4 P0.5", "M5"]
     thread = ["S400 M3", "G0 X20 Z5", f"G33 Z-8 K{PITCH}", "G0 X25", "M5"]
-    program = [*FIRST, *TEN_CHANGES[:3], *thread, *TEN_CHANGES, *thread, "M2"]
+    part = [*turned, *thread, *FLATS]
+    program = [*FIRST, *TEN_CHANGES[:3], *part, *TEN_CHANGES, *part, "M2"]
     run = lathe.run_text(program, timeout=120)
     assert run.error is None
-    lines = [number for number, block in enumerate(program, 1) if "G33" in block]
-    (before, start), (after, start_after) = (pitch_and_start(run.samples, at) for at in lines)
+    threads = [number for number, block in enumerate(program, 1) if "G33" in block]
+    (before, start), (after, start_after) = (pitch_and_start(run.samples, at) for at in threads)
     assert before == pytest.approx(PITCH, rel=0.005)
     assert after == pytest.approx(before, rel=0.005)
     assert (start_after - start + 0.5) % 1 - 0.5 == pytest.approx(0, abs=0.01)
+    flats = [number for number, block in enumerate(program, 1) if block == "X20 C-20"]
+    before, after = (angle_of_flat(run.samples, line) for line in flats)
+    assert before == pytest.approx(0, abs=0.2)
+    assert after == pytest.approx(before, abs=MOST)
 
 
 def test_everything_in_one_program(lathe):
@@ -106,17 +112,6 @@ def test_everything_in_one_program(lathe):
     down = np.arange(len(z)) < z.argmin()
     synchronous = down & (z < 3) & (z > 0)
     assert np.ptp(turns[synchronous]) == pytest.approx(3, abs=0.05)
-
-
-def test_flats_lie_where_they_lay_before_ten_changes(lathe):
-    turned = ["S500 M4", "G4 P0.5", "M5"]
-    program = [*FIRST, *FLATS, *turned, *TEN_CHANGES, *turned, *FLATS, "M2"]
-    run = lathe.run_text(program, timeout=120)
-    assert run.error is None
-    lines = [number for number, block in enumerate(program, 1) if block == "X20 C-20"]
-    before, after = (angle_of_flat(run.samples, line) for line in lines)
-    assert before == pytest.approx(0, abs=0.2)
-    assert after == pytest.approx(before, abs=MOST)
 
 
 @pytest.mark.parametrize(

@@ -48,12 +48,6 @@ def test_segments_of_an_arc_are_laid_on_it():
     assert laid.deviation == pytest.approx(10 * (1 - math.cos(math.pi / 180)), rel=1e-3)
 
 
-@pytest.mark.parametrize("curves", [lines(SQUARE[:4]), lines(SQUARE)[:2] + lines(SQUARE)[3:]])
-def test_a_move_that_is_left_out_is_missing_or_off(curves):
-    laid = lay(expected(*lines(SQUARE)), made(curves), TOLERANCE)
-    assert laid.difference.kind in (MISSING, OFF)
-
-
 def test_a_small_circle_that_is_skipped_is_off():
     small = Arc(10 + 0j, 10.02 + 0j, 2 * math.pi)
     way = [Line(0j, 10 + 0j), Line(10 + 0j, 20 + 0j)]
@@ -92,16 +86,10 @@ CIRCLE = Arc(10 + 0j, 0j, 2 * math.pi)
         ([CIRCLE, CIRCLE], [CIRCLE], MISSING),
         ([CIRCLE], [CIRCLE, CIRCLE], EXTRA),
         ([CIRCLE], [CIRCLE.reversed()], OFF),
-        (lines(SQUARE), [*lines(SQUARE), Line(0j, 5j)], EXTRA),
     ],
 )
 def test_passes_too_few_or_too_many_or_the_other_way_round(asked, curves, kind):
     assert lay(expected(*asked), made(curves), TOLERANCE).difference.kind == kind
-
-
-def test_another_level_is_off_by_it():
-    laid = lay(expected(*lines(SQUARE)), made(lines(SQUARE), level=-1.1), TOLERANCE)
-    assert laid.difference.size == pytest.approx(0.1)
 
 
 def test_feeds_and_rapids_are_compared():

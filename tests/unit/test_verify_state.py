@@ -16,15 +16,11 @@ def block(events, codes=(12.0,), m_codes=(), **words):
 @pytest.mark.parametrize(
     ("found", "expected", "says"),
     [
-        ({"_metric": 1.0}, {"_metric": 1.0}, []),
         ({"_metric": 0.0}, {"_metric": 1.0}, ["it leaves G20, not G21"]),
         ({"_motion_mode": 30.0}, {"_motion_mode": 0.0}, ["it leaves G3, not G0"]),
         ({"_feed": 600.0000001}, {"_feed": 600.0}, []),
         ({"_feed": 1200.0}, {"_feed": 600.0}, ["it leaves F1200, not F600"]),
-        ({"_selected_tool": 5.0}, {"_selected_tool": 4.0}, ["it leaves T5, not T4"]),
         ({"_c": 370.0}, {"_c": 10.0}, []),
-        ({"_x": 1.0}, {}, []),
-        ({}, {"_x": 1.0}, []),  # the program ended in the block
     ],
 )
 def test_what_a_block_leaves(found, expected, says):
@@ -32,19 +28,11 @@ def test_what_a_block_leaves(found, expected, says):
     assert [each.text() for each in judge_state(differences, (), 1)] == says
 
 
-def test_a_value_may_be_as_far_off_as_is_allowed():
-    assert state_differences({"_x": 1.01}, {"_x": 1.0}, {"_x": 0.02}) == ()
-    assert len(state_differences({"_x": 1.03}, {"_x": 1.0}, {"_x": 0.02})) == 1
-
-
 @pytest.mark.parametrize(
     ("events", "words", "extra"),
     [
-        (["M8 on", "M4"], {}, ["M8 on", "M4"]),
-        (["M8 on", "M4"], {"m_codes": (8.0,)}, ["M4"]),
         (["M7 off", "M8 off"], {"m_codes": (9.0,)}, []),
         (["S1000", "G61"], {"S": 1000.0}, ["G61"]),
-        (["G61"], {"codes": (12.0, 61.0)}, []),
         (["G64 P0.1 Q0.1"], {"codes": (12.0, 20.0)}, []),
         (["G64 P0.1 Q0.1"], {}, ["G64 P0.1 Q0.1"]),
         (["tool 5", "dwell 1", "dwell 0", "message hello"], {}, ["tool 5", "dwell 1"]),
