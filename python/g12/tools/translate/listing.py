@@ -53,8 +53,9 @@ def _order(meaning: str) -> tuple[int, str]:
     return first + meaning.startswith(REFUSED), meaning
 
 
-def _number(code: str) -> tuple[str, float]:
-    return code[0], float(code[1:]) if code[1:].replace(".", "").isdigit() else 0.0
+def _number(code: str) -> tuple[str, float, str]:
+    is_number = code[1:].replace(".", "").isdigit()
+    return code[0], float(code[1:]) if is_number else 0.0, code
 
 
 def _wrapped(head: str, words: Iterable[str]) -> Iterator[str]:

@@ -89,6 +89,16 @@ class ForeignWord(NamedTuple):
         return float(self.value)
 
     @property
+    def is_zero(self) -> bool:
+        """Whether it is the number 0."""
+        return self.kind == "number" and float(self.value) == 0
+
+    @property
+    def lacks_point(self) -> bool:
+        """Whether it is a number without a decimal point."""
+        return self.kind == "number" and "." not in self.value
+
+    @property
     def code(self) -> str:
         """A G or M word by one name, whatever zeros it has: ``G1``, ``G12.1``."""
         return code_of(self.letter, self.value)

@@ -84,7 +84,7 @@ def follow_places(draft: Draft) -> None:
     lengths = frozenset() if draft.control.is_lathe else LENGTHS
     shifted = codes & (SHIFTING - lengths) or draft.start.units != draft.state.units
     turret = draft.control.is_lathe and "T" in draft.letters()
-    changes = any(w.letter == "M" and w.kind == "number" and w.code == "M6" for w in draft.words)
+    changes = "M6" in draft.m_codes()
     other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or _is_drilling(draft)
     drills = _follow_drilling(draft) if not codes - FOLLOWED else False
     if drills:

@@ -186,7 +186,7 @@ def _machine_zero(draft: Draft) -> None:
     """Write G53 as G28 away from the part if it has Z, as a comment if not."""
     motions = draft.take_codes({"G0", "G1"})
     dropped = [word for word in draft.words if word.letter in "XYZ"]
-    draft.words = [word for word in draft.words if word not in dropped]
+    draft.drop(dropped)
     draft.comments += [*draft.take_codes({"G53"}), *(word.text for word in dropped)]
     if any(word.letter == "Z" for word in dropped):
         absolute = [] if draft.state.distance == "G91" else ["G90"]

@@ -150,7 +150,7 @@ def _store(draft: Draft, code: str) -> None:
             f"{code} with L0 only stores the cycle: move to X and Y in another block"
         )
     stored = [word for word in draft.words if word.letter in KEPT]
-    draft.words = [word for word in draft.words if word not in stored]
+    draft.drop(stored)
     draft.comments.append(" ".join([code, *(word.text for word in stored), "for the next holes"]))
     draft.change(own_motion=UNSURE)
 

@@ -11,7 +11,7 @@ from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
-from g12.tools.translate.rules.polar import is_zero, own_block, own_feed_ended
+from g12.tools.translate.rules.polar import own_block, own_feed_ended
 
 ANGLES = {"Y": "C", "V": "H"}
 SIZES = {"R": 1, "Q": 2}  # radius and diameter
@@ -36,7 +36,7 @@ def _named_radius(draft: Draft, code: str) -> str:
     word = draft.take("C") or draft.take("H")
     if not word:
         raise NotTranslated(f"{code} needs C, the radius of the cylinder, or C0")
-    if is_zero(word):
+    if word.is_zero:
         return ""
     half = draft.control.value("cylinder", "word", "radius") == "diameter"
     return f"[{word.value} / 2]" if half else word.value
@@ -48,7 +48,7 @@ def _mapped_radius(draft: Draft, code: str) -> str:
     axes = [word for letter in "YC" if (word := draft.take(letter))]
     if not sizes and not axes:
         return ""
-    if len(sizes) != 1 or len(axes) != 2 or not all(map(is_zero, axes)):
+    if len(sizes) != 1 or len(axes) != 2 or not all(word.is_zero for word in axes):
         raise NotTranslated(f"{code} needs Y0, C0 and R or Q, radius or diameter; alone it ends")
     ((word, times),) = sizes
     return word.value if times == 1 else f"[{word.value} / 2]"

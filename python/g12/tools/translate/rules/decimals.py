@@ -23,7 +23,7 @@ UNIT = {"G20": "inch", "G21": "mm"}
 def whole_units(draft: Draft) -> None:
     """Write every length, angle and feed with the value that it has on the control."""
     for at, word in enumerate(draft.words):
-        if word.kind == "number" and "." not in word.value:
+        if word.lacks_point:
             kind = _quantity_of(draft, word)
             if kind:
                 draft.words[at] = in_units(draft, word, kind)
@@ -122,7 +122,7 @@ def time_in_seconds(draft: Draft, word: ForeignWord, thousandths: bool) -> Forei
         if "." in word.value and word.kind == "number":
             return with_point(draft, word)
         return _in_seconds(word)
-    if word.kind == "number" and "." not in word.value and word.number:
+    if word.lacks_point and word.number:
         return _without_point(draft, word)
     return word._replace(letter="P")
 

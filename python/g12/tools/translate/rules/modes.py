@@ -19,17 +19,13 @@ def zero_of_missing_axis(draft: Draft) -> None:
     """
     axes = draft.control.axes
     words = [w for w in draft.axis_words() if w.letter not in axes and w.letter in "ABC"]
-    zeros = [word for word in words if _is_zero(word)]
+    zeros = [word for word in words if word.is_zero]
     if "Y" not in axes or not zeros or draft.meanings:
         return
     if zeros == draft.axis_words() and not _only_positions(draft):
         return
-    draft.words = [word for word in draft.words if word not in zeros]
+    draft.drop(zeros)
     draft.comments += [f"{word.text}: no {word.letter} here" for word in zeros]
-
-
-def _is_zero(word: ForeignWord) -> bool:
-    return word.kind == "number" and float(word.value) == 0
 
 
 def _only_positions(draft: Draft) -> bool:
@@ -70,8 +66,8 @@ def axes_at_zero(draft: Draft) -> None:
         return
     lacking = set(draft.control.at_zero) - set(draft.control.axes)
     letters = [*lacking, *(inc for inc, axis in PARTNERS.items() if axis in lacking)]
-    unmoved = [w for w in draft.words if w.letter in letters and _is_zero(w)]
-    draft.words = [word for word in draft.words if word not in unmoved]
+    unmoved = [w for w in draft.words if w.letter in letters and w.is_zero]
+    draft.drop(unmoved)
     if unmoved and not draft.axis_words() and not draft.increments():
         draft.comments += draft.take_codes(MACHINES_OWN)  # without an axis G28 moves each of them
     draft.comments += [word.text for word in unmoved]

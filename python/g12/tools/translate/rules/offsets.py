@@ -126,7 +126,7 @@ def _settle(draft: Draft) -> None:
 
 def _axis_values(draft: Draft, code: str) -> list[ForeignWord]:
     words = draft.axis_words()
-    draft.words = [word for word in draft.words if word not in words]
+    draft.drop(words)
     if not words:
         raise NotTranslated(f"{code} without an axis sets nothing")
     return words

@@ -40,14 +40,9 @@ def plane_letters(draft: Draft) -> None:
         return
     named = [word for word in draft.words if word.kind == "bare"]
     if not named and not draft.letters() - set("NGUVWH"):
-        named = [w for w in draft.words if w.letter in "UVWH" and is_zero(w)]
-    draft.words = [word for word in draft.words if word not in named]
+        named = [w for w in draft.words if w.letter in "UVWH" and w.is_zero]
+    draft.drop(named)
     draft.comments += [" ".join(word.text for word in named)] if named else []
-
-
-def is_zero(word: ForeignWord) -> bool:
-    """Whether a word is the number 0."""
-    return word.kind == "number" and word.number == 0
 
 
 def turn_on(draft: Draft, code: ForeignWord) -> None:
@@ -60,7 +55,7 @@ def turn_on(draft: Draft, code: ForeignWord) -> None:
             "polar",
             'x = "diameter" # or "radius"',
         )
-    if draft.control.is_lathe and "C" in draft.letters() and is_zero(draft.words[-1]):
+    if draft.control.is_lathe and "C" in draft.letters() and draft.words[-1].is_zero:
         draft.take("C")
     outside, inside = _x_modes(draft)
     lines = [*own_feed_ended(draft), *([inside] if inside != outside else [])]

@@ -102,7 +102,7 @@ def stop_behind_a_cut(draft: Draft) -> None:
     stops = [w for w in draft.words if w.letter == "M" and w.kind == "number" and w.code in STOPS]
     if not stops or not cuts(draft):
         return
-    draft.words = [word for word in draft.words if word not in stops]
+    draft.drop(stops)
     draft.after.insert(0, " ".join(word.text for word in stops))
 
 

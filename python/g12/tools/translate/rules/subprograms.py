@@ -80,7 +80,7 @@ def _macro_call(draft: Draft) -> SubprogramCall:
 
 
 def _check_point(draft: Draft, word: ForeignWord) -> None:
-    plain = word.kind == "number" and "." not in word.value and word.number
+    plain = word.lacks_point and word.number
     if plain and word.letter not in "DHMST" and draft.control.decimals != "whole":
         raise NotTranslated(f"{word.text} has no decimal point: write {word.text}. as an argument")
 

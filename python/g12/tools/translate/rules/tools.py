@@ -105,7 +105,7 @@ def _length_offset(draft: Draft) -> None:
     word = draft.word("H")
     if not word:
         raise NotTranslated("G43 without H: LinuxCNC would take the loaded tool's length")
-    if word.kind == "number" and word.number == 0:
+    if word.is_zero:
         draft.words = [w for w in draft.words if w is not word and w.text != "G43"]
         draft.take_codes({"G43"})
         draft.words.append(word_of("G49"))
@@ -139,7 +139,7 @@ def _compensated_again(draft: Draft) -> None:
     if draft.start.compensation not in (on[0].code[:3], UNSURE):
         return
     words = [*on, *(w for w in draft.words if w.letter == "D")]
-    draft.words = [w for w in draft.words if w not in words]
+    draft.drop(words)
     if draft.start.compensation != UNSURE:
         if draft.start.radius != draft.state.radius:
             raise NotTranslated(f"{on[0].code} with another D than it is on with: G40 before it")

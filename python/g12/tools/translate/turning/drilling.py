@@ -238,7 +238,7 @@ def _peck_of(draft: Draft) -> float | None:
     if word is None:
         return None
     lengths = draft.control.value("holes", "q") != "increments"
-    if lengths and word.kind == "number" and "." not in word.value:
+    if lengths and word.lacks_point:
         draft.replace(word, in_units(draft, word, "length"))
     return abs((take_number if lengths else take_increments)(draft, letter))
 
