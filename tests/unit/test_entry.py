@@ -61,10 +61,9 @@ def test_what_the_subroutine_is_told(first, side):
     assert told["last_turns"] == 3
 
 
-@pytest.mark.parametrize("share", [40.0])
-def test_straight_down_is_at_its_share_of_the_feed(share):
-    told = down(3.0, (3.0, 2.0), PocketEntry(feed=share)).locals(3.0)
-    assert told == {"turns": 0, "feed": 600.0, "plunge_feed": 6.0 * share}
+def test_straight_down_is_at_its_share_of_the_feed():
+    told = down(3.0, (3.0, 2.0), PocketEntry(feed=40.0)).locals(3.0)
+    assert told == {"turns": 0, "feed": 600.0, "plunge_feed": 240.0}
 
 
 def test_a_helix_of_a_thousand_turns_is_refused_by_the_first_level_alone():

@@ -68,7 +68,7 @@ def test_coordinates():
     assert coordinates_of(ini_of("").get) == "XYZ"
 
 
-@pytest.mark.parametrize("units", ["furlong"])
+@pytest.mark.parametrize("units", ["furlong", "0"])
 def test_units_that_linuxcnc_refuses(units):
     with pytest.raises(Refusal, match=r"LINEAR_UNITS = .*: must be mm, metric, in, inch, imperial"):
         millimetres_of(ini_of(INI.format(units=units)).get)

@@ -60,7 +60,7 @@ def test_words_are_read_as_linuxcnc_reads_them(line, words):
     assert " ".join(letter + value for letter, value in read_line(1, line).words) == words
 
 
-@pytest.mark.parametrize("line", ["o100 while [#1 LT 5]"])
+@pytest.mark.parametrize("line", ["o100 while [#1 LT 5]", "N5 o<sub> call [1]", "/o1 if"])
 def test_control_lines_are_told(line):
     assert read_line(1, line).control
 
@@ -346,7 +346,7 @@ def test_incremental_mode_holds_for_both_axes():
     assert drawn("G91 G1 X-5 C2", "C2")[-1].end == 15 + 4j
 
 
-@pytest.mark.parametrize("save", ["M70"])
+@pytest.mark.parametrize("save", ["M70", "M73"])
 def test_saved_modes_come_back(save):
     found = drawn(save, "G91 G3 X-1 R9", "M72", "X20 C5")
     assert found[-1].end == 20 + 5j and found[-1].centre is None

@@ -40,7 +40,7 @@ def test_the_circle_on_the_side_of_i(words, approach, radius):
     assert (circle.half_turns, circle.circles, circle.x, circle.y) == (0, 1, 3.0, -4.0)
 
 
-@pytest.mark.parametrize("rounding", [1e-11])
+@pytest.mark.parametrize("rounding", [1e-11, -1e-11])
 def test_an_approach_that_only_misses_the_centre_by_rounding_is_no_fast_move(rounding):
     assert plan("I50 R10 D2", tool_in_table={2: Tool(2, 10 + rounding)}.get).approach == 0
 
