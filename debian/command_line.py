@@ -2,9 +2,8 @@
 """The words of all commands as one parser, which the manual page and the completions come from."""
 
 import argparse
-from importlib import import_module
 
-from g12.tools.commands.main import COMMANDS
+from g12.tools.commands.main import COMMANDS, module_of
 from g12.tools.system import CALL
 
 
@@ -14,8 +13,8 @@ def parser() -> argparse.ArgumentParser:
         prog="g12", description="The G12 family for LinuxCNC: set it up, look at what programs do."
     )
     commands = whole.add_subparsers(dest="command", metavar="COMMAND")
-    for name, (module, summary) in COMMANDS.items():
-        own = named_as_installed(import_module(module).command_parser())
+    for name, summary in COMMANDS.items():
+        own = named_as_installed(module_of(name).command_parser())
         commands.add_parser(
             name,
             help=summary,

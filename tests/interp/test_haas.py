@@ -199,7 +199,9 @@ def test_right_after_g40_the_plunge_must_not_slant(inch):
     mode_matrix.check_refused(inch, [*offset, "G40"], "G12 I.26 Z-1", message)
     moved = inch.trace_text([*offset, "G40", "G12 X1 Y1 I.26 Z-1"])
     (plunge,) = [
-        move for move in cut_geometry.cutting(moved.moves) if abs(move.tangent(0.5)[2]) > 0.1
+        move
+        for move in cut_geometry.cutting(moved.moves)
+        if abs(cut_geometry.tangent(move, 0.5)[2]) > 0.1
     ]
     assert plunge.start[:2] == pytest.approx(plunge.end[:2])
 

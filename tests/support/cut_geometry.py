@@ -13,6 +13,7 @@ from shapely.geometry import Point
 from g12.tools.path import part
 
 SAME_POINT = 1e-6  # mm
+NEAR = 1e-6  # of a move: the points whose difference is its direction
 CHORD_ERROR = 1e-4  # mm, of the polylines that stand for arcs
 MILL = part.Part(turning=False)
 
@@ -51,15 +52,21 @@ def radii(moves):
     return [circle.radius for circle in full_circles(moves)]
 
 
+def tangent(move, fraction):
+    """Return the unit direction in X, Y, Z after a fraction of a move; zeros without motion."""
+    before, after = (np.array(move.point(fraction + step)[:3]) for step in (-NEAR, NEAR))
+    return (after - before) / (math.dist(before, after) or 1.0)
+
+
 def in_plane(moves):
     """Return the moves that go sideways (not the plunge)."""
-    return [move for move in moves if math.hypot(*move.tangent(0.5)[:2]) > 0.5]
+    return [move for move in moves if math.hypot(*tangent(move, 0.5)[:2]) > 0.5]
 
 
 def largest_jump(moves):
     """Return the largest change of direction between consecutive moves, in degrees."""
     jumps = [
-        math.degrees(math.acos(np.clip(np.dot(before.tangent(1.0), after.tangent(0.0)), -1, 1)))
+        math.degrees(math.acos(np.clip(np.dot(tangent(before, 1.0), tangent(after, 0.0)), -1, 1)))
         for before, after in zip(moves, moves[1:])
     ]
     return max(jumps, default=0.0)

@@ -52,25 +52,6 @@ def test_points_of_a_helix_lie_on_the_circle_of_its_plane(plane, turns):
     assert move.length == near(math.hypot(2.0 * angle, 1.0))
 
 
-@pytest.mark.parametrize(("plane", "rotation"), [(17, 30.0), (18, 0.0), (19, 90.0)])
-def test_tangent_is_the_direction_of_neighbouring_points(plane, rotation):
-    one, two, _ = PLANES[plane]
-    start, end = [0.0] * 3, [0.0] * 3
-    start[one], end[two] = 1.0, 1.0
-    move = arc(turned(start, rotation), turned(end, rotation), (0.0, 0.0, 0.0), 1, plane, rotation)
-    for fraction in (0.1, 0.5, 0.8):
-        before, after = move.point(fraction - 1e-6)[:3], move.point(fraction + 1e-6)[:3]
-        distance = math.dist(before, after)
-        expected = [(b - a) / distance for a, b in zip(before, after)]
-        assert move.tangent(fraction) == pytest.approx(expected, abs=1e-6)
-
-
-def turned(point, degrees):
-    x, y, z = point
-    rotated = complex(x, y) * cmath.exp(1j * math.radians(degrees))
-    return rotated.real, rotated.imag, z
-
-
 def test_an_arc_whose_radius_grows_ends_where_it_should():
     move = arc((1.0, 0.0, 0.0), (0.0, 1.001, 0.0), (0.0, 0.0, 0.0), 1)
     assert move.radius == near(1.0)
@@ -81,10 +62,8 @@ def test_a_straight_move_takes_all_axes_along():
     move = straight((0.0,) * 9, (3.0, 4.0, 12.0, 0.0, 0.0, 90.0, 0.0, 0.0, 0.0))
     assert move.length == near(13.0)
     assert move.point(0.5) == near((1.5, 2.0, 6.0, 0.0, 0.0, 45.0, 0.0, 0.0, 0.0))
-    assert move.tangent(0.5) == near((3 / 13, 4 / 13, 12 / 13))
 
 
-def test_a_move_of_a_rotary_axis_alone_has_no_direction():
+def test_a_move_of_a_rotary_axis_alone_has_no_length():
     move = straight((0.0,) * 9, (0.0, 0.0, 0.0, 0.0, 0.0, 90.0, 0.0, 0.0, 0.0))
-    assert move.tangent(0.5) == (0.0, 0.0, 0.0)
     assert move.length == 0.0

@@ -8,6 +8,7 @@ import os
 import select
 import sys
 from importlib import import_module
+from types import ModuleType
 
 from g12 import __version__
 from g12.tools.system import CALL
@@ -15,33 +16,26 @@ from g12.tools.system import CALL
 FAILED = 1
 INTERRUPTED, UNREAD = 130, 141  # a shell's exit codes for SIGINT, SIGPIPE
 
-COMMANDS = {
-    "check": ("g12.tools.commands.check", "check how the package is set up in a machine config"),
-    "install": ("g12.tools.commands.install", "put the package into a machine config"),
-    "uninstall": ("g12.tools.commands.uninstall", "take it out again"),
-    "run": ("g12.tools.commands.run", "run a program on a headless LinuxCNC"),
-    "dynapath": (
-        "g12.tools.commands.dynapath",
-        "print Dynapath circle mill events as a LinuxCNC program",
-    ),
-    "translate": (
-        "g12.tools.commands.translate",
-        "print a program of another control as a LinuxCNC program",
-    ),
-    "plot": ("g12.tools.commands.plot", "draw a picture of what a program cuts"),
+COMMANDS = {  # each a module of this folder
+    "check": "check how the package is set up in a machine config",
+    "install": "put the package into a machine config",
+    "uninstall": "take it out again",
+    "run": "run a program on a headless LinuxCNC",
+    "dynapath": "print Dynapath circle mill events as a LinuxCNC program",
+    "translate": "print a program of another control as a LinuxCNC program",
+    "plot": "draw a picture of what a program cuts",
     "verify": (
-        "g12.tools.commands.verify",
-        "prove that pockets, shapes and sections (polar, on a cylinder) come out as programmed",
+        "prove that pockets, shapes and sections (polar, on a cylinder) come out as programmed"
     ),
-    "regress": ("g12.tools.commands.regress", "keep what programs do, and tell what changed"),
-    "demo": ("g12.tools.commands.demo", "run, draw and measure the manuals' programs"),
-    "trace": ("g12.tools.commands.trace", "list the moves of a program"),
+    "regress": "keep what programs do, and tell what changed",
+    "demo": "run, draw and measure the manuals' programs",
+    "trace": "list the moves of a program",
 }
 
 
 def usage() -> str:
     """Return the list of commands."""
-    lines = (f"  {name:10} {summary}" for name, (_, summary) in COMMANDS.items())
+    lines = (f"  {name:10} {summary}" for name, summary in COMMANDS.items())
     return "\n".join([f"usage: {CALL} COMMAND [-h] …", "", *lines])
 
 
@@ -61,6 +55,11 @@ def main(arguments: list[str]) -> int:
         return UNREAD
 
 
+def module_of(name: str) -> ModuleType:
+    """Load a command's module."""
+    return import_module(f"g12.tools.commands.{name}")
+
+
 def command(name: str, arguments: list[str]) -> int:
     """Run a command; return its exit code."""
     if name in ("-h", "--help"):
@@ -72,7 +71,7 @@ def command(name: str, arguments: list[str]) -> int:
     if name not in COMMANDS:
         print(f"g12: no command {name!r} (usage: {CALL} --help)", file=sys.stderr)
         return 2
-    return import_module(COMMANDS[name][0]).main(arguments)
+    return module_of(name).main(arguments)
 
 
 def flushed(name: str, arguments: list[str]) -> int:

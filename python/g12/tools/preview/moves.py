@@ -156,24 +156,6 @@ class Move(NamedTuple):
         level = three + (end_three - three) * fraction
         return (*self._out_of_plane((*turned, level)), *straight[3:])
 
-    def tangent(self, fraction: float) -> tuple[float, float, float]:
-        """Return the unit direction in X, Y, Z after ``fraction``; zeros without motion in them."""
-        if self.kind == "arc":
-            direction = self._arc_direction(fraction)
-        else:
-            direction = [b - a for a, b in zip(self.start[:3], self.end[:3])]
-        size = math.hypot(*direction)
-        x, y, z = (value / size if size else 0.0 for value in direction)
-        return x, y, z
-
-    def _arc_direction(self, fraction: float) -> list[float]:
-        one, two, _ = self._in_plane(self.point(fraction))
-        rise = (self._in_plane(self.end)[2] - self._in_plane(self.start)[2]) / self.sweep
-        around = math.copysign(1.0, self.sweep)
-        velocity = (-two * around, one * around, rise * around)
-        tip = self._out_of_plane(velocity)
-        return [value - origin for value, origin in zip(tip, self.centre)]
-
     def _in_plane(self, position: Sequence[float]) -> tuple[float, float, float]:
         """First, second and third axis of the plane, seen from the centre of the arc."""
         (x, y, z), (x0, y0, z0) = position[:3], self.centre
