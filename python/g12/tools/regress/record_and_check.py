@@ -20,7 +20,6 @@ from g12.tools.regress.recorder import (
     Job,
     Recorders,
     Result,
-    TracedMachine,
     machine_of,
     results,
 )
@@ -75,8 +74,8 @@ def record(
     names = _names(baseline, named)
     tools, parameters = _tools_and_parameters(baseline, request, everything=not (known and named))
     machine = machine_of(baseline.ini, tools, parameters, terms.timeout)
-    jobs = _jobs(baseline, names, baseline.programs, machine, terms, keep=True)
-    found = results(jobs, terms.jobs, terms.tell, recorders)
+    job = Job(baseline, machine, baseline.programs, terms.tolerance(machine.ini), keep=True)
+    found = results(job, names, terms.jobs, terms.tell, recorders)
     baseline.take_copies(tools, parameters)
     baseline.save()
     return _sorted([*found, *([] if named else _dropped(baseline))])
@@ -106,8 +105,9 @@ def check(
     ini = _machine(ini or baseline.ini)
     machine = machine_of(ini, table, baseline.parameters, terms.timeout)
     present = [name for name in recorded if (folder / name).is_file()]
-    jobs = _jobs(baseline, present, folder, machine, terms)
-    found = results(jobs, terms.jobs, terms.tell, recorders)
+    tolerance = terms.tolerance(machine.ini)
+    job = Job(baseline, machine, folder, tolerance, pictures=terms.pictures)
+    found = results(job, present, terms.jobs, terms.tell, recorders)
     found += [Result(name, MISSING) for name in recorded if name not in present]
     new = [] if names else {*baseline.in_folders(folder)} - {*recorded}
     found += [Result(name, ADDED) for name in new]
@@ -117,23 +117,6 @@ def check(
 
 def _sorted(found: Sequence[Result]) -> list[Result]:
     return sorted(found, key=lambda result: result.program)
-
-
-def _jobs(
-    baseline: Baseline,
-    names: Sequence[str],
-    folder: Path,
-    machine: TracedMachine,
-    terms: Terms,
-    *,
-    keep: bool = False,
-) -> list[Job]:
-    """Return a job for each program of a folder: trace it and compare it with its recording."""
-    tolerance, pictures = terms.tolerance(machine.ini), terms.pictures
-    return [
-        Job(baseline, machine, name, folder / name, tolerance, keep=keep, pictures=pictures)
-        for name in names
-    ]
 
 
 def _common_notes(found: Sequence[Result]) -> list[str]:

@@ -55,15 +55,14 @@ class TracedMachine:
 
 @dataclass(frozen=True)
 class Job:
-    """One program to trace and to compare with its recording.
+    """The programs of a folder to trace on a machine and to compare with their recordings.
 
-    ``keep`` makes the trace the recording; ``pictures`` is a folder for a picture of changes.
+    ``keep`` makes the traces the recordings; ``pictures`` is a folder for pictures of changes.
     """
 
     baseline: Baseline
     machine: TracedMachine
-    name: str
-    program: Path
+    folder: Path
     tolerance: Tolerance
     keep: bool = False
     pictures: Path | None = None
@@ -202,41 +201,43 @@ def hash_of(content: bytes) -> str:
     return f"sha256:{hashlib.sha256(content).hexdigest()[:HASH_DIGITS]}"
 
 
-def trace_and_compare(job: Job, recorders: Recorders) -> Result:
+def trace_and_compare(job: Job, name: str, recorders: Recorders) -> Result:
     """Return the result of a program's trace; store it if the job keeps it."""
     with recorders.one_of(job.machine) as recorder:
         try:
-            now = recorder.text(job.name, job.program)
+            now = recorder.text(name, job.folder / name)
         except TraceFailure as failure:
             text = f"no trace: {str(failure).splitlines()[0]}"
-            return Result(job.name, FAILED, [RegressFinding("failed", text)])
-        result = _compared(job, now, recorder)
+            return Result(name, FAILED, [RegressFinding("failed", text)])
+        result = _compared(job, name, now, recorder)
     if job.keep:
-        job.baseline.keep(job.name, now)
+        job.baseline.keep(name, now)
     return result
 
 
-def _compared(job: Job, now: str, recorder: Recorder) -> Result:
-    path = job.baseline.trace_file(job.name)
+def _compared(job: Job, name: str, now: str, recorder: Recorder) -> Result:
+    path = job.baseline.trace_file(name)
     if not path.exists():
-        return Result(job.name, NEW, summary=_summary(read_recording(now)))
+        return Result(name, NEW, summary=_summary(read_recording(now)))
     try:
         was = path.read_bytes().decode()
         facts, body = split_facts(was)
         new_facts, new_body = split_facts(now)
         notes = tuple(_notes(facts, new_facts))
         if body == new_body:
-            return Result(job.name, SAME, notes=notes)
+            return Result(name, SAME, notes=notes)
         recordings = read_recording(was), read_recording(now)
     except (TraceTextError, UnicodeDecodeError) as problem:
         if job.keep:
-            return Result(job.name, NEW, summary=_summary(read_recording(now)))
+            return Result(name, NEW, summary=_summary(read_recording(now)))
         raise UsageError(f"{path}: not a trace, or one that was edited: {problem}") from None
     found = differences(*recordings, job.tolerance, recorder.part)
     findings = [_finding(difference, *recordings) for difference in found]
     verdict = CHANGED if found else SAME
-    picture = _picture(job, *recordings, found, recorder) if found and job.pictures else None
-    return Result(job.name, verdict, findings, _summary(recordings[1]), notes, picture)
+    picture = None
+    if found and job.pictures:
+        picture = _picture(job.pictures, name, *recordings, found, recorder)
+    return Result(name, verdict, findings, _summary(recordings[1]), notes, picture)
 
 
 def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
@@ -271,32 +272,36 @@ def _summary(recording: Recording) -> str:
     return f"refused at line {error.line}: {error.rule}" if error else counted_as(moves, "move")
 
 
-def _picture(job: Job, was: Recording, now: Recording, found, recorder: Recorder) -> str:
+def _picture(
+    folder: Path, name: str, was: Recording, now: Recording, found, recorder: Recorder
+) -> str:
     """Draw the differences; matplotlib takes a while to load."""
     from g12.tools.plot.style import save
     from g12.tools.regress.overlay import draw_overlay, picture_file
 
-    path = picture_file(job.pictures, job.name)
+    path = picture_file(folder, name)
     save(draw_overlay(was, now, found, recorder.part), path)
     return str(path)
 
 
-def results(jobs: Sequence[Job], workers: int, tell: Tell, recorders: Recorders) -> list[Result]:
-    """Return the results of jobs in their order, with some interpreters in parallel."""
-    largest_first = sorted(jobs, key=lambda job: -job.program.stat().st_size)
+def results(
+    job: Job, names: Sequence[str], workers: int, tell: Tell, recorders: Recorders
+) -> list[Result]:
+    """Return the results of programs in their order, with some interpreters in parallel."""
+    largest_first = sorted(names, key=lambda name: -(job.folder / name).stat().st_size)
     found = {}
     with ThreadPoolExecutor(workers) as pool:
-        futures = [pool.submit(trace_and_compare, job, recorders) for job in largest_first]
+        futures = [pool.submit(trace_and_compare, job, name, recorders) for name in largest_first]
         try:
             for done, future in enumerate(as_completed(futures), start=1):
                 result = future.result()
                 found[result.program] = result
-                tell(f"{done} of {len(jobs)}: {result.program}")
+                tell(f"{done} of {len(names)}: {result.program}")
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             _kill_running(futures, recorders)
             raise
-    return [found[job.name] for job in jobs]
+    return [found[name] for name in names]
 
 
 def _kill_running(futures: Sequence[Future], recorders: Recorders) -> None:
