@@ -13,10 +13,10 @@ import pytest
 from g12.tools.commands import check, install, uninstall
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE
-from g12.tools.preview.tracer import Tracer, trace_text
+from g12.tools.preview.tracer import Tracer
 from g12.tools.system import CALL
 from support.kinematics import marked
-from support.sim_machines import ROOT, SIM
+from support.sim_machines import ROOT, SIM, trace_text
 from support.small_configs import HAAS, LATHE, MILL, content_of, with_lines, write_config
 
 REFERRED = f"SUBROUTINE_PATH = {ROOT}/ngc\n{HAAS}"

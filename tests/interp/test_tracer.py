@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from g12.tools.preview.tracer import TraceFailure, Tracer, trace_text
+from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.system import PYTHON
-from support.sim_machines import with_package
+from support.sim_machines import trace_text, with_package
 
 INI = """\
 [EMC]

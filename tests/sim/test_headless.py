@@ -14,9 +14,8 @@ import pytest
 from g12.tools.headless.machine import StartupError, Timeout
 from g12.tools.headless.namespaces import PYTHON, Isolated, has_namespaces
 from g12.tools.headless.run import run_anyhow
-from g12.tools.preview.tracer import trace_text
 from support.operated_machine import Machine, kept_machine
-from support.sim_machines import ROOT, SIM, with_package
+from support.sim_machines import ROOT, SIM, trace_text, with_package
 
 EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
 NOBODY = 65534

@@ -6,6 +6,7 @@ import shutil
 from pathlib import Path
 
 from g12.tools.headless.namespaces import has_namespaces
+from g12.tools.preview.tracer import Tracer
 
 ROOT = Path(__file__).resolve().parents[2]
 SIM = ROOT / "configs" / "sim"
@@ -15,6 +16,12 @@ BRISK = {  # overrides for a simulated mill in mm: real runs in a fraction of th
     section: {"MAX_ACCELERATION": 20000, "MAX_VELOCITY": 250}
     for section in ("JOINT_0", "JOINT_1", "JOINT_2", "AXIS_X", "AXIS_Y", "AXIS_Z")
 }
+
+
+def trace_text(text, ini, **machine):
+    """Trace a program given as text or as lines, in an interpreter of its own."""
+    with Tracer(ini, **machine) as tracer:
+        return tracer.trace_text(text)
 
 
 def machine_scope(**_asked):

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
-from g12.tools.path.slowest import programmed_pace
+from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.units import UNITS
@@ -54,10 +54,10 @@ def made(wanted, plane=17):
 
 
 def measure(moves, wanted, real_shift=None):
-    real, pace = None, partial(programmed_pace, moves, LIMITS, 0.0)
+    real, path = None, track(MILL, moves, LIMITS)
     if real_shift is not None:
-        path = track(MILL, moves, LIMITS)
         real = follow(path, moves, samples_of(path, 8000, shift=real_shift), 1.0)
+    pace = partial(pace_of, path=path)
     block = Block(None, {}, (), (), (), {}, 1, len(moves))
     loaded = {1: 2 * wanted.cutter.loaded}
     workpiece = assumed_workpiece(Program(moves, MILL, [(block, wanted)], [], loaded, real))

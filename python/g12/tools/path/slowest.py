@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.tools.path.follow import Followed
-from g12.tools.path.track import Limits, Track, duration
-from g12.tools.preview.moves import Move
+from g12.tools.path.track import Track
 
 AT_SPEED = 0.98  # of the feed: a faster run counts as up to speed
 LEAST_LENGTH = 1e-3  # mm: the feed of shorter moves is not reported
@@ -36,22 +35,6 @@ def pace_of(
     """Return the pace of moves: the time of ``every``, the lowest feed of those ``cutting``."""
     programmed = pace_of_path(every, cutting, path)
     return programmed if real is None else real_pace(every, cutting, path, real, programmed)
-
-
-def programmed_pace(
-    moves: Sequence[Move],
-    limits: Limits,
-    spindle_speed: float,
-    every: Sequence[int],
-    cutting: Sequence[int],
-) -> Pace:
-    """Return the pace of moves on a part at rest, as far as the axes' speeds allow."""
-    times = {index: duration(moves[index], limits, spindle_speed) for index in every}
-    going = [index for index in cutting if moves[index].length > LEAST_LENGTH]
-    feeds = [(60.0 * moves[index].length / times[index], index) for index in going]
-    lowest, index = min(feeds, default=(0.0, every[0]))
-    seconds = sum(times.values())
-    return Pace(lowest, moves[index].end[:3], index, seconds, seconds)
 
 
 def pace_of_path(every: Sequence[int], cutting: Sequence[int], path: Track) -> Pace:

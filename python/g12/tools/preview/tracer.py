@@ -184,19 +184,6 @@ def trace(
         return tracer.trace(program, **options)
 
 
-def trace_text(
-    text: str | Iterable[str],
-    ini: Program,
-    *,
-    overrides: Overrides | None = None,
-    tools: Tools = None,
-    **options,
-) -> Trace:
-    """Trace one program given as text or as lines; see ``Tracer``."""
-    with Tracer(ini, overrides=overrides, tools=tools) as tracer:
-        return tracer.trace_text(text, **options)
-
-
 def write_program(text: str | Iterable[str], path: Path) -> Path:
     """Write a program given as text or as lines to ``path``."""
     text = text if isinstance(text, str) else "\n".join(text)

@@ -16,7 +16,7 @@ from g12.tools.machine.ini import Ini
 from g12.tools.material.stock import StockText
 from g12.tools.path.part import part_of
 from g12.tools.path.samples import Samples
-from g12.tools.path.slowest import pace_of, programmed_pace
+from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import limits_of
 from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.executed_blocks import read_lines
@@ -188,9 +188,7 @@ def measured(
 ) -> Cuts:
     """Return what is measured of a program's cuts."""
     moves, real, ini, polar = subject.trace.moves, subject.real, subject.ini, allowed.polar
-    pace = partial(programmed_pace, moves, limits_of(ini), subject.trace.modes.speed)
-    if real:
-        pace = partial(pace_of, path=subject.path, real=real)
+    pace = partial(pace_of, path=subject.path, real=real)
     axes = axes_of_section(ini) if asked.sections or asked.shapes else None
     clamp = Clamp([f"M{code}" for code in ini.settings.c_clamp], asked.clamp_is_seen)
     return Cuts(
