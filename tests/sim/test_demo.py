@@ -82,9 +82,3 @@ def test_every_sample_of_the_demo_is_there():
     for sample in demo.SAMPLES:
         assert sample.path.is_file() and sample.ini.is_file()
     assert {"haas/O60121.ngc", "haas/O60131.ngc"} <= {sample.program for sample in demo.SAMPLES}
-
-
-def test_the_manuals_pockets_have_their_own_tools():
-    tools = {sample.program: sample.tools for sample in demo.SAMPLES}
-    assert tools["haas/O60121.ngc"] == {1: 0.25}
-    assert tools["haas/O60131.ngc"] == {1: 0.5}

@@ -110,12 +110,18 @@ def test_an_interrupted_run_is_one_line(tmp_path, start):
 
 
 @pytest.mark.parametrize(
-    ("feed", "override", "seconds"),
-    [(600, 100, 600), (1, 100, 6000), (1, 500, 1200), (600, 1, 1000)],  # 50 mm
+    ("block", "override", "seconds"),
+    [
+        ("F600\nG1 X50", 100, 600),
+        ("F1\nG1 X50", 100, 6000),
+        ("F1\nG1 X50", 500, 1200),
+        ("F600\nG1 X50", 1, 1000),
+        ("F600\nG1 X5\nG4 P1000", 500, 2000.2),
+    ],
 )
-def test_a_run_is_waited_for_as_long_as_its_program_needs(feed, override, seconds, tmp_path):
+def test_a_run_is_waited_for_as_long_as_its_program_needs(block, override, seconds, tmp_path):
     program = tmp_path / "part.ngc"
-    program.write_text(f"G21 G90 F{feed}\nG1 X50\nM2\n")
+    program.write_text(f"G21 G90 {block}\nM2\n")
     ini = read_ini(SIM / "mill_mm.ini")
     assert run.patience(run.preview_of(program, ini.path, None, None), ini, override) == (
         pytest.approx(seconds)
@@ -136,14 +142,6 @@ def test_an_error_whose_text_names_no_line_has_that_of_the_preview(met, text, li
     preview = SimpleNamespace(error=Error(met, 7))
     assert run.line_of_preview(Error(text, 0), preview) == line
     assert run.line_of_preview(Error(text, 0), None) == 0
-
-
-def test_dwells_are_waited_for(tmp_path):
-    program = tmp_path / "part.ngc"
-    program.write_text("G21 G90 F600\nG1 X5\nG4 P1000\nM2\n")
-    ini = read_ini(SIM / "mill_mm.ini")
-    preview = run.preview_of(program, ini.path, None, None)
-    assert run.patience(preview, ini, 500.0) == pytest.approx(2000.2)
 
 
 def test_a_run_of_unknown_length_has_the_usual_time():
