@@ -4,8 +4,12 @@
 Those that the planners make have their sentences in unit.
 """
 
+from types import SimpleNamespace
+
 import pytest
 
+from g12.errors import BlockRefusal
+from g12.host import kinematics_switch
 from g12.tools.preview.tracer import Tracer
 from support.polar_programs import FIRST, feed_moves, section, texts, tracer
 from support.sim_machines import SIM
@@ -294,3 +298,13 @@ def test_a_file_that_is_deleted_while_its_program_runs(lathe, tmp_path):
         "G12.1: the program's file cannot be read while it runs: No such file or directory"
     )
     assert [move.kind for move in traced.moves] == ["rapid"]
+
+
+def test_a_signal_on_an_acceleration_that_a_section_sets_is_named(monkeypatch):
+    def connected(pin, value):
+        raise RuntimeError("set_p: connected")
+
+    monkeypatch.setattr(kinematics_switch.hal, "set_p", connected)
+    interp = SimpleNamespace(task=1, g12_accelerations=[707.0, 707.0])
+    with pytest.raises(BlockRefusal, match="G12.1: ini.x.max_acceleration is connected to a HAL"):
+        kinematics_switch.accelerate(interp, 0.5)

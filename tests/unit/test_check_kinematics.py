@@ -3,7 +3,7 @@
 
 import pytest
 
-from g12.tools.install.config.findings import PROBLEM
+from g12.tools.install.config.findings import NOTE, PROBLEM
 from g12.tools.install.lathe import kinematics_rules
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from support.sim_machines import ROOT
@@ -70,9 +70,17 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
      "tool-offset", "POLAR_TOOL_OFFSET = 0, but polar-xzc.tool-offset is 0.02"),
     ("HALFILE = polar.hal", "HALFILE = polar.hal\nHALCMD = net a => motion.adaptive-feed",
      "pin-taken", "HALCMD: net a => motion.adaptive-feed: motion.adaptive-feed is the"),
+    ("HALFILE = polar.hal", "HALFILE = polar.hal\nHALCMD = net fast => ini.x.max_acceleration",
+     "pin-taken", "ini.x.max_acceleration is set by G12.1"),
     ("HALFILE = polar.hal", "HALFILE = polar.hal\nPOSTGUI_HALFILE = later.hal",
      "kins", "loads trivkins"),
 ]  # fmt: skip
+PERIODS = [  # of the trajectory: the INI's, the HAL line's, what is said
+    ("2000000", "[EMCMOT]TRAJ_PERIOD", "traj_period_nsec is 2 times servo_period_nsec"),
+    ("2000000", "2000000", "traj_period_nsec is 2 times servo_period_nsec"),
+    ("1000000", "[EMCMOT](TRAJ_PERIOD)", ""),
+    ("2000000", "", ""),  # no HAL line uses it
+]
 IN_THE_WAY = [
     ("loadrt trivkins coordinates=XZC", "kins"),
     ("loadrt motmod num_joints=3 num_aio=2", "few-pins"),
@@ -101,6 +109,16 @@ def test_the_module_is_missing(found):
     (missing,) = found(LATHE, installed=False)
     assert (missing.level, missing.kind) == (PROBLEM, "no-kinematics")
     assert "make kinematics" in missing.cure
+
+
+@pytest.mark.parametrize(("ini", "used", "says"), PERIODS)
+def test_a_slower_trajectory_is_a_note(found, ini, used, says):
+    text = f"{LATHE}[EMCMOT]\nSERVO_PERIOD = 1000000\nTRAJ_PERIOD = {ini}\n"
+    own = f" traj_period_nsec={used}" if used else ""
+    motion = f"{MOTION}loadrt motmod servo_period_nsec=[EMCMOT]SERVO_PERIOD{own}\n"
+    notes = [each for each in found(text, motion) if each.level == NOTE]
+    assert [each.kind for each in notes] == ["traj-period"] * bool(says)
+    assert all(says in each.text for each in notes)
 
 
 @pytest.mark.parametrize(("good", "bad", "kind", "says"), MISTAKES)

@@ -99,6 +99,8 @@ def test_what_a_lathe_in_segments_would_gain(tmp_path):
     text = LATHE.replace("[AXIS_C]\nWRAPPED_ROTARY = 1\n", AXES)
     (said,) = gained(tmp_path, text)
     assert "hexagon of 27 mm 7.9 and 5.9 s, with kinematics 7.9 and 4.0 s" in said
+    page = " ".join((features.ROOT / "ngc" / "polar.md").read_text().split())
+    assert "the hexagon 7.9 and 5.9 s, with kinematics 7.9 and 4.0 s" in page
     (slower,) = gained(tmp_path, text.replace("3600", "360"))
     assert slower != said
     for other in (LATHE, text + KINS, f"{text}[G12]\nPOLAR_TOOL_OFFSET = 3\n"):

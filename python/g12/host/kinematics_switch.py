@@ -17,7 +17,7 @@ from collections.abc import Iterator
 import hal
 import linuxcnc
 
-from g12.errors import number
+from g12.errors import BlockRefusal, number
 from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 from g12.host.program_lines import without_line
@@ -63,7 +63,11 @@ def accelerate(interp: Interp, share: float) -> None:
     if not of_ini:
         of_ini = interp.g12_accelerations = [hal.get_value(pin) for pin in ACCELERATIONS]
     for pin, acceleration in zip(ACCELERATIONS, of_ini):
-        hal.set_p(pin, repr(share * acceleration))
+        try:
+            hal.set_p(pin, repr(share * acceleration))
+        except RuntimeError:
+            rule = f"{pin} is connected to a HAL signal: G12.1 has to set it, take it off that net"
+            raise BlockRefusal("G12.1", rule) from None
 
 
 def limit_override(interp: Interp, machine_unit: float, most: float) -> None:

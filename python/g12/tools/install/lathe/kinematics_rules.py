@@ -17,7 +17,7 @@ from g12.errors import Refusal
 from g12.ini_sections import leading_number
 from g12.machine_ini import FACE_KINEMATICS, face_joints, face_of
 from g12.settings import settings_from_lines
-from g12.tools.install.config.findings import ConfigFinding, problem, warning
+from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini
 
 PAGE = "configs/kinematics/README.md"
@@ -40,6 +40,10 @@ NEWEST_PIN = ".most-override"  # of the module
 NEEDED = {"num_aio": 4, "num_dio": 4}  # of motmod, whose default is four
 LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
 SLACK = 1.001
+ACCELERATIONS = ("ini.x.max_acceleration", "ini.y.max_acceleration")
+SETS_PERIOD = re.compile(r"\b(traj|servo)_period_nsec=(\S+)")
+FROM_INI = re.compile(r"\[(\w+)\]\(?(\w+)\)?")
+SMOOTHED, SETTLED = 4, 6  # cycles: of LinuxCNC's interpolation, of polar_xzc.comp
 
 
 class HalLine(NamedTuple):
@@ -211,6 +215,7 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
             f"the HALFILE with {FACE_KINEMATICS} stands in front of the one that loads motion",
             "move its HALFILE line after that one",
         )
+    yield from accelerations_taken(all_hal(config))
     others = [line for number, lines in enumerate(files) if number not in guards for line in lines]
     yield from hal_in_the_way([*others, *later_hal(config)])
 
@@ -222,6 +227,35 @@ def pins_taken(
     for (text, location), pin in product(lines, pins):
         if pin in text.split():
             yield problem("pin-taken", f"{location}: {text}: {pin} {owner}", cure)
+
+
+def accelerations_taken(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
+    """Find signals connected to the pins that G12.1 sets; LinuxCNC allows one writer."""
+    nets = [line for line in lines if line.text.startswith("net ")]
+    cure = "take that pin out of the line: G12.1 sets it for each section and restores it"
+    yield from pins_taken(nets, ACCELERATIONS, "is set by G12.1, which is refused then", cure)
+
+
+def periods_differ(config: Config) -> Iterator[ConfigFinding]:
+    """Find a motion module that plans more slowly than the guard counts."""
+    for text, location in all_hal(config):
+        periods = {key: period(config, value) for key, value in SETS_PERIOD.findall(text)}
+        trajectory, servo = periods.get("traj"), periods.get("servo")
+        if trajectory and servo and SMOOTHED * trajectory > SETTLED * servo:
+            yield note(
+                "traj-period",
+                f"{location}: traj_period_nsec is {trajectory / servo:g} times servo_period_nsec: "
+                f"LinuxCNC smooths the axes over {SMOOTHED} of the former, {FACE_KINEMATICS} "
+                f"waits {SETTLED} of the latter before it switches",
+                "take traj_period_nsec out of the line: it is the servo period then",
+            )
+
+
+def period(config: Config, text: str) -> float:
+    """Return a period that a HAL line gives, itself or by the INI; 0 if it is not known."""
+    named = FROM_INI.fullmatch(text)
+    value = config.ini.get(named[1], named[2]) if named else text
+    return leading_number(value or "") or 0.0
 
 
 def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
@@ -326,6 +360,7 @@ RULES = (
     axes_wrong,
     limits_wrong,
     hal_wrong,
+    periods_differ,
     offset_wrong,
     abort_wrong,
 )

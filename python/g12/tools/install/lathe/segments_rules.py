@@ -60,6 +60,7 @@ def gained_by_kinematics(config: Config) -> Iterator[ConfigFinding]:
         times = "; ".join(f"{what} {takes(path, machine)}" for what, path in CONTOURS.items())
         yield note(
             "segments",
-            f"polar sections are made in segments, at 1000 and 2000 mm/min about: {times}",
+            "polar sections are made in segments; the contour alone, without lead-in and lead-out, "
+            f"takes at 1000 and 2000 mm/min about: {times}",
             f"nothing, or make kinematics if that is worth it ({PAGE})",
         )
