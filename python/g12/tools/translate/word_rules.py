@@ -10,11 +10,10 @@ from collections.abc import Callable
 from g12.tools.translate.blocks import places
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.milling import hole_patterns, rigid_tapping, rotation
+from g12.tools.translate.milling import drilling_cycles, rigid_tapping, rotation
 from g12.tools.translate.on_lathe import holes, sections
 from g12.tools.translate.rules import (
     codes,
-    cycles,
     cylinder,
     decimals,
     modes,
@@ -76,10 +75,10 @@ WORD_RULES = (
     cycles_of_turning.turning_cycle,
     corners.direct_drawing,
     reference.incremental_words,
-    hole_patterns.hole_pattern,
+    drilling_cycles.hole_pattern,
     rigid_tapping.rigid_tap,
     holes.whole_cycle,
-    cycles.drilling_cycle,
+    drilling_cycles.drilling_cycle,
     holes.hole_call,
     reference.machine_position,
     motion.motion_mode,

@@ -23,8 +23,8 @@ from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.places import FIELDS, known_place, value_text
+from g12.tools.translate.milling.drilling_cycles import repeats_of, seconds_of_dwell
 from g12.tools.translate.rules.codes import is_own, mapped
-from g12.tools.translate.rules.cycles import repeats_of, seconds_of_dwell
 from g12.tools.translate.rules.decimals import in_units
 from g12.tools.translate.turning.given_words import (
     start_point,
