@@ -5,11 +5,11 @@ import time
 
 import pytest
 
-from g12.tools.install.lathe.kinematics_rules import module_has, module_installed
+from g12.tools.install.lathe.kinematics_rules import is_outdated, module_file
 
+MODULE = module_file()
 needs_kinematics = pytest.mark.skipif(
-    not (module_installed("polar_xzc") and module_has(".most-override")),
-    reason="first: make kinematics",
+    not MODULE or is_outdated(MODULE), reason="first: make kinematics"
 )
 
 

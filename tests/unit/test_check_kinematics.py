@@ -90,9 +90,11 @@ IN_THE_WAY = [
 @pytest.fixture
 def found(tmp_path, monkeypatch):
     """Return a function: the findings about an INI and its HAL files."""
+    module = tmp_path / "polar_xzc.so"
 
-    def find(text, motion=MOTION, installed=True):
-        monkeypatch.setattr(kinematics_rules, "module_installed", lambda _: installed)
+    def find(text, motion=MOTION, installed=b"%s.most-override"):
+        module.write_bytes(installed or b"")
+        monkeypatch.setattr(kinematics_rules, "module_file", lambda: module if installed else None)
         files = {"motion_hal": motion, "polar_hal": GUARD, "later_hal": "loadrt trivkins\n"}
         ini = write_config(tmp_path, text, "lathe.ini", **files)
         return list(kinematics_findings(config_of(ini)))
@@ -102,11 +104,11 @@ def found(tmp_path, monkeypatch):
 
 def test_a_lathe_without_is_not_looked_at(found):
     text = LATHE.replace("polar_xzc", "trivkins").replace("= 1", "= 0")
-    assert found(text, installed=False) == []
+    assert found(text, installed=None) == []
 
 
 def test_the_module_is_missing(found):
-    (missing,) = found(LATHE, installed=False)
+    (missing,) = found(LATHE, installed=None)
     assert (missing.level, missing.kind) == (PROBLEM, "no-kinematics")
     assert "make kinematics" in missing.cure
 
@@ -136,11 +138,9 @@ def test_something_in_the_way(found, line, kind):
     assert finding.text.startswith(f"motion.hal:3: {line}")
 
 
-def test_a_module_without_a_tool_offset(found, monkeypatch, tmp_path):
-    (tmp_path / "polar_xzc.so").write_bytes(b"%s.centre")
-    monkeypatch.setattr(kinematics_rules, "module_file", lambda _: tmp_path / "polar_xzc.so")
+def test_a_module_that_is_older(found):
     text = LATHE.replace("[KINS]", "POLAR_TOOL_OFFSET = 8\n\n[KINS]")
     line = (ROOT / "configs/kinematics/polar_tool_offset.hal").read_text()
-    (old,) = found(text, motion=MOTION + line)
+    (old,) = found(text, MOTION + line, b"%s.centre")
     assert (old.level, old.kind) == (PROBLEM, "no-kinematics")
     assert "make kinematics" in old.cure

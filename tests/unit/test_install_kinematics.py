@@ -95,8 +95,8 @@ def put_in(ini, *wanted):
 def test_check_finds_nothing_and_uninstall_gives_every_byte_back(
     tmp_path, monkeypatch, text, polar
 ):
-    monkeypatch.setattr("g12.tools.install.lathe.kinematics_rules.module_file", lambda _: tmp_path)
-    monkeypatch.setattr("g12.tools.install.lathe.kinematics_rules.module_has", lambda _: True)
+    monkeypatch.setattr("g12.tools.install.lathe.kinematics_rules.module_file", lambda: tmp_path)
+    monkeypatch.setattr("g12.tools.install.lathe.kinematics_rules.is_outdated", lambda _: False)
     ini = config_in(tmp_path, text)
     before = content_of(tmp_path)
     put_in(ini, polar, features.KINEMATICS)

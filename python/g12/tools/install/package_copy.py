@@ -74,23 +74,18 @@ def listed(folder: Path) -> dict[str, str]:
     manifest = folder / MANIFEST
     content = manifest.read_bytes() if manifest.is_file() else b""
     lines = content.decode("utf-8", "replace").splitlines()
-    entries = [ENTRY.fullmatch(line) for line in lines]
-    inside = folders_inside(folder, {Path(entry[2]).parent for entry in entries if entry})
+    entries, here = [ENTRY.fullmatch(line) for line in lines], folder.resolve()
     for number, (line, entry) in enumerate(zip(lines, entries), start=1):
-        if not entry or Path(entry[2]).parent not in inside:
+        if not entry or not is_below(here, entry[2]):
             raise UsageError(f"{manifest}:{number}: not a line that install wrote: {line[:80]!r}; "
                              "take that line out")  # fmt: skip
     return {entry[2]: entry[1] for entry in entries}
 
 
-def folders_inside(folder: Path, names: Iterable[Path]) -> set[Path]:
-    """Return those names of folders that are below a folder, links followed."""
-    here = folder.resolve()
-    return {
-        name
-        for name in names
-        if ".." not in name.parts and (folder / name).resolve().is_relative_to(here)
-    }
+def is_below(folder: Path, name: str) -> bool:
+    """Return whether a file's name is below a folder with all its links followed."""
+    above = (folder / name).parent
+    return ".." not in above.parts and above.resolve().is_relative_to(folder)
 
 
 def edited(folder: Path) -> list[str]:

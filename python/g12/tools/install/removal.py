@@ -43,6 +43,14 @@ OF_PROGRAMS = re.compile(
     r"|(POLAR_Z|CYLINDER_X) = allow|LIVE_SPINDLE = [01]"
 )
 
+OWN_LINES = (
+    OF_PROGRAMS,
+    GEOMETRY_LINE,
+    forms.OWN_LINE,
+    kinematics_lines.OWN_LINE,
+    spindle_c.OWN_LINE,
+)
+
 
 def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     """Remove the package from a machine config; yield the lines to show."""
@@ -138,10 +146,7 @@ def keys_standing_in(block: list[IniLine]) -> set[str]:
 def is_by_install(line: IniLine) -> bool:
     """Return whether a line between the markers is by `install`."""
     key, value = key_and_value(line.text)
-    if OF_PROGRAMS.fullmatch(line.text) or forms.OWN_LINE.fullmatch(line.text):
-        return True
-    own = (kinematics_lines.OWN_LINE, GEOMETRY_LINE, spindle_c.OWN_LINE)
-    if any(rule.fullmatch(line.text) for rule in own):
+    if any(rule.fullmatch(line.text) for rule in OWN_LINES):
         return True
     if key == "REMAP":
         return model_of(remap_from_value(value)) is not None

@@ -36,7 +36,7 @@ PINS = (
     "motion.adaptive-feed",
     "motion.feed-upm",
 )
-NEWEST_PIN = ".most-override"  # of the module
+NEWEST_PIN = b".most-override"  # of the module
 NEEDED = {"num_aio": 4, "num_dio": 4}  # of motmod, whose default is four
 LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
 SLACK = 1.001
@@ -53,24 +53,18 @@ class HalLine(NamedTuple):
     location: str
 
 
-def module_file(name: str) -> Path | None:
-    """Return the file of a realtime module of the LinuxCNC on this computer, None without one."""
+def module_file() -> Path | None:
+    """Return the kinematics' module in the LinuxCNC on this computer, None without one."""
     script = shutil.which("linuxcnc")
     text = Path(script).read_text(encoding="utf-8", errors="replace") if script else ""
     folder = re.search(r"^LINUXCNC_RTLIB_DIR=(\S+)", text, re.MULTILINE)
-    file = Path(folder[1], f"{name}.so") if folder else None
+    file = Path(folder[1], f"{FACE_KINEMATICS}.so") if folder else None
     return file if file and file.exists() else None
 
 
-def module_installed(name: str) -> bool:
-    """Return whether the LinuxCNC on this computer finds a realtime module."""
-    return module_file(name) is not None
-
-
-def module_has(text: str) -> bool:
-    """Return whether the installed kinematics hold a text, or none are installed."""
-    file = module_file(FACE_KINEMATICS)
-    return file is None or text.encode() in file.read_bytes()
+def is_outdated(module: Path) -> bool:
+    """Return whether a kinematics' module is older than this package."""
+    return NEWEST_PIN not in module.read_bytes()
 
 
 def wanted(config: Config) -> bool:
@@ -98,13 +92,14 @@ def not_used(config: Config) -> Iterator[ConfigFinding]:
 
 def module_missing(config: Config) -> Iterator[ConfigFinding]:
     """Find a LinuxCNC without the module: the machine does not start."""
-    if not module_installed(FACE_KINEMATICS):
+    module = module_file()
+    if not module:
         yield problem(
             "no-kinematics",
             f"LinuxCNC has no module {FACE_KINEMATICS}",
             f"build it: make kinematics ({PAGE})",
         )
-    elif not module_has(NEWEST_PIN):
+    elif is_outdated(module):
         yield problem(
             "no-kinematics",
             f"LinuxCNC's module {FACE_KINEMATICS} is older than this package: G12.1 is refused",
