@@ -4,7 +4,8 @@
 A table has its machine and its programs (a file of tests/programs, or their text), each with its
 faults: a name; the code of the finding, or what its sentence has, and perhaps its line; and what is
 emitted otherwise (`support.emitted_faults`), or the function or sub of the package that does
-something else (`support.faulty_machines`).
+something else (`support.faulty_machines`). A fault may be in the program: ``words`` of it that
+are others.
 
 The unbroken programs are good and verify itself is sound: a finding shows that something else is
 emitted.
@@ -59,9 +60,12 @@ def remembered():
     return RememberedTraces()
 
 
-def findings(name, program, folder, fault=None):
+def findings(name, program, folder, fault=None, words=()):
     """Return what verify finds in a program of a table on its machine: codes, lines, sentences."""
     asked = program_of(name, program)
+    for each in words:
+        assert each["words"] in asked.text
+        asked = asked._replace(text=asked.text.replace(each["words"], each["becomes"]))
     ini = with_fault(asked.ini(ROOT), fault, folder) if fault else asked.ini(ROOT)
     proof = prove(asked.written(folder), ini, tools=asked.tools)
     return [(each.code, str(each.line), each.text()) for each in proof.judged if each.is_finding]
@@ -75,9 +79,11 @@ def test_an_unbroken_program_is_good(name, program, tmp_path):
 @pytest.mark.parametrize(("name", "program", "finds", "changes"), FAULTS)
 def test_a_fault_is_found(name, program, finds, changes, tmp_path, monkeypatch, remembered):
     of_package = changes[0] if {"function", "sub"} & set(changes[0]) else None
-    if not of_package:
-        remembered.changed_by(EmittedFault(changes), monkeypatch)
-    found = findings(name, program, tmp_path, of_package)
+    words = [each for each in changes if "words" in each]
+    emitted = [each for each in changes if each not in words]
+    if emitted and not of_package:
+        remembered.changed_by(EmittedFault(emitted), monkeypatch)
+    found = findings(name, program, tmp_path, of_package, words)
     line, says = FINDS.fullmatch(finds).groups()
     lines = [at for code, at, text in found if says == code or says in text]
     assert line in lines if line else lines, found

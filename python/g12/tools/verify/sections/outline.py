@@ -5,7 +5,7 @@ Where its end meets its beginning it is closed, and what sticks out there is a l
 complex, lengths mm.
 
 A tool that comes from outside of a closed contour is meant to stay outside of it; one that comes
-to an open contour is meant to stay on the side from which it comes, unless it goes over the part to
+to an open contour is meant to stay on the side from which it comes, unless it goes over a face to
 the side away from the spindle's centre.
 """
 
@@ -27,7 +27,6 @@ from g12.tools.verify.result.tolerances import LEVEL
 STEP = 0.05  # mm between points of an arc
 LEADS = 3  # elements at either end of a contour that may be there to lead in or out
 MEETS = 1e-3
-LENGTHLESS = 1e-6
 NEAR = 1e-2  # mm: a contour's end is met, not passed
 SIDES = {1: ("G41", "G42"), -1: ("G42", "G41")}  # the code in force, and the other one
 ENTERED = 2.0  # tolerances: a contour that is so deep in the part enters it
@@ -131,11 +130,13 @@ def judge_side(section: SectionContour, tool: float) -> Iterator[Finding]:
         if before[-1].ramp and before[-1].side and not stretch[0].ramp:
             outline = Outline(stretch)
             if np.abs(outline.points - before[-1].start).min() > NEAR:
-                judge = closed_side if outline.is_closed else open_side
-                yield from judge(section.line, before[-1], outline, tool)
+                if outline.is_closed:
+                    yield from closed_side(section.line, before[-1], outline)
+                else:
+                    yield from open_side(section, before[-1], outline, tool)
 
 
-def closed_side(line: int, ramp: Element, outline: Outline, tool: float) -> Iterator[Finding]:
+def closed_side(line: int, ramp: Element, outline: Outline) -> Iterator[Finding]:
     """Yield that the tool comes from the other side of a closed contour."""
     away = outline.points - ramp.start
     turns = np.angle(np.roll(away, -1) / away).sum() / (2 * np.pi)
@@ -146,12 +147,15 @@ def closed_side(line: int, ramp: Element, outline: Outline, tool: float) -> Iter
         yield Finding("side-other", line, values)
 
 
-def open_side(line: int, ramp: Element, outline: Outline, tool: float) -> Iterator[Finding]:
-    """Yield that the tool crosses an open contour, and does not go over the part."""
+def open_side(
+    section: SectionContour, ramp: Element, outline: Outline, tool: float
+) -> Iterator[Finding]:
+    """Yield that the tool crosses an open contour; on a face it may go over the part."""
     beside = outline.curves[0].start + 1j * outline.curves[0].direction() * ramp.side * tool
-    above = ramp.depth > outline.depth + NEAR and crosses(0j, beside, outline.points)
-    if crosses(ramp.start, beside, outline.points) and not above:
-        yield Finding("side-crossed", line, {"instead": SIDES[ramp.side][1]})
+    over = not section.surface and ramp.depth > outline.depth + NEAR
+    over = over and crosses(0j, beside, outline.points)
+    if crosses(ramp.start, beside, outline.points) and not over:
+        yield Finding("side-crossed", section.line, {"instead": SIDES[ramp.side][1]})
 
 
 def crosses(start: complex, end: complex, points: np.ndarray) -> bool:
