@@ -202,7 +202,7 @@ def test_lengths_are_the_same_in_g7_and_g8_but_for_x(lathe, shape, mode, setting
 # ---------------------------------------------------------------- refusals
 
 
-REFUSED = [
+REFUSED = [  # those of one planner are in unit/test_shapes.py
     ("polar_polygon", dict(sides=LEFT), "sides is missing: how many, 2 for two flats"),
     ("polar_polygon", dict(sides=2.5), "sides 2.5 must be a whole number"),
     ("polar_polygon", dict(across_flats=0),
@@ -212,34 +212,15 @@ REFUSED = [
     ("polar_polygon", dict(depth=-5),
      "depth -5 must be greater than 0 (a call has 10 entries, -9999 leaves one out)"),
     ("polar_polygon", dict(corner_radius=-1), "corner_radius -1 must not be below 0"),
-    ("polar_polygon", dict(allowance=6.5),
-     "allowance 6.5 must be less than the 6.5 from the stock to the flats"),
-    ("polar_polygon", dict(depth_per_pass=0.0001),
-     "depth_per_pass 0.0001 makes 50000 passes of depth 5, the most is 10000"),
     ("polar_polygon", dict(feed=0),
      "feed 0 must be greater than 0 (a call has 10 entries, -9999 leaves one out)"),
     ("polar_polygon", dict(plunge_feed=-1),
      "plunge_feed -1 must be greater than 0 (a call has 10 entries, -9999 leaves one out)"),
     ("polar_polygon", dict(stock_diameter=1e7), "stock_diameter 10000000 is beyond 1000000"),
-    ("polar_polygon", dict(stock_diameter=600),
-     "the X axis would go to 304 mm, beyond its limit 300 mm"),
     ("polar_polygon", dict(depth=501), "the Z axis would go to -501 mm, beyond its limit -500 mm"),
-    ("polar_slot", dict(width=5.9), "width 5.9 must not be less than the cutter's 6"),
-    ("polar_slot", dict(length=8),
-     "length 8 must be greater than width 8 (polar_pocket makes a round one)"),
-    ("polar_slot", dict(allowance=1.1),
-     "allowance 1.1: the cutter of 6 does not fit between the walls that it leaves"),
-    ("polar_polygon", dict(stock_diameter=48, allowance=4.6),
-     "allowance 4.6 must be at most 4.5, what one round of the cutter of 6 takes"),
-    ("polar_slot", dict(width=24, allowance=6.1),
-     "allowance 6.1 must be at most 4.5, what one round of the cutter of 6 takes"),
-    ("polar_slot", dict(allowance=0.001), "allowance 0.001 must be at least 0.00508"),
     ("polar_slot", dict(depth=LEFT), "depth is missing: how deep, from the face at Z0"),
     ("polar_pocket", dict(diameter=6),
      "diameter 6 must leave the cutter room for a helix: at least 6.01016 and twice the allowance"),
-    ("polar_pocket", dict(diameter=6.02, depth=400),
-     "a ramp of 3 degrees needs more than 20000 half turns of 0.031416 for a pass"),
-    ("polar_pocket", dict(x=400), "the X axis would go to 407 mm, beyond its limit 300 mm"),
 ]  # fmt: skip
 
 
