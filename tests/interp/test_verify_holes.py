@@ -61,21 +61,16 @@ def a_call(chance, scale):
     return f"o<{name}> call {' '.join([*place, *hole])}"
 
 
-@pytest.mark.parametrize(("units", "mode"), [("G21", "G7"), ("G20", "G8"), ("G21", "G8")])
-def test_random_valid_calls_have_no_finding(tmp_path, units, mode):
-    chance = random.Random(f"{units}{mode}")
-    calls = []
+@pytest.mark.parametrize(
+    ("units", "mode", "back"),
+    [("G21", "G7", "X60 Z10"), ("G20", "G8", "X1.5 Z1"), ("G21", "G8", "X30 Z10")],
+)
+def test_random_valid_calls_have_no_finding(tmp_path, units, mode, back):
+    chance, calls = random.Random(f"{units}{mode}"), []
     for _ in range(60):
-        calls += [a_call(chance, 25.4 if units == "G20" else 1.0)]
-        calls += ["G0 X{} Z{}".format(*(60, 10) if units == "G21" and mode == "G7" else (2, 1))]
-        calls[-1] = (
-            "G0 X60 Z10" if mode == "G7" else "G0 X30 Z10" if units == "G21" else "G0 X1.5 Z1"
-        )
-        calls += [
-            chance.choice(
-                ["G91\nG90", f"C{round(chance.uniform(-400, 400), 3)}", "G95 F.2\nG94 F90"]
-            )
-        ]
+        turned = f"C{chance.uniform(-400, 400):.3f}"
+        between = chance.choice(["G91\nG90", turned, "G95 F.2\nG94 F90"])
+        calls += [a_call(chance, 25.4 if units == "G20" else 1.0), f"G0 {back}", between]
     path = written(tmp_path, *calls, units=units, mode=mode)
     assert findings(path, read_ini(SIM / "lathe_mm_headless.ini")) == []
 
