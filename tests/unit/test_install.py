@@ -109,6 +109,14 @@ def test_what_the_user_changed_since_survives_uninstall(tmp_path):
     assert not (tmp_path / "g12").exists()
 
 
+def test_a_path_that_the_user_added_to_ours_survives_uninstall(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini)
+    ini.write_text(ini.read_text().replace("g12/ngc\n", "g12/ngc:mine\n"))
+    take_out(ini)
+    assert ini.read_text() == MILL.replace("mill.var\n", f"mill.var\n{PATH}mine\n")
+
+
 def test_a_second_feature_joins_the_first(tmp_path):
     ini = write_config(tmp_path)
     before = content_of(tmp_path)
