@@ -44,23 +44,6 @@ def arc_of(turn, *end, **words):
     return arc.curve
 
 
-@pytest.mark.parametrize(
-    ("turn", "words", "centre", "sweep"),
-    [
-        (1, dict(i=-10.0), (0.0, 0.0), math.pi / 2),
-        (-1, dict(i=-10.0), (0.0, 0.0), -3 * math.pi / 2),
-        (1, dict(radius=10.0), (0.0, 0.0), math.pi / 2),
-        (1, dict(radius=-10.0), (10.0, 10.0), 3 * math.pi / 2),
-        (-1, dict(radius=10.0), (10.0, 10.0), -math.pi / 2),
-        (-1, dict(radius=-10.0), (0.0, 0.0), -3 * math.pi / 2),
-    ],
-)
-def test_arcs_to_the_top_of_a_circle(turn, words, centre, sweep):
-    arc = arc_of(turn, 0.0, 10.0, **words)
-    assert arc.centre == pytest.approx(complex(*centre), abs=1e-12)
-    assert arc.sweep == pytest.approx(sweep)
-
-
 coordinate = st.floats(-30.0, 30.0)
 point = st.builds(complex, coordinate, coordinate)
 
@@ -88,39 +71,6 @@ def test_no_end_or_the_start_as_end_is_a_full_circle(turn, end, words):
     arc = arc_of(turn, *end, **words)
     assert arc.sweep == turn * 2 * math.pi
     assert arc.centre == complex(10.0 + words.get("i", 0.0), words.get("j", 0.0))
-
-
-def test_a_rounded_centre_is_moved_to_be_as_far_from_both_ends():
-    arc = arc_of(1, 0.0, 10.0, i=-10.0, j=0.004)
-    assert abs(10.0 - arc.centre) == pytest.approx(abs(10j - arc.centre))
-    assert abs(arc.centre) < 0.004
-
-
-def test_a_half_circle_with_a_rounded_radius_closes():
-    contour = started(closing=0.001)
-    contour.arc(1, -10.0, 0.0, radius=9.9996, line=1, feed=100.0)
-    assert contour.elements[0].curve.sweep == pytest.approx(math.pi)
-
-
-def test_compensation_is_left_above_zero_and_right_below():
-    contour = started()
-    for line, side in enumerate((41, 40, 42, 40), 1):
-        contour.compensation(side, 2.0, line=line)
-        contour.line(c=5.0 * line, line=line, feed=100.0)
-    assert [element.offset for element in contour.elements] == [2.0, 0.0, -2.0, 0.0]
-
-
-@pytest.mark.parametrize("side", [40, 41])
-def test_compensation_that_is_in_force_already_changes_nothing(side):
-    contour = started()
-    contour.compensation(41, 2.0, line=1)
-    contour.line(c=5.0, line=1, feed=100.0)
-    if side == 40:
-        contour.compensation(40, 0.0, line=2)
-        contour.line(c=9.0, line=2, feed=100.0)
-    contour.compensation(side, 2.0, line=3)
-    contour.arc(1, i=-1.0, line=3, feed=100.0)
-    assert contour.side == side
 
 
 def block(contour, text, line):

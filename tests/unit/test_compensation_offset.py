@@ -13,11 +13,9 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Polygon
 
-from g12.compensation.contour import Contour, PlaneMove
+from g12.compensation.contour import Contour
 from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.geometry.curve import Arc
-from g12.moves.steps import BlockMoves
 from g12.polar.plan import PolarSettings, plan
 from support.contour_geometry import Round, Straight, distance_from_path, phase, spaced
 from support.planned_cuts import SAGITTA, add, cuts, path
@@ -106,19 +104,6 @@ def test_inside_a_polygon_the_tool_stops_short_of_the_corners(part, share):
     check(part[0], INSIDE, share * part[1])
 
 
-def star(points, outer, inner, centre=0j):
-    """Return a star from the middle of an edge on: corners outside and inside in turn."""
-    radii = [outer, inner] * points
-    corners = [centre + r * cmath.exp(1j * math.pi * k / points) for k, r in enumerate(radii)]
-    return polygon((corners[-1] + corners[0]) / 2, *corners)
-
-
-@pytest.mark.parametrize("side", [OUTSIDE, INSIDE])
-@pytest.mark.parametrize("centre", [0j, 30 + 5j, 8j])
-def test_a_star_has_corners_of_both_kinds(side, centre):
-    check(star(5, 20.0, 13.0, centre), side, 1.5)
-
-
 def slot(length, width):
     """Return a slot across the spindle, counterclockwise from the middle of a side on."""
     right, top = length / 2, 1j * width / 2
@@ -151,12 +136,6 @@ def pillow(half, sweep):
 )
 def test_arcs_meet_lines_and_arcs(shapes, side):
     check(shapes, side, 2.0)
-
-
-@pytest.mark.parametrize(("side", "radius"), [(OUTSIDE, 8.0), (INSIDE, 4.0)])
-def test_a_full_circle_has_the_tools_radius_more_or_less(side, radius):
-    made, (circle,) = along_the_part([Round(10 + 0j, 4 + 0j, 2 * math.pi)], side, 2.0)
-    assert abs(path(made) - circle.centre) == pytest.approx(radius, abs=TOLERANCE)
 
 
 # Anything at all is cut right, or refused.
@@ -295,37 +274,6 @@ def test_where_the_tools_centre_ends_each_block(blocks, radius, wanted):
     assert {line: ends.get(line) for line in wanted} == wanted
 
 
-def centre_moves(shapes, side, radius):
-    """Return the tool centre's moves along shapes, ramps included."""
-    contour, _ = compensated(shapes, side, radius)
-    return [
-        move
-        for move in tool_path(contour, contour.elements, TOLERANCE)
-        if isinstance(move, PlaneMove)
-    ]
-
-
-@pytest.mark.parametrize("side", [41, 42])
-@pytest.mark.parametrize("bend", [1.0, -1.0, 0.2, -0.2])
-def test_the_tool_centres_moves_join_and_its_arcs_are_arcs(side, bend):
-    """A square whose sides are arcs, cut off in its corners; or rounded there."""
-    for shapes in (pillow(20.0, bend), [shape.turned(1j) for shape in pillow(20.0, bend)]):
-        moves = centre_moves(shapes, side, 3.0)
-        for one, following in zip(moves, moves[1:]):
-            assert one.end == pytest.approx(following.start)
-        assert sum(isinstance(move.curve, Arc) for move in moves) >= 5
-
-
-def test_an_arc_of_the_tools_radius_becomes_a_corner():
-    def round_off(contour, line):
-        contour.arc(1, 20.0, 7.0, i=0.0, j=2.0, line=line, feed=100.0)
-
-    ends = joined(to(18, 5), round_off, to(20, 15))
-    assert ends[2] == pytest.approx((18.0, 7.0))
-    assert 3 not in ends
-    assert ends[4] == (18.0, 15.0)
-
-
 @pytest.mark.parametrize(
     ("bend", "by", "segments"),
     [
@@ -351,13 +299,6 @@ def test_parallels_are_joined_where_nobody_could_tell(bend, by, segments):
     made = [move for move in tool_path(contour, contour.elements, TOLERANCE) if move.line == 3]
     assert len(made) == segments
     assert abs(abs(made[0].start - corner) - 2.0) <= 0.04 * TOLERANCE
-
-
-def test_the_feed_is_that_of_the_tools_centre():
-    contour, _ = compensated(pillow(15.0, 1), OUTSIDE, 6.0)
-    for cut in cuts(contour, plan(contour, EXACT, c=0.0)):
-        if 3 <= cut.line < 90:
-            assert 60.0 * cut.length / cut.seconds == pytest.approx(300.0, rel=0.01)
 
 
 def test_no_block_may_wait_for_the_machine_under_compensation():
@@ -453,14 +394,6 @@ def test_a_line_and_an_arc_that_come_too_near_to_each_other(shapes, side, radius
         along_the_part(shapes, side, radius)
 
 
-def test_a_small_arc_inside_a_big_tool_is_not_joined_beside_its_end():
-    bend = cmath.exp(0.004j)
-    nearly = [Straight(-40 + 0j, 0j), Round(0j, 51j * bend, 1.0)]
-    made, (_, arc_shape) = along_the_part(nearly, 41, 50.0)
-    points = path([cut for cut in made if cut.line == 4])
-    assert abs(arc_shape.distance(points) - 50.0).max() <= TOLERANCE
-
-
 @pytest.mark.parametrize("side", [41, 42])
 def test_a_ramp_alone_cannot_be_cut(side):
     contour = Contour(10.0, 0.0)
@@ -469,16 +402,3 @@ def test_a_ramp_alone_cannot_be_cut(side):
     needs = "needs a block of the contour behind its G1"
     with pytest.raises(Refusal, match=rf"^G12\.1 line 1: G{side} {needs}$"):
         plan(contour, LATHE, c=0.0)
-
-
-def test_nothing_is_planned_of_a_section_with_a_refused_block():
-    contour = Contour(10.0, 0.0)
-    contour.line(12.0, 0.0, line=1, feed=100.0)
-    contour.compensation(41, 2.0, line=2)
-    contour.line(12.0, 5.0, line=2, feed=100.0)
-    contour.line(20.0, 5.0, line=3, feed=100.0)
-    contour.line(20.0, 5.5, line=4, feed=100.0)
-    contour.line(30.0, 5.5, line=5, feed=100.0)
-    with pytest.raises(Refusal):
-        plan(contour, LATHE, c=0.0)
-    assert not any(isinstance(element, BlockMoves) for element in contour.elements)

@@ -11,7 +11,7 @@ from shapely.geometry import LineString
 
 from g12.compensation import simplify
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Contour, PlaneMove, Plunge
+from g12.compensation.contour import Contour, Plunge
 from g12.errors import Refusal
 from g12.geometry.curve import Line
 from g12.polar.plan import PolarSettings, plan
@@ -31,13 +31,6 @@ def programmed(*points, side=40, radius=0.0, start=(30.0, -30.0)):
     contour.compensation(40, 0.0, line=90)
     contour.line(*points[-1], line=90, feed=600.0)
     return contour
-
-
-@pytest.mark.parametrize("noise", [2e-15, 1e-9, 9e-7])
-def test_rounding_is_no_move(noise):
-    contour = programmed((20, -5), (20, 5), (20, 5 + noise), (20 + noise, 5), (10, 5))
-    assert [e.line for e in contour.elements if isinstance(e, PlaneMove)] == [1, 2, 3, 90]
-    assert contour.elements[-1].start.real == contour.elements[-2].end.real
 
 
 def test_rounding_does_not_add_up():
@@ -70,24 +63,6 @@ def depth(contour, walls, radius, lines):
     """Return how much deeper than its radius the tool cuts into walls."""
     outline = LineString([(z.real, z.imag) for z in tool_points(contour, lines)])
     return radius - outline.distance(LineString(walls))
-
-
-MICRO = [(x, c) for x in (-1e-3, 0.0, 2e-4) for c in (-2e-4, 0.0, 1e-3) if x or c]
-
-
-@pytest.mark.parametrize(("x", "c"), MICRO)
-def test_a_corner_is_cut_whatever_rounding_there_is_in_it(x, c):
-    corner = [(30, -12), (30, 10), (30 + x, 10 + c), (8, 10), (8, -2)]
-    contour = programmed(*corner, side=41, radius=5.0, start=(22.0, -30.0))
-    assert depth(contour, [(30, -12), (30, 10), (8, 10)], 5.0, range(3, 6)) < 0.005
-    assert abs(tool_points(contour, range(3, 6)) - (25 + 5j)).min() < 0.001
-
-
-@pytest.mark.parametrize(("x", "c"), MICRO)
-def test_a_line_is_cut_whatever_rounding_there_is_in_it(x, c):
-    line = [(30, -12), (30, 0), (30 + x, c), (30, 10), (40, 10)]
-    contour = programmed(*line, side=41, radius=5.0, start=(20.0, -30.0))
-    assert tool_points(contour, range(3, 6)).real == pytest.approx(25.0, abs=0.005)
 
 
 def test_short_moves_in_a_row_keep_their_shape():
@@ -205,11 +180,3 @@ def test_of_a_short_move_its_z_is_kept():
     kept, _ = simplify.without_short_moves([one, SHORT._replace(z1=-1.0), other], 0.0015)
     moved = other._replace(curve=Line(one.end, other.end))
     assert kept == [one, Plunge(2, 100.0, 0.0, -1.0), moved]
-
-
-@pytest.mark.parametrize("end", [0, 9])
-def test_points_there_and_back_are_no_line(end):
-    """Behind the ramp one line would stand for both: none, or one that is only rounding."""
-    moves = [line_to(0, 0, (0, 9), 1), line_to(5, 0, (0, 0), 2), line_to(0, end, (5, 0), 3)]
-    assert simplify.without_rounding_points(moves, 10.0) == (moves, 0.0)
-    assert len(simplify.without_rounding_points(moves, 8.0)[0]) == (2 if end else 3)
