@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from shapely.geometry import LineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
-from shapely.ops import split, unary_union
+from shapely.ops import split, transform, unary_union
 
 from g12.tools.material.material import SAME_LEVEL, Material
 from g12.tools.path.part import X, Z, disc, is_sideways
@@ -222,13 +222,13 @@ def cylinder_solids(section: SectionContour, moves: Sequence[Move], cutter: floa
 
 def material_side(outline: Outline, plane: Plane) -> BaseGeometry:
     """Return what a compensated contour leaves of the part beside it, nothing without a side."""
-    if not outline.side or not outline.curves:
-        return Polygon()
-    points = vectors(plane.on_part(outline.points))
-    if not outline.is_closed:
-        return LineString(points).buffer(-outline.side * WALL, single_sided=True, join_style=2)
-    shape = Polygon(points).buffer(0)
-    return shape.buffer(WALL).difference(shape) if outline.tool_is_inside else shape
+
+    def on_part(xs: np.ndarray, ys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        there = plane.on_part(np.asarray(xs) + 1j * np.asarray(ys))
+        return there.real, there.imag
+
+    area = outline.part(WALL)
+    return area if area.is_empty else transform(on_part, area)
 
 
 def beyond(outline: Outline, plane: Plane, bar: BaseGeometry) -> BaseGeometry:

@@ -27,6 +27,7 @@ from g12.tools.verify.result.tolerances import LEVEL
 STEP = 0.05  # mm between points of an arc
 LEADS = 3  # elements at either end of a contour that may be there to lead in or out
 MEETS = 1e-3
+MITRE = 2  # shapely's number
 NEAR = 1e-2  # mm: a contour's end is met, not passed
 SIDES = {1: ("G41", "G42"), -1: ("G42", "G41")}  # the code in force, and the other one
 ENTERED = 2.0  # tolerances: a contour that is so deep in the part enters it
@@ -63,6 +64,20 @@ class Outline:
         """Tell whether the tool is inside of a closed shape."""
         area = (self.points.conj() * np.roll(self.points, -1)).imag.sum()
         return (area > 0.0) == (self.side > 0)
+
+    def part(self, width: float) -> BaseGeometry:
+        """Return the part beside it, as far as a width; nothing without a side.
+
+        All within a closed shape is part where the tool is outside.
+        """
+        if not self.side or not self.curves:
+            return Polygon()
+        points = vectors(self.points)
+        if not self.is_closed:
+            line = LineString(points)
+            return line.buffer(-self.side * width, single_sided=True, join_style=MITRE)
+        area = Polygon(points).buffer(0)
+        return area.buffer(width).difference(area) if self.tool_is_inside else area
 
 
 def stretches_of(section: SectionContour) -> list[list[Element]]:
@@ -191,12 +206,7 @@ class _Side:
     @cached_property
     def part(self) -> BaseGeometry:
         """The part beside the contour, as far as the tool reaches."""
-        outline = Outline(self.elements)
-        line = line_through([outline.points])
-        if not outline.is_closed:
-            return line.buffer(-2 * outline.side * self._tool, single_sided=True)
-        area = Polygon(line.coords).buffer(0)
-        return area.buffer(2 * self._tool).difference(area) if outline.tool_is_inside else area
+        return Outline(self.elements).part(2 * self._tool)
 
 
 def neighbour_cuts(
