@@ -123,7 +123,7 @@ class FollowedProgram:
             if statement:
                 if block.kind in OPENING:
                     before_loop(draft)
-                statement(draft, index, self.structure)
+                statement(draft, self.structure)
             elif index in self.structure.starts or draft.begins_program():
                 self._head(draft, index)
             else:

@@ -8,12 +8,12 @@ from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.structure import Structure
 
 
-def tape(draft: Draft, index: int, structure: Structure) -> None:
+def tape(draft: Draft, structure: Structure) -> None:
     """Keep a ``%`` as a comment."""
     draft.comments.insert(0, f"%{draft.block.label}")
 
 
-def _assign(draft: Draft, index: int, structure: Structure) -> None:
+def _assign(draft: Draft, structure: Structure) -> None:
     draft.words = [*draft.block.words, line_as_word(_assignment_text(draft.block))]
 
 
@@ -22,35 +22,35 @@ def _assignment_text(block: ForeignBlock) -> str:
     return f"#{block.variable}={text if NUMBER.fullmatch(text) else f'[{text}]'}"
 
 
-def _while_loop(draft: Draft, index: int, structure: Structure) -> None:
+def _while_loop(draft: Draft, structure: Structure) -> None:
     _refuse_skipped(draft)
-    _labelled(draft, f"o<while_{index}> while {draft.block.expression.text}")
+    _labelled(draft, f"o<while_{draft.index}> while {draft.block.expression.text}")
 
 
-def _end_of_loop(draft: Draft, index: int, structure: Structure) -> None:
+def _end_of_loop(draft: Draft, structure: Structure) -> None:
     _refuse_skipped(draft)
-    _labelled(draft, f"o<while_{structure.partners[index]}> endwhile")
+    _labelled(draft, f"o<while_{structure.partners[draft.index]}> endwhile")
 
 
-def condition(draft: Draft, index: int, structure: Structure) -> None:
+def condition(draft: Draft, structure: Structure) -> None:
     """Write the head of what a condition rules."""
-    _labelled(draft, f"o<if_{index}> if {draft.block.expression.text}")
+    _labelled(draft, f"o<if_{draft.index}> if {draft.block.expression.text}")
 
 
-def _end_of_condition(draft: Draft, index: int, structure: Structure) -> None:
-    _labelled(draft, f"o<if_{structure.partners[index]}> endif")
+def _end_of_condition(draft: Draft, structure: Structure) -> None:
+    _labelled(draft, f"o<if_{structure.partners[draft.index]}> endif")
 
 
-def _goto(draft: Draft, index: int, structure: Structure) -> None:
-    lines = structure.jumps.at[index]
+def _goto(draft: Draft, structure: Structure) -> None:
+    lines = structure.jumps.at[draft.index]
     if draft.block.expression:
-        head = f"o<if_{index}> if {draft.block.expression.text}"
-        lines = [head, *lines, f"o<if_{index}> endif"]
+        head = f"o<if_{draft.index}> if {draft.block.expression.text}"
+        lines = [head, *lines, f"o<if_{draft.index}> endif"]
     _labelled(draft, lines[0])
     draft.after += lines[1:]
 
 
-def stop(draft: Draft, index: int, structure: Structure) -> None:
+def stop(draft: Draft, structure: Structure) -> None:
     """Write #3000, an alarm, or #3006, a stop, with the comment as its text."""
     message = ", ".join(draft.comments) or "stopped by the program"
     draft.comments = []
