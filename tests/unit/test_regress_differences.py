@@ -97,6 +97,8 @@ REFUSED = recording(*SQUARE, error=Error("G12: no I", 8))
         (arc_of(5.0), arc_of(5.01), "moved", "radius 5 → 5.01 (middle of the arc 0.02 mm off)"),
         (arc_of(5.0), arc_of(5.0, 1), "changed", "clockwise → counterclockwise"),
         (arc_of(5.0), arc_of(5.0, plane=18), "changed", "G17 → G18"),
+        (recording(*SQUARE), recording(*SQUARE[:3], *SQUARE[4:]), "missing",
+         "1 move missing, Y0 to 10"),
         (NOTED, recording(*SQUARE, "M8 off"), "missing", "missing: M8 on"),
         (recording(*SQUARE), recording(*SQUARE, "dwell 2"), "added", "new: dwell 2"),
         (NOTED, recording("M7 on", *SQUARE, "M8 off"), "changed", "M8 on → M7 on"),

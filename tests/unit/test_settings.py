@@ -35,7 +35,7 @@ def test_in_the_file_that_linuxcnc_expanded_an_include_is_a_comment(tmp_path):
 
 @pytest.mark.parametrize(
     ("text", "mm", "tolerance"),
-    [("", 1.0, 0.005), ("", 25.4, 0.0002), ("POLAR_TOLERANCE = 0.01", 1, 0.01)],
+    [("", 1.0, 0.005), ("", 25.4, 0.0002), ("", 10.0, 0.0005), ("POLAR_TOLERANCE = 0.01", 1, 0.01)],
 )
 def test_the_tolerance_is_in_machine_units(text, mm, tolerance):
     assert settings_from_lines(["[G12]", text]).tolerance(mm) == tolerance
@@ -63,6 +63,7 @@ def test_an_illegal_value_names_key_and_legal_values(key, value, message):
     ("text", "message"),
     [
         ("[g12]\nCLEARING = spiral\n", "[g12] must be written [G12]"),
+        ("[G12]\n[EMC]\n[G12]\n", "[G12] stands there twice: LinuxCNC reads the first one only"),
         ("[G12]\nCLEARING = rings\nCLEARING = spiral\n", "[G12] CLEARING stands there twice"),
     ],
 )
