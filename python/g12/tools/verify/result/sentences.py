@@ -188,6 +188,7 @@ NOT_JUDGED = {
         "look for the code that starts it on your machine"
     ),
     "plain-moves": (
-        "feed moves outside of cycles and sections: {count} lines, the last of them line {last}"
+        "feed moves outside of cycles and sections: {count} of the program's lines, "
+        "the last is line {last}"
     ),
 }
